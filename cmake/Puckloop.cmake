@@ -1,0 +1,33 @@
+# What every target of the project shares: warnings as errors, include root, and a way to declare tests.
+
+add_library(puckloop_options INTERFACE)
+target_include_directories(puckloop_options INTERFACE ${PROJECT_SOURCE_DIR})
+target_compile_options(puckloop_options INTERFACE -Wall -Wextra -Wpedantic $<$<CXX_COMPILER_ID:GNU>:-Wshadow=local> -Wconversion -Wnon-virtual-dtor
+                                                  -Wold-style-cast -Woverloaded-virtual -Werror)
+
+option(PUCKLOOP_ASAN "Build with the address and undefined-behaviour sanitizers" OFF)
+if(PUCKLOOP_ASAN)
+  target_compile_options(puckloop_options INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=undefined
+                                                    -fno-omit-frame-pointer)
+  target_link_options(puckloop_options INTERFACE -fsanitize=address,undefined)
+endif()
+
+# puckloop_library(NAME SOURCES a.cpp b.cpp [LINK libraries...])
+function(puckloop_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  add_library(${name} STATIC ${ARG_SOURCES})
+  target_link_libraries(${name} PUBLIC puckloop_options ${ARG_LINK})
+endfunction()
+
+# puckloop_test(NAME SOURCES a_test.cpp [LINK libraries...] [LABELS ...])
+# One executable an area; every Catch2 case becomes a CTest case carrying the labels.
+function(puckloop_test name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK;LABELS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE puckloop_test_main ${ARG_LINK})
+  set(properties "")
+  if(ARG_LABELS)
+    set(properties PROPERTIES LABELS "${ARG_LABELS}")
+  endif()
+  catch_discover_tests(${name} TEST_PREFIX "${name}: " ${properties} DISCOVERY_MODE PRE_TEST)
+endfunction()

@@ -1,0 +1,93 @@
+#pragma once
+// The special-function register space, 0x0000 to 0x07FF: plain storage with masks, hooks where a register
+// acts, and a report of the first touch of every register that no model stands behind.
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string_view>
+
+namespace puckloop::dspic {
+
+/// One register of a device's table: the data sheet's name, its address, reset value and implemented bits.
+struct RegisterInfo {
+    std::string_view name;
+    std::uint16_t address = 0;
+    std::uint16_t reset = 0;        ///< power-on value; bits the sheet calls unknown are 0 here
+    std::uint16_t implemented = 0;  ///< bits that exist; the others read 0
+    std::string_view fields;  ///< "TON:15 TCKPS:5:4 ...", high bit first; empty for whole-word registers
+};
+
+/// A register access as hooks see it. Addresses are even. `mask` is 0xFFFF, 0x00FF or 0xFF00: which bytes are
+/// written.
+using ReadHook = std::uint16_t (*)(void* owner, std::uint16_t address);
+using WriteHook = void (*)(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask);
+
+class SfrSpace {
+  public:
+    static constexpr std::size_t kWords = 0x400;
+    enum class Behaviour : std::uint8_t { Absent, Stored, Modelled, Unmodelled };
+
+    /// Lists the device's registers. All are Unmodelled until a model claims them.
+    void describe(std::span<const RegisterInfo> registers);
+    /// The word is right as plain storage (masked to its implemented bits), and a model stands behind it.
+    void claim(std::uint16_t address);
+    /// Claims the word and routes its accesses; either hook may be null (plain storage on that side).
+    void hook(std::uint16_t address, void* owner, ReadHook read, WriteHook write);
+
+    /// Called at the first touch of each Unmodelled or Absent word: name (or empty), address, true for a
+    /// write.
+    std::function<void(std::string_view name, std::uint16_t address, bool write)> on_first_touch;
+
+    std::uint16_t read(std::uint16_t address) {
+        const Word& word = words_[address >> 1];
+        if (word.read) return word.read(word.owner, address);
+        if (word.behaviour != Behaviour::Modelled && word.behaviour != Behaviour::Stored)
+            touch(address, false);
+        return value_[address >> 1];
+    }
+    void write(std::uint16_t address, std::uint16_t value, std::uint16_t mask) {
+        const Word& word = words_[address >> 1];
+        if (word.write) return word.write(word.owner, address, value, mask);
+        if (word.behaviour != Behaviour::Modelled && word.behaviour != Behaviour::Stored)
+            touch(address, true);
+        store(address, value, mask);
+    }
+
+    /// The stored word itself, no side effects: what models keep their register contents in.
+    std::uint16_t& raw(std::uint16_t address) { return value_[address >> 1]; }
+    std::uint16_t raw(std::uint16_t address) const { return value_[address >> 1]; }
+    /// Plain masked storage, for write hooks that only add to it.
+    void store(std::uint16_t address, std::uint16_t value, std::uint16_t mask) {
+        const std::uint16_t bits = static_cast<std::uint16_t>(mask & words_[address >> 1].implemented);
+        std::uint16_t& slot = value_[address >> 1];
+        slot = static_cast<std::uint16_t>((slot & ~bits) | (value & bits));
+    }
+    /// True where a plain read has no side effect and no hook: a loop that polls it can be skipped safely as
+    /// long as no event falls due.
+    bool plain_read(std::uint16_t address) const { return words_[address >> 1].read == nullptr; }
+
+    /// All registers to their power-on values, without hooks (the models reset themselves).
+    void reset_values();
+    const RegisterInfo* info(std::uint16_t address) const { return words_[address >> 1].info; }
+    /// By data-sheet name; null if the device has no such register.
+    const RegisterInfo* find(std::string_view name) const;
+
+  private:
+    struct Word {
+        ReadHook read = nullptr;
+        WriteHook write = nullptr;
+        void* owner = nullptr;
+        const RegisterInfo* info = nullptr;
+        std::uint16_t implemented = 0;
+        Behaviour behaviour = Behaviour::Absent;
+    };
+    void touch(std::uint16_t address, bool write);
+
+    std::array<std::uint16_t, kWords> value_{};
+    std::array<Word, kWords> words_{};
+    std::array<bool, kWords> reported_{};
+};
+
+}  // namespace puckloop::dspic
