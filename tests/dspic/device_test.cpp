@@ -1,0 +1,80 @@
+// The register and interrupt tables hold together: order, uniqueness, fields inside the implemented bits.
+
+#include "emu/dspic/device.h"
+#include "emu/dspic/devices/dspic30f6014a_irq.h"
+#include "emu/dspic/devices/dspic30f6014a_sfr.h"
+
+#include <catch2/catch.hpp>
+
+#include <charconv>
+#include <set>
+#include <string>
+
+using namespace puckloop::dspic;
+
+namespace {
+
+// "TCKPS:5:4" or "TON:15" -> mask of the field's bits.
+std::uint16_t field_mask(std::string_view field) {
+    const std::size_t first = field.find(':');
+    const std::size_t second = field.find(':', first + 1);
+    int high = 0;
+    int low = 0;
+    std::from_chars(field.data() + first + 1, field.data() + field.size(), high);
+    low = high;
+    if (second != std::string_view::npos)
+        std::from_chars(field.data() + second + 1, field.data() + field.size(), low);
+    REQUIRE(high >= low);
+    REQUIRE(high < 16);
+    return static_cast<std::uint16_t>(((1u << (high - low + 1)) - 1u) << low);
+}
+
+}  // namespace
+
+TEST_CASE("registers are in address order, named once, and their fields fill their implemented bits") {
+    std::set<std::string_view> names;
+    int last = -2;
+    for (const RegisterInfo& info : dspic30f6014a().registers) {
+        INFO(info.name);
+        CHECK(info.address % 2 == 0);
+        CHECK(info.address > last);
+        CHECK(info.address < 0x800);
+        last = info.address;
+        CHECK(names.insert(info.name).second);
+        if (info.fields.empty()) continue;
+        unsigned bits = 0;
+        for (std::size_t at = 0; at < info.fields.size();) {
+            const std::size_t end = std::min(info.fields.find(' ', at), info.fields.size());
+            const unsigned field = field_mask(info.fields.substr(at, end - at));
+            CHECK((bits & field) == 0);
+            bits |= field;
+            at = end + 1;
+        }
+        CHECK(bits == info.implemented);
+    }
+    CHECK(names.size() == 350);
+}
+
+TEST_CASE("interrupts are in order and their priority fields exist with reset value 4") {
+    int last = -1;
+    SfrSpace sfr;
+    sfr.describe(dspic30f6014a().registers);
+    for (const InterruptInfo& info : dspic30f6014a().interrupts) {
+        INFO(info.name);
+        CHECK(info.number > last);
+        last = info.number;
+        const auto ipc = static_cast<std::uint16_t>(sfr::IPC0 + info.number / 4 * 2);
+        CHECK((sfr.raw(ipc) >> (info.number % 4 * 4) & 7) == 4);
+        const auto ifs = static_cast<std::uint16_t>(sfr::IFS0 + info.number / 16 * 2);
+        REQUIRE(sfr.info(ifs) != nullptr);
+        CHECK((sfr.info(ifs)->implemented >> (info.number % 16) & 1) == 1);
+        CHECK(sfr.info(ifs)->fields.find(info.flag) != std::string_view::npos);
+    }
+    CHECK(dspic30f6014a().interrupts.size() == 41);
+    CHECK(irq::U2RX == 24);
+}
+
+TEST_CASE("devices are found by name in any case") {
+    CHECK(find_device("DSPIC30f6014a") == &dspic30f6014a());
+    CHECK(find_device("dspic33fj256gp710") == nullptr);
+}
