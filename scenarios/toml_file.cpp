@@ -1,0 +1,90 @@
+#include "scenarios/toml_file.h"
+
+#include "base/error.h"
+
+#include <fmt/format.h>
+#include <toml.hpp>
+
+#include <fstream>
+#include <map>
+#include <sstream>
+
+namespace puckloop::scenarios {
+
+namespace {
+
+using Parsed = toml::basic_value<toml::discard_comments, std::map, std::vector>;
+
+int line_of(const Parsed& value) {
+    return static_cast<int>(value.location().line());
+}
+
+TomlValue convert(const Parsed& value, const std::string& file) {
+    TomlValue result;
+    result.line = line_of(value);
+    switch (value.type()) {
+    case toml::value_t::boolean:
+        result.data = value.as_boolean();
+        break;
+    case toml::value_t::integer:
+        result.data = static_cast<std::int64_t>(value.as_integer());
+        break;
+    case toml::value_t::floating:
+        result.data = value.as_floating();
+        break;
+    case toml::value_t::string:
+        result.data = value.as_string().str;
+        break;
+    case toml::value_t::array: {
+        TomlArray array;
+        for (const Parsed& item : value.as_array())
+            array.push_back(convert(item, file));
+        result.data = std::move(array);
+        break;
+    }
+    case toml::value_t::table: {
+        TomlTable table;
+        for (const auto& [key, item] : value.as_table())
+            table.emplace_back(key, convert(item, file));
+        result.data = std::move(table);
+        break;
+    }
+    default:
+        throw InputError(file, fmt::format("line {}", result.line), "dates and times have no use here",
+                         "a number, a string, a list or a table");
+    }
+    return result;
+}
+
+/// The first line of toml11's explanation, without its own file and colour decorations.
+std::string reason_of(const std::exception& error) {
+    std::string text = error.what();
+    if (const auto end = text.find('\n'); end != std::string::npos) text.resize(end);
+    if (text.starts_with("[error] ")) text.erase(0, 8);
+    if (text.starts_with("toml::")) text.erase(0, 6);
+    return text;
+}
+
+}  // namespace
+
+TomlValue read_toml(const std::filesystem::path& file) {
+    if (std::filesystem::is_directory(file))
+        throw InputError(file.string(), "", "is a directory", "a TOML file");
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) throw InputError(file.string(), "", "cannot be opened", "a TOML file");
+    std::stringstream content;
+    content << stream.rdbuf();
+    try {
+        return convert(toml::parse<toml::discard_comments, std::map, std::vector>(content, file.string()),
+                       file.string());
+    } catch (const toml::exception& error) {
+        throw InputError(file.string(), fmt::format("line {}", error.location().line()), reason_of(error),
+                         "valid TOML");
+    } catch (const InputError&) {
+        throw;
+    } catch (const std::exception& error) {
+        throw InputError(file.string(), "", reason_of(error), "valid TOML");
+    }
+}
+
+}  // namespace puckloop::scenarios
