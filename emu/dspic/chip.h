@@ -1,0 +1,117 @@
+#pragma once
+// A whole microcontroller: core, memories, clock, interrupt controller and peripherals, wired as in silicon.
+// It knows no board: the board implements Pins, and tells the chip what arrives from outside.
+
+#include "cosim/clock.h"
+#include "cosim/message.h"
+#include "cosim/time.h"
+#include "emu/dspic/device.h"
+#include "emu/dspic/event_queue.h"
+#include "emu/dspic/pins.h"
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace puckloop::image {
+struct Image;
+}
+
+namespace puckloop::dspic {
+
+struct ChipOptions {
+    double crystal_hertz = 7'372'800.0;  ///< what the board solders to OSC1/OSC2
+    double ppm = 0.0;                    ///< the crystal's error, + is fast
+    /// Configuration word that is in force whatever the image says (a bootloader's words stay on the part).
+    std::optional<std::uint16_t> fosc;
+};
+
+/// One entry each; times are the chip's cycles.
+struct ResetRecord {
+    Cycle cycle = 0;
+    std::string cause;     ///< "POR", "EXTR", "SWR", "WDTO", "IOPUWR", "TRAPR"
+    std::uint32_t pc = 0;  ///< address of the instruction that was about to run or that caused it
+};
+struct TrapRecord {
+    Cycle cycle = 0;
+    std::string name;  ///< "AddressError", "StackError", "MathError", "OscillatorFail"
+    std::uint32_t pc = 0;
+};
+struct UnmodelledTouch {
+    Cycle cycle = 0;
+    std::string name;  ///< empty where the device has no register
+    std::uint16_t address = 0;
+    std::uint32_t pc = 0;
+    bool write = false;
+};
+
+struct ChipReport {
+    std::vector<ResetRecord> resets;          ///< the first 1000, power-on included
+    std::vector<TrapRecord> traps;            ///< the first 1000
+    std::vector<UnmodelledTouch> unmodelled;  ///< first touch of each register
+    std::uint64_t instructions = 0;
+    Cycle cycles = 0;
+};
+
+/// Use: construct, load, power_on(), then run_until() in rising steps, handing in what arrives in between.
+class Chip {
+  public:
+    Chip(const DeviceInfo& device, Pins& pins, const ChipOptions& options = {});
+    ~Chip();
+    Chip(const Chip&) = delete;
+    Chip& operator=(const Chip&) = delete;
+
+    /// Program, configuration and EEPROM words of an image; throws InputError if they do not fit the device.
+    void load(const image::Image& image);
+    /// One program, configuration or EEPROM word at a program address (even).
+    void load_word(std::uint32_t address, std::uint32_t word);
+
+    /// Power-up at time 0: all registers at power-on values, RCON.POR and BOR set. Once, before run_until().
+    void power_on();
+    /// A pulse on MCLR now.
+    void mclr();
+
+    /// Runs everything that starts strictly before `until`. Returns early only at a stop address.
+    /// An instruction that starts at time s has seen everything handed in after run_until(t), t <= s.
+    void run_until(cosim::Time until);
+    /// Ends run_until() before the instruction at program address `pc` runs.
+    void stop_at(std::uint32_t pc);
+    /// The stop address at which run_until() returned early, until it is called again.
+    std::optional<std::uint32_t> stopped_at() const;
+
+    /// A character whose stop bit begins now arrives at UART `unit` (1 or 2).
+    void uart_receive(int unit, const cosim::UartFrame& frame);
+    /// The bus's answer (Acknowledge, Data or BusLost) to the last phase of I2C module `unit`, now.
+    void i2c_answer(int unit, const cosim::I2cPhase& phase);
+    /// Levels that Pins::levels() reports for this port changed now: edges for INTx, CN, timer clocks and
+    /// gates.
+    void pins_changed(PortLetter port);
+
+    /// Lookahead for the conductor: no uart_sent() call for `unit` carries a stop bit that begins before
+    /// this. `nominal_bit` is the link's nominal bit period; faster senders must be stamped as on that link.
+    cosim::Time earliest_uart_send(int unit, cosim::Time nominal_bit) const;
+    /// No i2c_phase() call of module `unit` begins before this, unless an answer comes in; kNever while one
+    /// is awaited.
+    cosim::Time earliest_i2c(int unit) const;
+
+    const cosim::ClockDomain& clock() const;
+    /// Start of the next instruction, at least the last `until`.
+    cosim::Time now() const;
+    Cycle cycle() const;
+    std::uint32_t pc() const;
+    /// A register's present value by data-sheet name, as the program would read it but without side effects.
+    /// Throws std::out_of_range if the device has no such register.
+    std::uint16_t peek(std::string_view register_name) const;
+    ChipReport report() const;
+
+    /// Busy-wait loops are skipped forward (default); off, every cycle of them is executed.
+    void set_skipping(bool on);
+
+  private:
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace puckloop::dspic
