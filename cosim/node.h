@@ -36,8 +36,17 @@ struct Stop {
 ///
 /// promise(p) is the earliest time stamp that a message leaving by port p can still carry if nothing more
 /// comes in; reaction(p) is the shortest delay from any incoming message to a message it can cause on p (0 is
-/// allowed, but a cycle of links needs a positive sum). A message never carries a time earlier than the last
-/// promise for its port.
+/// allowed, but a cycle of links needs a positive sum). Together they say: every message still to leave by p
+/// carries at least min(promise(p), t + reaction(p)), t being the first message that comes in. Both may
+/// change with every advance: a program asleep until T, which no message can wake, has promise T and reaction
+/// kNever. The conductor checks each message against them and ends the run, naming the node, when they were
+/// broken.
+///
+/// UART ports: the link adds the 9 nominal bit times by itself. A frame that is not yet begun when advance()
+/// returns begins at `until` or later, so promise `until` and reaction 0 are good enough for a UART. A node
+/// that hands a frame out when its stop bit begins says through begun(p) that one is being shifted out, and
+/// since when; its promise is then that stop bit. (A node may as well hand a frame out as soon as it begins,
+/// stamped with its stop bit, and leave begun() alone.)
 class Node {
   public:
     virtual ~Node() = default;
@@ -52,8 +61,11 @@ class Node {
 
     virtual Time promise(PortIndex port) const = 0;
     virtual Time reaction(PortIndex port) const = 0;
+    /// UART ports only: start of the frame that is on the line and still to be handed out, if there is one.
+    virtual std::optional<Time> begun(PortIndex /*port*/) const { return std::nullopt; }
 
-    /// Set once the node wants the run to end (a Linux program that exited, a breakpoint).
+    /// Set once the node wants the run to end (a Linux program that exited, a breakpoint). Everything else
+    /// still runs on for the run's stop latency (10 ms), so that the end is the same in every placement.
     virtual std::optional<Stop> stop() const { return std::nullopt; }
 
     /// Called once after the last advance: flush logs and return the node's part of report.json as JSON text.
