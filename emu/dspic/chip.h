@@ -55,6 +55,15 @@ struct ChipReport {
     Cycle cycles = 0;
 };
 
+/// What one UART's receiver and transmitter have seen since power-up.
+struct UartCounters {
+    std::uint64_t sent = 0;
+    std::uint64_t received = 0;  ///< characters sampled, those with errors included
+    std::uint64_t framing_errors = 0;
+    std::uint64_t parity_errors = 0;
+    std::uint64_t overruns = 0;  ///< characters lost because the FIFO was full or OERR stood
+};
+
 /// Use: construct, load, power_on(), then run_until() in rising steps, handing in what arrives in between.
 class Chip {
   public:
@@ -92,6 +101,11 @@ class Chip {
     /// Lookahead for the conductor: no uart_sent() call for `unit` carries a stop bit that begins before
     /// this. `nominal_bit` is the link's nominal bit period; faster senders must be stamped as on that link.
     cosim::Time earliest_uart_send(int unit, cosim::Time nominal_bit) const;
+    /// Start of the frame that UART `unit` is shifting out and has not yet handed to Pins::uart_sent().
+    std::optional<cosim::Time> uart_begun(int unit) const;
+    UartCounters uart_counters(int unit) const;
+    /// UARTEN of `unit`: its receiver listens.
+    bool uart_enabled(int unit) const;
     /// No i2c_phase() call of module `unit` begins before this, unless an answer comes in; kNever while one
     /// is awaited.
     cosim::Time earliest_i2c(int unit) const;
