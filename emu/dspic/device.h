@@ -1,46 +1,70 @@
 #pragma once
-// What tells one dsPIC from another: memories, register table, interrupt table.
+// What differs between parts of the family: sizes, places and numbers. One row a device; the core and the
+// peripherals read their differences here and nowhere else.
 
-#include "emu/dspic/sfr_space.h"
-
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 
 namespace puckloop::dspic {
 
-/// One interrupt source. Flag, enable and priority sit at the places that its number gives (IFS, IEC:
-/// number/16, bit number%16; IPC: number/4, bits from 4*(number%4)); its vector is at program address 0x14 +
-/// 2*number.
-struct InterruptInfo {
-    std::uint8_t number = 0;
-    std::string_view name;      ///< "T1", "U2RX", "ADC", ...
-    std::string_view flag;      ///< "T1IF"
-    std::string_view enable;    ///< "T1IE"
-    std::string_view priority;  ///< "T1IP"
-};
-
-/// Program addresses are those of the PC (two a word); data addresses are bytes; ends are one past the last.
-struct DeviceInfo {
+/// A user interrupt source: its number (IRQ 0 = INT0) and the data sheet's name without "Interrupt".
+struct IrqName {
+    std::uint8_t irq = 0;
     std::string_view name;
-    std::span<const RegisterInfo> registers;
-    std::span<const InterruptInfo> interrupts;
-    std::uint32_t program_end = 0;
-    std::uint32_t eeprom_begin = 0;
-    std::uint32_t eeprom_end = 0;
-    std::uint32_t config_begin = 0;
-    std::uint32_t config_end = 0;
-    std::uint16_t ram_begin = 0;
-    std::uint16_t ram_end = 0;
-    std::uint16_t y_begin = 0;  ///< start of Y data space, which ends with the RAM
-    std::uint16_t device_id = 0;
-    std::uint16_t revision = 0;
 };
 
-/// The e-puck's microcontroller: 144 KB flash, 8 KB RAM, 4 KB EEPROM.
-const DeviceInfo& dspic30f6014a();
+struct DeviceInfo {
+    std::string_view name;     ///< lower case, as on the command line: "dspic30f6014a"
+    bool family_33f = false;   ///< 33FJ rules where they differ from the 30F's
+    int clocks_per_cycle = 4;  ///< oscillator clocks in one instruction cycle: 4 on 30F, 2 on 33FJ
 
-/// By name, without regard to case ("dspic30f6014a"); null if no such device is modelled.
+    // Program space, in program-counter units (2 a word).
+    std::uint32_t flash_end = 0;      ///< first address past user flash
+    std::uint32_t vectors_start = 4;  ///< vector space: instructions are not fetched from here ...
+    std::uint32_t vectors_end = 0;    ///< ... up to here
+    std::uint32_t ivt = 4;            ///< vector 0
+    std::uint32_t aivt = 0;           ///< vector 0 when INTCON2<ALTIVT> is set
+    std::uint32_t row_words = 32;     ///< flash words programmed at a time
+    std::uint32_t erase_words = 32;   ///< flash words erased at a time
+    std::uint32_t eeprom_start = 0;   ///< first EEPROM word
+    std::uint32_t eeprom_words = 0;   ///< 0: no data EEPROM
+    std::uint32_t config_start = 0xF80000;
+    std::uint32_t config_words = 0;
+    std::uint32_t unit_id_start = 0;  ///< words a programmer may leave a serial number in
+    std::uint32_t unit_id_words = 0;
+    std::uint16_t devid = 0;   ///< at 0xFF0000
+    std::uint16_t devrev = 0;  ///< at 0xFF0002
+
+    // Data space, byte addresses; RAM begins where the SFR space ends.
+    std::uint16_t ram_start = 0x0800;
+    std::uint16_t ram_end = 0;
+    std::uint16_t y_start = 0;  ///< Y prefetches reach [y_start, ram_end)
+
+    // Interrupt registers: IFS0, IEC0, IPC0 and how many of each follow at successive words.
+    std::uint16_t ifs = 0;
+    std::uint16_t iec = 0;
+    std::uint16_t ipc = 0;
+    std::uint16_t inttreg = 0;  ///< 0: the part has none
+    int ifs_words = 0;
+    int irq_count = 0;  ///< vectors behind the traps, reserved ones included
+    std::span<const IrqName> irqs;
+
+    /// Number of a user interrupt by name ("U2RX", "T1", "AD" spelled as in the vector table), if it exists.
+    std::optional<int> irq(std::string_view irq_name) const;
+    /// "U2RX", "MathError"; "Reserved5" for a vector without a source. `vector` counts from 0 = IVT entry 0.
+    std::string_view vector_name(int vector) const;
+};
+
+/// Number of trap vectors in front of INT0.
+inline constexpr int kTrapVectors = 8;
+
+const DeviceInfo& dspic30f6014a();
+/// Every device this program knows.
+std::span<const DeviceInfo> devices();
+/// By command-line name, lower case; null if unknown.
 const DeviceInfo* find_device(std::string_view name);
 
 }  // namespace puckloop::dspic

@@ -1,0 +1,86 @@
+#pragma once
+// The interrupt controller: IFS, IEC, IPC, INTCON1/2 and the trap flags. It says which source is first in
+// line; the core decides when to take it (emu/dspic/core.h). Source: dsPIC30F family reference manual,
+// "Interrupts" (DS70053), and the vector tables of the parts. Deviations:
+//   1. soft traps are sampled like hard ones, at the next instruction boundary.
+
+#include "emu/dspic/device.h"
+#include "emu/dspic/event_queue.h"
+#include "emu/dspic/sfr_space.h"
+
+#include <cstdint>
+#include <optional>
+
+namespace puckloop::dspic {
+
+/// Trap sources. The number is the vector and the bit of INTCON1 that flags it.
+enum class Trap : std::uint8_t {
+    OscillatorFail = 1,
+    AddressError = 2,
+    StackError = 3,
+    MathError = 4,
+    DmacError = 5
+};
+
+/// CPU priority of a trap: 14 oscillator, 13 address, 12 stack, 11 math, 10 DMA controller.
+constexpr int trap_level(Trap trap) {
+    return 15 - static_cast<int>(trap);
+}
+
+class InterruptController {
+  public:
+    InterruptController(const DeviceInfo& device, SfrSpace& sfr);
+
+    // For peripherals. `now` is the cycle in which the flag is set: the event's due cycle, or the core's
+    // cycle when a register access causes it. Entry latency counts from there.
+    void raise(int irq, Cycle now);
+    void clear(int irq);
+    bool flag(int irq) const;
+    bool enabled(int irq) const;
+    /// The IPC field of the source, 0..7.
+    int priority(int irq) const;
+    /// Sets the trap's flag in INTCON1.
+    void raise_trap(Trap trap, Cycle now);
+    /// Edge polarity of INTn, n = 0..4: true if INTCON2<INTnEP> selects the falling edge.
+    bool falling_edge(int external) const;
+
+    // For the core.
+    struct Request {
+        int level = 0;  ///< CPU priority it would run at: 1..7 user, 10..14 traps; 0 = nothing pending
+        int vector = 0;
+    };
+    /// The first in line of everything flagged and enabled, whatever the CPU's priority is.
+    const Request& first() const { return first_; }
+    bool nesting_disabled() const;
+    bool alternate_table() const;
+    /// True when some source is flagged and enabled, priority 0 included: what ends Sleep and Idle.
+    bool any_enabled_flag() const;
+    /// Called after every change of first(), with the cycle of the change.
+    void set_listener(void* owner, void (*changed)(void* owner, Cycle now));
+    /// INTCON1's trap flags and enables, for the core's math rules.
+    std::uint16_t intcon1() const { return sfr_.raw(kIntcon1); }
+    /// Latches vector and level into INTTREG where the part has it.
+    void acknowledge(const Request& taken, int cpu_level_before);
+    /// Where software's writes are stamped; the core keeps it at its current cycle.
+    void set_clock(const Cycle* now) { now_ = now; }
+    /// Shows DISICNT != 0 in INTCON2<DISI>.
+    void show_disi(bool active);
+    void reset();
+
+    static constexpr std::uint16_t kIntcon1 = 0x080;
+    static constexpr std::uint16_t kIntcon2 = 0x082;
+
+  private:
+    void find_first(Cycle now);
+    static void write_register(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask);
+
+    const DeviceInfo& device_;
+    SfrSpace& sfr_;
+    std::array<std::uint16_t, 8> implemented_{};  ///< IFS/IEC bits that exist
+    Request first_;
+    void* listener_ = nullptr;
+    void (*changed_)(void*, Cycle) = nullptr;
+    const Cycle* now_ = nullptr;
+};
+
+}  // namespace puckloop::dspic
