@@ -1,0 +1,142 @@
+#include "emu/pic/board.h"
+
+#include "emu/pic/pin_table.h"
+
+#include <cmath>
+
+namespace puckloop::pic {
+
+namespace {
+
+constexpr double kFullScale = 4095.0;
+constexpr double kSpan = 4096.0;
+// Where inside its code a value is put, so that neither truncation nor rounding moves it to the next one.
+constexpr double kInsideCode = 0.25;
+constexpr double kPllOverCycle = 2.0;  // PLL x8, four oscillator periods a cycle
+
+double cycles(double seconds, const BoardParameters& parameters) {
+    return seconds * parameters.crystal_hertz * kPllOverCycle;
+}
+
+StepperDecoder motor(StepSense sense, const BoardParameters& parameters) {
+    return {sense, static_cast<dspic::Cycle>(std::ceil(cycles(parameters.coil_settle_s, parameters)))};
+}
+
+/// The signal that a name shares its input with: adc2 is mic0, adc8 is ambient0.
+SignalId canonical(SignalId id) {
+    if (id >= kAdc && id < kAdc + kAdcCount) return kAnalogWiring[static_cast<std::size_t>(id - kAdc)];
+    return id;
+}
+
+double clipped(SignalId id, double value) {
+    const cosim::SignalInfo& info = signals()[id];
+    if (!(value > info.min)) return info.min;
+    return value > info.max ? info.max : value;
+}
+
+}  // namespace
+
+Board::Board(const BoardParameters& parameters, BoardListener& listener)
+    : parameters_(parameters),
+      listener_(listener),
+      noise_(parameters.seed, parameters.name + "/adc"),
+      emitters_{Emitter{cycles(parameters.light_time_constant_s, parameters)},
+                Emitter{cycles(parameters.light_time_constant_s, parameters)},
+                Emitter{cycles(parameters.light_time_constant_s, parameters)},
+                Emitter{cycles(parameters.light_time_constant_s, parameters)}},
+      motors_{motor(StepSense::LeftMotor, parameters), motor(StepSense::RightMotor, parameters)} {
+    for (SignalId id = 0; id < kSignalCount; ++id)
+        values_[id].value = values_[id].before = signals()[id].initial;
+    values_[kSelector].value = clipped(kSelector, parameters.selector);
+    place_levels();
+}
+
+std::optional<dspic::PortLetter> Board::set_signal(SignalId id, double value, dspic::Cycle now) {
+    if (id >= kSignalCount || signals()[id].direction != cosim::SignalDirection::Input) return std::nullopt;
+    const double wanted = clipped(id, value);
+    Input& input = values_[canonical(id)];
+    input.before = input.at(now);
+    input.value = wanted;
+    input.since = now;
+    if (id == kBatteryVoltage) values_[kBatteryLow].value = wanted < parameters_.battery_low_volts ? 1 : 0;
+    const std::array<std::uint16_t, kPorts> before = levels_;
+    place_levels();
+    for (std::size_t port = 0; port < kPorts; ++port)
+        if (levels_[port] != before[port]) return static_cast<dspic::PortLetter>(port);
+    return std::nullopt;
+}
+
+double Board::signal(SignalId id) const {
+    return values_[canonical(id)].value;
+}
+
+void Board::place_levels() {
+    levels_ = {};
+    for (const PinUse& pin : wiring::kPins) {
+        bool high = pin.role == Role::PulledHigh;
+        if (pin.role == Role::Input || pin.role == Role::InputLow) {
+            const unsigned value = static_cast<unsigned>(values_[pin.signal].value);
+            high = ((value >> pin.signal_bit) & 1u) != (pin.role == Role::InputLow ? 1u : 0u);
+        }
+        if (high) levels_[static_cast<std::size_t>(pin.port)] |= static_cast<std::uint16_t>(1u << pin.bit);
+    }
+}
+
+void Board::driven(dspic::PortLetter port, std::uint16_t levels, std::uint16_t driven, dspic::Cycle now) {
+    settle(now);
+    std::uint16_t& outputs = outputs_[static_cast<std::size_t>(port)];
+    const std::uint16_t high = levels & driven;  // a pin that is an input drives nothing: all are active high
+    const unsigned changed = outputs ^ high;
+    outputs = high;
+    if (changed == 0) return;
+    bool coils_changed = false;
+    for (const PinUse& pin : wiring::kPins) {
+        if (pin.port != port || ((changed >> pin.bit) & 1u) == 0) continue;
+        if (pin.role == Role::Output) drive(pin.signal, ((high >> pin.bit) & 1u) != 0, now);
+        coils_changed |= pin.role == Role::Coil;
+    }
+    if (!coils_changed) return;
+    std::array<unsigned, 2> patterns{};
+    for (const PinUse& pin : wiring::kPins)
+        if (pin.role == Role::Coil)
+            patterns[pin.signal == kWheelLeft ? 0 : 1] |= ((high >> pin.bit) & 1u) << pin.signal_bit;
+    for (std::size_t i = 0; i < patterns.size(); ++i)
+        motors_[i].coils(static_cast<std::uint8_t>(patterns[i]), now);
+}
+
+void Board::drive(SignalId id, bool level, dspic::Cycle now) {
+    if (id >= kPulse && id < kPulse + kPulseCount)
+        emitters_[static_cast<std::size_t>(id - kPulse)].set(level, now);
+    values_[id].value = level ? 1.0 : 0.0;
+    listener_.signal_changed(id, values_[id].value, now);
+}
+
+void Board::settle(dspic::Cycle now) {
+    for (;;) {
+        const std::size_t first = motors_[1].due() < motors_[0].due() ? 1 : 0;
+        const dspic::Cycle due = motors_[first].due();
+        if (due > now) return;
+        if (!motors_[first].settle(due)) continue;
+        const SignalId id = first == 0 ? kWheelLeft : kWheelRight;
+        values_[id].value = static_cast<double>(motors_[first].steps());
+        listener_.signal_changed(id, values_[id].value, due);
+    }
+}
+
+std::uint16_t Board::levels(dspic::PortLetter port, dspic::Cycle /*now*/) {
+    return levels_[static_cast<std::size_t>(port)];
+}
+
+double Board::analog(int channel, dspic::Cycle now) {
+    double counts = values_[kAnalogWiring[static_cast<std::size_t>(channel)]].at(now);
+    if (channel >= kFirstProximityChannel) {
+        const int sensor = channel - kFirstProximityChannel;
+        const Emitter& emitter = emitters_[static_cast<std::size_t>(sensor % kPulseCount)];
+        counts -= values_[static_cast<std::size_t>(kProximity + sensor)].at(now) * emitter.intensity(now);
+    }
+    if (parameters_.adc_noise_counts > 0) counts += parameters_.adc_noise_counts * noise_.normal();
+    const double code = std::fmin(std::fmax(std::nearbyint(counts), 0.0), kFullScale);
+    return (code + kInsideCode) / kSpan;
+}
+
+}  // namespace puckloop::pic

@@ -1,0 +1,97 @@
+#pragma once
+// The e-puck main board around its dsPIC30F6014A: what stands at each pin, and what the firmware's pins do to
+// the world. Wiring: pin_table.h. Signals: signals.h.
+// Source: e-puck fact sheet 3.2 (pins), 3.5 (motors), 5.1, 5.4 to 5.6 (analog values).
+//
+// Deviations:
+// 1. A sensor sees the light of its own pulse line only: no crosstalk from the neighbours (at most 2 % of
+// it).
+// 2. ADC noise is white, Gaussian and the same on every channel; motors and supply add none.
+// 3. The microphones and the accelerometer have no bandwidth of their own.
+
+#include "base/random.h"
+#include "emu/dspic/pins.h"
+#include "emu/pic/emitter.h"
+#include "emu/pic/signals.h"
+#include "emu/pic/stepper.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace puckloop::pic {
+
+/// What differs from one robot to the next. All of it may be set by a scenario.
+struct BoardParameters {
+    std::string name = "epuck";  ///< random streams are "<name>/adc", ...
+    std::uint64_t seed = 1;      ///< the run's seed
+    double crystal_hertz =
+        7'372'800.0;                ///< FCY is twice this (XT with PLL x8), whatever the image's FOSC says
+    double crystal_ppm = 0.0;       ///< error of the crystal, + is fast
+    double adc_noise_counts = 1.0;  ///< standard deviation, 0 or more
+    double light_time_constant_s = 20e-6;  ///< of emitter and phototransistor together, > 0
+    double coil_settle_s = 2e-6;           ///< for how long a coil pattern must stand to be a step
+    double battery_low_volts = 3.4;        ///< below this RF1 falls
+    int selector = 0;                      ///< initial position, 0..15
+};
+
+/// What leaves the board.
+class BoardListener {
+  public:
+    virtual ~BoardListener() = default;
+    /// An output signal changed.
+    virtual void signal_changed(SignalId id, double value, dspic::Cycle now) = 0;
+    virtual void uart_sent(int unit, const cosim::UartFrame& frame) = 0;
+    virtual void i2c_phase(int unit, const cosim::I2cPhase& phase) = 0;
+};
+
+class Board : public dspic::Pins {
+  public:
+    Board(const BoardParameters& parameters, BoardListener& listener);
+
+    /// Sets an input signal from `now` on, clipped to its range. Returns the port whose pins changed, if any:
+    /// the chip must hear of it. Outputs cannot be set; asking for it is ignored.
+    std::optional<dspic::PortLetter> set_signal(SignalId id, double value, dspic::Cycle now);
+    /// Present value of any signal.
+    double signal(SignalId id) const;
+
+    /// Reports every motor step that was due at or before `now`. To be called before time is said to have
+    /// passed `now`.
+    void settle(dspic::Cycle now);
+
+    const StepperDecoder& left_motor() const { return motors_[0]; }
+    const StepperDecoder& right_motor() const { return motors_[1]; }
+
+    // dspic::Pins
+    void driven(dspic::PortLetter port, std::uint16_t levels, std::uint16_t driven,
+                dspic::Cycle now) override;
+    std::uint16_t levels(dspic::PortLetter port, dspic::Cycle now) override;
+    double analog(int channel, dspic::Cycle now) override;
+    void uart_sent(int unit, const cosim::UartFrame& frame) override { listener_.uart_sent(unit, frame); }
+    void i2c_phase(int unit, const cosim::I2cPhase& phase) override { listener_.i2c_phase(unit, phase); }
+
+    static constexpr int kPorts = 7;
+
+  private:
+    /// An input and what it was before its last change: the ADC may ask a few cycles late.
+    struct Input {
+        double value = 0.0;
+        double before = 0.0;
+        dspic::Cycle since = 0;
+        double at(dspic::Cycle now) const { return now < since ? before : value; }
+    };
+    void place_levels();
+    void drive(SignalId id, bool level, dspic::Cycle now);
+
+    BoardParameters parameters_;
+    BoardListener& listener_;
+    RandomStream noise_;
+    std::array<Input, kSignalCount> values_{};
+    std::array<Emitter, kPulseCount> emitters_;
+    std::array<StepperDecoder, 2> motors_;
+    std::array<std::uint16_t, kPorts> outputs_{};  ///< pins that are driven high
+    std::array<std::uint16_t, kPorts> levels_{};   ///< what the board puts on the pins
+};
+
+}  // namespace puckloop::pic

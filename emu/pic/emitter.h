@@ -1,0 +1,29 @@
+#pragma once
+// The infra-red emitters of one pulse line and what the phototransistors follow of them.
+// Source: e-puck fact sheet 5.1: rise and fall of tens of microseconds, settled 300 us after the edge.
+//
+// Deviations:
+// 1. One exponential with one time constant for emitter and receiver together, the same for rise and fall.
+
+#include "emu/dspic/event_queue.h"
+
+namespace puckloop::pic {
+
+class Emitter {
+  public:
+    /// `time_constant` in cycles, > 0.
+    explicit Emitter(double time_constant) : time_constant_(time_constant) {}
+
+    void set(bool on, dspic::Cycle now);
+    bool on() const { return on_; }
+    /// Share of the reflected light that the receiver shows at `now`, 0..1.
+    double intensity(dspic::Cycle now) const;
+
+  private:
+    double time_constant_;
+    double at_edge_ = 0.0;
+    dspic::Cycle edge_ = 0;
+    bool on_ = false;
+};
+
+}  // namespace puckloop::pic
