@@ -2,6 +2,8 @@
 // What differs between parts of the family: sizes, places and numbers. One row a device; the core and the
 // peripherals read their differences here and nowhere else.
 
+#include "emu/dspic/sfr_space.h"
+
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -10,10 +12,14 @@
 
 namespace puckloop::dspic {
 
-/// A user interrupt source: its number (IRQ 0 = INT0) and the data sheet's name without "Interrupt".
+/// A user interrupt source: its number (IRQ 0 = INT0), the data sheet's name without "Interrupt", and its
+/// bits.
 struct IrqName {
     std::uint8_t irq = 0;
     std::string_view name;
+    std::string_view flag;      ///< "T1IF"
+    std::string_view enable;    ///< "T1IE"
+    std::string_view priority;  ///< "T1IP"
 };
 
 struct DeviceInfo {
@@ -43,6 +49,8 @@ struct DeviceInfo {
     std::uint16_t ram_end = 0;
     std::uint16_t y_start = 0;  ///< Y prefetches reach [y_start, ram_end)
 
+    std::span<const RegisterInfo> registers;  ///< of the SFR space, by address
+
     // Interrupt registers: IFS0, IEC0, IPC0 and how many of each follow at successive words.
     std::uint16_t ifs = 0;
     std::uint16_t iec = 0;
@@ -54,7 +62,7 @@ struct DeviceInfo {
 
     /// Number of a user interrupt by name ("U2RX", "T1", "AD" spelled as in the vector table), if it exists.
     std::optional<int> irq(std::string_view irq_name) const;
-    /// "U2RX", "MathError"; "Reserved5" for a vector without a source. `vector` counts from 0 = IVT entry 0.
+    /// "U2RX", "MathError"; "Reserved" for a vector without a source. `vector` counts from 0 = IVT entry 0.
     std::string_view vector_name(int vector) const;
 };
 

@@ -59,22 +59,27 @@ TEST_CASE("interrupts are in order and their priority fields exist with reset va
     int last = -1;
     SfrSpace sfr;
     sfr.describe(dspic30f6014a().registers);
-    for (const InterruptInfo& info : dspic30f6014a().interrupts) {
+    for (const IrqName& info : dspic30f6014a().irqs) {
         INFO(info.name);
-        CHECK(info.number > last);
-        last = info.number;
-        const auto ipc = static_cast<std::uint16_t>(sfr::IPC0 + info.number / 4 * 2);
-        CHECK((sfr.raw(ipc) >> (info.number % 4 * 4) & 7) == 4);
-        const auto ifs = static_cast<std::uint16_t>(sfr::IFS0 + info.number / 16 * 2);
+        CHECK(info.irq > last);
+        last = info.irq;
+        const auto ipc = static_cast<std::uint16_t>(sfr::IPC0 + info.irq / 4 * 2);
+        CHECK((sfr.raw(ipc) >> (info.irq % 4 * 4) & 7) == 4);
+        const auto ifs = static_cast<std::uint16_t>(sfr::IFS0 + info.irq / 16 * 2);
         REQUIRE(sfr.info(ifs) != nullptr);
-        CHECK((sfr.info(ifs)->implemented >> (info.number % 16) & 1) == 1);
+        CHECK((sfr.info(ifs)->implemented >> (info.irq % 16) & 1) == 1);
         CHECK(sfr.info(ifs)->fields.find(info.flag) != std::string_view::npos);
     }
-    CHECK(dspic30f6014a().interrupts.size() == 41);
+    CHECK(dspic30f6014a().irqs.size() == 41);
     CHECK(irq::U2RX == 24);
 }
 
-TEST_CASE("devices are found by name in any case") {
-    CHECK(find_device("DSPIC30f6014a") == &dspic30f6014a());
+TEST_CASE("devices are found by command-line name, vectors by number") {
+    CHECK(find_device("dspic30f6014a") == &dspic30f6014a());
     CHECK(find_device("dspic33fj256gp710") == nullptr);
+    CHECK(dspic30f6014a().irq("U2RX") == 24);
+    CHECK_FALSE(dspic30f6014a().irq("DMA0"));
+    CHECK(dspic30f6014a().vector_name(4) == "MathError");
+    CHECK(dspic30f6014a().vector_name(8 + 24) == "U2RX");
+    CHECK(dspic30f6014a().vector_name(8 + 39) == "Reserved");
 }

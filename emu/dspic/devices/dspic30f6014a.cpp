@@ -1,6 +1,7 @@
 // The tables of the dsPIC30F6014A. Memory map: DS70143 and linker script v1_21.A.
 
 #include "emu/dspic/device.h"
+#include "emu/dspic/devices/dspic30f6014a_sfr.h"
 
 namespace puckloop::dspic {
 
@@ -12,26 +13,41 @@ constexpr RegisterInfo kRegisters[] = {
 #undef REGISTER
 };
 
-constexpr InterruptInfo kInterrupts[] = {
+constexpr IrqName kInterrupts[] = {
 #define INTERRUPT(number, name, flag, enable, priority) {number, #name, flag, enable, priority},
 #include "emu/dspic/devices/dspic30f6014a_interrupts.inc"
 #undef INTERRUPT
 };
 
 constexpr DeviceInfo kDevice = {
-    .name = "dsPIC30F6014A",
-    .registers = kRegisters,
-    .interrupts = kInterrupts,
-    .program_end = 0x018000,
-    .eeprom_begin = 0x7FF000,
-    .eeprom_end = 0x800000,
-    .config_begin = 0xF80000,
-    .config_end = 0xF8000E,
-    .ram_begin = 0x0800,
+    .name = "dspic30f6014a",
+    .clocks_per_cycle = 4,
+    .flash_end = 0x018000,
+    .vectors_start = 0x000004,
+    .vectors_end = 0x000100,
+    .ivt = 0x000004,
+    .aivt = 0x000084,
+    .row_words = 32,
+    .erase_words = 32,
+    .eeprom_start = 0x7FF000,
+    .eeprom_words = 2048,
+    .config_start = 0xF80000,
+    .config_words = 7,
+    .unit_id_start = 0x8005C0,
+    .unit_id_words = 32,
+    .devid = 0x02C3,
+    .devrev = 0x1040,
+    .ram_start = 0x0800,
     .ram_end = 0x2800,
-    .y_begin = 0x1800,
-    .device_id = 0x02C3,
-    .revision = 0x1040,
+    .y_start = 0x1800,
+    .registers = kRegisters,
+    .ifs = sfr::IFS0,
+    .iec = sfr::IEC0,
+    .ipc = sfr::IPC0,
+    .inttreg = sfr::INTTREG,
+    .ifs_words = 3,
+    .irq_count = 54,
+    .irqs = kInterrupts,
 };
 
 }  // namespace
