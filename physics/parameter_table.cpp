@@ -1,0 +1,138 @@
+// The table of physical parameters. Sources: [W] Webots e-puck model (cyberbotics/webots), [A] ARGoS e-puck
+// plugin (demiurge-project/argos3-epuck), [L] GCtronic e-puck library, [E] Enki, [M] measured on real robots
+// (public logs), [S] the published e-puck descriptions, [O] ODE practice. "?" = plausible, no source found.
+
+#include "physics/parameters.h"
+
+namespace puckloop::physics {
+
+namespace {
+
+#define AT(member) [](Parameters& p) { return &p.member; }
+#define FIRST(member) [](Parameters& p) { return p.member.data(); }
+
+std::vector<ParameterInfo> build_table() {
+    // clang-format off
+    return {
+        // Body and drive.
+        {"robot.radius", "m", 1, {0.035}, 0.02, 0.06, AT(robot.radius), "[A]; bare robot with light ring 0.037 [W]"},
+        {"robot.height", "m", 1, {0.076}, 0.04, 0.2, AT(robot.height), "[A] with Linux board and turret; bare 0.045"},
+        {"robot.mass", "kg", 1, {0.15}, 0.08, 0.8, AT(robot.mass), "[W]; 0.4 in ARGoS"},
+        {"robot.com_x", "m", 1, {0.0}, -0.01, 0.01, AT(robot.com_x), "[W] centre of mass, forward of the axle"},
+        {"robot.com_z", "m", 1, {0.015}, 0.005, 0.05, AT(robot.com_z), "[W] centre of mass above the floor"},
+        {"robot.inertia_x", "kg m2", 1, {9.79e-5}, 1e-5, 2e-3, AT(robot.inertia_x), "[W]"},
+        {"robot.inertia_y", "kg m2", 1, {8.64e-5}, 1e-5, 2e-3, AT(robot.inertia_y), "[W]"},
+        {"robot.inertia_z", "kg m2", 1, {8.75e-5}, 1e-5, 2e-3, AT(robot.inertia_z), "[W]"},
+        {"robot.reflectivity", "1", 1, {0.6}, 0.0, 2.0, AT(robot.reflectivity), "? translucent body as others see it"},
+        {"robot.wheel_radius_left", "m", 1, {0.0205}, 0.015, 0.026, AT(robot.wheel_radius_left), "[A,S] 41 mm diameter; 20.0 [W], wear +-0.3 mm ?"},
+        {"robot.wheel_radius_right", "m", 1, {0.0205}, 0.015, 0.026, AT(robot.wheel_radius_right), "as left"},
+        {"robot.axle_length", "m", 1, {0.053}, 0.045, 0.06, AT(robot.axle_length), "[A] contact to contact; 51 [E], 52 [W]"},
+        {"robot.wheel_mass", "kg", 1, {0.005}, 0.001, 0.02, AT(robot.wheel_mass), "[W]"},
+        {"robot.skid_distance", "m", 1, {0.028}, 0.01, 0.05, AT(robot.skid_distance), "? body skids before and behind the axle"},
+        {"robot.skid_clearance", "m", 1, {0.0002}, 0.0, 0.003, AT(robot.skid_clearance), "? skids above the floor when level"},
+        {"robot.pitch_damping", "N m s", 1, {5e-4}, 0.0, 1e-2, AT(robot.pitch_damping), "? rocking dies within a swing"},
+        {"robot.steps_per_turn", "1", 1, {1000}, 100, 10000, AT(robot.steps_per_turn), "[L] 20 steps x 50:1 gear"},
+        {"robot.stall_torque", "N m", 1, {0.02}, 0.001, 0.1, AT(robot.stall_torque), "? 0.005-0.02 at the wheel"},
+        {"robot.drive_compliance", "s", 1, {0.004}, 0.001, 0.1, AT(robot.drive_compliance), "? time constant of wheel behind rotor"},
+        {"robot.settle_time", "s", 1, {0.002}, 0.0005, 0.02, AT(robot.settle_time), "? duration of one single step"},
+        {"robot.smoothing_limit", "s", 1, {0.02}, 0.001, 0.1, AT(robot.smoothing_limit), "? steps further apart are single steps"},
+        {"robot.pull_out_steps", "steps", 1, {2.0}, 1.0, 100.0, AT(robot.pull_out_steps), "four-phase stepper: the rotor falls to the next pole pair beyond 2 steps"},
+        {"robot.backlash", "rad", 1, {0.0}, 0.0, 0.1, AT(robot.backlash), "? gearbox play at the wheel, 0.5-2 deg real"},
+        {"robot.step_loss_speed", "steps/s", 1, {0.0}, 0.0, 2000, AT(robot.step_loss_speed), "? half of the step groups lost at this speed; 0 = never; real 700-1000"},
+        {"robot.step_loss_width", "steps/s", 1, {50}, 1, 500, AT(robot.step_loss_width), "? 30-100"},
+
+        // Infra-red proximity.
+        {"proximity.gain", "1", 8, {1.0}, 0.0, 5.0, FIRST(proximity.gain), "[M] spread between sensors 1.08-1.65"},
+        {"proximity.offset", "counts", 8, {52, 47, 60, 55, 49, 63, 58, 45}, -500, 1000, FIRST(proximity.offset), "e-puck practice: uncalibrated idle 40-300, removed by calibration"},
+        {"proximity.x", "m", 8, {.030, .022, 0, -.030, -.030, 0, .022, .030}, -0.06, 0.06, FIRST(proximity.x), "[W]"},
+        {"proximity.y", "m", 8, {-.010, -.025, -.031, -.015, .015, .031, .025, .010}, -0.06, 0.06, FIRST(proximity.y), "[W]"},
+        {"proximity.direction", "rad", 8, {-.30020, -.80111, -1.57080, -2.64417, 2.63894, 1.57080, .79936, .29845}, -3.2, 3.2, FIRST(proximity.direction), "[W] -17.2 -45.9 -90 -151.5 151.2 90 45.8 17.1 deg; tables differ by 9 deg"},
+        {"proximity.height", "m", 1, {0.0335}, 0.0, 0.1, AT(proximity.height), "[W,A] 0.030-0.037"},
+        {"proximity.curve", "choice", 1, {0}, 0, 2, AT(proximity.curve), "0 table measured on a robot [W]; 1 saturating power law [M]; 2 exponential [E]"},
+        {"proximity.amplitude", "counts", 1, {4.17e5}, 1, 1e7, AT(proximity.amplitude), "curve 1: A in A/(d+d0)^p, d in mm; [M] 1.2e5-4.2e5. Curve 2: counts at contact"},
+        {"proximity.origin", "m", 1, {0.0099}, 0.0, 0.1, AT(proximity.origin), "curve 1: d0, 3-10 mm [M]; curve 2: decay length"},
+        {"proximity.exponent", "1", 1, {2.0}, 0.5, 4.0, AT(proximity.exponent), "curve 1: p, 1.5-2.5 [M]"},
+        {"proximity.saturation", "counts", 1, {4095}, 500, 10000, AT(proximity.saturation), "curves 1, 2: S in 1/(1/S+1/y); [M] 3500-5000"},
+        {"proximity.scale", "1", 1, {1.0}, 0.0, 5.0, AT(proximity.scale), "emitter power: common factor"},
+        {"proximity.reach", "m", 1, {0.12}, 0.02, 0.5, AT(proximity.reach), "[M] about 20 counts at 10 cm, [E] 12 cm"},
+        {"proximity.rays", "1", 1, {5}, 1, 64, AT(proximity.rays), "rays a sensor, evenly over the aperture"},
+        {"proximity.aperture", "rad", 1, {0.1}, 0.0, 1.5, AT(proximity.aperture), "[W] full angle"},
+        {"proximity.incidence_exponent", "1", 1, {1.0}, 0.0, 4.0, AT(proximity.incidence_exponent), "cos^m of incidence, m 1..2"},
+        {"proximity.pair_crosstalk", "1", 1, {0.0}, 0.0, 0.2, AT(proximity.pair_crosstalk), "? share of sensor i+-4, lit by the same pulse; .01-.05"},
+        {"proximity.neighbour_crosstalk", "1", 1, {0.0}, 0.0, 0.2, AT(proximity.neighbour_crosstalk), "? share of each neighbour; .02"},
+        {"proximity.warmup_gain", "1", 1, {0.0}, -0.3, 0.3, AT(proximity.warmup_gain), "[M] drift -.1..+.1"},
+        {"proximity.warmup_time", "s", 1, {300}, 1, 3600, AT(proximity.warmup_time), "[M] 2-10 min"},
+
+        // Ambient light.
+        {"light.gain", "1", 8, {1.0}, 0.0, 5.0, FIRST(light.gain), "as proximity.gain"},
+        {"light.offset", "counts", 8, {0.0}, -1000, 1000, FIRST(light.offset), "spread in a room 3450-3860"},
+        {"light.dark", "counts", 1, {4000}, 2000, 4095, AT(light.dark), "e-puck practice: dark about 4000"},
+        {"light.span", "counts", 1, {3600}, 0, 4095, AT(light.span), "counts lost at full light"},
+        {"light.room", "1", 1, {0.0833}, 0.0, 1.0, AT(light.room), "share of the span at ambient level 1: 3700 counts"},
+        {"light.decay", "1/m", 1, {2.0}, 0.0, 20.0, AT(light.decay), "[A] exp(-2 d)"},
+        {"light.range", "m", 1, {2.5}, 0.1, 50.0, AT(light.range), "[A]"},
+        {"light.flicker", "1", 1, {0.0}, 0.0, 0.5, AT(light.flicker), "mains flicker of the room light, share; [M] 2-30 counts"},
+        {"light.flicker_frequency", "Hz", 1, {100}, 1, 400, AT(light.flicker_frequency), "twice the mains frequency"},
+
+        // Ground.
+        {"ground.gain", "1", 3, {1.0}, 0.0, 3.0, FIRST(ground.gain), "[M] three sensors on one grey: 450/520/600"},
+        {"ground.offset", "counts", 3, {0.0}, -500, 500, FIRST(ground.offset), "[M] black 81..677 between robots"},
+        {"ground.y", "m", 3, {0.0105, 0.0, -0.0105}, -0.05, 0.05, FIRST(ground.y), "CAD of the robot; 9 [A], 10 [W] mm"},
+        {"ground.x", "m", 1, {0.030}, -0.05, 0.05, AT(ground.x), "[A,W]"},
+        {"ground.height", "m", 1, {0.0015}, 0.0, 0.01, AT(ground.height), "1-2 mm"},
+        {"ground.black", "counts", 1, {329}, 0, 1023, AT(ground.black), "[M] 329+-112"},
+        {"ground.white", "counts", 1, {953}, 0, 1023, AT(ground.white), "[M] 953+-45"},
+        {"ground.saturation", "counts", 1, {967}, 100, 1023, AT(ground.saturation), "[M] 960-975"},
+        {"ground.height_slope", "1/m", 1, {43.75}, 0.0, 500, AT(ground.height_slope), "[W] 1000 at 0 mm, 300 at 16 mm"},
+        {"ground.footprint", "m", 1, {0.004}, 0.0, 0.02, AT(ground.footprint), "3-6 mm"},
+        {"ground.ambient", "counts", 1, {30}, 0, 1023, AT(ground.ambient), "? ambient registers under the robot at ambient level 1"},
+
+        // Accelerometer.
+        {"accelerometer.bias", "counts", 3, {0.0}, -500, 500, FIRST(accelerometer.bias), "zero 2048+-100"},
+        {"accelerometer.zero", "counts", 1, {2048}, 0, 4095, AT(accelerometer.zero), "mid scale"},
+        {"accelerometer.gain", "counts", 1, {800}, 100, 2000, AT(accelerometer.gain), "counts for 1 g, 744-800"},
+        {"accelerometer.bandwidth", "Hz", 1, {150}, 1, 480, AT(accelerometer.bandwidth), "about 150 Hz"},
+
+        // Battery.
+        {"battery.capacity", "W h", 1, {5.0}, 0.001, 50, AT(battery.capacity), "[W,S]"},
+        {"battery.charge", "1", 1, {0.9}, 0.0, 1.0, AT(battery.charge), "state of charge at the start"},
+        {"battery.resistance", "ohm", 1, {0.15}, 0.0, 2.0, AT(battery.resistance), "? cell and contacts"},
+        {"battery.idle_power", "W", 1, {1.2}, 0.0, 10.0, AT(battery.idle_power), "5 W h last about 3 h"},
+        {"battery.motor_power", "W", 1, {0.3}, 0.0, 5.0, AT(battery.motor_power), "? a motor while it steps"},
+        {"battery.low_voltage", "V", 1, {3.4}, 2.5, 4.2, AT(battery.low_voltage), "[L] battery-low pin"},
+
+        // Contacts.
+        {"contact.mu", "1", 1, {0.7}, 0.01, 3.0, AT(contact.mu), "[A] tyre along; 0.4-0.8 ?"},
+        {"contact.mu_lateral", "1", 1, {0.7}, 0.01, 3.0, AT(contact.mu_lateral), "[A] tyre across"},
+        {"contact.mu_skid", "1", 1, {0.2}, 0.0, 1.0, AT(contact.mu_skid), "? 0.1-0.3"},
+        {"contact.mu_body", "1", 1, {0.3}, 0.0, 2.0, AT(contact.mu_body), "? robot body against things"},
+        {"contact.mu_object", "1", 1, {0.5}, 0.0, 2.0, AT(contact.mu_object), "? movable things on the floor"},
+        {"contact.creep", "m/(N s)", 1, {0.0}, 0.0, 1.0, AT(contact.creep), "? tyre creep speed a newton (force-dependent slip)"},
+        {"contact.erp", "1", 1, {0.2}, 0.01, 1.0, AT(contact.erp), "[O] world error reduction"},
+        {"contact.cfm", "1/N", 1, {1e-9}, 0.0, 1e-2, AT(contact.cfm), "[O] world constraint force mixing"},
+        {"contact.soft_erp", "1", 1, {0.2}, 0.01, 1.0, AT(contact.soft_erp), "[O]"},
+        {"contact.soft_cfm", "1/N", 1, {1e-5}, 0.0, 1.0, AT(contact.soft_cfm), "[O]"},
+        {"contact.max_velocity", "m/s", 1, {0.5}, 0.01, 10.0, AT(contact.max_velocity), "[O] of correction"},
+        {"contact.surface_layer", "m", 1, {1e-4}, 0.0, 1e-2, AT(contact.surface_layer), "[O]"},
+        {"contact.push_height", "m", 1, {0.02}, 0.005, 0.05, AT(contact.push_height), "? where the body's widest ring touches"},
+
+        // The world.
+        {"world.gravity", "m/s2", 1, {9.81}, 1.0, 30.0, AT(world.gravity), "standard"},
+        {"world.slope_x", "rad", 1, {0.0}, -0.2, 0.2, AT(world.slope_x), "floor rises towards +x"},
+        {"world.slope_y", "rad", 1, {0.0}, -0.2, 0.2, AT(world.slope_y), "floor rises towards +y"},
+        {"world.publish_quantum", "counts", 1, {0.25}, 0.001, 16.0, AT(world.publish_quantum), "sensor values are rounded to this: below one step of the converter"},
+    };
+    // clang-format on
+}
+
+#undef AT
+#undef FIRST
+
+}  // namespace
+
+std::span<const ParameterInfo> parameter_table() {
+    static const std::vector<ParameterInfo> table = build_table();
+    return table;
+}
+
+}  // namespace puckloop::physics
