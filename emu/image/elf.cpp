@@ -9,6 +9,7 @@
 
 #include <cstring>
 #include <memory>
+#include <optional>
 
 namespace puckloop::image {
 
@@ -81,6 +82,15 @@ class ElfReader {
                          "the sections of a linked image");
     }
 
+    /// A copy: libelf's pointer leads into the file, where a damaged offset may be misaligned.
+    std::optional<Elf32_Shdr> header_of(Elf_Scn* section) const {
+        const void* header = section ? elf32_getshdr(section) : nullptr;
+        if (!header) return std::nullopt;
+        Elf32_Shdr copy;
+        std::memcpy(&copy, header, sizeof copy);
+        return copy;
+    }
+
     std::string section_name(const Elf32_Shdr& header) const {
         std::size_t strings = 0;
         if (elf_getshdrstrndx(elf_.get(), &strings) != 0) return "?";
@@ -92,9 +102,10 @@ class ElfReader {
     std::uint32_t load_address(const Elf32_Shdr& header) const {
         std::size_t count = 0;
         elf_getphdrnum(elf_.get(), &count);
-        const Elf32_Phdr* segments = count ? elf32_getphdr(elf_.get()) : nullptr;
+        const void* segments = count ? elf32_getphdr(elf_.get()) : nullptr;
         for (std::size_t i = 0; segments && i < count; ++i) {
-            const Elf32_Phdr& segment = segments[i];
+            Elf32_Phdr segment;
+            std::memcpy(&segment, static_cast<const char*>(segments) + i * sizeof segment, sizeof segment);
             if (segment.p_type == PT_LOAD && header.sh_offset >= segment.p_offset &&
                 header.sh_offset - segment.p_offset < segment.p_filesz)
                 return header.sh_addr - segment.p_vaddr + segment.p_paddr;
@@ -111,7 +122,7 @@ class ElfReader {
         ByteSegments segments(image_.file);
         for (Elf_Scn* section = elf_nextscn(elf_.get(), nullptr); section;
              section = elf_nextscn(elf_.get(), section)) {
-            const Elf32_Shdr* header = elf32_getshdr(section);
+            const std::optional<Elf32_Shdr> header = header_of(section);
             if (!header) fail_libelf(0);
             if (!is_program(*header)) continue;
             const std::string name = "section " + section_name(*header);
@@ -124,7 +135,7 @@ class ElfReader {
     void read_symbols() {
         for (Elf_Scn* section = elf_nextscn(elf_.get(), nullptr); section;
              section = elf_nextscn(elf_.get(), section)) {
-            const Elf32_Shdr* header = elf32_getshdr(section);
+            const std::optional<Elf32_Shdr> header = header_of(section);
             if (!header || header->sh_type != SHT_SYMTAB) continue;
             const std::string_view table =
                 reader_.slice(header->sh_offset, header->sh_size, "the symbol table");
@@ -140,8 +151,7 @@ class ElfReader {
 
     Space space_of(Elf32_Half index, std::uint64_t offset) const {
         if (index == SHN_ABS) return Space::Absolute;
-        Elf_Scn* section = elf_getscn(elf_.get(), index);
-        const Elf32_Shdr* header = section ? elf32_getshdr(section) : nullptr;
+        const std::optional<Elf32_Shdr> header = header_of(elf_getscn(elf_.get(), index));
         if (!header)
             reader_.fail(offset, fmt::format("a symbol of section {}", index), "a section of this file");
         return (header->sh_flags & SHF_EXECINSTR) != 0 ? Space::Program : Space::Data;
