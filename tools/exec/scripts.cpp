@@ -1,0 +1,127 @@
+#include "tools/exec/scripts.h"
+
+#include "base/error.h"
+#include "tools/exec/text_input.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace puckloop::exec {
+
+namespace {
+
+constexpr std::uint32_t kHighestAddress = 0x7F;
+constexpr std::uint32_t kLongestRead = 256;
+
+template <typename Line>
+void sort_by_time(std::vector<Line>& lines) {
+    std::stable_sort(lines.begin(), lines.end(),
+                     [](const Line& a, const Line& b) { return a.time < b.time; });
+}
+
+[[noreturn]] void wrong_shape(std::string_view file, const TextLine& line, std::string_view problem,
+                              std::string_view expected) {
+    throw InputError(file, fmt::format("line {}", line.number), problem, expected);
+}
+
+/// Single-character edits between two short names.
+std::size_t distance(std::string_view a, std::string_view b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    for (std::size_t j = 0; j <= b.size(); ++j)
+        row[j] = j;
+    for (std::size_t i = 1; i <= a.size(); ++i) {
+        std::size_t diagonal = row[0]++;
+        for (std::size_t j = 1; j <= b.size(); ++j) {
+            const std::size_t above = row[j];
+            row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0u : 1u)});
+            diagonal = above;
+        }
+    }
+    return row.back();
+}
+
+std::uint16_t signal_named(std::string_view file, const TextLine& line,
+                           std::span<const cosim::SignalInfo> signals) {
+    const std::string_view name = line.words[1];
+    if (const auto id = cosim::find_signal(signals, name)) {
+        if (signals[*id].direction == cosim::SignalDirection::Output)
+            wrong_shape(file, line, fmt::format("signal '{}' is an output of the board", name), "an input");
+        return *id;
+    }
+    std::string expected = "one of --list-signals";
+    if (name.size() < 40) {
+        const cosim::SignalInfo* best = nullptr;
+        std::size_t nearest = 3;
+        for (const cosim::SignalInfo& info : signals)
+            if (const std::size_t d = distance(name, info.name); d < nearest) {
+                nearest = d;
+                best = &info;
+            }
+        if (best != nullptr) expected += fmt::format("; did you mean {}?", best->name);
+    }
+    std::string readable;
+    for (const char c : name.substr(0, 40))
+        readable += c >= ' ' && c <= '~' ? c : '?';
+    wrong_shape(file, line, fmt::format("no signal '{}'", readable), expected);
+}
+
+}  // namespace
+
+std::vector<UartScriptLine> parse_uart_script(std::string_view file, std::string_view text) {
+    std::vector<UartScriptLine> script;
+    for (const TextLine& line : split_lines(text)) {
+        if (line.words.size() < 2) wrong_shape(file, line, "too short", "<time_s> <hex bytes>");
+        script.push_back({parse_time(file, line.number, line.words[0]), parse_hex_bytes(file, line, 1)});
+    }
+    sort_by_time(script);
+    return script;
+}
+
+std::vector<I2cScriptLine> parse_i2c_script(std::string_view file, std::string_view text) {
+    constexpr std::string_view kShape =
+        "<time_s> w <addr> <hex bytes>, or <time_s> r <addr> <register> <count>";
+    std::vector<I2cScriptLine> script;
+    for (const TextLine& line : split_lines(text)) {
+        if (line.words.size() < 4) wrong_shape(file, line, "too short", kShape);
+        I2cScriptLine entry;
+        entry.time = parse_time(file, line.number, line.words[0]);
+        entry.address = static_cast<std::uint8_t>(
+            parse_integer(file, line.number, line.words[2], "7-bit address", kHighestAddress));
+        if (line.words[1] == "w") {
+            entry.bytes = parse_hex_bytes(file, line, 3);
+        } else if (line.words[1] == "r") {
+            if (line.words.size() != 5) wrong_shape(file, line, "wrong number of words", kShape);
+            entry.read = true;
+            entry.register_number =
+                static_cast<std::uint8_t>(parse_integer(file, line.number, line.words[3], "register", 0xFF));
+            entry.count =
+                static_cast<int>(parse_integer(file, line.number, line.words[4], "count", kLongestRead));
+            if (entry.count == 0) wrong_shape(file, line, "count 0", "1 to 256 bytes");
+        } else {
+            wrong_shape(file, line, "neither a write nor a read", kShape);
+        }
+        script.push_back(std::move(entry));
+    }
+    sort_by_time(script);
+    return script;
+}
+
+std::vector<StimulusLine> parse_stimulus(std::string_view file, std::string_view text,
+                                         std::span<const cosim::SignalInfo> signals) {
+    std::vector<StimulusLine> script;
+    for (const TextLine& line : split_lines(text)) {
+        if (line.words.size() != 3)
+            wrong_shape(file, line, "wrong number of words", "<time_s> <signal> <value>");
+        StimulusLine entry;
+        entry.time = parse_time(file, line.number, line.words[0]);
+        entry.signal = signal_named(file, line, signals);
+        const cosim::SignalInfo& info = signals[entry.signal];
+        entry.value = parse_number(file, line.number, line.words[2], info.name, info.min, info.max);
+        script.push_back(entry);
+    }
+    sort_by_time(script);
+    return script;
+}
+
+}  // namespace puckloop::exec

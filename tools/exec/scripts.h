@@ -1,0 +1,42 @@
+#pragma once
+// The bench's script files: bytes for a UART, a bus master on I2C, values for named inputs.
+// Lines may stand in any order; those of one time keep the order of the file.
+
+#include "cosim/signal_info.h"
+#include "cosim/time.h"
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace puckloop::exec {
+
+/// `<time_s> <hex bytes>`: the first start bit falls at `time`, or when the line before it has been sent.
+struct UartScriptLine {
+    cosim::Time time = 0;
+    std::vector<std::uint8_t> bytes;
+};
+std::vector<UartScriptLine> parse_uart_script(std::string_view file, std::string_view text);
+
+/// `<time_s> w <addr> <hex bytes>` or `<time_s> r <addr> <register> <count>`, addresses of 7 bits.
+struct I2cScriptLine {
+    cosim::Time time = 0;
+    std::uint8_t address = 0;
+    bool read = false;
+    std::vector<std::uint8_t> bytes;   ///< of a write
+    std::uint8_t register_number = 0;  ///< of a read: written first, then a repeated START
+    int count = 0;                     ///< of a read: bytes, 1 to 256
+};
+std::vector<I2cScriptLine> parse_i2c_script(std::string_view file, std::string_view text);
+
+/// `<time_s> <signal> <value>`: one of the board's named inputs takes a value within its range.
+struct StimulusLine {
+    cosim::Time time = 0;
+    std::uint16_t signal = 0;
+    double value = 0.0;
+};
+std::vector<StimulusLine> parse_stimulus(std::string_view file, std::string_view text,
+                                         std::span<const cosim::SignalInfo> signals);
+
+}  // namespace puckloop::exec
