@@ -1,0 +1,39 @@
+#pragma once
+// An I2C bus with nobody on it but the master: no address is acknowledged, every byte reads 0xFF.
+
+#include "cosim/message.h"
+#include "cosim/time.h"
+
+#include <optional>
+
+namespace puckloop::pic {
+
+class EmptyBus {
+  public:
+    /// The fastest master whose answers come in time when run in steps of kStep.
+    static constexpr cosim::Time kStep = 20 * cosim::kMicrosecond;  // below nine clocks at 400 kHz
+    static constexpr int kClocksOfByte = 9;
+
+    void phase(const cosim::I2cPhase& phase) {
+        if (phase.kind == cosim::I2cPhaseKind::Stop) return;
+        pending_ = phase;
+        pending_->kind = phase.kind == cosim::I2cPhaseKind::Read ? cosim::I2cPhaseKind::Data
+                                                                 : cosim::I2cPhaseKind::Acknowledge;
+        if (phase.kind == cosim::I2cPhaseKind::Read) pending_->byte = 0xFF;
+        pending_->ack = 0;
+        due_ = phase.start + kClocksOfByte * phase.clock_period;
+    }
+    /// When the answer to the last phase is due: the end of its ninth clock.
+    cosim::Time due() const { return pending_ ? due_ : cosim::kNever; }
+    cosim::I2cPhase take() {
+        const cosim::I2cPhase answer = *pending_;
+        pending_.reset();
+        return answer;
+    }
+
+  private:
+    std::optional<cosim::I2cPhase> pending_;
+    cosim::Time due_ = 0;
+};
+
+}  // namespace puckloop::pic

@@ -1,0 +1,96 @@
+// `--mcu`: a chip on the bench with nothing connected. Idle levels: every digital input is held high (a weak
+// pull-up), every analog input stands at 3800 counts of 4095 (near the rail, like a light sensor in a dim
+// room), UART and I2C lines are at rest. The stimulus may change any of it: `adc8 1200`, `RF1 0`.
+
+#include "base/error.h"
+#include "tools/exec/dspic_target.h"
+
+#include <fmt/format.h>
+
+#include <vector>
+
+namespace puckloop::exec {
+
+namespace {
+
+constexpr int kChannels = 16;
+constexpr int kPins = 16;
+constexpr double kFullScale = 4095;
+constexpr double kIdleCounts = 3800;
+constexpr double kSpan = 4096;
+constexpr double kInsideCode = 0.25;
+
+std::string_view no_function(dspic::PortLetter, int) {
+    return {};
+}
+
+class BareChip : public DspicTarget, private dspic::Pins {
+  public:
+    BareChip(const dspic::DeviceInfo& device, const TargetOptions& options, TargetListener& listener)
+        : DspicTarget(device, options), tap_(*this, listener, no_function) {
+        for (int channel = 0; channel < kChannels; ++channel)
+            add({fmt::format("adc{}", channel), cosim::SignalDirection::Input, "counts", 0, kFullScale,
+                 fmt::format("level at AN{}", channel), kIdleCounts},
+                0, 0);
+        for (const dspic::RegisterInfo& info : device.registers) {
+            if (info.name.size() != 5 || !info.name.starts_with("TRIS")) continue;
+            const char letter = info.name[4];
+            if (letter < 'A' || letter > 'G') continue;
+            for (int bit = 0; bit < kPins; ++bit)
+                if (((info.implemented >> bit) & 1u) != 0)
+                    add({fmt::format("R{}{}", letter, bit), cosim::SignalDirection::Input, "level", 0, 1,
+                         fmt::format("level at pin R{}{} while it is an input", letter, bit), 1},
+                        static_cast<std::size_t>(letter - 'A'), bit);
+        }
+        levels_.fill(0xFFFF);
+        build(tap_);
+    }
+
+    std::span<const cosim::SignalInfo> signals() const override { return signals_; }
+    double signal(std::uint16_t id) const override { return values_[id]; }
+    void set_signal(std::uint16_t id, double value) override {
+        const cosim::SignalInfo& info = signals_[id];
+        values_[id] = value > info.min ? (value < info.max ? value : info.max) : info.min;
+        if (id < kChannels) return;
+        const auto [port, bit] = places_[id];
+        const auto mask = static_cast<std::uint16_t>(1u << bit);
+        levels_[port] =
+            static_cast<std::uint16_t>(values_[id] >= 0.5 ? levels_[port] | mask : levels_[port] & ~mask);
+        chip().pins_changed(static_cast<dspic::PortLetter>(port));
+    }
+
+  private:
+    void add(cosim::SignalInfo info, std::size_t port, int bit) {
+        values_.push_back(info.initial);
+        places_.emplace_back(port, bit);
+        signals_.push_back(std::move(info));
+    }
+    void driven(dspic::PortLetter, std::uint16_t, std::uint16_t, dspic::Cycle) override {}
+    std::uint16_t levels(dspic::PortLetter port, dspic::Cycle) override {
+        return levels_[static_cast<std::size_t>(port)];
+    }
+    double analog(int channel, dspic::Cycle) override {
+        return (static_cast<double>(static_cast<int>(values_[static_cast<std::size_t>(channel)])) +
+                kInsideCode) /
+               kSpan;
+    }
+    void uart_sent(int, const cosim::UartFrame&) override {}
+    void i2c_phase(int unit, const cosim::I2cPhase& phase) override { on_bus(unit, phase); }
+
+    std::vector<cosim::SignalInfo> signals_;
+    std::vector<double> values_;
+    std::vector<std::pair<std::size_t, int>> places_;
+    std::array<std::uint16_t, 7> levels_{};
+    PinTap tap_;
+};
+
+}  // namespace
+
+std::unique_ptr<Target> make_bare_chip(std::string_view mcu, const TargetOptions& options,
+                                       TargetListener& listener) {
+    const dspic::DeviceInfo* device = dspic::find_device(mcu);
+    if (device == nullptr) throw InputError("", "--mcu", fmt::format("no chip '{}'", mcu), "dspic30f6014a");
+    return std::make_unique<BareChip>(*device, options, listener);
+}
+
+}  // namespace puckloop::exec

@@ -1,0 +1,104 @@
+#include "tools/exec/bench.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+namespace puckloop::exec {
+
+namespace {
+
+constexpr cosim::Time kPollPeriod = cosim::kMillisecond;
+
+std::int64_t wall_nanoseconds() {
+    return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
+}
+
+}  // namespace
+
+Bench::Bench(const BenchOptions& options)
+    : logs_(options.log_folder.empty() ? nullptr : std::make_unique<Logs>(options.log_folder)),
+      target_(options.mcu.empty() ? make_board(options.board, options.target, *this)
+                                  : make_bare_chip(options.mcu, options.target, *this)),
+      lines_{UartLine{1, options.baud, *target_, logs_.get()},
+             UartLine{2, options.baud, *target_, logs_.get()}} {}
+
+void Bench::pace_by_wall_clock() {
+    paced_ = true;
+    wall_origin_ns_ = wall_nanoseconds() - now_ / cosim::kNanosecond;
+}
+
+Bench::End Bench::run_until(cosim::Time until) {
+    while (now_ < until) {
+        if (now_ >= next_poll_) {
+            poll();
+            next_poll_ = now_ - now_ % kPollPeriod + kPollPeriod;
+            if (interrupted && interrupted()) return End::Interrupted;
+        }
+        apply_stimulus();
+        cosim::Time next = std::min({until, next_poll_, lines_[0].due(), lines_[1].due()});
+        if (next_stimulus_ < stimulus_.size()) next = std::min(next, stimulus_[next_stimulus_].time);
+        next = std::max(next, now_);
+        if (next > now_) target_->run_until(next);
+        if (chip().stopped_at()) {
+            now_ = chip().now();
+            return End::Address;
+        }
+        now_ = next;
+        if (now_ >= until) break;  // what is due at `until` belongs to the next run
+        for (UartLine& line : lines_)
+            if (line.due() <= now_) line.deliver();
+    }
+    return End::Time;
+}
+
+void Bench::poll() {
+    if (paced_) wait_for_wall_clock();
+    for (UartLine& line : lines_)
+        line.poll(now_);
+    if (paced_ && logs_) logs_->flush();
+}
+
+void Bench::wait_for_wall_clock() const {
+    const std::int64_t ahead = now_ / cosim::kNanosecond - (wall_nanoseconds() - wall_origin_ns_);
+    if (ahead > 0) std::this_thread::sleep_for(std::chrono::nanoseconds(ahead));
+}
+
+void Bench::apply_stimulus() {
+    for (; next_stimulus_ < stimulus_.size() && stimulus_[next_stimulus_].time <= now_; ++next_stimulus_) {
+        const StimulusLine& line = stimulus_[next_stimulus_];
+        target_->set_signal(line.signal, line.value);
+        signal_changed(target_->signals()[line.signal].name, line.value, now_);
+    }
+}
+
+void Bench::finish() {
+    for (UartLine& line : lines_) {
+        line.poll(now_);
+        if (line.end() != nullptr) line.end()->finish();
+    }
+    if (logs_) logs_->flush();
+}
+
+void Bench::uart_sent(int unit, const cosim::UartFrame& frame) {
+    uart(unit).sent(frame);
+}
+
+void Bench::i2c_phase(int unit, const cosim::I2cPhase& phase) {
+    if (logs_) logs_->i2c(unit, phase);
+}
+
+void Bench::pin_changed(std::string_view pin, std::string_view function, std::optional<bool> level,
+                        cosim::Time time) {
+    if (logs_) logs_->pin(time, pin, function, !level ? "z" : *level ? "1" : "0");
+    if (on_change) on_change(pin, function, level.value_or(false) ? 1 : 0, time);
+}
+
+void Bench::signal_changed(std::string_view name, double value, cosim::Time time) {
+    if (logs_) logs_->pin(time, "", name, fmt::format("{}", value));
+    if (on_change) on_change("", name, value, time);
+}
+
+}  // namespace puckloop::exec

@@ -1,0 +1,71 @@
+#pragma once
+// The bench: a target, its two UART lines, a stimulus, recordings, and the clock on the wall if somebody live
+// is at an end.
+
+#include "tools/exec/logs.h"
+#include "tools/exec/scripts.h"
+#include "tools/exec/target.h"
+#include "tools/exec/uart_line.h"
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace puckloop::exec {
+
+struct BenchOptions {
+    std::string mcu;  ///< one of these two
+    std::string board;
+    TargetOptions target;
+    double baud = 115200;    ///< of the bench's ends of both UARTs
+    std::string log_folder;  ///< empty: no recordings
+};
+
+class Bench : private TargetListener {
+  public:
+    explicit Bench(const BenchOptions& options);
+
+    Target& target() { return *target_; }
+    dspic::Chip& chip() { return target_->chip(); }
+    UartLine& uart(int unit) { return lines_[static_cast<std::size_t>(unit - 1)]; }
+    /// Sorted by time; values take effect at the first instruction at or after theirs.
+    void stimulate(std::vector<StimulusLine> stimulus) { stimulus_ = std::move(stimulus); }
+    /// From now on simulated time does not run ahead of the wall clock.
+    void pace_by_wall_clock();
+    /// Called once a simulated millisecond; true ends run_until().
+    std::function<bool()> interrupted;
+    /// Called for every pin and signal change that is also logged.
+    std::function<void(std::string_view pin, std::string_view signal, double value, cosim::Time time)>
+        on_change;
+
+    enum class End { Time, Address, Interrupted };
+    /// Runs everything before `until`.
+    End run_until(cosim::Time until);
+    cosim::Time now() const { return now_; }
+    /// Writes out what is still on its way to files and ends.
+    void finish();
+
+  private:
+    void uart_sent(int unit, const cosim::UartFrame& frame) override;
+    void i2c_phase(int unit, const cosim::I2cPhase& phase) override;
+    void pin_changed(std::string_view pin, std::string_view function, std::optional<bool> level,
+                     cosim::Time time) override;
+    void signal_changed(std::string_view name, double value, cosim::Time time) override;
+    void apply_stimulus();
+    void poll();
+    void wait_for_wall_clock() const;
+
+    std::unique_ptr<Logs> logs_;
+    std::unique_ptr<Target> target_;
+    std::array<UartLine, 2> lines_;
+    std::vector<StimulusLine> stimulus_;
+    std::size_t next_stimulus_ = 0;
+    cosim::Time now_ = 0;
+    cosim::Time next_poll_ = 0;
+    bool paced_ = false;
+    std::int64_t wall_origin_ns_ = 0;
+};
+
+}  // namespace puckloop::exec

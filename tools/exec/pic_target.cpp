@@ -1,0 +1,58 @@
+// `--board pic`: the e-puck main board, alone: no Linux board, no camera, nobody on its I2C bus.
+
+#include "base/error.h"
+#include "emu/pic/board.h"
+#include "emu/pic/pin_table.h"
+#include "tools/exec/dspic_target.h"
+
+#include <fmt/format.h>
+
+namespace puckloop::exec {
+
+namespace {
+
+class PicTarget : public DspicTarget, private pic::BoardListener {
+  public:
+    PicTarget(const pic::BoardParameters& parameters, const TargetOptions& options, TargetListener& listener)
+        : DspicTarget(dspic::dspic30f6014a(), options),
+          listener_(listener),
+          board_(parameters, *this),
+          tap_(board_, listener, pic::pin_function) {
+        build(tap_);
+    }
+
+    std::span<const cosim::SignalInfo> signals() const override { return pic::signals(); }
+    double signal(std::uint16_t id) const override { return board_.signal(id); }
+    void set_signal(std::uint16_t id, double value) override {
+        if (const auto port = board_.set_signal(id, value, chip().cycle())) chip().pins_changed(*port);
+    }
+
+  private:
+    void passed(dspic::Cycle now) override { board_.settle(now); }
+    void signal_changed(pic::SignalId id, double value, dspic::Cycle now) override {
+        if (id == pic::kWheelLeft || id == pic::kWheelRight)
+            listener_.signal_changed(pic::signals()[id].name, value, chip().clock().time_of(now));
+    }
+    void uart_sent(int, const cosim::UartFrame&) override {}
+    void i2c_phase(int unit, const cosim::I2cPhase& phase) override { on_bus(unit, phase); }
+
+    TargetListener& listener_;
+    pic::Board board_;
+    PinTap tap_;
+};
+
+}  // namespace
+
+std::unique_ptr<Target> make_board(std::string_view board, const TargetOptions& options,
+                                   TargetListener& listener) {
+    if (board != "pic") throw InputError("", "--board", fmt::format("no board '{}'", board), "pic");
+    pic::BoardParameters parameters;
+    parameters.seed = options.seed;
+    parameters.crystal_hertz = options.chip.crystal_hertz;
+    parameters.crystal_ppm = options.chip.ppm;
+    parameters.adc_noise_counts = options.adc_noise_counts;
+    parameters.selector = options.selector;
+    return std::make_unique<PicTarget>(parameters, options, listener);
+}
+
+}  // namespace puckloop::exec

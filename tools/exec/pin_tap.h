@@ -1,0 +1,44 @@
+#pragma once
+// Stands between a chip and what is around it, and tells the bench of every pin that changes.
+
+#include "emu/dspic/pins.h"
+#include "tools/exec/target.h"
+
+#include <array>
+#include <functional>
+#include <string_view>
+
+namespace puckloop::exec {
+
+class PinTap : public dspic::Pins {
+  public:
+    /// `function_of(port, bit)` names what a pin is for, or "".
+    using FunctionOf = std::string_view (*)(dspic::PortLetter port, int bit);
+
+    PinTap(dspic::Pins& inner, TargetListener& listener, FunctionOf function_of)
+        : inner_(inner), listener_(listener), function_of_(function_of) {}
+    /// The chip's clock, known only once the chip exists.
+    void use_clock(const cosim::ClockDomain& clock) { clock_ = &clock; }
+
+    void driven(dspic::PortLetter port, std::uint16_t levels, std::uint16_t driven,
+                dspic::Cycle now) override;
+    std::uint16_t levels(dspic::PortLetter port, dspic::Cycle now) override {
+        return inner_.levels(port, now);
+    }
+    double analog(int channel, dspic::Cycle now) override { return inner_.analog(channel, now); }
+    void uart_sent(int unit, const cosim::UartFrame& frame) override;
+    void i2c_phase(int unit, const cosim::I2cPhase& phase) override;
+
+  private:
+    struct PortState {
+        std::uint16_t levels = 0;
+        std::uint16_t driven = 0;
+    };
+    dspic::Pins& inner_;
+    TargetListener& listener_;
+    FunctionOf function_of_;
+    const cosim::ClockDomain* clock_ = nullptr;
+    std::array<PortState, 7> ports_{};
+};
+
+}  // namespace puckloop::exec

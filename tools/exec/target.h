@@ -1,0 +1,66 @@
+#pragma once
+// What lies on the bench: one chip or one board, whatever its kind.
+
+#include "cosim/clock.h"
+#include "cosim/message.h"
+#include "cosim/signal_info.h"
+#include "cosim/time.h"
+#include "emu/dspic/chip.h"
+#include "emu/image/image.h"
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace puckloop::exec {
+
+/// What the target does that the bench records or passes on.
+class TargetListener {
+  public:
+    virtual ~TargetListener() = default;
+    virtual void uart_sent(int unit, const cosim::UartFrame& frame) = 0;
+    virtual void i2c_phase(int unit, const cosim::I2cPhase& phase) = 0;
+    /// A pin took a driven level, or became an input (no level).
+    virtual void pin_changed(std::string_view pin, std::string_view function, std::optional<bool> level,
+                             cosim::Time time) = 0;
+    /// An output signal that is no pin of its own (a wheel) changed.
+    virtual void signal_changed(std::string_view name, double value, cosim::Time time) = 0;
+};
+
+struct TargetOptions {
+    dspic::ChipOptions chip;
+    std::uint64_t seed = 1;
+    double adc_noise_counts = 0.0;
+    int selector = 0;
+    bool skip_idle = true;  ///< busy-wait loops are skipped forward
+};
+
+class Target {
+  public:
+    virtual ~Target() = default;
+
+    virtual std::span<const cosim::SignalInfo> signals() const = 0;
+    /// From now on; the value is clipped to the signal's range.
+    virtual void set_signal(std::uint16_t id, double value) = 0;
+    virtual double signal(std::uint16_t id) const = 0;
+
+    virtual void load(const image::Image& image) = 0;
+    /// Runs everything that starts before `until`; early only at a stop address.
+    virtual void run_until(cosim::Time until) = 0;
+    virtual void uart_receive(int unit, const cosim::UartFrame& frame) = 0;
+    /// A bus master may address it: an `--i2c` script makes sense.
+    virtual bool is_i2c_slave() const = 0;
+    virtual dspic::Chip& chip() = 0;
+};
+
+/// `mcu` as --mcu takes it; the chip alone, nothing connected. Throws InputError for an unknown name.
+std::unique_ptr<Target> make_bare_chip(std::string_view mcu, const TargetOptions& options,
+                                       TargetListener& listener);
+/// `board` as --board takes it ("pic").
+std::unique_ptr<Target> make_board(std::string_view board, const TargetOptions& options,
+                                   TargetListener& listener);
+
+}  // namespace puckloop::exec

@@ -1,0 +1,54 @@
+#pragma once
+// What stands at the far end of one of the bench's UARTs: a script, the terminal, a pty, a TCP client.
+
+#include "cosim/time.h"
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace puckloop::exec {
+
+struct UartSpec;
+
+class UartEnd {
+  public:
+    virtual ~UartEnd() = default;
+
+    /// When the end's next byte may be begun; kNever while it has none.
+    virtual cosim::Time next() const = 0;
+    /// Takes that byte.
+    virtual std::uint8_t take() = 0;
+    /// A byte came from the chip. `clean` is false after a framing error.
+    virtual void receive(std::uint8_t byte, bool clean) = 0;
+    /// Once a simulated millisecond: look at the outside. `listening_since`: since when the chip's receiver
+    /// has been on without a reset, kNever if it is off.
+    virtual void poll(cosim::Time /*now*/, cosim::Time /*listening_since*/) {}
+    /// A person or a program with a clock of its own is there: the run is paced by the wall clock.
+    virtual bool live() const { return false; }
+    /// What to tell the user when the run begins ("pty /dev/pts/3"), or "".
+    virtual std::string announcement() const { return {}; }
+    /// The run is over; everything received is written out. Throws RunError if that fails.
+    virtual void finish() {}
+};
+
+/// How `-` offers standard input when it is a pipe or a file (a terminal is live: bytes go as they are
+/// typed).
+struct StdioOptions {
+    /// From this time on, back to back.
+    std::optional<cosim::Time> start;
+    /// Without `start`: once the chip's receiver has been on for this long without a reset, so that firmware
+    /// which resets itself while it boots loses nothing.
+    cosim::Time settle = 3 * cosim::kSecond;
+    /// Bytes are offered as they arrive, like those of a terminal.
+    bool live = false;
+};
+
+std::unique_ptr<UartEnd> make_stdio_end(const StdioOptions& options);
+/// A pseudo terminal in raw mode. Bytes that nobody reads are dropped once its buffer is full.
+std::unique_ptr<UartEnd> make_pty_end();
+/// Listens on 127.0.0.1; one client at a time. Bytes sent while there is none are dropped.
+std::unique_ptr<UartEnd> make_tcp_end(std::uint16_t port);
+
+}  // namespace puckloop::exec

@@ -1,0 +1,75 @@
+#include "tools/exec/uart_line.h"
+
+#include "tools/exec/wire.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace puckloop::exec {
+
+namespace {
+constexpr int kBitsToStop = 9;    // start and eight data bits
+constexpr int kBitsOfFrame = 10;  // with the stop bit
+}  // namespace
+
+UartLine::UartLine(int unit, double baud, Target& target, Logs* logs)
+    : unit_(unit),
+      bit_period_(static_cast<cosim::Time>(std::llround(1e12 / baud))),
+      target_(target),
+      logs_(logs) {}
+
+cosim::Time UartLine::start_of_next() const {
+    const cosim::Time next = end_ ? end_->next() : cosim::kNever;
+    return next == cosim::kNever ? cosim::kNever : std::max(next, free_);
+}
+
+cosim::Time UartLine::due() const {
+    return cosim::later(start_of_next(), kBitsToStop * bit_period_);
+}
+
+void UartLine::deliver() {
+    const cosim::Time start = start_of_next();
+    const cosim::UartFrame frame = frame_of(end_->take(), start, bit_period_);
+    free_ = start + kBitsOfFrame * bit_period_;
+    ++to_chip_;
+    const bool heard = target_.chip().uart_enabled(unit_);
+    log(start, "rx", frame.data, heard ? "" : "receiver off");
+    target_.uart_receive(unit_, frame);
+}
+
+void UartLine::sent(const cosim::UartFrame& frame) {
+    const Sampled seen = sample(frame, bit_period_);
+    ++from_chip_;
+    if (!seen.clean) ++bad_frames_;
+    log(frame.start, "tx", seen.byte, frame.is_break != 0 ? "break" : seen.clean ? "" : "framing");
+    if (end_) end_->receive(seen.byte, seen.clean);
+}
+
+void UartLine::poll(cosim::Time now) {
+    watch_receiver(now);
+    if (end_) end_->poll(now, listening_since_);
+}
+
+void UartLine::watch_receiver(cosim::Time now) {
+    const dspic::Chip& chip = target_.chip();
+    const std::size_t resets = chip.report().resets.size();
+    if (!chip.uart_enabled(unit_))
+        listening_since_ = cosim::kNever;
+    else if (listening_since_ == cosim::kNever || resets != resets_)
+        listening_since_ = now;
+    resets_ = resets;
+    const dspic::UartCounters counters = chip.uart_counters(unit_);
+    for (auto n = counters_.framing_errors; n < counters.framing_errors; ++n)
+        log(now, "rx", -1, "framing");
+    for (auto n = counters_.parity_errors; n < counters.parity_errors; ++n)
+        log(now, "rx", -1, "parity");
+    for (auto n = counters_.overruns; n < counters.overruns; ++n)
+        log(now, "rx", -1, "overrun");
+    counters_ = counters;
+}
+
+void UartLine::log(cosim::Time time, const char* direction, int byte, const char* error) {
+    if (logs_ != nullptr) logs_->uart(unit_, time, direction, byte, error);
+}
+
+}  // namespace puckloop::exec
