@@ -1,0 +1,94 @@
+#include "cosim/child_process.h"
+
+#include "base/error.h"
+#include "cosim/protocol.h"
+
+#include <fmt/format.h>
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <thread>
+
+namespace puckloop::cosim {
+
+namespace {
+
+constexpr int kExecFailed = 127;
+constexpr std::chrono::milliseconds kReapPoll{5};
+
+/// In the child, between fork and exec: nothing here may allocate or lock.
+[[noreturn]] void become(char* const* arguments, int socket, pid_t parent) {
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (getppid() != parent) _exit(kExecFailed);
+    setpgid(0, 0);
+    sigset_t none;
+    sigemptyset(&none);
+    sigprocmask(SIG_SETMASK, &none, nullptr);
+    if (socket == protocol::kDescriptor) {
+        fcntl(socket, F_SETFD, 0);
+    } else {
+        dup2(socket, protocol::kDescriptor);
+    }
+    execv(arguments[0], arguments);
+    _exit(kExecFailed);
+}
+
+}  // namespace
+
+ChildProcess::ChildProcess(const std::vector<std::string>& command, int socket) {
+    std::vector<std::string> words = command;
+    std::vector<char*> arguments;
+    for (std::string& word : words)
+        arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    const pid_t parent = getpid();
+    id_ = fork();
+    if (id_ < 0) throw RunError(fmt::format("cannot start a process: {}", std::strerror(errno)));
+    if (id_ == 0) become(arguments.data(), socket, parent);
+    setpgid(id_, id_);  // whoever of the two comes first
+}
+
+ChildProcess::~ChildProcess() {
+    if (!status_) reap();
+}
+
+void ChildProcess::reap() {
+    // The group first: as long as the child is not reaped, its number belongs to nobody else.
+    kill(-id_, SIGKILL);
+    kill(id_, SIGKILL);
+    int status = 0;
+    while (waitpid(id_, &status, 0) < 0 && errno == EINTR) {
+    }
+    status_ = status;
+}
+
+bool ChildProcess::ended(std::chrono::milliseconds patience) {
+    const auto deadline = std::chrono::steady_clock::now() + patience;
+    while (!status_) {
+        siginfo_t info{};
+        const int failed = waitid(P_PID, static_cast<id_t>(id_), &info, WEXITED | WNOHANG | WNOWAIT);
+        if (failed == 0 && info.si_pid == id_) {
+            reap();
+        } else if (std::chrono::steady_clock::now() >= deadline) {
+            return false;
+        } else {
+            std::this_thread::sleep_for(kReapPoll);
+        }
+    }
+    return true;
+}
+
+std::string ChildProcess::ending() const {
+    if (!status_) return "still runs";
+    if (WIFSIGNALED(*status_))
+        return fmt::format("was killed by signal {} ({})", WTERMSIG(*status_), strsignal(WTERMSIG(*status_)));
+    return fmt::format("exited with status {}", WEXITSTATUS(*status_));
+}
+
+}  // namespace puckloop::cosim

@@ -1,0 +1,37 @@
+#pragma once
+// A child that dies with its parent and is always reaped.
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace puckloop::cosim {
+
+class ChildProcess {
+  public:
+    /// Starts `command` (program and arguments) with `socket` as descriptor 3, in a process group of its own,
+    /// so that a Ctrl-C at the terminal reaches the parent alone. The kernel kills it when the parent dies.
+    /// Throws RunError.
+    ChildProcess(const std::vector<std::string>& command, int socket);
+    /// Kills the whole group and reaps the child.
+    ~ChildProcess();
+    ChildProcess(const ChildProcess&) = delete;
+    ChildProcess& operator=(const ChildProcess&) = delete;
+
+    pid_t id() const { return id_; }
+    /// True once it has ended; waits at most `patience`.
+    bool ended(std::chrono::milliseconds patience);
+    /// "was killed by signal 9 (Killed)", "exited with status 3", "still runs".
+    std::string ending() const;
+
+  private:
+    void reap();
+
+    pid_t id_ = 0;
+    std::optional<int> status_;
+};
+
+}  // namespace puckloop::cosim

@@ -1,0 +1,413 @@
+#include "cosim/conductor.h"
+
+#include "base/error.h"
+#include "base/random.h"
+#include "cosim/bounds.h"
+#include "cosim/network.h"
+#include "cosim/remote_node.h"
+#include "cosim/schedule.h"
+#include "cosim/trace_hash.h"
+#include "cosim/trace_merger.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+#include <thread>
+
+namespace puckloop::cosim {
+
+namespace {
+
+using WallClock = std::chrono::steady_clock;
+constexpr double kProgressSeconds = 0.2;
+// With --realtime, how far ahead of the wall clock nodes are let, and how long to sleep when they are there.
+constexpr Time kPaceSlack = kMillisecond;
+constexpr std::chrono::microseconds kPaceSleep{500};
+// Records held back before the trace is put in order and released.
+constexpr std::size_t kTraceBatch = 512;
+
+double seconds_since(WallClock::time_point start) {
+    return std::chrono::duration<double>(WallClock::now() - start).count();
+}
+
+/// Thrown through the loop when the user ends the run.
+struct Interrupted {};
+
+bool after(const TraceRecord& a, const TraceRecord& b) {
+    return a.key() > b.key();
+}
+
+}  // namespace
+
+class Conductor::State {
+  public:
+    State(std::vector<NodeSpec> nodes, std::vector<LinkSpec> links, std::vector<FaultSpec> faults,
+          RunOptions options, const NodeFactory& factory);
+
+    Outcome run();
+
+    std::vector<TraceSink*> sinks;
+    const std::vector<std::unique_ptr<NodeHandle>>& handles() const { return handles_; }
+
+  private:
+    /// What has been asked of a node and what waits for it.
+    struct Slot {
+        Time asked = 0;
+        Time first_in = kNever;          ///< of the grant under way
+        std::vector<TraceRecord> queue;  ///< heap, earliest first
+        std::vector<Message> inbox;
+        bool stop_seen = false;
+    };
+
+    void loop();
+    void plan();
+    void grant(std::size_t n, Time until);
+    void collect();
+    void take_reply(std::size_t n);
+    void take_stop(std::size_t n, Time before);
+    void take_deliveries(std::size_t sender);
+    void release_trace(Time floor);
+    void tell_progress();
+    bool stuck() const;
+    [[noreturn]] void deadlock() const;
+    void fail(Outcome& outcome, const std::string& text);
+    void finish(Outcome& outcome);
+    void report(Outcome& outcome);
+
+    std::vector<NodeSpec> specs_;
+    std::vector<LinkSpec> links_;
+    std::vector<FaultSpec> fault_specs_;
+    RunOptions options_;
+    std::vector<std::unique_ptr<NodeHandle>> handles_;
+    std::unique_ptr<Network> network_;
+
+    std::vector<NodeTimes> times_;
+    std::vector<Slot> slots_;
+    std::vector<Time> pending_;
+    Bounds bounds_;
+    Schedule schedule_;
+    std::vector<TraceRecord> deliveries_;
+    std::vector<LinkStats> stats_;  ///< one a wire
+    TraceMerger merger_;
+    TraceHash hash_;
+    std::optional<RandomStream> chop_;
+
+    Time end_ = kNever;
+    std::optional<Stop> stop_;
+    std::size_t stopper_ = kNobody;
+    std::size_t current_ = kNobody;  ///< whose call is under way: names the one that failed
+    std::uint64_t grants_ = 0;
+    WallClock::time_point start_{};
+    double told_wall_ = 0.0;
+    Time told_time_ = 0;
+};
+
+Conductor::State::State(std::vector<NodeSpec> nodes, std::vector<LinkSpec> links,
+                        std::vector<FaultSpec> faults, RunOptions options, const NodeFactory& factory)
+    : specs_(std::move(nodes)),
+      links_(std::move(links)),
+      fault_specs_(std::move(faults)),
+      options_(std::move(options)) {
+    std::set<std::string> names;
+    for (const NodeSpec& spec : specs_)
+        if (!names.insert(spec.name).second)
+            throw InputError("", fmt::format("node {}", spec.name), "two nodes have this name");
+    // Processes start side by side; each makes its node while the others do.
+    for (const NodeSpec& spec : specs_) {
+        if (spec.in_process.value_or(options_.in_process))
+            handles_.push_back(make_local_node(spec.name, spec.json, factory));
+        else
+            handles_.push_back(
+                make_remote_node(spec.name, spec.json, options_.node_command, options_.stall_seconds));
+    }
+    for (const auto& handle : handles_)
+        handle->await_ready();
+    network_ = std::make_unique<Network>(handles_, links_, fault_specs_, options_.seed);
+    end_ = options_.duration;
+    times_.resize(handles_.size());
+    slots_.resize(handles_.size());
+    stats_.resize(2 * links_.size());
+    if (options_.chop_seed) chop_.emplace(*options_.chop_seed, "chop");
+}
+
+Outcome Conductor::State::run() {
+    Outcome outcome;
+    start_ = WallClock::now();
+    sinks.insert(sinks.begin(), &hash_);
+    try {
+        for (TraceSink* sink : sinks)
+            sink->begin(links_);
+        for (std::size_t n = 0; n < handles_.size(); ++n)
+            network_->update(n, handles_[n]->state(), 0);
+        network_->preset(deliveries_);
+        take_deliveries(kNobody);
+        loop();
+        current_ = kNobody;
+        release_trace(end_);
+        outcome.text = "the asked duration is over";
+        if (stop_) {
+            outcome.reason = EndReason::NodeStopped;
+            outcome.node = handles_[stopper_]->name();
+            outcome.stop_time = stop_->time;
+            outcome.text = fmt::format("node {} stopped at {:.9f} s: {}", outcome.node,
+                                       to_seconds(stop_->time), stop_->reason);
+            outcome.success = stop_->success;
+        }
+    } catch (const Interrupted&) {
+        outcome.reason = EndReason::Interrupted;
+        outcome.text = "interrupted";
+        current_ = kNobody;
+    } catch (const std::exception& error) {
+        fail(outcome, error.what());
+    }
+    outcome.simulated = end_;
+    for (const NodeTimes& node : times_)
+        outcome.simulated = std::min(outcome.simulated, node.granted);
+    finish(outcome);
+    report(outcome);
+    return outcome;
+}
+
+void Conductor::State::loop() {
+    while (true) {
+        if (options_.interrupted && *options_.interrupted) throw Interrupted{};
+        plan();
+        if (schedule_.complete()) return;
+        for (const std::size_t n : schedule_.chosen()) {
+            Time until = schedule_.target(n);
+            if (chop_)
+                until =
+                    times_[n].granted + 1 +
+                    static_cast<Time>(chop_->below(static_cast<std::uint64_t>(until - times_[n].granted)));
+            grant(n, until);
+        }
+        collect();
+        if (merger_.waiting() >= kTraceBatch) release_trace(std::min(bounds_.floor(), end_));
+        tell_progress();
+    }
+}
+
+void Conductor::State::plan() {
+    pending_.resize(slots_.size());
+    for (std::size_t n = 0; n < slots_.size(); ++n) {
+        const Slot& slot = slots_[n];
+        pending_[n] = std::min(slot.first_in, slot.queue.empty() ? kNever : slot.queue.front().time);
+    }
+    bounds_.compute(network_->channels(), pending_);
+    ScheduleLimits limits{end_, kNever, options_.stop_latency};
+    if (options_.realtime) limits.pace = from_seconds(seconds_since(start_)) + kPaceSlack;
+    schedule_.plan(bounds_, times_, limits);
+}
+
+void Conductor::State::grant(std::size_t n, Time until) {
+    Slot& slot = slots_[n];
+    slot.inbox.clear();
+    while (!slot.queue.empty() && slot.queue.front().time < until) {
+        const TraceRecord& record = slot.queue.front();
+        slot.inbox.push_back({record.time, network_->wire(record).to_port, record.payload});
+        std::pop_heap(slot.queue.begin(), slot.queue.end(), after);
+        slot.queue.pop_back();
+    }
+    slot.asked = until;
+    slot.first_in = slot.inbox.empty() ? kNever : slot.inbox.front().time;
+    times_[n].busy = true;
+    ++grants_;
+    current_ = n;
+    handles_[n]->grant(until, slot.inbox);
+}
+
+void Conductor::State::collect() {
+    std::vector<std::size_t> elsewhere;
+    bool any = false;
+    for (std::size_t n = 0; n < handles_.size(); ++n) {
+        if (!times_[n].busy) continue;
+        if (handles_[n]->descriptor() >= 0) {
+            elsewhere.push_back(n);
+            continue;
+        }
+        current_ = n;
+        if (handles_[n]->poll(false)) take_reply(n);
+        any = true;
+    }
+    if (elsewhere.empty()) {
+        if (any) return;
+        // Nobody works and nobody may be granted: ahead of the wall clock, or locked for good.
+        if (!options_.realtime || stuck()) deadlock();
+        std::this_thread::sleep_for(kPaceSleep);
+        return;
+    }
+    if (!any && elsewhere.size() > 1) await_any(handles_, elsewhere);
+    for (const std::size_t n : elsewhere) {
+        current_ = n;
+        if (handles_[n]->poll(!any && elsewhere.size() == 1)) take_reply(n);
+    }
+}
+
+void Conductor::State::take_reply(std::size_t n) {
+    Slot& slot = slots_[n];
+    for (const Message& message : handles_[n]->outbox())
+        network_->send(n, message, slot.first_in, deliveries_);
+    const Time before = times_[n].granted;
+    times_[n] = {slot.asked, false};
+    slot.first_in = kNever;
+    network_->update(n, handles_[n]->state(), slot.asked);
+    take_deliveries(n);
+    take_stop(n, before);
+}
+
+void Conductor::State::take_stop(std::size_t n, Time before) {
+    const std::optional<Stop>& stop = handles_[n]->state().stop;
+    if (!stop || slots_[n].stop_seen) return;
+    slots_[n].stop_seen = true;
+    // Nobody has been granted more than the stop latency beyond `before`, so this end is in nobody's past.
+    const Time time = std::max(stop->time, before);
+    if (stop_ && (stop_->time < time || (stop_->time == time && stopper_ < n))) return;
+    if (time >= end_) return;
+    stop_ = stop;
+    stop_->time = time;
+    stopper_ = n;
+    end_ = std::min(end_, later(time, options_.stop_latency));
+}
+
+void Conductor::State::take_deliveries(std::size_t sender) {
+    for (const TraceRecord& record : deliveries_) {
+        merger_.add(record);
+        if (lost(record)) continue;
+        const std::size_t to = network_->wire(record).to;
+        if (record.time < slots_[to].asked)
+            throw RunError(fmt::format(
+                "node {} sent a message for {:.12f} s on link {} when {} had been granted {:.12f} s",
+                sender == kNobody ? "?" : handles_[sender]->name(), to_seconds(record.time),
+                links_[record.link].name, handles_[to]->name(), to_seconds(slots_[to].asked)));
+        slots_[to].queue.push_back(record);
+        std::push_heap(slots_[to].queue.begin(), slots_[to].queue.end(), after);
+    }
+    deliveries_.clear();
+}
+
+void Conductor::State::release_trace(Time floor) {
+    current_ = kNobody;
+    merger_.release(floor, [this](const TraceRecord& record) {
+        stats_[record.link * 2u + static_cast<unsigned>(record.direction)].count(
+            record, links_[record.link].nominal_baud);
+        for (TraceSink* sink : sinks)
+            sink->record(record);
+    });
+}
+
+void Conductor::State::tell_progress() {
+    if (!options_.progress) return;
+    const double wall = seconds_since(start_);
+    if (wall - told_wall_ < kProgressSeconds) return;
+    const Time time = schedule_.reached();
+    options_.progress({time, wall, to_seconds(time - told_time_) / (wall - told_wall_)});
+    told_wall_ = wall;
+    told_time_ = time;
+}
+
+bool Conductor::State::stuck() const {
+    const Time ceiling = std::min(end_, later(schedule_.reached(), options_.stop_latency));
+    for (std::size_t n = 0; n < times_.size(); ++n)
+        if (std::min(bounds_.limit(n), ceiling) > times_[n].granted) return false;
+    return true;
+}
+
+void Conductor::State::deadlock() const {
+    // Follow who limits whom, from a node that may not move, until a node comes again: those are the cycle.
+    std::size_t n = 0;
+    while (n < times_.size() && bounds_.limit(n) > times_[n].granted)
+        ++n;
+    std::vector<std::size_t> path;
+    while (n < times_.size() && std::find(path.begin(), path.end(), n) == path.end()) {
+        path.push_back(n);
+        n = bounds_.limiter(n);
+    }
+    std::string names;
+    bool in_cycle = false;
+    for (const std::size_t step : path) {
+        in_cycle = in_cycle || step == n;
+        if (in_cycle) names += handles_[step]->name() + " <- ";
+    }
+    if (n < times_.size()) names += handles_[n]->name();
+    throw RunError(fmt::format(
+        "deadlock at simulated time {:.12f} s: each node waits for the next and none can promise to "
+        "be silent: {} (a cycle of links needs a positive sum of promises, reactions and latencies)",
+        to_seconds(schedule_.reached()), names));
+}
+
+void Conductor::State::fail(Outcome& outcome, const std::string& text) {
+    outcome.reason = EndReason::Failed;
+    outcome.success = false;
+    outcome.text = text;
+    if (current_ != kNobody) outcome.node = handles_[current_]->name();
+}
+
+void Conductor::State::finish(Outcome& outcome) {
+    // What was sent before a failure is kept whole; an interrupted trace ends where all of it is known.
+    const bool failed = outcome.reason == EndReason::Failed;
+    const auto guarded = [&](auto work) {
+        try {
+            work();
+        } catch (const std::exception& error) {
+            if (outcome.reason != EndReason::Failed)
+                fail(outcome, error.what());
+            else if (outcome.text != error.what())
+                outcome.warnings.emplace_back(error.what());
+        }
+    };
+    guarded([&] { release_trace(failed ? kNever : std::min(bounds_.floor(), end_)); });
+    for (TraceSink* sink : sinks)
+        guarded([&] { sink->flush(); });
+    for (std::size_t n = 0; n < handles_.size(); ++n) {
+        outcome.nodes.push_back({handles_[n]->name(), {}});
+        guarded([&] {
+            current_ = n;
+            outcome.nodes.back().json = handles_[n]->finish();
+        });
+    }
+}
+
+void Conductor::State::report(Outcome& outcome) {
+    outcome.wall_s = seconds_since(start_);
+    outcome.grants = grants_;
+    outcome.trace_sha256 = hash_.finish();
+    for (std::size_t l = 0; l < links_.size(); ++l) {
+        const LinkSpec& link = links_[l];
+        outcome.links.push_back({link.name, link.a.node + "." + link.a.port, link.b.node + "." + link.b.port,
+                                 stats_[2 * l], stats_[2 * l + 1]});
+    }
+    for (const FaultSpec& spec : fault_specs_)
+        outcome.faults.push_back({describe(spec), 0});
+    for (std::size_t f = 0; f < network_->faults().size(); ++f)
+        outcome.faults[network_->fault_specs()[f]].fired += network_->faults()[f]->fired();
+    for (const Outcome::FaultReport& fault : outcome.faults)
+        if (fault.fired == 0) outcome.warnings.push_back(fmt::format("fault never fired: {}", fault.text));
+    if (network_->unlinked() != 0)
+        outcome.warnings.push_back(
+            fmt::format("{} messages were sent by ports without a link", network_->unlinked()));
+}
+
+Conductor::Conductor(std::vector<NodeSpec> nodes, std::vector<LinkSpec> links, std::vector<FaultSpec> faults,
+                     RunOptions options, NodeFactory factory)
+    : state_(std::make_unique<State>(std::move(nodes), std::move(links), std::move(faults),
+                                     std::move(options), factory)) {}
+
+Conductor::~Conductor() = default;
+
+void Conductor::add_sink(TraceSink& sink) {
+    state_->sinks.push_back(&sink);
+}
+
+int Conductor::process_of(const std::string& name) const {
+    for (const auto& handle : state_->handles())
+        if (handle->name() == name) return handle->process();
+    return 0;
+}
+
+Outcome Conductor::run() {
+    return state_->run();
+}
+
+}  // namespace puckloop::cosim

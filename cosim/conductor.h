@@ -1,0 +1,108 @@
+#pragma once
+// The conductor: owns simulated time for every node of a run. See docs/architecture.md, "The conductor".
+
+#include "cosim/faults.h"
+#include "cosim/link.h"
+#include "cosim/link_stats.h"
+#include "cosim/node_handle.h"
+#include "cosim/time.h"
+#include "cosim/trace.h"
+
+#include <csignal>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace puckloop::cosim {
+
+struct NodeSpec {
+    std::string name;  ///< unique in the run: "robot0.pic"
+    std::string json;  ///< what the factory makes the node from
+    /// Where this node lives, if not as the run's option says.
+    std::optional<bool> in_process{};
+};
+
+struct Progress {
+    Time time = 0;      ///< reached by every node
+    double wall_s = 0;  ///< since the run began
+    double factor = 0;  ///< simulated seconds per wall second over the last report interval
+};
+
+struct RunOptions {
+    Time duration = kNever;
+    bool in_process = false;
+    bool realtime = false;        ///< simulated time never runs ahead of the wall clock
+    std::uint64_t seed = 1;       ///< for the faults' random streams
+    double stall_seconds = 10.0;  ///< a node process that does not answer for so long ends the run
+    /// A node's wish to end the run (Node::stop) takes effect so much later; no node runs further ahead.
+    Time stop_latency = 10 * kMillisecond;
+    /// Starts a process that serves one node (cosim/node_server.h) on file descriptor 3.
+    std::vector<std::string> node_command{"/proc/self/exe", "node"};
+    /// Cuts grants at random places; the trace must not change (for tests).
+    std::optional<std::uint64_t> chop_seed{};
+    /// Called about five times a wall second.
+    std::function<void(const Progress&)> progress{};
+    /// Set by a signal handler: ends the run (cosim/interrupt.h).
+    const volatile std::sig_atomic_t* interrupted = nullptr;
+};
+
+enum class EndReason : std::uint8_t { Duration, NodeStopped, Interrupted, Failed };
+
+struct Outcome {
+    EndReason reason = EndReason::Duration;
+    bool success = true;            ///< false for Failed and for a node that stopped without success
+    std::string text;               ///< one line: why the run ended; for Failed the error to report
+    std::string node;               ///< the node that stopped or failed, if one did
+    std::optional<Time> stop_time;  ///< when the node asked
+    Time simulated = 0;             ///< reached by every node
+    double wall_s = 0;
+    std::uint64_t grants = 0;  ///< to all nodes together (differs with placement and load)
+    std::string trace_sha256;
+
+    struct NodeReport {
+        std::string name;
+        std::string json;  ///< from Node::finish(); empty if the node could not give it
+    };
+    struct LinkReport {
+        std::string name;
+        std::string a, b;  ///< "node.port"
+        LinkStats from_a, from_b;
+    };
+    struct FaultReport {
+        std::string text;  ///< "drop on robot0.uart from robot0.pic"
+        std::uint64_t fired = 0;
+    };
+    std::vector<NodeReport> nodes;
+    std::vector<LinkReport> links;
+    std::vector<FaultReport> faults;
+    std::vector<std::string> warnings;  ///< a fault that never fired, messages by ports without a link
+};
+
+/// Runs nodes to the end. Nodes are made by the constructor, which throws InputError for anything that does
+/// not fit together and RunError when a node process cannot be started. run() never throws for what happens
+/// during the run: a node that dies, stalls or lies, or a sink that fails, is told in the outcome, after
+/// everything recorded was flushed and the other nodes had their chance to finish.
+class Conductor {
+  public:
+    /// `factory` makes the nodes of this process; node processes have their own.
+    Conductor(std::vector<NodeSpec> nodes, std::vector<LinkSpec> links, std::vector<FaultSpec> faults,
+              RunOptions options, NodeFactory factory);
+    ~Conductor();
+    Conductor(const Conductor&) = delete;
+    Conductor& operator=(const Conductor&) = delete;
+
+    /// `sink` must outlive run().
+    void add_sink(TraceSink& sink);
+    /// Process of node `name`, 0 if it lives in this one.
+    int process_of(const std::string& name) const;
+
+    Outcome run();
+
+  private:
+    class State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace puckloop::cosim

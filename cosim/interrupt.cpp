@@ -1,0 +1,38 @@
+#include "cosim/interrupt.h"
+
+#include <array>
+#include <cstddef>
+
+namespace puckloop::cosim {
+
+namespace {
+
+constexpr std::array kSignals{SIGINT, SIGTERM, SIGHUP};
+volatile std::sig_atomic_t caught = 0;
+
+extern "C" void puckloop_note_signal(int) {
+    caught = 1;
+}
+
+}  // namespace
+
+InterruptGuard::InterruptGuard() {
+    caught = 0;
+    struct sigaction action {};
+    action.sa_handler = puckloop_note_signal;
+    action.sa_flags = static_cast<int>(SA_RESETHAND);
+    sigemptyset(&action.sa_mask);
+    for (std::size_t i = 0; i < kSignals.size(); ++i)
+        sigaction(kSignals[i], &action, &before_[i]);
+}
+
+InterruptGuard::~InterruptGuard() {
+    for (std::size_t i = 0; i < kSignals.size(); ++i)
+        sigaction(kSignals[i], &before_[i], nullptr);
+}
+
+const volatile std::sig_atomic_t* InterruptGuard::flag() const {
+    return &caught;
+}
+
+}  // namespace puckloop::cosim

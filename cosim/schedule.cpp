@@ -1,0 +1,48 @@
+#include "cosim/schedule.h"
+
+#include <algorithm>
+
+namespace puckloop::cosim {
+
+namespace {
+// Free stretch, as a part of the stop latency, for which a node nobody waits for is granted all the same.
+constexpr Time kStretchDivisor = 4;
+}  // namespace
+
+void Schedule::plan(const Bounds& bounds, const std::vector<NodeTimes>& nodes, const ScheduleLimits& limits) {
+    const std::size_t count = nodes.size();
+    reached_ = limits.end;
+    for (const NodeTimes& node : nodes)
+        reached_ = std::min(reached_, node.granted);
+    complete_ = reached_ >= limits.end;
+    const Time window = later(reached_, limits.stop_latency);
+    const Time ceiling = std::min({window, limits.end, limits.pace});
+
+    target_.assign(count, 0);
+    is_root_.assign(count, 0);
+    bool busy = false, last_is_root = false;
+    for (std::size_t n = 0; n < count; ++n) {
+        busy = busy || nodes[n].busy;
+        target_[n] = std::min(bounds.limit(n), ceiling);
+        if (nodes[n].granted >= limits.end) continue;
+        if (bounds.limit(n) <= window) {
+            const std::size_t root = bounds.root(n);
+            if (root != kNobody) is_root_[root] = 1;
+        } else {
+            last_is_root = true;
+        }
+    }
+    chosen_.clear();
+    const auto choose = [&](auto serves) {
+        for (std::size_t n = 0; n < count; ++n)
+            if (!nodes[n].busy && target_[n] > nodes[n].granted && serves(n)) chosen_.push_back(n);
+    };
+    choose([&](std::size_t n) {
+        return is_root_[n] != 0 || target_[n] == limits.end ||
+               (last_is_root && nodes[n].granted == reached_) ||
+               target_[n] - nodes[n].granted >= limits.stop_latency / kStretchDivisor;
+    });
+    if (chosen_.empty() && !busy) choose([](std::size_t) { return true; });
+}
+
+}  // namespace puckloop::cosim

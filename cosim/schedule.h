@@ -1,0 +1,47 @@
+#pragma once
+// Which nodes to grant now, and how far. Pure arithmetic over bounds and times: no node is touched here.
+
+#include "cosim/bounds.h"
+#include "cosim/time.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace puckloop::cosim {
+
+/// What the schedule must know of a node.
+struct NodeTimes {
+    Time granted = 0;  ///< handled everything before
+    bool busy = false;
+};
+
+struct ScheduleLimits {
+    Time end = kNever;      ///< of the run
+    Time pace = kNever;     ///< of the wall clock
+    Time stop_latency = 0;  ///< no node runs further ahead of the last one
+};
+
+/// A grant costs a round trip to another process, so a node is granted only when that serves: when another
+/// node's limit hangs on it, when it may go to the end, or when a good stretch has become free for it to run
+/// beside the others.
+class Schedule {
+  public:
+    void plan(const Bounds& bounds, const std::vector<NodeTimes>& nodes, const ScheduleLimits& limits);
+
+    /// How far node `n` may go; at most its present time if it may not.
+    Time target(std::size_t n) const { return target_[n]; }
+    const std::vector<std::size_t>& chosen() const { return chosen_; }
+    /// Every node has reached the end.
+    bool complete() const { return complete_; }
+    /// Time every node has reached.
+    Time reached() const { return reached_; }
+
+  private:
+    std::vector<Time> target_;
+    std::vector<char> is_root_;
+    std::vector<std::size_t> chosen_;
+    bool complete_ = false;
+    Time reached_ = 0;
+};
+
+}  // namespace puckloop::cosim

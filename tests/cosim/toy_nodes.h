@@ -1,0 +1,23 @@
+#pragma once
+// Small nodes for tests, made from lines like "chatter seed=3 uarts=1 signals=2".
+
+#include "cosim/node.h"
+
+#include <memory>
+#include <string>
+
+namespace puckloop::cosim::toy {
+
+/// Kinds, and what they do:
+///   chatter  acts at random times on every port, answers some of what it gets; behaves well
+///   echo     answers each UART frame with the next byte after `delay_us`
+///   idle     never says a word
+///   stopper  asks to end the run at `at_us`
+///   thrower  throws at `at_us`        exiter  exits with status 3     aborter  raises SIGABRT
+///   staller  sleeps for ever at `at_us`
+///   liar     promises silence and breaks its word at `at_us`
+///   mutual   promises nothing beyond its own time and answers at once: deadlocks with another one
+///   refuser  cannot be made (InputError)
+std::unique_ptr<Node> make(const std::string& line);
+
+}  // namespace puckloop::cosim::toy
