@@ -1,0 +1,47 @@
+#include "emu/pic/chip_json.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace puckloop::pic {
+
+namespace {
+std::string hexadecimal(std::uint32_t address) {
+    return fmt::format("0x{:04x}", address);
+}
+}  // namespace
+
+nlohmann::ordered_json chip_json(const dspic::Chip& chip) {
+    using Json = nlohmann::ordered_json;
+    const dspic::ChipReport report = chip.report();
+    const auto seconds = [&](dspic::Cycle cycle) { return cosim::to_seconds(chip.clock().time_of(cycle)); };
+    Json json;
+    json["cycles"] = report.cycles;
+    json["instructions"] = report.instructions;
+    json["resets"] = Json::array();
+    for (const dspic::ResetRecord& reset : report.resets)
+        json["resets"].push_back(
+            {{"time_s", seconds(reset.cycle)}, {"cause", reset.cause}, {"pc", hexadecimal(reset.pc)}});
+    json["traps"] = Json::array();
+    for (const dspic::TrapRecord& trap : report.traps)
+        json["traps"].push_back(
+            {{"time_s", seconds(trap.cycle)}, {"name", trap.name}, {"pc", hexadecimal(trap.pc)}});
+    json["unmodelled"] = Json::array();
+    for (const dspic::UnmodelledTouch& touch : report.unmodelled)
+        json["unmodelled"].push_back({{"name", touch.name},
+                                      {"address", hexadecimal(touch.address)},
+                                      {"pc", hexadecimal(touch.pc)},
+                                      {"access", touch.write ? "write" : "read"},
+                                      {"time_s", seconds(touch.cycle)}});
+    return json;
+}
+
+nlohmann::ordered_json uart_json(const dspic::UartCounters& counters) {
+    return {{"sent", counters.sent},
+            {"received", counters.received},
+            {"framing_errors", counters.framing_errors},
+            {"parity_errors", counters.parity_errors},
+            {"overruns", counters.overruns}};
+}
+
+}  // namespace puckloop::pic

@@ -1,0 +1,15 @@
+#pragma once
+// What a chip went through, as JSON: the part that the bench and the run's report share.
+
+#include "emu/dspic/chip.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace puckloop::pic {
+
+/// cycles, instructions, resets and traps (time_s, cause or name, pc), unmodelled (name, address, pc, write).
+nlohmann::ordered_json chip_json(const dspic::Chip& chip);
+/// sent, received, framing_errors, parity_errors, overruns.
+nlohmann::ordered_json uart_json(const dspic::UartCounters& counters);
+
+}  // namespace puckloop::pic

@@ -1,0 +1,124 @@
+#include "emu/pic/pic_node.h"
+
+#include "emu/pic/chip_json.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+
+namespace puckloop::pic {
+
+namespace {
+
+constexpr int kI2cUnit = 1;
+
+int uart_unit(cosim::PortIndex port) {
+    return port == PicNode::kUart1 ? 1 : 2;
+}
+
+cosim::Time stop_bit(const cosim::UartFrame& frame) {
+    const int bits = 1 + frame.data_bits + (frame.parity != 0 ? 1 : 0);
+    return frame.start + bits * frame.bit_period;
+}
+
+}  // namespace
+
+PicNode::PicNode(const image::Image& image, const PicNodeOptions& options)
+    : options_(options),
+      ports_{{"uart1", cosim::PortKind::Uart},
+             {"uart2", cosim::PortKind::Uart},
+             {"i2c", cosim::PortKind::I2c},
+             {"world", cosim::PortKind::Signals}},
+      board_(options.board, *this) {
+    dspic::ChipOptions chip_options;
+    chip_options.crystal_hertz = options.board.crystal_hertz;
+    chip_options.ppm = options.board.crystal_ppm;
+    chip_options.fosc = options.fosc;
+    chip_ = std::make_unique<dspic::Chip>(dspic::dspic30f6014a(), board_, chip_options);
+    chip_->set_skipping(options.skip_idle);
+    chip_->load(image);
+    chip_->power_on();
+}
+
+void PicNode::advance(cosim::Time until, std::span<const cosim::Message> inbox,
+                      std::vector<cosim::Message>& outbox) {
+    outbox_ = &outbox;
+    for (const cosim::Message& message : inbox) {
+        run_until(message.time);
+        receive(message);
+    }
+    run_until(until);
+    // Steps due before `until` are told now; one that is due later may still be undone by an instruction.
+    const dspic::Cycle next = chip_->clock().first_cycle_at(until);
+    if (next > 0) board_.settle(next - 1);
+    granted_ = until;
+    outbox_ = nullptr;
+}
+
+void PicNode::run_until(cosim::Time until) {
+    if (options_.i2c_linked) {
+        chip_->run_until(until);
+        return;
+    }
+    while (chip_->now() < until) {
+        cosim::Time step = std::min(until, chip_->now() + EmptyBus::kStep);
+        step = std::min(step, std::max(bus_.due(), chip_->now()));
+        if (step > chip_->now()) chip_->run_until(step);
+        if (bus_.due() <= step) chip_->i2c_answer(kI2cUnit, bus_.take());
+    }
+}
+
+void PicNode::receive(const cosim::Message& message) {
+    if (const auto* frame = std::get_if<cosim::UartFrame>(&message.payload)) {
+        chip_->uart_receive(uart_unit(message.port), *frame);
+    } else if (const auto* phase = std::get_if<cosim::I2cPhase>(&message.payload)) {
+        chip_->i2c_answer(kI2cUnit, *phase);
+    } else if (const auto* signal = std::get_if<cosim::Signal>(&message.payload)) {
+        const dspic::Cycle now = chip_->clock().first_cycle_at(message.time);
+        if (const auto port = board_.set_signal(signal->id, signal->value, now)) chip_->pins_changed(*port);
+    }
+}
+
+cosim::Time PicNode::promise(cosim::PortIndex port) const {
+    if (port == kUart1 || port == kUart2) {
+        // While a frame is being shifted out the next message is that one, stamped with its stop bit.
+        const int unit = uart_unit(port);
+        if (chip_->uart_begun(unit)) return std::max(granted_, chip_->earliest_uart_send(unit, 0));
+    }
+    if (port == kI2c) return std::max(granted_, chip_->earliest_i2c(kI2cUnit));
+    return granted_;
+}
+
+std::optional<cosim::Time> PicNode::begun(cosim::PortIndex port) const {
+    if (port != kUart1 && port != kUart2) return std::nullopt;
+    return chip_->uart_begun(uart_unit(port));
+}
+
+void PicNode::signal_changed(SignalId id, double value, dspic::Cycle now) {
+    outbox_->push_back({chip_->clock().time_of(now), kWorld, cosim::Signal{id, value}});
+}
+
+void PicNode::uart_sent(int unit, const cosim::UartFrame& frame) {
+    outbox_->push_back({stop_bit(frame), unit == 1 ? kUart1 : kUart2, frame});
+}
+
+void PicNode::i2c_phase(int unit, const cosim::I2cPhase& phase) {
+    if (unit != kI2cUnit) return;
+    if (options_.i2c_linked)
+        outbox_->push_back({phase.start, kI2c, phase});
+    else
+        bus_.phase(phase);
+}
+
+std::string PicNode::finish() {
+    nlohmann::ordered_json json = chip_json(*chip_);
+    json["kind"] = "epuck board, dsPIC30F6014A";
+    json["wheel_steps"] = {{"left", board_.left_motor().steps()}, {"right", board_.right_motor().steps()}};
+    json["illegal_coil_patterns"] =
+        board_.left_motor().illegal_patterns() + board_.right_motor().illegal_patterns();
+    json["uart1"] = uart_json(chip_->uart_counters(1));
+    json["uart2"] = uart_json(chip_->uart_counters(2));
+    return json.dump();
+}
+
+}  // namespace puckloop::pic

@@ -1,0 +1,67 @@
+#pragma once
+// The e-puck main board as a node of a run: chip, board, and the ports where links attach.
+
+#include "cosim/node.h"
+#include "emu/dspic/chip.h"
+#include "emu/image/image.h"
+#include "emu/pic/board.h"
+#include "emu/pic/empty_bus.h"
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace puckloop::pic {
+
+struct PicNodeOptions {
+    BoardParameters board;   ///< its name is the node's name
+    bool i2c_linked = true;  ///< false: nobody else is on the bus, and the node answers the master itself
+    bool skip_idle = true;   ///< busy-wait loops are skipped forward
+    /// Configuration word in force on the robot, as its bootloader left it: XT with PLL x8.
+    std::uint16_t fosc = kFoscXtPll8;
+    static constexpr std::uint16_t kFoscXtPll8 = 0xC706;
+};
+
+class PicNode : public cosim::Node, private BoardListener {
+  public:
+    static constexpr cosim::PortIndex kUart1 = 0;
+    static constexpr cosim::PortIndex kUart2 = 1;
+    static constexpr cosim::PortIndex kI2c = 2;
+    static constexpr cosim::PortIndex kWorld = 3;
+
+    /// Throws InputError if the image does not fit the chip.
+    PicNode(const image::Image& image, const PicNodeOptions& options);
+
+    std::string_view name() const override { return options_.board.name; }
+    std::span<const cosim::Port> ports() const override { return ports_; }
+    void advance(cosim::Time until, std::span<const cosim::Message> inbox,
+                 std::vector<cosim::Message>& outbox) override;
+    cosim::Time promise(cosim::PortIndex port) const override;
+    cosim::Time reaction(cosim::PortIndex /*port*/) const override { return 0; }
+    std::optional<cosim::Time> begun(cosim::PortIndex port) const override;
+    /// JSON: cycles, instructions, resets, traps, unmodelled registers, motor and UART counters.
+    std::string finish() override;
+
+    dspic::Chip& chip() { return *chip_; }
+    Board& board() { return board_; }
+
+  private:
+    void run_until(cosim::Time until);
+    void receive(const cosim::Message& message);
+
+    void signal_changed(SignalId id, double value, dspic::Cycle now) override;
+    void uart_sent(int unit, const cosim::UartFrame& frame) override;
+    void i2c_phase(int unit, const cosim::I2cPhase& phase) override;
+
+    PicNodeOptions options_;
+    std::vector<cosim::Port> ports_;
+    Board board_;
+    std::unique_ptr<dspic::Chip> chip_;
+    EmptyBus bus_;
+    std::vector<cosim::Message>* outbox_ = nullptr;
+    cosim::Time granted_ = 0;
+};
+
+}  // namespace puckloop::pic
