@@ -71,6 +71,9 @@ class Core {
     /// `Stopped`: the PC is at a stop address, the instruction there has not been executed; the next run()
     /// executes it. cycle() may end a few cycles past `until`.
     Outcome run(Cycle until);
+    /// From inside a hook or event handler: the run() in progress returns Until before its next instruction
+    /// (the clock's rate changed, so that its `until` is another cycle now).
+    void end_run();
     /// Exactly one instruction (or one interrupt entry, or one iteration of a repeated instruction); the
     /// chip's own events up to its start are serviced first.
     void step();
@@ -82,8 +85,10 @@ class Core {
     void stall_until(Cycle cycle);
 
     // Seen from outside.
-    Cycle cycle() const;       ///< where the next instruction starts; inside hooks: the present one's
-    std::uint32_t pc() const;  ///< of the next instruction; inside hooks: of the present one
+    Cycle cycle() const;  ///< where the next instruction starts; inside hooks: the present one's
+    /// The counter behind cycle(), for models that look at it at every register access.
+    const Cycle& cycle_counter() const;
+    std::uint32_t pc() const;            ///< of the next instruction; inside hooks: of the present one
     std::uint64_t instructions() const;  ///< executed since power-up, iterations counted, skipped ones too
     PowerMode power_mode() const;
     int cpu_level() const;  ///< IPL3:IPL2:0, 0..15
