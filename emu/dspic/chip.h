@@ -8,6 +8,7 @@
 #include "emu/dspic/device.h"
 #include "emu/dspic/event_queue.h"
 #include "emu/dspic/pins.h"
+#include "emu/dspic/uart_counters.h"
 
 #include <cstdint>
 #include <memory>
@@ -53,15 +54,6 @@ struct ChipReport {
     std::vector<UnmodelledTouch> unmodelled;  ///< first touch of each register
     std::uint64_t instructions = 0;
     Cycle cycles = 0;
-};
-
-/// What one UART's receiver and transmitter have seen since power-up.
-struct UartCounters {
-    std::uint64_t sent = 0;
-    std::uint64_t received = 0;  ///< characters sampled, those with errors included
-    std::uint64_t framing_errors = 0;
-    std::uint64_t parity_errors = 0;
-    std::uint64_t overruns = 0;  ///< characters lost because the FIFO was full or OERR stood
 };
 
 /// Use: construct, load, power_on(), then run_until() in rising steps, handing in what arrives in between.

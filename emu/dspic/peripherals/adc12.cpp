@@ -1,0 +1,238 @@
+#include "emu/dspic/peripherals/adc12.h"
+
+#include "emu/dspic/devices/dspic30f6014a_irq.h"
+#include "emu/dspic/devices/dspic30f6014a_sfr.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace puckloop::dspic {
+
+namespace {
+
+// ADCON1
+constexpr std::uint16_t kAdon = bit(15);
+constexpr std::uint16_t kAsam = bit(2);
+constexpr std::uint16_t kSamp = bit(1);
+constexpr std::uint16_t kDone = bit(0);
+// ADCON2
+constexpr std::uint16_t kCscna = bit(10);
+constexpr std::uint16_t kBufs = bit(7);
+constexpr std::uint16_t kBufm = bit(1);
+constexpr std::uint16_t kAlts = bit(0);
+// ADCON3
+constexpr std::uint16_t kAdrc = bit(7);
+
+constexpr int kConversionTads = 14;
+constexpr double kRcTadSeconds = 900e-9;
+constexpr int kInputs = 16;
+constexpr int kHalfBuffer = 8;
+constexpr unsigned kFullScale = 4096;
+constexpr int kVrefPlusPin = 0;   // AN0
+constexpr int kVrefMinusPin = 1;  // AN1
+
+}  // namespace
+
+Adc12::Adc12(const Surroundings& around, const cosim::ClockDomain& clock, Pins& pins)
+    : around_(around), clock_(clock), pins_(pins), slot_(around.events.add(this, due)) {
+    for (int i = 0; i < kInputs; ++i)
+        around_.sfr.hook(static_cast<std::uint16_t>(sfr::ADCBUF0 + 2 * i), this, read_register, nullptr);
+    around_.sfr.hook(sfr::ADCON1, this, read_register, write_adcon1);
+    around_.sfr.hook(sfr::ADCON2, this, read_register, write_register);
+    for (const std::uint16_t address : {sfr::ADCON3, sfr::ADCHS, sfr::ADPCFG, sfr::ADCSSL})
+        around_.sfr.hook(address, this, nullptr, write_register);
+}
+
+void Adc12::reset() {
+    state_ = {};
+    around_.events.cancel(slot_);
+}
+
+Adc12::Trigger Adc12::source() const {
+    return static_cast<Trigger>(dspic::field(around_.sfr.raw(sfr::ADCON1), 7, 5));
+}
+
+// TAD = TCY (ADCS + 1) / 2, in half cycles.
+Adc12::HalfCycle Adc12::tad() const {
+    const std::uint16_t adcon3 = around_.sfr.raw(sfr::ADCON3);
+    if (adcon3 & kAdrc)
+        return std::max<HalfCycle>(
+            1, static_cast<HalfCycle>(std::llround(kRcTadSeconds * 2.0 * clock_.hertz())));
+    return dspic::field(adcon3, 5, 0) + 1u;
+}
+
+// The next input to scan: ADCSSL from the last one upward, all over again after the highest.
+std::uint8_t Adc12::scan() {
+    const unsigned selected = around_.sfr.raw(sfr::ADCSSL);
+    if (selected == 0) return 0;
+    unsigned rest = selected & ~((1u << state_.scanned) - 1u);
+    if (rest == 0) rest = selected;
+    const int channel = std::countr_zero(rest);
+    state_.scanned = static_cast<std::uint8_t>(channel + 1);
+    return static_cast<std::uint8_t>(channel);
+}
+
+void Adc12::begin_sampling(HalfCycle at) {
+    const std::uint16_t adchs = around_.sfr.raw(sfr::ADCHS);
+    if (state_.mux_b)
+        state_.channel = static_cast<std::uint8_t>(dspic::field(adchs, 11, 8));
+    else if (around_.sfr.raw(sfr::ADCON2) & kCscna)
+        state_.channel = scan();
+    else
+        state_.channel = static_cast<std::uint8_t>(dspic::field(adchs, 3, 0));
+    state_.phase = Phase::Sampling;
+    state_.timed = source() == Trigger::Counter;
+    state_.phase_end = at + dspic::field(around_.sfr.raw(sfr::ADCON3), 12, 8) * tad();
+    around_.sfr.raw(sfr::ADCON1) |= kSamp;
+}
+
+void Adc12::end_sampling(HalfCycle at) {
+    state_.result = formatted(convert(at / 2));
+    state_.phase = Phase::Converting;
+    state_.timed = true;
+    state_.phase_end = at + kConversionTads * tad();
+    std::uint16_t& adcon1 = around_.sfr.raw(sfr::ADCON1);
+    adcon1 = static_cast<std::uint16_t>(adcon1 & ~(kSamp | kDone));
+}
+
+// ADIF comes with this conversion.
+bool Adc12::last_of_group() const {
+    return state_.done >= dspic::field(around_.sfr.raw(sfr::ADCON2), 5, 2);
+}
+
+void Adc12::end_conversion(HalfCycle at) {
+    std::uint16_t& adcon1 = around_.sfr.raw(sfr::ADCON1);
+    std::uint16_t& adcon2 = around_.sfr.raw(sfr::ADCON2);
+    around_.sfr.raw(static_cast<std::uint16_t>(sfr::ADCBUF0 + 2 * state_.next)) = state_.result;
+    adcon1 |= kDone;
+    if (adcon2 & kAlts) state_.mux_b = !state_.mux_b;
+    if (last_of_group()) {
+        state_.done = 0;
+        state_.scanned = 0;
+        if (adcon2 & kBufm) adcon2 ^= kBufs;
+        state_.next = adcon2 & kBufm && adcon2 & kBufs ? kHalfBuffer : 0;
+        around_.interrupts.raise(irq::ADC, (at + 1) / 2);
+    } else {
+        ++state_.done;
+        state_.next = static_cast<std::uint8_t>((state_.next + 1) % kInputs);
+    }
+    state_.phase = Phase::Idle;
+    if (adcon1 & kAsam) begin_sampling(at);
+}
+
+double Adc12::input(int channel, Cycle at) const {
+    const std::uint16_t pin = bit(channel);
+    if (around_.sfr.raw(sfr::ADPCFG) & pin) return 0.0;  // a digital pin is cut off from the converter
+    if (!(around_.sfr.raw(sfr::TRISB) & pin)) return around_.sfr.raw(sfr::LATB) & pin ? 1.0 : 0.0;
+    return pins_.analog(channel, at);
+}
+
+std::uint16_t Adc12::convert(Cycle at) const {
+    double value = input(state_.channel, at);
+    const std::uint16_t adchs = around_.sfr.raw(sfr::ADCHS);
+    if (adchs & (state_.mux_b ? bit(12) : bit(4))) value -= input(kVrefMinusPin, at);  // CH0NB, CH0NA
+    const unsigned vcfg = dspic::field(around_.sfr.raw(sfr::ADCON2), 15, 13);
+    if (vcfg != 0 && vcfg < 4) {
+        const double high = vcfg & 1 ? pins_.analog(kVrefPlusPin, at) : 1.0;
+        const double low = vcfg & 2 ? pins_.analog(kVrefMinusPin, at) : 0.0;
+        value = high > low ? (value - low) / (high - low) : 0.0;
+    }
+    const double counts = std::floor(value * kFullScale);
+    return static_cast<std::uint16_t>(std::clamp(counts, 0.0, kFullScale - 1.0));
+}
+
+// FORM: integer, signed integer, fractional, signed fractional.
+std::uint16_t Adc12::formatted(unsigned counts) const {
+    const unsigned form = dspic::field(around_.sfr.raw(sfr::ADCON1), 9, 8);
+    if (form & 1) counts -= kFullScale / 2;
+    return static_cast<std::uint16_t>(form & 2 ? counts << 4 : counts);
+}
+
+void Adc12::switch_off() {
+    state_ = {};
+    around_.sfr.raw(sfr::ADCON1) &= static_cast<std::uint16_t>(~kSamp);
+    around_.sfr.raw(sfr::ADCON2) &= static_cast<std::uint16_t>(~kBufs);
+}
+
+void Adc12::catch_up(Cycle now) {
+    while (state_.timed && state_.phase_end <= 2 * now) {
+        state_.timed = false;
+        if (state_.phase == Phase::Sampling)
+            end_sampling(state_.phase_end);
+        else
+            end_conversion(state_.phase_end);
+    }
+}
+
+// The end of a conversion in the middle of an automatic group changes nothing that cannot be made up for
+// later.
+void Adc12::plan() {
+    if (!state_.timed) {
+        around_.events.cancel(slot_);
+        return;
+    }
+    HalfCycle when = state_.phase_end;
+    const bool automatic =
+        (around_.sfr.raw(sfr::ADCON1) & kAsam) && source() == Trigger::Counter && !last_of_group();
+    if (state_.phase == Phase::Converting && automatic)
+        when += dspic::field(around_.sfr.raw(sfr::ADCON3), 12, 8) * tad();
+    around_.events.schedule(slot_, (when + 1) / 2);
+}
+
+void Adc12::due(void* owner, Cycle due) {
+    Adc12& self = *static_cast<Adc12*>(owner);
+    self.catch_up(due);
+    self.plan();
+}
+
+void Adc12::trigger(Trigger source, Cycle at) {
+    catch_up(at);
+    if (state_.phase != Phase::Sampling || this->source() != source) return;
+    end_sampling(2 * at);
+    plan();
+}
+
+std::uint16_t Adc12::read_register(void* owner, std::uint16_t address) {
+    Adc12& self = *static_cast<Adc12*>(owner);
+    self.catch_up(self.around_.now);
+    return self.around_.sfr.raw(address);
+}
+
+void Adc12::write_register(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask) {
+    Adc12& self = *static_cast<Adc12*>(owner);
+    self.catch_up(self.around_.now);
+    if (address == sfr::ADCON2) mask &= static_cast<std::uint16_t>(~kBufs);
+    self.around_.sfr.store(address, value, mask);
+    self.plan();
+}
+
+void Adc12::write_adcon1(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask) {
+    Adc12& self = *static_cast<Adc12*>(owner);
+    self.catch_up(self.around_.now);
+    const HalfCycle at = 2 * (self.around_.now + 1);
+    const std::uint16_t old = self.around_.sfr.raw(address);
+    self.around_.sfr.store(address, value, mask);
+    std::uint16_t& adcon1 = self.around_.sfr.raw(address);
+    if (!(adcon1 & kAdon)) {
+        self.switch_off();
+    } else {
+        if (self.state_.phase == Phase::Off) self.state_.phase = Phase::Idle;
+        const bool asked = adcon1 & (kAsam | kSamp);
+        if (self.state_.phase == Phase::Idle && asked) {
+            self.begin_sampling(at);
+        } else if (self.state_.phase == Phase::Sampling) {
+            if (!(adcon1 & kSamp) && self.source() == Trigger::Software)
+                self.end_sampling(at);
+            else
+                adcon1 |= kSamp;
+        } else if (self.state_.phase == Phase::Converting) {
+            adcon1 &= static_cast<std::uint16_t>(~kSamp);
+        }
+    }
+    // DONE can be cleared, not set.
+    if (!(old & kDone)) adcon1 &= static_cast<std::uint16_t>(~kDone);
+    self.plan();
+}
+
+}  // namespace puckloop::dspic

@@ -1,0 +1,75 @@
+#pragma once
+// The 12-bit A/D converter: 16 inputs, scan, alternating multiplexers, automatic sampling and conversion, 16
+// buffers. Source: dsPIC30F Family Reference Manual, section 18; fact sheet peripherals.md section 3.
+//
+// Deviations
+//  1. The internal RC clock (ADRC = 1) has TAD = 900 ns exactly.
+//  2. No settling time after ADON, no acquisition error, no noise: the input is taken at the end of sampling.
+//  3. Selections of the input (ADCHS, ADCSSL) count at the start of sampling.
+//  4. Reserved SSRC codes never end sampling. ADSIDL and Sleep do not stop conversions.
+
+#include "cosim/clock.h"
+#include "emu/dspic/peripherals/surroundings.h"
+#include "emu/dspic/pins.h"
+
+#include <cstdint>
+
+namespace puckloop::dspic {
+
+/// Events: end of sampling, where the voltage is taken, and the end of those conversions that the program can
+/// be waiting for. The end of the others is made up for when a register is touched.
+class Adc12 {
+  public:
+    enum class Trigger : std::uint8_t { Software = 0, Int0 = 1, Timer3 = 2, Counter = 7 };
+
+    Adc12(const Surroundings& around, const cosim::ClockDomain& clock, Pins& pins);
+
+    void reset();
+    /// INT0 edge or Timer3 match at cycle `at`: ends sampling if SSRC selects it.
+    void trigger(Trigger source, Cycle at);
+    /// Brings results and status bits up to the present cycle.
+    void refresh() { catch_up(around_.now); }
+
+  private:
+    enum class Phase : std::uint8_t { Off, Idle, Sampling, Converting };
+    /// Times are in half instruction cycles, the unit of TAD.
+    using HalfCycle = std::uint64_t;
+    struct State {
+        Phase phase = Phase::Off;
+        HalfCycle phase_end = 0;   ///< of a conversion, or of sampling when the internal counter ends it
+        bool timed = false;        ///< phase_end is set
+        bool mux_b = false;        ///< the input being sampled belongs to MUX B
+        std::uint8_t channel = 0;  ///< being sampled or converted
+        std::uint8_t scanned = 0;  ///< next input to scan from
+        std::uint8_t next = 0;     ///< ADCBUFn that the next result goes to
+        std::uint8_t done = 0;     ///< conversions since the last interrupt
+        std::uint16_t result = 0;  ///< of the conversion in progress
+    };
+
+    static std::uint16_t read_register(void* owner, std::uint16_t address);
+    static void write_register(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask);
+    static void write_adcon1(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask);
+    static void due(void* owner, Cycle due);
+
+    Trigger source() const;
+    HalfCycle tad() const;
+    void begin_sampling(HalfCycle at);
+    void end_sampling(HalfCycle at);
+    void end_conversion(HalfCycle at);
+    void switch_off();
+    std::uint8_t scan();
+    double input(int channel, Cycle at) const;
+    std::uint16_t convert(Cycle at) const;
+    std::uint16_t formatted(unsigned counts) const;
+    bool last_of_group() const;
+    void catch_up(Cycle now);
+    void plan();
+
+    Surroundings around_;
+    const cosim::ClockDomain& clock_;
+    Pins& pins_;
+    State state_;
+    EventQueue::Slot slot_;
+};
+
+}  // namespace puckloop::dspic

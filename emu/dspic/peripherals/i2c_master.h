@@ -1,0 +1,75 @@
+#pragma once
+// The I2C module as a master: start, repeated start, stop, transmit, receive and acknowledge, one at a time,
+// each with its duration on the bus. The bus itself is the board's: phases go out through Pins::i2c_phase(),
+// answers come back through answer(). Source: dsPIC30F Family Reference Manual, section 21; fact sheet
+// peripherals.md section 4.
+//
+// Deviations
+//  1. Master only: a first touch of the slave's address register is reported.
+//  2. The slave's answer to an address or data byte, stretch included, is known when its ninth clock ends. A
+//  read
+//     byte is therefore seen (RBF, RCEN = 0) after nine clocks instead of eight, and the acknowledge that the
+//     program gives next lasts an eighth of a clock instead of a whole one: the byte takes as long as in
+//     silicon.
+//  3. A slave is always told "acknowledged" for a byte read; it learns of a not-acknowledge by the stop or
+//  repeated
+//     start that follows.
+//  4. I2CEN = 0 while an answer is awaited frees the bus when the answer comes. The bus sees a stop then.
+//  5. Transmitting without a start condition reaches nobody: not acknowledged.
+
+#include "cosim/clock.h"
+#include "cosim/message.h"
+#include "emu/dspic/peripherals/ports.h"
+#include "emu/dspic/peripherals/surroundings.h"
+#include "emu/dspic/pins.h"
+
+#include <cstdint>
+
+namespace puckloop::dspic {
+
+class I2cMaster {
+  public:
+    I2cMaster(const Surroundings& around, const cosim::ClockDomain& clock, Ports& ports, Pins& pins);
+
+    void reset();
+    /// Acknowledge, Data or BusLost, at cycle `at`.
+    void answer(const cosim::I2cPhase& phase, Cycle at);
+    /// No phase goes out before this cycle, unless an answer comes; kNoCycle while one is awaited. `now`: the
+    /// next instruction starts there.
+    Cycle earliest(Cycle now) const;
+
+  private:
+    enum class Activity : std::uint8_t { Idle, Start, Restart, Stop, Transmit, Receive, Acknowledge };
+    struct State {
+        Activity activity = Activity::Idle;
+        bool owns_bus = false;      ///< a start condition was given and no stop yet
+        bool address_next = false;  ///< the next byte follows a (repeated) start
+        bool awaits_answer = false;
+        bool stop_when_answered = false;  ///< switched off meanwhile
+        Cycle buffer_empty = kNoCycle;
+        Cycle ends = kNoCycle;  ///< of an activity that needs no answer
+    };
+
+    static std::uint16_t read_rcv(void* owner, std::uint16_t address);
+    static void write_trn(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask);
+    static void write_con(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask);
+    static void write_stat(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask);
+    static void due(void* owner, Cycle due);
+
+    double clock_cycles() const;  ///< one SCL period in instruction cycles
+    Cycle clocks(double count) const;
+    void begin(Activity activity, double duration_clocks);
+    void send(cosim::I2cPhaseKind kind, std::uint8_t byte, std::uint8_t ack, cosim::Time start);
+    void complete(Cycle at);
+    void stop_condition_seen(bool stopped);
+    void switch_off();
+
+    Surroundings around_;
+    const cosim::ClockDomain& clock_;
+    Ports& ports_;
+    Pins& pins_;
+    State state_;
+    EventQueue::Slot slot_;
+};
+
+}  // namespace puckloop::dspic

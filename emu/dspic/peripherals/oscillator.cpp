@@ -1,0 +1,160 @@
+#include "emu/dspic/peripherals/oscillator.h"
+
+#include "emu/dspic/devices/dspic30f6014a_sfr.h"
+
+#include <cmath>
+
+namespace puckloop::dspic {
+
+namespace {
+
+constexpr double kLpHertz = 32'768.0;
+constexpr double kFrcHertz = 7'370'000.0;
+constexpr double kLprcHertz = 512'000.0;
+constexpr int kClocksPerCycle = 4;
+constexpr double kPostscale[] = {1.0, 4.0, 16.0, 64.0};  // POST
+
+// FOS codes; the primary oscillator and the PLL are told apart further by FPR.
+enum Source : std::uint8_t { kLp = 0, kFrc = 1, kLprc = 2, kPrimary = 3, kPll = 7 };
+
+// OSCCON
+constexpr std::uint16_t kLock = bit(5);
+constexpr std::uint16_t kOswen = bit(0);
+constexpr std::uint16_t kLowWritable = 0x00C3;    // POST, LPOSCEN, OSWEN
+constexpr std::uint16_t kHighWritable = 0x0700;   // NOSC
+constexpr std::uint16_t kSwitchingOff = bit(15);  // FOSC<FCKSM1>
+
+constexpr Cycle kSwitchCycles = 10;
+constexpr double kStartupPeriods = 1024.0;
+constexpr Cycle kKeyDistance = 2;  // the unlock writes come from successive instructions
+
+}  // namespace
+
+ClockChoice decode_fosc(std::uint16_t fosc, double crystal_hertz) {
+    const auto source = static_cast<std::uint8_t>(field(fosc, 10, 8));
+    const unsigned fpr = field(fosc, 4, 0);
+    switch (source) {
+    case kLp:
+        return {kLpHertz, source};
+    case kFrc:
+        return {kFrcHertz, source};
+    case kLprc:
+        return {kLprcHertz, source};
+    case kPrimary:
+        return {crystal_hertz, source};
+    default:
+        break;
+    }
+    constexpr double kMultiplier[] = {0.0, 4.0, 8.0, 16.0};
+    switch (fpr) {
+    case 0b00001:
+        return {kFrcHertz * 4.0, kPll};
+    case 0b01010:
+        return {kFrcHertz * 8.0, kPll};
+    case 0b00011:
+        return {kFrcHertz * 16.0, kPll};
+    case 0b00101:
+    case 0b00110:
+    case 0b00111:  // XT
+    case 0b01101:
+    case 0b01110:
+    case 0b01111:  // ECIO
+        return {crystal_hertz * kMultiplier[fpr & 3u], kPll};
+    case 0b10001:
+    case 0b10010:
+    case 0b10011:  // HS/2
+        return {crystal_hertz / 2.0 * kMultiplier[fpr & 3u], kPll};
+    case 0b10101:
+    case 0b10110:
+    case 0b10111:  // HS/3
+        return {crystal_hertz / 3.0 * kMultiplier[fpr & 3u], kPll};
+    default:
+        return {crystal_hertz * 8.0, kPll};
+    }
+}
+
+Oscillator::Oscillator(const Surroundings& around, cosim::ClockDomain& clock, double crystal_hertz)
+    : around_(around),
+      clock_(clock),
+      crystal_hertz_(crystal_hertz),
+      slot_(around.events.add(this, switch_due)) {
+    around_.sfr.hook(sfr::OSCCON, this, nullptr, write_osccon);
+    around_.sfr.claim(sfr::OSCTUN);
+}
+
+void Oscillator::reset() {
+    state_ = {};
+    around_.events.cancel(slot_);
+    select(decode_fosc(fosc_, crystal_hertz_).source, around_.now);
+    std::uint16_t& osccon = around_.sfr.raw(sfr::OSCCON);
+    osccon = static_cast<std::uint16_t>((osccon & ~kHighWritable) | field(osccon, 14, 12) << 8);
+}
+
+double Oscillator::source_hertz(std::uint8_t source) const {
+    const auto fosc = static_cast<std::uint16_t>((fosc_ & ~0x0700u) | static_cast<unsigned>(source) << 8);
+    return decode_fosc(fosc, crystal_hertz_).hertz;
+}
+
+// Runs on `source` from cycle `at` on, with the present postscaler.
+void Oscillator::select(std::uint8_t source, Cycle at) {
+    std::uint16_t& osccon = around_.sfr.raw(sfr::OSCCON);
+    osccon = static_cast<std::uint16_t>((osccon & ~0x7000u) | static_cast<unsigned>(source) << 12);
+    assign(osccon, kLock, source == kPll);
+    const double hertz = source_hertz(source) / kClocksPerCycle / kPostscale[field(osccon, 7, 6)];
+    if (hertz == clock_.hertz()) return;
+    clock_.change_rate(at, hertz);
+    if (on_rate) on_rate(on_rate_owner, hertz);
+}
+
+// Two key bytes in successive instructions open the register half for the next one.
+bool Oscillator::unlocked(int& keys, std::uint8_t first, std::uint8_t second, std::uint8_t value) {
+    const bool in_time = around_.now - state_.last_key <= kKeyDistance;
+    state_.last_key = around_.now;
+    if (keys == 2 && in_time) {
+        keys = 0;
+        return true;
+    }
+    if (keys == 1 && in_time && value == second)
+        keys = 2;
+    else
+        keys = value == first ? 1 : 0;
+    return false;
+}
+
+void Oscillator::write_osccon(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask) {
+    Oscillator& self = *static_cast<Oscillator*>(owner);
+    std::uint16_t& osccon = self.around_.sfr.raw(address);
+    if (mask == 0xFF00) {
+        self.state_.low_keys = 0;
+        if (self.unlocked(self.state_.high_keys, 0x78, 0x9A, static_cast<std::uint8_t>(value >> 8)))
+            osccon = merge(osccon, value, kHighWritable);
+        return;
+    }
+    if (mask != 0x00FF) return;  // word writes do not open it
+    self.state_.high_keys = 0;
+    if (!self.unlocked(self.state_.low_keys, 0x46, 0x57, static_cast<std::uint8_t>(value))) return;
+    const std::uint16_t old = osccon;
+    osccon = merge(osccon, value, kLowWritable);
+    const auto present = static_cast<std::uint8_t>(field(osccon, 14, 12));
+    const auto wanted = static_cast<std::uint8_t>(field(osccon, 10, 8));
+    if (!(osccon & kOswen) || (self.fosc_ & kSwitchingOff) || wanted == present) {
+        assign(osccon, kOswen, false);
+        self.around_.events.cancel(self.slot_);
+    } else if (!(old & kOswen)) {
+        double wait = 0.0;
+        if (wanted == kPrimary || wanted == kPll)
+            wait = kStartupPeriods / self.crystal_hertz_ * self.clock_.hertz();
+        self.around_.events.schedule(self.slot_, self.around_.now + 1 + kSwitchCycles +
+                                                     static_cast<Cycle>(std::llround(wait)));
+    }
+    if (field(old ^ osccon, 7, 6)) self.select(present, self.around_.now + 1);
+}
+
+void Oscillator::switch_due(void* owner, Cycle due) {
+    Oscillator& self = *static_cast<Oscillator*>(owner);
+    std::uint16_t& osccon = self.around_.sfr.raw(sfr::OSCCON);
+    assign(osccon, kOswen, false);
+    self.select(static_cast<std::uint8_t>(field(osccon, 10, 8)), due);
+}
+
+}  // namespace puckloop::dspic

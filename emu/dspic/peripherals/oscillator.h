@@ -1,0 +1,58 @@
+#pragma once
+// The clock: configuration word FOSC, OSCCON with its unlock sequences, clock switching, PLL and postscaler.
+// Source: dsPIC30F Family Reference Manual, section 7; fact sheets config_words.csv and semantics.md
+// section 17.
+//
+// Deviations
+//  1. A reserved FOSC code runs as the crystal with the 8x PLL.
+//  2. The fail-safe clock monitor never sees a failure; OSCTUN and LPOSCEN are stored.
+//  3. A switch takes 10 old cycles, and 1024 crystal periods more towards the primary oscillator; PLL lock is
+//  at once.
+
+#include "cosim/clock.h"
+#include "emu/dspic/peripherals/surroundings.h"
+
+#include <cstdint>
+
+namespace puckloop::dspic {
+
+/// What a FOSC word and a crystal make.
+struct ClockChoice {
+    double hertz = 0.0;       ///< of the oscillator after the PLL, four of which make an instruction cycle
+    std::uint8_t source = 0;  ///< FOS code: 0 LP, 1 FRC, 2 LPRC, 3 primary, 7 PLL
+};
+ClockChoice decode_fosc(std::uint16_t fosc, double crystal_hertz);
+
+class Oscillator {
+  public:
+    Oscillator(const Surroundings& around, cosim::ClockDomain& clock, double crystal_hertz);
+
+    /// A reset; at power-on with the configuration word that is in force.
+    void reset();
+    void configure(std::uint16_t fosc) { fosc_ = fosc; }
+    /// Called after each change of the instruction rate.
+    void (*on_rate)(void* owner, double hertz) = nullptr;
+    void* on_rate_owner = nullptr;
+
+  private:
+    struct State {
+        int high_keys = 0;  ///< steps of the unlock sequence done
+        int low_keys = 0;
+        Cycle last_key = 0;
+    };
+
+    static void write_osccon(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask);
+    static void switch_due(void* owner, Cycle due);
+    bool unlocked(int& keys, std::uint8_t first, std::uint8_t second, std::uint8_t value);
+    void select(std::uint8_t source, Cycle at);
+    double source_hertz(std::uint8_t source) const;
+
+    Surroundings around_;
+    cosim::ClockDomain& clock_;
+    double crystal_hertz_;
+    std::uint16_t fosc_ = 0xFFFF;
+    State state_;
+    EventQueue::Slot slot_;
+};
+
+}  // namespace puckloop::dspic

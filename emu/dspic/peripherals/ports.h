@@ -1,0 +1,84 @@
+#pragma once
+// I/O ports: TRISx, PORTx, LATx, analog pins, pins lent to other modules; input change notification (CN); and
+// watched pins for the modules that count or trigger on edges.
+// Source: dsPIC30F Family Reference Manual, section 11; fact sheet peripherals.md section 9.
+//
+// Deviations
+//  1. A PORTx read in the instruction right after a write sees the new level; silicon wants one instruction
+//  between.
+//  2. Pins change one cycle after the start of the writing instruction, all at once, without slew or
+//  contention.
+//  3. A pin lent to a UART or I2C module rests at its idle level; frames travel as messages, not as levels.
+//  4. CN pull-ups are stored; what an open pin reads is the board's affair.
+
+#include "emu/dspic/peripherals/surroundings.h"
+#include "emu/dspic/pins.h"
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace puckloop::dspic {
+
+class Ports {
+  public:
+    Ports(const Surroundings& around, Pins& pins);
+
+    void reset();
+    /// The outside changed levels on `port` at cycle `at`.
+    void outside_changed(PortLetter port, Cycle at);
+    /// Takes pins away from LAT and TRIS: `output` of them are driven at `levels`, the rest are released.
+    void lend(PortLetter port, std::uint16_t mask, std::uint16_t output, std::uint16_t levels);
+    void give_back(PortLetter port, std::uint16_t mask);
+    /// Calls `changed` with the pin's level at every edge, driven by whomever; at a reset with `at` =
+    /// kNoCycle: there the level is just told.
+    void watch(PortLetter port, int pin, void* owner, void (*changed)(void* owner, bool level, Cycle at));
+    /// Level on the pin now, as its input buffer sees it.
+    bool level(PortLetter port, int pin) const;
+    /// Puts the pin levels into PORTx's storage.
+    void refresh();
+
+    static constexpr int kPorts = 7;
+
+  private:
+    struct Port {
+        std::uint16_t tris = 0;  ///< register addresses; 0: the device has no such port
+        std::uint16_t port = 0;
+        std::uint16_t lat = 0;
+        std::uint16_t implemented = 0;
+        std::uint16_t lent = 0;
+        std::uint16_t lent_output = 0;
+        std::uint16_t lent_levels = 0;
+        std::uint16_t driven = 0;   ///< as last told to the board
+        std::uint16_t levels = 0;   ///< as last told to the board
+        std::uint16_t watched = 0;  ///< pins with a watcher or CN input
+        std::uint16_t seen = 0;     ///< levels of the watched pins when last looked at
+        std::uint16_t noticed = 0;  ///< pin levels at the last PORT read, what CN compares with
+    };
+    struct Watcher {
+        PortLetter port{};
+        std::uint16_t mask = 0;
+        void* owner = nullptr;
+        void (*changed)(void*, bool, Cycle) = nullptr;
+    };
+
+    static std::uint16_t read_port(void* owner, std::uint16_t address);
+    static void write_port(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask);
+    static void write_tris(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask);
+    static void write_cn(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask);
+
+    Port& at(PortLetter letter) { return ports_[static_cast<std::size_t>(letter)]; }
+    const Port& at(PortLetter letter) const { return ports_[static_cast<std::size_t>(letter)]; }
+    int index_of(std::uint16_t address) const;
+    std::uint16_t pin_levels(int index, Cycle now) const;
+    void drive(int index, Cycle when);
+    void look(int index, Cycle when);
+    std::uint16_t change_enabled(int index) const;
+
+    Surroundings around_;
+    Pins& pins_;
+    std::array<Port, kPorts> ports_{};
+    std::vector<Watcher> watchers_;
+};
+
+}  // namespace puckloop::dspic

@@ -1,0 +1,180 @@
+#include "emu/dspic/peripherals/timer.h"
+
+namespace puckloop::dspic {
+
+namespace {
+// TxCON
+constexpr std::uint16_t kTon = bit(15);
+constexpr std::uint16_t kTgate = bit(6);
+constexpr std::uint16_t kT32 = bit(3);
+constexpr std::uint16_t kTcs = bit(1);
+constexpr std::uint32_t kPrescale[] = {1, 8, 64, 256};  // TCKPS
+}  // namespace
+
+Timer::Timer(const Surroundings& around, const Setup& setup, Timer* upper)
+    : around_(around), setup_(setup), upper_(upper), slot_(around.events.add(this, match_due)) {
+    around_.sfr.hook(setup_.tmr, this, read_tmr, write_tmr);
+    around_.sfr.hook(setup_.pr, this, nullptr, write_pr);
+    around_.sfr.hook(setup_.con, this, nullptr, write_con);
+    if (setup_.hold) around_.sfr.claim(setup_.hold);
+    if (upper_) upper_->lower_ = this;
+}
+
+void Timer::reset() {
+    const bool pin = state_.pin;
+    state_ = {};
+    state_.pin = pin;
+    state_.base = around_.now;
+    around_.events.cancel(slot_);
+}
+
+bool Timer::paired() const {
+    return upper_ && (con() & kT32);
+}
+bool Timer::ruled_by_lower() const {
+    return lower_ && lower_->paired();
+}
+bool Timer::external() const {
+    return con() & kTcs;
+}
+bool Timer::gated() const {
+    return !external() && (con() & kTgate);
+}
+bool Timer::running() const {
+    return (con() & kTon) && !ruled_by_lower() && !external() && (!gated() || state_.pin);
+}
+std::uint32_t Timer::prescale() const {
+    return kPrescale[dspic::field(con(), 5, 4)];
+}
+std::uint32_t Timer::period() const {
+    const std::uint32_t low = around_.sfr.raw(setup_.pr);
+    return paired() ? low | static_cast<std::uint32_t>(around_.sfr.raw(upper_->setup_.pr)) << 16 : low;
+}
+
+std::uint32_t Timer::count_at(Cycle at) const {
+    if (!running() || at < state_.base) return state_.count;
+    Cycle ticks = (at - state_.base + state_.fraction) / prescale();
+    std::uint32_t count = state_.count;
+    if (count > period()) {  // past the match: all the way round
+        const Cycle to_wrap = static_cast<Cycle>(top()) - count + 1;
+        if (ticks < to_wrap) return static_cast<std::uint32_t>(count + ticks);
+        ticks -= to_wrap;
+        count = 0;
+    }
+    return static_cast<std::uint32_t>((count + ticks) % (static_cast<Cycle>(period()) + 1));
+}
+
+Cycle Timer::next_match() const {
+    if (!running() || gated() || period() == 0) return kNoCycle;
+    Cycle ticks = static_cast<Cycle>(period()) + 1 - state_.count;
+    if (state_.count > period()) ticks = static_cast<Cycle>(top()) + 1 - state_.count + period() + 1;
+    return state_.base + ticks * prescale() - state_.fraction;
+}
+
+void Timer::settle(Cycle at) {
+    while (around_.events.due(slot_) <= at)
+        match_due(this, around_.events.due(slot_));
+    if (running() && at > state_.base) {
+        const std::uint32_t count = count_at(at);
+        state_.fraction = static_cast<std::uint32_t>((at - state_.base + state_.fraction) % prescale());
+        state_.count = count;
+    }
+    state_.base = at;
+}
+
+void Timer::plan() {
+    around_.events.schedule(slot_, next_match());
+}
+
+void Timer::match(Cycle at) {
+    around_.interrupts.raise(paired() ? upper_->setup_.irq : setup_.irq, at);
+    Timer& source = paired() ? *upper_ : *this;
+    if (source.on_match) source.on_match(source.on_match_owner, at);
+}
+
+void Timer::match_due(void* owner, Cycle due) {
+    Timer& self = *static_cast<Timer*>(owner);
+    self.state_ = {0, 0, due, self.state_.pin};
+    self.plan();
+    self.match(due);
+}
+
+void Timer::clock_pin(bool level, Cycle at) {
+    if (at == kNoCycle) {
+        state_.pin = level;
+        return;
+    }
+    if ((con() & kTon) && !ruled_by_lower()) {
+        if (gated()) {
+            settle(at);
+            if (!level) match(at);
+        } else if (external() && level && ++state_.fraction >= prescale()) {
+            state_.fraction = 0;
+            const bool back_to_zero = state_.count == period() || state_.count == top();
+            state_.count = back_to_zero ? 0 : state_.count + 1;
+            if (state_.count == period() && period() != 0) match(at);
+        }
+    }
+    state_.pin = level;
+    plan();
+}
+
+void Timer::refresh() {
+    std::uint16_t& stored = around_.sfr.raw(setup_.tmr);
+    if (ruled_by_lower())
+        stored = static_cast<std::uint16_t>(lower_->count_at(around_.now) >> 16);
+    else
+        stored = static_cast<std::uint16_t>(count_at(around_.now));
+}
+
+std::uint16_t Timer::read_tmr(void* owner, std::uint16_t) {
+    Timer& self = *static_cast<Timer*>(owner);
+    self.refresh();
+    if (self.paired())
+        self.around_.sfr.raw(self.setup_.hold) =
+            static_cast<std::uint16_t>(self.count_at(self.around_.now) >> 16);
+    return self.around_.sfr.raw(self.setup_.tmr);
+}
+
+void Timer::write_tmr(void* owner, std::uint16_t, std::uint16_t value, std::uint16_t mask) {
+    Timer& self = *static_cast<Timer*>(owner);
+    if (self.ruled_by_lower()) return;
+    self.settle(self.around_.now + 1);
+    const std::uint16_t low = merge(static_cast<std::uint16_t>(self.state_.count), value, mask);
+    self.state_.count = low;
+    if (self.paired())
+        self.state_.count |= static_cast<std::uint32_t>(self.around_.sfr.raw(self.setup_.hold)) << 16;
+    self.state_.fraction = 0;
+    self.plan();
+}
+
+void Timer::write_pr(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask) {
+    Timer& self = *static_cast<Timer*>(owner);
+    Timer& counting = self.ruled_by_lower() ? *self.lower_ : self;
+    counting.settle(self.around_.now + 1);
+    self.around_.sfr.store(address, value, mask);
+    counting.plan();
+}
+
+void Timer::write_con(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask) {
+    Timer& self = *static_cast<Timer*>(owner);
+    const bool was_paired = self.paired();
+    const Cycle at = self.around_.now + 1;
+    self.settle(at);
+    if (self.upper_) self.upper_->settle(at);
+    self.around_.sfr.store(address, value, mask);
+    if (!(self.con() & kTon)) self.state_.fraction = 0;
+    self.state_.fraction %= self.prescale();
+    if (self.upper_ && self.paired() != was_paired) {  // the high word changes hands
+        if (self.paired()) {
+            self.state_.count |= self.upper_->state_.count << 16;
+        } else {
+            self.upper_->state_.count = self.state_.count >> 16;
+            self.state_.count &= 0xFFFFu;
+        }
+    }
+    self.plan();
+    if (self.upper_) self.upper_->plan();
+}
+
+}  // namespace puckloop::dspic

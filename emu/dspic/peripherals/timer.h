@@ -1,0 +1,83 @@
+#pragma once
+// Timer1 to Timer5: 16-bit counters with prescaler, gate and external clock; Timer2/3 and Timer4/5 pair to 32
+// bits. Source: dsPIC30F Family Reference Manual, section 12; fact sheet peripherals.md section 2.
+//
+// Deviations
+//  1. External clock edges count at the instant of the edge; synchronisation (TSYNC) and asynchronous
+//  counting do
+//     not differ.
+//  2. Counting from the internal clock, TxIF is set in the cycle in which TMRx returns to 0; from an external
+//  clock,
+//     when the count reaches PRx (what the robot's camera driver relies on).
+//  3. A write to TxCON leaves the prescaler alone (family manual); one data sheet says that it clears it.
+//  4. In 32-bit mode a direct write to the upper TMR has no effect until it is moved by a write to the lower
+//  one.
+//  5. TSIDL and Sleep do not stop the count.
+
+#include "emu/dspic/peripherals/surroundings.h"
+
+namespace puckloop::dspic {
+
+/// One timer. Never ticks: the count is computed from the cycle in which it was last known.
+class Timer {
+  public:
+    struct Setup {
+        std::uint16_t tmr = 0;
+        std::uint16_t pr = 0;
+        std::uint16_t con = 0;
+        std::uint8_t irq = 0;
+        std::uint16_t hold = 0;  ///< TMRyHLD of the pair, for the lower timer (type B) only
+    };
+
+    /// `upper` is the other half of the pair if this is its lower timer, else null.
+    Timer(const Surroundings& around, const Setup& setup, Timer* upper = nullptr);
+
+    /// Every kind of reset; the registers themselves have been reset.
+    void reset();
+    /// The TxCK pin changed to `level` at cycle `at`; kNoCycle: no edge, just the level after a reset.
+    void clock_pin(bool level, Cycle at);
+    /// Puts the present count into TMRx's storage.
+    void refresh();
+
+    /// Called at each period match (Timer3 triggers the A/D converter); may stay empty.
+    void (*on_match)(void* owner, Cycle at) = nullptr;
+    void* on_match_owner = nullptr;
+
+  private:
+    struct State {
+        std::uint32_t count = 0;     ///< at cycle `base`
+        std::uint32_t fraction = 0;  ///< prescaler count at cycle `base`
+        Cycle base = 0;
+        bool pin = false;  ///< level of TxCK
+    };
+
+    static std::uint16_t read_tmr(void* owner, std::uint16_t address);
+    static void write_tmr(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask);
+    static void write_pr(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask);
+    static void write_con(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask);
+    static void match_due(void* owner, Cycle due);
+
+    bool paired() const;           ///< this lower timer counts 32 bits
+    bool ruled_by_lower() const;   ///< this upper timer is the high word of a pair
+    bool external() const;         ///< counts edges of TxCK
+    bool gated() const;            ///< counts cycles while TxCK is high
+    bool running() const;          ///< the internal clock is counted just now
+    std::uint32_t period() const;  ///< PRx, or PRy:PRx of a pair
+    std::uint32_t top() const { return paired() ? 0xFFFF'FFFFu : 0xFFFFu; }
+    std::uint32_t prescale() const;
+    std::uint32_t count_at(Cycle at) const;
+    Cycle next_match() const;
+    void settle(Cycle at);  ///< makes `at` the base, firing a match that falls due by then
+    void plan();
+    void match(Cycle at);
+    std::uint16_t con() const { return around_.sfr.raw(setup_.con); }
+
+    Surroundings around_;
+    Setup setup_;
+    Timer* upper_;
+    Timer* lower_ = nullptr;
+    State state_;
+    EventQueue::Slot slot_;
+};
+
+}  // namespace puckloop::dspic

@@ -1,0 +1,283 @@
+#include "emu/dspic/peripherals/uart.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace puckloop::dspic {
+
+namespace {
+
+// UxMODE
+constexpr std::uint16_t kUarten = bit(15);
+constexpr std::uint16_t kLpback = bit(6);
+constexpr std::uint16_t kStsel = bit(0);
+// UxSTA
+constexpr std::uint16_t kUtxisel = bit(15);
+constexpr std::uint16_t kUtxbrk = bit(11);
+constexpr std::uint16_t kUtxen = bit(10);
+constexpr std::uint16_t kUtxbf = bit(9);
+constexpr std::uint16_t kTrmt = bit(8);
+constexpr std::uint16_t kAdden = bit(5);
+constexpr std::uint16_t kRidle = bit(4);
+constexpr std::uint16_t kPerr = bit(3);
+constexpr std::uint16_t kFerr = bit(2);
+constexpr std::uint16_t kOerr = bit(1);
+constexpr std::uint16_t kUrxda = bit(0);
+constexpr std::uint16_t kStaWritable = kUtxisel | kUtxbrk | kUtxen | bit(7) | bit(6) | kAdden;
+
+constexpr std::uint16_t kNinthBit = bit(8);
+constexpr std::uint32_t kTicksPerBit = 16;
+
+}  // namespace
+
+Uart::Uart(const Surroundings& around, const Setup& setup, const cosim::ClockDomain& clock, Ports& ports,
+           Pins& pins)
+    : around_(around),
+      setup_(setup),
+      clock_(clock),
+      ports_(ports),
+      pins_(pins),
+      receiver_(clock),
+      transmit_slot_(around.events.add(this, transmit_due)),
+      receive_slot_(around.events.add(this, receive_due)) {
+    const auto at = [&](int offset) { return static_cast<std::uint16_t>(setup_.mode + offset); };
+    around_.sfr.hook(at(0), this, nullptr, write_mode);
+    around_.sfr.hook(at(2), this, nullptr, write_sta);
+    around_.sfr.hook(at(4), this, nullptr, write_txreg);
+    around_.sfr.hook(at(6), this, read_rxreg, write_rxreg);
+    around_.sfr.hook(at(8), this, nullptr, write_brg);
+}
+
+void Uart::reset() {
+    state_ = {};
+    state_.phase = around_.now;
+    around_.events.cancel(transmit_slot_);
+    around_.events.cancel(receive_slot_);
+}
+
+bool Uart::enabled() const {
+    return mode() & kUarten;
+}
+
+std::optional<cosim::UartFrame> Uart::begun() const {
+    if (!state_.shifting || state_.stop_begun) return std::nullopt;
+    return state_.frame;
+}
+
+// UARTEN = 0: both FIFOs, both shift registers.
+void Uart::clear() {
+    stop_transmitter();
+    state_.receive = {};
+    state_.sampled.reset();
+    around_.events.cancel(receive_slot_);
+    sta() = static_cast<std::uint16_t>((sta() & ~(kOerr | kUrxda | kFerr | kPerr)) | kRidle);
+}
+
+void Uart::lend_pins() {
+    const std::uint16_t rx = bit(setup_.rx_pin);
+    const std::uint16_t tx = bit(setup_.tx_pin);
+    if (!enabled()) {
+        ports_.give_back(setup_.port, rx | tx);
+    } else if (sta() & kUtxen) {
+        ports_.lend(setup_.port, rx | tx, tx, sta() & kUtxbrk ? 0 : tx);
+    } else {
+        ports_.lend(setup_.port, rx, 0, 0);
+        ports_.give_back(setup_.port, tx);
+    }
+}
+
+// ---- transmitter
+
+void Uart::show_transmitter() {
+    assign(sta(), kUtxbf, state_.transmit.full());
+    assign(sta(), kTrmt, !state_.shifting && state_.transmit.count == 0);
+}
+
+void Uart::stop_transmitter() {
+    state_.transmit = {};
+    state_.shifting = false;
+    around_.events.cancel(transmit_slot_);
+    show_transmitter();
+}
+
+// Moves the next word into the empty shift register; its start bit begins at a tick at or after `from`.
+void Uart::begin_frame(Cycle from) {
+    const bool is_break = sta() & kUtxbrk;
+    if (!is_break && state_.transmit.count == 0) return;
+    const Cycle late = (from - state_.phase) % divisor();
+    const Cycle start = from + (late ? divisor() - late : 0);
+
+    cosim::UartFrame& frame = state_.frame;
+    frame = {};
+    const unsigned pdsel = dspic::field(mode(), 2, 1);
+    frame.data_bits = pdsel == 3 ? 9 : 8;
+    frame.parity = pdsel == 1 ? 2 : pdsel == 2 ? 1 : 0;
+    frame.stop_bits = mode() & kStsel ? 2 : 1;
+    frame.is_break = is_break;
+    if (!is_break) {
+        const std::uint16_t mask = static_cast<std::uint16_t>((1u << frame.data_bits) - 1u);
+        frame.data = state_.transmit.top() & mask;
+        state_.transmit.pop();
+        const bool odd_ones = std::popcount(frame.data) % 2;
+        frame.parity_bit = frame.parity == 2 ? odd_ones : frame.parity == 1 ? !odd_ones : 0;
+        // UTXISEL 0: each transfer; 1: the one that empties the FIFO.
+        if (!(sta() & kUtxisel) || state_.transmit.count == 0) around_.interrupts.raise(setup_.tx_irq, from);
+    }
+    const Cycle bit_cycles = static_cast<Cycle>(kTicksPerBit) * divisor();
+    const int bits = bits_before_stop(frame);
+    const Cycle stop = start + bit_cycles * static_cast<Cycle>(bits);
+    frame.start = clock_.time_of(start);
+    // Rounded up, so that the stamp of the stop bit never lies before the event that hands the frame out.
+    frame.bit_period = (clock_.time_of(stop) - frame.start + bits - 1) / bits;
+    state_.frame_end = stop + bit_cycles * frame.stop_bits;
+    state_.shifting = true;
+    state_.stop_begun = false;
+    show_transmitter();
+    around_.events.schedule(transmit_slot_, stop);
+}
+
+void Uart::transmit_due(void* owner, Cycle due) {
+    Uart& self = *static_cast<Uart*>(owner);
+    if (!self.state_.stop_begun) {  // the stop bit begins: everybody can know the frame now
+        self.state_.stop_begun = true;
+        self.around_.events.schedule(self.transmit_slot_, self.state_.frame_end);
+        ++self.counters_.sent;
+        const cosim::UartFrame frame = self.state_.frame;
+        if (self.mode() & kLpback) {
+            self.receiver_.frame(frame);
+            self.sample(due);
+        } else {
+            self.pins_.uart_sent(self.setup_.unit, frame);
+        }
+        return;
+    }
+    self.state_.shifting = false;
+    self.show_transmitter();
+    self.begin_frame(due);
+}
+
+void Uart::write_txreg(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask) {
+    Uart& self = *static_cast<Uart*>(owner);
+    self.around_.sfr.store(address, value, mask);
+    if (!self.enabled() || mask == 0xFF00 || self.state_.transmit.full()) return;
+    self.state_.transmit.push(mask == 0xFFFF ? value & 0x1FF : value & 0xFF);
+    self.show_transmitter();
+    if ((self.sta() & kUtxen) && !self.state_.shifting) self.begin_frame(self.around_.now + 1);
+}
+
+// ---- receiver
+
+UartReceiver::Format Uart::format() const {
+    const unsigned pdsel = dspic::field(mode(), 2, 1);
+    return {divisor(), pdsel == 3 ? 9 : 8, pdsel == 1 ? 2 : pdsel == 2 ? 1 : 0, state_.phase};
+}
+
+void Uart::receive(const cosim::UartFrame& frame, Cycle at) {
+    if (enabled() && (mode() & kLpback)) return;
+    receiver_.frame(frame);
+    if (enabled()) sample(at);
+}
+
+// Takes characters off the line as far as they are complete at `now`, and plans the next one.
+void Uart::sample(Cycle now) {
+    while (!state_.sampled || state_.sampled->done <= now) {
+        if (state_.sampled) {
+            const UartReceiver::Character character = *state_.sampled;
+            state_.sampled.reset();
+            deliver(character, now);
+        }
+        state_.sampled = receiver_.next(format(), now);
+        if (!state_.sampled) break;
+    }
+    around_.events.schedule(receive_slot_, state_.sampled ? state_.sampled->done : receiver_.ask_again());
+    assign(sta(), kRidle, !state_.sampled && receiver_.ask_again() == kNoCycle);
+}
+
+void Uart::receive_due(void* owner, Cycle due) {
+    static_cast<Uart*>(owner)->sample(due);
+}
+
+void Uart::deliver(const UartReceiver::Character& character, Cycle now) {
+    ++counters_.received;
+    counters_.framing_errors += character.framing_error;
+    counters_.parity_errors += character.parity_error;
+    if ((sta() & kAdden) && dspic::field(mode(), 2, 1) == 3 && !(character.data & kNinthBit)) return;
+    if (sta() & kOerr) {
+        ++counters_.overruns;
+        return;
+    }
+    if (state_.receive.full()) {
+        ++counters_.overruns;
+        sta() |= kOerr;
+        return;
+    }
+    state_.receive.push({character.data, character.framing_error, character.parity_error});
+    show_receiver();
+    const unsigned urxisel = dspic::field(sta(), 7, 6);
+    if (urxisel < 2 || state_.receive.count == (urxisel == 2 ? 3 : 4))
+        around_.interrupts.raise(setup_.rx_irq, std::max(character.done, now));
+}
+
+// URXDA, and the top of the FIFO with its errors.
+void Uart::show_receiver() {
+    const bool any = state_.receive.count > 0;
+    assign(sta(), kUrxda, any);
+    assign(sta(), kFerr, any && state_.receive.top().framing_error);
+    assign(sta(), kPerr, any && state_.receive.top().parity_error);
+    if (any) rxreg() = state_.receive.top().data;
+}
+
+std::uint16_t Uart::read_rxreg(void* owner, std::uint16_t) {
+    Uart& self = *static_cast<Uart*>(owner);
+    const std::uint16_t value = self.rxreg();
+    if (self.state_.receive.count) {
+        self.state_.receive.pop();
+        self.show_receiver();
+    }
+    return value;
+}
+
+void Uart::write_rxreg(void*, std::uint16_t, std::uint16_t, std::uint16_t) {}  // read only
+
+// ---- control
+
+void Uart::write_mode(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask) {
+    Uart& self = *static_cast<Uart*>(owner);
+    const bool was_enabled = self.enabled();
+    self.around_.sfr.store(address, value, mask);
+    if (self.enabled() == was_enabled) return;
+    self.lend_pins();
+    if (self.enabled()) {
+        self.state_.phase = self.around_.now + 1;
+        self.receiver_.start(self.around_.now + 1);
+        self.around_.interrupts.raise(self.setup_.tx_irq, self.around_.now);
+    } else {
+        self.clear();
+    }
+}
+
+void Uart::write_sta(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask) {
+    Uart& self = *static_cast<Uart*>(owner);
+    const std::uint16_t old = self.sta();
+    self.around_.sfr.store(address, value, mask & kStaWritable);
+    if ((mask & kOerr) && !(value & kOerr) && (old & kOerr)) {  // empties the FIFO and UxRSR
+        self.state_.receive = {};
+        assign(self.sta(), kOerr, false);
+        self.show_receiver();
+    }
+    const std::uint16_t changed = old ^ self.sta();
+    if (!self.enabled() || !(changed & (kUtxen | kUtxbrk))) return;
+    self.lend_pins();
+    if (!(self.sta() & kUtxen))
+        self.stop_transmitter();
+    else if (!self.state_.shifting)
+        self.begin_frame(self.around_.now + 1);
+}
+
+void Uart::write_brg(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask) {
+    Uart& self = *static_cast<Uart*>(owner);
+    self.around_.sfr.store(address, value, mask);
+    self.state_.phase = self.around_.now + 1;
+}
+
+}  // namespace puckloop::dspic

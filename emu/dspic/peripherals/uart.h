@@ -1,0 +1,120 @@
+#pragma once
+// UART1 and UART2: baud rate generator, 4-deep FIFOs both ways, interrupt modes, errors, break, loopback.
+// Source: dsPIC30F Family Reference Manual, section 19; fact sheet peripherals.md section 1.
+//
+// Deviations
+//  1. RIDLE falls when a frame is handed in (at its stop bit), not at its start bit.
+//  2. ABAUD and WAKE are stored; they need input capture and Sleep. ALTIO does not move the pins.
+//  3. A word written to an idle transmitter moves to the shift register at once; its start bit begins at the
+//  next
+//     tick of the 16x clock.
+//  4. While UTXBRK is set the line is told to be low in whole frames, from the end of the frame in progress
+//  on.
+
+#include "cosim/clock.h"
+#include "cosim/message.h"
+#include "emu/dspic/peripherals/ports.h"
+#include "emu/dspic/peripherals/surroundings.h"
+#include "emu/dspic/peripherals/uart_receiver.h"
+#include "emu/dspic/pins.h"
+#include "emu/dspic/uart_counters.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+namespace puckloop::dspic {
+
+class Uart {
+  public:
+    struct Setup {
+        int unit = 1;
+        std::uint16_t mode = 0;  ///< UxMODE; UxSTA, UxTXREG, UxRXREG, UxBRG follow
+        std::uint8_t rx_irq = 0;
+        std::uint8_t tx_irq = 0;
+        PortLetter port{};  ///< of both pins
+        int rx_pin = 0;
+        int tx_pin = 0;
+    };
+    Uart(const Surroundings& around, const Setup& setup, const cosim::ClockDomain& clock, Ports& ports,
+         Pins& pins);
+
+    void reset();
+    /// A frame whose stop bit begins at cycle `at`.
+    void receive(const cosim::UartFrame& frame, Cycle at);
+    /// The frame in the shift register, if its stop bit has not begun.
+    std::optional<cosim::UartFrame> begun() const;
+    bool enabled() const;
+    const UartCounters& counters() const { return counters_; }
+
+  private:
+    static constexpr int kDepth = 4;
+    struct Received {
+        std::uint16_t data = 0;
+        bool framing_error = false;
+        bool parity_error = false;
+    };
+    template <typename Word>
+    struct Fifo {
+        std::array<Word, kDepth> words{};
+        int first = 0;
+        int count = 0;
+
+        bool full() const { return count == kDepth; }
+        void push(const Word& word) { words[static_cast<std::size_t>((first + count++) % kDepth)] = word; }
+        const Word& top() const { return words[static_cast<std::size_t>(first)]; }
+        void pop() {
+            first = (first + 1) % kDepth;
+            --count;
+        }
+    };
+    struct State {
+        Fifo<std::uint16_t> transmit;
+        bool shifting = false;
+        bool stop_begun = false;  ///< of the frame being shifted: it was handed out
+        Cycle frame_end = 0;
+        cosim::UartFrame frame;  ///< being shifted
+        Fifo<Received> receive;
+        std::optional<UartReceiver::Character> sampled;  ///< complete at its `done`
+        Cycle phase = 0;                                 ///< the baud rate generator started here
+    };
+
+    static std::uint16_t read_rxreg(void* owner, std::uint16_t address);
+    static void write_mode(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask);
+    static void write_sta(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask);
+    static void write_txreg(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask);
+    static void write_rxreg(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask);
+    static void write_brg(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask);
+    static void transmit_due(void* owner, Cycle due);
+    static void receive_due(void* owner, Cycle due);
+
+    std::uint16_t mode_address() const { return setup_.mode; }
+    std::uint16_t& mode() const { return around_.sfr.raw(setup_.mode); }
+    std::uint16_t& sta() const { return around_.sfr.raw(static_cast<std::uint16_t>(setup_.mode + 2)); }
+    std::uint16_t& rxreg() const { return around_.sfr.raw(static_cast<std::uint16_t>(setup_.mode + 6)); }
+    std::uint32_t divisor() const {
+        return around_.sfr.raw(static_cast<std::uint16_t>(setup_.mode + 8)) + 1u;
+    }
+    void clear();
+    void lend_pins();
+    void begin_frame(Cycle from);
+    void stop_transmitter();
+    void show_transmitter();
+    UartReceiver::Format format() const;
+    void sample(Cycle now);
+    void deliver(const UartReceiver::Character& character, Cycle now);
+    void show_receiver();
+
+    Surroundings around_;
+    Setup setup_;
+    const cosim::ClockDomain& clock_;
+    Ports& ports_;
+    Pins& pins_;
+    UartReceiver receiver_;
+    State state_;
+    UartCounters counters_;
+    EventQueue::Slot transmit_slot_;
+    EventQueue::Slot receive_slot_;
+};
+
+}  // namespace puckloop::dspic

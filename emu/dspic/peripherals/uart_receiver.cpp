@@ -1,0 +1,137 @@
+#include "emu/dspic/peripherals/uart_receiver.h"
+
+namespace puckloop::dspic {
+
+using cosim::Time;
+using cosim::UartFrame;
+
+namespace {
+
+Time end_of(const UartFrame& frame) {
+    return frame.start + frame.bit_period * (bits_before_stop(frame) + frame.stop_bits);
+}
+
+// Level of bit `index` of a frame, 0 = start bit.
+bool bit_level(const UartFrame& frame, int index) {
+    if (frame.is_break || index == 0) return false;
+    if (index <= frame.data_bits) return frame.data >> (index - 1) & 1;
+    if (frame.parity && index == frame.data_bits + 1) return frame.parity_bit;
+    return true;
+}
+
+int bit_count(const UartFrame& frame) {
+    return bits_before_stop(frame) + frame.stop_bits;
+}
+
+}  // namespace
+
+int bits_before_stop(const UartFrame& frame) {
+    return 1 + frame.data_bits + (frame.parity ? 1 : 0);
+}
+
+Time stop_bit_of(const UartFrame& frame) {
+    return frame.start + frame.bit_period * bits_before_stop(frame);
+}
+
+void UartReceiver::start(Cycle at) {
+    listening_from_ = clock_.time_of(at);
+    ask_again_ = kNoCycle;
+}
+
+void UartReceiver::frame(const UartFrame& frame) {
+    frames_.push_back(frame);
+}
+
+bool UartReceiver::level(Time time) const {
+    for (auto frame = frames_.rbegin(); frame != frames_.rend(); ++frame) {
+        if (time < frame->start) continue;
+        const Time index = (time - frame->start) / frame->bit_period;
+        return index >= bit_count(*frame) || bit_level(*frame, static_cast<int>(index));
+    }
+    return true;
+}
+
+// The first change from high to low at or after `from`; the line rests high.
+std::optional<Time> UartReceiver::falling_edge(Time from) const {
+    for (const UartFrame& frame : frames_) {
+        if (end_of(frame) < from) continue;
+        for (int i = 0; i < bit_count(frame); ++i) {
+            const Time edge = frame.start + frame.bit_period * i;
+            if (edge < from || bit_level(frame, i)) continue;
+            const bool before = i > 0 ? bit_level(frame, i - 1) : level(edge - 1);
+            if (before) return edge;
+        }
+    }
+    return std::nullopt;
+}
+
+Time UartReceiver::first_high(Time from) const {
+    if (level(from)) return from;
+    for (const UartFrame& frame : frames_) {
+        for (int i = 1; i <= bit_count(frame); ++i) {
+            const Time edge = frame.start + frame.bit_period * i;
+            if (edge >= from && level(edge)) return edge;
+        }
+    }
+    return from;
+}
+
+void UartReceiver::forget_before(Time time) {
+    // The last frame stays: whether the next one begins with an edge hangs on it.
+    while (frames_.size() > 1 && end_of(frames_[0]) <= time && frames_[1].start <= time)
+        frames_.pop_front();
+}
+
+std::optional<UartReceiver::Character> UartReceiver::next(const Format& format, Cycle now) {
+    ask_again_ = kNoCycle;
+    Cycle first = 0;
+    for (;;) {
+        const std::optional<Time> edge = falling_edge(listening_from_);
+        if (!edge) {
+            forget_before(listening_from_);
+            return std::nullopt;
+        }
+        // The edge is seen at the next tick of the 16x clock; bit centres are 8, 24, 40, ... ticks later.
+        const Cycle seen = clock_.first_cycle_at(*edge);
+        const Cycle late = seen > format.phase ? (seen - format.phase) % format.divisor : 0;
+        first = seen + (late ? format.divisor - late : 0) + 8u * format.divisor;
+        if (!level(clock_.time_of(first))) break;
+        listening_from_ = clock_.time_of(first);  // too short for a start bit
+    }
+    const auto centre = [&](int bit) {
+        return clock_.time_of(first + 16u * format.divisor * static_cast<Cycle>(bit));
+    };
+    const int stop = 1 + format.data_bits + (format.parity ? 1 : 0);
+    const Cycle done = first + 16u * format.divisor * static_cast<Cycle>(stop);
+
+    // Beyond the last known frame another may already have begun whose message is still to come.
+    const UartFrame& last = frames_.back();
+    if (centre(stop) >= end_of(last)) {
+        const Cycle certain =
+            clock_.first_cycle_at(centre(stop) + last.bit_period * bits_before_stop(last)) + 1;
+        if (now < certain) {
+            ask_again_ = certain;
+            return std::nullopt;
+        }
+    }
+
+    Character character;
+    character.done = done;
+    int ones = 0;
+    for (int i = 0; i < format.data_bits; ++i) {
+        const bool high = level(centre(1 + i));
+        character.data = static_cast<std::uint16_t>(character.data | (high ? 1u << i : 0u));
+        ones += high;
+    }
+    if (format.parity) {
+        ones += level(centre(stop - 1));
+        character.parity_error = (ones % 2 == 1) != (format.parity == 1);
+    }
+    const Time stop_time = centre(stop);
+    character.framing_error = !level(stop_time);
+    // After a framing error, a break above all, the line must rest before a start bit counts.
+    listening_from_ = character.framing_error ? first_high(stop_time) : stop_time;
+    return character;
+}
+
+}  // namespace puckloop::dspic

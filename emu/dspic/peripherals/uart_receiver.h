@@ -1,0 +1,69 @@
+#pragma once
+// The serial line as a UART's receiver sees it: it looks for a start bit with its own 16x clock and samples
+// the sender's waveform at its own bit centres, so a baud mismatch gives the garbage that it gives in
+// silicon. Source: dsPIC30F Family Reference Manual, section 19; fact sheet peripherals.md section 1.
+//
+// Deviations
+//  1. The majority of three samples is taken as the middle one: the waveform has no glitches shorter than a
+//  sample.
+//  2. A character is known only once its frame was handed in, when the sender's stop bit begins: what a
+//  faster
+//     receiver samples before that instant is delivered at that instant.
+//  3. A receiver that still samples after the end of all known frames waits until a next frame could no
+//  longer have
+//     begun unseen: a slower receiver's last character may come up to one frame of the sender late.
+
+#include "cosim/clock.h"
+#include "cosim/message.h"
+#include "emu/dspic/event_queue.h"
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+
+namespace puckloop::dspic {
+
+class UartReceiver {
+  public:
+    struct Format {
+        std::uint32_t divisor = 16;  ///< cycles in 1/16 of a bit: BRG + 1
+        int data_bits = 8;
+        int parity = 0;   ///< 0 none, 1 odd, 2 even
+        Cycle phase = 0;  ///< a cycle in which the 16x clock ticks
+    };
+    struct Character {
+        Cycle done = 0;  ///< middle of the stop bit
+        std::uint16_t data = 0;
+        bool framing_error = false;
+        bool parity_error = false;
+    };
+
+    explicit UartReceiver(const cosim::ClockDomain& clock) : clock_(clock) {}
+
+    /// Forgets everything; looks for falling edges from cycle `at` on.
+    void start(Cycle at);
+    /// A frame on the line; frames come in order of their starts.
+    void frame(const cosim::UartFrame& frame);
+    /// The next character, if all that it depends on is known at cycle `now`.
+    std::optional<Character> next(const Format& format, Cycle now);
+    /// When next() is worth asking again although no frame came; kNoCycle if only a frame can help.
+    Cycle ask_again() const { return ask_again_; }
+
+  private:
+    bool level(cosim::Time time) const;
+    std::optional<cosim::Time> falling_edge(cosim::Time from) const;
+    cosim::Time first_high(cosim::Time from) const;
+    void forget_before(cosim::Time time);
+
+    const cosim::ClockDomain& clock_;
+    std::deque<cosim::UartFrame> frames_;
+    cosim::Time listening_from_ = 0;
+    Cycle ask_again_ = kNoCycle;
+};
+
+/// Bits from the start bit to the last one before the stop bit.
+int bits_before_stop(const cosim::UartFrame& frame);
+/// When the frame's stop bit begins: what its message is stamped with.
+cosim::Time stop_bit_of(const cosim::UartFrame& frame);
+
+}  // namespace puckloop::dspic
