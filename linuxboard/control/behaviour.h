@@ -1,0 +1,49 @@
+#pragma once
+// What a user writes: from the sensors of this step to the actuators of this step.
+//
+//     class Spin : public puckloop::control::Behaviour {
+//         Actuators step(const Sensors&, double) override { return {.left_mm_s = 50, .right_mm_s = -50}; }
+//     };
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string_view>
+
+namespace puckloop::control {
+
+/// Rings of 8 are in the robot's order: 0 is front right, then clockwise; kRingBearing tells where they look.
+struct Sensors {
+    std::array<double, 8> proximity{};  ///< ADC counts reflected, >= 0; 0 nothing, about 4000 contact
+    std::array<double, 8> light{};      ///< brightness, 0 dark to 4095
+    std::optional<std::array<double, 3>> ground;  ///< left, centre, right; 0 black to 1000 white
+    bool battery_ok = true;
+};
+
+struct Actuators {
+    double left_mm_s = 0;  ///< wheel speed, clamped to +-kMaximumSpeed
+    double right_mm_s = 0;
+    std::uint8_t ring_leds = 0;  ///< bit i = LED i: 0 front, then clockwise every 45 degrees
+    bool front_led = false;
+    bool body_led = false;
+};
+
+inline constexpr double kMillimetresPerStep =
+    41.0 * 3.14159265358979 / 1000.0;                                ///< 41 mm wheel, 1000 steps a turn
+inline constexpr double kMaximumSpeed = 1000 * kMillimetresPerStep;  ///< 1000 steps/s
+/// Bearings of proximity and light sensors, radians, counter-clockwise from straight ahead.
+inline constexpr std::array<double, 8> kRingBearing{-0.297, -0.873, -1.571, -2.618,
+                                                    2.618,  1.571,  0.873,  0.297};
+
+class Behaviour {
+  public:
+    virtual ~Behaviour() = default;
+    /// Called every 100 ms with the newest sensors; `t` is the time since the start in seconds.
+    virtual Actuators step(const Sensors& sensors, double t) = 0;
+};
+
+/// "wander" or "light"; null for any other name.
+std::unique_ptr<Behaviour> make_behaviour(std::string_view name);
+
+}  // namespace puckloop::control

@@ -1,0 +1,71 @@
+#include "linuxboard/control/control_loop.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace puckloop::control {
+
+using namespace protocols;
+
+namespace {
+
+constexpr double kDarkest = 4095;  // raw light value in the dark; the sensor gives less where it is brighter
+constexpr double kLastTry = 1.0;   // s to get the robot to rest when the last record went unanswered
+
+std::int16_t to_steps(double mm_s) {
+    const double clamped = std::clamp(mm_s, -kMaximumSpeed, kMaximumSpeed);
+    return std::isfinite(mm_s) ? static_cast<std::int16_t>(std::lround(clamped / kMillimetresPerStep))
+                               : std::int16_t{0};
+}
+
+}  // namespace
+
+Sensors to_sensors(const EpuckSensors& record) {
+    Sensors sensors;
+    for (std::size_t i = 0; i < sensors.proximity.size(); ++i) {
+        sensors.proximity[i] = std::max<double>(0, record.proximity[i]);
+        sensors.light[i] = kDarkest - record.light[i];
+    }
+    sensors.battery_ok = record.battery_ok != 0;
+    return sensors;
+}
+
+EpuckActuators to_record(const Actuators& actuators) {
+    EpuckActuators record;
+    record.left = to_steps(actuators.left_mm_s);
+    record.right = to_steps(actuators.right_mm_s);
+    record.ring_leds = actuators.ring_leds;
+    record.other_leds =
+        static_cast<std::uint8_t>((actuators.front_led ? 1 : 0) | (actuators.body_led ? 2 : 0));
+    return record;
+}
+
+bool run_control_loop(Session& session, Transport& transport, Behaviour& behaviour, const ReadGround& ground,
+                      const std::function<bool()>& interrupted, const LoopSettings& settings) {
+    if (!session.start(transport.now() + settings.start_wait)) return false;
+    const double begun = transport.now();
+    const long steps = settings.duration > 0 ? std::lround(settings.duration / settings.period) : 0;
+    for (long step = 0; steps == 0 || step < steps;) {
+        const double t = transport.now() - begun;
+        const bool last = interrupted() || step + 1 == steps;
+        EpuckActuators record;  // at rest
+        if (!last && session.newest() && transport.now() - session.newest_time() < settings.stale_after) {
+            Sensors sensors = to_sensors(*session.newest());
+            sensors.ground = ground();
+            record = to_record(behaviour.step(sensors, t));
+        }
+        session.exchange(record);
+        // A last record that went unanswered may not have been obeyed: get the robot to rest before the end.
+        const double give_up = transport.now() + (last ? kLastTry : settings.give_up);
+        if (session.lost() && !session.resync(give_up) && !interrupted()) return false;
+        if (last) break;
+        const long late = static_cast<long>(std::ceil((transport.now() - begun) / settings.period));
+        step = std::max(step + 1, late);
+        if (steps != 0) step = std::min(step, steps - 1);
+        transport.sleep_until(begun + static_cast<double>(step) * settings.period);
+    }
+    session.end();
+    return true;
+}
+
+}  // namespace puckloop::control

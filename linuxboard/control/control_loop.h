@@ -1,0 +1,32 @@
+#pragma once
+// Sense, control, act, ten times a second, for a given time or until interrupted.
+
+#include "linuxboard/control/behaviour.h"
+#include "linuxboard/control/session.h"
+
+#include <functional>
+#include <optional>
+
+namespace puckloop::control {
+
+struct LoopSettings {
+    double period = 0.1;     ///< s
+    double duration = 0;     ///< s, 0: until interrupted
+    double start_wait = 60;  ///< s to wait for the PIC at the start (the original needs 40 s after power-up)
+    double give_up = 60;     ///< s without the PIC in mid-session before the run fails
+    double stale_after = 0.3;  ///< s: the robot stands still while its newest sensors are older
+};
+
+/// Reads the ground sensor, or gives nothing.
+using ReadGround = std::function<std::optional<std::array<double, 3>>()>;
+
+/// What the behaviour sees of a sensor record, and what the PIC gets of its wishes.
+Sensors to_sensors(const protocols::EpuckSensors& record);
+protocols::EpuckActuators to_record(const Actuators& actuators);
+
+/// Runs the whole session: start, duration/period actuator records, the last with the wheels at rest, end
+/// record. False when the PIC could not be reached. Throws LineError.
+bool run_control_loop(Session& session, Transport& transport, Behaviour& behaviour, const ReadGround& ground,
+                      const std::function<bool()>& interrupted, const LoopSettings& settings);
+
+}  // namespace puckloop::control

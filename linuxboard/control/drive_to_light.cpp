@@ -1,0 +1,46 @@
+#include "linuxboard/control/drive_to_light.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace puckloop::control {
+
+namespace {
+
+constexpr double kCruise = 70.0;       // mm/s
+constexpr double kTurnGain = 45.0;     // mm/s per radian of bearing error
+constexpr double kMaximumTurn = 60.0;  // mm/s
+constexpr double kContrast = 40.0;     // counts between brightest and darkest: less is no direction at all
+constexpr double kArrived = 3400.0;    // counts: so bright that the lamp is reached
+constexpr double kLeft = 3000.0;       // counts: below this again, go on
+constexpr std::uint8_t kAllLeds = 0xFF;
+
+}  // namespace
+
+Actuators DriveToLight::step(const Sensors& sensors, double t) {
+    const auto [darkest, brightest] = std::minmax_element(sensors.light.begin(), sensors.light.end());
+    arrived_ = *brightest > (arrived_ ? kLeft : kArrived);
+    const Actuators wandering = wander_.step(sensors, t);
+    if (arrived_) return {.ring_leds = kAllLeds, .body_led = true};
+    if (wander_.avoiding() || *brightest - *darkest < kContrast) return wandering;
+
+    double ahead = 0;
+    double leftward = 0;
+    for (std::size_t i = 0; i < sensors.light.size(); ++i) {
+        const double weight = sensors.light[i] - *darkest;
+        ahead += weight * std::cos(kRingBearing[i]);
+        leftward += weight * std::sin(kRingBearing[i]);
+    }
+    const double bearing = std::atan2(leftward, ahead);
+    const double turn = std::clamp(kTurnGain * bearing, -kMaximumTurn, kMaximumTurn);
+    const double forward = kCruise * std::max(0.0, std::cos(bearing));
+    return {.left_mm_s = forward - turn, .right_mm_s = forward + turn, .front_led = true};
+}
+
+std::unique_ptr<Behaviour> make_behaviour(std::string_view name) {
+    if (name == "wander") return std::make_unique<Wander>();
+    if (name == "light") return std::make_unique<DriveToLight>();
+    return nullptr;
+}
+
+}  // namespace puckloop::control
