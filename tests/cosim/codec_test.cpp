@@ -1,0 +1,182 @@
+#include "base/random.h"
+#include "cosim/protocol.h"
+#include "cosim/socket_stream.h"
+
+#include <catch2/catch.hpp>
+
+#include <sys/socket.h>
+#include <unistd.h>
+
+using namespace puckloop;
+using namespace puckloop::cosim;
+
+namespace {
+
+std::span<const std::uint8_t> body_of(const Bytes& bytes) {
+    return std::span(bytes).subspan(protocol::kLengthBytes);
+}
+
+std::vector<Message> some_messages() {
+    UartFrame frame{123456789, 8680555, 0x1a5, 9, 2, 2, 1, 0};
+    I2cPhase phase{I2cPhaseKind::Data, 0xc0, 1, -5, 2500000, 7};
+    return {{1, 0, frame}, {2, 65535, phase}, {kNever, 3, Signal{7, -0.25}}};
+}
+
+NodeState some_state() {
+    return {{{5, 6, std::nullopt}, {kNever, 0, Time{4}}}, Stop{99, false, "the program exited"}};
+}
+
+/// Every reader on a body that may be anything: it reads or throws CodecError.
+int read_all(std::span<const std::uint8_t> body) {
+    int read = 0;
+    const auto attempt = [&](auto work) {
+        try {
+            work();
+            ++read;
+        } catch (const CodecError&) {
+        }
+    };
+    protocol::Grant grant;
+    NodeState state;
+    std::vector<Message> outbox;
+    attempt([&] { protocol::read_hello(body); });
+    attempt([&] { protocol::read_ready(body); });
+    attempt([&] { protocol::read_grant(body, grant); });
+    attempt([&] { protocol::read_done(body, 2, state, outbox); });
+    attempt([&] { protocol::read_report(body); });
+    attempt([&] { protocol::read_error(body); });
+    return read;
+}
+
+std::vector<Bytes> whole_messages() {
+    std::vector<Bytes> all(6);
+    protocol::write_hello(all[0], {"robot0.pic", "{\"kind\": \"pic\"}"});
+    protocol::write_ready(all[1], {{{"uart2", PortKind::Uart}, {"world", PortKind::Signals}}, some_state()});
+    protocol::write_grant(all[2], 1234, some_messages());
+    protocol::write_done(all[3], some_state(), some_messages());
+    protocol::write_report(all[4], "{}");
+    protocol::write_error(all[5], {true, "x.hex: line 3: bad"});
+    return all;
+}
+
+}  // namespace
+
+TEST_CASE("what is written is read back") {
+    const std::vector<Bytes> all = whole_messages();
+    CHECK(protocol::read_hello(body_of(all[0])).name == "robot0.pic");
+    const protocol::Ready ready = protocol::read_ready(body_of(all[1]));
+    REQUIRE(ready.ports.size() == 2);
+    CHECK(ready.ports[1].name == "world");
+    CHECK(ready.ports[1].kind == PortKind::Signals);
+    CHECK(ready.state.ports == some_state().ports);
+    protocol::Grant grant;
+    protocol::read_grant(body_of(all[2]), grant);
+    CHECK(grant.until == 1234);
+    CHECK(grant.inbox == some_messages());
+    NodeState state;
+    std::vector<Message> outbox;
+    protocol::read_done(body_of(all[3]), 2, state, outbox);
+    CHECK(outbox == some_messages());
+    CHECK(state.ports == some_state().ports);
+    REQUIRE(state.stop);
+    CHECK(state.stop->time == 99);
+    CHECK(state.stop->reason == "the program exited");
+    CHECK(protocol::read_error(body_of(all[5])).text == "x.hex: line 3: bad");
+}
+
+TEST_CASE("the byte order is little-endian everywhere") {
+    Bytes bytes;
+    ByteWriter writer(bytes);
+    writer.u32(0x01020304);
+    writer.time(-2);
+    CHECK(bytes == Bytes{4, 3, 2, 1, 0xfe, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff});
+}
+
+TEST_CASE("truncated messages are refused at every length") {
+    for (const Bytes& bytes : whole_messages()) {
+        REQUIRE(read_all(body_of(bytes)) == 1);
+        for (std::size_t length = 0; length + protocol::kLengthBytes < bytes.size(); ++length)
+            REQUIRE(read_all(body_of(bytes).first(length)) == 0);
+        Bytes longer = bytes;
+        longer.push_back(0);
+        CHECK(read_all(body_of(longer)) == 0);
+    }
+}
+
+TEST_CASE("damaged and random messages never do more than throw CodecError") {
+    RandomStream random(11, "fuzz");
+    const std::vector<Bytes> all = whole_messages();
+    for (int round = 0; round < 30000; ++round) {
+        Bytes bytes = all[random.below(all.size())];
+        const std::uint64_t flips = 1 + random.below(6);
+        for (std::uint64_t i = 0; i < flips; ++i)
+            bytes[protocol::kLengthBytes + random.below(bytes.size() - protocol::kLengthBytes)] =
+                static_cast<std::uint8_t>(random.next());
+        read_all(body_of(bytes));
+    }
+    for (int round = 0; round < 10000; ++round) {
+        Bytes bytes(random.below(64));
+        for (std::uint8_t& byte : bytes)
+            byte = static_cast<std::uint8_t>(random.below(4) == 0 ? 255 : random.below(8));
+        read_all(bytes);
+    }
+}
+
+TEST_CASE("huge counts and lengths are refused before memory is taken for them") {
+    Bytes bytes;
+    ByteWriter writer(bytes);
+    writer.u8(static_cast<std::uint8_t>(protocol::Kind::Grant));
+    writer.time(0);
+    writer.u32(0xffffffff);
+    protocol::Grant grant;
+    CHECK_THROWS_WITH(protocol::read_grant(bytes, grant),
+                      Catch::Contains("more items than the message can hold"));
+    bytes[0] = static_cast<std::uint8_t>(protocol::Kind::Report);
+    CHECK_THROWS_AS(protocol::read_report(bytes), CodecError);
+}
+
+TEST_CASE("a stream puts messages together from any pieces, and refuses impossible lengths") {
+    int ends[2];
+    REQUIRE(socketpair(AF_UNIX, SOCK_STREAM, 0, ends) == 0);
+    SocketStream reader(ends[0]);
+    Bytes all;
+    const std::vector<Bytes> messages = whole_messages();
+    for (const Bytes& bytes : messages)
+        all.insert(all.end(), bytes.begin(), bytes.end());
+    RandomStream random(3, "pieces");
+    std::size_t sent = 0, got = 0;
+    while (got < messages.size()) {
+        if (sent < all.size()) {
+            const std::size_t piece = std::min<std::size_t>(all.size() - sent, 1 + random.below(90));
+            REQUIRE(write(ends[1], all.data() + sent, piece) == static_cast<ssize_t>(piece));
+            sent += piece;
+        }
+        while (reader.receive(false) == SocketStream::Status::Whole) {
+            const auto body = reader.body();
+            REQUIRE(Bytes(body.begin(), body.end()) ==
+                    Bytes(messages[got].begin() + protocol::kLengthBytes, messages[got].end()));
+            ++got;
+        }
+    }
+    const std::uint8_t length[] = {0xff, 0xff, 0xff, 0xff, 0};
+    REQUIRE(write(ends[1], length, sizeof length) == sizeof length);
+    CHECK_THROWS_AS(reader.receive(false), CodecError);
+    close(ends[1]);
+}
+
+TEST_CASE("messages far larger than the buffer pass") {
+    int ends[2];
+    REQUIRE(socketpair(AF_UNIX, SOCK_STREAM, 0, ends) == 0);
+    SocketStream reader(ends[0]);
+    Bytes big;
+    protocol::write_report(big, std::string(3'000'000, 'x'));
+    std::size_t sent = 0;
+    bool whole = false;
+    while (!whole) {
+        const ssize_t put = send(ends[1], big.data() + sent, big.size() - sent, MSG_DONTWAIT);
+        if (put > 0) sent += static_cast<std::size_t>(put);
+        whole = reader.receive(false) == SocketStream::Status::Whole;
+    }
+    CHECK(protocol::read_report(reader.body()).size() == 3'000'000);
+    close(ends[1]);
+}

@@ -1,0 +1,179 @@
+#include "toy_run.h"
+
+#include "base/error.h"
+
+#include <catch2/catch.hpp>
+
+using namespace puckloop;
+using namespace puckloop::cosim;
+using toy::Recorder;
+using toy::Run;
+
+namespace {
+
+constexpr Time kMs = kMillisecond;
+
+/// One that talks at random, one that listens; the fault sits on what the first says.
+Run talk(FaultSpec fault) {
+    fault.link = "wire";
+    fault.from = "talker";
+    Run run{{{"talker", "chatter seed=4 uarts=1 gap_us=150"}, {"listener", "idle"}},
+            {toy::uart("wire", {"talker", "uart0"}, {"listener", "uart0"})},
+            {fault}};
+    run.options.duration = 100 * kMs;
+    run.options.in_process = true;
+    return run;
+}
+
+const UartFrame& frame(const TraceRecord& record) {
+    return std::get<UartFrame>(record.payload);
+}
+
+struct Pair {
+    std::vector<TraceRecord> clean, harmed;
+    Outcome outcome;
+};
+
+Pair compare(const FaultSpec& fault) {
+    Pair pair;
+    Run run = talk(fault);
+    Recorder harmed, clean;
+    pair.outcome = run(&harmed);
+    REQUIRE(pair.outcome.reason == EndReason::Duration);
+    run.faults.clear();
+    run(&clean);
+    pair.clean = clean.records;
+    pair.harmed = harmed.records;
+    return pair;
+}
+
+}  // namespace
+
+TEST_CASE("drop: marked, counted, not delivered") {
+    const Pair pair = compare({"", "", FaultKind::Drop, 0.3});
+    const std::uint64_t fired = pair.outcome.faults.at(0).fired;
+    CHECK(pair.harmed.size() == pair.clean.size());
+    CHECK(fired > pair.clean.size() / 5);
+    CHECK(fired < pair.clean.size() / 2);
+    CHECK(pair.outcome.links[0].from_a.lost == fired);
+    CHECK(pair.outcome.links[0].from_a.uart_frames == pair.clean.size() - fired);
+    CHECK_THAT(pair.outcome.nodes[1].json,
+               Catch::Contains("\"messages\": " + std::to_string(pair.clean.size() - fired)));
+}
+
+TEST_CASE("a count ends a fault, and its random stream is its own") {
+    const Pair pair = compare({"", "", FaultKind::Flip, 0.5, 7});
+    CHECK(pair.outcome.faults.at(0).fired == 7);
+    int flipped = 0;
+    for (std::size_t i = 0; i < pair.clean.size(); ++i) {
+        const unsigned difference = frame(pair.clean[i]).data ^ frame(pair.harmed[i]).data;
+        if (pair.harmed[i].fault == FaultKind::None) {
+            CHECK(difference == 0);
+            continue;
+        }
+        ++flipped;
+        CHECK(difference != 0);
+        CHECK((difference & (difference - 1)) == 0);
+        CHECK(difference < 256);
+    }
+    CHECK(flipped == 7);
+}
+
+TEST_CASE("delay shifts frame and delivery") {
+    FaultSpec fault{"", "", FaultKind::Delay};
+    fault.count = 1;
+    fault.begin = 10 * kMs;
+    fault.amount = 0.02;
+    const Pair pair = compare(fault);
+    for (const TraceRecord& record : pair.harmed)
+        if (record.fault == FaultKind::Delay) {
+            CHECK(frame(record).start >= 30 * kMs);
+            CHECK(record.time - frame(record).start < 80 * kMicrosecond);
+        }
+    CHECK(pair.outcome.faults.at(0).fired == 1);
+}
+
+TEST_CASE("duplicate: the frame comes again one frame later") {
+    FaultSpec fault{"", "", FaultKind::Duplicate};
+    fault.count = 3;
+    const Pair pair = compare(fault);
+    CHECK(pair.harmed.size() == pair.clean.size() + 3);
+}
+
+TEST_CASE("disconnect: nothing begun within the window arrives") {
+    FaultSpec fault{"", "", FaultKind::Disconnect};
+    fault.begin = 20 * kMs;
+    fault.end = 30 * kMs;
+    const Pair pair = compare(fault);
+    for (const TraceRecord& record : pair.harmed) {
+        const bool inside = frame(record).start >= fault.begin && frame(record).start < fault.end;
+        CHECK(lost(record) == inside);
+    }
+    CHECK(pair.outcome.faults.at(0).fired > 10);
+}
+
+TEST_CASE("stuck: one break when the line goes low, then nothing until it is let go") {
+    FaultSpec fault{"", "", FaultKind::Stuck};
+    fault.begin = 20 * kMs;
+    fault.end = 30 * kMs;
+    const Pair pair = compare(fault);
+    int breaks = 0;
+    for (const TraceRecord& record : pair.harmed)
+        if (frame(record).is_break) {
+            ++breaks;
+            CHECK(frame(record).start == 20 * kMs);
+            CHECK_FALSE(lost(record));
+        }
+    CHECK(breaks == 1);
+    CHECK(pair.outcome.links[0].from_a.uart_breaks == 1);
+}
+
+TEST_CASE("rate: the receiver sees another bit time, the statistics count it") {
+    FaultSpec fault{"", "", FaultKind::Rate};
+    fault.count = 5;
+    fault.amount = 1.1;
+    const Pair pair = compare(fault);
+    CHECK(pair.outcome.links[0].from_a.uart_off_rate == 5);
+    fault.amount = 0.9;
+    CHECK(compare(fault).outcome.links[0].from_a.uart_off_rate == 5);
+}
+
+TEST_CASE("a fault that never fired is told") {
+    FaultSpec fault{"", "", FaultKind::Drop};
+    fault.begin = 500 * kMs;
+    const Outcome outcome = talk(fault)();
+    REQUIRE(outcome.warnings.size() == 1);
+    CHECK(outcome.warnings[0] == "fault never fired: drop on wire from talker");
+}
+
+TEST_CASE("faults fire the same in every placement, and with the seed alone") {
+    Run run = talk({"", "", FaultKind::Drop, 0.3});
+    FaultSpec more{"wire", "", FaultKind::Delay, 0.2};
+    more.amount = 0.0003;
+    run.faults.push_back(more);
+    const Outcome here = run();
+    run.options.chop_seed = 5;
+    CHECK(run().trace_sha256 == here.trace_sha256);
+    run.options.in_process = false;
+    const Outcome there = run();
+    CHECK(there.trace_sha256 == here.trace_sha256);
+    CHECK(there.faults[1].fired == here.faults[1].fired);
+    run.options.seed = 2;
+    CHECK(run().trace_sha256 != here.trace_sha256);
+}
+
+TEST_CASE("faults that make no sense are refused") {
+    Run run = talk({"", "", FaultKind::Drop, 1.5});
+    CHECK_THROWS_WITH(run(), Catch::Contains("bad probability") && Catch::Contains("0 to 1"));
+    run = talk({"", "", FaultKind::Drop});
+    run.faults[0].link = "none";
+    CHECK_THROWS_WITH(run(), Catch::Contains("fault on link none") && Catch::Contains("no such link"));
+    run = talk({"", "", FaultKind::Drop});
+    run.faults[0].from = "nobody";
+    CHECK_THROWS_WITH(run(), Catch::Contains("no node nobody"));
+    run = talk({"", "", FaultKind::Rate});
+    CHECK_THROWS_AS(run(), InputError);
+    CHECK(fault_of_name("stuck") == FaultKind::Stuck);
+    CHECK(fault_of_name("") == std::nullopt);
+    CHECK(fault_of_name("explode") == std::nullopt);
+}
