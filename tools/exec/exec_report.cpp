@@ -1,0 +1,75 @@
+#include "tools/exec/exec_report.h"
+
+#include "emu/pic/chip_json.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace puckloop::exec {
+
+namespace {
+
+constexpr std::size_t kShownInText = 10;
+
+std::string at(std::uint32_t pc) {
+    return fmt::format("0x{:04x}", pc);
+}
+
+}  // namespace
+
+std::string json_report(Bench& bench, const image::Image& image, const ExecOutcome& outcome) {
+    using Json = nlohmann::ordered_json;
+    Json json;
+    json["stopped"] = outcome.stopped;
+    json["success"] = outcome.success;
+    json["pc"] = at(outcome.pc);
+    if (!outcome.symbol.empty()) json["symbol"] = outcome.symbol;
+    json["image"] = {
+        {"file", image.file}, {"format", image::name_of(image.format)}, {"sha256", image.sha256}};
+    json.update(pic::chip_json(bench.chip()));
+    json["simulated_s"] = cosim::to_seconds(bench.now());
+    json["wall_s"] = outcome.wall_s;
+    for (int unit = 1; unit <= 2; ++unit) {
+        Json uart = pic::uart_json(bench.chip().uart_counters(unit));
+        uart["offered_by_bench"] = bench.uart(unit).bytes_to_chip();
+        uart["framing_errors_at_bench"] = bench.uart(unit).framing_errors_seen();
+        json[fmt::format("uart{}", unit)] = std::move(uart);
+    }
+    // Symbols of a damaged image may hold any byte: what is not UTF-8 is replaced.
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string text_report(Bench& bench, const ExecOutcome& outcome) {
+    const dspic::ChipReport report = bench.chip().report();
+    const double simulated = cosim::to_seconds(bench.now());
+    const auto seconds = [&](dspic::Cycle cycle) {
+        return cosim::to_seconds(bench.chip().clock().time_of(cycle));
+    };
+    std::string text =
+        fmt::format("stopped: {} at pc {}{}\n", outcome.stopped, at(outcome.pc),
+                    outcome.symbol.empty() ? std::string() : fmt::format(" ({})", outcome.symbol));
+    text += fmt::format("time: {:.6f} s simulated in {:.3f} s ({:.1f} x real time)\n", simulated,
+                        outcome.wall_s, outcome.wall_s > 0 ? simulated / outcome.wall_s : 0.0);
+    text += fmt::format("work: {} cycles, {} instructions\n", report.cycles, report.instructions);
+    for (std::size_t i = 0; i < report.resets.size() && i < kShownInText; ++i)
+        text += fmt::format("reset: {} at {:.6f} s, pc {}\n", report.resets[i].cause,
+                            seconds(report.resets[i].cycle), at(report.resets[i].pc));
+    if (report.resets.size() > kShownInText) text += fmt::format("resets: {} in all\n", report.resets.size());
+    for (std::size_t i = 0; i < report.traps.size() && i < kShownInText; ++i)
+        text += fmt::format("trap: {} at {:.6f} s, pc {}\n", report.traps[i].name,
+                            seconds(report.traps[i].cycle), at(report.traps[i].pc));
+    if (report.traps.size() > kShownInText) text += fmt::format("traps: {} in all\n", report.traps.size());
+    for (const dspic::UnmodelledTouch& touch : report.unmodelled)
+        text += fmt::format("not modelled: {} {} at pc {}, {:.6f} s\n", touch.write ? "write to" : "read of",
+                            touch.name.empty() ? at(touch.address) : touch.name, at(touch.pc),
+                            seconds(touch.cycle));
+    for (int unit = 1; unit <= 2; ++unit) {
+        const dspic::UartCounters counters = bench.chip().uart_counters(unit);
+        if (counters.sent + counters.received == 0) continue;
+        text += fmt::format("uart{}: {} sent, {} received, {} framing errors, {} overruns\n", unit,
+                            counters.sent, counters.received, counters.framing_errors, counters.overruns);
+    }
+    return text;
+}
+
+}  // namespace puckloop::exec

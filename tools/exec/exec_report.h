@@ -1,0 +1,25 @@
+#pragma once
+// What a run on the bench prints when it is over.
+
+#include "tools/exec/bench.h"
+#include "tools/exec/options.h"
+
+#include <string>
+
+namespace puckloop::exec {
+
+struct ExecOutcome {
+    Bench::End end = Bench::End::Time;
+    std::string stopped;   ///< what the user called the address, "budget" or "interrupted"
+    std::uint32_t pc = 0;  ///< program counter at the end
+    std::string symbol;    ///< of `pc`, if the image has one
+    double wall_s = 0.0;
+    bool success = false;
+};
+
+/// One JSON object on one line.
+std::string json_report(Bench& bench, const image::Image& image, const ExecOutcome& outcome);
+/// A few lines for a person.
+std::string text_report(Bench& bench, const ExecOutcome& outcome);
+
+}  // namespace puckloop::exec

@@ -1,0 +1,43 @@
+#pragma once
+// The options of `puckloop exec`, checked and resolved.
+
+#include "tools/exec/bench.h"
+#include "tools/exec/uart_spec.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace puckloop::exec {
+
+/// As the command line gave them.
+struct ExecOptions {
+    BenchOptions bench;
+    std::string image;
+    std::optional<double> seconds;                   ///< budget in simulated time
+    std::optional<std::uint64_t> cycles;             ///< budget in instruction cycles
+    std::vector<std::string> stop_at;                ///< symbols or 0xPC
+    std::array<std::optional<std::string>, 2> uart;  ///< --uart1, --uart2
+    std::string i2c;                                 ///< script:FILE, or empty
+    std::string stimulus;                            ///< file
+    std::optional<double> uart_start;                ///< seconds
+    std::optional<bool> realtime;                    ///< nothing: paced if an end is live
+    bool list_signals = false;
+    bool json = false;
+};
+
+/// Address to stop at, and what the user called it.
+struct StopAddress {
+    std::uint32_t pc = 0;
+    std::string name;
+};
+
+/// Runs the bench; returns the exit status (0 or 1). Throws InputError for anything that cannot be used.
+int run_exec(const ExecOptions& options);
+
+/// `text` is 0xPC (even, a program address) or a symbol of the image; throws InputError with a suggestion.
+StopAddress resolve_stop(const std::string& text, const image::Image& image);
+
+}  // namespace puckloop::exec

@@ -1,0 +1,150 @@
+// `puckloop exec`: from options to a bench, through the run, to the report.
+
+#include "base/error.h"
+#include "emu/image/device.h"
+#include "tools/exec/exec_report.h"
+#include "tools/exec/options.h"
+#include "tools/exec/script_end.h"
+#include "tools/exec/text_input.h"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+
+namespace puckloop::exec {
+
+namespace {
+
+/// Budget of a run that nobody gave one, unless somebody live is at a UART.
+constexpr double kDefaultSeconds = 60.0;
+constexpr std::string_view kScript = "script:";
+
+std::atomic<bool> g_interrupted{false};
+
+void on_interrupt(int) {
+    g_interrupted = true;
+}
+
+std::unique_ptr<UartEnd> make_end(const UartSpec& spec, const ExecOptions& options) {
+    switch (spec.kind) {
+    case UartSpec::Kind::Nothing:
+        return nullptr;
+    case UartSpec::Kind::Stdio: {
+        StdioOptions stdio;
+        if (options.uart_start) stdio.start = cosim::from_seconds(*options.uart_start);
+        stdio.live = options.realtime.value_or(false);
+        return make_stdio_end(stdio);
+    }
+    case UartSpec::Kind::Pty:
+        return make_pty_end();
+    case UartSpec::Kind::Tcp:
+        return make_tcp_end(spec.port);
+    case UartSpec::Kind::Script:
+        return std::make_unique<ScriptEnd>(parse_uart_script(spec.file, read_text_file(spec.file)));
+    }
+    return nullptr;
+}
+
+UartSpec spec_of(std::string_view option, const std::optional<std::string>& text) {
+    return text ? parse_uart_spec(option, *text) : UartSpec{};
+}
+
+/// The script is checked even where it cannot be used, so that its own mistakes are told first.
+void check_i2c(const std::string& text, const Target& target) {
+    if (text.empty()) return;
+    if (!text.starts_with(kScript) || text.size() == kScript.size())
+        throw InputError("", "--i2c", fmt::format("'{}' is not a bus master's script", text), "script:FILE");
+    const std::string file = text.substr(kScript.size());
+    parse_i2c_script(file, read_text_file(file));
+    if (!target.is_i2c_slave())
+        throw InputError("", "--i2c", "this target is the master of its bus and cannot be addressed",
+                         "a board that is an I2C slave");
+}
+
+cosim::Time budget_of(const ExecOptions& options, Bench& bench, bool live) {
+    if (options.cycles) return bench.chip().clock().time_of(*options.cycles);
+    if (options.seconds) return cosim::from_seconds(*options.seconds);
+    return live ? cosim::kNever : cosim::from_seconds(kDefaultSeconds);
+}
+
+std::string symbol_at(const image::Image& image, std::uint32_t pc) {
+    for (const auto& [name, symbol] : image.symbols)
+        if (symbol.space == image::Space::Program && symbol.address == pc) return name;
+    return {};
+}
+
+}  // namespace
+
+int run_exec(const ExecOptions& options) {
+    Bench bench(options.bench);
+    if (options.list_signals) {
+        for (const cosim::SignalInfo& info : bench.target().signals())
+            std::printf("%-14s %-6s %-8s %g to %g, initially %g: %s\n", info.name.c_str(),
+                        info.direction == cosim::SignalDirection::Input ? "input" : "output",
+                        info.unit.c_str(), info.min, info.max, info.initial, info.description.c_str());
+        return 0;
+    }
+    if (options.image.empty()) throw InputError("", "IMAGE", "missing", "a HEX, ELF or COFF file");
+    const image::Image image = image::load_image(options.image);
+    image::check_fits(image,
+                      image::find_device(options.bench.mcu.empty() ? "dspic30f6014a" : options.bench.mcu));
+    std::vector<StopAddress> stops;
+    for (const std::string& text : options.stop_at) {
+        stops.push_back(resolve_stop(text, image));
+        bench.chip().stop_at(stops.back().pc);
+    }
+    if (!options.stimulus.empty())
+        bench.stimulate(
+            parse_stimulus(options.stimulus, read_text_file(options.stimulus), bench.target().signals()));
+    check_i2c(options.i2c, bench.target());
+    const UartSpec specs[] = {spec_of("--uart1", options.uart[0]), spec_of("--uart2", options.uart[1])};
+    if (specs[0].kind == UartSpec::Kind::Stdio && specs[1].kind == UartSpec::Kind::Stdio)
+        throw InputError("", "--uart2", "standard input and output are already at uart1", "another end");
+    bool live = false, stdio = false;
+    for (int unit = 1; unit <= 2; ++unit) {
+        const UartSpec& spec = specs[unit - 1];
+        std::unique_ptr<UartEnd> end = make_end(spec, options);
+        if (!end) continue;
+        live |= end->live();
+        stdio |= spec.kind == UartSpec::Kind::Stdio;
+        if (!end->announcement().empty()) {
+            std::fprintf(stderr, "uart%d: %s\n", unit, end->announcement().c_str());
+            std::fflush(stderr);
+        }
+        bench.uart(unit).attach(std::move(end));
+    }
+    bench.target().load(image);
+
+    std::signal(SIGINT, on_interrupt);
+    std::signal(SIGTERM, on_interrupt);
+    std::signal(SIGPIPE, SIG_IGN);
+    bench.interrupted = [] { return g_interrupted.load(); };
+    const cosim::Time budget = budget_of(options, bench, live);
+    const auto began = std::chrono::steady_clock::now();
+    if (options.realtime.value_or(live)) bench.pace_by_wall_clock();
+    ExecOutcome outcome;
+    outcome.end = bench.run_until(budget);
+    bench.finish();
+    outcome.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+    outcome.pc = bench.chip().pc();
+    outcome.symbol = symbol_at(image, outcome.pc);
+    outcome.stopped = outcome.end == Bench::End::Interrupted ? "interrupted" : "budget";
+    if (outcome.end == Bench::End::Address)
+        for (const StopAddress& stop : stops)
+            if (stop.pc == outcome.pc) outcome.stopped = stop.name;
+    outcome.success =
+        outcome.end == Bench::End::Address || (outcome.end == Bench::End::Time && options.stop_at.empty());
+
+    // Standard output belongs to the UART when `-` stands there; JSON is then its last line.
+    if (options.json)
+        std::printf("%s%s\n", stdio ? "\n" : "", json_report(bench, image, outcome).c_str());
+    else
+        std::fputs(text_report(bench, outcome).c_str(), stdio ? stderr : stdout);
+    if (std::fflush(stdout) != 0) throw RunError("standard output: cannot be written");
+    return outcome.success ? 0 : 1;
+}
+
+}  // namespace puckloop::exec
