@@ -69,6 +69,8 @@ class Checker {
     std::string named(const char* kind, const std::string& name, const Place& place) {
         const std::string what = fmt::format("{} '{}'", kind, name);
         if (name.empty()) fail(std::string(kind), place, "has no name", "a name");
+        if (name.find_first_of(",\"\r\n") != std::string::npos)
+            fail(what, place, "a name goes into CSV files", "no comma, quote or line end in it");
         if (!names_.insert(name).second) fail(what, place, "the name is already taken", "different names");
         return what;
     }

@@ -27,7 +27,7 @@ struct Arena {
     double wall_thickness = 0.02;
     double reflectivity = 1.0;
     double floor_grey = 1.0;  ///< 0 black .. 1 white
-    Place place;
+    Place place{};
 };
 /// Axis-aligned, centred on the origin.
 Arena rectangular_arena(double width, double depth);
@@ -38,7 +38,7 @@ struct Wall {
     double thickness = 0.01;
     double height = 0.10;
     double reflectivity = 1.0;  ///< infra-red: 0.05 black .. 1 white .. 1.5 foil
-    Place place;
+    Place place{};
 };
 
 struct Box {
@@ -48,7 +48,7 @@ struct Box {
     bool movable = false;
     double mass = 0.1;  ///< used when movable
     double reflectivity = 1.0;
-    Place place;
+    Place place{};
 };
 
 struct Cylinder {
@@ -58,7 +58,7 @@ struct Cylinder {
     bool movable = false;
     double mass = 0.1;
     double reflectivity = 1.0;
-    Place place;
+    Place place{};
 };
 
 struct Lamp {
@@ -66,7 +66,7 @@ struct Lamp {
     double x = 0.0, y = 0.0;
     double height = 0.05;    ///< of the bulb
     double intensity = 1.0;  ///< share of full light at the bulb
-    Place place;
+    Place place{};
 };
 
 /// A piece of floor of another grey; later patches lie on top of earlier ones.
@@ -78,7 +78,7 @@ struct Patch {
     double length = 0.1, width = 0.1;  ///< rectangle
     double radius = 0.05;              ///< disc
     double grey = 0.0;
-    Place place;
+    Place place{};
 };
 
 struct Robot {
@@ -90,7 +90,7 @@ struct Robot {
     /// neither read nor published.
     std::map<std::string, std::uint16_t> board_signals;
     std::map<std::string, std::uint16_t> ground_signals;
-    Place place;
+    Place place{};
 };
 
 struct Recording {

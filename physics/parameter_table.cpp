@@ -30,7 +30,7 @@ std::vector<ParameterInfo> build_table() {
         {"robot.wheel_mass", "kg", 1, {0.005}, 0.001, 0.02, AT(robot.wheel_mass), "[W]"},
         {"robot.skid_distance", "m", 1, {0.028}, 0.01, 0.05, AT(robot.skid_distance), "? body skids before and behind the axle"},
         {"robot.skid_clearance", "m", 1, {0.0002}, 0.0, 0.003, AT(robot.skid_clearance), "? skids above the floor when level"},
-        {"robot.pitch_damping", "N m s", 1, {5e-4}, 0.0, 1e-2, AT(robot.pitch_damping), "? rocking dies within a swing"},
+        {"robot.pitch_damping", "N m s", 1, {2e-3}, 0.0, 1e-2, AT(robot.pitch_damping), "? rocking dies within a swing"},
         {"robot.steps_per_turn", "1", 1, {1000}, 100, 10000, AT(robot.steps_per_turn), "[L] 20 steps x 50:1 gear"},
         {"robot.stall_torque", "N m", 1, {0.02}, 0.001, 0.1, AT(robot.stall_torque), "? 0.005-0.02 at the wheel"},
         {"robot.drive_compliance", "s", 1, {0.004}, 0.001, 0.1, AT(robot.drive_compliance), "? time constant of wheel behind rotor"},

@@ -1,0 +1,64 @@
+#pragma once
+// Rigid bodies and contacts: robots, movable things and the floor in one ODE world (double precision,
+// dWorldStep, 1 ms). Sources: ODE 0.16 manual; physics facts, section 8.
+//
+// Deviations: 1. a wheel touches the floor in one point, the lowest of a thin disc, so that it never scrubs.
+// 2. Contacts of robots and cylinders with anything upright are found in plan (they do not topple over each
+// other); boxes meet boxes and the floor in space. 3. No gyroscopic torques. 4. Rolling resistance is nil.
+
+#include "physics/plan.h"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+namespace puckloop::physics {
+
+struct Parameters;
+struct BodyParameters;
+
+inline constexpr double kStepSeconds = 1e-3;
+
+/// A robot's place: middle of the axle in plan, and how the body stands. SI.
+struct RobotState {
+    double x = 0.0, y = 0.0, heading = 0.0;
+    double pitch = 0.0;                ///< nose down is positive
+    double roll = 0.0;                 ///< right side down is positive
+    std::array<double, 3> velocity{};  ///< of the body's centre of mass
+    std::array<double, 2> wheel{};     ///< turned angle left, right; counts through full turns
+};
+
+struct ObjectState {
+    double x = 0.0, y = 0.0, heading = 0.0;
+};
+
+class Dynamics {
+  public:
+    Dynamics(const Parameters& world, const std::vector<Shape>& fixed);
+    ~Dynamics();
+    Dynamics(const Dynamics&) = delete;
+    Dynamics& operator=(const Dynamics&) = delete;
+
+    /// Both return the index by which the body is asked for later.
+    std::size_t add_robot(const BodyParameters& parameters, double x, double y, double heading);
+    std::size_t add_object(const Shape& shape, double heading, double mass);
+
+    /// Wheel speeds (rad/s relative to the body) that the motors ask for during the next step.
+    void drive(std::size_t robot, double left, double right);
+    /// One kStepSeconds. Throws RunError when a body has left the numbers.
+    void step();
+
+    const RobotState& robot(std::size_t index) const;
+    const ObjectState& object(std::size_t index) const;
+
+    /// How often ODE complained, and what it said first.
+    std::uint64_t complaints() const;
+    const std::string& first_complaint() const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace puckloop::physics

@@ -1,0 +1,65 @@
+#pragma once
+// The ODE objects behind Dynamics: bodies and contacts. Only the dynamics' own files include this.
+
+#include "physics/dynamics.h"
+#include "physics/ode_library.h"
+#include "physics/parameters.h"
+
+#include <ode/ode.h>
+
+namespace puckloop::physics {
+
+struct RobotBody {
+    BodyParameters parameters{};
+    dBodyID chassis = nullptr;
+    std::array<dBodyID, 2> wheel{};
+    std::array<double, 2> wheel_radius{};
+    std::array<dJointID, 2> motor{};
+    std::array<double, 2> last_angle{};
+    Shape shape;
+    RobotState state;
+};
+
+struct ObjectBody {
+    dBodyID body = nullptr;
+    dGeomID geom = nullptr;
+    double standing_height = 0.0;  // of the centre of mass
+    Shape shape;
+    ObjectState state;
+};
+
+struct FixedBody {
+    Shape shape;
+    dGeomID geom = nullptr;  // boxes only: what movable boxes meet
+};
+
+struct Dynamics::Impl {
+    Impl(const Parameters& world, const std::vector<Shape>& fixed_shapes);
+    ~Impl();
+
+    void read_robot(RobotBody& robot) const;
+    static void read_object(ObjectBody& object);
+    void damp_pitch(const RobotBody& robot) const;
+
+    // Contacts (dynamics_contacts.cpp).
+    void find_contacts();
+    void wheels_on_floor(const RobotBody& robot);
+    void skids_on_floor(const RobotBody& robot);
+    void object_on_floor(const ObjectBody& object);
+    void in_plan(dBodyID body, const Shape& circle, dBodyID other_body, const Shape& other, double mu);
+    void boxes_meet(const ObjectBody& object, dBodyID other_body, dGeomID other);
+    void add_contact(const dSurfaceParameters& surface, const dContactGeom& geom, dBodyID first,
+                     dBodyID second, const dReal* direction = nullptr);
+    dSurfaceParameters surface(double mu) const;
+
+    Complaints complaints;
+    ContactParameters contact{};
+    dWorldID world = nullptr;
+    dJointGroupID contacts = nullptr;
+    dGeomID floor = nullptr;
+    std::vector<RobotBody> robots;
+    std::vector<ObjectBody> objects;
+    std::vector<FixedBody> fixed;
+};
+
+}  // namespace puckloop::physics

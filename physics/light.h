@@ -1,0 +1,35 @@
+#pragma once
+// Ambient light at the eight phototransistors: counts fall with light. Sources: physics facts section 2
+// (ambient light), e-puck facts 5.1.
+//
+// Deviations: 1. shadows are sharp and bodies opaque; nothing reflects lamp light. 2. Room light has no
+// direction and no shadow.
+
+#include "physics/parameters.h"
+#include "physics/sensor_view.h"
+
+#include <array>
+
+namespace puckloop::physics {
+
+class LightRing {
+  public:
+    /// Positions and directions are the proximity sensors'.
+    LightRing(const LightParameters& parameters, const ProximityParameters& places, double ambient_level,
+              std::span<const Lamp> lamps);
+
+    /// Noise-free ambient counts, 0..4095.
+    std::array<double, kProximitySensors> sense(const SensorView& view) const;
+    bool varies_with_time() const { return parameters_.flicker > 0.0; }
+
+  private:
+    double from_lamp(const SensorView& view, const Lamp& lamp, const Ray& sensor) const;
+
+    LightParameters parameters_;
+    double height_;
+    double ambient_level_;
+    std::span<const Lamp> lamps_;
+    std::array<Ray, kProximitySensors> sensors_;  // in the robot's frame
+};
+
+}  // namespace puckloop::physics

@@ -1,0 +1,28 @@
+#pragma once
+// ODE as a library: started once, told where its messages go, prepared for each thread that steps a world.
+
+#include <cstdint>
+#include <string>
+
+namespace puckloop::physics {
+
+/// ODE's messages of one world.
+struct Complaints {
+    std::uint64_t count = 0;
+    std::string first;
+};
+
+/// While it lives, this thread may call ODE and what ODE reports goes to `complaints`; errors that ODE calls
+/// fatal are thrown as RunError.
+class OdeSession {
+  public:
+    explicit OdeSession(Complaints& complaints);
+    ~OdeSession();
+    OdeSession(const OdeSession&) = delete;
+    OdeSession& operator=(const OdeSession&) = delete;
+
+  private:
+    Complaints* previous_;
+};
+
+}  // namespace puckloop::physics

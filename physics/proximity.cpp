@@ -1,0 +1,101 @@
+#include "physics/proximity.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace puckloop::physics {
+
+namespace {
+
+constexpr double kFullScale = 4095;
+
+struct CurvePoint {
+    double millimetres, counts;
+};
+/// Measured on a real robot [W] to 70 mm; beyond: about 20 counts at 100 mm [M], nothing at 120 mm [E].
+constexpr CurvePoint kMeasured[] = {{0, 4095},    {5, 2133.33}, {10, 1465.73}, {15, 601.46},
+                                    {20, 383.84}, {30, 234.93}, {40, 158.03},  {50, 120.00},
+                                    {60, 104.09}, {70, 67.19},  {100, 20},     {120, 0}};
+
+double table_response(double millimetres) {
+    const auto* const after =
+        std::upper_bound(std::begin(kMeasured), std::end(kMeasured), millimetres,
+                         [](double value, const CurvePoint& point) { return value < point.millimetres; });
+    if (after == std::end(kMeasured)) return 0.0;
+    const auto& a = *(after - 1);
+    const auto& b = *after;
+    return a.counts + (b.counts - a.counts) * (millimetres - a.millimetres) / (b.millimetres - a.millimetres);
+}
+
+double compressed(double counts, double saturation) {
+    return counts <= 0.0 ? 0.0 : 1.0 / (1.0 / saturation + 1.0 / counts);
+}
+
+}  // namespace
+
+double proximity_response(const ProximityParameters& p, double distance) {
+    if (distance > p.reach) return 0.0;
+    distance = std::max(distance, 0.0);
+    switch (std::lround(p.curve)) {
+    case 1:
+        return compressed(p.amplitude / std::pow((distance + p.origin) * 1e3, p.exponent), p.saturation);
+    case 2:
+        return compressed(p.amplitude * std::exp(-distance / std::max(p.origin, 1e-6)), p.saturation);
+    default:
+        return table_response(distance * 1e3);
+    }
+}
+
+ProximityRing::ProximityRing(const ProximityParameters& parameters) : parameters_(parameters) {
+    const auto count = std::lround(parameters.rays);
+    for (std::size_t i = 0; i < kProximitySensors; ++i) {
+        horizon_ = std::max(horizon_, std::hypot(parameters.x[i], parameters.y[i]) + parameters.reach);
+        for (long k = 0; k < count; ++k) {
+            const double share =
+                count == 1 ? 0.0 : static_cast<double>(k) / static_cast<double>(count - 1) - 0.5;
+            const double angle = parameters.direction[i] + share * parameters.aperture;
+            rays_[i].push_back({parameters.x[i], parameters.y[i], std::cos(angle), std::sin(angle)});
+        }
+    }
+}
+
+double ProximityRing::reflected(const SensorView& view, std::size_t sensor, double cosine,
+                                double sine) const {
+    double sum = 0.0;
+    for (const Ray& own : rays_[sensor]) {
+        const Ray ray = in_world(view.robot, cosine, sine, own);
+        double nearest = parameters_.reach;
+        double brightness = 0.0;
+        for (const Shape* shape : view.shapes) {
+            const auto hit = chord(*shape, ray.x, ray.y, ray.dx, ray.dy);
+            if (!hit || hit->out < 0.0 || hit->in >= nearest) continue;
+            nearest = std::max(hit->in, 0.0);
+            brightness = shape->reflectivity * std::pow(hit->cosine, parameters_.incidence_exponent);
+        }
+        if (brightness > 0.0) sum += brightness * proximity_response(parameters_, nearest);
+    }
+    return sum / static_cast<double>(rays_[sensor].size());
+}
+
+std::array<double, kProximitySensors> ProximityRing::sense(const SensorView& view) const {
+    const auto& p = parameters_;
+    std::array<double, kProximitySensors> own{};
+    if (!view.shapes.empty()) {
+        const double cosine = std::cos(view.robot.heading);
+        const double sine = std::sin(view.robot.heading);
+        for (std::size_t i = 0; i < kProximitySensors; ++i)
+            own[i] = reflected(view, i, cosine, sine);
+    }
+    double scale = p.scale;
+    if (p.warmup_gain != 0.0) scale *= 1.0 + p.warmup_gain * (1.0 - std::exp(-view.seconds / p.warmup_time));
+    std::array<double, kProximitySensors> counts{};
+    for (std::size_t i = 0; i < kProximitySensors; ++i) {
+        const double pair = own[(i + 4) % kProximitySensors];
+        const double neighbours = own[(i + 1) % kProximitySensors] + own[(i + 7) % kProximitySensors];
+        const double seen = own[i] + p.pair_crosstalk * pair + p.neighbour_crosstalk * neighbours;
+        counts[i] = std::clamp(scale * p.gain[i] * seen + p.offset[i], 0.0, kFullScale);
+    }
+    return counts;
+}
+
+}  // namespace puckloop::physics

@@ -1,0 +1,46 @@
+#pragma once
+// What a run leaves on disk about the world: trajectory.csv, sensors.csv and, where things can move,
+// objects.csv. Every row is flushed as it is written, so that a run that dies keeps its data.
+
+#include "physics/world_model.h"
+
+#include <cstdio>
+#include <memory>
+#include <string>
+
+namespace puckloop::physics {
+
+/// A text file that says so when the disk is full. Throws RunError.
+class CsvFile {
+  public:
+    CsvFile(std::string path, const std::string& header);
+    void row(const std::string& text);
+    void flush();
+
+  private:
+    struct Closer {
+        void operator()(std::FILE* file) const { std::fclose(file); }
+    };
+    [[noreturn]] void fail() const;
+
+    std::string path_;
+    std::unique_ptr<std::FILE, Closer> file_;
+};
+
+class Recorder {
+  public:
+    /// Opens the files in world.description().recording.directory and writes the rows of time 0.
+    explicit Recorder(const WorldModel& world);
+    /// After each step; writes when the period has passed.
+    void after_step(const WorldModel& world);
+
+  private:
+    void write(const WorldModel& world);
+
+    std::uint64_t period_steps_;
+    CsvFile trajectory_;
+    CsvFile sensors_;
+    std::unique_ptr<CsvFile> objects_;
+};
+
+}  // namespace puckloop::physics

@@ -1,0 +1,59 @@
+#include "physics/robot_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace puckloop::physics {
+
+namespace {
+constexpr double kGroundFullScale = 1023;
+}
+
+RobotModel::RobotModel(const World& world, const Robot& robot, const Parameters& parameters)
+    : parameters_(parameters),
+      drives_{
+          WheelDrive(parameters.robot, RandomStream(world.seed, "physics/" + robot.name + "/steps_left")),
+          WheelDrive(parameters.robot, RandomStream(world.seed, "physics/" + robot.name + "/steps_right"))},
+      proximity_(parameters.proximity),
+      light_(parameters.light, parameters.proximity, world.ambient_light, world.lamps),
+      ground_(parameters.ground, world.arena.floor_grey, world.patches),
+      accelerometer_(parameters.accelerometer, parameters.world),
+      battery_(parameters.battery) {
+    const double ambient = std::min(parameters.ground.ambient * world.ambient_light, kGroundFullScale);
+    store(kGroundAmbientChannel, std::array<double, kGroundSensors>{ambient, ambient, ambient});
+}
+
+template <std::size_t N>
+void RobotModel::store(std::size_t channel, const std::array<double, N>& values) {
+    std::copy(values.begin(), values.end(), channels_.begin() + static_cast<std::ptrdiff_t>(channel));
+}
+
+double RobotModel::wheel_speed(Side side, double seconds, double wheel_angle) {
+    const auto i = static_cast<std::size_t>(side);
+    auto& drive = drives_[i];
+    const double before = asked_angle_[i] - drive.pull_out(wheel_angle);
+    asked_angle_[i] = drive.angle(seconds);
+    return (asked_angle_[i] - before) / kStepSeconds +
+           (before - wheel_angle) / parameters_.robot.drive_compliance;
+}
+
+void RobotModel::sense_proximity(const SensorView& view) {
+    store(kProximityChannel, proximity_.sense(view));
+}
+
+void RobotModel::sense_light(const SensorView& view) {
+    store(kAmbientChannel, light_.sense(view));
+}
+
+void RobotModel::sense_ground(const RobotState& state) {
+    store(kGroundChannel, ground_.sense(state));
+}
+
+void RobotModel::sense_each_step(const RobotState& state, double seconds) {
+    store(kAccelerationChannel, accelerometer_.sense(state));
+    const int running = (drives_[0].running(seconds) ? 1 : 0) + (drives_[1].running(seconds) ? 1 : 0);
+    channels_[kBatteryVoltageChannel] = battery_.draw(running);
+    channels_[kBatteryLowChannel] = battery_.low() ? 1.0 : 0.0;
+}
+
+}  // namespace puckloop::physics

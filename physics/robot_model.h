@@ -1,0 +1,56 @@
+#pragma once
+// One e-puck in the world: its drives, its sensors, its battery, and what they last said.
+
+#include "physics/accelerometer.h"
+#include "physics/battery.h"
+#include "physics/channels.h"
+#include "physics/ground.h"
+#include "physics/light.h"
+#include "physics/proximity.h"
+#include "physics/wheel_drive.h"
+
+#include <array>
+
+namespace puckloop::physics {
+
+enum class Side : std::uint8_t { Left, Right };
+
+class RobotModel {
+  public:
+    /// `world` must outlive the model; `parameters` are the world's with the robot's own over them.
+    RobotModel(const World& world, const Robot& robot, const Parameters& parameters);
+
+    WheelDrive& drive(Side side) { return drives_[static_cast<std::size_t>(side)]; }
+    const WheelDrive& drive(Side side) const { return drives_[static_cast<std::size_t>(side)]; }
+
+    /// Wheel speed (rad/s) to ask for in the step that ends at `seconds`, from where the wheel is now.
+    double wheel_speed(Side side, double seconds, double wheel_angle);
+
+    void sense_proximity(const SensorView& view);
+    void sense_light(const SensorView& view);
+    void sense_ground(const RobotState& state);
+    /// Accelerometer and battery, once a step.
+    void sense_each_step(const RobotState& state, double seconds);
+
+    const ProximityRing& proximity() const { return proximity_; }
+    const LightRing& light() const { return light_; }
+    double sensor_height() const { return parameters_.proximity.height; }
+    const BodyParameters& body() const { return parameters_.robot; }
+    const Channels& channels() const { return channels_; }
+
+  private:
+    template <std::size_t N>
+    void store(std::size_t channel, const std::array<double, N>& values);
+
+    Parameters parameters_;
+    std::array<WheelDrive, 2> drives_;
+    std::array<double, 2> asked_angle_{};
+    ProximityRing proximity_;
+    LightRing light_;
+    GroundRow ground_;
+    Accelerometer accelerometer_;
+    Battery battery_;
+    Channels channels_{};
+};
+
+}  // namespace puckloop::physics

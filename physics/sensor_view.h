@@ -1,0 +1,27 @@
+#pragma once
+// What the sensor models of one robot look at.
+
+#include "physics/dynamics.h"
+#include "physics/plan.h"
+
+#include <span>
+
+namespace puckloop::physics {
+
+/// `shapes` are all upright things but the robot itself.
+struct SensorView {
+    const RobotState& robot;
+    std::span<const Shape* const> shapes;
+    double seconds = 0.0;
+};
+
+/// A point of the robot (x forward, y left) and a direction, in the world's plan.
+struct Ray {
+    double x, y, dx, dy;
+};
+inline Ray in_world(const RobotState& robot, double cosine, double sine, const Ray& own) {
+    return {robot.x + cosine * own.x - sine * own.y, robot.y + sine * own.x + cosine * own.y,
+            cosine * own.dx - sine * own.dy, sine * own.dx + cosine * own.dy};
+}
+
+}  // namespace puckloop::physics

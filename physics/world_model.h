@@ -1,0 +1,62 @@
+#pragma once
+// The physical world in steps of 1 ms: wheels in, sensor channels out.
+
+#include "physics/robot_model.h"
+
+#include <cstdint>
+#include <deque>
+#include <span>
+#include <vector>
+
+namespace puckloop::physics {
+
+class WorldModel {
+  public:
+    /// Throws InputError if check(description) does.
+    explicit WorldModel(World description);
+
+    /// A motor counter changed at `seconds`, which lies in the step to come.
+    void wheel(std::size_t robot, Side side, double steps, double seconds);
+    /// One millisecond on; channels are those of the new state.
+    void step();
+
+    std::uint64_t steps_done() const { return steps_done_; }
+    double seconds() const { return static_cast<double>(steps_done_) * kStepSeconds; }
+    const World& description() const { return description_; }
+    const Parameters& parameters() const { return parameters_; }
+    std::size_t robot_count() const { return robots_.size(); }
+    const RobotModel& robot(std::size_t index) const { return robots_[index]; }
+    const RobotState& state(std::size_t robot) const { return dynamics_.robot(robot); }
+    /// Names and places of the movable things.
+    std::span<const std::string> object_names() const { return object_names_; }
+    const ObjectState& object(std::size_t index) const { return dynamics_.object(index); }
+    const Dynamics& dynamics() const { return dynamics_; }
+
+  private:
+    /// A moving body as sensors see it, and where it was when they last looked.
+    struct Moving {
+        Shape shape;
+        double x = 0.0, y = 0.0, heading = 0.0;
+        bool moved = true;
+        void update(double new_x, double new_y, double new_heading);
+    };
+
+    void add_bodies();
+    void look();
+    void look_around(std::size_t robot, bool any_moved);
+    void look_down(std::size_t robot);
+    bool neighbour_moved(std::size_t robot) const;
+
+    const World description_;
+    Parameters parameters_;
+    std::vector<Shape> fixed_;
+    Dynamics dynamics_;
+    std::vector<std::string> object_names_;
+    std::deque<RobotModel> robots_;
+    std::vector<Moving> moving_;  // robots first, then objects
+    std::vector<std::array<double, 2>> looked_tilt_;
+    std::vector<const Shape*> view_;  // scratch
+    std::uint64_t steps_done_ = 0;
+};
+
+}  // namespace puckloop::physics

@@ -1,0 +1,38 @@
+#pragma once
+// The physical world as a node: wheel counts in, sensor signals out, one step a millisecond.
+//
+// Ports, in the order of the description's robots: "<robot>.board" and "<robot>.ground", both signals; ids
+// come from each robot's board_signals and ground_signals. Step k (state at k ms) uses what was stamped
+// before k ms; its sensor values leave stamped (k+1) ms, only those that changed, rounded to
+// world.publish_quantum.
+
+#include "cosim/node.h"
+#include "physics/description.h"
+
+#include <memory>
+
+namespace puckloop::physics {
+
+class WorldNode final : public cosim::Node {
+  public:
+    /// Throws InputError on an impossible world, RunError when recordings cannot be written.
+    explicit WorldNode(World description);
+    ~WorldNode() override;
+
+    std::string_view name() const override;
+    std::span<const cosim::Port> ports() const override;
+    void advance(cosim::Time until, std::span<const cosim::Message> inbox,
+                 std::vector<cosim::Message>& outbox) override;
+    cosim::Time promise(cosim::PortIndex port) const override;
+    cosim::Time reaction(cosim::PortIndex port) const override;
+    std::string finish() override;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// From the JSON text that to_json(World) writes.
+std::unique_ptr<cosim::Node> make_world_node(std::string_view json);
+
+}  // namespace puckloop::physics

@@ -1,0 +1,147 @@
+// The world as a node: times, grants cut anyhow, determinism, recordings.
+
+#include "base/error.h"
+#include "physics/world_node.h"
+#include "tests/physics/worlds.h"
+
+#include <catch2/catch.hpp>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+using namespace puckloop;
+using namespace puckloop::physics;
+using namespace puckloop::physics::test;
+using cosim::kMillisecond;
+using cosim::Message;
+using cosim::Signal;
+using cosim::Time;
+
+namespace {
+
+constexpr std::uint16_t kLeft = 42, kRight = 43;
+
+World busy_world() {
+    World world = world_with_robot(0.6, 0.6);
+    world.robots.push_back(robot_at("e2", 0.15, 0.1, 2.0));
+    world.lamps.push_back({.name = "lamp", .x = 0.2, .y = -0.2});
+    world.boxes.push_back({.name = "crate", .x = -0.15, .length = 0.05, .width = 0.05, .movable = true});
+    for (auto& robot : world.robots) {
+        for (std::size_t i = 0; i < kGroundChannel; ++i)
+            robot.board_signals[std::string(channel_name(i))] = static_cast<std::uint16_t>(i);
+        robot.board_signals["wheel_left"] = kLeft;
+        robot.board_signals["wheel_right"] = kRight;
+        for (std::size_t i = 0; i < 6; ++i)
+            robot.ground_signals[std::string(channel_name(kGroundChannel + i))] =
+                static_cast<std::uint16_t>(i);
+    }
+    return world;
+}
+
+/// Steps of two robots: one drives into the crate and the wall, one circles.
+std::vector<Message> steps_for(Time duration) {
+    std::vector<Message> messages;
+    double counts[4]{};
+    const Time periods[4] = {1'700'000'000, 1'750'000'000, 1'300'000'000, 3'100'000'000};
+    const double signs[4] = {-1, -1, 1, 1};
+    for (std::size_t i = 0; i < 4; ++i)
+        for (Time t = periods[i]; t < duration; t += periods[i])
+            messages.push_back({t, static_cast<cosim::PortIndex>(i / 2 * 2),
+                                Signal{i % 2 == 0 ? kLeft : kRight, counts[i] += signs[i]}});
+    std::sort(messages.begin(), messages.end(), [](const Message& a, const Message& b) {
+        return std::pair(a.time, a.port) < std::pair(b.time, b.port);
+    });
+    return messages;
+}
+
+/// Runs the node with grants of `slice` picoseconds, checking every promise.
+std::vector<Message> run(WorldNode& node, Time duration, Time slice) {
+    const auto messages = steps_for(duration);
+    std::vector<Message> all;
+    auto next = messages.begin();
+    for (Time until = slice;; until += slice) {
+        until = std::min(until, duration);
+        auto end = next;
+        while (end != messages.end() && end->time < until)
+            ++end;
+        const Time promised = node.promise(0);
+        std::vector<Message> out;
+        node.advance(until, std::vector<Message>(next, end), out);
+        for (const auto& message : out)
+            REQUIRE(message.time >= promised);
+        REQUIRE(node.promise(0) > until);
+        all.insert(all.end(), out.begin(), out.end());
+        next = end;
+        if (until == duration) return all;
+    }
+}
+
+std::string contents(const std::filesystem::path& file) {
+    std::ostringstream text;
+    text << std::ifstream(file).rdbuf();
+    return text.str();
+}
+
+struct TemporaryDirectory {
+    std::filesystem::path path = std::filesystem::temp_directory_path() / "puckloop-physics-node-test";
+    TemporaryDirectory() { std::filesystem::create_directories(path); }
+    ~TemporaryDirectory() { std::filesystem::remove_all(path); }
+};
+
+}  // namespace
+
+TEST_CASE("the node's messages do not depend on how time was granted, and repeat bit for bit") {
+    constexpr Time kDuration = 3000 * kMillisecond;
+    WorldNode first(busy_world()), second(busy_world()), third(busy_world()),
+        json_one(from_json(to_json(busy_world())));
+    const auto a = run(first, kDuration, 7 * kMillisecond);
+    CHECK(a.size() > 2000);
+    CHECK(run(second, kDuration, 7 * kMillisecond) == a);
+    CHECK(run(third, kDuration, 333'333'333) == a);
+    CHECK(run(json_one, kDuration, 100 * kMillisecond) == a);
+    CHECK(first.finish() == second.finish());
+}
+
+TEST_CASE("a step is used in the step after it and seen one later") {
+    WorldNode node(busy_world());
+    std::vector<Message> out;
+    node.advance(0, {}, out);
+    REQUIRE_FALSE(out.empty());
+    for (const auto& message : out)
+        CHECK(message.time == kMillisecond);
+    CHECK(node.promise(0) == 2 * kMillisecond);
+    CHECK(node.reaction(0) > kMillisecond);
+    CHECK(node.ports()[1].name == "e1.ground");
+    CHECK(node.ports()[2].name == "e2.board");
+    out.clear();
+    node.advance(5 * kMillisecond, {}, out);
+    for (const auto& message : out) {
+        CHECK(message.time >= 2 * kMillisecond);
+        CHECK(message.time <= 6 * kMillisecond);
+    }
+}
+
+TEST_CASE("recordings: rows at the period, readable at any time, refused directories named") {
+    const TemporaryDirectory directory;
+    World world = busy_world();
+    world.recording = {directory.path.string(), 0.1};
+    WorldNode node(world);
+    run(node, 1000 * kMillisecond, 10 * kMillisecond);
+    const auto trajectory = contents(directory.path / "trajectory.csv");  // not finished yet
+    CHECK(std::count(trajectory.begin(), trajectory.end(), '\n') == 1 + 11 * 2);
+    CHECK(trajectory.rfind("t_s,robot,x_m,y_m,theta_rad\n0.000,e1,0.000000,0.000000,0.000000\n", 0) == 0);
+    CHECK(trajectory.find("\n1.000,e2,") != std::string::npos);
+    const auto sensors = contents(directory.path / "sensors.csv");
+    CHECK(sensors.rfind("t_s,robot,proximity0,", 0) == 0);
+    CHECK(std::count(sensors.begin(), sensors.end(), '\n') == 1 + 11 * 2);
+    CHECK(contents(directory.path / "objects.csv").find("crate") != std::string::npos);
+    world.recording.directory = (directory.path / "absent").string();
+    CHECK_THROWS_AS(WorldNode(world), RunError);
+    if (std::filesystem::exists("/dev/full")) {
+        std::filesystem::create_directories(directory.path / "full");
+        std::filesystem::create_symlink("/dev/full", directory.path / "full" / "trajectory.csv");
+        world.recording.directory = (directory.path / "full").string();
+        CHECK_THROWS_WITH(WorldNode(world), Catch::Contains("trajectory.csv") && Catch::Contains("space"));
+    }
+}
