@@ -8,6 +8,10 @@
 
 namespace puckloop::tools {
 
-inline constexpr std::array<DeclareCommand, 0> kCommands{};
+void declare_trace(CLI::App& app, int& status);
+
+inline constexpr std::array kCommands{
+    declare_trace,
+};
 
 }  // namespace puckloop::tools
