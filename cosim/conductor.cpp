@@ -22,8 +22,6 @@ namespace {
 
 using WallClock = std::chrono::steady_clock;
 constexpr double kProgressSeconds = 0.2;
-// What is recorded is on disk after so long, should this very process be killed.
-constexpr double kFlushSeconds = 1.0;
 // With --realtime, how far ahead of the wall clock nodes are let, and how long to sleep when they are there.
 constexpr Time kPaceSlack = kMillisecond;
 constexpr std::chrono::microseconds kPaceSleep{500};
@@ -71,7 +69,7 @@ class Conductor::State {
     void take_stop(std::size_t n, Time before);
     void take_deliveries(std::size_t sender);
     void release_trace(Time floor);
-    void keep_house();
+    void tell_progress();
     bool stuck() const;
     [[noreturn]] void deadlock() const;
     void fail(Outcome& outcome, const std::string& text);
@@ -103,7 +101,6 @@ class Conductor::State {
     std::uint64_t grants_ = 0;
     WallClock::time_point start_{};
     double told_wall_ = 0.0;
-    double flushed_wall_ = 0.0;
     Time told_time_ = 0;
 };
 
@@ -188,7 +185,7 @@ void Conductor::State::loop() {
         }
         collect();
         if (merger_.waiting() >= kTraceBatch) release_trace(std::min(bounds_.floor(), end_));
-        keep_house();
+        tell_progress();
     }
 }
 
@@ -300,21 +297,14 @@ void Conductor::State::release_trace(Time floor) {
     });
 }
 
-void Conductor::State::keep_house() {
+void Conductor::State::tell_progress() {
+    if (!options_.progress) return;
     const double wall = seconds_since(start_);
-    if (wall - told_wall_ >= kProgressSeconds) {
-        const Time time = schedule_.reached();
-        if (options_.progress)
-            options_.progress({time, wall, to_seconds(time - told_time_) / (wall - told_wall_)});
-        told_wall_ = wall;
-        told_time_ = time;
-    }
-    if (wall - flushed_wall_ >= kFlushSeconds) {
-        release_trace(std::min(bounds_.floor(), end_));
-        for (TraceSink* sink : sinks)
-            sink->flush();
-        flushed_wall_ = wall;
-    }
+    if (wall - told_wall_ < kProgressSeconds) return;
+    const Time time = schedule_.reached();
+    options_.progress({time, wall, to_seconds(time - told_time_) / (wall - told_wall_)});
+    told_wall_ = wall;
+    told_time_ = time;
 }
 
 bool Conductor::State::stuck() const {

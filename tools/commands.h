@@ -8,14 +8,6 @@
 
 namespace puckloop::tools {
 
-void declare_asm(CLI::App& app, int& status);
-void declare_disasm(CLI::App& app, int& status);
-void declare_trace(CLI::App& app, int& status);
-
-inline constexpr std::array kCommands{
-    declare_asm,
-    declare_disasm,
-    declare_trace,
-};
+inline constexpr std::array<DeclareCommand, 0> kCommands{};
 
 }  // namespace puckloop::tools

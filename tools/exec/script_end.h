@@ -20,20 +20,14 @@ class ScriptEnd : public UartEnd {
         for (const std::uint8_t byte : bytes)
             outgoing_.push_back({time, byte});
     }
-    struct Heard {
-        std::uint8_t byte;
-        bool clean;
-        cosim::Time start;
-    };
-    const std::vector<Heard>& received() const { return received_; }
+    const std::vector<std::uint8_t>& received() const { return received_; }
+    void clear() { received_.clear(); }
 
     cosim::Time next() const override {
         return position_ < outgoing_.size() ? outgoing_[position_].time : cosim::kNever;
     }
     std::uint8_t take() override { return outgoing_[position_++].byte; }
-    void receive(std::uint8_t byte, bool clean, cosim::Time start) override {
-        received_.push_back({byte, clean, start});
-    }
+    void receive(std::uint8_t byte, bool /*clean*/) override { received_.push_back(byte); }
 
   private:
     struct Outgoing {
@@ -42,7 +36,7 @@ class ScriptEnd : public UartEnd {
     };
     std::vector<Outgoing> outgoing_;
     std::size_t position_ = 0;
-    std::vector<Heard> received_;
+    std::vector<std::uint8_t> received_;
 };
 
 }  // namespace puckloop::exec

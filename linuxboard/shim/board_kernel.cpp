@@ -1,0 +1,350 @@
+#include "linuxboard/shim/board_kernel.h"
+
+#include <linux/i2c.h>
+#include <poll.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+
+namespace puckloop::linuxboard {
+
+using cosim::kNever;
+using cosim::Time;
+using wire::DeviceKind;
+using wire::Op;
+using wire::Request;
+
+namespace {
+/// VTIME counts tenths of a second.
+constexpr Time kVtimeUnit = 100 * cosim::kMillisecond;
+
+constexpr double kPicosecondsPerSecond = 1e12;
+
+template <typename T>
+T read_object(std::string_view& data) {
+    T object{};
+    std::memcpy(&object, data.data(), std::min(sizeof object, data.size()));
+    data.remove_prefix(std::min(sizeof object, data.size()));
+    return object;
+}
+
+template <typename T>
+std::string bytes_of(const T& object) {
+    std::string bytes(sizeof object, '\0');
+    std::memcpy(bytes.data(), &object, sizeof object);
+    return bytes;
+}
+}  // namespace
+
+BoardKernel::BoardKernel(const LinuxSpec& spec)
+    : tty_(spec.clock_ppm),
+      adapter_(std::llround(kPicosecondsPerSecond / spec.i2c_hertz), spec.i2c_nack_error),
+      has_tty_(!spec.tty.empty()),
+      i2c_files_(spec.i2c.size()) {}
+
+void BoardKernel::finish(std::uint32_t thread, std::int64_t result, int error, Time time, std::string data) {
+    FinishedCall call;
+    call.header.thread = thread;
+    call.header.error = error;
+    call.header.result = error != 0 ? -1 : result;
+    call.header.time = time;
+    call.header.length = static_cast<std::uint32_t>(data.size());
+    call.data = std::move(data);
+    finished_.push_back(std::move(call));
+}
+
+void BoardKernel::open_file(const Request& request) {
+    const std::size_t i2c_index = request.a - (has_tty_ ? 1 : 0);
+    File file;
+    file.open = true;
+    if (has_tty_ && request.a == 0) {
+        file.kind = DeviceKind::Tty;
+        tty_.open();
+        tty_opened_ = true;
+    } else if (i2c_index < i2c_files_) {
+        file.kind = DeviceKind::I2c;
+        i2c_opened_ = true;
+    } else {
+        finish(request.thread, -1, ENODEV, request.now);
+        return;
+    }
+    std::size_t handle = 0;
+    while (handle < files_.size() && files_[handle].open)
+        ++handle;
+    if (handle == files_.size()) files_.emplace_back();
+    files_[handle] = file;
+    finish(request.thread, static_cast<std::int64_t>(handle), 0, request.now);
+}
+
+void BoardKernel::call(const Request& request, std::string_view data) {
+    const Time now = request.now;
+    switch (request.op) {
+    case Op::Open:
+        open_file(request);
+        return;
+    case Op::Cancel: {
+        waiting_.erase(request.thread);
+        adapter_.abandon(request.thread);
+        return;
+    }
+    case Op::Poll:
+        break;
+    case Op::Hello:
+    case Op::Sync:
+    case Op::Note:
+    case Op::Exit:
+        return;
+    default: {
+        const auto handle = static_cast<std::size_t>(request.handle);
+        if (request.handle < 0 || handle >= files_.size() || !files_[handle].open) {
+            finish(request.thread, -1, EBADF, now);
+            return;
+        }
+        const File& file = files_[handle];
+        const bool for_i2c = request.op == Op::Transfer;
+        if (request.op != Op::Close && for_i2c != (file.kind == DeviceKind::I2c)) {
+            finish(request.thread, -1, ENOTTY, now);
+            return;
+        }
+    }
+    }
+    if (request.op == Op::Transfer) {
+        submit_transfer(request, data);
+        Waiting transfer{request, {}, {}, 0, now};
+        waiting_.emplace(request.thread, std::move(transfer));
+        return;
+    }
+    Waiting waiting{request, std::string(data), {}, 0, now};
+    if (!attempt(request.thread, waiting, now)) waiting_.insert_or_assign(request.thread, std::move(waiting));
+}
+
+bool BoardKernel::attempt(std::uint32_t thread, Waiting& waiting, Time now) {
+    const Request& request = waiting.request;
+    const auto done = [&](std::int64_t result, int error = 0, std::string data = {}) {
+        finish(thread, result, error, now, std::move(data));
+        return true;
+    };
+    switch (request.op) {
+    case Op::Close: {
+        File& file = files_[static_cast<std::size_t>(request.handle)];
+        if (file.kind == DeviceKind::Tty) tty_.close();
+        file.open = false;
+        return done(0);
+    }
+    case Op::Read:
+        return attempt_read(thread, waiting, now);
+    case Op::Write:
+        return attempt_write(thread, waiting, now);
+    case Op::Poll:
+        return attempt_poll(thread, waiting, now);
+    case Op::GetTermios:
+        return done(0, 0, bytes_of(tty_.settings()));
+    case Op::SetTermios: {
+        if (request.a != TCSANOW && !tty_.drained(now)) return false;
+        std::string_view data = waiting.data;
+        if (request.a == TCSAFLUSH) tty_.flush_input();
+        tty_.configure(read_object<termios>(data));
+        return done(0);
+    }
+    case Op::Flush:
+        if (request.a != TCOFLUSH) tty_.flush_input();
+        if (request.a != TCIFLUSH) tty_.flush_output();
+        return done(0);
+    case Op::Flow:
+        if (request.a == TCOOFF) tty_.stop_output();
+        if (request.a == TCOON) tty_.start_output(now);
+        return done(0);
+    case Op::Drain:
+        return tty_.drained(now) || tty_.hung_up() ? done(0) : false;
+    case Op::Break:
+        tty_.send_break(now, request.b * cosim::kMicrosecond);
+        return done(0);
+    case Op::InputQueue:
+        return done(static_cast<std::int64_t>(tty_.input_queue()));
+    case Op::OutputQueue:
+        return done(static_cast<std::int64_t>(tty_.output_queue(now)));
+    case Op::Counters:
+        return done(0, 0, bytes_of(tty_.counters()));
+    case Op::Transfer:
+        return false;  // ends when the adapter says so
+    default:
+        return done(-1, ENOSYS);
+    }
+}
+
+bool BoardKernel::attempt_read(std::uint32_t thread, Waiting& waiting, Time now) {
+    const std::size_t most = waiting.request.a;
+    const auto done = [&](int error = 0) {
+        const auto count = static_cast<std::int64_t>(waiting.gathered.size());
+        finish(thread, count, error, now, std::move(waiting.gathered));
+        return true;
+    };
+    if (tty_.hung_up() || most == 0) return done();
+    const termios& settings = tty_.settings();
+    if (tty_.canonical()) {
+        if (tty_.input_ready()) {
+            waiting.gathered = tty_.read(most);
+            return done();
+        }
+        return waiting.request.nonblocking != 0 ? done(EAGAIN) : false;
+    }
+    const std::size_t before = waiting.gathered.size();
+    waiting.gathered += tty_.read(most - before);
+    const std::size_t minimum = settings.c_cc[VMIN];
+    const Time pause = settings.c_cc[VTIME] * kVtimeUnit;
+    if (waiting.request.nonblocking != 0) {
+        if (!waiting.gathered.empty()) return done();
+        return done(minimum == 0 && pause == 0 ? 0 : EAGAIN);
+    }
+    if (waiting.gathered.size() > before) waiting.since = now;
+    if (!waiting.gathered.empty() &&
+        waiting.gathered.size() >= std::min(std::max<std::size_t>(minimum, 1), most))
+        return done();
+    if (minimum == 0 && now >= waiting.since + pause) return done();
+    if (minimum > 0 && pause > 0 && !waiting.gathered.empty() && now >= waiting.since + pause) return done();
+    return false;
+}
+
+bool BoardKernel::attempt_write(std::uint32_t thread, Waiting& waiting, Time now) {
+    if (tty_.hung_up()) {
+        finish(thread, -1, EIO, now);
+        return true;
+    }
+    const std::string_view rest = std::string_view(waiting.data).substr(waiting.progress);
+    waiting.progress += tty_.write(rest, now);
+    const bool complete = waiting.progress == waiting.data.size();
+    if (!complete && waiting.request.nonblocking == 0) return false;
+    const bool none = waiting.progress == 0 && !complete;
+    finish(thread, static_cast<std::int64_t>(waiting.progress), none ? EAGAIN : 0, now);
+    return true;
+}
+
+std::int16_t BoardKernel::tty_events() const {
+    int events = 0;
+    if (tty_.hung_up()) return POLLIN | POLLRDNORM | POLLOUT | POLLWRNORM | POLLHUP | POLLERR;
+    if (tty_.input_ready()) events |= POLLIN | POLLRDNORM;
+    // The tty layer reports room from 256 free bytes on; half a buffer is never far from that.
+    if (tty_.output_room() >= 256) events |= POLLOUT | POLLWRNORM;
+    return static_cast<std::int16_t>(events);
+}
+
+bool BoardKernel::attempt_poll(std::uint32_t thread, Waiting& waiting, Time now) {
+    std::string answer;
+    std::int64_t ready = 0;
+    for (std::string_view data = waiting.data; !data.empty();) {
+        auto entry = read_object<wire::PollEntry>(data);
+        const auto handle = static_cast<std::size_t>(entry.handle);
+        if (entry.handle < 0 || handle >= files_.size() || !files_[handle].open) {
+            entry.returned = POLLNVAL;
+        } else if (files_[handle].kind == DeviceKind::Tty) {
+            entry.returned = static_cast<std::int16_t>(tty_events() & (entry.events | POLLHUP | POLLERR));
+        } else {
+            constexpr int kAlways = POLLIN | POLLRDNORM | POLLOUT | POLLWRNORM;  // i2c-dev has no poll method
+            entry.returned = static_cast<std::int16_t>(kAlways & entry.events);
+        }
+        ready += entry.returned != 0 ? 1 : 0;
+        answer += bytes_of(entry);
+    }
+    if (ready == 0 && now < waiting.request.deadline) return false;
+    finish(thread, ready, 0, now, std::move(answer));
+    return true;
+}
+
+void BoardKernel::submit_transfer(const Request& request, std::string_view data) {
+    I2cTransfer transfer;
+    transfer.owner = request.thread;
+    transfer.timeout = request.a * cosim::kMillisecond;
+    for (std::uint32_t i = 0; i < request.b; ++i) {
+        const auto segment = read_object<wire::I2cSegment>(data);
+        I2cMessage message;
+        message.address = segment.address;
+        message.read = (segment.flags & I2C_M_RD) != 0;
+        message.counted = (segment.flags & I2C_M_RECV_LEN) != 0;
+        message.length = segment.length;
+        if (!message.read) {
+            message.data = data.substr(0, segment.length);
+            data.remove_prefix(std::min<std::size_t>(segment.length, data.size()));
+        }
+        transfer.messages.push_back(std::move(message));
+    }
+    adapter_.submit(std::move(transfer), request.now);
+}
+
+Time BoardKernel::wake_time(const Waiting& waiting) const {
+    switch (waiting.request.op) {
+    case Op::Poll:
+        return waiting.request.deadline;
+    case Op::Read: {
+        const termios& settings = tty_.settings();
+        if (tty_.canonical() || settings.c_cc[VTIME] == 0) return kNever;
+        if (settings.c_cc[VMIN] > 0 && waiting.gathered.empty()) return kNever;
+        return waiting.since + settings.c_cc[VTIME] * kVtimeUnit;
+    }
+    case Op::SetTermios:
+    case Op::Drain:
+        return tty_.drain_time();
+    default:
+        return kNever;
+    }
+}
+
+Time BoardKernel::next_event() const {
+    Time next = std::min(tty_.next_event(), adapter_.next_event());
+    for (const auto& [thread, waiting] : waiting_)
+        next = std::min(next, wake_time(waiting));
+    return next;
+}
+
+void BoardKernel::attempt_all(Time now) {
+    for (auto it = waiting_.begin(); it != waiting_.end();) {
+        it = attempt(it->first, it->second, now) ? waiting_.erase(it) : std::next(it);
+    }
+}
+
+void BoardKernel::advance(Time now) {
+    tty_.advance(now, frames_);
+    adapter_.advance(now, phases_);
+    for (I2cResult& result : adapter_.take_results()) {
+        if (waiting_.erase(result.owner) == 0) continue;
+        finish(result.owner, result.messages, result.error, result.time, std::move(result.data));
+    }
+    attempt_all(now);
+}
+
+void BoardKernel::deliver_uart(const cosim::UartFrame& frame, Time now) {
+    tty_.deliver(frame, now);
+}
+
+void BoardKernel::deliver_i2c(const cosim::I2cPhase& phase, Time now) {
+    adapter_.deliver(phase, now);
+}
+
+void BoardKernel::hang_up(Time now) {
+    tty_.hang_up();
+    attempt_all(now);
+}
+
+void BoardKernel::reset() {
+    for (File& file : files_) {
+        if (file.open && file.kind == DeviceKind::Tty) tty_.close();
+    }
+    files_.clear();
+    for (const auto& [thread, waiting] : waiting_)
+        adapter_.abandon(thread);
+    waiting_.clear();
+    finished_.clear();
+}
+
+std::vector<FinishedCall> BoardKernel::take_finished() {
+    return std::exchange(finished_, {});
+}
+std::vector<cosim::UartFrame> BoardKernel::take_frames() {
+    return std::exchange(frames_, {});
+}
+std::vector<cosim::I2cPhase> BoardKernel::take_phases() {
+    return std::exchange(phases_, {});
+}
+
+}  // namespace puckloop::linuxboard

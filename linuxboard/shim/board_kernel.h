@@ -1,0 +1,95 @@
+#pragma once
+// The kernel of the emulated Linux board as far as the program's devices need one: open files, and the calls
+// of the program's threads that wait on a device, in simulated time.
+
+#include "cosim/message.h"
+#include "cosim/time.h"
+#include "linuxboard/shim/i2c_adapter.h"
+#include "linuxboard/shim/spec.h"
+#include "linuxboard/shim/tty_port.h"
+#include "linuxboard/shim/wire.h"
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace puckloop::linuxboard {
+
+/// A call that has ended.
+struct FinishedCall {
+    wire::Completion header;
+    std::string data;
+};
+
+class BoardKernel {
+  public:
+    explicit BoardKernel(const LinuxSpec& spec);
+
+    /// One call of the program at `request.now`, to which the kernel has been advanced. It ends at once, or
+    /// later, or never.
+    void call(const wire::Request& request, std::string_view data);
+    void deliver_uart(const cosim::UartFrame& frame, cosim::Time now);
+    void deliver_i2c(const cosim::I2cPhase& phase, cosim::Time now);
+    void hang_up(cosim::Time now);
+    /// Handles everything due up to and including `now`.
+    void advance(cosim::Time now);
+    /// When advance() next has something to do.
+    cosim::Time next_event() const;
+    /// The program is gone: its calls are forgotten, its files closed. What it wrote still goes out.
+    void reset();
+
+    std::vector<FinishedCall> take_finished();
+    bool has_finished() const { return !finished_.empty(); }
+    /// Some thread waits on a device, so that a message can wake it.
+    bool has_waiting() const { return !waiting_.empty(); }
+
+    const TtyPort& tty() const { return tty_; }
+    const I2cAdapter& adapter() const { return adapter_; }
+    /// What the devices put on the wires since the last call, in order of time.
+    std::vector<cosim::UartFrame> take_frames();
+    std::vector<cosim::I2cPhase> take_phases();
+    bool tty_was_opened() const { return tty_opened_; }
+    bool i2c_was_opened() const { return i2c_opened_; }
+
+  private:
+    struct File {
+        wire::DeviceKind kind = wire::DeviceKind::None;
+        bool open = false;
+    };
+    struct Waiting {
+        wire::Request request;
+        std::string data;
+        std::string gathered;
+        std::size_t progress = 0;
+        cosim::Time since = 0;
+    };
+
+    /// True if the call ended.
+    bool attempt(std::uint32_t thread, Waiting& waiting, cosim::Time now);
+    bool attempt_read(std::uint32_t thread, Waiting& waiting, cosim::Time now);
+    bool attempt_write(std::uint32_t thread, Waiting& waiting, cosim::Time now);
+    bool attempt_poll(std::uint32_t thread, Waiting& waiting, cosim::Time now);
+    void attempt_all(cosim::Time now);
+    void submit_transfer(const wire::Request& request, std::string_view data);
+    void open_file(const wire::Request& request);
+    void finish(std::uint32_t thread, std::int64_t result, int error, cosim::Time time,
+                std::string data = {});
+    cosim::Time wake_time(const Waiting& waiting) const;
+    std::int16_t tty_events() const;
+
+    TtyPort tty_;
+    I2cAdapter adapter_;
+    std::vector<File> files_;
+    std::map<std::uint32_t, Waiting> waiting_;
+    std::vector<FinishedCall> finished_;
+    std::vector<cosim::UartFrame> frames_;
+    std::vector<cosim::I2cPhase> phases_;
+    bool has_tty_ = true;
+    std::size_t i2c_files_ = 0;
+    bool tty_opened_ = false;
+    bool i2c_opened_ = false;
+};
+
+}  // namespace puckloop::linuxboard

@@ -1,0 +1,157 @@
+#include "linuxboard/shim/i2c_adapter.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <utility>
+
+namespace puckloop::linuxboard {
+
+using cosim::I2cPhase;
+using cosim::I2cPhaseKind;
+using cosim::kNever;
+using cosim::Time;
+
+namespace {
+constexpr std::uint32_t kNobody = UINT32_MAX;
+constexpr std::size_t kBlockMaximum = 32;  // SMBus block length
+}  // namespace
+
+void I2cAdapter::submit(I2cTransfer transfer, Time now) {
+    queue_.push_back(std::move(transfer));
+    if (step_ == Step::Idle) begin_next(now);
+}
+
+void I2cAdapter::abandon(std::uint32_t owner) {
+    for (I2cTransfer& transfer : queue_) {
+        if (transfer.owner == owner) transfer.owner = kNobody;
+    }
+    if (result_.owner == owner) result_.owner = kNobody;
+}
+
+void I2cAdapter::begin_next(Time now) {
+    if (queue_.empty()) {
+        step_ = Step::Idle;
+        next_ = kNever;
+        return;
+    }
+    result_ = {};
+    result_.owner = queue_.front().owner;
+    message_ = 0;
+    step_ = Step::Start;
+    next_ = std::max(now, bus_free_);
+    if (queue_.front().messages.empty()) step_ = Step::Finish;
+}
+
+I2cPhase I2cAdapter::phase(I2cPhaseKind kind, std::uint8_t byte) const {
+    I2cPhase out;
+    out.kind = kind;
+    out.byte = byte;
+    out.start = next_;
+    out.clock_period = period_;
+    return out;
+}
+
+void I2cAdapter::advance(Time now, std::vector<I2cPhase>& begun) {
+    while (next_ <= now) {
+        const I2cTransfer& transfer = queue_.front();
+        const Time timeout = cosim::later(next_, transfer.timeout);
+        if (step_ == Step::Start) {
+            const I2cMessage& message = transfer.messages[message_];
+            byte_ = 0;
+            addressed_ = false;
+            length_ = message.read ? message.length : message.data.size();
+            begun.push_back(phase(I2cPhaseKind::Start,
+                                  static_cast<std::uint8_t>(message.address << 1 | (message.read ? 1 : 0))));
+            step_ = Step::Waiting;
+            next_ = timeout;
+        } else if (step_ == Step::Byte) {
+            const I2cMessage& message = transfer.messages[message_];
+            if (message.read) {
+                I2cPhase read = phase(I2cPhaseKind::Read);
+                read.ack = byte_ + 1 < length_ || (message.counted && byte_ == 0) ? 1 : 0;
+                begun.push_back(read);
+            } else {
+                begun.push_back(phase(I2cPhaseKind::Write, static_cast<std::uint8_t>(message.data[byte_])));
+            }
+            step_ = Step::Waiting;
+            next_ = timeout;
+        } else if (step_ == Step::Stop) {
+            begun.push_back(phase(I2cPhaseKind::Stop));
+            step_ = Step::Finish;
+            next_ += period_;
+        } else if (step_ == Step::Finish) {
+            bus_free_ = next_;
+            result_.time = next_;
+            if (result_.error != 0) result_.messages = 0;
+            ++transfers_;
+            failures_ += result_.error != 0 ? 1 : 0;
+            const Time done = next_;
+            results_.push_back(std::move(result_));
+            queue_.pop_front();
+            begin_next(done);
+        } else {  // nobody answered
+            fail(ETIMEDOUT, next_, false);
+        }
+    }
+}
+
+void I2cAdapter::fail(int error, Time now, bool owns_bus) {
+    result_.error = error;
+    result_.data.clear();
+    step_ = owns_bus ? Step::Stop : Step::Finish;
+    next_ = now;
+}
+
+void I2cAdapter::after_byte(Time now) {
+    next_ = now;
+    if (byte_ < length_) {
+        step_ = Step::Byte;
+        return;
+    }
+    ++result_.messages;
+    ++message_;
+    step_ = message_ < queue_.front().messages.size() ? Step::Start : Step::Stop;
+}
+
+void I2cAdapter::deliver(const I2cPhase& answer, Time now) {
+    if (step_ != Step::Waiting) return;
+    const I2cMessage& message = queue_.front().messages[message_];
+    switch (answer.kind) {
+    case I2cPhaseKind::Acknowledge:
+        if (answer.ack == 0) {
+            fail(nack_error_, now, true);
+        } else {
+            if (addressed_) ++byte_;
+            addressed_ = true;
+            after_byte(now);
+        }
+        break;
+    case I2cPhaseKind::Data:
+        result_.data += static_cast<char>(answer.byte);
+        if (message.counted && byte_ == 0) {
+            if (answer.byte == 0 || answer.byte > kBlockMaximum) {
+                fail(EPROTO, now, true);
+                return;
+            }
+            length_ += answer.byte;
+        }
+        ++byte_;
+        after_byte(now);
+        break;
+    case I2cPhaseKind::BusLost:
+        fail(EAGAIN, now, false);
+        break;
+    default:
+        break;
+    }
+}
+
+Time I2cAdapter::next_event() const {
+    return next_;
+}
+
+std::vector<I2cResult> I2cAdapter::take_results() {
+    return std::exchange(results_, {});
+}
+
+}  // namespace puckloop::linuxboard

@@ -1,0 +1,85 @@
+#pragma once
+// One I2C adapter of the Linux board (/dev/i2c-N) as bus master: transfers become phases on the robot's bus,
+// each taking its real time; the calling thread waits until the STOP.
+//
+// Deviations: 1. One byte is one phase: no bus clock jitter, no driver overhead between bytes.
+// 2. After BusLost the transfer fails with EAGAIN at once; the driver's own retries are not modelled.
+// 3. No ten-bit addresses, no SMBus PEC, no alert.
+
+#include "cosim/message.h"
+#include "cosim/time.h"
+
+#include <cstdint>
+#include <deque>
+#include <string>
+#include <vector>
+
+namespace puckloop::linuxboard {
+
+struct I2cMessage {
+    std::uint16_t address = 0;  ///< 7 bits
+    bool read = false;
+    bool counted = false;  ///< the first byte read tells how many follow (SMBus block read)
+    std::string data;      ///< to write
+    std::uint16_t length = 0;
+};
+
+struct I2cTransfer {
+    std::uint32_t owner = 0;
+    std::vector<I2cMessage> messages;
+    cosim::Time timeout = 0;  ///< without an answer for this long the transfer fails with ETIMEDOUT
+};
+
+struct I2cResult {
+    std::uint32_t owner = 0;
+    int error = 0;  ///< errno value
+    std::int64_t messages = 0;
+    std::string data;
+    cosim::Time time = 0;
+};
+
+class I2cAdapter {
+  public:
+    /// `clock_period` of SCL in picoseconds; `nack_error` is what the board's driver returns when a slave
+    /// does not acknowledge (EREMOTEIO or ENXIO).
+    I2cAdapter(cosim::Time clock_period, int nack_error) : period_(clock_period), nack_error_(nack_error) {}
+
+    void submit(I2cTransfer transfer, cosim::Time now);
+    /// The owner does not wait any more; what is on the bus goes on to its STOP.
+    void abandon(std::uint32_t owner);
+    void deliver(const cosim::I2cPhase& phase, cosim::Time now);
+    /// Begins every phase due up to and including `now`.
+    void advance(cosim::Time now, std::vector<cosim::I2cPhase>& begun);
+    cosim::Time next_event() const;
+    /// Start of the next phase if no answer comes in before; kNever if that depends on an answer.
+    cosim::Time next_phase() const { return step_ == Step::Waiting ? cosim::kNever : next_; }
+    std::vector<I2cResult> take_results();
+
+    std::uint64_t transfers() const { return transfers_; }
+    std::uint64_t failures() const { return failures_; }
+
+  private:
+    enum class Step { Idle, Start, Byte, Stop, Finish, Waiting };
+
+    void begin_next(cosim::Time now);
+    void after_byte(cosim::Time now);
+    void fail(int error, cosim::Time now, bool owns_bus);
+    cosim::I2cPhase phase(cosim::I2cPhaseKind kind, std::uint8_t byte = 0) const;
+
+    cosim::Time period_;
+    int nack_error_;
+    std::deque<I2cTransfer> queue_;
+    Step step_ = Step::Idle;
+    cosim::Time next_ = cosim::kNever;
+    cosim::Time bus_free_ = 0;
+    std::size_t message_ = 0;
+    std::size_t byte_ = 0;
+    bool addressed_ = false;
+    std::size_t length_ = 0;
+    I2cResult result_;
+    std::vector<I2cResult> results_;
+    std::uint64_t transfers_ = 0;
+    std::uint64_t failures_ = 0;
+};
+
+}  // namespace puckloop::linuxboard

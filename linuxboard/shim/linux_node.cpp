@@ -1,0 +1,309 @@
+#include "linuxboard/shim/linux_node.h"
+
+#include "base/error.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+
+namespace puckloop::linuxboard {
+
+using cosim::kNever;
+using cosim::Message;
+using cosim::Time;
+using wire::Op;
+
+namespace {
+constexpr double kStartPatience = 10.0;  // wall-clock seconds until the library must have reported
+constexpr std::size_t kMostWarnings = 100;
+
+std::int64_t wall_nanoseconds() {
+    return std::chrono::duration_cast<std::chrono::nanoseconds>(
+               std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+}
+}  // namespace
+
+LinuxNode::LinuxNode(LinuxSpec spec)
+    : spec_(std::move(spec)),
+      ports_{{"uart", cosim::PortKind::Uart}, {"i2c", cosim::PortKind::I2c}},
+      process_(std::make_unique<Process>(spec_)),
+      kernel_(spec_) {
+    if (spec_.start == 0) {
+        start_program();
+    } else {
+        start_at_ = spec_.start;
+    }
+}
+
+void LinuxNode::start_program() {
+    const Time now = start_at_ == kNever ? 0 : start_at_;
+    start_at_ = kNever;
+    announced_exit_ = false;
+    ++starts_;
+    process_->start();
+    switch (process_->hear(kStartPatience, request_, request_data_)) {
+    case Heard::Ended:
+        throw InputError(spec_.program, "",
+                         process_->describe_end() + " before it began" +
+                             (spec_.log.empty() ? "" : ": " + process_->last_line()));
+    case Heard::Silent:
+        throw InputError(spec_.program, "", "does not load the preloaded library",
+                         "a dynamically linked program");
+    case Heard::Request:
+        break;
+    }
+    if (request_.op != Op::Hello || request_.a != wire::kVersion)
+        throw InputError(spec_.program, "", "the preloaded library is of another version",
+                         "one build of both");
+    request_.now = now;
+    state_ = State::Asking;
+}
+
+void LinuxNode::warn(std::string line) {
+    if (warnings_.size() < kMostWarnings) warnings_.push_back(std::move(line));
+}
+
+void LinuxNode::end_run(Time now, bool success, std::string reason) {
+    if (!stop_) stop_ = cosim::Stop{now, success, std::move(reason)};
+}
+
+void LinuxNode::program_ended(Time now) {
+    state_ = State::Off;
+    kernel_.reset();
+    end_ = process_->describe_end();
+    const bool comes_back = next_restart_ < spec_.restarts.size();
+    std::string reason = fmt::format("{} {} at {:.6f} s", spec_.program, end_, cosim::to_seconds(now));
+    const bool opened = kernel_.tty_was_opened() || kernel_.i2c_was_opened();
+    if (!opened) {
+        reason += spec_.tty.empty() ? " without opening its I2C bus"
+                                    : fmt::format(" without ever opening {}", spec_.tty);
+    }
+    if (!process_->ended_well() || !opened) {
+        if (const std::string last = process_->last_line(); !last.empty())
+            reason += "; its last line: " + last;
+    }
+    if (comes_back) {
+        warn(reason);
+    } else if (spec_.exit_ends_run || !process_->ended_well()) {
+        end_run(now, process_->ended_well() && opened, reason);
+    } else {
+        warn(reason);
+    }
+}
+
+void LinuxNode::listen() {
+    switch (process_->hear(spec_.watchdog_s, request_, request_data_)) {
+    case Heard::Request:
+        ++requests_;
+        state_ = State::Asking;
+        return;
+    case Heard::Ended:
+        program_ended(announced_exit_ ? exit_time_ : process_->page().now.load());
+        return;
+    case Heard::Silent: {
+        const Time now = process_->page().now.load();
+        const std::string reason =
+            fmt::format("{} has not let time pass for {:.0f} s of wall clock, at {:.6f} s: {}", spec_.program,
+                        spec_.watchdog_s, cosim::to_seconds(now), process_->describe_silence());
+        process_->kill();
+        state_ = State::Off;
+        kernel_.reset();
+        end_ = "hung";
+        end_run(now, false, reason);
+        return;
+    }
+    }
+}
+
+Time LinuxNode::next_device_event() const {
+    Time next = kernel_.next_event();
+    if (inbox_next_ < inbox_.size()) next = std::min(next, inbox_[inbox_next_].time);
+    return next;
+}
+
+void LinuxNode::collect(std::vector<Message>& outbox) {
+    for (const cosim::UartFrame& frame : kernel_.take_frames())
+        outbox.push_back({protocols::stop_bit_start(frame), kUartPort, frame});
+    for (const cosim::I2cPhase& phase : kernel_.take_phases())
+        outbox.push_back({phase.start, kI2cPort, phase});
+}
+
+void LinuxNode::run_devices(Time now) {
+    while (inbox_next_ < inbox_.size() && inbox_[inbox_next_].time <= now) {
+        const Message& message = inbox_[inbox_next_];
+        const Time before = kernel_.next_event();
+        if (before < message.time) {
+            kernel_.advance(before);
+            continue;
+        }
+        ++inbox_next_;
+        ++messages_in_;
+        if (const auto* frame = std::get_if<cosim::UartFrame>(&message.payload)) {
+            kernel_.deliver_uart(*frame, message.time);
+        } else if (const auto* phase = std::get_if<cosim::I2cPhase>(&message.payload)) {
+            kernel_.deliver_i2c(*phase, message.time);
+        }
+    }
+    for (Time next = kernel_.next_event(); next <= now; next = kernel_.next_event())
+        kernel_.advance(next);
+    collect(*outbox_);
+}
+
+Time LinuxNode::next_scheduled() const {
+    Time next = start_at_;
+    if (next_restart_ < spec_.restarts.size()) next = std::min(next, spec_.restarts[next_restart_].time);
+    if (next_signal_ < spec_.signals.size()) next = std::min(next, spec_.signals[next_signal_].time);
+    if (next_hangup_ < spec_.hangups.size()) next = std::min(next, spec_.hangups[next_hangup_]);
+    return next;
+}
+
+void LinuxNode::run_scheduled(Time now) {
+    if (next_hangup_ < spec_.hangups.size() && spec_.hangups[next_hangup_] <= now) {
+        ++next_hangup_;
+        kernel_.hang_up(now);
+    }
+    if (next_signal_ < spec_.signals.size() && spec_.signals[next_signal_].time <= now)
+        pending_signal_ = spec_.signals[next_signal_++].signal;
+    if (next_restart_ < spec_.restarts.size() && spec_.restarts[next_restart_].time <= now) {
+        const Restart& restart = spec_.restarts[next_restart_++];
+        process_->kill();
+        kernel_.reset();
+        state_ = State::Off;
+        start_at_ = restart.time + restart.down;
+    }
+    if (start_at_ <= now) start_program();
+}
+
+void LinuxNode::answer(Time now, int signal) {
+    wire::Reply reply;
+    reply.now = now;
+    reply.limit = std::max(now, std::min({until_, next_device_event(), next_scheduled()}));
+    reply.signal = signal;
+    const std::vector<FinishedCall> calls = kernel_.take_finished();
+    reply.count = static_cast<std::uint32_t>(calls.size());
+    process_->reply(reply, calls);
+    listen();
+}
+
+void LinuxNode::handle_request() {
+    const Time now = request_.now;
+    run_devices(now);
+    switch (request_.op) {
+    case Op::Hello:
+        // A program that became another one by exec() starts with no files of ours.
+        kernel_.reset();
+        break;
+    case Op::Note:
+        warn(request_data_);
+        break;
+    case Op::Exit:
+        announced_exit_ = true;
+        exit_time_ = now;
+        listen();
+        return;
+    default:
+        kernel_.call(request_, request_data_);
+        break;
+    }
+    if (request_.wait != 0 && !kernel_.has_finished() && request_.wait_until > now && pending_signal_ == 0) {
+        state_ = State::Waiting;
+        return;
+    }
+    answer(now, std::exchange(pending_signal_, 0));
+}
+
+void LinuxNode::advance(Time until, std::span<const Message> inbox, std::vector<Message>& outbox) {
+    inbox_.erase(inbox_.begin(), inbox_.begin() + static_cast<std::ptrdiff_t>(inbox_next_));
+    inbox_next_ = 0;
+    inbox_.insert(inbox_.end(), inbox.begin(), inbox.end());
+    until_ = until;
+    outbox_ = &outbox;
+    while (true) {
+        const Time scheduled = next_scheduled();
+        Time next = std::min(scheduled, next_device_event());
+        if (state_ == State::Asking) next = std::min(scheduled, request_.now);
+        if (state_ == State::Waiting) next = std::min(next, request_.wait_until);
+        if (next >= until) break;
+        pace(next);
+        if (scheduled <= next) {
+            run_devices(next);
+            run_scheduled(next);
+            if (state_ == State::Waiting && (pending_signal_ != 0 || kernel_.has_finished()))
+                answer(next, std::exchange(pending_signal_, 0));
+        } else if (state_ == State::Asking) {
+            handle_request();
+        } else {
+            run_devices(next);
+            if (state_ == State::Waiting && (kernel_.has_finished() || next >= request_.wait_until))
+                answer(next, 0);
+        }
+    }
+    run_devices(until - 1);
+    outbox_ = nullptr;
+}
+
+void LinuxNode::pace(Time time) {
+    if (!spec_.real_time) return;
+    auto& origin = process_->wall_origin();
+    if (origin == 0) origin = wall_nanoseconds() - time / cosim::kNanosecond;
+    const std::int64_t ahead = origin + time / cosim::kNanosecond - wall_nanoseconds();
+    if (ahead > 0) std::this_thread::sleep_for(std::chrono::nanoseconds(ahead));
+}
+
+Time LinuxNode::next_action() const {
+    Time next = next_scheduled();
+    if (state_ == State::Asking) next = std::min(next, request_.now);
+    if (state_ == State::Waiting) next = std::min({next, request_.wait_until, kernel_.next_event()});
+    return next;
+}
+
+Time LinuxNode::promise(cosim::PortIndex port) const {
+    const Time action = std::max(next_action(), until_);
+    if (port == kUartPort) {
+        Time own = kernel_.tty().next_frame(until_);
+        if (kernel_.tty().echoes()) own = std::min(own, std::max(kernel_.tty().next_event(), until_));
+        return std::min(action, own);
+    }
+    return std::min(action, std::max(kernel_.adapter().next_event(), until_));
+}
+
+Time LinuxNode::reaction(cosim::PortIndex port) const {
+    // Only a thread that waits on a device can be woken by a message, and not before the promised time while
+    // the program stands at a request.
+    if (state_ == State::Waiting && kernel_.has_waiting()) return 0;
+    if (port == kUartPort) return kernel_.tty().echoes() ? 0 : kNever;
+    return kernel_.adapter().next_event() == kNever ? kNever : 0;
+}
+
+std::string LinuxNode::finish() {
+    if (process_->running()) {
+        if (!kernel_.tty_was_opened() && !spec_.tty.empty())
+            warn(fmt::format("{} never opened {}", spec_.program, spec_.tty));
+        end_ = "was ended with the run";
+        process_->kill();
+    }
+    const wire::TtyCounters tty = kernel_.tty().counters();
+    nlohmann::ordered_json report = {
+        {"program", spec_.program},
+        {"end", end_},
+        {"starts", starts_},
+        {"requests", requests_},
+        {"log", spec_.log},
+        {"uart",
+         {{"received", tty.received},
+          {"sent", tty.sent},
+          {"framing_errors", tty.framing},
+          {"parity_errors", tty.parity},
+          {"breaks", tty.breaks},
+          {"buffer_overruns", tty.buffer_overrun}}},
+        {"i2c", {{"transfers", kernel_.adapter().transfers()}, {"failed", kernel_.adapter().failures()}}},
+        {"warnings", warnings_},
+    };
+    return report.dump();
+}
+
+}  // namespace puckloop::linuxboard

@@ -1,0 +1,31 @@
+#pragma once
+// What the functions taken over share among themselves.
+
+#include "linuxboard/shim/preload/scheduler.h"
+
+#include <sys/select.h>
+#include <time.h>
+
+namespace puckloop::shim {
+
+// time_calls.cpp
+bool is_wall_clock(clockid_t clock);
+/// Reading of `clock` at simulated time 0.
+Time clock_origin(clockid_t clock);
+Time from_timespec(const timespec& time);
+timespec to_timespec(Time time);
+/// Simulated time `duration` from now; kNever stays.
+Time time_after(Time duration);
+/// Simulated time at which `clock` reads `time`.
+Time absolute_deadline(clockid_t clock, const timespec& time);
+bool is_valid(const timespec& time);
+bool sleep_until(Time deadline);
+
+// file_calls.cpp: descriptors that stand for devices
+struct OpenFile;
+OpenFile* open_file(int fd);
+
+// process_calls.cpp
+void begin_process(Thread* main_thread);
+
+}  // namespace puckloop::shim

@@ -1,0 +1,112 @@
+// epoll: devices are registered here, everything else with the host's epoll, which is then one outside
+// descriptor more. Edge-triggered devices behave as level-triggered ones.
+
+#include "linuxboard/shim/preload/calls.h"
+#include "linuxboard/shim/preload/open_file.h"
+#include "linuxboard/shim/preload/real.h"
+
+#include <poll.h>
+#include <sys/epoll.h>
+
+#include <algorithm>
+#include <cerrno>
+
+using namespace puckloop::shim;
+
+namespace {
+constexpr int kMostWatches = 64;
+
+struct Watch {
+    int epoll_fd = -1;
+    int fd = -1;
+    epoll_event event{};
+    bool armed = false;
+};
+Watch watches[kMostWatches];
+
+Watch* find_watch(int epoll_fd, int fd) {
+    for (Watch& watch : watches) {
+        if (watch.epoll_fd == epoll_fd && watch.fd == fd) return &watch;
+    }
+    return nullptr;
+}
+
+int change_watch(int epoll_fd, int operation, int fd, const epoll_event* event) {
+    Watch* watch = find_watch(epoll_fd, fd);
+    if (operation == EPOLL_CTL_DEL) {
+        if (watch == nullptr) {
+            errno = ENOENT;
+            return -1;
+        }
+        *watch = {};
+        return 0;
+    }
+    if ((operation == EPOLL_CTL_ADD) != (watch == nullptr)) {
+        errno = watch == nullptr ? ENOENT : EEXIST;
+        return -1;
+    }
+    if (watch == nullptr) watch = find_watch(-1, -1);
+    if (watch == nullptr) {
+        errno = ENOSPC;
+        return -1;
+    }
+    *watch = {epoll_fd, fd, *event, true};
+    return 0;
+}
+
+/// Devices that are ready in `entries` become events.
+int gather(int epoll_fd, const pollfd* entries, nfds_t count, epoll_event* events, int most) {
+    int total = 0;
+    for (nfds_t i = 0; i < count && total < most; ++i) {
+        if (entries[i].revents == 0 || entries[i].fd == epoll_fd) continue;
+        Watch* watch = find_watch(epoll_fd, entries[i].fd);
+        if (watch == nullptr) continue;
+        events[total] = watch->event;
+        events[total++].events = static_cast<std::uint32_t>(entries[i].revents);
+        if ((watch->event.events & EPOLLONESHOT) != 0) watch->armed = false;
+    }
+    return total;
+}
+}  // namespace
+
+SHIM_EXPORT int epoll_create1(int flags) noexcept {
+    const int fd = REAL(epoll_create1)(flags);
+    if (active()) mark_internal(fd);
+    return fd;
+}
+
+SHIM_EXPORT int epoll_create(int) noexcept {
+    return epoll_create1(0);
+}
+
+SHIM_EXPORT int epoll_ctl(int epoll_fd, int operation, int fd, epoll_event* event) noexcept {
+    if (open_file(fd) == nullptr) return REAL(epoll_ctl)(epoll_fd, operation, fd, event);
+    charge(page().charges.device);
+    return change_watch(epoll_fd, operation, fd, event);
+}
+
+SHIM_EXPORT int epoll_wait(int epoll_fd, epoll_event* events, int most, int timeout) {
+    if (!active()) return REAL(epoll_wait)(epoll_fd, events, most, timeout);
+    const Time deadline = timeout < 0 ? kNever : time_after(timeout * kMillisecond);
+    pollfd entries[kMostWatches + 1];
+    nfds_t count = 0;
+    entries[count++] = {epoll_fd, POLLIN, 0};
+    for (const Watch& watch : watches) {
+        if (watch.epoll_fd != epoll_fd || !watch.armed || open_file(watch.fd) == nullptr) continue;
+        entries[count++] = {watch.fd, static_cast<short>(watch.event.events & (POLLIN | POLLOUT | POLLPRI)),
+                            0};
+    }
+    int left = timeout;
+    if (deadline != kNever) left = static_cast<int>((deadline - now() + kMillisecond - 1) / kMillisecond);
+    const int ready = poll(entries, count, left);
+    if (ready <= 0) return ready;
+    const int devices = gather(epoll_fd, entries, count, events, most);
+    if (entries[0].revents == 0 || devices == most) return devices;
+    const int others = REAL(epoll_wait)(epoll_fd, events + devices, most - devices, 0);
+    return others < 0 && devices == 0 ? others : devices + std::max(others, 0);
+}
+
+SHIM_EXPORT int epoll_pwait(int epoll_fd, epoll_event* events, int most, int timeout, const sigset_t* mask) {
+    if (!active()) return REAL(epoll_pwait)(epoll_fd, events, most, timeout, mask);
+    return epoll_wait(epoll_fd, events, most, timeout);
+}

@@ -1,0 +1,54 @@
+// Descriptors that are no devices: files go straight to the host; pipes, sockets and the like may block, and
+// while one thread blocked in the host no other could run. So they are looked at, not waited in.
+
+#include "linuxboard/shim/preload/calls.h"
+#include "linuxboard/shim/preload/open_file.h"
+#include "linuxboard/shim/preload/real.h"
+
+#include <poll.h>
+#include <sys/stat.h>
+
+#include <bitset>
+#include <climits>
+
+namespace puckloop::shim {
+
+namespace {
+constexpr int kMostDescriptors = 4096;
+std::bitset<kMostDescriptors> internal;
+const char the_external_key = 0;
+}  // namespace
+
+const void* external_key() {
+    return &the_external_key;
+}
+
+void mark_internal(int fd) {
+    if (fd >= 0 && fd < kMostDescriptors) internal.set(static_cast<std::size_t>(fd));
+}
+
+bool is_internal(int fd) {
+    return fd >= 0 && fd < kMostDescriptors && internal.test(static_cast<std::size_t>(fd));
+}
+
+void external_changed() {
+    wake(&the_external_key, INT_MAX);
+}
+
+bool await_external(int fd, short events) {
+    pollfd entry{fd, events, 0};
+    while (REAL(poll)(&entry, 1, 0) == 0) {
+        if (!is_internal(fd)) {
+            note("the program waits on descriptor %d, which is outside of simulated time: runs may differ",
+                 fd);
+        }
+        WaitOptions options;
+        options.deadline = time_after(kExternalPeriod);
+        options.interruptible = true;
+        options.cancellable = true;
+        if (park(&the_external_key, options) == Wake::Signal) return false;
+    }
+    return true;
+}
+
+}  // namespace puckloop::shim

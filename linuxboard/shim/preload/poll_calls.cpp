@@ -1,0 +1,191 @@
+// poll, select and epoll over our devices and everything else the program has open.
+//
+// Devices are waited for by the node, in simulated time; other descriptors are looked at on each wake-up and
+// every millisecond of simulated time.
+
+#include "linuxboard/shim/preload/calls.h"
+#include "linuxboard/shim/preload/open_file.h"
+#include "linuxboard/shim/preload/real.h"
+
+#include <poll.h>
+#include <signal.h>
+#include <sys/epoll.h>
+#include <sys/select.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+using namespace puckloop::shim;
+
+namespace puckloop::shim {
+
+namespace {
+constexpr nfds_t kMostEntries = 256;
+
+/// The device entries through the node until `deadline`; number ready, or -1 and EINTR.
+int poll_devices(pollfd* entries, nfds_t count, Time deadline) {
+    wire::PollEntry list[kMostEntries];
+    nfds_t indices[kMostEntries];
+    std::size_t total = 0;
+    for (nfds_t i = 0; i < count && total < kMostEntries; ++i) {
+        const OpenFile* file = open_file(entries[i].fd);
+        if (file == nullptr) continue;
+        if (file->kind == OpenFile::Kind::Random) {
+            entries[i].revents = static_cast<short>(entries[i].events & (POLLIN | POLLOUT));
+            continue;
+        }
+        list[total] = {file->handle, entries[i].events, 0};
+        indices[total++] = i;
+    }
+    wire::Request request;
+    request.op = wire::Op::Poll;
+    request.deadline = deadline;
+    const std::size_t size = total * sizeof list[0];
+    const auto ready = device_call(request, list, size, list, size, true);
+    if (ready < 0) return -1;
+    for (std::size_t i = 0; i < total; ++i)
+        entries[indices[i]].revents = list[i].returned;
+    return static_cast<int>(ready);
+}
+
+/// What the host says of the entries that are no devices, right now.
+int poll_outside(pollfd* entries, nfds_t count) {
+    pollfd list[kMostEntries];
+    nfds_t indices[kMostEntries];
+    nfds_t total = 0;
+    for (nfds_t i = 0; i < count && total < kMostEntries; ++i) {
+        if (entries[i].fd < 0 || open_file(entries[i].fd) != nullptr) continue;
+        list[total] = entries[i];
+        indices[total++] = i;
+    }
+    if (total == 0) return 0;
+    const int ready = REAL(poll)(list, total, 0);
+    for (nfds_t i = 0; i < total; ++i)
+        entries[indices[i]].revents = list[i].revents;
+    return ready;
+}
+
+void name_outside_wait(const pollfd* entries, nfds_t count) {
+    for (nfds_t i = 0; i < count; ++i) {
+        const int fd = entries[i].fd;
+        if (fd >= 0 && open_file(fd) == nullptr && !is_internal(fd))
+            note("the program waits on descriptor %d, which is outside of simulated time: runs may differ",
+                 fd);
+    }
+}
+
+int poll_until(pollfd* entries, nfds_t count, Time deadline) {
+    mark_call("poll");
+    pthread_testcancel();
+    charge(page().charges.device);
+    bool has_device = false;
+    bool has_outside = false;
+    for (nfds_t i = 0; i < count; ++i) {
+        entries[i].revents = 0;
+        if (entries[i].fd < 0) continue;
+        (open_file(entries[i].fd) != nullptr ? has_device : has_outside) = true;
+    }
+    if (has_device && !has_outside) return poll_devices(entries, count, deadline);
+    while (true) {
+        int ready = poll_outside(entries, count);
+        if (ready < 0) return -1;
+        if (has_device) {
+            const bool waits = ready == 0 && deadline > now();
+            const Time until = waits ? std::min(deadline, time_after(kExternalPeriod)) : now();
+            if (waits) name_outside_wait(entries, count);
+            const int devices = poll_devices(entries, count, until);
+            if (devices < 0) return -1;
+            ready += devices;
+            if (ready == 0 && waits) ready = poll_outside(entries, count);
+        }
+        if (ready != 0 || now() >= deadline) return ready;
+        if (has_device) continue;
+        if (has_outside) name_outside_wait(entries, count);
+        WaitOptions options;
+        options.deadline = has_outside ? std::min(deadline, time_after(kExternalPeriod)) : deadline;
+        options.interruptible = true;
+        options.cancellable = true;
+        if (park(external_key(), options) == Wake::Signal) {
+            errno = EINTR;
+            return -1;
+        }
+    }
+}
+
+Time deadline_of(const timespec* timeout) {
+    return timeout == nullptr ? kNever : time_after(from_timespec(*timeout));
+}
+
+int select_until(int count, fd_set* reads, fd_set* writes, fd_set* errors, Time deadline) {
+    pollfd entries[kMostEntries];
+    nfds_t total = 0;
+    for (int fd = 0; fd < count && total < kMostEntries; ++fd) {
+        int events = 0;
+        if (reads != nullptr && FD_ISSET(fd, reads)) events |= POLLIN;
+        if (writes != nullptr && FD_ISSET(fd, writes)) events |= POLLOUT;
+        if (errors != nullptr && FD_ISSET(fd, errors)) events |= POLLPRI;
+        if (events != 0) entries[total++] = {fd, static_cast<short>(events), 0};
+    }
+    const int result = poll_until(entries, total, deadline);
+    if (result < 0) return result;
+    int bits = 0;
+    for (nfds_t i = 0; i < total; ++i) {
+        if ((entries[i].revents & POLLNVAL) != 0) {
+            errno = EBADF;
+            return -1;
+        }
+    }
+    for (nfds_t i = 0; i < total; ++i) {
+        const pollfd& entry = entries[i];
+        const auto settle = [&](fd_set* set, int wanted, int happened) {
+            if (set == nullptr || (entry.events & wanted) == 0) return;
+            if ((entry.revents & happened) != 0) {
+                ++bits;
+            } else {
+                FD_CLR(entry.fd, set);
+            }
+        };
+        settle(reads, POLLIN, POLLIN | POLLHUP | POLLERR);
+        settle(writes, POLLOUT, POLLOUT | POLLERR);
+        settle(errors, POLLPRI, POLLPRI);
+    }
+    return bits;
+}
+}  // namespace
+
+}  // namespace puckloop::shim
+
+SHIM_EXPORT int poll(pollfd* entries, nfds_t count, int timeout) {
+    if (!active()) return REAL(poll)(entries, count, timeout);
+    return poll_until(entries, count, timeout < 0 ? kNever : time_after(timeout * kMillisecond));
+}
+
+SHIM_EXPORT int __poll_chk(pollfd* entries, nfds_t count, int timeout, size_t) {
+    return poll(entries, count, timeout);
+}
+
+SHIM_EXPORT int ppoll(pollfd* entries, nfds_t count, const timespec* timeout, const sigset_t* mask) {
+    if (!active()) return REAL(ppoll)(entries, count, timeout, mask);
+    return poll_until(entries, count, deadline_of(timeout));
+}
+
+SHIM_EXPORT int select(int count, fd_set* reads, fd_set* writes, fd_set* errors, timeval* timeout) {
+    if (!active()) return REAL(select)(count, reads, writes, errors, timeout);
+    Time deadline = kNever;
+    if (timeout != nullptr)
+        deadline = time_after(timeout->tv_sec * kSecond + timeout->tv_usec * kMicrosecond);
+    const int result = select_until(count, reads, writes, errors, deadline);
+    if (timeout != nullptr) {  // as Linux does: what is left
+        const Time left = std::max<Time>(0, deadline - now());
+        timeout->tv_sec = left / kSecond;
+        timeout->tv_usec = left % kSecond / kMicrosecond;
+    }
+    return result;
+}
+
+SHIM_EXPORT int pselect(int count, fd_set* reads, fd_set* writes, fd_set* errors, const timespec* timeout,
+                        const sigset_t* mask) {
+    if (!active()) return REAL(pselect)(count, reads, writes, errors, timeout, mask);
+    return select_until(count, reads, writes, errors, deadline_of(timeout));
+}

@@ -1,0 +1,60 @@
+#pragma once
+// What a scenario says of one Linux program: the JSON text from which its node is made.
+
+#include "cosim/time.h"
+#include "linuxboard/shim/wire.h"
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace puckloop::linuxboard {
+
+/// A signal that the program gets at a simulated time.
+struct TimedSignal {
+    cosim::Time time = 0;
+    int signal = 0;
+};
+
+/// The program is killed (SIGKILL) at `time` and started anew after `down`.
+struct Restart {
+    cosim::Time time = 0;
+    cosim::Time down = 0;
+};
+
+struct LinuxSpec {
+    std::string name = "linux";
+    std::string program;
+    std::vector<std::string> args;
+    std::vector<std::pair<std::string, std::string>> env;  ///< added to the runner's environment
+    std::string cwd;
+    std::string host_name = "epuck1";
+    std::string tty = "/dev/ttyS0";              ///< empty: no serial port
+    std::vector<std::string> i2c{"/dev/i2c-3"};  ///< names of the one adapter at the port `i2c`
+    double i2c_hertz = 100'000.0;
+    int i2c_nack_error = 121;  ///< errno value where no slave acknowledges: EREMOTEIO, ENXIO, ...
+    double clock_ppm = 0.0;    ///< error of the board's clock, for the baud rate
+    bool real_time = false;
+    wire::Charges charges;
+    std::int64_t epoch_s = 1'767'225'600;  ///< wall clock at simulated time 0: 2026-01-01T00:00:00Z
+    double uptime_s = 60.0;                ///< CLOCK_MONOTONIC at simulated time 0
+    std::uint64_t seed = 1;
+    std::string log;           ///< file for the program's output; empty: discarded
+    bool echo_output = false;  ///< the program's output goes to this terminal as well
+    std::string stdin_file;    ///< empty: /dev/null
+    cosim::Time start = 0;
+    std::vector<Restart> restarts;
+    std::vector<TimedSignal> signals;
+    std::vector<cosim::Time> hangups;
+    bool exit_ends_run = true;
+    double watchdog_s = 10.0;  ///< wall-clock seconds a program may compute without letting time pass
+    std::string shim;          ///< the preloaded library; empty: the one built with this program
+};
+
+/// Throws InputError naming the key. Keys are the members above; times in seconds (`start_s`, `down_s`,
+/// `hangup_at`), charges in microseconds.
+LinuxSpec parse_linux_spec(std::string_view json);
+
+}  // namespace puckloop::linuxboard

@@ -1,0 +1,157 @@
+#include "linuxboard/shim/tty_port.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace puckloop::linuxboard {
+
+using cosim::kNever;
+using cosim::Time;
+using cosim::UartFrame;
+
+void TtyPort::open() {
+    if (opens_++ == 0) {
+        hung_up_ = false;
+        stopped_ = false;
+        discipline_.discard();
+        arriving_.clear();
+        last_input_ = kNever;
+    }
+}
+
+void TtyPort::close() {
+    if (opens_ > 0 && --opens_ == 0) {
+        discipline_.discard();
+        arriving_.clear();
+    }
+}
+
+void TtyPort::hang_up() {
+    hung_up_ = true;
+    discipline_.discard();
+    arriving_.clear();
+    output_.clear();
+}
+
+void TtyPort::deliver(const UartFrame& frame, Time delivered) {
+    if (!is_open() || hung_up_ || (settings_.c_cflag & CREAD) == 0) return;
+    const protocols::UartReceiver receiver = receiver_of(settings_, ppm_);
+    if (receiver.bit_period == 0) return;
+    for (const auto& character : protocols::sample_frame(frame, receiver, receiver_ready_)) {
+        receiver_ready_ = character.time;
+        arriving_.push_back({std::max(character.time, delivered), character});
+    }
+}
+
+void TtyPort::take(const protocols::ReceivedCharacter& character) {
+    ++counters_.received;
+    if (character.is_break) {
+        ++counters_.breaks;
+    } else if (character.framing_error) {
+        ++counters_.framing;
+    } else if (character.parity_error) {
+        ++counters_.parity;
+    }
+    const LineDiscipline::Effect effect = discipline_.receive(character, settings_);
+    if (effect.stop_output) stopped_ = true;
+    if (effect.start_output) start_output(last_input_);
+    if (!effect.echo.empty()) {
+        for (const char byte : effect.echo) {
+            if (output_room() > 0) output_.push_back({byte, last_input_, 0});
+        }
+    }
+}
+
+void TtyPort::advance(Time now, std::vector<UartFrame>& sent) {
+    while (!arriving_.empty() && arriving_.front().time <= now) {
+        last_input_ = arriving_.front().time;
+        take(arriving_.front().character);
+        if (!arriving_.empty()) arriving_.pop_front();
+    }
+    while (can_send() && next_frame(0) <= now) {
+        const Output next = output_.front();
+        output_.pop_front();
+        const protocols::UartReceiver format = receiver_of(settings_, ppm_);
+        UartFrame frame;
+        frame.start = std::max({next.not_before, line_free_, released_});
+        frame.bit_period = format.bit_period;
+        frame.data_bits = format.data_bits;
+        frame.parity = format.parity;
+        frame.stop_bits = (settings_.c_cflag & CSTOPB) != 0 ? 2 : 1;
+        if (next.break_length > 0) {
+            frame.is_break = 1;
+        } else {
+            frame.data = static_cast<std::uint16_t>(static_cast<unsigned char>(next.byte) &
+                                                    ((1u << format.data_bits) - 1));
+            const bool odd = std::popcount(frame.data) % 2 == 1;
+            if (frame.parity != 0) frame.parity_bit = odd == (frame.parity == 2) ? 1 : 0;
+        }
+        line_free_ = std::max(protocols::frame_end(frame), frame.start + next.break_length);
+        ++counters_.sent;
+        sent.push_back(frame);
+    }
+}
+
+Time TtyPort::next_frame(Time now) const {
+    if (!can_send()) return kNever;
+    return std::max({output_.front().not_before, line_free_, released_, now});
+}
+
+Time TtyPort::next_event() const {
+    Time next = next_frame(0);
+    if (!arriving_.empty()) next = std::min(next, arriving_.front().time);
+    return next;
+}
+
+bool TtyPort::echoes() const {
+    return is_open() && ((settings_.c_lflag & (ECHO | ECHONL)) != 0 || (settings_.c_iflag & IXON) != 0);
+}
+
+bool TtyPort::input_ready() const {
+    if (hung_up_) return true;
+    if (canonical()) return discipline_.has_line();
+    const std::size_t minimum = settings_.c_cc[VMIN];
+    const std::size_t needed = settings_.c_cc[VTIME] == 0 && minimum > 0 ? minimum : 1;
+    return discipline_.readable(settings_) >= needed;
+}
+
+std::size_t TtyPort::write(std::string_view data, Time now) {
+    std::size_t taken = 0;
+    for (const char byte : data) {
+        const std::string out = LineDiscipline::output(byte, settings_);
+        if (output_room() < out.size()) break;
+        for (const char wire_byte : out)
+            output_.push_back({wire_byte, now, 0});
+        ++taken;
+    }
+    return taken;
+}
+
+void TtyPort::send_break(Time now, Time length) {
+    output_.push_back({0, now, std::max<Time>(length, 1)});
+}
+
+void TtyPort::configure(const termios& settings) {
+    const bool leaves_canonical = canonical() && (settings.c_lflag & ICANON) == 0;
+    settings_ = settings;
+    cfsetispeed(&settings_, cfgetospeed(&settings_));
+    if (leaves_canonical) stopped_ = false;
+}
+
+void TtyPort::flush_output() {
+    output_.clear();
+}
+
+void TtyPort::start_output(Time now) {
+    if (!stopped_) return;
+    stopped_ = false;
+    released_ = now;
+}
+
+wire::TtyCounters TtyPort::counters() const {
+    wire::TtyCounters counters = counters_;
+    counters.buffer_overrun = static_cast<std::uint32_t>(discipline_.dropped());
+    return counters;
+}
+
+}  // namespace puckloop::linuxboard

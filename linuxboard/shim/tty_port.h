@@ -1,0 +1,112 @@
+#pragma once
+// A serial port of the Linux board: UART, driver buffers and line discipline in simulated time.
+//
+// Bytes leave back to back from the moment they are written, at the programmed rate and format; received
+// frames are sampled at the port's own rate. A port that no program has open hears nothing.
+//
+// Deviations: 1. The receive FIFO hands every character on as it comes (no trigger level or time-out).
+// 2. No modem lines: DCD, DSR and CTS read as set, RTS and DTR are stored. 3. CRTSCTS does not stop output.
+// 4. Input speed equals output speed.
+
+#include "cosim/message.h"
+#include "cosim/time.h"
+#include "linuxboard/shim/line_discipline.h"
+#include "linuxboard/shim/tty_settings.h"
+#include "linuxboard/shim/wire.h"
+
+#include <deque>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace puckloop::linuxboard {
+
+class TtyPort {
+  public:
+    /// Bytes the driver takes before write() blocks.
+    static constexpr std::size_t kOutputSize = 4095;
+
+    /// `ppm` is the error of the board's clock.
+    explicit TtyPort(double ppm = 0.0) : ppm_(ppm) {}
+
+    void open();
+    /// The last close: what is written still goes out, what is received is dropped from now on.
+    void close();
+    bool is_open() const { return opens_ > 0; }
+    /// The line is gone until the next open: reads return 0, writes fail.
+    void hang_up();
+    bool hung_up() const { return hung_up_; }
+
+    /// A frame that was delivered at `delivered`.
+    void deliver(const cosim::UartFrame& frame, cosim::Time delivered);
+    /// Handles everything up to and including `now`; frames begun go to `sent`.
+    void advance(cosim::Time now, std::vector<cosim::UartFrame>& sent);
+    /// When advance() next has something to do.
+    cosim::Time next_event() const;
+    /// Start of the next frame if nothing changes: at or after `now`; kNever if none is queued.
+    cosim::Time next_frame(cosim::Time now) const;
+    /// A received character may cause output without the program (echo, flow control).
+    bool echoes() const;
+
+    std::size_t readable() const { return discipline_.readable(settings_); }
+    /// What read() and poll() wait for: a line, or VMIN bytes where VTIME is 0, or one byte.
+    bool input_ready() const;
+    std::size_t input_queue() const { return discipline_.queued(settings_); }
+    std::string read(std::size_t most) { return discipline_.take(most, settings_); }
+    bool canonical() const { return (settings_.c_lflag & ICANON) != 0; }
+    /// Time of the last character that came in, or kNever before the first.
+    cosim::Time last_input() const { return last_input_; }
+
+    /// Takes as many bytes as there is room for.
+    std::size_t write(std::string_view data, cosim::Time now);
+    std::size_t output_room() const {
+        return output_.size() >= kOutputSize ? 0 : kOutputSize - output_.size();
+    }
+    /// Bytes not yet on the wire, the one being shifted out included.
+    std::size_t output_queue(cosim::Time now) const { return output_.size() + (now < line_free_ ? 1 : 0); }
+    bool drained(cosim::Time now) const { return output_.empty() && now >= line_free_; }
+    /// When drained() becomes true, as far as that is known.
+    cosim::Time drain_time() const { return output_.empty() ? line_free_ : cosim::kNever; }
+    /// A break of `length`, after what is already written.
+    void send_break(cosim::Time now, cosim::Time length);
+
+    const termios& settings() const { return settings_; }
+    void configure(const termios& settings);
+    void flush_input() { discipline_.discard(); }
+    void flush_output();
+    void stop_output() { stopped_ = true; }
+    void start_output(cosim::Time now);
+
+    wire::TtyCounters counters() const;
+
+  private:
+    void take(const protocols::ReceivedCharacter& character);
+    bool can_send() const { return !output_.empty() && !stopped_ && bit_period(settings_, ppm_) != 0; }
+
+    struct Arrival {
+        cosim::Time time = 0;
+        protocols::ReceivedCharacter character;
+    };
+    struct Output {
+        char byte = 0;
+        cosim::Time not_before = 0;
+        cosim::Time break_length = 0;
+    };
+
+    double ppm_;
+    termios settings_ = initial_termios();
+    LineDiscipline discipline_;
+    std::deque<Arrival> arriving_;
+    std::deque<Output> output_;
+    cosim::Time receiver_ready_ = 0;
+    cosim::Time line_free_ = 0;
+    cosim::Time released_ = 0;
+    cosim::Time last_input_ = cosim::kNever;
+    int opens_ = 0;
+    bool hung_up_ = false;
+    bool stopped_ = false;
+    wire::TtyCounters counters_;
+};
+
+}  // namespace puckloop::linuxboard

@@ -1,0 +1,46 @@
+#pragma once
+// What a UART receiver makes of a frame on its line: it samples the line in the middle of its own bits.
+
+#include "cosim/message.h"
+#include "cosim/time.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace puckloop::protocols {
+
+/// How a receiver is set.
+struct UartReceiver {
+    cosim::Time bit_period = 0;  ///< of its own baud-rate generator, picoseconds, > 0
+    std::uint8_t data_bits = 8;  ///< 5..9
+    std::uint8_t parity = 0;     ///< 0 none, 1 odd, 2 even
+};
+
+/// One character as the receiver took it.
+struct ReceivedCharacter {
+    std::uint16_t data = 0;
+    bool framing_error = false;  ///< the stop bit was low
+    bool parity_error = false;
+    bool is_break = false;  ///< all bits low, stop bit included
+    cosim::Time start = 0;  ///< the falling edge that it took for a start bit
+    cosim::Time time = 0;   ///< middle of its stop bit: the character is there
+};
+
+/// True where the frame leaves the line at mark. The line is idle before and after the frame.
+bool line_is_mark(const cosim::UartFrame& frame, cosim::Time time);
+
+/// End of the frame's last stop bit.
+cosim::Time frame_end(const cosim::UartFrame& frame);
+
+/// The stop bit begins.
+cosim::Time stop_bit_start(const cosim::UartFrame& frame);
+
+/// The characters that a receiver, free from `ready` on, reads out of one frame: usually one; none if the
+/// receiver was still busy; several if it is faster than the sender.
+///
+/// Deviation: every frame is sampled as if the line idled after it, so a receiver that is slower than the
+/// sender takes the bits of the following frame for mark.
+std::vector<ReceivedCharacter> sample_frame(const cosim::UartFrame& frame, const UartReceiver& receiver,
+                                            cosim::Time ready);
+
+}  // namespace puckloop::protocols

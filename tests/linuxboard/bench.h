@@ -1,0 +1,62 @@
+#pragma once
+// One Linux node on a bench: the test plays the other ends of its serial port and its I2C bus.
+
+#include "linuxboard/shim/linux_node.h"
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace puckloop::tests {
+
+/// Folder of the small programs of tests/linuxboard/programs, as built.
+std::string program(const std::string& name);
+/// A node's description: the program with its arguments, and a log file of its own.
+linuxboard::LinuxSpec spec_for(const std::string& name, std::vector<std::string> args = {});
+
+class Bench {
+  public:
+    /// Time is granted in steps of `slice`, at most 78 us so that nothing can be answered within one.
+    explicit Bench(linuxboard::LinuxSpec spec, cosim::Time slice = 70 * cosim::kMicrosecond);
+    ~Bench();  ///< removes the log
+    Bench(const Bench&) = delete;
+    Bench& operator=(const Bench&) = delete;
+
+    /// A byte arrives at 115200 8N1, its start bit at `start`.
+    void send(cosim::Time start, std::uint8_t byte, double baud = 115'200.0);
+    void send(cosim::Time start, const std::string& bytes);
+    /// A device on the bus whose first written byte is a register number that counts up.
+    void add_device(std::uint8_t address, std::map<std::uint8_t, std::uint8_t> registers);
+    /// Called for every byte that the program sends.
+    std::function<void(cosim::Time, std::uint8_t)> on_byte;
+
+    /// Runs until `end` or until the node wants the run to end.
+    void run(cosim::Time end);
+
+    linuxboard::LinuxNode& node() { return node_; }
+    /// All messages that left the node, as text.
+    const std::string& trace() const { return trace_; }
+    const std::string& sent() const { return sent_; }
+    std::string log() const;
+    cosim::Time now() const { return now_; }
+
+  private:
+    void answer_i2c(const cosim::I2cPhase& phase);
+    void queue(cosim::Message message);
+
+    linuxboard::LinuxSpec spec_;
+    linuxboard::LinuxNode node_;
+    cosim::Time slice_;
+    cosim::Time now_ = 0;
+    std::vector<cosim::Message> pending_;
+    std::map<std::uint8_t, std::map<std::uint8_t, std::uint8_t>> devices_;
+    std::uint8_t address_ = 0;
+    std::uint8_t register_ = 0;
+    bool register_set_ = false;
+    std::string trace_;
+    std::string sent_;
+};
+
+}  // namespace puckloop::tests

@@ -1,0 +1,98 @@
+// Small programs that know of no emulator, under the preloaded library.
+
+#include "tests/linuxboard/bench.h"
+
+#include <catch2/catch.hpp>
+
+using namespace puckloop;
+using namespace puckloop::cosim;
+using namespace puckloop::tests;
+
+TEST_CASE("bytes go to the program and back at 115200 baud") {
+    Bench bench(spec_for("echo"));
+    bench.send(5 * kMillisecond, "ABC");
+    bench.send(8 * kMillisecond, std::string(1, '\0'));
+    bench.run(20 * kMillisecond);
+    CHECK(bench.sent() == "BCD");
+    REQUIRE(bench.node().stop());
+    CHECK(bench.node().stop()->success);
+    CHECK(bench.node().stop()->reason.find("exited with status 0") != std::string::npos);
+    // The first byte is there in the middle of its stop bit, 9.5 bit times after its start; the answer begins
+    // after two charged calls (the read that returned is charged before it waits, the write 2 us).
+    const Time expected = 5 * kMillisecond + Time{9} * 8'680'555 + 8'680'556 / 2 + 2 * kMicrosecond;
+    const Time start = std::stoll(bench.trace().substr(bench.trace().find("uart ") + 5));
+    CHECK(start == Approx(expected).margin(20.0));
+}
+
+TEST_CASE("clocks and sleeps follow simulated time") {
+    Bench bench(spec_for("clocks"));
+    bench.run(2 * kSecond);
+    CHECK(bench.log().find("host epuck12\n") == 0);
+    // Sleeps end on the picosecond; the clock reading after each costs 1 us.
+    CHECK(bench.log().find("10001 20001 30001 0\n") != std::string::npos);
+    CHECK(bench.log().find("mono 60") != std::string::npos);
+    CHECK(bench.sent() == std::string("\0\1\2\3\4", 5));
+    REQUIRE(bench.node().stop());
+    CHECK(bench.node().stop()->success);
+    CHECK(to_seconds(bench.node().stop()->time) == Approx(0.3).margin(0.001));
+}
+
+TEST_CASE("VMIN and VTIME are kept") {
+    const auto run = [](const char* vmin, const char* vtime, bool send) {
+        Bench bench(spec_for("vmin", {vmin, vtime}));
+        if (send) {
+            bench.send(50 * kMillisecond, "abc");
+            bench.send(120 * kMillisecond, "def");
+            bench.send(500 * kMillisecond, "gh");
+            bench.send(900 * kMillisecond, "i");
+        }
+        bench.run(3 * kSecond);
+        return bench.log();
+    };
+    CHECK(run("3", "0", true) == "3 bytes at 50 ms\n3 bytes at 120 ms\n3 bytes at 900 ms\nnonblocking -1\n");
+    CHECK(run("0", "2", true) == "1 bytes at 50 ms\n1 bytes at 50 ms\n1 bytes at 50 ms\nnonblocking -1\n");
+    CHECK(run("10", "2", true) ==
+          "6 bytes at 320 ms\n2 bytes at 700 ms\n1 bytes at 1100 ms\nnonblocking -1\n");
+    CHECK(run("0", "3", false) ==
+          "0 bytes at 300 ms\n0 bytes at 600 ms\n0 bytes at 900 ms\nnonblocking -1\n");
+}
+
+TEST_CASE("threads run in an order that simulated time decides") {
+    std::string first;
+    for (const Time slice : {70 * kMicrosecond, 13 * kMicrosecond, 1 * kMicrosecond}) {
+        Bench bench(spec_for("threads"), slice);
+        bench.run(kSecond);
+        REQUIRE(bench.node().stop());
+        CHECK(bench.node().stop()->success);
+        CHECK(bench.sent().size() == 52);
+        CHECK(bench.sent().ends_with("!C"));
+        if (first.empty()) first = bench.trace();
+        CHECK(bench.trace() == first);
+    }
+}
+
+TEST_CASE("the threads of the C++ library wait in simulated time") {
+    std::string first;
+    for (int i = 0; i < 3; ++i) {
+        Bench bench(spec_for("modern"));
+        bench.run(kSecond);
+        REQUIRE(bench.node().stop());
+        INFO(bench.node().stop()->reason);
+        CHECK(bench.node().stop()->success);
+        CHECK(bench.sent() == "TNWFA");
+        CHECK(bench.log().starts_with("11 ms, random "));
+        if (first.empty()) first = bench.trace() + bench.log();
+        CHECK(bench.trace() + bench.log() == first);
+    }
+}
+
+TEST_CASE("I2C transfers take their time on the bus") {
+    Bench bench(spec_for("ground"));
+    bench.add_device(0x60, {{0, 0x03}, {1, 0x20}, {2, 0x02}, {3, 0x10}, {4, 0x01}, {5, 0xff}});
+    bench.run(kSecond);
+    CHECK(bench.log() == "03 20 02 10 01 ff | 2 02 10 | 0 20 | -1 Remote I/O error\n");
+    REQUIRE(bench.node().stop());
+    CHECK(bench.node().stop()->success);
+    // Six times (2 + 2 bytes and a STOP each), 5 bytes, 4 bytes, 1 byte: 34 bytes of 90 us and 15 STOPs.
+    CHECK(to_seconds(bench.node().stop()->time) == Approx(0.00325).margin(0.0001));
+}
