@@ -1,0 +1,36 @@
+/* The e-puck main board's firmware: start everything, then serve the Linux board. */
+
+#include "board.h"
+#include "clock.h"
+#include "leds.h"
+#include "motors.h"
+#include "proximity.h"
+#include "registers.h"
+#include "session.h"
+#include "uart.h"
+
+/* Camera and sound are not used: held in reset. The I2C pins stay inputs, the bus is the Linux board's. */
+static void quiet_the_rest(void) {
+    LATC &= ~CAMERA_RESET;
+    TRISC &= ~CAMERA_RESET;
+    LATF &= ~AUDIO_ON;
+    TRISF &= ~AUDIO_ON;
+}
+
+int main(void) {
+    const u8 power_on = (RCON & (POR | BOR)) != 0;
+    RCON &= ~RESET_CAUSES;
+    quiet_the_rest();
+    leds_start();
+    motors_start();
+    clock_start();
+    proximity_start();
+    uart_start();
+    while (!proximity_ready())
+        IDLE(); /* 13 ms; what Linux sends meanwhile is kept */
+    session_start(!power_on);
+    for (;;) {
+        session_step();
+        IDLE();
+    }
+}

@@ -1,0 +1,19 @@
+/* Proximity and ambient light: the converter scans the eight phototransistors without pause (81.38 us a
+ * scan); the emitters of one pair of opposite sensors are pulsed in turn, and the value just before the pulse
+ * and the one at its end are kept. A round of four pairs takes 13.02 ms. */
+#ifndef EPUCK_PROXIMITY_H
+#define EPUCK_PROXIMITY_H
+
+#include "types.h"
+
+#define SENSORS 8
+
+void proximity_start(void);
+/* 0 until the first round is complete. */
+u8 proximity_ready(void);
+/* Ambient minus lit, ADC counts; more than 0 where something reflects. */
+s16 proximity(u8 sensor);
+/* Raw ambient value, 0..4095, bright is small. */
+s16 ambient(u8 sensor);
+
+#endif
