@@ -22,6 +22,8 @@ namespace {
 
 using WallClock = std::chrono::steady_clock;
 constexpr double kProgressSeconds = 0.2;
+// What is recorded is on disk after so long, should this very process be killed.
+constexpr double kFlushSeconds = 1.0;
 // With --realtime, how far ahead of the wall clock nodes are let, and how long to sleep when they are there.
 constexpr Time kPaceSlack = kMillisecond;
 constexpr std::chrono::microseconds kPaceSleep{500};
@@ -69,7 +71,7 @@ class Conductor::State {
     void take_stop(std::size_t n, Time before);
     void take_deliveries(std::size_t sender);
     void release_trace(Time floor);
-    void tell_progress();
+    void keep_house();
     bool stuck() const;
     [[noreturn]] void deadlock() const;
     void fail(Outcome& outcome, const std::string& text);
@@ -101,6 +103,7 @@ class Conductor::State {
     std::uint64_t grants_ = 0;
     WallClock::time_point start_{};
     double told_wall_ = 0.0;
+    double flushed_wall_ = 0.0;
     Time told_time_ = 0;
 };
 
@@ -185,7 +188,7 @@ void Conductor::State::loop() {
         }
         collect();
         if (merger_.waiting() >= kTraceBatch) release_trace(std::min(bounds_.floor(), end_));
-        tell_progress();
+        keep_house();
     }
 }
 
@@ -297,14 +300,21 @@ void Conductor::State::release_trace(Time floor) {
     });
 }
 
-void Conductor::State::tell_progress() {
-    if (!options_.progress) return;
+void Conductor::State::keep_house() {
     const double wall = seconds_since(start_);
-    if (wall - told_wall_ < kProgressSeconds) return;
-    const Time time = schedule_.reached();
-    options_.progress({time, wall, to_seconds(time - told_time_) / (wall - told_wall_)});
-    told_wall_ = wall;
-    told_time_ = time;
+    if (wall - told_wall_ >= kProgressSeconds) {
+        const Time time = schedule_.reached();
+        if (options_.progress)
+            options_.progress({time, wall, to_seconds(time - told_time_) / (wall - told_wall_)});
+        told_wall_ = wall;
+        told_time_ = time;
+    }
+    if (wall - flushed_wall_ >= kFlushSeconds) {
+        release_trace(std::min(bounds_.floor(), end_));
+        for (TraceSink* sink : sinks)
+            sink->flush();
+        flushed_wall_ = wall;
+    }
 }
 
 bool Conductor::State::stuck() const {

@@ -8,6 +8,14 @@
 
 namespace puckloop::tools {
 
-inline constexpr std::array<DeclareCommand, 0> kCommands{};
+void declare_asm(CLI::App& app, int& status);
+void declare_disasm(CLI::App& app, int& status);
+void declare_trace(CLI::App& app, int& status);
+
+inline constexpr std::array kCommands{
+    declare_asm,
+    declare_disasm,
+    declare_trace,
+};
 
 }  // namespace puckloop::tools

@@ -80,11 +80,6 @@ void PicNode::receive(const cosim::Message& message) {
 }
 
 cosim::Time PicNode::promise(cosim::PortIndex port) const {
-    if (port == kUart1 || port == kUart2) {
-        // While a frame is being shifted out the next message is that one, stamped with its stop bit.
-        const int unit = uart_unit(port);
-        if (chip_->uart_begun(unit)) return std::max(granted_, chip_->earliest_uart_send(unit, 0));
-    }
     if (port == kI2c) return std::max(granted_, chip_->earliest_i2c(kI2cUnit));
     return granted_;
 }

@@ -49,8 +49,10 @@ TEST_CASE("a script end sends its lines in order and keeps what it hears") {
     CHECK(end.next() == 2 * cosim::kSecond);
     CHECK(end.take() == 3);
     CHECK(end.next() == cosim::kNever);
-    end.receive(9, true);
-    CHECK(end.received() == std::vector<std::uint8_t>{9});
+    end.receive(9, true, 77);
+    REQUIRE(end.received().size() == 1);
+    CHECK(end.received()[0].byte == 9);
+    CHECK(end.received()[0].start == 77);
     CHECK_FALSE(end.live());
 }
 
@@ -60,14 +62,14 @@ TEST_CASE("a TCP end carries bytes both ways, takes one client, and survives its
     CHECK(end->live());
     boost::asio::io_context io;
     const tcp::endpoint there(boost::asio::ip::address_v4::loopback(), port_of(*end));
-    end->receive('x', true);  // nobody there: dropped
+    end->receive('x', true, 0);  // nobody there: dropped
     {
         tcp::socket client(io);
         client.connect(there);
         boost::asio::write(client, boost::asio::buffer("V\r", 2));
         CHECK(take_from(*end, 2) == "V\r");
         for (const char c : std::string("v,1"))
-            end->receive(static_cast<std::uint8_t>(c), true);
+            end->receive(static_cast<std::uint8_t>(c), true, 0);
         end->poll(0, cosim::kNever);
         char got[3];
         boost::asio::read(client, boost::asio::buffer(got));
@@ -106,7 +108,7 @@ TEST_CASE("a pty end is a raw terminal") {
     REQUIRE(write(terminal, "\x01\x03\r\n\0", 5) == 5);
     CHECK(take_from(*end, 5) == std::string("\x01\x03\r\n\0", 5));
     for (const char byte : std::string("\x0C\x0A\x04"))
-        end->receive(static_cast<std::uint8_t>(byte), true);
+        end->receive(static_cast<std::uint8_t>(byte), true, 0);
     end->poll(0, cosim::kNever);
     pollfd waiting{terminal, POLLIN, 0};
     REQUIRE(poll(&waiting, 1, 2000) == 1);

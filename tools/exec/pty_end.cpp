@@ -44,7 +44,9 @@ class PtyEnd : public UartEnd {
         incoming_.pop_front();
         return byte;
     }
-    void receive(std::uint8_t byte, bool /*clean*/) override { outgoing_ += static_cast<char>(byte); }
+    void receive(std::uint8_t byte, bool /*clean*/, cosim::Time /*start*/) override {
+        outgoing_ += static_cast<char>(byte);
+    }
     bool live() const override { return true; }
     std::string announcement() const override { return "pty " + name_; }
     void finish() override { write_out(); }

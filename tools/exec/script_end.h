@@ -20,14 +20,20 @@ class ScriptEnd : public UartEnd {
         for (const std::uint8_t byte : bytes)
             outgoing_.push_back({time, byte});
     }
-    const std::vector<std::uint8_t>& received() const { return received_; }
-    void clear() { received_.clear(); }
+    struct Heard {
+        std::uint8_t byte;
+        bool clean;
+        cosim::Time start;
+    };
+    const std::vector<Heard>& received() const { return received_; }
 
     cosim::Time next() const override {
         return position_ < outgoing_.size() ? outgoing_[position_].time : cosim::kNever;
     }
     std::uint8_t take() override { return outgoing_[position_++].byte; }
-    void receive(std::uint8_t byte, bool /*clean*/) override { received_.push_back(byte); }
+    void receive(std::uint8_t byte, bool clean, cosim::Time start) override {
+        received_.push_back({byte, clean, start});
+    }
 
   private:
     struct Outgoing {
@@ -36,7 +42,7 @@ class ScriptEnd : public UartEnd {
     };
     std::vector<Outgoing> outgoing_;
     std::size_t position_ = 0;
-    std::vector<std::uint8_t> received_;
+    std::vector<Heard> received_;
 };
 
 }  // namespace puckloop::exec

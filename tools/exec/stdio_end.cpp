@@ -29,7 +29,9 @@ class StdioEnd : public UartEnd {
         incoming_.pop_front();
         return byte;
     }
-    void receive(std::uint8_t byte, bool /*clean*/) override { outgoing_ += static_cast<char>(byte); }
+    void receive(std::uint8_t byte, bool /*clean*/, cosim::Time /*start*/) override {
+        outgoing_ += static_cast<char>(byte);
+    }
     bool live() const override { return live_; }
 
     void poll(cosim::Time now, cosim::Time listening_since) override {

@@ -39,7 +39,7 @@ class TcpEnd : public UartEnd {
         incoming_.pop_front();
         return byte;
     }
-    void receive(std::uint8_t byte, bool /*clean*/) override {
+    void receive(std::uint8_t byte, bool /*clean*/, cosim::Time /*start*/) override {
         if (client_.is_open() && outgoing_.size() < kLongestBacklog) outgoing_ += static_cast<char>(byte);
     }
     bool live() const override { return true; }

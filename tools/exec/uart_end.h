@@ -20,8 +20,8 @@ class UartEnd {
     virtual cosim::Time next() const = 0;
     /// Takes that byte.
     virtual std::uint8_t take() = 0;
-    /// A byte came from the chip. `clean` is false after a framing error.
-    virtual void receive(std::uint8_t byte, bool clean) = 0;
+    /// A byte came from the chip, its start bit at `start`. `clean` is false after a framing error.
+    virtual void receive(std::uint8_t byte, bool clean, cosim::Time start) = 0;
     /// Once a simulated millisecond: look at the outside. `listening_since`: since when the chip's receiver
     /// has been on without a reset, kNever if it is off.
     virtual void poll(cosim::Time /*now*/, cosim::Time /*listening_since*/) {}

@@ -42,7 +42,7 @@ void UartLine::sent(const cosim::UartFrame& frame) {
     ++from_chip_;
     if (!seen.clean) ++bad_frames_;
     log(frame.start, "tx", seen.byte, frame.is_break != 0 ? "break" : seen.clean ? "" : "framing");
-    if (end_) end_->receive(seen.byte, seen.clean);
+    if (end_) end_->receive(seen.byte, seen.clean, frame.start);
 }
 
 void UartLine::poll(cosim::Time now) {

@@ -1,0 +1,224 @@
+#include "toy_run.h"
+
+#include "base/error.h"
+#include "base/random.h"
+#include "cosim/trace_csv.h"
+#include "cosim/trace_merger.h"
+#include "cosim/trace_stats.h"
+#include "cosim/trace_vcd.h"
+
+#include <catch2/catch.hpp>
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <unistd.h>
+
+using namespace puckloop;
+using namespace puckloop::cosim;
+
+namespace {
+
+std::vector<TraceRow> some_rows() {
+    std::vector<TraceRow> rows;
+    rows.push_back({kSecond + 1, "robot0.uart", "robot0.pic", "", FaultKind::None,
+                    UartFrame{kSecond - 78'125'000, 8'680'555, 0x4e, 8, 0, 1, 0, 0}});
+    rows.push_back({kSecond + 2, "robot0.uart", "robot0.linux", "", FaultKind::Flip,
+                    UartFrame{kSecond, 8'680'555, 0x1a5, 9, 2, 2, 1, 0}});
+    rows.push_back({kSecond + 3, "robot0.uart", "robot0.linux", "", FaultKind::None,
+                    UartFrame{kSecond, 8'680'555, 0, 8, 0, 1, 0, 1}});
+    for (const I2cPhaseKind kind : {I2cPhaseKind::Start, I2cPhaseKind::Write, I2cPhaseKind::Stop,
+                                    I2cPhaseKind::Data, I2cPhaseKind::BusLost})
+        rows.push_back({kSecond + 4, "robot0.i2c", "bus", "", FaultKind::None,
+                        I2cPhase{kind, 0xc1, 0, kSecond, 2'500'000, 17}});
+    for (const I2cPhaseKind kind : {I2cPhaseKind::Read, I2cPhaseKind::Acknowledge})
+        for (const std::uint8_t ack : {std::uint8_t{0}, std::uint8_t{1}})
+            rows.push_back({kSecond + 5, "robot0.i2c", "bus", "", FaultKind::None,
+                            I2cPhase{kind, 0x60, ack, kSecond, 2'500'000, 0}});
+    rows.push_back({2 * kSecond, "a, \"b\"", "world", "", FaultKind::None, Signal{17, 0.1}});
+    rows.push_back({3 * kSecond, "world0", "robot0.pic", "wheel_left", FaultKind::None, Signal{0, -1e-17}});
+    return rows;
+}
+
+std::string temporary(const std::string& name) {
+    return (std::filesystem::temp_directory_path() / fmt::format("{}.{}", name, getpid())).string();
+}
+
+}  // namespace
+
+TEST_CASE("rows go to text and back without loss") {
+    for (const TraceRow& row : some_rows()) {
+        INFO(to_csv(row));
+        CHECK(parse_trace_row(to_csv(row), "trace.csv", 2) == row);
+    }
+    CHECK(to_csv(some_rows()[0]) ==
+          "1.000000000001,robot0.uart,robot0.pic,uart,4e,8N1,0.999921875000,0.000008680555,,");
+    CHECK(format_seconds(-1) == "-0.000000000001");
+}
+
+TEST_CASE("damaged rows are refused with file and line, never more") {
+    const auto refused = [](const std::string& text, const std::string& why) {
+        CHECK_THROWS_WITH(parse_trace_row(text, "trace.csv", 7),
+                          Catch::StartsWith("trace.csv: line 7: ") && Catch::Contains(why));
+    };
+    refused("", "1 fields");
+    refused("1.5,l,n,uart,4e,8N1,0.000000000000,0.000000000000,,", "\"1.5\" is no time");
+    refused("1.000000000000,l,n,smoke,4e,8N1,0.000000000000,0.000000000000,,", "no kind of message");
+    refused("1.000000000000,l,n,uart,zz,8N1,0.000000000000,0.000000000000,,", "\"zz\" is no data");
+    refused("1.000000000000,l,n,uart,4e,8X1,0.000000000000,0.000000000000,,", "no frame format");
+    refused("1.000000000000,l,n,i2c,4e,jump,0.000000000000,0.000000000000,0.000000000000,", "no I2C phase");
+    refused("1.000000000000,l,n,signal,4e!,a,,,,", "no value");
+    refused("1.000000000000,l,n,uart,4e,8N1,0.000000000000,0.000000000000,,worn", "no fault");
+    RandomStream random(1, "rows");
+    const auto rows = some_rows();
+    for (int round = 0; round < 20000; ++round) {
+        std::string text = to_csv(rows[random.below(rows.size())]);
+        for (std::uint64_t i = 1 + random.below(3); i > 0; --i)
+            text[random.below(text.size())] = static_cast<char>(32 + random.below(95));
+        try {
+            parse_trace_row(text, "trace.csv", 1);
+        } catch (const InputError&) {
+        }
+    }
+}
+
+TEST_CASE("a recorded run reads back as it was") {
+    const std::string path = temporary("trace.csv");
+    toy::Run run = toy::random_chatter(6, 4);
+    toy::Recorder recorder;
+    {
+        TraceCsvSink csv(path);
+        Conductor conductor(run.nodes, run.links, {}, run.options, toy::make);
+        conductor.add_sink(recorder);
+        conductor.add_sink(csv);
+        REQUIRE(conductor.run().reason == EndReason::Duration);
+    }
+    std::vector<TraceRow> expected, got;
+    for (const TraceRecord& record : recorder.records)
+        expected.push_back(to_row(record, run.links));
+    std::ifstream in(path);
+    CHECK(read_trace(in, path, [&](const TraceRow& row) { got.push_back(row); }));
+    CHECK(got == expected);
+    // What one direction sends may be left out of the file; the hash does not see that.
+    std::filesystem::remove(path);
+}
+
+TEST_CASE("a trace whose writer was killed is read up to its last whole line") {
+    std::string text =
+        std::string(kTraceColumns) + "\n" + to_csv(some_rows()[0]) + "\n" + to_csv(some_rows()[1]);
+    text.resize(text.size() - 4);
+    std::istringstream in(text);
+    int rows = 0;
+    CHECK_FALSE(read_trace(in, "trace.csv", [&](const TraceRow&) { ++rows; }));
+    CHECK(rows == 1);
+    std::istringstream other("time,what\n");
+    CHECK_THROWS_WITH(read_trace(other, "x.csv", [](const TraceRow&) {}),
+                      Catch::Contains("x.csv: line 1: no recorded trace"));
+}
+
+TEST_CASE("a full disk is one clear error, and ends the run") {
+    toy::Run run = toy::random_chatter(6, 4);
+    run.options.duration = 10 * kSecond;
+    TraceCsvSink csv("/dev/full");
+    Conductor conductor(run.nodes, run.links, {}, run.options, toy::make);
+    conductor.add_sink(csv);
+    const Outcome outcome = conductor.run();
+    CHECK(outcome.reason == EndReason::Failed);
+    CHECK(outcome.text ==
+          "/dev/full: cannot write: No space left on device; what was written before is kept");
+    CHECK(outcome.node.empty());
+    CHECK(outcome.simulated < kSecond);
+    for (const auto& node : outcome.nodes)
+        CHECK(node.json != "");
+    CHECK_THROWS_AS(TraceCsvSink("/nonexistent/folder/trace.csv"), RunError);
+}
+
+TEST_CASE("links choose what is written, not what is hashed") {
+    const std::string path = temporary("part.csv");
+    toy::Run run = toy::random_chatter(6, 4);
+    const std::string hash = run().trace_sha256;
+    for (LinkSpec& link : run.links)
+        link.record_from_b = false;
+    std::string part;
+    {
+        TraceCsvSink csv(path);
+        Conductor conductor(run.nodes, run.links, {}, run.options, toy::make);
+        conductor.add_sink(csv);
+        part = conductor.run().trace_sha256;
+    }
+    CHECK(part == hash);
+    std::ifstream in(path);
+    int rows = 0;
+    read_trace(in, path, [&](const TraceRow& row) {
+        ++rows;
+        for (const LinkSpec& link : run.links)
+            if (link.name == row.link) CHECK(link.a.node == row.from);
+    });
+    CHECK(rows > 0);
+    std::filesystem::remove(path);
+}
+
+TEST_CASE("the merger holds back what may still be preceded") {
+    TraceMerger merger;
+    std::vector<Time> out;
+    const auto sink = [&](const TraceRecord& record) { out.push_back(record.time); };
+    for (const Time time : {30, 10, 20, 25})
+        merger.add({time, 0, Direction::FromA, static_cast<std::uint64_t>(time), FaultKind::None, Signal{}});
+    merger.release(21, sink);
+    CHECK(out == std::vector<Time>{10, 20});
+    CHECK(merger.waiting() == 2);
+    merger.release(kNever, sink);
+    CHECK(out == std::vector<Time>{10, 20, 25, 30});
+}
+
+TEST_CASE("the hash is a fixed function of the messages") {
+    toy::Run run{{{"left", "echo first=1"}, {"right", "echo delay_us=100"}},
+                 {toy::uart("wire", {"left", "uart0"}, {"right", "uart0"})}};
+    run.options.duration = kMillisecond;
+    run.options.in_process = true;
+    // Worked out from the documented form by a program of another language; changes only with that form.
+    CHECK(run().trace_sha256 == "150ed69d5056d0be8c6bcb8e1d605bcdf15862079287630d578bbdb0c34ccbe2");
+}
+
+TEST_CASE("a byte is drawn bit by bit in a value change dump") {
+    VcdWriter vcd;
+    vcd.add({100, "wire", "left", "", FaultKind::None, UartFrame{10, 10, 0x4e, 8, 0, 1, 0, 0}});
+    std::ostringstream out;
+    vcd.write(out);
+    // 0x4e, least significant bit first: 0 1 1 1 0 0 1 0 after the start bit.
+    CHECK_THAT(out.str(),
+               Catch::Contains("$timescale 1 ps $end") && Catch::Contains("$scope module wire $end") &&
+                   Catch::Contains(
+                       "#10\nb1001110 \"\n0!\n#30\n1!\n#60\n0!\n#80\n1!\n#90\n0!\n#100\n1!\n#110\nbx \"\n"));
+}
+
+TEST_CASE("a value change dump holds every kind of message and is in order") {
+    VcdWriter vcd;
+    for (const TraceRow& row : some_rows())
+        vcd.add(row);
+    std::ostringstream out;
+    vcd.write(out);
+    std::istringstream in(out.str());
+    long long before = -1;
+    for (std::string line; std::getline(in, line);)
+        if (line[0] == '#' && line.size() > 1) {
+            const long long time = std::stoll(line.substr(1));
+            CHECK(time > before);
+            before = time;
+        }
+    CHECK(before == 3 * kSecond);
+    CHECK_THAT(out.str(), Catch::Contains("snack ") && Catch::Contains("sstart ") &&
+                              Catch::Contains("$var real 64") && Catch::Contains("wheel_left"));
+}
+
+TEST_CASE("statistics of a trace") {
+    TraceStats stats;
+    for (const TraceRow& row : some_rows())
+        stats.add(row);
+    CHECK_THAT(stats.text(), Catch::Contains("robot0.i2c"));
+    CHECK_THAT(stats.json(), Catch::Contains("\"messages\": 14") && Catch::Contains("\"i2c_nacks\": 1") &&
+                                 Catch::Contains("\"uart_breaks\": 1") &&
+                                 Catch::Contains("\"link\": \"a, \\\"b\\\"\""));
+}

@@ -1,0 +1,76 @@
+// puckloop asm: dsPIC assembler source to Intel HEX or to a listing.
+
+#include "base/error.h"
+#include "emu/dspic/assembler/assembler.h"
+#include "emu/dspic/device.h"
+#include "emu/image/intel_hex.h"
+#include "tools/commands.h"
+#include "tools/commands/text_files.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <iterator>
+#include <memory>
+
+namespace puckloop::tools {
+
+namespace {
+
+struct Arguments {
+    std::string file;
+    std::string output = "-";
+    std::string format = "hex";
+    std::string mcu = "dspic30f6014a";
+};
+
+std::string listing(const dspic::Program& program) {
+    std::string text;
+    for (const dspic::AssembledLine& line : program.lines) {
+        std::string words;
+        for (int i = 0; i < line.words && i < 2; ++i)
+            words +=
+                fmt::format(" {:06x}", program.words.at(line.address + 2 * static_cast<std::uint32_t>(i)));
+        fmt::format_to(std::back_inserter(text), "{:06x}:{:<15} {:>5}  {}\n", line.address, words, line.line,
+                       line.text);
+    }
+    return text;
+}
+
+void run(const Arguments& arguments) {
+    dspic::AssembleOptions options;
+    options.file = arguments.file == "-" ? "stdin" : arguments.file;
+    options.keep_lines = arguments.format == "list";
+    const dspic::DeviceInfo* device = dspic::find_device(arguments.mcu);
+    if (!device)
+        throw InputError("", "--mcu", fmt::format("unknown chip \"{}\"", arguments.mcu), "dspic30f6014a");
+    for (const dspic::RegisterInfo& info : device->registers)
+        options.predefined[std::string(info.name)] = info.address;
+    const dspic::Program program = dspic::assemble(read_text(arguments.file), options);
+    if (program.words.empty()) throw InputError(options.file, "", "yields no program words", "instructions");
+    write_text(arguments.output,
+               arguments.format == "hex" ? image::write_dspic_hex(program.words) : listing(program));
+}
+
+}  // namespace
+
+void declare_asm(CLI::App& app, int& status) {
+    auto arguments = std::make_shared<Arguments>();
+    CLI::App* command =
+        app.add_subcommand("asm", "Assemble dsPIC source; register names of the chip are known");
+    command->add_option("FILE", arguments->file, "source file, - for standard input")->required();
+    command->add_option("-o,--output", arguments->output, "output file; standard output without it");
+    command
+        ->add_option("--format", arguments->format,
+                     "hex: Intel HEX; list: addresses and words beside the source")
+        ->check(CLI::IsMember({"hex", "list"}))
+        ->capture_default_str();
+    command->add_option("--mcu", arguments->mcu, "chip whose register names are known")
+        ->capture_default_str();
+    command->callback([arguments, &status] {
+        run(*arguments);
+        status = 0;
+    });
+}
+
+}  // namespace puckloop::tools

@@ -1,0 +1,121 @@
+// puckloop disasm: a firmware image, or a few words, as dsPIC assembler source.
+
+#include "base/error.h"
+#include "emu/dspic/assembler/disassembler.h"
+#include "emu/dspic/assembler/listing.h"
+#include "emu/image/image.h"
+#include "tools/commands.h"
+#include "tools/commands/text_files.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <charconv>
+#include <iterator>
+#include <memory>
+
+namespace puckloop::tools {
+
+namespace {
+
+constexpr std::uint32_t kLargestAddress = 0xFFFFFF;
+constexpr std::uint32_t kLargestWord = 0xFFFFFF;
+constexpr std::uint32_t kVectorsEnd30F = 0x100;
+constexpr std::uint32_t kVectorsEnd33F = 0x200;
+
+struct Arguments {
+    std::string image;
+    std::string start = "0";
+    std::string end = "0xffffff";
+    std::vector<std::string> words;
+};
+
+std::optional<std::uint32_t> hexadecimal(std::string_view text, std::uint32_t largest) {
+    if (text.starts_with("0x") || text.starts_with("0X")) text.remove_prefix(2);
+    std::uint32_t value = 0;
+    const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value, 16);
+    if (error != std::errc{} || stop != text.data() + text.size() || value > largest) return std::nullopt;
+    return value;
+}
+
+/// A hexadecimal program address, or a symbol of the image.
+std::uint32_t address(const std::string& text, const char* option, const image::Image* image) {
+    if (image)
+        if (const auto found = image->find_code(text)) return *found;
+    const auto value = hexadecimal(text, kLargestAddress);
+    if (!value)
+        throw InputError("", option, fmt::format("\"{}\" is no program address", text),
+                         image && !image->symbols.empty() ? "0 to 0xFFFFFF or a symbol of the image"
+                                                          : "0 to 0xFFFFFF");
+    return *value & ~1u;
+}
+
+std::string list_words(const Arguments& arguments) {
+    std::vector<std::uint32_t> words;
+    for (const std::string& text : arguments.words) {
+        const auto word = hexadecimal(text, kLargestWord);
+        if (!word)
+            throw InputError("", "--words", fmt::format("\"{}\" is no word", text),
+                             "0 to 0xFFFFFF, hexadecimal");
+        words.push_back(*word);
+    }
+    std::uint32_t at = address(arguments.start, "--start", nullptr);
+    std::string output;
+    for (std::size_t i = 0; i < words.size();) {
+        const std::uint32_t next =
+            i + 1 < words.size() ? words[i + 1] : 0xFFFFFF;  // a pair cut short is no pair
+        dspic::InstructionText text;
+        const int length = dspic::disassemble(words[i], next, at, text);
+        std::string comment = fmt::format("; {:06x}: {:06x}", at, words[i]);
+        if (length == 2) comment += fmt::format(" {:06x}", next);
+        fmt::format_to(std::back_inserter(output), "{:<40}{}\n", text.view(), comment);
+        i += static_cast<std::size_t>(length);
+        at += 2 * static_cast<std::uint32_t>(length);
+    }
+    return output;
+}
+
+std::string list_image(const Arguments& arguments) {
+    const image::Image image = image::load_image(arguments.image);
+    dspic::ListingOptions options;
+    options.start = address(arguments.start, "--start", &image);
+    options.end = address(arguments.end, "--end", &image);
+    if (options.end < options.start)
+        throw InputError("", "--end",
+                         fmt::format("{:#x} lies before --start {:#x}", options.end, options.start));
+    for (const auto& [name, symbol] : image.symbols)
+        if (symbol.space == image::Space::Program) options.labels.emplace(symbol.address, name);
+    // Interrupt vectors of the 33F reach to 0x1FF; those of the 30F leave the words at 0x80 and 0x82 alone.
+    const auto after_30f = image.program.find(0x80);
+    const bool is_33f = after_30f != image.program.end() && after_30f->second != 0xFFFFFF;
+    options.vectors_end = is_33f ? kVectorsEnd33F : kVectorsEnd30F;
+    const image::Words words = image.all_words();
+    if (words.lower_bound(options.start) == words.upper_bound(options.end))
+        throw InputError(arguments.image, "",
+                         fmt::format("holds no words from {:#x} to {:#x}", options.start, options.end));
+    return fmt::format("; {}: {}, {} program words, sha256 {}\n", arguments.image, name_of(image.format),
+                       image.program.size(), image.sha256) +
+           dspic::list_program(words, options);
+}
+
+}  // namespace
+
+void declare_disasm(CLI::App& app, int& status) {
+    auto arguments = std::make_shared<Arguments>();
+    CLI::App* command =
+        app.add_subcommand("disasm", "Disassemble a dsPIC image or a few words; `asm` takes the result back");
+    CLI::Option* image = command->add_option("IMAGE", arguments->image, "HEX, ELF or COFF image");
+    command->add_option("--start", arguments->start, "first program address, hexadecimal or a symbol");
+    command->add_option("--end", arguments->end, "last program address, hexadecimal or a symbol");
+    command->add_option("--words", arguments->words, "24-bit words in hexadecimal instead of an image")
+        ->delimiter(',')
+        ->excludes(image);
+    command->callback([arguments, &status] {
+        if (arguments->image.empty() && arguments->words.empty())
+            throw InputError("", "disasm", "nothing to disassemble", "an image or --words 0x...");
+        write_text("-", arguments->words.empty() ? list_image(*arguments) : list_words(*arguments));
+        status = 0;
+    });
+}
+
+}  // namespace puckloop::tools
