@@ -111,6 +111,7 @@ TEST_CASE("Errors name line, problem and what would do") {
                                   "or f,Wnd or Wns,f or [Ws+Slit10],Wnd or Wns,[Wd+Slit10])");
     CHECK(error_of("mov #0x10000, w0") == "source: line 1: the literal 65536 is outside -32768 to 65535");
     CHECK(error_of("bra Main\nmain: nop") == "source: line 1: unknown name \"Main\" (expected main?)");
+    CHECK(error_of("start: nop\nbra strt") == "source: line 2: unknown name \"strt\" (expected start?)");
     CHECK(error_of("bra xyz, 0").find("unknown condition \"xyz\" (expected ov c z") != std::string::npos);
     CHECK(error_of("x: nop\nx: nop") == "source: line 2: \"x\" is defined twice (expected each label once)");
     CHECK(error_of("w3: nop").find("is a register's name") != std::string::npos);

@@ -1,6 +1,7 @@
 #include "emu/dspic/assembler/assembler.h"
 
 #include "base/error.h"
+#include "base/suggest.h"
 #include "emu/dspic/assembler/encoder.h"
 #include "emu/dspic/assembler/source_lines.h"
 
@@ -126,14 +127,16 @@ class Assembler {
         return true;
     }
 
-    /// A defined name that differs from an unknown one by case or an underscore only.
+    /// The defined name that an unknown one may mean.
     std::string suggestion(std::string_view problem) const {
         const std::size_t quote = problem.find('"');
         if (!problem.starts_with("unknown name") || quote == std::string_view::npos) return {};
         const std::string_view name = problem.substr(quote + 1, problem.size() - quote - 2);
-        for (const auto& [known, number] : values_)
-            if (equal_ignoring_case(known, name) || known == "_" + std::string(name)) return known + "?";
-        return "a label or .equ";
+        std::vector<std::string_view> known;
+        for (const auto& [symbol, number] : values_)
+            known.push_back(symbol);
+        const std::string near = nearest_name(name, known);
+        return near.empty() ? "a label or .equ" : near + "?";
     }
 
     void instruction(std::string_view text) {

@@ -1,5 +1,7 @@
 #include "emu/dspic/assembler/mnemonics.h"
 
+#include "base/suggest.h"
+
 #include <algorithm>
 #include <map>
 #include <unordered_map>
@@ -87,23 +89,6 @@ const std::vector<Candidate>* find_in(const Names& names, std::string_view name)
     return found == names.end() ? nullptr : &found->second;
 }
 
-/// Levenshtein distance.
-std::size_t distance(std::string_view left, std::string_view right) {
-    std::vector<std::size_t> row(right.size() + 1);
-    for (std::size_t j = 0; j <= right.size(); ++j)
-        row[j] = j;
-    for (std::size_t i = 1; i <= left.size(); ++i) {
-        std::size_t diagonal = row[0];
-        row[0] = i;
-        for (std::size_t j = 1; j <= right.size(); ++j) {
-            const std::size_t above = row[j];
-            row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (left[i - 1] != right[j - 1])});
-            diagonal = above;
-        }
-    }
-    return row[right.size()];
-}
-
 }  // namespace
 
 const std::vector<Candidate>* find_mnemonic(std::string_view name) {
@@ -115,17 +100,7 @@ const std::vector<Candidate>* find_condition(std::string_view name) {
 }
 
 std::string nearest_mnemonic(std::string_view name) {
-    constexpr std::size_t kNear = 2;
-    std::string best;
-    std::size_t best_distance = kNear + 1;
-    if (name.size() > kLongestName) return best;
-    for (const std::string& known : tables().spellings) {
-        const std::size_t steps = distance(lower(name), known);
-        if (steps >= best_distance) continue;
-        best_distance = steps;
-        best = known;
-    }
-    return best;
+    return nearest_name(name, {tables().spellings.begin(), tables().spellings.end()});
 }
 
 }  // namespace puckloop::dspic
