@@ -1,0 +1,124 @@
+#pragma once
+// The two wires of one robot's I2C bus, its masters and its devices. Source: I2C-bus specification UM10204;
+// phases as in cosim/message.h.
+//
+// A master sends Start (with the address byte), Write, Read and Stop, each stamped with `start` = the first
+// clock of its byte, and waits for the answer to all but Stop: Acknowledge or Data, stamped when the ninth
+// clock ends, stretch included; nobody at the address: ack = 0. BusLost: somebody else has the bus.
+//
+// Like a UART link the bus has a nominal clock: no answer comes earlier than nine nominal clocks after the
+// phase began, so a master faster than nominal is answered late by the difference. This is the bus's
+// lookahead.
+//
+// A Start while another master owns the bus waits for its end where the master's driver does so (`waits`,
+// Linux), and is lost where the master only sees a collision (the dsPIC). Starts within half a nominal clock
+// of each other collide: the lower address byte wins, as its first 0 against a 1 does on the wires.
+//
+// Devices that are nodes of their own have a port each. The bus passes on Start (for the device's addresses),
+// Write and Read when they begin (stamped with `start`, or up to half a nominal clock later where masters had
+// to be told apart) and Stop; the device answers each Start and Write with Acknowledge and each Read with
+// Data, in its own time: at `start` + 8 clocks when it does not stretch, later when it does. The bus hands
+// the answer on one nominal clock later, or at the ninth clock. A device must answer: one that is switched
+// off says ack = 0. With such devices the bus's lookahead is one nominal clock.
+//
+// Deviations: 1. a lost arbitration is told when the ninth clock ends, not at the bit. 2. Two masters that
+// send the same address byte do not go on together into the data: the first port wins. 3. SCL of colliding
+// masters is the winner's. 4. Pins driven low by a master's ports do not disturb the bus.
+
+#include "cosim/i2c_slave.h"
+#include "cosim/node.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace puckloop::cosim {
+
+struct I2cMasterPort {
+    std::string name;    ///< port name: "pic", "linux"
+    bool waits = false;  ///< a Start waits for the end of another master's transfer
+};
+
+/// A device in another node.
+struct I2cDevicePort {
+    std::string name;                     ///< port name: "rab"
+    std::vector<std::uint8_t> addresses;  ///< 7 bits
+};
+
+struct I2cBusOptions {
+    std::string name = "i2c";
+    double nominal_hertz = 100e3;
+    std::vector<I2cMasterPort> masters;
+    std::vector<I2cDevicePort> devices{};
+};
+
+/// Ports: the masters in their order, the devices in theirs, then "world" (signals to and from the devices in
+/// this node).
+class I2cBusNode final : public Node {
+  public:
+    I2cBusNode(I2cBusOptions options, std::vector<std::unique_ptr<I2cSlave>> slaves);
+
+    std::string_view name() const override { return options_.name; }
+    std::span<const Port> ports() const override { return ports_; }
+    void advance(Time until, std::span<const Message> inbox, std::vector<Message>& outbox) override;
+    Time promise(PortIndex port) const override;
+    Time reaction(PortIndex port) const override;
+    std::string finish() override;
+
+  private:
+    struct Contender {
+        PortIndex port = 0;
+        I2cPhase phase;
+    };
+    struct Counters {
+        std::uint64_t transfers = 0, not_acknowledged = 0, lost = 0, bytes_written = 0, bytes_read = 0;
+    };
+
+    /// What a master waits for while a device in another node thinks.
+    struct Pending {
+        PortIndex master = 0;
+        I2cPhase phase;
+    };
+
+    bool is_master(PortIndex port) const { return port < options_.masters.size(); }
+    bool is_world(PortIndex port) const { return port + 1u == ports_.size(); }
+    void run_events(Time until, std::vector<Message>& outbox);
+    void receive(const Message& message);
+    void phase_from(PortIndex port, const I2cPhase& phase);
+    void start_from(PortIndex port, const I2cPhase& phase);
+    void open_contest(PortIndex port, const I2cPhase& phase);
+    void resolve_contest();
+    void address(PortIndex port, const I2cPhase& phase, Time earliest);
+    bool address_device(PortIndex port, const I2cPhase& phase, Time earliest);
+    bool pass_on(PortIndex port, const I2cPhase& phase);
+    void device_answered(PortIndex port, const I2cPhase& phase, Time now);
+    void byte_from(PortIndex port, const I2cPhase& phase);
+    void release_slave(Time now);
+    void stop_from(PortIndex port, const I2cPhase& phase);
+    void bus_freed();
+    void lose(PortIndex port, const I2cPhase& phase);
+    void answer(PortIndex port, const I2cPhase& phase, I2cPhaseKind kind, const I2cAnswer& answer,
+                Time earliest);
+    Time ninth_clock(const I2cPhase& phase) const;
+
+    I2cBusOptions options_;
+    std::vector<Port> ports_;
+    std::vector<std::unique_ptr<I2cSlave>> slaves_;
+    Time nominal_period_;
+    I2cSlave::Emit emit_;
+
+    enum class Bus : std::uint8_t { Free, Contest, Owned, Stopping } bus_ = Bus::Free;
+    PortIndex owner_ = 0;
+    I2cSlave* addressed_ = nullptr;
+    std::optional<PortIndex> addressed_device_;
+    std::optional<Pending> pending_;
+    Time changes_ = kNever;              // a contest is decided, a stop is over
+    std::vector<Contender> contenders_;  // for the bus, now
+    std::vector<Contender> waiting_;     // for its end
+    std::vector<Message> answers_;       // to come, sorted by time
+    Time emitted_at_ = 0;
+    Counters counters_;
+};
+
+}  // namespace puckloop::cosim

@@ -1,0 +1,35 @@
+#pragma once
+// The RGB LED turret at 0x61: nine bytes without a register number, LED 2, 1, 0, each red, green, blue.
+// Source: e-puck facts 2.2. The colours show as signals rgb0_red .. rgb2_blue.
+//
+// Deviations: 1. a message of another length changes nothing (the board's answer to it is not known).
+// 2. Reads give 0xFF.
+
+#include "cosim/i2c_slave.h"
+
+#include <array>
+#include <vector>
+
+namespace puckloop::i2c_devices {
+
+inline constexpr std::uint8_t kRgbTurretAddress = 0x61;
+
+class RgbTurret final : public cosim::I2cSlave {
+  public:
+    static constexpr std::size_t kBytes = 9;
+
+    std::string_view name() const override { return "rgb_turret"; }
+    bool listens_to(std::uint8_t address) const override { return address == kRgbTurretAddress; }
+    cosim::I2cAnswer start(bool read, cosim::Time now) override;
+    cosim::I2cAnswer write(std::uint8_t byte, cosim::Time now) override;
+    cosim::I2cAnswer read(cosim::Time now) override;
+    void stop(cosim::Time now, const Emit& emit) override;
+    std::string report() const override;
+
+  private:
+    std::vector<std::uint8_t> received_;
+    std::array<std::uint8_t, kBytes> colours_{};  // LED 0 red, green, blue, LED 1 ...
+    std::uint64_t frames_ = 0, wrong_frames_ = 0;
+};
+
+}  // namespace puckloop::i2c_devices

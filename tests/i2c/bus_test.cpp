@@ -1,0 +1,230 @@
+// The I2C bus: phase timing, absent devices, registers, arbitration, waiting, boards behind a port.
+
+#include "base/error.h"
+#include "emu/i2c_devices/bus_node.h"
+#include "emu/i2c_devices/signals.h"
+#include "physics/channels.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+
+using namespace puckloop;
+using namespace puckloop::cosim;
+using i2c_devices::BusSpec;
+using i2c_devices::make_bus_node;
+
+namespace {
+
+constexpr PortIndex kPic = 0, kLinux = 1;
+constexpr Time kPeriod = 10 * kMicrosecond;  // 100 kHz
+constexpr Time kSlow = 11'140'000;           // 89.8 kHz, the dsPIC's
+
+/// Speaks to a bus node as one or more masters would, checking every promise on the way.
+class Bench {
+  public:
+    explicit Bench(BusSpec spec = {}) : node_(make_bus_node(spec)) {
+        world = static_cast<PortIndex>(node_->ports().size() - 1);
+    }
+
+    void send(PortIndex port, I2cPhaseKind kind, std::uint8_t byte, Time start, Time period = kPeriod,
+              bool ack = true) {
+        I2cPhase phase{.kind = kind, .byte = byte, .ack = ack, .start = start, .clock_period = period};
+        give({start, port, phase});
+    }
+    void give(const Message& message) { inbox_.push_back(message); }
+    /// Everything that leaves before `until`.
+    std::vector<Message> until(Time time) {
+        std::stable_sort(inbox_.begin(), inbox_.end(),
+                         [](const Message& a, const Message& b) { return a.time < b.time; });
+        std::vector<Message> out;
+        std::vector<Time> earliest;
+        const Time first_in = inbox_.empty() ? kNever : inbox_.front().time;
+        for (PortIndex p = 0; p <= world; ++p)
+            earliest.push_back(std::min(node_->promise(p), later(first_in, node_->reaction(p))));
+        node_->advance(time, inbox_, out);
+        inbox_.clear();
+        for (const auto& message : out) {
+            CHECK(message.time < time);
+            CHECK(message.time >= earliest[message.port]);
+        }
+        for (PortIndex p = 0; p <= world; ++p)
+            CHECK(node_->promise(p) >= time);
+        return out;
+    }
+    /// One phase and its answer; advances in small grants.
+    I2cPhase ask(PortIndex port, I2cPhaseKind kind, std::uint8_t byte, Time start, Time period = kPeriod) {
+        send(port, kind, byte, start, period);
+        for (Time time = start + kMicrosecond;; time += 7 * kMicrosecond)
+            for (const auto& message : until(time))
+                if (message.port == port) {
+                    now = message.time;
+                    return std::get<I2cPhase>(message.payload);
+                }
+    }
+    std::string report() { return node_->finish(); }
+
+    PortIndex world = 0;
+    Time now = 0;
+
+  private:
+    std::unique_ptr<Node> node_;
+    std::vector<Message> inbox_;
+};
+
+I2cPhase only(const std::vector<Message>& messages) {
+    REQUIRE(messages.size() == 1);
+    return std::get<I2cPhase>(messages[0].payload);
+}
+
+}  // namespace
+
+TEST_CASE("an absent address is not acknowledged, at the ninth clock") {
+    Bench bench;
+    bench.send(kPic, I2cPhaseKind::Start, 0x40, kMillisecond, kSlow);
+    CHECK(bench.until(kMillisecond + 9 * kSlow).empty());
+    const auto out = bench.until(kMillisecond + 9 * kSlow + 1);
+    CHECK(only(out).kind == I2cPhaseKind::Acknowledge);
+    CHECK(only(out).ack == 0);
+    CHECK(out[0].time == kMillisecond + 9 * kSlow);
+    const auto data = bench.ask(kPic, I2cPhaseKind::Read, 0, 2 * kMillisecond, kSlow);
+    CHECK(data.byte == 0xFF);
+}
+
+TEST_CASE("the ground sensor's registers, read as the Linux program does") {
+    Bench bench;
+    bench.give({1, bench.world, Signal{i2c_devices::kGroundReflected, 800}});
+    bench.give({1, bench.world, Signal{i2c_devices::kGroundReflected + 2, 329.4}});
+    bench.give({1, bench.world, Signal{i2c_devices::kGroundAmbient + 1, 30}});
+    bench.until(kMillisecond);
+    const auto read_register = [&](std::uint8_t number) {
+        const Time begun = bench.now + kMillisecond;
+        CHECK(bench.ask(kLinux, I2cPhaseKind::Start, 0xC0, begun).ack == 1);
+        CHECK(bench.now == begun + 9 * kPeriod);
+        CHECK(bench.ask(kLinux, I2cPhaseKind::Write, number, bench.now).ack == 1);
+        bench.send(kLinux, I2cPhaseKind::Stop, 0, bench.now);
+        CHECK(bench.ask(kLinux, I2cPhaseKind::Start, 0xC1, bench.now + kPeriod).ack == 1);
+        const auto byte = bench.ask(kLinux, I2cPhaseKind::Read, 0, bench.now).byte;
+        bench.send(kLinux, I2cPhaseKind::Stop, 0, bench.now);
+        CHECK(bench.now - begun == 37 * kPeriod);  // four bytes and a stop
+        return byte;
+    };
+    CHECK(read_register(0) == 0x03);
+    CHECK(read_register(1) == 0x20);
+    CHECK(read_register(2) == 0);
+    CHECK(read_register(4) == 1);
+    CHECK(read_register(5) == 329 - 256);
+    CHECK(read_register(9) == 30);
+    CHECK(read_register(12) == 1);
+    CHECK(read_register(13) == 0);
+}
+
+TEST_CASE("registers count up over a longer read") {
+    Bench bench;
+    bench.give({1, bench.world, Signal{i2c_devices::kGroundReflected, 0x123}});
+    bench.ask(kPic, I2cPhaseKind::Start, 0xC0, kMillisecond);
+    bench.ask(kPic, I2cPhaseKind::Write, 0, bench.now);
+    bench.ask(kPic, I2cPhaseKind::Start, 0xC1, bench.now);  // repeated start
+    CHECK(bench.ask(kPic, I2cPhaseKind::Read, 0, bench.now).byte == 1);
+    CHECK(bench.ask(kPic, I2cPhaseKind::Read, 0, bench.now).byte == 0x23);
+}
+
+TEST_CASE("the RGB turret takes nine bytes and shows them as signals") {
+    Bench bench;
+    const auto write = [&](int count) {
+        bench.ask(kLinux, I2cPhaseKind::Start, 0xC2, bench.now + kMillisecond);
+        for (int i = 0; i < count; ++i)
+            CHECK(bench.ask(kLinux, I2cPhaseKind::Write, static_cast<std::uint8_t>(i), bench.now).ack == 1);
+        bench.send(kLinux, I2cPhaseKind::Stop, 0, bench.now);
+        return bench.until(bench.now + kMillisecond);
+    };
+    CHECK(write(8).empty());
+    bench.now += kMillisecond;
+    const auto shown = write(9);
+    REQUIRE(shown.size() == 8);  // LED 2's red stays 0
+    CHECK(shown[0].port == bench.world);
+    CHECK(std::get<Signal>(shown[0].payload) == Signal{i2c_devices::kRgb + 7, 1});  // LED 2 green
+    CHECK(std::get<Signal>(shown[7].payload) == Signal{i2c_devices::kRgb + 2, 8});  // LED 0 blue
+    CHECK(bench.report().find(R"("frames":1,"wrong_length":1)") != std::string::npos);
+}
+
+TEST_CASE("of two starts at once the lower address wins, the other is told") {
+    const PortIndex low = GENERATE(kPic, kLinux);
+    Bench bench;
+    bench.send(low, I2cPhaseKind::Start, 0xC0, kMillisecond + 2 * kMicrosecond);
+    bench.send(low == kPic ? kLinux : kPic, I2cPhaseKind::Start, 0xC2, kMillisecond);
+    const auto out = bench.until(2 * kMillisecond);
+    REQUIRE(out.size() == 2);
+    for (const auto& message : out) {
+        const auto& phase = std::get<I2cPhase>(message.payload);
+        CHECK(phase.kind == (message.port == low ? I2cPhaseKind::Acknowledge : I2cPhaseKind::BusLost));
+        CHECK(message.time == phase.start + 9 * kPeriod);
+    }
+    CHECK(bench.report().find(R"("lost":1)") != std::string::npos);
+}
+
+TEST_CASE("while one owns the bus the dsPIC loses and Linux waits for the stop") {
+    Bench bench;
+    bench.ask(kLinux, I2cPhaseKind::Start, 0xC0, kMillisecond);
+    CHECK(bench.ask(kPic, I2cPhaseKind::Start, 0xC0, bench.now).kind == I2cPhaseKind::BusLost);
+    bench.send(kPic, I2cPhaseKind::Stop, 0, bench.now);  // its attempt to tidy up disturbs nobody
+    CHECK(bench.ask(kLinux, I2cPhaseKind::Write, 0, bench.now).ack == 1);
+    bench.send(kLinux, I2cPhaseKind::Stop, 0, bench.now);
+    CHECK(bench.ask(kPic, I2cPhaseKind::Start, 0xC0, bench.now + kMillisecond).ack == 1);
+    const Time asked = bench.now;
+    bench.send(kLinux, I2cPhaseKind::Start, 0xC2, asked);
+    CHECK(bench.until(asked + kMillisecond).empty());
+    bench.send(kPic, I2cPhaseKind::Stop, 0, asked + kMillisecond);
+    const auto out = bench.until(asked + 2 * kMillisecond);
+    CHECK(only(out).ack == 1);
+    CHECK(out[0].port == kLinux);
+    CHECK(out[0].time == asked + kMillisecond + 10 * kPeriod);  // bus free, then nine clocks
+}
+
+TEST_CASE("a board behind a port answers in its own time; the master sees the stretch") {
+    Bench bench({.boards = {{"rab", 0x20}}});
+    constexpr PortIndex kRab = 2;
+    CHECK(bench.world == 3);
+    bench.send(kLinux, I2cPhaseKind::Start, 0x40, kMillisecond);
+    auto out = bench.until(kMillisecond + 8 * kPeriod);
+    CHECK(only(out).kind == I2cPhaseKind::Start);
+    CHECK(out[0].port == kRab);
+    CHECK(out[0].time == kMillisecond + kPeriod / 2);  // told apart from other masters
+    const auto answer = [&](I2cPhaseKind kind, std::uint8_t byte, bool ack, Time time) {
+        bench.give({time, kRab, I2cPhase{.kind = kind, .byte = byte, .ack = ack}});
+        return bench.until(time + 5 * kPeriod);
+    };
+    out = answer(I2cPhaseKind::Acknowledge, 0, true, kMillisecond + 8 * kPeriod);
+    CHECK(only(out).ack == 1);
+    CHECK(only(out).stretch == 0);
+    CHECK(out[0].time == kMillisecond + 9 * kPeriod);
+    bench.send(kLinux, I2cPhaseKind::Read, 0, 2 * kMillisecond);
+    CHECK(only(bench.until(2 * kMillisecond + kPeriod)).kind == I2cPhaseKind::Read);
+    out = answer(I2cPhaseKind::Data, 0x5A, true, 3 * kMillisecond);  // a slow interrupt routine
+    CHECK(only(out).byte == 0x5A);
+    CHECK(out[0].time == 3 * kMillisecond + kPeriod);
+    CHECK(only(out).stretch == kMillisecond - 8 * kPeriod);
+    bench.send(kLinux, I2cPhaseKind::Stop, 0, 4 * kMillisecond);
+    out = bench.until(5 * kMillisecond);
+    CHECK(only(out).kind == I2cPhaseKind::Stop);
+    CHECK(out[0].port == kRab);
+}
+
+TEST_CASE("descriptions of a bus are checked") {
+    CHECK_THROWS_AS(make_bus_node(BusSpec{.hertz = 10}), InputError);
+    CHECK_THROWS_AS(make_bus_node(BusSpec{.boards = {{"x", 0x60}}}), InputError);
+    CHECK_THROWS_AS(make_bus_node(std::string_view("{\"hertz\":\"fast\"}")), InputError);
+    CHECK(
+        make_bus_node(std::string_view(R"({"kind":"i2c_bus","name":"e1.i2c","rgb_turret":false})"))->name() ==
+        "e1.i2c");
+}
+
+TEST_CASE("the world publishes what the ground sensor listens to") {
+    for (std::size_t i = 0; i < 3; ++i) {
+        CHECK(i2c_devices::signals()[i2c_devices::kGroundReflected + i].name ==
+              physics::channel_name(physics::kGroundChannel + i));
+        CHECK(i2c_devices::signals()[i2c_devices::kGroundAmbient + i].name ==
+              physics::channel_name(physics::kGroundAmbientChannel + i));
+    }
+    CHECK(i2c_devices::signals().size() == i2c_devices::kSignalCount);
+}
