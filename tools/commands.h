@@ -8,11 +8,13 @@
 
 namespace puckloop::tools {
 
+void declare_step(CLI::App& app, int& status);
 void declare_asm(CLI::App& app, int& status);
 void declare_disasm(CLI::App& app, int& status);
 void declare_trace(CLI::App& app, int& status);
 
 inline constexpr std::array kCommands{
+    declare_step,
     declare_asm,
     declare_disasm,
     declare_trace,

@@ -47,6 +47,8 @@ struct CoreObserver {
     std::function<void(std::string_view text, std::uint32_t pc)> on_warning;
 };
 
+struct Machine;
+
 class Core {
   public:
     Core(const DeviceInfo& device, SfrSpace& sfr, EventQueue& events, InterruptController& interrupts);
@@ -96,6 +98,7 @@ class Core {
 
     /// A consistent copy; DISICNT is state().disi_end - cycle().
     CoreState state() const;
+    /// Every W register counts as written; W15 is taken as given, odd or not.
     void set_state(const CoreState& state);
     std::uint16_t w(int index) const;
     void set_w(int index, std::uint16_t value);
@@ -116,8 +119,7 @@ class Core {
     CoreObserver& observer();
 
   private:
-    struct Impl;
-    std::unique_ptr<Impl> impl_;
+    std::unique_ptr<Machine> machine_;
 };
 
 }  // namespace puckloop::dspic

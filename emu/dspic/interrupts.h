@@ -61,10 +61,12 @@ class InterruptController {
     std::uint16_t intcon1() const { return sfr_.raw(kIntcon1); }
     /// Latches vector and level into INTTREG where the part has it.
     void acknowledge(const Request& taken, int cpu_level_before);
-    /// Where software's writes are stamped; the core keeps it at its current cycle.
-    void set_clock(const Cycle* now) { now_ = now; }
-    /// Shows DISICNT != 0 in INTCON2<DISI>.
-    void show_disi(bool active);
+    /// The core's present cycle, which stamps software's writes, and the cycle at which DISICNT reaches 0,
+    /// which INTCON2<DISI> shows.
+    void set_clock(const Cycle* now, const Cycle* disi_end) {
+        now_ = now;
+        disi_end_ = disi_end;
+    }
     void reset();
 
     static constexpr std::uint16_t kIntcon1 = 0x080;
@@ -72,6 +74,7 @@ class InterruptController {
 
   private:
     void find_first(Cycle now);
+    static std::uint16_t read_register(void* owner, std::uint16_t address);
     static void write_register(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask);
 
     const DeviceInfo& device_;
@@ -81,6 +84,7 @@ class InterruptController {
     void* listener_ = nullptr;
     void (*changed_)(void*, Cycle) = nullptr;
     const Cycle* now_ = nullptr;
+    const Cycle* disi_end_ = nullptr;
 };
 
 }  // namespace puckloop::dspic

@@ -1,0 +1,4 @@
+#pragma once
+namespace puckloop::dspic {
+struct SkipLoops {};
+}  // namespace puckloop::dspic

@@ -1,0 +1,38 @@
+// puckloop step: single-instruction vectors, one a line on stdin, answers on stdout in the same order.
+
+#include "base/error.h"
+#include "emu/dspic/step_vector.h"
+#include "tools/commands.h"
+
+#include <CLI/CLI.hpp>
+
+#include <iostream>
+#include <string>
+
+namespace puckloop::tools {
+
+void declare_step(CLI::App& app, int& status) {
+    static std::string mcu;
+    CLI::App* command = app.add_subcommand("step", "Run single-instruction vectors from stdin");
+    command->add_option("--mcu", mcu, "The chip, e.g. dspic30f6014a")->required();
+    command->callback([&status] {
+        const dspic::DeviceInfo* device = dspic::find_device(mcu);
+        if (!device) {
+            std::string known;
+            for (const dspic::DeviceInfo& one : dspic::devices())
+                known += (known.empty() ? "" : ", ") + std::string(one.name);
+            throw InputError("", "--mcu", "no such chip: " + mcu, known);
+        }
+        std::ios::sync_with_stdio(false);
+        dspic::StepMachine machine(*device);
+        for (std::string line; std::getline(std::cin, line);) {
+            if (line.empty()) continue;
+            std::cout << machine.answer(line) << '\n';
+        }
+        std::cout.flush();
+        if (!std::cout) throw RunError("standard output: cannot write");
+        status = 0;
+    });
+}
+
+}  // namespace puckloop::tools
