@@ -29,8 +29,9 @@ struct Channel {
 /// Bounds of one instant of the run; kept between calls only to save allocations.
 class Bounds {
   public:
-    /// `pending[n]` is kNever where nothing is known.
-    void compute(const std::vector<Channel>& channels, const std::vector<Time>& pending);
+    /// `pending[n]` is kNever where nothing is known. What node `silent` sends, if one is given, is left out.
+    void compute(const std::vector<Channel>& channels, const std::vector<Time>& pending,
+                 std::size_t silent = kNobody);
 
     /// Nothing not yet known can reach node `n` before this.
     Time limit(std::size_t n) const { return limit_[n]; }
@@ -50,5 +51,9 @@ class Bounds {
     std::vector<std::size_t> critical_;  ///< index of the channel that sets limit_
     Time floor_ = kNever;
 };
+
+/// For each node the shortest time from a message that reaches it to one, caused by it, that reaches
+/// `target`; 0 for the target itself, kNever where there is no way.
+std::vector<Time> distances_to(std::size_t target, const std::vector<Channel>& channels, std::size_t nodes);
 
 }  // namespace puckloop::cosim

@@ -59,7 +59,9 @@ class Conductor::State {
         Time asked = 0;
         Time first_in = kNever;          ///< of the grant under way
         std::vector<TraceRecord> queue;  ///< heap, earliest first
-        std::vector<Message> inbox;
+        std::vector<TraceRecord> taken;  ///< of the queue, for the grant under way
+        std::vector<Message> inbox;      ///< the same, as the node gets it
+        std::vector<PortEcho> echoes;
         bool stop_seen = false;
     };
 
@@ -88,7 +90,6 @@ class Conductor::State {
     std::vector<NodeTimes> times_;
     std::vector<Slot> slots_;
     std::vector<Time> pending_;
-    Bounds bounds_;
     Schedule schedule_;
     std::vector<TraceRecord> deliveries_;
     std::vector<LinkStats> stats_;  ///< one a wire
@@ -187,7 +188,7 @@ void Conductor::State::loop() {
             grant(n, until);
         }
         collect();
-        if (merger_.waiting() >= kTraceBatch) release_trace(std::min(bounds_.floor(), end_));
+        if (merger_.waiting() >= kTraceBatch) release_trace(std::min(schedule_.bounds().floor(), end_));
         keep_house();
     }
 }
@@ -198,18 +199,19 @@ void Conductor::State::plan() {
         const Slot& slot = slots_[n];
         pending_[n] = std::min(slot.first_in, slot.queue.empty() ? kNever : slot.queue.front().time);
     }
-    bounds_.compute(network_->channels(), pending_);
     ScheduleLimits limits{end_, kNever, options_.stop_latency};
     if (options_.realtime) limits.pace = from_seconds(seconds_since(start_)) + kPaceSlack;
-    schedule_.plan(bounds_, times_, limits);
+    schedule_.plan(network_->channels(), pending_, times_, limits);
 }
 
 void Conductor::State::grant(std::size_t n, Time until) {
     Slot& slot = slots_[n];
     slot.inbox.clear();
+    slot.taken.clear();
     while (!slot.queue.empty() && slot.queue.front().time < until) {
         const TraceRecord& record = slot.queue.front();
         slot.inbox.push_back({record.time, network_->wire(record).to_port, record.payload});
+        slot.taken.push_back(record);
         std::pop_heap(slot.queue.begin(), slot.queue.end(), after);
         slot.queue.pop_back();
     }
@@ -218,7 +220,9 @@ void Conductor::State::grant(std::size_t n, Time until) {
     times_[n].busy = true;
     ++grants_;
     current_ = n;
-    handles_[n]->grant(until, slot.inbox);
+    slot.echoes.clear();
+    if (until > schedule_.bounds().limit(n)) network_->echoes(n, slot.echoes);
+    handles_[n]->grant(until, slot.inbox, slot.echoes);
 }
 
 void Conductor::State::collect() {
@@ -253,8 +257,14 @@ void Conductor::State::take_reply(std::size_t n) {
     for (const Message& message : handles_[n]->outbox())
         network_->send(n, message, slot.first_in, deliveries_);
     const Time before = times_[n].granted;
+    slot.asked = handles_[n]->reached();
     times_[n] = {slot.asked, false};
     slot.first_in = kNever;
+    while (!slot.taken.empty() && slot.taken.back().time >= slot.asked) {
+        slot.queue.push_back(slot.taken.back());
+        std::push_heap(slot.queue.begin(), slot.queue.end(), after);
+        slot.taken.pop_back();
+    }
     network_->update(n, handles_[n]->state(), slot.asked);
     take_deliveries(n);
     take_stop(n, before);
@@ -310,7 +320,7 @@ void Conductor::State::keep_house() {
         told_time_ = time;
     }
     if (wall - flushed_wall_ >= kFlushSeconds) {
-        release_trace(std::min(bounds_.floor(), end_));
+        release_trace(std::min(schedule_.bounds().floor(), end_));
         for (TraceSink* sink : sinks)
             sink->flush();
         flushed_wall_ = wall;
@@ -320,19 +330,19 @@ void Conductor::State::keep_house() {
 bool Conductor::State::stuck() const {
     const Time ceiling = std::min(end_, later(schedule_.reached(), options_.stop_latency));
     for (std::size_t n = 0; n < times_.size(); ++n)
-        if (std::min(bounds_.limit(n), ceiling) > times_[n].granted) return false;
+        if (std::min(schedule_.bounds().limit(n), ceiling) > times_[n].granted) return false;
     return true;
 }
 
 void Conductor::State::deadlock() const {
     // Follow who limits whom, from a node that may not move, until a node comes again: those are the cycle.
     std::size_t n = 0;
-    while (n < times_.size() && bounds_.limit(n) > times_[n].granted)
+    while (n < times_.size() && schedule_.bounds().limit(n) > times_[n].granted)
         ++n;
     std::vector<std::size_t> path;
     while (n < times_.size() && std::find(path.begin(), path.end(), n) == path.end()) {
         path.push_back(n);
-        n = bounds_.limiter(n);
+        n = schedule_.bounds().limiter(n);
     }
     std::string names;
     bool in_cycle = false;
@@ -367,7 +377,7 @@ void Conductor::State::finish(Outcome& outcome) {
                 outcome.warnings.emplace_back(error.what());
         }
     };
-    guarded([&] { release_trace(failed ? kNever : std::min(bounds_.floor(), end_)); });
+    guarded([&] { release_trace(failed ? kNever : std::min(schedule_.bounds().floor(), end_)); });
     for (TraceSink* sink : sinks)
         guarded([&] { sink->flush(); });
     for (std::size_t n = 0; n < handles_.size(); ++n) {

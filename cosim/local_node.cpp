@@ -31,15 +31,16 @@ class LocalNode : public NodeHandle {
 
     void await_ready() override {}
 
-    void grant(Time until, const std::vector<Message>& inbox) override {
+    void grant(Time until, const std::vector<Message>& inbox, const std::vector<PortEcho>& echoes) override {
         until_ = until;
         inbox_ = &inbox;
+        echoes_ = &echoes;
     }
 
     bool poll(bool) override {
         outbox_.clear();
-        guarded("stopped", [&] { node_->advance(until_, *inbox_, outbox_); });
-        reached_ = until_;
+        guarded("stopped",
+                [&] { reached_ = advance_in_strides(*node_, reached_, until_, *inbox_, *echoes_, outbox_); });
         read_state(*node_, state_);
         return true;
     }
@@ -66,8 +67,8 @@ class LocalNode : public NodeHandle {
 
     std::unique_ptr<Node> node_;
     const std::vector<Message>* inbox_ = nullptr;
+    const std::vector<PortEcho>* echoes_ = nullptr;
     Time until_ = 0;
-    Time reached_ = 0;
 };
 
 }  // namespace

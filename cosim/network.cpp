@@ -103,6 +103,16 @@ void Network::update(std::size_t n, const NodeState& state, Time reached) {
     }
 }
 
+void Network::echoes(std::size_t n, std::vector<PortEcho>& echoes) const {
+    const std::vector<Time> back = distances_to(n, channels_, nodes_.size());
+    echoes.assign(port_wire_[n].size(), {});
+    for (std::size_t p = 0; p < echoes.size(); ++p) {
+        if (port_wire_[n][p] == kNobody) continue;
+        const Wire& wire = wires_[port_wire_[n][p]];
+        echoes[p] = {wire.flight, wire.latency, back[wire.to], wire.is_uart};
+    }
+}
+
 void Network::check_promise(const Wire& wire, const Message& message, Time delivery, Time first_in) const {
     const Channel& channel = channels_[wire.link * 2u + static_cast<unsigned>(wire.direction)];
     if (delivery >= std::min(channel.base, later(first_in, channel.reaction))) return;

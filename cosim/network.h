@@ -37,6 +37,8 @@ class Network {
     /// Takes over what node `n`, whose last reply covers everything before `reached`, says of its future.
     void update(std::size_t n, const NodeState& state, Time reached);
     const std::vector<Channel>& channels() const { return channels_; }
+    /// What comes back of what node `n` says on each port, as the others stand now.
+    void echoes(std::size_t n, std::vector<PortEcho>& echoes) const;
 
     /// Sends one message of node `n` on its way. Appends what it becomes to `deliveries` (lost ones too).
     /// `first_in` is the first message that the node had to answer when it sent this one, or kNever.

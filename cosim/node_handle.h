@@ -3,6 +3,7 @@
 
 #include "cosim/message.h"
 #include "cosim/node.h"
+#include "cosim/stride.h"
 #include "cosim/time.h"
 
 #include <chrono>
@@ -45,13 +46,16 @@ class NodeHandle {
     const std::vector<Port>& ports() const { return ports_; }
     /// As of the last reply.
     const NodeState& state() const { return state_; }
+    /// How far the last reply says it came; messages of its inbox from then on were not taken.
+    Time reached() const { return reached_; }
     /// Messages of the last reply, by the sender's port.
     std::vector<Message>& outbox() { return outbox_; }
 
     /// Waits until the node is made and has told its ports and first state.
     virtual void await_ready() = 0;
-    /// Asks the node to advance; one grant at a time.
-    virtual void grant(Time until, const std::vector<Message>& inbox) = 0;
+    /// Asks the node to advance, in strides if `echoes` says so (cosim/stride.h); one grant at a time.
+    virtual void grant(Time until, const std::vector<Message>& inbox,
+                       const std::vector<PortEcho>& echoes) = 0;
     /// True once the reply to the last grant is complete. A node in this process does its work here; `wait`
     /// lets one elsewhere wait for some tenths of a second.
     virtual bool poll(bool wait) = 0;
@@ -67,6 +71,7 @@ class NodeHandle {
     std::vector<Port> ports_;
     NodeState state_;
     std::vector<Message> outbox_;
+    Time reached_ = 0;
 };
 
 /// A node in this process.

@@ -69,9 +69,9 @@ class Server {
         if (!node_) throw RunError("granted before it was made");
         protocol::read_grant(body, grant_);
         outbox_.clear();
-        node_->advance(grant_.until, grant_.inbox, outbox_);
+        reached_ = advance_in_strides(*node_, reached_, grant_.until, grant_.inbox, grant_.echoes, outbox_);
         read_state(*node_, state_);
-        protocol::write_done(bytes_, state_, outbox_);
+        protocol::write_done(bytes_, reached_, state_, outbox_);
     }
 
     void finish() {
@@ -91,6 +91,7 @@ class Server {
     const NodeFactory& factory_;
     std::unique_ptr<Node> node_;
     protocol::Grant grant_;
+    Time reached_ = 0;
     NodeState state_;
     std::vector<Message> outbox_;
     Bytes bytes_;

@@ -10,6 +10,7 @@ namespace {
 constexpr std::size_t kSmallestMessage = 8 + 2 + 1 + 2 + 8;
 constexpr std::size_t kSmallestPort = 4 + 1;
 constexpr std::size_t kSmallestPortState = 8 + 8 + 1;
+constexpr std::size_t kPortEcho = 8 + 8 + 8 + 1;
 
 /// Opens a message, and sets its length when it goes out of scope.
 class Frame {
@@ -106,14 +107,23 @@ void write_ready(Bytes& bytes, const Ready& ready) {
     write_state(frame.writer, ready.state);
 }
 
-void write_grant(Bytes& bytes, Time until, const std::vector<Message>& inbox) {
+void write_grant(Bytes& bytes, Time until, const std::vector<Message>& inbox,
+                 const std::vector<PortEcho>& echoes) {
     Frame frame(bytes, Kind::Grant);
     frame.writer.time(until);
     write_messages(frame.writer, inbox);
+    frame.writer.u32(static_cast<std::uint32_t>(echoes.size()));
+    for (const PortEcho& echo : echoes) {
+        frame.writer.time(echo.flight);
+        frame.writer.time(echo.latency);
+        frame.writer.time(echo.back);
+        frame.writer.u8(echo.is_uart);
+    }
 }
 
-void write_done(Bytes& bytes, const NodeState& state, const std::vector<Message>& outbox) {
+void write_done(Bytes& bytes, Time reached, const NodeState& state, const std::vector<Message>& outbox) {
     Frame frame(bytes, Kind::Done);
+    frame.writer.time(reached);
     write_state(frame.writer, state);
     write_messages(frame.writer, outbox);
 }
@@ -167,16 +177,25 @@ void read_grant(std::span<const std::uint8_t> body, Grant& grant) {
     ByteReader reader = open(body, Kind::Grant);
     grant.until = reader.time();
     read_messages(reader, grant.inbox);
+    grant.echoes.resize(reader.count(kPortEcho));
+    for (PortEcho& echo : grant.echoes) {
+        echo.flight = reader.time();
+        echo.latency = reader.time();
+        echo.back = reader.time();
+        echo.is_uart = reader.boolean();
+    }
     reader.end();
 }
 
-void read_done(std::span<const std::uint8_t> body, std::size_t ports, NodeState& state,
+Time read_done(std::span<const std::uint8_t> body, std::size_t ports, NodeState& state,
                std::vector<Message>& outbox) {
     ByteReader reader = open(body, Kind::Done);
+    const Time reached = reader.time();
     read_state(reader, state);
     if (state.ports.size() != ports) throw CodecError("state of another number of ports");
     read_messages(reader, outbox);
     reader.end();
+    return reached;
 }
 
 std::string read_report(std::span<const std::uint8_t> body) {

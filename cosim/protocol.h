@@ -22,8 +22,8 @@ inline constexpr int kDescriptor = 3;
 enum class Kind : std::uint8_t {
     Hello,   ///< to the node: version, name, description
     Ready,   ///< from the node: ports, state
-    Grant,   ///< to the node: until, inbox
-    Done,    ///< from the node: state, outbox
+    Grant,   ///< to the node: until, inbox, echoes
+    Done,    ///< from the node: reached, state, outbox
     Finish,  ///< to the node: nothing
     Report,  ///< from the node: JSON text
     Error,   ///< from the node: whether the user's input is to blame, text
@@ -40,10 +40,7 @@ struct Ready {
 struct Grant {
     Time until = 0;
     std::vector<Message> inbox;
-};
-struct Done {
-    NodeState state;
-    std::vector<Message> outbox;
+    std::vector<PortEcho> echoes;
 };
 struct Error {
     bool input = false;
@@ -53,8 +50,9 @@ struct Error {
 /// Each writes one whole message, length included, in place of what `bytes` held.
 void write_hello(Bytes& bytes, const Hello& hello);
 void write_ready(Bytes& bytes, const Ready& ready);
-void write_grant(Bytes& bytes, Time until, const std::vector<Message>& inbox);
-void write_done(Bytes& bytes, const NodeState& state, const std::vector<Message>& outbox);
+void write_grant(Bytes& bytes, Time until, const std::vector<Message>& inbox,
+                 const std::vector<PortEcho>& echoes);
+void write_done(Bytes& bytes, Time reached, const NodeState& state, const std::vector<Message>& outbox);
 void write_finish(Bytes& bytes);
 void write_report(Bytes& bytes, const std::string& json);
 void write_error(Bytes& bytes, const Error& error);
@@ -63,10 +61,10 @@ void write_error(Bytes& bytes, const Error& error);
 Kind kind_of(std::span<const std::uint8_t> body);
 Hello read_hello(std::span<const std::uint8_t> body);
 Ready read_ready(std::span<const std::uint8_t> body);
-/// `until` and `inbox` (reused) of a grant.
+/// Into `grant`, whose memory is reused.
 void read_grant(std::span<const std::uint8_t> body, Grant& grant);
-/// Into `state` and `outbox` (reused) of a node with `ports` ports.
-void read_done(std::span<const std::uint8_t> body, std::size_t ports, NodeState& state,
+/// Into `state` and `outbox` (reused) of a node with `ports` ports; returns the time reached.
+Time read_done(std::span<const std::uint8_t> body, std::size_t ports, NodeState& state,
                std::vector<Message>& outbox);
 std::string read_report(std::span<const std::uint8_t> body);
 Error read_error(std::span<const std::uint8_t> body);

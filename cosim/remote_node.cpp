@@ -51,18 +51,20 @@ class RemoteNode : public NodeHandle {
         });
     }
 
-    void grant(Time until, const std::vector<Message>& inbox) override {
+    void grant(Time until, const std::vector<Message>& inbox, const std::vector<PortEcho>& echoes) override {
         asked_ = until;
         busy_ = true;
-        protocol::write_grant(bytes_, until, inbox);
+        protocol::write_grant(bytes_, until, inbox, echoes);
         send();
     }
 
     bool poll(bool wait) override {
         if (!receive(wait)) return false;
-        decode(protocol::Kind::Done,
-               [&](auto body) { protocol::read_done(body, ports_.size(), state_, outbox_); });
-        reached_ = asked_;
+        decode(protocol::Kind::Done, [&](auto body) {
+            const Time reached = protocol::read_done(body, ports_.size(), state_, outbox_);
+            if (reached <= reached_ || reached > asked_) throw CodecError("a time that was not granted");
+            reached_ = reached;
+        });
         busy_ = false;
         return true;
     }
@@ -145,7 +147,7 @@ class RemoteNode : public NodeHandle {
     [[noreturn]] void lose(const std::string& cause) {
         lost_ = true;
         const std::string granted =
-            asked_ > reached_ ? fmt::format(" (granted to {:.9f} s)", to_seconds(asked_)) : std::string();
+            busy_ ? fmt::format(" (granted to {:.9f} s)", to_seconds(asked_)) : std::string();
         throw RunError(fmt::format("node {} (process {}) {}; last simulated time {:.9f} s{}", name_,
                                    child_->id(), cause, to_seconds(reached_), granted));
     }
@@ -156,7 +158,6 @@ class RemoteNode : public NodeHandle {
     Clock::duration stall_;
     Clock::time_point asked_at_{};
     Time asked_ = 0;
-    Time reached_ = 0;
     bool busy_ = false;
     bool lost_ = false;  ///< nothing more is to be expected from it
 };

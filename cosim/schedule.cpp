@@ -9,7 +9,20 @@ namespace {
 constexpr Time kStretchDivisor = 4;
 }  // namespace
 
-void Schedule::plan(const Bounds& bounds, const std::vector<NodeTimes>& nodes, const ScheduleLimits& limits) {
+/// Limit of node `n`; where its own messages set it, as if it were silent: it will go in strides.
+Time Schedule::limit_if_silent(std::size_t n) {
+    alone_root_ = bounds_.root(n);
+    if (alone_root_ != n) return bounds_.limit(n);
+    alone_.compute(*channels_, *pending_, n);
+    alone_root_ = alone_.root(n);
+    return alone_.limit(n);
+}
+
+void Schedule::plan(const std::vector<Channel>& channels, const std::vector<Time>& pending,
+                    const std::vector<NodeTimes>& nodes, const ScheduleLimits& limits) {
+    channels_ = &channels;
+    pending_ = &pending;
+    bounds_.compute(channels, pending);
     const std::size_t count = nodes.size();
     reached_ = limits.end;
     for (const NodeTimes& node : nodes)
@@ -23,14 +36,12 @@ void Schedule::plan(const Bounds& bounds, const std::vector<NodeTimes>& nodes, c
     bool busy = false, last_is_root = false;
     for (std::size_t n = 0; n < count; ++n) {
         busy = busy || nodes[n].busy;
-        target_[n] = std::min(bounds.limit(n), ceiling);
+        const Time limit = limit_if_silent(n);
+        target_[n] = std::min(limit, ceiling);
         if (nodes[n].granted >= limits.end) continue;
-        if (bounds.limit(n) <= window) {
-            const std::size_t root = bounds.root(n);
-            if (root != kNobody) is_root_[root] = 1;
-        } else {
-            last_is_root = true;
-        }
+        if (bounds_.root(n) == n) is_root_[n] = 1;
+        if (limit <= window && alone_root_ != kNobody) is_root_[alone_root_] = 1;
+        if (limit > window) last_is_root = true;
     }
     chosen_.clear();
     const auto choose = [&](auto serves) {

@@ -26,9 +26,12 @@ struct ScheduleLimits {
 /// beside the others.
 class Schedule {
   public:
-    void plan(const Bounds& bounds, const std::vector<NodeTimes>& nodes, const ScheduleLimits& limits);
+    void plan(const std::vector<Channel>& channels, const std::vector<Time>& pending,
+              const std::vector<NodeTimes>& nodes, const ScheduleLimits& limits);
+    const Bounds& bounds() const { return bounds_; }
 
-    /// How far node `n` may go; at most its present time if it may not.
+    /// How far node `n` may go, in strides where that is beyond bounds().limit(n): there only the echo of
+    /// what it says itself limits it. At most its present time if it may not go.
     Time target(std::size_t n) const { return target_[n]; }
     const std::vector<std::size_t>& chosen() const { return chosen_; }
     /// Every node has reached the end.
@@ -37,6 +40,13 @@ class Schedule {
     Time reached() const { return reached_; }
 
   private:
+    Time limit_if_silent(std::size_t n);
+
+    Bounds bounds_;
+    Bounds alone_;
+    std::size_t alone_root_ = kNobody;
+    const std::vector<Channel>* channels_ = nullptr;
+    const std::vector<Time>* pending_ = nullptr;
     std::vector<Time> target_;
     std::vector<char> is_root_;
     std::vector<std::size_t> chosen_;

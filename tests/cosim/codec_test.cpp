@@ -26,6 +26,10 @@ NodeState some_state() {
     return {{{5, 6, std::nullopt}, {kNever, 0, Time{4}}}, Stop{99, false, "the program exited"}};
 }
 
+std::vector<PortEcho> some_echoes() {
+    return {{78125000, 5, kNever, true}, {0, 0, 9, false}};
+}
+
 /// Every reader on a body that may be anything: it reads or throws CodecError.
 int read_all(std::span<const std::uint8_t> body) {
     int read = 0;
@@ -52,8 +56,8 @@ std::vector<Bytes> whole_messages() {
     std::vector<Bytes> all(6);
     protocol::write_hello(all[0], {"robot0.pic", "{\"kind\": \"pic\"}"});
     protocol::write_ready(all[1], {{{"uart2", PortKind::Uart}, {"world", PortKind::Signals}}, some_state()});
-    protocol::write_grant(all[2], 1234, some_messages());
-    protocol::write_done(all[3], some_state(), some_messages());
+    protocol::write_grant(all[2], 1234, some_messages(), some_echoes());
+    protocol::write_done(all[3], 77, some_state(), some_messages());
     protocol::write_report(all[4], "{}");
     protocol::write_error(all[5], {true, "x.hex: line 3: bad"});
     return all;
@@ -73,9 +77,10 @@ TEST_CASE("what is written is read back") {
     protocol::read_grant(body_of(all[2]), grant);
     CHECK(grant.until == 1234);
     CHECK(grant.inbox == some_messages());
+    CHECK(grant.echoes == some_echoes());
     NodeState state;
     std::vector<Message> outbox;
-    protocol::read_done(body_of(all[3]), 2, state, outbox);
+    CHECK(protocol::read_done(body_of(all[3]), 2, state, outbox) == 77);
     CHECK(outbox == some_messages());
     CHECK(state.ports == some_state().ports);
     REQUIRE(state.stop);

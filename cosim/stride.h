@@ -1,0 +1,35 @@
+#pragma once
+// Going on without asking: how a node, wherever it lives, uses a grant that reaches beyond the echo of its
+// own messages.
+//
+// A node may be granted as far as the others, by themselves, leave it alone. Only what it says itself can
+// come back earlier; so it goes in strides, each no longer than the shortest way out and back, and stops
+// before the echo of what it said. A board that is silent on all its lines thus runs for a whole step of the
+// world with one round trip to the conductor.
+
+#include "cosim/message.h"
+#include "cosim/node.h"
+#include "cosim/time.h"
+
+#include <span>
+#include <vector>
+
+namespace puckloop::cosim {
+
+/// What one port's messages meet on their way out and back.
+struct PortEcho {
+    Time flight = 0;     ///< of a UART frame, from its start bit
+    Time latency = 0;    ///< of the link
+    Time back = kNever;  ///< from the delivery at the far end to the first message that comes back
+    bool is_uart = false;
+
+    friend bool operator==(const PortEcho&, const PortEcho&) = default;
+};
+
+/// Advances `node`, which has reached `from`, at most to `until`; returns how far it went. `echoes` has one
+/// entry a port, or none: then nothing can come back and `until` is reached in one stride. Messages of the
+/// inbox from the returned time on were not given to the node.
+Time advance_in_strides(Node& node, Time from, Time until, std::span<const Message> inbox,
+                        const std::vector<PortEcho>& echoes, std::vector<Message>& outbox);
+
+}  // namespace puckloop::cosim
