@@ -1,6 +1,6 @@
 #pragma once
-// A whole microcontroller: core, memories, clock, interrupt controller and peripherals, wired as in silicon.
-// It knows no board: the board implements Pins, and tells the chip what arrives from outside.
+// A whole microcontroller: core, memories, clock, interrupt controller and peripherals, wired as in
+// silicon. It knows no board: the board implements Pins, and tells the chip what arrives from outside.
 
 #include "cosim/clock.h"
 #include "cosim/message.h"
@@ -64,18 +64,20 @@ class Chip {
     Chip(const Chip&) = delete;
     Chip& operator=(const Chip&) = delete;
 
-    /// Program, configuration and EEPROM words of an image; throws InputError if they do not fit the device.
+    /// Program, configuration and EEPROM words of an image; throws InputError if they do not fit the
+    /// device.
     void load(const image::Image& image);
     /// One program, configuration or EEPROM word at a program address (even).
     void load_word(std::uint32_t address, std::uint32_t word);
 
-    /// Power-up at time 0: all registers at power-on values, RCON.POR and BOR set. Once, before run_until().
+    /// Power-up at time 0: all registers at power-on values, RCON.POR and BOR set. Once, before
+    /// run_until().
     void power_on();
     /// A pulse on MCLR now.
     void mclr();
 
-    /// Runs everything that starts strictly before `until`. Returns early only at a stop address.
-    /// An instruction that starts at time s has seen everything handed in after run_until(t), t <= s.
+    /// Runs everything that starts strictly before `until`. Returns early only at a stop address. An
+    /// instruction that starts at time s has seen everything handed in after run_until(t), t <= s.
     void run_until(cosim::Time until);
     /// Ends run_until() before the instruction at program address `pc` runs.
     void stop_at(std::uint32_t pc);
@@ -91,7 +93,8 @@ class Chip {
     void pins_changed(PortLetter port);
 
     /// Lookahead for the conductor: no uart_sent() call for `unit` carries a stop bit that begins before
-    /// this. `nominal_bit` is the link's nominal bit period; faster senders must be stamped as on that link.
+    /// this. `nominal_bit` is the link's nominal bit period; faster senders must be stamped as on that
+    /// link.
     cosim::Time earliest_uart_send(int unit, cosim::Time nominal_bit) const;
     /// Start of the frame that UART `unit` is shifting out and has not yet handed to Pins::uart_sent().
     std::optional<cosim::Time> uart_begun(int unit) const;
@@ -107,8 +110,8 @@ class Chip {
     cosim::Time now() const;
     Cycle cycle() const;
     std::uint32_t pc() const;
-    /// A register's present value by data-sheet name, as the program would read it but without side effects.
-    /// Throws std::out_of_range if the device has no such register.
+    /// A register's present value by data-sheet name, as the program would read it but without side
+    /// effects. Throws std::out_of_range if the device has no such register.
     std::uint16_t peek(std::string_view register_name) const;
     ChipReport report() const;
 

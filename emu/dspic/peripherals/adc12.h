@@ -1,10 +1,11 @@
 #pragma once
-// The 12-bit A/D converter: 16 inputs, scan, alternating multiplexers, automatic sampling and conversion, 16
-// buffers. Source: dsPIC30F Family Reference Manual, section 18; fact sheet peripherals.md section 3.
+// The 12-bit A/D converter: 16 inputs, scan, alternating multiplexers, automatic sampling and conversion,
+// 16 buffers. Source: dsPIC30F Family Reference Manual, section 18; fact sheet peripherals.md section 3.
 //
 // Deviations
 //  1. The internal RC clock (ADRC = 1) has TAD = 900 ns exactly.
-//  2. No settling time after ADON, no acquisition error, no noise: the input is taken at the end of sampling.
+//  2. No settling time after ADON, no acquisition error, no noise: the input is taken at the end of
+//     sampling.
 //  3. Selections of the input (ADCHS, ADCSSL) count at the start of sampling.
 //  4. Reserved SSRC codes never end sampling. ADSIDL and Sleep do not stop conversions.
 
@@ -16,8 +17,8 @@
 
 namespace puckloop::dspic {
 
-/// Events: end of sampling, where the voltage is taken, and the end of those conversions that the program can
-/// be waiting for. The end of the others is made up for when a register is touched.
+/// Events: end of sampling, where the voltage is taken, and the end of those conversions that the program
+/// can be waiting for. The end of the others is made up for when a register is touched.
 class Adc12 {
   public:
     enum class Trigger : std::uint8_t { Software = 0, Int0 = 1, Timer3 = 2, Counter = 7 };

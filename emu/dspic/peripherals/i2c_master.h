@@ -1,19 +1,17 @@
 #pragma once
-// The I2C module as a master: start, repeated start, stop, transmit, receive and acknowledge, one at a time,
-// each with its duration on the bus. The bus itself is the board's: phases go out through Pins::i2c_phase(),
-// answers come back through answer(). Source: dsPIC30F Family Reference Manual, section 21; fact sheet
-// peripherals.md section 4.
+// The I2C module as a master: start, repeated start, stop, transmit, receive and acknowledge, one at a
+// time, each with its duration on the bus. The bus itself is the board's: phases go out through
+// Pins::i2c_phase(), answers come back through answer(). Source: dsPIC30F Family Reference Manual, section
+// 21; fact sheet peripherals.md section 4.
 //
 // Deviations
 //  1. Master only: a first touch of the slave's address register is reported.
-//  2. The slave's answer to an address or data byte, stretch included, is known when its ninth clock ends. A
-//  read
-//     byte is therefore seen (RBF, RCEN = 0) after nine clocks instead of eight, and the acknowledge that the
-//     program gives next lasts an eighth of a clock instead of a whole one: the byte takes as long as in
-//     silicon.
+//  2. The slave's answer to an address or data byte, stretch included, is known when its ninth clock ends.
+//     A read byte is therefore seen (RBF, RCEN = 0) after nine clocks instead of eight, and the acknowledge
+//     that the program gives next lasts an eighth of a clock instead of a whole one: the byte takes as long
+//     as in silicon.
 //  3. A slave is always told "acknowledged" for a byte read; it learns of a not-acknowledge by the stop or
-//  repeated
-//     start that follows.
+//     repeated start that follows.
 //  4. I2CEN = 0 while an answer is awaited frees the bus when the answer comes. The bus sees a stop then.
 //  5. Transmitting without a start condition reaches nobody: not acknowledged.
 
@@ -34,8 +32,8 @@ class I2cMaster {
     void reset();
     /// Acknowledge, Data or BusLost, at cycle `at`.
     void answer(const cosim::I2cPhase& phase, Cycle at);
-    /// No phase goes out before this cycle, unless an answer comes; kNoCycle while one is awaited. `now`: the
-    /// next instruction starts there.
+    /// No phase goes out before this cycle, unless an answer comes; kNoCycle while one is awaited. `now`:
+    /// the next instruction starts there.
     Cycle earliest(Cycle now) const;
 
   private:

@@ -1,13 +1,14 @@
 #pragma once
-// The clock: configuration word FOSC, OSCCON with its unlock sequences, clock switching, PLL and postscaler.
+// The clock: configuration word FOSC, OSCCON with its unlock sequences, clock switching, PLL and
+// postscaler.
 // Source: dsPIC30F Family Reference Manual, section 7; fact sheets config_words.csv and semantics.md
 // section 17.
 //
 // Deviations
 //  1. A reserved FOSC code runs as the crystal with the 8x PLL.
 //  2. The fail-safe clock monitor never sees a failure; OSCTUN and LPOSCEN are stored.
-//  3. A switch takes 10 old cycles, and 1024 crystal periods more towards the primary oscillator; PLL lock is
-//  at once.
+//  3. A switch takes 10 old cycles, and 1024 crystal periods more towards the primary oscillator; PLL lock
+//     is at once.
 
 #include "cosim/clock.h"
 #include "emu/dspic/peripherals/surroundings.h"

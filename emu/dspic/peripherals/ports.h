@@ -1,13 +1,13 @@
 #pragma once
-// I/O ports: TRISx, PORTx, LATx, analog pins, pins lent to other modules; input change notification (CN); and
-// watched pins for the modules that count or trigger on edges.
+// I/O ports: TRISx, PORTx, LATx, analog pins, pins lent to other modules; input change notification (CN);
+// and watched pins for the modules that count or trigger on edges.
 // Source: dsPIC30F Family Reference Manual, section 11; fact sheet peripherals.md section 9.
 //
 // Deviations
 //  1. A PORTx read in the instruction right after a write sees the new level; silicon wants one instruction
-//  between.
+//     between.
 //  2. Pins change one cycle after the start of the writing instruction, all at once, without slew or
-//  contention.
+//     contention.
 //  3. A pin lent to a UART or I2C module rests at its idle level; frames travel as messages, not as levels.
 //  4. CN pull-ups are stored; what an open pin reads is the board's affair.
 

@@ -12,9 +12,9 @@ namespace puckloop::dspic {
 
 /// References into the chip; they outlive every peripheral.
 ///
-/// Time in the models: a register access happens at `now`, the cycle in which its instruction starts; what a
-/// write changes takes effect one cycle later, at now + 1. An event handler works at the cycle that it was
-/// due.
+/// Time in the models: a register access happens at `now`, the cycle in which its instruction starts; what
+/// a write changes takes effect one cycle later, at now + 1. An event handler works at the cycle that it
+/// was due.
 struct Surroundings {
     SfrSpace& sfr;
     EventQueue& events;

@@ -1,17 +1,15 @@
 #pragma once
-// Timer1 to Timer5: 16-bit counters with prescaler, gate and external clock; Timer2/3 and Timer4/5 pair to 32
-// bits. Source: dsPIC30F Family Reference Manual, section 12; fact sheet peripherals.md section 2.
+// Timer1 to Timer5: 16-bit counters with prescaler, gate and external clock; Timer2/3 and Timer4/5 pair to
+// 32 bits. Source: dsPIC30F Family Reference Manual, section 12; fact sheet peripherals.md section 2.
 //
 // Deviations
 //  1. External clock edges count at the instant of the edge; synchronisation (TSYNC) and asynchronous
-//  counting do
-//     not differ.
-//  2. Counting from the internal clock, TxIF is set in the cycle in which TMRx returns to 0; from an external
-//  clock,
-//     when the count reaches PRx (what the robot's camera driver relies on).
+//     counting do not differ.
+//  2. Counting from the internal clock, TxIF is set in the cycle in which TMRx returns to 0; from an
+//     external clock, when the count reaches PRx (what the robot's camera driver relies on).
 //  3. A write to TxCON leaves the prescaler alone (family manual); one data sheet says that it clears it.
-//  4. In 32-bit mode a direct write to the upper TMR has no effect until it is moved by a write to the lower
-//  one.
+//  4. In 32-bit mode a direct write to the upper TMR has no effect until it is moved by a write to the
+//     lower one.
 //  5. TSIDL and Sleep do not stop the count.
 
 #include "emu/dspic/peripherals/surroundings.h"

@@ -5,11 +5,10 @@
 // Deviations
 //  1. RIDLE falls when a frame is handed in (at its stop bit), not at its start bit.
 //  2. ABAUD and WAKE are stored; they need input capture and Sleep. ALTIO does not move the pins.
-//  3. A word written to an idle transmitter moves to the shift register at once; its start bit begins at the
-//  next
-//     tick of the 16x clock.
+//  3. A word written to an idle transmitter moves to the shift register at once; its start bit begins at
+//     the next tick of the 16x clock.
 //  4. While UTXBRK is set the line is told to be low in whole frames, from the end of the frame in progress
-//  on.
+//     on.
 
 #include "cosim/clock.h"
 #include "cosim/message.h"

@@ -5,13 +5,12 @@
 //
 // Deviations
 //  1. The majority of three samples is taken as the middle one: the waveform has no glitches shorter than a
-//  sample.
+//     sample.
 //  2. A character is known only once its frame was handed in, when the sender's stop bit begins: what a
-//  faster
-//     receiver samples before that instant is delivered at that instant.
+//     faster receiver samples before that instant is delivered at that instant.
 //  3. A receiver that still samples after the end of all known frames waits until a next frame could no
-//  longer have
-//     begun unseen: a slower receiver's last character may come up to one frame of the sender late.
+//     longer have begun unseen: a mismatched receiver's last character may come up to one frame of the
+//     sender late.
 
 #include "cosim/clock.h"
 #include "cosim/message.h"
