@@ -23,18 +23,31 @@ void SimulatedPic::restart(double time) {
 
 void SimulatedPic::receive(double time, std::uint8_t byte) {
     if (state_ == State::Booting && time < boot_began_ + character_.deaf) return;
-    if (character_.partial_timeout > 0 && !buffer_.empty() && time - last_byte_ > character_.partial_timeout)
-        buffer_.clear();
-    if (character_.partial_timeout > 0 && state_ == State::Configuration && buffer_.empty() &&
-        time - last_byte_ > character_.partial_timeout)
-        state_ = State::Waiting;
+    drop_part(time);
     last_byte_ = time;
     if (state_ == State::Waiting && buffer_.empty()) busy_until_ = time + character_.waiting_poll;
     buffer_.push_back(byte);
     advance(time);
 }
 
+/// Our firmware's way with a part of a record followed by silence (firmware/epuck/session.c).
+void SimulatedPic::drop_part(double time) {
+    if (character_.partial_timeout <= 0 || time - last_byte_ <= character_.partial_timeout) return;
+    if (state_ == State::Configuration) {
+        state_ = State::Waiting;
+    } else if (state_ == State::Records && !buffer_.empty()) {
+        const bool started_anew =
+            buffer_.size() == 1 + kEpuckConfigurationBytes && buffer_[0] == kEpuckWakeUp;
+        sessions += started_anew ? 1 : 0;
+        answers.push_back(time + kWorkTime);
+    } else {
+        return;
+    }
+    buffer_.clear();
+}
+
 void SimulatedPic::advance(double time) {
+    drop_part(time);
     if (state_ == State::Booting && time >= busy_until_) state_ = State::Waiting;
     if (state_ != State::Booting) consume(time);
 }

@@ -43,6 +43,7 @@ class SimulatedPic {
   private:
     enum class State { Booting, Waiting, Configuration, Records };
     void consume(double time);
+    void drop_part(double time);
 
     FirmwareCharacter character_;
     State state_ = State::Waiting;
