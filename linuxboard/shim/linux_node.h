@@ -39,6 +39,11 @@ class LinuxNode : public cosim::Node {
     std::optional<cosim::Stop> stop() const override { return stop_; }
     std::string finish() override;
 
+    /// A node from its JSON description (spec.h).
+    static std::unique_ptr<LinuxNode> from_json(std::string_view json) {
+        return std::make_unique<LinuxNode>(parse_linux_spec(json));
+    }
+
     /// Lines about what the program did that is not supported, each once.
     const std::vector<std::string>& warnings() const { return warnings_; }
     /// Requests the program made so far.

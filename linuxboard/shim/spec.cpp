@@ -16,6 +16,7 @@ namespace {
 using nlohmann::json;
 
 constexpr double kPicosecondsPerMicrosecond = 1e6;
+constexpr int kLargestFifo = 64;
 
 /// Reads one object, key by key, and complains of the keys nobody asked for.
 class Object {
@@ -113,6 +114,9 @@ LinuxSpec parse_linux_spec(std::string_view text) {
     object.read("cwd", spec.cwd);
     object.read("host_name", spec.host_name);
     object.read("tty", spec.tty);
+    object.read("fifo_trigger", spec.fifo_trigger);
+    if (spec.fifo_trigger < 1 || spec.fifo_trigger > kLargestFifo)
+        throw InputError("", object.where("fifo_trigger"), "must be 1 to 64");
     object.read("i2c", spec.i2c);
     object.read("i2c_hertz", spec.i2c_hertz);
     if (spec.i2c_hertz <= 0) throw InputError("", object.where("i2c_hertz"), "must be above 0 Hz");

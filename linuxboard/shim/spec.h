@@ -2,6 +2,7 @@
 // What a scenario says of one Linux program: the JSON text from which its node is made.
 
 #include "cosim/time.h"
+#include "linuxboard/shim/tty_port.h"
 #include "linuxboard/shim/wire.h"
 
 #include <cstdint>
@@ -32,6 +33,7 @@ struct LinuxSpec {
     std::string cwd;
     std::string host_name = "epuck1";
     std::string tty = "/dev/ttyS0";              ///< empty: no serial port
+    int fifo_trigger = TtyPort::kTrigger;        ///< of the UART's receive FIFO, 1..64
     std::vector<std::string> i2c{"/dev/i2c-3"};  ///< names of the one adapter at the port `i2c`
     double i2c_hertz = 100'000.0;
     int i2c_nack_error = 121;  ///< errno value where no slave acknowledges: EREMOTEIO, ENXIO, ...

@@ -9,6 +9,11 @@ using cosim::kNever;
 using cosim::Time;
 using cosim::UartFrame;
 
+namespace {
+/// Idle characters after which a FIFO below its trigger level is handed on.
+constexpr int kTimeoutCharacters = 4;
+}  // namespace
+
 void TtyPort::open() {
     if (opens_++ == 0) {
         hung_up_ = false;
@@ -63,10 +68,13 @@ void TtyPort::take(const protocols::ReceivedCharacter& character) {
 }
 
 void TtyPort::advance(Time now, std::vector<UartFrame>& sent) {
-    while (!arriving_.empty() && arriving_.front().time <= now) {
-        last_input_ = arriving_.front().time;
-        take(arriving_.front().character);
-        if (!arriving_.empty()) arriving_.pop_front();
+    for (Time due = fifo_due(); due <= now; due = fifo_due()) {
+        last_input_ = due;
+        while (!arriving_.empty() && arriving_.front().time <= due) {
+            const protocols::ReceivedCharacter character = arriving_.front().character;
+            arriving_.pop_front();
+            take(character);
+        }
     }
     while (can_send() && next_frame(0) <= now) {
         const Output next = output_.front();
@@ -92,6 +100,22 @@ void TtyPort::advance(Time now, std::vector<UartFrame>& sent) {
     }
 }
 
+Time TtyPort::fifo_due() const {
+    if (arriving_.empty()) return kNever;
+    const auto level = static_cast<std::size_t>(trigger_);
+    const Time full = arriving_.size() >= level ? arriving_[level - 1].time : kNever;
+    if (trigger_ == 1) return full;
+    const protocols::UartReceiver format = receiver_of(settings_, ppm_);
+    const int bits = 2 + format.data_bits + (format.parity != 0 ? 1 : 0);
+    const Time pause = kTimeoutCharacters * bits * format.bit_period;
+    Time idle = kNever;
+    for (std::size_t i = 0; i < arriving_.size() && idle == kNever; ++i) {
+        const Time until = arriving_[i].time + pause;
+        if (i + 1 == arriving_.size() || arriving_[i + 1].time > until) idle = until;
+    }
+    return std::min(full, idle);
+}
+
 Time TtyPort::next_frame(Time now) const {
     if (!can_send()) return kNever;
     return std::max({output_.front().not_before, line_free_, released_, now});
@@ -99,8 +123,7 @@ Time TtyPort::next_frame(Time now) const {
 
 Time TtyPort::next_event() const {
     Time next = next_frame(0);
-    if (!arriving_.empty()) next = std::min(next, arriving_.front().time);
-    return next;
+    return std::min(next, fifo_due());
 }
 
 bool TtyPort::echoes() const {

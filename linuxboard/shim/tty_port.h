@@ -4,7 +4,10 @@
 // Bytes leave back to back from the moment they are written, at the programmed rate and format; received
 // frames are sampled at the port's own rate. A port that no program has open hears nothing.
 //
-// Deviations: 1. The receive FIFO hands every character on as it comes (no trigger level or time-out).
+// Received characters wait in the UART's FIFO until `trigger` of them are there or the line has been idle for
+// four character times, as 16550-like UARTs do (the drivers of both 8250 and PXA set the trigger to 8).
+//
+// Deviations: 1. An overrun of the FIFO cannot happen: the driver empties it at once.
 // 2. No modem lines: DCD, DSR and CTS read as set, RTS and DTR are stored. 3. CRTSCTS does not stop output.
 // 4. Input speed equals output speed.
 
@@ -27,8 +30,11 @@ class TtyPort {
     /// Bytes the driver takes before write() blocks.
     static constexpr std::size_t kOutputSize = 4095;
 
-    /// `ppm` is the error of the board's clock.
-    explicit TtyPort(double ppm = 0.0) : ppm_(ppm) {}
+    static constexpr int kTrigger = 8;
+
+    /// `ppm` is the error of the board's clock; `trigger` the receive FIFO's level, 1 hands on every
+    /// character.
+    explicit TtyPort(double ppm = 0.0, int trigger = kTrigger) : ppm_(ppm), trigger_(trigger) {}
 
     void open();
     /// The last close: what is written still goes out, what is received is dropped from now on.
@@ -81,6 +87,8 @@ class TtyPort {
     wire::TtyCounters counters() const;
 
   private:
+    /// When the characters in the FIFO go to the line discipline, as far as those known tell.
+    cosim::Time fifo_due() const;
     void take(const protocols::ReceivedCharacter& character);
     bool can_send() const { return !output_.empty() && !stopped_ && bit_period(settings_, ppm_) != 0; }
 
@@ -95,6 +103,7 @@ class TtyPort {
     };
 
     double ppm_;
+    int trigger_;
     termios settings_ = initial_termios();
     LineDiscipline discipline_;
     std::deque<Arrival> arriving_;

@@ -9,7 +9,9 @@ using namespace puckloop::cosim;
 using namespace puckloop::tests;
 
 TEST_CASE("bytes go to the program and back at 115200 baud") {
-    Bench bench(spec_for("echo"));
+    linuxboard::LinuxSpec spec = spec_for("echo");
+    spec.fifo_trigger = 1;
+    Bench bench(std::move(spec));
     bench.send(5 * kMillisecond, "ABC");
     bench.send(8 * kMillisecond, std::string(1, '\0'));
     bench.run(20 * kMillisecond);
@@ -22,6 +24,14 @@ TEST_CASE("bytes go to the program and back at 115200 baud") {
     const Time expected = 5 * kMillisecond + Time{9} * 8'680'555 + 8'680'556 / 2 + 2 * kMicrosecond;
     const Time start = std::stoll(bench.trace().substr(bench.trace().find("uart ") + 5));
     CHECK(start == Approx(expected).margin(20.0));
+}
+
+TEST_CASE("the receive FIFO waits for eight characters or a pause of four") {
+    Bench bench(spec_for("vmin", {"1", "0"}));
+    bench.send(50 * kMillisecond, "0123456789");
+    bench.send(90 * kMillisecond, "ab");
+    bench.run(kSecond);
+    CHECK(bench.log() == "8 bytes at 50 ms\n2 bytes at 51 ms\n2 bytes at 90 ms\nnonblocking -1\n");
 }
 
 TEST_CASE("clocks and sleeps follow simulated time") {
@@ -50,7 +60,7 @@ TEST_CASE("VMIN and VTIME are kept") {
         return bench.log();
     };
     CHECK(run("3", "0", true) == "3 bytes at 50 ms\n3 bytes at 120 ms\n3 bytes at 900 ms\nnonblocking -1\n");
-    CHECK(run("0", "2", true) == "1 bytes at 50 ms\n1 bytes at 50 ms\n1 bytes at 50 ms\nnonblocking -1\n");
+    CHECK(run("0", "2", true) == "3 bytes at 50 ms\n3 bytes at 120 ms\n0 bytes at 320 ms\nnonblocking -1\n");
     CHECK(run("10", "2", true) ==
           "6 bytes at 320 ms\n2 bytes at 700 ms\n1 bytes at 1100 ms\nnonblocking -1\n");
     CHECK(run("0", "3", false) ==
