@@ -26,8 +26,9 @@ namespace {
 constexpr std::uint32_t kFosc = 0xF80000;
 constexpr std::size_t kRecords = 1000;
 constexpr int kUartLookaheadBits = 9;
+constexpr std::uint16_t kStopInIdle = bit(13);  // xSIDL
 
-constexpr Timer::Setup kTimer1 = {sfr::TMR1, sfr::PR1, sfr::T1CON, irq::T1};
+constexpr Timer::Setup kTimer1 = {sfr::TMR1, sfr::PR1, sfr::T1CON, irq::T1, 0, true};
 constexpr Timer::Setup kTimer2 = {sfr::TMR2, sfr::PR2, sfr::T2CON, irq::T2, sfr::TMR3HLD};
 constexpr Timer::Setup kTimer3 = {sfr::TMR3, sfr::PR3, sfr::T3CON, irq::T3};
 constexpr Timer::Setup kTimer4 = {sfr::TMR4, sfr::PR4, sfr::T4CON, irq::T4, sfr::TMR5HLD};
@@ -135,6 +136,7 @@ struct Chip::Parts {
         };
         core.set_cycle_rate(clock.hertz());
         core.set_reset_hook([this](ResetCause cause) { reset(cause); });
+        core.set_power_hook([this](PowerMode mode) { set_power(mode); });
         core.observer().on_reset = [this](ResetCause cause, std::uint32_t pc, Cycle at) {
             if (report.resets.size() < kRecords)
                 report.resets.push_back({at, std::string(reset_name(cause)), pc});
@@ -163,6 +165,21 @@ struct Chip::Parts {
         adc.reset();
         i2c.reset();
         interrupts.reset();
+    }
+
+    // Sleep stops every module that needs the instruction clock, Idle those whose xSIDL bit says so.
+    void set_power(PowerMode mode) {
+        const auto stops = [&](std::uint16_t control) {
+            return mode == PowerMode::Sleep || (mode == PowerMode::Idle && (sfr.raw(control) & kStopInIdle));
+        };
+        timer1.hold(stops(sfr::T1CON));
+        timer2.hold(stops(sfr::T2CON));
+        timer3.hold(stops(sfr::T3CON));
+        timer4.hold(stops(sfr::T4CON));
+        timer5.hold(stops(sfr::T5CON));
+        uart1.hold(stops(sfr::U1MODE));
+        uart2.hold(stops(sfr::U2MODE));
+        adc.hold(stops(sfr::ADCON1) && !(mode == PowerMode::Sleep && adc.runs_in_sleep()));
     }
 
     Uart& uart(int unit) { return unit == 1 ? uart1 : uart2; }

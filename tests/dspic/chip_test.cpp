@@ -261,6 +261,41 @@ slow:   btg LATD, #0
     }
 }
 
+TEST_CASE("Idle lets a timer run and wake the part, TSIDL and Sleep hold its count") {
+    const auto [control, saving, wakes] = GENERATE(table<std::string, std::string, bool>({
+        {"#0x8000", "#1", true},   // Idle
+        {"#0xA000", "#1", false},  // Idle, TSIDL
+        {"#0x8000", "#0", false},  // Sleep
+    }));
+    Bench bench(R"(
+        .org 0x100
+main:   clr TRISD
+        mov #999, w0
+        mov w0, PR1
+        bset IEC0, #3
+        bclr IPC0, #14          ; priority 0: wakes without a vector
+        mov )" + control +
+                R"(, w0
+        mov w0, T1CON
+        pwrsav )" +
+                saving + R"(
+        mov TMR1, w5
+        bset LATD, #0
+done:   bra done
+)");
+    bench.chip.run_until(cosim::kMillisecond);
+    const auto drives = bench.pins.port_d;
+    const bool woke = !drives.empty() && drives.back().levels == 1;
+    CHECK(woke == wakes);
+    if (woke) CHECK(static_cast<double>(drives.back().at) == Approx(1000 * kTcy).margin(25 * kTcy));
+    const std::uint16_t count = bench.chip.peek("TMR1");
+    bench.chip.run_until(2 * cosim::kMillisecond);
+    if (!wakes) {
+        CHECK(count < 5);
+        CHECK(bench.chip.peek("TMR1") == count);
+    }
+}
+
 TEST_CASE("an I2C start goes out when it was promised or later, and an answer moves the program on") {
     Bench bench(R"(
         .org 0x100

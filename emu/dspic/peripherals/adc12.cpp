@@ -193,6 +193,26 @@ void Adc12::trigger(Trigger source, Cycle at) {
     plan();
 }
 
+bool Adc12::runs_in_sleep() const {
+    return around_.sfr.raw(sfr::ADCON3) & kAdrc;
+}
+
+void Adc12::hold(bool on) {
+    if (state_.held == on) return;
+    state_.held = on;
+    if (state_.phase == Phase::Off) return;
+    std::uint16_t& adcon1 = around_.sfr.raw(sfr::ADCON1);
+    if (on) {
+        catch_up(around_.now);
+        state_.phase = Phase::Idle;
+        state_.timed = false;
+        adcon1 &= static_cast<std::uint16_t>(~kSamp);
+    } else if (adcon1 & kAsam) {
+        begin_sampling(2 * around_.now);
+    }
+    plan();
+}
+
 std::uint16_t Adc12::read_register(void* owner, std::uint16_t address) {
     Adc12& self = *static_cast<Adc12*>(owner);
     self.catch_up(self.around_.now);

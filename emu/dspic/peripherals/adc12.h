@@ -7,7 +7,7 @@
 //  2. No settling time after ADON, no acquisition error, no noise: the input is taken at the end of
 //     sampling.
 //  3. Selections of the input (ADCHS, ADCSSL) count at the start of sampling.
-//  4. Reserved SSRC codes never end sampling. ADSIDL and Sleep do not stop conversions.
+//  4. Reserved SSRC codes never end sampling.
 
 #include "cosim/clock.h"
 #include "emu/dspic/peripherals/surroundings.h"
@@ -28,6 +28,10 @@ class Adc12 {
     void reset();
     /// INT0 edge or Timer3 match at cycle `at`: ends sampling if SSRC selects it.
     void trigger(Trigger source, Cycle at);
+    /// Sleep without the internal RC clock, or Idle with ADSIDL set: what is in progress is lost; automatic
+    /// sampling goes on afterwards.
+    void hold(bool on);
+    bool runs_in_sleep() const;
     /// Brings results and status bits up to the present cycle.
     void refresh() { catch_up(around_.now); }
 
@@ -37,7 +41,8 @@ class Adc12 {
     using HalfCycle = std::uint64_t;
     struct State {
         Phase phase = Phase::Off;
-        HalfCycle phase_end = 0;   ///< of a conversion, or of sampling when the internal counter ends it
+        HalfCycle phase_end = 0;  ///< of a conversion, or of sampling when the internal counter ends it
+        bool held = false;
         bool timed = false;        ///< phase_end is set
         bool mux_b = false;        ///< the input being sampled belongs to MUX B
         std::uint8_t channel = 0;  ///< being sampled or converted

@@ -7,6 +7,7 @@ namespace {
 constexpr std::uint16_t kTon = bit(15);
 constexpr std::uint16_t kTgate = bit(6);
 constexpr std::uint16_t kT32 = bit(3);
+constexpr std::uint16_t kTsync = bit(2);
 constexpr std::uint16_t kTcs = bit(1);
 constexpr std::uint32_t kPrescale[] = {1, 8, 64, 256};  // TCKPS
 }  // namespace
@@ -37,11 +38,14 @@ bool Timer::ruled_by_lower() const {
 bool Timer::external() const {
     return con() & kTcs;
 }
+bool Timer::synchronised() const {
+    return !setup_.asynchronous || (con() & kTsync);
+}
 bool Timer::gated() const {
     return !external() && (con() & kTgate);
 }
 bool Timer::running() const {
-    return (con() & kTon) && !ruled_by_lower() && !external() && (!gated() || state_.pin);
+    return (con() & kTon) && !state_.held && !ruled_by_lower() && !external() && (!gated() || state_.pin);
 }
 std::uint32_t Timer::prescale() const {
     return kPrescale[dspic::field(con(), 5, 4)];
@@ -94,7 +98,9 @@ void Timer::match(Cycle at) {
 
 void Timer::match_due(void* owner, Cycle due) {
     Timer& self = *static_cast<Timer*>(owner);
-    self.state_ = {0, 0, due, self.state_.pin};
+    self.state_.count = 0;
+    self.state_.fraction = 0;
+    self.state_.base = due;
     self.plan();
     self.match(due);
 }
@@ -108,7 +114,8 @@ void Timer::clock_pin(bool level, Cycle at) {
         if (gated()) {
             settle(at);
             if (!level) match(at);
-        } else if (external() && level && ++state_.fraction >= prescale()) {
+        } else if (external() && level && !(state_.held && synchronised()) &&
+                   ++state_.fraction >= prescale()) {
             state_.fraction = 0;
             const bool back_to_zero = state_.count == period() || state_.count == top();
             state_.count = back_to_zero ? 0 : state_.count + 1;
@@ -116,6 +123,13 @@ void Timer::clock_pin(bool level, Cycle at) {
         }
     }
     state_.pin = level;
+    plan();
+}
+
+void Timer::hold(bool on) {
+    if (state_.held == on) return;
+    settle(around_.now);
+    state_.held = on;
     plan();
 }
 

@@ -10,7 +10,6 @@
 //  3. A write to TxCON leaves the prescaler alone (family manual); one data sheet says that it clears it.
 //  4. In 32-bit mode a direct write to the upper TMR has no effect until it is moved by a write to the
 //     lower one.
-//  5. TSIDL and Sleep do not stop the count.
 
 #include "emu/dspic/peripherals/surroundings.h"
 
@@ -24,7 +23,8 @@ class Timer {
         std::uint16_t pr = 0;
         std::uint16_t con = 0;
         std::uint8_t irq = 0;
-        std::uint16_t hold = 0;  ///< TMRyHLD of the pair, for the lower timer (type B) only
+        std::uint16_t hold = 0;     ///< TMRyHLD of the pair, for the lower timer (type B) only
+        bool asynchronous = false;  ///< type A: TSYNC = 0 counts edges without the instruction clock
     };
 
     /// `upper` is the other half of the pair if this is its lower timer, else null.
@@ -34,6 +34,9 @@ class Timer {
     void reset();
     /// The TxCK pin changed to `level` at cycle `at`; kNoCycle: no edge, just the level after a reset.
     void clock_pin(bool level, Cycle at);
+    /// Sleep, or Idle with TSIDL set: the count stands still, but for edges counted without
+    /// synchronisation.
+    void hold(bool on);
     /// Puts the present count into TMRx's storage.
     void refresh();
 
@@ -47,6 +50,7 @@ class Timer {
         std::uint32_t fraction = 0;  ///< prescaler count at cycle `base`
         Cycle base = 0;
         bool pin = false;  ///< level of TxCK
+        bool held = false;
     };
 
     static std::uint16_t read_tmr(void* owner, std::uint16_t address);
@@ -58,6 +62,7 @@ class Timer {
     bool paired() const;           ///< this lower timer counts 32 bits
     bool ruled_by_lower() const;   ///< this upper timer is the high word of a pair
     bool external() const;         ///< counts edges of TxCK
+    bool synchronised() const;     ///< edges of TxCK need the instruction clock
     bool gated() const;            ///< counts cycles while TxCK is high
     bool running() const;          ///< the internal clock is counted just now
     std::uint32_t period() const;  ///< PRx, or PRy:PRx of a pair

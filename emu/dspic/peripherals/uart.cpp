@@ -73,6 +73,23 @@ void Uart::clear() {
     sta() = static_cast<std::uint16_t>((sta() & ~(kOerr | kUrxda | kFerr | kPerr)) | kRidle);
 }
 
+void Uart::hold(bool on) {
+    if (state_.held == on) return;
+    state_.held = on;
+    if (!enabled()) return;
+    if (on) {
+        state_.shifting = false;
+        state_.sampled.reset();
+        around_.events.cancel(transmit_slot_);
+        around_.events.cancel(receive_slot_);
+        sta() |= kRidle;
+    } else {
+        receiver_.start(around_.now);
+        if (sta() & kUtxen) begin_frame(around_.now);
+    }
+    show_transmitter();
+}
+
 void Uart::lend_pins() {
     const std::uint16_t rx = bit(setup_.rx_pin);
     const std::uint16_t tx = bit(setup_.tx_pin);
@@ -103,6 +120,7 @@ void Uart::stop_transmitter() {
 // Moves the next word into the empty shift register; its start bit begins at a tick at or after `from`.
 void Uart::begin_frame(Cycle from) {
     const bool is_break = sta() & kUtxbrk;
+    if (state_.held) return;
     if (!is_break && state_.transmit.count == 0) return;
     const Cycle late = (from - state_.phase) % divisor();
     const Cycle start = from + (late ? divisor() - late : 0);
@@ -174,6 +192,7 @@ UartReceiver::Format Uart::format() const {
 
 void Uart::receive(const cosim::UartFrame& frame, Cycle at) {
     if (enabled() && (mode() & kLpback)) return;
+    if (state_.held) return;
     receiver_.frame(frame);
     if (enabled()) sample(at);
 }

@@ -4,7 +4,8 @@
 //
 // Deviations
 //  1. RIDLE falls when a frame is handed in (at its stop bit), not at its start bit.
-//  2. ABAUD and WAKE are stored; they need input capture and Sleep. ALTIO does not move the pins.
+//  2. ABAUD is stored; it needs input capture. WAKE is stored: Sleep ends by other sources. ALTIO does not
+//     move the pins.
 //  3. A word written to an idle transmitter moves to the shift register at once; its start bit begins at
 //     the next tick of the 16x clock.
 //  4. While UTXBRK is set the line is told to be low in whole frames, from the end of the frame in progress
@@ -41,6 +42,8 @@ class Uart {
     void reset();
     /// A frame whose stop bit begins at cycle `at`.
     void receive(const cosim::UartFrame& frame, Cycle at);
+    /// Sleep, or Idle with USIDL set: frames in progress are lost, the FIFOs stay.
+    void hold(bool on);
     /// The frame in the shift register, if its stop bit has not begun.
     std::optional<cosim::UartFrame> begun() const;
     bool enabled() const;
@@ -75,7 +78,8 @@ class Uart {
         cosim::UartFrame frame;  ///< being shifted
         Fifo<Received> receive;
         std::optional<UartReceiver::Character> sampled;  ///< complete at its `done`
-        Cycle phase = 0;                                 ///< the baud rate generator started here
+        bool held = false;
+        Cycle phase = 0;  ///< the baud rate generator started here
     };
 
     static std::uint16_t read_rxreg(void* owner, std::uint16_t address);
