@@ -5,7 +5,9 @@
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
+#include <atomic>
 #include <set>
+#include <thread>
 
 using namespace puckloop;
 using namespace puckloop::cosim;
@@ -105,6 +107,55 @@ TEST_CASE("the trace is the same for every placement") {
             check_same(here, there);
         }
     }
+}
+
+TEST_CASE("a node that may speak at any time but does not is granted long stretches") {
+    // "mutual" promises no more than its own time and answers at once; its partner answers after a while.
+    Run run{{{"board", "mutual"}, {"program", "echo delay_us=10"}},
+            {toy::uart("wire", {"board", "uart0"}, {"program", "uart0"})}};
+    run.options.duration = kSecond;
+    run.options.in_process = true;
+    const Outcome outcome = run();
+    CHECK(outcome.reason == EndReason::Duration);
+    // One grant each for every stop latency of 10 ms, not one for each 170 us that an echo takes.
+    CHECK(outcome.grants < 1000);
+}
+
+TEST_CASE("ten runs under load are one run") {
+    std::atomic<bool> over{false};
+    std::vector<std::thread> burners;
+    for (int i = 0; i < 2; ++i)
+        burners.emplace_back([&over] {
+            while (!over)
+                ;
+        });
+    Run run = toy::random_chatter(8, 3);
+    run.options.in_process = false;
+    run.options.duration = 5 * kMillisecond;
+    const Outcome first = run();
+    for (int repeat = 1; repeat < 10; ++repeat)
+        check_same(first, run());
+    over = true;
+    for (std::thread& burner : burners)
+        burner.join();
+}
+
+TEST_CASE("paced by the wall clock a run takes its time, tells its progress, and is the same") {
+    Run run = ping_pong(true);
+    run.options.duration = 300 * kMillisecond;
+    const Outcome free = run();
+    CHECK(free.wall_s < 0.25);
+    run.options.realtime = true;
+    std::vector<Progress> told;
+    run.options.progress = [&told](const Progress& progress) { told.push_back(progress); };
+    const Outcome paced = run();
+    CHECK(paced.wall_s >= 0.295);
+    CHECK(paced.trace_sha256 == free.trace_sha256);
+    REQUIRE(!told.empty());
+    CHECK(told[0].time > 100 * kMillisecond);
+    CHECK(told[0].wall_s >= 0.2);
+    CHECK(told[0].factor > 0.3);
+    CHECK(told[0].factor < 1.1);
 }
 
 TEST_CASE("another seed is another trace") {
