@@ -35,6 +35,10 @@ constexpr std::chrono::milliseconds kReapPoll{5};
     } else {
         dup2(socket, protocol::kDescriptor);
     }
+    // No terminal to read from (the group is a background one), no files of the parent.
+    const int nothing = open("/dev/null", O_RDONLY);
+    dup2(nothing, STDIN_FILENO);
+    close_range(protocol::kDescriptor + 1, ~0u, 0);
     execv(arguments[0], arguments);
     _exit(kExecFailed);
 }

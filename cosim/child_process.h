@@ -13,8 +13,8 @@ namespace puckloop::cosim {
 class ChildProcess {
   public:
     /// Starts `command` (program and arguments) with `socket` as descriptor 3, in a process group of its own,
-    /// so that a Ctrl-C at the terminal reaches the parent alone. The kernel kills it when the parent dies.
-    /// Throws RunError.
+    /// so that a Ctrl-C at the terminal reaches the parent alone, and with an empty standard input. The
+    /// kernel kills it when the parent dies. Throws RunError.
     ChildProcess(const std::vector<std::string>& command, int socket);
     /// Kills the whole group and reaps the child.
     ~ChildProcess();
