@@ -15,11 +15,11 @@ using Shape = Operand::Shape;
 /// Encodes one instruction as one particular form, or finds that it is another one's.
 class FormEncoder {
   public:
-    FormEncoder(const Candidate& candidate, const Instruction& instruction, std::uint32_t address,
+    FormEncoder(const Candidate& candidate, std::span<const Operand> operands, std::uint32_t address,
                 const SymbolValue* value_of)
         : candidate_(candidate),
           codec_(*candidate.codec),
-          list_(instruction.list()),
+          list_(operands),
           address_(address),
           value_of_(value_of),
           word_(codec_.form().value) {}
@@ -342,24 +342,24 @@ void set_ignored_bits(FormEncoder& encoder, const FormCodec& codec, std::string_
     }
 }
 
+struct Choice {
+    const std::vector<Candidate>& candidates;
+    std::span<const Operand> operands;
+};
+
 /// The candidates of the mnemonic, and the operands left when a branch condition was part of it.
-const std::vector<Candidate>& candidates_of(Instruction& instruction) {
-    if (equal_ignoring_case(instruction.mnemonic, "bra") && instruction.operand_count == 2) {
-        const std::vector<Candidate>* found = find_condition(instruction.operands[0].text);
-        if (!found)
-            throw EncodeError(fmt::format("unknown condition \"{}\"", instruction.operands[0].text),
-                              "ov c z n le lt leu nov nc nz nn gt ge gtu geu ltu oa ob sa sb");
-        instruction.operands[0] = instruction.operands[1];
-        instruction.operand_count = 1;
-        return *found;
+Choice choose(const Instruction& instruction) {
+    const std::span<const Operand> operands = instruction.list();
+    if (operands.size() == 2 && equal_ignoring_case(instruction.mnemonic, "bra")) {
+        if (const std::vector<Candidate>* found = find_condition(operands[0].text))
+            return {*found, operands.subspan(1)};
+        throw EncodeError(fmt::format("unknown condition \"{}\"", operands[0].text),
+                          "ov c z n le lt leu nov nc nz nn gt ge gtu geu ltu oa ob sa sb");
     }
-    const std::vector<Candidate>* found = find_mnemonic(instruction.mnemonic);
-    if (!found) {
-        const std::string near = nearest_mnemonic(instruction.mnemonic);
-        throw EncodeError(fmt::format("unknown instruction \"{}\"", instruction.mnemonic),
-                          near.empty() ? "a dsPIC mnemonic" : near + "?");
-    }
-    return *found;
+    if (const std::vector<Candidate>* found = find_mnemonic(instruction.mnemonic)) return {*found, operands};
+    const std::string near = nearest_mnemonic(instruction.mnemonic);
+    throw EncodeError(fmt::format("unknown instruction \"{}\"", instruction.mnemonic),
+                      near.empty() ? "a dsPIC mnemonic" : near + "?");
 }
 
 }  // namespace
@@ -401,22 +401,20 @@ Instruction parse_instruction(std::string_view text) {
     return instruction;
 }
 
-int size_of(const Instruction& original) {
-    Instruction instruction = original;
-    const std::vector<Candidate>& candidates = candidates_of(instruction);
+int size_of(const Instruction& instruction) {
+    const auto [candidates, operands] = choose(instruction);
     for (const Candidate& candidate : candidates) {
-        FormEncoder encoder(candidate, instruction, 0, nullptr);
+        FormEncoder encoder(candidate, operands, 0, nullptr);
         if (encoder.run()) return candidate.codec->form().two_words() ? 2 : 1;
     }
     fail_no_form(instruction, candidates);
 }
 
-Encoded encode(const Instruction& original, std::uint32_t address, const SymbolValue& value_of) {
-    Instruction instruction = original;
-    const std::vector<Candidate>& candidates = candidates_of(instruction);
+Encoded encode(const Instruction& instruction, std::uint32_t address, const SymbolValue& value_of) {
+    const auto [candidates, operands] = choose(instruction);
     std::string problem;
     for (const Candidate& candidate : candidates) {
-        FormEncoder encoder(candidate, instruction, address, &value_of);
+        FormEncoder encoder(candidate, operands, address, &value_of);
         if (!encoder.run()) continue;
         const Form& form = candidate.codec->form();
         if (!encoder.problem().empty()) {

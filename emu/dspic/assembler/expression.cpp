@@ -2,6 +2,8 @@
 
 #include "emu/dspic/assembler/operand.h"
 
+#include <charconv>
+
 namespace puckloop::dspic {
 
 namespace {
@@ -171,6 +173,17 @@ class Parser {
     int depth_ = 0;
 };
 
+/// A decimal or 0x number and nothing else: most operands are one.
+std::optional<std::int64_t> plain_number(std::string_view text) {
+    const bool hexadecimal = text.starts_with("0x");
+    if (hexadecimal) text.remove_prefix(2);
+    std::uint32_t value = 0;
+    const auto [end, error] =
+        std::from_chars(text.data(), text.data() + text.size(), value, hexadecimal ? 16 : 10);
+    if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+    return value;
+}
+
 }  // namespace
 
 bool is_name_start(char c) {
@@ -182,6 +195,7 @@ bool is_name_char(char c) {
 }
 
 std::int64_t evaluate(std::string_view text, std::uint32_t here, const SymbolValue& value_of) {
+    if (const auto number = plain_number(text)) return *number;
     return Parser(text, here, value_of).whole();
 }
 

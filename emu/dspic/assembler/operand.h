@@ -39,7 +39,15 @@ int register_number(std::string_view name);
 /// Names that cannot be labels: registers, accumulators.
 bool is_reserved_name(std::string_view name);
 
-std::string_view trim(std::string_view text);
+/// Without blanks at both ends.
+inline std::string_view trim(std::string_view text) {
+    while (!text.empty() && (text.front() == ' ' || text.front() == '\t'))
+        text.remove_prefix(1);
+    while (!text.empty() && (text.back() == ' ' || text.back() == '\t' || text.back() == '\r'))
+        text.remove_suffix(1);
+    return text;
+}
+
 bool equal_ignoring_case(std::string_view left, std::string_view right);
 
 }  // namespace puckloop::dspic
