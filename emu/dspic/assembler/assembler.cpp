@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::uint32_t kAddressEnd = 0x1000000;
 constexpr std::int64_t kLargestWord = 0xFFFFFF;
-constexpr std::size_t kMostWords = 4u << 20;
+constexpr std::size_t kMostWords = 1u << 20;  // five times the largest dsPIC
 
 bool is_name(std::string_view text) {
     return !text.empty() && is_name_start(text[0]) &&
@@ -89,7 +89,7 @@ class Assembler {
         if (address_ >= kAddressEnd) fail("the program runs past the 24-bit program space");
         if (final_ && !program_.words.emplace(address_, word).second)
             fail(fmt::format("program address 0x{:06X} already holds a word", address_), "another .org");
-        if (final_ && program_.words.size() > kMostWords) fail("more than 4 million words");
+        if (final_ && program_.words.size() > kMostWords) fail("more than a million words");
         address_ += 2;
     }
 
@@ -202,8 +202,8 @@ class Assembler {
     void fill(const std::vector<std::string_view>& parts) {
         if (parts.size() != 2) fail(".pfill takes a count and a word");
         const std::int64_t count = value(parts[0]);
-        if (count < 0 || count > kAddressEnd / 2)
-            fail(fmt::format(".pfill of {} words", count), "0 to 8388608");
+        if (count < 0 || count > static_cast<std::int64_t>(kMostWords))
+            fail(fmt::format(".pfill of {} words", count), fmt::format("0 to {}", kMostWords));
         const std::uint32_t word = word_value(parts[1], kLargestWord);
         for (std::int64_t i = 0; i < count; ++i)
             emit(word);

@@ -1,0 +1,125 @@
+// puckloop asm and puckloop disasm from the outside.
+#include <catch2/catch.hpp>
+
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Result {
+    int status = 0;
+    std::string output;  ///< standard output and error together
+};
+
+/// Runs "puckloop ARGUMENTS" in a shell.
+Result puckloop(const std::string& arguments) {
+    const std::string command = std::string(PUCKLOOP_PROGRAM) + " " + arguments + " 2>&1";
+    std::FILE* pipe = popen(command.c_str(), "r");
+    REQUIRE(pipe != nullptr);
+    Result result;
+    std::array<char, 4096> buffer{};
+    while (const std::size_t got = std::fread(buffer.data(), 1, buffer.size(), pipe))
+        result.output.append(buffer.data(), got);
+    result.status = WEXITSTATUS(pclose(pipe));
+    return result;
+}
+
+class Folder {
+  public:
+    Folder() {
+        fs::remove_all(path_);
+        fs::create_directories(path_);
+    }
+    ~Folder() { fs::remove_all(path_); }
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
+    std::string file(const std::string& name, const std::string& content = "") const {
+        if (!content.empty()) std::ofstream(path_ / name) << content;
+        return (path_ / name).string();
+    }
+
+  private:
+    fs::path path_ = fs::temp_directory_path() / "puckloop_asm_commands";
+};
+
+std::string content_of(const std::string& path) {
+    std::ifstream stream(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+const std::string kSource =
+    "        goto      start\n        .org      0x100\n"
+    "start:  mov       #0x1234, w0\n        mov       PORTA, w1\nloop:   bra       loop\n"
+    "        .org      0xf80000\n        .pword    0xc706\n";
+
+}  // namespace
+
+TEST_CASE("asm, disasm and asm again give the same program") {
+    const Folder folder;
+    const std::string source = folder.file("a.s", kSource);
+    const std::string first = folder.file("first.hex");
+    const Result assembled = puckloop("asm " + source + " -o " + first);
+    CHECK(assembled.output == "");
+    CHECK(assembled.status == 0);
+    const std::string text = folder.file("b.s");
+    CHECK(puckloop("disasm " + first + " > " + text).status == 0);
+    const std::string second = folder.file("second.hex");
+    CHECK(puckloop("asm " + text + " -o " + second).status == 0);
+    CHECK(content_of(first).size() > 60);
+    CHECK(content_of(first) == content_of(second));
+}
+
+TEST_CASE("disasm prints address, words, text and branch targets") {
+    const Folder folder;
+    const std::string image = folder.file("x.hex");
+    puckloop("asm " + folder.file("x.s", kSource) + " -o " + image);
+    const Result all = puckloop("disasm " + image);
+    CHECK(all.output.find("goto      L_000100                      ; 000000: 040100 000000") !=
+          std::string::npos);
+    CHECK(all.output.find("bra       L_000104                      ; 000104: 37ffff") != std::string::npos);
+    const Result part = puckloop("disasm " + image + " --start 0x102 --end 102");
+    CHECK(part.output.find("mov.w     0x2c2") == std::string::npos);
+    CHECK(part.output.find("; 000102: 801611") != std::string::npos);
+    CHECK(part.output.find("000104") == std::string::npos);
+    CHECK(puckloop("disasm --words fa0004,0x3f0000").output ==
+          "lnk       #0x4                          ; 000000: fa0004\n"
+          ".pword    0x3f0000                      ; 000002: 3f0000\n");
+}
+
+TEST_CASE("asm lists and reports") {
+    const Folder folder;
+    const Result list = puckloop("asm " + folder.file("l.s", "x: call x\nnop\n") + " --format list");
+    CHECK(list.output == "000000: 020000 000000     1  call x\n000004: 000000            2  nop\n");
+    const std::string bad = folder.file("bad.s", "nop\n  mvo w0, w1\n");
+    const Result failed = puckloop("asm " + bad);
+    CHECK(failed.status == 2);
+    CHECK(failed.output == "puckloop: " + bad + ": line 2: unknown instruction \"mvo\" (expected mov?)\n");
+}
+
+TEST_CASE("Wrong use and bad input give status 2 and one line") {
+    const Folder folder;
+    const std::string damaged = folder.file("d.hex", ":0400000000010400F7\n");
+    for (const std::string& arguments :
+         {std::string("disasm"), std::string("disasm /no/such/file.hex"), std::string("disasm /"),
+          "disasm " + damaged, std::string("disasm --words xyz"), std::string("asm"),
+          std::string("asm /no/such/file.s"), std::string("asm - --mcu pic16 < /dev/null"),
+          std::string("asm - < /dev/null")}) {
+        const Result result = puckloop(arguments);
+        INFO(arguments << ": " << result.output);
+        CHECK(result.status == 2);
+        CHECK_FALSE(result.output.empty());
+    }
+    CHECK(puckloop("disasm " + damaged).output ==
+          "puckloop: " + damaged +
+              ": line 1: the file ends without an end-of-file record (expected :00000001FF as last line)\n");
+    CHECK(puckloop("asm " + folder.file("n.s", "nop\n") + " -o /dev/full").status == 1);
+}
