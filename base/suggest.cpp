@@ -1,6 +1,7 @@
 #include "base/suggest.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace puckloop {
 
@@ -15,20 +16,24 @@ char lower(char c) {
 }  // namespace
 
 std::size_t edit_distance(std::string_view left, std::string_view right) {
-    std::vector<std::size_t> row(right.size() + 1);
+    std::vector<std::size_t> before;  // the row two characters back, for swaps
+    std::vector<std::size_t> above(right.size() + 1);
     for (std::size_t j = 0; j <= right.size(); ++j)
-        row[j] = j;
+        above[j] = j;
     for (std::size_t i = 1; i <= left.size(); ++i) {
-        std::size_t diagonal = row[0];
+        std::vector<std::size_t> row(right.size() + 1);
         row[0] = i;
         for (std::size_t j = 1; j <= right.size(); ++j) {
-            const std::size_t above = row[j];
-            const std::size_t replaced = diagonal + (lower(left[i - 1]) != lower(right[j - 1]));
-            row[j] = std::min({above + 1, row[j - 1] + 1, replaced});
-            diagonal = above;
+            const bool same = lower(left[i - 1]) == lower(right[j - 1]);
+            row[j] = std::min({above[j] + 1, row[j - 1] + 1, above[j - 1] + (same ? 0 : 1)});
+            const bool swapped = i > 1 && j > 1 && lower(left[i - 1]) == lower(right[j - 2]) &&
+                                 lower(left[i - 2]) == lower(right[j - 1]);
+            if (swapped) row[j] = std::min(row[j], before[j - 2] + 1);
         }
+        before = std::move(above);
+        above = std::move(row);
     }
-    return row[right.size()];
+    return above[right.size()];
 }
 
 std::string nearest_name(std::string_view name, const std::vector<std::string_view>& known) {

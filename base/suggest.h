@@ -8,8 +8,8 @@
 
 namespace puckloop {
 
-/// Fewest insertions, deletions and replacements of one character that turn `left` into `right`; letter case
-/// counts for nothing.
+/// Fewest insertions, deletions, replacements of one character and swaps of two neighbours that turn `left`
+/// into `right`; letter case counts for nothing.
 std::size_t edit_distance(std::string_view left, std::string_view right);
 
 /// The first of `known` with the smallest distance to `name`, at most 2 (1 for names of three letters or

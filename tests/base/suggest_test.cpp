@@ -9,6 +9,7 @@ TEST_CASE("Edit distance counts single changes and ignores case") {
     CHECK(edit_distance("abc", "ABC") == 0);
     CHECK(edit_distance("kitten", "sitting") == 3);
     CHECK(edit_distance("", "four") == 4);
+    CHECK(edit_distance("mvo", "mov") == 1);
 }
 
 TEST_CASE("The nearest name is near, or there is none") {
