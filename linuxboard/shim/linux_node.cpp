@@ -96,7 +96,9 @@ void LinuxNode::program_ended(Time now) {
 }
 
 void LinuxNode::listen() {
-    switch (process_->hear(spec_.watchdog_s, request_, request_data_)) {
+    const Heard heard = process_->hear(spec_.watchdog_s, request_, request_data_);
+    process_->echo_output();
+    switch (heard) {
     case Heard::Request:
         ++requests_;
         state_ = State::Asking;

@@ -29,6 +29,7 @@ namespace {
 constexpr int kFirstPrivateFd = 500;  // well above what a program counts on
 constexpr int kEndAttempts = 2000;
 constexpr useconds_t kEndPause = 1000;  // together 2 s
+constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
 constexpr double kMillisecondsPerSecond = 1000.0;
 
 [[noreturn]] void fail(const std::string& what) {
@@ -61,7 +62,7 @@ Process::Process(const LinuxSpec& spec)
       shim_(shim_file(spec)),
       buffer_(sizeof(wire::Request) + wire::kMaximumData) {
     if (!spec.log.empty()) {
-        log_fd_ = open(spec.log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0644);
+        log_fd_ = open(spec.log.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0644);
         if (log_fd_ < 0)
             throw InputError(spec.log, "", std::strerror(errno), "a log file that can be written");
     }
@@ -82,8 +83,8 @@ void Process::prepare_page() {
     if (memory == MAP_FAILED) fail("shared memory");
     page_ = new (memory) wire::Page;
     page_->real_time = spec_.real_time ? 1 : 0;
-    page_->epoch = spec_.epoch_s * cosim::kSecond;
-    page_->uptime = cosim::from_seconds(spec_.uptime_s);
+    page_->epoch = spec_.epoch_s * kNanosecondsPerSecond;
+    page_->uptime = cosim::from_seconds(spec_.uptime_s) / cosim::kNanosecond;
     page_->seed = spec_.seed;
     page_->charges = spec_.charges;
     std::strncpy(page_->host_name, spec_.host_name.c_str(), sizeof page_->host_name - 1);
@@ -151,11 +152,9 @@ void Process::start() {
             dup2(in, STDIN_FILENO);
             close(in);
         }
-        if (!spec_.echo_output) {
-            const int out = log_fd_ >= 0 ? log_fd_ : open("/dev/null", O_WRONLY);
-            dup2(out, STDOUT_FILENO);
-            dup2(out, STDERR_FILENO);
-        }
+        const int out = log_fd_ >= 0 ? log_fd_ : open("/dev/null", O_WRONLY);
+        dup2(out, STDOUT_FILENO);
+        dup2(out, STDERR_FILENO);
         if (dup2(sockets[1], kFirstPrivateFd) < 0 || dup2(page_fd_, kFirstPrivateFd + 1) < 0) give_up(2);
         if (!spec_.cwd.empty() && chdir(spec_.cwd.c_str()) != 0) give_up(3);
         execve(file_.c_str(), arguments.data(), variables.data());
@@ -227,6 +226,14 @@ void Process::kill() {
     ::kill(-pid_, SIGKILL);
     ::kill(pid_, SIGKILL);
     reap(true);
+}
+
+void Process::echo_output() {
+    if (!spec_.echo_output || log_fd_ < 0) return;
+    char text[4096];
+    for (ssize_t count; (count = pread(log_fd_, text, sizeof text, echoed_)) > 0; echoed_ += count) {
+        [[maybe_unused]] const auto written = write(STDOUT_FILENO, text, static_cast<std::size_t>(count));
+    }
 }
 
 std::string Process::describe_end() const {

@@ -35,6 +35,8 @@ class Process {
     Heard hear(double watchdog, wire::Request& request, std::string& data);
 
     void kill();
+    /// What the program wrote to its log since the last call goes to this terminal too.
+    void echo_output();
     /// "exited with status 3", "was killed by SIGSEGV (Segmentation fault)"; after its end.
     std::string describe_end() const;
     bool ended_well() const { return exit_status_ == 0; }
@@ -58,6 +60,7 @@ class Process {
     int page_fd_ = -1;
     int socket_ = -1;
     int log_fd_ = -1;
+    off_t echoed_ = 0;
     pid_t pid_ = -1;
     int wait_status_ = 0;
     std::optional<int> exit_status_;

@@ -44,7 +44,7 @@ struct LinuxSpec {
     double uptime_s = 60.0;                ///< CLOCK_MONOTONIC at simulated time 0
     std::uint64_t seed = 1;
     std::string log;           ///< file for the program's output; empty: discarded
-    bool echo_output = false;  ///< the program's output goes to this terminal as well
+    bool echo_output = false;  ///< what goes to the log is also shown on standard output
     std::string stdin_file;    ///< empty: /dev/null
     cosim::Time start = 0;
     std::vector<Restart> restarts;

@@ -112,8 +112,8 @@ inline constexpr std::uint32_t kNameLength = 64;
 struct Page {
     std::uint32_t version = kVersion;
     std::uint32_t real_time = 0;
-    std::int64_t epoch = 0;        ///< CLOCK_REALTIME at simulated time 0, picoseconds since 1970
-    std::int64_t uptime = 0;       ///< CLOCK_MONOTONIC at simulated time 0, picoseconds
+    std::int64_t epoch = 0;        ///< CLOCK_REALTIME at simulated time 0, nanoseconds since 1970
+    std::int64_t uptime = 0;       ///< CLOCK_MONOTONIC at simulated time 0, nanoseconds
     std::int64_t wall_origin = 0;  ///< real-time mode: host CLOCK_MONOTONIC at simulated time 0, ns
     std::uint64_t seed = 0;
     Charges charges;

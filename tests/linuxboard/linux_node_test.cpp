@@ -4,6 +4,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <chrono>
+
 using namespace puckloop;
 using namespace puckloop::cosim;
 using namespace puckloop::tests;
@@ -40,7 +42,7 @@ TEST_CASE("clocks and sleeps follow simulated time") {
     CHECK(bench.log().find("host epuck12\n") == 0);
     // Sleeps end on the picosecond; the clock reading after each costs 1 us.
     CHECK(bench.log().find("10001 20001 30001 0\n") != std::string::npos);
-    CHECK(bench.log().find("mono 60") != std::string::npos);
+    CHECK(bench.log().find("mono 60, wall 1767225600") != std::string::npos);
     CHECK(bench.sent() == std::string("\0\1\2\3\4", 5));
     REQUIRE(bench.node().stop());
     CHECK(bench.node().stop()->success);
@@ -105,4 +107,29 @@ TEST_CASE("I2C transfers take their time on the bus") {
     CHECK(bench.node().stop()->success);
     // Six times (2 + 2 bytes and a STOP each), 5 bytes, 4 bytes, 1 byte: 34 bytes of 90 us and 15 STOPs.
     CHECK(to_seconds(bench.node().stop()->time) == Approx(0.00325).margin(0.0001));
+}
+
+TEST_CASE("a sleep costs little wall-clock time") {
+    // Two process switches a sleep; 100 us leaves room for a loaded machine (about 10 us on an idle one).
+    constexpr int kSleeps = 2000;
+    Bench bench(spec_for("beat", {std::to_string(kSleeps), "1000"}), 500 * kMicrosecond);
+    const auto start = std::chrono::steady_clock::now();
+    bench.run(10 * kSecond);
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+    CHECK(bench.log() == "2000001\n");
+    WARN("a sleep costs " << took.count() / kSleeps * 1e6 << " us");
+}
+
+TEST_CASE("in real-time mode the wall clock paces the program") {
+    linuxboard::LinuxSpec spec = spec_for("beat", {"10", "20000"});
+    spec.real_time = true;
+    Bench bench(std::move(spec));
+    const auto start = std::chrono::steady_clock::now();
+    bench.run(kSecond);
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+    CHECK(took.count() >= 0.2);
+    CHECK(took.count() < 0.4);
+    CHECK(std::stol(bench.log()) >= 200'000);
+    REQUIRE(bench.node().stop());
+    CHECK(bench.node().stop()->success);
 }

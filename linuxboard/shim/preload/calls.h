@@ -10,8 +10,9 @@ namespace puckloop::shim {
 
 // time_calls.cpp
 bool is_wall_clock(clockid_t clock);
-/// Reading of `clock` at simulated time 0.
-Time clock_origin(clockid_t clock);
+/// Reading of `clock` now, in nanoseconds (a Time since 1970 would not fit).
+std::int64_t clock_nanoseconds(clockid_t clock);
+timespec timespec_of_nanoseconds(std::int64_t nanoseconds);
 Time from_timespec(const timespec& time);
 timespec to_timespec(Time time);
 /// Simulated time `duration` from now; kNever stays.

@@ -3,6 +3,7 @@
 #include "linuxboard/shim/preload/link.h"
 #include "linuxboard/shim/preload/open_file.h"
 #include "linuxboard/shim/preload/real.h"
+#include "linuxboard/shim/preload/timers.h"
 
 #include <fcntl.h>
 #include <sys/eventfd.h>
@@ -123,6 +124,7 @@ SHIM_EXPORT int close(int fd) {
         return -1;
     }
     if (open_file(fd) != nullptr) release_file(fd);
+    if (active()) drop_timer(fd);
     return REAL(close)(fd);
 }
 

@@ -37,6 +37,10 @@ wire::Page& page() {
     return *shared_page;
 }
 
+bool is_linked() {
+    return shared_page != nullptr && shared_page->version == wire::kVersion;
+}
+
 bool is_link_descriptor(int fd) {
     return fd >= 0 && (fd == socket_fd || fd == page_fd);
 }
@@ -47,10 +51,10 @@ bool connect_link() {
     int memory = -1;
     int pid = 0;
     if (text == nullptr || std::sscanf(text, "%d,%d,%d", &socket, &memory, &pid) != 3) return false;
-    if (pid != static_cast<int>(host_call(SYS_getpid))) return false;
     void* mapped = mmap(nullptr, sizeof(wire::Page), PROT_READ | PROT_WRITE, MAP_SHARED, memory, 0);
     if (mapped == MAP_FAILED) return false;
     shared_page = static_cast<wire::Page*>(mapped);
+    if (pid != static_cast<int>(host_call(SYS_getpid))) return false;
     socket_fd = socket;
     page_fd = memory;
     return shared_page->version == wire::kVersion;

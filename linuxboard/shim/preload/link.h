@@ -16,6 +16,8 @@ using Completed = void (*)(const wire::Completion& completion, const char* data)
 void exchange(const wire::Request& request, const void* data, std::size_t size, wire::Reply& reply,
               Completed completed);
 void send_only(const wire::Request& request);
+/// This process, or one it descends from, was started by a node: page() is there.
+bool is_linked();
 /// The descriptor belongs to this library: the program may not close it.
 bool is_link_descriptor(int fd);
 wire::Page& page();

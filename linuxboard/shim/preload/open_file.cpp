@@ -1,6 +1,7 @@
 #include "linuxboard/shim/preload/open_file.h"
 
 #include "base/random.h"
+#include "linuxboard/shim/preload/host.h"
 #include "linuxboard/shim/preload/real.h"
 
 #include <dlfcn.h>
@@ -29,19 +30,24 @@ OpenFile* open_file(int fd) {
 }
 
 int device_of(const char* path) {
-    if (path == nullptr || !active()) return kNoDevice;
+    if (path == nullptr || !is_linked()) return kNoDevice;
     for (const char* random : kRandomPaths) {
-        if (std::strcmp(path, random) == 0) return kRandomDevice;
+        if (std::strcmp(path, random) == 0) return active() ? kRandomDevice : kNoDevice;
     }
     for (std::uint32_t i = 0; i < wire::kMaximumDevices; ++i) {
         const wire::DeviceName& device = page().devices[i];
         if (device.kind != wire::DeviceKind::None && std::strcmp(path, device.path) == 0)
-            return static_cast<int>(i);
+            return active() ? static_cast<int>(i) : kForbiddenDevice;
     }
     return kNoDevice;
 }
 
 int open_device(int device, int flags) {
+    if (device == kForbiddenDevice) {
+        host_complain("puckloop shim: a child process or a foreign thread has no devices\n");
+        errno = ENXIO;
+        return -1;
+    }
     mark_call("open");
     const int fd = REAL(open)("/dev/null", O_RDWR | (flags & O_CLOEXEC));
     if (fd < 0) return fd;

@@ -27,6 +27,8 @@ OpenFile* open_file(int fd);
 /// The device a path names, or nullptr: index into the page's list, or kRandomDevice.
 inline constexpr int kNoDevice = -1;
 inline constexpr int kRandomDevice = -2;
+/// A device of the node, named by a process that is outside of simulated time.
+inline constexpr int kForbiddenDevice = -3;
 int device_of(const char* path);
 
 /// Opens a device; a descriptor, or -1 and errno.

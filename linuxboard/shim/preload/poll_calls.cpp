@@ -6,6 +6,7 @@
 #include "linuxboard/shim/preload/calls.h"
 #include "linuxboard/shim/preload/open_file.h"
 #include "linuxboard/shim/preload/real.h"
+#include "linuxboard/shim/preload/timers.h"
 
 #include <poll.h>
 #include <signal.h>
@@ -92,7 +93,8 @@ int poll_until(pollfd* entries, nfds_t count, Time deadline) {
         if (ready < 0) return -1;
         if (has_device) {
             const bool waits = ready == 0 && deadline > now();
-            const Time until = waits ? std::min(deadline, time_after(kExternalPeriod)) : now();
+            const Time until =
+                waits ? std::min({deadline, time_after(kExternalPeriod), next_timer()}) : now();
             if (waits) name_outside_wait(entries, count);
             const int devices = poll_devices(entries, count, until);
             if (devices < 0) return -1;

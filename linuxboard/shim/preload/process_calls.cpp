@@ -1,4 +1,4 @@
-// The process as a whole: begin, end, children, host name, random numbers; and futexes, which reach the
+// The process as a whole: begin, end, children, random numbers; and futexes, which reach the
 // kernel through syscall().
 
 #include "linuxboard/shim/preload/calls.h"
@@ -10,7 +10,6 @@
 #include <spawn.h>
 #include <sys/random.h>
 #include <sys/syscall.h>
-#include <sys/utsname.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -79,23 +78,6 @@ SHIM_EXPORT int posix_spawnp(pid_t* pid, const char* path, const posix_spawn_fil
                              const posix_spawnattr_t* attributes, char* const* arguments, char* const* env) {
     note_child("posix_spawnp");
     return REAL(posix_spawnp)(pid, path, actions, attributes, arguments, env);
-}
-
-SHIM_EXPORT int gethostname(char* name, size_t size) noexcept {
-    if (!active()) return REAL(gethostname)(name, size);
-    const char* host = page().host_name;
-    if (std::strlen(host) >= size) {
-        errno = ENAMETOOLONG;
-        return -1;
-    }
-    std::strcpy(name, host);
-    return 0;
-}
-
-SHIM_EXPORT int uname(utsname* names) noexcept {
-    const int result = REAL(uname)(names);
-    if (result == 0 && active()) std::strncpy(names->nodename, page().host_name, sizeof names->nodename - 1);
-    return result;
 }
 
 SHIM_EXPORT ssize_t getrandom(void* buffer, size_t size, unsigned flags) {

@@ -3,10 +3,12 @@
 #include "linuxboard/shim/preload/calls.h"
 #include "linuxboard/shim/preload/host.h"
 #include "linuxboard/shim/preload/link.h"
+#include "linuxboard/shim/preload/timers.h"
 
 #include <signal.h>
 
 #include <algorithm>
+#include <bit>
 #include <cerrno>
 #include <cstdarg>
 #include <cstdio>
@@ -27,7 +29,7 @@ std::size_t thread_total = 0;
 Time clock_now = 0;
 Time clock_limit = 0;
 std::uint64_t park_order = 0;
-int pending_signal = 0;
+std::uint64_t pending_signals = 0;  // bit n: signal n
 bool conducted = false;
 __thread Thread* current __attribute__((tls_model("initial-exec"))) = nullptr;
 
@@ -67,10 +69,11 @@ Time first_deadline() {
         if (thread != nullptr && thread->state == Thread::State::Parked)
             first = std::min(first, thread->deadline);
     }
-    return first;
+    return std::min(first, next_timer());
 }
 
 void expire_deadlines() {
+    if (next_timer() <= clock_now) pending_signals |= fire_timers(clock_now);
     for (std::size_t i = 0; i < thread_total; ++i) {
         Thread* thread = threads[i];
         if (thread != nullptr && thread->state == Thread::State::Parked && thread->deadline <= clock_now)
@@ -102,7 +105,7 @@ void transact(wire::Request& request, const void* data, std::size_t size) {
     clock_now = reply.now;
     clock_limit = reply.limit;
     follow_wall_clock();
-    if (reply.signal != 0) pending_signal = reply.signal;
+    if (reply.signal != 0) pending_signals |= std::uint64_t{1} << reply.signal;
     expire_deadlines();
 }
 
@@ -123,7 +126,21 @@ void withdraw(Thread& thread) {
 }
 
 void route_signal() {
-    if (pending_signal == 0) return;
+    if (pending_signals == 0) return;
+    for (std::size_t i = 0; i < thread_total; ++i) {
+        Thread* thread = threads[i];
+        if (thread == nullptr || thread->awaited_signals == nullptr) continue;
+        for (int number = 1; number < NSIG; ++number) {
+            const std::uint64_t bit = std::uint64_t{1} << number;
+            if ((pending_signals & bit) == 0 || sigismember(thread->awaited_signals, number) != 1) continue;
+            pending_signals &= ~bit;
+            thread->taken_signal = number;
+            thread->awaited_signals = nullptr;
+            make_ready(*thread, clock_now, Wake::Signal);
+            break;
+        }
+    }
+    if (pending_signals == 0) return;
     Thread* taker = signal_taker();
     if (taker == nullptr || !taker->interruptible) return;
     if (taker->state == Thread::State::Device) withdraw(*taker);
@@ -169,8 +186,9 @@ void schedule(Thread* me) {
 
 /// Runs the handler of a signal the node sent, here and now. True if the interrupted call is to be restarted.
 bool take_signal() {
-    const int number = std::exchange(pending_signal, 0);
-    if (number == 0) return true;
+    if (pending_signals == 0) return true;
+    const int number = std::countr_zero(pending_signals);
+    pending_signals &= pending_signals - 1;
     struct sigaction action {};
     sigaction(number, nullptr, &action);
     const bool ignored = action.sa_handler == SIG_IGN;
@@ -230,7 +248,8 @@ void charge(Time cost) {
     } else {
         expire_deadlines();
     }
-    if (pending_signal != 0 && signal_taker() == me) take_signal();
+    while (pending_signals != 0 && signal_taker() == me)
+        take_signal();
     const Thread* other = first_ready();
     if (other != nullptr && clock_now - other->ready_since >= kQuantum) {
         make_ready(*me, clock_now, Wake::Key);
@@ -303,7 +322,8 @@ std::int64_t device_call(wire::Request request, const void* data, std::size_t si
             errno = EINTR;
             return -1;
         }
-        if (pending_signal != 0 && signal_taker() == me) take_signal();
+        while (pending_signals != 0 && signal_taker() == me)
+            take_signal();
         if (result < 0) errno = error;
         return result;
     }

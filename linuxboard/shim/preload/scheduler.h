@@ -12,6 +12,7 @@
 #include "linuxboard/shim/wire.h"
 
 #include <pthread.h>
+#include <signal.h>
 
 #include <atomic>
 #include <cstddef>
@@ -57,6 +58,9 @@ struct Thread {
     void* (*start)(void*) = nullptr;
     void* argument = nullptr;
     int exit_rounds = 0;
+
+    const sigset_t* awaited_signals = nullptr;  ///< sigwait
+    int taken_signal = 0;
 };
 
 /// The library conducts this process and the calling thread. False before the start, in forked children, in

@@ -10,6 +10,7 @@
 
 #include <pthread.h>
 #include <semaphore.h>
+#include <sys/syscall.h>
 
 #include <cerrno>
 #include <climits>
@@ -36,11 +37,8 @@ int lock_mutex(pthread_mutex_t* mutex, Time deadline) {
     // An error-checking mutex that its owner locks again is busy to trylock, but a mistake to lock.
     constexpr int kKindMask = 3;
     if ((mutex->__data.__kind & kKindMask) == PTHREAD_MUTEX_ERRORCHECK_NP &&
-        REAL(pthread_mutex_trylock)(mutex) == EBUSY && mutex->__data.__owner == gettid())
+        mutex->__data.__owner == static_cast<int>(host_call(SYS_gettid)))
         return EDEADLK;
-    if ((mutex->__data.__kind & kKindMask) == PTHREAD_MUTEX_ERRORCHECK_NP &&
-        mutex->__data.__owner == gettid())
-        return 0;
     return lock_by(mutex, deadline, [mutex] { return REAL(pthread_mutex_trylock)(mutex); });
 }
 

@@ -27,8 +27,19 @@ bool is_wall_clock(clockid_t clock) {
            clock == CLOCK_TAI;
 }
 
-Time clock_origin(clockid_t clock) {
+static std::int64_t clock_origin(clockid_t clock) {
     return is_wall_clock(clock) ? page().epoch : page().uptime;
+}
+
+std::int64_t clock_nanoseconds(clockid_t clock) {
+    return clock_origin(clock) + now() / kNanosecond;
+}
+
+timespec timespec_of_nanoseconds(std::int64_t nanoseconds) {
+    timespec out{};
+    out.tv_sec = nanoseconds / kNanosecondsPerSecond;
+    out.tv_nsec = nanoseconds % kNanosecondsPerSecond;
+    return out;
 }
 
 Time from_timespec(const timespec& time) {
@@ -50,10 +61,11 @@ Time time_after(Time duration) {
 }
 
 Time absolute_deadline(clockid_t clock, const timespec& time) {
-    const Time at = from_timespec(time);
-    if (at == kNever) return kNever;
-    const Time relative = at - clock_origin(clock);
-    return relative < 0 ? 0 : relative;
+    constexpr std::int64_t kLast = kNever / kNanosecond;
+    if (time.tv_sec >= INT64_MAX / kNanosecondsPerSecond) return kNever;
+    const std::int64_t relative = time.tv_sec * kNanosecondsPerSecond + time.tv_nsec - clock_origin(clock);
+    if (relative > kLast) return kNever;
+    return relative < 0 ? 0 : relative * kNanosecond;
 }
 
 bool is_valid(const timespec& time) {
@@ -83,7 +95,7 @@ SHIM_EXPORT int clock_gettime(clockid_t clock, timespec* time) noexcept {
     mark_call("clock_gettime");
     charge(page().charges.clock);
     // Processor time: what the calls of the program have cost is not kept apart from waiting.
-    *time = to_timespec(clock_origin(clock) + now());
+    *time = timespec_of_nanoseconds(clock_nanoseconds(clock));
     return 0;
 }
 
@@ -97,10 +109,10 @@ SHIM_EXPORT int gettimeofday(timeval* time, void* zone) noexcept {
     if (!active()) return REAL(gettimeofday)(time, zone);
     mark_call("gettimeofday");
     charge(page().charges.clock);
-    const Time wall = page().epoch + now();
     if (time != nullptr) {
-        time->tv_sec = wall / kSecond;
-        time->tv_usec = wall % kSecond / kMicrosecond;
+        const timespec wall = timespec_of_nanoseconds(clock_nanoseconds(CLOCK_REALTIME));
+        time->tv_sec = wall.tv_sec;
+        time->tv_usec = wall.tv_nsec / 1000;
     }
     return 0;
 }
@@ -109,7 +121,7 @@ SHIM_EXPORT time_t time(time_t* out) noexcept {
     if (!active()) return REAL(time)(out);
     mark_call("time");
     charge(page().charges.clock);
-    const time_t seconds = (page().epoch + now()) / kSecond;
+    const time_t seconds = clock_nanoseconds(CLOCK_REALTIME) / kNanosecondsPerSecond;
     if (out != nullptr) *out = seconds;
     return seconds;
 }
@@ -129,7 +141,7 @@ SHIM_EXPORT clock_t clock() noexcept {
 SHIM_EXPORT clock_t times(tms* buffer) noexcept {
     if (!active()) return REAL(times)(buffer);
     charge(page().charges.clock);
-    const clock_t ticks = (page().uptime + now()) / (kSecond / sysconf(_SC_CLK_TCK));
+    const clock_t ticks = clock_nanoseconds(CLOCK_MONOTONIC) / (kNanosecondsPerSecond / sysconf(_SC_CLK_TCK));
     if (buffer != nullptr) *buffer = tms{ticks, 0, 0, 0};
     return ticks;
 }

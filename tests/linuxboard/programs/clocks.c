@@ -34,6 +34,6 @@ int main(void) {
     }
     struct timespec mono;
     clock_gettime(CLOCK_MONOTONIC, &mono);
-    printf("mono %ld\n", (long)mono.tv_sec);
+    printf("mono %ld, wall %ld\n", (long)mono.tv_sec, (long)time(NULL));
     return 0;
 }

@@ -1,0 +1,126 @@
+// Devices opened as streams. The C library's streams make their own system calls, so a device gets a stream
+// whose reading and writing come back here.
+
+#include "linuxboard/shim/preload/open_file.h"
+#include "linuxboard/shim/preload/real.h"
+
+#include <fcntl.h>
+#include <stdio.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdarg>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+
+using namespace puckloop::shim;
+
+extern "C" {
+int __dprintf_chk(int, int, const char*, ...);
+int __vdprintf_chk(int, int, const char*, std::va_list);
+}
+
+namespace {
+constexpr int kMostStreams = 64;
+struct Stream {
+    FILE* file = nullptr;
+    int fd = -1;
+};
+Stream streams[kMostStreams];
+
+int descriptor(void* cookie) {
+    return static_cast<int>(reinterpret_cast<std::intptr_t>(cookie));
+}
+
+int flags_of(const char* mode) {
+    int flags = std::strchr(mode, '+') != nullptr ? O_RDWR : mode[0] == 'r' ? O_RDONLY : O_WRONLY;
+    if (std::strchr(mode, 'e') != nullptr) flags |= O_CLOEXEC;
+    return flags;
+}
+
+FILE* open_stream(int fd, const char* mode) {
+    if (fd < 0) return nullptr;
+    cookie_io_functions_t calls{};
+    calls.read = [](void* cookie, char* buffer, size_t size) -> ssize_t {
+        return read(descriptor(cookie), buffer, size);
+    };
+    calls.write = [](void* cookie, const char* data, size_t size) -> ssize_t {
+        const ssize_t written = write(descriptor(cookie), data, size);
+        return written < 0 ? 0 : written;
+    };
+    calls.close = [](void* cookie) {
+        const int own = descriptor(cookie);
+        for (Stream& stream : streams) {
+            if (stream.fd == own) stream = {};
+        }
+        return close(own);
+    };
+    FILE* file = fopencookie(reinterpret_cast<void*>(static_cast<std::intptr_t>(fd)), mode, calls);
+    if (file == nullptr) return nullptr;
+    for (Stream& stream : streams) {
+        if (stream.file != nullptr) continue;
+        stream = {file, fd};
+        break;
+    }
+    const OpenFile* device = open_file(fd);
+    if (device != nullptr && device->kind == OpenFile::Kind::Tty) setvbuf(file, nullptr, _IOLBF, BUFSIZ);
+    return file;
+}
+
+int print(int fd, const char* format, std::va_list arguments) {
+    char* text = nullptr;
+    const int length = vasprintf(&text, format, arguments);
+    if (length < 0) return -1;
+    const ssize_t written = write(fd, text, static_cast<size_t>(length));
+    free(text);
+    return static_cast<int>(written);
+}
+}  // namespace
+
+SHIM_EXPORT FILE* fopen(const char* path, const char* mode) {
+    const int device = device_of(path);
+    return device == kNoDevice ? REAL(fopen)(path, mode)
+                               : open_stream(open_device(device, flags_of(mode)), mode);
+}
+
+SHIM_EXPORT FILE* fopen64(const char* path, const char* mode) {
+    const int device = device_of(path);
+    return device == kNoDevice ? REAL(fopen64)(path, mode)
+                               : open_stream(open_device(device, flags_of(mode)), mode);
+}
+
+SHIM_EXPORT FILE* fdopen(int fd, const char* mode) noexcept {
+    return open_file(fd) == nullptr ? REAL(fdopen)(fd, mode) : open_stream(fd, mode);
+}
+
+SHIM_EXPORT int fileno(FILE* file) noexcept {
+    for (const Stream& stream : streams) {
+        if (file != nullptr && stream.file == file) return stream.fd;
+    }
+    return REAL(fileno)(file);
+}
+
+SHIM_EXPORT int vdprintf(int fd, const char* format, std::va_list arguments) {
+    return open_file(fd) == nullptr ? REAL(vdprintf)(fd, format, arguments) : print(fd, format, arguments);
+}
+
+SHIM_EXPORT int dprintf(int fd, const char* format, ...) {
+    std::va_list arguments;
+    va_start(arguments, format);
+    const int result = vdprintf(fd, format, arguments);
+    va_end(arguments);
+    return result;
+}
+
+SHIM_EXPORT int __vdprintf_chk(int fd, int, const char* format, std::va_list arguments) {
+    return vdprintf(fd, format, arguments);
+}
+
+SHIM_EXPORT int __dprintf_chk(int fd, int, const char* format, ...) {
+    std::va_list arguments;
+    va_start(arguments, format);
+    const int result = vdprintf(fd, format, arguments);
+    va_end(arguments);
+    return result;
+}

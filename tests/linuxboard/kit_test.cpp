@@ -1,0 +1,88 @@
+// The rarer ways to wait, and what else a program may do with its devices.
+
+#include "tests/linuxboard/bench.h"
+
+#include <catch2/catch.hpp>
+
+#include <sys/stat.h>
+
+#include <fstream>
+
+using namespace puckloop;
+using namespace puckloop::cosim;
+using namespace puckloop::tests;
+using Catch::Contains;
+
+namespace {
+std::string run_kit(const std::string& what, const std::function<void(Bench&)>& prepare = {}) {
+    std::string first;
+    // Twice, with grants cut differently: the same to the byte.
+    for (const Time slice : {70 * kMicrosecond, 17 * kMicrosecond}) {
+        Bench bench(spec_for("kit", {what}), slice);
+        if (prepare) prepare(bench);
+        bench.run(kSecond);
+        INFO(bench.log());
+        REQUIRE(bench.node().stop());
+        INFO(bench.node().stop()->reason);
+        CHECK(bench.node().stop()->success);
+        if (first.empty()) first = bench.log() + bench.trace();
+        CHECK(bench.log() + bench.trace() == first);
+    }
+    return first;
+}
+}  // namespace
+
+TEST_CASE("alarms, interval timers and timerfd run in simulated time") {
+    CHECK_THAT(run_kit("timers"),
+               Contains("alarms 3 at 21\nticks 1 at 31\nticks 2 at 56\npoll 1 0 1 at 61\n"));
+}
+
+TEST_CASE("epoll watches devices and other descriptors together") {
+    const std::string text = run_kit("epoll", [](Bench& bench) { bench.send(40 * kMillisecond, "x"); });
+    CHECK_THAT(text, Contains("epoll 1 timer at 30\nepoll 1 serial at 40\nepoll 1 timer at 60\n"));
+}
+
+TEST_CASE("a pipe between threads wakes the reader when it is written") {
+    CHECK_THAT(run_kit("pipes"), Contains("pipe p at 12\npoll 1 1 at 2"));
+}
+
+TEST_CASE("barriers, read-write locks, once and timed locks") {
+    CHECK_THAT(run_kit("locks"),
+               Contains("once at 5\nbarrier at 8\njoined at 14\nerrorcheck 0 1\ntimedlock 1 at 18\n"));
+}
+
+TEST_CASE("a device opened as a stream") {
+    const std::string text = run_kit("streams", [](Bench& bench) { bench.send(10 * kMillisecond, "abc\n"); });
+    CHECK_THAT(text, Contains("line abc\n"));
+}
+
+TEST_CASE("children run outside of simulated time and get no device") {
+    Bench bench(spec_for("kit", {"children"}));
+    bench.run(kSecond);
+    CHECK_THAT(bench.log(), Contains("child 5, system 3, pid 1000"));
+    REQUIRE(bench.node().warnings().size() == 2);
+    CHECK_THAT(bench.node().warnings()[0], Contains("fork: child processes run outside of simulated time"));
+    CHECK_THAT(bench.node().warnings()[1], Contains("system: "));
+}
+
+TEST_CASE("queues, flush and drain tell what a UART's driver tells") {
+    const std::string text =
+        run_kit("modem", [](Bench& bench) { bench.send(5 * kMillisecond, "12345678abc"); });
+    // 100 bytes are taken at once and take 8.68 ms to leave.
+    CHECK_THAT(text, Contains("waiting 11, cts 1\nflushed 0, write took 0, queue 100, drained after 8\n"));
+}
+
+TEST_CASE("a wrapper script may become the program") {
+    linuxboard::LinuxSpec spec = spec_for("echo");
+    const std::string script = spec.log + ".sh";
+    std::ofstream(script) << "#!/bin/sh\nexec " << program("echo") << "\n";
+    chmod(script.c_str(), 0755);
+    spec.program = script;
+    Bench bench(std::move(spec));
+    bench.send(5 * kMillisecond, std::string("A\0", 2));
+    bench.run(kSecond);
+    std::remove(script.c_str());
+    CHECK(bench.sent() == "B");
+    REQUIRE(bench.node().stop());
+    CHECK(bench.node().stop()->success);
+}
