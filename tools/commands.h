@@ -8,12 +8,14 @@
 
 namespace puckloop::tools {
 
+void declare_exec(CLI::App& app, int& status);
 void declare_step(CLI::App& app, int& status);
 void declare_asm(CLI::App& app, int& status);
 void declare_disasm(CLI::App& app, int& status);
 void declare_trace(CLI::App& app, int& status);
 
 inline constexpr std::array kCommands{
+    declare_exec,
     declare_step,
     declare_asm,
     declare_disasm,

@@ -1,0 +1,111 @@
+// `puckloop exec`: one chip or board alone on the bench.
+
+#include "base/error.h"
+#include "emu/pic/pic_node.h"
+#include "tools/commands.h"
+#include "tools/exec/options.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <charconv>
+#include <memory>
+
+namespace puckloop::tools {
+
+namespace {
+
+constexpr double kLongestRun = 1e6;  // seconds
+constexpr double kSlowestBaud = 50, kFastestBaud = 4e6;
+constexpr double kSlowestCrystal = 1e5, kFastestCrystal = 4e7;
+constexpr double kWorstCrystal = 1e5;  // ppm
+
+/// `--fosc`: the word that the robot's bootloader left on the part, the image's own, or a given one.
+std::optional<std::uint16_t> fosc_word(const std::string& text) {
+    if (text == "robot") return pic::PicNodeOptions::kFoscXtPll8;
+    if (text == "image") return std::nullopt;
+    std::uint16_t word = 0;
+    const char* const last = text.data() + text.size();
+    if (text.starts_with("0x")) {
+        const auto [end, error] = std::from_chars(text.data() + 2, last, word, 16);
+        if (error == std::errc{} && end == last && text.size() > 2) return word;
+    }
+    throw InputError("", "--fosc", fmt::format("'{}' is not a configuration word", text),
+                     "robot, image or 0xWORD");
+}
+
+struct Arguments {
+    exec::ExecOptions options;
+    std::string fosc = "robot";
+    bool realtime = false;
+    bool unpaced = false;
+};
+
+void describe(CLI::App& app, Arguments& a) {
+    exec::ExecOptions& o = a.options;
+    exec::TargetOptions& t = o.bench.target;
+    auto* mcu = app.add_option("--mcu", o.bench.mcu, "the chip alone, nothing connected: dspic30f6014a");
+    auto* board =
+        app.add_option("--board", o.bench.board, "the chip on its board: pic (the e-puck main board)");
+    mcu->excludes(board);
+    app.add_option("IMAGE", o.image, "firmware: Intel HEX, ELF (XC16) or COFF (C30)");
+    auto* seconds =
+        app.add_option("--seconds", o.seconds, "budget in simulated seconds (60 if nobody live is at an end)")
+            ->check(CLI::Range(0.0, kLongestRun));
+    app.add_option("--cycles", o.cycles, "budget in instruction cycles")->excludes(seconds);
+    app.add_option("--stop-at", o.stop_at,
+                   "symbol or 0xPC; status 0 when reached, 1 when the budget ends first");
+    app.add_option("--uart1", o.uart[0], "- (stdin and stdout), pty, tcp:PORT (on 127.0.0.1) or script:FILE");
+    app.add_option("--uart2", o.uart[1], "the same for the second UART");
+    app.add_option("--baud", o.bench.baud, "rate of the bench's ends, 8N1")
+        ->check(CLI::Range(kSlowestBaud, kFastestBaud))
+        ->capture_default_str();
+    app.add_option(
+        "--uart-start", o.uart_start,
+        "when standard input is offered, in simulated seconds; without it: once the chip's receiver has "
+        "been on for 3 s without a reset");
+    app.add_option("--i2c", o.i2c, "script:FILE, a bus master for boards that are slaves");
+    app.add_option("--stimulus", o.stimulus, "FILE of `<time_s> <signal> <value>`");
+    app.add_flag("--list-signals", o.list_signals, "name the signals with units and ranges, and end");
+    app.add_option("--log", o.bench.log_folder, "folder for uart1.csv, uart2.csv, i2c.csv and pins.csv");
+    app.add_flag("--json", o.json, "one JSON object on one line instead of text");
+    app.add_option("--seed", t.seed, "of the random streams")->capture_default_str();
+    app.add_option("--adc-noise", t.adc_noise_counts, "standard deviation in counts (board)")
+        ->check(CLI::Range(0.0, 1000.0))
+        ->capture_default_str();
+    app.add_option("--selector", t.selector, "initial position of the selector (board)")
+        ->check(CLI::Range(0, 15))
+        ->capture_default_str();
+    app.add_option("--crystal", t.chip.crystal_hertz, "in Hz")
+        ->check(CLI::Range(kSlowestCrystal, kFastestCrystal))
+        ->capture_default_str();
+    app.add_option("--ppm", t.chip.ppm, "error of the crystal")
+        ->check(CLI::Range(-kWorstCrystal, kWorstCrystal))
+        ->capture_default_str();
+    app.add_option("--fosc", a.fosc,
+                   "oscillator configuration in force: robot (XT, PLL x8), image, or 0xWORD")
+        ->capture_default_str();
+    auto* realtime =
+        app.add_flag("--realtime", a.realtime,
+                     "pace by the wall clock (default if a pty, TCP or a terminal is at an end)");
+    app.add_flag("--no-realtime", a.unpaced, "never pace")->excludes(realtime);
+    app.add_flag("!--no-skip", t.skip_idle, "execute every turn of busy-wait loops");
+}
+
+}  // namespace
+
+void declare_exec(CLI::App& app, int& status) {
+    CLI::App* command = app.add_subcommand("exec", "run one chip or board alone on the bench");
+    const auto arguments = std::make_shared<Arguments>();
+    describe(*command, *arguments);
+    command->callback([arguments, &status] {
+        Arguments& a = *arguments;
+        if (a.options.bench.mcu.empty() && a.options.bench.board.empty())
+            throw InputError("", "exec", "nothing lies on the bench", "--mcu CHIP or --board BOARD");
+        a.options.bench.target.chip.fosc = fosc_word(a.fosc);
+        if (a.realtime || a.unpaced) a.options.realtime = a.realtime;
+        status = exec::run_exec(a.options);
+    });
+}
+
+}  // namespace puckloop::tools
