@@ -14,7 +14,9 @@ std::string hexadecimal(std::uint32_t address) {
 nlohmann::ordered_json chip_json(const dspic::Chip& chip) {
     using Json = nlohmann::ordered_json;
     const dspic::ChipReport report = chip.report();
-    const auto seconds = [&](dspic::Cycle cycle) { return cosim::to_seconds(chip.clock().time_of(cycle)); };
+    const auto seconds = [&](dspic::Cycle cycle) {
+        return static_cast<double>(chip.clock().time_of(cycle)) / static_cast<double>(cosim::kSecond);
+    };
     Json json;
     json["cycles"] = report.cycles;
     json["instructions"] = report.instructions;

@@ -1,6 +1,7 @@
 #include "emu/pic/pic_node.h"
 
 #include "emu/pic/chip_json.h"
+#include "protocols/uart_sampling.h"
 
 #include <nlohmann/json.hpp>
 
@@ -14,11 +15,6 @@ constexpr int kI2cUnit = 1;
 
 int uart_unit(cosim::PortIndex port) {
     return port == PicNode::kUart1 ? 1 : 2;
-}
-
-cosim::Time stop_bit(const cosim::UartFrame& frame) {
-    const int bits = 1 + frame.data_bits + (frame.parity != 0 ? 1 : 0);
-    return frame.start + bits * frame.bit_period;
 }
 
 }  // namespace
@@ -94,7 +90,7 @@ void PicNode::signal_changed(SignalId id, double value, dspic::Cycle now) {
 }
 
 void PicNode::uart_sent(int unit, const cosim::UartFrame& frame) {
-    outbox_->push_back({stop_bit(frame), unit == 1 ? kUart1 : kUart2, frame});
+    outbox_->push_back({protocols::stop_bit_start(frame), unit == 1 ? kUart1 : kUart2, frame});
 }
 
 void PicNode::i2c_phase(int unit, const cosim::I2cPhase& phase) {

@@ -11,6 +11,11 @@ namespace {
 
 constexpr std::size_t kShownInText = 10;
 
+/// The double nearest to the decimal fraction: 0.1, not 0.09999999999999999.
+double seconds_of(cosim::Time time) {
+    return static_cast<double>(time) / static_cast<double>(cosim::kSecond);
+}
+
 std::string at(std::uint32_t pc) {
     return fmt::format("0x{:04x}", pc);
 }
@@ -27,7 +32,7 @@ std::string json_report(Bench& bench, const image::Image& image, const ExecOutco
     json["image"] = {
         {"file", image.file}, {"format", image::name_of(image.format)}, {"sha256", image.sha256}};
     json.update(pic::chip_json(bench.chip()));
-    json["simulated_s"] = cosim::to_seconds(bench.now());
+    json["simulated_s"] = seconds_of(bench.now());
     json["wall_s"] = outcome.wall_s;
     for (int unit = 1; unit <= 2; ++unit) {
         Json uart = pic::uart_json(bench.chip().uart_counters(unit));
@@ -41,7 +46,7 @@ std::string json_report(Bench& bench, const image::Image& image, const ExecOutco
 
 std::string text_report(Bench& bench, const ExecOutcome& outcome) {
     const dspic::ChipReport report = bench.chip().report();
-    const double simulated = cosim::to_seconds(bench.now());
+    const double simulated = seconds_of(bench.now());
     const auto seconds = [&](dspic::Cycle cycle) {
         return cosim::to_seconds(bench.chip().clock().time_of(cycle));
     };
@@ -70,6 +75,33 @@ std::string text_report(Bench& bench, const ExecOutcome& outcome) {
                             counters.sent, counters.received, counters.framing_errors, counters.overruns);
     }
     return text;
+}
+
+namespace {
+const char* direction_of(const cosim::SignalInfo& info) {
+    return info.direction == cosim::SignalDirection::Input ? "input" : "output";
+}
+}  // namespace
+
+std::string signals_text(std::span<const cosim::SignalInfo> signals) {
+    std::string text;
+    for (const cosim::SignalInfo& info : signals)
+        text += fmt::format("{:<14} {:<6} {:<8} {} to {}, initially {}: {}\n", info.name, direction_of(info),
+                            info.unit, info.min, info.max, info.initial, info.description);
+    return text;
+}
+
+std::string signals_json(std::span<const cosim::SignalInfo> signals) {
+    auto json = nlohmann::ordered_json::array();
+    for (const cosim::SignalInfo& info : signals)
+        json.push_back({{"name", info.name},
+                        {"direction", direction_of(info)},
+                        {"unit", info.unit},
+                        {"min", info.min},
+                        {"max", info.max},
+                        {"initial", info.initial},
+                        {"description", info.description}});
+    return json.dump() + "\n";
 }
 
 }  // namespace puckloop::exec

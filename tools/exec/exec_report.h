@@ -4,6 +4,7 @@
 #include "tools/exec/bench.h"
 #include "tools/exec/options.h"
 
+#include <span>
 #include <string>
 
 namespace puckloop::exec {
@@ -21,5 +22,9 @@ struct ExecOutcome {
 std::string json_report(Bench& bench, const image::Image& image, const ExecOutcome& outcome);
 /// A few lines for a person.
 std::string text_report(Bench& bench, const ExecOutcome& outcome);
+
+/// `--list-signals`: one line a signal, or one JSON array on one line.
+std::string signals_text(std::span<const cosim::SignalInfo> signals);
+std::string signals_json(std::span<const cosim::SignalInfo> signals);
 
 }  // namespace puckloop::exec

@@ -81,10 +81,8 @@ std::string symbol_at(const image::Image& image, std::uint32_t pc) {
 int run_exec(const ExecOptions& options) {
     Bench bench(options.bench);
     if (options.list_signals) {
-        for (const cosim::SignalInfo& info : bench.target().signals())
-            std::printf("%-14s %-6s %-8s %g to %g, initially %g: %s\n", info.name.c_str(),
-                        info.direction == cosim::SignalDirection::Input ? "input" : "output",
-                        info.unit.c_str(), info.min, info.max, info.initial, info.description.c_str());
+        const auto signals = bench.target().signals();
+        std::fputs((options.json ? signals_json(signals) : signals_text(signals)).c_str(), stdout);
         return 0;
     }
     if (options.image.empty()) throw InputError("", "IMAGE", "missing", "a HEX, ELF or COFF file");

@@ -1,6 +1,6 @@
 #include "tools/exec/uart_line.h"
 
-#include "tools/exec/wire.h"
+#include "protocols/uart_sampling.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +29,10 @@ cosim::Time UartLine::due() const {
 
 void UartLine::deliver() {
     const cosim::Time start = start_of_next();
-    const cosim::UartFrame frame = frame_of(end_->take(), start, bit_period_);
+    cosim::UartFrame frame;
+    frame.start = start;
+    frame.bit_period = bit_period_;
+    frame.data = end_->take();
     free_ = start + kBitsOfFrame * bit_period_;
     ++to_chip_;
     const bool heard = target_.chip().uart_enabled(unit_);
@@ -38,11 +41,17 @@ void UartLine::deliver() {
 }
 
 void UartLine::sent(const cosim::UartFrame& frame) {
-    const Sampled seen = sample(frame, bit_period_);
     ++from_chip_;
-    if (!seen.clean) ++bad_frames_;
-    log(frame.start, "tx", seen.byte, frame.is_break != 0 ? "break" : seen.clean ? "" : "framing");
-    if (end_) end_->receive(seen.byte, seen.clean, frame.start);
+    for (const auto& character : protocols::sample_frame(frame, {.bit_period = bit_period_}, heard_until_)) {
+        heard_until_ = character.time;
+        const auto byte = static_cast<std::uint8_t>(character.data);
+        if (character.framing_error) ++bad_frames_;
+        log(character.start, "tx", byte,
+            character.is_break        ? "break"
+            : character.framing_error ? "framing"
+                                      : "");
+        if (end_) end_->receive(byte, !character.framing_error, character.start);
+    }
 }
 
 void UartLine::poll(cosim::Time now) {

@@ -42,7 +42,8 @@ class UartLine {
     Target& target_;
     Logs* logs_;
     std::unique_ptr<UartEnd> end_;
-    cosim::Time free_ = 0;  ///< when the line towards the chip is idle again
+    cosim::Time free_ = 0;         ///< when the line towards the chip is idle again
+    cosim::Time heard_until_ = 0;  ///< when the bench's receiver was done with the last character
     cosim::Time listening_since_ = cosim::kNever;
     std::size_t resets_ = 0;
     dspic::UartCounters counters_;
