@@ -114,14 +114,27 @@ std::optional<double> Reader::optional_quantity(std::string_view key, Dimension 
     return number(key, *value, dimension);
 }
 
-std::vector<double> Reader::quantities(std::string_view key, Dimension dimension, std::size_t count) {
-    const TomlValue& value = require(key);
+std::vector<double> Reader::numbers(std::string_view key, const TomlValue& value, Dimension dimension,
+                                    std::size_t count) {
     const auto* array = std::get_if<TomlArray>(&value.data);
     if (!array || array->size() != count)
         fail(key, fmt::format("{} is not a list of {}", key, count), example_of(dimension));
     std::vector<double> result;
-    for (const TomlValue& item : *array)
-        result.push_back(number(key, item, dimension));
+    for (const TomlValue& item : *array) result.push_back(number(key, item, dimension));
+    return result;
+}
+
+std::vector<double> Reader::quantities(std::string_view key, Dimension dimension, std::size_t count) {
+    return numbers(key, require(key), dimension, count);
+}
+
+std::vector<std::vector<double>> Reader::quantity_lists(std::string_view key, Dimension dimension,
+                                                        std::size_t count) {
+    const TomlValue& value = require(key);
+    const auto* array = std::get_if<TomlArray>(&value.data);
+    if (!array) fail(key, fmt::format("{} is not a list of lists", key), example_of(dimension));
+    std::vector<std::vector<double>> result;
+    for (const TomlValue& item : *array) result.push_back(numbers(key, item, dimension, count));
     return result;
 }
 

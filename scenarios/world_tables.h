@@ -1,0 +1,18 @@
+#pragma once
+// The tables of a scenario that describe the world: arena, things, lamps, floor, parameters.
+
+#include "physics/description.h"
+#include "scenarios/reader.h"
+
+#include <map>
+#include <string>
+
+namespace puckloop::scenarios {
+
+/// Reads [arena], [[wall]], [[box]], [[cylinder]], [[lamp]], [[floor_patch]], [light] and [parameters].
+physics::World read_world(Reader& top);
+
+/// A [parameters] table: dotted names of the physical parameters, each with its unit.
+std::map<std::string, double> read_parameters(const std::string& file, const std::string& where, const TomlValue& table);
+
+} // namespace puckloop::scenarios
