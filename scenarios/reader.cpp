@@ -120,7 +120,8 @@ std::vector<double> Reader::numbers(std::string_view key, const TomlValue& value
     if (!array || array->size() != count)
         fail(key, fmt::format("{} is not a list of {}", key, count), example_of(dimension));
     std::vector<double> result;
-    for (const TomlValue& item : *array) result.push_back(number(key, item, dimension));
+    for (const TomlValue& item : *array)
+        result.push_back(number(key, item, dimension));
     return result;
 }
 
@@ -134,7 +135,8 @@ std::vector<std::vector<double>> Reader::quantity_lists(std::string_view key, Di
     const auto* array = std::get_if<TomlArray>(&value.data);
     if (!array) fail(key, fmt::format("{} is not a list of lists", key), example_of(dimension));
     std::vector<std::vector<double>> result;
-    for (const TomlValue& item : *array) result.push_back(numbers(key, item, dimension, count));
+    for (const TomlValue& item : *array)
+        result.push_back(numbers(key, item, dimension, count));
     return result;
 }
 

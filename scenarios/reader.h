@@ -28,7 +28,8 @@ class Reader {
     /// A list of exactly `count` quantities.
     std::vector<double> quantities(std::string_view key, Dimension dimension, std::size_t count);
     /// A list of lists of exactly `count` quantities each.
-    std::vector<std::vector<double>> quantity_lists(std::string_view key, Dimension dimension, std::size_t count);
+    std::vector<std::vector<double>> quantity_lists(std::string_view key, Dimension dimension,
+                                                    std::size_t count);
     std::string text(std::string_view key);
     std::string text(std::string_view key, std::string_view fallback);
     std::int64_t integer(std::string_view key, std::int64_t fallback, std::int64_t low, std::int64_t high);
@@ -56,7 +57,8 @@ class Reader {
     const TomlValue* find(std::string_view key);
     const TomlValue& require(std::string_view key);
     double number(std::string_view key, const TomlValue& value, Dimension dimension);
-    std::vector<double> numbers(std::string_view key, const TomlValue& value, Dimension dimension, std::size_t count);
+    std::vector<double> numbers(std::string_view key, const TomlValue& value, Dimension dimension,
+                                std::size_t count);
 
     std::string file_;
     std::string where_;

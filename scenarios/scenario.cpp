@@ -12,7 +12,7 @@ namespace puckloop::scenarios {
 
 namespace {
 
-constexpr double kLongestRun = 86'400.0 * 30; // s; simulated time itself reaches 106 days
+constexpr double kLongestRun = 86'400.0 * 30;  // s; simulated time itself reaches 106 days
 
 PicBoard read_pic(const std::string& file, const std::string& where, const TomlValue& table,
                   const std::filesystem::path& folder) {
@@ -35,7 +35,8 @@ LinuxBoard read_linux(const std::string& file, const std::string& where, const T
     Reader reader(file, where, table);
     LinuxBoard board;
     board.command = reader.texts("program");
-    if (board.command.empty()) reader.fail("program", "'program' is missing", "program = [\"./controller\", \"-x\"]");
+    if (board.command.empty())
+        reader.fail("program", "'program' is missing", "program = [\"./controller\", \"-x\"]");
     board.hostname = reader.text("hostname", robot_name);
     board.start = reader.quantity("start", Dimension::Time, 0.0);
     if (board.start < 0) reader.fail("start", "start is before the run begins", "0 s or later");
@@ -51,18 +52,24 @@ LinuxBoard read_linux(const std::string& file, const std::string& where, const T
     return board;
 }
 
-void read_robot(const std::string& file, const TomlValue& table, const std::filesystem::path& folder, Scenario& scenario) {
+void read_robot(const std::string& file, const TomlValue& table, const std::filesystem::path& folder,
+                Scenario& scenario) {
     const std::string fallback = fmt::format("robot{}", scenario.robots.size());
     Reader reader(file, fallback, table);
     RobotBoards boards;
     physics::Robot body;
     boards.name = body.name = reader.text("name", fallback);
-    const bool plain = !boards.name.empty() && std::all_of(boards.name.begin(), boards.name.end(), [](char c) {
-        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
-    });
-    if (!plain) reader.fail("name", "the name has other signs than letters, digits, _ and -", "a name such as epuck12");
+    const bool plain =
+        !boards.name.empty() && std::all_of(boards.name.begin(), boards.name.end(), [](char c) {
+            return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+                   c == '-';
+        });
+    if (!plain)
+        reader.fail("name", "the name has other signs than letters, digits, _ and -",
+                    "a name such as epuck12");
     for (const RobotBoards& other : scenario.robots)
-        if (other.name == boards.name) reader.fail("name", fmt::format("two robots are called '{}'", boards.name));
+        if (other.name == boards.name)
+            reader.fail("name", fmt::format("two robots are called '{}'", boards.name));
     const auto position = reader.quantities("position", Dimension::Length, 2);
     body.x = position[0];
     body.y = position[1];
@@ -95,7 +102,8 @@ cosim::FaultSpec read_fault(const std::string& file, std::size_t index, const To
     if (reader.has("count"))
         fault.count = static_cast<std::uint64_t>(reader.integer("count", 1, 1, 1'000'000'000));
     fault.begin = cosim::from_seconds(reader.quantity("begin", Dimension::Time, 0.0));
-    if (const auto end = reader.optional_quantity("end", Dimension::Time)) fault.end = cosim::from_seconds(*end);
+    if (const auto end = reader.optional_quantity("end", Dimension::Time))
+        fault.end = cosim::from_seconds(*end);
     if (fault.begin < 0 || fault.end <= fault.begin)
         reader.fail("begin", "the fault's window is empty", "0 s <= begin < end");
     if (fault.kind == cosim::FaultKind::Delay) fault.amount = reader.quantity("delay", Dimension::Time);
@@ -104,7 +112,7 @@ cosim::FaultSpec read_fault(const std::string& file, std::size_t index, const To
     return fault;
 }
 
-} // namespace
+}  // namespace
 
 Scenario read_scenario(const std::filesystem::path& file) {
     const TomlValue root = read_toml(file);
@@ -118,7 +126,8 @@ Scenario read_scenario(const std::filesystem::path& file) {
         scenario.duration = run.optional_quantity("duration", Dimension::Time);
         if (scenario.duration && (*scenario.duration <= 0 || *scenario.duration > kLongestRun))
             run.fail("duration", "duration is out of range", "more than 0 s, at most 720 h");
-        scenario.seed = static_cast<std::uint64_t>(run.integer("seed", 1, 0, std::numeric_limits<std::int64_t>::max()));
+        scenario.seed =
+            static_cast<std::uint64_t>(run.integer("seed", 1, 0, std::numeric_limits<std::int64_t>::max()));
         scenario.world.recording.period = run.quantity("record_every", Dimension::Time, 0.1);
         scenario.uart_baud = run.quantity("uart_baud", Dimension::Number, scenario.uart_baud);
         if (scenario.uart_baud < 300 || scenario.uart_baud > 4e6)
@@ -132,15 +141,19 @@ Scenario read_scenario(const std::filesystem::path& file) {
     scenario.world = read_world(top);
     scenario.world.recording.period = period;
     scenario.world.seed = scenario.seed;
-    for (const TomlValue* table : top.tables("robot")) read_robot(name, *table, file.parent_path(), scenario);
+    for (const TomlValue* table : top.tables("robot"))
+        read_robot(name, *table, file.parent_path(), scenario);
     if (scenario.robots.empty()) top.fail("robot", "no robot", "at least one [[robot]]");
     std::size_t index = 0;
-    for (const TomlValue* table : top.tables("fault")) scenario.faults.push_back(read_fault(name, index++, *table));
+    for (const TomlValue* table : top.tables("fault"))
+        scenario.faults.push_back(read_fault(name, index++, *table));
     top.finish();
-    const bool any_program = std::any_of(scenario.robots.begin(), scenario.robots.end(),
-                                         [](const RobotBoards& robot) { return robot.linux_board.has_value(); });
+    const bool any_program =
+        std::any_of(scenario.robots.begin(), scenario.robots.end(),
+                    [](const RobotBoards& robot) { return robot.linux_board.has_value(); });
     if (!scenario.duration && !any_program)
-        top.fail("run", "nothing ends this run", "[run] with a duration, or a robot with a [robot.linux] program");
+        top.fail("run", "nothing ends this run",
+                 "[run] with a duration, or a robot with a [robot.linux] program");
     physics::check(scenario.world);
     return scenario;
 }
@@ -168,4 +181,4 @@ void apply_overlay(Scenario& scenario, const std::filesystem::path& file) {
     physics::check(scenario.world);
 }
 
-} // namespace puckloop::scenarios
+}  // namespace puckloop::scenarios

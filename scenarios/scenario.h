@@ -16,17 +16,17 @@ namespace puckloop::scenarios {
 /// The e-puck main board of a robot.
 struct PicBoard {
     std::filesystem::path firmware;
-    double crystal_ppm = 0.0;   ///< error of the 7.3728 MHz crystal, + is fast
-    double adc_noise = 2.0;     ///< counts, standard deviation
-    int selector = 0;           ///< position of the rotary selector, 0..15
+    double crystal_ppm = 0.0;  ///< error of the 7.3728 MHz crystal, + is fast
+    double adc_noise = 2.0;    ///< counts, standard deviation
+    int selector = 0;          ///< position of the rotary selector, 0..15
 };
 
 /// The Linux board of a robot: one program under the shim.
 struct LinuxBoard {
-    std::vector<std::string> command; ///< program and arguments; the program's path is resolved
-    std::string hostname;             ///< what gethostname() says
-    double start = 0.0;               ///< s: when the program is started
-    std::vector<double> restarts;     ///< s: killed and started again
+    std::vector<std::string> command;  ///< program and arguments; the program's path is resolved
+    std::string hostname;              ///< what gethostname() says
+    double start = 0.0;                ///< s: when the program is started
+    std::vector<double> restarts;      ///< s: killed and started again
     int place_line = 0;
 };
 
@@ -34,26 +34,27 @@ struct RobotBoards {
     std::string name;
     PicBoard pic;
     std::optional<LinuxBoard> linux_board;
-    bool ground_sensor = true; ///< the I2C board at 0x60 is fitted
-    bool rgb_turret = true;    ///< the I2C board at 0x61 is fitted
+    bool ground_sensor = true;  ///< the I2C board at 0x60 is fitted
+    bool rgb_turret = true;     ///< the I2C board at 0x61 is fitted
 };
 
 struct Scenario {
     std::filesystem::path file;
-    std::string name; ///< the file's stem
-    std::optional<double> duration; ///< s; without it the run ends with the Linux programs
+    std::string name;                ///< the file's stem
+    std::optional<double> duration;  ///< s; without it the run ends with the Linux programs
     std::uint64_t seed = 1;
-    double uart_baud = 115200.0; ///< nominal rate of the UART links
-    double i2c_clock = 100e3;    ///< Hz, of Linux as bus master
-    physics::World world;        ///< robots in the same order as `robots`
+    double uart_baud = 115200.0;  ///< nominal rate of the UART links
+    double i2c_clock = 100e3;     ///< Hz, of Linux as bus master
+    physics::World world;         ///< robots in the same order as `robots`
     std::vector<RobotBoards> robots;
     std::vector<cosim::FaultSpec> faults;
 };
 
-/// Reads and checks a scenario; paths in it are relative to its own folder. Throws InputError with file and line.
+/// Reads and checks a scenario; paths in it are relative to its own folder. Throws InputError with file and
+/// line.
 Scenario read_scenario(const std::filesystem::path& file);
 
 /// Applies an overlay file (`--model`): parameters for all robots, or for one in [[robot]] tables.
 void apply_overlay(Scenario& scenario, const std::filesystem::path& file);
 
-} // namespace puckloop::scenarios
+}  // namespace puckloop::scenarios

@@ -9,10 +9,13 @@ namespace puckloop::scenarios {
 
 namespace {
 
-std::string place_of(const TomlValue& table) { return fmt::format("line {}", table.line); }
+std::string place_of(const TomlValue& table) {
+    return fmt::format("line {}", table.line);
+}
 
 /// Calls read(reader, item, place) for each [[key]] table; names default to "key 1", "key 2".
-template <typename Item, typename Read> void read_each(Reader& top, std::string_view key, std::vector<Item>& list, Read read) {
+template <typename Item, typename Read>
+void read_each(Reader& top, std::string_view key, std::vector<Item>& list, Read read) {
     for (const TomlValue* table : top.tables(key)) {
         const std::string fallback = fmt::format("{} {}", key, list.size() + 1);
         Reader reader(top.file(), fallback, *table);
@@ -56,7 +59,8 @@ void read_centre(Reader& reader, double& x, double& y) {
 }
 
 /// mass makes a thing movable; without it the thing is fixed.
-template <typename Item> void read_mass(Reader& reader, Item& item) {
+template <typename Item>
+void read_mass(Reader& reader, Item& item) {
     const auto mass = reader.optional_quantity("mass", Dimension::Mass);
     item.movable = mass.has_value();
     if (mass) item.mass = *mass;
@@ -120,7 +124,7 @@ Dimension dimension_of(std::string_view unit) {
     if (unit == "N m") return Dimension::Torque;
     if (unit == "Hz") return Dimension::Frequency;
     if (unit == "1") return Dimension::Ratio;
-    return Dimension::Number; // counts, steps and the like: bare numbers
+    return Dimension::Number;  // counts, steps and the like: bare numbers
 }
 
 void read_parameter_level(const std::string& file, const std::string& where, const std::string& prefix,
@@ -136,10 +140,12 @@ void read_parameter_level(const std::string& file, const std::string& where, con
         const physics::ParameterInfo* info = physics::find_parameter(name, index);
         if (!info) {
             std::vector<std::string> names;
-            for (const auto& entry : physics::parameter_table()) names.emplace_back(entry.name);
+            for (const auto& entry : physics::parameter_table())
+                names.emplace_back(entry.name);
             const auto suggestion = nearest(name, names);
             reader.fail(key, fmt::format("unknown parameter '{}'", name),
-                        suggestion ? fmt::format("perhaps '{}'", *suggestion) : "a name from docs/scenario.md");
+                        suggestion ? fmt::format("perhaps '{}'", *suggestion)
+                                   : "a name from docs/scenario.md");
         }
         const double number = reader.quantity(key, dimension_of(info->unit));
         if (number < info->min || number > info->max)
@@ -149,9 +155,10 @@ void read_parameter_level(const std::string& file, const std::string& where, con
     }
 }
 
-} // namespace
+}  // namespace
 
-std::map<std::string, double> read_parameters(const std::string& file, const std::string& where, const TomlValue& table) {
+std::map<std::string, double> read_parameters(const std::string& file, const std::string& where,
+                                              const TomlValue& table) {
     std::map<std::string, double> result;
     read_parameter_level(file, where, "", table, result);
     return result;
@@ -176,4 +183,4 @@ physics::World read_world(Reader& top) {
     return world;
 }
 
-} // namespace puckloop::scenarios
+}  // namespace puckloop::scenarios

@@ -13,6 +13,7 @@ namespace puckloop::scenarios {
 physics::World read_world(Reader& top);
 
 /// A [parameters] table: dotted names of the physical parameters, each with its unit.
-std::map<std::string, double> read_parameters(const std::string& file, const std::string& where, const TomlValue& table);
+std::map<std::string, double> read_parameters(const std::string& file, const std::string& where,
+                                              const TomlValue& table);
 
-} // namespace puckloop::scenarios
+}  // namespace puckloop::scenarios

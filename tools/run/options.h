@@ -1,0 +1,25 @@
+#pragma once
+// What the user asked of one run, on top of the scenario.
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace puckloop::tools {
+
+struct RunRequest {
+    std::filesystem::path scenario;
+    std::vector<std::string> firmware;       ///< "BOARD=IMAGE": robot0.pic=x.hex, or pic=x.hex for every robot
+    std::vector<std::string> linux_command;  ///< replaces every robot's Linux program
+    std::filesystem::path overlay;           ///< empty: none
+    std::filesystem::path out;               ///< empty: out/<scenario name>
+    std::optional<double> duration;          ///< s
+    std::optional<std::uint64_t> seed;
+    bool in_process = false;
+    bool realtime = false;
+    double stall_seconds = 10.0;
+};
+
+}  // namespace puckloop::tools

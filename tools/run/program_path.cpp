@@ -1,0 +1,24 @@
+#include "tools/run/program_path.h"
+
+#include <cstdlib>
+#include <sstream>
+#include <unistd.h>
+
+namespace puckloop::tools {
+
+std::filesystem::path find_program(const std::string& name, const std::filesystem::path& folder) {
+    namespace fs = std::filesystem;
+    if (name.find('/') != std::string::npos) return fs::absolute(folder / name);
+    std::error_code error;
+    const fs::path self = fs::read_symlink("/proc/self/exe", error);
+    // The project's own programs are built next to this one's folder, and installed beside it.
+    for (const fs::path& beside : {self.parent_path(), self.parent_path().parent_path() / "linuxboard"})
+        if (::access((beside / name).c_str(), X_OK) == 0) return beside / name;
+    const char* path = std::getenv("PATH");
+    std::istringstream list(path ? path : "");
+    for (std::string entry; std::getline(list, entry, ':');)
+        if (!entry.empty() && ::access((fs::path(entry) / name).c_str(), X_OK) == 0) return fs::path(entry) / name;
+    return name;
+}
+
+}  // namespace puckloop::tools

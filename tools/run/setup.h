@@ -1,0 +1,25 @@
+#pragma once
+// From a scenario to the nodes and links of a run.
+
+#include "cosim/conductor.h"
+#include "scenarios/scenario.h"
+#include "tools/run/options.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace puckloop::tools {
+
+struct RunSetup {
+    scenarios::Scenario scenario;
+    std::filesystem::path out;
+    std::vector<cosim::NodeSpec> nodes;
+    std::vector<cosim::LinkSpec> links;
+};
+
+/// Reads the scenario, applies the request's changes and plans nodes and links. Throws InputError for everything
+/// that can be seen before the run: options, files, images that do not fit.
+RunSetup set_up(const RunRequest& request);
+
+}  // namespace puckloop::tools
