@@ -1,32 +1,14 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "scenarios/reader.h"
+#include "tests/scenarios/temporary_file.h"
 
 #include <catch2/catch.hpp>
-
-#include <filesystem>
-#include <fstream>
-#include <unistd.h>
 
 using namespace puckloop;
 using namespace puckloop::scenarios;
 
 namespace {
-
-/// A scenario file that lives as long as the test.
-class TemporaryToml {
-  public:
-    explicit TemporaryToml(const std::string& content)
-        : path_(std::filesystem::temp_directory_path() /
-                ("puckloop_reader_" + std::to_string(::getpid()) + ".toml")) {
-        std::ofstream(path_) << content;
-    }
-    ~TemporaryToml() { std::filesystem::remove(path_); }
-    std::string path() const { return path_.string(); }
-
-  private:
-    std::filesystem::path path_;
-};
 
 template <typename Action>
 std::string message_of(Action action) {
@@ -41,7 +23,7 @@ std::string message_of(Action action) {
 }  // namespace
 
 TEST_CASE("a key that nobody knows is named with its line and the nearest known key") {
-    const TemporaryToml file("[run]\n\nduraton = \"60 s\"\n");
+    const TemporaryFile file("[run]\n\nduraton = \"60 s\"\n");
     const TomlValue root = read_toml(file.path());
     Reader top("s.toml", "", root);
     Reader run("s.toml", "run", *top.table("run"));
@@ -52,7 +34,7 @@ TEST_CASE("a key that nobody knows is named with its line and the nearest known 
 }
 
 TEST_CASE("a wrong unit is named with its line") {
-    const TemporaryToml file("[run]\nduration = \"60 m\"\nstep = 5\n");
+    const TemporaryFile file("[run]\nduration = \"60 m\"\nstep = 5\n");
     const TomlValue root = read_toml(file.path());
     Reader top("s.toml", "", root);
     Reader run("s.toml", "run", *top.table("run"));
@@ -64,7 +46,7 @@ TEST_CASE("a wrong unit is named with its line") {
 }
 
 TEST_CASE("lists, choices and ranges are checked") {
-    const TemporaryToml file(
+    const TemporaryFile file(
         "size = [\"1 m\", \"80 cm\"]\nkind = \"disk\"\nn = 12\nwords = [\"a\", \"b\"]\n");
     const TomlValue root = read_toml(file.path());
     Reader top("s.toml", "", root);
@@ -83,7 +65,7 @@ TEST_CASE("lists, choices and ranges are checked") {
 TEST_CASE("files that are not TOML are refused with a line") {
     CHECK(message_of([] { read_toml("/nonexistent/x.toml"); }) ==
           "/nonexistent/x.toml: cannot be opened (expected a TOML file)");
-    const TemporaryToml file("[run]\nduration = \n");
+    const TemporaryFile file("[run]\nduration = \n");
     CHECK(message_of([&] { read_toml(file.path()); }).find(": line 2: ") != std::string::npos);
 }
 
@@ -109,7 +91,7 @@ TEST_CASE("no mutation of a scenario crashes the reader") {
             }
             if (text.empty()) text = " ";
         }
-        const TemporaryToml file(text);
+        const TemporaryFile file(text);
         const std::string outcome = message_of([&] {
             const TomlValue root = read_toml(file.path());
             Reader top("s.toml", "", root);

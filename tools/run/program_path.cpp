@@ -17,7 +17,8 @@ std::filesystem::path find_program(const std::string& name, const std::filesyste
     const char* path = std::getenv("PATH");
     std::istringstream list(path ? path : "");
     for (std::string entry; std::getline(list, entry, ':');)
-        if (!entry.empty() && ::access((fs::path(entry) / name).c_str(), X_OK) == 0) return fs::path(entry) / name;
+        if (!entry.empty() && ::access((fs::path(entry) / name).c_str(), X_OK) == 0)
+            return fs::path(entry) / name;
     return name;
 }
 

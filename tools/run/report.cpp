@@ -15,10 +15,14 @@ using nlohmann::ordered_json;
 
 std::string_view reason_name(cosim::EndReason reason) {
     switch (reason) {
-    case cosim::EndReason::Duration: return "duration";
-    case cosim::EndReason::NodeStopped: return "node stopped";
-    case cosim::EndReason::Interrupted: return "interrupted";
-    case cosim::EndReason::Failed: return "failed";
+    case cosim::EndReason::Duration:
+        return "duration";
+    case cosim::EndReason::NodeStopped:
+        return "node stopped";
+    case cosim::EndReason::Interrupted:
+        return "interrupted";
+    case cosim::EndReason::Failed:
+        return "failed";
     }
     return "";
 }
@@ -54,7 +58,8 @@ void write_report(const RunSetup& setup, const cosim::Outcome& outcome) {
         nodes[node.name] = node_json(node);
         if (nodes[node.name].contains("warnings"))
             for (const auto& warning : nodes[node.name]["warnings"])
-                warnings.push_back(fmt::format("{}: {}", node.name, warning.is_string() ? warning.get<std::string>() : warning.dump()));
+                warnings.push_back(fmt::format(
+                    "{}: {}", node.name, warning.is_string() ? warning.get<std::string>() : warning.dump()));
     }
     ordered_json links = ordered_json::object();
     for (const auto& link : outcome.links)
@@ -63,7 +68,8 @@ void write_report(const RunSetup& setup, const cosim::Outcome& outcome) {
                             {"from_a", ordered_json::parse(to_json(link.from_a))},
                             {"from_b", ordered_json::parse(to_json(link.from_b))}};
     ordered_json faults = ordered_json::array();
-    for (const auto& fault : outcome.faults) faults.push_back({{"fault", fault.text}, {"fired", fault.fired}});
+    for (const auto& fault : outcome.faults)
+        faults.push_back({{"fault", fault.text}, {"fired", fault.fired}});
     const ordered_json report{{"scenario", setup.scenario.file.string()},
                               {"seed", setup.scenario.seed},
                               {"success", outcome.success},
@@ -87,10 +93,12 @@ void write_report(const RunSetup& setup, const cosim::Outcome& outcome) {
 }
 
 std::string summary(const RunSetup& setup, const cosim::Outcome& outcome) {
-    std::string text = fmt::format("{:.3f} s simulated in {:.1f} s ({:.1f}x real time)", cosim::to_seconds(outcome.simulated),
-                                   outcome.wall_s, real_time_factor(outcome));
+    std::string text =
+        fmt::format("{:.3f} s simulated in {:.1f} s ({:.1f}x real time)",
+                    cosim::to_seconds(outcome.simulated), outcome.wall_s, real_time_factor(outcome));
     if (!outcome.text.empty()) text += fmt::format("\nended: {}", outcome.text);
-    for (const std::string& warning : outcome.warnings) text += fmt::format("\nwarning: {}", warning);
+    for (const std::string& warning : outcome.warnings)
+        text += fmt::format("\nwarning: {}", warning);
     text += fmt::format("\ntrace {}\nresults in {}", outcome.trace_sha256, setup.out.string());
     return text;
 }

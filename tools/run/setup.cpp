@@ -20,13 +20,15 @@ using scenarios::Scenario;
 
 std::vector<std::string> names_of(std::span<const cosim::SignalInfo> signals) {
     std::vector<std::string> names;
-    for (const cosim::SignalInfo& signal : signals) names.push_back(signal.name);
+    for (const cosim::SignalInfo& signal : signals)
+        names.push_back(signal.name);
     return names;
 }
 
 std::map<std::string, std::uint16_t> ids_of(std::span<const cosim::SignalInfo> signals) {
     std::map<std::string, std::uint16_t> ids;
-    for (std::size_t i = 0; i < signals.size(); ++i) ids[signals[i].name] = static_cast<std::uint16_t>(i);
+    for (std::size_t i = 0; i < signals.size(); ++i)
+        ids[signals[i].name] = static_cast<std::uint16_t>(i);
     return ids;
 }
 
@@ -34,7 +36,8 @@ std::map<std::string, std::uint16_t> ids_of(std::span<const cosim::SignalInfo> s
 void replace_firmware(Scenario& scenario, const std::string& assignment) {
     const auto equals = assignment.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == assignment.size())
-        throw InputError("", "--firmware", fmt::format("'{}' is not an assignment", assignment), "BOARD=IMAGE");
+        throw InputError("", "--firmware", fmt::format("'{}' is not an assignment", assignment),
+                         "BOARD=IMAGE");
     const std::string board = assignment.substr(0, equals);
     const std::filesystem::path image = std::filesystem::absolute(assignment.substr(equals + 1));
     std::string known;
@@ -52,7 +55,8 @@ void replace_firmware(Scenario& scenario, const std::string& assignment) {
 }
 
 void apply(const RunRequest& request, Scenario& scenario) {
-    for (const std::string& assignment : request.firmware) replace_firmware(scenario, assignment);
+    for (const std::string& assignment : request.firmware)
+        replace_firmware(scenario, assignment);
     if (!request.linux_command.empty()) {
         for (RobotBoards& robot : scenario.robots) {
             if (!robot.linux_board) robot.linux_board.emplace().hostname = robot.name;
@@ -126,7 +130,8 @@ RunSetup set_up(const RunRequest& request) {
     setup.scenario = scenarios::read_scenario(request.scenario);
     Scenario& scenario = setup.scenario;
     apply(request, scenario);
-    setup.out = std::filesystem::absolute(request.out.empty() ? std::filesystem::path("out") / scenario.name : request.out);
+    setup.out = std::filesystem::absolute(request.out.empty() ? std::filesystem::path("out") / scenario.name
+                                                              : request.out);
 
     const auto board_ids = ids_of(pic::signals());
     const auto ground_ids = ids_of(physics::ground_board_signals());
@@ -138,9 +143,11 @@ RunSetup set_up(const RunRequest& request) {
     json world = json::parse(physics::to_json(scenario.world));
     setup.nodes.push_back({"world", json{{"kind", "world"}, {"world", std::move(world)}}.dump()});
 
-    const auto programs = std::count_if(scenario.robots.begin(), scenario.robots.end(),
-                                        [](const RobotBoards& robot) { return robot.linux_board.has_value(); });
-    for (const RobotBoards& robot : scenario.robots) add_robot(setup, robot, programs == 1, request.realtime);
+    const auto programs =
+        std::count_if(scenario.robots.begin(), scenario.robots.end(),
+                      [](const RobotBoards& robot) { return robot.linux_board.has_value(); });
+    for (const RobotBoards& robot : scenario.robots)
+        add_robot(setup, robot, programs == 1, request.realtime);
     return setup;
 }
 

@@ -18,8 +18,8 @@ struct RunSetup {
     std::vector<cosim::LinkSpec> links;
 };
 
-/// Reads the scenario, applies the request's changes and plans nodes and links. Throws InputError for everything
-/// that can be seen before the run: options, files, images that do not fit.
+/// Reads the scenario, applies the request's changes and plans nodes and links. Throws InputError for
+/// everything that can be seen before the run: options, files, images that do not fit.
 RunSetup set_up(const RunRequest& request);
 
 }  // namespace puckloop::tools

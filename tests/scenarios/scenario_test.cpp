@@ -1,0 +1,95 @@
+#include "base/error.h"
+#include "scenarios/scenario.h"
+#include "tests/scenarios/temporary_file.h"
+
+#include <catch2/catch.hpp>
+
+#include <numbers>
+
+using namespace puckloop;
+using namespace puckloop::scenarios;
+
+namespace {
+
+const std::string kArena = "[run]\nduration = \"5 s\"\n[arena]\nsize = [\"1 m\", \"80 cm\"]\n";
+const std::string kRobot = "[[robot]]\nposition = [\"0 m\", \"0 m\"]\n[robot.pic]\nfirmware = \"x.hex\"\n";
+
+/// What read_scenario says of a text, from "line" on.
+std::string problem_of(const std::string& text) {
+    const TemporaryFile file(text);
+    try {
+        read_scenario(file.path());
+    } catch (const InputError& error) {
+        const std::string what = error.what();
+        return what.substr(std::min(what.find("line "), what.size()));
+    }
+    return "accepted";
+}
+
+}  // namespace
+
+TEST_CASE("hello.toml says what the README promises") {
+    const Scenario hello = read_scenario(std::string(PUCKLOOP_SCENARIOS) + "/hello.toml");
+    REQUIRE(hello.robots.size() == 1);
+    CHECK(hello.name == "hello");
+    CHECK(hello.robots[0].name == "robot0");
+    CHECK(hello.robots[0].pic.firmware.filename() == "epuck.hex");
+    REQUIRE(hello.robots[0].linux_board);
+    CHECK(hello.robots[0].linux_board->command.front() == "puckloop-control");
+    CHECK(hello.world.boxes.size() == 1);
+    CHECK(hello.world.robots[0].heading == Approx(std::numbers::pi / 6));
+}
+
+TEST_CASE("parameters are named, checked against their range, and set for one robot or all") {
+    const TemporaryFile file(
+        kArena +
+        "[parameters]\nrobot.wheel_radius_left = \"20.3 mm\"\n[parameters.proximity]\ngain3 = 1.2\n" +
+        kRobot + "[robot.parameters]\nrobot.axle_length = \"52 mm\"\n");
+    const Scenario scenario = read_scenario(file.path());
+    CHECK(scenario.world.parameters.at("robot.wheel_radius_left") == Approx(0.0203));
+    CHECK(scenario.world.parameters.at("proximity.gain3") == Approx(1.2));
+    CHECK(scenario.world.robots[0].parameters.at("robot.axle_length") == Approx(0.052));
+
+    CHECK(problem_of(kArena + "[parameters]\nrobot.axle_lenght = \"52 mm\"\n" + kRobot) ==
+          "line 6: parameters: unknown parameter 'robot.axle_lenght' (expected perhaps 'robot.axle_length')");
+    CHECK(problem_of(kArena + "[parameters]\nrobot.axle_length = \"52 cm\"\n" + kRobot)
+              .starts_with("line 6: parameters: robot.axle_length = 0.52 is out of range"));
+    CHECK(problem_of(kArena + "[parameters]\nrobot.axle_length = \"52 g\"\n" + kRobot) ==
+          "line 6: parameters: axle_length: '52 g' is a mass (expected a length such as \"25 cm\")");
+}
+
+TEST_CASE("an overlay replaces parameters and nothing else") {
+    const TemporaryFile file(kArena + kRobot);
+    Scenario scenario = read_scenario(file.path());
+    const TemporaryFile overlay("[parameters]\ncontact.mu = 0.4\n[[robot]]\nname = \"robot0\"\n"
+                                "[robot.parameters]\nproximity.gain0 = 1.5\n");
+    apply_overlay(scenario, overlay.path());
+    CHECK(scenario.world.parameters.at("contact.mu") == Approx(0.4));
+    CHECK(scenario.world.robots[0].parameters.at("proximity.gain0") == Approx(1.5));
+    const TemporaryFile stranger("[[robot]]\nname = \"robot7\"\n");
+    CHECK_THROWS_WITH(apply_overlay(scenario, stranger.path()),
+                      Catch::Contains("line 2") && Catch::Contains("robot7"));
+    const TemporaryFile arena("[arena]\nsize = [\"1 m\", \"1 m\"]\n");
+    CHECK_THROWS_WITH(apply_overlay(scenario, arena.path()), Catch::Contains("unknown key 'arena'"));
+}
+
+TEST_CASE("what cannot be run is said with its line") {
+    CHECK(problem_of("[run]\nduration = \"5 s\"\n") ==
+          "line 1: [arena] is missing (expected [arena] with size = [\"1 m\", \"80 cm\"])");
+    CHECK(problem_of(kArena) == "line 1: no robot (expected at least one [[robot]])");
+    CHECK(problem_of("[arena]\nsize = [\"1 m\", \"1 m\"]\n" + kRobot).find("nothing ends this run") !=
+          std::string::npos);
+    CHECK(problem_of(kArena + "[[robot]]\nposition = [\"2 m\", \"0 m\"]\n[robot.pic]\nfirmware = \"x.hex\"\n")
+              .starts_with("line 5: "));
+    CHECK(problem_of(kArena + kRobot + "selecter = 3\n") ==
+          "line 9: robot0.pic: unknown key 'selecter' (expected perhaps 'selector')");
+    CHECK(problem_of(kArena + kRobot + kRobot + "[[fault]]\nlink = \"robot0.uart\"\nkind = \"dorp\"\n")
+              .find("'dorp' is not known") != std::string::npos);
+    CHECK(problem_of(kArena + kRobot + "[[fault]]\nlink = \"robot0.uart\"\nbegin = \"5 s\"\nend = \"1 s\"\n")
+              .find("window is empty") != std::string::npos);
+    CHECK(problem_of(kArena + "[[robot]]\nname = \"a b\"\nposition = [\"0 m\", \"0 m\"]\n")
+              .starts_with("line 6: "));
+    CHECK(problem_of(
+              kArena + "[[box]]\nname = \"b\"\ncentre = [\"0 m\", \"0 m\"]\nsize = [\"1 cm\", \"1 cm\"]\n" +
+              kRobot) == "line 8: box 1: size is not a list of 3 (expected a length such as \"25 cm\")");
+}

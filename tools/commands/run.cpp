@@ -1,0 +1,120 @@
+// `puckloop run SCENARIO`: the main job.
+
+#include "base/error.h"
+#include "cosim/interrupt.h"
+#include "tools/commands.h"
+#include "tools/run/node_factory.h"
+#include "tools/run/parameter_list.h"
+#include "tools/run/report.h"
+#include "tools/run/setup.h"
+#include "tools/run/status_line.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <memory>
+
+namespace puckloop::tools {
+
+namespace {
+
+struct Options {
+    RunRequest request;
+    std::string linux_program;
+    std::vector<std::string> linux_args;
+    bool json = false;
+    bool list_parameters = false;
+};
+
+void prepare_folder(const std::filesystem::path& out) {
+    std::error_code error;
+    std::filesystem::create_directories(out, error);
+    if (error) throw InputError(out.string(), "", "cannot be made a folder: " + error.message());
+}
+
+/// Exit status: 0 success, 1 the run failed; Ctrl-C counts as a shell would count it.
+int status_of(const cosim::Outcome& outcome) {
+    if (outcome.reason == cosim::EndReason::Interrupted) return 130;
+    return outcome.success ? 0 : 1;
+}
+
+int run(Options& options) {
+    RunRequest& request = options.request;
+    if (options.list_parameters) {
+        print_parameters();
+        return 0;
+    }
+    if (request.scenario.empty())
+        throw InputError("", "run", "no scenario given", "a file such as scenarios/hello.toml");
+    if (!options.linux_program.empty()) {
+        request.linux_command = {options.linux_program};
+        request.linux_command.insert(request.linux_command.end(), options.linux_args.begin(),
+                                     options.linux_args.end());
+    }
+    const RunSetup setup = set_up(request);
+    prepare_folder(setup.out);
+
+    const cosim::InterruptGuard interrupt;
+    StatusLine status_line(setup.scenario.duration);
+    cosim::RunOptions run_options;
+    if (setup.scenario.duration) run_options.duration = cosim::from_seconds(*setup.scenario.duration);
+    run_options.in_process = request.in_process;
+    run_options.realtime = request.realtime;
+    run_options.seed = setup.scenario.seed;
+    run_options.stall_seconds = request.stall_seconds;
+    run_options.interrupted = interrupt.flag();
+    run_options.progress = [&](const cosim::Progress& progress) { status_line.show(progress); };
+    cosim::Conductor conductor(setup.nodes, setup.links, setup.scenario.faults, run_options, make_node);
+    const cosim::Outcome outcome = conductor.run();
+    status_line.clear();
+    write_report(setup, outcome);
+    if (options.json)
+        fmt::print("{}\n", (setup.out / "report.json").string());
+    else
+        fmt::print("{}\n", summary(setup, outcome));
+    if (!outcome.success) fmt::print(stderr, "puckloop: {}\n", outcome.text);
+    return status_of(outcome);
+}
+
+}  // namespace
+
+void declare_run(CLI::App& app, int& status) {
+    CLI::App* command =
+        app.add_subcommand("run", "run a scenario: boards, Linux programs and the world together");
+    auto options = std::make_shared<Options>();
+    RunRequest& request = options->request;
+    command->add_option("scenario", request.scenario, "scenario file (docs/scenario.md)")
+        ->type_name("SCENARIO");
+    command
+        ->add_option("--firmware", request.firmware,
+                     "BOARD=IMAGE, such as robot0.pic=my.hex, or pic=my.hex for all robots")
+        ->type_name("BOARD=IMAGE");
+    command
+        ->add_option("--linux", options->linux_program,
+                     "PROGRAM [ARG]...: the Linux program in place of the scenario's; the words after it are "
+                     "its arguments "
+                     "up to the next option of this list, and all the rest after a --")
+        ->type_name("PROGRAM [ARG]...");
+    command->add_option("--linux-arg", options->linux_args)->group("");
+    command->add_flag("--in-process", request.in_process,
+                      "all nodes in this process (default: each in its own)");
+    command->add_flag("--realtime", request.realtime, "pace simulated time by the wall clock");
+    command->add_option("--duration", request.duration, "simulated seconds")
+        ->check(CLI::PositiveNumber)
+        ->type_name("S");
+    command->add_option("--seed", request.seed, "seed of every random stream")->type_name("N");
+    command->add_option("--model", request.overlay, "overlay of physical parameters")->type_name("OVERLAY");
+    command->add_option("--out", request.out, "folder for the results (default: out/<scenario>)")
+        ->type_name("DIR");
+    command
+        ->add_option("--stall", request.stall_seconds,
+                     "wall-clock seconds after which a silent node ends the run")
+        ->check(CLI::PositiveNumber)
+        ->type_name("S");
+    command->add_flag("--list-parameters", options->list_parameters,
+                      "print every physical parameter and where its value comes from");
+    command->add_flag("--json", options->json, "print only the path of report.json");
+    command->callback([options, &status] { status = run(*options); });
+}
+
+}  // namespace puckloop::tools

@@ -1,0 +1,49 @@
+#include "tools/run/node_factory.h"
+
+#include "base/error.h"
+#include "emu/image/image.h"
+#include "emu/pic/pic_node.h"
+#include "linuxboard/shim/linux_node.h"
+#include "physics/world_node.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace puckloop::tools {
+
+namespace {
+
+using nlohmann::json;
+
+std::unique_ptr<cosim::Node> make_pic(const json& spec) {
+    pic::PicNodeOptions options;
+    options.board.name = spec.at("name");
+    options.board.seed = spec.at("seed");
+    options.board.crystal_ppm = spec.at("crystal_ppm");
+    options.board.adc_noise_counts = spec.at("adc_noise");
+    options.board.selector = spec.at("selector");
+    return std::make_unique<pic::PicNode>(image::load_image(spec.at("firmware").get<std::string>()), options);
+}
+
+std::unique_ptr<cosim::Node> make_linux(json spec) {
+    spec.erase("kind");
+    return std::make_unique<linuxboard::LinuxNode>(linuxboard::parse_linux_spec(spec.dump()));
+}
+
+}  // namespace
+
+std::unique_ptr<cosim::Node> make_node(const std::string& text) {
+    try {
+        const json spec = json::parse(text);
+        const std::string kind = spec.at("kind");
+        if (kind == "pic") return make_pic(spec);
+        if (kind == "linux") return make_linux(spec);
+        if (kind == "world")
+            return std::make_unique<physics::WorldNode>(physics::from_json(spec.at("world").dump()));
+        throw InputError("", "node", fmt::format("unknown kind '{}'", kind));
+    } catch (const json::exception& error) {
+        throw InputError("", "node description", error.what());
+    }
+}
+
+}  // namespace puckloop::tools
