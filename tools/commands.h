@@ -8,18 +8,24 @@
 
 namespace puckloop::tools {
 
+void declare_run(CLI::App& app, int& status);
 void declare_exec(CLI::App& app, int& status);
 void declare_step(CLI::App& app, int& status);
 void declare_asm(CLI::App& app, int& status);
 void declare_disasm(CLI::App& app, int& status);
 void declare_trace(CLI::App& app, int& status);
+void declare_node(CLI::App& app, int& status);
 
+// clang-format off
 inline constexpr std::array kCommands{
+    declare_run,
     declare_exec,
     declare_step,
     declare_asm,
     declare_disasm,
     declare_trace,
+    declare_node,
 };
+// clang-format on
 
 }  // namespace puckloop::tools

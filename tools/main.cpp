@@ -3,11 +3,15 @@
 #include "base/error.h"
 #include "tools/command.h"
 #include "tools/commands.h"
+#include "tools/run/linux_arguments.h"
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <string>
+#include <vector>
 
 int main(int argc, char** argv) {
     using namespace puckloop;
@@ -19,7 +23,9 @@ int main(int argc, char** argv) {
     for (const tools::DeclareCommand declare : tools::kCommands)
         declare(app, status);
     try {
-        app.parse(argc, argv);
+        std::vector<std::string> words = tools::pack_linux_arguments({argv + 1, argv + argc});
+        std::reverse(words.begin(), words.end());  // CLI11 takes them last first
+        app.parse(words);
         return status;
     } catch (const CLI::ParseError& error) {
         const int code = app.exit(error);

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "cosim/interrupt.h"
+#include "cosim/trace_csv.h"
 #include "tools/commands.h"
 #include "tools/run/node_factory.h"
 #include "tools/run/parameter_list.h"
@@ -65,6 +66,8 @@ int run(Options& options) {
     run_options.interrupted = interrupt.flag();
     run_options.progress = [&](const cosim::Progress& progress) { status_line.show(progress); };
     cosim::Conductor conductor(setup.nodes, setup.links, setup.scenario.faults, run_options, make_node);
+    cosim::TraceCsvSink trace((setup.out / "trace.csv").string());
+    conductor.add_sink(trace);
     const cosim::Outcome outcome = conductor.run();
     status_line.clear();
     write_report(setup, outcome);

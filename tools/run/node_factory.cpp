@@ -1,6 +1,7 @@
 #include "tools/run/node_factory.h"
 
 #include "base/error.h"
+#include "emu/i2c_devices/bus_node.h"
 #include "emu/image/image.h"
 #include "emu/pic/pic_node.h"
 #include "linuxboard/shim/linux_node.h"
@@ -38,8 +39,8 @@ std::unique_ptr<cosim::Node> make_node(const std::string& text) {
         const std::string kind = spec.at("kind");
         if (kind == "pic") return make_pic(spec);
         if (kind == "linux") return make_linux(spec);
-        if (kind == "world")
-            return std::make_unique<physics::WorldNode>(physics::from_json(spec.at("world").dump()));
+        if (kind == "world") return physics::make_world_node(spec.at("world").dump());
+        if (kind == "i2c_bus") return i2c_devices::make_bus_node(text);
         throw InputError("", "node", fmt::format("unknown kind '{}'", kind));
     } catch (const json::exception& error) {
         throw InputError("", "node description", error.what());

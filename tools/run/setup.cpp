@@ -1,8 +1,8 @@
 #include "tools/run/setup.h"
 
 #include "base/error.h"
+#include "emu/i2c_devices/signals.h"
 #include "emu/pic/signals.h"
-#include "physics/i2c/ground_board.h"
 #include "tools/run/program_path.h"
 
 #include <fmt/format.h>
@@ -104,6 +104,7 @@ void add_robot(RunSetup& setup, const RobotBoards& robot, bool exit_ends_run, bo
     setup.nodes.push_back({pic, pic_spec(scenario, robot).dump()});
     setup.nodes.push_back({bus, json{{"kind", "i2c_bus"},
                                      {"name", bus},
+                                     {"hertz", scenario.i2c_clock},
                                      {"ground_sensor", robot.ground_sensor},
                                      {"rgb_turret", robot.rgb_turret}}
                                     .dump()});
@@ -112,7 +113,7 @@ void add_robot(RunSetup& setup, const RobotBoards& robot, bool exit_ends_run, bo
     world.record_from_b = false;  // a thousand sensor values a second: in the hash, not in the file
     setup.links.push_back(world);
     cosim::LinkSpec ground{robot.name + ".ground", {bus, "world"}, {"world", robot.name + ".ground"}};
-    ground.signal_names = names_of(physics::ground_board_signals());
+    ground.signal_names = names_of(i2c_devices::signals());
     ground.record_from_b = false;
     setup.links.push_back(ground);
     setup.links.push_back({robot.name + ".i2c.pic", {pic, "i2c"}, {bus, "pic"}});
@@ -134,7 +135,7 @@ RunSetup set_up(const RunRequest& request) {
                                                               : request.out);
 
     const auto board_ids = ids_of(pic::signals());
-    const auto ground_ids = ids_of(physics::ground_board_signals());
+    const auto ground_ids = ids_of(i2c_devices::signals());
     for (physics::Robot& body : scenario.world.robots) {
         body.board_signals = board_ids;
         body.ground_signals = ground_ids;
