@@ -34,26 +34,26 @@ Time I2cBusNode::ninth_clock(const I2cPhase& phase) const {
 
 void I2cBusNode::advance(Time until, std::span<const Message> inbox, std::vector<Message>& outbox) {
     for (const Message& message : inbox) {
-        run_events(message.time, outbox);
+        run_events(message.time);
         receive(message);
     }
-    run_events(until, outbox);
+    run_events(until);
+    // Answers leave as soon as they are known, stamped with the time at which they count: a master that
+    // reacts at once would otherwise hold the bus at that very time.
+    std::stable_sort(answers_.begin(), answers_.end(),
+                     [](const Message& a, const Message& b) { return a.time < b.time; });
+    outbox.insert(outbox.end(), answers_.begin(), answers_.end());
+    answers_.clear();
 }
 
 /// Everything that the bus does by itself before `until`.
-void I2cBusNode::run_events(Time until, std::vector<Message>& outbox) {
+void I2cBusNode::run_events(Time until) {
     while (changes_ < until) {
         if (bus_ == Bus::Contest)
             resolve_contest();
         else
             bus_freed();
     }
-    std::stable_sort(answers_.begin(), answers_.end(),
-                     [](const Message& a, const Message& b) { return a.time < b.time; });
-    const auto later = std::find_if(answers_.begin(), answers_.end(),
-                                    [&](const Message& message) { return message.time >= until; });
-    outbox.insert(outbox.end(), answers_.begin(), later);
-    answers_.erase(answers_.begin(), later);
 }
 
 void I2cBusNode::receive(const Message& message) {
@@ -246,10 +246,8 @@ void I2cBusNode::answer(PortIndex port, const I2cPhase& phase, I2cPhaseKind kind
 
 Time I2cBusNode::promise(PortIndex port) const {
     Time first = kNever;
-    for (const Message& message : answers_)
-        if (message.port == port) first = std::min(first, message.time);
     if (is_world(port)) return first;
-    if (!is_master(port)) return std::min(first, changes_);
+    if (!is_master(port)) return changes_;
     for (const Contender& contender : contenders_)
         if (contender.port == port) first = std::min(first, ninth_clock(contender.phase));
     // A Start that waits for another master's Stop is answered in reaction to it.

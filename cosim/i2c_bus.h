@@ -83,7 +83,7 @@ class I2cBusNode final : public Node {
 
     bool is_master(PortIndex port) const { return port < options_.masters.size(); }
     bool is_world(PortIndex port) const { return port + 1u == ports_.size(); }
-    void run_events(Time until, std::vector<Message>& outbox);
+    void run_events(Time until);
     void receive(const Message& message);
     void phase_from(PortIndex port, const I2cPhase& phase);
     void start_from(PortIndex port, const I2cPhase& phase);
@@ -116,7 +116,7 @@ class I2cBusNode final : public Node {
     Time changes_ = kNever;              // a contest is decided, a stop is over
     std::vector<Contender> contenders_;  // for the bus, now
     std::vector<Contender> waiting_;     // for its end
-    std::vector<Message> answers_;       // to come, sorted by time
+    std::vector<Message> answers_;       // known, to leave with this advance
     Time emitted_at_ = 0;
     Counters counters_;
 };
