@@ -145,6 +145,9 @@ struct Chip::Parts {
             if (report.traps.size() < kRecords)
                 report.traps.push_back({at, std::string(device.vector_name(static_cast<int>(trap))), pc});
         };
+        core.observer().on_warning = [this](std::string_view text, std::uint32_t pc) {
+            report.warnings.push_back({core.cycle(), std::string(text), pc});
+        };
         sfr.on_first_touch = [this](std::string_view name, std::uint16_t address, bool write) {
             report.unmodelled.push_back({core.cycle(), std::string(name), address, core.pc(), write});
         };

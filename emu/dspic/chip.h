@@ -47,11 +47,18 @@ struct UnmodelledTouch {
     std::uint32_t pc = 0;
     bool write = false;
 };
+/// Something the program did that the model takes differently from silicon, told once each.
+struct ChipWarning {
+    Cycle cycle = 0;
+    std::string text;
+    std::uint32_t pc = 0;
+};
 
 struct ChipReport {
     std::vector<ResetRecord> resets;          ///< the first 1000, power-on included
     std::vector<TrapRecord> traps;            ///< the first 1000
     std::vector<UnmodelledTouch> unmodelled;  ///< first touch of each register
+    std::vector<ChipWarning> warnings;
     std::uint64_t instructions = 0;
     Cycle cycles = 0;
 };

@@ -312,6 +312,19 @@ TEST_CASE_METHOD(UartBench, "a break is sent as long as UTXBRK stands") {
         CHECK(frame.is_break == 1);
 }
 
+TEST_CASE_METHOD(UartBench,
+                 "what passes while the UART is off is not heard, nor the rest of a frame begun before") {
+    Time time = feed(clock.time_of(1000), {1, 2, 3}, 115200.0);
+    const UartFrame cut = frame_at(time, 0xFF, 115200.0);  // its start bit passes unheard, the rest is high
+    go(clock.first_cycle_at(time + 3 * cut.bit_period));
+    enable();
+    give(cut);
+    time = feed(time + 20 * cut.bit_period, {0x42}, 115200.0);
+    go(clock.first_cycle_at(time));
+    CHECK(uart.counters().received == 1);
+    CHECK(read(sfr::U2RXREG) == 0x42);
+}
+
 TEST_CASE_METHOD(UartBench, "an enabled UART takes its pins") {
     enable();
     REQUIRE_FALSE(pins.drives.empty());

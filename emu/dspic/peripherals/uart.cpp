@@ -194,7 +194,10 @@ void Uart::receive(const cosim::UartFrame& frame, Cycle at) {
     if (enabled() && (mode() & kLpback)) return;
     if (state_.held) return;
     receiver_.frame(frame);
-    if (enabled()) sample(at);
+    if (enabled())
+        sample(at);
+    else
+        receiver_.pass(at);
 }
 
 // Takes characters off the line as far as they are complete at `now`, and plans the next one.

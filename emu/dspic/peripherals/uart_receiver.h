@@ -43,6 +43,8 @@ class UartReceiver {
     void start(Cycle at);
     /// A frame on the line; frames come in order of their starts.
     void frame(const cosim::UartFrame& frame);
+    /// Nobody listens at cycle `at`: what has passed by then is of no use.
+    void pass(Cycle at) { forget_before(clock_.time_of(at)); }
     /// The next character, if all that it depends on is known at cycle `now`.
     std::optional<Character> next(const Format& format, Cycle now);
     /// When next() is worth asking again although no frame came; kNoCycle if only a frame can help.
