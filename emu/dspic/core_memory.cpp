@@ -159,6 +159,7 @@ std::uint16_t modulo_y(Machine& m, int reg, int step) {
 }
 
 void update_pointer_rules(Machine& m) {
+    forget_loops(m);
     std::uint32_t special = 1u << 15;
     if (m.st.modcon & kXmoden) special |= 1u << xwm(m);
     if (bit_reversed(m)) special |= 1u << bwm(m);

@@ -126,10 +126,12 @@ void pass_stop(Machine& m) {
     m.pass_pc.reset();
     Op& op = m.code[pc >> 1];
     op.marks &= static_cast<std::uint8_t>(~kStop);
+    forget_loops(m);
     decode(m, op);
     m.limit = std::min(m.limit, m.st.cycle + 1);
     execute(m);
     op.marks |= kStop;
+    forget_loops(m);
     decode(m, op);
 }
 

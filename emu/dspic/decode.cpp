@@ -67,14 +67,14 @@ const Op* stop_here(Machine& m, const Op* op) {
 Ea bind_source(Op& op, const Form& form, std::uint32_t word, char mode, int size) {
     const std::uint32_t p = form.field(mode, word);
     op.s = static_cast<std::uint8_t>(form.field('s', word));
-    if (p == 0) return Ea::Direct;
+    if (p == 0) return op.source = Ea::Direct;
     op.uses |= 0x10001u << op.s;
     if (p >= 6) {
         op.uses |= 1u << op.b;
-        return Ea::Offset;
+        return op.source = Ea::Offset;
     }
     steps(p, size, op.s_pre, op.s_post);
-    return Ea::Indirect;
+    return op.source = Ea::Indirect;
 }
 
 Ea bind_destination(Op& op, const Form& form, std::uint32_t word, char mode, int size) {
@@ -82,13 +82,13 @@ Ea bind_destination(Op& op, const Form& form, std::uint32_t word, char mode, int
     op.d = static_cast<std::uint8_t>(form.field('d', word));
     if (q == 0) {
         sets(op, op.d);
-        return Ea::Direct;
+        return op.destination = Ea::Direct;
     }
     op.uses |= 0x10000u << op.d;
-    if (q >= 6) return Ea::Offset;
+    if (q >= 6) return op.destination = Ea::Offset;
     steps(q, size, op.d_pre, op.d_post);
     if (q != 1) op.writes |= 1u << op.d;
-    return Ea::Indirect;
+    return op.destination = Ea::Indirect;
 }
 
 void decode(Machine& m, Op& op) {
@@ -106,6 +106,7 @@ void decode(Machine& m, Op& op) {
         op.form = form->id;
         op.cycles = form->cycles;
         op.psv_extra = form->psv_extra;
+        op.byte = form->field('B', op.word) != 0;
         const std::uint32_t word2 = m.program[index + 1];
         if (!bind_alu(op, *form, op.word) && !bind_move(op, *form, op.word) &&
             !bind_bits(op, *form, op.word) && !bind_shift(op, *form, op.word) &&
@@ -143,6 +144,7 @@ void invalidate(Machine& m, std::uint32_t address) {
         op.word = m.program[index];
     };
     const std::uint32_t index = address >> 1;
+    forget_loops(m);
     forget(index);
     if (index > 0) forget(index - 1);  // its second word may be this one
 }
@@ -153,6 +155,7 @@ void mark(Machine& m, std::uint32_t pc, std::uint8_t what) {
     Op& op = m.code[index];
     if (op.marks & what) return;
     op.marks |= what;
+    forget_loops(m);
     if (op.run != &decode_now) decode(m, op);
 }
 

@@ -68,7 +68,7 @@ const Op* branch_back(Machine& m, const Op* op) {
     if (!holds<Condition>(m.st.sr)) return op + 1;
     if constexpr (Condition != If::Always) ++m.st.cycle;
     const Op* next = at(m, op->target);
-    try_skip(m, op, next);
+    if (op->may_skip) try_skip(m, op, next);
     return next;
 }
 template <If Condition>
@@ -76,7 +76,8 @@ void bind_branch(Op& op, const Form& form, std::uint32_t word, std::uint32_t pc)
     const int offset = static_cast<std::int16_t>(form.field('n', word));
     op.target = static_cast<std::uint32_t>(static_cast<int>(pc) + 2 + 2 * offset) & 0x7FFFFE;
     constexpr int kFarthest = -64;
-    op.base = offset < 0 && offset >= kFarthest ? &branch_back<Condition> : &branch<Condition>;
+    op.may_skip = offset < 0 && offset >= kFarthest;
+    op.base = op.may_skip ? &branch_back<Condition> : &branch<Condition>;
     op.aux = static_cast<std::uint8_t>(Condition);
 }
 
@@ -218,7 +219,8 @@ bool bind_flow(Op& op, const Form& form, std::uint32_t word, std::uint32_t word2
         return true;
     case FormId::GOTO_Expr:
         op.target = far_target();
-        op.base = op.target <= pc && pc - op.target <= 128 ? &branch_back<If::Always> : &branch<If::Always>;
+        op.may_skip = op.target <= pc && pc - op.target <= 128;
+        op.base = op.may_skip ? &branch_back<If::Always> : &branch<If::Always>;
         return true;
     case FormId::BRA_Wn:
         op.target = pc + 2;

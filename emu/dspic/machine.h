@@ -19,6 +19,9 @@ struct Op;
 /// Executes `op` and returns the operation to execute next.
 using Handler = const Op* (*)(Machine& m, const Op* op);
 
+/// How an operand is reached, fixed when the word is decoded.
+enum class Ea : std::uint8_t { Direct, Literal, Indirect, Offset };
+
 /// One program word, ready to run. `run` is decode_now() until the word is first reached.
 struct Op {
     Handler run = nullptr;     ///< what the loop calls
@@ -35,6 +38,10 @@ struct Op {
     std::uint8_t psv_extra = 0;
     std::uint8_t marks = 0;  ///< kStop, kLoopEnd
     FormId form = FormId::NOP;
+    Ea source = Ea::Literal;  ///< how the source operand is reached (for skip_loops.cpp)
+    Ea destination = Ea::Literal;
+    bool byte = false;
+    bool may_skip = false;  ///< a backward branch whose loop is worth analysing
     std::uint32_t word = 0;
 };
 inline constexpr std::uint8_t kStop = 1, kLoopEnd = 2;
@@ -170,8 +177,10 @@ void leave_power_save(Machine& m);
 std::uint16_t& rcon_register(Machine& m);
 void schedule_watchdog(Machine& m);
 // skip_loops.cpp
-/// After a backward branch from `from` to `to`: leaps over iterations of a pure loop if it can.
-void try_skip(Machine& m, const Op* from, const Op* to);
+/// At a taken backward branch: leaps over iterations of a pure loop if it can.
+void try_skip(Machine& m, const Op* branch, const Op* head);
+/// Code, marks or pointer rules changed: nothing known about loops holds any more.
+void forget_loops(Machine& m);
 
 inline int cpu_level(const Machine& m) {
     return (m.st.sr >> sr::kIplShift & 7) | (m.st.corcon & corcon::IPL3);
@@ -252,9 +261,6 @@ inline std::uint16_t pop(Machine& m) {
     check_stack(m, address);
     return read16(m, address);
 }
-
-/// How an operand is reached, fixed when the word is decoded.
-enum class Ea : std::uint8_t { Direct, Literal, Indirect, Offset };
 
 /// [Wn] with every pre- and post-modification: steps are in the operation.
 template <bool Word = true>

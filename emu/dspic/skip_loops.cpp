@@ -1,5 +1,129 @@
 #include "emu/dspic/skip_loops.h"
+
+#include "emu/dspic/loop_walk.h"
 #include "emu/dspic/machine.h"
+
+#include <algorithm>
+
 namespace puckloop::dspic {
-void try_skip(Machine&, const Op*, const Op*) {}
+
+namespace {
+
+/// With less than this to the next event a walk is not begun.
+constexpr Cycle kWorthwhile = 64;
+constexpr std::uint8_t kMostPatience = 7;
+constexpr std::uint64_t kFewestIterations = 4;
+
+std::uint16_t& word_of(Machine& m, std::uint16_t key) {
+    return key < 16 ? m.st.w[key] : m.ram[(key - 0x0800) / 2];
+}
+
+SkipLoops::Branch& branch_at(Machine& m, std::size_t word) {
+    SkipLoops& skip = *m.skip;
+    if (skip.index.empty()) skip.index.assign(m.code_words + kGuards, 0);
+    if (skip.index[word] == 0) {
+        skip.branches.emplace_back();
+        skip.index[word] = static_cast<std::uint16_t>(skip.branches.size());
+    }
+    return skip.branches[skip.index[word] - 1u];
+}
+
+/// The machine stands where the plan expects it, at the branch.
+bool as_predicted(Machine& m, const SkipLoops::Plan& plan, Cycle arrival) {
+    for (std::size_t i = 0; i < plan.polled_count; ++i)
+        if (m.sfr.raw(plan.polled[i].address) != plan.polled[i].value) return false;
+    if (!plan.proven && plan.proof_due != arrival) return false;
+    for (std::size_t i = 0; i < plan.count; ++i) {
+        const SkipLoops::Cell& cell = plan.cells[i];
+        if (plan.proven && !cell.carried) continue;  // scratch, an interrupt may have used it
+        if (word_of(m, cell.key) != static_cast<std::uint16_t>(cell.now)) return false;
+    }
+    return true;
+}
+
+void advance(SkipLoops::Plan& plan, std::uint64_t iterations) {
+    for (std::size_t i = 0; i < plan.count; ++i)
+        plan.cells[i].now +=
+            static_cast<std::int32_t>(static_cast<std::int64_t>(iterations) * plan.cells[i].step);
+    plan.iterations -= iterations;
+}
+
+/// Leaps over as many iterations as the plan and the limit allow, less one.
+void leap(Machine& m, SkipLoops::Plan& plan, Cycle arrival) {
+    if (m.limit < arrival) return;
+    const std::uint64_t room = (m.limit - arrival) / plan.cycles;
+    if (room < 2 || plan.iterations < 2) return;
+    const std::uint64_t count = std::min(plan.iterations - 1, room - 1);
+    advance(plan, count);
+    for (std::size_t i = 0; i < plan.count; ++i)
+        if (plan.cells[i].carried)
+            word_of(m, plan.cells[i].key) = static_cast<std::uint16_t>(plan.cells[i].now);
+    const Cycle cycles = count * plan.cycles;
+    m.st.cycle += cycles;
+    m.instructions += count * plan.instructions;
+    if (plan.clears_watchdog) {
+        m.watchdog_cleared += cycles;
+        schedule_watchdog(m);
+    }
+    plan.used = true;
+    ++m.skip->leaps;
+    m.skip->skipped_cycles += cycles;
+}
+
+void give_up_for_now(SkipLoops::Branch& known) {
+    if (known.patience < kMostPatience) ++known.patience;
+    known.wait = static_cast<std::uint8_t>((1u << known.patience) - 1);
+}
+
+void make_plan(Machine& m, SkipLoops::Branch& known, const Op* branch, const Op* head, Cycle arrival) {
+    SkipLoops::Plan& plan = known.plan;
+    LoopWalk walk(m, plan);
+    switch (walk.analyse(branch, head)) {
+    case LoopWalk::Verdict::Pure:
+        if (plan.iterations < kFewestIterations) return give_up_for_now(known);
+        plan.alive = true;
+        plan.proven = plan.used = false;
+        plan.proof_due = arrival + plan.cycles;
+        --plan.iterations;  // the one that runs now
+        break;
+    case LoopWalk::Verdict::NotNow:
+        give_up_for_now(known);
+        break;
+    case LoopWalk::Verdict::Unknown:
+        m.code[branch - m.code].may_skip = false;
+        break;
+    }
+}
+
+}  // namespace
+
+void forget_loops(Machine& m) {
+    m.skip->index.clear();
+    m.skip->branches.clear();
+}
+
+void try_skip(Machine& m, const Op* branch, const Op* head) {
+    if (!m.skip_idle) return;
+    SkipLoops::Branch& known = branch_at(m, static_cast<std::size_t>(branch - m.code));
+    if (known.wait > 0) {
+        --known.wait;
+        return;
+    }
+    const Cycle arrival = m.st.cycle + branch->cycles;  // the run loop adds them after this
+    SkipLoops::Plan& plan = known.plan;
+    if (plan.alive) {
+        if (plan.iterations >= 2 && as_predicted(m, plan, arrival)) {
+            plan.proven = true;
+            leap(m, plan, arrival);
+            advance(plan, 1);  // the real iteration that follows
+            return;
+        }
+        plan.alive = false;
+        if (!plan.used) return give_up_for_now(known);
+        known.patience = 0;
+    }
+    if (m.limit < arrival + kWorthwhile) return;
+    make_plan(m, known, branch, head, arrival);
+}
+
 }  // namespace puckloop::dspic

@@ -1,4 +1,71 @@
 #pragma once
+// Busy-wait loops, skipped forward without changing anything observable.
+//
+// At a short backward branch that is taken, one iteration is walked through symbolically from the machine's
+// present state: every W register and RAM word is a value that changes by a constant step an iteration, or
+// not at all. The walk knows a subset of the instructions and follows calls and inner branches; whatever it
+// does not know, every write to a register, and every read of a register with side effects ends it. It yields
+//   - the iteration's length in cycles and instructions, stalls included,
+//   - the step of every cell that an iteration reads before it writes it,
+//   - how many iterations take the same path: no addition wraps, no sign and no zero changes on the way.
+//   - the registers that it polls, and their values.
+// The next real iteration must end in the state that the walk predicted; only then are iterations leapt over,
+// at most up to the next event, and one fewer than could be, so that a real one sets flags and scratch cells.
+// A plan stays good over events and interrupts for as long as its cells and registers are as predicted at
+// every arrival at the branch.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <vector>
+
 namespace puckloop::dspic {
-struct SkipLoops {};
+
+struct Op;
+
+struct SkipLoops {
+    /// A cell of the loop: 0..15 a W register, above a RAM byte address.
+    struct Cell {
+        std::uint16_t key = 0;
+        std::int32_t start = 0;     ///< at the loop's head
+        std::int32_t now = 0;       ///< where the walk stands; after it: an iteration later
+        std::int32_t now_step = 0;  ///< what `now` changes by an iteration
+        std::int32_t step = 0;      ///< what `start` changes by an iteration
+        bool carried = false;       ///< read before written: what one iteration hands to the next
+        bool written = false;
+    };
+    struct Plan {
+        static constexpr std::size_t kMostCells = 40;
+        std::array<Cell, kMostCells> cells{};
+        std::size_t count = 0;
+        std::uint64_t cycles = 0;
+        std::uint64_t instructions = 0;
+        std::uint64_t iterations = 0;  ///< still to come on the same path, the one under way included
+        bool clears_watchdog = false;
+        struct Polled {
+            std::uint16_t address = 0;
+            std::uint16_t value = 0;
+        };
+        static constexpr std::size_t kMostPolled = 8;
+        std::array<Polled, kMostPolled> polled{};
+        std::size_t polled_count = 0;
+
+        bool alive = false;
+        bool proven = false;          ///< a real iteration ended as the walk predicted
+        bool used = false;            ///< it has skipped something
+        std::uint64_t proof_due = 0;  ///< cycle at which the proof must be there, nothing in between
+    };
+    /// What is known of one backward branch.
+    struct Branch {
+        std::uint8_t wait = 0;      ///< arrivals until the next try
+        std::uint8_t patience = 0;  ///< failures in a row
+        Plan plan;
+    };
+    std::vector<std::uint16_t> index;  ///< by program word: place in `branches` plus 1, 0 = not seen yet
+    std::deque<Branch> branches;
+    std::uint64_t leaps = 0;  ///< for tests and curiosity
+    std::uint64_t skipped_cycles = 0;
+};
+
 }  // namespace puckloop::dspic
