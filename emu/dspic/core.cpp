@@ -115,6 +115,8 @@ void Core::set_stops(std::span<const std::uint32_t> addresses) {
         m.stops.push_back(pc & ~1u);
         mark(m, pc, kStop);
     }
+    if (m.pass_pc && std::find(m.stops.begin(), m.stops.end(), *m.pass_pc) == m.stops.end())
+        m.pass_pc.reset();
 }
 void Core::set_skip_idle(bool on) {
     machine_->skip_idle = on;
