@@ -1,0 +1,252 @@
+// Busy-wait skipping changes nothing: the same program with and without it, cut at many places, under events
+// and interrupts, must be in the same state at the same cycle.
+
+#include "base/random.h"
+#include "tests/dspic/rig.h"
+
+#include <catch2/catch.hpp>
+
+#include <memory>
+
+using namespace puckloop::dspic;
+using namespace puckloop::dspic::test;
+using puckloop::RandomStream;
+
+namespace {
+
+constexpr int kT1 = 3;
+constexpr std::uint16_t kPolled = 0x0D8;  ///< unused word of the SFR space, plain storage
+
+/// Raises T1 again and again and sets a polled register's bit now and then.
+struct Ticker {
+    Rig& rig;
+    Cycle period;
+    int count = 0;
+    EventQueue::Slot slot;
+    Ticker(Rig& owner, Cycle every) : rig(owner), period(every), slot(owner.events.add(this, &fire)) {
+        rig.events.schedule(slot, period);
+    }
+    static void fire(void* self, Cycle due) {
+        auto& t = *static_cast<Ticker*>(self);
+        t.rig.interrupts.raise(kT1, due);
+        if (++t.count % 7 == 0) t.rig.sfr.raw(kPolled) ^= 1;
+        t.rig.events.schedule(t.slot, due + t.period);
+    }
+};
+
+std::string fingerprint(Rig& rig) {
+    const CoreState st = rig.core.state();
+    std::string text = std::to_string(st.cycle) + " pc " + std::to_string(st.pc) + " sr " +
+                       std::to_string(st.sr) + " instructions " + std::to_string(rig.core.instructions()) +
+                       " w";
+    for (const auto w : st.w)
+        text += " " + std::to_string(w);
+    std::uint64_t hash = 14695981039346656037u;
+    for (const auto word : rig.core.ram())
+        hash = (hash ^ word) * 1099511628211u;
+    return text + " ram " + std::to_string(hash);
+}
+
+/// Runs both ways with the same cuts and compares after each.
+void compare(const std::string& source, Cycle until, Cycle event_period, std::uint64_t seed) {
+    Rig fast(source), slow(source);
+    slow.core.set_skip_idle(false);
+    for (Rig* rig : {&fast, &slow}) {
+        rig->sfr.claim(kPolled);
+        if (rig->program.symbols.contains("isr")) rig->vector(kTrapVectors + kT1, "isr");
+    }
+    std::unique_ptr<Ticker> fast_ticker, slow_ticker;
+    if (event_period) {
+        fast_ticker = std::make_unique<Ticker>(fast, event_period);
+        slow_ticker = std::make_unique<Ticker>(slow, event_period);
+    }
+    RandomStream cuts(seed, "cuts");
+    for (Cycle at = 0; at < until;) {
+        at += 1 + cuts.below(until / 4);
+        fast.core.run(at);
+        slow.core.run(at);
+        INFO(source << "\nat " << at << ", events every " << event_period);
+        REQUIRE(fingerprint(fast) == fingerprint(slow));
+    }
+}
+
+const std::string kHead = R"(
+        mov     #0x1000, w15
+        mov     #0x0900, w14
+        mov     #0x0A00, w8
+        mov     #0x0B00, w9
+        clr     w0
+        clr     w1
+        clr     w2
+        clr     w3
+        bset    0x8c, #3
+)";
+const std::string kTail = R"(
+done:   inc     w12, w12
+        bra     again
+isr:    push    w0
+        inc     w13, w13
+        btsc    w13, #4
+        inc     [w9], [w9]
+        bclr    0x84, #3
+        pop     w0
+        retfie
+)";
+
+}  // namespace
+
+TEST_CASE("a 64-bit counter with a frame pointer, as a compiler without optimisation makes it") {
+    const std::string source = kHead + R"(
+again:  clr     w0
+        mov.d   w0, [w14++]
+        mov.d   w0, [w14--]
+        bra     test
+body:   nop
+        mov.d   [w14++], w4
+        mov.d   [w14--], w6
+        mov     #1, w0
+        mov     #0, w1
+        mul.uu  w2, #0, w2
+        add     w4, w0, [w14++]
+        addc    w5, w1, [w14++]
+        addc    w6, w2, [w14++]
+        addc    w7, w3, [w14]
+        sub     #6, w14
+test:   mov     #0x1000, w0
+        mov     #0x2, w1
+        mul.uu  w2, #0, w2
+        mov.d   [w14++], w4
+        mov.d   [w14--], w6
+        cp      w4, w0
+        cpb     w5, w1
+        cpb     w6, w2
+        cpb     w7, w3
+        bra     le, body
+)" + kTail;
+    for (const Cycle period : {Cycle{0}, Cycle{50'000}, Cycle{1474}, Cycle{131}})
+        compare(source, 4'000'000, period, period);
+}
+
+TEST_CASE("nested delays, polling through calls, 32-bit countdowns, a self-branch") {
+    const std::string sources[] = {
+        kHead + R"(
+again:  mov     #50, w10
+outer:  mov     #0, w11
+inner:  btss    0x0d8, #0
+        bra     next
+        bra     done
+next:   clrwdt
+        dec     w11, w11
+        bra     nz, inner
+        dec     w10, w10
+        bra     nz, outer
+)" + kTail,
+        kHead + R"(
+again:  rcall   ready
+        cp0.b   w0
+        bra     z, again
+        bra     done
+ready:  lnk     #0
+        mov.b   0x0d8, wreg
+        ze      w0, w0
+        ulnk
+        return
+)" + kTail,
+        kHead + R"(
+again:  mov     #0x2710, w0
+        mov     #0x1, w1
+        mov.d   w0, [w14]
+        bra     test
+body:   mov.b   [w8], w0
+        cp0.b   w0
+        bra     nz, done
+        setm    w0
+        setm    w1
+        add     w0, [w14], [w14]
+        addc    w1, [++w14], [w14--]
+test:   mov.d   [w14], w0
+        sub     w0, #0, [w15]
+        subb    w1, #0, [w15]
+        bra     nz, body
+)" + kTail,
+        kHead + R"(
+again:  mov     [w9], w1
+wait:   mov     [w9], w0
+        sub     w0, w1, [w15]
+        bra     z, wait
+)" + kTail,
+        kHead + "again:  bra     again\n" + kTail,
+        kHead +
+            "again:  repeat  #3000\n        nop\n        mov #0x6000, w5\nd:      dec.b w5, w5\n        bra "
+            "nz, d\n" +
+            "e:      inc2 w6, w6\n        cp w6, w5\n        bra ltu, e\n        clr w6\n" + kTail,
+    };
+    for (const auto& source : sources)
+        for (const Cycle period : {Cycle{0}, Cycle{20'011}, Cycle{997}, Cycle{113}})
+            compare(source, 1'000'000, period, period + 1);
+}
+
+TEST_CASE("skipping really skips") {
+    Rig rig(kHead + "again:  bra     again\n" + kTail);
+    rig.core.run(1'000'000'000'000);
+    CHECK(rig.core.cycle() >= 1'000'000'000'000);  // would take hours if executed
+}
+
+TEST_CASE("random loops") {
+    RandomStream random(1, "random loops");
+    const auto reg = [&] { return "w" + std::to_string(random.below(8)); };
+    const auto instruction = [&]() -> std::string {
+        const char* sizes[] = {"", "", "", ".b"};
+        const std::string size = sizes[random.below(4)];
+        const char* binary[] = {"add", "sub", "addc", "subb", "and", "ior", "xor", "subr"};
+        const char* unary[] = {"inc", "dec", "inc2", "dec2", "com", "lsr", "sl", "mov", "clr"};
+        const char* file[] = {"inc", "dec", "mov", "cp0"};
+        switch (random.below(12)) {
+        case 0:
+        case 1:
+            return std::string(binary[random.below(8)]) + size + " " + reg() + ", " + reg() + ", " + reg();
+        case 2:
+            return std::string(binary[random.below(8)]) + size + " " + reg() + ", #" +
+                   std::to_string(random.below(32)) + ", " + reg();
+        case 3: {
+            const auto n = random.below(9);
+            return std::string(unary[n]) + size + (n == 8 ? " " + reg() : " " + reg() + ", " + reg());
+        }
+        case 4: {
+            const std::string address = std::to_string(0x0C00 + 2 * random.below(4));
+            return std::string(file[random.below(3)]) + size + " " + address +
+                   (random.below(2) ? ", wreg" : "");
+        }
+        case 5:
+            return "mov" + size + " [w14+" + std::to_string(2 * random.below(4)) + "], " + reg();
+        case 6:
+            return "mov" + size + " " + reg() + ", [w14+" + std::to_string(2 * random.below(4)) + "]";
+        case 7:
+            return "cp" + size + " " + reg() + ", " + reg();
+        case 8:
+            return "mov [w8], " + reg();
+        case 9:
+            return "mov " + reg() + ", [w8]";
+        case 10:
+            return "inc [w9], [w9]";
+        default:
+            return random.below(2) ? "push " + reg() + "\n        pop " + reg() : "mov.b 0x0d8, wreg";
+        }
+    };
+    const char* conditions[] = {"nz", "z", "gtu", "leu", "lt", "ge", "nc", "c", "nn", "n", "le", "nov"};
+    for (int round = 0; round < 400; ++round) {
+        std::string source = kHead + "again:  mov #" + std::to_string(random.below(65536)) +
+                             ", w5\n        mov #" + std::to_string(random.below(65536)) +
+                             ", w6\n        clr w10\nloop:\n";
+        const auto length = random.below(6);
+        for (std::uint64_t i = 0; i < length; ++i)
+            source += "        " + instruction() + "\n";
+        if (random.below(2))
+            source += "        " + std::string(random.below(2) ? "dec" : "inc") + " w5, w5\n";
+        else
+            source += "        add w5, #3, w5\n        cp w5, w6\n";
+        source += "        bra " + std::string(conditions[random.below(12)]) + ", loop\n" + kTail;
+        const Cycle periods[] = {0, 30'011, 1474, 211};
+        compare(source, 150'000, periods[random.below(4)], static_cast<std::uint64_t>(round));
+    }
+}
