@@ -282,7 +282,7 @@ const cosim::ClockDomain& Chip::clock() const {
 }
 
 Time Chip::now() const {
-    return std::max(parts_->now, parts_->clock.time_of(parts_->core.cycle()));
+    return parts_->now;
 }
 
 Cycle Chip::cycle() const {

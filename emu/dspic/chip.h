@@ -113,7 +113,8 @@ class Chip {
     cosim::Time earliest_i2c(int unit) const;
 
     const cosim::ClockDomain& clock() const;
-    /// Start of the next instruction, at least the last `until`.
+    /// How far the chip has been run: the last `until`, or the start of the instruction at a stop address.
+    /// What is handed in belongs to this time.
     cosim::Time now() const;
     Cycle cycle() const;
     std::uint32_t pc() const;
