@@ -28,7 +28,8 @@ static union {
 } out;
 static u16 last_record; /* tick of the newest actuator record */
 static u16 waiting_since;
-static u8 resting; /* the watchdog has stopped the wheels */
+static u8 resting;   /* the watchdog has stopped the wheels */
+static u8 announced; /* a record was sent unasked, nothing has come since */
 
 static void answer(void) {
     u8 i;
@@ -80,10 +81,14 @@ static void obey(void) {
 }
 
 static void take(u16 entry) {
-    if (state == WAITING) { /* any byte wakes, but not noise */
-        if (!(entry & UART_BAD)) state = CONFIGURATION;
+    if (state == WAITING) {
         forget();
-        return;
+        if (!announced) { /* any byte wakes, but not noise */
+            if (!(entry & UART_BAD)) state = CONFIGURATION;
+            return;
+        }
+        announced = 0; /* the forgotten session goes on, or its silence after five bytes tells a new one */
+        state = SESSION;
     }
     in.bytes[in_count++] = entry;
     if (entry & UART_BAD) in_bad = 1;
@@ -131,7 +136,11 @@ static void blink(void) {
 
 void session_start(u8 announce) {
     wait_for_session();
-    if (announce) answer();
+    if (!announce) return;
+    while (uart_receive() != UART_NOTHING)
+        ; /* the rest of a record to the session that is forgotten */
+    answer();
+    announced = 1;
 }
 
 void session_step(void) {
