@@ -12,11 +12,13 @@ namespace {
 
 constexpr int kMostContacts = 8;
 
+/// At the body's own point, not the floor's: a tyre sunk in by the surface layer still rolls on its full
+/// radius.
 dContactGeom floor_point(const dReal* point) {
     dContactGeom geom{};
     geom.pos[0] = point[0];
     geom.pos[1] = point[1];
-    geom.pos[2] = 0;
+    geom.pos[2] = point[2];
     geom.normal[2] = 1;
     geom.depth = -point[2];
     return geom;

@@ -86,6 +86,8 @@ std::vector<ParameterInfo> build_table() {
         {"ground.height_slope", "1/m", 1, {43.75}, 0.0, 500, AT(ground.height_slope), "[W] 1000 at 0 mm, 300 at 16 mm"},
         {"ground.footprint", "m", 1, {0.004}, 0.0, 0.02, AT(ground.footprint), "3-6 mm"},
         {"ground.ambient", "counts", 1, {30}, 0, 1023, AT(ground.ambient), "? ambient registers under the robot at ambient level 1"},
+        {"ground.noise", "counts", 1, {1.5}, 0.0, 100, AT(ground.noise), "[M] standard deviation 1-3 on white, 20 on black (texture)"},
+        {"ground.period", "s", 1, {0.01}, 0.001, 1.0, AT(ground.period), "? the board samples faster than the 0.1 s of the control loop"},
 
         // Accelerometer.
         {"accelerometer.bias", "counts", 3, {0.0}, -500, 500, FIRST(accelerometer.bias), "zero 2048+-100"},

@@ -40,6 +40,7 @@ struct LightParameters {
 struct GroundParameters {
     std::array<double, kGroundSensors> gain, offset, y;
     double x, height, black, white, saturation, height_slope, footprint, ambient;
+    double noise, period;
 };
 
 /// Three-axis accelerometer; arrays are x (right), y (rear), z (up).

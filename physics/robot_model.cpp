@@ -17,6 +17,7 @@ RobotModel::RobotModel(const World& world, const Robot& robot, const Parameters&
       proximity_(parameters.proximity),
       light_(parameters.light, parameters.proximity, world.ambient_light, world.lamps),
       ground_(parameters.ground, world.arena.floor_grey, world.patches),
+      ground_noise_(world.seed, "physics/" + robot.name + "/ground_noise"),
       accelerometer_(parameters.accelerometer, parameters.world),
       battery_(parameters.battery) {
     const double ambient = std::min(parameters.ground.ambient * world.ambient_light, kGroundFullScale);
@@ -46,10 +47,21 @@ void RobotModel::sense_light(const SensorView& view) {
 }
 
 void RobotModel::sense_ground(const RobotState& state) {
-    store(kGroundChannel, ground_.sense(state));
+    ground_seen_ = ground_.sense(state);
+}
+
+void RobotModel::sample_ground() {
+    auto counts = ground_seen_;
+    if (parameters_.ground.noise > 0.0)
+        for (double& value : counts)
+            value = std::clamp(value + parameters_.ground.noise * ground_noise_.normal(), 0.0,
+                               parameters_.ground.saturation);
+    store(kGroundChannel, counts);
 }
 
 void RobotModel::sense_each_step(const RobotState& state, double seconds) {
+    const auto step = std::llround(seconds / kStepSeconds);
+    if (step % std::max(1L, std::lround(parameters_.ground.period / kStepSeconds)) == 0) sample_ground();
     store(kAccelerationChannel, accelerometer_.sense(state));
     const int running = (drives_[0].running(seconds) ? 1 : 0) + (drives_[1].running(seconds) ? 1 : 0);
     channels_[kBatteryVoltageChannel] = battery_.draw(running);

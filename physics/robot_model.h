@@ -29,7 +29,7 @@ class RobotModel {
     void sense_proximity(const SensorView& view);
     void sense_light(const SensorView& view);
     void sense_ground(const RobotState& state);
-    /// Accelerometer and battery, once a step.
+    /// Accelerometer, battery and, when it is time, the ground board's sampling; once a step.
     void sense_each_step(const RobotState& state, double seconds);
 
     const ProximityRing& proximity() const { return proximity_; }
@@ -39,6 +39,7 @@ class RobotModel {
     const Channels& channels() const { return channels_; }
 
   private:
+    void sample_ground();
     template <std::size_t N>
     void store(std::size_t channel, const std::array<double, N>& values);
 
@@ -48,6 +49,8 @@ class RobotModel {
     ProximityRing proximity_;
     LightRing light_;
     GroundRow ground_;
+    std::array<double, kGroundSensors> ground_seen_{};
+    RandomStream ground_noise_;
     Accelerometer accelerometer_;
     Battery battery_;
     Channels channels_{};

@@ -163,6 +163,7 @@ TEST_CASE("a robot that turns towards a lamp brightens the sensor that comes to 
 TEST_CASE("ground sensors read the floor under them, left to right") {
     World world = world_with_robot();
     world.parameters["ground.footprint"] = 0;
+    world.parameters["ground.noise"] = 0;
     CHECK(channel(world, kGroundChannel) == Approx(953).margin(0.01));
     Patch line{.name = "line"};
     line.x = 0.03;
@@ -190,6 +191,8 @@ TEST_CASE("ground sensors read the floor under them, left to right") {
 
 TEST_CASE("a ground sensor crosses an edge where the edge is, softened by its footprint") {
     World world = world_with_robot();
+    world.parameters["ground.noise"] = 0;
+    world.parameters["ground.period"] = 0.001;
     Patch dark{.name = "dark"};
     dark.x = 0.5;
     dark.length = 0.8;  // from x = 0.1 on
@@ -208,6 +211,26 @@ TEST_CASE("a ground sensor crosses an edge where the edge is, softened by its fo
     }
     CHECK(first_change == Approx(0.098).margin(0.0006));
     CHECK(last_change == Approx(0.102).margin(0.0006));
+}
+
+TEST_CASE("ground noise has its size and comes with the board's period") {
+    WorldModel model(world_with_robot());
+    double sum = 0, squares = 0, last = -1;
+    int changes = 0;
+    for (int i = 0; i < 10000; ++i) {
+        model.step();
+        const double value = model.robot(0).channels()[kGroundChannel];
+        if (value != last) {
+            ++changes;
+            sum += value;
+            squares += value * value;
+        }
+        last = value;
+    }
+    CHECK(changes == 1001);  // and one at the start
+    const double mean = sum / changes;
+    CHECK(mean == Approx(953).margin(0.3));  // 1000 samples: standard error 0.05, lean of the robot
+    CHECK(std::sqrt(squares / changes - mean * mean) == Approx(1.5).margin(0.15));
 }
 
 TEST_CASE("the accelerometer feels gravity at rest and the start of motion") {
