@@ -30,8 +30,8 @@ class Process {
     bool running() const { return pid_ > 0; }
 
     void reply(const wire::Reply& reply, const std::vector<FinishedCall>& calls);
-    /// Waits for the next request, `watchdog` wall-clock seconds at most. After Ended the exit state is
-    /// known.
+    /// Waits for the next request; Silent after `watchdog` seconds of computing, or of waiting in the host.
+    /// After Ended the exit state is known.
     Heard hear(double watchdog, wire::Request& request, std::string& data);
 
     void kill();
