@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "cosim/interrupt.h"
 #include "cosim/trace_csv.h"
+#include "physics/trajectory_svg.h"
 #include "tools/commands.h"
 #include "tools/run/node_factory.h"
 #include "tools/run/parameter_list.h"
@@ -71,6 +72,7 @@ int run(Options& options) {
     const cosim::Outcome outcome = conductor.run();
     status_line.clear();
     write_report(setup, outcome);
+    physics::write_trajectory_svg(setup.scenario.world, setup.out);
     if (options.json)
         fmt::print("{}\n", (setup.out / "report.json").string());
     else
