@@ -60,8 +60,9 @@ void Network::attach(const LinkSpec& spec, std::uint16_t link) {
                          "one for UART links, and for no others");
     if (spec.latency < 0) throw InputError("", place, "negative latency");
     const Time flight = flight_time(spec);
-    wires_.push_back({link, Direction::FromA, a, port_a, b, port_b, is_uart, flight, spec.latency, 0, {}});
-    wires_.push_back({link, Direction::FromB, b, port_b, a, port_a, is_uart, flight, spec.latency, 0, {}});
+    const Time latency = kind == PortKind::I2c ? std::max(spec.latency, kI2cWireDelay) : spec.latency;
+    wires_.push_back({link, Direction::FromA, a, port_a, b, port_b, is_uart, flight, latency, 0, {}});
+    wires_.push_back({link, Direction::FromB, b, port_b, a, port_a, is_uart, flight, latency, 0, {}});
     for (const std::size_t w : {wires_.size() - 2, wires_.size() - 1}) {
         std::size_t& slot = port_wire_[wires_[w].from][wires_[w].from_port];
         if (slot != kNobody)

@@ -9,10 +9,11 @@ namespace {
 constexpr Time kStretchDivisor = 4;
 }  // namespace
 
-/// Limit of node `n`; where its own messages set it, as if it were silent: it will go in strides.
-Time Schedule::limit_if_silent(std::size_t n) {
+/// Limit of node `n`; where its own messages set it, as if it were silent: it will go in strides, if there is
+/// room for the first one.
+Time Schedule::limit_if_silent(std::size_t n, Time granted) {
     alone_root_ = bounds_.root(n);
-    if (alone_root_ != n) return bounds_.limit(n);
+    if (alone_root_ != n || bounds_.limit(n) <= granted) return bounds_.limit(n);
     alone_.compute(*channels_, *pending_, n);
     alone_root_ = alone_.root(n);
     return alone_.limit(n);
@@ -36,7 +37,7 @@ void Schedule::plan(const std::vector<Channel>& channels, const std::vector<Time
     bool busy = false, last_is_root = false;
     for (std::size_t n = 0; n < count; ++n) {
         busy = busy || nodes[n].busy;
-        const Time limit = limit_if_silent(n);
+        const Time limit = limit_if_silent(n, nodes[n].granted);
         target_[n] = std::min(limit, ceiling);
         if (nodes[n].granted >= limits.end) continue;
         if (bounds_.root(n) == n) is_root_[n] = 1;

@@ -40,7 +40,7 @@ class Schedule {
     Time reached() const { return reached_; }
 
   private:
-    Time limit_if_silent(std::size_t n);
+    Time limit_if_silent(std::size_t n, Time granted);
 
     Bounds bounds_;
     Bounds alone_;

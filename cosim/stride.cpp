@@ -1,5 +1,6 @@
 #include "cosim/stride.h"
 
+#include "base/error.h"
 #include "cosim/link.h"
 
 #include <algorithm>
@@ -45,6 +46,7 @@ Time advance_in_strides(Node& node, Time from, Time until, std::span<const Messa
             until = std::min(until, later(delivery_time(outbox[m], echo.flight, echo.latency), echo.back));
         }
     }
+    if (now == from) throw RunError("was granted no time it can use");
     return now;
 }
 

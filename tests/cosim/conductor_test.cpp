@@ -201,6 +201,20 @@ TEST_CASE("a cycle without look-ahead is told with its nodes") {
     CHECK(run().reason == EndReason::Duration);
 }
 
+TEST_CASE("a node at the edge of a zero cycle does not spin, it is told as deadlocked") {
+    // The bus has something to say now, and the program would answer in no time.
+    Run run{{{"bus", "chatter seed=1 uarts=0 signals=1 fly_us=0"}, {"program", "mutual uarts=0 signals=1"}},
+            {{"wire", {"bus", "signals0"}, {"program", "signals0"}}}};
+    run.options.duration = 10 * kMillisecond;
+    for (const bool in_process : {true, false}) {
+        run.options.in_process = in_process;
+        CHECK_THAT(run().text,
+                   Catch::Contains("deadlock") && Catch::Contains("bus") && Catch::Contains("program"));
+    }
+    run.links[0].latency = kNanosecond;
+    CHECK(run().reason == EndReason::Duration);
+}
+
 TEST_CASE("a broken promise names the node, the port and what was promised") {
     Run run{{{"honest", "idle"}, {"forger", "liar at_us=700"}},
             {toy::uart("wire", {"honest", "uart0"}, {"forger", "uart0"})}};
