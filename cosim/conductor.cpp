@@ -144,7 +144,7 @@ Outcome Conductor::State::run() {
         for (TraceSink* sink : sinks)
             sink->begin(links_);
         for (std::size_t n = 0; n < handles_.size(); ++n)
-            network_->update(n, handles_[n]->state(), 0);
+            network_->update(n, handles_[n]->state(), 0, kNever);
         network_->preset(deliveries_);
         take_deliveries(kNobody);
         loop();
@@ -254,10 +254,11 @@ void Conductor::State::collect() {
 
 void Conductor::State::take_reply(std::size_t n) {
     Slot& slot = slots_[n];
-    for (const Message& message : handles_[n]->outbox())
-        network_->send(n, message, slot.first_in, deliveries_);
     const Time before = times_[n].granted;
     slot.asked = handles_[n]->reached();
+    const Time first_in = slot.first_in < slot.asked ? slot.first_in : kNever;
+    for (const Message& message : handles_[n]->outbox())
+        network_->send(n, message, first_in, deliveries_);
     times_[n] = {slot.asked, false};
     slot.first_in = kNever;
     while (!slot.taken.empty() && slot.taken.back().time >= slot.asked) {
@@ -265,7 +266,7 @@ void Conductor::State::take_reply(std::size_t n) {
         std::push_heap(slot.queue.begin(), slot.queue.end(), after);
         slot.taken.pop_back();
     }
-    network_->update(n, handles_[n]->state(), slot.asked);
+    network_->update(n, handles_[n]->state(), slot.asked, first_in);
     take_deliveries(n);
     take_stop(n, before);
 }

@@ -21,17 +21,13 @@ struct LinkSpec {
     PortRef a;
     PortRef b;
     double nominal_baud = 0.0;  ///< UART links only, > 0: see docs/architecture.md, "UART on a link"
-    Time latency = 0;           ///< added to every message, >= 0; I2C links: at least kI2cWireDelay
+    Time latency = 0;           ///< added to every message, >= 0
     /// Names of the signals by id, for traces; ids beyond the list are written as numbers.
     std::vector<std::string> signal_names{};
     /// Whether messages sent by a, by b are written to trace files. All are part of the trace's hash.
     bool record_from_a = true;
     bool record_from_b = true;
 };
-
-/// What an I2C link adds at least: a master that begins its next phase the moment the last one ends would
-/// else close a cycle without any delay. One nanosecond is 20 cm of wire.
-inline constexpr Time kI2cWireDelay = kNanosecond;
 
 /// Which end sends.
 enum class Direction : std::uint8_t { FromA = 0, FromB = 1 };

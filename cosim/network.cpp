@@ -60,9 +60,8 @@ void Network::attach(const LinkSpec& spec, std::uint16_t link) {
                          "one for UART links, and for no others");
     if (spec.latency < 0) throw InputError("", place, "negative latency");
     const Time flight = flight_time(spec);
-    const Time latency = kind == PortKind::I2c ? std::max(spec.latency, kI2cWireDelay) : spec.latency;
-    wires_.push_back({link, Direction::FromA, a, port_a, b, port_b, is_uart, flight, latency, 0, {}});
-    wires_.push_back({link, Direction::FromB, b, port_b, a, port_a, is_uart, flight, latency, 0, {}});
+    wires_.push_back({link, Direction::FromA, a, port_a, b, port_b, is_uart, flight, spec.latency, 0, {}});
+    wires_.push_back({link, Direction::FromB, b, port_b, a, port_a, is_uart, flight, spec.latency, 0, {}});
     for (const std::size_t w : {wires_.size() - 2, wires_.size() - 1}) {
         std::size_t& slot = port_wire_[wires_[w].from][wires_[w].from_port];
         if (slot != kNobody)
@@ -91,7 +90,7 @@ void Network::attach_fault(const FaultSpec& spec, std::size_t index, std::uint64
     if (!found_wire) throw InputError("", place, fmt::format("no node {} at either end", spec.from));
 }
 
-void Network::update(std::size_t n, const NodeState& state, Time reached) {
+void Network::update(std::size_t n, const NodeState& state, Time reached, Time first_in) {
     for (std::size_t p = 0; p < port_wire_[n].size(); ++p) {
         if (port_wire_[n][p] == kNobody) continue;
         const Wire& wire = wires_[port_wire_[n][p]];
@@ -99,7 +98,8 @@ void Network::update(std::size_t n, const NodeState& state, Time reached) {
         Channel& channel = channels_[port_wire_[n][p]];
         // A frame begins when the node promised or later; what an incoming message causes begins after it.
         const Time begun = wire.is_uart ? later(port.begun.value_or(reached), wire.flight) : 0;
-        channel.base = later(std::max(port.promise, begun), wire.latency);
+        const Time said_before = std::min(channel.base, later(first_in, channel.reaction));
+        channel.base = std::max(said_before, later(std::max(port.promise, begun), wire.latency));
         channel.reaction = later(std::max(port.reaction, wire.flight), wire.latency);
     }
 }
@@ -116,20 +116,20 @@ void Network::echoes(std::size_t n, std::vector<PortEcho>& echoes) const {
 
 void Network::check_promise(const Wire& wire, const Message& message, Time delivery, Time first_in) const {
     const Channel& channel = channels_[wire.link * 2u + static_cast<unsigned>(wire.direction)];
-    if (delivery >= std::min(channel.base, later(first_in, channel.reaction))) return;
+    const Time earliest = std::min(channel.base, later(first_in, channel.reaction));
+    if (delivery >= earliest) return;
     const NodeHandle& node = *nodes_[wire.from];
     const PortState& port = node.state().ports[wire.from_port];
     const auto seconds = [](Time time) {
         return time == kNever ? std::string("never") : fmt::format("{:.12f} s", to_seconds(time));
     };
-    throw RunError(fmt::format("node {} broke its promise on port {}: a message stamped {}, to be delivered "
-                               "at {}, came after promise "
-                               "{}, reaction {}{}{}",
-                               node.name(), node.ports()[wire.from_port].name, seconds(message.time),
-                               seconds(delivery), seconds(port.promise), seconds(port.reaction),
-                               first_in == kNever ? "" : ", first message in at " + seconds(first_in),
-                               port.begun ? ", frame begun at " + seconds(*port.begun)
-                                          : (wire.is_uart ? ", no frame announced as begun" : "")));
+    throw RunError(fmt::format(
+        "node {} broke its promise on port {}: a message stamped {}, to be delivered at {}, after it had "
+        "said: "
+        "not before {} (first message in since: {}; promise now {}, reaction now {}, frame on the line {})",
+        node.name(), node.ports()[wire.from_port].name, seconds(message.time), seconds(delivery),
+        seconds(earliest), seconds(first_in), seconds(port.promise), seconds(port.reaction),
+        port.begun ? "begun at " + seconds(*port.begun) : "none"));
 }
 
 void Network::send(std::size_t n, const Message& message, Time first_in,

@@ -35,7 +35,8 @@ class Network {
             const std::vector<FaultSpec>& faults, std::uint64_t seed);
 
     /// Takes over what node `n`, whose last reply covers everything before `reached`, says of its future.
-    void update(std::size_t n, const NodeState& state, Time reached);
+    /// What it said before still holds, as far as `first_in`, the first message it took since, lets it.
+    void update(std::size_t n, const NodeState& state, Time reached, Time first_in);
     const std::vector<Channel>& channels() const { return channels_; }
     /// What comes back of what node `n` says on each port, as the others stand now.
     void echoes(std::size_t n, std::vector<PortEcho>& echoes) const;

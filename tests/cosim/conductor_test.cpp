@@ -229,6 +229,20 @@ TEST_CASE("a broken promise names the node, the port and what was promised") {
     }
 }
 
+TEST_CASE("what was promised holds, even when the node promises less later") {
+    // It says that it will be silent for ever, then that it may speak at any time, then speaks.
+    Run run{{{"honest", "idle"}, {"turncoat", "turncoat at_us=700"}},
+            {toy::uart("wire", {"honest", "uart0"}, {"turncoat", "uart0"})}};
+    run.options.duration = 40 * kMillisecond;
+    run.options.in_process = true;
+    for (std::uint64_t chop = 1; chop <= 3; ++chop) {
+        run.options.chop_seed = chop;
+        const Outcome outcome = run();
+        CHECK(outcome.reason == EndReason::Failed);
+        CHECK_THAT(outcome.text, Catch::Contains("node turncoat broke its promise on port uart0"));
+    }
+}
+
 TEST_CASE("what does not fit together is refused before the run") {
     const Run good = ping_pong(true);
     Run run = good;

@@ -271,6 +271,24 @@ class AtTime : public ToyNode {
     bool done_ = false;
 };
 
+class Turncoat : public ToyNode {
+  public:
+    explicit Turncoat(const Settings& settings)
+        : ToyNode(settings), at_(settings.get("at_us", 1000) * kMicrosecond) {}
+    Time promise(PortIndex) const override { return reached_ > at_ ? reached_ : kNever; }
+
+  protected:
+    Time next_event() const override { return spoke_ ? kNever : at_ + 20 * kMillisecond; }
+    void handle(Time now, std::vector<Message>& outbox) override {
+        spoke_ = true;
+        outbox.push_back({now + 9 * kBit, 0, UartFrame{now, kBit, 0x55}});
+    }
+
+  private:
+    Time at_;
+    bool spoke_ = false;
+};
+
 class Mutual : public ToyNode {
   public:
     using ToyNode::ToyNode;
@@ -285,6 +303,7 @@ std::unique_ptr<Node> make(const std::string& line) {
     if (settings.kind == "chatter") return std::make_unique<Chatter>(settings);
     if (settings.kind == "echo") return std::make_unique<Echo>(settings);
     if (settings.kind == "idle") return std::make_unique<ToyNode>(settings);
+    if (settings.kind == "turncoat") return std::make_unique<Turncoat>(settings);
     if (settings.kind == "mutual") return std::make_unique<Mutual>(settings);
     if (settings.kind == "refuser") throw InputError("toy.hex", "line 7", "damaged on purpose");
     return std::make_unique<AtTime>(settings);

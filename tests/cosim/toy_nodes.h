@@ -16,6 +16,7 @@ namespace puckloop::cosim::toy {
 ///   thrower  throws at `at_us`        exiter  exits with status 3     aborter  raises SIGABRT
 ///   staller  sleeps for ever at `at_us`
 ///   liar     promises silence and breaks its word at `at_us`
+///   turncoat promises silence, then nothing, and speaks 20 ms after `at_us`
 ///   mutual   promises nothing beyond its own time and answers at once: deadlocks with another one
 ///   refuser  cannot be made (InputError)
 std::unique_ptr<Node> make(const std::string& line);
