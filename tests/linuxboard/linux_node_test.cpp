@@ -4,7 +4,10 @@
 
 #include <catch2/catch.hpp>
 
+#include <atomic>
 #include <chrono>
+#include <set>
+#include <thread>
 
 using namespace puckloop;
 using namespace puckloop::cosim;
@@ -81,6 +84,27 @@ TEST_CASE("threads run in an order that simulated time decides") {
         if (first.empty()) first = bench.trace();
         CHECK(bench.trace() == first);
     }
+}
+
+TEST_CASE("ten runs on a busy machine leave one and the same trace") {
+    std::atomic<bool> stop{false};
+    std::vector<std::thread> load;
+    for (int i = 0; i < 3; ++i) {
+        load.emplace_back([&stop] {
+            while (!stop) {
+            }
+        });
+    }
+    std::set<std::string> traces;
+    for (int i = 0; i < 10; ++i) {
+        Bench bench(spec_for("threads"), (10 + 6 * i) * kMicrosecond);
+        bench.run(kSecond);
+        traces.insert(bench.trace());
+    }
+    stop = true;
+    for (std::thread& thread : load)
+        thread.join();
+    CHECK(traces.size() == 1);
 }
 
 TEST_CASE("the threads of the C++ library wait in simulated time") {
