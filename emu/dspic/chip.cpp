@@ -129,6 +129,8 @@ struct Chip::Parts {
         external.on_int0 = [](void* owner, Cycle at) {
             static_cast<Adc12*>(owner)->trigger(Adc12::Trigger::Int0, at);
         };
+        ports.before_change_owner = &adc;
+        ports.before_change = [](void* owner, Cycle until) { static_cast<Adc12*>(owner)->catch_up(until); };
         oscillator.on_rate_owner = &core;
         oscillator.on_rate = [](void* owner, double hertz) {
             static_cast<Core*>(owner)->set_cycle_rate(hertz);
@@ -190,6 +192,13 @@ struct Chip::Parts {
 
     /// The cycle that messages handed in now belong to: the first that starts at or after the last `until`.
     Cycle message_cycle() const { return clock.first_cycle_at(now); }
+
+    /// Run up to `time`: the outside may change from there on.
+    void arrive(Time time) {
+        now = std::max(now, time);
+        const Cycle reached = std::min(message_cycle(), core.cycle());
+        if (reached > 0) adc.catch_up(reached - 1);
+    }
 };
 
 Chip::Chip(const DeviceInfo& device, Pins& pins, const ChipOptions& options)
@@ -223,12 +232,12 @@ void Chip::run_until(Time until) {
     for (Cycle limit = parts.clock.first_cycle_at(until);; limit = parts.clock.first_cycle_at(until)) {
         if (parts.core.run(limit) == Core::Outcome::Stopped) {
             parts.stopped_at = parts.core.pc();
-            parts.now = std::max(parts.now, std::min(until, parts.clock.time_of(parts.core.cycle())));
+            parts.arrive(std::min(until, parts.clock.time_of(parts.core.cycle())));
             return;
         }
         if (parts.clock.first_cycle_at(until) <= parts.core.cycle()) break;
     }
-    parts.now = std::max(parts.now, until);
+    parts.arrive(until);
 }
 
 void Chip::stop_at(std::uint32_t pc) {
@@ -297,7 +306,6 @@ std::uint16_t Chip::peek(std::string_view register_name) const {
     const RegisterInfo* info = parts_->sfr.find(register_name);
     if (!info) throw std::out_of_range("no register " + std::string(register_name));
     parts_->ports.refresh();
-    parts_->adc.refresh();
     for (Timer* timer : {&parts_->timer1, &parts_->timer2, &parts_->timer3, &parts_->timer4, &parts_->timer5})
         timer->refresh();
     return parts_->sfr.raw(info->address);

@@ -23,7 +23,8 @@ class Pins {
     /// the board's.
     virtual std::uint16_t levels(PortLetter port, Cycle now) = 0;
     /// Voltage on analog input AN`channel` at this instant, as a fraction of the ADC's reference span; the
-    /// ADC clips.
+    /// ADC clips. May be asked somewhat after that cycle, but always before anything that the chip drives
+    /// changes and before its run_until() returns; calls come in time order among themselves.
     virtual double analog(int channel, Cycle now) = 0;
     /// A character left UART `unit` (1 or 2); called when its stop bit begins.
     virtual void uart_sent(int unit, const cosim::UartFrame& frame) = 0;

@@ -165,18 +165,21 @@ void Adc12::catch_up(Cycle now) {
     }
 }
 
-// The end of a conversion in the middle of an automatic group changes nothing that cannot be made up for
-// later.
+// Automatic groups need one event, at the interrupt: all before is made up for by catch_up(), which
+// everything calls that could tell the difference.
 void Adc12::plan() {
     if (!state_.timed) {
         around_.events.cancel(slot_);
         return;
     }
     HalfCycle when = state_.phase_end;
-    const bool automatic =
-        (around_.sfr.raw(sfr::ADCON1) & kAsam) && source() == Trigger::Counter && !last_of_group();
-    if (state_.phase == Phase::Converting && automatic)
-        when += dspic::field(around_.sfr.raw(sfr::ADCON3), 12, 8) * tad();
+    if ((around_.sfr.raw(sfr::ADCON1) & kAsam) && source() == Trigger::Counter) {
+        const HalfCycle conversion = kConversionTads * tad();
+        const HalfCycle sampling = dspic::field(around_.sfr.raw(sfr::ADCON3), 12, 8) * tad();
+        const unsigned last = dspic::field(around_.sfr.raw(sfr::ADCON2), 5, 2);
+        if (state_.phase == Phase::Sampling) when += conversion;
+        if (last > state_.done) when += (last - state_.done) * (sampling + conversion);
+    }
     around_.events.schedule(slot_, (when + 1) / 2);
 }
 

@@ -17,8 +17,10 @@
 
 namespace puckloop::dspic {
 
-/// Events: end of sampling, where the voltage is taken, and the end of those conversions that the program
-/// can be waiting for. The end of the others is made up for when a register is touched.
+/// An automatic group of conversions has one event, its interrupt. What lies before is made up for by
+/// catch_up(), in order and with its true times, before anything can tell the difference: a read or write
+/// of a register, a change of the pins by the chip, or the end of the chip's grant, after which the outside
+/// may change.
 class Adc12 {
   public:
     enum class Trigger : std::uint8_t { Software = 0, Int0 = 1, Timer3 = 2, Counter = 7 };
@@ -32,8 +34,8 @@ class Adc12 {
     /// sampling goes on afterwards.
     void hold(bool on);
     bool runs_in_sleep() const;
-    /// Brings results and status bits up to the present cycle.
-    void refresh() { catch_up(around_.now); }
+    /// Takes all samples and finishes all conversions due by cycle `now`.
+    void catch_up(Cycle now);
 
   private:
     enum class Phase : std::uint8_t { Off, Idle, Sampling, Converting };
@@ -68,7 +70,6 @@ class Adc12 {
     std::uint16_t convert(Cycle at) const;
     std::uint16_t formatted(unsigned counts) const;
     bool last_of_group() const;
-    void catch_up(Cycle now);
     void plan();
 
     Surroundings around_;

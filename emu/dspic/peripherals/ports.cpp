@@ -122,6 +122,7 @@ void Ports::outside_changed(PortLetter port, Cycle when) {
 }
 
 void Ports::lend(PortLetter letter, std::uint16_t mask, std::uint16_t output, std::uint16_t levels) {
+    announce();
     Port& port = at(letter);
     port.lent |= mask;
     port.lent_output = static_cast<std::uint16_t>((port.lent_output & ~mask) | (output & mask));
@@ -130,6 +131,7 @@ void Ports::lend(PortLetter letter, std::uint16_t mask, std::uint16_t output, st
 }
 
 void Ports::give_back(PortLetter letter, std::uint16_t mask) {
+    announce();
     Port& port = at(letter);
     port.lent = static_cast<std::uint16_t>(port.lent & ~mask);
     drive(static_cast<int>(letter), around_.now + 1);
@@ -162,12 +164,14 @@ std::uint16_t Ports::read_port(void* owner, std::uint16_t address) {
 void Ports::write_port(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask) {
     Ports& self = *static_cast<Ports*>(owner);
     const int index = self.index_of(address);
+    self.announce();
     self.around_.sfr.store(self.ports_[static_cast<std::size_t>(index)].lat, value, mask);
     self.drive(index, self.around_.now + 1);
 }
 
 void Ports::write_tris(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask) {
     Ports& self = *static_cast<Ports*>(owner);
+    self.announce();
     self.around_.sfr.store(address, value, mask);
     self.drive(self.index_of(address), self.around_.now + 1);
 }

@@ -33,6 +33,10 @@ class Ports {
     /// Calls `changed` with the pin's level at every edge, driven by whomever; at a reset with `at` =
     /// kNoCycle: there the level is just told.
     void watch(PortLetter port, int pin, void* owner, void (*changed)(void* owner, bool level, Cycle at));
+    /// Called before each write that can change what the pins do, with the last cycle before the change;
+    /// may stay empty.
+    void (*before_change)(void* owner, Cycle until) = nullptr;
+    void* before_change_owner = nullptr;
     /// Level on the pin now, as its input buffer sees it.
     bool level(PortLetter port, int pin) const;
     /// Puts the pin levels into PORTx's storage.
@@ -71,6 +75,9 @@ class Ports {
     const Port& at(PortLetter letter) const { return ports_[static_cast<std::size_t>(letter)]; }
     int index_of(std::uint16_t address) const;
     std::uint16_t pin_levels(int index, Cycle now) const;
+    void announce() const {
+        if (before_change) before_change(before_change_owner, around_.now);
+    }
     void drive(int index, Cycle when);
     void look(int index, Cycle when);
     std::uint16_t change_enabled(int index) const;
