@@ -80,6 +80,7 @@ void make_plan(Machine& m, SkipLoops::Branch& known, const Op* branch, const Op*
     LoopWalk walk(m, plan);
     switch (walk.analyse(branch, head)) {
     case LoopWalk::Verdict::Pure:
+        known.walked = true;
         if (plan.iterations < kFewestIterations) return give_up_for_now(known);
         plan.alive = true;
         plan.proven = plan.used = false;
@@ -90,6 +91,8 @@ void make_plan(Machine& m, SkipLoops::Branch& known, const Op* branch, const Op*
         give_up_for_now(known);
         break;
     case LoopWalk::Verdict::Unknown:
+        // On its last round a loop leaves by instructions that the walk need not know.
+        if (known.walked) return give_up_for_now(known);
         m.code[branch - m.code].may_skip = false;
         break;
     }

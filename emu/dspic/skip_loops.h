@@ -60,6 +60,7 @@ struct SkipLoops {
     struct Branch {
         std::uint8_t wait = 0;      ///< arrivals until the next try
         std::uint8_t patience = 0;  ///< failures in a row
+        bool walked = false;        ///< a walk came round once: no way out of the loop decides for all of it
         Plan plan;
     };
     std::vector<std::uint16_t> index;  ///< by program word: place in `branches` plus 1, 0 = not seen yet
