@@ -120,12 +120,6 @@ void write8_slow(Machine& m, std::uint16_t address, std::uint16_t value) {
 
 std::uint16_t special_ea(Machine& m, int reg, int pre, int post, bool write, bool word) {
     const std::uint16_t old = get_w(m, reg);
-    if (reg == 15) {
-        const auto address = static_cast<std::uint16_t>(old + pre);
-        set_w(m, 15, static_cast<std::uint32_t>(address + post));
-        check_stack(m, address);
-        return address;
-    }
     const bool increments = pre > 0 || post > 0;
     if (write && word && increments && bit_reversed(m) && bwm(m) == reg) {
         const std::uint16_t next = reverse_carry_add(old, m.st.xbrev & 0x7FFF);

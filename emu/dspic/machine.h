@@ -262,11 +262,21 @@ inline std::uint16_t pop(Machine& m) {
     return read16(m, address);
 }
 
+/// [W15] with its modifications; compilers compare by subtracting to [W15], so this is common.
+inline std::uint16_t stack_ea(Machine& m, int pre, int post) {
+    const auto address = static_cast<std::uint16_t>(m.st.w[15] + pre);
+    m.st.w[15] = static_cast<std::uint16_t>((address + post) & 0xFFFE);
+    check_stack(m, address);
+    return address;
+}
+
 /// [Wn] with every pre- and post-modification: steps are in the operation.
 template <bool Word = true>
 std::uint16_t source_ea(Machine& m, const Op* op) {
-    if (m.special >> op->s & 1) [[unlikely]]
+    if (m.special >> op->s & 1) [[unlikely]] {
+        if (op->s == 15) return stack_ea(m, op->s_pre, op->s_post);
         return special_ea(m, op->s, op->s_pre, op->s_post, false, Word);
+    }
     std::uint16_t& pointer = m.st.w[op->s];
     const auto address = static_cast<std::uint16_t>(pointer + op->s_pre);
     pointer = static_cast<std::uint16_t>(address + op->s_post);
@@ -274,8 +284,10 @@ std::uint16_t source_ea(Machine& m, const Op* op) {
 }
 template <bool Word = true>
 std::uint16_t destination_ea(Machine& m, const Op* op) {
-    if (m.special >> op->d & 1) [[unlikely]]
+    if (m.special >> op->d & 1) [[unlikely]] {
+        if (op->d == 15) return stack_ea(m, op->d_pre, op->d_post);
         return special_ea(m, op->d, op->d_pre, op->d_post, true, Word);
+    }
     std::uint16_t& pointer = m.st.w[op->d];
     const auto address = static_cast<std::uint16_t>(pointer + op->d_pre);
     pointer = static_cast<std::uint16_t>(address + op->d_post);
