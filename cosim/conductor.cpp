@@ -57,6 +57,7 @@ class Conductor::State {
     /// What has been asked of a node and what waits for it.
     struct Slot {
         Time asked = 0;
+        std::uint64_t grants = 0;
         Time first_in = kNever;          ///< of the grant under way
         std::vector<TraceRecord> queue;  ///< heap, earliest first
         std::vector<TraceRecord> taken;  ///< of the queue, for the grant under way
@@ -219,6 +220,7 @@ void Conductor::State::grant(std::size_t n, Time until) {
     slot.first_in = slot.inbox.empty() ? kNever : slot.inbox.front().time;
     times_[n].busy = true;
     ++grants_;
+    ++slot.grants;
     current_ = n;
     slot.echoes.clear();
     if (until > schedule_.bounds().limit(n)) network_->echoes(n, slot.echoes);
@@ -382,7 +384,7 @@ void Conductor::State::finish(Outcome& outcome) {
     for (TraceSink* sink : sinks)
         guarded([&] { sink->flush(); });
     for (std::size_t n = 0; n < handles_.size(); ++n) {
-        outcome.nodes.push_back({handles_[n]->name(), {}});
+        outcome.nodes.push_back({handles_[n]->name(), {}, slots_[n].grants});
         guarded([&] {
             current_ = n;
             outcome.nodes.back().json = handles_[n]->finish();

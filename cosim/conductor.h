@@ -64,6 +64,7 @@ struct Outcome {
     struct NodeReport {
         std::string name;
         std::string json;  ///< from Node::finish(); empty if the node could not give it
+        std::uint64_t grants = 0;  ///< differs with placement and load
     };
     struct LinkReport {
         std::string name;
