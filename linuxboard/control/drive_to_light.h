@@ -1,5 +1,6 @@
 #pragma once
-// Drive to light: turn towards the brightest direction, go there, stop where it is bright; obstacles first.
+// Drive to light: turn towards the brightest direction, go there, stop at the brightest place; obstacles
+// first.
 
 #include "linuxboard/control/wander.h"
 
@@ -10,8 +11,11 @@ class DriveToLight : public Behaviour {
     Actuators step(const Sensors& sensors, double t) override;
 
   private:
+    void watch_arrival(double brightest, bool aligned);
+
     Wander wander_;
     bool arrived_ = false;
+    double peak_ = 0;  // the brightest so far, counts
 };
 
 }  // namespace puckloop::control

@@ -81,6 +81,22 @@ TEST_CASE("drive to light turns towards the lamp, goes on when it is ahead, stop
     CHECK(a.body_led);
 }
 
+TEST_CASE("drive to light stops where the light begins to weaken, and goes on when the lamp moves away") {
+    const auto behaviour = make_behaviour("light");
+    Sensors s;
+    s.light.fill(300);
+    for (const double brightness : {1000.0, 2000.0, 2500.0, 2450.0}) {
+        s.light[0] = s.light[7] = brightness;
+        CHECK(behaviour->step(s, 0).left_mm_s > 0);
+    }
+    s.light[0] = s.light[7] = 2200;  // below the lamp
+    CHECK(behaviour->step(s, 0.1).left_mm_s == 0);
+    s.light[0] = s.light[7] = 2500;
+    CHECK(behaviour->step(s, 0.2).left_mm_s == 0);
+    s.light[0] = s.light[7] = 900;
+    CHECK(behaviour->step(s, 0.3).left_mm_s > 0);
+}
+
 TEST_CASE("an unknown behaviour is refused") {
     CHECK(make_behaviour("dance") == nullptr);
 }
