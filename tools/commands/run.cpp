@@ -2,12 +2,10 @@
 
 #include "base/error.h"
 #include "cosim/interrupt.h"
-#include "cosim/trace_csv.h"
-#include "physics/trajectory_svg.h"
 #include "tools/commands.h"
-#include "tools/run/node_factory.h"
 #include "tools/run/parameter_list.h"
 #include "tools/run/report.h"
+#include "tools/run/run_scenario.h"
 #include "tools/run/setup.h"
 #include "tools/run/status_line.h"
 
@@ -27,12 +25,6 @@ struct Options {
     bool json = false;
     bool list_parameters = false;
 };
-
-void prepare_folder(const std::filesystem::path& out) {
-    std::error_code error;
-    std::filesystem::create_directories(out, error);
-    if (error) throw InputError(out.string(), "", "cannot be made a folder: " + error.message());
-}
 
 /// Exit status: 0 success, 1 the run failed; Ctrl-C counts as a shell would count it.
 int status_of(const cosim::Outcome& outcome) {
@@ -54,25 +46,13 @@ int run(Options& options) {
                                      options.linux_args.end());
     }
     const RunSetup setup = set_up(request);
-    prepare_folder(setup.out);
-
     const cosim::InterruptGuard interrupt;
     StatusLine status_line(setup.scenario.duration);
-    cosim::RunOptions run_options;
-    if (setup.scenario.duration) run_options.duration = cosim::from_seconds(*setup.scenario.duration);
-    run_options.in_process = request.in_process;
-    run_options.realtime = request.realtime;
-    run_options.seed = setup.scenario.seed;
-    run_options.stall_seconds = request.stall_seconds;
-    run_options.interrupted = interrupt.flag();
-    run_options.progress = [&](const cosim::Progress& progress) { status_line.show(progress); };
-    cosim::Conductor conductor(setup.nodes, setup.links, setup.scenario.faults, run_options, make_node);
-    cosim::TraceCsvSink trace((setup.out / "trace.csv").string());
-    conductor.add_sink(trace);
-    const cosim::Outcome outcome = conductor.run();
+    const cosim::Outcome outcome = run_scenario(
+        setup, request, [&](const cosim::Progress& progress) { status_line.show(progress); },
+        interrupt.flag());
     status_line.clear();
     write_report(setup, outcome);
-    physics::write_trajectory_svg(setup.scenario.world, setup.out);
     if (options.json)
         fmt::print("{}\n", (setup.out / "report.json").string());
     else

@@ -1,0 +1,18 @@
+#pragma once
+// One run from its setup to its outcome, without output: what `run` and `bench` share.
+
+#include "cosim/conductor.h"
+#include "tools/run/setup.h"
+
+#include <csignal>
+#include <functional>
+
+namespace puckloop::tools {
+
+/// Runs, records trace.csv in the run's folder (made if absent) and draws trajectory.svg. Throws InputError
+/// before the run; what happens during it is told in the outcome.
+cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
+                            const std::function<void(const cosim::Progress&)>& progress,
+                            const volatile std::sig_atomic_t* interrupted);
+
+}  // namespace puckloop::tools
