@@ -76,7 +76,7 @@ void LinuxNode::program_ended(Time now) {
     kernel_.reset();
     end_ = process_->describe_end();
     const bool comes_back = next_restart_ < spec_.restarts.size();
-    std::string reason = fmt::format("{} {} at {:.6f} s", spec_.program, end_, cosim::to_seconds(now));
+    std::string reason = fmt::format("{} {}", spec_.program, end_);
     const bool opened = kernel_.tty_was_opened() || kernel_.i2c_was_opened();
     if (!opened) {
         reason += spec_.tty.empty() ? " without opening its I2C bus"
@@ -86,12 +86,13 @@ void LinuxNode::program_ended(Time now) {
         if (const std::string last = process_->last_line(); !last.empty())
             reason += "; its last line: " + last;
     }
+    const std::string at = fmt::format(" (at {:.6f} s)", cosim::to_seconds(now));
     if (comes_back) {
-        warn(reason);
+        warn(reason + at);
     } else if (spec_.exit_ends_run || !process_->ended_well()) {
         end_run(now, process_->ended_well() && opened, reason);
     } else {
-        warn(reason);
+        warn(reason + at);
     }
 }
 
@@ -108,9 +109,8 @@ void LinuxNode::listen() {
         return;
     case Heard::Silent: {
         const Time now = process_->page().now.load();
-        const std::string reason =
-            fmt::format("{} has not let time pass for {:.0f} s of wall clock, at {:.6f} s: {}", spec_.program,
-                        spec_.watchdog_s, cosim::to_seconds(now), process_->describe_silence());
+        const std::string reason = fmt::format("{} has not let time pass for {:.0f} s of wall clock: {}",
+                                               spec_.program, spec_.watchdog_s, process_->describe_silence());
         process_->kill();
         state_ = State::Off;
         kernel_.reset();
@@ -169,7 +169,7 @@ void LinuxNode::run_scheduled(Time now) {
         kernel_.hang_up(now);
     }
     if (next_signal_ < spec_.signals.size() && spec_.signals[next_signal_].time <= now)
-        pending_signal_ = spec_.signals[next_signal_++].signal;
+        pending_signals_ |= std::uint64_t{1} << spec_.signals[next_signal_++].signal;
     if (next_restart_ < spec_.restarts.size() && spec_.restarts[next_restart_].time <= now) {
         const Restart& restart = spec_.restarts[next_restart_++];
         process_->kill();
@@ -180,11 +180,11 @@ void LinuxNode::run_scheduled(Time now) {
     if (start_at_ <= now) start_program();
 }
 
-void LinuxNode::answer(Time now, int signal) {
+void LinuxNode::answer(Time now) {
     wire::Reply reply;
     reply.now = now;
     reply.limit = std::max(now, std::min({until_, next_device_event(), next_scheduled()}));
-    reply.signal = signal;
+    reply.signals = std::exchange(pending_signals_, 0);
     const std::vector<FinishedCall> calls = kernel_.take_finished();
     reply.count = static_cast<std::uint32_t>(calls.size());
     process_->reply(reply, calls);
@@ -211,11 +211,11 @@ void LinuxNode::handle_request() {
         kernel_.call(request_, request_data_);
         break;
     }
-    if (request_.wait != 0 && !kernel_.has_finished() && request_.wait_until > now && pending_signal_ == 0) {
+    if (request_.wait != 0 && !kernel_.has_finished() && request_.wait_until > now && pending_signals_ == 0) {
         state_ = State::Waiting;
         return;
     }
-    answer(now, std::exchange(pending_signal_, 0));
+    answer(now);
 }
 
 void LinuxNode::advance(Time until, std::span<const Message> inbox, std::vector<Message>& outbox) {
@@ -234,14 +234,13 @@ void LinuxNode::advance(Time until, std::span<const Message> inbox, std::vector<
         if (scheduled <= next) {
             run_devices(next);
             run_scheduled(next);
-            if (state_ == State::Waiting && (pending_signal_ != 0 || kernel_.has_finished()))
-                answer(next, std::exchange(pending_signal_, 0));
+            if (state_ == State::Waiting && (pending_signals_ != 0 || kernel_.has_finished())) answer(next);
         } else if (state_ == State::Asking) {
             handle_request();
         } else {
             run_devices(next);
             if (state_ == State::Waiting && (kernel_.has_finished() || next >= request_.wait_until))
-                answer(next, 0);
+                answer(next);
         }
     }
     run_devices(until - 1);

@@ -59,7 +59,7 @@ class LinuxNode : public cosim::Node {
     void start_program();
     void program_ended(cosim::Time now);
     void handle_request();
-    void answer(cosim::Time now, int signal);
+    void answer(cosim::Time now);
     void listen();
     /// Lets devices and deliveries happen up to and including `now`, in order.
     void run_devices(cosim::Time now);
@@ -84,7 +84,7 @@ class LinuxNode : public cosim::Node {
     std::size_t next_restart_ = 0;
     std::size_t next_signal_ = 0;
     std::size_t next_hangup_ = 0;
-    int pending_signal_ = 0;
+    std::uint64_t pending_signals_ = 0;  ///< bit n: signal n
     std::vector<cosim::Message> inbox_;
     std::size_t inbox_next_ = 0;
     std::vector<cosim::Message>* outbox_ = nullptr;

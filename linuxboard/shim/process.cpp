@@ -1,6 +1,7 @@
 #include "linuxboard/shim/process.h"
 
 #include "base/error.h"
+#include "base/random.h"
 #include "linuxboard/shim/program_file.h"
 
 #include <fmt/format.h>
@@ -121,7 +122,7 @@ void Process::prepare_page() {
     page_->real_time = spec_.real_time ? 1 : 0;
     page_->epoch = spec_.epoch_s * kNanosecondsPerSecond;
     page_->uptime = cosim::from_seconds(spec_.uptime_s) / cosim::kNanosecond;
-    page_->seed = spec_.seed;
+    page_->seed = RandomStream(spec_.seed, "linux." + spec_.name).next();
     page_->charges = spec_.charges;
     std::strncpy(page_->host_name, spec_.host_name.c_str(), sizeof page_->host_name - 1);
     std::size_t index = 0;

@@ -59,9 +59,10 @@ struct Request {
 /// Followed by `count` Completions, each followed by its `length` bytes.
 struct Reply {
     std::int64_t now = 0;
-    std::int64_t limit = 0;  ///< the program may run on to this time before it must ask again
-    std::int32_t signal = 0;
+    std::int64_t limit = 0;     ///< the program may run on to this time before it must ask again
+    std::uint64_t signals = 0;  ///< bit n: signal n for the program
     std::uint32_t count = 0;
+    std::uint32_t padding = 0;
 };
 
 struct Completion {

@@ -24,8 +24,7 @@ std::string reason_of(linuxboard::LinuxSpec spec, bool success) {
 
 TEST_CASE("a crash is named with its signal and the program's last words") {
     const std::string reason = reason_of(spec_for("misbehave", {"crash"}), false);
-    CHECK_THAT(reason,
-               Contains("SIGSEGV") && Contains("about to follow a null pointer") && Contains("0.0050"));
+    CHECK_THAT(reason, Contains("SIGSEGV") && Contains("about to follow a null pointer"));
 }
 
 TEST_CASE("an exit status other than 0 fails the run") {
@@ -56,7 +55,7 @@ TEST_CASE("a polling loop lets time pass") {
 
 TEST_CASE("signals interrupt or restart a blocked read as sigaction says") {
     linuxboard::LinuxSpec spec = spec_for("misbehave", {"signal"});
-    spec.signals = {{10 * kMillisecond, SIGINT}, {40 * kMillisecond, SIGTERM}};
+    spec.signals = {{10 * kMillisecond, SIGINT}, {40 * kMillisecond, SIGTERM}, {40 * kMillisecond, SIGUSR1}};
     Bench bench(std::move(spec));
     bench.send(30 * kMillisecond, "x");
     bench.run(kSecond);

@@ -6,6 +6,7 @@
 #include "linuxboard/shim/preload/timers.h"
 
 #include <signal.h>
+#include <sys/syscall.h>
 
 #include <algorithm>
 #include <bit>
@@ -31,6 +32,7 @@ Time clock_limit = 0;
 std::uint64_t park_order = 0;
 std::uint64_t pending_signals = 0;  // bit n: signal n
 bool conducted = false;
+bool in_node_call = false;
 std::uint64_t transactions = 0;
 
 /// The last answer that said "nothing there". It holds until the limit, before which nothing can happen, or
@@ -140,11 +142,13 @@ void transact(wire::Request& request, const void* data, std::size_t size) {
     publish();
     wire::Reply reply;
     ++transactions;
+    in_node_call = true;
     exchange(request, data, size, reply, complete);
+    in_node_call = false;
     clock_now = reply.now;
     clock_limit = reply.limit;
     follow_wall_clock();
-    if (reply.signal != 0) pending_signals |= std::uint64_t{1} << reply.signal;
+    pending_signals |= reply.signals;
     expire_deadlines();
 }
 
@@ -223,17 +227,28 @@ void schedule(Thread* me) {
     }
 }
 
-/// Runs the handler of a signal the node sent, here and now. True if the interrupted call is to be restarted.
-bool take_signal() {
-    if (pending_signals == 0) return true;
-    const int number = std::countr_zero(pending_signals);
-    pending_signals &= pending_signals - 1;
-    struct sigaction action {};
-    sigaction(number, nullptr, &action);
-    const bool ignored = action.sa_handler == SIG_IGN;
-    if (action.sa_handler == SIG_DFL) publish();
-    raise(number);
-    return ignored || (action.sa_flags & SA_RESTART) != 0;
+/// Runs the handlers of the signals that are due, here and now. True if the interrupted call is to be
+/// restarted: none of them interrupts.
+bool take_signals() {
+    bool restarts = true;
+    while (pending_signals != 0) {
+        const int number = std::countr_zero(pending_signals);
+        pending_signals &= pending_signals - 1;
+        struct sigaction action {};
+        sigaction(number, nullptr, &action);
+        const bool ignored = action.sa_handler == SIG_IGN;
+        sigset_t blocked;
+        pthread_sigmask(SIG_BLOCK, nullptr, &blocked);
+        publish();
+        if (sigismember(&blocked, number) == 1) {
+            // Some other thread may want it; its handler then runs beside the one that runs.
+            host_call(SYS_kill, host_call(SYS_getpid), number);
+            continue;
+        }
+        raise(number);
+        restarts = restarts && (ignored || (action.sa_flags & SA_RESTART) != 0);
+    }
+    return restarts;
 }
 
 void after_wait(Thread* me) {
@@ -247,7 +262,8 @@ void after_wait(Thread* me) {
 }  // namespace
 
 bool active() {
-    return conducted && current != nullptr;
+    // A handler of a signal from outside may run while its thread waits or asks: its calls go to the host.
+    return conducted && current != nullptr && current->state == Thread::State::Running && !in_node_call;
 }
 Thread* self() {
     return current;
@@ -288,7 +304,7 @@ void charge(Time cost) {
         expire_deadlines();
     }
     while (pending_signals != 0 && signal_taker() == me)
-        take_signal();
+        take_signals();
     const Thread* other = first_ready();
     if (other != nullptr && clock_now - other->ready_since >= kQuantum) {
         make_ready(*me, clock_now, Wake::Key);
@@ -309,7 +325,7 @@ Wake park(const void* key, const WaitOptions& options) {
     schedule(me);
     const Wake reason = me->wake;
     after_wait(me);
-    if (reason == Wake::Signal) take_signal();
+    if (reason == Wake::Signal) take_signals();
     return reason;
 }
 
@@ -341,6 +357,10 @@ std::int64_t device_call(wire::Request request, const void* data, std::size_t si
     const std::uint64_t data_hash = can_be_nothing ? hash_of(data, size) : 0;
     while (true) {
         if (interruptible && me->cancel_asked) pthread_testcancel();
+        if (pending_signals != 0 && signal_taker() == me && !take_signals() && interruptible) {
+            errno = EINTR;
+            return -1;
+        }
         me->state = Thread::State::Device;
         me->out = out;
         me->capacity = capacity;
@@ -363,12 +383,12 @@ std::int64_t device_call(wire::Request request, const void* data, std::size_t si
         if (received != nullptr) *received = me->received;
         after_wait(me);
         if (reason == Wake::Signal) {
-            if (take_signal()) continue;
+            if (take_signals()) continue;
             errno = EINTR;
             return -1;
         }
         while (pending_signals != 0 && signal_taker() == me)
-            take_signal();
+            take_signals();
         const bool is_nothing = result == 0 || (result < 0 && error == EAGAIN);
         if (can_be_nothing && at_once && is_nothing)
             nothing = {request, data_hash, transactions, result, error};

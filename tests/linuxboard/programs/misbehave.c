@@ -36,6 +36,7 @@ int main(int argc, char** argv) {
     }
     if (strcmp(how, "signal") == 0) {
         char b = 0;
+        signal(SIGUSR1, SIG_IGN);
         signal(SIGINT, handler);
         long n = read(fd, &b, 1); /* signal(): SA_RESTART */
         printf("read %ld after signal %d\n", n, (int)signalled);
