@@ -27,6 +27,10 @@ void mark_internal(int fd) {
     if (fd >= 0 && fd < kMostDescriptors) internal.set(static_cast<std::size_t>(fd));
 }
 
+void forget_internal(int fd) {
+    if (fd >= 0 && fd < kMostDescriptors) internal.reset(static_cast<std::size_t>(fd));
+}
+
 bool is_internal(int fd) {
     return fd >= 0 && fd < kMostDescriptors && internal.test(static_cast<std::size_t>(fd));
 }

@@ -2,14 +2,12 @@
 
 #include "linuxboard/shim/preload/link.h"
 #include "linuxboard/shim/preload/open_file.h"
+#include "linuxboard/shim/preload/outside.h"
 #include "linuxboard/shim/preload/real.h"
 #include "linuxboard/shim/preload/timers.h"
 
 #include <fcntl.h>
-#include <sys/eventfd.h>
 #include <sys/file.h>
-#include <sys/socket.h>
-#include <sys/stat.h>
 #include <sys/uio.h>
 #include <unistd.h>
 
@@ -34,32 +32,6 @@ mode_t mode_argument(int flags, std::va_list arguments) {
     return (flags & (O_CREAT | O_TMPFILE)) != 0 ? va_arg(arguments, mode_t) : 0;
 }
 
-/// A file that never blocks, or that nobody conducts.
-bool goes_straight(int fd) {
-    if (!active() || thread_count() == 0) return true;
-    struct stat status {};
-    if (REAL(fstat)(fd, &status) != 0) return true;
-    if (S_ISREG(status.st_mode) || S_ISDIR(status.st_mode)) return true;
-    return (REAL(fcntl)(fd, F_GETFL) & O_NONBLOCK) != 0;
-}
-
-template <typename Call>
-ssize_t outside(int fd, short events, Call call) {
-    if (!active()) return call();
-    if (goes_straight(fd)) {
-        charge(page().charges.device);
-    } else if (!await_external(fd, events)) {
-        errno = EINTR;
-        return -1;
-    }
-    const ssize_t result = call();
-    const int error = errno;
-    external_changed();
-    errno = error;
-    return result;
-}
-constexpr short kReadable = 0x001;  // POLLIN
-constexpr short kWritable = 0x004;  // POLLOUT
 }  // namespace
 
 SHIM_EXPORT int open(const char* path, int flags, ...) {
@@ -124,7 +96,10 @@ SHIM_EXPORT int close(int fd) {
         return -1;
     }
     if (open_file(fd) != nullptr) release_file(fd);
-    if (active()) drop_timer(fd);
+    if (active()) {
+        drop_timer(fd);
+        forget_internal(fd);
+    }
     return REAL(close)(fd);
 }
 
@@ -207,7 +182,7 @@ SHIM_EXPORT int flock(int fd, int operation) noexcept {
 
 SHIM_EXPORT ssize_t read(int fd, void* buffer, size_t size) {
     if (OpenFile* file = open_file(fd)) return read_device(*file, buffer, size);
-    return outside(fd, kReadable, [&] { return REAL(read)(fd, buffer, size); });
+    return outside(fd, POLLIN, [&] { return REAL(read)(fd, buffer, size); });
 }
 
 SHIM_EXPORT ssize_t __read_chk(int fd, void* buffer, size_t size, size_t room) {
@@ -217,12 +192,12 @@ SHIM_EXPORT ssize_t __read_chk(int fd, void* buffer, size_t size, size_t room) {
 
 SHIM_EXPORT ssize_t write(int fd, const void* data, size_t size) {
     if (OpenFile* file = open_file(fd)) return write_device(*file, data, size);
-    return outside(fd, kWritable, [&] { return REAL(write)(fd, data, size); });
+    return outside(fd, POLLOUT, [&] { return REAL(write)(fd, data, size); });
 }
 
 SHIM_EXPORT ssize_t readv(int fd, const iovec* parts, int count) {
     OpenFile* file = open_file(fd);
-    if (file == nullptr) return outside(fd, kReadable, [&] { return REAL(readv)(fd, parts, count); });
+    if (file == nullptr) return outside(fd, POLLIN, [&] { return REAL(readv)(fd, parts, count); });
     char data[wire::kMaximumData];
     std::size_t size = 0;
     for (int i = 0; i < count; ++i)
@@ -241,7 +216,7 @@ SHIM_EXPORT ssize_t readv(int fd, const iovec* parts, int count) {
 
 SHIM_EXPORT ssize_t writev(int fd, const iovec* parts, int count) {
     OpenFile* file = open_file(fd);
-    if (file == nullptr) return outside(fd, kWritable, [&] { return REAL(writev)(fd, parts, count); });
+    if (file == nullptr) return outside(fd, POLLOUT, [&] { return REAL(writev)(fd, parts, count); });
     char data[wire::kMaximumData];
     std::size_t size = 0;
     for (int i = 0; i < count; ++i) {
@@ -250,93 +225,4 @@ SHIM_EXPORT ssize_t writev(int fd, const iovec* parts, int count) {
         size += part;
     }
     return write_device(*file, data, size);
-}
-
-SHIM_EXPORT int pipe2(int* fds, int flags) noexcept {
-    const int result = REAL(pipe2)(fds, flags);
-    if (result == 0 && active()) {
-        mark_internal(fds[0]);
-        mark_internal(fds[1]);
-    }
-    return result;
-}
-
-SHIM_EXPORT int pipe(int* fds) noexcept {
-    return pipe2(fds, 0);
-}
-
-SHIM_EXPORT int socketpair(int domain, int type, int protocol, int* fds) noexcept {
-    const int result = REAL(socketpair)(domain, type, protocol, fds);
-    if (result == 0 && active()) {
-        mark_internal(fds[0]);
-        mark_internal(fds[1]);
-    }
-    return result;
-}
-
-SHIM_EXPORT int eventfd(unsigned value, int flags) noexcept {
-    const int fd = REAL(eventfd)(value, flags);
-    if (active()) mark_internal(fd);
-    return fd;
-}
-
-SHIM_EXPORT ssize_t recv(int fd, void* buffer, size_t size, int flags) {
-    if ((flags & MSG_DONTWAIT) != 0) return REAL(recv)(fd, buffer, size, flags);
-    return outside(fd, kReadable, [&] { return REAL(recv)(fd, buffer, size, flags); });
-}
-
-SHIM_EXPORT ssize_t recvfrom(int fd, void* buffer, size_t size, int flags, sockaddr* from,
-                             socklen_t* length) {
-    if ((flags & MSG_DONTWAIT) != 0) return REAL(recvfrom)(fd, buffer, size, flags, from, length);
-    return outside(fd, kReadable, [&] { return REAL(recvfrom)(fd, buffer, size, flags, from, length); });
-}
-
-SHIM_EXPORT ssize_t recvmsg(int fd, msghdr* message, int flags) {
-    if ((flags & MSG_DONTWAIT) != 0) return REAL(recvmsg)(fd, message, flags);
-    return outside(fd, kReadable, [&] { return REAL(recvmsg)(fd, message, flags); });
-}
-
-SHIM_EXPORT ssize_t send(int fd, const void* data, size_t size, int flags) {
-    if ((flags & MSG_DONTWAIT) != 0) return REAL(send)(fd, data, size, flags);
-    return outside(fd, kWritable, [&] { return REAL(send)(fd, data, size, flags); });
-}
-
-SHIM_EXPORT int accept4(int fd, sockaddr* from, socklen_t* length, int flags) {
-    return static_cast<int>(outside(fd, kReadable, [&] { return REAL(accept4)(fd, from, length, flags); }));
-}
-
-SHIM_EXPORT int accept(int fd, sockaddr* from, socklen_t* length) {
-    return accept4(fd, from, length, 0);
-}
-
-// A program that looks for its device before it opens it finds the one it will get.
-namespace {
-const char* stand_in(const char* path) {
-    return device_of(path) == kNoDevice ? path : "/dev/null";
-}
-}  // namespace
-
-SHIM_EXPORT int access(const char* path, int mode) noexcept {
-    return REAL(access)(stand_in(path), mode);
-}
-SHIM_EXPORT int faccessat(int folder, const char* path, int mode, int flags) noexcept {
-    return REAL(faccessat)(folder, stand_in(path), mode, flags);
-}
-SHIM_EXPORT int stat(const char* path, struct stat* status) noexcept {
-    return REAL(stat)(stand_in(path), status);
-}
-SHIM_EXPORT int stat64(const char* path, struct stat64* status) noexcept {
-    return REAL(stat64)(stand_in(path), status);
-}
-SHIM_EXPORT int lstat(const char* path, struct stat* status) noexcept {
-    return REAL(lstat)(stand_in(path), status);
-}
-SHIM_EXPORT int lstat64(const char* path, struct stat64* status) noexcept {
-    return REAL(lstat64)(stand_in(path), status);
-}
-SHIM_EXPORT int fstatat(int folder, const char* path, struct stat* status, int flags) noexcept {
-    return REAL(fstatat)(folder, stand_in(path), status, flags);
-}
-SHIM_EXPORT int fstatat64(int folder, const char* path, struct stat64* status, int flags) noexcept {
-    return REAL(fstatat64)(folder, stand_in(path), status, flags);
 }

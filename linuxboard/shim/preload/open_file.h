@@ -56,6 +56,7 @@ bool await_external(int fd, short events);
 /// Something was written or closed: those who wait outside look again.
 void external_changed();
 void mark_internal(int fd);
+void forget_internal(int fd);
 bool is_internal(int fd);
 /// The key on which threads wait that watch outside descriptors.
 const void* external_key();

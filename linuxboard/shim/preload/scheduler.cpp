@@ -3,6 +3,7 @@
 #include "linuxboard/shim/preload/calls.h"
 #include "linuxboard/shim/preload/host.h"
 #include "linuxboard/shim/preload/link.h"
+#include "linuxboard/shim/preload/nothing_there.h"
 #include "linuxboard/shim/preload/timers.h"
 
 #include <signal.h>
@@ -35,42 +36,6 @@ bool conducted = false;
 bool in_node_call = false;
 std::uint64_t transactions = 0;
 
-/// The last answer that said "nothing there". It holds until the limit, before which nothing can happen, or
-/// until the next request: a polling loop asks the node only once a grant.
-struct Nothing {
-    wire::Request request;
-    std::uint64_t data = 0;
-    std::uint64_t transaction = 0;
-    std::int64_t result = 0;
-    int error = 0;
-};
-Nothing nothing;
-
-std::uint64_t hash_of(const void* data, std::size_t size) {
-    std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a
-    for (std::size_t i = 0; i < size; ++i)
-        hash = (hash ^ static_cast<const unsigned char*>(data)[i]) * 0x100000001b3u;
-    return hash;
-}
-
-bool may_say_nothing(const wire::Request& request) {
-    switch (request.op) {
-    case wire::Op::Read:
-        return request.nonblocking != 0;
-    case wire::Op::Poll:
-        return request.deadline <= clock_now;
-    case wire::Op::InputQueue:
-        return true;
-    default:
-        return false;
-    }
-}
-
-bool says_nothing_still(const wire::Request& request, const void* data, std::size_t size) {
-    return nothing.transaction == transactions && clock_now < clock_limit && may_say_nothing(request) &&
-           request.op == nothing.request.op && request.handle == nothing.request.handle &&
-           hash_of(data, size) == nothing.data;
-}
 __thread Thread* current __attribute__((tls_model("initial-exec"))) = nullptr;
 
 /// Real-time mode: simulated time is never behind the wall clock.
@@ -349,11 +314,13 @@ int wake(const void* key, int count, std::uint64_t bits) {
 std::int64_t device_call(wire::Request request, const void* data, std::size_t size, void* out,
                          std::size_t capacity, bool interruptible, std::size_t* received) {
     Thread* me = current;
-    if (says_nothing_still(request, data, size)) {
-        if (nothing.result < 0) errno = nothing.error;
-        return nothing.result;
+    if (clock_now < clock_limit) {
+        if (const NothingThere* known = still_nothing(request, data, size, transactions)) {
+            if (known->result < 0) errno = known->error;
+            return known->result;
+        }
     }
-    const bool can_be_nothing = may_say_nothing(request);
+    const bool can_be_nothing = is_look(request, clock_now);
     const std::uint64_t data_hash = can_be_nothing ? hash_of(data, size) : 0;
     while (true) {
         if (interruptible && me->cancel_asked) pthread_testcancel();
@@ -391,7 +358,7 @@ std::int64_t device_call(wire::Request request, const void* data, std::size_t si
             take_signals();
         const bool is_nothing = result == 0 || (result < 0 && error == EAGAIN);
         if (can_be_nothing && at_once && is_nothing)
-            nothing = {request, data_hash, transactions, result, error};
+            remember_nothing({request, data_hash, transactions, result, error});
         if (result < 0) errno = error;
         return result;
     }

@@ -1,0 +1,42 @@
+#pragma once
+// A call on a descriptor that is no device: made at once where it cannot block, else once the host is ready.
+
+#include "linuxboard/shim/preload/open_file.h"
+#include "linuxboard/shim/preload/real.h"
+#include "linuxboard/shim/preload/scheduler.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/stat.h>
+#include <sys/types.h>
+
+#include <cerrno>
+
+namespace puckloop::shim {
+
+/// A file that never blocks, or that nobody conducts.
+inline bool goes_straight(int fd) {
+    if (!active() || thread_count() == 0) return true;
+    struct stat status {};
+    if (REAL(fstat)(fd, &status) != 0) return true;
+    if (S_ISREG(status.st_mode) || S_ISDIR(status.st_mode)) return true;
+    return (REAL(fcntl)(fd, F_GETFL) & O_NONBLOCK) != 0;
+}
+
+template <typename Call>
+ssize_t outside(int fd, short events, Call call) {
+    if (!active()) return call();
+    if (goes_straight(fd)) {
+        charge(page().charges.device);
+    } else if (!await_external(fd, events)) {
+        errno = EINTR;
+        return -1;
+    }
+    const ssize_t result = call();
+    const int error = errno;
+    external_changed();
+    errno = error;
+    return result;
+}
+
+}  // namespace puckloop::shim
