@@ -10,13 +10,21 @@ namespace puckloop::cosim {
 namespace {
 constexpr Time kClocksOfByte = 9;
 constexpr std::uint8_t kReadBit = 1;
+
+std::vector<std::string> names_of(const std::vector<I2cMasterPort>& masters) {
+    std::vector<std::string> names;
+    for (const I2cMasterPort& master : masters)
+        names.push_back(master.name);
+    return names;
+}
 }  // namespace
 
 I2cBusNode::I2cBusNode(I2cBusOptions options, std::vector<std::unique_ptr<I2cSlave>> slaves)
     : options_(std::move(options)),
       slaves_(std::move(slaves)),
-      nominal_period_(
-          static_cast<Time>(std::llround(static_cast<double>(kSecond) / options_.nominal_hertz))) {
+      nominal_period_(static_cast<Time>(std::llround(static_cast<double>(kSecond) / options_.nominal_hertz))),
+      log_(options_.log, names_of(options_.masters)) {
+    log_.begin(device_list(), options_.nominal_hertz);
     for (const auto& master : options_.masters)
         ports_.push_back({master.name, PortKind::I2c});
     for (const auto& device : options_.devices)
@@ -28,6 +36,15 @@ I2cBusNode::I2cBusNode(I2cBusOptions options, std::vector<std::unique_ptr<I2cSla
     };
 }
 
+std::string I2cBusNode::device_list() const {
+    std::string list;
+    for (const auto& slave : slaves_)
+        list += fmt::format("{}{}", list.empty() ? "" : ", ", slave->name());
+    for (const auto& device : options_.devices)
+        list += fmt::format("{}{}", list.empty() ? "" : ", ", device.name);
+    return list;
+}
+
 Time I2cBusNode::ninth_clock(const I2cPhase& phase) const {
     return phase.start + kClocksOfByte * std::max(phase.clock_period, nominal_period_);
 }
@@ -35,9 +52,11 @@ Time I2cBusNode::ninth_clock(const I2cPhase& phase) const {
 void I2cBusNode::advance(Time until, std::span<const Message> inbox, std::vector<Message>& outbox) {
     for (const Message& message : inbox) {
         run_events(message.time);
+        now_ = message.time;
         receive(message);
     }
     run_events(until);
+    now_ = until;
     // Answers leave as soon as they are known, stamped with the time at which they count: a master that
     // reacts at once would otherwise hold the bus at that very time.
     std::stable_sort(answers_.begin(), answers_.end(),
@@ -49,6 +68,7 @@ void I2cBusNode::advance(Time until, std::span<const Message> inbox, std::vector
 /// Everything that the bus does by itself before `until`.
 void I2cBusNode::run_events(Time until) {
     while (changes_ < until) {
+        now_ = changes_;
         if (bus_ == Bus::Contest)
             resolve_contest();
         else
@@ -170,6 +190,7 @@ void I2cBusNode::resolve_contest() {
 
 void I2cBusNode::address(PortIndex port, const I2cPhase& phase, Time earliest) {
     ++counters_.transfers;
+    log_.addressed(now_, port, phase.byte);
     if (address_device(port, phase, earliest)) return;
     const auto seven_bits = static_cast<std::uint8_t>(phase.byte >> 1);
     I2cAnswer reply;
@@ -230,6 +251,7 @@ void I2cBusNode::bus_freed() {
 
 void I2cBusNode::lose(PortIndex port, const I2cPhase& phase) {
     ++counters_.lost;
+    log_.lost(now_, port, phase);
     answer(port, phase, I2cPhaseKind::BusLost, {}, 0);
 }
 
@@ -241,6 +263,7 @@ void I2cBusNode::answer(PortIndex port, const I2cPhase& phase, I2cPhaseKind kind
     out.byte = kind == I2cPhaseKind::Data ? reply.byte : phase.byte;
     out.ack = kind == I2cPhaseKind::Data ? phase.ack : (reply.acknowledge ? 1 : 0);
     out.stretch = reply.stretch;
+    if (kind != I2cPhaseKind::BusLost) log_.answered(now_, port, out, phase.kind == I2cPhaseKind::Start);
     answers_.push_back({std::max(ninth_clock(phase), earliest) + reply.stretch, port, out});
 }
 
@@ -263,6 +286,10 @@ Time I2cBusNode::reaction(PortIndex port) const {
 }
 
 std::string I2cBusNode::finish() {
+    log_.end(now_,
+             fmt::format("{} transfers, {} bytes written, {} read, {} not acknowledged, bus lost {} times",
+                         counters_.transfers, counters_.bytes_written, counters_.bytes_read,
+                         counters_.not_acknowledged, counters_.lost));
     std::string devices;
     for (const auto& slave : slaves_)
         devices += fmt::format("{}\"{}\":{}", devices.empty() ? "" : ",", slave->name(), slave->report());

@@ -25,6 +25,7 @@
 // send the same address byte do not go on together into the data: the first port wins. 3. SCL of colliding
 // masters is the winner's. 4. Pins driven low by a master's ports do not disturb the bus.
 
+#include "cosim/i2c_log.h"
 #include "cosim/i2c_slave.h"
 #include "cosim/node.h"
 
@@ -51,6 +52,7 @@ struct I2cBusOptions {
     double nominal_hertz = 100e3;
     std::vector<I2cMasterPort> masters;
     std::vector<I2cDevicePort> devices{};
+    std::string log{};  ///< file for the bus's log; empty: none
 };
 
 /// Ports: the masters in their order, the devices in theirs, then "world" (signals to and from the devices in
@@ -95,6 +97,7 @@ class I2cBusNode final : public Node {
     void device_answered(PortIndex port, const I2cPhase& phase, Time now);
     void byte_from(PortIndex port, const I2cPhase& phase);
     void release_slave(Time now);
+    std::string device_list() const;
     void stop_from(PortIndex port, const I2cPhase& phase);
     void bus_freed();
     void lose(PortIndex port, const I2cPhase& phase);
@@ -119,6 +122,8 @@ class I2cBusNode final : public Node {
     std::vector<Message> answers_;       // known, to leave with this advance
     Time emitted_at_ = 0;
     Counters counters_;
+    I2cLog log_;
+    Time now_ = 0;  // of the event that is being handled
 };
 
 }  // namespace puckloop::cosim

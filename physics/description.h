@@ -96,6 +96,7 @@ struct Robot {
 struct Recording {
     std::string directory;  ///< trajectory.csv, sensors.csv, objects.csv go here; empty = nothing is recorded
     double period = 0.1;    ///< s, a multiple of 1 ms
+    std::string log{};      ///< file for the world's log; empty: none
 };
 
 struct World {

@@ -215,6 +215,10 @@ const ObjectState& Dynamics::object(std::size_t index) const {
     return impl_->objects[index].state;
 }
 
+std::span<const RobotContact> Dynamics::robot_contacts() const {
+    return impl_->robot_contacts;
+}
+
 std::uint64_t Dynamics::complaints() const {
     return impl_->complaints.count;
 }

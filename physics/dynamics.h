@@ -9,8 +9,10 @@
 #include "physics/plan.h"
 
 #include <array>
+#include <compare>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 
 namespace puckloop::physics {
@@ -33,6 +35,16 @@ struct ObjectState {
     double x = 0.0, y = 0.0, heading = 0.0;
 };
 
+/// A robot's body against something upright.
+struct RobotContact {
+    enum class Kind : std::uint8_t { Fixed, Object, Robot };
+    std::size_t robot = 0;
+    Kind kind = Kind::Fixed;
+    std::size_t other = 0;  ///< index among the fixed shapes, the objects, the robots (a lower one)
+
+    friend auto operator<=>(const RobotContact&, const RobotContact&) = default;
+};
+
 class Dynamics {
   public:
     Dynamics(const Parameters& world, const std::vector<Shape>& fixed);
@@ -51,6 +63,8 @@ class Dynamics {
 
     const RobotState& robot(std::size_t index) const;
     const ObjectState& object(std::size_t index) const;
+    /// Those of the last step.
+    std::span<const RobotContact> robot_contacts() const;
 
     /// How often ODE complained, and what it said first.
     std::uint64_t complaints() const;

@@ -46,7 +46,8 @@ struct Dynamics::Impl {
     void wheels_on_floor(const RobotBody& robot);
     void skids_on_floor(const RobotBody& robot);
     void object_on_floor(const ObjectBody& object);
-    void in_plan(dBodyID body, const Shape& circle, dBodyID other_body, const Shape& other, double mu);
+    void robot_meets_others(std::size_t index);
+    bool in_plan(dBodyID body, const Shape& circle, dBodyID other_body, const Shape& other, double mu);
     void boxes_meet(const ObjectBody& object, dBodyID other_body, dGeomID other);
     void add_contact(const dSurfaceParameters& surface, const dContactGeom& geom, dBodyID first,
                      dBodyID second, const dReal* direction = nullptr);
@@ -60,6 +61,7 @@ struct Dynamics::Impl {
     std::vector<RobotBody> robots;
     std::vector<ObjectBody> objects;
     std::vector<FixedBody> fixed;
+    std::vector<RobotContact> robot_contacts;  // of the last step
 };
 
 }  // namespace puckloop::physics

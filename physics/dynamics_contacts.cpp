@@ -92,10 +92,11 @@ void Dynamics::Impl::object_on_floor(const ObjectBody& object) {
         add_contact(surface(contact.mu_object), geoms[i], object.body, nullptr);
 }
 
-void Dynamics::Impl::in_plan(dBodyID body, const Shape& circle, dBodyID other_body, const Shape& other,
+/// True if they touch.
+bool Dynamics::Impl::in_plan(dBodyID body, const Shape& circle, dBodyID other_body, const Shape& other,
                              double mu) {
     const Touch t = touch(other, circle.x, circle.y, circle.radius);
-    if (t.depth <= 0) return;
+    if (t.depth <= 0) return false;
     dContactGeom geom{};
     geom.pos[0] = t.x;
     geom.pos[1] = t.y;
@@ -106,6 +107,7 @@ void Dynamics::Impl::in_plan(dBodyID body, const Shape& circle, dBodyID other_bo
     geom.depth = t.depth;
     if (body == nullptr) std::swap(body, other_body);
     add_contact(surface(mu), geom, body, other_body);
+    return true;
 }
 
 void Dynamics::Impl::boxes_meet(const ObjectBody& object, dBodyID other_body, dGeomID other) {
@@ -115,20 +117,27 @@ void Dynamics::Impl::boxes_meet(const ObjectBody& object, dBodyID other_body, dG
         add_contact(surface(contact.mu_object), geoms[i], object.body, other_body);
 }
 
+void Dynamics::Impl::robot_meets_others(std::size_t index) {
+    const auto& robot = robots[index];
+    const auto meet = [&](RobotContact::Kind kind, std::size_t other, dBodyID body, const Shape& shape) {
+        if (!apart(robot.shape, shape) && in_plan(robot.chassis, robot.shape, body, shape, contact.mu_body))
+            robot_contacts.push_back({index, kind, other});
+    };
+    for (std::size_t i = 0; i < fixed.size(); ++i)
+        meet(RobotContact::Kind::Fixed, i, nullptr, fixed[i].shape);
+    for (std::size_t i = 0; i < index; ++i)
+        meet(RobotContact::Kind::Robot, i, robots[i].chassis, robots[i].shape);
+    for (std::size_t i = 0; i < objects.size(); ++i)
+        meet(RobotContact::Kind::Object, i, objects[i].body, objects[i].shape);
+}
+
 void Dynamics::Impl::find_contacts() {
+    robot_contacts.clear();
     for (std::size_t i = 0; i < robots.size(); ++i) {
         const auto& robot = robots[i];
         wheels_on_floor(robot);
         skids_on_floor(robot);
-        for (const auto& thing : fixed)
-            if (!apart(robot.shape, thing.shape))
-                in_plan(robot.chassis, robot.shape, nullptr, thing.shape, contact.mu_body);
-        for (std::size_t j = 0; j < i; ++j)
-            if (!apart(robot.shape, robots[j].shape))
-                in_plan(robot.chassis, robot.shape, robots[j].chassis, robots[j].shape, contact.mu_body);
-        for (const auto& object : objects)
-            if (!apart(robot.shape, object.shape))
-                in_plan(robot.chassis, robot.shape, object.body, object.shape, contact.mu_body);
+        robot_meets_others(i);
     }
     for (std::size_t i = 0; i < objects.size(); ++i) {
         const auto& object = objects[i];

@@ -117,4 +117,20 @@ std::vector<Shape> fixed_shapes(const World& world) {
     return shapes;
 }
 
+std::vector<std::string> fixed_names(const World& world) {
+    std::vector<std::string> names;
+    const auto add = [&](const std::string& name, const char* kind, std::size_t index) {
+        names.push_back(name.empty() ? kind + std::to_string(index) : name);
+    };
+    for (std::size_t i = 0; i < arena_walls(world.arena).size(); ++i)
+        add({}, "arena wall ", i);
+    for (std::size_t i = 0; i < world.walls.size(); ++i)
+        add(world.walls[i].name, "wall ", i);
+    for (std::size_t i = 0; i < world.boxes.size(); ++i)
+        if (!world.boxes[i].movable) add(world.boxes[i].name, "box ", i);
+    for (std::size_t i = 0; i < world.cylinders.size(); ++i)
+        if (!world.cylinders[i].movable) add(world.cylinders[i].name, "cylinder ", i);
+    return names;
+}
+
 }  // namespace puckloop::physics

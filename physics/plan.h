@@ -53,6 +53,8 @@ double edge_distance(const std::vector<Point>& corners, double x, double y);
 
 /// The fixed shapes of a world: arena walls, walls, boxes and cylinders that do not move.
 std::vector<Shape> fixed_shapes(const World& world);
+/// Their names, in the same order.
+std::vector<std::string> fixed_names(const World& world);
 Shape shape_of(const Wall& wall);
 Shape shape_of(const Box& box);
 Shape shape_of(const Cylinder& cylinder);

@@ -1,6 +1,7 @@
 #include "physics/world_node.h"
 
 #include "physics/recorder.h"
+#include "physics/world_log.h"
 
 #include <nlohmann/json.hpp>
 
@@ -58,10 +59,11 @@ struct WorldNode::Impl {
     std::vector<RobotLinks> links;
     std::vector<cosim::Message> waiting;  // stamped at or after the next step
     std::optional<Recorder> recorder;
+    WorldLog log;
     cosim::Time next_step = 0;  // its sensor values leave one step later
 };
 
-WorldNode::Impl::Impl(World description) : model(std::move(description)) {
+WorldNode::Impl::Impl(World description) : model(std::move(description)), log(model) {
     for (const auto& robot : model.description().robots) {
         links.push_back(links_of(robot, static_cast<cosim::PortIndex>(ports.size())));
         ports.push_back({robot.name + ".board", cosim::PortKind::Signals});
@@ -117,6 +119,7 @@ void WorldNode::advance(cosim::Time until, std::span<const cosim::Message> inbox
                 w.take(*next);
             w.model.step();
             if (w.recorder) w.recorder->after_step(w.model);
+            w.log.after_step(w.model);
         }
         w.publish(outbox);
     }
@@ -133,6 +136,7 @@ cosim::Time WorldNode::reaction(cosim::PortIndex) const {
 
 std::string WorldNode::finish() {
     const auto& model = impl_->model;
+    impl_->log.end(model);
     nlohmann::ordered_json report;
     report["steps"] = model.steps_done();
     report["robots"] = nlohmann::ordered_json::array();

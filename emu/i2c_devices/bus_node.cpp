@@ -43,6 +43,7 @@ std::unique_ptr<cosim::Node> make_bus_node(const BusSpec& spec) {
     cosim::I2cBusOptions options;
     options.name = spec.name;
     options.nominal_hertz = spec.hertz;
+    options.log = spec.log;
     options.masters = {{"pic", false}, {"linux", true}};
     for (const auto& [name, address] : spec.boards)
         options.devices.push_back({name, {address}});
@@ -60,6 +61,7 @@ std::unique_ptr<cosim::Node> make_bus_node(std::string_view text) {
         spec.ground_sensor = json.value("ground_sensor", spec.ground_sensor);
         spec.rgb_turret = json.value("rgb_turret", spec.rgb_turret);
         spec.hertz = json.value("hertz", spec.hertz);
+        spec.log = json.value("log", spec.log);
         for (const auto& board : json.value("boards", nlohmann::json::array()))
             spec.boards.emplace_back(board.at("name").get<std::string>(),
                                      board.at("address").get<std::uint8_t>());

@@ -25,7 +25,8 @@ PicNode::PicNode(const image::Image& image, const PicNodeOptions& options)
              {"uart2", cosim::PortKind::Uart},
              {"i2c", cosim::PortKind::I2c},
              {"world", cosim::PortKind::Signals}},
-      board_(options.board, *this) {
+      board_(options.board, *this),
+      log_(options.log, image) {
     dspic::ChipOptions chip_options;
     chip_options.crystal_hertz = options.board.crystal_hertz;
     chip_options.ppm = options.board.crystal_ppm;
@@ -44,14 +45,27 @@ void PicNode::advance(cosim::Time until, std::span<const cosim::Message> inbox,
         receive(message);
     }
     run_until(until);
-    // Steps due before `until` are told now; one that is due later may still be undone by an instruction.
-    const dspic::Cycle next = chip_->clock().first_cycle_at(until);
-    if (next > 0) board_.settle(next - 1);
+    settle(until);
     granted_ = until;
     outbox_ = nullptr;
 }
 
+/// Steps due before `until` are told now; one that is due later may still be undone by an instruction.
+void PicNode::settle(cosim::Time until) {
+    const dspic::Cycle next = chip_->clock().first_cycle_at(until);
+    if (next > 0) board_.settle(next - 1);
+}
+
 void PicNode::run_until(cosim::Time until) {
+    while (log_.next_look() <= until) {
+        run_chip(log_.next_look());
+        settle(log_.next_look());
+        log_.look(*chip_);
+    }
+    run_chip(until);
+}
+
+void PicNode::run_chip(cosim::Time until) {
     if (options_.i2c_linked) {
         chip_->run_until(until);
         return;
@@ -66,7 +80,9 @@ void PicNode::run_until(cosim::Time until) {
 
 void PicNode::receive(const cosim::Message& message) {
     if (const auto* frame = std::get_if<cosim::UartFrame>(&message.payload)) {
-        chip_->uart_receive(uart_unit(message.port), *frame);
+        const int unit = uart_unit(message.port);
+        log_.arrived(unit, *frame, message.time, chip_->uart_enabled(unit));
+        chip_->uart_receive(unit, *frame);
     } else if (const auto* phase = std::get_if<cosim::I2cPhase>(&message.payload)) {
         chip_->i2c_answer(kI2cUnit, *phase);
     } else if (const auto* signal = std::get_if<cosim::Signal>(&message.payload)) {
@@ -86,11 +102,15 @@ std::optional<cosim::Time> PicNode::begun(cosim::PortIndex port) const {
 }
 
 void PicNode::signal_changed(SignalId id, double value, dspic::Cycle now) {
-    outbox_->push_back({chip_->clock().time_of(now), kWorld, cosim::Signal{id, value}});
+    const cosim::Time time = chip_->clock().time_of(now);
+    log_.signal_changed(id, value, time);
+    outbox_->push_back({time, kWorld, cosim::Signal{id, value}});
 }
 
 void PicNode::uart_sent(int unit, const cosim::UartFrame& frame) {
-    outbox_->push_back({protocols::stop_bit_start(frame), unit == 1 ? kUart1 : kUart2, frame});
+    const cosim::Time stop_bit = protocols::stop_bit_start(frame);
+    log_.sent(unit, frame, stop_bit);
+    outbox_->push_back({stop_bit, unit == 1 ? kUart1 : kUart2, frame});
 }
 
 void PicNode::i2c_phase(int unit, const cosim::I2cPhase& phase) {
@@ -102,6 +122,7 @@ void PicNode::i2c_phase(int unit, const cosim::I2cPhase& phase) {
 }
 
 std::string PicNode::finish() {
+    log_.end(granted_, *chip_, board_);
     nlohmann::ordered_json json = chip_json(*chip_);
     json["kind"] = "epuck board, dsPIC30F6014A";
     json["wheel_steps"] = {{"left", board_.left_motor().steps()}, {"right", board_.right_motor().steps()}};

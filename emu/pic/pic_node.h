@@ -6,6 +6,7 @@
 #include "emu/image/image.h"
 #include "emu/pic/board.h"
 #include "emu/pic/empty_bus.h"
+#include "emu/pic/pic_log.h"
 
 #include <array>
 #include <memory>
@@ -22,6 +23,7 @@ struct PicNodeOptions {
     /// Configuration word in force on the robot, as its bootloader left it: XT with PLL x8.
     std::uint16_t fosc = kFoscXtPll8;
     static constexpr std::uint16_t kFoscXtPll8 = 0xC706;
+    std::string log{};  ///< file for the board's log; empty: none
 };
 
 class PicNode : public cosim::Node, private BoardListener {
@@ -49,6 +51,8 @@ class PicNode : public cosim::Node, private BoardListener {
 
   private:
     void run_until(cosim::Time until);
+    void run_chip(cosim::Time until);
+    void settle(cosim::Time until);
     void receive(const cosim::Message& message);
 
     void signal_changed(SignalId id, double value, dspic::Cycle now) override;
@@ -60,6 +64,7 @@ class PicNode : public cosim::Node, private BoardListener {
     Board board_;
     std::unique_ptr<dspic::Chip> chip_;
     EmptyBus bus_;
+    PicLog log_;
     std::vector<cosim::Message>* outbox_ = nullptr;
     cosim::Time granted_ = 0;
 };

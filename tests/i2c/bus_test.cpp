@@ -8,6 +8,9 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
 
 using namespace puckloop;
 using namespace puckloop::cosim;
@@ -215,6 +218,52 @@ TEST_CASE("a board behind a port answers in its own time; the master sees the st
     out = bench.until(5 * kMillisecond);
     CHECK(only(out).kind == I2cPhaseKind::Stop);
     CHECK(out[0].port == kRab);
+}
+
+TEST_CASE("the log tells first transfers, absent devices, lost buses and stretches") {
+    const auto file = std::filesystem::temp_directory_path() / "puckloop-i2c-log-test.log";
+    const auto run = [&](Time longest) {
+        Bench bench({.boards = {{"rab", 0x20}}, .log = file.string()});
+        constexpr PortIndex kRab = 2;
+        const auto wait = [&](Time end) {
+            for (Time at = bench.now; at < end; at = std::min(at + longest, end))
+                bench.until(std::min(at + longest, end));
+            bench.now = end;
+        };
+        for (int i = 0; i < 5; ++i) {
+            const Time begun = bench.now + kMillisecond;
+            bench.send(kPic, I2cPhaseKind::Start, 0x90, begun);
+            bench.send(kPic, I2cPhaseKind::Stop, 0, begun + 9 * kPeriod);
+            wait(begun + kMillisecond);
+        }
+        bench.send(kLinux, I2cPhaseKind::Start, 0xC0, 20 * kMillisecond);
+        bench.send(kPic, I2cPhaseKind::Start, 0xC3, 20 * kMillisecond + kPeriod);
+        bench.send(kLinux, I2cPhaseKind::Stop, 0, 21 * kMillisecond);
+        wait(22 * kMillisecond);
+        bench.send(kLinux, I2cPhaseKind::Start, 0x41, 30 * kMillisecond);
+        bench.give({31 * kMillisecond, kRab, I2cPhase{.kind = I2cPhaseKind::Acknowledge, .ack = 1}});
+        wait(40 * kMillisecond);
+        bench.report();
+        std::ostringstream text;
+        text << std::ifstream(file).rdbuf();
+        std::filesystem::remove(file);
+        return text.str();
+    };
+    const std::string log = run(kMillisecond);
+    for (const char* line : {
+             "[    0.000000 s] bus at 100 kHz; masters pic, linux; devices ",
+             "s] pic: first transfer with 0x48, a write\n",
+             "s] pic: nobody acknowledges 0x48\n",
+             "s] pic: nobody acknowledges 0x48 (4 times so far)\n",
+             "[    0.020010 s] pic: loses the bus, START for 0x61\n",
+             "[    0.030005 s] linux: first transfer with 0x20, a read\n",
+             "[    0.031000 s] linux: 0x20 stretches the clock by 920.000 us\n",
+             "[    0.040000 s] pic with 0x48: 5 transfers, 5 not acknowledged\n",
+             "[    0.040000 s] end: 7 transfers, ",
+         })
+        CHECK_THAT(log, Catch::Contains(line));
+    CHECK_THAT(log, !Catch::Contains("(3 times"));
+    CHECK(run(3 * kMicrosecond) == log);
 }
 
 TEST_CASE("descriptions of a bus are checked") {

@@ -1,6 +1,7 @@
 // The world as a node: times, grants cut anyhow, determinism, recordings.
 
 #include "base/error.h"
+#include "physics/world_log.h"
 #include "physics/world_node.h"
 #include "tests/physics/worlds.h"
 
@@ -120,6 +121,62 @@ TEST_CASE("a step is used in the step after it and seen one later") {
         CHECK(message.time >= 2 * kMillisecond);
         CHECK(message.time <= 6 * kMillisecond);
     }
+}
+
+TEST_CASE("the log tells what stands where, contacts and poses, however time was granted") {
+    const TemporaryDirectory directory;
+    World world = busy_world();
+    world.recording.log = (directory.path / "world.log").string();
+    std::string log;
+    for (const Time slice : {7 * kMillisecond, Time{333'333'333}, 4000 * kMillisecond}) {
+        {
+            WorldNode node(world);
+            run(node, 4000 * kMillisecond, slice);
+            node.finish();
+        }
+        const auto text = contents(directory.path / "world.log");
+        CHECK((log.empty() || text == log));
+        log = text;
+    }
+    for (const char* line : {
+             "[    0.000000 s] arena with walls, corners (-0.3000, -0.3000) m",
+             "[    0.000000 s] box crate at (-0.1500, 0.0000) m, heading 0.00 deg, 0.05 x 0.05 x 0.1 m, "
+             "movable",
+             "[    0.000000 s] lamp lamp at (0.2000, -0.2000) m",
+             "[    0.000000 s] robot e2 at (0.1500, 0.1000) m",
+             " s] e1 touches crate\n",
+             "[    4.000000 s] e1 touched crate for ",
+             "[    4.000000 s] e2 ends at (",
+             "[    4.000000 s] crate ends at (-0.",
+             "[    4.000000 s] end: 4000 steps of 1 ms, ",
+         })
+        CHECK_THAT(log, Catch::Contains(line));
+}
+
+TEST_CASE("contacts begin and end once, though bodies bounce") {
+    const TemporaryDirectory directory;
+    World world = world_with_robot(0.2, 0.6);
+    world.recording.log = (directory.path / "world.log").string();
+    WorldModel model(world);
+    WorldLog log(model);
+    Driver driver(model);
+    const auto drive = [&](double speed, double seconds) {
+        for (int i = 0; i < std::lround(seconds * 1e3); ++i) {
+            driver.feed(speed, speed);
+            model.step();
+            log.after_step(model);
+        }
+    };
+    drive(500, 1.5);
+    drive(-300, 0.6);
+    log.end(model);
+    const auto text = contents(directory.path / "world.log");
+    const auto touches = text.find(" s] e1 touches arena wall 1\n");
+    INFO(text);
+    REQUIRE(touches != std::string::npos);
+    CHECK(text.find("e1 touches", touches + 10) == std::string::npos);
+    CHECK(text.find("e1 has left arena wall 1: touched it for ") > touches);
+    CHECK_THAT(text, Catch::Contains("left, ") && !Catch::Contains("e1 touched"));
 }
 
 TEST_CASE("recordings: rows at the period, readable at any time, refused directories named") {

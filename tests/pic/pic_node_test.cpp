@@ -10,7 +10,10 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
 #include <map>
+#include <sstream>
 
 using namespace puckloop;
 using cosim::Message;
@@ -129,10 +132,12 @@ std::vector<Message> some_inbox() {
 }
 
 /// Everything that leaves, port by port, when the time is granted in pieces that end at `cuts`.
-std::map<int, std::vector<Message>> run_cut(const std::vector<Time>& cuts, bool skip) {
+std::map<int, std::vector<Message>> run_cut(const std::vector<Time>& cuts, bool skip,
+                                            const std::string& log = {}) {
     pic::PicNodeOptions options = quiet();
     options.board.adc_noise_counts = 1.5;
     options.skip_idle = skip;
+    options.log = log;
     pic::PicNode node(assembled(kFirmware), options);
     const std::vector<Message> inbox = some_inbox();
     std::map<int, std::vector<Message>> out;
@@ -161,7 +166,25 @@ std::map<int, std::vector<Message>> run_cut(const std::vector<Time>& cuts, bool 
             port.push_back(message);
         }
     }
+    if (!log.empty()) node.finish();
     return out;
+}
+
+/// Grants that end anywhere, none longer than `longest`.
+std::vector<Time> random_cuts(RandomStream& random, Time longest) {
+    std::vector<Time> cuts;
+    for (Time at = 0; at < 40 * cosim::kMillisecond;) {
+        at += 1 + static_cast<Time>(random.below(static_cast<std::uint64_t>(longest)));
+        cuts.push_back(std::min(at, 40 * cosim::kMillisecond));
+    }
+    return cuts;
+}
+
+std::string contents(const std::filesystem::path& file) {
+    std::ostringstream text;
+    text << std::ifstream(file).rdbuf();
+    std::filesystem::remove(file);
+    return text.str();
 }
 
 }  // namespace
@@ -203,14 +226,79 @@ TEST_CASE("however the grants are cut, the same messages leave at the same times
     CHECK(run_cut({40 * cosim::kMillisecond}, false) == whole);
     RandomStream random(11, "cuts");
     for (int round = 0; round < 4; ++round) {
-        std::vector<Time> cuts;
-        for (Time at = 0; at < 40 * cosim::kMillisecond;) {
-            const Time longest = round == 0 ? 300 * cosim::kNanosecond : 400 * cosim::kMicrosecond;
-            at += 1 + static_cast<Time>(random.below(static_cast<std::uint64_t>(longest)));
-            cuts.push_back(std::min(at, 40 * cosim::kMillisecond));
-        }
-        CHECK(run_cut(cuts, round % 2 == 0) == whole);
+        const Time longest = round == 0 ? 300 * cosim::kNanosecond : 400 * cosim::kMicrosecond;
+        CHECK(run_cut(random_cuts(random, longest), round % 2 == 0) == whole);
     }
+}
+
+TEST_CASE("the log tells what happened, the same however the grants are cut") {
+    const auto file = std::filesystem::temp_directory_path() / "puckloop-pic-log-test.log";
+    const auto messages = run_cut({40 * cosim::kMillisecond}, true, file.string());
+    CHECK(messages == run_cut({40 * cosim::kMillisecond}, true));  // looking disturbs nothing
+    const std::string log = contents(file);
+    for (const char* line : {
+             "[    0.000000 s] firmware test.s, Intel HEX, ",
+             "[    0.000000 s] power-on, reset POR\n",
+             "[    0.002078 s] uart2: first character arrives, 0x00 at 115200 baud\n",
+             " s] uart2: first character sent, 0x00 at 115200 baud\n",
+             "[    0.001010 s] led0 on\n",
+             " s] left motor runs forward from step 0\n",
+             "[    0.040000 s] uart2: ",
+             "[    0.040000 s] end: ",
+             "wheels at 39 and 0 steps\n",
+         })
+        CHECK_THAT(log, Catch::Contains(line));
+    RandomStream random(12, "cuts");
+    for (const Time longest :
+         {300 * cosim::kNanosecond, 400 * cosim::kMicrosecond, 25 * cosim::kMillisecond}) {
+        run_cut(random_cuts(random, longest), true, file.string());
+        CHECK(contents(file) == log);
+    }
+}
+
+TEST_CASE("the log names resets, registers without a model and where in the program") {
+    const auto file = std::filesystem::temp_directory_path() / "puckloop-pic-log-test.log";
+    image::Image image = assembled(R"(
+        .org 0x100
+main:   mov #0x1000, w15
+        mov w0, SPI1CON
+        reset
+)");
+    image.symbols["_main"] = {.address = 0x100};
+    pic::PicNodeOptions options = quiet();
+    options.log = file.string();
+    pic::PicNode node(image, options);
+    std::vector<Message> outbox;
+    node.advance(10 * cosim::kMicrosecond, {}, outbox);
+    node.finish();
+    const std::string log = contents(file);
+    CHECK_THAT(log,
+               Catch::Contains("first write of SPI1CON, which is not modelled, at pc 0x0102 (_main+0x2)\n"));
+    CHECK_THAT(log, Catch::Contains("reset SWR at pc 0x0104 (_main+0x4)\n"));
+    CHECK(log.find("SPI1CON") == log.rfind("SPI1CON"));
+}
+
+TEST_CASE("errors on the line are told when they first come and when they have doubled") {
+    const auto file = std::filesystem::temp_directory_path() / "puckloop-pic-log-test.log";
+    pic::PicNodeOptions options = quiet();
+    options.log = file.string();
+    pic::PicNode node(assembled(kFirmware), options);
+    std::vector<Message> inbox;
+    for (int i = 0; i < 10; ++i) {
+        Message message = byte_at((2 + 10 * i) * cosim::kMillisecond, 0);
+        auto& frame = std::get<cosim::UartFrame>(message.payload);
+        frame.bit_period = 2 * kBit;  // 57600 baud
+        message.time = frame.start + 9 * frame.bit_period;
+        inbox.push_back(message);
+    }
+    std::vector<Message> outbox;
+    node.advance(110 * cosim::kMillisecond, inbox, outbox);
+    node.finish();
+    const std::string log = contents(file);
+    CHECK_THAT(log, Catch::Contains("[    0.010000 s] uart2: framing errors so far: 1\n"));
+    CHECK_THAT(log, Catch::Contains("[    0.020000 s] uart2: framing errors so far: 2\n"));
+    CHECK_THAT(log, !Catch::Contains("so far: 3\n"));
+    CHECK_THAT(log, Catch::Contains("so far: 8\n"));
 }
 
 TEST_CASE("with nobody on the bus a master's bytes are not acknowledged, and it does not hang") {

@@ -23,6 +23,7 @@ std::unique_ptr<cosim::Node> make_pic(const json& spec) {
     options.board.crystal_ppm = spec.at("crystal_ppm");
     options.board.adc_noise_counts = spec.at("adc_noise");
     options.board.selector = spec.at("selector");
+    options.log = spec.value("log", "");
     return std::make_unique<pic::PicNode>(image::load_image(spec.at("firmware").get<std::string>()), options);
 }
 

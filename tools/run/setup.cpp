@@ -69,14 +69,21 @@ void apply(const RunRequest& request, Scenario& scenario) {
     if (!request.overlay.empty()) apply_overlay(scenario, request.overlay);
 }
 
-json pic_spec(const Scenario& scenario, const RobotBoards& robot) {
+/// "robot0.pic.log" in the results folder.
+std::string log_of(const RunSetup& setup, const std::string& node) {
+    return (setup.out / (node + ".log")).string();
+}
+
+json pic_spec(const RunSetup& setup, const RobotBoards& robot) {
+    const Scenario& scenario = setup.scenario;
     return {{"kind", "pic"},
             {"name", robot.name + ".pic"},
             {"firmware", std::filesystem::absolute(robot.pic.firmware).lexically_normal().string()},
             {"seed", scenario.seed},
             {"crystal_ppm", robot.pic.crystal_ppm},
             {"adc_noise", robot.pic.adc_noise},
-            {"selector", robot.pic.selector}};
+            {"selector", robot.pic.selector},
+            {"log", log_of(setup, robot.name + ".pic")}};
 }
 
 json linux_spec(const RunSetup& setup, const RobotBoards& robot, bool ends_run, bool realtime) {
@@ -93,7 +100,7 @@ json linux_spec(const RunSetup& setup, const RobotBoards& robot, bool ends_run, 
               {"restart_at", board.restarts},
               {"exit_ends_run", ends_run},
               {"real_time", realtime},
-              {"log", (setup.out / (robot.name + ".linux.log")).string()}};
+              {"log", log_of(setup, robot.name + ".linux")}};
     return spec;
 }
 
@@ -101,12 +108,13 @@ void add_robot(RunSetup& setup, const RobotBoards& robot, bool exit_ends_run, bo
     const Scenario& scenario = setup.scenario;
     const std::string pic = robot.name + ".pic";
     const std::string bus = robot.name + ".i2c";
-    setup.nodes.push_back({pic, pic_spec(scenario, robot).dump()});
+    setup.nodes.push_back({pic, pic_spec(setup, robot).dump()});
     setup.nodes.push_back({bus, json{{"kind", "i2c_bus"},
                                      {"name", bus},
                                      {"hertz", scenario.i2c_clock},
                                      {"ground_sensor", robot.ground_sensor},
-                                     {"rgb_turret", robot.rgb_turret}}
+                                     {"rgb_turret", robot.rgb_turret},
+                                     {"log", log_of(setup, bus)}}
                                     .dump()});
     cosim::LinkSpec world{robot.name + ".world", {pic, "world"}, {"world", robot.name + ".board"}};
     world.signal_names = names_of(pic::signals());
@@ -141,6 +149,7 @@ RunSetup set_up(const RunRequest& request) {
         body.ground_signals = ground_ids;
     }
     scenario.world.recording.directory = setup.out.string();
+    scenario.world.recording.log = log_of(setup, "world");
     json world = json::parse(physics::to_json(scenario.world));
     setup.nodes.push_back({"world", json{{"kind", "world"}, {"world", std::move(world)}}.dump()});
 

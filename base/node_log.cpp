@@ -1,0 +1,36 @@
+#include "base/node_log.h"
+
+#include "base/error.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace puckloop {
+
+namespace {
+[[noreturn]] void fail(const std::string& path) {
+    throw RunError(fmt::format("cannot write {}: {}", path, std::strerror(errno)));
+}
+}  // namespace
+
+NodeLog::NodeLog(std::string path) : path_(std::move(path)) {
+    if (path_.empty()) return;
+    file_.reset(std::fopen(path_.c_str(), "w"));
+    if (!file_) fail(path_);
+}
+
+void NodeLog::line(double seconds, std::string_view text) {
+    if (!file_) return;
+    const std::string whole = fmt::format("[{:12.6f} s] {}\n", seconds, text);
+    if (std::fwrite(whole.data(), 1, whole.size(), file_.get()) == whole.size() &&
+        std::fflush(file_.get()) == 0)
+        return;
+    const int cause = errno;
+    file_.reset();
+    errno = cause;
+    fail(path_);
+}
+
+}  // namespace puckloop
