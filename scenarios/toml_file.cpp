@@ -13,6 +13,8 @@ namespace puckloop::scenarios {
 
 namespace {
 
+constexpr std::size_t kLargestFile = 4 << 20;
+
 using Parsed = toml::basic_value<toml::discard_comments, std::map, std::vector>;
 
 int line_of(const Parsed& value) {
@@ -68,12 +70,17 @@ std::string reason_of(const std::exception& error) {
 }  // namespace
 
 TomlValue read_toml(const std::filesystem::path& file) {
-    if (std::filesystem::is_directory(file))
+    std::error_code ignored;
+    if (std::filesystem::is_directory(file, ignored))
         throw InputError(file.string(), "", "is a directory", "a TOML file");
     std::ifstream stream(file, std::ios::binary);
     if (!stream) throw InputError(file.string(), "", "cannot be opened", "a TOML file");
-    std::stringstream content;
-    content << stream.rdbuf();
+    std::string text(kLargestFile + 1, '\0');
+    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+    text.resize(static_cast<std::size_t>(stream.gcount()));
+    if (text.size() > kLargestFile)
+        throw InputError(file.string(), "", "is too large", "at most 4 MB of TOML");
+    std::istringstream content(text);
     try {
         return convert(toml::parse<toml::discard_comments, std::map, std::vector>(content, file.string()),
                        file.string());

@@ -159,6 +159,8 @@ void Core::set_state(const CoreState& state) {
     m.current = at(m, state.pc);
     m.watch = 0;  // every register counts as written
     m.limit = 0;
+    m.stall_end = 0;
+    if (m.mode != PowerMode::Run) leave_power_save(m);
     if (m.st.sr & sr::DA) mark(m, m.st.loop.doend, kLoopEnd);
     update_pointer_rules(m);
     m.eligible = false;

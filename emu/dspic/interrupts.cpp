@@ -82,7 +82,7 @@ int InterruptController::priority(int irq) const {
 }
 
 void InterruptController::raise_trap(Trap trap, Cycle now) {
-    sfr_.raw(kIntcon1) |= static_cast<std::uint16_t>(1u << static_cast<int>(trap));
+    sfr_.raw(kIntcon1) |= trap_flag(trap);
     find_first(now);
 }
 
@@ -117,15 +117,15 @@ void InterruptController::acknowledge(const Request& taken, int cpu_level_before
     sfr_.raw(device_.inttreg) = static_cast<std::uint16_t>(taken.level << 8 | number);
 }
 
-/// Traps stand in INTCON1 in the order of their levels; user sources by priority, then by number.
+/// Traps by their levels, which fall with the vector number; user sources by priority, then by number.
 void InterruptController::find_first(Cycle now) {
     Request best;
     const std::uint16_t traps = sfr_.raw(kIntcon1) & (device_.family_33f ? kTrapFlags33F : kTrapFlags30F);
     if (traps) {
-        int vector = 1;
-        while (!(traps >> vector & 1))
-            ++vector;
-        best = {trap_level(static_cast<Trap>(vector)), vector};
+        auto trap = Trap::OscillatorFail;
+        while (!(traps & trap_flag(trap)))
+            trap = static_cast<Trap>(static_cast<int>(trap) + 1);
+        best = {trap_level(trap), static_cast<int>(trap)};
     } else {
         for (int i = 0; i < device_.ifs_words; ++i) {
             std::uint32_t pending = sfr_.raw(static_cast<std::uint16_t>(device_.ifs + 2 * i)) &

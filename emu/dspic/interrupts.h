@@ -13,7 +13,7 @@
 
 namespace puckloop::dspic {
 
-/// Trap sources. The number is the vector and the bit of INTCON1 that flags it.
+/// Trap sources. The number is the vector; trap_flag() tells the bit of INTCON1.
 enum class Trap : std::uint8_t {
     OscillatorFail = 1,
     AddressError = 2,
@@ -25,6 +25,12 @@ enum class Trap : std::uint8_t {
 /// CPU priority of a trap: 14 oscillator, 13 address, 12 stack, 11 math, 10 DMA controller.
 constexpr int trap_level(Trap trap) {
     return 15 - static_cast<int>(trap);
+}
+/// The bit of INTCON1 that flags it. Stack and address error stand there the other way round than in the
+/// vector table: OSCFAIL 1, STKERR 2, ADDRERR 3, MATHERR 4, DMACERR 5.
+constexpr std::uint16_t trap_flag(Trap trap) {
+    const int bit = trap == Trap::AddressError ? 3 : trap == Trap::StackError ? 2 : static_cast<int>(trap);
+    return static_cast<std::uint16_t>(1u << bit);
 }
 
 class InterruptController {

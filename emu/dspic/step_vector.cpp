@@ -211,6 +211,7 @@ void StepMachine::Parts::set_up(const Case& c) {
         core.poke_program(address, kErased);
     dirty.clear();
     interrupted.reset();
+    sfr.reset_values();
     interrupts.reset();
     const auto ram = core.ram();
     std::fill(ram.begin(), ram.end(), std::uint16_t{0});

@@ -193,6 +193,9 @@ TEST_CASE("the address error trap: a misaligned write is suppressed, the read co
         mov     #0x55AA, w2
 bad:    mov     w2, [w1++]
         nop
+        nop
+        nop
+after:  bra     after
 trap:   bclr    0x80, #3
         retfie
 )");
@@ -206,6 +209,28 @@ trap:   bclr    0x80, #3
     rig.core.step();
     rig.core.step();
     CHECK(rig.core.cpu_level() == 0);
+    // ADDRERR was the flag: nothing brings the handler back.
+    REQUIRE(rig.run_to("after"));
+    CHECK(rig.log.size() == 1);
+}
+
+TEST_CASE("each trap sets its own flag of INTCON1; the address error goes before the stack error") {
+    const struct {
+        const char* cause;
+        int vector;
+        std::uint16_t flag;
+    } cases[] = {{"bset 0x80, #1", 1, 1u << 1},              // OSCFAIL, set by software
+                 {"mov 0x3000, w0", 2, 1u << 3},             // ADDRERR
+                 {"mov #0x700, w15\n push w0", 3, 1u << 2},  // STKERR
+                 {"mov #0x700, w15\n push 0x3000", 2, 3u << 2}};
+    for (const auto& c : cases) {
+        Rig rig("        mov #0x1000, w15\n" + std::string(c.cause) + "\n        nop\n        nop\n" +
+                "loop:   bra loop\ntrap:   bra trap\n");
+        rig.vector(c.vector, "trap");
+        INFO(c.cause);
+        REQUIRE(rig.run_to("trap"));
+        CHECK((rig.data(0x80) & 0x1E) == c.flag);
+    }
 }
 
 TEST_CASE("a trap flag left set re-enters after RETFIE") {

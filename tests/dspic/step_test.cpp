@@ -152,6 +152,15 @@ TEST_CASE("a case leaves nothing behind for the next") {
     CHECK(machine.answer("c " + kState + " op=080003,000001,000000,000000 run=4").find(" ok ") !=
           std::string::npos);
     CHECK(machine.answer(line) == first);
+    // Sleep, RESET, a trap, a register written.
+    const std::string read = "r " + kState + " op=801000";  // MOV 0x200,W0
+    const std::string zero = machine.answer(read);
+    for (const char* words : {"fe4000", "fe4001", "fe0000", "7f0000", "881000"}) {
+        machine.answer("x " + kState + " op=" + words);
+        INFO(words);
+        CHECK(machine.answer(line) == first);
+        CHECK(machine.answer(read) == zero);
+    }
 }
 
 TEST_CASE("malformed lines answer with what is wrong") {

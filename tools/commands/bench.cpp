@@ -5,6 +5,7 @@
 #include "emu/dspic/core_bench.h"
 #include "tools/bench/reference.h"
 #include "tools/commands.h"
+#include "tools/commands/number_checks.h"
 #include "tools/run/run_scenario.h"
 
 #include <CLI/CLI.hpp>
@@ -144,7 +145,7 @@ void declare_bench(CLI::App& app, int& status) {
     command->add_option("--image", options->image, "firmware image to run on the bare chip as well")
         ->type_name("IMAGE");
     command->add_option("--duration", options->simulated_s, "simulated seconds of each run of the scenario")
-        ->check(CLI::PositiveNumber)
+        ->check(positive_number())
         ->type_name("S");
     command->add_option("--rounds", options->rounds, "measurements of each figure")
         ->check(CLI::Range(1, 100))

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "emu/pic/pic_node.h"
 #include "tools/commands.h"
+#include "tools/commands/number_checks.h"
 #include "tools/exec/options.h"
 
 #include <CLI/CLI.hpp>
@@ -16,6 +17,8 @@ namespace puckloop::tools {
 namespace {
 
 constexpr double kLongestRun = 1e6;  // seconds
+constexpr std::uint64_t kMostCycles = 10'000'000'000'000;
+constexpr std::uint64_t kMostSeeds = ~std::uint64_t{0};
 constexpr double kSlowestBaud = 50, kFastestBaud = 4e6;
 constexpr double kSlowestCrystal = 1e5, kFastestCrystal = 4e7;
 constexpr double kWorstCrystal = 1e5;  // ppm
@@ -51,36 +54,41 @@ void describe(CLI::App& app, Arguments& a) {
     app.add_option("IMAGE", o.image, "firmware: Intel HEX, ELF (XC16) or COFF (C30)");
     auto* seconds =
         app.add_option("--seconds", o.seconds, "budget in simulated seconds (60 if nobody live is at an end)")
-            ->check(CLI::Range(0.0, kLongestRun));
-    app.add_option("--cycles", o.cycles, "budget in instruction cycles")->excludes(seconds);
+            ->check(number_between(0.0, kLongestRun));
+    app.add_option("--cycles", o.cycles, "budget in instruction cycles")
+        ->check(count_up_to(kMostCycles))
+        ->excludes(seconds);
     app.add_option("--stop-at", o.stop_at,
                    "symbol or 0xPC; status 0 when reached, 1 when the budget ends first");
     app.add_option("--uart1", o.uart[0], "- (stdin and stdout), pty, tcp:PORT (on 127.0.0.1) or script:FILE");
     app.add_option("--uart2", o.uart[1], "the same for the second UART");
     app.add_option("--baud", o.bench.baud, "rate of the bench's ends, 8N1")
-        ->check(CLI::Range(kSlowestBaud, kFastestBaud))
+        ->check(number_between(kSlowestBaud, kFastestBaud))
         ->capture_default_str();
     app.add_option(
-        "--uart-start", o.uart_start,
-        "when standard input is offered, in simulated seconds; without it: once the chip's receiver has "
-        "been on for 3 s without a reset");
+           "--uart-start", o.uart_start,
+           "when standard input is offered, in simulated seconds; without it: once the chip's receiver has "
+           "been on for 3 s without a reset")
+        ->check(number_between(0.0, kLongestRun));
     app.add_option("--i2c", o.i2c, "script:FILE, a bus master for boards that are slaves");
     app.add_option("--stimulus", o.stimulus, "FILE of `<time_s> <signal> <value>`");
     app.add_flag("--list-signals", o.list_signals, "name the signals with units and ranges, and end");
     app.add_option("--log", o.bench.log_folder, "folder for uart1.csv, uart2.csv, i2c.csv and pins.csv");
     app.add_flag("--json", o.json, "one JSON object on one line instead of text");
-    app.add_option("--seed", t.seed, "of the random streams")->capture_default_str();
+    app.add_option("--seed", t.seed, "of the random streams")
+        ->check(count_up_to(kMostSeeds))
+        ->capture_default_str();
     app.add_option("--adc-noise", t.adc_noise_counts, "standard deviation in counts (board)")
-        ->check(CLI::Range(0.0, 1000.0))
+        ->check(number_between(0.0, 1000.0))
         ->capture_default_str();
     app.add_option("--selector", t.selector, "initial position of the selector (board)")
         ->check(CLI::Range(0, 15))
         ->capture_default_str();
     app.add_option("--crystal", t.chip.crystal_hertz, "in Hz")
-        ->check(CLI::Range(kSlowestCrystal, kFastestCrystal))
+        ->check(number_between(kSlowestCrystal, kFastestCrystal))
         ->capture_default_str();
     app.add_option("--ppm", t.chip.ppm, "error of the crystal")
-        ->check(CLI::Range(-kWorstCrystal, kWorstCrystal))
+        ->check(number_between(-kWorstCrystal, kWorstCrystal))
         ->capture_default_str();
     app.add_option("--fosc", a.fosc,
                    "oscillator configuration in force: robot (XT, PLL x8), image, or 0xWORD")

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "cosim/interrupt.h"
 #include "tools/commands.h"
+#include "tools/commands/number_checks.h"
 #include "tools/run/parameter_list.h"
 #include "tools/run/report.h"
 #include "tools/run/run_scenario.h"
@@ -17,6 +18,8 @@
 namespace puckloop::tools {
 
 namespace {
+
+constexpr double kShortestRun = 1e-9, kLongestRun = 720 * 3600.0;  // seconds
 
 struct Options {
     RunRequest request;
@@ -85,16 +88,18 @@ void declare_run(CLI::App& app, int& status) {
                       "all nodes in this process (default: each in its own)");
     command->add_flag("--realtime", request.realtime, "pace simulated time by the wall clock");
     command->add_option("--duration", request.duration, "simulated seconds")
-        ->check(CLI::PositiveNumber)
+        ->check(number_between(kShortestRun, kLongestRun))
         ->type_name("S");
-    command->add_option("--seed", request.seed, "seed of every random stream")->type_name("N");
+    command->add_option("--seed", request.seed, "seed of every random stream")
+        ->check(count_up_to(~std::uint64_t{0}))
+        ->type_name("N");
     command->add_option("--model", request.overlay, "overlay of physical parameters")->type_name("OVERLAY");
     command->add_option("--out", request.out, "folder for the results (default: out/<scenario>)")
         ->type_name("DIR");
     command
         ->add_option("--stall", request.stall_seconds,
                      "wall-clock seconds after which a silent node ends the run")
-        ->check(CLI::PositiveNumber)
+        ->check(positive_number())
         ->type_name("S");
     command->add_flag("--list-parameters", options->list_parameters,
                       "print every physical parameter and where its value comes from");

@@ -5,6 +5,7 @@
 #include "cosim/trace_stats.h"
 #include "cosim/trace_vcd.h"
 #include "tools/command.h"
+#include "tools/commands/number_checks.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -101,8 +102,9 @@ void declare_trace(CLI::App& app, int&) {
     command->add_option("--kind", options->kinds, "only uart, i2c or signal (repeatable)")
         ->allow_extra_args(false)
         ->check(CLI::IsMember({"uart", "i2c", "signal"}));
-    command->add_option("--from", options->from_s, "first time, s")->check(CLI::Range(0.0, 9e6));
-    command->add_option("--to", options->until_s, "end time, s; not included")->check(CLI::Range(0.0, 9e6));
+    command->add_option("--from", options->from_s, "first time, s")->check(number_between(0.0, 9e6));
+    command->add_option("--to", options->until_s, "end time, s; not included")
+        ->check(number_between(0.0, 9e6));
     command->add_option("--csv", options->csv, "write the filtered trace; - is the standard output");
     command->add_option("--vcd", options->vcd,
                         "write a value change dump, for GTKWave; - is the standard output");
