@@ -241,7 +241,7 @@ TEST_CASE("the log tells what happened, the same however the grants are cut") {
              "[    0.000000 s] power-on, reset POR\n",
              "[    0.002078 s] uart2: first character arrives, 0x00 at 115200 baud\n",
              " s] uart2: first character sent, 0x00 at 115200 baud\n",
-             "[    0.001010 s] led0 on\n",
+             "[    0.001002 s] led0 on\n",
              " s] left motor runs forward from step 0\n",
              "[    0.040000 s] uart2: ",
              "[    0.040000 s] end: ",
