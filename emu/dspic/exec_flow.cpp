@@ -191,6 +191,7 @@ const Op* power_save(Machine& m, const Op* op) {
 }
 const Op* clear_wdt(Machine& m, const Op* op) {
     clear_watchdog(m);
+    rcon_register(m) &= static_cast<std::uint16_t>(~(rcon::SLEEP | rcon::IDLE));
     return op + 1;
 }
 const Op* software_reset(Machine& m, const Op* op) {

@@ -297,8 +297,8 @@ TEST_CASE("the watchdog resets, CLRWDT holds it off, Sleep wakes with it") {
     fed.core.run(20'000);
     CHECK(fed.log.empty());
 
-    Rig asleep(
-        "        bset 0x740, #5\n        pwrsav #0\n        inc w1, w1\nloop:   clrwdt\n        bra loop\n");
+    Rig asleep("        bset 0x740, #5\n        pwrsav #0\n        mov 0x740, w2\n        inc w1, w1\n"
+               "loop:   clrwdt\n        bra loop\n");
     asleep.core.poke_program(0xF80002, 0x0000);
     asleep.core.set_cycle_rate(kRate);
     asleep.core.run(1900);
@@ -306,7 +306,8 @@ TEST_CASE("the watchdog resets, CLRWDT holds it off, Sleep wakes with it") {
     asleep.core.run(2100);
     CHECK(asleep.w(1) == 1);
     CHECK(asleep.log.empty());
-    CHECK((asleep.data(kRcon) & (rcon::WDTO | rcon::SLEEP)) == (rcon::WDTO | rcon::SLEEP));
+    CHECK((asleep.w(2) & (rcon::WDTO | rcon::SLEEP)) == (rcon::WDTO | rcon::SLEEP));
+    CHECK((asleep.data(kRcon) & (rcon::WDTO | rcon::SLEEP)) == rcon::WDTO);  // CLRWDT clears SLEEP
 }
 
 TEST_CASE("core registers: what software may write") {

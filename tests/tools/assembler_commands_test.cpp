@@ -99,6 +99,8 @@ TEST_CASE("asm lists and reports") {
     const Folder folder;
     const Result list = puckloop("asm " + folder.file("l.s", "x: call x\nnop\n") + " --format list");
     CHECK(list.output == "000000: 020000 000000      1  call x\n000004: 000000             2  nop\n");
+    const Result placed = puckloop("asm " + folder.file("o.s", ".org 0x200\nnop\n") + " --format list");
+    CHECK(placed.output == "000200: 000000             2  nop\n");
     const std::string bad = folder.file("bad.s", "nop\n  mvo w0, w1\n");
     const Result failed = puckloop("asm " + bad);
     CHECK(failed.status == 2);

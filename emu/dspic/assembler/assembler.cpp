@@ -121,7 +121,8 @@ class Assembler {
     }
 
     bool keep(std::uint32_t start, std::string_view text) {
-        if (final_ && options_.keep_lines && address_ > start)
+        const bool words = address_ > start && program_.words.contains(start);  // not a mere .org
+        if (final_ && options_.keep_lines && words)
             program_.lines.push_back(
                 {start, static_cast<int>((address_ - start) / 2), line_->number, std::string(text)});
         return true;
