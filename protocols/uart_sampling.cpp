@@ -8,10 +8,6 @@ using cosim::Time;
 using cosim::UartFrame;
 
 namespace {
-int bits_before_stop(const UartFrame& frame) {
-    return 1 + frame.data_bits + (frame.parity != 0 ? 1 : 0);
-}
-
 /// The next instant at or after `from` at which the frame's line is low, or kNever. Level changes happen on
 /// the sender's bit boundaries only.
 Time next_low(const UartFrame& frame, Time from) {
@@ -59,6 +55,10 @@ ReceivedCharacter take_character(const UartFrame& frame, const UartReceiver& rec
     return character;
 }
 }  // namespace
+
+int bits_before_stop(const UartFrame& frame) {
+    return 1 + frame.data_bits + (frame.parity != 0 ? 1 : 0);
+}
 
 Time stop_bit_start(const UartFrame& frame) {
     return frame.start + bits_before_stop(frame) * frame.bit_period;

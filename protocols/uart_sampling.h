@@ -26,6 +26,9 @@ struct ReceivedCharacter {
     cosim::Time time = 0;   ///< middle of its stop bit: the character is there
 };
 
+/// Start, data and parity bits.
+int bits_before_stop(const cosim::UartFrame& frame);
+
 /// True where the frame leaves the line at mark. The line is idle before and after the frame.
 bool line_is_mark(const cosim::UartFrame& frame, cosim::Time time);
 

@@ -13,6 +13,7 @@
 #include "emu/dspic/peripherals/uart.h"
 #include "emu/image/device.h"
 #include "emu/image/image.h"
+#include "protocols/uart_sampling.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -264,7 +265,7 @@ void Chip::pins_changed(PortLetter port) {
 Time Chip::earliest_uart_send(int unit, Time nominal_bit) const {
     const Time unbegun = now() + kUartLookaheadBits * nominal_bit;
     const std::optional<cosim::UartFrame> frame = parts_->uart(unit).begun();
-    return frame ? std::min(unbegun, stop_bit_of(*frame)) : unbegun;
+    return frame ? std::min(unbegun, protocols::stop_bit_start(*frame)) : unbegun;
 }
 
 std::optional<Time> Chip::uart_begun(int unit) const {

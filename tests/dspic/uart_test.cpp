@@ -1,4 +1,5 @@
 #include "emu/dspic/peripherals/uart.h"
+#include "protocols/uart_sampling.h"
 
 #include "tests/dspic/peripheral_bench.h"
 
@@ -52,7 +53,7 @@ struct UartBench : Bench {
         return start;
     }
     void give(const UartFrame& frame) {
-        go(clock.first_cycle_at(stop_bit_of(frame)));
+        go(clock.first_cycle_at(protocols::stop_bit_start(frame)));
         uart.receive(frame, now);
     }
 };
@@ -77,7 +78,7 @@ TEST_CASE_METHOD(UartBench, "a byte leaves as a frame when its stop bit begins")
     CHECK(pins.frames[0].data == 0xA5);
     CHECK(pins.frames[0].start == start);
     CHECK(std::abs(static_cast<double>(pins.frames[0].bit_period) - 1e12 / 115200.0) < 2.0);
-    CHECK(stop_bit_of(pins.frames[0]) >= clock.time_of(begin + kBeforeStop));
+    CHECK(protocols::stop_bit_start(pins.frames[0]) >= clock.time_of(begin + kBeforeStop));
     CHECK_FALSE(uart.begun());
     CHECK_FALSE(sta() & kTrmt);
     go(begin + kFrame);

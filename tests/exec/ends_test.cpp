@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <filesystem>
 #include <string>
 #include <thread>
 
@@ -100,6 +101,10 @@ TEST_CASE("a TCP port that is taken is an input error of one line") {
 }
 
 TEST_CASE("a pty end is a raw terminal") {
+    if (access("/dev/pts", R_OK) != 0 || std::filesystem::is_empty("/dev/pts")) {
+        WARN("no devpts at /dev/pts (a bare chroot?): skipped");
+        return;
+    }
     const auto end = exec::make_pty_end();
     const std::string text = end->announcement();
     REQUIRE(text.starts_with("pty /dev/"));

@@ -1,5 +1,7 @@
 #include "emu/dspic/peripherals/uart.h"
 
+#include "protocols/uart_sampling.h"
+
 #include <algorithm>
 #include <bit>
 
@@ -142,7 +144,7 @@ void Uart::begin_frame(Cycle from) {
         if (!(sta() & kUtxisel) || state_.transmit.count == 0) around_.interrupts.raise(setup_.tx_irq, from);
     }
     const Cycle bit_cycles = static_cast<Cycle>(kTicksPerBit) * divisor();
-    const int bits = bits_before_stop(frame);
+    const int bits = protocols::bits_before_stop(frame);
     const Cycle stop = start + bit_cycles * static_cast<Cycle>(bits);
     frame.start = clock_.time_of(start);
     // Rounded up, so that the stamp of the stop bit never lies before the event that hands the frame out.

@@ -1,22 +1,21 @@
 #include "emu/dspic/peripherals/uart_receiver.h"
 
+#include "protocols/uart_sampling.h"
+
 namespace puckloop::dspic {
 
 using cosim::Time;
 using cosim::UartFrame;
 
-namespace {
+using protocols::bits_before_stop;
+using protocols::frame_end;
+using protocols::line_is_mark;
 
-Time end_of(const UartFrame& frame) {
-    return frame.start + frame.bit_period * (bits_before_stop(frame) + frame.stop_bits);
-}
+namespace {
 
 // Level of bit `index` of a frame, 0 = start bit.
 bool bit_level(const UartFrame& frame, int index) {
-    if (frame.is_break || index == 0) return false;
-    if (index <= frame.data_bits) return frame.data >> (index - 1) & 1;
-    if (frame.parity && index == frame.data_bits + 1) return frame.parity_bit;
-    return true;
+    return line_is_mark(frame, frame.start + frame.bit_period * index);
 }
 
 int bit_count(const UartFrame& frame) {
@@ -24,14 +23,6 @@ int bit_count(const UartFrame& frame) {
 }
 
 }  // namespace
-
-int bits_before_stop(const UartFrame& frame) {
-    return 1 + frame.data_bits + (frame.parity ? 1 : 0);
-}
-
-Time stop_bit_of(const UartFrame& frame) {
-    return frame.start + frame.bit_period * bits_before_stop(frame);
-}
 
 void UartReceiver::start(Cycle at) {
     listening_from_ = clock_.time_of(at);
@@ -45,8 +36,7 @@ void UartReceiver::frame(const UartFrame& frame) {
 bool UartReceiver::level(Time time) const {
     for (auto frame = frames_.rbegin(); frame != frames_.rend(); ++frame) {
         if (time < frame->start) continue;
-        const Time index = (time - frame->start) / frame->bit_period;
-        return index >= bit_count(*frame) || bit_level(*frame, static_cast<int>(index));
+        return line_is_mark(*frame, time);
     }
     return true;
 }
@@ -54,7 +44,7 @@ bool UartReceiver::level(Time time) const {
 // The first change from high to low at or after `from`; the line rests high.
 std::optional<Time> UartReceiver::falling_edge(Time from) const {
     for (const UartFrame& frame : frames_) {
-        if (end_of(frame) < from) continue;
+        if (frame_end(frame) < from) continue;
         for (int i = 0; i < bit_count(frame); ++i) {
             const Time edge = frame.start + frame.bit_period * i;
             if (edge < from || bit_level(frame, i)) continue;
@@ -78,7 +68,7 @@ Time UartReceiver::first_high(Time from) const {
 
 void UartReceiver::forget_before(Time time) {
     // The last frame stays: whether the next one begins with an edge hangs on it.
-    while (frames_.size() > 1 && end_of(frames_[0]) <= time && frames_[1].start <= time)
+    while (frames_.size() > 1 && frame_end(frames_[0]) <= time && frames_[1].start <= time)
         frames_.pop_front();
 }
 
@@ -106,7 +96,7 @@ std::optional<UartReceiver::Character> UartReceiver::next(const Format& format, 
 
     // Beyond the last known frame another may already have begun whose message is still to come.
     const UartFrame& last = frames_.back();
-    if (centre(stop) >= end_of(last)) {
+    if (centre(stop) >= frame_end(last)) {
         const Cycle certain =
             clock_.first_cycle_at(centre(stop) + last.bit_period * bits_before_stop(last)) + 1;
         if (now < certain) {

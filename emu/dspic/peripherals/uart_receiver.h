@@ -62,9 +62,4 @@ class UartReceiver {
     Cycle ask_again_ = kNoCycle;
 };
 
-/// Bits from the start bit to the last one before the stop bit.
-int bits_before_stop(const cosim::UartFrame& frame);
-/// When the frame's stop bit begins: what its message is stamped with.
-cosim::Time stop_bit_of(const cosim::UartFrame& frame);
-
 }  // namespace puckloop::dspic
