@@ -46,6 +46,10 @@ LinuxBoard read_linux(const std::string& file, const std::string& where, const T
         } catch (const QuantityError& error) {
             reader.fail("restart", "restart: " + error.problem, error.expected);
         }
+        const std::size_t n = board.restarts.size();
+        if (board.restarts.back() <= (n > 1 ? board.restarts[n - 2] : board.start))
+            reader.fail("restart", "the times of restart do not rise from start on",
+                        "times later than start, each later than the one before");
     }
     board.place_line = table.line;
     reader.finish();
@@ -64,6 +68,8 @@ void read_robot(const std::string& file, const TomlValue& table, const std::file
             return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
                    c == '-';
         });
+    constexpr std::size_t kLongestName = 64;
+    if (boards.name.size() > kLongestName) reader.fail("name", "the name is too long", "at most 64 letters");
     if (!plain)
         reader.fail("name", "the name has other signs than letters, digits, _ and -",
                     "a name such as epuck12");
@@ -89,7 +95,21 @@ void read_robot(const std::string& file, const TomlValue& table, const std::file
     scenario.world.robots.push_back(std::move(body));
 }
 
-cosim::FaultSpec read_fault(const std::string& file, std::size_t index, const TomlValue& table) {
+/// Faults sit on the UART links, which join the boards of a robot.
+void check_fault_link(Reader& reader, const std::string& link, const Scenario& scenario) {
+    std::string known;
+    for (const RobotBoards& robot : scenario.robots) {
+        if (!robot.linux_board) continue;
+        const std::string uart = robot.name + ".uart";
+        if (uart == link) return;
+        known += (known.empty() ? "" : ", ") + uart;
+    }
+    reader.fail("link", fmt::format("there is no UART link '{}'", link),
+                known.empty() ? "a robot with a [robot.linux] program" : known);
+}
+
+cosim::FaultSpec read_fault(const std::string& file, std::size_t index, const TomlValue& table,
+                            const Scenario& scenario) {
     Reader reader(file, fmt::format("fault {}", index + 1), table);
     cosim::FaultSpec fault;
     fault.link = reader.text("link");
@@ -97,7 +117,7 @@ cosim::FaultSpec read_fault(const std::string& file, std::size_t index, const To
     const std::vector<std::string> kinds{"drop", "flip", "delay", "duplicate", "disconnect", "stuck", "rate"};
     fault.kind = *cosim::fault_of_name(reader.choice("kind", "drop", kinds));
     fault.probability = reader.quantity("probability", Dimension::Ratio, 1.0);
-    if (fault.probability < 0 || fault.probability > 1)
+    if (!(fault.probability >= 0 && fault.probability <= 1))
         reader.fail("probability", "probability is out of range", "0 to 1, or \"5 %\"");
     if (reader.has("count"))
         fault.count = static_cast<std::uint64_t>(reader.integer("count", 1, 1, 1'000'000'000));
@@ -109,6 +129,7 @@ cosim::FaultSpec read_fault(const std::string& file, std::size_t index, const To
     if (fault.kind == cosim::FaultKind::Delay) fault.amount = reader.quantity("delay", Dimension::Time);
     if (fault.kind == cosim::FaultKind::Rate) fault.amount = reader.quantity("factor", Dimension::Ratio);
     reader.finish();
+    check_fault_link(reader, fault.link, scenario);
     return fault;
 }
 
@@ -146,7 +167,7 @@ Scenario read_scenario(const std::filesystem::path& file) {
     if (scenario.robots.empty()) top.fail("robot", "no robot", "at least one [[robot]]");
     std::size_t index = 0;
     for (const TomlValue* table : top.tables("fault"))
-        scenario.faults.push_back(read_fault(name, index++, *table));
+        scenario.faults.push_back(read_fault(name, index++, *table, scenario));
     top.finish();
     const bool any_program =
         std::any_of(scenario.robots.begin(), scenario.robots.end(),

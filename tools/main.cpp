@@ -9,7 +9,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <string>
@@ -35,10 +39,22 @@ void check_subcommand(const CLI::App& app, int argc, char** argv) {
     throw puckloop::InputError("", word, "no such command", fmt::format("{}", fmt::join(names, ", ")));
 }
 
+/// Whoever started us may have closed the standard descriptors, which then would become sockets and logs, or
+/// ignored the end of child processes, which is how failures of nodes are told.
+void restore_surroundings() {
+    int descriptor = 0;
+    do
+        descriptor = ::open("/dev/null", O_RDWR);
+    while (descriptor >= 0 && descriptor <= STDERR_FILENO);
+    if (descriptor >= 0) ::close(descriptor);
+    std::signal(SIGCHLD, SIG_DFL);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
     using namespace puckloop;
+    restore_surroundings();
     CLI::App app{"puckloop: real robot firmware, without the robot"};
     app.name("puckloop");
     app.require_subcommand(1);

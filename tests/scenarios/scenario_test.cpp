@@ -87,6 +87,12 @@ TEST_CASE("what cannot be run is said with its line") {
               .find("'dorp' is not known") != std::string::npos);
     CHECK(problem_of(kArena + kRobot + "[[fault]]\nlink = \"robot0.uart\"\nbegin = \"5 s\"\nend = \"1 s\"\n")
               .find("window is empty") != std::string::npos);
+    const std::string with_linux = kArena + kRobot + "[robot.linux]\nprogram = [\"p\"]\n";
+    CHECK(problem_of(with_linux + "[[fault]]\nlink = \"robot1.uart\"\n")
+              .ends_with("fault 1: there is no UART link 'robot1.uart' (expected robot0.uart)"));
+    CHECK(problem_of(with_linux + "restart = [\"3 s\", \"2 s\"]\n").find("do not rise") != std::string::npos);
+    CHECK(problem_of(with_linux + "start = \"5 s\"\nrestart = [\"1 s\"]\n").find("do not rise") !=
+          std::string::npos);
     CHECK(problem_of(kArena + "[[robot]]\nname = \"a b\"\nposition = [\"0 m\", \"0 m\"]\n")
               .starts_with("line 6: "));
     CHECK(problem_of(
