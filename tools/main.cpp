@@ -17,6 +17,7 @@
 #include <cstdio>
 #include <exception>
 #include <string>
+#include <system_error>
 #include <vector>
 
 namespace {
@@ -67,6 +68,8 @@ int main(int argc, char** argv) {
         std::vector<std::string> words = tools::pack_linux_arguments({argv + 1, argv + argc});
         std::reverse(words.begin(), words.end());  // CLI11 takes them last first
         app.parse(words);
+        if (std::fflush(stdout) != 0 || std::ferror(stdout))
+            throw RunError("standard output: cannot be written");
         return status;
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
@@ -78,6 +81,9 @@ int main(int argc, char** argv) {
         return 2;
     } catch (const RunError& error) {
         std::fprintf(stderr, "puckloop: %s\n", error.what());
+        return 1;
+    } catch (const std::system_error& error) {  // fmt::print on a full disk
+        std::fprintf(stderr, "puckloop: standard output: %s\n", error.what());
         return 1;
     } catch (const std::exception& error) {
         std::fprintf(stderr, "puckloop: internal error: %s\n", error.what());
