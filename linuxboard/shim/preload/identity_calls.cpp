@@ -29,6 +29,12 @@ SHIM_EXPORT pid_t getpid() noexcept {
     return active() ? kProcess : REAL(getpid)();
 }
 
+/// As if started by the first process.
+SHIM_EXPORT pid_t getppid() noexcept {
+    constexpr pid_t kInit = 1;
+    return active() ? kInit : REAL(getppid)();
+}
+
 SHIM_EXPORT pid_t gettid() noexcept {
     return active() ? kProcess + static_cast<pid_t>(self()->index) : REAL(gettid)();
 }
