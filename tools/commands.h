@@ -14,6 +14,7 @@ void declare_step(CLI::App& app, int& status);
 void declare_asm(CLI::App& app, int& status);
 void declare_disasm(CLI::App& app, int& status);
 void declare_trace(CLI::App& app, int& status);
+void declare_frames(CLI::App& app, int& status);
 void declare_bench(CLI::App& app, int& status);
 void declare_node(CLI::App& app, int& status);
 
@@ -25,6 +26,7 @@ inline constexpr std::array kCommands{
     declare_asm,
     declare_disasm,
     declare_trace,
+    declare_frames,
     declare_bench,
     declare_node,
 };
