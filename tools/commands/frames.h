@@ -28,6 +28,6 @@ std::int64_t parse_number(std::string_view text, int base, std::int64_t low, std
                           std::string_view origin, std::string_view what);
 
 /// Text for an error message, quoted, on one line: control characters and all past 40 characters replaced.
-std::string quoted(std::string_view text);
+std::string shown(std::string_view text);
 
 }  // namespace puckloop::tools

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <iostream>
 #include <limits>
@@ -47,7 +48,7 @@ Number number(const std::string& text, const char* option) {
 std::uint8_t reset_byte(const std::string& text) {
     if (text == "N") return kEpuckContinue;
     if (text == "R") return kEpuckEnd;
-    throw InputError("", "--reset", fmt::format("{} is neither", quoted(text)), "N (go on) or R (end)");
+    throw InputError("", "--reset", fmt::format("{} is neither", shown(text)), "N (go on) or R (end)");
 }
 
 /// The shortest decimal that reads back as the same float; null if it is no number.
@@ -111,7 +112,7 @@ std::vector<std::uint8_t> bytes_of(const std::string& text, const std::string& o
         if (!std::all_of(pair.begin(), pair.end(), [](unsigned char c) { return std::isxdigit(c) != 0; }) ||
             pair.size() != 2)
             throw InputError(origin, fmt::format("byte {}", bytes.size()),
-                             fmt::format("{} is no byte", quoted(pair)), "two hexadecimal digits");
+                             fmt::format("{} is no byte", shown(pair)), "two hexadecimal digits");
         bytes.push_back(static_cast<std::uint8_t>(std::stoul(pair, nullptr, 16)));
         at += 2;
     }
@@ -169,7 +170,7 @@ void encode_actuators(const ActuatorArguments& arguments) {
     record.ircom_enabled = number<std::uint8_t>(arguments.ircom_enabled, "--ircom-enabled");
     record.ircom_data = number<std::uint8_t>(arguments.ircom_data, "--ircom-data");
     record.reset = reset_byte(arguments.reset);
-    fmt::print(std::cout, "{:02X}\n", fmt::join(encode(record), ""));
+    std::cout << fmt::format("{:02X}\n", fmt::join(encode(record), ""));
 }
 
 void flush_output() {

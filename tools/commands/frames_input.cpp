@@ -44,16 +44,16 @@ std::int64_t parse_number(std::string_view text, int base, std::int64_t low, std
     std::int64_t value = 0;
     const auto [stop, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value, base);
     if (error == std::errc::invalid_argument || stop != digits.data() + digits.size())
-        throw InputError(origin, what, fmt::format("{} is no number", quoted(text)), bounds());
+        throw InputError(origin, what, fmt::format("{} is no number", shown(text)), bounds());
     if (error != std::errc{} || value < low || value > high)
-        throw InputError(origin, what,
-                         fmt::format("{} is too {}", quoted(text),
-                                     value < low && error == std::errc{} ? "small" : "large"),
-                         bounds());
+        throw InputError(
+            origin, what,
+            fmt::format("{} is too {}", shown(text), value < low && error == std::errc{} ? "small" : "large"),
+            bounds());
     return value;
 }
 
-std::string quoted(std::string_view text) {
+std::string shown(std::string_view text) {
     std::string line = "\"";
     for (const char c : text.substr(0, kQuotedCharacters)) {
         const auto byte = static_cast<unsigned char>(c);

@@ -1,9 +1,8 @@
 // puckloop frames rab: the range-and-bearing board's infra-red frame as chips, 1 = carrier on.
 
-#include "protocols/rab_frame.h"
-
 #include "base/error.h"
 #include "protocols/rab_errors.h"
+#include "protocols/rab_frame.h"
 #include "tools/commands/frames.h"
 
 #include <CLI/CLI.hpp>
@@ -24,6 +23,8 @@ using namespace protocols;
 
 constexpr std::string_view kMissedSwap = "a set and a clear payload bit flip: the number of ones stays";
 constexpr std::string_view kMissedFollowed = "a payload bit and the check's lowest bit flip: the sum stays";
+
+constexpr char kRow[] = "{:<20}{:>6}{:>10}{:>12}{:>8}{:>7}{:>8}\n";
 
 struct Arguments {
     std::string size;
@@ -95,9 +96,9 @@ void read(const Arguments& arguments, int& status, bool fields) {
         if (arguments.json)
             std::cout << json_of(reading) << '\n';
         else if (fields && reading.ok())
-            fmt::print(std::cout, "size {} payload {} ones {} check {:X}\n", reading.size,
-                       payload_text(reading.payload, reading.size), std::popcount(reading.payload),
-                       reading.check);
+            std::cout << fmt::format("size {} payload {} ones {} check {:X}\n", reading.size,
+                                     payload_text(reading.payload, reading.size),
+                                     std::popcount(reading.payload), reading.check);
         else
             std::cout << (reading.ok() ? "" : "bad ") << explain(reading) << '\n';
     });
@@ -121,7 +122,6 @@ void classify(const Arguments& arguments) {
         std::string table = fmt::format("size {} payload {} ones {} check {:X}: {} chips\n", size,
                                         payload_text(payload, size), std::popcount(payload),
                                         rab_check(payload), rab_frame_chips(size));
-        constexpr char kRow[] = "{:<20}{:>6}{:>10}{:>12}{:>8}{:>7}{:>8}\n";
         table += fmt::format(kRow, "errors", "all", "preamble", "manchester", "length", "check", "missed");
         for (const RabError error : kRabErrors) {
             const RabErrorCount count = count_rab_errors(error, size, payload);
