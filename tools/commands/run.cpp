@@ -55,7 +55,11 @@ int run(Options& options) {
         setup, request, [&](const cosim::Progress& progress) { status_line.show(progress); },
         interrupt.flag());
     status_line.clear();
-    write_report(setup, outcome);
+    try {
+        write_report(setup, outcome);
+    } catch (const RunError& failure) {
+        throw RunError(outcome.success ? failure.what() : outcome.text);
+    }
     if (options.json)
         fmt::print("{}\n", (setup.out / "report.json").string());
     else

@@ -26,7 +26,12 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
     cosim::TraceCsvSink trace((setup.out / "trace.csv").string());
     conductor.add_sink(trace);
     cosim::Outcome outcome = conductor.run();
-    physics::write_trajectory_svg(setup.scenario.world, setup.out);
+    try {
+        physics::write_trajectory_svg(setup.scenario.world, setup.out);
+    } catch (const RunError& failure) {  // a run that failed keeps its own cause, such as a full disk
+        if (outcome.success) throw;
+        outcome.warnings.emplace_back(failure.what());
+    }
     return outcome;
 }
 
