@@ -61,8 +61,23 @@ const TomlValue* Reader::find(std::string_view key) {
 
 const TomlValue& Reader::require(std::string_view key) {
     const TomlValue* value = find(key);
-    if (!value) fail(key, fmt::format("'{}' is missing", key));
+    if (!value) fail_missing(key);
     return *value;
+}
+
+void Reader::fail_missing(std::string_view key) {
+    // A key that is near to it and that nobody asked for is the same one, misspelt.
+    for (const auto& [name, value] : std::get<TomlTable>(table_.data)) {
+        if (std::find(asked_.begin(), asked_.end(), name) != asked_.end()) continue;
+        if (nearest(name, {std::string(key)})) fail_unknown(name, value.line, std::string(key));
+    }
+    fail(key, fmt::format("'{}' is missing", key));
+}
+
+void Reader::fail_unknown(std::string_view name, int line, const std::optional<std::string>& meant) const {
+    const std::string prefix = where_.empty() ? std::string{} : where_ + ": ";
+    throw InputError(file_, fmt::format("line {}", line), fmt::format("{}unknown key '{}'", prefix, name),
+                     meant ? fmt::format("perhaps '{}'", *meant) : fmt::format("one of {}", joined(asked_)));
 }
 
 bool Reader::has(std::string_view key) {
@@ -222,11 +237,7 @@ const TomlTable& Reader::everything() {
 void Reader::finish() const {
     for (const auto& [name, value] : std::get<TomlTable>(table_.data)) {
         if (std::find(asked_.begin(), asked_.end(), name) != asked_.end()) continue;
-        const auto suggestion = nearest(name, asked_);
-        const std::string prefix = where_.empty() ? std::string{} : where_ + ": ";
-        throw InputError(
-            file_, fmt::format("line {}", value.line), fmt::format("{}unknown key '{}'", prefix, name),
-            suggestion ? fmt::format("perhaps '{}'", *suggestion) : fmt::format("one of {}", joined(asked_)));
+        fail_unknown(name, value.line, nearest(name, asked_));
     }
 }
 

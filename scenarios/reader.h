@@ -56,6 +56,9 @@ class Reader {
   private:
     const TomlValue* find(std::string_view key);
     const TomlValue& require(std::string_view key);
+    [[noreturn]] void fail_missing(std::string_view key);
+    [[noreturn]] void fail_unknown(std::string_view name, int line,
+                                   const std::optional<std::string>& meant) const;
     double number(std::string_view key, const TomlValue& value, Dimension dimension);
     std::vector<double> numbers(std::string_view key, const TomlValue& value, Dimension dimension,
                                 std::size_t count);

@@ -14,6 +14,22 @@ namespace {
 
 constexpr double kLongestRun = 86'400.0 * 30;  // s; simulated time itself reaches 106 days
 
+/// A list of times, each later than the one before, all after `start`.
+std::vector<double> read_times(Reader& reader, std::string_view key, double start) {
+    std::vector<double> times;
+    for (const std::string& text : reader.texts(key)) {
+        try {
+            times.push_back(parse_quantity(text, Dimension::Time));
+        } catch (const QuantityError& error) {
+            reader.fail(key, fmt::format("{}: {}", key, error.problem), error.expected);
+        }
+        if (times.back() <= (times.size() > 1 ? times[times.size() - 2] : start))
+            reader.fail(key, fmt::format("the times of {} do not rise from {:g} s on", key, start),
+                        "times later than that, each later than the one before");
+    }
+    return times;
+}
+
 PicBoard read_pic(const std::string& file, const std::string& where, const TomlValue& table,
                   const std::filesystem::path& folder) {
     Reader reader(file, where, table);
@@ -26,6 +42,7 @@ PicBoard read_pic(const std::string& file, const std::string& where, const TomlV
     if (pic.adc_noise < 0 || pic.adc_noise > 1000)
         reader.fail("adc_noise", "adc_noise is out of range", "0 to 1000 counts");
     pic.selector = static_cast<int>(reader.integer("selector", 0, 0, 15));
+    pic.resets = read_times(reader, "reset", 0.0);
     reader.finish();
     return pic;
 }
@@ -40,17 +57,7 @@ LinuxBoard read_linux(const std::string& file, const std::string& where, const T
     board.hostname = reader.text("hostname", robot_name);
     board.start = reader.quantity("start", Dimension::Time, 0.0);
     if (board.start < 0) reader.fail("start", "start is before the run begins", "0 s or later");
-    for (const std::string& text : reader.texts("restart")) {
-        try {
-            board.restarts.push_back(parse_quantity(text, Dimension::Time));
-        } catch (const QuantityError& error) {
-            reader.fail("restart", "restart: " + error.problem, error.expected);
-        }
-        const std::size_t n = board.restarts.size();
-        if (board.restarts.back() <= (n > 1 ? board.restarts[n - 2] : board.start))
-            reader.fail("restart", "the times of restart do not rise from start on",
-                        "times later than start, each later than the one before");
-    }
+    board.restarts = read_times(reader, "restart", board.start);
     board.place_line = table.line;
     reader.finish();
     return board;

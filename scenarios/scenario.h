@@ -16,9 +16,10 @@ namespace puckloop::scenarios {
 /// The e-puck main board of a robot.
 struct PicBoard {
     std::filesystem::path firmware;
-    double crystal_ppm = 0.0;  ///< error of the 7.3728 MHz crystal, + is fast
-    double adc_noise = 2.0;    ///< counts, standard deviation
-    int selector = 0;          ///< position of the rotary selector, 0..15
+    double crystal_ppm = 0.0;    ///< error of the 7.3728 MHz crystal, + is fast
+    double adc_noise = 2.0;      ///< counts, standard deviation
+    int selector = 0;            ///< position of the rotary selector, 0..15
+    std::vector<double> resets;  ///< s: the reset button (MCLR) is pressed, rising
 };
 
 /// The Linux board of a robot: one program under the shim.

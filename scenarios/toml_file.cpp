@@ -64,6 +64,9 @@ std::string reason_of(const std::exception& error) {
     if (const auto end = text.find('\n'); end != std::string::npos) text.resize(end);
     if (text.starts_with("[error] ")) text.erase(0, 8);
     if (text.starts_with("toml::")) text.erase(0, 6);
+    // "parse_key_value_pair: missing ...": the parser's function is of no use to the reader.
+    if (const auto colon = text.find(": "); text.starts_with("parse_") && colon != std::string::npos)
+        text.erase(0, colon + 2);
     return text;
 }
 

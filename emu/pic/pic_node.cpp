@@ -41,9 +41,12 @@ void PicNode::advance(cosim::Time until, std::span<const cosim::Message> inbox,
                       std::vector<cosim::Message>& outbox) {
     outbox_ = &outbox;
     for (const cosim::Message& message : inbox) {
+        press_reset(message.time, true);
         run_until(message.time);
         receive(message);
     }
+    // A press at `until` itself belongs to the next grant: what this one tells must not depend on the cut.
+    press_reset(until, false);
     run_until(until);
     settle(until);
     granted_ = until;
@@ -54,6 +57,16 @@ void PicNode::advance(cosim::Time until, std::span<const cosim::Message> inbox,
 void PicNode::settle(cosim::Time until) {
     const dspic::Cycle next = chip_->clock().first_cycle_at(until);
     if (next > 0) board_.settle(next - 1);
+}
+
+void PicNode::press_reset(cosim::Time until, bool inclusive) {
+    while (next_reset_ < options_.resets.size()) {
+        const cosim::Time time = options_.resets[next_reset_];
+        if (time > until || (time == until && !inclusive)) return;
+        run_until(time);
+        chip_->mclr();
+        ++next_reset_;
+    }
 }
 
 void PicNode::run_until(cosim::Time until) {

@@ -20,6 +20,7 @@ struct PicNodeOptions {
     BoardParameters board;   ///< its name is the node's name
     bool i2c_linked = true;  ///< false: nobody else is on the bus, and the node answers the master itself
     bool skip_idle = true;   ///< busy-wait loops are skipped forward
+    std::vector<cosim::Time> resets;  ///< the reset button (a pulse on MCLR), rising times above 0
     /// Configuration word in force on the robot, as its bootloader left it: XT with PLL x8.
     std::uint16_t fosc = kFoscXtPll8;
     static constexpr std::uint16_t kFoscXtPll8 = 0xC706;
@@ -53,6 +54,8 @@ class PicNode : public cosim::Node, private BoardListener {
     void run_until(cosim::Time until);
     void run_chip(cosim::Time until);
     void settle(cosim::Time until);
+    /// Presses the reset button where it is due before (or at) `until`.
+    void press_reset(cosim::Time until, bool inclusive);
     void receive(const cosim::Message& message);
 
     void signal_changed(SignalId id, double value, dspic::Cycle now) override;
@@ -67,6 +70,7 @@ class PicNode : public cosim::Node, private BoardListener {
     PicLog log_;
     std::vector<cosim::Message>* outbox_ = nullptr;
     cosim::Time granted_ = 0;
+    std::size_t next_reset_ = 0;
 };
 
 }  // namespace puckloop::pic

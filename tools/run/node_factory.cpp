@@ -24,6 +24,8 @@ std::unique_ptr<cosim::Node> make_pic(const json& spec) {
     options.board.adc_noise_counts = spec.at("adc_noise");
     options.board.selector = spec.at("selector");
     options.log = spec.value("log", "");
+    for (const double seconds : spec.at("resets").get<std::vector<double>>())
+        options.resets.push_back(cosim::from_seconds(seconds));
     return std::make_unique<pic::PicNode>(image::load_image(spec.at("firmware").get<std::string>()), options);
 }
 
