@@ -10,8 +10,8 @@ namespace {
 constexpr std::array kSignals{SIGINT, SIGTERM, SIGHUP};
 volatile std::sig_atomic_t caught = 0;
 
-extern "C" void puckloop_note_signal(int) {
-    caught = 1;
+extern "C" void puckloop_note_signal(int signal) {
+    caught = signal;
 }
 
 }  // namespace

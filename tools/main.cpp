@@ -4,10 +4,9 @@
 #include "tools/command.h"
 #include "tools/commands.h"
 #include "tools/run/linux_arguments.h"
+#include "tools/usage_error.h"
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -21,24 +20,6 @@
 #include <vector>
 
 namespace {
-
-/// "run " when that is the subcommand given, else nothing.
-std::string chosen(const CLI::App& app) {
-    const auto given = app.get_subcommands();
-    return given.empty() ? std::string() : given.front()->get_name() + " ";
-}
-
-/// An unknown subcommand is named; CLI11 would only say that one is missing.
-void check_subcommand(const CLI::App& app, int argc, char** argv) {
-    if (argc < 2 || argv[1][0] == '-') return;
-    const std::string word = argv[1];
-    std::vector<std::string> names;
-    for (const CLI::App* command : app.get_subcommands({})) {
-        if (command->get_name() == word) return;
-        if (!command->get_group().empty()) names.push_back(command->get_name());
-    }
-    throw puckloop::InputError("", word, "no such command", fmt::format("{}", fmt::join(names, ", ")));
-}
 
 /// Whoever started us may have closed the standard descriptors, which then would become sockets and logs, or
 /// ignored the end of child processes, which is how failures of nodes are told.
@@ -64,7 +45,6 @@ int main(int argc, char** argv) {
     for (const tools::DeclareCommand declare : tools::kCommands)
         declare(app, status);
     try {
-        check_subcommand(app, argc, argv);
         std::vector<std::string> words = tools::pack_linux_arguments({argv + 1, argv + argc});
         std::reverse(words.begin(), words.end());  // CLI11 takes them last first
         app.parse(words);
@@ -73,8 +53,7 @@ int main(int argc, char** argv) {
         return status;
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-        std::fprintf(stderr, "puckloop: %s (puckloop %s--help tells more)\n", error.what(),
-                     chosen(app).c_str());
+        std::fprintf(stderr, "puckloop: %s\n", tools::usage_error(app, error).c_str());
         return 2;
     } catch (const InputError& error) {
         std::fprintf(stderr, "puckloop: %s\n", error.what());

@@ -109,7 +109,7 @@ void LinuxNode::listen() {
         return;
     case Heard::Silent: {
         const Time now = process_->page().now.load();
-        const std::string reason = fmt::format("{} has not let time pass for {:.0f} s of wall clock: {}",
+        const std::string reason = fmt::format("{} has not let time pass for {:g} s of wall clock: {}",
                                                spec_.program, spec_.watchdog_s, process_->describe_silence());
         process_->kill();
         state_ = State::Off;
@@ -281,7 +281,10 @@ Time LinuxNode::reaction(cosim::PortIndex port) const {
 }
 
 std::string LinuxNode::finish() {
+    bool never_opened = false;
+    if (starts_ == 0) end_ = "was not started: the run ended before its time";
     if (process_->running()) {
+        never_opened = !kernel_.tty_was_opened() && !kernel_.i2c_was_opened();
         if (!kernel_.tty_was_opened() && !spec_.tty.empty())
             warn(fmt::format("{} never opened {}", spec_.program, spec_.tty));
         end_ = "was ended with the run";
@@ -291,6 +294,7 @@ std::string LinuxNode::finish() {
     nlohmann::ordered_json report = {
         {"program", spec_.program},
         {"end", end_},
+        {"never_opened_a_device", never_opened},
         {"starts", starts_},
         {"requests", requests_},
         {"log", spec_.log},

@@ -29,9 +29,10 @@ struct Options {
     bool list_parameters = false;
 };
 
-/// Exit status: 0 success, 1 the run failed; Ctrl-C counts as a shell would count it.
-int status_of(const cosim::Outcome& outcome) {
-    if (outcome.reason == cosim::EndReason::Interrupted) return 130;
+/// Exit status: 0 success, 1 the run failed; signals (Ctrl-C) count as a shell would count them.
+int status_of(const cosim::Outcome& outcome, int signal) {
+    constexpr int kShellSignal = 128;
+    if (outcome.reason == cosim::EndReason::Interrupted) return kShellSignal + signal;
     return outcome.success ? 0 : 1;
 }
 
@@ -55,17 +56,13 @@ int run(Options& options) {
         setup, request, [&](const cosim::Progress& progress) { status_line.show(progress); },
         interrupt.flag());
     status_line.clear();
-    try {
-        write_report(setup, outcome);
-    } catch (const RunError& failure) {
-        throw RunError(outcome.success ? failure.what() : outcome.text);
-    }
     if (options.json)
         fmt::print("{}\n", (setup.out / "report.json").string());
     else
         fmt::print("{}\n", summary(setup, outcome));
-    if (!outcome.success) fmt::print(stderr, "puckloop: {}\n", outcome.text);
-    return status_of(outcome);
+    const int status = status_of(outcome, *interrupt.flag());
+    if (status != 0) fmt::print(stderr, "puckloop: {}\n", outcome.text);
+    return status;
 }
 
 }  // namespace

@@ -8,7 +8,7 @@ namespace puckloop::tools {
 
 std::filesystem::path find_program(const std::string& name, const std::filesystem::path& folder) {
     namespace fs = std::filesystem;
-    if (name.find('/') != std::string::npos) return fs::absolute(folder / name);
+    if (name.find('/') != std::string::npos) return fs::absolute(folder / name).lexically_normal();
     std::error_code error;
     const fs::path self = fs::read_symlink("/proc/self/exe", error);
     // The project's own programs are built next to this one's folder, and installed beside it.

@@ -5,8 +5,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <fstream>
-
 namespace puckloop::tools {
 
 namespace {
@@ -51,16 +49,36 @@ ordered_json unmodelled_of(const ordered_json& nodes) {
 
 }  // namespace
 
-void write_report(const RunSetup& setup, const cosim::Outcome& outcome) {
-    ordered_json nodes = ordered_json::object();
-    ordered_json warnings = outcome.warnings;
+std::vector<std::string> warnings_of(const cosim::Outcome& outcome) {
+    std::vector<std::string> warnings = outcome.warnings;
     for (const auto& node : outcome.nodes) {
-        nodes[node.name] = node_json(node);
-        if (nodes[node.name].contains("warnings"))
-            for (const auto& warning : nodes[node.name]["warnings"])
-                warnings.push_back(fmt::format(
-                    "{}: {}", node.name, warning.is_string() ? warning.get<std::string>() : warning.dump()));
+        const ordered_json json = node_json(node);
+        if (!json.contains("warnings")) continue;
+        for (const auto& warning : json["warnings"])
+            warnings.push_back(fmt::format(
+                "{}: {}", node.name, warning.is_string() ? warning.get<std::string>() : warning.dump()));
     }
+    return warnings;
+}
+
+void judge(cosim::Outcome& outcome) {
+    if (!outcome.success || outcome.reason != cosim::EndReason::Duration) return;
+    for (const auto& node : outcome.nodes) {
+        const ordered_json json = node_json(node);
+        if (!json.value("never_opened_a_device", false)) continue;
+        outcome.success = false;
+        outcome.node = node.name;
+        outcome.text =
+            fmt::format("node {}: {} never opened its serial port or I2C bus in {:.3f} s", node.name,
+                        json.value("program", ""), cosim::to_seconds(outcome.simulated));
+        return;
+    }
+}
+
+void write_report(const RunSetup& setup, const cosim::Outcome& outcome, ReservedFile& file) {
+    ordered_json nodes = ordered_json::object();
+    for (const auto& node : outcome.nodes)
+        nodes[node.name] = node_json(node);
     ordered_json links = ordered_json::object();
     for (const auto& link : outcome.links)
         links[link.name] = {{"a", link.a},
@@ -83,21 +101,17 @@ void write_report(const RunSetup& setup, const cosim::Outcome& outcome) {
                               {"nodes", nodes},
                               {"links", links},
                               {"faults", faults},
-                              {"warnings", warnings},
+                              {"warnings", warnings_of(outcome)},
                               {"unmodelled_registers", unmodelled_of(nodes)}};
-    const auto path = setup.out / "report.json";
-    std::ofstream file(path);
-    file << report.dump(2) << '\n';
-    file.flush();
-    if (!file) throw RunError(fmt::format("{}: cannot be written", path.string()));
+    file.write(report.dump(2) + "\n");
 }
 
 std::string summary(const RunSetup& setup, const cosim::Outcome& outcome) {
     std::string text =
         fmt::format("{:.3f} s simulated in {:.1f} s ({:.1f}x real time)",
                     cosim::to_seconds(outcome.simulated), outcome.wall_s, real_time_factor(outcome));
-    if (!outcome.text.empty()) text += fmt::format("\nended: {}", outcome.text);
-    for (const std::string& warning : outcome.warnings)
+    if (outcome.success && !outcome.text.empty()) text += fmt::format("\nended: {}", outcome.text);
+    for (const std::string& warning : warnings_of(outcome))
         text += fmt::format("\nwarning: {}", warning);
     text += fmt::format("\ntrace {}\nresults in {}", outcome.trace_sha256, setup.out.string());
     return text;

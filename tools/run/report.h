@@ -2,14 +2,24 @@
 // report.json: what a run did, for people and for programs.
 
 #include "cosim/conductor.h"
+#include "tools/run/reserved_file.h"
 #include "tools/run/setup.h"
 
 #include <string>
 
 namespace puckloop::tools {
 
-/// Writes report.json into the run's folder; throws RunError if the disk does not take it.
-void write_report(const RunSetup& setup, const cosim::Outcome& outcome);
+/// What to take on disk for the report before the run; one of four robots has about half of this.
+inline constexpr std::size_t kReportBytes = 65'536;
+
+/// Writes report.json; throws RunError if the disk does not take it.
+void write_report(const RunSetup& setup, const cosim::Outcome& outcome, ReservedFile& file);
+
+/// Warnings of the run and of its nodes, these with the node's name before them.
+std::vector<std::string> warnings_of(const cosim::Outcome& outcome);
+
+/// A run that lasted as long as it should has failed nevertheless if a program never touched its robot.
+void judge(cosim::Outcome& outcome);
 
 /// A few lines for the terminal: how it ended, how fast, what to look at.
 std::string summary(const RunSetup& setup, const cosim::Outcome& outcome);

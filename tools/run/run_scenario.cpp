@@ -4,15 +4,47 @@
 #include "cosim/trace_csv.h"
 #include "physics/trajectory_svg.h"
 #include "tools/run/node_factory.h"
+#include "tools/run/preflight.h"
+#include "tools/run/report.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
 
 namespace puckloop::tools {
+
+namespace {
+
+/// Report and picture are made even if the run failed; what goes wrong with them then is not the news.
+void write_results(const RunSetup& setup, cosim::Outcome& outcome, ReservedFile& report) {
+    const auto guarded = [&](auto work) {
+        try {
+            work();
+        } catch (const RunError& error) {
+            if (outcome.success) outcome.text = error.what();
+            outcome.success = false;
+        }
+    };
+    bool drawn = false;
+    guarded([&] {
+        physics::write_trajectory_svg(setup.scenario.world, setup.out);
+        drawn = true;
+    });
+    std::error_code ignored;
+    if (!drawn) std::filesystem::remove(setup.out / "trajectory.svg", ignored);  // no half a picture
+    guarded([&] { write_report(setup, outcome, report); });
+}
+
+}  // namespace
 
 cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
                             const std::function<void(const cosim::Progress&)>& progress,
                             const volatile std::sig_atomic_t* interrupted) {
+    check_files(setup);
     std::error_code error;
     std::filesystem::create_directories(setup.out, error);
     if (error) throw InputError(setup.out.string(), "", "cannot be made a folder: " + error.message());
+    ReservedFile report(setup.out / "report.json", kReportBytes);
 
     cosim::RunOptions options;
     if (setup.scenario.duration) options.duration = cosim::from_seconds(*setup.scenario.duration);
@@ -26,12 +58,11 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
     cosim::TraceCsvSink trace((setup.out / "trace.csv").string());
     conductor.add_sink(trace);
     cosim::Outcome outcome = conductor.run();
-    try {
-        physics::write_trajectory_svg(setup.scenario.world, setup.out);
-    } catch (const RunError& failure) {  // a run that failed keeps its own cause, such as a full disk
-        if (outcome.success) throw;
-        outcome.warnings.emplace_back(failure.what());
-    }
+    if (outcome.reason == cosim::EndReason::Interrupted)
+        outcome.text = fmt::format("interrupted (SIG{}) at {:.3f} s of simulated time",
+                                   sigabbrev_np(*interrupted), cosim::to_seconds(outcome.simulated));
+    judge(outcome);
+    write_results(setup, outcome, report);
     return outcome;
 }
 

@@ -9,8 +9,8 @@
 
 namespace puckloop::tools {
 
-/// Runs, records trace.csv in the run's folder (made if absent) and draws trajectory.svg. Throws InputError
-/// before the run; what happens during it is told in the outcome.
+/// Runs, records trace.csv in the run's folder (made if absent), writes report.json and draws trajectory.svg.
+/// Throws InputError before the run; what happens during it is told in the outcome.
 cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
                             const std::function<void(const cosim::Progress&)>& progress,
                             const volatile std::sig_atomic_t* interrupted);

@@ -18,6 +18,10 @@ using nlohmann::json;
 using scenarios::RobotBoards;
 using scenarios::Scenario;
 
+// A program that computes for ever is told by its own board, which knows more, before the conductor loses
+// patience with the board.
+constexpr double kWatchdogShare = 0.5;
+
 std::vector<std::string> names_of(std::span<const cosim::SignalInfo> signals) {
     std::vector<std::string> names;
     for (const cosim::SignalInfo& signal : signals)
@@ -83,10 +87,11 @@ json pic_spec(const RunSetup& setup, const RobotBoards& robot) {
             {"crystal_ppm", robot.pic.crystal_ppm},
             {"adc_noise", robot.pic.adc_noise},
             {"selector", robot.pic.selector},
+            {"resets", robot.pic.resets},
             {"log", log_of(setup, robot.name + ".pic")}};
 }
 
-json linux_spec(const RunSetup& setup, const RobotBoards& robot, bool ends_run, bool realtime) {
+json linux_spec(const RunSetup& setup, const RobotBoards& robot, bool ends_run, const RunRequest& request) {
     const scenarios::LinuxBoard& board = *robot.linux_board;
     const std::filesystem::path folder = setup.scenario.file.parent_path();
     json spec{{"kind", "linux"},
@@ -99,12 +104,13 @@ json linux_spec(const RunSetup& setup, const RobotBoards& robot, bool ends_run, 
               {"start_s", board.start},
               {"restart_at", board.restarts},
               {"exit_ends_run", ends_run},
-              {"real_time", realtime},
+              {"watchdog_s", request.stall_seconds * kWatchdogShare},
+              {"real_time", request.realtime},
               {"log", log_of(setup, robot.name + ".linux")}};
     return spec;
 }
 
-void add_robot(RunSetup& setup, const RobotBoards& robot, bool exit_ends_run, bool realtime) {
+void add_robot(RunSetup& setup, const RobotBoards& robot, bool exit_ends_run, const RunRequest& request) {
     const Scenario& scenario = setup.scenario;
     const std::string pic = robot.name + ".pic";
     const std::string bus = robot.name + ".i2c";
@@ -127,7 +133,7 @@ void add_robot(RunSetup& setup, const RobotBoards& robot, bool exit_ends_run, bo
     setup.links.push_back({robot.name + ".i2c.pic", {pic, "i2c"}, {bus, "pic"}});
     if (!robot.linux_board) return;
     const std::string program = robot.name + ".linux";
-    setup.nodes.push_back({program, linux_spec(setup, robot, exit_ends_run, realtime).dump()});
+    setup.nodes.push_back({program, linux_spec(setup, robot, exit_ends_run, request).dump()});
     setup.links.push_back({robot.name + ".uart", {program, "uart"}, {pic, "uart2"}, scenario.uart_baud});
     setup.links.push_back({robot.name + ".i2c.linux", {program, "i2c"}, {bus, "linux"}});
 }
@@ -157,7 +163,7 @@ RunSetup set_up(const RunRequest& request) {
         std::count_if(scenario.robots.begin(), scenario.robots.end(),
                       [](const RobotBoards& robot) { return robot.linux_board.has_value(); });
     for (const RobotBoards& robot : scenario.robots)
-        add_robot(setup, robot, programs == 1, request.realtime);
+        add_robot(setup, robot, programs == 1, request);
     return setup;
 }
 

@@ -1,0 +1,102 @@
+// Files and options that no run can be made of: status 2, one line that says which and why, nothing touched.
+
+#include "tests/end_to_end/one_line.h"
+
+#include <catch2/catch.hpp>
+
+using namespace puckloop::tests;
+
+namespace {
+
+std::string replaced(std::string text, const std::string& what, const std::string& with) {
+    return text.replace(text.find(what), what.size(), with);
+}
+
+/// Runs hello.toml with these words more; an earlier run's results must stay.
+void refused(const Workbench& bench, Words words, const Words& expected, bool with_scenario = true) {
+    std::filesystem::create_directories(bench.out("o"));
+    const std::string kept = bench.file("o/trajectory.csv", "of an earlier run\n");
+    if (with_scenario) words.insert(words.begin(), bench.hello());
+    check_one_line(bench.run("o", words), 2, expected, 10.0);
+    CHECK(text_of(kept) == "of an earlier run\n");
+}
+
+// Start of a program for an ATmega, as avr-gcc makes it.
+constexpr const char* kAvrImage = ":100000000C9434000C943E000C943E000C943E0082\n"
+                                  ":1000100011241FBECFEFD8E0DEBFCDBF11E0A0E0BE\n"
+                                  ":00000001FF\n";
+
+}  // namespace
+
+TEST_CASE("firmware that cannot be used is refused with its file and place") {
+    const Workbench bench;
+    const std::string good = text_of(PUCKLOOP_SOURCE "/firmware/epuck/epuck.hex");
+    std::string bad = good;
+    bad[good.find('\n') - 3] = bad[good.find('\n') - 3] == '0' ? '1' : '0';
+    refused(bench, {"--firmware", "robot0.pic=nowhere.hex"}, {"nowhere.hex", "no such file"});
+    refused(bench, {"--firmware", "robot0.pic=" + bench.folder().string()}, {"is a directory"});
+    refused(bench, {"--firmware", "pic=" + bench.file("bad.hex", bad).string()},
+            {"bad.hex", "line 1", "checksum"});
+    refused(bench, {"--firmware", "pic=" + bench.file("empty.hex", "").string()}, {"empty.hex"});
+    refused(bench, {"--firmware", "pic=" + bench.file("avr.hex", kAvrImage).string()},
+            {"avr.hex", "another chip"});
+    refused(bench, {"--firmware", "robot7.pic=x.hex"}, {"robot7.pic", "robot0.pic"});
+    refused(bench, {"--firmware", "x.hex"}, {"x.hex", "BOARD=IMAGE"});
+}
+
+TEST_CASE("a real image of the range-and-bearing board is none for the e-puck") {
+    const auto image = outside("PUCKLOOP_IMAGES", "randb.hex");
+    if (!image) {
+        WARN("PUCKLOOP_IMAGES has no randb.hex: skipped");
+        return;
+    }
+    const Workbench bench;
+    refused(bench, {"--firmware", "robot0.pic=" + image->string()}, {"randb.hex", "another chip"});
+}
+
+TEST_CASE("mistakes in a scenario are told with line and what was perhaps meant") {
+    const Workbench bench;
+    const std::string good = text_of(bench.hello());
+    const auto wrong = [&](const std::string& what, const std::string& with, const Words& expected) {
+        const std::string file = bench.file("wrong.toml", replaced(good, what, with));
+        refused(bench, {file}, expected, false);
+    };
+    wrong("heading = \"20 deg\"", "headng = \"20 deg\"", {"wrong.toml", "line 16", "'headng'", "'heading'"});
+    wrong("\"60 s\"", "\"60 cm\"", {"wrong.toml", "line 6", "is a length", "a time"});
+    wrong("\"60 s\"", "60", {"line 6", "has no unit"});
+    wrong("firmware =", "firmwar =", {"'firmwar'", "'firmware'"});
+    wrong("[arena]", "[arena", {"line 9"});
+    refused(bench, {"nowhere.toml"}, {"nowhere.toml", "cannot be opened"}, false);
+    refused(bench, {bench.folder()}, {"is a directory"}, false);
+    refused(bench, {bench.file("text.toml", "this is no TOML\n")}, {"text.toml", "line 1"}, false);
+    refused(bench, {}, {"no scenario"}, false);
+}
+
+TEST_CASE("a fault on a link that is not there is refused") {
+    const Workbench bench;
+    const std::string link = bench.hello("\n[[fault]]\nlink = \"robot0.uarrt\"\n");
+    check_one_line(bench.run("o", {link}), 2, {"line 44", "robot0.uarrt", "one of robot0.uart"});
+    const std::string end = bench.hello("\n[[fault]]\nlink = \"robot0.uart\"\nfrom = \"pic\"\n");
+    check_one_line(bench.run("o", {end}), 2, {"line 44", "'pic'", "robot0.pic"});
+}
+
+TEST_CASE("options that make no sense are refused in one line") {
+    const Workbench bench;
+    refused(bench, {"--durration", "4"}, {"--durration", "perhaps --duration"});
+    for (const char* duration : {"abc", "-3", "0", "3s", "nan"})
+        refused(bench, {"--duration", duration}, {"--duration", duration, "seconds"});
+    refused(bench, {"--seed", "x"}, {"--seed"});
+    refused(bench, {"--model", "nowhere.toml"}, {"nowhere.toml"});
+    refused(bench, {"another.toml"}, {"another.toml"});
+    check_one_line(bench.puckloop({"runn"}), 2, {"'runn'", "perhaps run"});
+    check_one_line(bench.puckloop({}), 2, {"no command"});
+}
+
+TEST_CASE("an output folder that cannot be is refused") {
+    const Workbench bench;
+    const std::string file = bench.file("plain", "keep me\n");
+    const Words words{bench.hello(), "--duration", "1"};
+    check_one_line(bench.run("plain", words), 2, {"plain", "folder"});
+    CHECK(text_of(file) == "keep me\n");
+    check_one_line(bench.puckloop({"run", words[0], "--out", "/proc/nowhere"}), 2, {"/proc/nowhere"});
+}

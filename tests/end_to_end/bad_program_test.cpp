@@ -1,0 +1,101 @@
+// Linux programs that cannot run, end early, crash or hang.
+
+#include "tests/end_to_end/one_line.h"
+
+#include <catch2/catch.hpp>
+
+#include <sys/stat.h>
+
+using namespace puckloop::tests;
+using Catch::Contains;
+
+namespace {
+
+Ended with_program(const Workbench& bench, const Words& options, const Words& program) {
+    Words words{bench.hello()};
+    words.insert(words.end(), options.begin(), options.end());
+    words.push_back("--linux");
+    words.insert(words.end(), program.begin(), program.end());
+    return bench.run("o", words);
+}
+
+/// What was recorded until the failure is there, and the report says how it ended.
+void check_kept(const Workbench& bench, double simulated_s) {
+    const auto report = bench.report("o");
+    CHECK(report["success"] == false);
+    CHECK(report["ended_why"].get<std::string>().size() > 10);
+    CHECK(report["simulated_s"].get<double>() == Approx(simulated_s).margin(0.05));
+    CHECK(bench.csv("o", "trajectory.csv").size() >= static_cast<std::size_t>(simulated_s / 0.1));
+    CHECK(bench.csv("o", "trace.csv").size() > 100);
+    CHECK_THAT(text_of(bench.out("o") / "trajectory.svg"), Contains("</svg>"));
+}
+
+}  // namespace
+
+TEST_CASE("a program that cannot run is refused before the run") {
+    const Workbench bench;
+    const std::string plain = bench.file("plain", "no program\n");
+    const auto refused = [&](const std::string& program, const Words& words) {
+        check_one_line(with_program(bench, {}, {program}), 2, words);
+        CHECK(!std::filesystem::exists(bench.out("o")));
+    };
+    refused(bench.folder() / "nowhere", {"nowhere", "No such file"});
+    refused("no-such-program-anywhere", {"no-such-program-anywhere"});
+    refused(plain, {"plain", "not executable", "chmod +x"});
+    refused(bench.folder(), {"is not a file"});
+    refused(PUCKLOOP_STATIC_PROGRAM, {"statically linked"});
+    chmod(plain.c_str(), 0755);
+    refused(plain, {"neither a program nor a script"});
+}
+
+TEST_CASE("a program that crashes is named with its signal, time and last words") {
+    const Workbench bench;
+    for (const Words& placement : {Words{}, Words{"--in-process"}}) {
+        check_one_line(with_program(bench, placement, {PUCKLOOP_MISBEHAVE, "crash"}), 1,
+                       {"robot0.linux", "SIGSEGV", "at 1.5", "now I crash"});
+        check_kept(bench, 1.51);
+        CHECK(text_of(bench.out("o") / "robot0.linux.log") == "now I crash\n");
+    }
+}
+
+TEST_CASE("a program that exits without touching its port fails the run, whatever its status") {
+    const Workbench bench;
+    for (const char* status : {"0", "3"}) {
+        check_one_line(
+            with_program(bench, {}, {PUCKLOOP_MISBEHAVE, "exit", status}), 1,
+            {"robot0.linux", std::string("exited with status ") + status, "without ever opening /dev/ttyS0"});
+        check_kept(bench, 1.01);
+    }
+}
+
+TEST_CASE("a program that has done its work ends the run well") {
+    const Workbench bench;
+    const Ended ended = with_program(bench, {}, {PUCKLOOP_MISBEHAVE, "done"});
+    CHECK(ended.status == 0);
+    CHECK(ended.err.empty());
+    CHECK(bench.report("o")["simulated_s"].get<double>() == Approx(1.51).margin(0.01));
+}
+
+TEST_CASE("a program that never opens its port fails the run at its end") {
+    const Workbench bench;
+    check_one_line(with_program(bench, {"--duration", "3"}, {PUCKLOOP_MISBEHAVE, "sleep"}), 1,
+                   {"robot0.linux", "never opened", "3.000 s"});
+    check_kept(bench, 3.0);
+}
+
+TEST_CASE("a program whose time has not come is no failure") {
+    const Workbench bench;
+    const Ended ended = with_program(bench, {"--duration", "0.5"}, {PUCKLOOP_MISBEHAVE, "sleep"});
+    CHECK(ended.status == 0);
+    CHECK_THAT(bench.report("o")["nodes"]["robot0.linux"]["end"].get<std::string>(), Contains("not started"));
+}
+
+TEST_CASE("a program that computes for ever is found in both placements") {
+    const Workbench bench;
+    for (const char* placement : {"--in-process", "--json"}) {
+        const Ended ended = with_program(bench, {placement, "--stall=3"}, {PUCKLOOP_MISBEHAVE, "spin"});
+        // On a loaded machine the conductor may lose patience before the program's own watchdog.
+        check_one_line(ended, 1, {"robot0.linux", " s of wall "}, 60);
+        check_kept(bench, 1.0);
+    }
+}

@@ -1,0 +1,70 @@
+// The other commands as a user meets them first: each does its work, and tells wrong use in one line.
+
+#include "tests/end_to_end/one_line.h"
+
+#include <catch2/catch.hpp>
+
+using namespace puckloop::tests;
+using Catch::Contains;
+
+namespace {
+const std::string kImage = PUCKLOOP_SOURCE "/firmware/epuck/epuck.hex";
+const std::string kHello = PUCKLOOP_SOURCE "/scenarios/hello.toml";
+}  // namespace
+
+TEST_CASE("every command has a help of its own") {
+    const Workbench bench;
+    for (const char* command : {"run", "exec", "step", "asm", "disasm", "trace", "bench"}) {
+        const Ended ended = bench.puckloop({command, "--help"});
+        INFO(command);
+        CHECK(ended.status == 0);
+        CHECK_THAT(ended.out, Contains("--help"));
+        CHECK(ended.err.empty());
+    }
+    CHECK_THAT(bench.puckloop({"--help"}).out, Contains("run"));
+}
+
+TEST_CASE("exec runs an image on the bench and reports it") {
+    const Workbench bench;
+    const Ended ended = bench.puckloop({"exec", "--board", "pic", kImage, "--seconds", "0.5", "--json"});
+    REQUIRE(ended.status == 0);
+    const auto report = nlohmann::json::parse(ended.out);
+    CHECK(report["stopped"] == "budget");
+    CHECK(report["simulated_s"].get<double>() == Approx(0.5).margin(0.001));
+    check_one_line(bench.puckloop({"exec", "--board", "pic", "nowhere.hex", "--seconds", "1"}), 2,
+                   {"nowhere.hex"});
+    check_one_line(bench.puckloop({"exec", "--mcu", "dspic30f9999", kImage, "--seconds", "1"}), 2,
+                   {"dspic30f9999"});
+}
+
+TEST_CASE("what asm makes, disasm reads") {
+    const Workbench bench;
+    const std::string source =
+        bench.file("x.s", "start: mov #0x1234, w0\n       add w0, w1, w2\n       bra start\n");
+    const std::string image = bench.folder() / "x.hex";
+    REQUIRE(bench.puckloop({"asm", source, "-o", image}).status == 0);
+    const Ended listing = bench.puckloop({"disasm", image});
+    CHECK(listing.status == 0);
+    CHECK_THAT(listing.out, Contains("mov") && Contains("#0x1234") && Contains("add"));
+    check_one_line(bench.puckloop({"asm", bench.file("y.s", "mvo w0, w1\n")}), 2, {"line 1", "mvo"});
+    check_one_line(bench.puckloop({"disasm", "nowhere.hex"}), 2, {"nowhere.hex"});
+}
+
+TEST_CASE("step answers a damaged vector with an error line and goes on") {
+    const Workbench bench;
+    const Ended ended = bench.puckloop({"step", "--mcu", "dspic30f6014a"}, "a no vector\nb neither\n");
+    CHECK(ended.status == 0);
+    CHECK_THAT(ended.out, Catch::StartsWith("a error ") && Contains("\nb error "));
+    check_one_line(bench.puckloop({"step", "--mcu", "dspic30f9999"}), 2, {"dspic30f9999", "dspic30f6014a"});
+}
+
+TEST_CASE("trace reads what a run recorded") {
+    const Workbench bench;
+    REQUIRE(bench.run("o", {kHello, "--duration", "2", "--in-process"}).status == 0);
+    const std::string file = bench.out("o") / "trace.csv";
+    const Ended uart = bench.puckloop({"trace", file, "--link", "robot0.uart"});
+    CHECK(uart.status == 0);
+    CHECK_THAT(uart.out, Contains("robot0.uart") && !Contains("robot0.world"));
+    check_one_line(bench.puckloop({"trace", "nowhere.csv"}), 2, {"nowhere.csv"});
+    check_one_line(bench.puckloop({"trace", bench.file("x.csv", "a,b\n1,2\n")}), 2, {"x.csv", "line 1"});
+}

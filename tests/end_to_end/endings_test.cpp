@@ -1,0 +1,164 @@
+// Runs that are ended from outside: signals, lost processes, a full disk. What was recorded is kept.
+
+#include "tests/end_to_end/one_line.h"
+
+#include <catch2/catch.hpp>
+
+#include <sys/mount.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <functional>
+#include <thread>
+
+using namespace puckloop::tests;
+using Catch::Contains;
+
+namespace {
+
+const std::string kHello = PUCKLOOP_SOURCE "/scenarios/hello.toml";
+
+bool wait_for(const std::function<bool()>& condition, double limit = 60.0) {
+    for (const double begun = wall_seconds(); wall_seconds() - begun < limit;) {
+        if (condition()) return true;
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    return false;
+}
+
+/// A run of an hour, once it has recorded two seconds.
+struct LongRun {
+    const Workbench& bench;
+    std::unique_ptr<Process> process;
+    std::vector<pid_t> family;  ///< the processes it started, theirs too
+
+    LongRun(const Workbench& a_bench, const Words& more) : bench(a_bench) {
+        Words words{"run", kHello, "--duration", "3600", "--out", bench.out("o")};
+        words.insert(words.end(), more.begin(), more.end());
+        process = bench.start(words);
+        const auto recorded = [this] {
+            return text_of(bench.out("o") / "trajectory.csv").find("\n2.000,") != std::string::npos;
+        };
+        REQUIRE(wait_for(recorded));
+        for (const pid_t child : process->children()) {
+            family.push_back(child);
+            for (const pid_t grandchild : children_of(child))
+                family.push_back(grandchild);
+        }
+    }
+
+    /// The node process that has a child (the Linux program's), or one that has none.
+    pid_t node(bool with_child) const {
+        for (const pid_t child : process->children())
+            if (children_of(child).empty() != with_child) return child;
+        return -1;
+    }
+
+    void check_no_orphans() const {
+        CHECK(!family.empty());
+        const auto gone = [this] { return std::none_of(family.begin(), family.end(), runs); };
+        CHECK(wait_for(gone, 5.0));
+    }
+
+    void check_kept(const std::string& ended_by) const {
+        const auto report = bench.report("o");
+        CHECK(report["ended_by"] == ended_by);
+        CHECK(report["simulated_s"] >= 1.9);
+        CHECK(report["trace_sha256"].get<std::string>().size() == 64);
+        CHECK(bench.csv("o", "trajectory.csv").size() >= 20);
+        const auto trace = bench.csv("o", "trace.csv");
+        REQUIRE(!trace.empty());
+        CHECK(std::stod(trace.back().at("time_s")) > 1.9);
+        CHECK_THAT(text_of(bench.out("o") / "trajectory.svg"), Contains("</svg>"));
+        CHECK(!std::filesystem::exists(bench.out("o") / "report.json.part"));
+    }
+};
+
+}  // namespace
+
+TEST_CASE("a signal ends the run with the shell's status, a report and no orphans") {
+    const auto [number, name, placement] = GENERATE(table<int, std::string, Words>(
+        {{SIGINT, "SIGINT", {}}, {SIGTERM, "SIGTERM", {}}, {SIGINT, "SIGINT", {"--in-process"}}}));
+    const Workbench bench;
+    const LongRun run(bench, placement);
+    const double before = wall_seconds();
+    run.process->signal(number);
+    const Ended ended = run.process->wait();
+    CHECK(wall_seconds() - before < 10.0);
+    check_one_line(ended, 128 + number, {"interrupted", name}, 120);
+    run.check_kept("interrupted");
+    run.check_no_orphans();
+}
+
+TEST_CASE("a node process that is killed ends the run with its name and last time") {
+    const bool with_child = GENERATE(false, true);
+    const Workbench bench;
+    const LongRun run(bench, {});
+    const pid_t victim = run.node(with_child);
+    REQUIRE(victim > 0);
+    const double before = wall_seconds();
+    ::kill(victim, SIGKILL);
+    const Ended ended = run.process->wait();
+    CHECK(wall_seconds() - before < 10.0);
+    check_one_line(ended, 1,
+                   {with_child ? "node robot0.linux" : "node ", "process " + std::to_string(victim),
+                    "killed by signal 9", "last simulated time"},
+                   120);
+    run.check_kept("failed");
+    run.check_no_orphans();
+}
+
+TEST_CASE("the Linux program killed from outside is named") {
+    const Workbench bench;
+    const LongRun run(bench, {});
+    const pid_t node = run.node(true);
+    REQUIRE(node > 0);
+    ::kill(children_of(node).front(), SIGKILL);
+    check_one_line(run.process->wait(), 1, {"robot0.linux", "puckloop-control", "SIGKILL"}, 120);
+    run.check_kept("node stopped");
+    run.check_no_orphans();
+}
+
+TEST_CASE("a node process that stalls is found within the asked time") {
+    const Workbench bench;
+    const LongRun run(bench, {"--stall", "2"});
+    const pid_t victim = run.node(false);
+    REQUIRE(victim > 0);
+    const double before = wall_seconds();
+    ::kill(victim, SIGSTOP);
+    const Ended ended = run.process->wait();
+    CHECK(wall_seconds() - before < 15.0);
+    check_one_line(ended, 1, {"node ", std::to_string(victim), "has not answered", "last simulated time"},
+                   120);
+    run.check_kept("failed");
+    run.check_no_orphans();
+}
+
+TEST_CASE("the run itself killed takes its processes along and leaves what it recorded") {
+    const Workbench bench;
+    const LongRun run(bench, {});
+    run.process->signal(SIGKILL);
+    CHECK(run.process->wait().status == 128 + SIGKILL);
+    run.check_no_orphans();
+    CHECK(bench.csv("o", "trajectory.csv").size() >= 20);
+}
+
+TEST_CASE("a full disk ends the run with what fits, and a report") {
+    const Workbench bench;
+    const auto disk = bench.folder() / "disk";
+    std::filesystem::create_directory(disk);
+    if (geteuid() != 0 || ::mount("tmpfs", disk.c_str(), "tmpfs", 0, "size=512k") != 0) {
+        WARN("a small disk cannot be mounted here: skipped");
+        return;
+    }
+    for (const char* placement : {"--in-process", "--json"}) {
+        const Ended ended = bench.run("disk/o", {kHello, "--duration", "30", placement});
+        check_one_line(ended, 1, {"disk/o/", "No space left on device"}, 60);
+        CHECK(bench.csv("disk/o", "trajectory.csv").size() > 5);
+        CHECK(bench.csv("disk/o", "trace.csv").size() > 1000);
+        CHECK_THAT(bench.report("disk/o")["ended_why"].get<std::string>(), Contains("No space left"));
+        std::filesystem::remove_all(disk / "o");
+    }
+    CHECK(::umount(disk.c_str()) == 0);
+}

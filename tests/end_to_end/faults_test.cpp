@@ -1,0 +1,150 @@
+// Serial faults and restarts in mid-session: the mission goes on, with either firmware.
+
+#include "tests/end_to_end/same_run.h"
+#include "tests/end_to_end/workbench.h"
+
+#include <catch2/catch.hpp>
+
+using namespace puckloop::tests;
+using Catch::Contains;
+
+namespace {
+
+/// The robot drives on after `from_s`, and stays off the walls.
+void check_goes_on(const Workbench& bench, const std::string& name, double from_s) {
+    INFO(name);
+    const auto trajectory = bench.csv(name, "trajectory.csv");
+    const Journey after = journey(trajectory, from_s);
+    CHECK(after.length > 0.03 * (after.last_s - from_s));  // the behaviour drives at about 6 cm/s
+    CHECK(after.clearance > 0.0);
+}
+
+std::string log_of(const Workbench& bench, const std::string& name) {
+    return text_of(bench.out(name) / "robot0.linux.log");
+}
+
+std::string fault(const std::string& lines) {
+    return "\n[[fault]]\nlink = \"robot0.uart\"\n" + lines;
+}
+
+/// `key = value` in the table `[robot.pic]` or `[robot.linux]` of a scenario's text.
+std::string with(std::string text, const std::string& table, const std::string& line) {
+    const std::string header = "[" + table + "]\n";
+    return text.insert(text.find(header) + header.size(), line + "\n");
+}
+
+}  // namespace
+
+TEST_CASE("lost, garbled and late bytes do not end the mission") {
+    const auto [name, lines] = GENERATE(table<std::string, std::string>(
+        {{"drop", "kind = \"drop\"\nprobability = 0.01\nbegin = \"2 s\"\nend = \"5 s\"\n"},
+         {"flip", "kind = \"flip\"\nprobability = 0.01\nbegin = \"2 s\"\nend = \"5 s\"\n"},
+         {"late",
+          "kind = \"delay\"\ndelay = \"30 ms\"\nprobability = 0.01\nbegin = \"2 s\"\nend = \"5 s\"\n"},
+         {"silence", "kind = \"disconnect\"\nbegin = \"2 s\"\nend = \"4 s\"\n"}}));
+    const Workbench bench;
+    const std::string scenario = bench.hello(fault(lines));
+    REQUIRE(bench.run(name, {scenario, "--duration", "12", "--in-process"}).status == 0);
+    const auto report = bench.report(name);
+    REQUIRE(report["faults"].size() == 1);
+    CHECK(report["faults"][0]["fired"] > 0);
+    CHECK(report["warnings"].empty());
+    check_goes_on(bench, name, 7.0);
+    if (name != "flip")
+        CHECK_THAT(log_of(bench, name), Contains("re-synchronising") && Contains("in step again"));
+}
+
+TEST_CASE("faults are the same in one process and in many") {
+    const Workbench bench;
+    const std::string scenario = bench.hello(fault("kind = \"drop\"\nprobability = 0.02\n") +
+                                             fault("kind = \"flip\"\nprobability = 0.02\n"));
+    REQUIRE(bench.run("one", {scenario, "--duration", "5", "--in-process"}).status == 0);
+    REQUIRE(bench.run("many", {scenario, "--duration", "5"}).status == 0);
+    check_same_run(bench, "one", "many");
+}
+
+TEST_CASE("a fault that never fired is a warning") {
+    const Workbench bench;
+    const std::string scenario = bench.hello(fault("begin = \"1 h\"\n"));
+    const Ended ended = bench.run("o", {scenario, "--duration", "1", "--in-process"});
+    CHECK(ended.status == 0);
+    CHECK_THAT(ended.out, Contains("warning: fault never fired"));
+    REQUIRE(bench.report("o")["warnings"].size() == 1);
+    CHECK_THAT(bench.report("o")["warnings"][0].get<std::string>(),
+               Contains("never fired") && Contains("robot0.uart"));
+}
+
+TEST_CASE("the session recovers when either side starts again") {
+    const Workbench bench;
+    const std::string hello = text_of(bench.hello());
+    const std::string pic = bench.file("pic.toml", with(hello, "robot.pic", "reset = [\"4 s\", \"6 s\"]"));
+    const std::string program = bench.file("linux.toml", with(hello, "robot.linux", "restart = [\"4 s\"]"));
+    for (const std::string& scenario : {pic, program}) {
+        const std::string name = std::filesystem::path(scenario).stem();
+        REQUIRE(bench.run(name, {scenario, "--duration", "12", "--in-process"}).status == 0);
+        REQUIRE(bench.run(name + " many", {scenario, "--duration", "12"}).status == 0);
+        check_same_run(bench, name, name + " many");
+        check_goes_on(bench, name, 8.0);
+    }
+    const auto resets = bench.report("pic")["nodes"]["robot0.pic"]["resets"];
+    REQUIRE(resets.size() == 3);
+    CHECK(resets[1]["cause"] == "EXTR");
+    CHECK(resets[1]["time_s"].get<double>() == Approx(4.0));
+    CHECK_THAT(log_of(bench, "pic"), Contains("re-synchronising"));
+    CHECK(bench.report("linux")["nodes"]["robot0.linux"]["starts"] == 2);
+    CHECK_THAT(log_of(bench, "linux"), Contains("session started"));
+}
+
+TEST_CASE("reset times that do not rise are refused with their line") {
+    const Workbench bench;
+    const std::string hello = text_of(bench.hello());
+    for (const char* times : {"[\"6 s\", \"4 s\"]", "[\"0 s\"]", "[\"6 m\"]"}) {
+        const std::string file =
+            bench.file("x.toml", with(hello, "robot.pic", std::string("reset = ") + times));
+        const Ended ended = bench.run("o", {file});
+        CHECK(ended.status == 2);
+        CHECK_THAT(ended.err, Contains("line ") && Contains("reset"));
+    }
+}
+
+TEST_CASE("with the original firmware the session recovers too") {
+    const auto image = outside("PUCKLOOP_IMAGES", "epuck_firmware.hex");
+    if (!image) {
+        WARN("PUCKLOOP_IMAGES has no epuck_firmware.hex: skipped");
+        return;
+    }
+    const Workbench bench;
+    std::string text = text_of(PUCKLOOP_SOURCE "/scenarios/own_binaries.toml");
+    text = with(text, "robot.pic", "reset = [\"70 s\"]");
+    text = with(text, "robot.linux", "restart = [\"48 s\"]");
+    const std::string relative = "../firmware";
+    text.replace(text.find(relative), relative.size(), PUCKLOOP_SOURCE "/firmware");
+    text += fault("probability = 0.01\nbegin = \"55 s\"\nend = \"60 s\"\n");
+    const std::string scenario = bench.file("own.toml", text);
+    // After the reset this firmware boots again for 40 s; then the program finds it.
+    const Words words{scenario,
+                      "--firmware",
+                      "robot0.pic=" + image->string(),
+                      "--in-process",
+                      "--duration",
+                      "125",
+                      "--linux",
+                      "puckloop-control",
+                      "--",
+                      "--duration",
+                      "100",
+                      "--give-up",
+                      "60"};
+    const Ended ended = bench.run("o", words);
+    INFO(ended.err);
+    INFO(log_of(bench, "o"));
+    REQUIRE(ended.status == 0);
+    const auto trajectory = bench.csv("o", "trajectory.csv");
+    std::vector<Row> until_reset, rest;
+    for (const Row& row : trajectory)
+        (std::stod(row.at("t_s")) < 70.0 ? until_reset : rest).push_back(row);
+    CHECK(journey(until_reset, 50.0).length > 0.15);  // after the program's restart
+    CHECK(journey(until_reset, 62.0).length > 0.1);   // after the faults
+    CHECK(journey(rest, 115.0).length > 0.2);         // after the PIC's restart
+    CHECK_THAT(log_of(bench, "o"), Contains("re-synchronising") && Contains("in step again"));
+}
