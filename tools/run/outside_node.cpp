@@ -1,0 +1,106 @@
+#include "tools/run/outside_node.h"
+
+#include "base/error.h"
+#include "protocols/uart_sampling.h"
+#include "tools/exec/script_end.h"
+#include "tools/exec/scripts.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace puckloop::tools {
+
+namespace {
+
+constexpr cosim::Time kLookEvery = cosim::kMillisecond;
+constexpr int kBitsOfFrame = 10;
+
+std::unique_ptr<exec::UartEnd> make_end(const exec::UartSpec& spec) {
+    switch (spec.kind) {
+    case exec::UartSpec::Kind::Script:
+        return std::make_unique<exec::ScriptEnd>(exec::read_uart_script(spec.file));
+    case exec::UartSpec::Kind::Pty: return exec::make_pty_end();
+    case exec::UartSpec::Kind::Tcp: return exec::make_tcp_end(spec.port);
+    default: break;
+    }
+    throw InputError("", "uart1", "nothing to plug in", "pty, tcp:PORT or script:FILE");
+}
+
+}  // namespace
+
+OutsideNode::OutsideNode(const OutsideSpec& spec)
+    : name_(spec.name),
+      end_(make_end(spec.end)),
+      record_name_(spec.record),
+      bit_period_(static_cast<cosim::Time>(std::llround(1e12 / spec.baud))) {
+    if (!record_name_.empty()) {
+        record_ = std::fopen(record_name_.c_str(), "wb");
+        if (record_ == nullptr) throw RunError(fmt::format("{}: cannot be written", record_name_));
+        std::setvbuf(record_, nullptr, _IONBF, 0);  // a crash of the run loses nothing
+    }
+    if (const std::string text = end_->announcement(); !text.empty()) fmt::print(stderr, "{}: {}\n", name_, text);
+}
+
+OutsideNode::~OutsideNode() {
+    if (record_ != nullptr) std::fclose(record_);
+}
+
+cosim::Time OutsideNode::next_start() const {
+    const cosim::Time next = end_->next();
+    return next == cosim::kNever ? cosim::kNever : std::max(next, free_);
+}
+
+void OutsideNode::advance(cosim::Time until, std::span<const cosim::Message> inbox,
+                          std::vector<cosim::Message>& outbox) {
+    for (const cosim::Message& message : inbox) {
+        look_outside(message.time);
+        send_before(message.time, outbox);
+        if (const auto* frame = std::get_if<cosim::UartFrame>(&message.payload)) receive(*frame);
+    }
+    look_outside(until);
+    send_before(until, outbox);
+    granted_ = until;
+}
+
+void OutsideNode::look_outside(cosim::Time until) {
+    for (; end_->live() && next_look_ < until; next_look_ += kLookEvery)
+        end_->poll(next_look_, 0);
+}
+
+void OutsideNode::send_before(cosim::Time until, std::vector<cosim::Message>& outbox) {
+    for (cosim::Time start = next_start(); start < until; start = next_start()) {
+        cosim::UartFrame frame;
+        // A byte that came from outside while its time passed begins now.
+        frame.start = std::max(start, granted_);
+        frame.bit_period = bit_period_;
+        frame.data = end_->take();
+        free_ = frame.start + kBitsOfFrame * bit_period_;
+        ++sent_;
+        outbox.push_back({protocols::stop_bit_start(frame), 0, frame});
+    }
+}
+
+void OutsideNode::receive(const cosim::UartFrame& frame) {
+    for (const auto& character : protocols::sample_frame(frame, {.bit_period = bit_period_}, heard_until_)) {
+        heard_until_ = character.time;
+        const auto byte = static_cast<std::uint8_t>(character.data);
+        ++received_;
+        if (character.framing_error) ++framing_errors_;
+        end_->receive(byte, !character.framing_error, character.start);
+        if (record_ != nullptr && std::fputc(byte, record_) == EOF)
+            throw RunError(fmt::format("{}: cannot be written", record_name_));
+    }
+}
+
+cosim::Time OutsideNode::promise(cosim::PortIndex /*port*/) const {
+    if (end_->live()) return granted_;
+    return std::max(next_start(), granted_);
+}
+
+std::string OutsideNode::finish() {
+    end_->finish();
+    return fmt::format(R"({{"sent":{},"received":{},"framing_errors":{}}})", sent_, received_, framing_errors_);
+}
+
+}  // namespace puckloop::tools
