@@ -42,6 +42,7 @@ PicBoard read_pic(const std::string& file, const std::string& where, const TomlV
     if (pic.adc_noise < 0 || pic.adc_noise > 1000)
         reader.fail("adc_noise", "adc_noise is out of range", "0 to 1000 counts");
     pic.selector = static_cast<int>(reader.integer("selector", 0, 0, 15));
+    pic.uart1 = reader.text("uart1", "");
     pic.resets = read_times(reader, "reset", 0.0);
     reader.finish();
     return pic;

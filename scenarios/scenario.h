@@ -19,6 +19,7 @@ struct PicBoard {
     double crystal_ppm = 0.0;    ///< error of the 7.3728 MHz crystal, + is fast
     double adc_noise = 2.0;      ///< counts, standard deviation
     int selector = 0;            ///< position of the rotary selector, 0..15
+    std::string uart1;           ///< plugged in: "pty", "tcp:PORT", "script:FILE"; empty: nothing
     std::vector<double> resets;  ///< s: the reset button (MCLR) is pressed, rising
 };
 

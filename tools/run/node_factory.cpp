@@ -6,6 +6,7 @@
 #include "emu/pic/pic_node.h"
 #include "linuxboard/shim/linux_node.h"
 #include "physics/world_node.h"
+#include "tools/run/outside_node.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -34,6 +35,15 @@ std::unique_ptr<cosim::Node> make_linux(json spec) {
     return std::make_unique<linuxboard::LinuxNode>(linuxboard::parse_linux_spec(spec.dump()));
 }
 
+std::unique_ptr<cosim::Node> make_outside(const json& spec) {
+    OutsideSpec outside;
+    outside.name = spec.at("name");
+    outside.end = parse_outside(outside.name, spec.at("end"), spec.at("folder"));
+    outside.baud = spec.at("baud");
+    outside.record = spec.at("record");
+    return std::make_unique<OutsideNode>(outside);
+}
+
 }  // namespace
 
 std::unique_ptr<cosim::Node> make_node(const std::string& text) {
@@ -44,6 +54,7 @@ std::unique_ptr<cosim::Node> make_node(const std::string& text) {
         if (kind == "linux") return make_linux(spec);
         if (kind == "world") return physics::make_world_node(spec.at("world").dump());
         if (kind == "i2c_bus") return i2c_devices::make_bus_node(text);
+        if (kind == "outside") return make_outside(spec);
         throw InputError("", "node", fmt::format("unknown kind '{}'", kind));
     } catch (const json::exception& error) {
         throw InputError("", "node description", error.what());

@@ -4,30 +4,46 @@
 #include "protocols/uart_sampling.h"
 #include "tools/exec/script_end.h"
 #include "tools/exec/scripts.h"
+#include "tools/exec/text_input.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
+#include <filesystem>
 
 namespace puckloop::tools {
 
 namespace {
 
 constexpr cosim::Time kLookEvery = cosim::kMillisecond;
-constexpr int kBitsOfFrame = 10;
+constexpr int kBitsToStop = 9;    // start and eight data bits
+constexpr int kBitsOfFrame = 10;  // with the stop bit
 
 std::unique_ptr<exec::UartEnd> make_end(const exec::UartSpec& spec) {
     switch (spec.kind) {
     case exec::UartSpec::Kind::Script:
-        return std::make_unique<exec::ScriptEnd>(exec::read_uart_script(spec.file));
-    case exec::UartSpec::Kind::Pty: return exec::make_pty_end();
-    case exec::UartSpec::Kind::Tcp: return exec::make_tcp_end(spec.port);
-    default: break;
+        return std::make_unique<exec::ScriptEnd>(
+            exec::parse_uart_script(spec.file, exec::read_text_file(spec.file)));
+    case exec::UartSpec::Kind::Pty:
+        return exec::make_pty_end();
+    case exec::UartSpec::Kind::Tcp:
+        return exec::make_tcp_end(spec.port);
+    default:
+        break;
     }
     throw InputError("", "uart1", "nothing to plug in", "pty, tcp:PORT or script:FILE");
 }
 
 }  // namespace
+
+exec::UartSpec parse_outside(const std::string& place, const std::string& text, const std::string& folder) {
+    exec::UartSpec spec = exec::parse_uart_spec(place, text);
+    if (spec.kind == exec::UartSpec::Kind::Stdio)
+        throw InputError("", place, "a run has no standard input to give", "pty, tcp:PORT or script:FILE");
+    if (!spec.file.empty())
+        spec.file = (std::filesystem::path(folder) / spec.file).lexically_normal().string();
+    return spec;
+}
 
 OutsideNode::OutsideNode(const OutsideSpec& spec)
     : name_(spec.name),
@@ -39,7 +55,8 @@ OutsideNode::OutsideNode(const OutsideSpec& spec)
         if (record_ == nullptr) throw RunError(fmt::format("{}: cannot be written", record_name_));
         std::setvbuf(record_, nullptr, _IONBF, 0);  // a crash of the run loses nothing
     }
-    if (const std::string text = end_->announcement(); !text.empty()) fmt::print(stderr, "{}: {}\n", name_, text);
+    if (const std::string text = end_->announcement(); !text.empty())
+        fmt::print(stderr, "{}: {}\n", name_, text);
 }
 
 OutsideNode::~OutsideNode() {
@@ -95,12 +112,13 @@ void OutsideNode::receive(const cosim::UartFrame& frame) {
 
 cosim::Time OutsideNode::promise(cosim::PortIndex /*port*/) const {
     if (end_->live()) return granted_;
-    return std::max(next_start(), granted_);
+    return std::max(cosim::later(next_start(), kBitsToStop * bit_period_), granted_);
 }
 
 std::string OutsideNode::finish() {
     end_->finish();
-    return fmt::format(R"({{"sent":{},"received":{},"framing_errors":{}}})", sent_, received_, framing_errors_);
+    return fmt::format(R"({{"sent":{},"received":{},"framing_errors":{}}})", sent_, received_,
+                       framing_errors_);
 }
 
 }  // namespace puckloop::tools

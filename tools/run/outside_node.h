@@ -1,8 +1,8 @@
 #pragma once
 // What is plugged into a UART from outside the robot: a script, a pseudo terminal, a TCP client. 8N1.
 //
-// A script is part of the simulation. The others have a clock of their own: they are looked at once a simulated
-// millisecond, the run is paced by the wall clock, and it cannot be repeated.
+// A script is part of the simulation. The others have a clock of their own: they are looked at once a
+// simulated millisecond, the run is paced by the wall clock, and it cannot be repeated.
 
 #include "cosim/node.h"
 #include "tools/exec/uart_end.h"
@@ -15,6 +15,9 @@
 
 namespace puckloop::tools {
 
+/// "pty", "tcp:PORT" or "script:FILE", a file's path counted from `folder`. Throws InputError naming `place`.
+exec::UartSpec parse_outside(const std::string& place, const std::string& text, const std::string& folder);
+
 struct OutsideSpec {
     std::string name;        ///< of the node: "robot0.uart1"
     exec::UartSpec end;      ///< script, pty or TCP
@@ -24,8 +27,8 @@ struct OutsideSpec {
 
 class OutsideNode : public cosim::Node {
   public:
-    /// Throws InputError for an unreadable script, RunError if no terminal or port can be had. Tells on stderr where a
-    /// terminal or port is.
+    /// Throws InputError for an unreadable script, RunError if no terminal or port can be had. Tells on
+    /// stderr where a terminal or port is.
     explicit OutsideNode(const OutsideSpec& spec);
     ~OutsideNode() override;
 

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "emu/i2c_devices/signals.h"
 #include "emu/pic/signals.h"
+#include "tools/run/outside_node.h"
 #include "tools/run/program_path.h"
 
 #include <fmt/format.h>
@@ -110,6 +111,26 @@ json linux_spec(const RunSetup& setup, const RobotBoards& robot, bool ends_run, 
     return spec;
 }
 
+/// What the scenario plugs into the board's UART1, if anything.
+void add_uart1(RunSetup& setup, const RobotBoards& robot, const RunRequest& request) {
+    if (robot.pic.uart1.empty()) return;
+    const std::string name = robot.name + ".uart1";
+    const std::filesystem::path folder = std::filesystem::absolute(setup.scenario.file).parent_path();
+    const exec::UartSpec end = parse_outside(name, robot.pic.uart1, folder.string());
+    if (end.kind != exec::UartSpec::Kind::Script && !request.realtime)
+        throw InputError(setup.scenario.file.string(), name,
+                         fmt::format("'{}' has a clock of its own", robot.pic.uart1),
+                         "--realtime, or script:FILE");
+    const json spec{{"kind", "outside"},
+                    {"name", name},
+                    {"end", robot.pic.uart1},
+                    {"folder", folder.string()},
+                    {"baud", setup.scenario.uart_baud},
+                    {"record", (setup.out / (name + ".received")).string()}};
+    setup.nodes.push_back({name, spec.dump()});
+    setup.links.push_back({name, {name, "uart"}, {robot.name + ".pic", "uart1"}, setup.scenario.uart_baud});
+}
+
 void add_robot(RunSetup& setup, const RobotBoards& robot, bool exit_ends_run, const RunRequest& request) {
     const Scenario& scenario = setup.scenario;
     const std::string pic = robot.name + ".pic";
@@ -131,6 +152,7 @@ void add_robot(RunSetup& setup, const RobotBoards& robot, bool exit_ends_run, co
     ground.record_from_b = false;
     setup.links.push_back(ground);
     setup.links.push_back({robot.name + ".i2c.pic", {pic, "i2c"}, {bus, "pic"}});
+    add_uart1(setup, robot, request);
     if (!robot.linux_board) return;
     const std::string program = robot.name + ".linux";
     setup.nodes.push_back({program, linux_spec(setup, robot, exit_ends_run, request).dump()});
