@@ -10,30 +10,37 @@ __extension__ using Wide = unsigned __int128;
 constexpr Wide kScale = static_cast<Wide>(1'000'000'000'000u) * 1'000'000u;
 }  // namespace
 
-ClockDomain::ClockDomain(double hertz, double ppm) : ppm_(ppm) {
-    set_rate(hertz);
+std::uint64_t ClockDomain::effective_microhertz(double hertz) const {
+    return static_cast<std::uint64_t>(std::llround(hertz * (1.0 + ppm_ * 1e-6) * 1e6));
 }
 
-void ClockDomain::set_rate(double hertz) {
-    hertz_ = hertz;
-    microhertz_ = static_cast<std::uint64_t>(std::llround(hertz * (1.0 + ppm_ * 1e-6) * 1e6));
+ClockDomain::ClockDomain(double hertz, double ppm)
+    : hertz_(hertz), ppm_(ppm), present_{0, 0, effective_microhertz(hertz)} {}
+
+Time ClockDomain::Stretch::time_of(std::uint64_t later_cycle) const {
+    return time + static_cast<Time>((later_cycle - cycle) * kScale / microhertz);
 }
 
 Time ClockDomain::time_of(std::uint64_t cycle) const {
-    return base_time_ + static_cast<Time>((cycle - base_cycle_) * kScale / microhertz_);
+    if (cycle >= present_.cycle) return present_.time_of(cycle);
+    auto stretch = past_.rbegin();
+    while (stretch->cycle > cycle)
+        ++stretch;  // the first stretch begins with cycle 0
+    return stretch->time_of(cycle);
 }
 
 std::uint64_t ClockDomain::first_cycle_at(Time time) const {
-    if (time <= base_time_) return base_cycle_;
-    const Wide product = static_cast<Wide>(time - base_time_) * microhertz_;
+    if (time <= present_.time) return present_.cycle;
+    const Wide product = static_cast<Wide>(time - present_.time) * present_.microhertz;
     // time_of() rounds down, so the smallest n with floor(n*kScale/f) >= dt is ceil(dt*f/kScale).
-    return base_cycle_ + static_cast<std::uint64_t>((product + kScale - 1) / kScale);
+    return present_.cycle + static_cast<std::uint64_t>((product + kScale - 1) / kScale);
 }
 
 void ClockDomain::change_rate(std::uint64_t cycle, double hertz) {
-    base_time_ = time_of(cycle);
-    base_cycle_ = cycle;
-    set_rate(hertz);
+    const Stretch next{cycle, time_of(cycle), effective_microhertz(hertz)};
+    past_.push_back(present_);
+    present_ = next;
+    hertz_ = hertz;
 }
 
 }  // namespace puckloop::cosim

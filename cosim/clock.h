@@ -4,6 +4,7 @@
 #include "cosim/time.h"
 
 #include <cstdint>
+#include <vector>
 
 namespace puckloop::cosim {
 
@@ -14,10 +15,9 @@ class ClockDomain {
     /// `hertz` > 0 is the nominal rate; `ppm` its error (+ is fast). The effective rate is kept to 1e-6 Hz.
     explicit ClockDomain(double hertz, double ppm = 0.0);
 
-    /// Start of cycle `cycle`, rounded down to a picosecond. Cycles before the last change of rate are not
-    /// known.
+    /// Start of cycle `cycle`, rounded down to a picosecond; of any cycle, changes of rate in between or not.
     Time time_of(std::uint64_t cycle) const;
-    /// First cycle that starts at or after `time`.
+    /// First cycle that starts at or after `time`; times before the last change of rate give its first cycle.
     std::uint64_t first_cycle_at(Time time) const;
     /// From cycle `cycle` on the domain runs at `hertz` (PLL, clock switch); `ppm` of the crystal stays.
     void change_rate(std::uint64_t cycle, double hertz);
@@ -26,13 +26,19 @@ class ClockDomain {
     double ppm() const { return ppm_; }
 
   private:
-    void set_rate(double hertz);
+    /// A stretch of constant rate, from its first cycle to the next stretch.
+    struct Stretch {
+        std::uint64_t cycle = 0;
+        Time time = 0;
+        std::uint64_t microhertz = 0;
+        Time time_of(std::uint64_t later_cycle) const;
+    };
+    std::uint64_t effective_microhertz(double hertz) const;
 
     double hertz_ = 0.0;
     double ppm_ = 0.0;
-    std::uint64_t microhertz_ = 0;
-    std::uint64_t base_cycle_ = 0;
-    Time base_time_ = 0;
+    Stretch present_;
+    std::vector<Stretch> past_;
 };
 
 }  // namespace puckloop::cosim

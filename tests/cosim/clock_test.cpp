@@ -25,4 +25,8 @@ TEST_CASE("a change of rate is seamless") {
     CHECK(clock.time_of(500'000) == kSecond / 2);
     CHECK(clock.time_of(1'500'000) == kSecond);
     CHECK(clock.first_cycle_at(kSecond) == 1'500'000);
+    clock.change_rate(1'500'000, 250'000.0);
+    CHECK(clock.time_of(250'000) == kSecond / 4);  // cycles of earlier rates keep their times
+    CHECK(clock.time_of(1'000'000) == kSecond * 3 / 4);
+    CHECK(clock.time_of(1'750'000) == 2 * kSecond);
 }
