@@ -78,8 +78,8 @@ TEST_CASE("what the robot sends is kept, garbage of a wrong rate counted") {
     inbox.push_back(
         {cosim::kMillisecond, 0,
          cosim::UartFrame{.start = cosim::kMillisecond - 9 * bit, .bit_period = bit, .data = 'o'}});
-    inbox.push_back({2 * cosim::kMillisecond, 0,
-                     cosim::UartFrame{.start = cosim::kMillisecond, .bit_period = 12 * bit, .data = 0}});
+    inbox.push_back({3 * cosim::kMillisecond, 0,
+                     cosim::UartFrame{.start = 2 * cosim::kMillisecond, .bit_period = 12 * bit, .data = 0}});
     node.advance(5 * cosim::kMillisecond, inbox, outbox);
     const std::string report = node.finish();
     CHECK(report.find("\"framing_errors\":0") == std::string::npos);
