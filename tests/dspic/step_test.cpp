@@ -87,7 +87,7 @@ struct CloseFile {
 TEST_CASE("every shared vector passes, states and cycles") {
     const char* place = std::getenv("PUCKLOOP_VECTORS");
     if (!place) {
-        WARN("PUCKLOOP_VECTORS (file or folder of *.txt.xz) is not set: vectors not run");
+        WARN("skipped: PUCKLOOP_VECTORS names no file or folder of *.txt.xz");
         return;
     }
     std::vector<std::filesystem::path> files;

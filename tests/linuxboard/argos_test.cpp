@@ -66,7 +66,7 @@ Session run_argos(const std::string& folder, const std::string& experiment, Time
 TEST_CASE("ARGoS's real-robot program runs its 60 seconds, the same each time") {
     const char* folder = std::getenv("PUCKLOOP_ARGOS");
     if (folder == nullptr) {
-        WARN("PUCKLOOP_ARGOS is not set: no ARGoS build to run");
+        WARN("skipped: PUCKLOOP_ARGOS does not name a folder with an ARGoS build");
         return;
     }
     for (const char* experiment : {"avoid.argos", "avoid_ground.argos", "avoid_rab.argos"}) {

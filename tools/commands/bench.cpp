@@ -22,8 +22,11 @@ namespace puckloop::tools {
 
 namespace {
 
+/// Where this program was built; `bench` works from any folder.
+const std::filesystem::path kHello = PUCKLOOP_SCENARIOS "/hello.toml";
+
 struct Options {
-    std::filesystem::path scenario = "scenarios/hello.toml";
+    std::filesystem::path scenario;  ///< empty: the project's hello.toml
     std::string image;
     double simulated_s = 20.0;
     double slice_s = 0.4;
@@ -56,7 +59,7 @@ Figure measure(const std::string& name, const std::string& unit, const Options& 
 
 double real_time_factor(const Options& options, bool in_process, const std::filesystem::path& folder) {
     RunRequest request;
-    request.scenario = options.scenario;
+    request.scenario = options.scenario.empty() ? kHello : options.scenario;
     request.out = folder;
     request.duration = options.simulated_s;
     request.in_process = in_process;
@@ -101,7 +104,7 @@ std::vector<Figure> measure_all(const Options& options) {
         }));
     }
     const Scratch scratch;
-    const std::string name = options.scenario.filename().string();
+    const std::string name = options.scenario.empty() ? "hello.toml" : options.scenario.filename().string();
     figures.push_back(measure(name + ", one process", "x real time", options,
                               [&] { return real_time_factor(options, true, scratch.path()); }));
     figures.push_back(measure(name + ", a process a node", "x real time", options,

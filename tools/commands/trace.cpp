@@ -17,6 +17,7 @@
 #include <fstream>
 #include <iostream>
 #include <memory>
+#include <set>
 
 namespace puckloop::tools {
 
@@ -59,12 +60,23 @@ void write_to(const std::string& path, const std::function<void(std::ostream&)>&
         throw RunError(fmt::format("{}: cannot write: {}", path, std::strerror(errno != 0 ? errno : EIO)));
 }
 
+void check_known(const char* option, const std::vector<std::string>& asked,
+                 const std::set<std::string>& known) {
+    for (const std::string& name : asked)
+        if (!known.contains(name))
+            throw InputError("", option, fmt::format("'{}' does not occur in the trace", name),
+                             fmt::format("one of {}", fmt::join(known, ", ")));
+}
+
 void run(const Options& options) {
     std::ifstream in(options.file, std::ios::binary);
     if (!in) throw InputError(options.file, "", std::strerror(errno), "a trace.csv that a run recorded");
     std::vector<TraceRow> rows;
     cosim::TraceStats stats;
+    std::set<std::string> links, nodes;
     const bool whole = cosim::read_trace(in, options.file, [&](const TraceRow& row) {
+        links.insert(row.link);
+        nodes.insert(row.from);
         if (!wanted(row, options)) return;
         stats.add(row);
         if (!options.csv.empty() || !options.vcd.empty()) rows.push_back(row);
@@ -72,6 +84,8 @@ void run(const Options& options) {
     if (!whole)
         std::fprintf(stderr, "puckloop: %s: the last line is incomplete and left out\n",
                      options.file.c_str());
+    check_known("--link", options.links, links);
+    check_known("--from-node", options.nodes, nodes);
     if (!options.csv.empty())
         write_to(options.csv, [&](std::ostream& out) {
             out << cosim::kTraceColumns << '\n';

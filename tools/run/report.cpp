@@ -47,12 +47,32 @@ ordered_json unmodelled_of(const ordered_json& nodes) {
     return all;
 }
 
+/// What a Linux program's counters say that its user should hear.
+void add_linux_warnings(const std::string& name, const ordered_json& node,
+                        std::vector<std::string>& warnings) {
+    if (!node.contains("program")) return;
+    const auto count = [&](const char* port, const char* what) -> std::uint64_t {
+        const auto found = node.find(port);
+        return found == node.end() ? 0 : found->value(what, std::uint64_t{0});
+    };
+    if (count("uart", "sent") > 0 && count("uart", "received") == 0)
+        warnings.push_back(
+            fmt::format("{}: sent {} bytes and never received one: was the PIC ready when the program "
+                        "began to speak ('start' in the scenario)?",
+                        name, count("uart", "sent")));
+    if (const auto failed = count("i2c", "failed"); failed > 0)
+        warnings.push_back(
+            fmt::format("{}: {} of {} I2C transfers failed (the bus's log tells the addresses)", name, failed,
+                        count("i2c", "transfers")));
+}
+
 }  // namespace
 
 std::vector<std::string> warnings_of(const cosim::Outcome& outcome) {
     std::vector<std::string> warnings = outcome.warnings;
     for (const auto& node : outcome.nodes) {
         const ordered_json json = node_json(node);
+        add_linux_warnings(node.name, json, warnings);
         if (!json.contains("warnings")) continue;
         for (const auto& warning : json["warnings"])
             warnings.push_back(fmt::format(

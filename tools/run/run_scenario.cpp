@@ -58,9 +58,11 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
     cosim::TraceCsvSink trace((setup.out / "trace.csv").string());
     conductor.add_sink(trace);
     cosim::Outcome outcome = conductor.run();
-    if (outcome.reason == cosim::EndReason::Interrupted)
+    if (outcome.reason == cosim::EndReason::Interrupted) {
+        outcome.success = false;
         outcome.text = fmt::format("interrupted (SIG{}) at {:.3f} s of simulated time",
                                    sigabbrev_np(*interrupted), cosim::to_seconds(outcome.simulated));
+    }
     judge(outcome);
     write_results(setup, outcome, report);
     return outcome;
