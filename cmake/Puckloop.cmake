@@ -29,7 +29,8 @@ function(puckloop_test name)
   # A test that lacks what it needs (real images, a tool) says "skipped" with the reason, and CTest counts it so.
   set(properties PROPERTIES SKIP_REGULAR_EXPRESSION "skipped")
   if(ARG_LABELS)
-    list(APPEND properties LABELS "${ARG_LABELS}")
+    list(JOIN ARG_LABELS "-" labels)  # one word: ctest -L takes a pattern, so each label still selects
+    list(APPEND properties LABELS "${labels}")
   endif()
-  catch_discover_tests(${name} TEST_PREFIX "${name}: " ${properties} DISCOVERY_MODE PRE_TEST)
+  catch_discover_tests(${name} TEST_PREFIX "${name}: " ${properties})
 endfunction()

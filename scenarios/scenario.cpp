@@ -138,6 +138,10 @@ cosim::FaultSpec read_fault(const std::string& file, std::size_t index, const To
     if (fault.kind == cosim::FaultKind::Rate) fault.amount = reader.quantity("factor", Dimension::Ratio);
     reader.finish();
     check_fault_link(reader, fault.link, scenario);
+    const std::string robot = fault.link.substr(0, fault.link.rfind('.'));
+    if (!fault.from.empty() && fault.from != robot + ".linux" && fault.from != robot + ".pic")
+        reader.fail("from", fmt::format("'{}' is at no end of {}", fault.from, fault.link),
+                    fmt::format("{0}.linux or {0}.pic", robot));
     return fault;
 }
 

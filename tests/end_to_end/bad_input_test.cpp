@@ -61,11 +61,11 @@ TEST_CASE("mistakes in a scenario are told with line and what was perhaps meant"
         const std::string file = bench.file("wrong.toml", replaced(good, what, with));
         refused(bench, {file}, expected, false);
     };
-    wrong("heading = \"20 deg\"", "headng = \"20 deg\"", {"wrong.toml", "line 16", "'headng'", "'heading'"});
-    wrong("\"60 s\"", "\"60 cm\"", {"wrong.toml", "line 6", "is a length", "a time"});
-    wrong("\"60 s\"", "60", {"line 6", "has no unit"});
+    wrong("heading = \"20 deg\"", "headng = \"20 deg\"", {"wrong.toml", "line 15", "'headng'", "'heading'"});
+    wrong("\"5 cm\"", "\"5 s\"", {"wrong.toml", "line 20", "is a time", "a length"});
+    wrong("\"5 cm\"", "5", {"line 20", "has no unit"});
     wrong("firmware =", "firmwar =", {"'firmwar'", "'firmware'"});
-    wrong("[arena]", "[arena", {"line 9"});
+    wrong("[arena]", "[arena", {"line 8"});
     refused(bench, {"nowhere.toml"}, {"nowhere.toml", "cannot be opened"}, false);
     refused(bench, {bench.folder()}, {"is a directory"}, false);
     refused(bench, {bench.file("text.toml", "this is no TOML\n")}, {"text.toml", "line 1"}, false);
@@ -75,16 +75,16 @@ TEST_CASE("mistakes in a scenario are told with line and what was perhaps meant"
 TEST_CASE("a fault on a link that is not there is refused") {
     const Workbench bench;
     const std::string link = bench.hello("\n[[fault]]\nlink = \"robot0.uarrt\"\n");
-    check_one_line(bench.run("o", {link}), 2, {"line 44", "robot0.uarrt", "one of robot0.uart"});
+    check_one_line(bench.run("o", {link}), 2, {"line 44", "robot0.uarrt", "expected robot0.uart"});
     const std::string end = bench.hello("\n[[fault]]\nlink = \"robot0.uart\"\nfrom = \"pic\"\n");
-    check_one_line(bench.run("o", {end}), 2, {"line 44", "'pic'", "robot0.pic"});
+    check_one_line(bench.run("o", {end}), 2, {"line 45", "'pic'", "robot0.pic"});
 }
 
 TEST_CASE("options that make no sense are refused in one line") {
     const Workbench bench;
     refused(bench, {"--durration", "4"}, {"--durration", "perhaps --duration"});
     for (const char* duration : {"abc", "-3", "0", "3s", "nan"})
-        refused(bench, {"--duration", duration}, {"--duration", duration, "seconds"});
+        refused(bench, {"--duration", duration}, {"--duration", duration, "not a number"});
     refused(bench, {"--seed", "x"}, {"--seed"});
     refused(bench, {"--model", "nowhere.toml"}, {"nowhere.toml"});
     refused(bench, {"another.toml"}, {"another.toml"});

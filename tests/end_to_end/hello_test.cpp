@@ -90,7 +90,7 @@ TEST_CASE("another seed gives another run") {
     CHECK(bench.report("2")["seed"] == 2);
 }
 
-TEST_CASE("--json prints only where the report is") {
+TEST_CASE("the option --json prints only where the report is") {
     const Workbench bench;
     const Ended ended = bench.run("o", {kHello, "--duration", "1", "--in-process", "--json"});
     CHECK(ended.status == 0);

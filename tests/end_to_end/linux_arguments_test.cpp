@@ -33,7 +33,7 @@ TEST_CASE("after -- everything is the program's") {
                 "--linux-arg=-z"});
 }
 
-TEST_CASE("--linux as the last word is left for the parser to refuse") {
+TEST_CASE("a last --linux is left for the parser to refuse") {
     CHECK(pack_linux_arguments({"run", "--linux"}) == Words{"run", "--linux"});
 }
 

@@ -43,8 +43,6 @@ std::filesystem::path Workbench::hello(const std::string& more) const {
     std::string text = text_of(PUCKLOOP_SOURCE "/scenarios/hello.toml");
     const std::string relative = "../firmware";
     text.replace(text.find(relative), relative.size(), PUCKLOOP_SOURCE "/firmware");
-    const std::string linux_table = "[robot.linux]\n";
-    text.insert(text.find(linux_table) + linux_table.size(), "start = \"1 s\"\n");
     return file("hello.toml", text + more);
 }
 

@@ -28,7 +28,7 @@ class Workbench {
 
     const std::filesystem::path& folder() const { return folder_; }
     std::filesystem::path file(const std::string& name, const std::string& content) const;
-    /// scenarios/hello.toml with its program started at 1 s, and further tables appended.
+    /// scenarios/hello.toml with further tables appended.
     std::filesystem::path hello(const std::string& more = {}) const;
 
     /// The built puckloop; starts in the folder that tests run in.
