@@ -13,6 +13,31 @@ namespace {
 // Of scenarios/hello.toml and own_binaries.toml; the body's radius is the physical model's.
 constexpr double kHalfLength = 0.60, kHalfWidth = 0.45, kBodyRadius = 0.035;
 
+// What scenarios/hello.toml is about, in a form that tests may rely on line by line.
+const std::string kScenario = R"([run]
+duration = "60 s"
+
+[arena]
+size = ["1.2 m", "90 cm"]
+
+[[box]]
+centre = ["30 cm", "15 cm"]
+size = ["15 cm", "10 cm", "10 cm"]
+heading = "20 deg"
+
+[[robot]]
+name = "robot0"
+position = ["-10 cm", "0 cm"]
+heading = "30 deg"
+
+[robot.pic]
+firmware = ")" PUCKLOOP_SOURCE R"(/firmware/epuck/epuck.hex"
+
+[robot.linux]
+program = ["puckloop-control", "--behaviour", "wander", "--duration", "55"]
+start = "1 s"
+)";
+
 std::vector<std::string> cells_of(const std::string& line) {
     std::vector<std::string> cells;
     std::istringstream in(line);
@@ -40,10 +65,7 @@ std::filesystem::path Workbench::file(const std::string& name, const std::string
 }
 
 std::filesystem::path Workbench::hello(const std::string& more) const {
-    std::string text = text_of(PUCKLOOP_SOURCE "/scenarios/hello.toml");
-    const std::string relative = "../firmware";
-    text.replace(text.find(relative), relative.size(), PUCKLOOP_SOURCE "/firmware");
-    return file("hello.toml", text + more);
+    return file("hello.toml", kScenario + more);
 }
 
 std::unique_ptr<Process> Workbench::start(const Words& words, const std::string& input) const {

@@ -28,7 +28,7 @@ class Workbench {
 
     const std::filesystem::path& folder() const { return folder_; }
     std::filesystem::path file(const std::string& name, const std::string& content) const;
-    /// scenarios/hello.toml with further tables appended.
+    /// A small scenario: one robot, its program started at 1 s, 60 s long; further tables appended.
     std::filesystem::path hello(const std::string& more = {}) const;
 
     /// The built puckloop; starts in the folder that tests run in.
