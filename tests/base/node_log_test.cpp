@@ -1,6 +1,7 @@
 #include "base/node_log.h"
 
 #include "base/error.h"
+#include "tests/scratch.h"
 
 #include <catch2/catch.hpp>
 
@@ -21,7 +22,7 @@ std::string contents(const std::filesystem::path& file) {
 }  // namespace
 
 TEST_CASE("lines carry their time, replace an older file and are there before the log is closed") {
-    const auto file = std::filesystem::temp_directory_path() / "puckloop-node-log-test.log";
+    const auto file = puckloop::tests::scratch_path("puckloop-node-log-test.log");
     std::ofstream(file) << "of an earlier run\n";
     NodeLog log(file.string());
     log.line(17.630123, "robot0 touches carton");

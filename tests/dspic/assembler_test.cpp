@@ -1,5 +1,6 @@
 #include "base/error.h"
 #include "emu/dspic/assembler/assembler.h"
+#include "tests/scratch.h"
 
 #include <catch2/catch.hpp>
 
@@ -137,7 +138,7 @@ TEST_CASE("Errors name line, problem and what would do") {
 
 TEST_CASE("Included files are read beside the one that names them") {
     namespace fs = std::filesystem;
-    const fs::path folder = fs::temp_directory_path() / "puckloop_include_test";
+    const fs::path folder = puckloop::tests::scratch_path("puckloop_include_test");
     fs::create_directories(folder);
     std::ofstream(folder / "part.s") << "mov #1, w0\nbad\n";
     AssembleOptions options;

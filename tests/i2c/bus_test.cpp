@@ -4,6 +4,7 @@
 #include "emu/i2c_devices/bus_node.h"
 #include "emu/i2c_devices/signals.h"
 #include "physics/channels.h"
+#include "tests/scratch.h"
 
 #include <catch2/catch.hpp>
 
@@ -221,7 +222,7 @@ TEST_CASE("a board behind a port answers in its own time; the master sees the st
 }
 
 TEST_CASE("the log tells first transfers, absent devices, lost buses and stretches") {
-    const auto file = std::filesystem::temp_directory_path() / "puckloop-i2c-log-test.log";
+    const auto file = puckloop::tests::scratch_path("puckloop-i2c-log-test.log");
     const auto run = [&](Time longest) {
         Bench bench({.boards = {{"rab", 0x20}}, .log = file.string()});
         constexpr PortIndex kRab = 2;

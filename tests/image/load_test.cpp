@@ -3,6 +3,7 @@
 #include "emu/image/intel_hex.h"
 #include "tests/image/build_images.h"
 #include "tests/image/expect_error.h"
+#include "tests/scratch.h"
 
 #include <catch2/catch.hpp>
 
@@ -65,7 +66,7 @@ TEST_CASE("An image for another chip is told as such") {
 
 TEST_CASE("Files that cannot be an image are refused by name") {
     namespace fs = std::filesystem;
-    const fs::path folder = fs::temp_directory_path() / "puckloop_load_test";
+    const fs::path folder = puckloop::tests::scratch_path("puckloop_load_test");
     fs::create_directories(folder);
     const std::string missing = (folder / "missing.hex").string();
     CHECK(error_of([&] { load_image(missing); }) ==

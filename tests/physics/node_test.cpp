@@ -4,6 +4,7 @@
 #include "physics/world_log.h"
 #include "physics/world_node.h"
 #include "tests/physics/worlds.h"
+#include "tests/scratch.h"
 
 #include <catch2/catch.hpp>
 
@@ -85,7 +86,7 @@ std::string contents(const std::filesystem::path& file) {
 }
 
 struct TemporaryDirectory {
-    std::filesystem::path path = std::filesystem::temp_directory_path() / "puckloop-physics-node-test";
+    std::filesystem::path path = puckloop::tests::scratch_path("puckloop-physics-node-test");
     TemporaryDirectory() { std::filesystem::create_directories(path); }
     ~TemporaryDirectory() { std::filesystem::remove_all(path); }
 };

@@ -5,6 +5,7 @@
 #include "physics/recorder.h"
 #include "physics/trajectory_svg.h"
 #include "tests/physics/worlds.h"
+#include "tests/scratch.h"
 
 #include <catch2/catch.hpp>
 
@@ -45,7 +46,7 @@ std::string contents(const std::filesystem::path& file) {
 }  // namespace
 
 TEST_CASE("a picture shows arena, things, paths and robots, even of a run that died") {
-    const auto directory = std::filesystem::temp_directory_path() / "puckloop-physics-picture-test";
+    const auto directory = puckloop::tests::scratch_path("puckloop-physics-picture-test");
     std::filesystem::create_directories(directory);
     World world = furnished();
     world.recording.directory = directory.string();
@@ -77,7 +78,7 @@ TEST_CASE("a picture shows arena, things, paths and robots, even of a run that d
 }
 
 TEST_CASE("a damaged or missing recording is named") {
-    const auto directory = std::filesystem::temp_directory_path() / "puckloop-physics-damaged-test";
+    const auto directory = puckloop::tests::scratch_path("puckloop-physics-damaged-test");
     std::filesystem::create_directories(directory);
     CHECK_THROWS_WITH(write_trajectory_svg(furnished(), directory), Catch::Contains("trajectory.csv"));
     std::ofstream(directory / "trajectory.csv") << "t_s,robot,x_m,y_m,theta_rad\n0,e1,zero,0,0\n0,e1,0,0,0\n";

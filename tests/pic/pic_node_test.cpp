@@ -5,6 +5,7 @@
 #include "base/random.h"
 #include "emu/dspic/assembler/assembler.h"
 #include "emu/dspic/device.h"
+#include "tests/scratch.h"
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
@@ -232,7 +233,7 @@ TEST_CASE("however the grants are cut, the same messages leave at the same times
 }
 
 TEST_CASE("the log tells what happened, the same however the grants are cut") {
-    const auto file = std::filesystem::temp_directory_path() / "puckloop-pic-log-test.log";
+    const auto file = puckloop::tests::scratch_path("puckloop-pic-log-test.log");
     const auto messages = run_cut({40 * cosim::kMillisecond}, true, file.string());
     CHECK(messages == run_cut({40 * cosim::kMillisecond}, true));  // looking disturbs nothing
     const std::string log = contents(file);
@@ -257,7 +258,7 @@ TEST_CASE("the log tells what happened, the same however the grants are cut") {
 }
 
 TEST_CASE("the log names resets, registers without a model and where in the program") {
-    const auto file = std::filesystem::temp_directory_path() / "puckloop-pic-log-test.log";
+    const auto file = puckloop::tests::scratch_path("puckloop-pic-log-test.log");
     image::Image image = assembled(R"(
         .org 0x100
 main:   mov #0x1000, w15
@@ -279,7 +280,7 @@ main:   mov #0x1000, w15
 }
 
 TEST_CASE("errors on the line are told when they first come and when they have doubled") {
-    const auto file = std::filesystem::temp_directory_path() / "puckloop-pic-log-test.log";
+    const auto file = puckloop::tests::scratch_path("puckloop-pic-log-test.log");
     pic::PicNodeOptions options = quiet();
     options.log = file.string();
     pic::PicNode node(assembled(kFirmware), options);

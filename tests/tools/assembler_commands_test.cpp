@@ -1,5 +1,6 @@
 // puckloop asm and puckloop disasm from the outside.
 #include <catch2/catch.hpp>
+#include <unistd.h>
 
 #include <sys/wait.h>
 
@@ -48,7 +49,7 @@ class Folder {
     }
 
   private:
-    fs::path path_ = fs::temp_directory_path() / "puckloop_asm_commands";
+    fs::path path_ = fs::temp_directory_path() / ("puckloop_asm_commands." + std::to_string(::getpid()));
 };
 
 std::string content_of(const std::string& path) {
