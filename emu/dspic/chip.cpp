@@ -258,6 +258,16 @@ void Chip::i2c_answer(int, const cosim::I2cPhase& phase) {
     parts_->i2c.answer(phase, parts_->message_cycle());
 }
 
+void Chip::i2c_slave_phase(int unit, const cosim::I2cPhase& phase) {
+    if (phase.kind == cosim::I2cPhaseKind::Stop) return;
+    cosim::I2cPhase answer = phase;
+    answer.kind = phase.kind == cosim::I2cPhaseKind::Read ? cosim::I2cPhaseKind::Data
+                                                          : cosim::I2cPhaseKind::Acknowledge;
+    answer.ack = 0;
+    answer.byte = 0xFF;
+    parts_->pins.i2c_slave_answer(unit, answer);
+}
+
 void Chip::pins_changed(PortLetter port) {
     parts_->ports.outside_changed(port, parts_->message_cycle());
 }
@@ -285,6 +295,14 @@ bool Chip::uart_enabled(int unit) const {
 Time Chip::earliest_i2c(int) const {
     const Cycle cycle = parts_->i2c.earliest(std::max(parts_->core.cycle(), parts_->message_cycle()));
     return cycle == kNoCycle ? cosim::kNever : parts_->clock.time_of(cycle);
+}
+
+Time Chip::earliest_i2c_slave_answer(int) const {
+    return cosim::kNever;
+}
+
+OutputCompareState Chip::output_compare(int) const {
+    return {};
 }
 
 const cosim::ClockDomain& Chip::clock() const {

@@ -54,6 +54,14 @@ struct ChipWarning {
     std::uint32_t pc = 0;
 };
 
+/// What an output compare module does with its pin. No call per edge: see Pins::output_compare_changed().
+struct OutputCompareState {
+    int mode = 0;          ///< OCxCON<OCM>: 0 off, 3 toggle, 4 single pulse, 5 pulses, 6 and 7 PWM, ...
+    bool running = false;  ///< its timer counts: edges come by themselves
+    Cycle period = 0;      ///< between rising edges, instruction cycles; 0 while nothing repeats
+    Cycle high = 0;        ///< of each period, 0..period
+};
+
 struct ChipReport {
     std::vector<ResetRecord> resets;          ///< the first 1000, power-on included
     std::vector<TrapRecord> traps;            ///< the first 1000
@@ -95,6 +103,10 @@ class Chip {
     void uart_receive(int unit, const cosim::UartFrame& frame);
     /// The bus's answer (Acknowledge, Data or BusLost) to the last phase of I2C module `unit`, now.
     void i2c_answer(int unit, const cosim::I2cPhase& phase);
+    /// A phase that a bus master begins now reaches module `unit` as slave: Start, Write, Read or Stop.
+    /// Each but Stop is answered through Pins::i2c_slave_answer(), with ack = 0 where the slave does not feel
+    /// addressed.
+    void i2c_slave_phase(int unit, const cosim::I2cPhase& phase);
     /// Levels that Pins::levels() reports for this port changed now: edges for INTx, CN, timer clocks and
     /// gates.
     void pins_changed(PortLetter port);
@@ -111,6 +123,11 @@ class Chip {
     /// No i2c_phase() call of module `unit` begins before this, unless an answer comes in; kNever while one
     /// is awaited.
     cosim::Time earliest_i2c(int unit) const;
+
+    /// No i2c_slave_answer() call of module `unit` comes before this; kNever while no phase is open.
+    cosim::Time earliest_i2c_slave_answer(int unit) const;
+    /// Module OC`unit`; all zero if the device has none.
+    OutputCompareState output_compare(int unit) const;
 
     const cosim::ClockDomain& clock() const;
     /// How far the chip has been run: the last `until`, or the start of the instruction at a stop address.

@@ -22,14 +22,24 @@ std::string_view DeviceInfo::vector_name(int vector) const {
     return kReserved;
 }
 
-std::span<const DeviceInfo> devices() {
-    return {&dspic30f6014a(), 1};
+std::span<const DeviceInfo* const> devices() {
+    static const DeviceInfo* const known[] = {&dspic30f6014a(), &dspic33fj256gp710()};
+    return known;
 }
 
 const DeviceInfo* find_device(std::string_view name) {
-    for (const DeviceInfo& device : devices())
-        if (device.name == name) return &device;
+    for (const DeviceInfo* device : devices())
+        if (device->name == name) return device;
     return nullptr;
+}
+
+std::string device_names() {
+    std::string names;
+    for (const DeviceInfo* device : devices()) {
+        if (!names.empty()) names += ", ";
+        names += device->name;
+    }
+    return names;
 }
 
 }  // namespace puckloop::dspic

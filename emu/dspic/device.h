@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace puckloop::dspic {
@@ -70,9 +71,12 @@ struct DeviceInfo {
 inline constexpr int kTrapVectors = 8;
 
 const DeviceInfo& dspic30f6014a();
+const DeviceInfo& dspic33fj256gp710();
 /// Every device this program knows.
-std::span<const DeviceInfo> devices();
+std::span<const DeviceInfo* const> devices();
 /// By command-line name, lower case; null if unknown.
 const DeviceInfo* find_device(std::string_view name);
+/// Their names, for messages: "dspic30f6014a, ...".
+std::string device_names();
 
 }  // namespace puckloop::dspic

@@ -31,6 +31,21 @@ class Pins {
     /// The chip, as master, began an I2C phase of module `unit`; the board answers through
     /// Chip::i2c_answer().
     virtual void i2c_phase(int unit, const cosim::I2cPhase& phase) = 0;
+    /// The chip, as slave of I2C module `unit`, answers the phase handed to Chip::i2c_slave_phase():
+    /// Acknowledge to a Start or Write, Data to a Read. `start` and `clock_period` are the phase's, `stretch`
+    /// tells how long SCL was held: the answer belongs to start + 8 clocks + stretch, and is called then.
+    virtual void i2c_slave_answer(int unit, const cosim::I2cPhase& answer);
+    /// Master of SPI module `unit` shifted out `bits` (8 or 16) bits, the last clock edge being now: what
+    /// came in meanwhile. The chip select is an ordinary port pin. Without a board the line rests high.
+    virtual std::uint16_t spi_exchange(int unit, std::uint16_t sent, int bits, Cycle now);
+    /// Chip::output_compare(unit) changed at cycle `now`.
+    virtual void output_compare_changed(int unit, Cycle now);
 };
+
+inline void Pins::i2c_slave_answer(int, const cosim::I2cPhase&) {}
+inline std::uint16_t Pins::spi_exchange(int, std::uint16_t, int bits, Cycle) {
+    return static_cast<std::uint16_t>((1u << bits) - 1u);
+}
+inline void Pins::output_compare_changed(int, Cycle) {}
 
 }  // namespace puckloop::dspic

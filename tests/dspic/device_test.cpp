@@ -2,7 +2,7 @@
 
 #include "emu/dspic/device.h"
 #include "emu/dspic/devices/dspic30f6014a_irq.h"
-#include "emu/dspic/devices/dspic30f6014a_sfr.h"
+#include "emu/dspic/devices/dspic33fj256gp710_irq.h"
 
 #include <catch2/catch.hpp>
 
@@ -32,9 +32,11 @@ std::uint16_t field_mask(std::string_view field) {
 }  // namespace
 
 TEST_CASE("registers are in address order, named once, and their fields fill their implemented bits") {
+    const DeviceInfo& device = *GENERATE(from_range(devices().begin(), devices().end()));
+    INFO(device.name);
     std::set<std::string_view> names;
     int last = -2;
-    for (const RegisterInfo& info : dspic30f6014a().registers) {
+    for (const RegisterInfo& info : device.registers) {
         INFO(info.name);
         CHECK(info.address % 2 == 0);
         CHECK(info.address > last);
@@ -52,34 +54,47 @@ TEST_CASE("registers are in address order, named once, and their fields fill the
         }
         CHECK(bits == info.implemented);
     }
-    CHECK(names.size() == 350);
+    CHECK(names.size() == (device.family_33f ? 416 : 350));
 }
 
 TEST_CASE("interrupts are in order and their priority fields exist with reset value 4") {
+    const DeviceInfo& device = *GENERATE(from_range(devices().begin(), devices().end()));
+    INFO(device.name);
     int last = -1;
     SfrSpace sfr;
-    sfr.describe(dspic30f6014a().registers);
-    for (const IrqName& info : dspic30f6014a().irqs) {
+    sfr.describe(device.registers);
+    for (const IrqName& info : device.irqs) {
         INFO(info.name);
         CHECK(info.irq > last);
         last = info.irq;
-        const auto ipc = static_cast<std::uint16_t>(sfr::IPC0 + info.irq / 4 * 2);
+        const auto ipc = static_cast<std::uint16_t>(device.ipc + info.irq / 4 * 2);
         CHECK((sfr.raw(ipc) >> (info.irq % 4 * 4) & 7) == 4);
-        const auto ifs = static_cast<std::uint16_t>(sfr::IFS0 + info.irq / 16 * 2);
-        REQUIRE(sfr.info(ifs) != nullptr);
-        CHECK((sfr.info(ifs)->implemented >> (info.irq % 16) & 1) == 1);
-        CHECK(sfr.info(ifs)->fields.find(info.flag) != std::string_view::npos);
+        CHECK(sfr.info(ipc)->fields.find(info.priority) != std::string_view::npos);
+        for (const auto& [bank, name] :
+             {std::pair(device.ifs, info.flag), std::pair(device.iec, info.enable)}) {
+            const auto address = static_cast<std::uint16_t>(bank + info.irq / 16 * 2);
+            REQUIRE(sfr.info(address) != nullptr);
+            CHECK((sfr.info(address)->implemented >> (info.irq % 16) & 1) == 1);
+            CHECK(sfr.info(address)->fields.find(name) != std::string_view::npos);
+        }
     }
-    CHECK(dspic30f6014a().irqs.size() == 41);
+    CHECK(device.irqs.size() == (device.family_33f ? 63 : 41));
     CHECK(irq::U2RX == 24);
+    CHECK(irq33::U2RX == 30);
 }
 
 TEST_CASE("devices are found by command-line name, vectors by number") {
     CHECK(find_device("dspic30f6014a") == &dspic30f6014a());
-    CHECK(find_device("dspic33fj256gp710") == nullptr);
+    CHECK(find_device("dspic33fj256gp710") == &dspic33fj256gp710());
+    CHECK(find_device("dspic30f9999") == nullptr);
+    CHECK(device_names() == "dspic30f6014a, dspic33fj256gp710");
     CHECK(dspic30f6014a().irq("U2RX") == 24);
     CHECK_FALSE(dspic30f6014a().irq("DMA0"));
     CHECK(dspic30f6014a().vector_name(4) == "MathError");
     CHECK(dspic30f6014a().vector_name(8 + 24) == "U2RX");
     CHECK(dspic30f6014a().vector_name(8 + 39) == "Reserved");
+    CHECK(dspic33fj256gp710().irq("DMA0") == 4);
+    CHECK_FALSE(dspic33fj256gp710().irq("NVM"));
+    CHECK(dspic33fj256gp710().vector_name(5) == "DmacError");
+    CHECK(dspic33fj256gp710().vector_name(8 + 16) == "SI2C1");
 }

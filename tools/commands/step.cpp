@@ -17,12 +17,7 @@ void declare_step(CLI::App& app, int& status) {
     command->add_option("--mcu", mcu, "The chip, e.g. dspic30f6014a")->required();
     command->callback([&status] {
         const dspic::DeviceInfo* device = dspic::find_device(mcu);
-        if (!device) {
-            std::string known;
-            for (const dspic::DeviceInfo& one : dspic::devices())
-                known += (known.empty() ? "" : ", ") + std::string(one.name);
-            throw InputError("", "--mcu", "no such chip: " + mcu, known);
-        }
+        if (!device) throw InputError("", "--mcu", "no such chip: " + mcu, dspic::device_names());
         std::ios::sync_with_stdio(false);
         dspic::StepMachine machine(*device);
         for (std::string line; std::getline(std::cin, line);) {

@@ -89,7 +89,8 @@ class BareChip : public DspicTarget, private dspic::Pins {
 std::unique_ptr<Target> make_bare_chip(std::string_view mcu, const TargetOptions& options,
                                        TargetListener& listener) {
     const dspic::DeviceInfo* device = dspic::find_device(mcu);
-    if (device == nullptr) throw InputError("", "--mcu", fmt::format("no chip '{}'", mcu), "dspic30f6014a");
+    if (device == nullptr)
+        throw InputError("", "--mcu", fmt::format("no chip '{}'", mcu), dspic::device_names());
     return std::make_unique<BareChip>(*device, options, listener);
 }
 
