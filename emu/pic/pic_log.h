@@ -1,60 +1,33 @@
 #pragma once
-// The log of a main board: what its firmware went through, with simulated times.
-//
-// The chip is asked at fixed multiples of simulated time, and the lines of one such stretch are sorted by
-// time and text: the log does not depend on how grants were cut.
+// The log of a main board: what its chip went through (emu/board/chip_log.h), wheels and LEDs.
 
-#include "base/node_log.h"
-#include "cosim/message.h"
-#include "cosim/time.h"
-#include "emu/dspic/chip.h"
-#include "emu/image/symbol_table.h"
+#include "emu/board/chip_log.h"
 #include "emu/pic/board.h"
 #include "emu/pic/motor_log.h"
 
 #include <array>
 #include <string>
-#include <utility>
-#include <vector>
 
 namespace puckloop::pic {
 
 class PicLog {
   public:
-    /// An empty path is no log. Throws RunError as NodeLog does.
-    PicLog(const std::string& path, const image::Image& image);
+    /// As ChipLog.
+    PicLog(const std::string& path, const image::Image& image) : chip_(path, image) {}
 
-    bool is_open() const { return log_.is_open(); }
-    /// The next time at which look() wants to be called, with the chip run up to it; kNever without a log.
-    cosim::Time next_look() const { return is_open() ? next_look_ : cosim::kNever; }
+    cosim::Time next_look() const { return chip_.next_look(); }
     void look(const dspic::Chip& chip);
-    /// The last look and the summary.
     void end(cosim::Time now, const dspic::Chip& chip, const Board& board);
 
     void signal_changed(SignalId id, double value, cosim::Time now);
     /// Both at the stop bit.
-    void sent(int unit, const cosim::UartFrame& frame, cosim::Time now);
-    void arrived(int unit, const cosim::UartFrame& frame, cosim::Time now, bool listening);
+    void sent(int unit, const cosim::UartFrame& frame, cosim::Time now) { chip_.sent(unit, frame, now); }
+    void arrived(int unit, const cosim::UartFrame& frame, cosim::Time now, bool listening) {
+        chip_.arrived(unit, frame, now, listening);
+    }
 
   private:
-    static constexpr std::size_t kUarts = 2;
-    struct UartSeen {
-        bool sent = false, arrived = false;
-        dspic::UartCounters counters;  // errors told so far
-    };
-    void note(cosim::Time time, std::string text) { lines_.emplace_back(time, std::move(text)); }
-    void read_report(cosim::Time now, const dspic::Chip& chip);
-    void read_errors(cosim::Time now, const dspic::Chip& chip);
-    void write_until(cosim::Time now);
-    std::string place(std::uint32_t pc) const;
-
-    NodeLog log_;
-    image::CodeSymbols symbols_;
-    std::vector<std::pair<cosim::Time, std::string>> lines_;  // not yet written
-    cosim::Time next_look_;
-    cosim::Time written_ = 0;  // all before this is in the file
-    std::size_t resets_ = 0, traps_ = 0, unmodelled_ = 0, warnings_ = 0;
-    std::array<UartSeen, kUarts> uarts_;
+    board::ChipLog chip_;
     std::array<MotorLog, 2> motors_{MotorLog("left"), MotorLog("right")};
     std::array<std::uint64_t, kSignalCount> changes_{};
 };

@@ -1,6 +1,6 @@
 #include "emu/pic/pic_node.h"
 
-#include "emu/pic/chip_json.h"
+#include "emu/board/chip_json.h"
 #include "protocols/uart_sampling.h"
 
 #include <nlohmann/json.hpp>
@@ -136,13 +136,13 @@ void PicNode::i2c_phase(int unit, const cosim::I2cPhase& phase) {
 
 std::string PicNode::finish() {
     log_.end(granted_, *chip_, board_);
-    nlohmann::ordered_json json = chip_json(*chip_);
+    nlohmann::ordered_json json = board::chip_json(*chip_);
     json["kind"] = "epuck board, dsPIC30F6014A";
     json["wheel_steps"] = {{"left", board_.left_motor().steps()}, {"right", board_.right_motor().steps()}};
     json["illegal_coil_patterns"] =
         board_.left_motor().illegal_patterns() + board_.right_motor().illegal_patterns();
-    json["uart1"] = uart_json(chip_->uart_counters(1));
-    json["uart2"] = uart_json(chip_->uart_counters(2));
+    json["uart1"] = board::uart_json(chip_->uart_counters(1));
+    json["uart2"] = board::uart_json(chip_->uart_counters(2));
     return json.dump();
 }
 

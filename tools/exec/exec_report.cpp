@@ -1,6 +1,6 @@
 #include "tools/exec/exec_report.h"
 
-#include "emu/pic/chip_json.h"
+#include "emu/board/chip_json.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -31,11 +31,11 @@ std::string json_report(Bench& bench, const image::Image& image, const ExecOutco
     if (!outcome.symbol.empty()) json["symbol"] = outcome.symbol;
     json["image"] = {
         {"file", image.file}, {"format", image::name_of(image.format)}, {"sha256", image.sha256}};
-    json.update(pic::chip_json(bench.chip()));
+    json.update(board::chip_json(bench.chip()));
     json["simulated_s"] = seconds_of(bench.now());
     json["wall_s"] = outcome.wall_s;
     for (int unit = 1; unit <= 2; ++unit) {
-        Json uart = pic::uart_json(bench.chip().uart_counters(unit));
+        Json uart = board::uart_json(bench.chip().uart_counters(unit));
         uart["offered_by_bench"] = bench.uart(unit).bytes_to_chip();
         uart["framing_errors_at_bench"] = bench.uart(unit).framing_errors_seen();
         json[fmt::format("uart{}", unit)] = std::move(uart);

@@ -1,9 +1,9 @@
-#include "emu/pic/chip_json.h"
+#include "emu/board/chip_json.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-namespace puckloop::pic {
+namespace puckloop::board {
 
 namespace {
 std::string hexadecimal(std::uint32_t address) {
@@ -46,4 +46,4 @@ nlohmann::ordered_json uart_json(const dspic::UartCounters& counters) {
             {"overruns", counters.overruns}};
 }
 
-}  // namespace puckloop::pic
+}  // namespace puckloop::board

@@ -5,11 +5,11 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-namespace puckloop::pic {
+namespace puckloop::board {
 
 /// cycles, instructions, resets and traps (time_s, cause or name, pc), unmodelled (name, address, pc, write).
 nlohmann::ordered_json chip_json(const dspic::Chip& chip);
 /// sent, received, framing_errors, parity_errors, overruns.
 nlohmann::ordered_json uart_json(const dspic::UartCounters& counters);
 
-}  // namespace puckloop::pic
+}  // namespace puckloop::board

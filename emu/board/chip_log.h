@@ -1,0 +1,59 @@
+#pragma once
+// The log of a board, as far as its dsPIC goes: firmware, resets, traps, registers without a model, warnings,
+// UART firsts and errors. The board adds lines of its own.
+//
+// The chip is asked at fixed multiples of simulated time, and the lines of one such stretch are sorted by
+// time and text: the log does not depend on how grants were cut.
+
+#include "base/node_log.h"
+#include "cosim/message.h"
+#include "cosim/time.h"
+#include "emu/dspic/chip.h"
+#include "emu/image/symbol_table.h"
+
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace puckloop::board {
+
+class ChipLog {
+  public:
+    /// An empty path is no log. Throws RunError as NodeLog does.
+    ChipLog(const std::string& path, const image::Image& image);
+
+    bool is_open() const { return log_.is_open(); }
+    /// The next time at which look() wants to be called, with the chip run up to it; kNever without a log.
+    cosim::Time next_look() const { return is_open() ? next_look_ : cosim::kNever; }
+    void look(const dspic::Chip& chip);
+    /// The last look and the summary, to which `board` is added.
+    void end(cosim::Time now, const dspic::Chip& chip, const std::string& board);
+
+    /// A line of the board's; `time` lies in the stretch that the next look ends.
+    void note(cosim::Time time, std::string text);
+    /// Both at the stop bit.
+    void sent(int unit, const cosim::UartFrame& frame, cosim::Time now);
+    void arrived(int unit, const cosim::UartFrame& frame, cosim::Time now, bool listening);
+
+  private:
+    static constexpr std::size_t kUarts = 2;
+    struct UartSeen {
+        bool sent = false, arrived = false;
+        dspic::UartCounters counters;  // errors told so far
+    };
+    void read_report(cosim::Time now, const dspic::Chip& chip);
+    void read_errors(cosim::Time now, const dspic::Chip& chip);
+    void write_until(cosim::Time now);
+    std::string place(std::uint32_t pc) const;
+
+    NodeLog log_;
+    image::CodeSymbols symbols_;
+    std::vector<std::pair<cosim::Time, std::string>> lines_;  // not yet written
+    cosim::Time next_look_;
+    cosim::Time written_ = 0;  // all before this is in the file
+    std::size_t resets_ = 0, traps_ = 0, unmodelled_ = 0, warnings_ = 0;
+    std::array<UartSeen, kUarts> uarts_;
+};
+
+}  // namespace puckloop::board
