@@ -1,7 +1,5 @@
 #include "cosim/i2c_bus.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -9,7 +7,10 @@ namespace puckloop::cosim {
 
 namespace {
 constexpr Time kClocksOfByte = 9;
-constexpr std::uint8_t kReadBit = 1;
+
+std::uint8_t seven_bits(std::uint8_t address_byte) {
+    return static_cast<std::uint8_t>(address_byte >> 1);
+}
 
 std::vector<std::string> names_of(const std::vector<I2cMasterPort>& masters) {
     std::vector<std::string> names;
@@ -34,15 +35,6 @@ I2cBusNode::I2cBusNode(I2cBusOptions options, std::vector<std::unique_ptr<I2cSla
     emit_ = [this, world](std::uint16_t id, double value) {
         answers_.push_back({emitted_at_, world, Signal{id, value}});
     };
-}
-
-std::string I2cBusNode::device_list() const {
-    std::string list;
-    for (const auto& slave : slaves_)
-        list += fmt::format("{}{}", list.empty() ? "" : ", ", slave->name());
-    for (const auto& device : options_.devices)
-        list += fmt::format("{}{}", list.empty() ? "" : ", ", device.name);
-    return list;
 }
 
 Time I2cBusNode::ninth_clock(const I2cPhase& phase) const {
@@ -111,36 +103,6 @@ void I2cBusNode::phase_from(PortIndex port, const I2cPhase& phase) {
     }
 }
 
-void I2cBusNode::byte_from(PortIndex port, const I2cPhase& phase) {
-    const bool write = phase.kind == I2cPhaseKind::Write;
-    ++(write ? counters_.bytes_written : counters_.bytes_read);
-    if (pass_on(port, phase)) return;
-    I2cAnswer reply;
-    if (addressed_ != nullptr)
-        reply = write ? addressed_->write(phase.byte, phase.start) : addressed_->read(phase.start);
-    answer(port, phase, write ? I2cPhaseKind::Acknowledge : I2cPhaseKind::Data, reply, 0);
-}
-
-/// To the device in another node, if one is addressed.
-bool I2cBusNode::pass_on(PortIndex port, const I2cPhase& phase) {
-    if (!addressed_device_) return false;
-    answers_.push_back({phase.start, *addressed_device_, phase});
-    pending_ = Pending{port, phase};
-    return true;
-}
-
-void I2cBusNode::device_answered(PortIndex port, const I2cPhase& phase, Time now) {
-    if (!pending_ || addressed_device_ != port) return;
-    const Pending pending = *pending_;
-    pending_.reset();
-    const bool read = pending.phase.kind == I2cPhaseKind::Read;
-    const Time told = now + nominal_period_;
-    I2cAnswer reply{phase.ack != 0, phase.byte, 0};
-    reply.stretch = std::max<Time>(0, told - ninth_clock(pending.phase));
-    if (pending.phase.kind == I2cPhaseKind::Start && !reply.acknowledge) addressed_device_.reset();
-    answer(pending.master, pending.phase, read ? I2cPhaseKind::Data : I2cPhaseKind::Acknowledge, reply, 0);
-}
-
 void I2cBusNode::start_from(PortIndex port, const I2cPhase& phase) {
     switch (bus_) {
     case Bus::Free:
@@ -148,19 +110,23 @@ void I2cBusNode::start_from(PortIndex port, const I2cPhase& phase) {
         open_contest(port, phase);
         return;
     case Bus::Owned:
-        if (owner_ == port) {
-            release_slave(phase.start);
+        if (owner_ == port && !pending_) {
+            release_devices(phase.start);
             address(port, phase, 0);
             return;
         }
         break;
     case Bus::Stopping:
+    case Bus::Stuck:
+    case Bus::HeldLow:
+    case Bus::Recovering:
         break;
     }
     const bool waits = options_.masters[port].waits || bus_ == Bus::Stopping;
     if (!waits) return lose(port, phase);
     std::erase_if(waiting_, [&](const Contender& other) { return other.port == port; });
     waiting_.push_back({port, phase});
+    if (bus_ == Bus::HeldLow) recover(phase.start);
 }
 
 void I2cBusNode::open_contest(PortIndex port, const I2cPhase& phase) {
@@ -188,58 +154,20 @@ void I2cBusNode::resolve_contest() {
     address(owner_, phase, decided);
 }
 
-void I2cBusNode::address(PortIndex port, const I2cPhase& phase, Time earliest) {
-    ++counters_.transfers;
-    log_.addressed(now_, port, phase.byte);
-    if (address_device(port, phase, earliest)) return;
-    const auto seven_bits = static_cast<std::uint8_t>(phase.byte >> 1);
-    I2cAnswer reply;
-    for (const auto& slave : slaves_)
-        if (addressed_ == nullptr && slave->listens_to(seven_bits)) {
-            reply = slave->start((phase.byte & kReadBit) != 0, phase.start);
-            if (reply.acknowledge) addressed_ = slave.get();
-        }
-    answer(port, phase, I2cPhaseKind::Acknowledge, reply, earliest);
-}
-
-bool I2cBusNode::address_device(PortIndex port, const I2cPhase& phase, Time earliest) {
-    for (std::size_t i = 0; i < options_.devices.size(); ++i) {
-        const auto& addresses = options_.devices[i].addresses;
-        if (std::find(addresses.begin(), addresses.end(), phase.byte >> 1) == addresses.end()) continue;
-        addressed_device_ = static_cast<PortIndex>(options_.masters.size() + i);
-        answers_.push_back({std::max(phase.start, earliest), *addressed_device_, phase});
-        pending_ = Pending{port, phase};
-        return true;
-    }
-    return false;
-}
-
-void I2cBusNode::release_slave(Time now) {
-    pending_.reset();
-    if (addressed_device_) {
-        I2cPhase stop;
-        stop.start = now;
-        answers_.push_back({now, *addressed_device_, stop});
-        addressed_device_.reset();
-    }
-    if (addressed_ == nullptr) return;
-    emitted_at_ = now + nominal_period_;
-    addressed_->stop(now, emit_);
-    addressed_ = nullptr;
-}
-
 void I2cBusNode::stop_from(PortIndex port, const I2cPhase& phase) {
     if (bus_ != Bus::Owned || owner_ != port) {  // it gave up before its turn came
         std::erase_if(waiting_, [&](const Contender& other) { return other.port == port; });
         return;
     }
-    release_slave(phase.start);
+    if (pending_ && !pending_->open.empty()) return hang();
+    release_devices(phase.start);
     bus_ = Bus::Stopping;
     changes_ = phase.start + std::max(phase.clock_period, nominal_period_);
 }
 
 void I2cBusNode::bus_freed() {
     const Time now = changes_;
+    if (bus_ == Bus::Recovering) release_devices(now);
     bus_ = Bus::Free;
     changes_ = kNever;
     for (auto& contender : waiting_) {
@@ -257,24 +185,32 @@ void I2cBusNode::lose(PortIndex port, const I2cPhase& phase) {
 
 void I2cBusNode::answer(PortIndex port, const I2cPhase& phase, I2cPhaseKind kind, const I2cAnswer& reply,
                         Time earliest) {
-    if (kind == I2cPhaseKind::Acknowledge && !reply.acknowledge) ++counters_.not_acknowledged;
+    if (kind == I2cPhaseKind::Acknowledge && !reply.acknowledge) {
+        ++counters_.not_acknowledged;
+        if (phase.kind == I2cPhaseKind::Start) ++counters_.absent[{port, seven_bits(phase.byte)}];
+    }
     I2cPhase out = phase;
     out.kind = kind;
     out.byte = kind == I2cPhaseKind::Data ? reply.byte : phase.byte;
     out.ack = kind == I2cPhaseKind::Data ? phase.ack : (reply.acknowledge ? 1 : 0);
     out.stretch = reply.stretch;
-    if (kind != I2cPhaseKind::BusLost) log_.answered(now_, port, out, phase.kind == I2cPhaseKind::Start);
+    // What ends within the low half of a clock lengthens nothing on the wires.
+    const bool stretched = reply.stretch > nominal_period_ / 2;
+    counters_.stretched += stretched ? 1 : 0;
+    counters_.longest_stretch = std::max(counters_.longest_stretch, reply.stretch);
+    if (kind != I2cPhaseKind::BusLost)
+        log_.answered(now_, port, out, phase.kind == I2cPhaseKind::Start, stretched);
     answers_.push_back({std::max(ninth_clock(phase), earliest) + reply.stretch, port, out});
 }
 
 Time I2cBusNode::promise(PortIndex port) const {
     Time first = kNever;
-    if (is_world(port)) return first;
+    if (is_world(port)) return bus_ == Bus::Recovering ? later(changes_, nominal_period_) : first;
     if (!is_master(port)) return changes_;
     for (const Contender& contender : contenders_)
         if (contender.port == port) first = std::min(first, ninth_clock(contender.phase));
     // A Start that waits for another master's Stop is answered in reaction to it.
-    if (bus_ == Bus::Stopping && !waiting_.empty())
+    if ((bus_ == Bus::Stopping || bus_ == Bus::Recovering) && !waiting_.empty())
         first = std::min(first, later(changes_, kClocksOfByte * nominal_period_));
     return first;
 }
@@ -283,21 +219,6 @@ Time I2cBusNode::reaction(PortIndex port) const {
     if (is_world(port)) return nominal_period_;
     if (!is_master(port)) return 0;
     return options_.devices.empty() ? kClocksOfByte * nominal_period_ : nominal_period_;
-}
-
-std::string I2cBusNode::finish() {
-    log_.end(now_,
-             fmt::format("{} transfers, {} bytes written, {} read, {} not acknowledged, bus lost {} times",
-                         counters_.transfers, counters_.bytes_written, counters_.bytes_read,
-                         counters_.not_acknowledged, counters_.lost));
-    std::string devices;
-    for (const auto& slave : slaves_)
-        devices += fmt::format("{}\"{}\":{}", devices.empty() ? "" : ",", slave->name(), slave->report());
-    return fmt::format(
-        R"({{"transfers":{},"not_acknowledged":{},"lost":{},"bytes_written":{},"bytes_read":{},)"
-        R"("devices":{{{}}}}})",
-        counters_.transfers, counters_.not_acknowledged, counters_.lost, counters_.bytes_written,
-        counters_.bytes_read, devices);
 }
 
 }  // namespace puckloop::cosim

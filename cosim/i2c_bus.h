@@ -14,12 +14,23 @@
 // Linux), and is lost where the master only sees a collision (the dsPIC). Starts within half a nominal clock
 // of each other collide: the lower address byte wins, as its first 0 against a 1 does on the wires.
 //
-// Devices that are nodes of their own have a port each. The bus passes on Start (for the device's addresses),
-// Write and Read when they begin (stamped with `start`, or up to half a nominal clock later where masters had
-// to be told apart) and Stop; the device answers each Start and Write with Acknowledge and each Read with
-// Data, in its own time: at `start` + 8 clocks when it does not stretch, later when it does. The bus hands
-// the answer on one nominal clock later, or at the ninth clock. A device must answer: one that is switched
-// off says ack = 0. With such devices the bus's lookahead is one nominal clock.
+// Devices that are nodes of their own have a port each. As on the wires, each of them sees every Start (or
+// those for `addresses`, if it has any) and says itself whether it is meant; a device must answer: one that
+// is switched off says ack = 0. Those that acknowledged get what follows: Write and Read when they begin
+// (stamped with `start`, or up to half a nominal clock later where masters had to be told apart) and Stop.
+// Each Start and Write is answered with Acknowledge and each Read with Data, in the device's own time: at
+// `start` + 8 clocks when it does not stretch, later when it does. The bus hands the answer on one nominal
+// clock later, or at the ninth clock. With such devices the bus's lookahead is one nominal clock. The `ack`
+// of a Read is what the master has decided when it begins; a dsPIC decides later and says 1. So a device
+// knows that its byte was the last one wanted when a Stop or Start follows it, not before.
+//
+// Several devices at one address answer together: SDA is low when any pulls it low, so their acknowledges are
+// or-ed and their bytes and-ed, and the slowest sets the pace.
+//
+// A master that loses patience sends its Stop while a device still holds SCL low: nobody can use the bus
+// until the device lets go. If it then holds SDA low, being in the middle of a byte, the bus is free once a
+// Linux driver has given it nine clocks and a STOP (i2c_generic_scl_recovery()); a dsPIC only sees a
+// collision.
 //
 // Deviations: 1. a lost arbitration is told when the ninth clock ends, not at the bit. 2. Two masters that
 // send the same address byte do not go on together into the data: the first port wins. 3. SCL of colliding
@@ -29,6 +40,7 @@
 #include "cosim/i2c_slave.h"
 #include "cosim/node.h"
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -43,8 +55,8 @@ struct I2cMasterPort {
 
 /// A device in another node.
 struct I2cDevicePort {
-    std::string name;                     ///< port name: "rab"
-    std::vector<std::uint8_t> addresses;  ///< 7 bits
+    std::string name;                       ///< port name: "rab"
+    std::vector<std::uint8_t> addresses{};  ///< 7 bits; it is told of Starts for these only, empty: of all
 };
 
 struct I2cBusOptions {
@@ -75,12 +87,26 @@ class I2cBusNode final : public Node {
     };
     struct Counters {
         std::uint64_t transfers = 0, not_acknowledged = 0, lost = 0, bytes_written = 0, bytes_read = 0;
+        std::uint64_t stretched = 0, stuck = 0;
+        Time longest_stretch = 0;
+        /// Starts that nobody acknowledged, by master and address.
+        std::map<std::pair<PortIndex, std::uint8_t>, std::uint64_t> absent;
+    };
+    /// Devices that acknowledged one Start together.
+    struct Crowd {
+        std::uint64_t times = 0;
+        std::string names;
     };
 
-    /// What a master waits for while a device in another node thinks.
+    /// What a master waits for while devices in other nodes think.
     struct Pending {
         PortIndex master = 0;
         I2cPhase phase;
+        Time earliest = 0;
+        std::vector<PortIndex> open;  ///< devices that have not answered yet
+        I2cAnswer answer;             ///< of the others, together
+        std::string who;              ///< acknowledged a Start
+        int count = 0;
     };
 
     bool is_master(PortIndex port) const { return port < options_.masters.size(); }
@@ -92,12 +118,17 @@ class I2cBusNode final : public Node {
     void open_contest(PortIndex port, const I2cPhase& phase);
     void resolve_contest();
     void address(PortIndex port, const I2cPhase& phase, Time earliest);
-    bool address_device(PortIndex port, const I2cPhase& phase, Time earliest);
-    bool pass_on(PortIndex port, const I2cPhase& phase);
     void device_answered(PortIndex port, const I2cPhase& phase, Time now);
     void byte_from(PortIndex port, const I2cPhase& phase);
-    void release_slave(Time now);
+    void take_answer(const I2cAnswer& reply, const std::string& name);
+    void settle();
+    void release_devices(Time now);
+    void hang();
+    void let_go(const I2cPhase& phase);
+    void recover(Time from);
+    const std::string& device_name(PortIndex port) const;
     std::string device_list() const;
+    std::vector<std::string> warnings() const;
     void stop_from(PortIndex port, const I2cPhase& phase);
     void bus_freed();
     void lose(PortIndex port, const I2cPhase& phase);
@@ -111,12 +142,24 @@ class I2cBusNode final : public Node {
     Time nominal_period_;
     I2cSlave::Emit emit_;
 
-    enum class Bus : std::uint8_t { Free, Contest, Owned, Stopping } bus_ = Bus::Free;
+    enum class Bus : std::uint8_t {
+        Free,
+        Contest,
+        Owned,
+        Stopping,
+        Stuck,       ///< a device holds SCL low and nobody waits for it
+        HeldLow,     ///< a device holds SDA low
+        Recovering,  ///< nine clocks and a STOP are being given
+    } bus_ = Bus::Free;
     PortIndex owner_ = 0;
-    I2cSlave* addressed_ = nullptr;
-    std::optional<PortIndex> addressed_device_;
+    std::vector<I2cSlave*> addressed_;          // devices here
+    std::vector<PortIndex> addressed_devices_;  // devices in other nodes
     std::optional<Pending> pending_;
-    Time changes_ = kNever;              // a contest is decided, a stop is over
+    std::vector<PortIndex> holders_;  // of SCL, while the bus is stuck
+    std::map<std::uint8_t, Crowd> crowds_;
+    Time stuck_since_ = 0, stuck_for_ = 0;
+    std::string stuck_names_;
+    Time changes_ = kNever;              // a contest is decided, a stop or recovery is over
     std::vector<Contender> contenders_;  // for the bus, now
     std::vector<Contender> waiting_;     // for its end
     std::vector<Message> answers_;       // known, to leave with this advance

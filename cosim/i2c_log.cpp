@@ -34,10 +34,10 @@ void I2cLog::addressed(Time now, PortIndex master, std::uint8_t byte) {
                                (byte & kReadBit) != 0 ? "read" : "write"));
 }
 
-void I2cLog::answered(Time now, PortIndex master, const I2cPhase& answer, bool to_start) {
+void I2cLog::answered(Time now, PortIndex master, const I2cPhase& answer, bool to_start, bool stretched) {
     if (!log_.is_open()) return;
     const bool refused = answer.kind == I2cPhaseKind::Acknowledge && answer.ack == 0;
-    if (!refused && answer.stretch == 0) return;
+    if (!refused && !stretched) return;
     Pair& pair = pairs_[{master, address_}];
     if (refused && to_start && is_milestone(++pair.absent))
         write(now, fmt::format("{}: nobody acknowledges 0x{:02x}{}", masters_[master], address_,
@@ -45,7 +45,7 @@ void I2cLog::answered(Time now, PortIndex master, const I2cPhase& answer, bool t
     if (refused && !to_start && is_milestone(++pair.refused_bytes))
         write(now, fmt::format("{}: 0x{:02x} does not acknowledge byte 0x{:02x}{}", masters_[master],
                                address_, answer.byte, so_far(pair.refused_bytes)));
-    if (answer.stretch == 0) return;
+    if (!stretched) return;
     pair.longest_stretch = std::max(pair.longest_stretch, answer.stretch);
     if (is_milestone(++pair.stretches))
         write(now, fmt::format("{}: 0x{:02x} stretches the clock by {:.3f} us{}", masters_[master], address_,
@@ -58,6 +58,20 @@ void I2cLog::lost(Time now, PortIndex master, const I2cPhase& phase) {
                                  ? fmt::format("START for 0x{:02x}", phase.byte >> 1)
                                  : std::string("byte sent without owning it");
     write(now, fmt::format("{}: loses the bus, {}{}", masters_[master], what, so_far(losses_[master])));
+}
+
+void I2cLog::crowded(Time now, std::uint8_t byte, const std::string& names, std::uint64_t times) {
+    if (!is_milestone(times)) return;
+    write(now, fmt::format("0x{:02x} is acknowledged by {} together{}", byte >> 1, names, so_far(times)));
+}
+
+void I2cLog::stuck(Time now, const std::string& names, std::uint64_t times) {
+    if (!is_milestone(times)) return;
+    write(now, fmt::format("stuck: the master gave up, {} holds SCL low{}", names, so_far(times)));
+}
+
+void I2cLog::released(Time now, const std::string& names) {
+    write(now, fmt::format("{} lets SCL go", names));
 }
 
 void I2cLog::end(Time now, const std::string& summary) {

@@ -24,10 +24,15 @@ class I2cLog {
     void begin(const std::string& devices, double nominal_hertz);
     /// `master` sent a Start with this address byte and owns the bus.
     void addressed(Time now, PortIndex master, std::uint8_t byte);
-    /// The bus answered the owner's last Start, Write or Read.
-    void answered(Time now, PortIndex master, const I2cPhase& answer, bool to_start);
+    /// The bus answered the owner's last Start, Write or Read; `stretched`: later than without the device.
+    void answered(Time now, PortIndex master, const I2cPhase& answer, bool to_start, bool stretched);
     /// `master` was told BusLost for a phase of its own.
     void lost(Time now, PortIndex master, const I2cPhase& phase);
+    /// Several devices acknowledged one Start, for the `times`th time.
+    void crowded(Time now, std::uint8_t byte, const std::string& names, std::uint64_t times);
+    /// A master gave up while these devices hold SCL low; they let go.
+    void stuck(Time now, const std::string& names, std::uint64_t times);
+    void released(Time now, const std::string& names);
     void end(Time now, const std::string& summary);
 
   private:

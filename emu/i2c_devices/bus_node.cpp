@@ -8,8 +8,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
-
 namespace puckloop::i2c_devices {
 
 namespace {
@@ -24,16 +22,10 @@ void check(const BusSpec& spec) {
     };
     if (!(spec.hertz >= kSlowest && spec.hertz <= kFastest))
         fail(fmt::format("clock {} Hz", spec.hertz), "1 kHz to 3.4 MHz");
-    std::vector<int> taken;
-    if (spec.ground_sensor) taken.push_back(kGroundSensorAddress);
-    if (spec.rgb_turret) taken.push_back(kRgbTurretAddress);
-    for (const auto& [name, address] : spec.boards) {
-        if (address > kHighestAddress)
-            fail(fmt::format("board {} at address {:#x}", name, address), "a 7-bit address up to 0x77");
-        if (std::find(taken.begin(), taken.end(), address) != taken.end())
-            fail(fmt::format("board {}: address {:#x} is taken", name, address), "another address");
-        taken.push_back(address);
-    }
+    for (const BoardOnBus& board : spec.boards)
+        if (board.address.value_or(0) > kHighestAddress)
+            fail(fmt::format("board {} at address {:#x}", board.name, *board.address),
+                 "a 7-bit address up to 0x77");
 }
 
 }  // namespace
@@ -45,8 +37,10 @@ std::unique_ptr<cosim::Node> make_bus_node(const BusSpec& spec) {
     options.nominal_hertz = spec.hertz;
     options.log = spec.log;
     options.masters = {{"pic", false}, {"linux", true}};
-    for (const auto& [name, address] : spec.boards)
-        options.devices.push_back({name, {address}});
+    for (const BoardOnBus& board : spec.boards) {
+        options.devices.push_back({board.name, {}});
+        if (board.address) options.devices.back().addresses.push_back(*board.address);
+    }
     std::vector<std::unique_ptr<cosim::I2cSlave>> slaves;
     if (spec.ground_sensor) slaves.push_back(std::make_unique<GroundSensor>());
     if (spec.rgb_turret) slaves.push_back(std::make_unique<RgbTurret>());
@@ -62,9 +56,10 @@ std::unique_ptr<cosim::Node> make_bus_node(std::string_view text) {
         spec.rgb_turret = json.value("rgb_turret", spec.rgb_turret);
         spec.hertz = json.value("hertz", spec.hertz);
         spec.log = json.value("log", spec.log);
-        for (const auto& board : json.value("boards", nlohmann::json::array()))
-            spec.boards.emplace_back(board.at("name").get<std::string>(),
-                                     board.at("address").get<std::uint8_t>());
+        for (const auto& board : json.value("boards", nlohmann::json::array())) {
+            spec.boards.push_back({board.at("name").get<std::string>(), {}});
+            if (board.contains("address")) spec.boards.back().address = board["address"].get<std::uint8_t>();
+        }
     } catch (const nlohmann::json::exception& error) {
         throw InputError("", "I2C bus description", error.what());
     }

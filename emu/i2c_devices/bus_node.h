@@ -5,12 +5,18 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 namespace puckloop::i2c_devices {
+
+/// A device that is a node of its own.
+struct BoardOnBus {
+    std::string name;                       ///< of the port
+    std::optional<std::uint8_t> address{};  ///< 7 bits: it hears this one only; without: its firmware decides
+};
 
 struct BusSpec {
     std::string name = "i2c";
@@ -18,16 +24,15 @@ struct BusSpec {
     bool rgb_turret = true;     ///< 0x61
     /// The bus's nominal clock, Hz: the fastest master's. It is also the bus's lookahead.
     double hertz = 100e3;
-    /// Devices that are nodes of their own: port name and 7-bit address.
-    std::vector<std::pair<std::string, std::uint8_t>> boards{};
+    std::vector<BoardOnBus> boards{};
     std::string log{};  ///< file for the bus's log; empty: none
 };
 
 /// Ports: "pic" and "linux" (masters), the boards in their order, "world" (signals()).
 std::unique_ptr<cosim::Node> make_bus_node(const BusSpec& spec);
 
-/// The same from JSON: {"name", "ground_sensor", "rgb_turret", "hertz", "boards": [{"name", "address"}],
-/// "log"}, all optional. Throws InputError.
+/// The same from JSON: {"name", "ground_sensor", "rgb_turret", "hertz", "boards": [{"name",
+/// "address"}], "log"}, all optional but a board's name. Throws InputError.
 std::unique_ptr<cosim::Node> make_bus_node(std::string_view json);
 
 }  // namespace puckloop::i2c_devices

@@ -54,16 +54,16 @@ I2cPhase I2cAdapter::phase(I2cPhaseKind kind, std::uint8_t byte) const {
 void I2cAdapter::advance(Time now, std::vector<I2cPhase>& begun) {
     while (next_ <= now) {
         const I2cTransfer& transfer = queue_.front();
-        const Time timeout = cosim::later(next_, transfer.timeout);
         if (step_ == Step::Start) {
             const I2cMessage& message = transfer.messages[message_];
+            gives_up_ = cosim::later(next_, transfer.timeout);
             byte_ = 0;
             addressed_ = false;
             length_ = message.read ? message.length : message.data.size();
             begun.push_back(phase(I2cPhaseKind::Start,
                                   static_cast<std::uint8_t>(message.address << 1 | (message.read ? 1 : 0))));
             step_ = Step::Waiting;
-            next_ = timeout;
+            next_ = gives_up_;
         } else if (step_ == Step::Byte) {
             const I2cMessage& message = transfer.messages[message_];
             if (message.read) {
@@ -74,7 +74,7 @@ void I2cAdapter::advance(Time now, std::vector<I2cPhase>& begun) {
                 begun.push_back(phase(I2cPhaseKind::Write, static_cast<std::uint8_t>(message.data[byte_])));
             }
             step_ = Step::Waiting;
-            next_ = timeout;
+            next_ = gives_up_;
         } else if (step_ == Step::Stop) {
             begun.push_back(phase(I2cPhaseKind::Stop));
             step_ = Step::Finish;
@@ -89,8 +89,8 @@ void I2cAdapter::advance(Time now, std::vector<I2cPhase>& begun) {
             results_.push_back(std::move(result_));
             queue_.pop_front();
             begin_next(done);
-        } else {  // nobody answered
-            fail(ETIMEDOUT, next_, false);
+        } else {  // the message took too long: the driver resets its controller, which lets the bus go
+            fail(ETIMEDOUT, next_, true);
         }
     }
 }

@@ -2,6 +2,9 @@
 // One I2C adapter of the Linux board (/dev/i2c-N) as bus master: transfers become phases on the robot's bus,
 // each taking its real time; the calling thread waits until the STOP.
 //
+// As in the kernel, the time-out (1 s, or what I2C_TIMEOUT says) is that of one message of a transfer. When
+// it runs out the call fails with ETIMEDOUT and the controller is reset, which the bus sees as a STOP.
+//
 // Deviations: 1. One byte is one phase: no bus clock jitter, no driver overhead between bytes.
 // 2. After BusLost the transfer fails with EAGAIN at once; the driver's own retries are not modelled.
 // 3. No ten-bit addresses, no SMBus PEC, no alert.
@@ -27,7 +30,7 @@ struct I2cMessage {
 struct I2cTransfer {
     std::uint32_t owner = 0;
     std::vector<I2cMessage> messages;
-    cosim::Time timeout = 0;  ///< without an answer for this long the transfer fails with ETIMEDOUT
+    cosim::Time timeout = 0;  ///< for each message, START to last byte; then ETIMEDOUT
 };
 
 struct I2cResult {
@@ -72,6 +75,7 @@ class I2cAdapter {
     Step step_ = Step::Idle;
     cosim::Time next_ = cosim::kNever;
     cosim::Time bus_free_ = 0;
+    cosim::Time gives_up_ = cosim::kNever;  // on the message under way
     std::size_t message_ = 0;
     std::size_t byte_ = 0;
     bool addressed_ = false;
