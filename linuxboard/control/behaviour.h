@@ -10,8 +10,18 @@
 #include <memory>
 #include <optional>
 #include <string_view>
+#include <vector>
 
 namespace puckloop::control {
+
+/// Another robot heard by the range-and-bearing board within the last second.
+struct Neighbour {
+    int id = 0;              ///< 1..255
+    std::uint32_t data = 0;  ///< what it says: Actuators::say of its behaviour
+    double bearing = 0;      ///< rad, -pi..pi, counter-clockwise from straight ahead
+    double range_cm = 0;     ///< between the surfaces; scatters, and tells little beyond 30 cm
+    double age = 0;          ///< s since its last packet
+};
 
 /// Rings of 8 are in the robot's order: 0 is front right, then clockwise; kRingBearing tells where they look.
 struct Sensors {
@@ -19,6 +29,7 @@ struct Sensors {
     std::array<double, 8> light{};      ///< brightness, 0 dark to 4095
     std::optional<std::array<double, 3>> ground;  ///< left, centre, right; 0 black to 1000 white
     bool battery_ok = true;
+    std::vector<Neighbour> neighbours;  ///< by id; empty without a range-and-bearing board
 };
 
 struct Actuators {
@@ -27,6 +38,7 @@ struct Actuators {
     std::uint8_t ring_leds = 0;  ///< bit i = LED i: 0 front, then clockwise every 45 degrees
     bool front_led = false;
     bool body_led = false;
+    std::uint32_t say = 0;  ///< to the neighbours; 0, 8, 16 or 24 bits of it go out with 1 to 4 payload bytes
 };
 
 inline constexpr double kMillimetresPerStep =
@@ -43,7 +55,10 @@ class Behaviour {
     virtual Actuators step(const Sensors& sensors, double t) = 0;
 };
 
-/// "wander" or "light"; null for any other name.
-std::unique_ptr<Behaviour> make_behaviour(std::string_view name);
+/// "wander", "light", "aggregate" or "follow"; null for any other name. `own_id` is the robot's among its
+/// neighbours.
+std::unique_ptr<Behaviour> make_behaviour(std::string_view name, int own_id = 0);
+/// True for the behaviours that make no sense without a range-and-bearing board.
+bool needs_neighbours(std::string_view name);
 
 }  // namespace puckloop::control

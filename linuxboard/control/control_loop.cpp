@@ -40,8 +40,9 @@ EpuckActuators to_record(const Actuators& actuators) {
     return record;
 }
 
-bool run_control_loop(Session& session, Transport& transport, Behaviour& behaviour, const ReadGround& ground,
-                      const std::function<bool()>& interrupted, const LoopSettings& settings) {
+bool run_control_loop(Session& session, Transport& transport, Behaviour& behaviour,
+                      const Surroundings& surroundings, const std::function<bool()>& interrupted,
+                      const LoopSettings& settings) {
     if (!session.start(transport.now() + settings.start_wait)) return false;
     const double begun = transport.now();
     const long steps = settings.duration > 0 ? std::lround(settings.duration / settings.period) : 0;
@@ -51,8 +52,11 @@ bool run_control_loop(Session& session, Transport& transport, Behaviour& behavio
         EpuckActuators record;  // at rest
         if (!last && session.newest() && transport.now() - session.newest_time() < settings.stale_after) {
             Sensors sensors = to_sensors(*session.newest());
-            sensors.ground = ground();
-            record = to_record(behaviour.step(sensors, t));
+            if (surroundings.ground) sensors.ground = surroundings.ground();
+            if (surroundings.neighbours) sensors.neighbours = surroundings.neighbours();
+            const Actuators actuators = behaviour.step(sensors, t);
+            if (surroundings.say) surroundings.say(actuators.say);
+            record = to_record(actuators);
         }
         session.exchange(record);
         // A last record that went unanswered may not have been obeyed: get the robot to rest before the end.

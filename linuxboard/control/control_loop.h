@@ -17,8 +17,12 @@ struct LoopSettings {
     double stale_after = 0.3;  ///< s: the robot stands still while its newest sensors are older
 };
 
-/// Reads the ground sensor, or gives nothing.
-using ReadGround = std::function<std::optional<std::array<double, 3>>()>;
+/// What else the robot carries; empty functions for what it does not.
+struct Surroundings {
+    std::function<std::optional<std::array<double, 3>>()> ground;
+    std::function<std::vector<Neighbour>()> neighbours;
+    std::function<void(std::uint32_t)> say;  ///< to the neighbours, from now on
+};
 
 /// What the behaviour sees of a sensor record, and what the PIC gets of its wishes.
 Sensors to_sensors(const protocols::EpuckSensors& record);
@@ -26,7 +30,8 @@ protocols::EpuckActuators to_record(const Actuators& actuators);
 
 /// Runs the whole session: start, duration/period actuator records, the last with the wheels at rest, end
 /// record. False when the PIC could not be reached. Throws LineError.
-bool run_control_loop(Session& session, Transport& transport, Behaviour& behaviour, const ReadGround& ground,
-                      const std::function<bool()>& interrupted, const LoopSettings& settings);
+bool run_control_loop(Session& session, Transport& transport, Behaviour& behaviour,
+                      const Surroundings& surroundings, const std::function<bool()>& interrupted,
+                      const LoopSettings& settings);
 
 }  // namespace puckloop::control

@@ -52,10 +52,4 @@ void DriveToLight::watch_arrival(double brightest, bool aligned) {
     if (brightest > kDazzling || (brightest > kBright && brightest < kPassed * peak_)) arrived_ = true;
 }
 
-std::unique_ptr<Behaviour> make_behaviour(std::string_view name) {
-    if (name == "wander") return std::make_unique<Wander>();
-    if (name == "light") return std::make_unique<DriveToLight>();
-    return nullptr;
-}
-
 }  // namespace puckloop::control

@@ -3,7 +3,6 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <ctime>
 #include <fcntl.h>
 #include <poll.h>
 #include <termios.h>
@@ -13,7 +12,6 @@ namespace puckloop::control {
 
 namespace {
 
-constexpr double kNanoseconds = 1e9;
 constexpr double kMilliseconds = 1e3;
 
 std::string with_reason(const std::string& what) {
@@ -49,21 +47,6 @@ PosixSerial::PosixSerial(const std::string& device) : device_(device) {
 PosixSerial::~PosixSerial() {
     ::tcdrain(descriptor_);  // the end record must leave before the port closes
     ::close(descriptor_);
-}
-
-double PosixSerial::now() {
-    timespec time{};
-    ::clock_gettime(CLOCK_MONOTONIC, &time);
-    return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec) / kNanoseconds;
-}
-
-void PosixSerial::sleep_until(double time) {
-    const double left = time - now();
-    if (left <= 0) return;
-    timespec duration{};
-    duration.tv_sec = static_cast<time_t>(left);
-    duration.tv_nsec = static_cast<long>((left - std::floor(left)) * kNanoseconds);
-    ::nanosleep(&duration, nullptr);
 }
 
 std::size_t PosixSerial::read(std::span<std::uint8_t> into, double until) {

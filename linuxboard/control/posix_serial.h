@@ -16,12 +16,13 @@ class PosixSerial : public Transport {
     PosixSerial(const PosixSerial&) = delete;
     PosixSerial& operator=(const PosixSerial&) = delete;
 
-    double now() override;
-    void sleep_until(double time) override;
+    double now() override { return clock_.now(); }
+    void sleep_until(double time) override { clock_.sleep_until(time); }
     std::size_t read(std::span<std::uint8_t> into, double until) override;
     void write(std::span<const std::uint8_t> bytes) override;
 
   private:
+    PosixClock clock_;
     std::string device_;
     int descriptor_ = -1;
 };

@@ -2,6 +2,8 @@
 // What the control program needs of a serial line and a clock. The real one is posix_serial.h; tests bring a
 // simulated line with a simulated clock.
 
+#include "linuxboard/control/clock.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -15,14 +17,8 @@ class LineError : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-class Transport {
+class Transport : public Clock {
   public:
-    virtual ~Transport() = default;
-
-    /// Monotonic time in seconds.
-    virtual double now() = 0;
-    /// Returns at `time`, or earlier when a signal arrives.
-    virtual void sleep_until(double time) = 0;
     /// Waits until at least one byte is there or the time is `until`; returns the number of bytes read, 0 if
     /// none came (a signal may also end the wait). Throws LineError.
     virtual std::size_t read(std::span<std::uint8_t> into, double until) = 0;

@@ -28,7 +28,8 @@ std::array<double, 8> ProximityBaseline::above_offset(const std::array<double, 8
 }
 
 Actuators Wander::step(const Sensors& sensors, double t) {
-    const std::array<double, 8> p = baseline_.above_offset(sensors.proximity);
+    above_ = baseline_.above_offset(sensors.proximity);
+    const std::array<double, 8>& p = above_;
     const double right = std::max({p[0], p[1], p[2] / 3});  // a wall alongside matters less than one ahead
     const double left = std::max({p[7], p[6], p[5] / 3});
     if (turning_ == 0 && std::max(left, right) > kNear) {

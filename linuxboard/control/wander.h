@@ -20,9 +20,12 @@ class Wander : public Behaviour {
     Actuators step(const Sensors& sensors, double t) override;
     /// True while it turns away from an obstacle.
     bool avoiding() const { return turning_ != 0; }
+    /// Proximity of the last step without the sensors' offsets.
+    const std::array<double, 8>& above_offset() const { return above_; }
 
   private:
     ProximityBaseline baseline_;
+    std::array<double, 8> above_{};
     int turning_ = 0;           // -1 clockwise, +1 counter-clockwise, 0 not
     double turn_at_least_ = 0;  // time until which a begun turn goes on
     unsigned turns_ = 0;

@@ -32,8 +32,8 @@ struct Bench {
     }
     bool run() {
         const bool reached = run_control_loop(
-            session, line, behaviour, [] { return std::nullopt; },
-            [this] { return line.now() >= interrupt_at; }, settings);
+            session, line, behaviour, Surroundings{}, [this] { return line.now() >= interrupt_at; },
+            settings);
         ended = line.now();
         line.sleep_until(ended + 0.2);  // what was written last arrives
         return reached;

@@ -1,0 +1,23 @@
+#pragma once
+// One board on the Linux board's I2C bus. The real one is posix_i2c.h; tests bring a simulated board.
+
+#include <cstdint>
+#include <span>
+
+namespace puckloop::control {
+
+struct I2cMessage {
+    bool read = false;
+    std::span<std::uint8_t> bytes;  ///< to write, or to fill
+};
+
+class I2cDevice {
+  public:
+    virtual ~I2cDevice() = default;
+
+    /// One bus operation: the messages in order, with repeated starts between them and one stop, so that no
+    /// other master gets in between. 0, or the errno value of what went wrong; then what was read is void.
+    virtual int transfer(std::span<const I2cMessage> messages) = 0;
+};
+
+}  // namespace puckloop::control

@@ -1,0 +1,196 @@
+#include "linuxboard/control/options.h"
+
+#include <cstdio>
+#include <cstdlib>
+#include <getopt.h>
+
+namespace puckloop::control {
+
+namespace {
+
+const char kUsage[] =
+    "usage: puckloop-control [--behaviour NAME] [--duration S] [--tty DEVICE] [--i2c DEVICE] [--no-ground]\n"
+    "                        [--start-wait S] [--give-up S] [--rab [--rab-required]] [--rab-id N] ...\n"
+    "       puckloop-control --rab-calibrate N [--rab-id N] [--duration S] [--i2c DEVICE]\n"
+    "  --behaviour NAME   (wander)\n"
+    "      wander         straight on, away from obstacles\n"
+    "      light          towards the brightest light\n"
+    "      aggregate      to the nearest robot heard, and stop beside it\n"
+    "      follow         after the robot with the next lower id heard; the lowest leads\n"
+    "  --duration S       seconds, a step each 0.1 s; 0: until Ctrl-C (0)\n"
+    "  --tty DEVICE       serial line to the PIC, 115200 8N1 (/dev/ttyS0)\n"
+    "  --i2c DEVICE       bus of the sensor boards; without the option /dev/i2c-3 is used if it is there\n"
+    "  --no-ground        do not use the ground sensors\n"
+    "  --start-wait S     wait so long for the PIC at the start (60)\n"
+    "  --give-up S        end with status 1 after so long without the PIC in mid-session (60)\n"
+    "range-and-bearing board:\n"
+    "  --rab              use it if it is there (aggregate and follow do so anyway)\n"
+    "  --rab-required     use it; end with status 2 when it does not answer\n"
+    "  --rab-id N         1..255, the robot's own; it is the lowest byte of what it sends\n"
+    "  --rab-bytes N      payload, 1..4 bytes, the same on all robots (2)\n"
+    "  --rab-range N      0 farthest, about 1 m, to 255 shortest (115)\n"
+    "  --rab-poll-ms N    between two looks for messages (20)\n"
+    "  --rab-emit-ms N    between two frames, varied by a tenth (20)\n"
+    "  --rab-burst        read a message in one run of registers: half the time on the bus\n"
+    "  --rab-gain G       of the distances, from --rab-calibrate (1)\n"
+    "  --rab-calibrate N  measure the gain from N messages (100 is usual) of a robot 20 cm away, and end\n";
+
+[[noreturn]] void wrong(const char* option, const char* text, const std::string& expected) {
+    std::fprintf(stderr, "puckloop-control: --%s %s: expected %s\n", option, text, expected.c_str());
+    std::exit(kWrongUse);
+}
+
+double number(const char* option, const char* text, const std::string& expected, double low, double high) {
+    char* end = nullptr;
+    const double value = std::strtod(text, &end);
+    if (end == text || *end != '\0' || !(value >= low) || !(value <= high)) wrong(option, text, expected);
+    return value;
+}
+
+double seconds(const char* option, const char* text) {
+    return number(option, text, "a number of seconds", 0, 1e9);
+}
+
+double milliseconds(const char* option, const char* text) {
+    return number(option, text, "milliseconds, 1 to 10000", 1, 10000) / 1e3;
+}
+
+int whole(const char* option, const char* text, int low, int high) {
+    char* end = nullptr;
+    const long value = std::strtol(text, &end, 10);
+    const std::string expected = "a whole number from " + std::to_string(low) + " to " + std::to_string(high);
+    if (end == text || *end != '\0' || value < low || value > high) wrong(option, text, expected);
+    return static_cast<int>(value);
+}
+
+enum {
+    kBehaviour = 1,
+    kDuration,
+    kTty,
+    kI2c,
+    kNoGround,
+    kStartWait,
+    kGiveUp,
+    kRab,
+    kRabRequired,
+    kRabId,
+    kRabBytes,
+    kRabRange,
+    kRabPoll,
+    kRabEmit,
+    kRabBurst,
+    kRabGain,
+    kRabCalibrate,
+};
+
+const option kTable[] = {{"behaviour", required_argument, nullptr, kBehaviour},
+                         {"duration", required_argument, nullptr, kDuration},
+                         {"tty", required_argument, nullptr, kTty},
+                         {"i2c", required_argument, nullptr, kI2c},
+                         {"no-ground", no_argument, nullptr, kNoGround},
+                         {"start-wait", required_argument, nullptr, kStartWait},
+                         {"give-up", required_argument, nullptr, kGiveUp},
+                         {"rab", no_argument, nullptr, kRab},
+                         {"rab-required", no_argument, nullptr, kRabRequired},
+                         {"rab-id", required_argument, nullptr, kRabId},
+                         {"rab-bytes", required_argument, nullptr, kRabBytes},
+                         {"rab-range", required_argument, nullptr, kRabRange},
+                         {"rab-poll-ms", required_argument, nullptr, kRabPoll},
+                         {"rab-emit-ms", required_argument, nullptr, kRabEmit},
+                         {"rab-burst", no_argument, nullptr, kRabBurst},
+                         {"rab-gain", required_argument, nullptr, kRabGain},
+                         {"rab-calibrate", required_argument, nullptr, kRabCalibrate},
+                         {"help", no_argument, nullptr, 'h'},
+                         {nullptr, 0, nullptr, 0}};
+
+void take(Options& options, int choice, const char* name) {
+    switch (choice) {
+    case kBehaviour:
+        options.behaviour = optarg;
+        break;
+    case kDuration:
+        options.loop.duration = seconds(name, optarg);
+        break;
+    case kTty:
+        options.tty = optarg;
+        break;
+    case kI2c:
+        options.i2c = optarg;
+        break;
+    case kNoGround:
+        options.ground = false;
+        break;
+    case kStartWait:
+        options.loop.start_wait = seconds(name, optarg);
+        break;
+    case kGiveUp:
+        options.loop.give_up = seconds(name, optarg);
+        break;
+    case kRab:
+        options.rab = true;
+        break;
+    case kRabRequired:
+        options.rab = options.rab_required = true;
+        break;
+    case kRabId:
+        options.rab_id = whole(name, optarg, 1, 255);
+        break;
+    case kRabBytes:
+        options.board.bytes = whole(name, optarg, 1, 4);
+        break;
+    case kRabRange:
+        options.board.range = whole(name, optarg, 0, 255);
+        break;
+    case kRabPoll:
+        options.link.poll_period = milliseconds(name, optarg);
+        break;
+    case kRabEmit:
+        options.link.emit_period = milliseconds(name, optarg);
+        break;
+    case kRabBurst:
+        options.board.burst = true;
+        break;
+    case kRabGain:
+        options.rab_gain = number(name, optarg, "a number above 0", 1e-9, 1e9);
+        break;
+    case kRabCalibrate:
+        options.calibrate = whole(name, optarg, 2, 1000000);
+        break;
+    case 'h':
+        std::fputs(kUsage, stdout);
+        std::exit(0);
+    default:
+        std::fputs(kUsage, stderr);
+        std::exit(kWrongUse);
+    }
+}
+
+/// What only shows when all options are known.
+void check(Options& options) {
+    if (make_behaviour(options.behaviour) == nullptr)
+        wrong("behaviour", options.behaviour.c_str(), "wander, light, aggregate or follow");
+    if (needs_neighbours(options.behaviour)) options.rab = true;
+    if (options.rab && options.rab_id == 0 && options.calibrate == 0) {
+        std::fprintf(stderr, "puckloop-control: %s needs --rab-id N, 1 to 255, another on each robot\n",
+                     needs_neighbours(options.behaviour) ? options.behaviour.c_str() : "--rab");
+        std::exit(kWrongUse);
+    }
+    options.link.seed = static_cast<std::uint32_t>(options.rab_id);
+}
+
+}  // namespace
+
+Options parse_options(int argc, char** argv) {
+    Options options;
+    int index = 0;
+    for (int choice = 0; (choice = ::getopt_long(argc, argv, "h", kTable, &index)) != -1;)
+        take(options, choice, kTable[index].name);
+    if (optind < argc) {
+        std::fprintf(stderr, "puckloop-control: unexpected argument %s\n%s", argv[optind], kUsage);
+        std::exit(kWrongUse);
+    }
+    check(options);
+    return options;
+}
+
+}  // namespace puckloop::control

@@ -1,0 +1,32 @@
+#pragma once
+// The command line of puckloop-control.
+
+#include "linuxboard/control/control_loop.h"
+#include "linuxboard/control/rab_link.h"
+
+#include <string>
+
+namespace puckloop::control {
+
+inline constexpr int kWrongUse = 2;  ///< exit status: wrong use, or a device that cannot be opened
+inline constexpr char kDefaultBus[] = "/dev/i2c-3";
+
+struct Options {
+    std::string behaviour = "wander";
+    std::string tty = "/dev/ttyS0";
+    std::string i2c;  ///< empty: kDefaultBus if it is there
+    bool ground = true;
+    bool rab = false;
+    bool rab_required = false;
+    int calibrate = 0;  ///< messages; 0: no calibration
+    int rab_id = 0;
+    double rab_gain = 1;
+    RabBoardSettings board;
+    RabLinkSettings link;
+    LoopSettings loop;
+};
+
+/// Ends the program with a message and status 2 on wrong use, with the usage and status 0 on --help.
+Options parse_options(int argc, char** argv);
+
+}  // namespace puckloop::control
