@@ -1,0 +1,135 @@
+#include "gap/stats/duplicates.h"
+
+#include "gap/stats/robust.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace puckloop::gap::stats {
+
+namespace {
+
+constexpr double kOnceInThousand = 10.0;  // bits
+constexpr int kMostDecimals = 12;
+
+/// Smallest power of ten (down to 1e-12) of which all values are multiples; quantum of how they were written.
+double written_quantum(const std::vector<double>& values) {
+    double quantum = 1.0;
+    for (int decimals = 0; decimals <= kMostDecimals; ++decimals, quantum /= 10) {
+        const bool fits = std::all_of(values.begin(), values.end(), [quantum](double v) {
+            const double steps = v / quantum;
+            return !std::isfinite(v) ||
+                   std::fabs(steps - std::round(steps)) < 1e-4 + 1e-12 * std::fabs(steps);
+        });
+        if (fits) return quantum;
+    }
+    return quantum;
+}
+
+/// Bits that the equality of two rows' values in one column is worth.
+class Column {
+  public:
+    explicit Column(const std::vector<double>& values) {
+        for (const double v : values)
+            if (std::isfinite(v)) ++count_[v], total_ += 1;
+        std::vector<double> differences;  // what a value may do beyond following its neighbour
+        for (std::size_t i = 1; i < values.size(); ++i)
+            differences.push_back(values[i] - values[i - 1]);
+        const double spread = robust_scale(differences);
+        bits_ = spread > 0 ? std::max(std::log2(spread / written_quantum(values)), 0.0) : 0.0;
+    }
+
+    double bits(double value) const {
+        const auto found = count_.find(value);
+        if (found == count_.end() || value == 0) return 0.0;  // zero is where things start and end
+        const double others = found->second - 2;              // beyond the pair itself
+        return others > 0 ? std::min(bits_, std::log2(total_ / others)) : bits_;
+    }
+
+  private:
+    std::map<double, double> count_;
+    double total_ = 0, bits_ = 0;
+};
+
+struct Place {
+    std::size_t run, row;
+};
+
+std::vector<double> row_of(const MeasuredRun& run, std::size_t row) {
+    std::vector<double> values;
+    for (const auto& column : run.measured)
+        values.push_back(column[row]);
+    return values;
+}
+
+std::vector<double> keys_of(const MeasuredRun& run, std::size_t row) {
+    std::vector<double> values;
+    for (const auto& column : run.keys)
+        values.push_back(column[row]);
+    return values;
+}
+
+std::size_t rows_in(const MeasuredRun& run) {
+    return run.measured.empty() ? 0 : run.measured.front().size();
+}
+
+bool complete(const std::vector<double>& values) {
+    return !values.empty() &&
+           std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+}
+
+}  // namespace
+
+std::vector<Copy> copies_in(const std::vector<MeasuredRun>& runs) {
+    if (runs.empty() || runs.front().measured.empty()) return {};
+    std::vector<Column> columns;
+    std::size_t total = 0;
+    for (const MeasuredRun& run : runs)
+        total += rows_in(run);
+    for (std::size_t c = 0; c < runs.front().measured.size(); ++c) {
+        std::vector<double> all;
+        for (const MeasuredRun& run : runs)
+            all.insert(all.end(), run.measured[c].begin(), run.measured[c].end());
+        columns.emplace_back(all);
+    }
+    const auto bits_of = [&](const std::vector<double>& values) {
+        double bits = 0;
+        for (std::size_t c = 0; c < values.size(); ++c)
+            bits += columns[c].bits(values[c]);
+        return bits;
+    };
+    const double needed =
+        kOnceInThousand + 2 * std::log2(static_cast<double>(std::max<std::size_t>(total, 2)));
+    std::map<std::vector<double>, std::vector<Place>> seen;
+    std::set<std::vector<std::size_t>> inside;  // pairs that belong to a copy already told
+    std::vector<Copy> copies;
+    constexpr std::size_t kMostAlike = 8;  // rows that more than these share are levels, not copies
+    for (std::size_t r = 0; r < runs.size(); ++r)
+        for (std::size_t i = 0; i < rows_in(runs[r]); ++i) {
+            const std::vector<double> values = row_of(runs[r], i);
+            if (!complete(values)) continue;
+            auto& earlier = seen[values];
+            for (const Place& p : earlier) {
+                if (earlier.size() > kMostAlike || inside.contains({p.run, p.row, r, i})) continue;
+                Copy copy{p.run, p.row, r, i, 0, 0.0};
+                while (copy.row_b + copy.rows < rows_in(runs[r]) &&
+                       copy.row_a + copy.rows < (p.run == r ? i : rows_in(runs[p.run]))) {
+                    const std::vector<double> a = row_of(runs[p.run], copy.row_a + copy.rows);
+                    if (!complete(a) || a != row_of(runs[r], copy.row_b + copy.rows)) break;
+                    inside.insert({p.run, copy.row_a + copy.rows, r, copy.row_b + copy.rows});
+                    if (copy.rows == 0 || a != row_of(runs[p.run], copy.row_a + copy.rows - 1))
+                        copy.bits += bits_of(a);
+                    ++copy.rows;
+                }
+                const bool held = p.run == r && copy.row_a + copy.rows >= i &&
+                                  keys_of(runs[r], p.row) == keys_of(runs[r], i);
+                if (!held && copy.bits > needed) copies.push_back(copy);
+            }
+            if (earlier.size() <= kMostAlike) earlier.push_back({r, i});
+        }
+    return copies;
+}
+
+}  // namespace puckloop::gap::stats

@@ -1,0 +1,45 @@
+#pragma once
+// Which values may be exchanged when nothing but chance links a residual to a covariate.
+//
+// 1. Rows where either is missing are dropped.
+// 2. A covariate that stands still for four rows or more on average (a distance at which 100 readings were
+//    taken, a condition of a whole run) gives one value a stretch: 100 readings of one placement share its
+//    error and count once.
+// 3. What remains is cut into blocks of 2.5 times the correlation length (of y less its line on x). They are
+// exchanged inside their run if the
+//    covariate varies mostly inside runs and at least five blocks more than runs are there (each run's mean
+//    is then taken off); over all runs otherwise.
+// 4. A covariate that varies both ways, mostly between runs, gives one value a run.
+// p: (hits + 1) / (permutations + 1); with 20 units or more and few hits a gamma distribution with the first
+// three moments of the permuted statistics carries the tail farther. A test ends early at 20 hits.
+
+#include "base/random.h"
+#include "gap/stats/finding.h"
+#include "gap/stats/series.h"
+
+#include <functional>
+#include <string_view>
+#include <vector>
+
+namespace puckloop::gap::stats {
+
+/// A covariate and a residual, ready to be tested: rows are units that count.
+struct Pairs {
+    std::vector<double> x, y;
+    std::vector<int> group;       ///< exchange stays inside a group; rows of a group stand together
+    std::vector<Stretch> blocks;  ///< what is exchanged as a whole
+
+    std::size_t size() const { return x.size(); }
+};
+
+Pairs prepared(const Series& residual, const std::vector<double>& covariate);
+
+/// `statistic` of the permuted y (large = structure). Returns p of the unpermuted one.
+double permutation_p(const Pairs& pairs, const std::function<double(const std::vector<double>& y)>& statistic,
+                     const TestOptions& options, std::string_view stream);
+
+/// The same for any way to draw a null value of the statistic.
+double null_p(double observed, double units, const std::function<double(RandomStream&)>& draw,
+              const TestOptions& options, std::string_view stream);
+
+}  // namespace puckloop::gap::stats

@@ -1,0 +1,30 @@
+#pragma once
+// What one structure test found, and what the tests share: seed, number of permutations, how p comes about.
+//
+// p values stay valid when residuals depend on each other: the tests permute blocks of rows (or whole runs),
+// never single rows of a correlated series. See gap/stats/exchange.h.
+
+#include <cstdint>
+#include <string>
+
+namespace puckloop::gap::stats {
+
+struct Finding {
+    std::string test{};       ///< "trend", "shape", "sign", "periodic", ...
+    std::string covariate{};  ///< against what; empty for tests of the series alone
+    double statistic = 0.0;
+    double p = 1.0;             ///< of this test alone
+    double p_adjusted = 1.0;    ///< after correction for all tests of the table
+    double effect = 0.0;        ///< size, in the residual's unit unless `effect_unit` says otherwise
+    std::string effect_unit{};  ///< empty: the residual's own; else "", "fraction", "correlation", ...
+    double relative = 0.0;      ///< |effect| over the residual's robust scale (0 where that has no meaning)
+    double units = 0.0;         ///< independent values or groups the test stands on
+    std::string shape{};        ///< in words: "grows with distance, zero at zero"
+};
+
+struct TestOptions {
+    std::uint64_t seed = 1;
+    int permutations = 999;  ///< at most; a test stops early when nothing is there
+};
+
+}  // namespace puckloop::gap::stats

@@ -1,0 +1,71 @@
+#include "gap/stats/noise_floor.h"
+
+#include "gap/stats/robust.h"
+
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace puckloop::gap::stats {
+
+namespace {
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kSecondDifference = 6.0;  // variance of y[i-1] - 2 y[i] + y[i+1] of white noise
+constexpr double kSameShare = 1e-9;        // of a covariate's range
+}  // namespace
+
+NoiseFloor noise_floor(const Series& measured, const std::vector<int>& stimulus) {
+    std::map<int, std::map<int, std::vector<double>>> values;  // by stimulus, then run
+    for (std::size_t i = 0; i < measured.size(); ++i)
+        if (std::isfinite(measured.value[i]) && stimulus[i] >= 0)
+            values[stimulus[i]][measured.run[i]].push_back(measured.value[i]);
+    NoiseFloor floor{kNan, kNan, kNan};
+    double squares = 0, freedom = 0, between_squares = 0, between_freedom = 0;
+    for (const auto& [number, by_run] : values) {
+        std::vector<double> means;
+        for (const auto& [run, list] : by_run) {
+            means.push_back(mean(list));
+            if (list.size() < 2) continue;
+            const double f = static_cast<double>(list.size() - 1);
+            squares += f * std::pow(standard_deviation(list), 2);
+            freedom += f;
+            floor.repeats += list.size();
+        }
+        if (means.size() < 2) continue;
+        ++floor.stimuli_in_runs;
+        const double f = static_cast<double>(means.size() - 1);
+        between_squares += f * std::pow(standard_deviation(means), 2);
+        between_freedom += f;
+    }
+    if (freedom > 0) floor.within_run = std::sqrt(squares / freedom);
+    if (between_freedom > 0) floor.between_runs = std::sqrt(between_squares / between_freedom);
+    std::vector<double> second;
+    for (std::size_t i = 2; i < measured.size(); ++i)
+        if (measured.run[i] == measured.run[i - 2])
+            second.push_back(measured.value[i] - 2 * measured.value[i - 1] + measured.value[i - 2]);
+    if (second.size() >= 8) floor.differences = robust_scale(second) / std::sqrt(kSecondDifference);
+    return floor;
+}
+
+std::vector<int> stimulus_numbers(const std::vector<std::vector<double>>& covariates) {
+    if (covariates.empty()) return {};
+    std::map<std::vector<long long>, int> known;
+    std::vector<int> number(covariates.front().size(), -1);
+    std::vector<double> lowest, quantum;
+    for (const auto& c : covariates) {
+        lowest.push_back(quantile(c, 0));
+        quantum.push_back(std::max((quantile(c, 1) - lowest.back()) * kSameShare, 1e-300));
+    }
+    for (std::size_t i = 0; i < number.size(); ++i) {
+        std::vector<long long> key;
+        bool complete = true;
+        for (std::size_t c = 0; c < covariates.size() && complete; ++c) {
+            complete = std::isfinite(covariates[c][i]);
+            if (complete) key.push_back(std::llround((covariates[c][i] - lowest[c]) / quantum[c]));
+        }
+        if (complete) number[i] = known.emplace(key, static_cast<int>(known.size())).first->second;
+    }
+    return number;
+}
+
+}  // namespace puckloop::gap::stats

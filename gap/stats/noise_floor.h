@@ -1,0 +1,26 @@
+#pragma once
+// How well anything could be predicted: the scatter among repeats of the same stimulus.
+
+#include "gap/stats/series.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace puckloop::gap::stats {
+
+struct NoiseFloor {
+    double within_run = 0.0;    ///< deviation of repeats inside a run about their mean; NaN without repeats
+    double between_runs = 0.0;  ///< deviation of the means of one stimulus from run to run; NaN without such
+    double differences =
+        0.0;                  ///< from second differences of successive rows: no repeats needed; NaN if short
+    std::size_t repeats = 0;  ///< rows that are repeats of others in their run
+    std::size_t stimuli_in_runs = 0;  ///< stimuli met in two runs or more
+};
+
+/// `stimulus`: rows with equal numbers got the same stimulus (see stimulus_numbers); negative: none known.
+NoiseFloor noise_floor(const Series& measured, const std::vector<int>& stimulus);
+
+/// Equal numbers for rows whose covariates are all equal (within 1e-9 of each one's range).
+std::vector<int> stimulus_numbers(const std::vector<std::vector<double>>& covariates);
+
+}  // namespace puckloop::gap::stats

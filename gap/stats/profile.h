@@ -1,0 +1,31 @@
+#pragma once
+// A residual's course over a covariate: means in bins, and the course in words.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace puckloop::gap::stats {
+
+struct Profile {
+    std::vector<double> x;      ///< mean covariate of each bin, ascending
+    std::vector<double> y;      ///< mean residual
+    std::vector<double> error;  ///< its standard error, from the scatter in the bin
+
+    double range() const;  ///< largest minus smallest mean
+};
+
+/// Bins with about equal counts; few distinct covariate values (at most `levels`) are bins by themselves.
+/// Bin number of every row; `count` receives how many there are.
+std::vector<int> bins_of(const std::vector<double>& x, int& count, int bins = 8, int levels = 12);
+
+Profile profile_of(const std::vector<double>& x, const std::vector<double>& y, int bins = 8);
+
+/// "grows with distance, zero at zero"; "steps up near speed 0.07"; "highest near angle 1.6"; "irregular over
+/// ..."
+std::string shape_words(const Profile& profile, std::string_view covariate);
+
+/// A number as a person writes it: four significant digits, no exponent for everyday sizes.
+std::string plain(double value);
+
+}  // namespace puckloop::gap::stats

@@ -1,0 +1,110 @@
+#include "gap/stats/robust.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace puckloop::gap::stats {
+
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kMadToSigma = 1.4826;           // of a normal distribution
+constexpr double kFiveToNinetyFive = 2 * 1.645;  // the same, in standard deviations
+
+std::vector<double> finite(const std::vector<double>& values) {
+    std::vector<double> kept;
+    kept.reserve(values.size());
+    for (const double v : values)
+        if (std::isfinite(v)) kept.push_back(v);
+    return kept;
+}
+
+double sorted_quantile(const std::vector<double>& sorted, double q) {
+    if (sorted.empty()) return kNan;
+    const double place = q * static_cast<double>(sorted.size() - 1);
+    const auto low = static_cast<std::size_t>(place);
+    const std::size_t high = std::min(low + 1, sorted.size() - 1);
+    return sorted[low] + (place - static_cast<double>(low)) * (sorted[high] - sorted[low]);
+}
+
+}  // namespace
+
+double mean(const std::vector<double>& values) {
+    const std::vector<double> kept = finite(values);
+    if (kept.empty()) return kNan;
+    return std::accumulate(kept.begin(), kept.end(), 0.0) / static_cast<double>(kept.size());
+}
+
+double standard_deviation(const std::vector<double>& values) {
+    const std::vector<double> kept = finite(values);
+    if (kept.size() < 2) return kNan;
+    const double centre = mean(kept);
+    double sum = 0;
+    for (const double v : kept)
+        sum += (v - centre) * (v - centre);
+    return std::sqrt(sum / static_cast<double>(kept.size() - 1));
+}
+
+double quantile(std::vector<double> values, double q) {
+    values = finite(values);
+    std::sort(values.begin(), values.end());
+    return sorted_quantile(values, q);
+}
+
+double median(const std::vector<double>& values) {
+    return quantile(values, 0.5);
+}
+
+double robust_scale(const std::vector<double>& values) {
+    std::vector<double> kept = finite(values);
+    if (kept.size() < 2) return kNan;
+    const double centre = median(kept);
+    std::vector<double> distance(kept.size());
+    std::transform(kept.begin(), kept.end(), distance.begin(),
+                   [centre](double v) { return std::fabs(v - centre); });
+    if (const double mad = median(distance); mad > 0) return kMadToSigma * mad;
+    std::sort(kept.begin(), kept.end());
+    const double range = sorted_quantile(kept, 0.95) - sorted_quantile(kept, 0.05);
+    return range > 0 ? range / kFiveToNinetyFive : standard_deviation(kept);
+}
+
+std::vector<double> winsorised(const std::vector<double>& values, double limit) {
+    const double centre = median(values);
+    const double reach = limit * robust_scale(values);
+    std::vector<double> pulled = values;
+    if (!(reach > 0)) return pulled;
+    for (double& v : pulled)
+        if (std::isfinite(v)) v = std::clamp(v, centre - reach, centre + reach);
+    return pulled;
+}
+
+std::vector<double> ranks(const std::vector<double>& values) {
+    std::vector<std::size_t> order(values.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return values[a] < values[b]; });
+    std::vector<double> rank(values.size());
+    for (std::size_t i = 0; i < order.size();) {
+        std::size_t end = i + 1;
+        while (end < order.size() && values[order[end]] == values[order[i]])
+            ++end;
+        const double shared = 0.5 * static_cast<double>(i + end + 1);
+        for (; i < end; ++i)
+            rank[order[i]] = shared;
+    }
+    return rank;
+}
+
+double correlation(const std::vector<double>& a, const std::vector<double>& b) {
+    const double mean_a = mean(a), mean_b = mean(b);
+    double cross = 0, square_a = 0, square_b = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        cross += (a[i] - mean_a) * (b[i] - mean_b);
+        square_a += (a[i] - mean_a) * (a[i] - mean_a);
+        square_b += (b[i] - mean_b) * (b[i] - mean_b);
+    }
+    return square_a > 0 && square_b > 0 ? cross / std::sqrt(square_a * square_b) : 0.0;
+}
+
+}  // namespace puckloop::gap::stats

@@ -1,0 +1,96 @@
+#include "gap/stats/series.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace puckloop::gap::stats {
+
+namespace {
+
+/// Values with each run's own mean taken off; NaN becomes 0, which adds nothing to any product.
+std::vector<double> centred(const Series& series) {
+    std::vector<double> result(series.size(), 0.0);
+    for (const Stretch& s : runs_of(series.run)) {
+        double sum = 0;
+        std::size_t count = 0;
+        for (std::size_t i = s.first; i < s.last; ++i)
+            if (std::isfinite(series.value[i])) sum += series.value[i], ++count;
+        if (count == 0) continue;
+        for (std::size_t i = s.first; i < s.last; ++i)
+            if (std::isfinite(series.value[i]))
+                result[i] = series.value[i] - sum / static_cast<double>(count);
+    }
+    return result;
+}
+
+}  // namespace
+
+std::vector<Stretch> runs_of(const std::vector<int>& run) {
+    std::vector<Stretch> stretches;
+    for (std::size_t i = 0; i < run.size(); ++i) {
+        if (stretches.empty() || stretches.back().run != run[i]) stretches.push_back({i, i, run[i]});
+        stretches.back().last = i + 1;
+    }
+    return stretches;
+}
+
+std::vector<double> autocorrelation(const Series& series, std::size_t longest) {
+    const std::vector<double> x = centred(series);
+    const std::vector<Stretch> runs = runs_of(series.run);
+    double power = 0;
+    for (const double v : x)
+        power += v * v;
+    std::vector<double> result(longest, 0.0);
+    if (!(power > 0)) return result;
+    for (std::size_t lag = 1; lag <= longest; ++lag) {
+        double sum = 0;
+        for (const Stretch& s : runs)
+            for (std::size_t i = s.first; i + lag < s.last; ++i)
+                sum += x[i] * x[i + lag];
+        result[lag - 1] = sum / power;
+    }
+    return result;
+}
+
+double correlation_length(const Series& series) {
+    std::size_t longest_run = 0;
+    for (const Stretch& s : runs_of(series.run))
+        longest_run = std::max(longest_run, s.size());
+    if (longest_run < 4) return 1.0;
+    const std::size_t longest = std::min<std::size_t>(longest_run / 3, 400);
+    const double noise = 2.0 / std::sqrt(static_cast<double>(series.size()));
+    double sum = 0;
+    for (const double r : autocorrelation(series, longest)) {
+        if (r < noise) break;
+        sum += r;
+    }
+    return 1.0 + 2.0 * sum;
+}
+
+double effective_size(const Series& series) {
+    return static_cast<double>(series.size()) / correlation_length(series);
+}
+
+std::size_t block_length(const Series& series) {
+    std::size_t longest_run = 1;
+    for (const Stretch& s : runs_of(series.run))
+        longest_run = std::max(longest_run, s.size());
+    const double correlated = correlation_length(series);
+    if (correlated < 1.2) return 1;  // white as far as its own noise tells
+    const auto wanted = static_cast<std::size_t>(std::ceil(2.5 * correlated));
+    return std::clamp<std::size_t>(wanted, 1, std::max<std::size_t>(longest_run / 3, 1));
+}
+
+std::vector<Stretch> blocks_of(const std::vector<int>& run, std::size_t length) {
+    std::vector<Stretch> blocks;
+    for (const Stretch& s : runs_of(run)) {
+        const std::size_t count = std::max<std::size_t>((s.size() + length / 2) / length, 1);
+        for (std::size_t b = 0; b < count; ++b) {
+            const std::size_t first = s.first + b * length;
+            blocks.push_back({first, b + 1 == count ? s.last : first + length, s.run});
+        }
+    }
+    return blocks;
+}
+
+}  // namespace puckloop::gap::stats

@@ -1,0 +1,43 @@
+#pragma once
+// Residuals as the tests take them: values in order of time inside each run, with the run each belongs to.
+// How much they depend on each other decides how many of them count.
+
+#include <cstddef>
+#include <vector>
+
+namespace puckloop::gap::stats {
+
+/// One observable's residuals. Rows of a run stand together, in order of time.
+struct Series {
+    std::vector<double> value;
+    std::vector<int> run;
+
+    std::size_t size() const { return value.size(); }
+};
+
+/// Half-open stretches [first, last) of rows of one run.
+struct Stretch {
+    std::size_t first = 0, last = 0;
+    int run = 0;
+
+    std::size_t size() const { return last - first; }
+};
+
+std::vector<Stretch> runs_of(const std::vector<int>& run);
+
+/// Autocorrelation at 1..longest rows, pooled over runs, each about its own mean.
+std::vector<double> autocorrelation(const Series& series, std::size_t longest);
+
+/// Rows that one independent value is worth: 1 + 2 * sum of the autocorrelations up to the first that
+/// vanishes in its own noise. At least 1.
+double correlation_length(const Series& series);
+/// Number of independent values the series is worth.
+double effective_size(const Series& series);
+
+/// Block length for resampling: 2.5 times the correlation length, at most a third of the longest run.
+std::size_t block_length(const Series& series);
+
+/// Runs cut into blocks of about `length` rows (the last of a run may be shorter, never below half).
+std::vector<Stretch> blocks_of(const std::vector<int>& run, std::size_t length);
+
+}  // namespace puckloop::gap::stats

@@ -1,0 +1,101 @@
+#include "gap/stats/exchange.h"
+#include "gap/stats/profile.h"
+#include "gap/stats/robust.h"
+#include "gap/stats/tails.h"
+#include "gap/stats/tests.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace puckloop::gap::stats {
+
+namespace {
+constexpr double kWild = 4.0;            // robust deviations
+constexpr double kNormalWild = 6.33e-5;  // share of a normal sample beyond, both sides
+// Allowed before the tail counts as heavy: residuals of a good model are seldom quite normal.
+constexpr double kAllowedShare = 2e-3;
+}  // namespace
+
+Finding outlier_test(const Series& residual, const TestOptions&) {
+    Finding finding{.test = "outliers", .covariate = ""};
+    finding.effect_unit = "fraction";
+    const double centre = median(residual.value);
+    const double scale = robust_scale(residual.value);
+    double values = 0;
+    unsigned high = 0, low = 0, clusters = 0;
+    bool wild_before = false;
+    for (std::size_t i = 0; i < residual.size(); ++i) {
+        if (i > 0 && residual.run[i] != residual.run[i - 1]) wild_before = false;
+        if (!std::isfinite(residual.value[i])) continue;
+        values += 1;
+        const double z = scale > 0 ? (residual.value[i] - centre) / scale : 0.0;
+        const bool wild = std::fabs(z) > kWild;
+        if (wild) z > 0 ? ++high : ++low;
+        if (wild && !wild_before) ++clusters;
+        wild_before = wild;
+    }
+    finding.units = values;
+    if (values < 20) {
+        finding.shape = "too few values";
+        return finding;
+    }
+    finding.effect = (high + low) / values;
+    finding.statistic = clusters;
+    finding.p = poisson_tail(values * std::max(kNormalWild, kAllowedShare), clusters);
+    const std::string_view side = high > 3 * low + 2   ? "high side only"
+                                  : low > 3 * high + 2 ? "low side only"
+                                                       : "both sides";
+    finding.shape =
+        fmt::format("{:.3g} % wild values, {} ({} high, {} low)", 100 * finding.effect, side, high, low);
+    return finding;
+}
+
+Finding spread_test(const Series& residual, const std::vector<double>& level, std::string_view name,
+                    const TestOptions& options) {
+    // Distance from a local median, so that a bias against the level is not taken for scatter.
+    int count = 0;
+    std::vector<double> x, y;
+    std::vector<int> run;
+    for (std::size_t i = 0; i < residual.size(); ++i)
+        if (std::isfinite(residual.value[i]) && std::isfinite(level[i])) {
+            x.push_back(level[i]);
+            y.push_back(residual.value[i]);
+            run.push_back(residual.run[i]);
+        }
+    Finding finding{.test = "spread", .covariate = std::string(name)};
+    finding.effect_unit = "ratio - 1";
+    if (x.size() < 20) {
+        finding.shape = "too few values";
+        return finding;
+    }
+    const std::vector<int> bin = bins_of(x, count);
+    std::vector<double> scatter(x.size());
+    for (int b = 0; b < count; ++b) {
+        std::vector<double> inside;
+        for (std::size_t i = 0; i < x.size(); ++i)
+            if (bin[i] == b) inside.push_back(y[i]);
+        const double centre = median(inside);
+        for (std::size_t i = 0; i < x.size(); ++i)
+            if (bin[i] == b) scatter[i] = std::fabs(y[i] - centre);
+    }
+    const Finding trend = trend_test({scatter, run}, x, name, options);
+    finding.statistic = trend.statistic;
+    finding.p = trend.p;
+    finding.units = trend.units;
+    std::vector<double> lowest, highest;
+    const double low = quantile(x, 0.2), high = quantile(x, 0.8);
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        if (x[i] <= low) lowest.push_back(scatter[i]);
+        if (x[i] >= high) highest.push_back(scatter[i]);
+    }
+    const double below = mean(lowest), above = mean(highest);
+    finding.effect = below > 0 ? above / below - 1 : 0.0;
+    finding.shape =
+        fmt::format("scatter {} with {} (mean distance {} low, {} high)",
+                    finding.statistic > 0 ? "grows" : "shrinks", name, plain(below), plain(above));
+    return finding;
+}
+
+}  // namespace puckloop::gap::stats

@@ -1,0 +1,17 @@
+#pragma once
+// Tail probabilities of the distributions the tests use.
+
+namespace puckloop::gap::stats {
+
+/// P(Z > z) of the standard normal.
+double normal_tail(double z);
+/// z with P(Z <= z) = p, 0 < p < 1.
+double normal_quantile(double p);
+/// P(G > x) of a gamma distribution with the given shape (> 0) and scale 1.
+double gamma_tail(double shape, double x);
+/// P(X >= count) of a Poisson variable with the given mean.
+double poisson_tail(double mean, unsigned count);
+/// P(|T| > t) of Student's distribution.
+double student_two_sided(double t, double degrees);
+
+}  // namespace puckloop::gap::stats
