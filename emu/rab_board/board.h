@@ -1,0 +1,111 @@
+#pragma once
+// The range-and-bearing board (e-RandB) around its dsPIC33FJ256GP710: what stands at each pin, and what the
+// firmware's pins do to the air. Wiring: pin_table.h. Signals: signals.h.
+// Source: range-and-bearing fact sheet 1.4, 4.1, 5.2, 5.3.
+//
+// Deviations:
+// 1. An emitter is on or off: no rise time of its own (the medium's demodulator delays stand for all of it).
+// 2. ADC noise is white, Gaussian and the same on every channel.
+// 3. The emitters' supply needs no time to rise when RF12 switches it on.
+
+#include "base/random.h"
+#include "emu/dspic/chip.h"
+#include "emu/dspic/pins.h"
+#include "emu/rab_board/peak_detector.h"
+#include "emu/rab_board/pin_table.h"
+#include "emu/rab_board/potentiometer.h"
+#include "emu/rab_board/signals.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace puckloop::rab {
+
+/// What differs from one board to the next.
+struct BoardParameters {
+    std::string name = "rab";  ///< the random stream is "<name>/adc"
+    std::uint64_t seed = 1;    ///< the run's seed
+    double crystal_hertz = kCrystalHertz;
+    double crystal_ppm = 0.0;       ///< error of the crystal, + is fast
+    double adc_noise_counts = 1.0;  ///< standard deviation, 0 or more
+    PeakDetectorParameters peak{};
+    cosim::Time potentiometer_settling = kPotentiometerSettling;
+};
+
+/// What leaves the board, in time order.
+class BoardListener {
+  public:
+    virtual ~BoardListener() = default;
+    /// An output signal changed.
+    virtual void signal_changed(SignalId id, double value, cosim::Time now) = 0;
+    /// The same for all emitters at once: bit 0 is emitter 1.
+    virtual void emitters_changed(std::uint16_t on, cosim::Time now) = 0;
+    virtual void uart_sent(int unit, const cosim::UartFrame& frame) = 0;
+    /// The board, as slave, answers the phase that its chip was given.
+    virtual void i2c_answer(const cosim::I2cPhase& answer, cosim::Time now) = 0;
+    /// The firmware made the chip master of the bus (no known firmware does).
+    virtual void i2c_phase(int unit, const cosim::I2cPhase& phase) = 0;
+};
+
+class Board : public dspic::Pins {
+  public:
+    Board(const BoardParameters& parameters, BoardListener& listener);
+    /// The chip at whose pins the board stands; before it runs.
+    void connect(const dspic::Chip& chip) { chip_ = &chip; }
+
+    /// Sets an input signal from `now` on, clipped to its range. Returns the port whose pins changed, if any:
+    /// the chip must hear of it. Outputs cannot be set; asking for it is ignored.
+    std::optional<dspic::PortLetter> set_signal(SignalId id, double value, cosim::Time now);
+    /// Present value of any signal.
+    double signal(SignalId id) const { return values_[id]; }
+    /// Emitters that are on: bit 0 is emitter 1.
+    std::uint16_t emitters() const { return emitters_; }
+    const Potentiometer& potentiometer() const { return potentiometer_; }
+
+    /// Reports what the board did by itself at or before `now`. To be called before time is said to have
+    /// passed `now`.
+    void settle(cosim::Time now);
+
+    // dspic::Pins
+    void driven(dspic::PortLetter port, std::uint16_t levels, std::uint16_t driven,
+                dspic::Cycle now) override;
+    std::uint16_t levels(dspic::PortLetter port, dspic::Cycle now) override;
+    double analog(int channel, dspic::Cycle now) override;
+    void uart_sent(int unit, const cosim::UartFrame& frame) override { listener_.uart_sent(unit, frame); }
+    void i2c_phase(int unit, const cosim::I2cPhase& phase) override { listener_.i2c_phase(unit, phase); }
+    void i2c_slave_answer(int unit, const cosim::I2cPhase& answer) override;
+    std::uint16_t spi_exchange(int unit, std::uint16_t sent, int bits, dspic::Cycle now) override;
+    void output_compare_changed(int unit, dspic::Cycle now) override;
+
+    static constexpr int kPorts = 7;
+
+  private:
+    cosim::Time time_of(dspic::Cycle now) const { return chip_ != nullptr ? chip_->clock().time_of(now) : 0; }
+    void drive(const PinUse& pin, bool high, cosim::Time now);
+    void light(cosim::Time now);
+    void report(SignalId id, double value, cosim::Time now);
+
+    BoardParameters parameters_;
+    BoardListener& listener_;
+    const dspic::Chip* chip_ = nullptr;
+    RandomStream noise_;
+    Potentiometer potentiometer_;
+    std::array<PeakDetector, kSensorCount> peaks_;
+    std::array<double, kSignalCount> values_{};
+    std::array<std::uint16_t, kPorts> low_{};      ///< pins driven low
+    std::array<std::uint16_t, kPorts> outputs_{};  ///< pins driven high
+    std::array<std::uint16_t, kPorts> levels_{};   ///< what the board puts on the pins
+    std::uint16_t gates_ = 0;
+    std::uint16_t emitters_ = 0;
+    bool supply_ = false;
+};
+
+/// Answer's time on the wire: the eighth clock of its byte, or later by the stretch.
+constexpr cosim::Time answer_time(const cosim::I2cPhase& answer) {
+    constexpr cosim::Time kClocksToAnswer = 8;
+    return answer.start + kClocksToAnswer * answer.clock_period + answer.stretch;
+}
+
+}  // namespace puckloop::rab

@@ -1,0 +1,74 @@
+#pragma once
+// The range-and-bearing board as a node of a run: chip, board, and the ports where links attach.
+
+#include "cosim/node.h"
+#include "emu/dspic/chip.h"
+#include "emu/image/image.h"
+#include "emu/rab_board/board.h"
+#include "emu/rab_board/rab_log.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace puckloop::rab {
+
+struct RabNodeOptions {
+    BoardParameters board;  ///< its name is the node's name
+    bool skip_idle = true;  ///< busy-wait loops are skipped forward
+    /// No master on the bus is faster; one that is gets its answers as if it were not. The slower this is,
+    /// the further ahead the bus may run.
+    double fastest_i2c_hertz = 400e3;
+    std::string log{};  ///< file for the board's log; empty: none
+};
+
+class RabNode : public cosim::Node, private BoardListener {
+  public:
+    static constexpr cosim::PortIndex kUart1 = 0;
+    static constexpr cosim::PortIndex kUart2 = 1;
+    static constexpr cosim::PortIndex kI2c = 2;  ///< a device port of cosim/i2c_bus.h
+    static constexpr cosim::PortIndex kIr = 3;   ///< signals
+
+    /// Throws InputError if the image does not fit the chip.
+    RabNode(const image::Image& image, const RabNodeOptions& options);
+
+    std::string_view name() const override { return options_.board.name; }
+    std::span<const cosim::Port> ports() const override { return ports_; }
+    void advance(cosim::Time until, std::span<const cosim::Message> inbox,
+                 std::vector<cosim::Message>& outbox) override;
+    cosim::Time promise(cosim::PortIndex port) const override;
+    cosim::Time reaction(cosim::PortIndex port) const override;
+    std::optional<cosim::Time> begun(cosim::PortIndex port) const override;
+    /// JSON: cycles, instructions, resets, traps, unmodelled registers, emission, I2C and UART counters.
+    std::string finish() override;
+
+    dspic::Chip& chip() { return *chip_; }
+    Board& board() { return board_; }
+    const RabLog& log() const { return log_; }
+
+  private:
+    void run_until(cosim::Time until);
+    void settle(cosim::Time until);
+    void receive(const cosim::Message& message);
+    void begin_i2c(cosim::I2cPhase phase, cosim::Time now);
+    cosim::Time reaction_of_idle() const;
+
+    void signal_changed(SignalId id, double value, cosim::Time now) override;
+    void emitters_changed(std::uint16_t on, cosim::Time now) override { log_.emitters(on, now); }
+    void uart_sent(int unit, const cosim::UartFrame& frame) override;
+    void i2c_answer(const cosim::I2cPhase& answer, cosim::Time now) override;
+    void i2c_phase(int unit, const cosim::I2cPhase& phase) override;
+
+    RabNodeOptions options_;
+    cosim::Time fastest_period_;
+    std::vector<cosim::Port> ports_;
+    Board board_;
+    std::unique_ptr<dspic::Chip> chip_;
+    RabLog log_;
+    std::vector<cosim::Message>* outbox_ = nullptr;
+    cosim::Time granted_ = 0;
+    std::uint64_t master_phases_ = 0;
+};
+
+}  // namespace puckloop::rab
