@@ -30,15 +30,24 @@ void FrameWatch::change(std::uint16_t emitters, Time now) {
 /// The chips from the last change on.
 void FrameWatch::append(Time until) {
     const auto count = static_cast<std::size_t>((until - since_ + kChip / 2) / kChip);
-    if (chips_.size() + count > kLongestBurst)
-        overlong_ = true;
-    else
-        chips_.insert(chips_.end(), count, emitters_);
+    const std::size_t room = kLongestBurst - chips_.size();
+    overlong_ |= count > room;
+    chips_.insert(chips_.end(), std::min(count, room), emitters_);
 }
 
 void FrameWatch::settle(Time now) {
     if (chips_.empty() || emitters_ != 0 || now - since_ < kSilence) return;
     close(since_ + kSilence);
+}
+
+/// Is this the end of the burst, or one chip off and then a preamble?
+bool FrameWatch::ends_at(std::size_t end) const {
+    if (end >= chips_.size()) return true;
+    const auto first = chips_.begin() + static_cast<std::ptrdiff_t>(end);
+    const auto left = static_cast<std::size_t>(chips_.end() - first);
+    constexpr auto kPreamble = static_cast<std::size_t>(protocols::kRabPreambleChips);
+    return *first == 0 && left > kPreamble &&
+           std::all_of(first + 1, first + 1 + kPreamble, [](std::uint16_t chip) { return chip != 0; });
 }
 
 /// Length of the frame that begins at chip `first`, 0 if none does; fills in size and payloads.
@@ -47,9 +56,7 @@ std::size_t FrameWatch::frame_at(std::size_t first, EmittedFrame& frame) const {
     for (const int size : protocols::kRabSizes) {
         const auto length = static_cast<std::size_t>(protocols::rab_frame_chips(size));
         // Of two lengths that read well the one that ends with the burst or before the next preamble is it.
-        const std::size_t end = first + length;
-        if (end < chips_.size() && (chips_[end] != 0 || end + 1 >= chips_.size() || chips_[end + 1] == 0))
-            continue;
+        if (!ends_at(first + length)) continue;
         frame.size = size;
         frame.payloads.clear();
         bool good = true;

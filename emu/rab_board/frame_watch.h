@@ -38,6 +38,7 @@ class FrameWatch {
   private:
     void append(cosim::Time until);
     void close(cosim::Time seen);
+    bool ends_at(std::size_t end) const;
     std::size_t frame_at(std::size_t first, EmittedFrame& frame) const;
 
     std::uint16_t emitters_ = 0;

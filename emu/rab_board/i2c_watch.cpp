@@ -32,10 +32,7 @@ bool readable(int number) {
 
 void I2cWatch::phase(const cosim::I2cPhase& phase, Time /*now*/) {
     open_ = phase;
-    if (phase.kind == I2cPhaseKind::Start) {
-        ++counters_.transfers;
-        awaiting_register_ = (phase.byte & kReadBit) == 0;
-    }
+    if (phase.kind == I2cPhaseKind::Start) awaiting_register_ = (phase.byte & kReadBit) == 0;
 }
 
 void I2cWatch::answer(const cosim::I2cPhase& answer, Time now) {
@@ -45,11 +42,13 @@ void I2cWatch::answer(const cosim::I2cPhase& answer, Time now) {
         read(answer.byte, now);
         return;
     }
+    const bool start = open_.kind == I2cPhaseKind::Start;
+    if (start && answer.ack == 0 && open_.byte >> 1 != kAddress) return;
+    if (start) ++counters_.transfers;
     if (answer.ack == 0) {
         ++counters_.not_acknowledged;
         if (is_milestone(counters_.not_acknowledged))
-            tell_(now, fmt::format("i2c: {} not acknowledged, {} so far",
-                                   open_.kind == I2cPhaseKind::Start ? "address" : "byte",
+            tell_(now, fmt::format("i2c: {} not acknowledged, {} so far", start ? "address" : "byte",
                                    counters_.not_acknowledged));
         return;
     }

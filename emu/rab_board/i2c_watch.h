@@ -15,7 +15,7 @@
 namespace puckloop::rab {
 
 struct I2cCounters {
-    std::uint64_t transfers = 0;  ///< Starts with the board's address, repeated ones included
+    std::uint64_t transfers = 0;  ///< Starts for the board, repeated ones included
     std::uint64_t bytes_written = 0, bytes_read = 0;
     std::uint64_t not_acknowledged = 0;  ///< Starts and bytes
     std::uint64_t long_stretches = 0;    ///< longer than kLongStretch
@@ -31,6 +31,9 @@ class I2cWatch {
     using Tell = std::function<void(cosim::Time, std::string)>;
     /// `tell` gets a line for the log, with its time.
     explicit I2cWatch(Tell tell) : tell_(std::move(tell)) {}
+
+    /// The firmware's 7-bit address. Starts for others are not counted unless they are acknowledged.
+    static constexpr std::uint8_t kAddress = 0x20;
 
     /// What the master began, and what the chip answered, `now` on the wire.
     void phase(const cosim::I2cPhase& phase, cosim::Time now);
