@@ -15,6 +15,7 @@ void declare_asm(CLI::App& app, int& status);
 void declare_disasm(CLI::App& app, int& status);
 void declare_trace(CLI::App& app, int& status);
 void declare_frames(CLI::App& app, int& status);
+void declare_gap(CLI::App& app, int& status);
 void declare_bench(CLI::App& app, int& status);
 void declare_node(CLI::App& app, int& status);
 
@@ -27,6 +28,7 @@ inline constexpr std::array kCommands{
     declare_disasm,
     declare_trace,
     declare_frames,
+    declare_gap,
     declare_bench,
     declare_node,
 };

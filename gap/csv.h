@@ -1,0 +1,20 @@
+#pragma once
+// A CSV file of numbers with one header line: what experiment.toml names.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace puckloop::gap {
+
+struct CsvTable {
+    std::vector<std::string> names;
+    std::vector<std::vector<double>> columns;  ///< NaN where a cell is empty, "nan" or "NA"
+    std::size_t rows() const { return columns.empty() ? 0 : columns.front().size(); }
+};
+
+/// Comma, semicolon or tab between cells (as the header has it); empty lines and lines that begin with '#'
+/// are passed over. Throws InputError with the line for text, infinities, and rows of another length.
+CsvTable read_csv(const std::filesystem::path& file);
+
+}  // namespace puckloop::gap

@@ -1,0 +1,121 @@
+#include "gap/verdict.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+
+namespace puckloop::gap {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// JSON has no NaN or infinity.
+Json number(double value) {
+    return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json parameter_json(const FittedParameter& parameter) {
+    return {{"name", parameter.name},
+            {"value", number(parameter.value)},
+            {"low", number(parameter.low)},
+            {"high", number(parameter.high)},
+            {"unit", parameter.unit},
+            {"neutral", number(parameter.neutral)},
+            {"in_simulator", parameter.in_simulator}};
+}
+
+Json cause_json(const Cause& cause) {
+    Json parameters = Json::array();
+    for (const auto& parameter : cause.parameters)
+        parameters.push_back(parameter_json(parameter));
+    return {{"name", cause.name},
+            {"number", cause.number},
+            {"title", cause.title},
+            {"evidence",
+             {{"delta_bic", number(cause.evidence)},
+              {"score_gain", number(cause.score_gain)},
+              {"score_low", number(cause.score_low)},
+              {"score_high", number(cause.score_high)}}},
+            {"parameters", parameters},
+            {"sentence", cause.sentence}};
+}
+
+Json held_json(const Verdict& verdict) {
+    const Held& held = verdict.heldout;
+    Json observables = Json::array();
+    for (const auto& one : verdict.observables)
+        observables.push_back({{"name", one.name},
+                               {"unit", one.unit},
+                               {"before", number(one.before)},
+                               {"after", number(one.after)},
+                               {"ratio", number(one.ratio)},
+                               {"low", number(one.low)},
+                               {"high", number(one.high)}});
+    return {{"before", number(held.before)},
+            {"after", number(held.after)},
+            {"ratio", number(held.ratio)},
+            {"low", number(held.low)},
+            {"high", number(held.high)},
+            {"score_before", number(held.score_before)},
+            {"score_after", number(held.score_after)},
+            {"score_gain_low", number(held.score_low)},
+            {"score_gain_high", number(held.score_high)},
+            {"runs", held.runs},
+            {"runs_better", held.runs_better},
+            {"gain", held.gain},
+            {"sentence", held.sentence},
+            {"observables", observables}};
+}
+
+}  // namespace
+
+std::string_view decision_name(Decision decision) {
+    constexpr std::string_view kNames[] = {"named", "cannot_tell", "no_effect", "unexplained"};
+    return kNames[static_cast<std::size_t>(decision)];
+}
+
+std::string to_json(const Verdict& verdict) {
+    Json json{{"verdict", decision_name(verdict.decision)},
+              {"kind", kind_name(verdict.kind)},
+              {"seed", verdict.seed},
+              {"summary", verdict.summary}};
+    json["causes"] = Json::array();
+    for (const auto& cause : verdict.causes)
+        json["causes"].push_back(cause_json(cause));
+    json["rivals"] = Json::array();
+    for (const auto& rival : verdict.rivals) {
+        Json one = cause_json(rival.cause);
+        one["instead_of"] = rival.instead_of;
+        one["delta_bic"] = number(rival.delta_bic);
+        one["separated_by"] = rival.separated_by;
+        json["rivals"].push_back(one);
+    }
+    json["heldout"] = held_json(verdict);
+    json["suggested_experiment"] = verdict.suggestions.empty() ? "" : verdict.suggestions.front().what;
+    json["suggestions"] = Json::array();
+    for (const auto& suggestion : verdict.suggestions)
+        json["suggestions"].push_back(
+            {{"what", suggestion.what}, {"bits", number(suggestion.bits)}, {"between", suggestion.between}});
+    json["leftovers"] = Json::array();
+    for (const auto& left : verdict.leftovers)
+        json["leftovers"].push_back({{"observable", left.observable},
+                                     {"covariate", left.covariate},
+                                     {"p_value", number(left.p_value)},
+                                     {"shape", left.shape}});
+    json["tried"] = Json::array();
+    for (const auto& tried : verdict.tried)
+        json["tried"].push_back({{"name", tried.name},
+                                 {"number", tried.number},
+                                 {"delta_bic", number(tried.delta_bic)},
+                                 {"score_gain", number(tried.score_gain)},
+                                 {"p_value", number(tried.p_value)},
+                                 {"remark", tried.remark}});
+    json["nuisance"] = Json::array();
+    for (const auto& parameter : verdict.nuisance)
+        json["nuisance"].push_back(parameter_json(parameter));
+    json["cautions"] = verdict.cautions;
+    return json.dump(2) + "\n";
+}
+
+}  // namespace puckloop::gap

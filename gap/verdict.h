@@ -1,0 +1,111 @@
+#pragma once
+// What the analysis says: the content of gap.json and of the report. Numbers in SI units unless a unit stands
+// beside them.
+
+#include "gap/experiment.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace puckloop::gap {
+
+enum class Decision { Named, CannotTell, NoEffect, Unexplained };
+std::string_view decision_name(Decision decision);  ///< "named", "cannot_tell", "no_effect", "unexplained"
+
+struct FittedParameter {
+    std::string name, unit;
+    double value = 0.0, low = 0.0, high = 0.0;  ///< 90 % interval
+    double neutral = 0.0;                       ///< the simulator's value, without the effect
+    bool in_simulator = false;                  ///< `run --model` takes it; otherwise only [measurement]
+};
+
+/// A named effect of the catalogue with its evidence.
+struct Cause {
+    std::string name;                          ///< of the effect: "wheel_scale"
+    int number = 0;                            ///< in the catalogue
+    std::string title;                         ///< in plain words
+    double evidence = 0.0;                     ///< delta BIC against the model without it: > 0 speaks for it
+    double score_gain = 0.0;                   ///< held-out log score won, nats over all held-out rows
+    double score_low = 0.0, score_high = 0.0;  ///< 90 % over blocks of runs
+    std::vector<FittedParameter> parameters;
+    std::string sentence;  ///< what it says about this robot, with figures
+};
+
+/// Another explanation that the data does not tell from `instead_of`.
+struct Rival {
+    Cause cause;
+    std::string instead_of;
+    double delta_bic = 0.0;    ///< of the cause over this rival: < 6 is a draw
+    std::string separated_by;  ///< the experiment that would tell
+};
+
+struct Held {
+    double before = 0.0, after = 0.0;           ///< rms error of held-out rows, standardised over observables
+    double ratio = 1.0, low = 1.0, high = 1.0;  ///< after / before with 90 % interval over runs
+    double score_before = 0.0, score_after = 0.0;  ///< mean log score a row, nats
+    double score_low = 0.0, score_high = 0.0;      ///< of the difference, 90 %
+    int runs = 0, runs_better = 0;
+    bool gain = false;  ///< the data shows an improvement
+    std::string sentence;
+};
+
+struct HeldObservable {
+    std::string name, unit;
+    double before = 0.0, after = 0.0, ratio = 1.0, low = 1.0, high = 1.0;
+};
+
+/// One line of the evidence table: every effect of the kind that was tried.
+struct Tried {
+    std::string name;
+    int number = 0;
+    double delta_bic = 0.0, score_gain = 0.0, p_value = 1.0;
+    std::string remark;  ///< "chosen first", "needs column motor_speed", "equals wheel_scale", ...
+};
+
+/// One observable row by row; `run` and `row` index Experiment::runs and its tables.
+struct Series {
+    std::string observable, unit;
+    std::vector<std::uint32_t> run, row;
+    std::vector<double> measured, before, after;  ///< simulated before and after the chosen effects
+    std::vector<double> scale;                    ///< noise sd after, same unit
+    /// Standardised innovations (autocorrelation taken out): what structure tests look at.
+    std::vector<double> innovation_before, innovation_after;
+};
+
+/// A structure that is left after the best model.
+struct Leftover {
+    std::string observable, covariate;
+    double p_value = 1.0;  ///< corrected for all tests
+    std::string shape;     ///< in words: "rises from -3 to 5 counts over distance 2..8 cm"
+};
+
+struct Suggestion {
+    std::string what;   ///< in plain words
+    double bits = 0.0;  ///< expected information about which rival is true
+    std::vector<std::string> between;
+};
+
+struct Verdict {
+    Decision decision = Decision::NoEffect;
+    Kind kind = Kind::Proximity;
+    std::uint64_t seed = 1;
+    std::string summary;  ///< one or two plain sentences
+    std::vector<Cause> causes;
+    std::vector<Rival> rivals;
+    Held heldout;
+    std::vector<HeldObservable> observables;
+    std::vector<Suggestion> suggestions;  ///< best first
+    std::vector<Leftover> leftovers;
+    std::vector<Tried> tried;
+    std::vector<FittedParameter> nuisance;  ///< fitted along with every model: tracker offset and delay, ...
+    std::vector<std::string> cautions;
+    std::vector<Series> series;  ///< not in gap.json
+    double wall_s = 0.0;         ///< not in gap.json
+};
+
+/// gap.json as text. Same verdict, same bytes.
+std::string to_json(const Verdict& verdict);
+
+}  // namespace puckloop::gap
