@@ -13,6 +13,7 @@
 #include "cosim/time.h"
 
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace puckloop::cosim {
@@ -30,6 +31,7 @@ struct Channel {
 class Bounds {
   public:
     /// `pending[n]` is kNever where nothing is known. What node `silent` sends, if one is given, is left out.
+    /// Both lists must stay as they are while this object is asked.
     void compute(const std::vector<Channel>& channels, const std::vector<Time>& pending,
                  std::size_t silent = kNobody);
 
@@ -44,12 +46,19 @@ class Bounds {
     std::size_t limiter(std::size_t n) const;
 
   private:
-    std::vector<Channel> channels_;
-    std::vector<Time> pending_;
+    void sort_channels(std::size_t nodes);
+    void relax();
+
+    const std::vector<Channel>* channels_ = nullptr;
+    const std::vector<Time>* pending_ = nullptr;
+    std::size_t silent_ = kNobody;
     std::vector<Time> earliest_;
     std::vector<Time> limit_;
     std::vector<std::size_t> critical_;  ///< index of the channel that sets limit_
     Time floor_ = kNever;
+    std::vector<std::vector<std::size_t>> leaving_;          ///< channels, by their sender
+    std::vector<std::pair<std::size_t, std::size_t>> ends_;  ///< of the channels that leaving_ was made for
+    std::vector<Time> told_;  ///< what the channels that leave a node were relaxed with
 };
 
 /// For each node the shortest time from a message that reaches it to one, caused by it, that reaches

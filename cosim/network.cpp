@@ -39,6 +39,7 @@ Network::Network(const std::vector<std::unique_ptr<NodeHandle>>& nodes, const st
         throw InputError("", "", "too many links", "at most 65535");
     for (std::size_t l = 0; l < links.size(); ++l)
         attach(links[l], static_cast<std::uint16_t>(l));
+    ways_back_.resize(nodes.size());
     for (std::size_t f = 0; f < faults.size(); ++f)
         attach_fault(faults[f], f, seed);
 }
@@ -100,12 +101,24 @@ void Network::update(std::size_t n, const NodeState& state, Time reached, Time f
         const Time begun = wire.is_uart ? later(port.begun.value_or(reached), wire.flight) : 0;
         const Time said_before = std::min(channel.base, later(first_in, channel.reaction));
         channel.base = std::max(said_before, later(std::max(port.promise, begun), wire.latency));
-        channel.reaction = later(std::max(port.reaction, wire.flight), wire.latency);
+        const Time reaction = later(std::max(port.reaction, wire.flight), wire.latency);
+        if (reaction != channel.reaction) ++reactions_;
+        channel.reaction = reaction;
     }
 }
 
-void Network::echoes(std::size_t n, std::vector<PortEcho>& echoes) const {
-    const std::vector<Time> back = distances_to(n, channels_, nodes_.size());
+/// Ways back to node `n`; they change only when somebody's reaction does.
+const std::vector<Time>& Network::distances_to_node(std::size_t n) {
+    WaysBack& ways = ways_back_[n];
+    if (ways.reactions != reactions_) {
+        ways.distances = distances_to(n, channels_, nodes_.size());
+        ways.reactions = reactions_;
+    }
+    return ways.distances;
+}
+
+void Network::echoes(std::size_t n, std::vector<PortEcho>& echoes) {
+    const std::vector<Time>& back = distances_to_node(n);
     echoes.assign(port_wire_[n].size(), {});
     for (std::size_t p = 0; p < echoes.size(); ++p) {
         if (port_wire_[n][p] == kNobody) continue;

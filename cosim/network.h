@@ -39,7 +39,7 @@ class Network {
     void update(std::size_t n, const NodeState& state, Time reached, Time first_in);
     const std::vector<Channel>& channels() const { return channels_; }
     /// What comes back of what node `n` says on each port, as the others stand now.
-    void echoes(std::size_t n, std::vector<PortEcho>& echoes) const;
+    void echoes(std::size_t n, std::vector<PortEcho>& echoes);
 
     /// Sends one message of node `n` on its way. Appends what it becomes to `deliveries` (lost ones too).
     /// `first_in` is the first message that the node had to answer when it sent this one, or kNever.
@@ -58,15 +58,24 @@ class Network {
     std::uint64_t unlinked() const { return unlinked_; }
 
   private:
+    /// Shortest ways from each node to one, and as of which state of the reactions.
+    struct WaysBack {
+        std::uint64_t reactions = 0;
+        std::vector<Time> distances;
+    };
+
     void attach(const LinkSpec& spec, std::uint16_t link);
     void attach_fault(const FaultSpec& spec, std::size_t index, std::uint64_t seed);
     void check_promise(const Wire& wire, const Message& message, Time delivery, Time first_in) const;
+    const std::vector<Time>& distances_to_node(std::size_t n);
     void deliver(Wire& wire, std::vector<TraceRecord>& deliveries);
 
     const std::vector<std::unique_ptr<NodeHandle>>& nodes_;
     const std::vector<LinkSpec>& links_;
     std::vector<Wire> wires_;
-    std::vector<Channel> channels_;                    ///< one a wire, same index
+    std::vector<Channel> channels_;  ///< one a wire, same index
+    std::uint64_t reactions_ = 1;    ///< how often one changed
+    std::vector<WaysBack> ways_back_;
     std::vector<std::vector<std::size_t>> port_wire_;  ///< node, port -> wire or kNobody
     std::vector<std::unique_ptr<LinkFault>> faults_;
     std::vector<std::size_t> fault_specs_;

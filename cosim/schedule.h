@@ -21,9 +21,10 @@ struct ScheduleLimits {
     Time stop_latency = 0;  ///< no node runs further ahead of the last one
 };
 
-/// A grant costs a round trip to another process, so a node is granted only when that serves: when another
-/// node's limit hangs on it, when it may go to the end, or when a good stretch has become free for it to run
-/// beside the others.
+/// A grant costs a round trip to another process, so a node is granted only when that serves: when something
+/// may happen there no later than the first node of all may go now, when it may go to the end, or when a good
+/// stretch has become free for it to run beside the others. One that only the echo of its own messages limits
+/// is granted as if it said nothing.
 class Schedule {
   public:
     void plan(const std::vector<Channel>& channels, const std::vector<Time>& pending,
@@ -40,15 +41,16 @@ class Schedule {
     Time reached() const { return reached_; }
 
   private:
-    Time limit_if_silent(std::size_t n, Time granted);
+    Time limit_if_silent(std::size_t n);
+    void find_next(const std::vector<NodeTimes>& nodes, Time end);
 
     Bounds bounds_;
     Bounds alone_;
-    std::size_t alone_root_ = kNobody;
     const std::vector<Channel>* channels_ = nullptr;
     const std::vector<Time>* pending_ = nullptr;
     std::vector<Time> target_;
-    std::vector<char> is_root_;
+    std::vector<Time> next_;
+    Time round_ = 0;
     std::vector<std::size_t> chosen_;
     bool complete_ = false;
     Time reached_ = 0;

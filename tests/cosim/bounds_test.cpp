@@ -10,7 +10,9 @@ using namespace puckloop::cosim;
 
 TEST_CASE("a promise and a latency bound the receiver") {
     Bounds bounds;
-    bounds.compute({{0, 1, 100, 5}}, {kNever, kNever});
+    const std::vector<Channel> channels{{0, 1, 100, 5}};
+    const std::vector<Time> pending{kNever, kNever};
+    bounds.compute(channels, pending);
     CHECK(bounds.limit(1) == 100);
     CHECK(bounds.limit(0) == kNever);
     CHECK(bounds.root(1) == 0);
@@ -20,7 +22,9 @@ TEST_CASE("a promise and a latency bound the receiver") {
 
 TEST_CASE("a pending message shortens what its node may answer, not how far it may go") {
     Bounds bounds;
-    bounds.compute({{0, 1, 100, 5}, {1, 0, 300, 7}}, {20, kNever});
+    const std::vector<Channel> channels{{0, 1, 100, 5}, {1, 0, 300, 7}};
+    const std::vector<Time> pending{20, kNever};
+    bounds.compute(channels, pending);
     CHECK(bounds.limit(1) == 25);      // 0 answers its message
     CHECK(bounds.limit(0) == 25 + 7);  // and 1 the answer
     CHECK(bounds.root(1) == 0);
