@@ -23,8 +23,11 @@ std::optional<std::string> real_image(const std::string& name) {
 
 Rig::Rig(const std::string& where, const std::string& image_file) {
     BenchOptions options;
-    (where == "pic" ? options.board : options.mcu) = where;
-    options.target.chip.fosc = 0xC706;  // XT with PLL x8, as the robots' bootloaders leave it
+    (where == "pic" || where == "rab" ? options.board : options.mcu) = where;
+    const TargetDefaults defaults = defaults_of(options.mcu, options.board);
+    options.target.chip.crystal_hertz = defaults.crystal_hertz;
+    options.target.chip.fosc = defaults.fosc;
+    options.baud = baud_ = defaults.baud;
     bench_ = std::make_unique<Bench>(options);
     bench_->on_change = [this](std::string_view pin, std::string_view signal, double value,
                                cosim::Time time) {
@@ -51,9 +54,9 @@ double Rig::get(const std::string& signal) {
 }
 
 double Rig::send(int unit, const std::vector<std::uint8_t>& bytes) {
-    constexpr double kByteSeconds = 10.0 / 115200;
+    const double byte_s = 10.0 / baud_;
     ends_[static_cast<std::size_t>(unit - 1)]->send(bench_->now(), bytes);
-    return now_s() + static_cast<double>(bytes.size()) * kByteSeconds;
+    return now_s() + static_cast<double>(bytes.size()) * byte_s;
 }
 
 std::vector<ScriptEnd::Heard> Rig::take(int unit) {

@@ -22,7 +22,7 @@ class Rig {
         double time_s;
     };
 
-    /// `where` is "pic" (the board) or a chip's name (bare).
+    /// `where` is "pic" or "rab" (a board) or a chip's name (bare).
     Rig(const std::string& where, const std::string& image_file);
 
     Bench& bench() { return *bench_; }
@@ -47,6 +47,7 @@ class Rig {
 
   private:
     std::unique_ptr<Bench> bench_;
+    double baud_ = 0;
     std::array<ScriptEnd*, 2> ends_{};
     std::array<std::size_t, 2> taken_{};
     std::vector<Change> changes_;

@@ -1,7 +1,6 @@
 // `puckloop exec`: one chip or board alone on the bench.
 
 #include "base/error.h"
-#include "emu/pic/pic_node.h"
 #include "tools/commands.h"
 #include "tools/commands/number_checks.h"
 #include "tools/exec/options.h"
@@ -21,11 +20,12 @@ constexpr std::uint64_t kMostCycles = 10'000'000'000'000;
 constexpr std::uint64_t kMostSeeds = ~std::uint64_t{0};
 constexpr double kSlowestBaud = 50, kFastestBaud = 4e6;
 constexpr double kSlowestCrystal = 1e5, kFastestCrystal = 4e7;
+constexpr double kSlowestI2c = 1e3, kFastestI2c = 1e6;
 constexpr double kWorstCrystal = 1e5;  // ppm
 
-/// `--fosc`: the word that the robot's bootloader left on the part, the image's own, or a given one.
-std::optional<std::uint16_t> fosc_word(const std::string& text) {
-    if (text == "robot") return pic::PicNodeOptions::kFoscXtPll8;
+/// `--fosc`: the word that is in force on the robot, the image's own, or a given one.
+std::optional<std::uint16_t> fosc_word(const std::string& text, std::optional<std::uint16_t> robot) {
+    if (text == "robot") return robot;
     if (text == "image") return std::nullopt;
     std::uint16_t word = 0;
     const char* const last = text.data() + text.size();
@@ -40,6 +40,7 @@ std::optional<std::uint16_t> fosc_word(const std::string& text) {
 struct Arguments {
     exec::ExecOptions options;
     std::string fosc = "robot";
+    std::optional<double> crystal_hertz, baud;
     bool realtime = false;
     bool unpaced = false;
 };
@@ -47,9 +48,11 @@ struct Arguments {
 void describe(CLI::App& app, Arguments& a) {
     exec::ExecOptions& o = a.options;
     exec::TargetOptions& t = o.bench.target;
-    auto* mcu = app.add_option("--mcu", o.bench.mcu, "the chip alone, nothing connected: dspic30f6014a");
+    auto* mcu = app.add_option("--mcu", o.bench.mcu,
+                               "the chip alone, nothing connected: dspic30f6014a or dspic33fj256gp710");
     auto* board =
-        app.add_option("--board", o.bench.board, "the chip on its board: pic (the e-puck main board)");
+        app.add_option("--board", o.bench.board,
+                       "the chip on its board: pic (the e-puck main board) or rab (range and bearing)");
     mcu->excludes(board);
     app.add_option("IMAGE", o.image, "firmware: Intel HEX, ELF (XC16) or COFF (C30)");
     auto* seconds =
@@ -62,18 +65,25 @@ void describe(CLI::App& app, Arguments& a) {
                    "symbol or 0xPC; status 0 when reached, 1 when the budget ends first");
     app.add_option("--uart1", o.uart[0], "- (stdin and stdout), pty, tcp:PORT (on 127.0.0.1) or script:FILE");
     app.add_option("--uart2", o.uart[1], "the same for the second UART");
-    app.add_option("--baud", o.bench.baud, "rate of the bench's ends, 8N1")
-        ->check(number_between(kSlowestBaud, kFastestBaud))
-        ->capture_default_str();
+    app.add_option("--baud", a.baud, "rate of the bench's ends, 8N1 (115200; on the rab board 57600)")
+        ->check(number_between(kSlowestBaud, kFastestBaud));
     app.add_option(
            "--uart-start", o.uart_start,
            "when standard input is offered, in simulated seconds; without it: once the chip's receiver has "
            "been on for 3 s without a reset")
         ->check(number_between(0.0, kLongestRun));
-    app.add_option("--i2c", o.i2c, "script:FILE, a bus master for boards that are slaves");
+    app.add_option("--i2c", o.i2c,
+                   "script:FILE, a bus master for I2C module 1 of targets that are slaves: lines `<time_s> w "
+                   "<addr> <hex bytes>` or `<time_s> r <addr> <register> <count>`");
+    app.add_option("--i2c-clock", o.i2c_master.clock_hertz, "its SCL in Hz")
+        ->check(number_between(kSlowestI2c, kFastestI2c))
+        ->capture_default_str();
+    app.add_flag("!--i2c-no-restart", o.i2c_master.repeated_start,
+                 "its reads name the register and begin again after a STOP, without repeated START");
     app.add_option("--stimulus", o.stimulus, "FILE of `<time_s> <signal> <value>`");
     app.add_flag("--list-signals", o.list_signals, "name the signals with units and ranges, and end");
-    app.add_option("--log", o.bench.log_folder, "folder for uart1.csv, uart2.csv, i2c.csv and pins.csv");
+    app.add_option("--log", o.bench.log_folder,
+                   "folder for uart1.csv, uart2.csv, i2c.csv, pins.csv and board.log (rab)");
     app.add_flag("--json", o.json, "one JSON object on one line instead of text");
     app.add_option("--seed", t.seed, "of the random streams")
         ->check(count_up_to(kMostSeeds))
@@ -84,14 +94,15 @@ void describe(CLI::App& app, Arguments& a) {
     app.add_option("--selector", t.selector, "initial position of the selector (board)")
         ->check(CLI::Range(0, 15))
         ->capture_default_str();
-    app.add_option("--crystal", t.chip.crystal_hertz, "in Hz")
-        ->check(number_between(kSlowestCrystal, kFastestCrystal))
-        ->capture_default_str();
+    app.add_option("--crystal", a.crystal_hertz, "in Hz (7372800; of the dsPIC33F 4000000)")
+        ->check(number_between(kSlowestCrystal, kFastestCrystal));
     app.add_option("--ppm", t.chip.ppm, "error of the crystal")
         ->check(number_between(-kWorstCrystal, kWorstCrystal))
         ->capture_default_str();
     app.add_option("--fosc", a.fosc,
-                   "oscillator configuration in force: robot (XT, PLL x8), image, or 0xWORD")
+                   "oscillator configuration in force: robot (dsPIC30F: XT, PLL x8; dsPIC33F: the image's), "
+                   "image, or "
+                   "0xWORD")
         ->capture_default_str();
     auto* realtime =
         app.add_flag("--realtime", a.realtime,
@@ -110,7 +121,12 @@ void declare_exec(CLI::App& app, int& status) {
         Arguments& a = *arguments;
         if (a.options.bench.mcu.empty() && a.options.bench.board.empty())
             throw InputError("", "exec", "nothing lies on the bench", "--mcu CHIP or --board BOARD");
-        a.options.bench.target.chip.fosc = fosc_word(a.fosc);
+        exec::BenchOptions& bench = a.options.bench;
+        const exec::TargetDefaults defaults = exec::defaults_of(bench.mcu, bench.board);
+        bench.target.chip.crystal_hertz = a.crystal_hertz.value_or(defaults.crystal_hertz);
+        bench.target.chip.fosc = fosc_word(a.fosc, defaults.fosc);
+        bench.baud = a.baud.value_or(defaults.baud);
+        if (!bench.log_folder.empty()) bench.target.log = bench.log_folder + "/board.log";
         if (a.realtime || a.unpaced) a.options.realtime = a.realtime;
         status = exec::run_exec(a.options);
     });

@@ -2,7 +2,6 @@
 // pull-up), every analog input stands at 3800 counts of 4095 (near the rail, like a light sensor in a dim
 // room), UART and I2C lines are at rest. The stimulus may change any of it: `adc8 1200`, `RF1 0`.
 
-#include "base/error.h"
 #include "tools/exec/dspic_target.h"
 
 #include <fmt/format.h>
@@ -13,7 +12,7 @@ namespace puckloop::exec {
 
 namespace {
 
-constexpr int kChannels = 16;
+constexpr int kChannels30F = 16, kChannels33F = 32;
 constexpr int kPins = 16;
 constexpr double kFullScale = 4095;
 constexpr double kIdleCounts = 3800;
@@ -27,8 +26,10 @@ std::string_view no_function(dspic::PortLetter, int) {
 class BareChip : public DspicTarget, private dspic::Pins {
   public:
     BareChip(const dspic::DeviceInfo& device, const TargetOptions& options, TargetListener& listener)
-        : DspicTarget(device, options), tap_(*this, listener, no_function) {
-        for (int channel = 0; channel < kChannels; ++channel)
+        : DspicTarget(device, options),
+          channels_(device.family_33f ? kChannels33F : kChannels30F),
+          tap_(*this, listener, no_function) {
+        for (int channel = 0; channel < channels_; ++channel)
             add({fmt::format("adc{}", channel), cosim::SignalDirection::Input, "counts", 0, kFullScale,
                  fmt::format("level at AN{}", channel), kIdleCounts},
                 0, 0);
@@ -51,7 +52,7 @@ class BareChip : public DspicTarget, private dspic::Pins {
     void set_signal(std::uint16_t id, double value) override {
         const cosim::SignalInfo& info = signals_[id];
         values_[id] = value > info.min ? (value < info.max ? value : info.max) : info.min;
-        if (id < kChannels) return;
+        if (id < channels_) return;
         const auto [port, bit] = places_[id];
         const auto mask = static_cast<std::uint16_t>(1u << bit);
         levels_[port] =
@@ -77,6 +78,7 @@ class BareChip : public DspicTarget, private dspic::Pins {
     void uart_sent(int, const cosim::UartFrame&) override {}
     void i2c_phase(int unit, const cosim::I2cPhase& phase) override { on_bus(unit, phase); }
 
+    int channels_;
     std::vector<cosim::SignalInfo> signals_;
     std::vector<double> values_;
     std::vector<std::pair<std::size_t, int>> places_;
@@ -88,9 +90,7 @@ class BareChip : public DspicTarget, private dspic::Pins {
 
 std::unique_ptr<Target> make_bare_chip(std::string_view mcu, const TargetOptions& options,
                                        TargetListener& listener) {
-    const dspic::DeviceInfo* device = dspic::find_device(mcu);
-    if (device == nullptr)
-        throw InputError("", "--mcu", fmt::format("no chip '{}'", mcu), dspic::device_names());
+    const dspic::DeviceInfo* device = dspic::find_device(defaults_of(mcu, {}).mcu);
     return std::make_unique<BareChip>(*device, options, listener);
 }
 

@@ -40,6 +40,7 @@ Bench::End Bench::run_until(cosim::Time until) {
         apply_stimulus();
         cosim::Time next = std::min({until, next_poll_, lines_[0].due(), lines_[1].due()});
         if (next_stimulus_ < stimulus_.size()) next = std::min(next, stimulus_[next_stimulus_].time);
+        if (master_) next = std::min(next, master_->limit());
         next = std::max(next, now_);
         if (next > now_) target_->run_until(next);
         if (chip().stopped_at()) {
@@ -50,6 +51,7 @@ Bench::End Bench::run_until(cosim::Time until) {
         if (now_ >= until) break;  // what is due at `until` belongs to the next run
         for (UartLine& line : lines_)
             if (line.due() <= now_) line.deliver();
+        if (master_ && master_->due() <= now_) master_->begin();
     }
     return End::Time;
 }
@@ -58,6 +60,7 @@ void Bench::poll() {
     if (paced_) wait_for_wall_clock();
     for (UartLine& line : lines_)
         line.poll(now_);
+    if (master_) master_->poll(now_);
     if (paced_ && logs_) logs_->flush();
 }
 
@@ -79,7 +82,16 @@ void Bench::finish() {
         line.poll(now_);
         if (line.end() != nullptr) line.end()->finish();
     }
+    target_->finish();
     if (logs_) logs_->flush();
+}
+
+void Bench::master(std::vector<I2cScriptLine> script, const I2cMasterOptions& options) {
+    master_.emplace(std::move(script), options, *target_, logs_.get());
+}
+
+void Bench::i2c_answered(const cosim::I2cPhase& answer, cosim::Time time) {
+    if (master_) master_->answered(answer, time);
 }
 
 void Bench::uart_sent(int unit, const cosim::UartFrame& frame) {

@@ -2,6 +2,7 @@
 // The bench: a target, its two UART lines, a stimulus, recordings, and the clock on the wall if somebody live
 // is at an end.
 
+#include "tools/exec/i2c_script_master.h"
 #include "tools/exec/logs.h"
 #include "tools/exec/scripts.h"
 #include "tools/exec/target.h"
@@ -10,6 +11,7 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +33,10 @@ class Bench : private TargetListener {
     dspic::Chip& chip() { return target_->chip(); }
     UartLine& uart(int unit) { return lines_[static_cast<std::size_t>(unit - 1)]; }
     /// Sorted by time; values take effect at the first instruction at or after theirs.
+    /// Plays a script on the bus of a target that is a slave.
+    void master(std::vector<I2cScriptLine> script, const I2cMasterOptions& options);
+    /// Null without a script.
+    const I2cScriptMaster* master() const { return master_ ? &*master_ : nullptr; }
     void stimulate(std::vector<StimulusLine> stimulus) { stimulus_ = std::move(stimulus); }
     /// From now on simulated time does not run ahead of the wall clock.
     void pace_by_wall_clock();
@@ -50,6 +56,7 @@ class Bench : private TargetListener {
   private:
     void uart_sent(int unit, const cosim::UartFrame& frame) override;
     void i2c_phase(int unit, const cosim::I2cPhase& phase) override;
+    void i2c_answered(const cosim::I2cPhase& answer, cosim::Time time) override;
     void pin_changed(std::string_view pin, std::string_view function, std::optional<bool> level,
                      cosim::Time time) override;
     void signal_changed(std::string_view name, double value, cosim::Time time) override;
@@ -60,6 +67,7 @@ class Bench : private TargetListener {
     std::unique_ptr<Logs> logs_;
     std::unique_ptr<Target> target_;
     std::array<UartLine, 2> lines_;
+    std::optional<I2cScriptMaster> master_;
     std::vector<StimulusLine> stimulus_;
     std::size_t next_stimulus_ = 0;
     cosim::Time now_ = 0;

@@ -20,6 +20,55 @@ std::string at(std::uint32_t pc) {
     return fmt::format("0x{:04x}", pc);
 }
 
+std::string hexadecimal(const std::vector<std::uint8_t>& bytes) {
+    std::string text;
+    for (const std::uint8_t byte : bytes)
+        text += fmt::format("{}{:02x}", text.empty() ? "" : " ", byte);
+    return text;
+}
+
+nlohmann::ordered_json script_json(const I2cScriptReport& script) {
+    nlohmann::ordered_json json = {{"lines", script.lines},
+                                   {"played", script.played},
+                                   {"starts", script.starts},
+                                   {"addresses_refused", script.addresses_refused},
+                                   {"bytes_refused", script.bytes_refused},
+                                   {"bytes_written", script.bytes_written},
+                                   {"bytes_read", script.bytes_read},
+                                   {"stretched_s", seconds_of(script.stretched)},
+                                   {"longest_stretch_s", seconds_of(script.longest_stretch)}};
+    if (script.first_refused != 0) json["first_refused_line"] = script.first_refused;
+    json["reads"] = nlohmann::ordered_json::array();
+    for (const I2cScriptReport::Read& read : script.reads)
+        json["reads"].push_back({{"time_s", seconds_of(read.time)},
+                                 {"address", read.address},
+                                 {"register", read.register_number},
+                                 {"bytes", hexadecimal(read.bytes)}});
+    if (script.stuck_since)
+        json["bus_stuck"] = {{"since_s", seconds_of(*script.stuck_since)}, {"line", script.stuck_line}};
+    return json;
+}
+
+std::string script_text(const I2cScriptReport& script) {
+    std::string text = fmt::format(
+        "i2c: {} of {} lines played, {} addresses and {} bytes not acknowledged{}, SCL "
+        "held for {:.6f} s, at most {:.6f} s\n",
+        script.played, script.lines, script.addresses_refused, script.bytes_refused,
+        script.first_refused == 0 ? std::string() : fmt::format(" (first on line {})", script.first_refused),
+        seconds_of(script.stretched), seconds_of(script.longest_stretch));
+    for (std::size_t i = 0; i < script.reads.size() && i < kShownInText; ++i) {
+        const I2cScriptReport::Read& read = script.reads[i];
+        text += fmt::format("i2c read: {:.6f} s, 0x{:02x} register {}: {}\n", seconds_of(read.time),
+                            read.address, read.register_number, hexadecimal(read.bytes));
+    }
+    if (script.reads.size() > kShownInText)
+        text += fmt::format("i2c reads: {} in all\n", script.reads.size());
+    if (script.stuck_since)
+        text += fmt::format("i2c: bus stuck since {:.6f} s, line {} of the script: the slave holds SCL low\n",
+                            seconds_of(*script.stuck_since), script.stuck_line);
+    return text;
+}
+
 }  // namespace
 
 std::string json_report(Bench& bench, const image::Image& image, const ExecOutcome& outcome) {
@@ -40,6 +89,8 @@ std::string json_report(Bench& bench, const image::Image& image, const ExecOutco
         uart["framing_errors_at_bench"] = bench.uart(unit).framing_errors_seen();
         json[fmt::format("uart{}", unit)] = std::move(uart);
     }
+    if (bench.master() != nullptr) json["i2c_script"] = script_json(bench.master()->report());
+    if (const std::string board = bench.target().report(); !board.empty()) json["board"] = Json::parse(board);
     // Symbols of a damaged image may hold any byte: what is not UTF-8 is replaced.
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -68,6 +119,7 @@ std::string text_report(Bench& bench, const ExecOutcome& outcome) {
         text += fmt::format("not modelled: {} {} at pc {}, {:.6f} s\n", touch.write ? "write to" : "read of",
                             touch.name.empty() ? at(touch.address) : touch.name, at(touch.pc),
                             seconds(touch.cycle));
+    if (bench.master() != nullptr) text += script_text(bench.master()->report());
     for (int unit = 1; unit <= 2; ++unit) {
         const dspic::UartCounters counters = bench.chip().uart_counters(unit);
         if (counters.sent + counters.received == 0) continue;

@@ -21,9 +21,10 @@ struct ExecOptions {
     std::vector<std::string> stop_at;                ///< symbols or 0xPC
     std::array<std::optional<std::string>, 2> uart;  ///< --uart1, --uart2
     std::string i2c;                                 ///< script:FILE, or empty
-    std::string stimulus;                            ///< file
-    std::optional<double> uart_start;                ///< seconds
-    std::optional<bool> realtime;                    ///< nothing: paced if an end is live
+    I2cMasterOptions i2c_master;
+    std::string stimulus;              ///< file
+    std::optional<double> uart_start;  ///< seconds
+    std::optional<bool> realtime;      ///< nothing: paced if an end is live
     bool list_signals = false;
     bool json = false;
 };

@@ -1,11 +1,8 @@
 // `--board pic`: the e-puck main board, alone: no Linux board, no camera, nobody on its I2C bus.
 
-#include "base/error.h"
 #include "emu/pic/board.h"
 #include "emu/pic/pin_table.h"
 #include "tools/exec/dspic_target.h"
-
-#include <fmt/format.h>
 
 namespace puckloop::exec {
 
@@ -43,9 +40,7 @@ class PicTarget : public DspicTarget, private pic::BoardListener {
 
 }  // namespace
 
-std::unique_ptr<Target> make_board(std::string_view board, const TargetOptions& options,
-                                   TargetListener& listener) {
-    if (board != "pic") throw InputError("", "--board", fmt::format("no board '{}'", board), "pic");
+std::unique_ptr<Target> make_pic_target(const TargetOptions& options, TargetListener& listener) {
     pic::BoardParameters parameters;
     parameters.seed = options.seed;
     parameters.crystal_hertz = options.chip.crystal_hertz;

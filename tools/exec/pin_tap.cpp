@@ -31,4 +31,11 @@ void PinTap::i2c_phase(int unit, const cosim::I2cPhase& phase) {
     inner_.i2c_phase(unit, phase);
 }
 
+void PinTap::i2c_slave_answer(int unit, const cosim::I2cPhase& answer) {
+    inner_.i2c_slave_answer(unit, answer);
+    if (unit != kI2cScriptUnit) return;
+    constexpr cosim::Time kClocksToAnswer = 8;
+    listener_.i2c_answered(answer, answer.start + kClocksToAnswer * answer.clock_period + answer.stretch);
+}
+
 }  // namespace puckloop::exec

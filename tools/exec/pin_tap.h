@@ -28,6 +28,13 @@ class PinTap : public dspic::Pins {
     double analog(int channel, dspic::Cycle now) override { return inner_.analog(channel, now); }
     void uart_sent(int unit, const cosim::UartFrame& frame) override;
     void i2c_phase(int unit, const cosim::I2cPhase& phase) override;
+    void i2c_slave_answer(int unit, const cosim::I2cPhase& answer) override;
+    std::uint16_t spi_exchange(int unit, std::uint16_t sent, int bits, dspic::Cycle now) override {
+        return inner_.spi_exchange(unit, sent, bits, now);
+    }
+    void output_compare_changed(int unit, dspic::Cycle now) override {
+        inner_.output_compare_changed(unit, now);
+    }
 
   private:
     struct PortState {

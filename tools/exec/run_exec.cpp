@@ -53,15 +53,16 @@ UartSpec spec_of(std::string_view option, const std::optional<std::string>& text
 }
 
 /// The script is checked even where it cannot be used, so that its own mistakes are told first.
-void check_i2c(const std::string& text, const Target& target) {
-    if (text.empty()) return;
+std::vector<I2cScriptLine> i2c_script(const std::string& text, const Target& target) {
+    if (text.empty()) return {};
     if (!text.starts_with(kScript) || text.size() == kScript.size())
         throw InputError("", "--i2c", fmt::format("'{}' is not a bus master's script", text), "script:FILE");
     const std::string file = text.substr(kScript.size());
-    parse_i2c_script(file, read_text_file(file));
+    std::vector<I2cScriptLine> script = parse_i2c_script(file, read_text_file(file));
     if (!target.is_i2c_slave())
         throw InputError("", "--i2c", "this target is the master of its bus and cannot be addressed",
                          "a board that is an I2C slave");
+    return script;
 }
 
 cosim::Time budget_of(const ExecOptions& options, Bench& bench, bool live) {
@@ -87,8 +88,7 @@ int run_exec(const ExecOptions& options) {
     }
     if (options.image.empty()) throw InputError("", "IMAGE", "missing", "a HEX, ELF or COFF file");
     const image::Image image = image::load_image(options.image);
-    image::check_fits(image,
-                      image::find_device(options.bench.mcu.empty() ? "dspic30f6014a" : options.bench.mcu));
+    image::check_fits(image, image::find_device(defaults_of(options.bench.mcu, options.bench.board).mcu));
     std::vector<StopAddress> stops;
     for (const std::string& text : options.stop_at) {
         stops.push_back(resolve_stop(text, image));
@@ -97,7 +97,7 @@ int run_exec(const ExecOptions& options) {
     if (!options.stimulus.empty())
         bench.stimulate(
             parse_stimulus(options.stimulus, read_text_file(options.stimulus), bench.target().signals()));
-    check_i2c(options.i2c, bench.target());
+    if (!options.i2c.empty()) bench.master(i2c_script(options.i2c, bench.target()), options.i2c_master);
     const UartSpec specs[] = {spec_of("--uart1", options.uart[0]), spec_of("--uart2", options.uart[1])};
     if (specs[0].kind == UartSpec::Kind::Stdio && specs[1].kind == UartSpec::Kind::Stdio)
         throw InputError("", "--uart2", "standard input and output are already at uart1", "another end");
@@ -125,6 +125,7 @@ int run_exec(const ExecOptions& options) {
     if (options.realtime.value_or(live)) bench.pace_by_wall_clock();
     ExecOutcome outcome;
     outcome.end = bench.run_until(budget);
+    const bool stuck = bench.master() != nullptr && bench.master()->report().stuck_since;
     bench.finish();
     outcome.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     outcome.pc = bench.chip().pc();
@@ -133,8 +134,8 @@ int run_exec(const ExecOptions& options) {
     if (outcome.end == Bench::End::Address)
         for (const StopAddress& stop : stops)
             if (stop.pc == outcome.pc) outcome.stopped = stop.name;
-    outcome.success =
-        outcome.end == Bench::End::Address || (outcome.end == Bench::End::Time && options.stop_at.empty());
+    outcome.success = !stuck && (outcome.end == Bench::End::Address ||
+                                 (outcome.end == Bench::End::Time && options.stop_at.empty()));
 
     // Standard output belongs to the UART when `-` stands there; JSON is then its last line.
     if (options.json)

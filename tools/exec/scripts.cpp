@@ -85,6 +85,7 @@ std::vector<I2cScriptLine> parse_i2c_script(std::string_view file, std::string_v
     for (const TextLine& line : split_lines(text)) {
         if (line.words.size() < 4) wrong_shape(file, line, "too short", kShape);
         I2cScriptLine entry;
+        entry.line = line.number;
         entry.time = parse_time(file, line.number, line.words[0]);
         entry.address = static_cast<std::uint8_t>(
             parse_integer(file, line.number, line.words[2], "7-bit address", kHighestAddress));

@@ -21,6 +21,7 @@ std::vector<UartScriptLine> parse_uart_script(std::string_view file, std::string
 
 /// `<time_s> w <addr> <hex bytes>` or `<time_s> r <addr> <register> <count>`, addresses of 7 bits.
 struct I2cScriptLine {
+    int line = 0;  ///< in the file, from 1
     cosim::Time time = 0;
     std::uint8_t address = 0;
     bool read = false;

@@ -17,12 +17,17 @@
 
 namespace puckloop::exec {
 
+/// The I2C module that an `--i2c` script speaks to.
+inline constexpr int kI2cScriptUnit = 1;
+
 /// What the target does that the bench records or passes on.
 class TargetListener {
   public:
     virtual ~TargetListener() = default;
     virtual void uart_sent(int unit, const cosim::UartFrame& frame) = 0;
     virtual void i2c_phase(int unit, const cosim::I2cPhase& phase) = 0;
+    /// The target, as slave of I2C module kI2cScriptUnit, answered the script's last phase.
+    virtual void i2c_answered(const cosim::I2cPhase& answer, cosim::Time time) = 0;
     /// A pin took a driven level, or became an input (no level).
     virtual void pin_changed(std::string_view pin, std::string_view function, std::optional<bool> level,
                              cosim::Time time) = 0;
@@ -36,6 +41,7 @@ struct TargetOptions {
     double adc_noise_counts = 0.0;
     int selector = 0;
     bool skip_idle = true;  ///< busy-wait loops are skipped forward
+    std::string log{};      ///< file for the board's log, where it keeps one; empty: none
 };
 
 class Target {
@@ -53,14 +59,35 @@ class Target {
     virtual void uart_receive(int unit, const cosim::UartFrame& frame) = 0;
     /// A bus master may address it: an `--i2c` script makes sense.
     virtual bool is_i2c_slave() const = 0;
+    /// A phase of a bus master begins now; each but Stop is answered through TargetListener::i2c_answered().
+    virtual void i2c_slave_phase(const cosim::I2cPhase& phase) = 0;
+    /// No answer comes before this; kNever while none is awaited.
+    virtual cosim::Time earliest_i2c_answer() const = 0;
+    /// What the board adds to the report, as JSON text; empty: nothing.
+    virtual std::string report() const { return {}; }
+    /// The run is over: logs are closed.
+    virtual void finish() {}
     virtual dspic::Chip& chip() = 0;
 };
 
 /// `mcu` as --mcu takes it; the chip alone, nothing connected. Throws InputError for an unknown name.
 std::unique_ptr<Target> make_bare_chip(std::string_view mcu, const TargetOptions& options,
                                        TargetListener& listener);
-/// `board` as --board takes it ("pic").
+/// `board` as --board takes it ("pic", "rab"). Throws InputError for an unknown name.
 std::unique_ptr<Target> make_board(std::string_view board, const TargetOptions& options,
                                    TargetListener& listener);
+
+std::unique_ptr<Target> make_pic_target(const TargetOptions& options, TargetListener& listener);
+std::unique_ptr<Target> make_rab_target(const TargetOptions& options, TargetListener& listener);
+
+/// What goes without saying for a chip or board.
+struct TargetDefaults {
+    std::string_view mcu;
+    double crystal_hertz = 0;
+    double baud = 115200;               ///< of the bench's ends
+    std::optional<std::uint16_t> fosc;  ///< configuration word in force on the robot; none: the image's
+};
+/// One of the two is empty, as on the command line. Throws InputError for an unknown name.
+TargetDefaults defaults_of(std::string_view mcu, std::string_view board);
 
 }  // namespace puckloop::exec
