@@ -1,5 +1,6 @@
 // puckloop gap: simulation against measured data.
 
+#include "tools/commands/gap.h"
 #include "base/error.h"
 #include "gap/experiment.h"
 #include "tools/command.h"
@@ -40,6 +41,7 @@ void declare_gap(CLI::App& app, int& status) {
         ->type_name("OUT");
     command->add_option("--seed", request->seed, "of everything random in the analysis")->type_name("N");
     command->require_subcommand(0, 1);
+    declare_gap_import(*command, status);
     command->callback([command, request, &status] {
         if (!command->get_subcommands().empty()) return;
         if (request->folder.empty())

@@ -1,0 +1,121 @@
+// optiodom_diffdrive: a differential-drive robot on circles (both senses) and free paths under motion
+// capture. From sousarbarb/optiodom, MIT. A folder a session with `<session>_metadata.csv` (nominal geometry)
+// and
+// `<session>_run-NN.csv`: t[s], x[m], y[m], theta[rad], right and left wheel counts since the last row.
+
+#include "base/error.h"
+#include "gap/importers/importers.h"
+#include "gap/importers/text_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace puckloop::gap::importers {
+
+namespace {
+
+struct Geometry {
+    double axle = 0, diameter_right = 0, diameter_left = 0, counts_a_turn = 0;
+
+    bool operator==(const Geometry&) const = default;
+};
+
+bool recognises(const std::filesystem::path& folder) {
+    for (const char* part : {"circular", "free"})
+        for (const auto& session : folders_in(folder / part))
+            if (!files_named(session, "", "_metadata.csv").empty()) return true;
+    return false;
+}
+
+/// Rows "key,value,..."; the diameters stand right, left.
+Geometry read_geometry(const std::filesystem::path& file) {
+    Geometry g;
+    double gear = 0, encoder = 0;
+    for (const TextRow& row : read_rows(file, ',')) {
+        if (row.cells[0] == "Li") g.axle = number_in(file, row, 1);
+        if (row.cells[0] == "ngear") gear = number_in(file, row, 1);
+        if (row.cells[0] == "encRes") encoder = number_in(file, row, 1);
+        if (row.cells[0] == "Di")
+            g.diameter_right = number_in(file, row, 1), g.diameter_left = number_in(file, row, 2);
+    }
+    g.counts_a_turn = gear * encoder;
+    if (!(g.axle > 0 && g.diameter_right > 0 && g.diameter_left > 0 && g.counts_a_turn > 0))
+        throw InputError(file.string(), "", "lacks the nominal geometry", "rows Li, Di, ngear and encRes");
+    return g;
+}
+
+std::vector<double> summed(const std::vector<double>& counts) {
+    std::vector<double> sum;
+    for (const double c : counts)
+        sum.push_back((sum.empty() ? 0.0 : sum.back()) + c);
+    return sum;
+}
+
+ImportedRun read_run(const std::filesystem::path& file, const std::string& session) {
+    auto table = read_numbers(file, ',', 6);
+    ImportedRun run;
+    run.name = file.stem().string();
+    run.session = session;
+    const auto right = summed(table[4]), left = summed(table[5]);
+    const double turned = table[3].back() - table[3].front();
+    run.conditions["sense"] = std::fabs(turned) < 8 ? "free" : turned > 0 ? "counter-clockwise" : "clockwise";
+    for (std::size_t i = 1; i < table[0].size(); ++i)
+        if (table[0][i] <= table[0][i - 1])
+            throw InputError(file.string(), fmt::format("row {}", i + 1), "time does not rise",
+                             "rising times");
+    run.columns = {{"t_s", table[0]},       {"x_m", table[1]},    {"y_m", table[2]},
+                   {"theta_rad", table[3]}, {"steps_left", left}, {"steps_right", right}};
+    return run;
+}
+
+ImportedExperiment read_part(const std::filesystem::path& folder, const char* part, const char* title) {
+    ImportedExperiment e;
+    e.folder = fmt::format("optiodom_{}", part);
+    e.kind = "motion";
+    e.title = title;
+    e.robot = "differential-drive robot, 84 mm wheels, 0.2 m axle";
+    e.description = "Wheel counts are the encoders' (what the wheels did), so commands and latency are not "
+                    "part of this set. "
+                    "Positions are motion capture. Session = one folder of the set.";
+    e.source = "github.com/sousarbarb/optiodom";
+    e.licence = "MIT";
+    Geometry first;
+    for (const auto& session : folders_in(folder / part)) {
+        const auto metadata = files_named(session, "", "_metadata.csv");
+        if (metadata.empty())
+            throw InputError(session.string(), "", "has no metadata", "<session>_metadata.csv");
+        const Geometry g = read_geometry(metadata.front());
+        if (e.runs.empty()) first = g;
+        if (!(g == first))
+            throw InputError(metadata.front().string(), "", "tells another robot than the sessions before",
+                             "one nominal geometry");
+        for (const auto& file : files_named(session, "", ".csv"))
+            if (file.filename().string().find("_run-") != std::string::npos)
+                e.runs.push_back(read_run(file, session.filename().string()));
+    }
+    e.nominal = {{"robot.wheel_radius_right", first.diameter_right / 2},
+                 {"robot.wheel_radius_left", first.diameter_left / 2},
+                 {"robot.axle_length", first.axle},
+                 {"robot.steps_per_turn", first.counts_a_turn}};
+    return e;
+}
+
+std::vector<ImportedExperiment> read(const std::filesystem::path& folder) {
+    std::vector<ImportedExperiment> all{
+        read_part(folder, "circular", "circles in both senses under motion capture"),
+        read_part(folder, "free", "free drives under motion capture")};
+    std::erase_if(all, [](const ImportedExperiment& e) { return e.runs.empty(); });
+    if (all.empty())
+        throw InputError(folder.string(), "", "has no runs", "circular/<session>/<session>_run-NN.csv");
+    return all;
+}
+
+}  // namespace
+
+const Importer kOptiodom{"optiodom_diffdrive",
+                         "wheel counts and motion capture of a differential-drive robot",
+                         "circular/ or free/ with *_metadata.csv", recognises, read};
+
+}  // namespace puckloop::gap::importers

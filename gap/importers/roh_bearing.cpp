@@ -1,0 +1,89 @@
+// roh_ir_bearing: bearings from 9 known positions to four infra-red beacons, 200 repeats each. From
+// sunglok/TriangulationToolbox, BSD-2; recorded by H. C. Roh (2010).
+//
+// The detector's heading is 90 degrees at every position. Rows are written beacon by beacon, repeats in
+// order, so that the repeats of one bearing stand together: they share its error.
+
+#include "base/error.h"
+#include "gap/importers/importers.h"
+#include "gap/importers/text_table.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <numbers>
+
+namespace puckloop::gap::importers {
+
+namespace {
+
+constexpr const char* kBeacons = "landmark.csv";
+constexpr double kHeading = std::numbers::pi / 2;
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kQuantum = 0.1 * kDegree;
+
+bool recognises(const std::filesystem::path& folder) {
+    return std::filesystem::is_regular_file(folder / kBeacons) && !files_named(folder, "(X", ").csv").empty();
+}
+
+/// The number after `letter` in a name such as "(X1.5,Y3.0).csv".
+double coordinate(const std::filesystem::path& file, char letter) {
+    const std::string name = file.filename().string();
+    const auto at = name.find(letter);
+    double value = 0;
+    if (at == std::string::npos ||
+        std::from_chars(name.data() + at + 1, name.data() + name.size(), value).ec != std::errc())
+        throw InputError(file.string(), "", "does not tell the position in its name", "(X1.5,Y3.0).csv");
+    return value;
+}
+
+ImportedRun read_run(const std::filesystem::path& file, const std::vector<std::vector<double>>& beacons) {
+    const double x = coordinate(file, 'X'), y = coordinate(file, 'Y');
+    const auto table = read_numbers(file, ',', beacons[0].size());
+    std::vector<double> emitter, order, distance, truth, bearing;
+    for (std::size_t b = 0; b < table.size(); ++b) {
+        const double dx = beacons[0][b] - x, dy = beacons[1][b] - y;
+        for (std::size_t i = 0; i < table[b].size(); ++i) {
+            emitter.push_back(static_cast<double>(b + 1));
+            order.push_back(static_cast<double>(i));
+            distance.push_back(std::hypot(dx, dy));
+            truth.push_back(std::remainder(std::atan2(dy, dx) - kHeading, 2 * std::numbers::pi));
+            bearing.push_back(table[b][i] * kDegree);
+        }
+    }
+    ImportedRun run;
+    run.name = fmt::format("x{}_y{}", x, y);
+    run.conditions = {{"x_m", fmt::format("{}", x)}, {"y_m", fmt::format("{}", y)}};
+    run.columns = {{"emitter", emitter},
+                   {"order", order},
+                   {"distance_m", distance},
+                   {"true_bearing_rad", truth},
+                   {"bearing_rad", bearing}};
+    return run;
+}
+
+std::vector<ImportedExperiment> read(const std::filesystem::path& folder) {
+    const auto beacons = read_numbers(folder / kBeacons, ',', 2);
+    ImportedExperiment e;
+    e.folder = "roh_ir_bearing";
+    e.kind = "rab";
+    e.title = "bearings to infra-red beacons from 9 positions";
+    e.robot = "rotating infra-red detector";
+    e.description = "200 bearings to each of four beacons at each position; not an e-puck's board but a "
+                    "rotating detector. Each "
+                    "position is a run; the 200 repeats of a bearing share its error and count as one.";
+    e.source = "github.com/sunglok/TriangulationToolbox; Roh 2010";
+    e.licence = "BSD-2";
+    e.instruments.push_back({"bearing_rad", NAN, NAN, kQuantum});
+    for (const auto& file : files_named(folder, "(X", ").csv"))
+        e.runs.push_back(read_run(file, beacons));
+    return {e};
+}
+
+}  // namespace
+
+const Importer kRohBearing{"roh_ir_bearing", "bearings to infra-red beacons",
+                           "landmark.csv and (X..,Y..).csv", recognises, read};
+
+}  // namespace puckloop::gap::importers

@@ -1,0 +1,111 @@
+#include "gap/importers/text_table.h"
+
+#include "base/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+
+namespace puckloop::gap::importers {
+
+namespace {
+
+constexpr std::string_view kBlank = " \t\r\n\"";
+
+std::string trimmed(std::string_view text) {
+    const auto first = text.find_first_not_of(kBlank);
+    if (first == std::string_view::npos) return {};
+    return std::string(text.substr(first, text.find_last_not_of(kBlank) - first + 1));
+}
+
+std::vector<std::string> cells_of(std::string_view line, char separator) {
+    std::vector<std::string> cells;
+    if (separator == ' ') {
+        for (std::size_t at = line.find_first_not_of(kBlank); at != std::string_view::npos;) {
+            const auto end = std::min(line.find_first_of(kBlank, at), line.size());
+            cells.emplace_back(line.substr(at, end - at));
+            at = line.find_first_not_of(kBlank, end);
+        }
+        return cells;
+    }
+    for (;;) {
+        const auto end = line.find(separator);
+        cells.push_back(trimmed(line.substr(0, end)));
+        if (end == std::string_view::npos) return cells;
+        line.remove_prefix(end + 1);
+    }
+}
+
+}  // namespace
+
+std::vector<TextRow> read_rows(const std::filesystem::path& file, char separator) {
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream || std::filesystem::is_directory(file))
+        throw InputError(file.string(), "", "cannot be opened", "a table of numbers");
+    std::vector<TextRow> rows;
+    std::string line;
+    for (int number = 1; std::getline(stream, line); ++number) {
+        TextRow row{number, cells_of(line, separator)};
+        if (std::any_of(row.cells.begin(), row.cells.end(), [](const auto& c) { return !c.empty(); }))
+            rows.push_back(std::move(row));
+    }
+    if (rows.empty()) throw InputError(file.string(), "", "is empty", "rows of numbers");
+    return rows;
+}
+
+double number_in(const std::filesystem::path& file, const TextRow& row, std::size_t cell) {
+    double value = 0.0;
+    const std::string& text = cell < row.cells.size() ? row.cells[cell] : std::string();
+    std::string_view digits = text;
+    if (!digits.empty() && digits.front() == '+') digits.remove_prefix(1);
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (digits.empty() || error != std::errc() || end != digits.data() + digits.size() ||
+        !std::isfinite(value))
+        throw InputError(file.string(), fmt::format("line {}", row.line),
+                         fmt::format("has \"{}\" in column {}", text.substr(0, 40), cell + 1),
+                         "a finite number");
+    return value;
+}
+
+std::vector<std::vector<double>> read_numbers(const std::filesystem::path& file, char separator,
+                                              std::size_t columns, std::size_t header_rows) {
+    const std::vector<TextRow> rows = read_rows(file, separator);
+    std::vector<std::vector<double>> table(columns);
+    for (std::size_t r = header_rows; r < rows.size(); ++r) {
+        if (rows[r].cells.size() != columns)
+            throw InputError(file.string(), fmt::format("line {}", rows[r].line),
+                             fmt::format("has {} cells", rows[r].cells.size()), fmt::format("{}", columns));
+        for (std::size_t c = 0; c < columns; ++c)
+            table[c].push_back(number_in(file, rows[r], c));
+    }
+    if (table.empty() || table.front().empty())
+        throw InputError(file.string(), "", "has a header only", "rows of numbers");
+    return table;
+}
+
+std::vector<std::filesystem::path> files_named(const std::filesystem::path& folder, const std::string& begin,
+                                               const std::string& end) {
+    std::vector<std::filesystem::path> files;
+    if (!std::filesystem::is_directory(folder)) return files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+        const std::string name = entry.path().filename().string();
+        if (entry.is_regular_file() && name.starts_with(begin) && name.ends_with(end))
+            files.push_back(entry.path());
+    }
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+std::vector<std::filesystem::path> folders_in(const std::filesystem::path& folder) {
+    std::vector<std::filesystem::path> folders;
+    if (!std::filesystem::is_directory(folder)) return folders;
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+        if (entry.is_directory()) folders.push_back(entry.path());
+    std::sort(folders.begin(), folders.end());
+    return folders;
+}
+
+}  // namespace puckloop::gap::importers

@@ -1,0 +1,33 @@
+#pragma once
+// Reading other people's tables: rows of numbers with commas or blanks between them, no fixed header.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace puckloop::gap::importers {
+
+struct TextRow {
+    int line = 0;                    ///< in the file, from 1
+    std::vector<std::string> cells;  ///< white space round them removed
+};
+
+/// Lines with at least one cell that is not empty. `separator` ' ' means any run of blanks. Throws InputError
+/// when the file cannot be opened or has no such line.
+std::vector<TextRow> read_rows(const std::filesystem::path& file, char separator);
+
+/// A cell as a finite number, or InputError naming file, line and column.
+double number_in(const std::filesystem::path& file, const TextRow& row, std::size_t cell);
+
+/// A file of numbers, each row with exactly `columns` cells; `header_rows` lines are passed over first. The
+/// result is one vector a column.
+std::vector<std::vector<double>> read_numbers(const std::filesystem::path& file, char separator,
+                                              std::size_t columns, std::size_t header_rows = 0);
+
+/// Files of a folder whose name begins and ends as given, sorted by name.
+std::vector<std::filesystem::path> files_named(const std::filesystem::path& folder, const std::string& begin,
+                                               const std::string& end);
+/// Sub-folders, sorted by name.
+std::vector<std::filesystem::path> folders_in(const std::filesystem::path& folder);
+
+}  // namespace puckloop::gap::importers

@@ -1,0 +1,115 @@
+// unifr_epuck2_timing: durations of the stages of an e-puck2 host loop, over WiFi and on a Pi-puck, as JSON
+// lists of seconds. From davidfrisch/UNIFR_API_EPUCK, GPL-3.
+//
+// 1. Arrival times are the running sum of the stages of each loop: what the host was busy or waiting; pauses
+// between loops are not in the set. 2. No nominal period is given: the mean loop of the run, longest 1 % left
+// out, stands for it, so that rate errors cannot be found, only jitter, tails and trends. 3. Lists shorter
+// than the loop count (image and sensor packets by turns, in unknown order) cannot be lined up and are left
+// out, as are the start-up times, which are no loop.
+
+#include "base/error.h"
+#include "gap/importers/importers.h"
+#include "gap/importers/text_table.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <numeric>
+
+namespace puckloop::gap::importers {
+
+namespace {
+
+using nlohmann::json;
+
+constexpr double kLongestLeftOut = 0.01;  // share of the loops
+
+std::filesystem::path data_folder(const std::filesystem::path& folder) {
+    return folder / "1_go_on_benchmark" / "data";
+}
+
+bool recognises(const std::filesystem::path& folder) {
+    return !files_named(data_folder(folder), "results_go_on_", ".json").empty();
+}
+
+/// Total of each loop, over the lists that hold one value a loop.
+std::vector<double> loops_of(const std::filesystem::path& file) {
+    std::ifstream stream(file);
+    json lists;
+    try {
+        lists = json::parse(stream);
+        std::size_t longest = 0;
+        for (const auto& [stage, list] : lists.items())
+            longest = std::max(longest, list.size());
+        if (longest < 10)
+            throw InputError(file.string(), "", "has no list of loops", "ten durations or more");
+        std::vector<double> total(longest, 0.0);
+        for (const auto& [stage, list] : lists.items()) {
+            if (list.size() != longest) continue;
+            for (std::size_t i = 0; i < longest; ++i) {
+                const double duration = list[i].get<double>();
+                if (!(duration >= 0) || !std::isfinite(duration))
+                    throw InputError(file.string(), fmt::format("{}[{}]", stage, i), "is no duration",
+                                     "seconds, not negative");
+                total[i] += duration;
+            }
+        }
+        return total;
+    } catch (const json::exception& error) {
+        throw InputError(file.string(), "", fmt::format("is not what was expected: {}", error.what()),
+                         "an object of lists of seconds");
+    }
+}
+
+double usual_loop(std::vector<double> loops) {
+    std::sort(loops.begin(), loops.end());
+    const auto kept = static_cast<std::ptrdiff_t>(static_cast<double>(loops.size()) * (1 - kLongestLeftOut));
+    return std::accumulate(loops.begin(), loops.begin() + kept, 0.0) / static_cast<double>(kept);
+}
+
+ImportedRun read_run(const std::filesystem::path& file) {
+    const std::vector<double> loops = loops_of(file);
+    std::vector<double> arrival, seq;
+    for (std::size_t i = 0; i < loops.size(); ++i) {
+        arrival.push_back((arrival.empty() ? 0.0 : arrival.back()) + loops[i]);
+        seq.push_back(static_cast<double>(i));
+    }
+    ImportedRun run;
+    run.name = file.stem().string().substr(std::string("results_go_on_").size());
+    run.constants["nominal_period"] = usual_loop(loops);
+    run.columns = {{"seq", seq}, {"t_host_s", arrival}};
+    return run;
+}
+
+std::vector<ImportedExperiment> read(const std::filesystem::path& folder) {
+    std::vector<ImportedExperiment> all;
+    for (const auto& [part, title] : {std::pair{"pipuck", "host loop of an e-puck2 on a Pi-puck"},
+                                      std::pair{"wifi", "host loop of an e-puck2 over WiFi"}}) {
+        ImportedExperiment e;
+        e.folder = fmt::format("unifr_timing_{}", part);
+        e.kind = "timing";
+        e.title = title;
+        e.robot = "e-puck2";
+        e.description = "Running sum of the measured stages of each loop; pauses between loops are not "
+                        "recorded. The nominal period "
+                        "is the run's own mean (longest 1 % left out): a wrong rate cannot be found here, "
+                        "jitter and tails can.";
+        e.source = "github.com/davidfrisch/UNIFR_API_EPUCK";
+        e.licence = "GPL-3";
+        for (const auto& file :
+             files_named(data_folder(folder), fmt::format("results_go_on_{}", part), ".json"))
+            e.runs.push_back(read_run(file));
+        if (!e.runs.empty()) all.push_back(e);
+    }
+    return all;
+}
+
+}  // namespace
+
+const Importer kUnifrTiming{"unifr_epuck2_timing", "durations of an e-puck2 host loop",
+                            "1_go_on_benchmark/data/results_go_on_*.json", recognises, read};
+
+}  // namespace puckloop::gap::importers
