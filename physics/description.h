@@ -90,6 +90,10 @@ struct Robot {
     /// neither read nor published.
     std::map<std::string, std::uint16_t> board_signals;
     std::map<std::string, std::uint16_t> ground_signals;
+    bool rab = false;  ///< carries a range-and-bearing board
+    /// Signal ids on the link between that board and the infra-red medium: "emitter1".., "carrier", "power",
+    /// "demod1".., "peak1"..
+    std::map<std::string, std::uint16_t> rab_signals{};
     Place place{};
 };
 

@@ -1,6 +1,8 @@
 // The table of physical parameters. Sources: [W] Webots e-puck model (cyberbotics/webots), [A] ARGoS e-puck
 // plugin (demiurge-project/argos3-epuck), [L] GCtronic e-puck library, [E] Enki, [M] measured on real robots
-// (public logs), [S] the published e-puck descriptions, [O] ODE practice. "?" = plausible, no source found.
+// (public logs), [S] the published e-puck descriptions, [O] ODE practice, [R] firmware and documents of the
+// range-and-bearing board, [I] IRIDIA's published strength statistics of that board. "?" = plausible, no
+// source found.
 
 #include "physics/parameters.h"
 
@@ -10,6 +12,10 @@ namespace {
 
 #define AT(member) [](Parameters& p) { return &p.member; }
 #define FIRST(member) [](Parameters& p) { return p.member.data(); }
+
+/// 15 50 75 105 133 159 -165 -135 -105 -77 -50 -15 degrees.
+const std::vector<double> kBoardAngles{.261799,   .872665,   1.308997,  1.832596,  2.321288, 2.775074,
+                                       -2.879793, -2.356194, -1.832596, -1.343904, -.872665, -.261799};
 
 std::vector<ParameterInfo> build_table() {
     // clang-format off
@@ -102,6 +108,48 @@ std::vector<ParameterInfo> build_table() {
         {"battery.idle_power", "W", 1, {1.2}, 0.0, 10.0, AT(battery.idle_power), "5 W h last about 3 h"},
         {"battery.motor_power", "W", 1, {0.3}, 0.0, 5.0, AT(battery.motor_power), "? a motor while it steps"},
         {"battery.low_voltage", "V", 1, {3.4}, 2.5, 4.2, AT(battery.low_voltage), "[L] battery-low pin"},
+
+        // Infra-red between range-and-bearing boards; index 0 is hardware number 1.
+        {"ir.emitter_angle", "rad", 12, kBoardAngles, -3.2, 3.2, FIRST(ir.emitter_angle), "? beside the receivers: no drawing was at hand; [A] simulates sectors of 30 deg"},
+        {"ir.emitter_gain", "1", 12, {1.0}, 0.0, 5.0, FIRST(ir.emitter_gain), "of one emitter"},
+        {"ir.receiver_angle", "rad", 12, kBoardAngles, -3.2, 3.2, FIRST(ir.receiver_angle), "[R] 15 50 75 105 133 159 -165 -135 -105 -77 -50 -15 deg"},
+        {"ir.receiver_gain", "1", 12, {1.0}, 0.0, 5.0, FIRST(ir.receiver_gain), "of one receiver's strength measurement"},
+        {"ir.demodulator_gain", "1", 12, {1.0}, 0.0, 5.0, FIRST(ir.demodulator_gain), "of one receiver's demodulator"},
+        {"ir.baseline", "counts", 12, {96, 103, 88, 110, 101, 92, 107, 99, 85, 104, 112, 94}, 0, 4095, FIRST(ir.baseline), "? strength reading in the dark; the board subtracts what it reads at boot"},
+        {"ir.ring", "m", 1, {0.032}, 0.01, 0.06, AT(ir.ring), "? emitters and receivers 3 mm inside the rim"},
+        {"ir.height", "m", 1, {0.052}, 0.0, 0.2, AT(ir.height), "[A] board above the floor; lower things do not shade"},
+        {"ir.emitter_exponent", "1", 1, {1.0}, 0.0, 20.0, AT(ir.emitter_exponent), "? lobe cos^n, n = 1 a wide diode"},
+        {"ir.power_reference", "1", 1, {115}, 0, 254, AT(ir.power_reference), "potentiometer byte at which the curve holds; [A] default, not recorded with the measurements"},
+        {"ir.power_exponent", "1", 1, {1.0}, 0.1, 4.0, AT(ir.power_exponent), "? current (1 - byte/255)^n"},
+        {"ir.power_floor", "1", 1, {0.0002}, 0.0, 1.0, AT(ir.power_floor), "[R] byte 255 reaches about 0: share of full current left there"},
+        {"ir.distance", "m", 9, {.006, .026, .056, .106, .156, .306, .456, .606, .806}, 0.0, 5.0, FIRST(ir.distance), "[I] free path at which the levels hold, rising: 0 2 5 10 15 30 45 60 80 cm between bodies"},
+        {"ir.level", "counts", 9, {9496, 4325, 2096, 1495, 1238, 1074, 941, 941, 941}, 0.0, 1e6, FIRST(ir.level), "[I] fitted: the range register of a board that receives all emitters of another then has the measured medians; 45, 60, 80 cm pooled, so that nothing rises"},
+        {"ir.source_offset", "m", 1, {0.01}, 1e-4, 0.2, AT(ir.source_offset), "? d0 of the inverse square (d+d0)^-2"},
+        {"ir.receiver_exponent", "1", 1, {0.5}, 0.0, 20.0, AT(ir.receiver_exponent), "[R] strength goes with sqrt(cos): what the board's range formula assumes"},
+        {"ir.reach", "m", 1, {1.15}, 0.01, 20.0, AT(ir.reach), "free path at which all emitters at the reference power just trip a demodulator that faces them; [R] about 1 m, heard at 80 cm [I]"},
+        {"ir.demodulator_exponent", "1", 1, {1.0}, 0.0, 20.0, AT(ir.demodulator_exponent), "? lobe cos^n"},
+        {"ir.centre_frequency", "Hz", 1, {455e3}, 1e4, 1e6, AT(ir.centre_frequency), "[R] demodulators for 455 kHz"},
+        {"ir.quality", "1", 1, {7.0}, 0.0, 100.0, AT(ir.quality), "? of the demodulator's band pass; the firmware's carrier is 6 % off: response 0.77"},
+        {"ir.threshold", "1", 1, {1.0}, 0.01, 100.0, AT(ir.threshold), "of the demodulator, in units of the carrier at ir.reach"},
+        {"ir.delay_on", "s", 1, {20e-6}, 1e-6, 1e-3, AT(ir.delay_on), "? 5-20 us; also what lets boards run ahead of each other"},
+        {"ir.delay_off", "s", 1, {20e-6}, 1e-6, 1e-3, AT(ir.delay_off), "as delay_on; their difference distorts pulses and loses frames"},
+        {"ir.min_burst", "s", 1, {10e-6}, 0.0, 1e-3, AT(ir.min_burst), "? shorter bursts are not seen; at most 0.9 delay_on"},
+        {"ir.min_gap", "s", 1, {10e-6}, 0.0, 1e-3, AT(ir.min_gap), "? shorter gaps are not seen; at most 0.9 delay_off"},
+        {"ir.level_delay", "s", 1, {20e-6}, 1e-6, 1e-3, AT(ir.level_delay), "? of the strength measurement"},
+        {"ir.level_hold", "s", 1, {350e-6}, 0.0, 1e-2, AT(ir.level_hold), "? a level falls once it has been lower for so long; the board's detector holds the maximum anyway"},
+        {"ir.ambient", "counts", 1, {30}, 0, 4095, AT(ir.ambient), "? added to the baseline at ambient level 1"},
+        {"ir.emitter_spread", "1", 1, {0.10}, 0.0, 1.0, AT(ir.emitter_spread), "? log-normal, drawn once an emitter, .1-.3 a pair"},
+        {"ir.receiver_spread", "1", 1, {0.06}, 0.0, 1.0, AT(ir.receiver_spread), "? log-normal, drawn once a receiver's strength"},
+        {"ir.demodulator_spread", "1", 1, {0.10}, 0.0, 1.0, AT(ir.demodulator_spread), "? log-normal, drawn once a demodulator"},
+        {"ir.frame_noise", "1", 1, {0.10}, 0.0, 1.0, AT(ir.frame_noise), "[I] log-normal, common to a frame's strengths at one board"},
+        {"ir.receiver_noise", "1", 1, {0.05}, 0.0, 1.0, AT(ir.receiver_noise), "? log-normal, each frame and receiver"},
+        {"ir.carrier_noise", "1", 1, {0.10}, 0.0, 1.0, AT(ir.carrier_noise), "? log-normal, each frame and demodulator: softens the edge of the reach"},
+        {"ir.near_noise", "1", 1, {0.33}, 0.0, 2.0, AT(ir.near_noise), "[I] log-normal, added to frame_noise near contact"},
+        {"ir.near_range", "m", 1, {0.06}, 1e-3, 1.0, AT(ir.near_range), "[I] over which near_noise fades"},
+        {"ir.reflection", "1", 1, {0.0}, 0.0, 1.0, AT(ir.reflection), "? share of irradiance mirrored by a white wall or box (first order)"},
+        {"ir.self_coupling", "1", 1, {0.0}, 0.0, 1e3, AT(ir.self_coupling), "? carrier of each own emitter at each own receiver, in thresholds; 0: a board hears itself by walls only"},
+        {"ir.chip", "s", 1, {98.09e-6}, 1e-6, 1e-3, AT(ir.chip), "[R] half a bit: a frame has ended after 3 dark chips"},
+        {"ir.refresh", "s", 1, {0.005}, 0.001, 1.0, AT(ir.refresh), "a burst that lasts longer is looked at anew when something moved"},
 
         // Contacts.
         {"contact.mu", "1", 1, {0.7}, 0.01, 3.0, AT(contact.mu), "[A] tyre along; 0.4-0.8 ?"},

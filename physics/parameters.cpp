@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
+#include <charconv>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
@@ -63,12 +63,15 @@ const ParameterInfo* find_parameter(std::string_view name, int& index) {
     for (const auto& info : parameter_table()) {
         const std::string_view base = info.name;
         if (name == base) return &info;
-        if (info.count > 1 && name.size() == base.size() + 1 && name.starts_with(base)) {
-            const int digit = name.back() - '0';
-            if (digit >= 0 && digit < info.count) {
-                index = digit;
-                return &info;
-            }
+        if (info.count < 2 || !name.starts_with(base)) continue;
+        const auto digits = name.substr(base.size());
+        int number = -1;
+        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+        const bool plain = digits.size() == 1 || (digits.size() == 2 && digits[0] != '0');
+        if (error == std::errc() && end == digits.data() + digits.size() && plain && number >= 0 &&
+            number < info.count) {
+            index = number;
+            return &info;
         }
     }
     return nullptr;

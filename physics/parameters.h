@@ -12,6 +12,10 @@ namespace puckloop::physics {
 
 inline constexpr int kProximitySensors = 8;
 inline constexpr int kGroundSensors = 3;
+/// Emitters, and receivers, of a range-and-bearing board; index 0 is hardware number 1.
+inline constexpr int kIrSensors = 12;
+/// Distances at which the board's strength was measured.
+inline constexpr int kIrCurvePoints = 9;
 
 /// Body and drive of one robot. SI units; steps are motor steps, 1000 a wheel turn.
 struct BodyParameters {
@@ -53,6 +57,20 @@ struct BatteryParameters {
     double capacity, charge, resistance, idle_power, motor_power, low_voltage;
 };
 
+/// Infra-red between range-and-bearing boards. Emission follows the sender's values, everything from the
+/// falloff with distance on the receiver's.
+struct IrParameters {
+    std::array<double, kIrSensors> emitter_angle, emitter_gain, receiver_angle, receiver_gain;
+    std::array<double, kIrSensors> demodulator_gain, baseline;
+    double ring, height, emitter_exponent, power_reference, power_exponent, power_floor;
+    std::array<double, kIrCurvePoints> distance, level;
+    double source_offset, receiver_exponent, reach, demodulator_exponent, centre_frequency, quality;
+    double threshold, delay_on, delay_off, min_burst, min_gap, level_delay, level_hold, ambient;
+    double emitter_spread, receiver_spread, demodulator_spread;
+    double frame_noise, receiver_noise, carrier_noise, near_noise, near_range;
+    double reflection, self_coupling, chip, refresh;
+};
+
 /// Contacts between any two things; one set for the whole world.
 struct ContactParameters {
     double mu, mu_lateral, mu_skid, mu_body, mu_object, creep;
@@ -73,6 +91,7 @@ struct Parameters {
     GroundParameters ground;
     AccelerometerParameters accelerometer;
     BatteryParameters battery;
+    IrParameters ir;
     ContactParameters contact;
     SimulationParameters world;
 

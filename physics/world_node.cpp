@@ -1,5 +1,6 @@
 #include "physics/world_node.h"
 
+#include "physics/pose_signals.h"
 #include "physics/recorder.h"
 #include "physics/world_log.h"
 
@@ -15,6 +16,7 @@ namespace {
 constexpr cosim::Time kStep = cosim::kMillisecond;
 constexpr std::uint16_t kUnused = 0xFFFF;
 constexpr std::size_t kPortsOfRobot = 2;
+constexpr std::array<double, kPoseSignals> kPoseQuantum{1e-5, 1e-5, 1e-4};  // m, m, rad
 
 /// One robot's ends of its two links: signal ids, and what was last published.
 struct RobotLinks {
@@ -53,10 +55,12 @@ struct WorldNode::Impl {
     explicit Impl(World description);
     void take(const cosim::Message& message);
     void publish(std::vector<cosim::Message>& outbox);
+    void publish_poses(std::vector<cosim::Message>& outbox);
 
     WorldModel model;
     std::vector<cosim::Port> ports;
     std::vector<RobotLinks> links;
+    std::vector<double> poses;            // as last published; empty without the port "ir"
     std::vector<cosim::Message> waiting;  // stamped at or after the next step
     std::optional<Recorder> recorder;
     WorldLog log;
@@ -69,13 +73,17 @@ WorldNode::Impl::Impl(World description) : model(std::move(description)), log(mo
         ports.push_back({robot.name + ".board", cosim::PortKind::Signals});
         ports.push_back({robot.name + ".ground", cosim::PortKind::Signals});
     }
+    if (has_rab(model.description())) {
+        ports.push_back({"ir", cosim::PortKind::Signals});
+        poses.assign(pose_signal_names(model.description()).size(), std::nan(""));
+    }
     if (!model.description().recording.directory.empty()) recorder.emplace(model);
 }
 
 void WorldNode::Impl::take(const cosim::Message& message) {
     const auto* signal = std::get_if<cosim::Signal>(&message.payload);
-    if (signal == nullptr || message.port % kPortsOfRobot != 0) return;
     const std::size_t robot = message.port / kPortsOfRobot;
+    if (signal == nullptr || message.port % kPortsOfRobot != 0 || robot >= links.size()) return;
     for (const Side side : {Side::Left, Side::Right})
         if (links[robot].wheel[static_cast<std::size_t>(side)] == signal->id)
             model.wheel(robot, side, signal->value, cosim::to_seconds(message.time));
@@ -91,6 +99,23 @@ void WorldNode::Impl::publish(std::vector<cosim::Message>& outbox) {
             if (value == output.last) continue;
             output.last = value;
             outbox.push_back({next_step + kStep, output.port, cosim::Signal{output.id, value}});
+        }
+    }
+}
+
+void WorldNode::Impl::publish_poses(std::vector<cosim::Message>& outbox) {
+    const auto port = static_cast<cosim::PortIndex>(links.size() * kPortsOfRobot);
+    for (std::size_t i = 0; i * kPoseSignals < poses.size(); ++i) {
+        const auto pose = [&](const auto& s) {
+            return std::array<double, kPoseSignals>{s.x, s.y, s.heading};
+        };
+        const auto now = i < links.size() ? pose(model.state(i)) : pose(model.object(i - links.size()));
+        for (std::size_t k = 0; k < kPoseSignals; ++k) {
+            const std::size_t id = i * kPoseSignals + k;
+            const double value = std::round(now[k] / kPoseQuantum[k]) * kPoseQuantum[k];
+            if (value == poses[id]) continue;
+            poses[id] = value;
+            outbox.push_back({next_step + kStep, port, cosim::Signal{static_cast<std::uint16_t>(id), value}});
         }
     }
 }
@@ -122,6 +147,7 @@ void WorldNode::advance(cosim::Time until, std::span<const cosim::Message> inbox
             w.log.after_step(w.model);
         }
         w.publish(outbox);
+        w.publish_poses(outbox);
     }
     w.waiting.erase(w.waiting.begin(), next);
 }

@@ -2,9 +2,10 @@
 // The physical world as a node: wheel counts in, sensor signals out, one step a millisecond.
 //
 // Ports, in the order of the description's robots: "<robot>.board" and "<robot>.ground", both signals; ids
-// come from each robot's board_signals and ground_signals. Step k (state at k ms) uses what was stamped
-// before k ms; its sensor values leave stamped (k+1) ms, only those that changed, rounded to
-// world.publish_quantum.
+// come from each robot's board_signals and ground_signals. Then, if any robot has a range-and-bearing board,
+// "ir": poses for the infra-red medium (physics/pose_signals.h). Step k (state at k ms) uses what was stamped
+// before k ms; its sensor values and poses leave stamped (k+1) ms, only those that changed, rounded to
+// world.publish_quantum, or for poses to 10 um and 0.1 mrad.
 
 #include "cosim/node.h"
 #include "physics/description.h"

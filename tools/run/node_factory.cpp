@@ -5,6 +5,7 @@
 #include "emu/image/image.h"
 #include "emu/pic/pic_node.h"
 #include "linuxboard/shim/linux_node.h"
+#include "physics/ir_node.h"
 #include "physics/world_node.h"
 #include "tools/run/outside_node.h"
 
@@ -53,6 +54,7 @@ std::unique_ptr<cosim::Node> make_node(const std::string& text) {
         if (kind == "pic") return make_pic(spec);
         if (kind == "linux") return make_linux(spec);
         if (kind == "world") return physics::make_world_node(spec.at("world").dump());
+        if (kind == "ir") return physics::make_ir_node(text);
         if (kind == "i2c_bus") return i2c_devices::make_bus_node(text);
         if (kind == "outside") return make_outside(spec);
         throw InputError("", "node", fmt::format("unknown kind '{}'", kind));

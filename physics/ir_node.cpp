@@ -1,0 +1,238 @@
+#include "physics/ir_node.h"
+
+#include "base/error.h"
+#include "physics/ir_frames.h"
+#include "physics/ir_receiver.h"
+#include "physics/pose_signals.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace puckloop::physics {
+
+using cosim::kNever;
+using cosim::Message;
+using cosim::PortIndex;
+using cosim::Time;
+
+namespace {
+
+constexpr std::uint16_t kUnused = 0xFFFF;
+constexpr int kCarrier = kIrSensors;
+constexpr int kPower = kIrSensors + 1;
+constexpr int kNothing = -1;
+
+/// The ids of one board's link, both ways.
+struct BoardSignals {
+    std::vector<int> meaning;  ///< of an incoming id: emitter 0..11, kCarrier, kPower, kNothing
+    std::array<std::uint16_t, 2 * kIrSensors> output;  ///< id of each IrOutput::index
+
+    explicit BoardSignals(const Robot& robot) {
+        const auto id = [&](const std::string& name) {
+            const auto found = robot.rab_signals.find(name);
+            return found == robot.rab_signals.end() ? kUnused : found->second;
+        };
+        const auto read = [&](const std::string& name, int what) {
+            const auto number = id(name);
+            if (number == kUnused) return;
+            if (meaning.size() <= number) meaning.resize(number + 1U, kNothing);
+            meaning[number] = what;
+        };
+        for (int i = 0; i < kIrSensors; ++i) {
+            const auto number = std::to_string(i + 1);
+            read("emitter" + number, i);
+            output[static_cast<std::size_t>(i)] = id("demod" + number);
+            output[static_cast<std::size_t>(kIrLevelOutput + i)] = id("peak" + number);
+        }
+        read("carrier", kCarrier);
+        read("power", kPower);
+    }
+};
+
+World checked(const World& world) {
+    check(world);
+    if (!has_rab(world)) throw InputError(world.file, "", "no robot has a range-and-bearing board");
+    return world;
+}
+
+}  // namespace
+
+struct IrNode::Impl {
+    Impl(const World& world, const IrNodeOptions& options);
+
+    PortIndex world_port() const { return static_cast<PortIndex>(receivers.size()); }
+    void take(const Message& message);
+    /// Everything stamped `now` has been taken.
+    void apply(Time now);
+    /// The sender's light has changed; `everywhere`: at boards that it no longer reaches, too.
+    void see_from(std::size_t sender, Time now, bool everywhere);
+    void release(Time until, std::vector<Message>& outbox);
+
+    World world;
+    std::string name;
+    std::vector<cosim::Port> ports;
+    IrMedium medium;
+    IrFrames frames;
+    std::vector<BoardSignals> signals;
+    std::vector<IrReceiver> receivers;
+    std::vector<Time> refresh, looked;  ///< period, and when the board's coupling was last looked at
+    std::vector<std::array<double, kPoseSignals>> poses;
+    std::vector<bool> moved, touched;  ///< bodies and boards changed by the messages of one instant
+    std::vector<std::uint16_t> masks;
+    std::vector<IrOutput> released;
+    bool any_moved = false;
+    bool begun = false;
+};
+
+IrNode::Impl::Impl(const World& description, const IrNodeOptions& options)
+    : world(checked(description)), name(options.name), medium(world), frames(medium, options.frames_csv) {
+    for (const Robot& robot : world.robots) {
+        poses.push_back({robot.x, robot.y, robot.heading});
+        if (!robot.rab) continue;
+        ports.push_back({robot.name + ".ir", cosim::PortKind::Signals});
+        signals.emplace_back(robot);
+        receivers.emplace_back(medium.parameters(receivers.size()));
+        refresh.push_back(cosim::from_seconds(medium.parameters(refresh.size()).refresh));
+    }
+    ports.push_back({"world", cosim::PortKind::Signals});
+    for (const Box& box : world.boxes)
+        if (box.movable) poses.push_back({box.x, box.y, box.heading});
+    for (const Cylinder& cylinder : world.cylinders)
+        if (cylinder.movable) poses.push_back({cylinder.x, cylinder.y, 0.0});
+    moved.resize(poses.size());
+    touched.resize(receivers.size());
+    masks.resize(receivers.size());
+    looked.resize(receivers.size());
+}
+
+void IrNode::Impl::take(const Message& message) {
+    const auto* signal = std::get_if<cosim::Signal>(&message.payload);
+    if (signal == nullptr) return;
+    if (message.port == world_port()) {
+        const std::size_t body = signal->id / kPoseSignals;
+        if (body >= poses.size()) return;
+        poses[body][signal->id % kPoseSignals] = signal->value;
+        moved[body] = any_moved = true;
+        return;
+    }
+    const std::size_t board = message.port;
+    const auto& meaning = signals[board].meaning;
+    const int what = signal->id < meaning.size() ? meaning[signal->id] : kNothing;
+    if (what == kNothing) return;
+    touched[board] = true;
+    if (what == kCarrier)
+        medium.set_carrier(board, signal->value);
+    else if (what == kPower)
+        medium.set_power(board, signal->value);
+    else if (signal->value != 0.0)
+        masks[board] = static_cast<std::uint16_t>(masks[board] | 1U << what);
+    else
+        masks[board] = static_cast<std::uint16_t>(masks[board] & ~(1U << what));
+}
+
+void IrNode::Impl::see_from(std::size_t sender, Time now, bool everywhere) {
+    for (std::size_t r = 0; r < receivers.size(); ++r)
+        if (everywhere || medium.coupled(sender, r)) receivers[r].see(now, medium.at(r));
+}
+
+void IrNode::Impl::apply(Time now) {
+    frames.close_until(now);
+    for (auto& receiver : receivers)
+        receiver.run_to(now);
+    if (any_moved) {
+        for (std::size_t i = 0; i < poses.size(); ++i)
+            if (moved[i]) medium.move(i, poses[i][0], poses[i][1], poses[i][2]);
+        std::fill(moved.begin(), moved.end(), false);
+        any_moved = false;
+        for (std::size_t s = 0; s < receivers.size(); ++s) {
+            if (medium.emitters(s) == 0 || touched[s] || now - looked[s] < refresh[s]) continue;
+            looked[s] = now;
+            if (medium.refresh(s)) see_from(s, now, true);
+        }
+    }
+    for (std::size_t s = 0; s < receivers.size(); ++s) {
+        if (!touched[s]) continue;
+        touched[s] = false;
+        medium.set_emitters(s, masks[s]);
+        bool everywhere = false;
+        if (frames.edge(now, s, masks[s] != 0)) {
+            medium.begin_burst(s);
+            looked[s] = now;
+        } else {
+            everywhere = medium.relight(s);
+        }
+        if (masks[s] != 0) frames.seen(s);
+        see_from(s, now, everywhere);
+    }
+}
+
+void IrNode::Impl::release(Time until, std::vector<Message>& outbox) {
+    for (std::size_t r = 0; r < receivers.size(); ++r) {
+        receivers[r].run_to(until);
+        released.clear();
+        receivers[r].release(until, released);
+        for (const IrOutput& output : released) {
+            const auto id = signals[r].output[output.index];
+            if (id == kUnused) continue;
+            outbox.push_back({output.time, static_cast<PortIndex>(r), cosim::Signal{id, output.value}});
+        }
+    }
+}
+
+IrNode::IrNode(const World& world, const IrNodeOptions& options)
+    : impl_(std::make_unique<Impl>(world, options)) {}
+
+IrNode::~IrNode() = default;
+
+std::string_view IrNode::name() const {
+    return impl_->name;
+}
+
+std::span<const cosim::Port> IrNode::ports() const {
+    return impl_->ports;
+}
+
+void IrNode::advance(Time until, std::span<const Message> inbox, std::vector<Message>& outbox) {
+    auto& ir = *impl_;
+    if (!ir.begun) {
+        ir.begun = true;
+        for (std::size_t r = 0; r < ir.receivers.size(); ++r)
+            ir.receivers[r].see(0, ir.medium.at(r));
+    }
+    for (auto next = inbox.begin(); next != inbox.end();) {
+        const Time now = next->time;
+        for (; next != inbox.end() && next->time == now; ++next)
+            ir.take(*next);
+        ir.apply(now);
+    }
+    ir.release(until, outbox);
+}
+
+Time IrNode::promise(PortIndex port) const {
+    if (port >= impl_->receivers.size()) return kNever;
+    return impl_->begun ? impl_->receivers[port].next_output() : Time{0};
+}
+
+Time IrNode::reaction(PortIndex port) const {
+    if (port >= impl_->receivers.size() || !impl_->medium.can_hear(port)) return kNever;
+    return impl_->receivers[port].reaction();
+}
+
+std::string IrNode::finish() {
+    return R"({"boards":)" + impl_->frames.finish() + "}";
+}
+
+std::unique_ptr<cosim::Node> make_ir_node(std::string_view json) {
+    try {
+        const auto spec = nlohmann::json::parse(json);
+        return std::make_unique<IrNode>(from_json(spec.at("world").dump()),
+                                        IrNodeOptions{spec.value("name", "ir"), spec.value("csv", "")});
+    } catch (const nlohmann::json::exception& error) {
+        throw InputError("", "infra-red medium", error.what());
+    }
+}
+
+}  // namespace puckloop::physics

@@ -1,0 +1,48 @@
+#pragma once
+// The infra-red medium between range-and-bearing boards as a node: emitters in, demodulator outputs and
+// strength levels out.
+//
+// Ports: "<robot>.ir" for each robot of the description with a board, in its order, then "world" with the
+// poses (physics/pose_signals.h). Signal ids come from each robot's rab_signals: the medium reads
+// "emitter1".."12", "carrier" (Hz) and "power" (potentiometer byte) and writes "demod1".."12" and
+// "peak1".."12" (counts), each at the exact time of its cause plus its delay, ir.delay_on, ir.delay_off or
+// ir.level_delay. The shortest of them is what the boards can run ahead of each other. Poses take effect when
+// a burst begins.
+
+#include "cosim/node.h"
+#include "physics/description.h"
+
+#include <memory>
+
+namespace puckloop::physics {
+
+struct IrNodeOptions {
+    std::string name = "ir";
+    std::string frames_csv{};  ///< file for what was on the air (physics/ir_frames.h); empty: none
+};
+
+class IrNode final : public cosim::Node {
+  public:
+    /// Throws InputError on an impossible world or one without boards, RunError when the file cannot be
+    /// written.
+    IrNode(const World& world, const IrNodeOptions& options);
+    ~IrNode() override;
+
+    std::string_view name() const override;
+    std::span<const cosim::Port> ports() const override;
+    void advance(cosim::Time until, std::span<const cosim::Message> inbox,
+                 std::vector<cosim::Message>& outbox) override;
+    cosim::Time promise(cosim::PortIndex port) const override;
+    cosim::Time reaction(cosim::PortIndex port) const override;
+    /// {"boards": [...]}: frames on the air as each board could hear them.
+    std::string finish() override;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// {"kind": "ir", "name", "world": as to_json(World) writes it, "csv": file or ""}.
+std::unique_ptr<cosim::Node> make_ir_node(std::string_view json);
+
+}  // namespace puckloop::physics
