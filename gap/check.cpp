@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "gap/check_kinds.h"
 #include "gap/columns.h"
+#include "gap/copies.h"
 
 #include <fmt/format.h>
 
@@ -138,6 +139,7 @@ void check(Experiment& experiment) {
     for (const Run& run : experiment.runs)
         for (const char* clock : {"t_s", "t_host_s", "t_robot_s"})
             if (run.has(clock)) check_clock(experiment, run, clock);
+    drop_copies(experiment);
     check_runs(experiment);
     check_kind(experiment);
 }

@@ -13,6 +13,8 @@ namespace {
 
 constexpr double kOnceInThousand = 10.0;  // bits
 constexpr int kMostDecimals = 12;
+constexpr double kRecurring = 0.7;   // distinct values a row, at most, where values recur
+constexpr double kSameShare = 1e-9;  // of the range
 
 /// Smallest power of ten (down to 1e-12) of which all values are multiples; quantum of how they were written.
 double written_quantum(const std::vector<double>& values) {
@@ -28,6 +30,22 @@ double written_quantum(const std::vector<double>& values) {
     return quantum;
 }
 
+/// Smallest difference between distinct values where values recur (counts, also after a change of unit);
+/// otherwise the decimal place they are written to.
+double quantum_of(std::vector<double> values) {
+    std::erase_if(values, [](double v) { return !std::isfinite(v); });
+    std::sort(values.begin(), values.end());
+    const auto all = static_cast<double>(values.size());
+    values.erase(std::unique(values.begin(), values.end()), values.end());
+    if (values.size() < 2 || static_cast<double>(values.size()) > kRecurring * all)
+        return written_quantum(values);
+    const double least = kSameShare * (values.back() - values.front());  // less is rounding of one value
+    double quantum = values.back() - values.front();
+    for (std::size_t i = 1; i < values.size(); ++i)
+        if (values[i] - values[i - 1] > least) quantum = std::min(quantum, values[i] - values[i - 1]);
+    return quantum;
+}
+
 /// Bits that the equality of two rows' values in one column is worth.
 class Column {
   public:
@@ -38,7 +56,7 @@ class Column {
         for (std::size_t i = 1; i < values.size(); ++i)
             differences.push_back(values[i] - values[i - 1]);
         const double spread = robust_scale(differences);
-        bits_ = spread > 0 ? std::max(std::log2(spread / written_quantum(values)), 0.0) : 0.0;
+        bits_ = spread > 0 ? std::max(std::log2(spread / quantum_of(values)), 0.0) : 0.0;
     }
 
     double bits(double value) const {

@@ -20,7 +20,8 @@ struct Copy {
 };
 
 /// Copies that chance does not explain. A value's information is log2(spread / quantum) of its column: the
-/// spread of differences between successive rows over the decimal place it is written to. Values that many
+/// spread of differences between successive rows over its quantum: the decimal place it is
+/// written to, or the smallest difference between distinct values where values recur. Values that many
 /// rows share carry log2(1 / their share) at most; zeros and rows equal to the row before carry none. Rows
 /// with the same keys that follow each other in one run are held samples, not copies, and are left out.
 /// Reported when the bits exceed those that all pairs of rows could reach by chance once in a thousand
