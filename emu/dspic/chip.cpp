@@ -1,21 +1,19 @@
 #include "emu/dspic/chip.h"
 
 #include "emu/dspic/core.h"
-#include "emu/dspic/devices/dspic30f6014a_irq.h"
-#include "emu/dspic/devices/dspic30f6014a_sfr.h"
 #include "emu/dspic/interrupts.h"
+#include "emu/dspic/layout.h"
 #include "emu/dspic/peripherals/adc12.h"
 #include "emu/dspic/peripherals/external_interrupts.h"
-#include "emu/dspic/peripherals/i2c_master.h"
+#include "emu/dspic/peripherals/i2c_slave.h"
 #include "emu/dspic/peripherals/oscillator.h"
-#include "emu/dspic/peripherals/ports.h"
-#include "emu/dspic/peripherals/timer.h"
-#include "emu/dspic/peripherals/uart.h"
+#include "emu/dspic/peripherals/oscillator_33f.h"
 #include "emu/image/device.h"
 #include "emu/image/image.h"
 #include "protocols/uart_sampling.h"
 
 #include <algorithm>
+#include <deque>
 #include <stdexcept>
 
 namespace puckloop::dspic {
@@ -24,18 +22,19 @@ using cosim::Time;
 
 namespace {
 
-constexpr std::uint32_t kFosc = 0xF80000;
+constexpr std::uint32_t kFosc30F = 0xF80000;
+constexpr std::uint32_t kFoscsel33F = 0xF80006;
+constexpr std::uint32_t kFosc33F = 0xF80008;
+constexpr std::uint16_t kRcon = 0x740;
 constexpr std::size_t kRecords = 1000;
 constexpr int kUartLookaheadBits = 9;
 constexpr std::uint16_t kStopInIdle = bit(13);  // xSIDL
 
-constexpr Timer::Setup kTimer1 = {sfr::TMR1, sfr::PR1, sfr::T1CON, irq::T1, 0, true};
-constexpr Timer::Setup kTimer2 = {sfr::TMR2, sfr::PR2, sfr::T2CON, irq::T2, sfr::TMR3HLD};
-constexpr Timer::Setup kTimer3 = {sfr::TMR3, sfr::PR3, sfr::T3CON, irq::T3};
-constexpr Timer::Setup kTimer4 = {sfr::TMR4, sfr::PR4, sfr::T4CON, irq::T4, sfr::TMR5HLD};
-constexpr Timer::Setup kTimer5 = {sfr::TMR5, sfr::PR5, sfr::T5CON, irq::T5};
-constexpr Uart::Setup kUart1 = {1, sfr::U1MODE, irq::U1RX, irq::U1TX, PortLetter::F, 2, 3};
-constexpr Uart::Setup kUart2 = {2, sfr::U2MODE, irq::U2RX, irq::U2TX, PortLetter::F, 4, 5};
+/// Instruction rate before the first configuration word is known.
+double start_hertz(const DeviceInfo& device, const ChipOptions& options) {
+    if (device.family_33f) return Oscillator33F::start_hertz();
+    return decode_fosc(options.fosc.value_or(0xFFFF), options.crystal_hertz).hertz / device.clocks_per_cycle;
+}
 
 std::string_view reset_name(ResetCause cause) {
     switch (cause) {
@@ -62,6 +61,7 @@ std::string_view reset_name(ResetCause cause) {
 /// The schematic of the part.
 struct Chip::Parts {
     const DeviceInfo& device;
+    const Layout& layout;
     Pins& pins;
     ChipOptions options;
     cosim::ClockDomain clock;
@@ -70,13 +70,18 @@ struct Chip::Parts {
     InterruptController interrupts;
     Core core;
     Surroundings around;
-    Oscillator oscillator;
+    std::unique_ptr<ClockControl> oscillator;
     Ports ports;
     ExternalInterrupts external;
-    Timer timer1, timer3, timer2, timer5, timer4;  // the upper halves of the pairs first
-    Uart uart1, uart2;
-    Adc12 adc;
-    I2cMaster i2c;
+    std::deque<Timer> timers;  ///< in the layout's order
+    std::deque<Uart> uarts;
+    std::optional<Adc12> adc12;
+    std::deque<I2cMaster> masters;
+    std::deque<I2cSlave> slaves;
+    std::deque<Adc33F> adcs;
+    std::deque<Spi> spis;
+    std::optional<OutputCompare> output_compare;
+    std::optional<Dma> dma;
 
     ChipReport report;
     std::vector<std::uint32_t> stops;
@@ -85,26 +90,40 @@ struct Chip::Parts {
 
     Parts(const DeviceInfo& device_info, Pins& board, const ChipOptions& chip_options)
         : device(device_info),
+          layout(layout_of(device)),
           pins(board),
           options(chip_options),
-          clock(decode_fosc(options.fosc.value_or(0xFFFF), options.crystal_hertz).hertz /
-                    device.clocks_per_cycle,
-                options.ppm),
+          clock(start_hertz(device, options), options.ppm),
           interrupts(device, described()),
           core(device, sfr, events, interrupts),
           around{sfr, events, core.cycle_counter(), interrupts},
-          oscillator(around, clock, options.crystal_hertz),
-          ports(around, pins),
-          external(around, ports),
-          timer1(around, kTimer1),
-          timer3(around, kTimer3),
-          timer2(around, kTimer2, &timer3),
-          timer5(around, kTimer5),
-          timer4(around, kTimer4, &timer5),
-          uart1(around, kUart1, clock, ports, pins),
-          uart2(around, kUart2, clock, ports, pins),
-          adc(around, clock, pins),
-          i2c(around, clock, ports, pins) {
+          oscillator(make_oscillator()),
+          ports(around, layout.ports, pins),
+          external(around, ports, layout.external_irqs) {
+        Timer* before = nullptr;
+        for (const TimerPlace& place : layout.timers) {
+            Timer* upper = place.setup.hold ? before : nullptr;
+            before = &timers.emplace_back(around, place.setup, upper);
+        }
+        for (const Uart::Setup& setup : layout.uarts)
+            uarts.emplace_back(around, setup, clock, ports, pins);
+        if (layout.adc12) adc12.emplace(around, clock, pins);
+        for (const I2cMaster::Setup& setup : layout.i2cs) {
+            masters.emplace_back(around, setup, clock, ports, pins);
+            slaves.emplace_back(around, setup, clock, pins);
+            masters.back().attach(slaves.back());
+        }
+        for (const Adc33F::Setup& setup : layout.adcs)
+            adcs.emplace_back(around, setup, clock, ports, pins);
+        for (const Spi::Setup& setup : layout.spis)
+            spis.emplace_back(around, setup, ports, pins);
+        if (!layout.output_compares.empty())
+            output_compare.emplace(around, layout.output_compares, std::array{timer(2), timer(3)}, ports,
+                                   pins);
+        if (layout.dma.con)
+            dma.emplace(around, layout.dma, core.ram().subspan((layout.dma.ram - device.ram_start) / 2u));
+        for (const std::uint16_t address : layout.stored)
+            sfr.claim(address);
         wire();
     }
 
@@ -113,27 +132,48 @@ struct Chip::Parts {
         return sfr;
     }
 
+    std::unique_ptr<ClockControl> make_oscillator() {
+        if (device.family_33f) return std::make_unique<Oscillator33F>(around, clock, options.crystal_hertz);
+        return std::make_unique<Oscillator>(around, clock, options.crystal_hertz);
+    }
+
+    /// By the data sheet's number; null if the part has no such timer.
+    Timer* timer(int number) {
+        for (std::size_t i = 0; i < timers.size(); ++i)
+            if (layout.timers[i].number == number) return &timers[i];
+        return nullptr;
+    }
+
     void wire() {
-        const struct {
-            Timer& timer;
-            int pin;  ///< of port C
-        } clock_pins[] = {{timer1, 14}, {timer2, 1}, {timer3, 2}, {timer4, 3}, {timer5, 4}};
-        for (const auto& entry : clock_pins)
-            ports.watch(PortLetter::C, entry.pin, &entry.timer, [](void* owner, bool level, Cycle at) {
+        for (std::size_t i = 0; i < timers.size(); ++i) {
+            const Ports::Pin pin = layout.timers[i].clock;
+            ports.watch(pin.port, pin.number, &timers[i], [](void* owner, bool level, Cycle at) {
                 static_cast<Timer*>(owner)->clock_pin(level, at);
             });
-        timer3.on_match_owner = &adc;
-        timer3.on_match = [](void* owner, Cycle at) {
-            static_cast<Adc12*>(owner)->trigger(Adc12::Trigger::Timer3, at);
-        };
-        external.on_int0_owner = &adc;
+        }
+        if (adc12)
+            wire_converter(timer(layout.adc_timers[0]), &*adc12, [](void* owner, Cycle at) {
+                static_cast<Adc12*>(owner)->trigger(Adc12::Trigger::Timer3, at);
+            });
+        for (std::size_t i = 0; i < adcs.size(); ++i)
+            wire_converter(timer(layout.adc_timers[i]), &adcs[i], [](void* owner, Cycle at) {
+                static_cast<Adc33F*>(owner)->trigger(Adc33F::Trigger::Timer, at);
+            });
+        external.on_int0_owner = this;
         external.on_int0 = [](void* owner, Cycle at) {
-            static_cast<Adc12*>(owner)->trigger(Adc12::Trigger::Int0, at);
+            Parts& parts = *static_cast<Parts*>(owner);
+            if (parts.adc12) parts.adc12->trigger(Adc12::Trigger::Int0, at);
+            for (Adc33F& adc : parts.adcs)
+                adc.trigger(Adc33F::Trigger::Int0, at);
         };
-        ports.before_change_owner = &adc;
-        ports.before_change = [](void* owner, Cycle until) { static_cast<Adc12*>(owner)->catch_up(until); };
-        oscillator.on_rate_owner = &core;
-        oscillator.on_rate = [](void* owner, double hertz) {
+        if (adc12) {
+            ports.before_change_owner = &*adc12;
+            ports.before_change = [](void* owner, Cycle until) {
+                static_cast<Adc12*>(owner)->catch_up(until);
+            };
+        }
+        oscillator->on_rate_owner = &core;
+        oscillator->on_rate = [](void* owner, double hertz) {
             static_cast<Core*>(owner)->set_cycle_rate(hertz);
             static_cast<Core*>(owner)->end_run();
         };
@@ -156,20 +196,39 @@ struct Chip::Parts {
         };
     }
 
+    /// The timer's match starts conversions.
+    static void wire_converter(Timer* source, void* converter, void (*trigger)(void* owner, Cycle at)) {
+        source->on_match_owner = converter;
+        source->on_match = trigger;
+    }
+
+    ClockConfiguration clock_words() const {
+        if (!device.family_33f) return {.fosc = options.fosc.value_or(core.config(kFosc30F))};
+        return {.fosc = core.config(kFosc33F), .foscsel = core.config(kFoscsel33F)};
+    }
+
     // Registers and modules at a reset; the core does its own and RCON.
     void reset(ResetCause cause) {
-        const std::uint16_t rcon = sfr.raw(sfr::RCON);
+        const bool power_on = cause == ResetCause::PowerOn;
+        const std::uint16_t rcon = sfr.raw(kRcon);
         sfr.reset_values();
-        if (cause != ResetCause::PowerOn) sfr.raw(sfr::RCON) = rcon;
-        oscillator.configure(options.fosc.value_or(core.config(kFosc)));
-        oscillator.reset();
+        if (!power_on) sfr.raw(kRcon) = rcon;
+        oscillator->configure(clock_words());
+        oscillator->reset(power_on || cause == ResetCause::BrownOut);
         ports.reset();
-        for (Timer* timer : {&timer1, &timer2, &timer3, &timer4, &timer5})
-            timer->reset();
-        uart1.reset();
-        uart2.reset();
-        adc.reset();
-        i2c.reset();
+        const auto reset_all = [](auto& modules) {
+            for (auto& module : modules)
+                module.reset();
+        };
+        reset_all(timers);
+        reset_all(uarts);
+        if (adc12) adc12->reset();
+        reset_all(masters);
+        reset_all(slaves);
+        reset_all(adcs);
+        reset_all(spis);
+        if (output_compare) output_compare->reset();
+        if (dma) dma->reset();
         interrupts.reset();
     }
 
@@ -178,18 +237,19 @@ struct Chip::Parts {
         const auto stops = [&](std::uint16_t control) {
             return mode == PowerMode::Sleep || (mode == PowerMode::Idle && (sfr.raw(control) & kStopInIdle));
         };
-        timer1.hold(stops(sfr::T1CON));
-        timer2.hold(stops(sfr::T2CON));
-        timer3.hold(stops(sfr::T3CON));
-        timer4.hold(stops(sfr::T4CON));
-        timer5.hold(stops(sfr::T5CON));
-        uart1.hold(stops(sfr::U1MODE));
-        uart2.hold(stops(sfr::U2MODE));
-        adc.hold(stops(sfr::ADCON1) && !(mode == PowerMode::Sleep && adc.runs_in_sleep()));
+        for (std::size_t i = 0; i < timers.size(); ++i)
+            timers[i].hold(stops(layout.timers[i].setup.con));
+        for (std::size_t i = 0; i < uarts.size(); ++i)
+            uarts[i].hold(stops(layout.uarts[i].mode));
+        const bool sleeps = mode == PowerMode::Sleep;
+        if (adc12) adc12->hold(stops(Adc12::kControl) && !(sleeps && adc12->runs_in_sleep()));
+        for (std::size_t i = 0; i < adcs.size(); ++i)
+            adcs[i].hold(stops(layout.adcs[i].con1) && !(sleeps && adcs[i].runs_in_sleep()));
+        for (std::size_t i = 0; i < spis.size(); ++i)
+            spis[i].hold(stops(layout.spis[i].stat));
     }
 
-    Uart& uart(int unit) { return unit == 1 ? uart1 : uart2; }
-    const Uart& uart(int unit) const { return unit == 1 ? uart1 : uart2; }
+    Uart& uart(int unit) { return uarts[static_cast<std::size_t>(unit - 1)]; }
 
     /// The cycle that messages handed in now belong to: the first that starts at or after the last `until`.
     Cycle message_cycle() const { return clock.first_cycle_at(now); }
@@ -198,7 +258,7 @@ struct Chip::Parts {
     void arrive(Time time) {
         now = std::max(now, time);
         const Cycle reached = std::min(message_cycle(), core.cycle());
-        if (reached > 0) adc.catch_up(reached - 1);
+        if (adc12 && reached > 0) adc12->catch_up(reached - 1);
     }
 };
 
@@ -254,18 +314,12 @@ void Chip::uart_receive(int unit, const cosim::UartFrame& frame) {
     parts_->uart(unit).receive(frame, parts_->message_cycle());
 }
 
-void Chip::i2c_answer(int, const cosim::I2cPhase& phase) {
-    parts_->i2c.answer(phase, parts_->message_cycle());
+void Chip::i2c_answer(int unit, const cosim::I2cPhase& phase) {
+    parts_->masters.at(static_cast<std::size_t>(unit - 1)).answer(phase, parts_->message_cycle());
 }
 
 void Chip::i2c_slave_phase(int unit, const cosim::I2cPhase& phase) {
-    if (phase.kind == cosim::I2cPhaseKind::Stop) return;
-    cosim::I2cPhase answer = phase;
-    answer.kind = phase.kind == cosim::I2cPhaseKind::Read ? cosim::I2cPhaseKind::Data
-                                                          : cosim::I2cPhaseKind::Acknowledge;
-    answer.ack = 0;
-    answer.byte = 0xFF;
-    parts_->pins.i2c_slave_answer(unit, answer);
+    parts_->slaves.at(static_cast<std::size_t>(unit - 1)).phase(phase, parts_->message_cycle());
 }
 
 void Chip::pins_changed(PortLetter port) {
@@ -292,17 +346,19 @@ bool Chip::uart_enabled(int unit) const {
     return parts_->uart(unit).enabled();
 }
 
-Time Chip::earliest_i2c(int) const {
-    const Cycle cycle = parts_->i2c.earliest(std::max(parts_->core.cycle(), parts_->message_cycle()));
+Time Chip::earliest_i2c(int unit) const {
+    const I2cMaster& master = parts_->masters.at(static_cast<std::size_t>(unit - 1));
+    const Cycle cycle = master.earliest(std::max(parts_->core.cycle(), parts_->message_cycle()));
     return cycle == kNoCycle ? cosim::kNever : parts_->clock.time_of(cycle);
 }
 
-Time Chip::earliest_i2c_slave_answer(int) const {
-    return cosim::kNever;
+Time Chip::earliest_i2c_slave_answer(int unit) const {
+    const I2cSlave& slave = parts_->slaves.at(static_cast<std::size_t>(unit - 1));
+    return slave.earliest_answer(std::max(parts_->core.cycle(), parts_->message_cycle()));
 }
 
-OutputCompareState Chip::output_compare(int) const {
-    return {};
+OutputCompareState Chip::output_compare(int unit) const {
+    return parts_->output_compare ? parts_->output_compare->state(unit) : OutputCompareState{};
 }
 
 const cosim::ClockDomain& Chip::clock() const {
@@ -325,8 +381,8 @@ std::uint16_t Chip::peek(std::string_view register_name) const {
     const RegisterInfo* info = parts_->sfr.find(register_name);
     if (!info) throw std::out_of_range("no register " + std::string(register_name));
     parts_->ports.refresh();
-    for (Timer* timer : {&parts_->timer1, &parts_->timer2, &parts_->timer3, &parts_->timer4, &parts_->timer5})
-        timer->refresh();
+    for (Timer& timer : parts_->timers)
+        timer.refresh();
     return parts_->sfr.raw(info->address);
 }
 

@@ -25,7 +25,8 @@ namespace puckloop::dspic {
 struct ChipOptions {
     double crystal_hertz = 7'372'800.0;  ///< what the board solders to OSC1/OSC2
     double ppm = 0.0;                    ///< the crystal's error, + is fast
-    /// Configuration word that is in force whatever the image says (a bootloader's words stay on the part).
+    /// 30F: configuration word FOSC that is in force whatever the image says (a bootloader's words stay on
+    /// the part).
     std::optional<std::uint16_t> fosc;
 };
 
@@ -60,6 +61,9 @@ struct OutputCompareState {
     bool running = false;  ///< its timer counts: edges come by themselves
     Cycle period = 0;      ///< between rising edges, instruction cycles; 0 while nothing repeats
     Cycle high = 0;        ///< of each period, 0..period
+    bool level = false;    ///< of the pin where nothing repeats
+
+    friend bool operator==(const OutputCompareState&, const OutputCompareState&) = default;
 };
 
 struct ChipReport {

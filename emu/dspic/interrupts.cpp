@@ -57,6 +57,7 @@ void InterruptController::reset() {
 }
 
 void InterruptController::raise(int irq, Cycle now) {
+    request(irq, now);
     std::uint16_t& flags = sfr_.raw(word_of(device_.ifs, irq));
     if (flags & bit_of(irq)) return;
     flags |= bit_of(irq);

@@ -40,6 +40,18 @@ class InterruptController {
     // For peripherals. `now` is the cycle in which the flag is set: the event's due cycle, or the core's
     // cycle when a register access causes it. Entry latency counts from there.
     void raise(int irq, Cycle now);
+    /// The source asks for service without an interrupt of its own: what a DMA channel may serve, too.
+    void request(int irq, Cycle now) {
+        if (tapped_[static_cast<std::size_t>(irq) / 64] >> (irq % 64) & 1) [[unlikely]]
+            tap_(tap_owner_, irq, now);
+    }
+    /// Calls `served` at every raise() and request() of the sources in `irqs` (bit n % 64 of word n / 64).
+    void set_tap(void* owner, void (*served)(void* owner, int irq, Cycle now),
+                 const std::array<std::uint64_t, 2>& irqs) {
+        tap_owner_ = owner;
+        tap_ = served;
+        tapped_ = irqs;
+    }
     void clear(int irq);
     bool flag(int irq) const;
     bool enabled(int irq) const;
@@ -86,6 +98,9 @@ class InterruptController {
     const DeviceInfo& device_;
     SfrSpace& sfr_;
     std::array<std::uint16_t, 8> implemented_{};  ///< IFS/IEC bits that exist
+    std::array<std::uint64_t, 2> tapped_{};
+    void* tap_owner_ = nullptr;
+    void (*tap_)(void*, int, Cycle) = nullptr;
     Request first_;
     void* listener_ = nullptr;
     void (*changed_)(void*, Cycle) = nullptr;

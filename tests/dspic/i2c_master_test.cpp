@@ -20,8 +20,8 @@ constexpr std::uint16_t kAckstat = 0x8000, kTrstat = 0x4000, kBcl = 0x400, kIwco
 constexpr double kScl = 151.0 + 14'745'600.0 / 1'111'111.0;
 
 struct I2cBench : Bench {
-    Ports ports{around, pins};
-    I2cMaster i2c{around, clock, ports, pins};
+    Ports ports{around, layout_dspic30f6014a().ports, pins};
+    I2cMaster i2c{around, layout_dspic30f6014a().i2cs[0], clock, ports, pins};
 
     I2cBench() {
         write(sfr::I2CBRG, 150);

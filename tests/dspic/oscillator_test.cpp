@@ -15,8 +15,8 @@ struct OscillatorBench : Bench {
     Oscillator oscillator{around, clock, kCrystal};
 
     void start(std::uint16_t fosc) {
-        oscillator.configure(fosc);
-        oscillator.reset();
+        oscillator.configure({.fosc = fosc});
+        oscillator.reset(true);
     }
     void low(int value) { sfr.write(sfr::OSCCON, static_cast<std::uint16_t>(value), 0x00FF); }
     void high(int value) { sfr.write(sfr::OSCCON, static_cast<std::uint16_t>(value << 8), 0xFF00); }

@@ -7,6 +7,7 @@
 #include "emu/dspic/devices/dspic30f6014a_irq.h"
 #include "emu/dspic/devices/dspic30f6014a_sfr.h"
 #include "emu/dspic/interrupts.h"
+#include "emu/dspic/layout.h"
 #include "emu/dspic/peripherals/ports.h"
 #include "emu/dspic/peripherals/surroundings.h"
 #include "emu/dspic/pins.h"
@@ -42,7 +43,7 @@ struct FakePins : Pins {
     void i2c_phase(int, const cosim::I2cPhase& phase) override { phases.push_back(phase); }
 
     std::map<PortLetter, std::uint16_t> outside;
-    std::array<double, 16> volts{};
+    std::array<double, 32> volts{};
     std::vector<Drive> drives;
     std::vector<Sample> samples;
     std::vector<cosim::UartFrame> frames;
@@ -61,7 +62,8 @@ struct Bench {
     cosim::ClockDomain clock{kFcy};
     FakePins pins;
 
-    Bench() : interrupts(dspic30f6014a(), (sfr.describe(dspic30f6014a().registers), sfr)) {
+    explicit Bench(const DeviceInfo& device = dspic30f6014a())
+        : interrupts(device, (sfr.describe(device.registers), sfr)) {
         interrupts.set_clock(&now, &disi_end);
         interrupts.reset();
     }

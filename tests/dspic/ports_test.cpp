@@ -11,8 +11,8 @@ using namespace puckloop::dspic::test;
 namespace {
 
 struct PortsBench : Bench {
-    Ports ports{around, pins};
-    ExternalInterrupts external{around, ports};
+    Ports ports{around, layout_dspic30f6014a().ports, pins};
+    ExternalInterrupts external{around, ports, layout_dspic30f6014a().external_irqs};
 
     PortsBench() { ports.reset(); }
     void outside(PortLetter port, std::uint16_t levels, Cycle at) {

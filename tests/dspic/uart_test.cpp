@@ -25,7 +25,7 @@ constexpr Cycle kFrame = 10 * 128;  // 8N1
 constexpr Cycle kBeforeStop = 9 * 128;
 
 struct UartBench : Bench {
-    Ports ports{around, pins};
+    Ports ports{around, layout_dspic30f6014a().ports, pins};
     Uart uart{around, {2, sfr::U2MODE, irq::U2RX, irq::U2TX, PortLetter::F, 4, 5}, clock, ports, pins};
 
     void enable(std::uint16_t mode = 0, std::uint16_t sta = 0) {

@@ -25,6 +25,8 @@ class Adc12 {
   public:
     enum class Trigger : std::uint8_t { Software = 0, Int0 = 1, Timer3 = 2, Counter = 7 };
 
+    static constexpr std::uint16_t kControl = 0x2A0;  ///< ADCON1
+
     Adc12(const Surroundings& around, const cosim::ClockDomain& clock, Pins& pins);
 
     void reset();

@@ -1,25 +1,20 @@
 #include "emu/dspic/peripherals/external_interrupts.h"
 
-#include "emu/dspic/devices/dspic30f6014a_irq.h"
-
 namespace puckloop::dspic {
 
 namespace {
-constexpr struct {
-    PortLetter port;
-    int pin;
-    std::uint8_t irq;
-} kInputs[] = {
-    {PortLetter::F, 6, irq::INT0},  {PortLetter::A, 12, irq::INT1}, {PortLetter::A, 13, irq::INT2},
-    {PortLetter::A, 14, irq::INT3}, {PortLetter::A, 15, irq::INT4},
+constexpr Ports::Pin kInputs[] = {
+    {PortLetter::F, 6}, {PortLetter::A, 12}, {PortLetter::A, 13}, {PortLetter::A, 14}, {PortLetter::A, 15},
 };
 }  // namespace
 
-ExternalInterrupts::ExternalInterrupts(const Surroundings& around, Ports& ports) : around_(around) {
+ExternalInterrupts::ExternalInterrupts(const Surroundings& around, Ports& ports,
+                                       const std::array<std::uint8_t, 5>& irqs)
+    : around_(around), irqs_(irqs) {
     for (int i = 0; i < 5; ++i) {
         Input& input = inputs_[static_cast<std::size_t>(i)];
         input = {this, i};
-        ports.watch(kInputs[i].port, kInputs[i].pin, &input, pin_changed);
+        ports.watch(kInputs[i].port, kInputs[i].number, &input, pin_changed);
     }
 }
 
@@ -28,7 +23,7 @@ void ExternalInterrupts::pin_changed(void* owner, bool level, Cycle at) {
     if (at == kNoCycle) return;
     ExternalInterrupts& self = *input.self;
     if (level == self.around_.interrupts.falling_edge(input.number)) return;
-    self.around_.interrupts.raise(kInputs[input.number].irq, at);
+    self.around_.interrupts.raise(self.irqs_[static_cast<std::size_t>(input.number)], at);
     if (input.number == 0 && self.on_int0) self.on_int0(self.on_int0_owner, at);
 }
 

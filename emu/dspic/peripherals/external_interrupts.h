@@ -1,6 +1,7 @@
 #pragma once
 // INT0 to INT4: an edge on the pin, rising or falling by INTCON2<INTnEP>, sets INTnIF.
-// Source: dsPIC30F Family Reference Manual, section 6; pin map of the 80-pin parts.
+// Source: dsPIC30F Family Reference Manual, section 6; pin map of the 80-pin and
+// 100-pin parts.
 
 #include "emu/dspic/peripherals/ports.h"
 
@@ -10,7 +11,8 @@ namespace puckloop::dspic {
 
 class ExternalInterrupts {
   public:
-    ExternalInterrupts(const Surroundings& around, Ports& ports);
+    /// `irqs`: request numbers of INT0 to INT4.
+    ExternalInterrupts(const Surroundings& around, Ports& ports, const std::array<std::uint8_t, 5>& irqs);
 
     /// Called at each active edge of INT0 (it can start A/D conversions); may stay empty.
     void (*on_int0)(void* owner, Cycle at) = nullptr;
@@ -24,6 +26,7 @@ class ExternalInterrupts {
     static void pin_changed(void* owner, bool level, Cycle at);
 
     Surroundings around_;
+    std::array<std::uint8_t, 5> irqs_;
     std::array<Input, 5> inputs_{};
 };
 

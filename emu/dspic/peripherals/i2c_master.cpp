@@ -1,7 +1,7 @@
 #include "emu/dspic/peripherals/i2c_master.h"
 
-#include "emu/dspic/devices/dspic30f6014a_irq.h"
-#include "emu/dspic/devices/dspic30f6014a_sfr.h"
+#include "emu/dspic/peripherals/i2c_registers.h"
+#include "emu/dspic/peripherals/i2c_slave.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,46 +12,33 @@ using cosim::I2cPhaseKind;
 
 namespace {
 
-// I2CCON
-constexpr std::uint16_t kI2cen = bit(15);
-constexpr std::uint16_t kAcken = bit(4);
-constexpr std::uint16_t kRcen = bit(3);
-constexpr std::uint16_t kPen = bit(2);
-constexpr std::uint16_t kRsen = bit(1);
-constexpr std::uint16_t kSen = bit(0);
-constexpr std::uint16_t kOneAtATime = kAcken | kRcen | kPen | kRsen | kSen;
-// I2CSTAT
-constexpr std::uint16_t kAckstat = bit(15);
-constexpr std::uint16_t kTrstat = bit(14);
-constexpr std::uint16_t kBcl = bit(10);
-constexpr std::uint16_t kIwcol = bit(7);
-constexpr std::uint16_t kI2cov = bit(6);
-constexpr std::uint16_t kP = bit(4);
-constexpr std::uint16_t kS = bit(3);
-constexpr std::uint16_t kRbf = bit(1);
-constexpr std::uint16_t kTbf = bit(0);
-constexpr std::uint16_t kClearable = kBcl | kIwcol | kI2cov;
+using namespace i2c;
 
-constexpr PortLetter kPort = PortLetter::G;
-constexpr std::uint16_t kPins = bit(2) | bit(3);  // SCL, SDA
-constexpr double kFixedHertz = 1'111'111.0;       // the part of the SCL period that does not depend on I2CBRG
+constexpr std::uint16_t kOneAtATime = kAcken | kRcen | kPen | kRsen | kSen;
+
 constexpr double kStartClocks = 1.0;
 constexpr double kRestartClocks = 1.5;
 constexpr double kStopClocks = 1.5;
 constexpr double kAcknowledgeClocks = 0.125;  // deviation 2
 constexpr double kByteClocks = 9.0;
 constexpr double kDataClocks = 8.0;
-constexpr int kUnit = 1;
 
 }  // namespace
 
-I2cMaster::I2cMaster(const Surroundings& around, const cosim::ClockDomain& clock, Ports& ports, Pins& pins)
-    : around_(around), clock_(clock), ports_(ports), pins_(pins), slot_(around.events.add(this, due)) {
-    around_.sfr.hook(sfr::I2CRCV, this, read_rcv, nullptr);
-    around_.sfr.hook(sfr::I2CTRN, this, nullptr, write_trn);
-    around_.sfr.claim(sfr::I2CBRG);
-    around_.sfr.hook(sfr::I2CCON, this, nullptr, write_con);
-    around_.sfr.hook(sfr::I2CSTAT, this, nullptr, write_stat);
+I2cMaster::I2cMaster(const Surroundings& around, const Setup& setup, const cosim::ClockDomain& clock,
+                     Ports& ports, Pins& pins)
+    : around_(around),
+      setup_(setup),
+      clock_(clock),
+      ports_(ports),
+      pins_(pins),
+      slot_(around.events.add(this, due)) {
+    const auto at = [&](int offset) { return static_cast<std::uint16_t>(setup_.rcv + offset); };
+    around_.sfr.hook(at(kRcv), this, read_rcv, nullptr);
+    around_.sfr.hook(at(kTrn), this, nullptr, write_trn);
+    around_.sfr.claim(at(kBrg));
+    around_.sfr.hook(at(kCon), this, nullptr, write_con);
+    around_.sfr.hook(at(kStat), this, nullptr, write_stat);
 }
 
 void I2cMaster::reset() {
@@ -64,9 +51,9 @@ void I2cMaster::reset() {
     around_.events.cancel(slot_);
 }
 
-// FSCL = 1 / ((BRG + 1) / FCY + 1 / 1,111,111 Hz)
+// FSCL = 1 / ((BRG + 1) / FCY + 1 / fixed_hertz)
 double I2cMaster::clock_cycles() const {
-    return around_.sfr.raw(sfr::I2CBRG) + 1.0 + clock_.hertz() / kFixedHertz;
+    return reg(kBrg) + 1.0 + clock_.hertz() / setup_.fixed_hertz;
 }
 
 Cycle I2cMaster::clocks(double count) const {
@@ -80,7 +67,7 @@ void I2cMaster::send(I2cPhaseKind kind, std::uint8_t byte, std::uint8_t ack, cos
     phase.ack = ack;
     phase.start = start;
     phase.clock_period = static_cast<cosim::Time>(clock_cycles() / clock_.hertz() * cosim::kSecond);
-    pins_.i2c_phase(kUnit, phase);
+    pins_.i2c_phase(setup_.unit, phase);
 }
 
 // An activity that ends by itself.
@@ -91,14 +78,14 @@ void I2cMaster::begin(Activity activity, double duration_clocks) {
 }
 
 void I2cMaster::stop_condition_seen(bool stopped) {
-    std::uint16_t& stat = around_.sfr.raw(sfr::I2CSTAT);
+    std::uint16_t& stat = reg(kStat);
     assign(stat, kP, stopped);
     assign(stat, kS, !stopped);
 }
 
 void I2cMaster::complete(Cycle at) {
-    std::uint16_t& con = around_.sfr.raw(sfr::I2CCON);
-    std::uint16_t& stat = around_.sfr.raw(sfr::I2CSTAT);
+    std::uint16_t& con = reg(kCon);
+    std::uint16_t& stat = reg(kStat);
     switch (state_.activity) {
     case Activity::Start:
     case Activity::Restart:
@@ -120,17 +107,17 @@ void I2cMaster::complete(Cycle at) {
     con = static_cast<std::uint16_t>(con & ~kOneAtATime);
     state_.activity = Activity::Idle;
     state_.ends = kNoCycle;
-    around_.interrupts.raise(irq::MI2C, at);
+    around_.interrupts.raise(setup_.master_irq, at);
 }
 
 void I2cMaster::due(void* owner, Cycle due) {
     I2cMaster& self = *static_cast<I2cMaster*>(owner);
     if (self.state_.buffer_empty <= due) {  // the eighth falling edge of a byte sent
         self.state_.buffer_empty = kNoCycle;
-        assign(self.around_.sfr.raw(sfr::I2CSTAT), kTbf, false);
+        assign(self.reg(kStat), kTbf, false);
     }
     if (self.state_.ends <= due) {
-        if (self.state_.activity == Activity::Transmit) self.around_.sfr.raw(sfr::I2CSTAT) |= kAckstat;
+        if (self.state_.activity == Activity::Transmit) self.reg(kStat) |= kAckstat;
         self.complete(due);
     }
     self.around_.events.schedule(self.slot_, std::min(self.state_.buffer_empty, self.state_.ends));
@@ -146,7 +133,7 @@ void I2cMaster::answer(const cosim::I2cPhase& phase, Cycle at) {
     }
     state_.buffer_empty = kNoCycle;
     around_.events.cancel(slot_);
-    std::uint16_t& stat = around_.sfr.raw(sfr::I2CSTAT);
+    std::uint16_t& stat = reg(kStat);
     if (phase.kind == I2cPhaseKind::BusLost) {
         stat |= kBcl;
         state_.owns_bus = false;
@@ -155,7 +142,7 @@ void I2cMaster::answer(const cosim::I2cPhase& phase, Cycle at) {
     } else if (stat & kRbf) {
         stat |= kI2cov;
     } else {
-        around_.sfr.raw(sfr::I2CRCV) = phase.byte;
+        reg(kRcv) = phase.byte;
         stat |= kRbf;
     }
     complete(at);
@@ -166,23 +153,24 @@ Cycle I2cMaster::earliest(Cycle now) const {
     if (state_.activity != Activity::Idle) return std::max(state_.ends, now + 1);
     if (state_.owns_bus) return now + 1;
     // A start condition, and with I2CBRG = 0 at that.
-    return now + 1 + static_cast<Cycle>(kStartClocks * clock_.hertz() / kFixedHertz);
+    return now + 1 + static_cast<Cycle>(kStartClocks * clock_.hertz() / setup_.fixed_hertz);
 }
 
 std::uint16_t I2cMaster::read_rcv(void* owner, std::uint16_t address) {
     I2cMaster& self = *static_cast<I2cMaster*>(owner);
-    assign(self.around_.sfr.raw(sfr::I2CSTAT), kRbf, false);
+    assign(self.reg(kStat), kRbf, false);
     return self.around_.sfr.raw(address);
 }
 
 void I2cMaster::write_trn(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask) {
     I2cMaster& self = *static_cast<I2cMaster*>(owner);
     State& state = self.state_;
-    std::uint16_t& stat = self.around_.sfr.raw(sfr::I2CSTAT);
-    if (!(self.around_.sfr.raw(sfr::I2CCON) & kI2cen) || mask == 0xFF00) {
+    std::uint16_t& stat = self.reg(kStat);
+    if (!(self.reg(kCon) & kI2cen) || mask == 0xFF00) {
         self.around_.sfr.store(address, value, mask);
         return;
     }
+    if (self.slave_ && self.slave_->transmitting()) return self.slave_->load(value);
     if (state.activity != Activity::Idle || state.awaits_answer) {
         stat |= kIwcol;
         return;
@@ -211,9 +199,9 @@ void I2cMaster::switch_off() {
     state_.awaits_answer = awaited;
     state_.stop_when_answered = awaited;
     if (owned && !awaited) send(I2cPhaseKind::Stop, 0, 0, clock_.time_of(around_.now + 1));
-    std::uint16_t& con = around_.sfr.raw(sfr::I2CCON);
+    std::uint16_t& con = reg(kCon);
     con = static_cast<std::uint16_t>(con & ~kOneAtATime);
-    std::uint16_t& stat = around_.sfr.raw(sfr::I2CSTAT);
+    std::uint16_t& stat = reg(kStat);
     stat = static_cast<std::uint16_t>(stat & ~(kTrstat | kTbf | kRbf));  // P and S stay, as firmware needs
 }
 
@@ -224,11 +212,13 @@ void I2cMaster::write_con(void* owner, std::uint16_t address, std::uint16_t valu
     const std::uint16_t old = con;
     // Hardware alone clears the activity bits; one that is set while another is active is ignored.
     self.around_.sfr.store(address, value, static_cast<std::uint16_t>(mask & ~kOneAtATime));
+    if (self.slave_) self.slave_->control_written(old);
     if ((old ^ con) & kI2cen) {
+        const auto pins = static_cast<std::uint16_t>(bit(self.setup_.scl) | bit(self.setup_.sda));
         if (con & kI2cen) {
-            self.ports_.lend(kPort, kPins, 0, 0);
+            self.ports_.lend(self.setup_.port, pins, 0, 0);
         } else {
-            self.ports_.give_back(kPort, kPins);
+            self.ports_.give_back(self.setup_.port, pins);
             self.switch_off();
         }
     }
@@ -250,8 +240,8 @@ void I2cMaster::write_con(void* owner, std::uint16_t address, std::uint16_t valu
     } else if (asked & kRcen) {
         con |= kRcen;
         if (!state.owns_bus) {  // an idle bus reads as ones
-            self.around_.sfr.raw(sfr::I2CRCV) = 0xFF;
-            self.around_.sfr.raw(sfr::I2CSTAT) |= kRbf;
+            self.reg(kRcv) = 0xFF;
+            self.reg(kStat) |= kRbf;
             self.begin(Activity::Receive, kDataClocks);
             return;
         }

@@ -1,11 +1,12 @@
 #pragma once
 // The I2C module as a master: start, repeated start, stop, transmit, receive and acknowledge, one at a
 // time, each with its duration on the bus. The bus itself is the board's: phases go out through
-// Pins::i2c_phase(), answers come back through answer(). Source: dsPIC30F Family Reference Manual, section
-// 21; fact sheet peripherals.md section 4.
+// Pins::i2c_phase(), answers come back through answer(). It owns the module's registers; I2cSlave sees the
+// accesses that concern it. Source: dsPIC30F Family Reference Manual, section 21, and DS70286; fact sheet
+// peripherals.md section 4.
 //
 // Deviations
-//  1. Master only: a first touch of the slave's address register is reported.
+//  1. The slave of the same module is I2cSlave; a start by the master does not address it.
 //  2. The slave's answer to an address or data byte, stretch included, is known when its ninth clock ends.
 //     A read byte is therefore seen (RBF, RCEN = 0) after nine clocks instead of eight, and the acknowledge
 //     that the program gives next lasts an eighth of a clock instead of a whole one: the byte takes as long
@@ -25,9 +26,25 @@
 
 namespace puckloop::dspic {
 
+class I2cSlave;
+
 class I2cMaster {
   public:
-    I2cMaster(const Surroundings& around, const cosim::ClockDomain& clock, Ports& ports, Pins& pins);
+    struct Setup {
+        int unit = 1;
+        std::uint16_t rcv = 0;  ///< I2CxRCV; I2CxTRN, BRG, CON, STAT, ADD follow
+        bool has_mask = false;  ///< and I2CxMSK
+        std::uint8_t master_irq = 0;
+        std::uint8_t slave_irq = 0;
+        PortLetter port{};
+        std::uint8_t scl = 0;
+        std::uint8_t sda = 0;
+        double fixed_hertz = 0.0;  ///< the part of the SCL period that does not depend on I2CxBRG
+    };
+    I2cMaster(const Surroundings& around, const Setup& setup, const cosim::ClockDomain& clock, Ports& ports,
+              Pins& pins);
+    /// The slave that shares the registers.
+    void attach(I2cSlave& slave) { slave_ = &slave; }
 
     void reset();
     /// Acknowledge, Data or BusLost, at cycle `at`.
@@ -62,10 +79,16 @@ class I2cMaster {
     void stop_condition_seen(bool stopped);
     void switch_off();
 
+    std::uint16_t& reg(int offset) const {
+        return around_.sfr.raw(static_cast<std::uint16_t>(setup_.rcv + offset));
+    }
+
     Surroundings around_;
+    Setup setup_;
     const cosim::ClockDomain& clock_;
     Ports& ports_;
     Pins& pins_;
+    I2cSlave* slave_ = nullptr;
     State state_;
     EventQueue::Slot slot_;
 };

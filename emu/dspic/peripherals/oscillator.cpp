@@ -26,7 +26,6 @@ constexpr std::uint16_t kSwitchingOff = bit(15);  // FOSC<FCKSM1>
 
 constexpr Cycle kSwitchCycles = 10;
 constexpr double kStartupPeriods = 1024.0;
-constexpr Cycle kKeyDistance = 2;  // the unlock writes come from successive instructions
 
 }  // namespace
 
@@ -82,7 +81,7 @@ Oscillator::Oscillator(const Surroundings& around, cosim::ClockDomain& clock, do
     around_.sfr.claim(sfr::OSCTUN);
 }
 
-void Oscillator::reset() {
+void Oscillator::reset(bool) {
     state_ = {};
     around_.events.cancel(slot_);
     select(decode_fosc(fosc_, crystal_hertz_).source, around_.now);
@@ -101,38 +100,21 @@ void Oscillator::select(std::uint8_t source, Cycle at) {
     osccon = static_cast<std::uint16_t>((osccon & ~0x7000u) | static_cast<unsigned>(source) << 12);
     assign(osccon, kLock, source == kPll);
     const double hertz = source_hertz(source) / kClocksPerCycle / kPostscale[field(osccon, 7, 6)];
-    if (hertz == clock_.hertz()) return;
-    clock_.change_rate(at, hertz);
-    if (on_rate) on_rate(on_rate_owner, hertz);
-}
-
-// Two key bytes in successive instructions open the register half for the next one.
-bool Oscillator::unlocked(int& keys, std::uint8_t first, std::uint8_t second, std::uint8_t value) {
-    const bool in_time = around_.now - state_.last_key <= kKeyDistance;
-    state_.last_key = around_.now;
-    if (keys == 2 && in_time) {
-        keys = 0;
-        return true;
-    }
-    if (keys == 1 && in_time && value == second)
-        keys = 2;
-    else
-        keys = value == first ? 1 : 0;
-    return false;
+    change_rate(clock_, at, hertz);
 }
 
 void Oscillator::write_osccon(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask) {
     Oscillator& self = *static_cast<Oscillator*>(owner);
     std::uint16_t& osccon = self.around_.sfr.raw(address);
     if (mask == 0xFF00) {
-        self.state_.low_keys = 0;
-        if (self.unlocked(self.state_.high_keys, 0x78, 0x9A, static_cast<std::uint8_t>(value >> 8)))
+        self.state_.low = kLowKeys;
+        if (self.state_.high.opens(static_cast<std::uint8_t>(value >> 8), self.around_.now))
             osccon = merge(osccon, value, kHighWritable);
         return;
     }
     if (mask != 0x00FF) return;  // word writes do not open it
-    self.state_.high_keys = 0;
-    if (!self.unlocked(self.state_.low_keys, 0x46, 0x57, static_cast<std::uint8_t>(value))) return;
+    self.state_.high = kHighKeys;
+    if (!self.state_.low.opens(static_cast<std::uint8_t>(value), self.around_.now)) return;
     const std::uint16_t old = osccon;
     osccon = merge(osccon, value, kLowWritable);
     const auto present = static_cast<std::uint8_t>(field(osccon, 14, 12));

@@ -1,5 +1,5 @@
 #pragma once
-// The clock: configuration word FOSC, OSCCON with its unlock sequences, clock switching, PLL and
+// The 30F's clock: configuration word FOSC, OSCCON with its unlock sequences, clock switching, PLL and
 // postscaler.
 // Source: dsPIC30F Family Reference Manual, section 7; fact sheets config_words.csv and semantics.md
 // section 17.
@@ -10,8 +10,7 @@
 //  3. A switch takes 10 old cycles, and 1024 crystal periods more towards the primary oscillator; PLL lock
 //     is at once.
 
-#include "cosim/clock.h"
-#include "emu/dspic/peripherals/surroundings.h"
+#include "emu/dspic/peripherals/clock_control.h"
 
 #include <cstdint>
 
@@ -24,27 +23,21 @@ struct ClockChoice {
 };
 ClockChoice decode_fosc(std::uint16_t fosc, double crystal_hertz);
 
-class Oscillator {
+class Oscillator : public ClockControl {
   public:
     Oscillator(const Surroundings& around, cosim::ClockDomain& clock, double crystal_hertz);
 
-    /// A reset; at power-on with the configuration word that is in force.
-    void reset();
-    void configure(std::uint16_t fosc) { fosc_ = fosc; }
-    /// Called after each change of the instruction rate.
-    void (*on_rate)(void* owner, double hertz) = nullptr;
-    void* on_rate_owner = nullptr;
+    void configure(const ClockConfiguration& words) override { fosc_ = words.fosc; }
+    void reset(bool power_on) override;
 
   private:
     struct State {
-        int high_keys = 0;  ///< steps of the unlock sequence done
-        int low_keys = 0;
-        Cycle last_key = 0;
+        OscconKeys high = kHighKeys;
+        OscconKeys low = kLowKeys;
     };
 
     static void write_osccon(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask);
     static void switch_due(void* owner, Cycle due);
-    bool unlocked(int& keys, std::uint8_t first, std::uint8_t second, std::uint8_t value);
     void select(std::uint8_t source, Cycle at);
     double source_hertz(std::uint8_t source) const;
 

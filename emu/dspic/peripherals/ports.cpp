@@ -1,54 +1,43 @@
 #include "emu/dspic/peripherals/ports.h"
 
-#include "emu/dspic/devices/dspic30f6014a_irq.h"
-#include "emu/dspic/devices/dspic30f6014a_sfr.h"
-
 namespace puckloop::dspic {
 
 namespace {
 
-// CN0..CN23 of the 80-pin parts.
-struct ChangePin {
-    PortLetter port;
-    int pin;
-};
+// CN0..CN23 of the 80-pin and 100-pin parts.
 using enum PortLetter;
-constexpr ChangePin kChangePins[] = {
+constexpr Ports::Pin kChangePins[] = {
     {C, 14}, {C, 13}, {B, 0}, {B, 1}, {B, 2}, {B, 3}, {B, 4}, {B, 5},  {G, 6},  {G, 7},  {G, 8}, {G, 9},
     {B, 15}, {D, 4},  {D, 5}, {D, 6}, {D, 7}, {F, 4}, {F, 5}, {D, 13}, {D, 14}, {D, 15}, {A, 6}, {A, 7},
 };
 
 }  // namespace
 
-Ports::Ports(const Surroundings& around, Pins& pins) : around_(around), pins_(pins) {
-    const struct {
-        PortLetter letter;
-        std::uint16_t tris, port, lat;
-    } map[] = {
-        {A, sfr::TRISA, sfr::PORTA, sfr::LATA}, {B, sfr::TRISB, sfr::PORTB, sfr::LATB},
-        {C, sfr::TRISC, sfr::PORTC, sfr::LATC}, {D, sfr::TRISD, sfr::PORTD, sfr::LATD},
-        {F, sfr::TRISF, sfr::PORTF, sfr::LATF}, {G, sfr::TRISG, sfr::PORTG, sfr::LATG},
-    };
-    for (const auto& entry : map) {
-        Port& port = at(entry.letter);
-        port.tris = entry.tris;
-        port.port = entry.port;
-        port.lat = entry.lat;
-        port.implemented = around_.sfr.info(entry.tris)->implemented;
-        around_.sfr.hook(entry.tris, this, nullptr, write_tris);
-        around_.sfr.hook(entry.port, this, read_port, write_port);
-        around_.sfr.hook(entry.lat, this, nullptr, write_port);
+Ports::Ports(const Surroundings& around, const Setup& setup, Pins& pins)
+    : around_(around), setup_(setup), pins_(pins) {
+    for (const Place& place : setup_.ports) {
+        Port& port = at(place.letter);
+        port.tris = place.tris;
+        port.port = place.port;
+        port.lat = place.lat;
+        port.odc = place.odc;
+        port.implemented = around_.sfr.info(place.tris)->implemented;
+        around_.sfr.hook(place.tris, this, nullptr, write_tris);
+        around_.sfr.hook(place.port, this, read_port, write_port);
+        around_.sfr.hook(place.lat, this, nullptr, write_port);
+        if (place.odc) around_.sfr.hook(place.odc, this, nullptr, write_tris);
     }
-    for (const std::uint16_t address : {sfr::CNEN1, sfr::CNEN2})
+    for (const std::uint16_t address : setup_.cnen)
         around_.sfr.hook(address, this, nullptr, write_cn);
-    for (const std::uint16_t address : {sfr::CNPU1, sfr::CNPU2})
+    for (const std::uint16_t address : setup_.cnpu)
         around_.sfr.claim(address);
 }
 
 int Ports::index_of(std::uint16_t address) const {
     for (int i = 0; i < kPorts; ++i) {
         const Port& port = ports_[static_cast<std::size_t>(i)];
-        if (port.tris == address || port.port == address || port.lat == address) return i;
+        if (port.tris == address || port.port == address || port.lat == address || port.odc == address)
+            return i;
     }
     return 0;
 }
@@ -83,9 +72,11 @@ bool Ports::level(PortLetter port, int pin) const {
 void Ports::drive(int index, Cycle when) {
     Port& port = ports_[static_cast<std::size_t>(index)];
     const unsigned own = static_cast<unsigned>(~around_.sfr.raw(port.tris) & port.implemented & ~port.lent);
-    const auto driven = static_cast<std::uint16_t>(own | (port.lent & port.lent_output));
-    const auto levels =
-        static_cast<std::uint16_t>((around_.sfr.raw(port.lat) & own) | (port.lent_levels & driven & ~own));
+    const std::uint16_t lat = around_.sfr.raw(port.lat);
+    // An open-drain output only pulls down.
+    const unsigned released = port.odc ? around_.sfr.raw(port.odc) & lat : 0u;
+    const auto driven = static_cast<std::uint16_t>((own & ~released) | (port.lent & port.lent_output));
+    const auto levels = static_cast<std::uint16_t>((lat & own & driven) | (port.lent_levels & driven & ~own));
     if (driven == port.driven && levels == port.levels) return;
     port.driven = driven;
     port.levels = levels;
@@ -103,15 +94,16 @@ void Ports::look(int index, Cycle when) {
     for (const Watcher& watcher : watchers_)
         if (static_cast<int>(watcher.port) == index && (changed & watcher.mask))
             watcher.changed(watcher.owner, levels & watcher.mask, when);
-    if (changed & (levels ^ port.noticed) & change_enabled(index)) around_.interrupts.raise(irq::CN, when);
+    if (changed & (levels ^ port.noticed) & change_enabled(index))
+        around_.interrupts.raise(setup_.change_irq, when);
 }
 
 std::uint16_t Ports::change_enabled(int index) const {
     std::uint32_t enabled =
-        around_.sfr.raw(sfr::CNEN1) | static_cast<std::uint32_t>(around_.sfr.raw(sfr::CNEN2)) << 16;
+        around_.sfr.raw(setup_.cnen[0]) | static_cast<std::uint32_t>(around_.sfr.raw(setup_.cnen[1])) << 16;
     std::uint16_t mask = 0;
-    for (const ChangePin& pin : kChangePins) {
-        if ((enabled & 1u) && static_cast<int>(pin.port) == index) mask |= bit(pin.pin);
+    for (const Pin& pin : kChangePins) {
+        if ((enabled & 1u) && static_cast<int>(pin.port) == index) mask |= bit(pin.number);
         enabled >>= 1;
     }
     return mask;
@@ -142,13 +134,43 @@ void Ports::watch(PortLetter letter, int pin, void* owner, void (*changed)(void*
     watchers_.push_back({letter, bit(pin), owner, changed});
 }
 
+std::uint32_t Ports::pcfg() const {
+    std::uint32_t bits = 0xFFFF'FFFFu;
+    for (const std::uint16_t address : setup_.pcfg_low)
+        if (address) bits &= 0xFFFF'0000u | around_.sfr.raw(address);
+    if (setup_.pcfg_high)
+        bits &= 0xFFFFu | static_cast<std::uint32_t>(around_.sfr.raw(setup_.pcfg_high)) << 16;
+    return bits;
+}
+
+// The digital input buffers of analog pins are off: PORT reads 0 there.
+std::uint16_t Ports::digital_pins(int index) const {
+    std::uint16_t mask = 0xFFFF;
+    const std::uint32_t digital = pcfg();
+    for (std::size_t channel = 0; channel < setup_.analog.size(); ++channel) {
+        const Pin& pin = setup_.analog[channel];
+        if (static_cast<int>(pin.port) == index && !(digital >> channel & 1))
+            assign(mask, bit(pin.number), false);
+    }
+    return mask;
+}
+
+bool Ports::digital(int channel) const {
+    return pcfg() >> channel & 1;
+}
+
+std::optional<bool> Ports::driven_level(int channel) const {
+    const Pin& pin = setup_.analog[static_cast<std::size_t>(channel)];
+    const Port& port = at(pin.port);
+    if (!(port.driven >> pin.number & 1)) return std::nullopt;
+    return port.levels >> pin.number & 1;
+}
+
 void Ports::refresh() {
     for (int i = 0; i < kPorts; ++i) {
         const Port& port = ports_[static_cast<std::size_t>(i)];
         if (!port.tris) continue;
-        std::uint16_t levels = pin_levels(i, around_.now);
-        if (static_cast<PortLetter>(i) == B) levels &= around_.sfr.raw(sfr::ADPCFG);
-        around_.sfr.raw(port.port) = levels;
+        around_.sfr.raw(port.port) = pin_levels(i, around_.now) & digital_pins(i);
     }
 }
 
@@ -157,8 +179,7 @@ std::uint16_t Ports::read_port(void* owner, std::uint16_t address) {
     const int index = self.index_of(address);
     const std::uint16_t levels = self.pin_levels(index, self.around_.now);
     self.ports_[static_cast<std::size_t>(index)].noticed = levels;
-    // The digital input buffer of an analog pin is off.
-    return index == static_cast<int>(B) ? levels & self.around_.sfr.raw(sfr::ADPCFG) : levels;
+    return levels & self.digital_pins(index);
 }
 
 void Ports::write_port(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask) {
@@ -179,14 +200,15 @@ void Ports::write_tris(void* owner, std::uint16_t address, std::uint16_t value, 
 void Ports::write_cn(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask) {
     Ports& self = *static_cast<Ports*>(owner);
     self.around_.sfr.store(address, value, mask);
-    std::uint32_t enabled =
-        self.around_.sfr.raw(sfr::CNEN1) | static_cast<std::uint32_t>(self.around_.sfr.raw(sfr::CNEN2)) << 16;
-    for (const ChangePin& pin : kChangePins) {
+    std::uint32_t enabled = self.around_.sfr.raw(self.setup_.cnen[0]) |
+                            static_cast<std::uint32_t>(self.around_.sfr.raw(self.setup_.cnen[1])) << 16;
+    for (const Pin& pin : kChangePins) {
         if (enabled & 1u) {
             Port& port = self.at(pin.port);
-            if (!(port.watched & bit(pin.pin))) {
-                port.watched |= bit(pin.pin);
-                port.seen |= static_cast<std::uint16_t>(self.level(pin.port, pin.pin) ? bit(pin.pin) : 0);
+            if (!(port.watched & bit(pin.number))) {
+                port.watched |= bit(pin.number);
+                port.seen |=
+                    static_cast<std::uint16_t>(self.level(pin.port, pin.number) ? bit(pin.number) : 0);
             }
         }
         enabled >>= 1;

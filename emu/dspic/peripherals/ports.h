@@ -1,7 +1,7 @@
 #pragma once
 // I/O ports: TRISx, PORTx, LATx, analog pins, pins lent to other modules; input change notification (CN);
 // and watched pins for the modules that count or trigger on edges.
-// Source: dsPIC30F Family Reference Manual, section 11; fact sheet peripherals.md section 9.
+// Source: dsPIC30F Family Reference Manual, section 11, and DS70286; fact sheet peripherals.md section 9.
 //
 // Deviations
 //  1. A PORTx read in the instruction right after a write sees the new level; silicon wants one instruction
@@ -16,13 +16,37 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 namespace puckloop::dspic {
 
 class Ports {
   public:
-    Ports(const Surroundings& around, Pins& pins);
+    /// One port's registers; `odc` 0: no open-drain control.
+    struct Place {
+        PortLetter letter{};
+        std::uint16_t tris = 0;
+        std::uint16_t port = 0;
+        std::uint16_t lat = 0;
+        std::uint16_t odc = 0;
+    };
+    struct Pin {
+        PortLetter port{};
+        std::uint8_t number = 0;
+    };
+    struct Setup {
+        std::span<const Place> ports;
+        std::span<const Pin> analog;  ///< AN0, AN1, ...
+        /// PCFG bits of AN0..15 and AN16..31, 1 = digital; a pin is analog if any register says so. 0: none.
+        std::array<std::uint16_t, 2> pcfg_low{};
+        std::uint16_t pcfg_high = 0;
+        std::array<std::uint16_t, 2> cnen{};
+        std::array<std::uint16_t, 2> cnpu{};
+        std::uint8_t change_irq = 0;
+    };
+    Ports(const Surroundings& around, const Setup& setup, Pins& pins);
 
     void reset();
     /// The outside changed levels on `port` at cycle `at`.
@@ -39,6 +63,10 @@ class Ports {
     void* before_change_owner = nullptr;
     /// Level on the pin now, as its input buffer sees it.
     bool level(PortLetter port, int pin) const;
+    /// What the chip's own driver puts on analog input AN`channel`'s pin, if it drives it.
+    std::optional<bool> driven_level(int channel) const;
+    /// The pin of AN`channel` is a digital one: cut off from the converters.
+    bool digital(int channel) const;
     /// Puts the pin levels into PORTx's storage.
     void refresh();
 
@@ -49,6 +77,7 @@ class Ports {
         std::uint16_t tris = 0;  ///< register addresses; 0: the device has no such port
         std::uint16_t port = 0;
         std::uint16_t lat = 0;
+        std::uint16_t odc = 0;
         std::uint16_t implemented = 0;
         std::uint16_t lent = 0;
         std::uint16_t lent_output = 0;
@@ -74,6 +103,8 @@ class Ports {
     Port& at(PortLetter letter) { return ports_[static_cast<std::size_t>(letter)]; }
     const Port& at(PortLetter letter) const { return ports_[static_cast<std::size_t>(letter)]; }
     int index_of(std::uint16_t address) const;
+    std::uint16_t digital_pins(int index) const;
+    std::uint32_t pcfg() const;
     std::uint16_t pin_levels(int index, Cycle now) const;
     void announce() const {
         if (before_change) before_change(before_change_owner, around_.now);
@@ -83,6 +114,7 @@ class Ports {
     std::uint16_t change_enabled(int index) const;
 
     Surroundings around_;
+    Setup setup_;
     Pins& pins_;
     std::array<Port, kPorts> ports_{};
     std::vector<Watcher> watchers_;

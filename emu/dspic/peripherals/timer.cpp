@@ -1,5 +1,7 @@
 #include "emu/dspic/peripherals/timer.h"
 
+#include <algorithm>
+
 namespace puckloop::dspic {
 
 namespace {
@@ -75,6 +77,24 @@ Cycle Timer::next_match() const {
     return state_.base + ticks * prescale() - state_.fraction;
 }
 
+Cycle Timer::next_at(std::uint32_t value, Cycle from) const {
+    if (!running() || gated() || value > period() || period() == 0) return kNoCycle;
+    const Cycle start = std::max(from, state_.base);
+    const std::uint32_t count = count_at(start);
+    Cycle ticks = (start - state_.base + state_.fraction) / prescale();
+    if (count > period())
+        ticks += static_cast<Cycle>(top()) + 1 - count + value;
+    else
+        ticks += value > count ? value - count : static_cast<Cycle>(period()) + 1 - count + value;
+    return state_.base + ticks * prescale() - state_.fraction;
+}
+
+void Timer::serve(void* owner, void (*changed)(void*, Cycle), void (*period)(void*, Cycle)) {
+    served_ = owner;
+    changed_ = changed;
+    period_ = period;
+}
+
 void Timer::settle(Cycle at) {
     while (around_.events.due(slot_) <= at)
         match_due(this, around_.events.due(slot_));
@@ -103,6 +123,10 @@ void Timer::match_due(void* owner, Cycle due) {
     self.state_.base = due;
     self.plan();
     self.match(due);
+    if (self.period_wanted_) {
+        self.period_wanted_ = false;
+        self.period_(self.served_, due);
+    }
 }
 
 void Timer::clock_pin(bool level, Cycle at) {
@@ -131,6 +155,7 @@ void Timer::hold(bool on) {
     settle(around_.now);
     state_.held = on;
     plan();
+    changed(around_.now);
 }
 
 void Timer::refresh() {
@@ -160,6 +185,7 @@ void Timer::write_tmr(void* owner, std::uint16_t, std::uint16_t value, std::uint
         self.state_.count |= static_cast<std::uint32_t>(self.around_.sfr.raw(self.setup_.hold)) << 16;
     self.state_.fraction = 0;
     self.plan();
+    self.changed(self.around_.now + 1);
 }
 
 void Timer::write_pr(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask) {
@@ -168,6 +194,7 @@ void Timer::write_pr(void* owner, std::uint16_t address, std::uint16_t value, st
     counting.settle(self.around_.now + 1);
     self.around_.sfr.store(address, value, mask);
     counting.plan();
+    counting.changed(self.around_.now + 1);
 }
 
 void Timer::write_con(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask) {
@@ -189,6 +216,8 @@ void Timer::write_con(void* owner, std::uint16_t address, std::uint16_t value, s
     }
     self.plan();
     if (self.upper_) self.upper_->plan();
+    self.changed(at);
+    if (self.upper_) self.upper_->changed(at);
 }
 
 }  // namespace puckloop::dspic

@@ -1,6 +1,7 @@
 #pragma once
-// Timer1 to Timer5: 16-bit counters with prescaler, gate and external clock; Timer2/3 and Timer4/5 pair to
-// 32 bits. Source: dsPIC30F Family Reference Manual, section 12; fact sheet peripherals.md section 2.
+// Timer1 to Timer5 (33FJ: to Timer9): 16-bit counters with prescaler, gate and external clock; Timer2/3,
+// Timer4/5, ... pair to 32 bits. Source: dsPIC30F Family Reference Manual, section 12, and DS70286; fact
+// sheet peripherals.md section 2.
 //
 // Deviations
 //  1. External clock edges count at the instant of the edge; synchronisation (TSYNC) and asynchronous
@@ -44,6 +45,19 @@ class Timer {
     void (*on_match)(void* owner, Cycle at) = nullptr;
     void* on_match_owner = nullptr;
 
+    // For the output compare modules, whose time base it is.
+    /// The internal clock is counted at present.
+    bool counts() const { return running(); }
+    /// Cycles between period matches.
+    Cycle period_cycles() const { return (static_cast<Cycle>(period()) + 1) * prescale(); }
+    Cycle count_cycles() const { return prescale(); }
+    /// First cycle after `from` in which the count becomes `value`; kNoCycle if it never does.
+    Cycle next_at(std::uint32_t value, Cycle from) const;
+    /// `changed` is called after every write that may move the times of counts to come, with the first cycle
+    /// of the new order; `period` at the next period match after want_period().
+    void serve(void* owner, void (*changed)(void* owner, Cycle at), void (*period)(void* owner, Cycle at));
+    void want_period() { period_wanted_ = true; }
+
   private:
     struct State {
         std::uint32_t count = 0;     ///< at cycle `base`
@@ -72,6 +86,9 @@ class Timer {
     Cycle next_match() const;
     void settle(Cycle at);  ///< makes `at` the base, firing a match that falls due by then
     void plan();
+    void changed(Cycle at) {
+        if (changed_) changed_(served_, at);
+    }
     void match(Cycle at);
     std::uint16_t con() const { return around_.sfr.raw(setup_.con); }
 
@@ -81,6 +98,10 @@ class Timer {
     Timer* lower_ = nullptr;
     State state_;
     EventQueue::Slot slot_;
+    void* served_ = nullptr;
+    void (*changed_)(void*, Cycle) = nullptr;
+    void (*period_)(void*, Cycle) = nullptr;
+    bool period_wanted_ = false;
 };
 
 }  // namespace puckloop::dspic

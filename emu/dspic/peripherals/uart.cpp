@@ -12,9 +12,12 @@ namespace {
 // UxMODE
 constexpr std::uint16_t kUarten = bit(15);
 constexpr std::uint16_t kLpback = bit(6);
+constexpr std::uint16_t kBrgh = bit(3);  // 33FJ
 constexpr std::uint16_t kStsel = bit(0);
 // UxSTA
-constexpr std::uint16_t kUtxisel = bit(15);
+constexpr std::uint16_t kUtxisel = bit(15);   // 30F; on the 33FJ UTXISEL1
+constexpr std::uint16_t kUtxinv = bit(14);    // 33FJ
+constexpr std::uint16_t kUtxisel0 = bit(13);  // 33FJ
 constexpr std::uint16_t kUtxbrk = bit(11);
 constexpr std::uint16_t kUtxen = bit(10);
 constexpr std::uint16_t kUtxbf = bit(9);
@@ -29,6 +32,7 @@ constexpr std::uint16_t kStaWritable = kUtxisel | kUtxbrk | kUtxen | bit(7) | bi
 
 constexpr std::uint16_t kNinthBit = bit(8);
 constexpr std::uint32_t kTicksPerBit = 16;
+constexpr std::uint32_t kTicksPerBitHigh = 4;
 
 }  // namespace
 
@@ -66,6 +70,21 @@ std::optional<cosim::UartFrame> Uart::begun() const {
     return state_.frame;
 }
 
+std::uint32_t Uart::ticks_per_bit() const {
+    return setup_.family_33f && (mode() & kBrgh) ? kTicksPerBitHigh : kTicksPerBit;
+}
+
+std::uint16_t Uart::writable_sta() const {
+    return setup_.family_33f ? kStaWritable | kUtxinv | kUtxisel0 : kStaWritable;
+}
+
+// The word that moves to the shift register now raises UxTXIF. 30F: UTXISEL 0 each one, 1 the one that
+// empties the FIFO. 33FJ: 00 each one, 10 the one that empties the FIFO, 01 none (the end of the last frame).
+bool Uart::transfer_interrupts() const {
+    if (setup_.family_33f && (sta() & kUtxisel0)) return false;
+    return !(sta() & kUtxisel) || state_.transmit.count == 0;
+}
+
 // UARTEN = 0: both FIFOs, both shift registers.
 void Uart::clear() {
     stop_transmitter();
@@ -98,7 +117,8 @@ void Uart::lend_pins() {
     if (!enabled()) {
         ports_.give_back(setup_.port, rx | tx);
     } else if (sta() & kUtxen) {
-        ports_.lend(setup_.port, rx | tx, tx, sta() & kUtxbrk ? 0 : tx);
+        const bool low = (sta() & kUtxbrk) && !setup_.family_33f;
+        ports_.lend(setup_.port, rx | tx, tx, low ? 0 : tx);
     } else {
         ports_.lend(setup_.port, rx, 0, 0);
         ports_.give_back(setup_.port, tx);
@@ -123,7 +143,7 @@ void Uart::stop_transmitter() {
 void Uart::begin_frame(Cycle from) {
     const bool is_break = sta() & kUtxbrk;
     if (state_.held) return;
-    if (!is_break && state_.transmit.count == 0) return;
+    if ((setup_.family_33f || !is_break) && state_.transmit.count == 0) return;
     const Cycle late = (from - state_.phase) % divisor();
     const Cycle start = from + (late ? divisor() - late : 0);
 
@@ -134,16 +154,20 @@ void Uart::begin_frame(Cycle from) {
     frame.parity = pdsel == 1 ? 2 : pdsel == 2 ? 1 : 0;
     frame.stop_bits = mode() & kStsel ? 2 : 1;
     frame.is_break = is_break;
+    if (is_break && setup_.family_33f) {  // the word written is a dummy
+        state_.transmit.pop();
+        assign(sta(), kUtxbrk, false);
+        if (transfer_interrupts()) around_.interrupts.raise(setup_.tx_irq, from);
+    }
     if (!is_break) {
         const std::uint16_t mask = static_cast<std::uint16_t>((1u << frame.data_bits) - 1u);
         frame.data = state_.transmit.top() & mask;
         state_.transmit.pop();
         const bool odd_ones = std::popcount(frame.data) % 2;
         frame.parity_bit = frame.parity == 2 ? odd_ones : frame.parity == 1 ? !odd_ones : 0;
-        // UTXISEL 0: each transfer; 1: the one that empties the FIFO.
-        if (!(sta() & kUtxisel) || state_.transmit.count == 0) around_.interrupts.raise(setup_.tx_irq, from);
+        if (transfer_interrupts()) around_.interrupts.raise(setup_.tx_irq, from);
     }
-    const Cycle bit_cycles = static_cast<Cycle>(kTicksPerBit) * divisor();
+    const Cycle bit_cycles = static_cast<Cycle>(ticks_per_bit()) * divisor();
     const int bits = protocols::bits_before_stop(frame);
     const Cycle stop = start + bit_cycles * static_cast<Cycle>(bits);
     frame.start = clock_.time_of(start);
@@ -173,6 +197,8 @@ void Uart::transmit_due(void* owner, Cycle due) {
     }
     self.state_.shifting = false;
     self.show_transmitter();
+    const bool at_end = self.setup_.family_33f && (self.sta() & kUtxisel0);
+    if (at_end && self.state_.transmit.count == 0) self.around_.interrupts.raise(self.setup_.tx_irq, due);
     self.begin_frame(due);
 }
 
@@ -189,7 +215,11 @@ void Uart::write_txreg(void* owner, std::uint16_t address, std::uint16_t value, 
 
 UartReceiver::Format Uart::format() const {
     const unsigned pdsel = dspic::field(mode(), 2, 1);
-    return {divisor(), pdsel == 3 ? 9 : 8, pdsel == 1 ? 2 : pdsel == 2 ? 1 : 0, state_.phase};
+    return {divisor(), pdsel == 3 ? 9 : 8,
+            pdsel == 1   ? 2
+            : pdsel == 2 ? 1
+                         : 0,
+            state_.phase, ticks_per_bit()};
 }
 
 void Uart::receive(const cosim::UartFrame& frame, Cycle at) {
@@ -233,10 +263,13 @@ void Uart::deliver(const UartReceiver::Character& character, Cycle now) {
     if (state_.receive.full()) {
         ++counters_.overruns;
         sta() |= kOerr;
+        if (setup_.family_33f) around_.interrupts.raise(setup_.error_irq, std::max(character.done, now));
         return;
     }
     state_.receive.push({character.data, character.framing_error, character.parity_error});
     show_receiver();
+    if (setup_.family_33f && (character.framing_error || character.parity_error))
+        around_.interrupts.raise(setup_.error_irq, std::max(character.done, now));
     const unsigned urxisel = dspic::field(sta(), 7, 6);
     if (urxisel < 2 || state_.receive.count == (urxisel == 2 ? 3 : 4))
         around_.interrupts.raise(setup_.rx_irq, std::max(character.done, now));
@@ -274,7 +307,7 @@ void Uart::write_mode(void* owner, std::uint16_t address, std::uint16_t value, s
     if (self.enabled()) {
         self.state_.phase = self.around_.now + 1;
         self.receiver_.start(self.around_.now + 1);
-        self.around_.interrupts.raise(self.setup_.tx_irq, self.around_.now);
+        if (!self.setup_.family_33f) self.around_.interrupts.raise(self.setup_.tx_irq, self.around_.now);
     } else {
         self.clear();
     }
@@ -283,7 +316,7 @@ void Uart::write_mode(void* owner, std::uint16_t address, std::uint16_t value, s
 void Uart::write_sta(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask) {
     Uart& self = *static_cast<Uart*>(owner);
     const std::uint16_t old = self.sta();
-    self.around_.sfr.store(address, value, mask & kStaWritable);
+    self.around_.sfr.store(address, value, mask & self.writable_sta());
     if ((mask & kOerr) && !(value & kOerr) && (old & kOerr)) {  // empties the FIFO and UxRSR
         self.state_.receive = {};
         assign(self.sta(), kOerr, false);
@@ -292,6 +325,9 @@ void Uart::write_sta(void* owner, std::uint16_t address, std::uint16_t value, st
     const std::uint16_t changed = old ^ self.sta();
     if (!self.enabled() || !(changed & (kUtxen | kUtxbrk))) return;
     self.lend_pins();
+    // 33FJ: the empty transmitter asks for words as soon as it may send.
+    if (self.setup_.family_33f && (changed & kUtxen) && (self.sta() & kUtxen))
+        self.around_.interrupts.raise(self.setup_.tx_irq, self.around_.now);
     if (!(self.sta() & kUtxen))
         self.stop_transmitter();
     else if (!self.state_.shifting)

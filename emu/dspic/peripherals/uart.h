@@ -1,6 +1,6 @@
 #pragma once
 // UART1 and UART2: baud rate generator, 4-deep FIFOs both ways, interrupt modes, errors, break, loopback.
-// Source: dsPIC30F Family Reference Manual, section 19; fact sheet peripherals.md section 1.
+// Source: dsPIC30F Family Reference Manual, section 19, and DS70286; fact sheet peripherals.md section 1.
 //
 // Deviations
 //  1. RIDLE falls when a frame is handed in (at its stop bit), not at its start bit.
@@ -9,7 +9,8 @@
 //  3. A word written to an idle transmitter moves to the shift register at once; its start bit begins at
 //     the next tick of the 16x clock.
 //  4. While UTXBRK is set the line is told to be low in whole frames, from the end of the frame in progress
-//     on.
+//     on. 33FJ: the next word written goes out as one such frame, and UTXBRK clears itself.
+//  5. 33FJ: UTXINV, URXINV, IREN, UEN and RTSMD are stored: polarity, IrDA and flow control pins do nothing.
 
 #include "cosim/clock.h"
 #include "cosim/message.h"
@@ -35,6 +36,8 @@ class Uart {
         PortLetter port{};  ///< of both pins
         int rx_pin = 0;
         int tx_pin = 0;
+        bool family_33f = false;  ///< BRGH, UTXISEL of two bits, a break of 13 bits, no first TX interrupt
+        std::uint8_t error_irq = 255;  ///< 33FJ only
     };
     Uart(const Surroundings& around, const Setup& setup, const cosim::ClockDomain& clock, Ports& ports,
          Pins& pins);
@@ -95,6 +98,9 @@ class Uart {
     std::uint16_t& mode() const { return around_.sfr.raw(setup_.mode); }
     std::uint16_t& sta() const { return around_.sfr.raw(static_cast<std::uint16_t>(setup_.mode + 2)); }
     std::uint16_t& rxreg() const { return around_.sfr.raw(static_cast<std::uint16_t>(setup_.mode + 6)); }
+    std::uint32_t ticks_per_bit() const;
+    bool transfer_interrupts() const;
+    std::uint16_t writable_sta() const;
     std::uint32_t divisor() const {
         return around_.sfr.raw(static_cast<std::uint16_t>(setup_.mode + 8)) + 1u;
     }

@@ -74,6 +74,7 @@ void UartReceiver::forget_before(Time time) {
 
 std::optional<UartReceiver::Character> UartReceiver::next(const Format& format, Cycle now) {
     ask_again_ = kNoCycle;
+    const Cycle bit_cycles = static_cast<Cycle>(format.ticks) * format.divisor;
     Cycle first = 0;
     for (;;) {
         const std::optional<Time> edge = falling_edge(listening_from_);
@@ -81,18 +82,17 @@ std::optional<UartReceiver::Character> UartReceiver::next(const Format& format, 
             forget_before(listening_from_);
             return std::nullopt;
         }
-        // The edge is seen at the next tick of the 16x clock; bit centres are 8, 24, 40, ... ticks later.
+        // The edge is seen at the next tick of the 16x clock; bit centres are 8, 24, 40, ... ticks later (of
+        // the 4x clock: 2, 6, 10, ...).
         const Cycle seen = clock_.first_cycle_at(*edge);
         const Cycle late = seen > format.phase ? (seen - format.phase) % format.divisor : 0;
-        first = seen + (late ? format.divisor - late : 0) + 8u * format.divisor;
+        first = seen + (late ? format.divisor - late : 0) + format.ticks / 2 * format.divisor;
         if (!level(clock_.time_of(first))) break;
         listening_from_ = clock_.time_of(first);  // too short for a start bit
     }
-    const auto centre = [&](int bit) {
-        return clock_.time_of(first + 16u * format.divisor * static_cast<Cycle>(bit));
-    };
+    const auto centre = [&](int bit) { return clock_.time_of(first + bit_cycles * static_cast<Cycle>(bit)); };
     const int stop = 1 + format.data_bits + (format.parity ? 1 : 0);
-    const Cycle done = first + 16u * format.divisor * static_cast<Cycle>(stop);
+    const Cycle done = first + bit_cycles * static_cast<Cycle>(stop);
 
     // Beyond the last known frame another may already have begun whose message is still to come.
     const UartFrame& last = frames_.back();

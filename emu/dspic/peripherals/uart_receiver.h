@@ -1,6 +1,6 @@
 #pragma once
-// The serial line as a UART's receiver sees it: it looks for a start bit with its own 16x clock and samples
-// the sender's waveform at its own bit centres, so a baud mismatch gives the garbage that it gives in
+// The serial line as a UART's receiver sees it: it looks for a start bit with its own 16x (4x) clock and
+// samples the sender's waveform at its own bit centres, so a baud mismatch gives the garbage that it gives in
 // silicon. Source: dsPIC30F Family Reference Manual, section 19; fact sheet peripherals.md section 1.
 //
 // Deviations
@@ -25,10 +25,11 @@ namespace puckloop::dspic {
 class UartReceiver {
   public:
     struct Format {
-        std::uint32_t divisor = 16;  ///< cycles in 1/16 of a bit: BRG + 1
+        std::uint32_t divisor = 16;  ///< cycles between sampling clocks: BRG + 1
         int data_bits = 8;
-        int parity = 0;   ///< 0 none, 1 odd, 2 even
-        Cycle phase = 0;  ///< a cycle in which the 16x clock ticks
+        int parity = 0;            ///< 0 none, 1 odd, 2 even
+        Cycle phase = 0;           ///< a cycle in which the sampling clock ticks
+        std::uint32_t ticks = 16;  ///< sampling clocks in a bit; 4 with BRGH = 1
     };
     struct Character {
         Cycle done = 0;  ///< middle of the stop bit

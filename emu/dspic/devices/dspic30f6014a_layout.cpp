@@ -1,0 +1,57 @@
+// The modules of the dsPIC30F6014A and their pins. Source: DS70143 and its family reference manual.
+
+#include "emu/dspic/devices/dspic30f6014a_irq.h"
+#include "emu/dspic/devices/dspic30f6014a_sfr.h"
+#include "emu/dspic/layout.h"
+
+namespace puckloop::dspic {
+
+namespace {
+
+using enum PortLetter;
+
+constexpr Ports::Place kPorts[] = {
+    {A, sfr::TRISA, sfr::PORTA, sfr::LATA}, {B, sfr::TRISB, sfr::PORTB, sfr::LATB},
+    {C, sfr::TRISC, sfr::PORTC, sfr::LATC}, {D, sfr::TRISD, sfr::PORTD, sfr::LATD},
+    {F, sfr::TRISF, sfr::PORTF, sfr::LATF}, {G, sfr::TRISG, sfr::PORTG, sfr::LATG},
+};
+constexpr Ports::Pin kAnalog[] = {
+    {B, 0}, {B, 1}, {B, 2},  {B, 3},  {B, 4},  {B, 5},  {B, 6},  {B, 7},
+    {B, 8}, {B, 9}, {B, 10}, {B, 11}, {B, 12}, {B, 13}, {B, 14}, {B, 15},
+};
+
+constexpr TimerPlace kTimers[] = {
+    {1, {sfr::TMR1, sfr::PR1, sfr::T1CON, irq::T1, 0, true}, {C, 14}},
+    {3, {sfr::TMR3, sfr::PR3, sfr::T3CON, irq::T3}, {C, 2}},
+    {2, {sfr::TMR2, sfr::PR2, sfr::T2CON, irq::T2, sfr::TMR3HLD}, {C, 1}},
+    {5, {sfr::TMR5, sfr::PR5, sfr::T5CON, irq::T5}, {C, 4}},
+    {4, {sfr::TMR4, sfr::PR4, sfr::T4CON, irq::T4, sfr::TMR5HLD}, {C, 3}},
+};
+
+constexpr Uart::Setup kUarts[] = {
+    {1, sfr::U1MODE, irq::U1RX, irq::U1TX, F, 2, 3},
+    {2, sfr::U2MODE, irq::U2RX, irq::U2TX, F, 4, 5},
+};
+
+constexpr I2cMaster::Setup kI2cs[] = {
+    {1, sfr::I2CRCV, false, irq::MI2C, irq::SI2C, G, 2, 3, 1'111'111.0},
+};
+
+constexpr Layout kLayout = {
+    .ports =
+        {kPorts, kAnalog, {sfr::ADPCFG, 0}, 0, {sfr::CNEN1, sfr::CNEN2}, {sfr::CNPU1, sfr::CNPU2}, irq::CN},
+    .external_irqs = {irq::INT0, irq::INT1, irq::INT2, irq::INT3, irq::INT4},
+    .timers = kTimers,
+    .uarts = kUarts,
+    .i2cs = kI2cs,
+    .adc12 = true,
+    .adc_timers = {3, 0},
+};
+
+}  // namespace
+
+const Layout& layout_dspic30f6014a() {
+    return kLayout;
+}
+
+}  // namespace puckloop::dspic

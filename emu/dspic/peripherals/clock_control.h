@@ -1,0 +1,64 @@
+#pragma once
+// What the clock models of both families share: the keys in front of OSCCON, and how a new rate is told.
+
+#include "cosim/clock.h"
+#include "emu/dspic/peripherals/surroundings.h"
+
+#include <cstdint>
+
+namespace puckloop::dspic {
+
+/// Two key bytes in successive instructions open a half of OSCCON for the next one.
+struct OscconKeys {
+    std::uint8_t first = 0;
+    std::uint8_t second = 0;
+    int seen = 0;
+    Cycle last = 0;
+
+    /// A byte is written to the half at cycle `now`: true if it is the value that the keys let through.
+    bool opens(std::uint8_t value, Cycle now) {
+        constexpr Cycle kDistance = 2;  // the writes come from successive instructions
+        const bool in_time = now - last <= kDistance;
+        last = now;
+        if (seen == 2 && in_time) {
+            seen = 0;
+            return true;
+        }
+        if (seen == 1 && in_time && value == second)
+            seen = 2;
+        else
+            seen = value == first ? 1 : 0;
+        return false;
+    }
+};
+inline constexpr OscconKeys kHighKeys{0x78, 0x9A};
+inline constexpr OscconKeys kLowKeys{0x46, 0x57};
+
+/// The configuration words that choose the clock. `foscsel`: 33FJ only.
+struct ClockConfiguration {
+    std::uint16_t fosc = 0xFFFF;
+    std::uint16_t foscsel = 0xFFFF;
+};
+
+class ClockControl {
+  public:
+    virtual ~ClockControl() = default;
+
+    virtual void configure(const ClockConfiguration& words) = 0;
+    /// A reset; the registers themselves have been reset. Only power-on takes the clock that the words choose
+    /// on parts that keep theirs over other resets.
+    virtual void reset(bool power_on) = 0;
+
+    /// Called after each change of the instruction rate.
+    void (*on_rate)(void* owner, double hertz) = nullptr;
+    void* on_rate_owner = nullptr;
+
+  protected:
+    void change_rate(cosim::ClockDomain& clock, Cycle at, double hertz) const {
+        if (hertz == clock.hertz()) return;
+        clock.change_rate(at, hertz);
+        if (on_rate) on_rate(on_rate_owner, hertz);
+    }
+};
+
+}  // namespace puckloop::dspic

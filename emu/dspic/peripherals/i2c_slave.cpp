@@ -1,0 +1,267 @@
+#include "emu/dspic/peripherals/i2c_slave.h"
+
+#include "emu/dspic/peripherals/i2c_registers.h"
+
+#include <algorithm>
+
+namespace puckloop::dspic {
+
+using cosim::I2cPhase;
+using cosim::I2cPhaseKind;
+using cosim::Time;
+
+namespace {
+
+using namespace i2c;
+
+constexpr int kAnswerClocks = 8;
+constexpr int kByteClocks = 9;
+constexpr std::uint8_t kIdleLine = 0xFF;
+
+Time clocks(const I2cPhase& phase, int count) {
+    return phase.clock_period * count;
+}
+
+}  // namespace
+
+I2cSlave::I2cSlave(const Surroundings& around, const I2cMaster::Setup& setup, const cosim::ClockDomain& clock,
+                   Pins& pins)
+    : around_(around), setup_(setup), clock_(clock), pins_(pins), slot_(around.events.add(this, due)) {
+    around_.sfr.claim(static_cast<std::uint16_t>(setup_.rcv + kAdd));
+    if (setup_.has_mask) around_.sfr.claim(static_cast<std::uint16_t>(setup_.rcv + kMsk));
+}
+
+// The bus is never left without an answer.
+void I2cSlave::reset() {
+    const State old = state_;
+    state_ = {};
+    around_.events.cancel(slot_);
+    if (old.step == Step::None) return;
+    open(old.open);
+}
+
+/// The last cycle that starts at or before `time`: what happens in it is told no later than that.
+Cycle I2cSlave::cycle_before(Time time) const {
+    const Cycle cycle = clock_.first_cycle_at(time);
+    return cycle > 0 && clock_.time_of(cycle) > time ? cycle - 1 : cycle;
+}
+
+bool I2cSlave::released() const {
+    return reg(kCon) & kSclrel;
+}
+
+bool I2cSlave::matches(std::uint8_t address_byte) const {
+    const std::uint16_t con = reg(kCon);
+    if (!(con & kI2cen)) return false;
+    if (con & kIpmien) return true;
+    if (address_byte == 0) return con & kGcen;
+    if (con & kA10m) return false;
+    const unsigned mask = setup_.has_mask ? reg(kMsk) : 0u;
+    return (((address_byte >> 1) ^ reg(kAdd)) & ~mask & 0x7F) == 0;
+}
+
+void I2cSlave::phase(const I2cPhase& phase, Cycle at) {
+    switch (phase.kind) {
+    case I2cPhaseKind::Start:
+        start(phase);
+        break;
+    case I2cPhaseKind::Write:
+        open(phase);
+        break;
+    case I2cPhaseKind::Read:
+        read(phase, at);
+        break;
+    case I2cPhaseKind::Stop:
+        stop();
+        break;
+    case I2cPhaseKind::Acknowledge:
+    case I2cPhaseKind::Data:
+    case I2cPhaseKind::BusLost:
+        break;
+    }
+    plan();
+}
+
+/// Whether anybody is here or not, the eighth clock brings the answer.
+void I2cSlave::open(const I2cPhase& phase) {
+    state_.open = phase;
+    state_.step = Step::Answer;
+    state_.released = phase.start;
+    state_.step_due = std::max(cycle_before(phase.start + clocks(phase, kAnswerClocks)), around_.now);
+    plan();
+}
+
+void I2cSlave::start(const I2cPhase& phase) {
+    std::uint16_t& stat = reg(kStat);
+    if (reg(kCon) & kI2cen) {
+        assign(stat, kS, true);
+        assign(stat, kP, false);
+    }
+    state_.addressed = matches(phase.byte);
+    state_.sends = phase.byte & 1;
+    state_.byte_sent = false;
+    state_.shown_due = kNoCycle;
+    open(phase);
+    if (!state_.addressed) return;
+    state_.shown_due = clock_.first_cycle_at(phase.start + clocks(phase, kByteClocks));
+    state_.shows_address = true;
+    state_.shown = phase.byte;
+}
+
+void I2cSlave::read(const I2cPhase& phase, Cycle at) {
+    if (!transmitting()) return open(phase);
+    state_.open = phase;
+    state_.released = phase.start;
+    state_.step_due = kNoCycle;
+    if (state_.byte_sent) {  // the byte before was acknowledged
+        hold_clock();
+        around_.interrupts.raise(setup_.slave_irq, at);
+    }
+    // Until the address is shown SCLREL still says what it said before it.
+    if (released() && state_.shown_due == kNoCycle)
+        shift(phase.start);
+    else
+        state_.step = Step::Hold;
+}
+
+void I2cSlave::stop() {
+    std::uint16_t& stat = reg(kStat);
+    if (reg(kCon) & kI2cen) {
+        assign(stat, kS, false);
+        assign(stat, kP, true);
+        assign(stat, kGcstat, false);
+    }
+    if (transmitting()) assign(reg(kCon), kSclrel, true);
+    state_.addressed = false;
+    state_.step = Step::None;
+    state_.step_due = kNoCycle;
+}
+
+void I2cSlave::hold_clock() {
+    assign(reg(kCon), kSclrel, false);
+}
+
+// Puts a byte into I2CxRCV, status with it, and asks for service.
+void I2cSlave::show(bool address, std::uint8_t byte, Cycle at) {
+    std::uint16_t& stat = reg(kStat);
+    if (stat & kRbf) {
+        stat |= kI2cov;
+    } else {
+        reg(kRcv) = byte;
+        stat |= kRbf;
+    }
+    assign(stat, kDa, !address);
+    if (address) {
+        assign(stat, kRw, byte & 1);
+        assign(stat, kGcstat, byte == 0);
+        if (state_.sends && state_.addressed) hold_clock();
+    }
+    around_.interrupts.raise(setup_.slave_irq, at);
+}
+
+/// The byte to send leaves from `from` on.
+void I2cSlave::shift(Time from) {
+    state_.released = std::max(from, state_.open.start);
+    state_.step = Step::Shift;
+    state_.step_due =
+        std::max(cycle_before(state_.released + clocks(state_.open, kAnswerClocks)), around_.now);
+}
+
+void I2cSlave::answer(Time stretch, bool acknowledge, std::uint8_t byte) {
+    I2cPhase answer = state_.open;
+    const bool data = answer.kind == I2cPhaseKind::Read;
+    answer.kind = data ? I2cPhaseKind::Data : I2cPhaseKind::Acknowledge;
+    answer.ack = acknowledge;
+    answer.byte = byte;
+    answer.stretch = stretch;
+    state_.step = Step::None;
+    state_.step_due = kNoCycle;
+    pins_.i2c_slave_answer(setup_.unit, answer);
+}
+
+// The byte on the bus is complete; the acknowledge is put on the line. A byte that was not read yet leaves no
+// room for another.
+void I2cSlave::eighth_clock(Cycle at) {
+    const Time eighth = state_.open.start + clocks(state_.open, kAnswerClocks);
+    const Time late = std::max<Time>(0, clock_.time_of(at) - eighth);
+    const bool is_data = state_.open.kind == I2cPhaseKind::Write && !state_.sends;
+    const bool is_address = state_.open.kind == I2cPhaseKind::Start;
+    state_.acknowledge = state_.addressed && (is_data || is_address) && !(reg(kStat) & kRbf);
+    if (state_.addressed && is_data) {
+        if (state_.acknowledge && (reg(kCon) & kStren)) {
+            state_.step = Step::Stretch;
+            state_.step_due = kNoCycle;
+            hold_clock();
+            return show(false, state_.open.byte, at);
+        }
+        state_.shown_due = clock_.first_cycle_at(state_.open.start + clocks(state_.open, kByteClocks));
+        state_.shows_address = false;
+        state_.shown = state_.open.byte;
+    }
+    if (is_address && !state_.acknowledge) state_.addressed = false;
+    answer(late, state_.acknowledge, kIdleLine);
+}
+
+void I2cSlave::due(void* owner, Cycle due) {
+    I2cSlave& self = *static_cast<I2cSlave*>(owner);
+    State& state = self.state_;
+    if (state.step_due <= due && state.step == Step::Shift) {
+        assign(self.reg(kStat), kTbf, false);
+        state.byte_sent = true;
+        self.answer(state.released - state.open.start, true, static_cast<std::uint8_t>(self.reg(kTrn)));
+    } else if (state.step_due <= due && state.step == Step::Answer) {
+        self.eighth_clock(due);
+    }
+    if (state.shown_due <= due) {
+        state.shown_due = kNoCycle;
+        self.show(state.shows_address, state.shown, due);
+    }
+    self.plan();
+}
+
+void I2cSlave::plan() {
+    around_.events.schedule(slot_, std::min(state_.step_due, state_.shown_due));
+}
+
+void I2cSlave::load(std::uint16_t value) {
+    std::uint16_t& stat = reg(kStat);
+    if (stat & kTbf) {
+        stat |= kIwcol;
+        return;
+    }
+    reg(kTrn) = value & 0xFF;
+    stat |= kTbf | kDa;
+}
+
+void I2cSlave::control_written(std::uint16_t old) {
+    std::uint16_t& con = reg(kCon);
+    // Without STREN the program can only let go.
+    if (!(con & kStren) && (old & kSclrel)) con |= kSclrel;
+    if ((old & kI2cen) && !(con & kI2cen)) return reset();
+    if (!(con & kSclrel) || (old & kSclrel)) return;
+    const Time free = clock_.time_of(around_.now + 1);
+    if (state_.step == Step::Hold) {
+        shift(free);
+    } else if (state_.step == Step::Stretch) {
+        const Time eighth = state_.open.start + clocks(state_.open, kAnswerClocks);
+        answer(std::max<Time>(0, free - eighth), state_.acknowledge, kIdleLine);
+    }
+    plan();
+}
+
+Time I2cSlave::earliest_answer(Cycle now) const {
+    switch (state_.step) {
+    case Step::None:
+        break;
+    case Step::Answer:
+    case Step::Shift:
+        return clock_.time_of(state_.step_due);
+    case Step::Stretch:
+        return clock_.time_of(now + 1);
+    case Step::Hold:
+        return clock_.time_of(now + 1) + clocks(state_.open, kAnswerClocks);
+    }
+    return cosim::kNever;
+}
+
+}  // namespace puckloop::dspic

@@ -1,0 +1,98 @@
+#pragma once
+// The I2C module as a slave: 7-bit addresses with mask and general call, clock stretching, SI2CxIF. Phases
+// come in from the bus as they begin; each but Stop is answered through Pins::i2c_slave_answer() when eight
+// clocks have passed since SCL was let go. Source: dsPIC30F Family Reference Manual, section 21, and DS70286;
+// fact sheets peripherals.md section 4 and rab.md section 2.2.
+//
+//   address, R/W = 0   answer at the 8th clock, SI2CxIF at the 9th; SCL is not held
+//   address, R/W = 1   the same, and SCLREL = 0: SCL is held until the program sets it, TRN loaded
+//   byte received      STREN = 0: answer at the 8th clock, SI2CxIF at the 9th; STREN = 1: deviation 1
+//   byte sent          TBF falls at the 8th clock; SI2CxIF and SCLREL = 0 when the master acknowledged
+//
+// Deviations
+//  1. With STREN = 1 a received byte is shown (RBF, SI2CxIF, SCLREL = 0) at the 8th clock and its answer
+//  waits
+//     for SCLREL: the byte ends on the bus when it would in silicon, the program sees it one clock earlier.
+//  2. That the master acknowledged a byte is known by its next Read: the interrupt comes with that, at the
+//     start of the next byte. A stop or a start instead means not acknowledged: no interrupt.
+//  3. 10-bit addresses (A10M) are never matched; SMBus levels and slew rate (SMEN, DISSLW) are stored.
+//  4. S and P follow what reaches the module: transfers to other devices do not.
+//  5. The slave goes on in Sleep and Idle.
+
+#include "cosim/clock.h"
+#include "emu/dspic/peripherals/i2c_master.h"
+#include "emu/dspic/peripherals/surroundings.h"
+#include "emu/dspic/pins.h"
+
+#include <cstdint>
+#include <optional>
+
+namespace puckloop::dspic {
+
+class I2cSlave {
+  public:
+    I2cSlave(const Surroundings& around, const I2cMaster::Setup& setup, const cosim::ClockDomain& clock,
+             Pins& pins);
+
+    void reset();
+    /// A phase that began at phase.start is handed in at cycle `at`.
+    void phase(const cosim::I2cPhase& phase, Cycle at);
+    /// No answer comes before this; kNever while nothing is open. `now`: the next instruction starts there.
+    cosim::Time earliest_answer(Cycle now) const;
+
+    // For the owner of the registers.
+    /// A write to I2CxTRN belongs to the slave.
+    bool transmitting() const { return state_.addressed && state_.sends; }
+    void load(std::uint16_t value);
+    /// I2CxCON was written; `old` was its value.
+    void control_written(std::uint16_t old);
+
+  private:
+    enum class Step : std::uint8_t {
+        None,
+        Answer,   ///< the 8th clock of an address or of a byte received
+        Stretch,  ///< a received byte is shown, SCL held until SCLREL is set
+        Hold,     ///< a byte to send waits for SCLREL
+        Shift     ///< a byte is being sent
+    };
+    struct State {
+        bool addressed = false;
+        bool sends = false;      ///< R/W = 1
+        bool byte_sent = false;  ///< since the address
+        bool acknowledge = false;
+        Step step = Step::None;
+        cosim::I2cPhase open;        ///< while step is not None
+        cosim::Time released = 0;    ///< SCL free from here on, for the byte that is open
+        Cycle step_due = kNoCycle;   ///< of Answer and Shift
+        Cycle shown_due = kNoCycle;  ///< the 9th clock: status and interrupt
+        bool shows_address = false;
+        std::uint8_t shown = 0;  ///< the byte to show then
+    };
+
+    static void due(void* owner, Cycle due);
+    void start(const cosim::I2cPhase& phase);
+    void read(const cosim::I2cPhase& phase, Cycle at);
+    void stop();
+    void open(const cosim::I2cPhase& phase);
+    void eighth_clock(Cycle at);
+    void answer(cosim::Time stretch, bool acknowledge, std::uint8_t byte);
+    void show(bool address, std::uint8_t byte, Cycle at);
+    void hold_clock();
+    void shift(cosim::Time from);
+    bool matches(std::uint8_t address_byte) const;
+    bool released() const;
+    Cycle cycle_before(cosim::Time time) const;
+    void plan();
+    std::uint16_t& reg(int offset) const {
+        return around_.sfr.raw(static_cast<std::uint16_t>(setup_.rcv + offset));
+    }
+
+    Surroundings around_;
+    I2cMaster::Setup setup_;
+    const cosim::ClockDomain& clock_;
+    Pins& pins_;
+    State state_;
+    EventQueue::Slot slot_;
+};
+
+}  // namespace puckloop::dspic

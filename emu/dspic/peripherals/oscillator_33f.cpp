@@ -1,0 +1,174 @@
+#include "emu/dspic/peripherals/oscillator_33f.h"
+
+#include "emu/dspic/devices/dspic33fj256gp710_sfr.h"
+
+#include <cmath>
+
+namespace puckloop::dspic {
+
+namespace {
+
+constexpr double kFrcHertz = 7'370'000.0;
+constexpr double kSoscHertz = 32'768.0;
+constexpr double kLprcHertz = 32'768.0;
+constexpr int kClocksPerCycle = 2;
+
+// COSC, NOSC, FNOSC
+enum Source : std::uint8_t {
+    kFrc = 0,
+    kFrcPll = 1,
+    kPrimary = 2,
+    kPrimaryPll = 3,
+    kSosc = 4,
+    kLprc = 5,
+    kFrcBy16 = 6,
+    kFrcDivided = 7
+};
+
+// OSCCON
+constexpr std::uint16_t kHighWritable = 0x0700;  // NOSC
+constexpr std::uint16_t kClklock = bit(7);
+constexpr std::uint16_t kLock = bit(5);
+constexpr std::uint16_t kCf = bit(3);
+constexpr std::uint16_t kLposcen = bit(1);
+constexpr std::uint16_t kOswen = bit(0);
+constexpr std::uint16_t kLowWritable = kClklock | kLposcen | kOswen;
+// FOSC
+constexpr std::uint16_t kSwitchingOff = bit(7);  // FCKSM1
+constexpr std::uint16_t kMonitorOff = bit(6);    // FCKSM0
+constexpr unsigned kPrimaryDisabled = 3;         // POSCMD
+
+constexpr double kFrcDivider[] = {1, 2, 4, 8, 16, 32, 64, 256};  // FRCDIV
+constexpr double kPllPost[] = {2, 4, 4, 8};                      // PLLPOST
+
+constexpr double kSwitchCycles = 10.0;
+constexpr double kStartupPeriods = 1024.0;
+constexpr double kLockSeconds = 1e-3;
+
+bool is_pll(std::uint8_t source) {
+    return source == kFrcPll || source == kPrimaryPll;
+}
+
+}  // namespace
+
+Oscillator33F::Oscillator33F(const Surroundings& around, cosim::ClockDomain& clock, double crystal_hertz)
+    : around_(around),
+      clock_(clock),
+      crystal_hertz_(crystal_hertz),
+      slot_(around.events.add(this, switch_due)) {
+    around_.sfr.hook(sfr33::OSCCON, this, nullptr, write_osccon);
+    around_.sfr.hook(sfr33::CLKDIV, this, nullptr, write_divider);
+    around_.sfr.hook(sfr33::PLLFBD, this, nullptr, write_divider);
+    around_.sfr.claim(sfr33::OSCTUN);
+}
+
+double Oscillator33F::start_hertz() {
+    return kFrcHertz / kClocksPerCycle;
+}
+
+void Oscillator33F::reset(bool power_on) {
+    state_ = {};
+    around_.events.cancel(slot_);
+    if (power_on) running_ = static_cast<std::uint8_t>(field(words_.foscsel, 2, 0));
+    std::uint16_t& osccon = around_.sfr.raw(sfr33::OSCCON);
+    osccon = static_cast<std::uint16_t>(running_ << 8);
+    select(running_, around_.now);
+}
+
+double Oscillator33F::pll(double input) const {
+    const std::uint16_t clkdiv = around_.sfr.raw(sfr33::CLKDIV);
+    const double multiplier = field(around_.sfr.raw(sfr33::PLLFBD), 8, 0) + 2.0;
+    return input * multiplier / ((field(clkdiv, 4, 0) + 2.0) * kPllPost[field(clkdiv, 7, 6)]);
+}
+
+double Oscillator33F::source_hertz(std::uint8_t source) const {
+    const double divided = kFrcHertz / kFrcDivider[field(around_.sfr.raw(sfr33::CLKDIV), 10, 8)];
+    switch (source) {
+    case kFrcPll:
+        return pll(divided);
+    case kPrimary:
+        return crystal_hertz_;
+    case kPrimaryPll:
+        return pll(crystal_hertz_);
+    case kSosc:
+        return kSoscHertz;
+    case kLprc:
+        return kLprcHertz;
+    case kFrcBy16:
+        return kFrcHertz / 16.0;
+    case kFrcDivided:
+        return divided;
+    default:
+        return kFrcHertz;
+    }
+}
+
+// Runs on `source` from cycle `at` on.
+void Oscillator33F::select(std::uint8_t source, Cycle at) {
+    running_ = source;
+    std::uint16_t& osccon = around_.sfr.raw(sfr33::OSCCON);
+    osccon = static_cast<std::uint16_t>((osccon & ~0x7000u) | static_cast<unsigned>(source) << 12);
+    assign(osccon, kLock, is_pll(source));
+    change_rate(clock_, at, source_hertz(source) / kClocksPerCycle);
+}
+
+void Oscillator33F::begin_switch(std::uint8_t present, std::uint8_t wanted) {
+    std::uint16_t& osccon = around_.sfr.raw(sfr33::OSCCON);
+    const bool primary = wanted == kPrimary || wanted == kPrimaryPll;
+    if (is_pll(present) && is_pll(wanted)) {
+        assign(osccon, kOswen, false);
+        return;
+    }
+    osccon = static_cast<std::uint16_t>(osccon & ~(kLock | kCf));
+    // Without an oscillator to switch to, the part waits for it for ever.
+    if (primary && field(words_.fosc, 1, 0) == kPrimaryDisabled) return;
+    double seconds = kSwitchCycles * kClocksPerCycle / source_hertz(wanted);
+    if (primary) seconds += kStartupPeriods / crystal_hertz_;
+    if (is_pll(wanted)) seconds += kLockSeconds;
+    const auto wait = static_cast<Cycle>(std::llround(seconds * clock_.hertz()));
+    around_.events.schedule(slot_, around_.now + 1 + wait);
+}
+
+void Oscillator33F::write_osccon(void* owner, std::uint16_t address, std::uint16_t value,
+                                 std::uint16_t mask) {
+    Oscillator33F& self = *static_cast<Oscillator33F*>(owner);
+    std::uint16_t& osccon = self.around_.sfr.raw(address);
+    const Cycle now = self.around_.now;
+    const bool locked = (osccon & kClklock) && (self.words_.fosc & kMonitorOff);
+    if (mask == 0xFF00) {
+        self.state_.low = kLowKeys;
+        if (self.state_.high.opens(static_cast<std::uint8_t>(value >> 8), now) && !locked)
+            osccon = merge(osccon, value, kHighWritable);
+        return;
+    }
+    if (mask != 0x00FF) return;  // word writes do not open it
+    self.state_.high = kHighKeys;
+    if (!self.state_.low.opens(static_cast<std::uint8_t>(value), now) || locked) return;
+    const std::uint16_t old = osccon;
+    osccon = merge(osccon, value, kLowWritable);
+    if (!(value & kCf)) assign(osccon, kCf, false);
+    const auto present = static_cast<std::uint8_t>(field(osccon, 14, 12));
+    const auto wanted = static_cast<std::uint8_t>(field(osccon, 10, 8));
+    if (!(osccon & kOswen) || (self.words_.fosc & kSwitchingOff) || wanted == present) {
+        assign(osccon, kOswen, false);
+        self.around_.events.cancel(self.slot_);
+    } else if (!(old & kOswen)) {
+        self.begin_switch(present, wanted);
+    }
+}
+
+void Oscillator33F::write_divider(void* owner, std::uint16_t address, std::uint16_t value,
+                                  std::uint16_t mask) {
+    Oscillator33F& self = *static_cast<Oscillator33F*>(owner);
+    self.around_.sfr.store(address, value, mask);
+    self.change_rate(self.clock_, self.around_.now + 1, self.source_hertz(self.running_) / kClocksPerCycle);
+}
+
+void Oscillator33F::switch_due(void* owner, Cycle due) {
+    Oscillator33F& self = *static_cast<Oscillator33F*>(owner);
+    std::uint16_t& osccon = self.around_.sfr.raw(sfr33::OSCCON);
+    assign(osccon, kOswen, false);
+    self.select(static_cast<std::uint8_t>(field(osccon, 10, 8)), due);
+}
+
+}  // namespace puckloop::dspic
