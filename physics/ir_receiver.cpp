@@ -1,7 +1,6 @@
 #include "physics/ir_receiver.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace puckloop::physics {
 
@@ -9,7 +8,7 @@ using cosim::Time;
 
 namespace {
 
-constexpr int kFullScale = 4095;
+constexpr float kFullScale = 4095;
 
 /// A decision falls a tenth of the delay before it shows at the latest, so that it is never due when it
 /// falls.
@@ -18,7 +17,7 @@ Time decided_within(double seconds, Time delay) {
 }
 
 int counts(float level) {
-    return std::clamp(static_cast<int>(std::lround(level)), 0, kFullScale);
+    return static_cast<int>(std::clamp(level, 0.0F, kFullScale) + 0.5F);
 }
 
 }  // namespace
