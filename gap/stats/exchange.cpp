@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::size_t kStandsStill = 4;          // rows a plateau on average
 constexpr std::size_t kFreeBlocksForWithin = 5;  // blocks beyond one a run, to exchange inside runs
+constexpr std::size_t kMostUnits = 6000;         // beyond, neighbours are averaged: time, not knowledge
 constexpr int kHitsToStop = 20;                  // then p is known well enough
 constexpr int kHitsForCount = 10;                // with fewer, the tail is carried on by a gamma distribution
 constexpr double kUnitsForTail = 20;             // below, permutations are few and their tail is a staircase
@@ -117,6 +118,8 @@ Pairs prepared(const Series& residual, const std::vector<double>& covariate) {
     if (rows.size() == 0) return rows;
     if (const auto still = plateaus(rows); still.size() * kStandsStill <= rows.size())
         rows = means_of(rows, still);
+    if (rows.size() > kMostUnits)
+        rows = means_of(rows, blocks_of(rows.group, (rows.size() + kMostUnits - 1) / kMostUnits));
     std::vector<Stretch> runs = runs_of(rows.group);
     const double between = share_between(rows, runs);
     if (runs.size() < rows.size() && between > 0.5) {
