@@ -386,6 +386,13 @@ std::uint16_t Chip::peek(std::string_view register_name) const {
     return parts_->sfr.raw(info->address);
 }
 
+std::uint16_t Chip::peek_data(std::uint16_t address) const {
+    const DeviceInfo& device = parts_->device;
+    if (address < device.ram_start || address >= device.ram_end || address % 2)
+        throw std::out_of_range("no RAM word at this address");
+    return parts_->core.ram()[(address - device.ram_start) / 2u];
+}
+
 ChipReport Chip::report() const {
     ChipReport report = parts_->report;
     report.instructions = parts_->core.instructions();

@@ -27,7 +27,7 @@ struct ChipOptions {
     double ppm = 0.0;                    ///< the crystal's error, + is fast
     /// 30F: configuration word FOSC that is in force whatever the image says (a bootloader's words stay on
     /// the part).
-    std::optional<std::uint16_t> fosc;
+    std::optional<std::uint16_t> fosc{};
 };
 
 /// One entry each; times are the chip's cycles.
@@ -142,6 +142,8 @@ class Chip {
     /// A register's present value by data-sheet name, as the program would read it but without side
     /// effects. Throws std::out_of_range if the device has no such register.
     std::uint16_t peek(std::string_view register_name) const;
+    /// A word of RAM at an even data address. Throws std::out_of_range elsewhere.
+    std::uint16_t peek_data(std::uint16_t address) const;
     ChipReport report() const;
 
     /// Busy-wait loops are skipped forward (default); off, every cycle of them is executed.

@@ -87,7 +87,7 @@ void I2cSlave::open(const I2cPhase& phase) {
     state_.open = phase;
     state_.step = Step::Answer;
     state_.released = phase.start;
-    state_.step_due = std::max(cycle_before(phase.start + clocks(phase, kAnswerClocks)), around_.now);
+    state_.step_due = std::max(cycle_before(phase.start + clocks(phase, kAnswerClocks)), around_.now + 1);
     plan();
 }
 
