@@ -1,0 +1,66 @@
+#include "gap/selftest/effect_lists.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace puckloop::gap::selftest {
+
+namespace {
+
+constexpr double kRadius = 0.0205, kAxle = 0.053;
+using Truths = std::vector<Truth>;
+using K = MotionKnobs;
+
+}  // namespace
+
+std::unique_ptr<Bench> motion_bench() {
+    // clang-format off
+    return std::make_unique<BenchOf<K>>(motion_rig(), std::vector<HiddenEffect<K>>{
+        {1, "wheel radius", 0.03, true, [](K& k, double a, RandomStream) {
+            k.radius_scale = 1 + a;
+            return Truths{{"wheel_scale", a}}; }},
+        {2, "wheel mismatch", 0.01, true, [](K& k, double a, RandomStream) { k.mismatch = a; return Truths{{"wheel_mismatch", a}}; }},
+        {3, "axle length", 0.04, true, [](K& k, double a, RandomStream) {
+            k.axle_scale = 1 + a;
+            return Truths{{"robot.axle_length", kAxle * (1 + a)}}; }},
+        {4, "scrub", 0.04, false, [](K& k, double a, RandomStream) { k.scrub = a; return Truths{{"robot.turn_scrub", a}}; }},
+        // friction falls from 0.7 to 0.02
+        {5, "slip at starts", 1.0, false, [](K& k, double a, RandomStream) {
+            k.friction = 0.7 * std::pow(0.02 / 0.7, a);
+            return Truths{{"inverse_friction", 1 / k.friction}}; }},
+        {6, "creep under load", 0.5, false, [](K& k, double a, RandomStream) { k.creep = a; return Truths{{"robot.load_creep", a}}; }},
+        {7, "step loss", 1.0, false, [](K& k, double a, RandomStream) {
+            k.loss_speed = 1100 - 300 * a; k.loss_width = 60;
+            return Truths{{"robot.step_loss_speed", k.loss_speed}}; }},
+        {9, "dead band", 120, false, [](K& k, double a, RandomStream) { k.deadband = a; return Truths{{"robot.deadband", a}}; }},
+        {10, "backlash", 0.004, false, [](K& k, double a, RandomStream) {
+            k.backlash = a;
+            return Truths{{"robot.backlash", a / kRadius}}; }},
+        {11, "command latency", 0.15, false, [](K& k, double a, RandomStream) { k.latency = a; return Truths{{"command.latency", a}}; }},
+        {12, "lost commands", 0.15, false, [](K& k, double a, RandomStream) { k.drop = a; return Truths{{"command.loss", a}}; },
+            std::array{0.01, 0.03, 0.08}},
+        {13, "pull in the world", 0.01, false, [](K& k, double a, RandomStream r) {
+            const double way = 2 * std::numbers::pi * r.uniform();
+            k.pull_x = a * std::cos(way); k.pull_y = a * std::sin(way);
+            return Truths{{"robot.drift_x", k.pull_x}, {"robot.drift_y", k.pull_y}}; }},
+        {14, "pushes", 0.05, false, [](K& k, double a, RandomStream) { k.push_rate = 0.05; k.push_size = a; return Truths{}; }},
+        {15, "marker off the axle", 0.02, false, [](K& k, double a, RandomStream r) {
+            const double way = 2 * std::numbers::pi * r.uniform();
+            k.marker_x = a * std::cos(way); k.marker_y = a * std::sin(way);
+            return Truths{{"tracker.marker_x", k.marker_x}, {"tracker.marker_y", k.marker_y}}; }},
+        {16, "tracker delay", 0.2, false, [](K& k, double a, RandomStream) { k.tracker_delay = a; return Truths{{"tracker.delay", a}}; }},
+        {17, "heading drift", 0.02, true, [](K& k, double a, RandomStream) { k.heading_drift = a; return Truths{{"tracker.heading_drift", a}}; }},
+        // a circle of one sense only: a mismatch and another axle look the same
+        {2, "mismatch on one circle", 0.01, true, [](K& k, double a, RandomStream) { k.mismatch = a; return Truths{}; },
+            {}, "one circle", 3},
+        {3, "axle on one circle", 0.04, true, [](K& k, double a, RandomStream) { k.axle_scale = 1 + a; return Truths{}; },
+            {}, "one circle", 2},
+        {0, "wheel out of round", 0.3, false, [](K& k, double a, RandomStream) { k.eccentricity = a; return Truths{}; }},
+        {0, "tracker's lens", 2.0, true, [](K& k, double a, RandomStream) { k.lens = a; return Truths{}; }},
+        {0, "slippery patch", 0.8, false, [](K& k, double a, RandomStream) { k.patch = a; return Truths{}; }},
+        {0, "kick at reversals", 0.5, true, [](K& k, double a, RandomStream) { k.thrust = a; return Truths{}; }},
+    });
+    // clang-format on
+}
+
+}  // namespace puckloop::gap::selftest

@@ -1,0 +1,65 @@
+#include "gap/selftest/plain_rab.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace puckloop::gap::selftest {
+
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr std::array<double, kReceivers> kDirections{15,   50,   75,   105, 133, 159,
+                                                     -165, -135, -105, -77, -50, -15};
+constexpr std::array<double, 9> kLogMedian{7.64689, 7.59652, 7.24955, 7.08464, 6.9845,
+                                           6.91745, 6.82319, 6.82855, 6.82855};
+constexpr std::array<double, 9> kSpread{0.357061, 0.319231, 0.192649, 0.15294, 0.109233,
+                                        0.121653, 0.153155, 0.141843, 0.141843};
+constexpr double kBearingPerGain = 0.15;  // rad a unit of ln gain between the neighbours
+constexpr double kFadingPeriod = 9.0;     // s
+
+double between(const std::array<double, 9>& values, double distance) {
+    const auto& d = kStrengthDistances;
+    if (distance <= d.front()) return values.front();
+    for (std::size_t k = 1; k < d.size(); ++k)
+        if (distance <= d[k])
+            return values[k - 1] + (values[k] - values[k - 1]) * (distance - d[k - 1]) / (d[k] - d[k - 1]);
+    return values.back();
+}
+
+}  // namespace
+
+double receiver_direction(std::size_t receiver) {
+    return kDirections[receiver] * kDegree;
+}
+
+double strength_spread(double distance) {
+    return between(kSpread, distance);
+}
+
+Hearing hear(const RabKnobs& k, const Sending& s, RandomStream& chance) {
+    double level = between(kLogMedian, s.distance) + std::log(k.gain[s.receiver]);
+    double bearing =
+        s.bearing + kBearingPerGain * (std::log(k.gain[(s.receiver + 1) % kReceivers]) -
+                                       std::log(k.gain[(s.receiver + kReceivers - 1) % kReceivers]));
+    const double path = chance.uniform();
+    const double side = chance.normal();
+    if (path < k.reflected) {
+        level -= k.reflected_loss;
+        bearing += 0.6 * side;
+    }
+    if (s.bearing > 0.8 && s.bearing < 2.4) level -= k.sector;
+    level += k.fading * std::sin(2 * std::numbers::pi * s.t / kFadingPeriod);
+    bearing += k.wander * std::sin(2 * s.bearing);
+    const double others = s.senders - 1;
+    double kept = std::exp(-2 * others * k.collisions * s.frame_time / s.send_period);
+    kept *= 1.0 - k.loss;
+    kept *= std::min(1.0, k.poll_rate / s.arrival_rate);
+    const double phase = s.t / k.beat_period - std::floor(s.t / k.beat_period);
+    if (phase < k.beat) kept = 0.0;
+    const bool received = chance.uniform() < kept;
+    double strength = std::min(std::exp(level), k.saturation);
+    return {received, std::max(strength, k.far_floor), std::remainder(bearing, 2 * std::numbers::pi)};
+}
+
+}  // namespace puckloop::gap::selftest

@@ -1,0 +1,41 @@
+#pragma once
+// A rig is one kind of experiment that can be measured with something wrong: it makes the table without
+// noise, then what the instruments make of it. Knob types and formulas are the plain_*.h models'.
+
+#include "base/random.h"
+#include "gap/selftest/hidden_table.h"
+#include "gap/selftest/noise.h"
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace puckloop::gap::selftest {
+
+/// Standard deviation of the noise of a measured column: the floor that strengths are told in. Of what
+/// happens or not it is 1, so that the strength is the root of the share of rows that turn out otherwise.
+struct NoiseFloor {
+    const char* column;
+    double sd;
+};
+
+/// Everything that one experiment needs: what is done is fixed by `seed` and `variant`.
+template <class Knobs>
+struct Rig {
+    const char* kind;
+    std::vector<NoiseFloor> floor;
+    /// Exact tables; chance only decides what the effects themselves leave to chance.
+    std::function<HiddenExperiment(const Knobs&, std::uint64_t seed, const std::string& variant)> exact;
+    /// Puts noise on exact tables, quantises and clips.
+    std::function<void(HiddenExperiment&, const Knobs&, const NoiseStyle&, std::uint64_t seed)> measure;
+    /// Root mean square of (sd / floor sd - 1) over the rows most affected column; 0 if noise stays as it is.
+    std::function<double(const Knobs&, std::uint64_t seed, const std::string& variant)> growth;
+};
+
+/// Root mean square of the difference between two exact experiments in units of the noise floor, of the
+/// column most affected.
+double distance_in_noise(const HiddenExperiment& with, const HiddenExperiment& without,
+                         const std::vector<NoiseFloor>& floor);
+
+}  // namespace puckloop::gap::selftest

@@ -1,0 +1,121 @@
+#include "gap/selftest/rigs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace puckloop::gap::selftest {
+
+namespace {
+
+constexpr double kBearingNoise = 0.07;   // rad
+constexpr double kUsualSpread = 0.13;    // of ln strength
+constexpr double kUsualStrength = 1000;  // counts
+constexpr double kFullScale = 4095;
+constexpr double kSend = 0.1;             // s between two messages of the sender
+constexpr double kFrame = 0.0092;         // s
+constexpr double kBearingQuantum = 1e-4;  // rad
+constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
+constexpr int kRepeats = 3;
+
+class Plan {
+  public:
+    Plan(const RabKnobs& knobs, std::uint64_t seed)
+        : knobs_(knobs), chance_(seed, "messages"), place_(seed, "bearings") {}
+
+    void begin(const char* part) {
+        runs_.emplace_back();
+        runs_.back().conditions = {{"part", part}};
+        t_ = 0.0;
+    }
+    void send(int messages, double distance, std::size_t receiver, int senders, double rate) {
+        HiddenRun& run = runs_.back();
+        const double bearing = std::remainder(receiver_direction(receiver) + 0.1 * (2 * place_.uniform() - 1),
+                                              2 * std::numbers::pi);
+        for (int k = 0; k < messages; ++k, t_ += kSend) {
+            const Sending s{t_, distance, bearing, receiver, senders, kFrame, kSend, rate};
+            const Hearing h = hear(knobs_, s, chance_);
+            run.column("t_s", "s").values.push_back(t_);
+            run.column("distance_m", "cm").values.push_back(distance * 100);
+            run.column("true_bearing_rad", "rad").values.push_back(bearing);
+            run.column("receiver").values.push_back(static_cast<double>(receiver + 1));
+            run.column("senders").values.push_back(senders);
+            run.column("frame_time", "ms").values.push_back(kFrame * 1e3);
+            run.column("send_period", "ms").values.push_back(kSend * 1e3);
+            run.column("arrival_rate", "Hz").values.push_back(rate);
+            run.column("received").values.push_back(h.received ? 1 : 0);
+            run.column("strength", "counts").values.push_back(h.received ? h.strength : kNothing);
+            run.column("bearing_rad", "rad").values.push_back(h.received ? h.bearing : kNothing);
+            run.column("order").values.push_back(static_cast<double>(runs_.size()));
+        }
+    }
+    std::vector<HiddenRun> take() { return std::move(runs_); }
+
+  private:
+    RabKnobs knobs_;
+    RandomStream chance_, place_;
+    std::vector<HiddenRun> runs_;
+    double t_ = 0.0;
+};
+
+HiddenExperiment exact_rab(const RabKnobs& knobs, std::uint64_t seed, const std::string& variant) {
+    Plan plan(knobs, seed);
+    for (int repeat = 0; repeat < kRepeats; ++repeat) {
+        plan.begin("distances");
+        for (const double distance : kStrengthDistances)
+            plan.send(16, distance, variant == "one pair" ? 0 : static_cast<std::size_t>(repeat * 4), 1, 10);
+        if (variant == "one pair") continue;
+        plan.begin("turn");
+        for (std::size_t receiver = 0; receiver < kReceivers; ++receiver)
+            plan.send(12, 0.30, receiver, 1, 10);
+        plan.begin("senders");
+        for (const int senders : {1, 2, 3, 4})
+            plan.send(40, 0.30, 0, senders, 10.0 * senders);
+        plan.begin("rates");
+        for (const double rate : {10.0, 30.0, 60.0, 120.0})
+            plan.send(40, 0.15, 0, 1, rate);
+    }
+    HiddenExperiment experiment;
+    experiment.kind = "rab";
+    experiment.instrument = {{"strength", "{ floor = 0, ceiling = 4095, quantum = 1 }"}};
+    experiment.runs = plan.take();
+    return experiment;
+}
+
+void measure_rab(HiddenExperiment& experiment, const RabKnobs& knobs, const NoiseStyle& style,
+                 std::uint64_t seed) {
+    for (std::size_t r = 0; r < experiment.runs.size(); ++r) {
+        HiddenRun& run = experiment.runs[r];
+        NoiseSeries strength(style, 1.0, RandomStream(seed, fmt::format("strength {}", r)));
+        NoiseSeries bearing(style, kBearingNoise, RandomStream(seed, fmt::format("bearing {}", r)));
+        for (std::size_t k = 0; k < run.rows(); ++k) {
+            const double sd =
+                strength_spread(run.find("distance_m")->values[k] / 100) * (1.0 + knobs.more_spread);
+            double& level = run.column("strength").values[k];
+            level = std::clamp(std::round(level * std::exp(sd * strength.next())),
+                               knobs.far_floor > 0 ? knobs.far_floor : 0.0,
+                               std::min(kFullScale, knobs.saturation));
+            double& way = run.column("bearing_rad").values[k];
+            way = quantised(way + bearing.next(), kBearingQuantum);
+            if (run.find("received")->values[k] == 0.0) level = way = kNothing;
+        }
+    }
+}
+
+}  // namespace
+
+const Rig<RabKnobs>& rab_rig() {
+    static const Rig<RabKnobs> rig{
+        "rab",
+        {{"strength", kUsualSpread * kUsualStrength}, {"bearing_rad", kBearingNoise}, {"received", 1.0}},
+        exact_rab,
+        measure_rab,
+        [](const RabKnobs& knobs, std::uint64_t, const std::string&) { return knobs.more_spread; }};
+    return rig;
+}
+
+}  // namespace puckloop::gap::selftest

@@ -1,0 +1,75 @@
+#include "gap/selftest/rigs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace puckloop::gap::selftest {
+
+namespace {
+
+constexpr double kNoise = 0.0005;  // s
+constexpr double kQuantum = 1e-5;  // s
+constexpr int kRuns = 8;
+constexpr int kCycles = 200;
+
+HiddenExperiment exact_timing(const TimingKnobs& knobs, std::uint64_t seed, const std::string&) {
+    HiddenExperiment experiment;
+    experiment.kind = "timing";
+    for (int r = 0; r < kRuns; ++r) {
+        RandomStream content(seed, fmt::format("content {}", r));
+        FrameSource source(knobs, RandomStream(seed, fmt::format("frames {}", r)));
+        HiddenRun run;
+        for (long n = 0; n < kCycles; ++n) {
+            Cycle c{};
+            c.number = n;
+            c.bytes = 84 + static_cast<double>(content.below(3)) * 20;
+            c.edges = static_cast<double>(content.below(20));
+            c.i2c = static_cast<double>(content.below(4) * 4);
+            c.load = 0.1 * static_cast<double>(content.below(5));
+            const Arrived a = source.next(c);
+            run.column("seq").values.push_back(static_cast<double>(n));
+            run.column("t_robot_s", "s").values.push_back(a.robot);
+            run.column("t_host_s", "s").values.push_back(a.host);
+            run.column("nominal_period", "ms").values.push_back(100);
+            run.column("bytes").values.push_back(c.bytes);
+            run.column("edges").values.push_back(c.edges);
+            run.column("i2c_reads").values.push_back(c.i2c);
+            run.column("load").values.push_back(c.load);
+            run.column("frame_ok").values.push_back(a.ok ? 1 : 0);
+            run.column("shifted").values.push_back(a.shifted ? 1 : 0);
+            run.column("order").values.push_back(r + 1);
+        }
+        experiment.runs.push_back(std::move(run));
+    }
+    return experiment;
+}
+
+void measure_timing(HiddenExperiment& experiment, const TimingKnobs&, const NoiseStyle& style,
+                    std::uint64_t seed) {
+    for (std::size_t r = 0; r < experiment.runs.size(); ++r) {
+        NoiseSeries noise(style, kNoise, RandomStream(seed, fmt::format("host {}", r)));
+        double last = -1.0;
+        for (double& value : experiment.runs[r].column("t_host_s").values) {
+            value =
+                std::max(quantised(value + noise.next(), kQuantum), last);  // a host's clock does not go back
+            last = value;
+        }
+    }
+}
+
+}  // namespace
+
+const Rig<TimingKnobs>& timing_rig() {
+    static const Rig<TimingKnobs> rig{
+        "timing",
+        {{"t_host_s", kNoise}, {"t_robot_s", kNoise}, {"frame_ok", 1.0}, {"shifted", 1.0}},
+        exact_timing,
+        measure_timing,
+        [](const TimingKnobs&, std::uint64_t, const std::string&) { return 0.0; }};
+    return rig;
+}
+
+}  // namespace puckloop::gap::selftest
