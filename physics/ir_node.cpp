@@ -84,7 +84,6 @@ struct IrNode::Impl {
     std::vector<std::uint16_t> masks;
     std::vector<IrOutput> released;
     bool any_moved = false;
-    bool begun = false;
 };
 
 IrNode::Impl::Impl(const World& description, const IrNodeOptions& options)
@@ -106,6 +105,8 @@ IrNode::Impl::Impl(const World& description, const IrNodeOptions& options)
     touched.resize(receivers.size());
     masks.resize(receivers.size());
     looked.resize(receivers.size());
+    for (std::size_t r = 0; r < receivers.size(); ++r)
+        receivers[r].see(0, medium.at(r));
 }
 
 void IrNode::Impl::take(const Message& message) {
@@ -197,11 +198,6 @@ std::span<const cosim::Port> IrNode::ports() const {
 
 void IrNode::advance(Time until, std::span<const Message> inbox, std::vector<Message>& outbox) {
     auto& ir = *impl_;
-    if (!ir.begun) {
-        ir.begun = true;
-        for (std::size_t r = 0; r < ir.receivers.size(); ++r)
-            ir.receivers[r].see(0, ir.medium.at(r));
-    }
     for (auto next = inbox.begin(); next != inbox.end();) {
         const Time now = next->time;
         for (; next != inbox.end() && next->time == now; ++next)
@@ -213,7 +209,7 @@ void IrNode::advance(Time until, std::span<const Message> inbox, std::vector<Mes
 
 Time IrNode::promise(PortIndex port) const {
     if (port >= impl_->receivers.size()) return kNever;
-    return impl_->begun ? impl_->receivers[port].next_output() : Time{0};
+    return impl_->receivers[port].next_output();
 }
 
 Time IrNode::reaction(PortIndex port) const {

@@ -5,6 +5,7 @@
 #include "emu/dspic/core_bench.h"
 #include "tools/bench/reference.h"
 #include "tools/commands.h"
+#include "tools/commands/bench_rab.h"
 #include "tools/commands/number_checks.h"
 #include "tools/run/run_scenario.h"
 
@@ -154,7 +155,9 @@ void declare_bench(CLI::App& app, int& status) {
         ->check(CLI::Range(1, 100))
         ->type_name("N");
     command->add_flag("--json", options->json, "print JSON");
-    command->callback([options, &status] {
+    declare_bench_rab(*command, status);
+    command->callback([options, command, &status] {
+        if (!command->get_subcommands().empty()) return;
         print(measure_all(*options), options->json);
         status = 0;
     });

@@ -1,0 +1,125 @@
+// `puckloop bench rab`: range and bearing as emulated boards read them, beside the published table.
+
+#include "tools/commands/bench_rab.h"
+#include "base/error.h"
+#include "cosim/interrupt.h"
+#include "tools/commands/number_checks.h"
+#include "tools/rab/measure.h"
+#include "tools/rab/picture.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <memory>
+
+namespace puckloop::tools {
+
+namespace {
+
+constexpr double kCentimetres = 100;
+
+struct Options {
+    RabMeasurement measurement;
+    std::vector<double> distances_cm;
+    std::vector<std::string> parameters;
+    std::filesystem::path out = "out/rab";
+};
+
+void take_parameters(Options& options) {
+    for (const std::string& text : options.parameters) {
+        const auto equals = text.find('=');
+        std::size_t used = 0;
+        double value = 0.0;
+        try {
+            if (equals != std::string::npos) value = std::stod(text.substr(equals + 1), &used);
+        } catch (const std::exception&) {
+            used = 0;
+        }
+        if (equals == std::string::npos || used == 0 || used != text.size() - equals - 1)
+            throw InputError("", "--set", fmt::format("'{}' is not an assignment", text), "NAME=NUMBER");
+        options.measurement.parameters[text.substr(0, equals)] = value;
+    }
+}
+
+void save(const std::filesystem::path& file, const std::string& text) {
+    std::ofstream stream(file);
+    stream << text;
+    stream.close();
+    if (!stream) throw RunError(fmt::format("cannot write {}", file.string()));
+}
+
+std::string readings_csv(const RabMeasured& measured, const std::vector<double>& distances) {
+    std::string csv = "distance_cm,sender,received,intact,strength,bearing_rad,bearing_true_rad\n";
+    for (const RabReadingRow& row : measured.rows)
+        csv += fmt::format("{:g},{},{},{},{},{:.4f},{:.4f}\n", distances[row.distance] * kCentimetres,
+                           row.sender, row.received ? 1 : 0, row.intact ? 1 : 0, row.range, row.bearing,
+                           row.bearing_true);
+    return csv;
+}
+
+void run(Options& options, int& status) {
+    RabMeasurement& what = options.measurement;
+    if (options.distances_cm.empty())
+        for (const auto& entry : published_strengths())
+            what.distances.push_back(entry.distance);
+    for (const double centimetres : options.distances_cm)
+        what.distances.push_back(centimetres / kCentimetres);
+    take_parameters(options);
+    std::error_code failed;
+    std::filesystem::create_directories(options.out, failed);
+    if (failed) throw RunError(fmt::format("cannot make {}: {}", options.out.string(), failed.message()));
+    const bool terminal = ::isatty(STDERR_FILENO) == 1;
+    const cosim::InterruptGuard interrupt;
+    const RabMeasured measured = measure_rab(
+        what,
+        [terminal](double share) {
+            if (terminal) fmt::print(stderr, "\r{:3.0f} %", 100 * share);
+        },
+        interrupt.flag());
+    if (terminal) fmt::print(stderr, "\r     \r");
+    const auto summary = summarise(measured.rows, what.distances);
+    save(options.out / "rab_errors.csv", summary_csv(summary));
+    save(options.out / "rab_readings.csv", readings_csv(measured, what.distances));
+    save(options.out / "rab_errors.svg",
+         rab_picture(summary, fmt::format("{}, {} pairs of boards, {} frames a distance, potentiometer {}",
+                                          what.firmware.filename().string(), what.pairs,
+                                          2 * what.pairs * what.repeats, what.power)));
+    fmt::print("{}{:.0f} simulated seconds in {:.0f} s; {}\n", summary_text(summary), measured.simulated_s,
+               measured.wall_s, options.out.string());
+    status = 0;
+}
+
+}  // namespace
+
+void declare_bench_rab(CLI::App& bench, int& status) {
+    CLI::App* command = bench.add_subcommand(
+        "rab", "range and bearing of two emulated boards against distance, as picture and table");
+    auto options = std::make_shared<Options>();
+    RabMeasurement& what = options->measurement;
+    command->add_option("--firmware", what.firmware, "image of the boards' firmware")
+        ->required()
+        ->type_name("IMAGE");
+    command
+        ->add_option("--distance", options->distances_cm,
+                     "between the bodies, cm (default: the table's nine)")
+        ->check(number_between(0, 250))
+        ->type_name("CM");
+    command->add_option("--pairs", what.pairs, "pairs of boards, each with parts of its own")
+        ->check(CLI::Range(1, 1000))
+        ->type_name("N");
+    command->add_option("--repeats", what.repeats, "poses of each pair at each distance, two frames each")
+        ->check(CLI::Range(1, 10000))
+        ->type_name("N");
+    command->add_option("--power", what.power, "potentiometer byte, 0 = strongest")
+        ->check(CLI::Range(0, 255))
+        ->type_name("BYTE");
+    command->add_option("--seed", what.seed, "of headings and parts")->type_name("N");
+    command->add_option("--set", options->parameters, "a physical parameter over its default (repeatable)")
+        ->type_name("NAME=NUMBER");
+    command->add_option("--out", options->out, "folder for the results")->type_name("DIR");
+    command->callback([options, &status] { run(*options, status); });
+}
+
+}  // namespace puckloop::tools

@@ -1,0 +1,155 @@
+#include "tools/rab/stage_node.h"
+
+#include "physics/pose_signals.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace puckloop::tools {
+
+using cosim::kMillisecond;
+using cosim::kNever;
+using cosim::Time;
+
+namespace {
+
+constexpr std::uint8_t kAddress = 0x20;
+constexpr double kI2cHertz = 400e3;
+// One turn: a frame of 16 bits is on the air for 4.5 ms from about 2 ms after its command, and can be read
+// 2.9 ms after its end.
+constexpr Time kTurn = 24 * kMillisecond;
+constexpr Time kSecondSend = 12 * kMillisecond;
+constexpr Time kPollAfter = 10 * kMillisecond + kMillisecond / 2;
+// Registers of the board.
+constexpr std::uint8_t kMessage = 0, kData = 1, kBearing = 3, kRange = 5, kLast = 6;
+constexpr std::uint8_t kPowerRegister = 12, kHighByte = 13, kSendAll = 14, kCalibrate = 16, kOnBoard = 17;
+
+double wrapped(double angle) {
+    return std::remainder(angle, 2 * std::numbers::pi);
+}
+
+}  // namespace
+
+double StagePlan::duration() const {
+    const auto turns = static_cast<double>(distances.size()) * repeats + 1;
+    return boot + turns * cosim::to_seconds(kTurn);
+}
+
+StageNode::StageNode(const StagePlan& plan, std::vector<RabReadingRow>& rows)
+    : plan_(plan),
+      rows_(rows),
+      ports_{{"poses", cosim::PortKind::Signals},
+             {"i2c0", cosim::PortKind::I2c},
+             {"i2c1", cosim::PortKind::I2c}},
+      headings_(plan.seed, "stage/headings"),
+      hosts_{I2cHost(kAddress, kI2cHertz), I2cHost(kAddress, kI2cHertz)} {
+    const Time ready = cosim::from_seconds(plan.boot);
+    for (I2cHost& host : hosts_) {
+        host.write(ready - 8 * kMillisecond, {kPowerRegister, static_cast<std::uint8_t>(plan.power)});
+        host.write(ready - 6 * kMillisecond, {kOnBoard, 0});
+        host.write(ready - 4 * kMillisecond, {kCalibrate, 0});
+    }
+    next_pose_ = plan.distances.empty() || plan.repeats < 1 ? kNever : ready;
+}
+
+void StageNode::schedule(Time at, std::function<void(Time)> action) {
+    actions_.emplace(at, std::move(action));
+}
+
+void StageNode::pose(Time now, std::vector<cosim::Message>& outbox) {
+    const double apart = 2 * plan_.body_radius + plan_.distances[distance_];
+    for (std::size_t i = 0; i < 2; ++i) {
+        heading_[i] = 2 * std::numbers::pi * headings_.uniform();
+        const double pose[] = {i == 0 ? 0.0 : apart, 0.0, heading_[i]};
+        for (std::size_t k = 0; k < physics::kPoseSignals; ++k)
+            outbox.push_back(
+                {now, 0, cosim::Signal{static_cast<std::uint16_t>(i * physics::kPoseSignals + k), pose[k]}});
+    }
+    for (int sender = 0; sender < 2; ++sender) {
+        const Time start = now + kMillisecond / 5 + sender * kSecondSend;
+        schedule(start, [this, sender](Time at) { send(sender, at); });
+        schedule(start + kPollAfter, [this, sender](Time at) { poll(1 - sender, at); });
+    }
+    if (++repeat_ == plan_.repeats) {
+        repeat_ = 0;
+        ++distance_;
+    }
+    next_pose_ = distance_ == plan_.distances.size() ? kNever : now + kTurn;
+}
+
+void StageNode::send(int sender, Time now) {
+    ++payload_;
+    RabReadingRow row;
+    row.distance = repeat_ == 0 ? distance_ - 1 : distance_;  // already counted on
+    row.sender = sender;
+    const double direction = sender == 0 ? std::numbers::pi : 0.0;  // seen from the receiver
+    row.bearing_true = wrapped(direction - heading_[static_cast<std::size_t>(1 - sender)]);
+    rows_.push_back(row);
+    I2cHost& host = hosts_[static_cast<std::size_t>(sender)];
+    host.write(now, {kHighByte, static_cast<std::uint8_t>(payload_ >> 8)});
+    host.write(now, {kSendAll, static_cast<std::uint8_t>(payload_ & 0xFF)});
+}
+
+void StageNode::poll(int receiver, Time now) {
+    hosts_[static_cast<std::size_t>(receiver)].read(
+        now, kMessage, [this, receiver](std::optional<std::uint8_t> byte, Time at) {
+            if (byte == 1) fetch(receiver, at);
+        });
+}
+
+void StageNode::fetch(int receiver, Time now) {
+    for (std::uint8_t number = kData; number <= kLast; ++number)
+        hosts_[static_cast<std::size_t>(receiver)].read(
+            now, number, [this, number](std::optional<std::uint8_t> byte, Time) {
+                registers_[number] = byte.value_or(0);
+                if (number != kLast) return;
+                const auto word = [this](std::size_t high) {
+                    return static_cast<std::uint16_t>(registers_[high] << 8 | registers_[high + 1]);
+                };
+                RabReadingRow& row = rows_.back();
+                row.received = true;
+                row.intact = word(kData) == payload_;
+                row.bearing = 1e-4 * static_cast<std::int16_t>(word(kBearing));
+                row.range = word(kRange);
+            });
+}
+
+void StageNode::advance(Time until, std::span<const cosim::Message> inbox,
+                        std::vector<cosim::Message>& outbox) {
+    auto message = inbox.begin();
+    for (;;) {
+        const Time arrives = message == inbox.end() ? kNever : message->time;
+        const Time acts = actions_.empty() ? kNever : actions_.begin()->first;
+        const Time due = std::min(hosts_[0].due(), hosts_[1].due());
+        const Time now = std::min({arrives, acts, due, next_pose_});
+        if (now >= until) return;
+        if (now == arrives) {
+            if (const auto* answer = std::get_if<cosim::I2cPhase>(&message->payload);
+                answer && message->port > 0)
+                hosts_[message->port - 1U].answered(*answer, now);
+            ++message;
+        } else if (now == next_pose_) {
+            pose(now, outbox);
+        } else if (now == acts) {
+            const auto action = std::move(actions_.begin()->second);
+            actions_.erase(actions_.begin());
+            action(now);
+        } else {
+            const std::size_t host = hosts_[0].due() == now ? 0 : 1;
+            outbox.push_back({now, static_cast<cosim::PortIndex>(host + 1), hosts_[host].next()});
+        }
+    }
+}
+
+Time StageNode::promise(cosim::PortIndex port) const {
+    if (port == 0) return next_pose_;
+    const Time acts = actions_.empty() ? kNever : actions_.begin()->first;
+    return std::min({hosts_[port - 1U].due(), acts, next_pose_});
+}
+
+Time StageNode::reaction(cosim::PortIndex port) const {
+    return port == 0 ? kNever : hosts_[port - 1U].clock();
+}
+
+}  // namespace puckloop::tools
