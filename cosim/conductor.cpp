@@ -72,6 +72,7 @@ class Conductor::State {
     void collect();
     void take_reply(std::size_t n);
     void take_stop(std::size_t n, Time before);
+    void end_with(const Stop& stop, std::size_t n);
     void take_deliveries(std::size_t sender);
     void release_trace(Time floor);
     void keep_house();
@@ -99,6 +100,7 @@ class Conductor::State {
     std::optional<RandomStream> chop_;
 
     Time end_ = kNever;
+    std::vector<std::pair<Stop, std::size_t>> wishes_;  ///< to stop together, and whose
     std::optional<Stop> stop_;
     std::size_t stopper_ = kNobody;
     std::size_t current_ = kNobody;  ///< whose call is under way: names the one that failed
@@ -278,13 +280,23 @@ void Conductor::State::take_stop(std::size_t n, Time before) {
     if (!stop || slots_[n].stop_seen) return;
     slots_[n].stop_seen = true;
     // Nobody has been granted more than the stop latency beyond `before`, so this end is in nobody's past.
-    const Time time = std::max(stop->time, before);
-    if (stop_ && (stop_->time < time || (stop_->time == time && stopper_ < n))) return;
-    if (time >= end_) return;
+    Stop wish = *stop;
+    wish.time = std::max(wish.time, before);
+    if (wish.together <= 1) return end_with(wish, n);
+    wishes_.emplace_back(wish, n);
+    if (wishes_.size() < wish.together) return;
+    const auto last = std::max_element(wishes_.begin(), wishes_.end(), [](const auto& a, const auto& b) {
+        return std::pair(a.first.time, a.second) < std::pair(b.first.time, b.second);
+    });
+    end_with(last->first, last->second);
+}
+
+void Conductor::State::end_with(const Stop& stop, std::size_t n) {
+    if (stop_ && (stop_->time < stop.time || (stop_->time == stop.time && stopper_ < n))) return;
+    if (stop.time >= end_) return;
     stop_ = stop;
-    stop_->time = time;
     stopper_ = n;
-    end_ = std::min(end_, later(time, options_.stop_latency));
+    end_ = std::min(end_, later(stop.time, options_.stop_latency));
 }
 
 void Conductor::State::take_deliveries(std::size_t sender) {

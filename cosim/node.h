@@ -26,6 +26,8 @@ struct Stop {
     Time time = 0;
     bool success = true;
     std::string reason;  ///< one line for the user
+    /// The run ends only when so many nodes want it to, with the last of them: programs of several robots.
+    std::uint32_t together = 1;
 };
 
 /// The contract with the conductor.

@@ -53,6 +53,7 @@ void write_state(ByteWriter& writer, const NodeState& state) {
         writer.time(state.stop->time);
         writer.u8(state.stop->success);
         writer.text(state.stop->reason);
+        writer.u32(state.stop->together);
     }
 }
 
@@ -70,6 +71,7 @@ void read_state(ByteReader& reader, NodeState& state) {
         stop.time = reader.time();
         stop.success = reader.boolean();
         stop.reason = reader.text();
+        stop.together = reader.u32();
         state.stop = stop;
     }
 }

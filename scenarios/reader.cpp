@@ -1,6 +1,7 @@
 #include "scenarios/reader.h"
 
 #include "base/error.h"
+#include "base/suggest.h"
 
 #include <fmt/format.h>
 
@@ -10,40 +11,11 @@ namespace puckloop::scenarios {
 
 namespace {
 
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-    std::vector<std::size_t> row(b.size() + 1);
-    for (std::size_t j = 0; j <= b.size(); ++j)
-        row[j] = j;
-    for (std::size_t i = 1; i <= a.size(); ++i) {
-        std::size_t diagonal = row[0];
-        row[0] = i;
-        for (std::size_t j = 1; j <= b.size(); ++j) {
-            const std::size_t above = row[j];
-            row[j] = std::min({row[j] + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
-            diagonal = above;
-        }
-    }
-    return row[b.size()];
-}
-
 std::string joined(const std::vector<std::string>& words) {
     return fmt::format("{}", fmt::join(words, ", "));
 }
 
 }  // namespace
-
-std::optional<std::string> nearest(std::string_view word, const std::vector<std::string>& known) {
-    std::optional<std::string> best;
-    std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3) + 1;
-    for (const std::string& candidate : known) {
-        const std::size_t distance = edit_distance(word, candidate);
-        if (distance < best_distance) {
-            best_distance = distance;
-            best = candidate;
-        }
-    }
-    return best;
-}
 
 Reader::Reader(std::string file, std::string where, const TomlValue& table)
     : file_(std::move(file)), where_(std::move(where)), table_(table) {
@@ -69,15 +41,16 @@ void Reader::fail_missing(std::string_view key) {
     // A key that is near to it and that nobody asked for is the same one, misspelt.
     for (const auto& [name, value] : std::get<TomlTable>(table_.data)) {
         if (std::find(asked_.begin(), asked_.end(), name) != asked_.end()) continue;
-        if (nearest(name, {std::string(key)})) fail_unknown(name, value.line, std::string(key));
+        if (!nearest_name(name, {key}).empty()) fail_unknown(name, value.line, std::string(key));
     }
     fail(key, fmt::format("'{}' is missing", key));
 }
 
-void Reader::fail_unknown(std::string_view name, int line, const std::optional<std::string>& meant) const {
+void Reader::fail_unknown(std::string_view name, int line, const std::string& meant) const {
     const std::string prefix = where_.empty() ? std::string{} : where_ + ": ";
     throw InputError(file_, fmt::format("line {}", line), fmt::format("{}unknown key '{}'", prefix, name),
-                     meant ? fmt::format("perhaps '{}'", *meant) : fmt::format("one of {}", joined(asked_)));
+                     meant.empty() ? fmt::format("one of {}", joined(asked_))
+                                   : fmt::format("perhaps '{}'", meant));
 }
 
 bool Reader::has(std::string_view key) {
@@ -237,7 +210,7 @@ const TomlTable& Reader::everything() {
 void Reader::finish() const {
     for (const auto& [name, value] : std::get<TomlTable>(table_.data)) {
         if (std::find(asked_.begin(), asked_.end(), name) != asked_.end()) continue;
-        fail_unknown(name, value.line, nearest(name, asked_));
+        fail_unknown(name, value.line, nearest_name(name, {asked_.begin(), asked_.end()}));
     }
 }
 

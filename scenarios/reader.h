@@ -57,8 +57,7 @@ class Reader {
     const TomlValue* find(std::string_view key);
     const TomlValue& require(std::string_view key);
     [[noreturn]] void fail_missing(std::string_view key);
-    [[noreturn]] void fail_unknown(std::string_view name, int line,
-                                   const std::optional<std::string>& meant) const;
+    [[noreturn]] void fail_unknown(std::string_view name, int line, const std::string& meant) const;
     double number(std::string_view key, const TomlValue& value, Dimension dimension);
     std::vector<double> numbers(std::string_view key, const TomlValue& value, Dimension dimension,
                                 std::size_t count);
@@ -68,8 +67,5 @@ class Reader {
     const TomlValue& table_;
     std::vector<std::string> asked_;
 };
-
-/// The entry of `known` nearest to `word` by edit distance, if it is near enough to be meant.
-std::optional<std::string> nearest(std::string_view word, const std::vector<std::string>& known);
 
 }  // namespace puckloop::scenarios

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "physics/parameters.h"
+#include "scenarios/robot_tables.h"
 #include "scenarios/world_tables.h"
 
 #include <fmt/format.h>
@@ -13,95 +14,6 @@ namespace puckloop::scenarios {
 namespace {
 
 constexpr double kLongestRun = 86'400.0 * 30;  // s; simulated time itself reaches 106 days
-
-/// A list of times, each later than the one before, all after `start`.
-std::vector<double> read_times(Reader& reader, std::string_view key, double start) {
-    std::vector<double> times;
-    for (const std::string& text : reader.texts(key)) {
-        try {
-            times.push_back(parse_quantity(text, Dimension::Time));
-        } catch (const QuantityError& error) {
-            reader.fail(key, fmt::format("{}: {}", key, error.problem), error.expected);
-        }
-        if (times.back() <= (times.size() > 1 ? times[times.size() - 2] : start))
-            reader.fail(key, fmt::format("the times of {} do not rise from {:g} s on", key, start),
-                        "times later than that, each later than the one before");
-    }
-    return times;
-}
-
-PicBoard read_pic(const std::string& file, const std::string& where, const TomlValue& table,
-                  const std::filesystem::path& folder) {
-    Reader reader(file, where, table);
-    PicBoard pic;
-    pic.firmware = folder / reader.text("firmware");
-    pic.crystal_ppm = reader.quantity("crystal_error", Dimension::Ratio, 0.0) * 1e6;
-    if (std::abs(pic.crystal_ppm) > 10'000)
-        reader.fail("crystal_error", "crystal_error is out of range", "-1 % to 1 %, such as \"20 ppm\"");
-    pic.adc_noise = reader.quantity("adc_noise", Dimension::Number, pic.adc_noise);
-    if (pic.adc_noise < 0 || pic.adc_noise > 1000)
-        reader.fail("adc_noise", "adc_noise is out of range", "0 to 1000 counts");
-    pic.selector = static_cast<int>(reader.integer("selector", 0, 0, 15));
-    pic.uart1 = reader.text("uart1", "");
-    pic.resets = read_times(reader, "reset", 0.0);
-    reader.finish();
-    return pic;
-}
-
-LinuxBoard read_linux(const std::string& file, const std::string& where, const TomlValue& table,
-                      const std::string& robot_name) {
-    Reader reader(file, where, table);
-    LinuxBoard board;
-    board.command = reader.texts("program");
-    if (board.command.empty())
-        reader.fail("program", "'program' is missing", "program = [\"./controller\", \"-x\"]");
-    board.hostname = reader.text("hostname", robot_name);
-    board.start = reader.quantity("start", Dimension::Time, 0.0);
-    if (board.start < 0) reader.fail("start", "start is before the run begins", "0 s or later");
-    board.restarts = read_times(reader, "restart", board.start);
-    board.place_line = table.line;
-    reader.finish();
-    return board;
-}
-
-void read_robot(const std::string& file, const TomlValue& table, const std::filesystem::path& folder,
-                Scenario& scenario) {
-    const std::string fallback = fmt::format("robot{}", scenario.robots.size());
-    Reader reader(file, fallback, table);
-    RobotBoards boards;
-    physics::Robot body;
-    boards.name = body.name = reader.text("name", fallback);
-    const bool plain =
-        !boards.name.empty() && std::all_of(boards.name.begin(), boards.name.end(), [](char c) {
-            return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-                   c == '-';
-        });
-    constexpr std::size_t kLongestName = 64;
-    if (boards.name.size() > kLongestName) reader.fail("name", "the name is too long", "at most 64 letters");
-    if (!plain)
-        reader.fail("name", "the name has other signs than letters, digits, _ and -",
-                    "a name such as epuck12");
-    for (const RobotBoards& other : scenario.robots)
-        if (other.name == boards.name)
-            reader.fail("name", fmt::format("two robots are called '{}'", boards.name));
-    const auto position = reader.quantities("position", Dimension::Length, 2);
-    body.x = position[0];
-    body.y = position[1];
-    body.heading = reader.quantity("heading", Dimension::Angle, 0.0);
-    body.place = fmt::format("line {}", table.line);
-    if (const TomlValue* parameters = reader.table("parameters"))
-        body.parameters = read_parameters(file, boards.name, *parameters);
-    const TomlValue* pic = reader.table("pic");
-    if (!pic) reader.fail("pic", "[robot.pic] is missing", "[robot.pic] with firmware = \"image.hex\"");
-    boards.pic = read_pic(file, boards.name + ".pic", *pic, folder);
-    if (const TomlValue* linux_table = reader.table("linux"))
-        boards.linux_board = read_linux(file, boards.name + ".linux", *linux_table, boards.name);
-    boards.ground_sensor = reader.flag("ground_sensor", true);
-    boards.rgb_turret = reader.flag("rgb_turret", true);
-    reader.finish();
-    scenario.robots.push_back(std::move(boards));
-    scenario.world.robots.push_back(std::move(body));
-}
 
 /// Faults sit on the UART links, which join the boards of a robot.
 void check_fault_link(Reader& reader, const std::string& link, const Scenario& scenario) {

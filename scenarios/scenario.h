@@ -23,6 +23,13 @@ struct PicBoard {
     std::vector<double> resets;  ///< s: the reset button (MCLR) is pressed, rising
 };
 
+/// The range-and-bearing board of a robot (e-RandB), on its I2C bus.
+struct RabBoard {
+    std::filesystem::path firmware;
+    double crystal_ppm = 0.0;  ///< error of the 4 MHz crystal, + is fast
+    double adc_noise = 1.0;    ///< counts, standard deviation
+};
+
 /// The Linux board of a robot: one program under the shim.
 struct LinuxBoard {
     std::vector<std::string> command;  ///< program and arguments; the program's path is resolved
@@ -35,6 +42,7 @@ struct LinuxBoard {
 struct RobotBoards {
     std::string name;
     PicBoard pic;
+    std::optional<RabBoard> rab;
     std::optional<LinuxBoard> linux_board;
     bool ground_sensor = true;  ///< the I2C board at 0x60 is fitted
     bool rgb_turret = true;     ///< the I2C board at 0x61 is fitted

@@ -1,6 +1,7 @@
 #include "scenarios/world_tables.h"
 
 #include "base/error.h"
+#include "base/suggest.h"
 #include "physics/parameters.h"
 
 #include <fmt/format.h>
@@ -139,13 +140,12 @@ void read_parameter_level(const std::string& file, const std::string& where, con
         int index = -1;
         const physics::ParameterInfo* info = physics::find_parameter(name, index);
         if (!info) {
-            std::vector<std::string> names;
+            std::vector<std::string_view> names;
             for (const auto& entry : physics::parameter_table())
                 names.emplace_back(entry.name);
-            const auto suggestion = nearest(name, names);
+            const std::string meant = nearest_name(name, names);
             reader.fail(key, fmt::format("unknown parameter '{}'", name),
-                        suggestion ? fmt::format("perhaps '{}'", *suggestion)
-                                   : "a name from docs/scenario.md");
+                        meant.empty() ? "a name from docs/scenario.md" : fmt::format("perhaps '{}'", meant));
         }
         const double number = reader.quantity(key, dimension_of(info->unit));
         if (number < info->min || number > info->max)

@@ -67,8 +67,8 @@ void LinuxNode::warn(std::string line) {
     if (warnings_.size() < kMostWarnings) warnings_.push_back(std::move(line));
 }
 
-void LinuxNode::end_run(Time now, bool success, std::string reason) {
-    if (!stop_) stop_ = cosim::Stop{now, success, std::move(reason)};
+void LinuxNode::end_run(Time now, bool success, std::string reason, std::uint32_t programs) {
+    if (!stop_) stop_ = cosim::Stop{now, success, std::move(reason), programs};
 }
 
 void LinuxNode::program_ended(Time now) {
@@ -90,7 +90,8 @@ void LinuxNode::program_ended(Time now) {
     if (comes_back) {
         warn(reason + at);
     } else if (spec_.exit_ends_run || !process_->ended_well()) {
-        end_run(now, process_->ended_well() && opened, reason);
+        const bool well = process_->ended_well() && opened;
+        end_run(now, well, reason, well ? spec_.programs : 1);
     } else {
         warn(reason + at);
     }
@@ -115,7 +116,7 @@ void LinuxNode::listen() {
         state_ = State::Off;
         kernel_.reset();
         end_ = "hung";
-        end_run(now, false, reason);
+        end_run(now, false, reason, 1);
         return;
     }
     }

@@ -70,7 +70,7 @@ class LinuxNode : public cosim::Node {
     void collect(std::vector<cosim::Message>& outbox);
     void warn(std::string line);
     void pace(cosim::Time time);
-    void end_run(cosim::Time now, bool success, std::string reason);
+    void end_run(cosim::Time now, bool success, std::string reason, std::uint32_t programs);
 
     LinuxSpec spec_;
     std::vector<cosim::Port> ports_;

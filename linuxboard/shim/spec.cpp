@@ -169,6 +169,7 @@ LinuxSpec parse_linux_spec(std::string_view text) {
     for (const double seconds : hangups)
         spec.hangups.push_back(cosim::from_seconds(seconds));
     object.read("exit_ends_run", spec.exit_ends_run);
+    object.read("programs", spec.programs);
     object.read("watchdog_s", spec.watchdog_s);
     object.read("shim", spec.shim);
     object.finish();

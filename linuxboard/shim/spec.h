@@ -51,8 +51,9 @@ struct LinuxSpec {
     std::vector<TimedSignal> signals;
     std::vector<cosim::Time> hangups;
     bool exit_ends_run = true;
-    double watchdog_s = 5.0;  ///< wall-clock seconds a program may compute without letting time pass
-    std::string shim;         ///< the preloaded library; empty: the one built with this program
+    std::uint32_t programs = 1;  ///< of the run: the last of so many to end well ends it
+    double watchdog_s = 5.0;     ///< wall-clock seconds a program may compute without letting time pass
+    std::string shim;            ///< the preloaded library; empty: the one built with this program
 };
 
 /// Throws InputError naming the key. Keys are the members above; times in seconds (`start_s`, `down_s`,

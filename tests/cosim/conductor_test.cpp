@@ -187,6 +187,27 @@ TEST_CASE("a node's wish to stop ends the run at the same time in every placemen
     }
 }
 
+TEST_CASE("nodes that want to stop together end the run with the last of them") {
+    const int one_us = GENERATE(1, 50'000), other_us = GENERATE(12'345, 49'999);
+    Run run = toy::random_chatter(3, 4);
+    run.nodes.push_back({"one", fmt::format("stopper at_us={} together=2", one_us)});
+    run.nodes.push_back({"other", fmt::format("stopper at_us={} together=2", other_us)});
+    run.options.duration = 200 * kMillisecond;
+    const Outcome here = run();
+    CHECK(here.reason == EndReason::NodeStopped);
+    CHECK(here.node == (one_us > other_us ? "one" : "other"));
+    CHECK(here.simulated == std::max(one_us, other_us) * kMicrosecond + run.options.stop_latency);
+    run.options.in_process = false;
+    check_same(here, run());
+    run.nodes.back().json =
+        fmt::format("stopper at_us={} success=0", other_us);  // one fails: that is the end
+    const Outcome failed = run();
+    CHECK(failed.node == "other");
+    CHECK_FALSE(failed.success);
+    run.nodes.pop_back();  // one of two for ever
+    CHECK(run().reason == EndReason::Duration);
+}
+
 TEST_CASE("a cycle without look-ahead is told with its nodes") {
     Run run{{{"idle", "idle"}, {"one", "mutual uarts=0 signals=2"}, {"two", "mutual uarts=0 signals=2"}},
             {{"a", {"one", "signals0"}, {"two", "signals1"}}}};

@@ -251,7 +251,8 @@ class AtTime : public ToyNode {
         : ToyNode(settings), at_(settings.get("at_us", 1000) * kMicrosecond) {}
     std::optional<Stop> stop() const override {
         if (!done_ || name_ != "stopper") return std::nullopt;
-        return Stop{at_, settings_.get("success", 1) != 0, "asked to"};
+        return Stop{at_, settings_.get("success", 1) != 0, "asked to",
+                    static_cast<std::uint32_t>(settings_.get("together", 1))};
     }
 
   protected:

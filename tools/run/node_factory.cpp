@@ -4,6 +4,7 @@
 #include "emu/i2c_devices/bus_node.h"
 #include "emu/image/image.h"
 #include "emu/pic/pic_node.h"
+#include "emu/rab_board/rab_node.h"
 #include "linuxboard/shim/linux_node.h"
 #include "physics/ir_node.h"
 #include "physics/world_node.h"
@@ -31,6 +32,17 @@ std::unique_ptr<cosim::Node> make_pic(const json& spec) {
     return std::make_unique<pic::PicNode>(image::load_image(spec.at("firmware").get<std::string>()), options);
 }
 
+std::unique_ptr<cosim::Node> make_rab(const json& spec) {
+    rab::RabNodeOptions options;
+    options.board.name = spec.at("name");
+    options.board.seed = spec.at("seed");
+    options.board.crystal_ppm = spec.at("crystal_ppm");
+    options.board.adc_noise_counts = spec.at("adc_noise");
+    options.fastest_i2c_hertz = spec.at("i2c_hertz");
+    options.log = spec.value("log", "");
+    return std::make_unique<rab::RabNode>(image::load_image(spec.at("firmware").get<std::string>()), options);
+}
+
 std::unique_ptr<cosim::Node> make_linux(json spec) {
     spec.erase("kind");
     return std::make_unique<linuxboard::LinuxNode>(linuxboard::parse_linux_spec(spec.dump()));
@@ -52,6 +64,7 @@ std::unique_ptr<cosim::Node> make_node(const std::string& text) {
         const json spec = json::parse(text);
         const std::string kind = spec.at("kind");
         if (kind == "pic") return make_pic(spec);
+        if (kind == "rab") return make_rab(spec);
         if (kind == "linux") return make_linux(spec);
         if (kind == "world") return physics::make_world_node(spec.at("world").dump());
         if (kind == "ir") return physics::make_ir_node(text);

@@ -8,8 +8,8 @@
 
 namespace puckloop::tools {
 
-/// `json` has "kind": "pic", "linux", "world", "ir" or "i2c_bus", and what that kind needs. Throws
-/// InputError.
+/// `json` has "kind": "pic", "rab", "linux", "world", "ir", "i2c_bus" or "outside", and what that kind needs.
+/// Throws InputError.
 std::unique_ptr<cosim::Node> make_node(const std::string& json);
 
 }  // namespace puckloop::tools

@@ -68,8 +68,9 @@ void add_linux_warnings(const std::string& name, const ordered_json& node,
 
 }  // namespace
 
-std::vector<std::string> warnings_of(const cosim::Outcome& outcome) {
-    std::vector<std::string> warnings = outcome.warnings;
+std::vector<std::string> warnings_of(const RunSetup& setup, const cosim::Outcome& outcome) {
+    std::vector<std::string> warnings = setup.warnings;
+    warnings.insert(warnings.end(), outcome.warnings.begin(), outcome.warnings.end());
     for (const auto& node : outcome.nodes) {
         const ordered_json json = node_json(node);
         add_linux_warnings(node.name, json, warnings);
@@ -121,7 +122,7 @@ void write_report(const RunSetup& setup, const cosim::Outcome& outcome, Reserved
                               {"nodes", nodes},
                               {"links", links},
                               {"faults", faults},
-                              {"warnings", warnings_of(outcome)},
+                              {"warnings", warnings_of(setup, outcome)},
                               {"unmodelled_registers", unmodelled_of(nodes)}};
     file.write(report.dump(2) + "\n");
 }
@@ -131,7 +132,7 @@ std::string summary(const RunSetup& setup, const cosim::Outcome& outcome) {
         fmt::format("{:.3f} s simulated in {:.1f} s ({:.1f}x real time)",
                     cosim::to_seconds(outcome.simulated), outcome.wall_s, real_time_factor(outcome));
     if (outcome.success && !outcome.text.empty()) text += fmt::format("\nended: {}", outcome.text);
-    for (const std::string& warning : warnings_of(outcome))
+    for (const std::string& warning : warnings_of(setup, outcome))
         text += fmt::format("\nwarning: {}", warning);
     text += fmt::format("\ntrace {}\nresults in {}", outcome.trace_sha256, setup.out.string());
     return text;

@@ -9,14 +9,14 @@
 
 namespace puckloop::tools {
 
-/// What to take on disk for the report before the run; one of four robots has about half of this.
-inline constexpr std::size_t kReportBytes = 65'536;
+/// What to take on disk for the report before the run; one of eight robots with all boards has about a third.
+inline constexpr std::size_t kReportBytes = 262'144;
 
 /// Writes report.json; throws RunError if the disk does not take it.
 void write_report(const RunSetup& setup, const cosim::Outcome& outcome, ReservedFile& file);
 
-/// Warnings of the run and of its nodes, these with the node's name before them.
-std::vector<std::string> warnings_of(const cosim::Outcome& outcome);
+/// Warnings of the setup, of the run and of its nodes, these with the node's name before them.
+std::vector<std::string> warnings_of(const RunSetup& setup, const cosim::Outcome& outcome);
 
 /// A run that lasted as long as it should has failed nevertheless if a program never touched its robot.
 void judge(cosim::Outcome& outcome);

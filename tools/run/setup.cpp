@@ -3,7 +3,9 @@
 #include "base/error.h"
 #include "emu/i2c_devices/signals.h"
 #include "emu/pic/signals.h"
+#include "emu/rab_board/signals.h"
 #include "tools/run/outside_node.h"
+#include "tools/run/overrides.h"
 #include "tools/run/program_path.h"
 
 #include <fmt/format.h>
@@ -37,41 +39,8 @@ std::map<std::string, std::uint16_t> ids_of(std::span<const cosim::SignalInfo> s
     return ids;
 }
 
-/// "robot0.pic=x.hex", or "pic=x.hex" for all robots.
-void replace_firmware(Scenario& scenario, const std::string& assignment) {
-    const auto equals = assignment.find('=');
-    if (equals == std::string::npos || equals == 0 || equals + 1 == assignment.size())
-        throw InputError("", "--firmware", fmt::format("'{}' is not an assignment", assignment),
-                         "BOARD=IMAGE");
-    const std::string board = assignment.substr(0, equals);
-    const std::filesystem::path image = std::filesystem::absolute(assignment.substr(equals + 1));
-    std::string known;
-    bool found = false;
-    for (RobotBoards& robot : scenario.robots) {
-        const std::string name = robot.name + ".pic";
-        known += fmt::format("{}, ", name);
-        if (board != name && board != "pic") continue;
-        robot.pic.firmware = image;
-        found = true;
-    }
-    if (!found)
-        throw InputError("", "--firmware", fmt::format("the scenario has no board '{}'", board),
-                         "one of " + known + "or pic for all");
-}
-
-void apply(const RunRequest& request, Scenario& scenario) {
-    for (const std::string& assignment : request.firmware)
-        replace_firmware(scenario, assignment);
-    if (!request.linux_command.empty()) {
-        for (RobotBoards& robot : scenario.robots) {
-            if (!robot.linux_board) robot.linux_board.emplace().hostname = robot.name;
-            robot.linux_board->command = request.linux_command;
-            robot.linux_board->command[0] = find_program(request.linux_command[0], ".").string();
-        }
-    }
-    if (request.duration) scenario.duration = request.duration;
-    if (request.seed) scenario.seed = scenario.world.seed = *request.seed;
-    if (!request.overlay.empty()) apply_overlay(scenario, request.overlay);
+std::string absolute_path(const std::filesystem::path& path) {
+    return std::filesystem::absolute(path).lexically_normal().string();
 }
 
 /// "robot0.pic.log" in the results folder.
@@ -83,7 +52,7 @@ json pic_spec(const RunSetup& setup, const RobotBoards& robot) {
     const Scenario& scenario = setup.scenario;
     return {{"kind", "pic"},
             {"name", robot.name + ".pic"},
-            {"firmware", std::filesystem::absolute(robot.pic.firmware).lexically_normal().string()},
+            {"firmware", absolute_path(robot.pic.firmware)},
             {"seed", scenario.seed},
             {"crystal_ppm", robot.pic.crystal_ppm},
             {"adc_noise", robot.pic.adc_noise},
@@ -92,7 +61,33 @@ json pic_spec(const RunSetup& setup, const RobotBoards& robot) {
             {"log", log_of(setup, robot.name + ".pic")}};
 }
 
-json linux_spec(const RunSetup& setup, const RobotBoards& robot, bool ends_run, const RunRequest& request) {
+json rab_spec(const RunSetup& setup, const RobotBoards& robot) {
+    const Scenario& scenario = setup.scenario;
+    return {{"kind", "rab"},
+            {"name", robot.name + ".rab"},
+            {"firmware", absolute_path(robot.rab->firmware)},
+            {"seed", scenario.seed},
+            {"crystal_ppm", robot.rab->crystal_ppm},
+            {"adc_noise", robot.rab->adc_noise},
+            {"i2c_hertz", scenario.i2c_clock},
+            {"log", log_of(setup, robot.name + ".rab")}};
+}
+
+json bus_spec(const RunSetup& setup, const RobotBoards& robot) {
+    json boards = json::array();
+    // The board hears every START: its firmware decides which address is its own.
+    if (robot.rab) boards.push_back({{"name", "rab"}});
+    return {{"kind", "i2c_bus"},
+            {"name", robot.name + ".i2c"},
+            {"hertz", setup.scenario.i2c_clock},
+            {"ground_sensor", robot.ground_sensor},
+            {"rgb_turret", robot.rgb_turret},
+            {"boards", std::move(boards)},
+            {"log", log_of(setup, robot.name + ".i2c")}};
+}
+
+json linux_spec(const RunSetup& setup, const RobotBoards& robot, std::int64_t programs,
+                const RunRequest& request) {
     const scenarios::LinuxBoard& board = *robot.linux_board;
     const std::filesystem::path folder = setup.scenario.file.parent_path();
     json spec{{"kind", "linux"},
@@ -104,7 +99,7 @@ json linux_spec(const RunSetup& setup, const RobotBoards& robot, bool ends_run, 
               {"seed", setup.scenario.seed},
               {"start_s", board.start},
               {"restart_at", board.restarts},
-              {"exit_ends_run", ends_run},
+              {"programs", programs},
               {"watchdog_s", request.stall_seconds * kWatchdogShare},
               {"real_time", request.realtime},
               {"log", log_of(setup, robot.name + ".linux")}};
@@ -131,18 +126,35 @@ void add_uart1(RunSetup& setup, const RobotBoards& robot, const RunRequest& requ
     setup.links.push_back({name, {name, "uart"}, {robot.name + ".pic", "uart1"}, setup.scenario.uart_baud});
 }
 
-void add_robot(RunSetup& setup, const RobotBoards& robot, bool exit_ends_run, const RunRequest& request) {
-    const Scenario& scenario = setup.scenario;
+/// The range-and-bearing board: on the bus, and in the air.
+void add_rab(RunSetup& setup, const RobotBoards& robot) {
+    if (!robot.rab) return;
+    const std::string rab = robot.name + ".rab";
+    setup.nodes.push_back({rab, rab_spec(setup, robot).dump()});
+    setup.links.push_back({robot.name + ".i2c.rab", {rab, "i2c"}, {robot.name + ".i2c", "rab"}});
+    cosim::LinkSpec air{robot.name + ".ir", {rab, "ir"}, {"ir", robot.name + ".ir"}};
+    air.signal_names = names_of(rab::signals());
+    setup.links.push_back(air);
+    if (!robot.linux_board)
+        setup.warnings.push_back(fmt::format("{}: no Linux board: nobody asks the range-and-bearing board "
+                                             "anything, unless the main board's firmware does",
+                                             robot.name));
+}
+
+void add_linux(RunSetup& setup, const RobotBoards& robot, std::int64_t programs, const RunRequest& request) {
+    if (!robot.linux_board) return;
+    const std::string program = robot.name + ".linux";
+    setup.nodes.push_back({program, linux_spec(setup, robot, programs, request).dump()});
+    setup.links.push_back(
+        {robot.name + ".uart", {program, "uart"}, {robot.name + ".pic", "uart2"}, setup.scenario.uart_baud});
+    setup.links.push_back({robot.name + ".i2c.linux", {program, "i2c"}, {robot.name + ".i2c", "linux"}});
+}
+
+void add_robot(RunSetup& setup, const RobotBoards& robot, std::int64_t programs, const RunRequest& request) {
     const std::string pic = robot.name + ".pic";
     const std::string bus = robot.name + ".i2c";
     setup.nodes.push_back({pic, pic_spec(setup, robot).dump()});
-    setup.nodes.push_back({bus, json{{"kind", "i2c_bus"},
-                                     {"name", bus},
-                                     {"hertz", scenario.i2c_clock},
-                                     {"ground_sensor", robot.ground_sensor},
-                                     {"rgb_turret", robot.rgb_turret},
-                                     {"log", log_of(setup, bus)}}
-                                    .dump()});
+    setup.nodes.push_back({bus, bus_spec(setup, robot).dump()});
     cosim::LinkSpec world{robot.name + ".world", {pic, "world"}, {"world", robot.name + ".board"}};
     world.signal_names = names_of(pic::signals());
     world.record_from_b = false;  // a thousand sensor values a second: in the hash, not in the file
@@ -153,11 +165,8 @@ void add_robot(RunSetup& setup, const RobotBoards& robot, bool exit_ends_run, co
     setup.links.push_back(ground);
     setup.links.push_back({robot.name + ".i2c.pic", {pic, "i2c"}, {bus, "pic"}});
     add_uart1(setup, robot, request);
-    if (!robot.linux_board) return;
-    const std::string program = robot.name + ".linux";
-    setup.nodes.push_back({program, linux_spec(setup, robot, exit_ends_run, request).dump()});
-    setup.links.push_back({robot.name + ".uart", {program, "uart"}, {pic, "uart2"}, scenario.uart_baud});
-    setup.links.push_back({robot.name + ".i2c.linux", {program, "i2c"}, {bus, "linux"}});
+    add_rab(setup, robot);
+    add_linux(setup, robot, programs, request);
 }
 
 }  // namespace
@@ -185,7 +194,7 @@ RunSetup set_up(const RunRequest& request) {
         std::count_if(scenario.robots.begin(), scenario.robots.end(),
                       [](const RobotBoards& robot) { return robot.linux_board.has_value(); });
     for (const RobotBoards& robot : scenario.robots)
-        add_robot(setup, robot, programs == 1, request);
+        add_robot(setup, robot, programs, request);
     return setup;
 }
 

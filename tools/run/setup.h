@@ -16,6 +16,7 @@ struct RunSetup {
     std::filesystem::path out;
     std::vector<cosim::NodeSpec> nodes;
     std::vector<cosim::LinkSpec> links;
+    std::vector<std::string> warnings{};  ///< what looks like a mistake
 };
 
 /// Reads the scenario, applies the request's changes and plans nodes and links. Throws InputError for

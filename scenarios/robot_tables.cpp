@@ -1,0 +1,134 @@
+#include "scenarios/robot_tables.h"
+
+#include "scenarios/reader.h"
+#include "scenarios/world_tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace puckloop::scenarios {
+
+namespace {
+
+/// A list of times, each later than the one before, all after `start`.
+std::vector<double> read_times(Reader& reader, std::string_view key, double start) {
+    std::vector<double> times;
+    for (const std::string& text : reader.texts(key)) {
+        try {
+            times.push_back(parse_quantity(text, Dimension::Time));
+        } catch (const QuantityError& error) {
+            reader.fail(key, fmt::format("{}: {}", key, error.problem), error.expected);
+        }
+        if (times.back() <= (times.size() > 1 ? times[times.size() - 2] : start))
+            reader.fail(key, fmt::format("the times of {} do not rise from {:g} s on", key, start),
+                        "times later than that, each later than the one before");
+    }
+    return times;
+}
+
+/// crystal_error as ppm.
+double read_crystal(Reader& reader) {
+    const double ppm = reader.quantity("crystal_error", Dimension::Ratio, 0.0) * 1e6;
+    if (std::abs(ppm) > 10'000)
+        reader.fail("crystal_error", "crystal_error is out of range", "-1 % to 1 %, such as \"20 ppm\"");
+    return ppm;
+}
+
+double read_adc_noise(Reader& reader, double fallback) {
+    const double counts = reader.quantity("adc_noise", Dimension::Number, fallback);
+    if (counts < 0 || counts > 1000)
+        reader.fail("adc_noise", "adc_noise is out of range", "0 to 1000 counts");
+    return counts;
+}
+
+PicBoard read_pic(const std::string& file, const std::string& where, const TomlValue& table,
+                  const std::filesystem::path& folder) {
+    Reader reader(file, where, table);
+    PicBoard pic;
+    pic.firmware = folder / reader.text("firmware");
+    pic.crystal_ppm = read_crystal(reader);
+    pic.adc_noise = read_adc_noise(reader, pic.adc_noise);
+    pic.selector = static_cast<int>(reader.integer("selector", 0, 0, 15));
+    pic.uart1 = reader.text("uart1", "");
+    pic.resets = read_times(reader, "reset", 0.0);
+    reader.finish();
+    return pic;
+}
+
+RabBoard read_rab(const std::string& file, const std::string& where, const TomlValue& table,
+                  const std::filesystem::path& folder) {
+    Reader reader(file, where, table);
+    RabBoard rab;
+    rab.firmware = folder / reader.text("firmware");
+    rab.crystal_ppm = read_crystal(reader);
+    rab.adc_noise = read_adc_noise(reader, rab.adc_noise);
+    reader.finish();
+    return rab;
+}
+
+LinuxBoard read_linux(const std::string& file, const std::string& where, const TomlValue& table,
+                      const std::string& robot_name) {
+    Reader reader(file, where, table);
+    LinuxBoard board;
+    board.command = reader.texts("program");
+    if (board.command.empty())
+        reader.fail("program", "'program' is missing", "program = [\"./controller\", \"-x\"]");
+    board.hostname = reader.text("hostname", robot_name);
+    board.start = reader.quantity("start", Dimension::Time, 0.0);
+    if (board.start < 0) reader.fail("start", "start is before the run begins", "0 s or later");
+    board.restarts = read_times(reader, "restart", board.start);
+    board.place_line = table.line;
+    reader.finish();
+    return board;
+}
+
+/// The robot's name: part of file names, and nobody else's.
+std::string read_name(Reader& reader, const std::string& fallback, const Scenario& scenario) {
+    const std::string name = reader.text("name", fallback);
+    const bool plain = !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+               c == '-';
+    });
+    constexpr std::size_t kLongestName = 64;
+    if (name.size() > kLongestName) reader.fail("name", "the name is too long", "at most 64 letters");
+    if (!plain)
+        reader.fail("name", "the name has other signs than letters, digits, _ and -",
+                    "a name such as epuck12");
+    for (const RobotBoards& other : scenario.robots)
+        if (other.name == name) reader.fail("name", fmt::format("two robots are called '{}'", name));
+    return name;
+}
+
+}  // namespace
+
+void read_robot(const std::string& file, const TomlValue& table, const std::filesystem::path& folder,
+                Scenario& scenario) {
+    const std::string fallback = fmt::format("robot{}", scenario.robots.size());
+    Reader reader(file, fallback, table);
+    RobotBoards boards;
+    physics::Robot body;
+    boards.name = body.name = read_name(reader, fallback, scenario);
+    const auto position = reader.quantities("position", Dimension::Length, 2);
+    body.x = position[0];
+    body.y = position[1];
+    body.heading = reader.quantity("heading", Dimension::Angle, 0.0);
+    body.place = fmt::format("line {}", table.line);
+    if (const TomlValue* parameters = reader.table("parameters"))
+        body.parameters = read_parameters(file, boards.name, *parameters);
+    const TomlValue* pic = reader.table("pic");
+    if (!pic) reader.fail("pic", "[robot.pic] is missing", "[robot.pic] with firmware = \"image.hex\"");
+    boards.pic = read_pic(file, boards.name + ".pic", *pic, folder);
+    if (const TomlValue* rab = reader.table("rab"))
+        boards.rab = read_rab(file, boards.name + ".rab", *rab, folder);
+    if (const TomlValue* linux_table = reader.table("linux"))
+        boards.linux_board = read_linux(file, boards.name + ".linux", *linux_table, boards.name);
+    boards.ground_sensor = reader.flag("ground_sensor", true);
+    boards.rgb_turret = reader.flag("rgb_turret", true);
+    reader.finish();
+    scenario.robots.push_back(std::move(boards));
+    scenario.world.robots.push_back(std::move(body));
+}
+
+}  // namespace puckloop::scenarios

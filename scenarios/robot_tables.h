@@ -1,0 +1,16 @@
+#pragma once
+// The [[robot]] tables of a scenario.
+
+#include "scenarios/scenario.h"
+#include "scenarios/toml_file.h"
+
+#include <filesystem>
+#include <string>
+
+namespace puckloop::scenarios {
+
+/// Reads one robot and adds it, boards and body. Throws InputError with file and line.
+void read_robot(const std::string& file, const TomlValue& table, const std::filesystem::path& folder,
+                Scenario& scenario);
+
+}  // namespace puckloop::scenarios

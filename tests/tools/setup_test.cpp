@@ -1,0 +1,126 @@
+// From a scenario and the command line to nodes and links.
+
+#include "base/error.h"
+#include "tests/scratch.h"
+#include "tools/run/setup.h"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+using namespace puckloop;
+using nlohmann::json;
+using tools::RunRequest;
+using tools::RunSetup;
+using tools::set_up;
+
+namespace {
+
+constexpr const char* kTwoRobots = R"(
+[run]
+duration = "1 s"
+i2c_clock = "400 kHz"
+[arena]
+size = ["1 m", "1 m"]
+[[robot]]
+name = "left"
+position = ["-20 cm", "0 cm"]
+[robot.pic]
+firmware = "pic.hex"
+[robot.rab]
+firmware = "rab.hex"
+crystal_error = "30 ppm"
+[robot.linux]
+program = ["./program"]
+[[robot]]
+name = "right"
+position = ["20 cm", "0 cm"]
+[robot.pic]
+firmware = "pic.hex"
+[robot.rab]
+firmware = "rab.hex"
+)";
+
+class Scene {
+  public:
+    explicit Scene(const std::string& text) : path_(tests::scratch_path("puckloop-setup.toml")) {
+        std::ofstream(path_) << text;
+        request.scenario = path_;
+    }
+    ~Scene() { std::filesystem::remove(path_); }
+    Scene(const Scene&) = delete;
+    Scene& operator=(const Scene&) = delete;
+    RunRequest request;
+
+  private:
+    std::filesystem::path path_;
+};
+
+json node(const RunSetup& setup, const std::string& name) {
+    for (const auto& spec : setup.nodes)
+        if (spec.name == name) return json::parse(spec.json);
+    return nullptr;
+}
+
+std::string link(const RunSetup& setup, const std::string& name) {
+    for (const auto& spec : setup.links)
+        if (spec.name == name) return spec.a.node + "." + spec.a.port + " " + spec.b.node + "." + spec.b.port;
+    return {};
+}
+
+}  // namespace
+
+TEST_CASE("a range-and-bearing board hangs on its robot's bus and in the air") {
+    const Scene scene(kTwoRobots);
+    const RunSetup setup = set_up(scene.request);
+    const json rab = node(setup, "left.rab");
+    CHECK(rab.at("kind") == "rab");
+    CHECK(rab.at("crystal_ppm").get<double>() == Approx(30.0));
+    CHECK(rab.at("i2c_hertz") == 400e3);
+    CHECK(std::filesystem::path(rab.at("firmware").get<std::string>()).is_absolute());
+    CHECK(node(setup, "left.i2c").at("boards") == json::parse(R"([{"name":"rab"}])"));
+    CHECK(link(setup, "left.i2c.rab") == "left.rab.i2c left.i2c.rab");
+    CHECK(link(setup, "right.ir") == "right.rab.ir ir.right.ir");
+    CHECK(link(setup, "left.i2c.linux") == "left.linux.i2c left.i2c.linux");
+    CHECK(link(setup, "right.i2c.linux").empty());
+    REQUIRE(setup.warnings.size() == 1);
+    CHECK_THAT(setup.warnings[0], Catch::StartsWith("right: no Linux board"));
+}
+
+TEST_CASE("firmware is replaced on one board or on all of a kind") {
+    Scene scene(kTwoRobots);
+    scene.request.firmware = {"rab=/x/all.hex", "right.rab=/x/right.hex", "left.pic=/x/left.hex"};
+    const RunSetup setup = set_up(scene.request);
+    CHECK(node(setup, "left.rab").at("firmware") == "/x/all.hex");
+    CHECK(node(setup, "right.rab").at("firmware") == "/x/right.hex");
+    CHECK(node(setup, "left.pic").at("firmware") == "/x/left.hex");
+    scene.request.firmware = {"middle.rab=/x/y.hex"};
+    CHECK_THROWS_WITH(set_up(scene.request),
+                      "--firmware: the scenario has no board 'middle.rab' (expected one of left.pic, "
+                      "left.rab, right.pic, right.rab, or pic or rab for all)");
+}
+
+TEST_CASE("the programs of all robots end a run together") {
+    Scene scene(kTwoRobots);
+    CHECK(node(set_up(scene.request), "left.linux").at("programs") == 1);
+    scene.request.linux_command = {"./other", "-x"};
+    const RunSetup both = set_up(scene.request);
+    CHECK(node(both, "left.linux").at("programs") == 2);
+    CHECK(node(both, "right.linux").at("programs") == 2);
+    CHECK(node(both, "right.linux").at("args") == json::array({"-x"}));
+    CHECK(both.warnings.empty());
+}
+
+TEST_CASE("a range-and-bearing board needs its firmware, and says what it does not know") {
+    const std::string text = kTwoRobots;
+    const auto with = [&](const std::string& line) {
+        return text.substr(0, text.rfind("firmware = \"rab.hex\"")) + line + "\n";
+    };
+    const Scene missing(with("adc_noise = 3"));
+    CHECK_THROWS_WITH(set_up(missing.request), Catch::Contains("right.rab: 'firmware' is missing"));
+    const Scene unknown(with("firmware = \"x.hex\"\naddress = \"0x21\""));
+    CHECK_THROWS_WITH(set_up(unknown.request), Catch::Contains("right.rab: unknown key 'address'"));
+}

@@ -1,0 +1,67 @@
+#include "tools/run/overrides.h"
+
+#include "base/error.h"
+#include "tools/run/program_path.h"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace puckloop::tools {
+
+using scenarios::RobotBoards;
+using scenarios::Scenario;
+
+namespace {
+
+/// Every board with firmware: "robot0.pic" and where its image is kept.
+std::vector<std::pair<std::string, std::filesystem::path*>> boards_of(Scenario& scenario) {
+    std::vector<std::pair<std::string, std::filesystem::path*>> boards;
+    for (RobotBoards& robot : scenario.robots) {
+        boards.emplace_back(robot.name + ".pic", &robot.pic.firmware);
+        if (robot.rab) boards.emplace_back(robot.name + ".rab", &robot.rab->firmware);
+    }
+    return boards;
+}
+
+/// "robot0.pic=x.hex", or "pic=x.hex" for all robots.
+void replace_firmware(Scenario& scenario, const std::string& assignment) {
+    const auto equals = assignment.find('=');
+    if (equals == std::string::npos || equals == 0 || equals + 1 == assignment.size())
+        throw InputError("", "--firmware", fmt::format("'{}' is not an assignment", assignment),
+                         "BOARD=IMAGE");
+    const std::string wanted = assignment.substr(0, equals);
+    const std::filesystem::path image = std::filesystem::absolute(assignment.substr(equals + 1));
+    std::string known;
+    bool found = false;
+    for (const auto& [board, firmware] : boards_of(scenario)) {
+        known += board + ", ";
+        if (wanted != board && !board.ends_with("." + wanted)) continue;
+        *firmware = image;
+        found = true;
+    }
+    if (!found)
+        throw InputError("", "--firmware", fmt::format("the scenario has no board '{}'", wanted),
+                         "one of " + known + "or pic or rab for all");
+}
+
+}  // namespace
+
+void apply(const RunRequest& request, Scenario& scenario) {
+    for (const std::string& assignment : request.firmware)
+        replace_firmware(scenario, assignment);
+    if (!request.linux_command.empty()) {
+        for (RobotBoards& robot : scenario.robots) {
+            if (!robot.linux_board) robot.linux_board.emplace().hostname = robot.name;
+            robot.linux_board->command = request.linux_command;
+            robot.linux_board->command[0] = find_program(request.linux_command[0], ".").string();
+        }
+    }
+    if (request.duration) scenario.duration = request.duration;
+    if (request.seed) scenario.seed = scenario.world.seed = *request.seed;
+    if (!request.overlay.empty()) apply_overlay(scenario, request.overlay);
+}
+
+}  // namespace puckloop::tools
