@@ -169,6 +169,19 @@ void add_robot(RunSetup& setup, const RobotBoards& robot, std::int64_t programs,
     add_linux(setup, robot, programs, request);
 }
 
+/// The infra-red medium, where any robot has a board that uses it.
+void add_ir(RunSetup& setup, const json& world) {
+    const auto& robots = setup.scenario.robots;
+    if (std::none_of(robots.begin(), robots.end(), [](const RobotBoards& robot) { return robot.rab; }))
+        return;
+    const json spec{
+        {"kind", "ir"}, {"name", "ir"}, {"world", world}, {"csv", (setup.out / "ir.csv").string()}};
+    setup.nodes.push_back({"ir", spec.dump()});
+    cosim::LinkSpec poses{"ir.world", {"ir", "world"}, {"world", "ir"}};
+    poses.record_from_b = false;
+    setup.links.push_back(poses);
+}
+
 }  // namespace
 
 RunSetup set_up(const RunRequest& request) {
@@ -181,14 +194,19 @@ RunSetup set_up(const RunRequest& request) {
 
     const auto board_ids = ids_of(pic::signals());
     const auto ground_ids = ids_of(i2c_devices::signals());
-    for (physics::Robot& body : scenario.world.robots) {
+    const auto rab_ids = ids_of(rab::signals());
+    for (std::size_t i = 0; i < scenario.robots.size(); ++i) {
+        physics::Robot& body = scenario.world.robots[i];
         body.board_signals = board_ids;
         body.ground_signals = ground_ids;
+        body.rab = scenario.robots[i].rab.has_value();
+        if (body.rab) body.rab_signals = rab_ids;
     }
     scenario.world.recording.directory = setup.out.string();
     scenario.world.recording.log = log_of(setup, "world");
-    json world = json::parse(physics::to_json(scenario.world));
-    setup.nodes.push_back({"world", json{{"kind", "world"}, {"world", std::move(world)}}.dump()});
+    const json world = json::parse(physics::to_json(scenario.world));
+    setup.nodes.push_back({"world", json{{"kind", "world"}, {"world", world}}.dump()});
+    add_ir(setup, world);
 
     const auto programs =
         std::count_if(scenario.robots.begin(), scenario.robots.end(),
