@@ -279,6 +279,9 @@ void Chip::load_word(std::uint32_t address, std::uint32_t word) {
 }
 
 void Chip::power_on() {
+    constexpr std::uint32_t kErased = 0xFFFFFF;
+    if (parts_->core.program(0) == kErased)
+        parts_->report.warnings.push_back({0, "no program at the reset vector: address 0 is erased", 0});
     parts_->core.reset(ResetCause::PowerOn);
 }
 

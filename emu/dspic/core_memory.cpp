@@ -158,7 +158,7 @@ void update_pointer_rules(Machine& m) {
     if (m.st.modcon & kXmoden) special |= 1u << xwm(m);
     if (bit_reversed(m)) special |= 1u << bwm(m);
     m.special = static_cast<std::uint16_t>(special);
-    m.stack_span = static_cast<std::uint16_t>((m.st.splim_armed ? m.st.splim : 0xFFFF) - 0x0800);
+    m.stack_span = (m.st.splim_armed ? m.st.splim : 0xFFFF) - 0x0800;
 }
 
 std::uint32_t read_program(const Machine& m, std::uint32_t address, bool* implemented) {

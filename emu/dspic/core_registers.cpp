@@ -178,17 +178,13 @@ void write_register(void* owner, std::uint16_t address, std::uint16_t written, s
         st.loop.dcount = value & 0x3FFF;
         break;
     case kDostartl:
-        if (!m.device.family_33f) put_low(st.loop.dostart);
-        break;
     case kDostarth:
-        if (!m.device.family_33f) put_high(st.loop.dostart);
+        if (m.device.family_33f) break;  // read only there
+        address == kDostartl ? put_low(st.loop.dostart) : put_high(st.loop.dostart);
         break;
     case kDoendl:
-        put_low(st.loop.doend);
-        mark(m, st.loop.doend, kLoopEnd);
-        break;
     case kDoendh:
-        put_high(st.loop.doend);
+        address == kDoendl ? put_low(st.loop.doend) : put_high(st.loop.doend);
         mark(m, st.loop.doend, kLoopEnd);
         break;
     case kSr:

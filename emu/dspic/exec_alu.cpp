@@ -2,7 +2,7 @@
 // DC is the carry out of the low half (bit 3 in byte mode, bit 7 in word mode); ADDC, SUBB, SUBBR and CPB
 // never set Z, they only clear it.
 
-#include "emu/dspic/machine.h"
+#include "emu/dspic/exec_one_operand.h"
 
 namespace puckloop::dspic {
 
@@ -155,21 +155,6 @@ const Op* file_and_wreg(Machine& m, const Op* op) {
         put_w<Byte>(m, 0, result);
     return op + 1;
 }
-template <class Operation, bool Byte, Ea Source, Ea Destination>
-const Op* two_operands(Machine& m, const Op* op) {
-    const std::uint32_t s = source<Byte, Source>(m, op);
-    destination<Byte, Destination>(m, op, Operation::template apply<Byte>(m, s));
-    return op + 1;
-}
-template <class Operation, bool Byte, bool ToFile>
-const Op* file(Machine& m, const Op* op) {
-    const std::uint32_t result = Operation::template apply<Byte>(m, read_data<Byte>(m, op->k));
-    if constexpr (ToFile)
-        write_data<Byte>(m, op->k, static_cast<std::uint16_t>(result));
-    else
-        put_w<Byte>(m, 0, result);
-    return op + 1;
-}
 template <class Operation, bool Byte, bool ToFile>
 const Op* set_file(Machine& m, const Op* op) {  // CLR, SETM: the old contents are not read
     const std::uint32_t result = Operation::template apply<Byte>(m, 0);
@@ -239,14 +224,6 @@ Handler pick_three(Ea from, Ea to) {
     return pick_destination<Operation, Byte, Ea::Indirect>(to);
 }
 template <class Operation, bool Byte>
-Handler pick_two(Ea from, Ea to) {
-    if (from == Ea::Direct)
-        return to == Ea::Direct ? &two_operands<Operation, Byte, Ea::Direct, Ea::Direct>
-                                : &two_operands<Operation, Byte, Ea::Direct, Ea::Indirect>;
-    return to == Ea::Direct ? &two_operands<Operation, Byte, Ea::Indirect, Ea::Direct>
-                            : &two_operands<Operation, Byte, Ea::Indirect, Ea::Indirect>;
-}
-template <class Operation, bool Byte>
 Handler pick_compare(Ea from) {
     if (from == Ea::Literal) return &compare<Operation, Byte, Ea::Literal>;
     if (from == Ea::Direct) return &compare<Operation, Byte, Ea::Direct>;
@@ -297,22 +274,6 @@ struct Binder {
             op.base = byte ? &file_and_wreg<Operation, true, true> : &file_and_wreg<Operation, false, true>;
         else
             op.base = byte ? &file_and_wreg<Operation, true, false> : &file_and_wreg<Operation, false, false>;
-        return true;
-    }
-    template <class Operation>
-    bool two() {
-        const Ea f = from();
-        const Ea t = to();
-        op.base = byte ? pick_two<Operation, true>(f, t) : pick_two<Operation, false>(f, t);
-        return true;
-    }
-    template <class Operation>
-    bool one_file(bool to_file) {
-        file_address();
-        if (to_file)
-            op.base = byte ? &file<Operation, true, true> : &file<Operation, false, true>;
-        else
-            op.base = byte ? &file<Operation, true, false> : &file<Operation, false, false>;
         return true;
     }
     template <class Operation>
@@ -376,10 +337,9 @@ bool bind_alu(Op& op, const Form& form, std::uint32_t word) {
     case FormId::AND_lit10_Wn: return bind.literal<And>();
     case FormId::IOR_lit10_Wn: return bind.literal<Ior>();
     case FormId::XOR_lit10_Wn: return bind.literal<Xor>();
-#define GROUP(NAME, OPERATION)                                            \
-    case FormId::NAME##_f: return bind.one_file<OPERATION>(true);         \
-    case FormId::NAME##_f_WREG: return bind.one_file<OPERATION>(false);   \
-    case FormId::NAME##_Ws_Wd: return bind.two<OPERATION>();
+#define GROUP(NAME, OPERATION)                                                              \
+    case FormId::NAME##_f: case FormId::NAME##_f_WREG: case FormId::NAME##_Ws_Wd:           \
+        return bind_one_operand<OPERATION>(op, form, word);
     GROUP(INC, Increment<1>) GROUP(INC2, Increment<2>) GROUP(DEC, Decrement<1>) GROUP(DEC2, Decrement<2>)
     GROUP(NEG, Neg) GROUP(COM, Com)
 #undef GROUP

@@ -1,6 +1,6 @@
 // Shifts and rotates by one, shifts by many, sign and zero extension, byte swapping, bit searching.
 
-#include "emu/dspic/machine.h"
+#include "emu/dspic/exec_one_operand.h"
 
 namespace puckloop::dspic {
 
@@ -63,22 +63,6 @@ struct Rrc {
         return shifted<Byte>(m, s >> 1 | (m.st.sr & sr::C ? kTop<Byte> : 0u), s & 1);
     }
 };
-
-template <class Operation, bool Byte, Ea Source, Ea Destination>
-const Op* one_bit(Machine& m, const Op* op) {
-    const std::uint32_t s = source<Byte, Source>(m, op);
-    destination<Byte, Destination>(m, op, Operation::template apply<Byte>(m, s));
-    return op + 1;
-}
-template <class Operation, bool Byte, bool ToFile>
-const Op* one_bit_file(Machine& m, const Op* op) {
-    const std::uint32_t result = Operation::template apply<Byte>(m, read_data<Byte>(m, op->k));
-    if constexpr (ToFile)
-        write_data<Byte>(m, op->k, static_cast<std::uint16_t>(result));
-    else
-        put_w<Byte>(m, 0, result);
-    return op + 1;
-}
 
 /// By many bits, words only: C stays. Counts of 16 to 31 shift everything out.
 enum class Many { Left, Logical, Arithmetic };
@@ -154,35 +138,6 @@ const Op* search(Machine& m, const Op* op) {
     return op + 1;
 }
 
-template <class Operation>
-void bind_one_bit(Op& op, const Form& form, std::uint32_t word) {
-    const bool byte = form.field('B', word) != 0;
-    if (form.has_field('f')) {
-        op.k = static_cast<std::uint16_t>(form.field('f', word));
-        const bool to_wreg = form.operands.ends_with("WREG");
-        if (to_wreg) {
-            sets(op, 0);
-            op.base = byte ? &one_bit_file<Operation, true, false> : &one_bit_file<Operation, false, false>;
-        } else {
-            op.base = byte ? &one_bit_file<Operation, true, true> : &one_bit_file<Operation, false, true>;
-        }
-        return;
-    }
-    const Ea from = bind_source(op, form, word, 'p', byte ? 1 : 2);
-    const Ea to = bind_destination(op, form, word, 'q', byte ? 1 : 2);
-    const bool direct_from = from == Ea::Direct;
-    const bool direct_to = to == Ea::Direct;
-    const auto pick = [&](auto byte_tag) -> Handler {
-        constexpr bool kByte = decltype(byte_tag)::value;
-        if (direct_from)
-            return direct_to ? &one_bit<Operation, kByte, Ea::Direct, Ea::Direct>
-                             : &one_bit<Operation, kByte, Ea::Direct, Ea::Indirect>;
-        return direct_to ? &one_bit<Operation, kByte, Ea::Indirect, Ea::Direct>
-                         : &one_bit<Operation, kByte, Ea::Indirect, Ea::Indirect>;
-    };
-    op.base = byte ? pick(std::true_type{}) : pick(std::false_type{});
-}
-
 template <Many Kind>
 void bind_many(Op& op, const Form& form, std::uint32_t word) {
     op.b = static_cast<std::uint8_t>(form.field('w', word));
@@ -212,7 +167,7 @@ bool bind_shift(Op& op, const Form& form, std::uint32_t word) {
         // clang-format off
 #define GROUP(NAME, OPERATION)                                                                       \
     case FormId::NAME##_f: case FormId::NAME##_f_WREG: case FormId::NAME##_Ws_Wd:                    \
-        bind_one_bit<OPERATION>(op, form, word); return true;
+        return bind_one_operand<OPERATION>(op, form, word);
     GROUP(SL, Sl) GROUP(LSR, Lsr) GROUP(ASR, Asr) GROUP(RLNC, Rlnc) GROUP(RLC, Rlc) GROUP(RRNC, Rrnc)
     GROUP(RRC, Rrc)
 #undef GROUP

@@ -61,7 +61,7 @@ struct Machine {
     Cycle limit = 0;              ///< the inner loop leaves when st.cycle reaches this; 0 = leave now
     std::uint32_t watch = 0;      ///< low half: just written; high half: not written since reset
     std::uint16_t special = 0x8000;  ///< pointer registers that need special_ea(): W15, modulo, bit-reversed
-    std::uint16_t stack_span = 0xFFFF;  ///< highest legal stack address less 0x0800
+    std::int32_t stack_span = 0xFFFF;  ///< highest legal stack address less 0x0800; below 0: none is
     std::uint16_t ram_words = 0;
     std::uint16_t* ram = nullptr;
     Op* code = nullptr;

@@ -24,6 +24,10 @@ bool in_eeprom(const Machine& m, std::uint32_t address) {
     return address >= m.device.eeprom_start && address < m.device.eeprom_start + 2 * m.device.eeprom_words;
 }
 
+bool in_configuration(const Machine& m, std::uint32_t address) {
+    return address >= m.device.config_start && address < m.device.config_start + 2 * m.device.config_words;
+}
+
 void erase(Machine& m, std::uint32_t address, std::uint32_t words) {
     const std::uint32_t start = address & ~(2 * words - 1);
     for (std::uint32_t i = 0; i < words; ++i)
@@ -70,7 +74,8 @@ bool start_30f(Machine& m, std::uint16_t code) {
         return eeprom;
     case 0x06:
     case 0x08:  // configuration words are written, not ANDed
-        return write_program(m, address & ~1u, m.nvm.latch[(address >> 1) % m.nvm.latch.size()]);
+        return in_configuration(m, address) &&
+               write_program(m, address & ~1u, m.nvm.latch[(address >> 1) % m.nvm.latch.size()]);
     default:
         return false;
     }
@@ -90,9 +95,10 @@ bool start_33f(Machine& m, std::uint16_t code) {
         if (flash) program(m, address, 1);
         return flash;
     case 0x40:
-        return write_program(m, address & ~1u, kErased);
+        return in_configuration(m, address) && write_program(m, address & ~1u, kErased);
     case 0x00:
-        return write_program(m, address & ~1u, m.nvm.latch[(address >> 1) % m.nvm.latch.size()]);
+        return in_configuration(m, address) &&
+               write_program(m, address & ~1u, m.nvm.latch[(address >> 1) % m.nvm.latch.size()]);
     default:
         return false;
     }

@@ -484,3 +484,32 @@ taken:  retfie
     CHECK(bench.word(0x1000) == 0x5A);
     CHECK((bench.chip.peek("IFS1") & 0x8000) == 0x8000);  // the transmitter asks for more
 }
+
+TEST_CASE("programming a configuration word outside of configuration space fails") {
+    Bench33 bench(R"(
+        .org 0x200
+main:   mov #0x0001, w0
+        mov w0, TBLPAG
+        mov #0x0400, w6
+        tblwtl w0, [w6]
+        mov #0x4000, w0
+        mov w0, NVMCON
+        mov #0x55, w7
+        mov w7, NVMKEY
+        mov #0xAA, w7
+        mov w7, NVMKEY
+        bset NVMCON, #15
+        nop
+end:    bra end
+)");
+    bench.run_to_label("end");
+    CHECK((bench.chip.peek("NVMCON") & 0xE000) == 0x6000);  // WREN, WRERR, not busy
+}
+
+TEST_CASE("a part without a program at the reset vector is warned of") {
+    Pins33 pins;
+    Chip chip(dspic33fj256gp710(), pins);
+    chip.power_on();
+    REQUIRE(chip.report().warnings.size() == 1);
+    CHECK(chip.report().warnings[0].text.find("reset vector") != std::string::npos);
+}

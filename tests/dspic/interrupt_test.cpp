@@ -242,6 +242,13 @@ TEST_CASE("a trap flag left set re-enters after RETFIE") {
     CHECK(rig.w(5) > 5);
 }
 
+TEST_CASE("SPLIM below the RAM leaves no legal stack address") {
+    Rig rig("        mov #0x1000, w15\n        mov #0x0700, w0\n        mov w0, 0x20\n        push w0\n"
+            "here:   bra here\ntrap:   bra trap\n");
+    rig.vector(3, "trap");
+    CHECK(rig.run_to("trap", 100));
+}
+
 TEST_CASE("the stack traps above SPLIM and below 0x0800") {
     Rig over(R"(
         mov     #0x1FFE, w0

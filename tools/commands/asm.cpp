@@ -43,7 +43,8 @@ void run(const Arguments& arguments) {
     options.keep_lines = arguments.format == "list";
     const dspic::DeviceInfo* device = dspic::find_device(arguments.mcu);
     if (!device)
-        throw InputError("", "--mcu", fmt::format("unknown chip \"{}\"", arguments.mcu), "dspic30f6014a");
+        throw InputError("", "--mcu", fmt::format("unknown chip \"{}\"", arguments.mcu),
+                         dspic::device_names());
     for (const dspic::RegisterInfo& info : device->registers)
         options.predefined[std::string(info.name)] = info.address;
     const dspic::Program program = dspic::assemble(read_text(arguments.file), options);
