@@ -68,10 +68,9 @@ std::string sentence(const Experiment& experiment, const Copy& copy) {
     const std::string earlier = copy.rows == first.rows
                                     ? fmt::format("run {}", first.name)
                                     : fmt::format("run {} from row {} on", first.name, copy.row_a + 1);
-    return fmt::format("{} repeats {} to the last digit in {} row{}: copied, not measured again (by chance "
-                       "once in 2^{:.0f} times); "
-                       "it is left out",
-                       later, earlier, copy.rows, copy.rows == 1 ? "" : "s", copy.bits);
+    return fmt::format(
+        "{} repeats {} to the last digit in {} row{}: copied, not measured again; it is left out", later,
+        earlier, copy.rows, copy.rows == 1 ? "" : "s");
 }
 
 }  // namespace

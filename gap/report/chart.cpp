@@ -1,0 +1,226 @@
+#include "gap/report/chart.h"
+
+#include "gap/stats/robust.h"
+#include "physics/svg_canvas.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace puckloop::gap::report {
+
+namespace {
+
+constexpr double kLeft = 58, kRight = 20, kTop = 40, kBottom = 42;  // pixels round the plot
+constexpr std::size_t kMostPoints = 1500;
+constexpr const char* kGrid = "#dddddd";
+constexpr const char* kInk = "#333333";
+
+using physics::escaped;
+
+std::string text_at(double x, double y, const std::string& text, const char* anchor, const char* more = "") {
+    return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" {}>{}</text>\n", x, y, anchor,
+                       more, escaped(text));
+}
+
+std::string segment(double x1, double y1, double x2, double y2, const std::string& colour, double width) {
+    return fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\" "
+                       "stroke-width=\"{}\"/>\n",
+                       x1, y1, x2, y2, colour, width);
+}
+
+}  // namespace
+
+Scale Scale::covering(double low, double high, int wanted) {
+    if (!std::isfinite(low) || !std::isfinite(high)) low = 0, high = 1;
+    if (high - low <= 1e-12 * std::max(std::fabs(low), std::fabs(high))) {
+        const double room = low == 0 ? 1.0 : 0.1 * std::fabs(low);
+        low -= room, high += room;
+    }
+    const double rough = (high - low) / wanted;
+    const double decade = std::pow(10, std::floor(std::log10(rough)));
+    const double share = rough / decade;
+    const double step = decade * (share < 1.5 ? 1 : share < 3.5 ? 2 : share < 7.5 ? 5 : 10);
+    return {std::floor(low / step + 1e-9) * step, std::ceil(high / step - 1e-9) * step, step};
+}
+
+std::vector<double> Scale::ticks() const {
+    std::vector<double> result;
+    const auto count = std::lround((high - low) / step);
+    for (long i = 0; i <= count; ++i)
+        result.push_back(low + static_cast<double>(i) * step);
+    return result;
+}
+
+std::string Scale::label(double tick) const {
+    if (std::fabs(tick) < 1e-9 * step) return "0";
+    const double size = std::max(std::fabs(low), std::fabs(high));
+    if (size >= 1e6 || size < 1e-3) return fmt::format("{:.3g}", tick);
+    const int decimals = std::max(0, static_cast<int>(std::ceil(-std::log10(step) - 1e-9)));
+    return fmt::format("{:.{}f}", tick, decimals);
+}
+
+Chart::Chart(std::string title, std::string x_label, std::string y_label)
+    : title_(std::move(title)), x_label_(std::move(x_label)), y_label_(std::move(y_label)) {}
+
+void Chart::points(const std::vector<double>& x, const std::vector<double>& y, const std::string& colour,
+                   const std::string& name) {
+    std::vector<std::size_t> whole;
+    for (std::size_t i = 0; i < x.size(); ++i)
+        if (std::isfinite(x[i]) && std::isfinite(y[i])) whole.push_back(i);
+    Layer layer{Layer::Kind::Points, {}, {}, {}, colour, name, false};
+    const std::size_t stride = std::max<std::size_t>((whole.size() + kMostPoints - 1) / kMostPoints, 1);
+    for (std::size_t k = 0; k < whole.size(); k += stride) {
+        layer.x.push_back(x[whole[k]]);
+        layer.y.push_back(y[whole[k]]);
+    }
+    layers_.push_back(std::move(layer));
+}
+
+void Chart::line(const std::vector<double>& x, const std::vector<double>& y, const std::string& colour,
+                 const std::string& name, bool dashed) {
+    layers_.push_back({Layer::Kind::Line, x, y, {}, colour, name, dashed});
+}
+
+void Chart::band(const std::vector<double>& x, const std::vector<double>& low,
+                 const std::vector<double>& high, const std::string& colour) {
+    layers_.push_back({Layer::Kind::Band, x, low, high, colour, "", false});
+}
+
+void Chart::interval(double x, double y, double low, double high, const std::string& colour) {
+    layers_.push_back({Layer::Kind::Interval, {x, x}, {low, y}, {high, y}, colour, "", false});
+}
+
+void Chart::level(double y, const std::string& name) {
+    layers_.push_back({Layer::Kind::Level, {}, {y}, {}, "#888888", name, true});
+}
+
+Scale Chart::scale_of(bool vertical) const {
+    std::vector<double> values, dots;
+    for (const Layer& layer : layers_) {
+        auto& into = vertical && layer.kind == Layer::Kind::Points ? dots : values;
+        const auto& from = vertical ? layer.y : layer.x;
+        into.insert(into.end(), from.begin(), from.end());
+        if (vertical) values.insert(values.end(), layer.high.begin(), layer.high.end());
+    }
+    if (!dots.empty()) {
+        const double low = stats::quantile(dots, clip_low_), high = stats::quantile(dots, clip_high_);
+        const double room = clip_high_ < 1 ? 0.15 * (high - low) : 0.0;
+        values.push_back(std::max(low - room, stats::quantile(dots, 0)));
+        values.push_back(std::min(high + room, stats::quantile(dots, 1)));
+    }
+    if (!vertical && !categories_.empty()) return {-0.5, static_cast<double>(categories_.size()) - 0.5, 1};
+    return Scale::covering(stats::quantile(values, 0), stats::quantile(values, 1), vertical ? 5 : 6);
+}
+
+std::string Chart::legend(double left, double top) const {
+    std::string out;
+    double x = left;
+    for (const Layer& layer : layers_) {
+        if (layer.name.empty()) continue;
+        if (layer.kind == Layer::Kind::Points)
+            out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\" fill=\"{}\"/>\n", x + 6, top - 4,
+                               layer.colour);
+        else
+            out += fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\" "
+                               "stroke-width=\"2\"{}/>\n",
+                               x, top - 4, x + 12, top - 4, layer.colour,
+                               layer.dashed ? " stroke-dasharray=\"4 3\"" : "");
+        out += text_at(x + 16, top, layer.name, "start");
+        x += 26 + 5.6 * static_cast<double>(layer.name.size());
+    }
+    return out;
+}
+
+std::string Chart::svg(double width, double height) const {
+    Scale xs = scale_of(false), ys = scale_of(true);
+    const double bottom = height - kBottom, right = width - kRight;
+    if (equal_) {  // widen the shorter axis about its middle
+        const double unit =
+            std::max((xs.high - xs.low) / (right - kLeft), (ys.high - ys.low) / (bottom - kTop));
+        for (auto [scale, pixels] : {std::pair{&xs, right - kLeft}, {&ys, bottom - kTop}}) {
+            const double middle = (scale->low + scale->high) / 2, half = unit * pixels / 2;
+            *scale = {std::ceil((middle - half) / scale->step - 1e-9) * scale->step,
+                      std::floor((middle + half) / scale->step + 1e-9) * scale->step, scale->step};
+        }
+        const double finest =
+            std::max((xs.high - xs.low) / (right - kLeft), (ys.high - ys.low) / (bottom - kTop));
+        for (auto [scale, pixels] : {std::pair{&xs, right - kLeft}, {&ys, bottom - kTop}}) {
+            const double middle = (scale->low + scale->high) / 2;
+            scale->low = middle - finest * pixels / 2;
+            scale->high = middle + finest * pixels / 2;
+        }
+    }
+    const auto px = [&](double x) { return kLeft + (x - xs.low) / (xs.high - xs.low) * (right - kLeft); };
+    const auto py = [&](double y) {
+        return bottom - (std::clamp(y, ys.low, ys.high) - ys.low) / (ys.high - ys.low) * (bottom - kTop);
+    };
+    std::string out = fmt::format(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" "
+        "height=\"{1:.0f}\" "
+        "font-family=\"DejaVu Sans, Helvetica, Arial, sans-serif\" font-size=\"10\" fill=\"{2}\">\n"
+        "<rect width=\"{0:.0f}\" height=\"{1:.0f}\" fill=\"#ffffff\"/>\n",
+        width, height, kInk);
+    const auto first_tick = [](const Scale& s) {
+        return Scale{std::ceil(s.low / s.step - 1e-9) * s.step, std::floor(s.high / s.step + 1e-9) * s.step,
+                     s.step};
+    };
+    for (const double tick : first_tick(ys).ticks()) {
+        out += segment(kLeft, py(tick), right, py(tick), kGrid, 1);
+        out += text_at(kLeft - 5, py(tick) + 3.5, ys.label(tick), "end");
+    }
+    if (categories_.empty())
+        for (const double tick : first_tick(xs).ticks()) {
+            out += segment(px(tick), kTop, px(tick), bottom, kGrid, 1);
+            out += text_at(px(tick), bottom + 14, xs.label(tick), "middle");
+        }
+    for (std::size_t i = 0; i < categories_.size(); ++i)
+        out += text_at(px(static_cast<double>(i)), bottom + 14, categories_[i], "middle");
+    for (const Layer& layer : layers_) {
+        if (layer.kind == Layer::Kind::Level)
+            out += fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\" "
+                               "stroke-dasharray=\"4 3\"/>\n",
+                               kLeft, py(layer.y[0]), right, py(layer.y[0]), layer.colour);
+        if (layer.kind == Layer::Kind::Points)
+            for (std::size_t i = 0; i < layer.x.size(); ++i)
+                out += fmt::format(
+                    "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"1.6\" fill=\"{}\" fill-opacity=\"0.55\"/>\n",
+                    px(layer.x[i]), py(layer.y[i]), layer.colour);
+        if (layer.kind == Layer::Kind::Interval) {
+            out +=
+                segment(px(layer.x[0]), py(layer.y[0]), px(layer.x[0]), py(layer.high[0]), layer.colour, 2);
+            out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.5\" fill=\"{}\"/>\n",
+                               px(layer.x[0]), py(layer.y[1]), layer.colour);
+        }
+        std::string path;
+        if (layer.kind == Layer::Kind::Line || layer.kind == Layer::Kind::Band)
+            for (std::size_t i = 0; i < layer.x.size(); ++i)
+                if (std::isfinite(layer.x[i]) && std::isfinite(layer.y[i]))
+                    path += fmt::format("{}{:.1f},{:.1f}", path.empty() ? "" : " ", px(layer.x[i]),
+                                        py(layer.y[i]));
+        if (layer.kind == Layer::Kind::Band) {
+            for (std::size_t i = layer.x.size(); i-- > 0;)
+                if (std::isfinite(layer.x[i]) && std::isfinite(layer.high[i]))
+                    path += fmt::format(" {:.1f},{:.1f}", px(layer.x[i]), py(layer.high[i]));
+            out += fmt::format("<polygon points=\"{}\" fill=\"{}\" fill-opacity=\"0.22\"/>\n", path,
+                               layer.colour);
+        }
+        if (layer.kind == Layer::Kind::Line)
+            out +=
+                fmt::format("<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.6\"{}/>\n",
+                            path, layer.colour, layer.dashed ? " stroke-dasharray=\"5 3\"" : "");
+    }
+    out += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"none\" "
+                       "stroke=\"#999999\"/>\n",
+                       kLeft, kTop, right - kLeft, bottom - kTop);
+    out += text_at(kLeft, 14, title_, "start", "font-size=\"11\" font-weight=\"bold\"");
+    out += legend(kLeft, 32);
+    out += text_at((kLeft + right) / 2, height - 8, x_label_, "middle");
+    out +=
+        text_at(0, 0, y_label_, "middle",
+                fmt::format("transform=\"translate(12,{:.1f}) rotate(-90)\"", (kTop + bottom) / 2).c_str());
+    return out + "</svg>\n";
+}
+
+}  // namespace puckloop::gap::report

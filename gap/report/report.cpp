@@ -1,0 +1,63 @@
+#include "gap/report/report.h"
+
+#include "base/error.h"
+#include "gap/report/pictures.h"
+#include "gap/report/sections.h"
+#include "gap/report/style.h"
+#include "physics/svg_canvas.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+
+namespace puckloop::gap::report {
+
+namespace {
+
+using physics::escaped;
+
+std::string figures(const std::vector<Picture>& pictures) {
+    std::string out = "<div class=\"pictures\">\n";
+    for (const Picture& p : pictures)
+        out += fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", p.svg, escaped(p.caption));
+    return out + "</div>\n";
+}
+
+std::string all_pictures(const Experiment& experiment, const Verdict& verdict) {
+    std::string out = "<h2>Measured and simulated</h2>\n";
+    if (const auto paths = path_pictures(experiment, verdict); !paths.empty()) out += figures(paths);
+    for (const Series& series : verdict.series) {
+        if (verdict.series.size() > 1) out += fmt::format("<h3>{}</h3>\n", escaped(series.observable));
+        out += figures(pictures_of(experiment, series, verdict.seed));
+    }
+    return out;
+}
+
+}  // namespace
+
+std::string report_html(const Experiment& experiment, const Verdict& verdict) {
+    std::string out = fmt::format("<!DOCTYPE html>\n<html lang=\"en\"><head><meta "
+                                  "charset=\"utf-8\">\n<title>{}</title>\n<style>{}</style></head>\n"
+                                  "<body>\n",
+                                  escaped(experiment.title), kStyle);
+    out += header_section(experiment, verdict);
+    out += verdict_section(verdict);
+    out += cautions_section(verdict);
+    out += gain_section(verdict);
+    out += all_pictures(experiment, verdict);
+    out += parameters_section(verdict);
+    out += rivals_section(verdict);
+    out += structure_section(experiment, verdict);
+    out += evidence_section(verdict);
+    out += reading_section();
+    return out + "</body></html>\n";
+}
+
+void write_report(const Experiment& experiment, const Verdict& verdict, const std::filesystem::path& file) {
+    std::ofstream stream(file, std::ios::binary);
+    stream << report_html(experiment, verdict);
+    stream.close();
+    if (!stream) throw RunError(fmt::format("{}: cannot be written", file.string()));
+}
+
+}  // namespace puckloop::gap::report

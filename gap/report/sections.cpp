@@ -1,0 +1,153 @@
+#include "gap/report/sections.h"
+
+#include "gap/report/pictures.h"
+#include "gap/report/table.h"
+#include "physics/svg_canvas.h"
+
+#include <fmt/format.h>
+
+#include <set>
+
+namespace puckloop::gap::report {
+
+namespace {
+
+using physics::escaped;
+
+std::string paragraph(const std::string& text) {
+    return text.empty() ? std::string() : fmt::format("<p>{}</p>\n", escaped(text));
+}
+
+const char* word_of(Decision decision) {
+    switch (decision) {
+    case Decision::Named:
+        return "The cause is named";
+    case Decision::CannotTell:
+        return "Cannot tell: two explanations are as good";
+    case Decision::NoEffect:
+        return "No effect found: nothing to gain";
+    case Decision::Unexplained:
+        return "Structure remains that nothing in the catalogue explains";
+    }
+    return "";
+}
+
+std::string called(const Cause& cause) {
+    return cause.number > 0
+               ? fmt::format("{} (effect {})", cause.title.empty() ? cause.name : cause.title, cause.number)
+               : cause.name;
+}
+
+}  // namespace
+
+std::string header_section(const Experiment& experiment, const Verdict& verdict) {
+    std::string about = fmt::format("{} experiment{}; {} runs, {} rows; seed {}.", kind_name(experiment.kind),
+                                    experiment.robot.empty() ? "" : " with " + experiment.robot,
+                                    experiment.runs.size(), experiment.rows(), verdict.seed);
+    for (const std::string& text : {experiment.source.empty() ? "" : "Data: " + experiment.source,
+                                    experiment.licence.empty() ? "" : "(" + experiment.licence + ")."})
+        if (!text.empty()) about += " " + text;
+    return fmt::format("<h1>{}</h1>\n<p class=\"about\">{}<br>{}</p>\n", escaped(experiment.title),
+                       escaped(about), escaped(experiment.description));
+}
+
+std::string verdict_section(const Verdict& verdict) {
+    std::string out = fmt::format("<div class=\"verdict {}\">\n<div class=\"word\">{}</div>\n",
+                                  decision_name(verdict.decision), escaped(word_of(verdict.decision)));
+    out += paragraph(verdict.summary);
+    std::set<std::string> said{verdict.summary};
+    for (const Cause& cause : verdict.causes)
+        if (said.insert(cause.sentence).second) out += paragraph(cause.sentence);
+    if (said.insert(verdict.heldout.sentence).second) out += paragraph(verdict.heldout.sentence);
+    if (!verdict.suggestions.empty())
+        out += paragraph("Next experiment: " + verdict.suggestions.front().what);
+    return out + "</div>\n";
+}
+
+std::string cautions_section(const Verdict& verdict) {
+    if (verdict.cautions.empty()) return {};
+    std::string out = "<h2>Cautions about the data</h2>\n<ul>\n";
+    for (const std::string& caution : verdict.cautions)
+        out += fmt::format("<li>{}</li>\n", escaped(caution));
+    return out + "</ul>\n";
+}
+
+std::string gain_section(const Verdict& verdict) {
+    const Held& held = verdict.heldout;
+    std::string out = "<h2>Gain on runs that were not fitted</h2>\n";
+    Table table({"observable", "unit", "#error before", "#error after", "#ratio", "90 % interval"});
+    table.row({"all, standardised", "", cell(held.before), cell(held.after), cell(held.ratio),
+               range_cell(held.low, held.high)},
+              "strong");
+    for (const HeldObservable& o : verdict.observables)
+        table.row({o.name, o.unit, cell(o.before), cell(o.after), cell(o.ratio), range_cell(o.low, o.high)});
+    out += table.html();
+    out += paragraph(
+        fmt::format("{} of {} held-out runs are better. Log score a row {} before, {} after (gain {} nats a "
+                    "row, 90 % {}). {}",
+                    held.runs_better, held.runs, cell(held.score_before), cell(held.score_after),
+                    cell(held.score_after - held.score_before), range_cell(held.score_low, held.score_high),
+                    held.gain ? "The data shows a gain." : "The data shows no gain; none is claimed."));
+    if (!verdict.observables.empty()) {
+        const Picture picture = gain_picture(verdict);
+        out += fmt::format("<div class=\"pictures\"><figure>{}<figcaption>{}</figcaption></figure></div>\n",
+                           picture.svg, escaped(picture.caption));
+    }
+    return out;
+}
+
+std::string parameters_section(const Verdict& verdict) {
+    Table table({"cause", "parameter", "unit", "#simulator", "#fitted", "90 % interval", "goes into"});
+    const auto add = [&](const std::string& cause, const FittedParameter& p) {
+        table.row({cause, p.name, p.unit, cell(p.neutral), cell(p.value), range_cell(p.low, p.high),
+                   p.in_simulator ? "simulator" : "measuring chain"});
+    };
+    for (const Cause& cause : verdict.causes)
+        for (const FittedParameter& p : cause.parameters)
+            add(called(cause), p);
+    for (const FittedParameter& p : verdict.nuisance)
+        add("fitted along", p);
+    return table.empty() ? std::string() : "<h2>Parameters</h2>\n" + table.html();
+}
+
+std::string rivals_section(const Verdict& verdict) {
+    std::string out;
+    Table rivals({"instead of", "rival", "#ΔBIC", "what would tell"});
+    for (const Rival& rival : verdict.rivals)
+        rivals.row({rival.instead_of, called(rival.cause), cell(rival.delta_bic), rival.separated_by});
+    if (!rivals.empty())
+        out += "<h2>Rivals</h2>\n<p>ΔBIC below 6: the data does not tell the rival from the cause.</p>\n" +
+               rivals.html();
+    Table next({"experiment", "tells between", "#expected information (bits)"});
+    for (const Suggestion& s : verdict.suggestions)
+        next.row({s.what, fmt::format("{}", fmt::join(s.between, ", ")), cell(s.bits)});
+    if (!next.empty()) out += "<h2>What to measure next</h2>\n" + next.html();
+    return out;
+}
+
+std::string evidence_section(const Verdict& verdict) {
+    Table table({"effect", "#no.", "#ΔBIC", "#held-out score (nats)", "#p", "remark"});
+    for (const Tried& t : verdict.tried) {
+        const bool chosen = t.remark.starts_with("chosen");
+        table.row({t.name, t.number > 0 ? std::to_string(t.number) : "", cell(t.delta_bic),
+                   cell(t.score_gain), p_cell(t.p_value), t.remark},
+                  chosen             ? "strong"
+                  : t.delta_bic <= 0 ? "faint"
+                                     : "");
+    }
+    return table.empty() ? std::string() : "<h2>Every effect that was tried</h2>\n" + table.html();
+}
+
+std::string reading_section() {
+    return "<h2>How to read this</h2>\n<p class=\"about\">Before: the simulator as it is, with the nominal "
+           "numbers of the "
+           "experiment. After: with the named causes and the parameters of the table. Held out: each run was "
+           "predicted from "
+           "parameters fitted to other runs. ΔBIC: evidence for the effect after paying for its parameters; "
+           "above 6 is clear, "
+           "below 0 speaks against it. Structure tests exchange whole blocks of rows or whole runs, so that "
+           "readings that carry "
+           "over do not count twice, and are corrected for their number (Holm).</p>\n";
+}
+
+}  // namespace puckloop::gap::report

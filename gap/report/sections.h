@@ -1,0 +1,22 @@
+#pragma once
+// The report's parts as HTML, each empty where it has nothing to say.
+
+#include "gap/experiment.h"
+#include "gap/verdict.h"
+
+#include <string>
+
+namespace puckloop::gap::report {
+
+std::string header_section(const Experiment& experiment, const Verdict& verdict);
+std::string verdict_section(const Verdict& verdict);
+std::string cautions_section(const Verdict& verdict);
+std::string gain_section(const Verdict& verdict);
+std::string parameters_section(const Verdict& verdict);
+std::string rivals_section(const Verdict& verdict);
+/// Noise floor and structure tests, before and after.
+std::string structure_section(const Experiment& experiment, const Verdict& verdict);
+std::string evidence_section(const Verdict& verdict);
+std::string reading_section();
+
+}  // namespace puckloop::gap::report

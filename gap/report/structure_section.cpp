@@ -1,0 +1,116 @@
+// Noise floor and structure tests of every observable.
+
+#include "gap/report/sections.h"
+#include "gap/report/table.h"
+#include "gap/residual_structure.h"
+#include "gap/stats/noise_floor.h"
+#include "gap/stats/robust.h"
+#include "physics/svg_canvas.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace puckloop::gap::report {
+
+namespace {
+
+constexpr double kClear = 0.05;         // corrected p
+constexpr std::size_t kMostLines = 14;  // an observable
+
+using stats::Finding;
+
+double rms_of(const std::vector<double>& measured, const std::vector<double>& simulated) {
+    double sum = 0, rows = 0;
+    for (std::size_t i = 0; i < measured.size() && i < simulated.size(); ++i) {
+        const double rest = measured[i] - simulated[i];
+        if (std::isfinite(rest)) sum += rest * rest, rows += 1;
+    }
+    return rows > 0 ? std::sqrt(sum / rows) : NAN;
+}
+
+void add_floor(const Experiment& experiment, const Series& series, Table& table) {
+    std::vector<std::vector<double>> stimuli;
+    for (const stats::Covariate& c : covariates_of(experiment, series))
+        if (c.name != "time" && c.name != "order" && c.name != "session") stimuli.push_back(c.value);
+    stats::Series measured{series.measured, {series.run.begin(), series.run.end()}};
+    const bool sums = experiment.kind == Kind::Motion || experiment.kind == Kind::Timing;
+    const stats::NoiseFloor floor =
+        stimuli.empty() || sums ? stats::noise_floor(measured, std::vector<int>(series.measured.size(), -1))
+                                : stats::noise_floor(measured, stats::stimulus_numbers(stimuli));
+    table.row({series.observable, series.unit, cell(floor.within_run), cell(floor.between_runs),
+               cell(floor.differences), cell(rms_of(series.measured, series.before)),
+               cell(rms_of(series.measured, series.after))});
+}
+
+std::string effect_of(const Finding& f) {
+    if (f.effect_unit == "fraction") return fmt::format("{:.2g} %", 100 * f.effect);
+    if (!f.effect_unit.empty()) return fmt::format("{:.3g}", f.effect);
+    return fmt::format("{:.3g} σ", f.relative);
+}
+
+/// The clearest line of either stage for each test and covariate; clear ones first.
+std::string tests_of(const std::vector<Finding>& before, const std::vector<Finding>& after) {
+    std::vector<std::size_t> order;
+    for (std::size_t i = 0; i < before.size(); ++i)
+        order.push_back(i);
+    const auto after_of = [&](const Finding& f) -> const Finding* {
+        for (const Finding& g : after)
+            if (g.test == f.test && g.covariate == f.covariate) return &g;
+        return nullptr;
+    };
+    const auto clearest = [&](std::size_t i) {
+        const Finding* later = after_of(before[i]);
+        return std::min(before[i].p_adjusted, later != nullptr ? later->p_adjusted : 1.0);
+    };
+    std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return clearest(a) < clearest(b); });
+    Table table({"test", "against", "#size before", "#p before", "#size after", "#p after", "shape"});
+    std::size_t clear = 0;
+    for (const std::size_t i : order) {
+        const Finding& f = before[i];
+        const Finding* later = after_of(f);
+        if (clearest(i) > kClear || clear >= kMostLines) continue;
+        ++clear;
+        const bool left = later != nullptr && later->p_adjusted < kClear;
+        table.row({f.test, f.covariate, effect_of(f), p_cell(f.p_adjusted),
+                   later != nullptr ? effect_of(*later) : "–",
+                   later != nullptr ? p_cell(later->p_adjusted) : "–", left ? later->shape : f.shape},
+                  left ? "strong" : "");
+    }
+    const std::string rest =
+        fmt::format("<p class=\"about\">{} of {} tests shown; the others find nothing (corrected p above "
+                    "{}) or less. Bold: still there after.</p>\n",
+                    clear, before.size(), kClear);
+    return (table.empty() ? std::string() : table.html()) + rest;
+}
+
+}  // namespace
+
+std::string structure_section(const Experiment& experiment, const Verdict& verdict) {
+    if (verdict.series.empty()) return {};
+    Table floor({"observable", "unit", "#repeats in a run", "#run to run", "#row to row", "#rms before",
+                 "#rms after"});
+    std::string tests;
+    const stats::TestOptions options{.seed = verdict.seed, .permutations = 499};
+    std::vector<std::vector<Finding>> tables;
+    for (const Series& series : verdict.series) {
+        add_floor(experiment, series, floor);
+        tables.push_back(residual_structure(experiment, series, Stage::Before, options));
+        tables.push_back(residual_structure(experiment, series, Stage::After, options));
+    }
+    std::vector<std::vector<Finding>*> before, after;
+    for (std::size_t i = 0; i < tables.size(); i += 2)
+        before.push_back(&tables[i]), after.push_back(&tables[i + 1]);
+    stats::adjust_together(before);
+    stats::adjust_together(after);
+    for (std::size_t i = 0; i < verdict.series.size(); ++i)
+        tests += fmt::format("<h3>{}</h3>\n{}", physics::escaped(verdict.series[i].observable),
+                             tests_of(*before[i], *after[i]));
+    return "<h2>Noise floor</h2>\n<p>Standard deviations: of repeats of one stimulus inside a run, of their "
+           "means from run to "
+           "run, and from differences of successive rows; no model can do better than the first two.</p>\n" +
+           floor.html() + "<h2>Structure of what is left</h2>\n" + tests;
+}
+
+}  // namespace puckloop::gap::report

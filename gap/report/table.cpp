@@ -1,0 +1,49 @@
+#include "gap/report/table.h"
+
+#include "gap/stats/profile.h"
+#include "physics/svg_canvas.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace puckloop::gap::report {
+
+using physics::escaped;
+
+Table::Table(std::vector<std::string> heads) : heads_(std::move(heads)) {}
+
+void Table::row(const std::vector<std::string>& cells, const std::string& style) {
+    body_ += style.empty() ? "<tr>" : fmt::format("<tr class=\"{}\">", style);
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        const bool number = i < heads_.size() && heads_[i].starts_with('#');
+        body_ += fmt::format("<td{}>{}</td>", number ? " class=\"n\"" : "", escaped(cells[i]));
+    }
+    body_ += "</tr>\n";
+    ++rows_;
+}
+
+std::string Table::html() const {
+    std::string out = "<table>\n<thead><tr>";
+    for (const std::string& head : heads_) {
+        const bool number = head.starts_with('#');
+        out += fmt::format("<th{}>{}</th>", number ? " class=\"n\"" : "",
+                           escaped(number ? head.substr(1) : head));
+    }
+    return out + "</tr></thead>\n<tbody>\n" + body_ + "</tbody></table>\n";
+}
+
+std::string cell(double value) {
+    if (!std::isfinite(value)) return "–";
+    return stats::plain(value);
+}
+
+std::string p_cell(double p) {
+    return p < 0.001 ? "< 0.001" : fmt::format("{:.3f}", p);
+}
+
+std::string range_cell(double low, double high) {
+    return fmt::format("{} … {}", cell(low), cell(high));
+}
+
+}  // namespace puckloop::gap::report
