@@ -30,6 +30,14 @@ void Bench::pace_by_wall_clock() {
     wall_origin_ns_ = wall_nanoseconds() - now_ / cosim::kNanosecond;
 }
 
+void Bench::stimulate(const std::vector<StimulusLine>& stimulus) {
+    stimulus_.erase(stimulus_.begin(), stimulus_.begin() + static_cast<std::ptrdiff_t>(next_stimulus_));
+    next_stimulus_ = 0;
+    stimulus_.insert(stimulus_.end(), stimulus.begin(), stimulus.end());
+    std::stable_sort(stimulus_.begin(), stimulus_.end(),
+                     [](const StimulusLine& a, const StimulusLine& b) { return a.time < b.time; });
+}
+
 Bench::End Bench::run_until(cosim::Time until) {
     while (now_ < until) {
         if (now_ >= next_poll_) {

@@ -32,12 +32,12 @@ class Bench : private TargetListener {
     Target& target() { return *target_; }
     dspic::Chip& chip() { return target_->chip(); }
     UartLine& uart(int unit) { return lines_[static_cast<std::size_t>(unit - 1)]; }
-    /// Sorted by time; values take effect at the first instruction at or after theirs.
     /// Plays a script on the bus of a target that is a slave.
     void master(std::vector<I2cScriptLine> script, const I2cMasterOptions& options);
     /// Null without a script.
     const I2cScriptMaster* master() const { return master_ ? &*master_ : nullptr; }
-    void stimulate(std::vector<StimulusLine> stimulus) { stimulus_ = std::move(stimulus); }
+    /// Adds to what is still to come; values take effect at the first instruction at or after their time.
+    void stimulate(const std::vector<StimulusLine>& stimulus);
     /// From now on simulated time does not run ahead of the wall clock.
     void pace_by_wall_clock();
     /// Called once a simulated millisecond; true ends run_until().

@@ -68,6 +68,7 @@ void I2cScriptMaster::begin() {
     target_.i2c_slave_phase(phase);
     if (step.kind != I2cPhaseKind::Stop) return;
     if (logs_ != nullptr) logs_->i2c(kI2cScriptUnit, phase);
+    report_.last_stop = phase.start + clock_;
     next_ = phase.start + 2 * clock_;
     if (++step_ == steps_.size()) next_line();
 }

@@ -5,7 +5,7 @@
 // repeated START take one. The master never gives up on a byte that is not acknowledged: it sends STOP and
 // goes on with the next line.
 //
-// Deviation: nobody else is on the bus, and SCL low for 100 ms counts as stuck (SMBus says 25 to 35 ms, Linux
+// Deviations: nobody else is on the bus, and SCL low for 100 ms counts as stuck (SMBus says 25 to 35 ms, Linux
 // drivers wait up to a second; the firmware known here holds it for 2 ms). The script then ends.
 
 #include "tools/exec/logs.h"
@@ -34,6 +34,7 @@ struct I2cScriptReport {
     std::uint64_t addresses_refused = 0, bytes_refused = 0;
     int first_refused = 0;  ///< line in the file; 0: none
     cosim::Time stretched = 0, longest_stretch = 0;
+    cosim::Time last_stop = 0;  ///< when the bus was free again after the last line
     std::vector<Read> reads;  ///< the first 1000 that returned a byte
     std::optional<cosim::Time> stuck_since;
     int stuck_line = 0;

@@ -1,7 +1,7 @@
 // `--uartN pty`: a pseudo terminal that any terminal program can open.
 
 #include "base/error.h"
-#include "tools/exec/uart_end.h"
+#include "tools/exec/queued_end.h"
 
 #include <fmt/format.h>
 
@@ -12,13 +12,12 @@
 
 #include <cerrno>
 #include <cstring>
-#include <deque>
 
 namespace puckloop::exec {
 
 namespace {
 
-class PtyEnd : public UartEnd {
+class PtyEnd : public QueuedEnd {
   public:
     PtyEnd() {
         master_ = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
@@ -38,27 +37,16 @@ class PtyEnd : public UartEnd {
     PtyEnd(const PtyEnd&) = delete;
     PtyEnd& operator=(const PtyEnd&) = delete;
 
-    cosim::Time next() const override { return incoming_.empty() ? cosim::kNever : ready_; }
-    std::uint8_t take() override {
-        const std::uint8_t byte = incoming_.front();
-        incoming_.pop_front();
-        return byte;
-    }
-    void receive(std::uint8_t byte, bool /*clean*/, cosim::Time /*start*/) override {
-        outgoing_ += static_cast<char>(byte);
-    }
     bool live() const override { return true; }
     std::string announcement() const override { return "pty " + name_; }
     void finish() override { write_out(); }
 
     void poll(cosim::Time now, cosim::Time /*listening_since*/) override {
         write_out();
-        if (!incoming_.empty()) return;
+        if (waiting()) return;
         std::uint8_t block[512];
         const ssize_t got = ::read(master_, block, sizeof block);
-        if (got <= 0) return;
-        incoming_.insert(incoming_.end(), block, block + got);
-        ready_ = now;
+        if (got > 0) offer(block, static_cast<std::size_t>(got), now);
     }
 
   private:
@@ -82,9 +70,6 @@ class PtyEnd : public UartEnd {
     int master_ = -1;
     int slave_ = -1;
     std::string name_;
-    cosim::Time ready_ = 0;
-    std::deque<std::uint8_t> incoming_;
-    std::string outgoing_;
 };
 
 }  // namespace

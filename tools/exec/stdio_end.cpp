@@ -1,7 +1,7 @@
 // `--uartN -`: standard input to the chip, the chip to standard output.
 
 #include "base/error.h"
-#include "tools/exec/uart_end.h"
+#include "tools/exec/queued_end.h"
 
 #include <fmt/format.h>
 #include <poll.h>
@@ -9,7 +9,6 @@
 
 #include <cerrno>
 #include <cstring>
-#include <deque>
 
 namespace puckloop::exec {
 
@@ -18,36 +17,25 @@ namespace {
 /// Longest wait, in wall time, for a pipe's writer to be done.
 constexpr int kPatienceMilliseconds = 1000;
 
-class StdioEnd : public UartEnd {
+class StdioEnd : public QueuedEnd {
   public:
     explicit StdioEnd(const StdioOptions& options)
         : options_(options), live_(options.live || isatty(STDIN_FILENO) == 1) {}
 
-    cosim::Time next() const override { return incoming_.empty() ? cosim::kNever : ready_; }
-    std::uint8_t take() override {
-        const std::uint8_t byte = incoming_.front();
-        incoming_.pop_front();
-        return byte;
-    }
-    void receive(std::uint8_t byte, bool /*clean*/, cosim::Time /*start*/) override {
-        outgoing_ += static_cast<char>(byte);
-    }
     bool live() const override { return live_; }
 
     void poll(cosim::Time now, cosim::Time listening_since) override {
         flush();
-        if (ended_ || !incoming_.empty()) return;
+        if (ended_ || waiting()) return;
         if (live_ || patient_done_) {
-            ready_ = now;
-            while (read_some(0)) {
+            while (read_some(0, now)) {
             }
             return;
         }
         if (options_.start ? now + cosim::kMillisecond < *options_.start
                            : listening_since == cosim::kNever || now - listening_since < options_.settle)
             return;
-        ready_ = options_.start ? *options_.start : now;
-        while (read_some(kPatienceMilliseconds)) {
+        while (read_some(kPatienceMilliseconds, options_.start.value_or(now))) {
         }
         patient_done_ = true;
     }
@@ -56,7 +44,7 @@ class StdioEnd : public UartEnd {
 
   private:
     /// False once there is no more for now.
-    bool read_some(int patience) {
+    bool read_some(int patience, cosim::Time ready) {
         pollfd waiting{STDIN_FILENO, POLLIN, 0};
         if (::poll(&waiting, 1, patience) <= 0) return false;
         std::uint8_t block[4096];
@@ -65,7 +53,7 @@ class StdioEnd : public UartEnd {
             ended_ = got == 0 || (errno != EINTR && errno != EAGAIN);
             return false;
         }
-        incoming_.insert(incoming_.end(), block, block + got);
+        offer(block, static_cast<std::size_t>(got), ready);
         return true;
     }
     void flush() {
@@ -84,9 +72,6 @@ class StdioEnd : public UartEnd {
     bool live_;
     bool ended_ = false;
     bool patient_done_ = false;
-    cosim::Time ready_ = 0;
-    std::deque<std::uint8_t> incoming_;
-    std::string outgoing_;
 };
 
 }  // namespace

@@ -1,13 +1,11 @@
 // `--uartN tcp:PORT`: one client at a time, on 127.0.0.1 only.
 
 #include "base/error.h"
-#include "tools/exec/uart_end.h"
+#include "tools/exec/queued_end.h"
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <fmt/format.h>
-
-#include <deque>
 
 namespace puckloop::exec {
 
@@ -18,7 +16,7 @@ using boost::asio::ip::tcp;
 /// What a client that does not read may leave waiting.
 constexpr std::size_t kLongestBacklog = 1 << 20;
 
-class TcpEnd : public UartEnd {
+class TcpEnd : public QueuedEnd {
   public:
     explicit TcpEnd(std::uint16_t port) : acceptor_(io_), client_(io_) {
         try {
@@ -33,14 +31,8 @@ class TcpEnd : public UartEnd {
         }
     }
 
-    cosim::Time next() const override { return incoming_.empty() ? cosim::kNever : ready_; }
-    std::uint8_t take() override {
-        const std::uint8_t byte = incoming_.front();
-        incoming_.pop_front();
-        return byte;
-    }
-    void receive(std::uint8_t byte, bool /*clean*/, cosim::Time /*start*/) override {
-        if (client_.is_open() && outgoing_.size() < kLongestBacklog) outgoing_ += static_cast<char>(byte);
+    void receive(std::uint8_t byte, bool clean, cosim::Time start) override {
+        if (client_.is_open() && outgoing_.size() < kLongestBacklog) QueuedEnd::receive(byte, clean, start);
     }
     bool live() const override { return true; }
     std::string announcement() const override {
@@ -54,12 +46,11 @@ class TcpEnd : public UartEnd {
     void poll(cosim::Time now, cosim::Time /*listening_since*/) override {
         accept();
         write_out();
-        if (!client_.is_open() || !incoming_.empty()) return;
+        if (!client_.is_open() || waiting()) return;
         std::uint8_t block[512];
         boost::system::error_code error;
         const std::size_t got = client_.read_some(boost::asio::buffer(block), error);
-        incoming_.insert(incoming_.end(), block, block + got);
-        ready_ = now;
+        offer(block, got, now);
         if (error && error != boost::asio::error::would_block) drop_client();
     }
 
@@ -89,9 +80,6 @@ class TcpEnd : public UartEnd {
     boost::asio::io_context io_;
     tcp::acceptor acceptor_;
     tcp::socket client_;
-    cosim::Time ready_ = 0;
-    std::deque<std::uint8_t> incoming_;
-    std::string outgoing_;
 };
 
 }  // namespace
