@@ -32,16 +32,19 @@ constexpr Vector kVectors[] = {
 #include "tests/protocols/rab_vectors.inc"
 };
 
-/// The frames between single off chips in one burst; their start chips too.
-std::vector<std::string> frames_in(const std::string& burst, int size) {
-    std::vector<std::string> frames;
-    const auto length = static_cast<std::size_t>(protocols::rab_frame_chips(size));
-    for (std::size_t at = 0; at < burst.size(); at += length + 1) {
-        std::string frame = burst.substr(at, length);
-        frame.resize(length, '0');
-        frames.push_back(frame);
+/// The sheet's figures for a write count to the end of the interrupt handler, ours to SCLREL: 24 cycles less,
+/// the same for every register and size. 16 of them stand in the image behind SCLREL (BRA, BCLR, ULNK, four
+/// MOV.D, POP, RETFIE at 0x2D70 and 0x2D96 to 0x2DA4), the rest is the sheet's way to count the entry.
+constexpr double kEndOfHandler = 24;
+
+/// Longest time between two edges of an emitter.
+double longest_run(const RabRig& rig, int emitter) {
+    double longest = 0, before = 0;
+    for (const auto& change : rig.changes(fmt::format("emitter{}", emitter))) {
+        if (before > 0) longest = std::max(longest, change.time_s - before);
+        before = change.time_s;
     }
-    return frames;
+    return longest;
 }
 
 }  // namespace
@@ -76,8 +79,8 @@ TEST_CASE("A4: 16 bits to all emitters") {
     rig.boot();
     rig.write(13, {0xA5});
     const exec::I2cScriptReport& send = rig.write(14, {0xC3});
-    CHECK(cosim::to_seconds(send.longest_stretch) == about(33'133 * kCycle));
-    const double stop = cosim::to_seconds(send.last_stop);
+    CHECK(cosim::to_seconds(send.longest_stretch) == Approx((33'133 - kEndOfHandler) * kCycle).epsilon(1e-3));
+    const double stop = cosim::to_seconds(send.last_stop) - 10e-6;  // when it began
     rig.run_for(kLongestFrame);
     const auto bursts = rig.bursts(12);
     REQUIRE(bursts.size() == 1);
@@ -86,10 +89,8 @@ TEST_CASE("A4: 16 bits to all emitters") {
     CHECK(bursts[0].last_edge_s - bursts[0].start_s == Approx(184'997 * kCycle).epsilon(0.005));
     CHECK(static_cast<double>(encode_rab(16, 0xA5C3).size()) * bursts[0].chip_s ==
           Approx(4.512e-3).epsilon(0.005));
-    // Taken from the queue at one tick, first chip at the next: between one and two chips after the STOP.
-    const double wait = bursts[0].start_s - stop;
-    CHECK(wait > 0.9 * rab::kChip);
-    CHECK(wait < 2.1 * rab::kChip);
+    // Taken from the queue at one tick, which waited for SCLREL, first chip at the next.
+    CHECK(bursts[0].start_s - stop == about(3720 * kCycle));
 }
 
 TEST_CASE("A5: 32 bits to all emitters") {
@@ -101,7 +102,8 @@ TEST_CASE("A5: 32 bits to all emitters") {
     rig.write(13, {0xDE});
     rig.write(19, {0xAD});
     rig.write(20, {0xBE});
-    CHECK(cosim::to_seconds(rig.write(14, {0xEF}).longest_stretch) == about(78'861 * kCycle));
+    CHECK(cosim::to_seconds(rig.write(14, {0xEF}).longest_stretch) ==
+          Approx((78'861 - kEndOfHandler) * kCycle).epsilon(1e-3));
     rig.run_for(kLongestFrame);
     REQUIRE(rig.bursts().size() == 1);
     CHECK(rig.bursts()[0].chips == visible(encode_rab(32, 0xDEADBEEF)));
@@ -136,26 +138,28 @@ TEST_CASE("2.4: how long the board holds SCL") {
     const auto held = [&](int number, std::uint8_t value) {
         const double stretch = cosim::to_seconds(rig.write(number, {value}).longest_stretch);
         rig.run_for(0.02);
-        return stretch;
+        return stretch / kCycle + kEndOfHandler;
     };
+    const auto cycles = [](double value) { return Approx(value).margin(1.5); };
     struct Cost {
         int size;
-        double cycles;
+        double all;
     };
-    for (const auto& [size, cycles] :
-         {Cost{8, 17'181}, Cost{16, 33'133}, Cost{24, 53'693}, Cost{32, 78'861}}) {
+    for (const auto& [size, all] : {Cost{8, 17'181}, Cost{16, 33'133}, Cost{24, 53'693}, Cost{32, 78'861}}) {
         rig.write(21, {static_cast<std::uint8_t>(size)});
         INFO(size << " bits");
-        CHECK(held(14, 0x5A) == about(cycles * kCycle));
+        CHECK(held(14, 0x5A) == cycles(all));
     }
     rig.write(21, {16});
-    CHECK(held(15, 0) == about(27'895 * kCycle));
-    CHECK(held(16, 0) == about(72'700 * kCycle));
-    CHECK(held(12, 100) == about(27.6e-6));
+    CHECK(held(15, 0) == about(27'895));  // varies with what the registers hold
+    CHECK(held(16, 0) == cycles(72'700));
+    CHECK(held(12, 100) * kCycle == about(27.6e-6));
     for (const int number : {0, 11, 13, 17, 18, 19, 20, 21}) {
         INFO("register " << number);
-        CHECK(held(number, 16) == Approx(3e-6).margin(1.2e-6));
+        CHECK(held(number, 16) * kCycle == Approx(3e-6).margin(1e-6));
     }
+    rig.get(0);
+    CHECK(cosim::to_seconds(rig.bus().longest_stretch) == about(2.2e-6));
 }
 
 TEST_CASE("2.4: what transfers take in all") {
@@ -204,21 +208,16 @@ TEST_CASE("A13: of 14 sends in a row on a fast bus 11 go out, 47 chips apart") {
     for (int i = 0; i < 14; ++i)
         script += fmt::format("{:.6f} w 0x20 0e {:02x}\n", rig.now_s(), i);
     rig.play(script);
-    const double idle = rig.now_s();
     rig.run_for(0.08);
-    std::vector<double> starts;
-    std::size_t frames = 0;
-    for (const rab::Burst& burst : rig.bursts()) {
-        const std::size_t here = frames_in(burst.chips, 16).size();
-        for (std::size_t k = 0; k < here; ++k)
-            starts.push_back(burst.start_s + static_cast<double>(47 * k) * rab::kChip);
-        frames += burst.start_s > idle ? here : 0;
-    }
-    // The first ones are garbled and moved by the transfers behind them; the queue goes out undisturbed.
-    INFO(rig.bursts().size() << " bursts");
+    // The first frame is stretched by the transfers behind it; what waits goes out undisturbed.
+    std::string waiting;
+    for (std::uint32_t i = 1; i <= 10; ++i)
+        waiting += "0" + encode_rab(16, 0x0B00 + i);
     const rab::Burst last = rig.bursts().back();
-    const auto tail = frames_in(last.chips, 16);
-    CHECK(tail.back() == encode_rab(16, 0x0B00u | 10u));
+    INFO(last.chips);
+    CHECK(last.chips.ends_with(visible(waiting)));
+    CHECK(last.chips.size() < 46 + waiting.size());
+    CHECK(last.chip_s == Approx(98.09e-6).epsilon(0.005));
 }
 
 TEST_CASE("Q2: setting the range in mid frame switches emitters 12, 1, 2, 3 off for the rest of a chip") {
@@ -252,23 +251,21 @@ TEST_CASE("Q3: at 32 bits a waiting frame's first chips are overwritten") {
     RabRig rig(*file, 400e3);
     rig.boot();
     rig.write(21, {32});
-    // Slot 0 of the queue's 11 is used again by the twelfth frame; frames 11 and 12 wait together.
-    for (int i = 0; i < 10; ++i) {
-        rig.send(32, 0xDEADBEEF);
-        rig.run_for(0.02);
+    // Three at a time through the queue's 11 slots: in one group of eleven the last one waits in slot 0 while
+    // the one before it is taken out.
+    const std::string frame = encode_rab(32, 0x12345678), whole = visible(frame);
+    int garbled = 0;
+    for (int group = 1; group <= 11; ++group) {
+        rig.clear();
+        for (int i = 0; i < 3; ++i)
+            rig.send(32, 0x12345678);
+        rig.run_for(0.04);
+        const std::string last = rig.bursts().back().chips;
+        INFO(last << " of group " << group);
+        CHECK(last.ends_with(whole.substr(6)));  // only the preamble suffers
+        garbled += last.ends_with(whole) ? 0 : 1;
     }
-    rig.clear();
-    rig.send(32, 0x12345678);
-    rig.send(32, 0x12345678);
-    rig.send(32, 0x12345678);
-    rig.run_for(0.04);
-    bool garbled = false;
-    for (const rab::Burst& burst : rig.bursts())
-        for (const std::string& frame : frames_in(burst.chips, 32)) {
-            INFO(frame);
-            garbled |= frame.starts_with("101111");
-        }
-    CHECK(garbled);
+    CHECK(garbled == 1);
 }
 
 TEST_CASE("Q4: a payload size that shrinks under a frame on air sends memory for 6.4 s") {
@@ -280,14 +277,19 @@ TEST_CASE("Q4: a payload size that shrinks under a frame on air sends memory for
     rig.send(32, 0xDEADBEEF);
     rig.run_for(0.005);  // 50 chips
     rig.write(21, {8});
+    const double begun = rig.now_s() - 0.005;
     rig.clear();
-    rig.run_for(6.0);
-    const double last = rig.bursts().empty() ? 0 : rig.bursts().back().last_edge_s;
-    rig.run_for(1.0);
-    CHECK(last > rig.now_s() - 1.5);
+    rig.run_for(5.0);
+    rig.run_for(1.5);
+    // The index passes 65536 and is caught by the end test: 65,536 ticks after the frame began.
+    const double end = rig.bursts().back().last_edge_s;
+    CHECK(end - begun == about(6.4));
+    CHECK(rig.bench().get("emitter1") == 0);
     rig.clear();
-    rig.run_for(0.2);
-    CHECK(rig.bursts().empty());
+    rig.send(8, 0x5A);
+    rig.run_for(kLongestFrame);
+    REQUIRE(rig.bursts().size() == 1);
+    CHECK(rig.bursts()[0].chips == visible(encode_rab(8, 0x5A)));
 }
 
 TEST_CASE("Q6: a transfer while a frame is on air stretches the present chip") {
@@ -299,12 +301,7 @@ TEST_CASE("Q6: a transfer while a frame is on air stretches the present chip") {
     rig.run_for(0.0015);
     rig.send(16, 0x1234);  // two writes, the last one takes 0.81 ms
     rig.run_for(0.02);
-    double longest = 0, before = 0;
-    for (const auto& change : rig.changes("emitter1")) {
-        if (before > 0) longest = std::max(longest, change.time_s - before);
-        before = change.time_s;
-        if (before > rig.now_s() - 0.015) break;
-    }
-    CHECK(longest > 0.81e-3);
-    CHECK(longest < 0.81e-3 + 2.5 * rab::kChip);
+    const double longest = longest_run(rig, 1);
+    CHECK(longest > 0.8e-3);
+    CHECK(longest < 0.8e-3 + 3 * rab::kChip);
 }
