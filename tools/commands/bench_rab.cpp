@@ -51,10 +51,10 @@ void save(const std::filesystem::path& file, const std::string& text) {
 }
 
 std::string readings_csv(const RabMeasured& measured, const std::vector<double>& distances) {
-    std::string csv = "distance_cm,sender,received,intact,strength,bearing_rad,bearing_true_rad\n";
+    std::string csv = "distance_cm,sender,received,late,strength,bearing_rad,bearing_true_rad\n";
     for (const RabReadingRow& row : measured.rows)
         csv += fmt::format("{:g},{},{},{},{},{:.4f},{:.4f}\n", distances[row.distance] * kCentimetres,
-                           row.sender, row.received ? 1 : 0, row.intact ? 1 : 0, row.range, row.bearing,
+                           row.sender, row.received ? 1 : 0, row.late ? 1 : 0, row.range, row.bearing,
                            row.bearing_true);
     return csv;
 }

@@ -46,7 +46,7 @@ class Page {
     void strength() {
         double high = 1000;
         for (const RabSummary& s : summary_) {
-            high = std::max(high, s.strength.p95);
+            high = std::max(high, s.strength.p95);  // a few readings lie beyond the panel
             if (const auto p = published_at(s.distance))
                 high = std::max(high, std::exp(p->mu + kZ90 * p->sigma));
         }
@@ -64,9 +64,14 @@ class Page {
 
     /// The published formula on both; the dash is the truth.
     void distance() {
+        const auto estimate = [](const PublishedStrength& p, double z) {
+            return protocols::rab_distance_cm(std::exp(p.mu + z * p.sigma));
+        };
         double high = 50;
-        for (const RabSummary& s : summary_)
+        for (const RabSummary& s : summary_) {
             high = std::max({high, s.distance * kCentimetres, s.estimate_cm.p90});
+            if (const auto p = published_at(s.distance)) high = std::max(high, estimate(*p, -kZ90));
+        }
         const Panel panel{kTop + kPanel + kGap, 0, std::ceil(high / 20) * 20};
         frame(panel, "distance worked out, cm", 20);
         for (std::size_t i = 0; i < summary_.size(); ++i) {
@@ -77,12 +82,9 @@ class Page {
                                 x(i, -0.42), x(i, 0.42), truth, truth);
             whisker(panel, i, kRightSide, s.estimate_cm.p10, s.estimate_cm.median, s.estimate_cm.p90,
                     kMeasured);
-            const auto p = published_at(s.distance);
-            if (!p) continue;
-            const auto estimate = [&](double z) {
-                return protocols::rab_distance_cm(std::exp(p->mu + z * p->sigma));
-            };
-            whisker(panel, i, kLeftSide, estimate(kZ90), estimate(0), estimate(-kZ90), kPublished);
+            if (const auto p = published_at(s.distance))
+                whisker(panel, i, kLeftSide, estimate(*p, kZ90), estimate(*p, 0), estimate(*p, -kZ90),
+                        kPublished);
         }
     }
 
@@ -123,7 +125,7 @@ class Page {
             text(at + 9, 72, what);
         };
         entry(kLeft + 5, kPublished, "published log-normal of real boards: median, 10 to 90 %");
-        entry(kLeft + 340, kMeasured, "emulated: median, 10 to 90 % (bearing: quartiles, 5 to 95 %)");
+        entry(kLeft + 400, kMeasured, "emulated: median, 10 to 90 % (bearing: quartiles, 5 to 95 %)");
     }
     void frame(const Panel& panel, const std::string& title, double step) {
         for (double value = panel.low; value <= panel.high + step / 2; value += step) {
@@ -152,6 +154,7 @@ class Page {
         const std::size_t stride = values.size() / kMost + 1;
         svg_ += fmt::format("<g fill=\"{}\" fill-opacity=\".35\">", kMeasured);
         for (std::size_t i = 0; i < values.size(); i += stride) {
+            if (values[i] < panel.low || values[i] > panel.high) continue;
             const double share = 0.26 + 0.2 * static_cast<double>(i % 17) / 17;
             svg_ += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"1.3\"/>", x(column, share),
                                 panel.y(values[i]));

@@ -101,18 +101,28 @@ void StageNode::poll(int receiver, Time now) {
 void StageNode::fetch(int receiver, Time now) {
     for (std::uint8_t number = kData; number <= kLast; ++number)
         hosts_[static_cast<std::size_t>(receiver)].read(
-            now, number, [this, number](std::optional<std::uint8_t> byte, Time) {
+            now, number, [this, receiver, number](std::optional<std::uint8_t> byte, Time at) {
                 registers_[number] = byte.value_or(0);
-                if (number != kLast) return;
-                const auto word = [this](std::size_t high) {
-                    return static_cast<std::uint16_t>(registers_[high] << 8 | registers_[high + 1]);
-                };
-                RabReadingRow& row = rows_.back();
-                row.received = true;
-                row.intact = word(kData) == payload_;
-                row.bearing = 1e-4 * static_cast<std::int16_t>(word(kBearing));
-                row.range = word(kRange);
+                if (number == kLast) message(receiver, at);
             });
+}
+
+/// All registers of a message are here. Payloads count the frames, so each finds its row.
+void StageNode::message(int receiver, Time now) {
+    const auto word = [this](std::size_t high) {
+        return static_cast<std::uint16_t>(registers_[high] << 8 | registers_[high + 1]);
+    };
+    const std::size_t index = word(kData) - std::size_t{1};
+    if (index < rows_.size() && rows_[index].sender != receiver && !rows_[index].received) {
+        RabReadingRow& row = rows_[index];
+        row.received = true;
+        row.late = index + 1 != rows_.size();
+        row.bearing = 1e-4 * static_cast<std::int16_t>(word(kBearing));
+        row.range = word(kRange);
+    } else if (!rows_.empty()) {
+        ++rows_.back().strays;
+    }
+    poll(receiver, now);  // until there is no other
 }
 
 void StageNode::advance(Time until, std::span<const cosim::Message> inbox,

@@ -35,7 +35,8 @@ struct RabReadingRow {
     int sender = 0;
     double bearing_true = 0.0;  ///< rad, of the sender as the receiver sees it
     bool received = false;
-    bool intact = false;   ///< the payload is what was sent
+    bool late = false;     ///< it came with a later frame
+    int strays = 0;        ///< messages read meanwhile that nobody sent, or that had been read before
     int range = 0;         ///< register 5, 6
     double bearing = 0.0;  ///< rad, registers 3, 4, signed
 };
@@ -57,6 +58,7 @@ class StageNode final : public cosim::Node {
     void send(int sender, cosim::Time now);
     void poll(int receiver, cosim::Time now);
     void fetch(int receiver, cosim::Time now);
+    void message(int receiver, cosim::Time now);
     void schedule(cosim::Time at, std::function<void(cosim::Time)> action);
 
     StagePlan plan_;

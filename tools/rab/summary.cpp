@@ -70,9 +70,10 @@ std::vector<RabSummary> summarise(const std::vector<RabReadingRow>& rows,
     for (const RabReadingRow& row : rows) {
         RabSummary& s = all[row.distance];
         ++s.sent;
+        s.strays += static_cast<std::size_t>(row.strays);
         if (!row.received) continue;
         ++s.received;
-        if (!row.intact) ++s.wrong_payload;
+        if (row.late) ++s.late;
         if (row.range > 0) s.strengths.push_back(row.range);
         s.bearing_errors.push_back(kDegrees *
                                    std::remainder(row.bearing - row.bearing_true, 2 * std::numbers::pi));
@@ -92,13 +93,13 @@ std::vector<RabSummary> summarise(const std::vector<RabReadingRow>& rows,
 
 std::string summary_csv(const std::vector<RabSummary>& summary) {
     std::string csv =
-        "distance_cm,sent,received,wrong_payload,strength_median,strength_sigma_ln,strength_p10,strength_p90,"
+        "distance_cm,sent,received,late,strays,strength_median,strength_sigma_ln,strength_p10,strength_p90,"
         "published_median,published_sigma_ln,estimate_cm_p10,estimate_cm_median,estimate_cm_p90,"
         "bearing_error_deg_p5,bearing_error_deg_p25,bearing_error_deg_median,bearing_error_deg_p75,"
         "bearing_error_deg_p95,bearing_error_deg_rms\n";
     for (const RabSummary& s : summary) {
-        csv += fmt::format("{:g},{},{},{},{:.0f},{:.3f},{:.0f},{:.0f},", s.distance * kCentimetres, s.sent,
-                           s.received, s.wrong_payload, s.strength.median, s.sigma, s.strength.p10,
+        csv += fmt::format("{:g},{},{},{},{},{:.0f},{:.3f},{:.0f},{:.0f},", s.distance * kCentimetres, s.sent,
+                           s.received, s.late, s.strays, s.strength.median, s.sigma, s.strength.p10,
                            s.strength.p90);
         if (const auto published = published_at(s.distance))
             csv += fmt::format("{:.0f},{:.3f},", std::exp(published->mu), published->sigma);

@@ -27,7 +27,8 @@ Spread spread_of(std::vector<double> values);
 
 struct RabSummary {
     double distance = 0.0;  ///< m
-    std::size_t sent = 0, received = 0, wrong_payload = 0;
+    std::size_t sent = 0, received = 0, late = 0;
+    std::size_t strays = 0;              ///< messages that nobody sent
     std::vector<double> strengths;       ///< range register of each frame received
     std::vector<double> bearing_errors;  ///< deg, wrapped
     Spread strength, estimate_cm, bearing_error;
