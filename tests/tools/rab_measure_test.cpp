@@ -109,6 +109,7 @@ TEST_CASE("the stage tells when it will speak next") {
     stage.advance(200 * cosim::kMillisecond, {}, out);  // nobody answers: poses, and one Start a bus
     CHECK(out.size() == 6 + 2);
     CHECK(stage.promise(0) == kNever);
+    CHECK(stage.promise(1) == kNever);
     CHECK(rows.size() == 2);
 }
 

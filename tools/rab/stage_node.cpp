@@ -19,6 +19,7 @@ constexpr double kI2cHertz = 400e3;
 // One turn: a frame of 16 bits is on the air for 4.5 ms from about 2 ms after its command, and can be read
 // 2.9 ms after its end.
 constexpr Time kTurn = 24 * kMillisecond;
+constexpr Time kFirstSend = kMillisecond / 5;
 constexpr Time kSecondSend = 12 * kMillisecond;
 constexpr Time kPollAfter = 10 * kMillisecond + kMillisecond / 2;
 // Registers of the board.
@@ -67,7 +68,7 @@ void StageNode::pose(Time now, std::vector<cosim::Message>& outbox) {
                 {now, 0, cosim::Signal{static_cast<std::uint16_t>(i * physics::kPoseSignals + k), pose[k]}});
     }
     for (int sender = 0; sender < 2; ++sender) {
-        const Time start = now + kMillisecond / 5 + sender * kSecondSend;
+        const Time start = now + kFirstSend + sender * kSecondSend;
         schedule(start, [this, sender](Time at) { send(sender, at); });
         schedule(start + kPollAfter, [this, sender](Time at) { poll(1 - sender, at); });
     }
@@ -87,15 +88,16 @@ void StageNode::send(int sender, Time now) {
     row.bearing_true = wrapped(direction - heading_[static_cast<std::size_t>(1 - sender)]);
     rows_.push_back(row);
     I2cHost& host = hosts_[static_cast<std::size_t>(sender)];
+    now += host.clock();  // a lookahead, as every answer has
     host.write(now, {kHighByte, static_cast<std::uint8_t>(payload_ >> 8)});
     host.write(now, {kSendAll, static_cast<std::uint8_t>(payload_ & 0xFF)});
 }
 
 void StageNode::poll(int receiver, Time now) {
-    hosts_[static_cast<std::size_t>(receiver)].read(
-        now, kMessage, [this, receiver](std::optional<std::uint8_t> byte, Time at) {
-            if (byte == 1) fetch(receiver, at);
-        });
+    I2cHost& host = hosts_[static_cast<std::size_t>(receiver)];
+    host.read(now + host.clock(), kMessage, [this, receiver](std::optional<std::uint8_t> byte, Time at) {
+        if (byte == 1) fetch(receiver, at);
+    });
 }
 
 void StageNode::fetch(int receiver, Time now) {
@@ -154,8 +156,9 @@ void StageNode::advance(Time until, std::span<const cosim::Message> inbox,
 
 Time StageNode::promise(cosim::PortIndex port) const {
     if (port == 0) return next_pose_;
-    const Time acts = actions_.empty() ? kNever : actions_.begin()->first;
-    return std::min({hosts_[port - 1U].due(), acts, next_pose_});
+    const I2cHost& host = hosts_[port - 1U];
+    const Time acts = actions_.empty() ? kNever : actions_.begin()->first + host.clock();
+    return std::min({host.due(), acts, cosim::later(next_pose_, kFirstSend)});
 }
 
 Time StageNode::reaction(cosim::PortIndex port) const {
