@@ -92,7 +92,7 @@ std::string structure_section(const Experiment& experiment, const Verdict& verdi
     Table floor({"observable", "unit", "#repeats in a run", "#run to run", "#row to row", "#rms before",
                  "#rms after"});
     std::string tests;
-    const stats::TestOptions options{.seed = verdict.seed, .permutations = 499};
+    const stats::TestOptions options{.seed = verdict.seed, .permutations = 199};
     std::vector<std::vector<Finding>> tables;
     for (const Series& series : verdict.series) {
         add_floor(experiment, series, floor);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kStandsStill = 4;          // rows a plateau on average
 constexpr std::size_t kFreeBlocksForWithin = 5;  // blocks beyond one a run, to exchange inside runs
-constexpr std::size_t kMostUnits = 6000;         // beyond, neighbours are averaged: time, not knowledge
+constexpr std::size_t kMostUnits = 3000;         // beyond, neighbours are averaged: time, not knowledge
 constexpr int kHitsToStop = 20;                  // then p is known well enough
 constexpr int kHitsForCount = 10;                // with fewer, the tail is carried on by a gamma distribution
 constexpr double kUnitsForTail = 20;             // below, permutations are few and their tail is a staircase

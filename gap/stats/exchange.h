@@ -5,7 +5,7 @@
 // 2. A covariate that stands still for four rows or more on average (a distance at which 100 readings were
 //    taken, a condition of a whole run) gives one value a stretch: 100 readings of one placement share its
 //    error and count once.
-//    Of more than 6000 values, neighbours are averaged.
+//    Of more than 3000 values, neighbours are averaged.
 // 3. What remains is cut into blocks of 2.5 times the correlation length (of y less its line on x). They are
 // exchanged inside their run if the
 //    covariate varies mostly inside runs and at least five blocks more than runs are there (each run's mean

@@ -91,7 +91,7 @@ Finding reversal_test(const Series& residual, const std::vector<double>& covaria
         if (sign != 0) last_sign = sign;
         if (left > 0) after[i] = last_sign > 0 ? 2.0 : 1.0, --left;
     }
-    return compared(residual, after, "reversal", name,
+    return compared(residual, after, "reversal", fmt::format("reversal of {}", name),
                     {"elsewhere", "after turning negative", "after turning positive"}, options);
 }
 
