@@ -22,13 +22,22 @@ std::unique_ptr<Bench> accelerometer_bench() {
             }
             return truths; }},
         {39, "scale and alignment", 1.0, false, [](K& k, double a, RandomStream r) {
-            for (std::size_t i = 0; i < kAxes; ++i) k.scale[i] = 1 + 0.06 * a * (2 * r.uniform() - 1);
+            Truths truths;
+            for (std::size_t i = 0; i < kAxes; ++i) {
+                k.scale[i] = 1 + 0.06 * a * (2 * r.uniform() - 1);
+                truths.push_back({fmt::format("accelerometer.scale{}", i), k.scale[i]});
+            }
             k.turned = 0.2 * a;
-            return Truths{}; }},
-        {39, "bias of another session", 200, true, [](K& k, double a, RandomStream) { k.session_jump = a; return Truths{}; }},
-        {40, "vibration", 200, false, [](K& k, double a, RandomStream) { k.vibration = a; return Truths{}; }},
-        {31, "reference sag", 0.04, false, [](K& k, double a, RandomStream) { k.sag = a; return Truths{}; }},
-        {33, "warm-up drift", 30, true, [](K& k, double a, RandomStream) { k.warm = a; return Truths{}; }},
+            truths.push_back({"accelerometer.turn", -k.turned});
+            return truths; }},
+        {39, "bias of another session", 200, true, [](K& k, double a, RandomStream) {
+            k.session_jump = a;
+            Truths truths;
+            for (std::size_t i = 0; i < kAxes; ++i) truths.push_back({fmt::format("accelerometer.session_bias2{}", i), a});
+            return truths; }},
+        {40, "vibration", 200, false, [](K& k, double a, RandomStream) { k.vibration = a; return Truths{{"accelerometer.vibration", a}}; }},
+        {31, "reference sag", 0.04, false, [](K& k, double a, RandomStream) { k.sag = a; return Truths{{"accelerometer.motor_sag", a}}; }},
+        {33, "warm-up drift", 30, true, [](K& k, double a, RandomStream) { k.warm = a; return Truths{{"accelerometer.warmup", a}}; }},
         {0, "pull in left spins", 60, false, [](K& k, double a, RandomStream) { k.spin_pull = a; return Truths{}; }},
         {0, "hold after a stop", 60, false, [](K& k, double a, RandomStream) { k.hold = a; return Truths{}; }},
     });

@@ -8,6 +8,7 @@ namespace puckloop::gap::selftest {
 namespace {
 constexpr double kZero = 2048, kOneG = 800, kGravity = 9.81, kFullScale = 4095;
 constexpr double kHoldSeconds = 2.0;
+constexpr double kWarmSeconds = 200.0;
 }  // namespace
 
 std::array<double, kAxes> feel(const AccelerometerKnobs& k, const Attitude& a) {
@@ -20,8 +21,8 @@ std::array<double, kAxes> feel(const AccelerometerKnobs& k, const Attitude& a) {
     std::array<double, kAxes> counts{};
     for (std::size_t i = 0; i < kAxes; ++i) {
         const double zero = kZero + k.bias[i] + (a.session > 1 ? k.session_jump : 0.0);
-        double value =
-            zero + kOneG * k.scale[i] * felt[i] + k.cubic * felt[i] * felt[i] * felt[i] + k.warm * a.t / 60;
+        double value = zero + kOneG * k.scale[i] * felt[i] + k.cubic * felt[i] * felt[i] * felt[i] +
+                       k.warm * (1.0 - std::exp(-a.t / kWarmSeconds));
         if (i == 0 && a.turning > 0.0) value += k.spin_pull;
         if (a.since_stop < kHoldSeconds) value += k.hold;
         if (a.steps != 0.0) value *= 1.0 - k.sag;

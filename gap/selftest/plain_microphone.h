@@ -16,7 +16,7 @@ struct MicrophoneKnobs {
     double exponent = 0.0;                           // [41] fall with distance, beyond 1
     double directivity = 0.0;                        // [41] share
     double short_window = 0.0;                       // [42] share of the window really used is 1 minus this
-    double warm = 0.0;                               // [33] share a minute
+    double warm = 0.0;                               // [33] share in the end, 95 % after ten minutes
     double node = 0.0;                               // unknown: share, a room mode along the distance
     double burst = 0.0;                              // unknown: share lost in the last third of each run
 };
