@@ -40,7 +40,7 @@ std::unique_ptr<Bench> proximity_bench() {
         {22, "ambient light", 1.0, false, [](K& k, double a, RandomStream) {
             k.light_gain = 2 * a; k.light_offset = 40 * a; k.light_noise = 5 * a;
             return Truths{{"proximity.ambient_gain", 2 * a * 300 / 4095}, {"proximity.ambient_offset", 40 * a}, {"proximity.ambient_noise", 5 * a}}; }},
-        {23, "lamp flicker", 30, false, [](K& k, double a, RandomStream) { k.flicker = a; return Truths{}; }},
+        {23, "lamp flicker", 30, false, [](K& k, double a, RandomStream) { k.flicker = a; return Truths{{"proximity.flicker", a}}; }},
         {24, "foreign pulses", 300, false, [](K& k, double a, RandomStream) { k.hits = 0.1; k.hit_counts = a; return Truths{}; }},
         {25, "crosstalk", 0.1, false, [](K& k, double a, RandomStream) {
             k.pair = a; k.neighbours = a / 2;

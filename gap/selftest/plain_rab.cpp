@@ -15,8 +15,7 @@ constexpr std::array<double, 9> kLogMedian{7.64689, 7.59652, 7.24955, 7.08464, 6
                                            6.91745, 6.82319, 6.82855, 6.82855};
 constexpr std::array<double, 9> kSpread{0.357061, 0.319231, 0.192649, 0.15294, 0.109233,
                                         0.121653, 0.153155, 0.141843, 0.141843};
-constexpr double kBearingPerGain = 0.15;  // rad a unit of ln gain between the neighbours
-constexpr double kFadingPeriod = 9.0;     // s
+constexpr double kFadingPeriod = 9.0;  // s
 
 double between(const std::array<double, 9>& values, double distance) {
     const auto& d = kStrengthDistances;
@@ -25,6 +24,20 @@ double between(const std::array<double, 9>& values, double distance) {
         if (distance <= d[k])
             return values[k - 1] + (values[k] - values[k - 1]) * (distance - d[k - 1]) / (d[k] - d[k - 1]);
     return values.back();
+}
+
+/// Direction of the sum of what the receivers measure; a receiver's strength goes with the root of the
+/// cosine.
+double vector_bearing(const std::array<double, kReceivers>& gain, double bearing) {
+    double x = 0.0, y = 0.0;
+    for (std::size_t i = 0; i < kReceivers; ++i) {
+        const double way = kDirections[i] * kDegree;
+        const double facing = std::cos(bearing - way);
+        if (facing <= 0.0) continue;
+        x += gain[i] * std::sqrt(facing) * std::cos(way);
+        y += gain[i] * std::sqrt(facing) * std::sin(way);
+    }
+    return std::atan2(y, x);
 }
 
 }  // namespace
@@ -39,9 +52,11 @@ double strength_spread(double distance) {
 
 Hearing hear(const RabKnobs& k, const Sending& s, RandomStream& chance) {
     double level = between(kLogMedian, s.distance) + std::log(k.gain[s.receiver]);
+    // The error of the equal receivers' sum is the firmware's table, which is none here.
+    constexpr std::array<double, kReceivers> kEqual{1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
     double bearing =
-        s.bearing + kBearingPerGain * (std::log(k.gain[(s.receiver + 1) % kReceivers]) -
-                                       std::log(k.gain[(s.receiver + kReceivers - 1) % kReceivers]));
+        s.bearing + std::remainder(vector_bearing(k.gain, s.bearing) - vector_bearing(kEqual, s.bearing),
+                                   2 * std::numbers::pi);
     const double path = chance.uniform();
     const double side = chance.normal();
     if (path < k.reflected) {
@@ -58,8 +73,8 @@ Hearing hear(const RabKnobs& k, const Sending& s, RandomStream& chance) {
     const double phase = s.t / k.beat_period - std::floor(s.t / k.beat_period);
     if (phase < k.beat) kept = 0.0;
     const bool received = chance.uniform() < kept;
-    double strength = std::min(std::exp(level), k.saturation);
-    return {received, std::max(strength, k.far_floor), std::remainder(bearing, 2 * std::numbers::pi)};
+    return {received, std::clamp(std::exp(level), k.far_floor, k.saturation),
+            std::remainder(bearing, 2 * std::numbers::pi)};
 }
 
 }  // namespace puckloop::gap::selftest

@@ -96,8 +96,7 @@ void measure_rab(HiddenExperiment& experiment, const RabKnobs& knobs, const Nois
             const double sd =
                 strength_spread(run.find("distance_m")->values[k] / 100) * (1.0 + knobs.more_spread);
             double& level = run.column("strength").values[k];
-            level = std::clamp(std::round(level * std::exp(sd * strength.next())),
-                               knobs.far_floor > 0 ? knobs.far_floor : 0.0,
+            level = std::clamp(std::round(level * std::exp(sd * strength.next())), 0.0,
                                std::min(kFullScale, knobs.saturation));
             double& way = run.column("bearing_rad").values[k];
             way = quantised(way + bearing.next(), kBearingQuantum);

@@ -11,6 +11,7 @@ namespace puckloop::gap::selftest {
 namespace {
 
 constexpr double kNoise = 0.0005;  // s
+constexpr double kTick = 0.0001;   // s: when in its loop the robot reads its clock
 constexpr double kQuantum = 1e-5;  // s
 constexpr int kRuns = 8;
 constexpr int kCycles = 200;
@@ -51,7 +52,13 @@ void measure_timing(HiddenExperiment& experiment, const TimingKnobs&, const Nois
                     std::uint64_t seed) {
     for (std::size_t r = 0; r < experiment.runs.size(); ++r) {
         NoiseSeries noise(style, kNoise, RandomStream(seed, fmt::format("host {}", r)));
+        NoiseSeries tick({}, kTick, RandomStream(seed, fmt::format("robot {}", r)));
         double last = -1.0;
+        for (double& value : experiment.runs[r].column("t_robot_s").values) {
+            value = std::max(quantised(value + tick.next(), kQuantum), last);
+            last = value;
+        }
+        last = -1.0;
         for (double& value : experiment.runs[r].column("t_host_s").values) {
             value =
                 std::max(quantised(value + noise.next(), kQuantum), last);  // a host's clock does not go back
