@@ -26,6 +26,7 @@ struct HiddenEffect {
     std::optional<std::array<double, 3>> levels{};  ///< amounts at low, medium, high, for what chance decides
     const char* variant = "";
     int instead_of = 0;
+    const char* called = "";  ///< in the catalogue, where several of its effects share the number
 };
 
 template <class Knobs>
@@ -59,9 +60,15 @@ class BenchOf : public Bench {
             for (Truth& truth : effect.hide(knobs, amount, shape))
                 made.truths.push_back(std::move(truth));
             made.ratio = std::min(made.ratio, ratio);
-            if (effect.number != 0) made.numbers.push_back(effect.number);
             made.labels.emplace_back(effect.label);
-            if (effect.instead_of != 0) made.numbers.push_back(effect.instead_of);
+            if (effect.number != 0) {
+                made.numbers.push_back(effect.number);
+                made.called.emplace_back(effect.called);
+            }
+            if (effect.instead_of != 0) {
+                made.numbers.push_back(effect.instead_of);
+                made.called.emplace_back();
+            }
         }
         RandomStream random(plan.seed, "noise style");
         const NoiseStyle style = NoiseStyle::draw(random);

@@ -20,7 +20,7 @@ std::unique_ptr<Bench> accelerometer_bench() {
                 k.bias[i] = a * (2 * r.uniform() - 1);
                 truths.push_back({fmt::format("accelerometer.bias{}", i), k.bias[i]});
             }
-            return truths; }},
+            return truths; }, {}, "", 0, "accelerometer_bias"},
         {39, "scale and alignment", 1.0, false, [](K& k, double a, RandomStream r) {
             Truths truths;
             for (std::size_t i = 0; i < kAxes; ++i) {
@@ -29,12 +29,12 @@ std::unique_ptr<Bench> accelerometer_bench() {
             }
             k.turned = 0.2 * a;
             truths.push_back({"accelerometer.turn", -k.turned});
-            return truths; }},
+            return truths; }, {}, "", 0, "accelerometer_scale"},
         {39, "bias of another session", 200, true, [](K& k, double a, RandomStream) {
             k.session_jump = a;
             Truths truths;
             for (std::size_t i = 0; i < kAxes; ++i) truths.push_back({fmt::format("accelerometer.session_bias2{}", i), a});
-            return truths; }},
+            return truths; }, {}, "", 0, "accelerometer_session"},
         {40, "vibration", 200, false, [](K& k, double a, RandomStream) { k.vibration = a; return Truths{{"accelerometer.vibration", a}}; }},
         {31, "reference sag", 0.04, false, [](K& k, double a, RandomStream) { k.sag = a; return Truths{{"accelerometer.motor_sag", a}}; }},
         {33, "warm-up drift", 30, true, [](K& k, double a, RandomStream) { k.warm = a; return Truths{{"accelerometer.warmup", a}}; }},

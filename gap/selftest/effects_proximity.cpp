@@ -66,6 +66,8 @@ std::unique_ptr<Bench> proximity_bench() {
         {33, "warm-up", 0.3, true, [](K& k, double a, RandomStream) {
             k.warm_gain = a; k.warm_time = 200;
             return Truths{{"proximity.warmup_gain", a}}; }},
+        {64, "battery", 0.5, true, [](K& k, double a, RandomStream) { k.per_volt = a; return Truths{{"proximity.battery_gain", a}}; }},
+        {66, "slow drift", 0.02, true, [](K& k, double a, RandomStream) { k.per_run = a; return Truths{{"proximity.order_drift", a}}; }},
         {34, "dead zone", 200, false, [](K& k, double a, RandomStream) { k.dead_zone = a; return Truths{{"proximity.threshold", a}}; }},
         {35, "noise with the level", 0.1, false, [](K& k, double a, RandomStream) { k.noise_share = a; return Truths{{"proximity.proportional_noise", a}}; }},
         {18, "gain, one object", 0.35, true, [](K& k, double a, RandomStream) { k.gain[2] = 1 + a; return Truths{}; },

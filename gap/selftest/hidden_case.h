@@ -33,8 +33,10 @@ struct HiddenCase {
     std::string kind;
     Expect expect = Expect::NoEffect;
     Strength strength = Strength::None;
-    double ratio = 0.0;               ///< reached; below the asked one where the plausible range ends
-    std::vector<int> numbers;         ///< of the effects sheet; for CannotTell the hidden one first
+    double ratio = 0.0;        ///< reached; below the asked one where the plausible range ends
+    std::vector<int> numbers;  ///< of the effects sheet; for CannotTell the hidden one first
+    std::vector<std::string>
+        called;  ///< beside each number: the catalogue's name where several share a number
     std::vector<std::string> labels;  ///< of what was hidden, in our words
     std::vector<Truth> truths;
     HiddenExperiment experiment;

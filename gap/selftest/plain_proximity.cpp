@@ -103,7 +103,8 @@ RingReading see(const ProximityKnobs& k, const Scene& s, bool law, RandomStream&
     for (std::size_t i = 0; i < kRing; ++i)
         own[i] = reflected(k, s, i, gap, law);
     const double lit = kRoom * s.ambient;
-    const double warm = 1.0 + k.warm_gain * (1.0 - std::exp(-s.t / k.warm_time));
+    const double warm = (1.0 + k.warm_gain * (1.0 - std::exp(-s.t / k.warm_time))) *
+                        (1.0 + k.per_volt * s.volts) * (1.0 + k.per_run * s.order);
     const double bright = 1.0 - k.light_gain * lit / kFullScale;
     const double swing = 1.0 + k.swing * std::cos(3 * (nominal_direction(s.sensor) - s.incidence));
     const double sampled = std::floor(s.t / kSensorPeriod) * kSensorPeriod;

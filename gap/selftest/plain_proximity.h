@@ -35,6 +35,8 @@ struct ProximityKnobs {
     double age = 0.0;           // [32] s
     double warm_gain = 0.0;     // [33]
     double warm_time = 300.0;   // [33] s
+    double per_volt = 0.0;      // [64] share of the answer a volt
+    double per_run = 0.0;       // [66] share of the answer a run
     double dead_zone = 0.0;     // [34] counts
     double noise_share = 0.0;   // [35] sd as a share of the level
     double fringe = 0.0;        // unknown: share, rippling with distance
@@ -54,6 +56,8 @@ struct Scene {
     double ambient;       ///< 0 dark, 1 a room
     double motors;        ///< steps/s of both wheels, 0 off
     double share;         ///< how much of the run has passed, 0..1
+    double volts;         ///< of the battery, from its mean over all runs
+    double order;         ///< of the run, from the mean over all runs
 };
 
 /// Nominal direction of a sensor's axis in the robot's frame, rad, + left.

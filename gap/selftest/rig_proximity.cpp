@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -14,6 +15,13 @@ namespace {
 constexpr double kNoise = 5.0;  // counts: 4-12 on real robots
 constexpr double kFullScale = 4095;
 constexpr double kDegrees = 180 / std::numbers::pi;
+
+/// Three batteries in turn, each falling while it is in; the middle one is old.
+double volts_of(std::size_t run, std::size_t runs) {
+    constexpr std::array<double, 3> kFull{4.12, 3.62, 3.90};
+    const std::size_t each = std::max<std::size_t>(1, (runs + 2) / 3);
+    return kFull[std::min<std::size_t>(run / each, 2)] - 0.02 * static_cast<double>(run % each);
+}
 
 /// Scenes of all runs with their readings, in the order of planned_scenes.
 HiddenExperiment exact_proximity(const ProximityKnobs& knobs, std::uint64_t seed,
@@ -30,12 +38,24 @@ HiddenExperiment exact_proximity(const ProximityKnobs& knobs, std::uint64_t seed
                               {"proximity.exponent", "2"},
                               {"proximity.saturation", "4095"}};
     experiment.instrument = {{"reading", "{ floor = 0, ceiling = 4095, quantum = 1 }"}};
+    const auto plans = planned_scenes(random, variant == "one object");
+    const double middle = (static_cast<double>(plans.size()) + 1) / 2;
+    double mean_volts = 0.0, rows = 0.0;
+    for (std::size_t k = 0; k < plans.size(); ++k) {
+        const double n = static_cast<double>(plans[k].scenes.size());
+        mean_volts += n * volts_of(k, plans.size());
+        rows += n;
+    }
+    mean_volts /= rows;
     int order = 0;
-    for (const PlannedScenes& plan : planned_scenes(random, variant == "one object")) {
+    for (const PlannedScenes& plan : plans) {
+        const double volts = volts_of(static_cast<std::size_t>(order), plans.size());
         ++order;
         HiddenRun run;
         run.conditions = plan.conditions;
-        for (const Scene& s : plan.scenes) {
+        for (Scene s : plan.scenes) {
+            s.volts = volts - mean_volts;
+            s.order = order - middle;
             const RingReading reading = see(knobs, s, law, chance);
             const std::size_t i = s.sensor;
             run.column("t_s", "s").values.push_back(s.t);
@@ -54,6 +74,7 @@ HiddenExperiment exact_proximity(const ProximityKnobs& knobs, std::uint64_t seed
             run.column("neighbour_reading", "counts")
                 .values.push_back(
                     std::round(reading.proximity[(i + 1) % kRing] + reading.proximity[(i + 7) % kRing]));
+            run.column("battery_v", "V").values.push_back(volts);
             run.column("order").values.push_back(order);
         }
         experiment.runs.push_back(std::move(run));

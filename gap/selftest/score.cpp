@@ -6,21 +6,24 @@ namespace puckloop::gap::selftest {
 
 namespace {
 
-bool contains(const std::vector<int>& list, int number) {
-    return std::find(list.begin(), list.end(), number) != list.end();
+/// Is this cause the hidden effect `k`?
+bool is(const HiddenCase& hidden, std::size_t k, const Cause& cause) {
+    if (hidden.numbers[k] != cause.number) return false;
+    return k >= hidden.called.size() || hidden.called[k].empty() || hidden.called[k] == cause.name;
 }
 
 /// Any of the hidden effects; of a pair that the experiment cannot tell apart only the hidden one.
-bool is_hidden(const HiddenCase& hidden, int number) {
-    if (hidden.expect == Expect::CannotTell)
-        return !hidden.numbers.empty() && hidden.numbers.front() == number;
-    return contains(hidden.numbers, number);
+bool is_hidden(const HiddenCase& hidden, const Cause& cause) {
+    const std::size_t most = hidden.expect == Expect::CannotTell ? 1 : hidden.numbers.size();
+    for (std::size_t k = 0; k < std::min(most, hidden.numbers.size()); ++k)
+        if (is(hidden, k, cause)) return true;
+    return false;
 }
 
 void count_intervals(const HiddenCase& hidden, const Verdict& verdict, Judged& judged) {
     for (const Truth& truth : hidden.truths)
         for (const Cause& cause : verdict.causes) {
-            if (!contains(hidden.numbers, cause.number)) continue;
+            if (!is_hidden(hidden, cause)) continue;
             for (const FittedParameter& p : cause.parameters) {
                 if (p.name != truth.parameter) continue;
                 ++judged.intervals;
@@ -46,19 +49,21 @@ Judged judge(const HiddenCase& hidden, const Verdict& verdict) {
         j.names.push_back(cause.name);
     }
     if (!verdict.causes.empty()) {
-        j.listed.push_back(verdict.causes.front().number);
+        const Cause& first = verdict.causes.front();
+        j.listed.push_back(first.number);
+        j.ranked_right = j.listed_right = is_hidden(hidden, first);
         for (const Rival& rival : verdict.rivals) {
-            if (rival.instead_of != verdict.causes.front().name && !rival.instead_of.empty()) continue;
+            if (rival.instead_of != first.name && !rival.instead_of.empty()) continue;
             j.listed.push_back(rival.cause.number);
+            j.listed_right = j.listed_right || is_hidden(hidden, rival.cause);
             break;
         }
     }
-    j.ranked_right = !j.named.empty() && is_hidden(hidden, j.named.front());
     j.first_right = j.ranked_right && verdict.decision == Decision::Named;
-    j.listed_right =
-        std::any_of(j.listed.begin(), j.listed.end(), [&](int n) { return is_hidden(hidden, n); });
-    j.both_named = std::all_of(hidden.numbers.begin(), hidden.numbers.end(),
-                               [&](int n) { return contains(j.named, n); });
+    j.both_named = true;
+    for (std::size_t k = 0; k < hidden.numbers.size(); ++k)
+        j.both_named = j.both_named && std::any_of(verdict.causes.begin(), verdict.causes.end(),
+                                                   [&](const Cause& cause) { return is(hidden, k, cause); });
     if (j.first_right) count_intervals(hidden, verdict, j);
     return j;
 }
