@@ -42,6 +42,7 @@ void declare_gap(CLI::App& app, int& status) {
     command->add_option("--seed", request->seed, "of everything random in the analysis")->type_name("N");
     command->require_subcommand(0, 1);
     declare_gap_import(*command, status);
+    declare_gap_record(*command, status);
     command->callback([command, request, &status] {
         if (!command->get_subcommands().empty()) return;
         if (request->folder.empty())

@@ -1,6 +1,8 @@
 #pragma once
 // The subcommands of `puckloop gap`, one file each.
 
+#include "gap/emulate/stage.h"
+
 namespace CLI {
 class App;
 }
@@ -8,5 +10,9 @@ class App;
 namespace puckloop::tools {
 
 void declare_gap_import(CLI::App& gap, int& status);
+void declare_gap_record(CLI::App& gap, int& status);
+
+/// The project's own firmware and recording program, as built.
+gap::emulate::Tools emulation_tools();
 
 }  // namespace puckloop::tools

@@ -1,0 +1,150 @@
+#include "gap/emulate/plans.h"
+
+#include "base/error.h"
+#include "base/random.h"
+#include "gap/selftest/design_motion.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace puckloop::gap::emulate {
+
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kSend = 0.1;  // s
+constexpr double kMetresPerStep = 1.288053e-4;
+constexpr const char* kOpenFloor = "[arena]\nsize = [\"6 m\", \"6 m\"]\n";
+constexpr double kStripe = 0.06;  // m
+constexpr std::array<double, 6> kGreys{1.0, 0.0, 0.5, 1.0, 0.25, 0.75};
+constexpr double kNearest = 0.0375;  // m from the axle to the wall: the body just does not touch
+constexpr double kSettled = 0.5;     // s at each stop of an approach
+
+std::vector<Act> motion_acts(std::uint64_t seed, bool brief) {
+    RandomStream random(seed, "drives on the emulator");
+    std::vector<Act> acts;
+    for (const auto& plan : selftest::planned_drives(random, false)) {
+        if (plan.script.load > 0.0) continue;  // the emulated robot carries nothing
+        if (brief && acts.size() >= 4) break;
+        Act act;
+        act.conditions = {{"path", plan.path}, {"sense", plan.sense}};
+        act.arena = kOpenFloor;
+        act.heading = plan.script.heading;
+        for (const auto& c : plan.script.commands)
+            act.commands.push_back({c.begin, c.left, c.right});
+        act.commands.push_back({plan.script.seconds, 0, 0});
+        acts.push_back(std::move(act));
+    }
+    return acts;
+}
+
+/// The robot goes towards the wall (or backs up to it) with one sensor facing it, and stops to look.
+Act approach(double facing, double start, bool lamp, bool brief) {
+    Act act;
+    const bool backing = std::abs(facing) > 90 * kDegree;
+    act.conditions = {{"light", lamp ? "lamp" : "dark"}};
+    act.arena = fmt::format(
+        "[arena]\nsize = [\"4 m\", \"4 m\"]\n[light]\nambient = {}\n[[box]]\ncentre = [\"{} m\", \"0 m\"]\n"
+        "size = [\"10 cm\", \"120 cm\", \"12 cm\"]\n",
+        lamp ? 1 : 0, kWallFace + 0.05);
+    // The sides look along the axle: the robot comes up slantwise.
+    const double turned =
+        std::abs(std::abs(facing) - 90 * kDegree) < 1 * kDegree ? std::copysign(35 * kDegree, facing) : 0.0;
+    act.heading = -facing + turned;
+    act.x = kWallFace - start;
+    const double closing = std::abs(std::cos(act.heading));
+    double t = 1.0;
+    act.commands.push_back({0, 0, 0});
+    const int stops = brief ? 4 : 12;
+    const double way = (start - kNearest) / closing;
+    for (int k = 0; k < stops; ++k) {
+        // Short hops near the wall, where the answer is steep.
+        const double hop = way * (stops - k) * 2 / (static_cast<double>(stops) * (stops + 1));
+        const double speed = backing ? -300 : 300;
+        const double seconds = std::max(1.0, std::round(hop / (300 * kMetresPerStep) / kSend)) * kSend;
+        const double steps = std::round(hop / kMetresPerStep / seconds);
+        act.commands.push_back({t, std::copysign(steps, speed), std::copysign(steps, speed)});
+        t += seconds;
+        act.commands.push_back({t, 0, 0});
+        t += kSettled;
+    }
+    act.commands.push_back({t, 0, 0});
+    return act;
+}
+
+std::vector<Act> proximity_acts(std::uint64_t seed, bool brief) {
+    constexpr std::array<double, 8> facing{-17.2, -45.9, -90.0, -151.5, 151.2, 90.0, 45.8, 17.1};
+    RandomStream random(seed, "approaches on the emulator");
+    std::vector<Act> acts;
+    for (int repeat = 0; repeat < (brief ? 1 : 2); ++repeat)
+        for (std::size_t k = 0; k < facing.size(); k += brief ? 3 : 1)
+            for (const bool lamp : {false, true}) {
+                if (lamp && (brief || k % 4 != 0)) continue;
+                acts.push_back(approach(facing[k] * kDegree, 0.12 + 0.01 * random.uniform(), lamp, brief));
+            }
+    return acts;
+}
+
+std::vector<Act> ground_acts(std::uint64_t seed, bool brief) {
+    RandomStream random(seed, "crossings on the emulator");
+    std::string floor = "[arena]\nsize = [\"3 m\", \"2 m\"]\n";
+    for (int k = -10; k < 10; ++k)
+        floor += fmt::format(
+            "[[floor_patch]]\ncentre = [\"{} m\", \"0 m\"]\nsize = [\"{} m\", \"1.8 m\"]\ngrey = {}\n",
+            (k + 0.5) * kStripe, kStripe, stripe_grey((k + 0.5) * kStripe));
+    std::vector<Act> acts;
+    for (int k = 0; k < (brief ? 2 : 6); ++k) {
+        Act act;
+        act.ground = true;
+        act.arena = floor;
+        act.conditions = {{"drive", k % 2 == 0 ? "to" : "fro"}};
+        act.heading = (k % 2 == 0 ? 0.0 : std::numbers::pi) + 0.3 * (random.uniform() - 0.5);
+        act.x = k % 2 == 0 ? -0.4 : 0.4;
+        const double speed = 250 + 100 * std::floor(3 * random.uniform());
+        act.commands = {{0, 0, 0}, {1, speed, speed}, {brief ? 6.0 : 13.0, 0, 0}, {brief ? 6.5 : 13.5, 0, 0}};
+        acts.push_back(std::move(act));
+    }
+    return acts;
+}
+
+std::vector<Act> timing_acts(std::uint64_t, bool brief) {
+    std::vector<Act> acts;
+    for (int k = 0; k < (brief ? 2 : 6); ++k) {
+        Act act;
+        act.arena = kOpenFloor;
+        act.commands = {{0, 0, 0}, {1, 100.0 + 50 * k, 100}, {brief ? 6.0 : 20.0, 0, 0}};
+        acts.push_back(std::move(act));
+    }
+    return acts;
+}
+
+}  // namespace
+
+const std::vector<std::string>& recordable_kinds() {
+    static const std::vector<std::string> kinds{"motion", "proximity", "ground", "timing"};
+    return kinds;
+}
+
+std::vector<Act> acts_of(std::string_view kind, std::uint64_t seed, bool brief) {
+    if (kind == "motion") return motion_acts(seed, brief);
+    if (kind == "proximity") return proximity_acts(seed, brief);
+    if (kind == "ground") return ground_acts(seed, brief);
+    if (kind == "timing") return timing_acts(seed, brief);
+    throw InputError("", "gap record", fmt::format("'{}' cannot be recorded on the emulator", kind),
+                     "motion, proximity, ground, timing or all");
+}
+
+double stripe_grey(double x) {
+    const auto index = static_cast<long>(std::floor(x / kStripe));
+    return kGreys[static_cast<std::size_t>(((index % 6) + 6) % 6)];
+}
+
+bool near_edge(double x, double reach) {
+    const double place = x / kStripe - std::round(x / kStripe);
+    return std::abs(place) * kStripe < reach;
+}
+
+}  // namespace puckloop::gap::emulate

@@ -1,0 +1,172 @@
+#include "gap/emulate/record.h"
+
+#include "base/error.h"
+#include "base/random.h"
+#include "physics/parameters.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+#include <stdexcept>
+
+namespace puckloop::gap::emulate {
+
+namespace {
+
+using selftest::HiddenExperiment;
+using selftest::HiddenRun;
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kPlaceNoise = 0.0005, kPlaceQuantum = 1e-4;         // m, of the tracker
+constexpr double kAngleNoise = 0.2 * kDegree, kAngleQuantum = 1e-4;  // rad
+constexpr double kJigNoise = 1e-5;                                   // m: a measuring table's
+constexpr double kHostNoise = 2e-4;                                  // s, of the host's time stamps
+constexpr int kSettledRows = 3;
+constexpr double kMostSlanting = 65 * kDegree, kFurthest = 0.11;
+constexpr double kClearOfEdge = 0.004;  // m
+/// Commands reach the motors this much after the row's time: twelve bytes, of which the last is held back 4
+/// ms.
+constexpr double kCommandLatency = 0.0052;  // s
+
+HiddenRun motion_run(const std::vector<Row>& rows, RandomStream& noise) {
+    HiddenRun run;
+    for (const Row& r : rows) {
+        const auto blurred = [&](double value, double sd, double quantum) {
+            return std::round((value + sd * noise.normal()) / quantum) * quantum;
+        };
+        run.column("t_s", "s").values.push_back(r.t);
+        run.column("x_m", "m").values.push_back(blurred(r.x, kPlaceNoise, kPlaceQuantum));
+        run.column("y_m", "m").values.push_back(blurred(r.y, kPlaceNoise, kPlaceQuantum));
+        run.column("theta_rad", "rad").values.push_back(blurred(r.theta, kAngleNoise, kAngleQuantum));
+        run.column("cmd_left", "steps/s").values.push_back(r.left);
+        run.column("cmd_right", "steps/s").values.push_back(r.right);
+    }
+    return run;
+}
+
+/// Rows where the robot has stood for a while: a reading is then as old as it likes.
+bool settled(const std::vector<Row>& rows, std::size_t k) {
+    if (k < kSettledRows) return false;
+    for (std::size_t i = k - kSettledRows; i < k; ++i)
+        if (rows[i].left != 0.0 || rows[i].right != 0.0) return false;
+    return rows[k].ok;
+}
+
+HiddenRun proximity_run(const std::vector<Row>& rows, bool lamp, RandomStream& noise) {
+    const physics::Parameters nominal;
+    HiddenRun run;
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+        if (!settled(rows, k)) continue;
+        const Row& r = rows[k];
+        for (std::size_t i = 0; i < physics::kProximitySensors; ++i) {
+            const double c = std::cos(r.theta), s = std::sin(r.theta);
+            const double x = r.x + c * nominal.proximity.x[i] - s * nominal.proximity.y[i];
+            const double way = std::remainder(r.theta + nominal.proximity.direction[i], 2 * std::numbers::pi);
+            if (std::abs(way) > kMostSlanting) continue;
+            const double gap = (kWallFace - x) / std::cos(way) + kJigNoise * noise.normal();
+            if (gap > kFurthest) continue;
+            const auto others = [&](std::size_t sensor) { return r.ps[sensor % physics::kProximitySensors]; };
+            run.column("t_s", "s").values.push_back(r.t);
+            run.column("sensor").values.push_back(static_cast<double>(i));
+            run.column("distance_m", "mm").values.push_back(gap * 1e3);
+            run.column("angle_rad", "deg").values.push_back(-way / kDegree);
+            run.column("ambient").values.push_back(lamp ? 1 : 0);
+            run.column("reading", "counts").values.push_back(r.ps[i]);
+            run.column("ambient_reading", "counts").values.push_back(r.amb[i]);
+            run.column("pair_reading", "counts").values.push_back(others(i + 4));
+            run.column("neighbour_reading", "counts").values.push_back(others(i + 1) + others(i + 7));
+        }
+    }
+    return run;
+}
+
+HiddenRun ground_run(const std::vector<Row>& rows) {
+    const physics::Parameters nominal;
+    HiddenRun run;
+    for (const Row& r : rows)
+        for (std::size_t i = 0; i < physics::kGroundSensors; ++i) {
+            const double x =
+                r.x + std::cos(r.theta) * nominal.ground.x - std::sin(r.theta) * nominal.ground.y[i];
+            if (std::isnan(r.gs[i]) || near_edge(x, kClearOfEdge)) continue;
+            run.column("t_s", "s").values.push_back(r.t);
+            run.column("sensor").values.push_back(static_cast<double>(i));
+            run.column("grey").values.push_back(stripe_grey(x));
+            run.column("reading", "counts").values.push_back(r.gs[i]);
+        }
+    return run;
+}
+
+HiddenRun timing_run(const std::vector<Row>& rows, RandomStream& noise) {
+    constexpr double kBytes = 84;
+    HiddenRun run;
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+        run.column("seq").values.push_back(static_cast<double>(k));
+        run.column("t_host_s", "s").values.push_back(rows[k].answered + kHostNoise * noise.normal());
+        run.column("nominal_period", "ms").values.push_back(100);
+        run.column("bytes").values.push_back(kBytes);
+        run.column("frame_ok").values.push_back(rows[k].ok ? 1 : 0);
+    }
+    return run;
+}
+
+}  // namespace
+
+HiddenExperiment record(std::string_view kind, const RecordOptions& options) {
+    const std::vector<Act> acts = acts_of(kind, options.seed, options.brief);
+    HiddenExperiment experiment;
+    experiment.kind = std::string(kind);
+    if (kind == "motion")
+        experiment.nominal = {{"firmware.agenda", "0"},
+                              {"command.latency", fmt::format("{}", kCommandLatency)}};
+    if (kind == "proximity") experiment.instrument = {{"reading", "{ ceiling = 4095, quantum = 1 }"}};
+    if (kind == "ground") experiment.instrument = {{"reading", "{ floor = 0, ceiling = 967, quantum = 1 }"}};
+    RandomStream noise(options.seed, "laboratory");
+    for (std::size_t k = 0; k < acts.size(); ++k) {
+        const auto rows = perform(options.robot, acts[k], options.tools, options.seed + k,
+                                  options.scratch / fmt::format("act{:02}", k + 1));
+        HiddenRun run;
+        if (kind == "motion") run = motion_run(rows, noise);
+        if (kind == "proximity") run = proximity_run(rows, acts[k].conditions.at("light") == "lamp", noise);
+        if (kind == "ground") run = ground_run(rows);
+        if (kind == "timing") run = timing_run(rows, noise);
+        run.conditions = acts[k].conditions;
+        run.column("order").values.assign(run.rows(), static_cast<double>(k + 1));
+        experiment.runs.push_back(std::move(run));
+        if (options.done) options.done(k + 1, acts.size());
+    }
+    return experiment;
+}
+
+void set_parameter(Robot& robot, const std::string& assignment) {
+    const auto equals = assignment.find('=');
+    char* end = nullptr;
+    const double value =
+        equals == std::string::npos ? 0.0 : std::strtod(assignment.c_str() + equals + 1, &end);
+    if (equals == std::string::npos || end == assignment.c_str() + equals + 1 || *end != '\0')
+        throw InputError("", "--set", fmt::format("'{}' is not an assignment", assignment),
+                         "PARAMETER=NUMBER");
+    const std::string name = assignment.substr(0, equals);
+    const std::array<std::pair<const char*, double*>, 5> own{{{"board.crystal_ppm", &robot.crystal_ppm},
+                                                              {"host.period", &robot.period},
+                                                              {"uart.factor", &robot.uart_factor},
+                                                              {"uart.loss", &robot.uart_loss},
+                                                              {"uart.delay", &robot.uart_delay}}};
+    for (const auto& [known, place] : own)
+        if (name == known) {
+            *place = value;
+            return;
+        }
+    try {
+        physics::Parameters().set(name, value);
+    } catch (const std::invalid_argument& error) {
+        throw InputError("", "--set " + assignment, error.what(),
+                         "a parameter of `puckloop run --list-parameters`, board.crystal_ppm, host.period, "
+                         "uart.factor, uart.loss or uart.delay");
+    }
+    robot.parameters[name] = value;
+}
+
+}  // namespace puckloop::gap::emulate

@@ -1,0 +1,56 @@
+#pragma once
+// One recorded run on the emulator: an arena, a robot with firmware and the program puckloop-record on its
+// Linux board, a tracker above. What comes back is what a laboratory would have.
+//
+// Deviations: 1. the tracker samples when the Linux board sends; its noise is white. 2. The accelerometer and
+// the microphones are not in the serial record of this firmware, so nothing is recorded of them.
+
+#include "linuxboard/record/command_script.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace puckloop::gap::emulate {
+
+/// What stands in for the robot on the table. Parameters are those of `run --list-parameters`.
+struct Robot {
+    std::map<std::string, double> parameters;
+    double crystal_ppm = 0.0;        ///< of the main board
+    double period = 0.1;             ///< s between two exchanges of the Linux program
+    double uart_factor = 1.0;        ///< bit time of the main board's frames over nominal
+    double uart_loss = 0.0;          ///< probability that a byte to the Linux board is lost
+    double uart_delay = 0.0;         ///< s by which bytes from the Linux board come later
+    std::filesystem::path firmware;  ///< empty: the project's own
+};
+
+/// What happens in one run.
+struct Act {
+    std::map<std::string, std::string> conditions;
+    std::string arena;  ///< TOML: [arena], [[box]], [[floor_patch]], [light] ...
+    double x = 0.0, y = 0.0, heading = 0.0;
+    std::vector<control::ScriptedCommand> commands;  ///< the last one ends the run
+    bool ground = false;
+};
+
+/// One exchange between Linux board and main board, and where the tracker saw the robot when it was begun.
+struct Row {
+    double t, answered;  ///< s since the Linux board's program began; NaN if not answered
+    double left, right;  ///< steps/s commanded
+    double x, y, theta;  ///< true pose
+    bool ok;
+    double ps[8], amb[8], gs[3];  ///< NaN where not read
+};
+
+/// Programs and firmware of the project.
+struct Tools {
+    std::filesystem::path record, firmware;
+};
+
+/// Runs in `scratch` (made, left behind). Throws RunError when the run fails.
+std::vector<Row> perform(const Robot& robot, const Act& act, const Tools& tools, std::uint64_t seed,
+                         const std::filesystem::path& scratch);
+
+}  // namespace puckloop::gap::emulate

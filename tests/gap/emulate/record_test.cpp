@@ -1,0 +1,98 @@
+// Experiments recorded on the emulator: what a laboratory would have, and what the robot really did.
+
+#include "base/error.h"
+#include "gap/emulate/record.h"
+#include "gap/emulate/secrets.h"
+#include "gap/experiment.h"
+#include "tests/scratch.h"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <numbers>
+
+using namespace puckloop;
+using namespace puckloop::gap;
+
+namespace {
+
+emulate::RecordOptions options_in(const std::filesystem::path& scratch) {
+    emulate::RecordOptions options;
+    options.tools = {PUCKLOOP_RECORD, PUCKLOOP_FIRMWARE};
+    options.brief = true;
+    options.scratch = scratch;
+    return options;
+}
+
+Experiment recorded(const std::string& kind, emulate::RecordOptions& options) {
+    const auto folder = options.scratch / "experiment";
+    selftest::write_folder(emulate::record(kind, options), folder);
+    Experiment experiment = read_experiment(folder);
+    std::filesystem::remove_all(options.scratch);
+    return experiment;
+}
+
+}  // namespace
+
+TEST_CASE("a recorded line is as long as the firmware's timers make it") {
+    auto options = options_in(tests::scratch_path("gap_line"));
+    const Experiment experiment = recorded("motion", options);
+    REQUIRE(experiment.runs.size() >= 3);
+    const Run& run = experiment.runs.front();
+    const double command = 300, seconds = 8;
+    // Timer counts of a step are whole at 230.4 kHz; 41 mm wheels, 1000 steps a turn.
+    const double speed = 230400 / std::round(230400 / command);
+    const double expected = speed * seconds * std::numbers::pi * 0.041 / 1000;
+    const double way = std::hypot(run.column("x_m").back() - run.column("x_m").front(),
+                                  run.column("y_m").back() - run.column("y_m").front());
+    CHECK(way == Approx(expected).margin(0.003));  // tracker 0.5 mm, and less than a row of commands
+}
+
+TEST_CASE("a changed gain shows in one sensor, and the folder does not tell of it") {
+    auto options = options_in(tests::scratch_path("gap_gain"));
+    const Experiment plain = recorded("proximity", options);
+    CHECK(plain.rows() > 50);
+    emulate::set_parameter(options.robot, "proximity.gain0=1.3");
+    const Experiment changed = recorded("proximity", options);
+    REQUIRE(changed.rows() == plain.rows());
+    double most = 0.0;
+    for (std::size_t r = 0; r < plain.runs.size(); ++r)
+        for (std::size_t k = 0; k < plain.runs[r].rows; ++k) {
+            const double difference =
+                changed.runs[r].column("reading")[k] - plain.runs[r].column("reading")[k];
+            if (plain.runs[r].column("sensor")[k] == 0.0)
+                most = std::max(most, difference);
+            else
+                CHECK(std::abs(difference) < 12);  // converter noise of two conversions, twice
+        }
+    CHECK(most > 100);
+    CHECK(changed.nominal == plain.nominal);
+}
+
+TEST_CASE("ground and timing can be recorded") {
+    auto options = options_in(tests::scratch_path("gap_ground"));
+    const Experiment ground = recorded("ground", options);
+    CHECK(ground.rows() > 100);
+    const Experiment timing = recorded("timing", options);
+    const auto& host = timing.runs.front().column("t_host_s");
+    CHECK((host.back() - host.front()) / static_cast<double>(host.size() - 1) == Approx(0.1).margin(2e-4));
+}
+
+TEST_CASE("what cannot be recorded or changed is refused in one line") {
+    auto options = options_in(tests::scratch_path("gap_refused"));
+    CHECK_THROWS_AS(emulate::record("microphone", options), InputError);
+    CHECK_THROWS_AS(emulate::set_parameter(options.robot, "robot.axle_lenght=0.05"), InputError);
+    CHECK_THROWS_AS(emulate::set_parameter(options.robot, "robot.axle_length"), InputError);
+}
+
+TEST_CASE("every secret can be set, and at least twelve hide something") {
+    int changes = 0;
+    for (const auto& secret : emulate::secrets()) {
+        emulate::Robot robot;
+        for (const auto& assignment : secret.assignments)
+            emulate::set_parameter(robot, assignment);
+        CHECK(secret.assignments.empty() == secret.names.empty());
+        changes += secret.names.empty() ? 0 : 1;
+    }
+    CHECK(changes >= 12);
+}

@@ -1,0 +1,95 @@
+// puckloop gap record: an experiment performed on the emulator, firmware in the loop.
+
+#include "base/error.h"
+#include "gap/emulate/record.h"
+#include "tools/commands/gap.h"
+#include "tools/run/program_path.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <unistd.h>
+
+namespace puckloop::tools {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Request {
+    std::string kind;
+    fs::path out, firmware;
+    std::vector<std::string> changes;
+    std::uint64_t seed = 1;
+    bool brief = false;
+};
+
+void record_kind(const std::string& kind, const fs::path& out, const gap::emulate::RecordOptions& options) {
+    const auto experiment = gap::emulate::record(kind, options);
+    gap::selftest::write_folder(experiment, out);
+    std::size_t rows = 0;
+    for (const auto& run : experiment.runs)
+        rows += run.rows();
+    fmt::print("{}: kind {}, {} runs, {} rows\n", out.string(), kind, experiment.runs.size(), rows);
+}
+
+void record(const Request& request) {
+    gap::emulate::RecordOptions options;
+    options.tools = emulation_tools();
+    options.seed = request.seed;
+    options.brief = request.brief;
+    options.robot.firmware = request.firmware.empty() ? fs::path() : fs::absolute(request.firmware);
+    for (const std::string& change : request.changes)
+        gap::emulate::set_parameter(options.robot, change);
+    const bool terminal = ::isatty(STDERR_FILENO) != 0;
+    if (terminal)
+        options.done = [](std::size_t done, std::size_t all) {
+            fmt::print(stderr, "\r{} of {} runs ", done, all);
+        };
+    const bool all = request.kind == "all";
+    for (const std::string& kind : gap::emulate::recordable_kinds()) {
+        if (!all && kind != request.kind) continue;
+        options.scratch = request.out / (all ? kind + "/emulated" : "emulated");
+        record_kind(kind, all ? request.out / kind : request.out, options);
+    }
+    const auto& kinds = gap::emulate::recordable_kinds();
+    if (!all && std::find(kinds.begin(), kinds.end(), request.kind) == kinds.end())
+        (void)gap::emulate::acts_of(request.kind, request.seed, true);  // says what is wrong
+}
+
+}  // namespace
+
+gap::emulate::Tools emulation_tools() {
+    return {find_program("puckloop-record", "."), PUCKLOOP_FIRMWARE};
+}
+
+void declare_gap_record(CLI::App& gap, int& status) {
+    CLI::App* command = gap.add_subcommand(
+        "record", "Perform an experiment on the emulator, firmware in the loop, and write its folder");
+    auto request = std::make_shared<Request>();
+    command->add_option("kind", request->kind, "motion, proximity, ground, timing or all")
+        ->type_name("KIND")
+        ->required();
+    command
+        ->add_option("--out", request->out,
+                     "where the experiment goes; what the runs left is in DIR/emulated")
+        ->type_name("DIR")
+        ->required();
+    command->add_option(
+        "--set", request->changes,
+        "PARAMETER=NUMBER: a physical parameter (puckloop run --list-parameters), board.crystal_ppm, "
+        "host.period, uart.factor, uart.loss, uart.delay");
+    command->add_option("--firmware", request->firmware, "image for the main board (the project's own)")
+        ->type_name("IMAGE");
+    command->add_option("--seed", request->seed, "of drives, sensors' noise and the tracker's")
+        ->type_name("N");
+    command->add_flag("--brief", request->brief, "few and short runs");
+    command->callback([request, &status] {
+        status = 0;
+        record(*request);
+    });
+}
+
+}  // namespace puckloop::tools
