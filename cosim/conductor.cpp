@@ -225,8 +225,9 @@ void Conductor::State::grant(std::size_t n, Time until) {
     ++slot.grants;
     current_ = n;
     slot.echoes.clear();
-    if (until > schedule_.bounds().limit(n)) network_->echoes(n, slot.echoes);
-    handles_[n]->grant(until, slot.inbox, slot.echoes);
+    const Time sure = std::min(until, schedule_.bounds().limit(n));
+    if (until > sure) network_->echoes(n, slot.echoes);
+    handles_[n]->grant({sure, until}, slot.inbox, slot.echoes);
 }
 
 void Conductor::State::collect() {

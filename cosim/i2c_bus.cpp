@@ -132,7 +132,7 @@ void I2cBusNode::start_from(PortIndex port, const I2cPhase& phase) {
 void I2cBusNode::open_contest(PortIndex port, const I2cPhase& phase) {
     if (bus_ == Bus::Free) {
         bus_ = Bus::Contest;
-        changes_ = phase.start + nominal_period_ / 2;
+        changes_ = phase.start + half_clock();
     }
     std::erase_if(contenders_, [&](const Contender& other) { return other.port == port; });
     contenders_.push_back({port, phase});
@@ -195,7 +195,7 @@ void I2cBusNode::answer(PortIndex port, const I2cPhase& phase, I2cPhaseKind kind
     out.ack = kind == I2cPhaseKind::Data ? phase.ack : (reply.acknowledge ? 1 : 0);
     out.stretch = reply.stretch;
     // What ends within the low half of a clock lengthens nothing on the wires.
-    const bool stretched = reply.stretch > nominal_period_ / 2;
+    const bool stretched = reply.stretch > half_clock();
     counters_.stretched += stretched ? 1 : 0;
     counters_.longest_stretch = std::max(counters_.longest_stretch, reply.stretch);
     if (kind != I2cPhaseKind::BusLost)
@@ -217,7 +217,7 @@ Time I2cBusNode::promise(PortIndex port) const {
 
 Time I2cBusNode::reaction(PortIndex port) const {
     if (is_world(port)) return nominal_period_;
-    if (!is_master(port)) return 0;
+    if (!is_master(port)) return half_clock();
     return options_.devices.empty() ? kClocksOfByte * nominal_period_ : nominal_period_;
 }
 

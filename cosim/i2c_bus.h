@@ -16,13 +16,13 @@
 //
 // Devices that are nodes of their own have a port each. As on the wires, each of them sees every Start (or
 // those for `addresses`, if it has any) and says itself whether it is meant; a device must answer: one that
-// is switched off says ack = 0. Those that acknowledged get what follows: Write and Read when they begin
-// (stamped with `start`, or up to half a nominal clock later where masters had to be told apart) and Stop.
-// Each Start and Write is answered with Acknowledge and each Read with Data, in the device's own time: at
-// `start` + 8 clocks when it does not stretch, later when it does. The bus hands the answer on one nominal
-// clock later, or at the ninth clock. With such devices the bus's lookahead is one nominal clock. The `ack`
-// of a Read is what the master has decided when it begins; a dsPIC decides later and says 1. So a device
-// knows that its byte was the last one wanted when a Stop or Start follows it, not before.
+// is switched off says ack = 0. Those that acknowledged get what follows: Write, Read and Stop. All this is
+// told half a nominal clock after it began (`start` says when); by then masters have been told apart. Each
+// Start and Write is answered with Acknowledge and each Read with Data, in the device's own time: at
+// `start` + 8 clocks when it does not stretch, later when it does. The bus hands the answer on one clock
+// later. With such devices the bus's lookahead is one nominal clock. The `ack` of a Read is what the master
+// has decided when it begins; a dsPIC decides later and says 1. So a device knows that its byte was the last
+// one wanted when a Stop or Start follows it, not before.
 //
 // Several devices at one address answer together: SDA is low when any pulls it low, so their acknowledges are
 // or-ed and their bytes and-ed, and the slowest sets the pace.
@@ -135,6 +135,7 @@ class I2cBusNode final : public Node {
     void answer(PortIndex port, const I2cPhase& phase, I2cPhaseKind kind, const I2cAnswer& answer,
                 Time earliest);
     Time ninth_clock(const I2cPhase& phase) const;
+    Time half_clock() const { return nominal_period_ / 2; }
 
     I2cBusOptions options_;
     std::vector<Port> ports_;

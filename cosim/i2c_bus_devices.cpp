@@ -35,7 +35,7 @@ void I2cBusNode::address(PortIndex port, const I2cPhase& phase, Time earliest) {
         const auto& addresses = options_.devices[i].addresses;
         if (!addresses.empty() && !contains(addresses, wanted)) continue;
         const auto device = static_cast<PortIndex>(options_.masters.size() + i);
-        answers_.push_back({std::max(phase.start, earliest), device, phase});
+        answers_.push_back({std::max(phase.start + half_clock(), earliest), device, phase});
         pending_->open.push_back(device);
     }
     settle();
@@ -46,7 +46,7 @@ void I2cBusNode::byte_from(PortIndex port, const I2cPhase& phase) {
     ++(write ? counters_.bytes_written : counters_.bytes_read);
     pending_ = Pending{port, phase, 0, addressed_devices_, {}, {}, 0};
     for (const PortIndex device : addressed_devices_)
-        answers_.push_back({phase.start, device, phase});
+        answers_.push_back({phase.start + half_clock(), device, phase});
     for (I2cSlave* slave : addressed_)
         take_answer(write ? slave->write(phase.byte, phase.start) : slave->read(phase.start), {});
     settle();
@@ -95,7 +95,7 @@ void I2cBusNode::release_devices(Time now) {
     I2cPhase stop;
     stop.start = now;
     for (const PortIndex device : addressed_devices_)
-        answers_.push_back({now, device, stop});
+        answers_.push_back({now + half_clock(), device, stop});
     addressed_devices_.clear();
     emitted_at_ = now + nominal_period_;
     for (I2cSlave* slave : addressed_)

@@ -31,8 +31,8 @@ class LocalNode : public NodeHandle {
 
     void await_ready() override {}
 
-    void grant(Time until, const std::vector<Message>& inbox, const std::vector<PortEcho>& echoes) override {
-        until_ = until;
+    void grant(Reach reach, const std::vector<Message>& inbox, const std::vector<PortEcho>& echoes) override {
+        reach_ = reach;
         inbox_ = &inbox;
         echoes_ = &echoes;
     }
@@ -40,7 +40,7 @@ class LocalNode : public NodeHandle {
     bool poll(bool) override {
         outbox_.clear();
         guarded("stopped",
-                [&] { reached_ = advance_in_strides(*node_, reached_, until_, *inbox_, *echoes_, outbox_); });
+                [&] { reached_ = advance_in_strides(*node_, reached_, reach_, *inbox_, *echoes_, outbox_); });
         read_state(*node_, state_);
         return true;
     }
@@ -68,7 +68,7 @@ class LocalNode : public NodeHandle {
     std::unique_ptr<Node> node_;
     const std::vector<Message>* inbox_ = nullptr;
     const std::vector<PortEcho>* echoes_ = nullptr;
-    Time until_ = 0;
+    Reach reach_;
 };
 
 }  // namespace

@@ -54,7 +54,7 @@ class NodeHandle {
     /// Waits until the node is made and has told its ports and first state.
     virtual void await_ready() = 0;
     /// Asks the node to advance, in strides if `echoes` says so (cosim/stride.h); one grant at a time.
-    virtual void grant(Time until, const std::vector<Message>& inbox,
+    virtual void grant(Reach reach, const std::vector<Message>& inbox,
                        const std::vector<PortEcho>& echoes) = 0;
     /// True once the reply to the last grant is complete. A node in this process does its work here; `wait`
     /// lets one elsewhere wait for some tenths of a second.

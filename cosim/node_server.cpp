@@ -69,7 +69,7 @@ class Server {
         if (!node_) throw RunError("granted before it was made");
         protocol::read_grant(body, grant_);
         outbox_.clear();
-        reached_ = advance_in_strides(*node_, reached_, grant_.until, grant_.inbox, grant_.echoes, outbox_);
+        reached_ = advance_in_strides(*node_, reached_, grant_.reach, grant_.inbox, grant_.echoes, outbox_);
         read_state(*node_, state_);
         protocol::write_done(bytes_, reached_, state_, outbox_);
     }

@@ -109,10 +109,11 @@ void write_ready(Bytes& bytes, const Ready& ready) {
     write_state(frame.writer, ready.state);
 }
 
-void write_grant(Bytes& bytes, Time until, const std::vector<Message>& inbox,
+void write_grant(Bytes& bytes, Reach reach, const std::vector<Message>& inbox,
                  const std::vector<PortEcho>& echoes) {
     Frame frame(bytes, Kind::Grant);
-    frame.writer.time(until);
+    frame.writer.time(reach.sure);
+    frame.writer.time(reach.until);
     write_messages(frame.writer, inbox);
     frame.writer.u32(static_cast<std::uint32_t>(echoes.size()));
     for (const PortEcho& echo : echoes) {
@@ -177,7 +178,8 @@ Ready read_ready(std::span<const std::uint8_t> body) {
 
 void read_grant(std::span<const std::uint8_t> body, Grant& grant) {
     ByteReader reader = open(body, Kind::Grant);
-    grant.until = reader.time();
+    grant.reach.sure = reader.time();
+    grant.reach.until = reader.time();
     read_messages(reader, grant.inbox);
     grant.echoes.resize(reader.count(kPortEcho));
     for (PortEcho& echo : grant.echoes) {

@@ -38,7 +38,7 @@ struct Ready {
     NodeState state;
 };
 struct Grant {
-    Time until = 0;
+    Reach reach;
     std::vector<Message> inbox;
     std::vector<PortEcho> echoes;
 };
@@ -50,7 +50,7 @@ struct Error {
 /// Each writes one whole message, length included, in place of what `bytes` held.
 void write_hello(Bytes& bytes, const Hello& hello);
 void write_ready(Bytes& bytes, const Ready& ready);
-void write_grant(Bytes& bytes, Time until, const std::vector<Message>& inbox,
+void write_grant(Bytes& bytes, Reach reach, const std::vector<Message>& inbox,
                  const std::vector<PortEcho>& echoes);
 void write_done(Bytes& bytes, Time reached, const NodeState& state, const std::vector<Message>& outbox);
 void write_finish(Bytes& bytes);

@@ -51,10 +51,10 @@ class RemoteNode : public NodeHandle {
         });
     }
 
-    void grant(Time until, const std::vector<Message>& inbox, const std::vector<PortEcho>& echoes) override {
-        asked_ = until;
+    void grant(Reach reach, const std::vector<Message>& inbox, const std::vector<PortEcho>& echoes) override {
+        asked_ = reach.until;
         busy_ = true;
-        protocol::write_grant(bytes_, until, inbox, echoes);
+        protocol::write_grant(bytes_, reach, inbox, echoes);
         send();
     }
 

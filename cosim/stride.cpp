@@ -26,12 +26,13 @@ Time first_echo(const Node& node, Time now, Time first_in, const std::vector<Por
 
 }  // namespace
 
-Time advance_in_strides(Node& node, Time from, Time until, std::span<const Message> inbox,
+Time advance_in_strides(Node& node, Time from, Reach reach, std::span<const Message> inbox,
                         const std::vector<PortEcho>& echoes, std::vector<Message>& outbox) {
     Time now = from;
+    Time until = reach.until;
     while (now < until) {
         const Time first_in = inbox.empty() ? kNever : inbox.front().time;
-        const Time stride = std::min(until, first_echo(node, now, first_in, echoes));
+        const Time stride = std::min(until, std::max(reach.sure, first_echo(node, now, first_in, echoes)));
         if (stride <= now) break;
         const auto due = std::find_if(inbox.begin(), inbox.end(),
                                       [stride](const Message& message) { return message.time >= stride; });

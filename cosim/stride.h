@@ -26,10 +26,18 @@ struct PortEcho {
     friend bool operator==(const PortEcho&, const PortEcho&) = default;
 };
 
-/// Advances `node`, which has reached `from`, at most to `until`; returns how far it went. `echoes` has one
-/// entry a port, or none: then nothing can come back and `until` is reached in one stride. Messages of the
-/// inbox from the returned time on were not given to the node.
-Time advance_in_strides(Node& node, Time from, Time until, std::span<const Message> inbox,
+/// How far a grant reaches.
+struct Reach {
+    Time sure = 0;   ///< nothing comes in before, whatever the node says
+    Time until = 0;  ///< nothing but the echo of what it says; >= sure
+
+    friend bool operator==(const Reach&, const Reach&) = default;
+};
+
+/// Advances `node`, which has reached `from`, at most to `reach.until`; returns how far it went. `echoes` has
+/// one entry a port, or none: then nothing can come back and reach.until is reached in one stride. Messages
+/// of the inbox from the returned time on were not given to the node.
+Time advance_in_strides(Node& node, Time from, Reach reach, std::span<const Message> inbox,
                         const std::vector<PortEcho>& echoes, std::vector<Message>& outbox);
 
 }  // namespace puckloop::cosim

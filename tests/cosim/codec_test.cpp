@@ -56,7 +56,7 @@ std::vector<Bytes> whole_messages() {
     std::vector<Bytes> all(6);
     protocol::write_hello(all[0], {"robot0.pic", "{\"kind\": \"pic\"}"});
     protocol::write_ready(all[1], {{{"uart2", PortKind::Uart}, {"world", PortKind::Signals}}, some_state()});
-    protocol::write_grant(all[2], 1234, some_messages(), some_echoes());
+    protocol::write_grant(all[2], {1000, 1234}, some_messages(), some_echoes());
     protocol::write_done(all[3], 77, some_state(), some_messages());
     protocol::write_report(all[4], "{}");
     protocol::write_error(all[5], {true, "x.hex: line 3: bad"});
@@ -75,7 +75,7 @@ TEST_CASE("what is written is read back") {
     CHECK(ready.state.ports == some_state().ports);
     protocol::Grant grant;
     protocol::read_grant(body_of(all[2]), grant);
-    CHECK(grant.until == 1234);
+    CHECK(grant.reach == Reach{1000, 1234});
     CHECK(grant.inbox == some_messages());
     CHECK(grant.echoes == some_echoes());
     NodeState state;
@@ -131,6 +131,7 @@ TEST_CASE("huge counts and lengths are refused before memory is taken for them")
     Bytes bytes;
     ByteWriter writer(bytes);
     writer.u8(static_cast<std::uint8_t>(protocol::Kind::Grant));
+    writer.time(0);
     writer.time(0);
     writer.u32(0xffffffff);
     protocol::Grant grant;
