@@ -107,11 +107,20 @@ static void spread(struct frame* frame, u32 payload, u16 gates) {
     }
 }
 
+/* 1: a request without chips is there. The emitter lowers both counts together. */
+static u8 behind(void) {
+    u8 is_behind;
+    DISI(100);
+    is_behind = built != count;
+    DISI(0);
+    return is_behind;
+}
+
 void frames_build(void) {
     const u8 begun = generation;
     struct frame* frame;
     u8 i;
-    if (built == count) return;
+    if (!behind()) return;
     frame = slot_at(&built);
     for (i = 0; i < MAX_BITS + CHECK_BITS; ++i)
         frame->ones[i] = 0;

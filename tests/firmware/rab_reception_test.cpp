@@ -320,3 +320,32 @@ TEST_CASE("own RAB firmware: raw peaks, frame after frame") {
         CHECK(reads[5][0] == 0);
     }
 }
+
+TEST_CASE("own RAB firmware: seconds of sending, hearing and polling in all phases lose nothing") {
+    RabBench bench(kImage);
+    bench.master.clock_hertz = 400e3;
+    double time = kReady;
+    std::uint32_t heard = 0;
+    std::size_t polls = 0;
+    std::uint8_t told = 0;
+    for (int round = 0; round < 150; ++round) {
+        time += 0.0003 + round * 3.1e-6;  // all phases of chips, samples and main loop
+        for (int i = 0; i < 3; ++i)
+            bench.write(time, {14, ++told});
+        time += 0.0272;
+        for (int i = 0; i < 2; ++i)
+            time = bench.light(time, encode_rab(16, ++heard), levels({{3, 900}, {4, 700}})) + 4 * kChip;
+        time += 0.001;
+        for (int i = 0; i < 2; ++i, ++polls)
+            time = bench.poll(time);
+    }
+    bench.run(time);
+    const auto sent = bench.sent(7);
+    CHECK(sent.size() == 450);
+    for (std::size_t i = 0; i < sent.size(); ++i)
+        CHECK(sent[i].chips == lit_part(encode_rab(16, static_cast<std::uint8_t>(i + 1))));
+    for (std::size_t i = 0; i < std::min<std::size_t>(polls, 80); ++i)  // the bench keeps 1000 reads
+        CHECK(message(bench, kPollReads * i).data == i + 1);
+    CHECK(bench.rig.chip().report().traps.empty());
+    CHECK(bench.rig.chip().report().resets.size() == 1);
+}
