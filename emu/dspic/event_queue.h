@@ -12,6 +12,9 @@ using Cycle = std::uint64_t;
 inline constexpr Cycle kNoCycle = std::numeric_limits<Cycle>::max();
 
 /// Peripherals compute their next event; they never tick. The core runs freely until next().
+///
+/// Slots are the leaves of a tournament: each inner place holds the earlier one of the two below it, the
+/// lower slot at equal cycles, so that finding the next event costs one walk from a leaf to the top.
 class EventQueue {
   public:
     /// `due` is the cycle that was asked for; it may lie a few cycles before the core's present one, because
@@ -20,26 +23,60 @@ class EventQueue {
     using Slot = std::uint8_t;
 
     Slot add(void* owner, Handler handler);
-    void schedule(Slot slot, Cycle due);
+    void schedule(Slot slot, Cycle due) {
+        if (due_[slot] == due) return;
+        due_[slot] = due;
+        for (unsigned place = (kCapacity + slot) / 2; place; place /= 2) {
+            const Slot left = winner(2 * place);
+            const Slot right = winner(2 * place + 1);
+            winners_[place] = due_[right] < due_[left] ? right : left;
+        }
+        next_ = due_[winners_[1]];
+    }
     void cancel(Slot slot) { schedule(slot, kNoCycle); }
-    Cycle due(Slot slot) const { return entries_[slot].due; }
+    Cycle due(Slot slot) const { return due_[slot]; }
 
     Cycle next() const { return next_; }
+    /// The slot whose event is next(), if there is one.
+    Slot next_slot() const { return winners_[1]; }
     /// Runs every handler due at or before `now`, by due cycle, then by slot. Handlers may schedule again.
-    void service(Cycle now);
+    void service(Cycle now) {
+        while (next_ <= now) {
+            const Slot slot = winners_[1];
+            const Cycle due = next_;
+            cancel(slot);
+            handlers_[slot].call(handlers_[slot].owner, due);
+        }
+    }
 
   private:
+    static constexpr unsigned kCapacity = 64;
     struct Entry {
-        Cycle due = kNoCycle;
-        Handler handler = nullptr;
+        Handler call = nullptr;
         void* owner = nullptr;
     };
-    void find_next();
+    Slot winner(unsigned place) const {
+        return place < kCapacity ? winners_[place] : static_cast<Slot>(place - kCapacity);
+    }
 
-    static constexpr int kCapacity = 64;
-    std::array<Entry, kCapacity> entries_{};
-    int size_ = 0;
+    std::array<Cycle, kCapacity> due_ = never();
+    std::array<Slot, kCapacity> winners_ = first_slots();  ///< of inner places, 1 = the top
+    std::array<Entry, kCapacity> handlers_{};
+    unsigned size_ = 0;
     Cycle next_ = kNoCycle;
+
+    static constexpr std::array<Cycle, kCapacity> never() {
+        std::array<Cycle, kCapacity> cycles{};
+        cycles.fill(kNoCycle);
+        return cycles;
+    }
+    static constexpr std::array<Slot, kCapacity> first_slots() {
+        std::array<Slot, kCapacity> slots{};
+        for (unsigned place = kCapacity - 1; place > 0; --place)
+            slots[place] =
+                2 * place < kCapacity ? slots[2 * place] : static_cast<Slot>(2 * place - kCapacity);
+        return slots;
+    }
 };
 
 }  // namespace puckloop::dspic

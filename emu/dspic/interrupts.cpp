@@ -1,5 +1,7 @@
 #include "emu/dspic/interrupts.h"
 
+#include <bit>
+
 namespace puckloop::dspic {
 
 namespace {
@@ -61,7 +63,13 @@ void InterruptController::raise(int irq, Cycle now) {
     std::uint16_t& flags = sfr_.raw(word_of(device_.ifs, irq));
     if (flags & bit_of(irq)) return;
     flags |= bit_of(irq);
-    if (enabled(irq)) find_first(now);
+    if (!enabled(irq)) return;
+    // Whoever is first in line stays so unless this one ranks higher.
+    const int level = priority(irq);
+    const int vector = kTrapVectors + irq;
+    if (level > first_.level || (level == first_.level && level > 0 && vector < first_.vector))
+        first_ = {level, vector};
+    if (changed_) changed_(listener_, now);
 }
 
 void InterruptController::clear(int irq) {
@@ -131,10 +139,10 @@ void InterruptController::find_first(Cycle now) {
         for (int i = 0; i < device_.ifs_words; ++i) {
             std::uint32_t pending = sfr_.raw(static_cast<std::uint16_t>(device_.ifs + 2 * i)) &
                                     sfr_.raw(static_cast<std::uint16_t>(device_.iec + 2 * i));
-            for (int bit = 0; pending; ++bit, pending >>= 1) {
-                if (!(pending & 1)) continue;
-                const int level = priority(16 * i + bit);
-                if (level > best.level) best = {level, kTrapVectors + 16 * i + bit};
+            for (; pending; pending &= pending - 1) {
+                const int irq = 16 * i + std::countr_zero(pending);
+                const int level = priority(irq);
+                if (level > best.level) best = {level, kTrapVectors + irq};
             }
         }
     }
@@ -155,14 +163,14 @@ void InterruptController::write_register(void* owner, std::uint16_t address, std
     const DeviceInfo& d = self.device_;
     const auto in = [&](std::uint16_t base) { return address >= base && address < base + 2 * d.ifs_words; };
     std::uint16_t exists = 0;
-    if (address == kIntcon1) {
-        exists = d.family_33f ? kIntcon1Bits33F : kIntcon1Bits30F;
-    } else if (address == kIntcon2) {
-        exists = kIntcon2Bits;
-    } else if (in(d.ifs)) {
+    if (in(d.ifs)) {
         exists = self.implemented_[static_cast<std::size_t>(address - d.ifs) / 2];
     } else if (in(d.iec)) {
         exists = self.implemented_[static_cast<std::size_t>(address - d.iec) / 2];
+    } else if (address == kIntcon1) {
+        exists = d.family_33f ? kIntcon1Bits33F : kIntcon1Bits30F;
+    } else if (address == kIntcon2) {
+        exists = kIntcon2Bits;
     } else {
         const int first = 4 * ((address - d.ipc) / 2);
         for (int i = 0; i < 4; ++i)

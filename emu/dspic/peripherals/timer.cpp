@@ -107,7 +107,9 @@ void Timer::settle(Cycle at) {
 }
 
 void Timer::plan() {
-    around_.events.schedule(slot_, next_match());
+    const Cycle next = next_match();
+    state_.reload = next == kNoCycle ? 0 : period_cycles();
+    around_.events.schedule(slot_, next);
 }
 
 void Timer::match(Cycle at) {
@@ -121,7 +123,10 @@ void Timer::match_due(void* owner, Cycle due) {
     self.state_.count = 0;
     self.state_.fraction = 0;
     self.state_.base = due;
-    self.plan();
+    if (self.state_.reload)
+        self.around_.events.schedule(self.slot_, due + self.state_.reload);
+    else
+        self.plan();
     self.match(due);
     if (self.period_wanted_) {
         self.period_wanted_ = false;

@@ -65,6 +65,7 @@ class Timer {
         Cycle base = 0;
         bool pin = false;  ///< level of TxCK
         bool held = false;
+        Cycle reload = 0;  ///< cycles to the match after the next one, while nothing but time decides; else 0
     };
 
     static std::uint16_t read_tmr(void* owner, std::uint16_t address);
