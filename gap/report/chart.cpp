@@ -111,7 +111,7 @@ Scale Chart::scale_of(bool vertical) const {
         values.push_back(std::min(high + room, stats::quantile(dots, 1)));
     }
     if (!vertical && !categories_.empty()) return {-0.5, static_cast<double>(categories_.size()) - 0.5, 1};
-    return Scale::covering(stats::quantile(values, 0), stats::quantile(values, 1), vertical ? 5 : 6);
+    return Scale::covering(stats::quantile(values, 0), stats::quantile(values, 1), vertical ? 5 : 4);
 }
 
 std::string Chart::legend(double left, double top) const {

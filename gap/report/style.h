@@ -19,6 +19,7 @@ h3 { font-size: 10pt; margin: 4mm 0 1mm; break-after: avoid; }
 table { border-collapse: collapse; width: 100%; font-size: 8.5pt; margin: 1mm 0 3mm; }
 th { text-align: left; border-bottom: 1px solid #444; padding: 0.8mm 2mm 0.8mm 0; font-weight: bold; vertical-align: bottom; }
 td { border-bottom: 1px solid #ddd; padding: 0.6mm 2mm 0.6mm 0; vertical-align: top; }
+td.n + td:not(.n), th.n + th:not(.n) { padding-left: 3mm; }
 td.n, th.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
 tr { break-inside: avoid; }
 .strong { font-weight: bold; }
