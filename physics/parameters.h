@@ -32,6 +32,8 @@ struct ProximityParameters {
     double height, curve, amplitude, origin, exponent, saturation, scale, reach;
     double rays, aperture, incidence_exponent;
     double pair_crosstalk, neighbour_crosstalk, warmup_gain, warmup_time;
+    double compression, extra_exponent, distance_shift, threshold, ambient_offset, ambient_gain, battery_gain,
+        motor_sag;
 };
 
 /// Ambient light at the same eight places.

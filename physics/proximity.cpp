@@ -8,6 +8,9 @@ namespace puckloop::physics {
 namespace {
 
 constexpr double kFullScale = 4095;
+constexpr double kExponentReference = 0.03;  // m: where proximity.extra_exponent changes nothing
+constexpr double kExponentOrigin = 0.0099;   // m: effective origin of the measured table [M]
+constexpr double kBatteryReference = 3.7;    // V: where proximity.battery_gain changes nothing
 
 struct CurvePoint {
     double millimetres, counts;
@@ -33,9 +36,8 @@ double compressed(double counts, double saturation) {
 
 }  // namespace
 
-double proximity_response(const ProximityParameters& p, double distance) {
-    if (distance > p.reach) return 0.0;
-    distance = std::max(distance, 0.0);
+namespace {
+double curve_at(const ProximityParameters& p, double distance) {
     switch (std::lround(p.curve)) {
     case 1:
         return compressed(p.amplitude / std::pow((distance + p.origin) * 1e3, p.exponent), p.saturation);
@@ -44,6 +46,18 @@ double proximity_response(const ProximityParameters& p, double distance) {
     default:
         return table_response(distance * 1e3);
     }
+}
+}  // namespace
+
+double proximity_response(const ProximityParameters& p, double distance) {
+    if (distance > p.reach) return 0.0;
+    distance = std::max(distance, 0.0);
+    double counts = curve_at(p, distance);
+    if (p.extra_exponent != 0.0)
+        counts *= std::pow((distance + kExponentOrigin) / (kExponentReference + kExponentOrigin),
+                           -p.extra_exponent);
+    if (p.compression != 0.0) counts /= 1.0 + p.compression * counts;
+    return counts;
 }
 
 ProximityRing::ProximityRing(const ProximityParameters& parameters) : parameters_(parameters) {
@@ -72,7 +86,8 @@ double ProximityRing::reflected(const SensorView& view, std::size_t sensor, doub
             nearest = std::max(hit->in, 0.0);
             brightness = shape->reflectivity * std::pow(hit->cosine, parameters_.incidence_exponent);
         }
-        if (brightness > 0.0) sum += brightness * proximity_response(parameters_, nearest);
+        if (brightness > 0.0)
+            sum += brightness * proximity_response(parameters_, nearest + parameters_.distance_shift);
     }
     return sum / static_cast<double>(rays_[sensor].size());
 }
@@ -86,14 +101,18 @@ std::array<double, kProximitySensors> ProximityRing::sense(const SensorView& vie
         for (std::size_t i = 0; i < kProximitySensors; ++i)
             own[i] = reflected(view, i, cosine, sine);
     }
-    double scale = p.scale;
+    double scale = p.scale * (1.0 - p.ambient_gain * view.ambient);
+    if (p.battery_gain != 0.0) scale *= 1.0 + p.battery_gain * (view.battery - kBatteryReference);
+    if (p.motor_sag != 0.0) scale *= 1.0 - p.motor_sag * view.motors;
     if (p.warmup_gain != 0.0) scale *= 1.0 + p.warmup_gain * (1.0 - std::exp(-view.seconds / p.warmup_time));
     std::array<double, kProximitySensors> counts{};
     for (std::size_t i = 0; i < kProximitySensors; ++i) {
         const double pair = own[(i + 4) % kProximitySensors];
         const double neighbours = own[(i + 1) % kProximitySensors] + own[(i + 7) % kProximitySensors];
         const double seen = own[i] + p.pair_crosstalk * pair + p.neighbour_crosstalk * neighbours;
-        counts[i] = std::clamp(scale * p.gain[i] * seen + p.offset[i], 0.0, kFullScale);
+        double answer = scale * p.gain[i] * seen;
+        if (answer < p.threshold) answer = 0.0;
+        counts[i] = std::clamp(answer + p.offset[i] + p.ambient_offset * view.ambient, 0.0, kFullScale);
     }
     return counts;
 }

@@ -24,7 +24,10 @@ class ProximityRing {
     /// Noise-free reflected counts, 0..4095.
     std::array<double, kProximitySensors> sense(const SensorView& view) const;
     /// Do values change by themselves (warm-up)?
-    bool varies_with_time() const { return parameters_.warmup_gain != 0.0; }
+    bool varies_with_time() const {
+        return parameters_.warmup_gain != 0.0 || parameters_.battery_gain != 0.0 ||
+               parameters_.motor_sag != 0.0;
+    }
     /// Nothing further than this from the axle's middle is seen.
     double horizon() const { return horizon_; }
 

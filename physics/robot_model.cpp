@@ -11,6 +11,7 @@ constexpr double kGroundFullScale = 1023;
 
 RobotModel::RobotModel(const World& world, const Robot& robot, const Parameters& parameters)
     : parameters_(parameters),
+      ambient_light_(world.ambient_light),
       drives_{
           WheelDrive(parameters.robot, RandomStream(world.seed, "physics/" + robot.name + "/steps_left")),
           WheelDrive(parameters.robot, RandomStream(world.seed, "physics/" + robot.name + "/steps_right"))},
@@ -39,7 +40,12 @@ double RobotModel::wheel_speed(Side side, double seconds, double wheel_angle) {
 }
 
 void RobotModel::sense_proximity(const SensorView& view) {
-    store(kProximityChannel, proximity_.sense(view));
+    SensorView whole = view;
+    whole.ambient = ambient_light_;
+    whole.battery = battery_.voltage();
+    whole.motors =
+        ((drives_[0].running(view.seconds) ? 1 : 0) + (drives_[1].running(view.seconds) ? 1 : 0)) / 2.0;
+    store(kProximityChannel, proximity_.sense(whole));
 }
 
 void RobotModel::sense_light(const SensorView& view) {

@@ -44,6 +44,7 @@ class RobotModel {
     void store(std::size_t channel, const std::array<double, N>& values);
 
     Parameters parameters_;
+    double ambient_light_;
     std::array<WheelDrive, 2> drives_;
     std::array<double, 2> asked_angle_{};
     ProximityRing proximity_;

@@ -13,6 +13,9 @@ struct SensorView {
     const RobotState& robot;
     std::span<const Shape* const> shapes;
     double seconds = 0.0;
+    double ambient = 0.0;  ///< room light, 0 dark, 1 a lit room
+    double battery = 3.7;  ///< V
+    double motors = 0.0;   ///< share of the two motors that step
 };
 
 /// A point of the robot (x forward, y left) and a direction, in the world's plan.

@@ -1,0 +1,24 @@
+#include "gap/effects/list.h"
+
+namespace puckloop::gap {
+
+Effect collision_push() {
+    return {
+        .name = "collision_push",
+        .number = 14,
+        .title = "the robot is pushed now and then",
+        .mechanism = "Collisions and hands move the robot without its wheels.",
+        .equation = "with rate q the pose jumps by about s",
+        .kinds = {Kind::Motion},
+        .parameters = {{"push.rate", 0.0, 1.0, 0.03, {0.02}, "rare"},
+                       {"push.size", 0.002, 0.2, 0.03, {0.01, 0.04}, "mm to cm"}},
+        .needs = {},
+        .observables = "rare jumps of all pose components",
+        .enters = "other robots or things in the scenario",
+        .confounded = {"command_loss"},
+        .separated_by = "film the arena; a run with nobody near",
+        .measuring_chain = false,
+    };
+}
+
+}  // namespace puckloop::gap

@@ -1,0 +1,46 @@
+#pragma once
+// A named effect: a mechanism that makes a simulation wrong, as data. It frees parameters of the forward
+// models; the maths of how a parameter acts stands in gap/models and, where the simulator has it, in
+// physics/.
+
+#include "gap/experiment.h"
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace puckloop::gap {
+
+/// A parameter that an effect frees. "name*" = one for each sensor, object, ... in the data; "a*|b": b where
+/// the model has no a.
+struct EffectParameter {
+    const char* name;
+    double low, high;            ///< beyond the simulator's neutral value these are not believed
+    double prior_sd;             ///< weak normal prior about neutral
+    std::vector<double> starts;  ///< where a fit begins, in the parameter's unit; several = tried one by one
+    const char* source;          ///< of the range
+};
+
+struct Effect {
+    const char* name;   ///< "wheel_scale"
+    int number;         ///< in the sheet of effects this catalogue follows
+    const char* title;  ///< plain words, as a sentence would name it
+    const char* mechanism;
+    const char* equation;
+    std::vector<Kind> kinds;
+    std::vector<EffectParameter> parameters;
+    std::vector<const char*> needs;       ///< columns that must be there and vary; "a|b": one of them
+    const char* observables;              ///< what it touches
+    const char* enters;                   ///< where it enters the simulator
+    std::vector<const char*> confounded;  ///< names of effects that can look the same
+    const char* separated_by;             ///< the experiment that tells it from those
+    bool measuring_chain = false;         ///< of tracker, host or ruler, not of the robot
+};
+
+/// All of them, in the order of the sheet.
+std::span<const Effect> catalogue();
+/// nullptr if there is none of this name.
+const Effect* find_effect(std::string_view name);
+std::vector<const Effect*> effects_of(Kind kind);
+
+}  // namespace puckloop::gap

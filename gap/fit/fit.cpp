@@ -1,0 +1,289 @@
+#include "gap/fit/fit.h"
+
+#include <ceres/ceres.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace puckloop::gap {
+
+namespace {
+
+constexpr double kOffset = 0.25;  // (level - level0 + 1/4) has curvature 2 at level0, as the likelihood has
+constexpr double kRelativeStep = 2e-5;  // of a prior's width, for differences
+constexpr double kNoiseStep = 1e-5;
+constexpr int kRecentrings = 4;
+
+/// Which numbers a solver moves: scaled model parameters first, then the noise of each observable.
+class Layout {
+  public:
+    Layout(const Model& model, const std::vector<Freed>& freed) : freed_(freed) {
+        for (std::size_t o = 0; o < model.observables().size(); ++o)
+            if (model.observables()[o].noise != NoiseKind::Event)
+                for (int k = 0; k < kNoiseParameters; ++k)
+                    noise_.emplace_back(o, k);
+    }
+    std::size_t size() const { return freed_.size() + noise_.size(); }
+    std::size_t freed() const { return freed_.size(); }
+    std::size_t observable(std::size_t j) const { return noise_[j - freed_.size()].first; }
+
+    void pack(const State& state, double* x) const {
+        for (std::size_t j = 0; j < freed_.size(); ++j)
+            x[j] = (state.values[static_cast<std::size_t>(freed_[j].index)] - freed_[j].centre) /
+                   freed_[j].prior_sd;
+        for (std::size_t k = 0; k < noise_.size(); ++k) {
+            NoiseParameters copy = state.noise[noise_[k].first];
+            x[freed_.size() + k] = noise_parameter(copy, noise_[k].second);
+        }
+    }
+    void unpack(const double* x, State& state) const {
+        for (std::size_t j = 0; j < freed_.size(); ++j)
+            state.values[static_cast<std::size_t>(freed_[j].index)] =
+                std::clamp(freed_[j].centre + x[j] * freed_[j].prior_sd, freed_[j].low, freed_[j].high);
+        for (std::size_t k = 0; k < noise_.size(); ++k)
+            noise_parameter(state.noise[noise_[k].first], noise_[k].second) = x[freed_.size() + k];
+    }
+    void bounds(const Model& model, std::size_t j, double& low, double& high) const {
+        if (j < freed_.size()) {
+            low = (freed_[j].low - freed_[j].centre) / freed_[j].prior_sd;
+            high = (freed_[j].high - freed_[j].centre) / freed_[j].prior_sd;
+        } else {
+            const auto& [o, k] = noise_[j - freed_.size()];
+            noise_bounds(model.observables()[o].noise, k, low, high);
+        }
+    }
+
+  private:
+    const std::vector<Freed>& freed_;
+    std::vector<std::pair<std::size_t, int>> noise_;
+};
+
+/// All rows as one vector of residuals: shape and other of each row, level of each row (or one for all where
+/// the noise is the same in all rows), and the priors.
+class Cost final : public ceres::CostFunction {
+  public:
+    Cost(const Model& model, const Layout& layout, State state, const Weights& weights)
+        : model_(model), layout_(layout), state_(std::move(state)), weights_(weights) {
+        rich_ = is_rich();
+        int rows = 0;
+        for (const auto& observable : model.observables()) {
+            first_.push_back(rows);
+            const int n = static_cast<int>(observable.y.size());
+            rows += rich_ ? 3 * n : n + 1;
+        }
+        priors_ = rows;
+        rows += static_cast<int>(layout.freed());
+        set_num_residuals(rows);
+        mutable_parameter_block_sizes()->push_back(static_cast<int>(layout.size()));
+        recentre(state_);
+    }
+
+    /// Takes the levels at `state` as the centre; returns how far they moved.
+    double recentre(const State& state) {
+        model_.predict(state.values, prediction_);
+        double moved = 0.0;
+        centre_.resize(model_.observables().size());
+        for (std::size_t o = 0; o < centre_.size(); ++o) {
+            row_costs(model_.observables()[o], prediction_[o], state.noise[o], costs_);
+            for (std::size_t i = 0; i < centre_[o].size(); ++i)
+                moved = std::max(moved, std::abs(costs_.level[i] - centre_[o][i]));
+            if (centre_[o].empty()) moved = 1.0;
+            centre_[o] = costs_.level;
+        }
+        return moved;
+    }
+
+    bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+        const double* x = parameters[0];
+        layout_.unpack(x, state_);
+        model_.predict(state_.values, prediction_);
+        if (!fill(residuals)) return false;
+        const auto n = static_cast<std::size_t>(num_residuals()), width = layout_.size();
+        for (std::size_t j = 0; j < layout_.freed(); ++j)
+            residuals[static_cast<std::size_t>(priors_) + j] = x[j];
+        if (jacobians == nullptr || jacobians[0] == nullptr) return true;
+        std::fill(jacobians[0], jacobians[0] + n * width, 0.0);
+        std::vector<double> moved_x(x, x + width);
+        moved_.resize(n);
+        for (std::size_t j = 0; j < width; ++j) {
+            double low = 0, high = 0;
+            layout_.bounds(model_, j, low, high);
+            double step = j < layout_.freed() ? kRelativeStep : kNoiseStep;
+            if (x[j] + step > high) step = -step;
+            moved_x[j] = x[j] + step;
+            layout_.unpack(moved_x.data(), state_);
+            moved_x[j] = x[j];
+            std::size_t from = 0, to = model_.observables().size();
+            if (j < layout_.freed()) {
+                model_.predict(state_.values, other_);
+            } else {
+                from = layout_.observable(j);
+                to = from + 1;
+            }
+            for (std::size_t o = from; o < to; ++o) {
+                if (!fill_one(o, j < layout_.freed() ? other_[o] : prediction_[o], moved_.data()))
+                    return false;
+                const auto begin = static_cast<std::size_t>(first_[o]);
+                const auto end = o + 1 < first_.size() ? static_cast<std::size_t>(first_[o + 1])
+                                                       : static_cast<std::size_t>(priors_);
+                for (std::size_t i = begin; i < end; ++i)
+                    jacobians[0][i * width + j] = (moved_[i] - residuals[i]) / step;
+            }
+            if (j < layout_.freed()) jacobians[0][(static_cast<std::size_t>(priors_) + j) * width + j] = 1.0;
+        }
+        return true;
+    }
+
+  private:
+    bool is_rich() const {
+        std::vector<double> x(layout_.size());
+        layout_.pack(state_, x.data());
+        for (std::size_t j = 0; j <= layout_.freed(); ++j) {
+            std::vector<double> moved = x;
+            if (j < layout_.freed()) moved[j] += moved[j] > 0 ? -1e-3 : 1e-3;
+            State state = state_;
+            layout_.unpack(moved.data(), state);
+            model_.predict(state.values, prediction_);
+            for (const Predicted& p : prediction_)
+                if (!p.factor.empty() || !p.extra.empty() || !p.lapse.empty() || p.floor > 0 ||
+                    p.line_amplitude > 0)
+                    return true;
+        }
+        return false;
+    }
+
+    bool fill(double* residuals) const {
+        for (std::size_t o = 0; o < model_.observables().size(); ++o)
+            if (!fill_one(o, prediction_[o], residuals)) return false;
+        return true;
+    }
+
+    bool fill_one(std::size_t o, const Predicted& predicted, double* residuals) const {
+        row_costs(model_.observables()[o], predicted, state_.noise[o], costs_);
+        const std::size_t n = costs_.shape.size();
+        double* out = residuals + first_[o];
+        double sum = 0.0, counted = 0.0;
+        for (std::size_t i = 0; i < n; ++i) {
+            const double weight = weights_.empty() ? 1.0 : weights_[o][i];
+            const double root = weight == 1.0 ? 1.0 : std::sqrt(weight);
+            const double above = costs_.level[i] - centre_[o][i] + kOffset;
+            const double shape = root * costs_.shape[i];
+            if (!std::isfinite(shape)) return false;
+            if (rich_) {
+                if (!(above > 0.01)) return false;
+                out[3 * i] = shape;
+                out[3 * i + 1] = root * std::sqrt(2 * above);
+                out[3 * i + 2] = costs_.other.empty() ? 0.0 : root * std::sqrt(2 * costs_.other[i]);
+            } else {
+                out[i] = shape;
+                sum += weight * above;
+                counted += weight;
+            }
+        }
+        if (rich_) return true;
+        if (counted > 0 && !(sum > 0.02 * counted)) return false;
+        out[n] = std::sqrt(2 * std::max(sum, 0.0));
+        return true;
+    }
+
+    const Model& model_;
+    const Layout& layout_;
+    mutable State state_;
+    const Weights& weights_;
+    bool rich_ = false;
+    int priors_ = 0;
+    std::vector<int> first_;
+    std::vector<std::vector<double>> centre_;
+    mutable Prediction prediction_, other_;
+    mutable RowCosts costs_;
+    mutable std::vector<double> moved_;
+};
+
+ceres::Solver::Options options_for(int iterations) {
+    ceres::Solver::Options options;
+    options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+    options.max_num_iterations = iterations;
+    options.function_tolerance = 1e-7;
+    options.gradient_tolerance = 1e-9;
+    options.parameter_tolerance = 1e-7;
+    options.initial_trust_region_radius = 1e2;
+    options.logging_type = ceres::SILENT;
+    options.minimizer_progress_to_stdout = false;
+    options.num_threads = 1;
+    return options;
+}
+
+}  // namespace
+
+State neutral_state(const Model& model) {
+    State state{model.neutral(), {}};
+    Prediction prediction;
+    model.predict(state.values, prediction);
+    for (std::size_t o = 0; o < model.observables().size(); ++o)
+        state.noise.push_back(first_guess(model.observables()[o], prediction[o]));
+    return state;
+}
+
+std::vector<RowCosts> costs_at(const Model& model, const State& state, Prediction& prediction) {
+    model.predict(state.values, prediction);
+    std::vector<RowCosts> costs(model.observables().size());
+    for (std::size_t o = 0; o < costs.size(); ++o)
+        row_costs(model.observables()[o], prediction[o], state.noise[o], costs[o]);
+    return costs;
+}
+
+std::vector<std::vector<double>> row_scores(const Model& model, const State& state) {
+    Prediction prediction;
+    const auto costs = costs_at(model, state, prediction);
+    std::vector<std::vector<double>> scores(costs.size());
+    for (std::size_t o = 0; o < costs.size(); ++o) {
+        scores[o].resize(costs[o].shape.size());
+        for (std::size_t i = 0; i < scores[o].size(); ++i)
+            scores[o][i] = -costs[o].cost(i);
+    }
+    return scores;
+}
+
+Fitted fit(const Model& model, const std::vector<Freed>& freed, const State& start, const Weights& weights,
+           int most_iterations) {
+    const Layout layout(model, freed);
+    Fitted result;
+    result.state = start;
+    std::vector<double> x(std::max<std::size_t>(layout.size(), 1));
+    layout.pack(start, x.data());
+    for (std::size_t j = 0; j < layout.size(); ++j) {
+        double low = 0, high = 0;
+        layout.bounds(model, j, low, high);
+        x[j] = std::clamp(x[j], low, high);
+    }
+    layout.unpack(x.data(), result.state);
+    if (layout.size() > 0) {
+        Cost cost(model, layout, result.state, weights);
+        for (int round = 0; round < kRecentrings; ++round) {
+            ceres::Problem::Options problem_options;
+            problem_options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+            ceres::Problem problem(problem_options);
+            problem.AddResidualBlock(&cost, nullptr, x.data());
+            for (std::size_t j = 0; j < layout.size(); ++j) {
+                double low = 0, high = 0;
+                layout.bounds(model, j, low, high);
+                problem.SetParameterLowerBound(x.data(), static_cast<int>(j), low);
+                problem.SetParameterUpperBound(x.data(), static_cast<int>(j), high);
+            }
+            ceres::Solver::Summary summary;
+            ceres::Solve(options_for(most_iterations), &problem, &summary);
+            result.iterations += static_cast<int>(summary.iterations.size());
+            layout.unpack(x.data(), result.state);
+            if (cost.recentre(result.state) < 0.03) break;
+        }
+    }
+    const auto scores = row_scores(model, result.state);
+    for (std::size_t o = 0; o < scores.size(); ++o)
+        for (std::size_t i = 0; i < scores[o].size(); ++i)
+            result.log_likelihood += (weights.empty() ? 1.0 : weights[o][i]) * scores[o][i];
+    for (std::size_t j = 0; j < freed.size(); ++j)
+        result.log_prior -= x[j] * x[j] / 2;
+    return result;
+}
+
+}  // namespace puckloop::gap

@@ -1,0 +1,44 @@
+#pragma once
+// Maximum posterior fit of a model's freed parameters together with the noise of its observables (Ceres).
+
+#include "gap/fit/noise.h"
+#include "gap/models/model.h"
+
+#include <string>
+#include <vector>
+
+namespace puckloop::gap {
+
+/// A model parameter that a fit may change. Weak normal prior about the neutral value.
+struct Freed {
+    int index = -1;  ///< in Model::parameters()
+    double low = 0.0, high = 0.0, prior_sd = 1.0, centre = 0.0;
+};
+
+/// Where a fit starts and where it ended.
+struct State {
+    std::vector<double> values;          ///< as Model::parameters()
+    std::vector<NoiseParameters> noise;  ///< an observable each
+};
+
+/// A weight a row, an observable each; empty: all 1.
+using Weights = std::vector<std::vector<double>>;
+
+struct Fitted {
+    State state;
+    double log_likelihood = 0.0;  ///< weighted sum over rows
+    double log_prior = 0.0;       ///< of the freed parameters, without constants
+    int iterations = 0;
+};
+
+State neutral_state(const Model& model);
+
+Fitted fit(const Model& model, const std::vector<Freed>& freed, const State& start, const Weights& weights,
+           int most_iterations = 20);
+
+/// log likelihood of every row, an observable each.
+std::vector<std::vector<double>> row_scores(const Model& model, const State& state);
+/// Everything about the rows at a state.
+std::vector<RowCosts> costs_at(const Model& model, const State& state, Prediction& prediction);
+
+}  // namespace puckloop::gap

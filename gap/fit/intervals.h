@@ -1,0 +1,21 @@
+#pragma once
+// How well the data fixes the fitted parameters.
+
+#include "gap/fit/study.h"
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace puckloop::gap {
+
+/// sd of each freed parameter of a fit (its own unit), from the rows' information and from how blocks of rows
+/// disagree; and how far each is fixed by the others.
+struct Precision {
+    std::vector<double> sd;
+    double quantile = 1.645;      ///< of the 90 % interval, for the number of blocks
+    Eigen::MatrixXd correlation;  ///< of the freed parameters
+};
+Precision precision_of(const Study& study, const Fit& fit);
+
+}  // namespace puckloop::gap

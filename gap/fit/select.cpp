@@ -1,0 +1,190 @@
+#include "gap/fit/select.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace puckloop::gap {
+
+namespace {
+
+constexpr std::size_t kMostEffects = 5;
+constexpr double kEnoughBic = 8.0;         // to be chosen; calibrated on data without effects (docs/gap.md)
+constexpr double kEnoughDeviations = 1.6;  // of the held-out gain
+constexpr double kEnoughBlocks = 0.5;      // share of blocks that gain
+constexpr std::size_t kValidated = 3;      // best by BIC that are cross-validated
+constexpr double kDraw = 6.0;              // difference of BIC that tells nothing
+
+bool has(const std::vector<std::size_t>& set, std::size_t effect) {
+    return std::find(set.begin(), set.end(), effect) != set.end();
+}
+
+/// The chosen set with `effect` replaced by `rival` (put last, so that its starts are tried).
+std::vector<std::size_t> replaced(std::vector<std::size_t> set, std::size_t effect, std::size_t rival) {
+    std::erase(set, effect);
+    set.push_back(rival);
+    return set;
+}
+
+/// The fit's state with one effect's parameters back at neutral.
+State without(const Study& study, const Fit& fit, std::size_t effect) {
+    State state = fit.fitted.state;
+    const auto neutral = study.model().neutral();
+    for (const Freed& freed : study.candidates()[effect].freed)
+        state.values[static_cast<std::size_t>(freed.index)] = neutral[static_cast<std::size_t>(freed.index)];
+    return state;
+}
+
+class Selector {
+  public:
+    Selector(const Study& study, const std::function<void(const std::string&, double)>& progress)
+        : study_(study), progress_(progress) {}
+
+    Selection run() {
+        tell("fitting the simulator as it is", 0.02);
+        result_.none = study_.fit_none();
+        result_.held_none = study_.hold_out(result_.none);
+        result_.chosen = result_.none;
+        result_.held_chosen = result_.held_none;
+        for (std::size_t i = 0; i < study_.candidates().size(); ++i)
+            result_.trials.push_back({i, 0.0, {}, false, study_.candidates()[i].remark});
+        while (result_.chosen.effects.size() < kMostEffects && step())
+            improve();
+        find_draws();
+        return std::move(result_);
+    }
+
+  private:
+    void tell(const std::string& what, double share) const {
+        if (progress_) progress_(what, share);
+    }
+
+    bool step() {
+        const auto& chosen = result_.chosen;
+        const std::size_t count = study_.candidates().size();
+        const double begin =
+            0.05 + 0.2 * static_cast<double>(std::min<std::size_t>(chosen.effects.size(), 3));
+        std::vector<std::pair<double, Fit>> fits;  // delta BIC
+        for (std::size_t i = 0; i < count; ++i) {
+            const Candidate& candidate = study_.candidates()[i];
+            if (!candidate.remark.empty() || has(chosen.effects, i)) continue;
+            tell(fmt::format("trying {}", candidate.effect->name),
+                 begin + 0.15 * static_cast<double>(i) / static_cast<double>(count));
+            auto set = chosen.effects;
+            set.push_back(i);
+            Fit fit = study_.fit_set(set, chosen.fitted.state);
+            Trial& trial = result_.trials[i];
+            if (chosen.effects.empty() || !trial.validated) trial.delta_bic = chosen.bic - fit.bic;
+            fits.emplace_back(chosen.bic - fit.bic, std::move(fit));
+        }
+        std::stable_sort(fits.begin(), fits.end(),
+                         [](const auto& a, const auto& b) { return a.first > b.first; });
+        if (fits.size() > kValidated) fits.resize(kValidated);
+        double best_gain = 0.0;
+        std::size_t best = fits.size();
+        std::vector<HeldOut> helds(fits.size());
+        std::vector<Gain> gains(fits.size());
+        for (std::size_t k = 0; k < fits.size(); ++k) {
+            if (fits[k].first < kEnoughBic) break;
+            helds[k] = study_.hold_out(fits[k].second);
+            gains[k] = gain_of(gains_by_block(study_.blocks(), result_.held_chosen, helds[k]));
+            Trial& trial = result_.trials[fits[k].second.effects.back()];
+            trial.held = gains[k];
+            trial.validated = true;
+            trial.delta_bic = fits[k].first;
+            const bool enough =
+                gains[k].sum > kEnoughDeviations * gains[k].sd && gains[k].share_better > kEnoughBlocks;
+            if (!enough) continue;
+            // BIC says how simply, the held-out score how well: the sum of both decides.
+            const double merit = gains[k].sum + fits[k].first / 2;
+            if (merit > best_gain) {
+                best_gain = merit;
+                best = k;
+            }
+        }
+        if (best == fits.size()) return false;
+        result_.steps.push_back({fits[best].second.effects.back(), fits[best].first, gains[best], true, ""});
+        result_.chosen = std::move(fits[best].second);
+        result_.held_chosen = std::move(helds[best]);
+        return true;
+    }
+
+    /// After a choice an earlier one may have become needless, or another effect may stand better in its
+    /// place.
+    void improve() {
+        if (result_.chosen.effects.size() < 2) return;
+        tell("looking back at earlier choices", 0.7);
+        for (bool changed = true; changed;) {
+            changed = false;
+            for (const std::size_t effect : std::vector(result_.chosen.effects)) {
+                if (result_.chosen.effects.size() < 2) break;
+                auto set = result_.chosen.effects;
+                std::erase(set, effect);
+                Fit fit = study_.fit_set(set, without(study_, result_.chosen, effect));
+                if (fit.bic > result_.chosen.bic + kEnoughBic) continue;
+                result_.chosen = std::move(fit);
+                result_.held_chosen = study_.hold_out(result_.chosen);
+                std::erase_if(result_.steps, [&](const Trial& trial) { return trial.effect == effect; });
+                changed = true;
+            }
+        }
+        for (const std::size_t effect : std::vector(result_.chosen.effects)) {
+            if (effect == result_.chosen.effects.back()) continue;
+            for (std::size_t rival = 0; rival < study_.candidates().size(); ++rival) {
+                if (!study_.candidates()[rival].remark.empty() || has(result_.chosen.effects, rival))
+                    continue;
+                Fit fit = study_.fit_set(replaced(result_.chosen.effects, effect, rival),
+                                         without(study_, result_.chosen, effect));
+                if (fit.bic > result_.chosen.bic - kDraw) continue;
+                result_.chosen = std::move(fit);
+                result_.held_chosen = study_.hold_out(result_.chosen);
+                for (Trial& trial : result_.steps)
+                    if (trial.effect == effect) trial.effect = rival;
+                break;
+            }
+        }
+    }
+
+    void find_draws() {
+        tell("looking for rivals", 0.8);
+        for (const std::size_t effect : result_.chosen.effects)
+            for (std::size_t rival = 0; rival < study_.candidates().size(); ++rival) {
+                if (!study_.candidates()[rival].remark.empty() || has(result_.chosen.effects, rival))
+                    continue;
+                if (nested(rival, effect)) continue;
+                Fit fit = study_.fit_set(replaced(result_.chosen.effects, effect, rival),
+                                         without(study_, result_.chosen, effect));
+                const double delta = fit.bic - result_.chosen.bic;
+                if (delta > kDraw) continue;
+                const HeldOut held = study_.hold_out(fit);
+                Draw draw{effect, rival, delta,
+                          gain_of(gains_by_block(study_.blocks(), held, result_.held_chosen)),
+                          std::move(fit)};
+                result_.draws.push_back(std::move(draw));
+            }
+        std::stable_sort(result_.draws.begin(), result_.draws.end(),
+                         [](const Draw& a, const Draw& b) { return a.delta_bic < b.delta_bic; });
+    }
+
+    /// Does `outer` free all that `inner` does? Then it can always say the same, and says it with more words.
+    bool nested(std::size_t outer, std::size_t inner) const {
+        const auto &a = study_.candidates()[outer].freed, &b = study_.candidates()[inner].freed;
+        return std::all_of(b.begin(), b.end(), [&](const Freed& one) {
+            return std::any_of(a.begin(), a.end(),
+                               [&](const Freed& other) { return other.index == one.index; });
+        });
+    }
+
+    const Study& study_;
+    const std::function<void(const std::string&, double)>& progress_;
+    Selection result_;
+};
+
+}  // namespace
+
+Selection select(const Study& study, const std::function<void(const std::string&, double)>& progress) {
+    return Selector(study, progress).run();
+}
+
+}  // namespace puckloop::gap

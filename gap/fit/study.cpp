@@ -1,0 +1,221 @@
+#include "gap/fit/study.h"
+
+#include "base/random.h"
+#include "gap/columns.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <sstream>
+
+namespace puckloop::gap {
+
+namespace {
+
+constexpr std::size_t kMostFolds = 5;
+constexpr std::size_t kLeastBlocks = 16;  // fewer independent blocks make no interval
+constexpr std::size_t kLeastBlockRows = 8;
+constexpr int kHeldOutIterations = 6;
+
+bool varies(const Experiment& experiment, std::string_view column) {
+    double low = INFINITY, high = -INFINITY;
+    for (const Run& run : experiment.runs)
+        for (const double value : run.column(column))
+            if (!std::isnan(value)) {
+                low = std::min(low, value);
+                high = std::max(high, value);
+            }
+    return high > low;
+}
+
+/// One effect's parameter on one index of the model.
+Freed freed_at(const Model& model, const EffectParameter& parameter, int index) {
+    const double neutral = model.parameters()[static_cast<std::size_t>(index)].neutral;
+    Freed freed{index, parameter.low, parameter.high, parameter.prior_sd, neutral};
+    if (neutral < parameter.low || neutral > parameter.high) {
+        const bool zero_is_off = neutral == 0.0;
+        if (zero_is_off)
+            freed.centre =
+                parameter.starts.empty() ? (parameter.low + parameter.high) / 2 : parameter.starts.front();
+        else  // another robot altogether: as wide about its own number
+            freed.low = std::min(freed.low, neutral - 3 * parameter.prior_sd),
+            freed.high = std::max(freed.high, neutral + 3 * parameter.prior_sd);
+    }
+    return freed;
+}
+
+}  // namespace
+
+Study::Study(const Experiment& experiment, std::uint64_t seed)
+    : experiment_(experiment), model_(make_model(experiment)) {
+    for (const Observable& observable : model_->observables())
+        rows_ += observable.y.size();
+    make_candidates();
+    make_folds(seed);
+}
+
+std::string Study::missing_for(const Effect& effect) const {
+    for (const std::string_view need : effect.needs) {
+        bool any = false;
+        std::stringstream names{std::string(need)};
+        std::string name;
+        while (std::getline(names, name, '|'))
+            any = any || varies(experiment_, name);
+        if (!any) return fmt::format("needs {} to be recorded and to vary", need);
+    }
+    return "";
+}
+
+void Study::make_candidates() {
+    for (const Effect* effect : effects_of(experiment_.kind)) {
+        Candidate candidate;
+        candidate.effect = effect;
+        candidate.remark = missing_for(*effect);
+        std::vector<std::vector<double>> own;  // starts of each freed parameter
+        std::size_t rounds = 1;
+        for (const EffectParameter& parameter : effect->parameters)
+            for (const int index : model_->matching(parameter.name)) {
+                candidate.freed.push_back(freed_at(*model_, parameter, index));
+                own.push_back(parameter.starts);
+                if (candidate.remark.empty())
+                    for (const double start :
+                         model_->starts(model_->parameters()[static_cast<std::size_t>(index)].name))
+                        own.back().push_back(start);
+                rounds = std::max(rounds, own.back().size());
+            }
+        if (candidate.freed.empty() && candidate.remark.empty())
+            candidate.remark = "nothing in this data depends on it";
+        for (std::size_t round = 0; round < rounds; ++round) {
+            std::vector<double> start;
+            for (std::size_t j = 0; j < candidate.freed.size(); ++j)
+                start.push_back(own[j].empty() ? candidate.freed[j].centre
+                                               : own[j][std::min(round, own[j].size() - 1)]);
+            candidate.starts.push_back(std::move(start));
+        }
+        candidates_.push_back(std::move(candidate));
+    }
+}
+
+void Study::make_folds(std::uint64_t seed) {
+    const std::size_t runs = experiment_.runs.size();
+    const bool by_run = runs >= 3;
+    folds_ = by_run ? std::min(kMostFolds, runs) : kMostFolds;
+    std::vector<std::size_t> order(runs);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    RandomStream random(seed, "gap/folds");
+    for (std::size_t i = runs; i > 1; --i)
+        std::swap(order[i - 1], order[random.below(i)]);
+    std::vector<std::size_t> place(runs);
+    for (std::size_t i = 0; i < runs; ++i)
+        place[order[i]] = i;
+    const std::size_t pieces =
+        std::max<std::size_t>(1, (kLeastBlocks + runs - 1) / std::max<std::size_t>(runs, 1));
+    blocks_.count = runs * pieces;
+    for (const Observable& observable : model_->observables()) {
+        std::vector<int> fold;
+        std::vector<std::uint32_t> block;
+        for (std::size_t i = 0; i < observable.y.size(); ++i) {
+            const Run& run = experiment_.runs[observable.run[i]];
+            const std::size_t piece =
+                std::min(pieces - 1, observable.row[i] * pieces / std::max<std::size_t>(run.rows, 1));
+            block.push_back(static_cast<std::uint32_t>(observable.run[i] * pieces + piece));
+            const std::size_t stretch = observable.row[i] * folds_ / std::max<std::size_t>(run.rows, 1);
+            fold.push_back(static_cast<int>(by_run ? place[observable.run[i]] % folds_ : stretch));
+        }
+        fold_.push_back(std::move(fold));
+        blocks_.of.push_back(std::move(block));
+    }
+}
+
+std::vector<Freed> Study::freed_by(const std::vector<std::size_t>& effects) const {
+    std::vector<Freed> all;
+    for (const std::size_t e : effects)
+        for (const Freed& freed : candidates_[e].freed) {
+            const bool there = std::any_of(all.begin(), all.end(),
+                                           [&](const Freed& other) { return other.index == freed.index; });
+            if (!there) all.push_back(freed);
+        }
+    return all;
+}
+
+Fit Study::fit_none() const {
+    Fit result;
+    result.fitted = fit(*model_, {}, neutral_state(*model_), {});
+    result.bic = -2 * result.fitted.log_likelihood;
+    return result;
+}
+
+Fit Study::fit_set(const std::vector<std::size_t>& effects, const State& from) const {
+    Fit best;
+    best.effects = effects;
+    best.freed = freed_by(effects);
+    best.bic = INFINITY;
+    const Candidate& last = candidates_[effects.back()];
+    for (const auto& start : last.starts) {
+        State state = from;
+        for (std::size_t j = 0; j < last.freed.size(); ++j)
+            state.values[static_cast<std::size_t>(last.freed[j].index)] = start[j];
+        const Fitted fitted = fit(*model_, best.freed, state, {});
+        const double bic =
+            -2 * fitted.log_likelihood + static_cast<double>(best.freed.size()) *
+                                             std::log(static_cast<double>(std::max<std::size_t>(rows_, 2)));
+        if (bic < best.bic) {
+            best.bic = bic;
+            best.fitted = fitted;
+        }
+    }
+    return best;
+}
+
+HeldOut Study::hold_out(const Fit& whole) const {
+    HeldOut held;
+    const auto& observables = model_->observables();
+    for (const Observable& observable : observables) {
+        held.score.emplace_back(observable.y.size(), 0.0);
+        held.mean.emplace_back(observable.y.size(), 0.0);
+    }
+    Prediction prediction;
+    for (std::size_t k = 0; k < folds_; ++k) {
+        Weights weights;
+        for (const auto& fold : fold_) {
+            weights.emplace_back();
+            for (const int f : fold)
+                weights.back().push_back(f == static_cast<int>(k) ? 0.0 : 1.0);
+        }
+        const Fitted part = fit(*model_, whole.freed, whole.fitted.state, weights, kHeldOutIterations);
+        const auto costs = costs_at(*model_, part.state, prediction);
+        for (std::size_t o = 0; o < observables.size(); ++o)
+            for (std::size_t i = 0; i < fold_[o].size(); ++i)
+                if (fold_[o][i] == static_cast<int>(k)) {
+                    held.score[o][i] = -costs[o].cost(i);
+                    held.mean[o][i] = prediction[o].mean[i];
+                }
+    }
+    return held;
+}
+
+std::vector<double> gains_by_block(const Blocks& blocks, const HeldOut& before, const HeldOut& after) {
+    std::vector<double> gains(blocks.count, 0.0);
+    for (std::size_t o = 0; o < blocks.of.size(); ++o)
+        for (std::size_t i = 0; i < blocks.of[o].size(); ++i)
+            gains[blocks.of[o][i]] += after.score[o][i] - before.score[o][i];
+    return gains;
+}
+
+Gain gain_of(const std::vector<double>& by_block) {
+    Gain gain;
+    const auto n = static_cast<double>(by_block.size());
+    for (const double one : by_block) {
+        gain.sum += one;
+        gain.share_better += one > 0 ? 1 / n : 0;
+    }
+    double squares = 0.0;
+    for (const double one : by_block)
+        squares += (one - gain.sum / n) * (one - gain.sum / n);
+    gain.sd = n > 1 ? std::sqrt(squares * n / (n - 1)) : INFINITY;
+    return gain;
+}
+
+}  // namespace puckloop::gap

@@ -1,0 +1,80 @@
+#pragma once
+// One experiment under study: its model, which effects can be tried on it, and fits of sets of effects, whole
+// and with parts held out.
+
+#include "gap/effects/effect.h"
+#include "gap/fit/fit.h"
+
+#include <string>
+#include <vector>
+
+namespace puckloop::gap {
+
+/// An effect as it applies to this experiment.
+struct Candidate {
+    const Effect* effect = nullptr;
+    std::vector<Freed> freed;
+    std::vector<std::vector<double>> starts;  ///< values of `freed` to begin at; at least one
+    std::string remark;                       ///< why it cannot be tried; empty: it can
+};
+
+/// A set of effects fitted to all rows.
+struct Fit {
+    std::vector<std::size_t> effects;  ///< indices of candidates, in order of choice
+    Fitted fitted;
+    std::vector<Freed> freed;
+    double bic = 0.0;  ///< -2 log likelihood + parameters ln rows
+};
+
+/// Log scores of rows that the fit did not see, an observable each, and what was predicted for them.
+struct HeldOut {
+    std::vector<std::vector<double>> score, mean;
+};
+
+/// Rows that stand or fall together when gains are judged: a run, or a stretch of one where runs are few.
+struct Blocks {
+    std::vector<std::vector<std::uint32_t>> of;  ///< block of each row, an observable each
+    std::size_t count = 0;
+};
+
+class Study {
+  public:
+    Study(const Experiment& experiment, std::uint64_t seed);
+
+    const Experiment& experiment() const { return experiment_; }
+    const Model& model() const { return *model_; }
+    const std::vector<Candidate>& candidates() const { return candidates_; }
+    std::size_t rows() const { return rows_; }
+    std::size_t folds() const { return folds_; }
+    const Blocks& blocks() const { return blocks_; }
+
+    /// Fits a set; begins at `from` and, for the last effect of the set, at each of its starts.
+    Fit fit_set(const std::vector<std::size_t>& effects, const State& from) const;
+    Fit fit_none() const;
+    /// Cross-validation of a set that was fitted to all rows.
+    HeldOut hold_out(const Fit& fit) const;
+
+  private:
+    void make_candidates();
+    void make_folds(std::uint64_t seed);
+    std::string missing_for(const Effect& effect) const;
+    std::vector<Freed> freed_by(const std::vector<std::size_t>& effects) const;
+
+    const Experiment& experiment_;
+    std::unique_ptr<Model> model_;
+    std::vector<Candidate> candidates_;
+    std::vector<std::vector<int>> fold_;  // of each row, an observable each
+    Blocks blocks_;
+    std::size_t rows_ = 0, folds_ = 0;
+};
+
+/// Sum over rows of `after` - `before`, block by block.
+std::vector<double> gains_by_block(const Blocks& blocks, const HeldOut& before, const HeldOut& after);
+
+struct Gain {
+    double sum = 0.0, sd = 0.0;  ///< sd of the sum, from the spread between blocks
+    double share_better = 0.0;   ///< of the blocks
+};
+Gain gain_of(const std::vector<double>& by_block);
+
+}  // namespace puckloop::gap

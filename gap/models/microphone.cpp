@@ -1,0 +1,91 @@
+// The level of a microphone before a loudspeaker: the stated level at 0.1 m, falling with the distance.
+//
+// Deviations: 1. the simulator has no sound; the level's law is this file's. 2. Level is taken as the
+// firmware reports it (largest minus smallest of a window).
+
+#include "gap/models/model.h"
+#include "gap/models/rows.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace puckloop::gap {
+
+namespace {
+
+constexpr double kReference = 0.1;     // m
+constexpr double kSpeedUnit = 1000.0;  // steps/s
+constexpr double kLevel = 300.0;       // counts at the reference, where nothing is stated
+constexpr double kWindow = 100.0;      // samples of the firmware's buffer
+
+class MicrophoneModel final : public Model {
+  public:
+    explicit MicrophoneModel(const Experiment& experiment) {
+        const Rows rows(experiment, "mic", {"distance_m", "level"});
+        std::vector<std::uint32_t> used;
+        observables_.push_back(rows.observable("level", NoiseKind::Carry, used));
+        const auto column = [&](std::string_view name, double fallback) {
+            return taken(rows.column(name, fallback), used);
+        };
+        distance_ = column("distance_m", 0);
+        angle_ = column("angle_rad", 0);
+        amplitude_ = column("amplitude", 0);
+        window_ = column("window", kWindow);
+        motor_ = column("motor_speed", 0);
+        time_ = column("t_s", 0);
+        for (const double mic : column("mic", 0))
+            mic_.push_back(static_cast<int>(mic));
+        level_ = add("microphone.level", "counts", kLevel);
+        exponent_ = add("microphone.exponent", "1", 1.0);
+        directivity_ = add("microphone.directivity", "1", 0.0);
+        self_noise_ = add("microphone.self_noise", "counts", 0.0);
+        motor_noise_ = add("microphone.motor_noise", "counts", 0.0);
+        window_lost_ = add("microphone.window_lost", "1", 0.0);
+        warmup_ = add("microphone.warmup_gain", "1", 0.0);
+        warmup_time_ = add("microphone.warmup_time", "s", 300.0);
+        for (const int mic : mic_)
+            if (gain_[static_cast<std::size_t>(mic)] < 0)
+                gain_[static_cast<std::size_t>(mic)] = add(fmt::format("microphone.gain{}", mic), "1", 1.0);
+        apply_nominal(experiment);
+    }
+
+    void predict(const std::vector<double>& v, Prediction& out) const override {
+        out.resize(1);
+        auto& mean = out[0].mean;
+        mean.resize(distance_.size());
+        const auto value = [&](int index) { return v[static_cast<std::size_t>(index)]; };
+        const double warm = value(warmup_), lost = value(window_lost_);
+        for (std::size_t i = 0; i < mean.size(); ++i) {
+            double level = amplitude_[i] > 0 ? amplitude_[i] : value(level_);
+            level *= std::pow(kReference / std::max(distance_[i], 1e-3), value(exponent_));
+            level *= (1 + value(directivity_) * std::cos(angle_[i])) *
+                     value(gain_[static_cast<std::size_t>(mic_[i])]);
+            if (warm != 0.0)
+                level *= 1 + warm * (1 - std::exp(-std::max(time_[i], 0.0) / value(warmup_time_)));
+            level += value(self_noise_) + value(motor_noise_) * std::abs(motor_[i]) / kSpeedUnit;
+            // Extremes of N samples lie about sqrt(2 ln N) from the mean.
+            if (lost != 0.0)
+                level *= std::sqrt(std::log(std::max(window_[i] * (1 - lost), 2.0)) /
+                                   std::log(std::max(window_[i], 2.0)));
+            mean[i] = level;
+        }
+    }
+
+  private:
+    std::vector<double> distance_, angle_, amplitude_, window_, motor_, time_;
+    std::vector<int> mic_;
+    std::array<int, 8> gain_{-1, -1, -1, -1, -1, -1, -1, -1};
+    int level_ = 0, exponent_ = 0, directivity_ = 0, self_noise_ = 0, motor_noise_ = 0, window_lost_ = 0,
+        warmup_ = 0, warmup_time_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Model> make_microphone_model(const Experiment& experiment) {
+    return std::make_unique<MicrophoneModel>(experiment);
+}
+
+}  // namespace puckloop::gap

@@ -1,0 +1,98 @@
+#include "gap/models/model.h"
+
+#include "base/error.h"
+#include "base/suggest.h"
+#include "physics/parameters.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace puckloop::gap {
+
+int Model::find(std::string_view name) const {
+    for (std::size_t i = 0; i < parameters_.size(); ++i)
+        if (parameters_[i].name == name) return static_cast<int>(i);
+    return -1;
+}
+
+std::vector<int> Model::matching(std::string_view pattern) const {
+    std::vector<int> found;
+    if (const auto other = pattern.find('|'); other != std::string_view::npos) {
+        found = matching(pattern.substr(0, other));
+        return found.empty() ? matching(pattern.substr(other + 1)) : found;
+    }
+    const bool many = pattern.ends_with('*');
+    if (many) pattern.remove_suffix(1);
+    for (std::size_t i = 0; i < parameters_.size(); ++i) {
+        const std::string_view name = parameters_[i].name;
+        const bool numbered = many && name.size() > pattern.size() && name.starts_with(pattern) &&
+                              name.find_first_not_of("0123456789", pattern.size()) == std::string_view::npos;
+        if (numbered || (!many && name == pattern)) found.push_back(static_cast<int>(i));
+    }
+    return found;
+}
+
+std::vector<double> Model::neutral() const {
+    std::vector<double> values;
+    values.reserve(parameters_.size());
+    for (const auto& parameter : parameters_)
+        values.push_back(parameter.neutral);
+    return values;
+}
+
+int Model::add(std::string name, std::string unit, double neutral) {
+    int index = -1;
+    const bool simulator = physics::find_parameter(name, index) != nullptr;
+    parameters_.push_back({std::move(name), std::move(unit), neutral, simulator});
+    return static_cast<int>(parameters_.size()) - 1;
+}
+
+void Model::apply_nominal(const Experiment& experiment) {
+    const std::string file = (experiment.folder / "experiment.toml").string();
+    for (const auto& [name, value] : experiment.nominal) {
+        bool known = false;
+        for (auto& parameter : parameters_) {
+            const bool one = parameter.name == name;
+            const bool group =
+                parameter.name.size() > name.size() && parameter.name.starts_with(name) &&
+                parameter.name.find_first_not_of("0123456789", name.size()) == std::string::npos;
+            if (!one && !(group && !experiment.nominal.contains(parameter.name))) continue;
+            parameter.neutral = value;
+            known = true;
+        }
+        int index = -1;
+        if (known || physics::find_parameter(name, index) != nullptr)
+            continue;  // of the robot, without say here
+        std::vector<std::string_view> names;
+        for (const auto& parameter : parameters_)
+            names.emplace_back(parameter.name);
+        const std::string near = nearest_name(name, names);
+        throw InputError(
+            file, "",
+            fmt::format("[nominal] names no parameter of kind {}: {}", kind_name(experiment.kind), name),
+            near.empty() ? "one of docs/gap.md" : near + "?");
+    }
+}
+
+std::unique_ptr<Model> make_model(const Experiment& experiment) {
+    switch (experiment.kind) {
+    case Kind::Proximity:
+        return make_proximity_model(experiment);
+    case Kind::Motion:
+        return make_motion_model(experiment);
+    case Kind::Rab:
+        return make_rab_model(experiment);
+    case Kind::Microphone:
+        return make_microphone_model(experiment);
+    case Kind::Ground:
+        return make_ground_model(experiment);
+    case Kind::Accelerometer:
+        return make_accelerometer_model(experiment);
+    case Kind::Timing:
+        break;
+    }
+    return make_timing_model(experiment);
+}
+
+}  // namespace puckloop::gap

@@ -1,0 +1,96 @@
+#pragma once
+// A forward model of one kind of experiment: what the simulator says for every row, as a function of named
+// parameters. With all parameters neutral it is the simulator as it is, with the experiment's nominal
+// numbers. The physical formulas are the simulator's own (physics/), called here without its clockwork:
+// docs/gap.md says what the shortcut leaves out, tests hold it to the world model.
+
+#include "gap/experiment.h"
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace puckloop::gap {
+
+/// How the rows of an observable depend on each other.
+enum class NoiseKind {
+    Carry,  ///< each error keeps a share of the one before (first-order autoregression)
+    Level,  ///< measurement noise on a sum that drifts (random walk plus noise)
+    Event,  ///< happened or not
+};
+
+/// One measured quantity with everything that does not depend on parameters. Rows of one chain (a run, or one
+/// sensor of a run) stand together in order of time.
+struct Observable {
+    std::string name, unit;
+    NoiseKind noise = NoiseKind::Carry;
+    Instrument instrument{};
+    std::vector<double> y;
+    std::vector<std::uint32_t> run, row;
+    std::vector<char> starts;  ///< 1: nothing is carried over into this row
+    std::vector<double> time;  ///< s; empty when unknown
+    std::vector<double> gate;  ///< weight of the spectral line in this row; empty: 1
+    double known_sd = 0.0;     ///< noise that the simulator claims; 0: it claims none
+};
+
+/// What the model says of one observable. Empty vectors stand for the neutral value.
+struct Predicted {
+    std::vector<double> mean;         ///< of an Event: its probability
+    std::vector<double> factor;       ///< noise is this many times larger (1)
+    std::vector<double> extra;        ///< noise sd added in quadrature, observable's unit (0)
+    std::vector<double> lapse;        ///< probability that the row is a lapse (0)
+    std::vector<double> lapse_scale;  ///< sd of a lapse, observable's unit
+    double lapse_shift = 0.0;         ///< mean of a lapse, observable's unit
+    double floor = 0.0;               ///< reading 0 means "below this" (dead zone); 0: the instrument's floor
+    double line_amplitude = 0.0;      ///< of a spectral line with unknown phase, observable's unit
+    double line_frequency = 0.0;      ///< Hz
+};
+using Prediction = std::vector<Predicted>;
+
+struct ModelParameter {
+    std::string name, unit;
+    double neutral = 0.0;
+    bool simulator = false;  ///< a physics parameter of this name exists
+};
+
+class Model {
+  public:
+    virtual ~Model() = default;
+
+    const std::vector<ModelParameter>& parameters() const { return parameters_; }
+    const std::vector<Observable>& observables() const { return observables_; }
+    /// -1: no such parameter.
+    int find(std::string_view name) const;
+    /// "proximity.gain*" -> the indices of proximity.gain0, ... that occur in the data.
+    std::vector<int> matching(std::string_view pattern) const;
+    std::vector<double> neutral() const;
+
+    /// `values` as parameters(). Reuses the memory of `out`.
+    virtual void predict(const std::vector<double>& values, Prediction& out) const = 0;
+
+    /// Where the data itself suggests that a fit of this parameter begins; mostly nowhere.
+    virtual std::vector<double> starts(std::string_view) const { return {}; }
+
+  protected:
+    int add(std::string name, std::string unit, double neutral);
+    /// Takes the experiment's nominal numbers over; InputError for one that this kind does not know.
+    void apply_nominal(const Experiment& experiment);
+
+    std::vector<ModelParameter> parameters_;
+    std::vector<Observable> observables_;
+};
+
+/// `experiment` must outlive the model.
+std::unique_ptr<Model> make_model(const Experiment& experiment);
+
+std::unique_ptr<Model> make_proximity_model(const Experiment& experiment);
+std::unique_ptr<Model> make_motion_model(const Experiment& experiment);
+std::unique_ptr<Model> make_rab_model(const Experiment& experiment);
+std::unique_ptr<Model> make_microphone_model(const Experiment& experiment);
+std::unique_ptr<Model> make_ground_model(const Experiment& experiment);
+std::unique_ptr<Model> make_accelerometer_model(const Experiment& experiment);
+std::unique_ptr<Model> make_timing_model(const Experiment& experiment);
+
+}  // namespace puckloop::gap

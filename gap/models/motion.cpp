@@ -1,0 +1,324 @@
+// Odometry and motion: what the tracker saw against what the motors did. A run is compared as three sums over
+// its rows: way along the heading, way across it, heading. The tracker's own heading turns its steps into
+// along and across, so an error of heading does not spread into the other two. With counters and commands
+// both recorded, the counters are compared with the commands as well.
+//
+// Deviations from the world model: 1. the wheel follows its motor at once, but for the loss a start or stop
+// costs at friction mu. 2. Between rows speed is even. 3. No contacts with things.
+
+#include "gap/models/model.h"
+#include "gap/models/rows.h"
+#include "gap/models/wheel_curve.h"
+#include "physics/parameters.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace puckloop::gap {
+
+namespace {
+
+constexpr double kStill = 1e-6;  // m: less than this between rows is standing
+constexpr double kEdge = 0.05;   // width of the dead band's edge, share of it
+constexpr double kGravity = 9.81;
+
+struct Path {
+    std::uint32_t run = 0;
+    WheelCurve wheel[2], asked[2];
+    std::vector<double> time, turned, middle, load,
+        incline;  ///< of the rows used; measured turn since the row before
+};
+
+class MotionModel final : public Model {
+  public:
+    explicit MotionModel(const Experiment& experiment) {
+        const Rows rows(experiment, "", {"t_s", "x_m", "y_m", "theta_rad"});
+        gather(experiment, rows);
+        declare();
+        apply_nominal(experiment);
+    }
+
+    void predict(const std::vector<double>& v, Prediction& out) const override {
+        out.resize(observables_.size());
+        const std::size_t n = observables_[0].y.size();
+        for (int o = 0; o < 3; ++o)
+            out[static_cast<std::size_t>(o)].mean.resize(n);
+        const bool noisy = at(v, push_rate_) > 0 || (!counted_ && at(v, drop_) > 0);
+        for (int o = 0; o < 3; ++o) {
+            Predicted& p = out[static_cast<std::size_t>(o)];
+            p.lapse.assign(noisy ? n : 0, 0.0);
+            p.lapse_scale.assign(noisy ? n : 0, 0.0);
+        }
+        std::size_t first = 0;
+        for (const Path& path : paths_) {
+            drive(v, path, first, out);
+            first += path.time.size();
+        }
+        if (counted_) predict_counters(v, out);
+    }
+
+  private:
+    static double at(const std::vector<double>& v, int index) { return v[static_cast<std::size_t>(index)]; }
+
+    void gather(const Experiment& experiment, const Rows& rows) {
+        std::vector<std::uint32_t> used;
+        const Observable base = rows.observable("x_m", NoiseKind::Level, used);
+        const auto x = taken(rows.column("x_m", 0), used), y = taken(rows.column("y_m", 0), used),
+                   theta = taken(rows.column("theta_rad", 0), used);
+        const auto load = taken(rows.column("load_kg", 0), used),
+                   incline = taken(rows.column("incline_rad", 0), used);
+        counted_ = experiment.has("steps_left") && experiment.has("cmd_left");
+        std::array<std::vector<double>, 3> sums;
+        double along = 0, across = 0, heading = 0;
+        for (std::size_t i = 0; i < base.y.size(); ++i) {
+            const bool begins = i == 0 || base.run[i] != base.run[i - 1];
+            if (begins) {
+                const Run& run = experiment.runs[base.run[i]];
+                Path path;
+                path.run = base.run[i];
+                path.wheel[0] = WheelCurve::counted(run, "steps_left", "cmd_left");
+                path.wheel[1] = WheelCurve::counted(run, "steps_right", "cmd_right");
+                if (counted_) {
+                    path.asked[0] = WheelCurve::commanded(run, "cmd_left");
+                    path.asked[1] = WheelCurve::commanded(run, "cmd_right");
+                }
+                paths_.push_back(std::move(path));
+                along = across = heading = 0;
+            }
+            Path& path = paths_.back();
+            double turned = 0, middle = theta[i];
+            if (!begins) {
+                turned = std::remainder(theta[i] - theta[i - 1], 2 * std::numbers::pi);
+                middle = theta[i - 1] + turned / 2;
+                const double dx = x[i] - x[i - 1], dy = y[i] - y[i - 1];
+                along += dx * std::cos(middle) + dy * std::sin(middle);
+                across += -dx * std::sin(middle) + dy * std::cos(middle);
+                heading += turned;
+            }
+            path.time.push_back(base.time[i]);
+            path.turned.push_back(turned);
+            path.middle.push_back(middle);
+            path.load.push_back(load[i]);
+            path.incline.push_back(incline[i]);
+            sums[0].push_back(along);
+            sums[1].push_back(across);
+            sums[2].push_back(heading);
+        }
+        constexpr const char* kNames[] = {"along", "across", "heading"};
+        for (std::size_t o = 0; o < 3; ++o) {
+            observables_.push_back(base);
+            Observable& one = observables_.back();
+            one.name = kNames[o];
+            one.unit = o == 2 ? "rad" : "m";
+            one.instrument = {NAN, NAN, 0.0};
+            one.y = sums[o];
+            for (std::size_t i = 1; i < one.y.size(); ++i)
+                one.starts[i] = base.run[i] != base.run[i - 1] ? 1 : 0;
+        }
+        if (counted_) gather_counters(experiment);
+    }
+
+    void gather_counters(const Experiment& experiment) {
+        constexpr const char* kNames[] = {"steps_left", "steps_right"};
+        for (std::size_t w = 0; w < 2; ++w) {
+            const Rows rows(experiment, "", {"t_s", kNames[w]});
+            Observable one = rows.observable(kNames[w], NoiseKind::Level, counter_rows_[w]);
+            one.unit = "steps";
+            one.instrument.quantum = std::max(one.instrument.quantum, 1.0);
+            for (std::size_t i = 0; i < one.y.size(); ++i)
+                one.starts[i] = i == 0 || one.run[i] != one.run[i - 1] ? 1 : 0;
+            observables_.push_back(std::move(one));
+        }
+    }
+
+    void declare() {
+        const physics::Parameters defaults;
+        radius_left_ = add("robot.wheel_radius_left", "m", defaults.robot.wheel_radius_left);
+        radius_right_ = add("robot.wheel_radius_right", "m", defaults.robot.wheel_radius_right);
+        axle_ = add("robot.axle_length", "m", defaults.robot.axle_length);
+        steps_per_turn_ = add("robot.steps_per_turn", "1", defaults.robot.steps_per_turn);
+        scale_ = add("wheel_scale", "1", 0.0);
+        mismatch_ = add("wheel_mismatch", "1", 0.0);
+        scrub_ = add("robot.turn_scrub", "1", 0.0);
+        friction_ = add("inverse_friction", "1", 1 / defaults.contact.mu);
+        creep_ = add("robot.load_creep", "1/kg", 0.0);
+        slope_creep_ = add("robot.slope_creep", "1/rad", 0.0);
+        loss_speed_ = add("robot.step_loss_speed", "steps/s", 0.0);
+        loss_width_ = add("robot.step_loss_width", "steps/s", defaults.robot.step_loss_width);
+        deadband_ = add("robot.deadband", "steps/s", 0.0);
+        backlash_ = add("robot.backlash", "rad", 0.0);
+        latency_ = add("command.latency", "s", 0.0);
+        drop_ = add("command.loss", "1", 0.0);
+        drift_x_ = add("robot.drift_x", "m/s", 0.0);
+        drift_y_ = add("robot.drift_y", "m/s", 0.0);
+        push_rate_ = add("push.rate", "1/s", 0.0);
+        push_size_ = add("push.size", "m", 0.02);
+        marker_x_ = add("tracker.marker_x", "m", 0.0);
+        marker_y_ = add("tracker.marker_y", "m", 0.0);
+        marker_angle_ = add("tracker.marker_angle", "rad", 0.0);
+        delay_ = add("tracker.delay", "s", 0.0);
+        heading_drift_ = add("tracker.heading_drift", "rad/s", 0.0);
+    }
+
+    /// Metres that a change of speed has cost by `time`: wheels follow no faster than mu g.
+    static double slipped(const std::vector<SpeedJump>& jumps, double metre, double inverse_mu, double from,
+                          double to) {
+        double sum = 0.0;
+        for (auto jump = std::lower_bound(jumps.begin(), jumps.end(), from - 0.7,
+                                          [](const SpeedJump&j, double t) { return j.time < t; });
+             jump != jumps.end() && jump->time < to; ++jump) {
+            const double speed = std::abs(jump->change) * metre;
+            const double lasts = speed * inverse_mu / kGravity;
+            const auto done = [&](double t) {
+                const double share = std::clamp((t - jump->time) / std::max(lasts, 1e-6), 0.0, 1.0);
+                return 1 - (1 - share) * (1 - share);
+            };
+            sum += std::copysign(speed * lasts / 2, jump->change) * (done(to) - done(from));
+        }
+        return sum;
+    }
+
+    void drive(const std::vector<double>& v, const Path& path, std::size_t first, Prediction& out) const {
+        const double turn = 2 * std::numbers::pi / at(v, steps_per_turn_);
+        const std::array<double, 2> metre{
+            turn * at(v, radius_left_) * (1 + at(v, scale_)) * (1 - at(v, mismatch_)),
+            turn * at(v, radius_right_) * (1 + at(v, scale_)) * (1 + at(v, mismatch_))};
+        const double axle = at(v, axle_), scrub = at(v, scrub_), inverse_mu = at(v, friction_);
+        const double loss_speed = at(v, loss_speed_), loss_width = at(v, loss_width_),
+                     deadband = at(v, deadband_);
+        const double late = at(v, delay_) + (counted_ ? 0.0 : at(v, latency_));
+        const double drift_x = at(v, drift_x_), drift_y = at(v, drift_y_), push = at(v, push_rate_);
+        const double drop = counted_ ? 0.0 : at(v, drop_);
+        std::array<CurveReader, 2> reader{CurveReader(path.wheel[0]), CurveReader(path.wheel[1])};
+        std::array<double, 2> last{}, driven{}, geared{}, last_geared{};
+        double along = 0, across = 0, heading = 0;
+        for (std::size_t i = 0; i < path.time.size(); ++i) {
+            const double now = path.time[i] - late, before = i == 0 ? now : path.time[i - 1] - late,
+                         span = now - before;
+            std::array<double, 2> moved{};
+            for (std::size_t w = 0; w < 2; ++w) {
+                const double steps = reader[w].at(now);
+                double change = i == 0 ? 0.0 : steps - last[w];
+                last[w] = steps;
+                if (change != 0.0 && span > 0) {
+                    const double rate = std::abs(change) / span;
+                    if (loss_speed > 0) change *= 1 - 1 / (1 + std::exp(-(rate - loss_speed) / loss_width));
+                    if (deadband > 0) change *= 1 / (1 + std::exp(-(rate - deadband) / (kEdge * deadband)));
+                }
+                driven[w] += change * metre[w];
+                const double play = at(v, backlash_) / 2 * metre[w] / turn;
+                geared[w] = std::clamp(geared[w], driven[w] - play, driven[w] + play);
+                moved[w] = geared[w] - last_geared[w];
+                last_geared[w] = geared[w];
+                if (span > 0) moved[w] -= slipped(path.wheel[w].jumps, metre[w], inverse_mu, before, now);
+                moved[w] *= 1 - at(v, creep_) * path.load[i] - at(v, slope_creep_) * path.incline[i];
+            }
+            double way = (moved[0] + moved[1]) / 2;
+            const double twist = std::abs(moved[1] - moved[0]) / 2;
+            const double wide =
+                scrub == 0.0 || twist < 1e-9 ? axle : axle * (1 + scrub * twist / (std::abs(way) + twist));
+            const double turned = (moved[1] - moved[0]) / wide;
+            if (std::abs(turned) > 1e-6) way *= std::sin(turned / 2) / (turned / 2);
+            double aside = 0.0;
+            if (drift_x != 0.0 || drift_y != 0.0) {
+                if (std::abs(moved[0]) + std::abs(moved[1]) > kStill) {
+                    const double c = std::cos(path.middle[i]), s = std::sin(path.middle[i]);
+                    way += (drift_x * c + drift_y * s) * span;
+                    aside += (-drift_x * s + drift_y * c) * span;
+                }
+            }
+            const double lever = 2 * std::sin(turned / 2);
+            way -= lever * at(v, marker_y_);
+            aside += lever * at(v, marker_x_);
+            const double skew = at(v, marker_angle_);
+            along += way + skew * aside;
+            across += aside - skew * way;
+            heading += turned + at(v, heading_drift_) * span;
+            out[0].mean[first + i] = along;
+            out[1].mean[first + i] = across;
+            out[2].mean[first + i] = heading;
+            if (push > 0) {
+                for (std::size_t o = 0; o < 3; ++o) {
+                    out[o].lapse[first + i] = std::min(push * span, 0.5);
+                    out[o].lapse_scale[first + i] = o == 2 ? 10 * at(v, push_size_) : at(v, push_size_);
+                }
+            }
+            if (drop > 0) lapses_of_loss(drop, metre, axle, path, before, span, first + i, out);
+        }
+    }
+
+    /// A lost command leaves the wheel at its old speed: the row is off by the change.
+    static void lapses_of_loss(double drop, const std::array<double, 2>& metre, double axle, const Path& path,
+                               double before, double span, std::size_t row, Prediction& out) {
+        std::array<double, 2> off{};
+        for (std::size_t w = 0; w < 2; ++w)
+            off[w] = last_change(path.wheel[w].jumps, before) * metre[w] * span;
+        const double way = std::abs(off[0] + off[1]) / 2, turn = std::abs(off[1] - off[0]) / axle;
+        for (const auto& [o, scale] : {std::pair{0, way}, std::pair{2, turn}}) {
+            if (scale <= 1e-9) continue;
+            out[static_cast<std::size_t>(o)].lapse[row] = drop;
+            out[static_cast<std::size_t>(o)].lapse_scale[row] = scale;
+        }
+    }
+
+    static double last_change(const std::vector<SpeedJump>& jumps, double time) {
+        const auto after = std::upper_bound(jumps.begin(), jumps.end(), time + 1e-6,
+                                            [](double t, const SpeedJump& j) { return t < j.time; });
+        return after == jumps.begin() ? 0.0 : (after - 1)->change;
+    }
+
+    void predict_counters(const std::vector<double>& v, Prediction& out) const {
+        const double latency = at(v, latency_), drop = at(v, drop_);
+        for (std::size_t w = 0; w < 2; ++w) {
+            const Observable& o = observables_[3 + w];
+            Predicted& p = out[3 + w];
+            p.mean.resize(o.y.size());
+            p.lapse.assign(drop > 0 ? o.y.size() : 0, 0.0);
+            p.lapse_scale.assign(drop > 0 ? o.y.size() : 0, 0.0);
+            std::size_t path = 0;
+            for (std::size_t i = 0; i < o.y.size();) {
+                const std::uint32_t run = o.run[i];
+                while (path < paths_.size() && paths_[path].run < run)
+                    ++path;
+                if (path >= paths_.size() || paths_[path].run != run) {  // no pose in this run
+                    p.mean[i] = o.y[i];
+                    ++i;
+                    continue;
+                }
+                CurveReader own(paths_[path].asked[w]);
+                const double start = own.at(o.time[i]);
+                const double origin = o.y[i];
+                CurveReader again(paths_[path].asked[w]);
+                for (; i < o.y.size() && o.run[i] == run; ++i) {
+                    p.mean[i] = origin + again.at(o.time[i] - latency) - start;
+                    if (drop <= 0) continue;
+                    const double span = o.starts[i] != 0 ? 0.0 : o.time[i] - o.time[i - 1];
+                    const double scale =
+                        std::abs(last_change(paths_[path].asked[w].jumps, o.time[i] - span)) * span;
+                    if (scale > 0.5) {
+                        p.lapse[i] = drop;
+                        p.lapse_scale[i] = scale;
+                    }
+                }
+            }
+        }
+    }
+
+    std::vector<Path> paths_;
+    bool counted_ = false;
+    std::array<std::vector<std::uint32_t>, 2> counter_rows_;
+    int radius_left_ = 0, radius_right_ = 0, axle_ = 0, steps_per_turn_ = 0, scale_ = 0, mismatch_ = 0,
+        scrub_ = 0, friction_ = 0, creep_ = 0, slope_creep_ = 0, loss_speed_ = 0, loss_width_ = 0,
+        deadband_ = 0, backlash_ = 0, latency_ = 0, drop_ = 0, drift_x_ = 0, drift_y_ = 0, push_rate_ = 0,
+        push_size_ = 0, marker_x_ = 0, marker_y_ = 0, marker_angle_ = 0, delay_ = 0, heading_drift_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Model> make_motion_model(const Experiment& experiment) {
+    return std::make_unique<MotionModel>(experiment);
+}
+
+}  // namespace puckloop::gap

@@ -1,0 +1,275 @@
+// Infra-red proximity: a reading of one sensor before a flat surface. The response is
+// physics::proximity_response, the order of gain, crosstalk, warm-up and offset that of
+// physics::ProximityRing.
+//
+// Deviations: 1. the wall is flat and as wide as the bundle of rays. 2. Crosstalk uses the partners' measured
+// readings. 3. Emitter rise, sampling pairs and calibration are the firmware's and the board's; the reading
+// is taken as they leave it.
+
+#include "physics/proximity.h"
+#include "gap/models/model.h"
+#include "gap/models/rows.h"
+#include "gap/models/spectrum.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <string>
+
+namespace puckloop::gap {
+
+namespace {
+
+constexpr std::size_t kMostObjects = 8;  // stated reflectivities that count as objects
+constexpr double kGrazing = 0.02;        // cosine below which a wall is not met
+constexpr double kSpeedUnit = 1000.0;    // steps/s: motor effects are given at this speed
+
+class ProximityModel final : public Model {
+  public:
+    explicit ProximityModel(const Experiment& experiment) {
+        const Rows rows(experiment, "sensor", {"distance_m", "reading"});
+        std::vector<std::uint32_t> used;
+        observables_.push_back(rows.observable("reading", NoiseKind::Carry, used));
+        const auto column = [&](std::string_view name, double fallback) {
+            return taken(rows.column(name, fallback), used);
+        };
+        distance_ = column("distance_m", 0);
+        angle_ = column("angle_rad", 0);
+        reflectivity_ = column("reflectivity", 1);
+        ambient_ = column("ambient", 0);
+        pair_ = column("pair_reading", 0);
+        neighbour_ = column("neighbour_reading", 0);
+        motor_ = column("motor_speed", 0);
+        velocity_ = column("velocity", 0);
+        time_ = column("t_s", 0);
+        others_ = column("neighbours", experiment.has("neighbours") ? 0 : 1);
+        center(column("battery_v", NAN), battery_);
+        center(column("order", NAN), order_);
+        const auto sensors = column("sensor", 0);
+        for (const double sensor : sensors)
+            sensor_.push_back(static_cast<int>(sensor));
+        if (experiment.has("ambient")) observables_[0].gate = ambient_;
+        const auto rays = std::lround(physics::Parameters().proximity.rays);
+        for (long k = 0; k < rays; ++k)
+            spread_.push_back(
+                physics::Parameters().proximity.aperture *
+                (rays == 1 ? 0.0 : static_cast<double>(k) / static_cast<double>(rays - 1) - 0.5));
+        for (const double angle : angle_) {
+            cosine_.push_back(std::cos(angle));
+            for (const double aside : spread_)
+                ray_cosine_.push_back(std::cos(angle + aside));
+        }
+        for (auto& speed : motor_)
+            speed = std::abs(speed) / kSpeedUnit;
+        const auto curve = experiment.nominal.find("proximity.curve");
+        declare(objects_of(experiment, column), curve == experiment.nominal.end() || curve->second == 0);
+        apply_nominal(experiment);
+        angle0_ = physics_.direction;
+        for (std::size_t s = 0; s < angle0_.size(); ++s)
+            angle0_[s] = parameters_[static_cast<std::size_t>(
+                                         first_of_.direction[s] >= 0 ? first_of_.direction[s] : 0)]
+                             .neutral;
+    }
+
+    void predict(const std::vector<double>& v, Prediction& out) const override {
+        out.resize(1);
+        Predicted& p = out[0];
+        const std::size_t n = distance_.size();
+        p.mean.resize(n);
+        physics::ProximityParameters response = physics_;
+        const auto value = [&](int index) { return v[static_cast<std::size_t>(index)]; };
+        response.curve = value(curve_);
+        response.amplitude = value(amplitude_);
+        response.origin = value(origin_);
+        response.exponent = value(exponent_);
+        response.saturation = value(saturation_);
+        response.reach = value(reach_);
+        response.compression = value(compression_);
+        response.extra_exponent = value(extra_exponent_);
+        const double shift = value(shift_);
+        const double scale = value(scale_), exponent = value(incidence_), pair = value(pair_crosstalk_),
+                     near = value(neighbour_crosstalk_);
+        const double warm = value(warmup_), warm_time = value(warmup_time_), sag = value(sag_),
+                     age = value(age_);
+        const double light_offset = value(ambient_offset_), light_gain = value(ambient_gain_),
+                     volt = value(per_volt_), drift = value(drift_);
+        for (std::size_t i = 0; i < n; ++i) {
+            const auto s = static_cast<std::size_t>(sensor_[i]);
+            double distance = distance_[i] - age * velocity_[i];
+            const double normal = (distance + shift) * cosine_[i];  // from the sensor to the wall's plane
+            const double turned = value(first_of_.direction[s]) - angle0_[s];
+            double seen = 0.0;
+            for (std::size_t k = 0; k < spread_.size(); ++k) {
+                const double cosine = turned == 0.0 ? ray_cosine_[i * spread_.size() + k]
+                                                    : std::cos(angle_[i] - turned + spread_[k]);
+                if (cosine < kGrazing) continue;
+                const double weight = exponent == 1.0 ? cosine : std::pow(cosine, exponent);
+                seen += weight * physics::proximity_response(response, normal / cosine);
+            }
+            seen *= reflectivity_[i] / static_cast<double>(spread_.size());
+            if (!object_.empty()) seen *= value(object_parameter_[static_cast<std::size_t>(object_[i])]);
+            seen += pair * pair_[i] + near * neighbour_[i];
+            double gain =
+                scale * value(first_of_.gain[s]) * (1 - light_gain * ambient_[i]) * (1 - sag * motor_[i]);
+            if (warm != 0.0) gain *= 1 + warm * (1 - std::exp(-std::max(time_[i], 0.0) / warm_time));
+            if (!battery_.empty()) gain *= 1 + volt * battery_[i];
+            if (!order_.empty()) gain *= 1 + drift * order_[i];
+            p.mean[i] = gain * seen + value(first_of_.offset[s]) + light_offset * ambient_[i];
+        }
+        noise(v, p);
+    }
+
+    /// The strongest line of the residuals' differences, all chains together.
+    std::vector<double> starts(std::string_view parameter) const override {
+        if (parameter != "proximity.flicker_frequency") return {};
+        Prediction prediction;
+        predict(neutral(), prediction);
+        return strongest_line(observables_[0], prediction[0].mean);
+    }
+
+  private:
+    struct PerSensor {
+        std::array<int, physics::kProximitySensors> gain{}, offset{}, direction{};
+    };
+
+    static void center(std::vector<double> values, std::vector<double>& out) {
+        double sum = 0.0;
+        for (const double value : values)
+            sum += value;
+        if (values.empty() || std::isnan(sum)) return;
+        for (double& value : values)
+            value -= sum / static_cast<double>(values.size());
+        if (*std::max_element(values.begin(), values.end()) > 0) out = std::move(values);
+    }
+
+    /// Which object a row is about: said, or told by surface's name or stated reflectivity.
+    template <class Column>
+    std::vector<double> objects_of(const Experiment& experiment, const Column& column) const {
+        if (experiment.has("object")) return column("object", 1);
+        std::map<std::string, double> surfaces;
+        for (const Run& run : experiment.runs)
+            surfaces.emplace(run.condition("surface"), static_cast<double>(surfaces.size() + 1));
+        std::vector<double> objects(sensor_.size(), 1);
+        if (surfaces.size() > 1) {
+            for (std::size_t i = 0; i < objects.size(); ++i)
+                objects[i] = surfaces.at(experiment.runs[observables_[0].run[i]].condition("surface"));
+            return objects;
+        }
+        const auto stated = distinct(reflectivity_);
+        if (stated.size() < 2 || stated.size() > kMostObjects) return objects;
+        for (std::size_t i = 0; i < objects.size(); ++i)
+            objects[i] = static_cast<double>(
+                std::lower_bound(stated.begin(), stated.end(), reflectivity_[i]) - stated.begin() + 1);
+        return objects;
+    }
+
+    /// `table`: the measured curve, which has no law; a leading '-' hides what has no say.
+    void declare(const std::vector<double>& objects, bool table) {
+        const physics::Parameters defaults;
+        physics_ = defaults.proximity;
+        curve_ = add("proximity.curve", "choice", physics_.curve);
+        amplitude_ = add("proximity.amplitude", "counts", physics_.amplitude);
+        origin_ = add(table ? "-proximity.origin" : "proximity.origin", "m", physics_.origin);
+        exponent_ = add(table ? "-proximity.exponent" : "proximity.exponent", "1", physics_.exponent);
+        saturation_ =
+            add(table ? "-proximity.saturation" : "proximity.saturation", "counts", physics_.saturation);
+        reach_ = add("proximity.reach", "m", physics_.reach);
+        compression_ =
+            add(table ? "proximity.compression" : "-proximity.compression", "1/counts", physics_.compression);
+        extra_exponent_ = add(table ? "proximity.extra_exponent" : "-proximity.extra_exponent", "1",
+                              physics_.extra_exponent);
+        shift_ = add(table ? "proximity.distance_shift" : "-proximity.distance_shift", "m", 0.0);
+        scale_ = add("proximity.scale", "1", 1.0);
+        incidence_ = add("proximity.incidence_exponent", "1", physics_.incidence_exponent);
+        pair_crosstalk_ = add("proximity.pair_crosstalk", "1", 0.0);
+        neighbour_crosstalk_ = add("proximity.neighbour_crosstalk", "1", 0.0);
+        warmup_ = add("proximity.warmup_gain", "1", 0.0);
+        warmup_time_ = add("proximity.warmup_time", "s", physics_.warmup_time);
+        sag_ = add("proximity.motor_sag", "1", 0.0);
+        age_ = add("proximity.age", "s", 0.0);
+        ambient_offset_ = add("proximity.ambient_offset", "counts", 0.0);
+        ambient_gain_ = add("proximity.ambient_gain", "1", 0.0);
+        ambient_noise_ = add("proximity.ambient_noise", "counts", 0.0);
+        per_volt_ = add("proximity.battery_gain", "1/V", 0.0);
+        drift_ = add("proximity.order_drift", "1", 0.0);
+        motor_noise_ = add("proximity.motor_noise", "1", 0.0);
+        proportional_ = add("proximity.proportional_noise", "1", 0.0);
+        threshold_ = add("proximity.threshold", "counts", 0.0);
+        hit_rate_ = add("proximity.interference_rate", "1", 0.0);
+        hit_size_ = add("proximity.interference_size", "counts", 100.0);
+        line_ = add("proximity.flicker", "counts", 0.0);
+        line_frequency_ = add("proximity.flicker_frequency", "Hz", 1.0);
+        first_of_.gain.fill(-1);
+        for (const int sensor : sensor_) {
+            const auto s = static_cast<std::size_t>(sensor);
+            if (first_of_.gain[s] >= 0) continue;
+            first_of_.gain[s] = add(fmt::format("proximity.gain{}", s), "1", physics_.gain[s]);
+            first_of_.offset[s] = add(fmt::format("proximity.offset{}", s), "counts", physics_.offset[s]);
+            first_of_.direction[s] =
+                add(fmt::format("proximity.direction{}", s), "rad", physics_.direction[s]);
+        }
+        const auto kinds = distinct(objects);
+        if (kinds.size() < 2) return;
+        for (const double object : kinds)
+            object_parameter_.push_back(
+                add(fmt::format("object.reflectivity{}", static_cast<long>(object)), "1", 1.0));
+        for (const double object : objects)
+            object_.push_back(
+                static_cast<int>(std::lower_bound(kinds.begin(), kinds.end(), object) - kinds.begin()));
+    }
+
+    void noise(const std::vector<double>& v, Predicted& p) const {
+        const auto value = [&](int index) { return v[static_cast<std::size_t>(index)]; };
+        const std::size_t n = p.mean.size();
+        const double motor = value(motor_noise_), share = value(proportional_), light = value(ambient_noise_),
+                     rate = value(hit_rate_);
+        p.factor.clear();
+        p.extra.clear();
+        p.lapse.clear();
+        p.lapse_scale.clear();
+        if (motor != 0.0) {
+            p.factor.resize(n);
+            for (std::size_t i = 0; i < n; ++i)
+                p.factor[i] = 1 + motor * motor_[i];
+        }
+        if (share != 0.0 || light != 0.0) {
+            p.extra.resize(n);
+            for (std::size_t i = 0; i < n; ++i)
+                p.extra[i] = std::sqrt(share * share * p.mean[i] * p.mean[i] + light * light * ambient_[i]);
+        }
+        if (rate != 0.0) {
+            p.lapse.resize(n);
+            p.lapse_scale.assign(n, value(hit_size_));
+            for (std::size_t i = 0; i < n; ++i)
+                p.lapse[i] = std::min(rate * others_[i], 0.9);
+        }
+        p.floor = value(threshold_);
+        p.line_amplitude = value(line_);
+        p.line_frequency = value(line_frequency_);
+    }
+
+    physics::ProximityParameters physics_;
+    std::vector<double> spread_, cosine_, ray_cosine_;
+    std::vector<double> distance_, angle_, reflectivity_, ambient_, pair_, neighbour_, motor_, velocity_,
+        time_, others_, battery_, order_;
+    std::vector<int> sensor_, object_, object_parameter_;
+    std::array<double, physics::kProximitySensors> angle0_{};
+    PerSensor first_of_;
+    int compression_ = 0, extra_exponent_ = 0, shift_ = 0;
+    int curve_ = 0, amplitude_ = 0, origin_ = 0, exponent_ = 0, saturation_ = 0, reach_ = 0, scale_ = 0,
+        incidence_ = 0, pair_crosstalk_ = 0, neighbour_crosstalk_ = 0, warmup_ = 0, warmup_time_ = 0,
+        sag_ = 0, age_ = 0, ambient_offset_ = 0, ambient_gain_ = 0, ambient_noise_ = 0, per_volt_ = 0,
+        drift_ = 0, motor_noise_ = 0, proportional_ = 0, threshold_ = 0, hit_rate_ = 0, hit_size_ = 0,
+        line_ = 0, line_frequency_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Model> make_proximity_model(const Experiment& experiment) {
+    return std::make_unique<ProximityModel>(experiment);
+}
+
+}  // namespace puckloop::gap

@@ -1,0 +1,100 @@
+#include "gap/models/rows.h"
+
+#include "gap/columns.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace puckloop::gap {
+
+namespace {
+constexpr double kGap = 5.0;  // times the usual step between rows: beyond, nothing is carried over
+}
+
+Rows::Rows(const Experiment& experiment, std::string_view chain_by,
+           std::initializer_list<std::string_view> needed)
+    : experiment_(experiment) {
+    for (std::size_t r = 0; r < experiment.runs.size(); ++r) {
+        const Run& run = experiment.runs[r];
+        std::vector<std::uint32_t> rows;
+        for (std::uint32_t i = 0; i < run.rows; ++i) {
+            const bool whole = std::all_of(needed.begin(), needed.end(), [&](std::string_view name) {
+                const auto& values = run.column(name);
+                return !values.empty() && !std::isnan(values[i]);
+            });
+            if (whole) rows.push_back(i);
+        }
+        const auto& key = run.column(chain_by);
+        if (!key.empty())
+            std::stable_sort(rows.begin(), rows.end(), [&](auto a, auto b) { return key[a] < key[b]; });
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            run_.push_back(static_cast<std::uint32_t>(r));
+            row_.push_back(rows[i]);
+            starts_.push_back(i == 0 || (!key.empty() && key[rows[i]] != key[rows[i - 1]]) ? 1 : 0);
+        }
+    }
+}
+
+std::vector<double> Rows::column(std::string_view name, double fallback) const {
+    std::vector<double> values(size(), fallback);
+    for (std::size_t i = 0; i < size(); ++i) {
+        const auto& column = experiment_.runs[run_[i]].column(name);
+        if (!column.empty() && !std::isnan(column[row_[i]])) values[i] = column[row_[i]];
+    }
+    return values;
+}
+
+Observable Rows::observable(std::string_view name, NoiseKind noise, std::vector<std::uint32_t>& used) const {
+    Observable out;
+    out.name = name;
+    const ColumnInfo* info = find_column(experiment_.kind, name);
+    out.unit = info == nullptr ? "" : info->unit;
+    out.noise = noise;
+    const auto instrument = experiment_.instruments.find(std::string(name));
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    out.instrument =
+        instrument == experiment_.instruments.end() ? Instrument{none, none, 0.0} : instrument->second;
+    const std::vector<double> y = column(name, none), time = column("t_s", none);
+    std::vector<double> steps;
+    for (std::size_t i = 1; i < size(); ++i)
+        if (starts_[i] == 0 && time[i] > time[i - 1]) steps.push_back(time[i] - time[i - 1]);
+    std::sort(steps.begin(), steps.end());
+    const double longest = steps.empty() ? 0.0 : kGap * steps[steps.size() / 2];
+    bool fresh = true, timed = true;
+    used.clear();
+    for (std::size_t i = 0; i < size(); ++i) {
+        if (starts_[i] != 0) fresh = true;
+        if (std::isnan(y[i])) continue;
+        if (!used.empty() && longest > 0 && time[i] - time[used.back()] > longest) fresh = true;
+        used.push_back(static_cast<std::uint32_t>(i));
+        out.y.push_back(y[i]);
+        out.run.push_back(run_[i]);
+        out.row.push_back(row_[i]);
+        out.starts.push_back(fresh ? 1 : 0);
+        out.time.push_back(time[i]);
+        timed = timed && !std::isnan(time[i]);
+        fresh = false;
+    }
+    if (!timed) out.time.clear();
+    return out;
+}
+
+std::vector<double> taken(const std::vector<double>& column, const std::vector<std::uint32_t>& used) {
+    std::vector<double> values;
+    values.reserve(used.size());
+    for (const auto i : used)
+        values.push_back(column[i]);
+    return values;
+}
+
+std::vector<double> distinct(const std::vector<double>& column) {
+    std::vector<double> values;
+    for (const double value : column)
+        if (!std::isnan(value)) values.push_back(value);
+    std::sort(values.begin(), values.end());
+    values.erase(std::unique(values.begin(), values.end()), values.end());
+    return values;
+}
+
+}  // namespace puckloop::gap

@@ -1,0 +1,40 @@
+#pragma once
+// Rows of an experiment gathered for a model: columns side by side, chains in order, rows without truth left
+// out.
+
+#include "gap/experiment.h"
+#include "gap/models/model.h"
+
+#include <initializer_list>
+#include <string_view>
+#include <vector>
+
+namespace puckloop::gap {
+
+/// Rows of all runs that have every needed column, a chain (a run and one value of `chain_by`) after another.
+class Rows {
+  public:
+    /// `chain_by` may be "" (a run is a chain).
+    Rows(const Experiment& experiment, std::string_view chain_by,
+         std::initializer_list<std::string_view> needed);
+
+    std::size_t size() const { return run_.size(); }
+    /// The column in these rows; `fallback` where it is missing.
+    std::vector<double> column(std::string_view name, double fallback) const;
+    /// An observable of the column, rows without it left out: fills y, run, row, starts, time. `used`
+    /// receives the places of its rows in these rows.
+    Observable observable(std::string_view name, NoiseKind noise, std::vector<std::uint32_t>& used) const;
+
+  private:
+    const Experiment& experiment_;
+    std::vector<std::uint32_t> run_, row_;
+    std::vector<char> starts_;
+};
+
+/// Values of `column` at the places `used`.
+std::vector<double> taken(const std::vector<double>& column, const std::vector<std::uint32_t>& used);
+
+/// The different values of a column, rising.
+std::vector<double> distinct(const std::vector<double>& column);
+
+}  // namespace puckloop::gap

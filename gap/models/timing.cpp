@@ -1,0 +1,209 @@
+// Frames of the control loop as they reach the host. Compared are: the robot's clock with the number of
+// periods, the host's clock with the robot's and the time on the wire, and whether frames were whole.
+//
+// Deviations: 1. the wire takes ten bit times a byte; gaps between bytes are the firmware's. 2. The clocks'
+// zero is free in each run.
+
+#include "gap/models/model.h"
+#include "gap/models/rows.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace puckloop::gap {
+
+namespace {
+
+constexpr double kPeriod = 0.1;  // s, of the control loop
+constexpr double kBaud = 115200;
+constexpr double kBits = 10;         // a byte on the line
+constexpr double kTolerance = 0.02;  // error of the rate that a receiver stands
+constexpr double kWhole = 0.999;
+
+class TimingModel final : public Model {
+  public:
+    explicit TimingModel(const Experiment& experiment) {
+        clocks_ = experiment.has("t_robot_s");
+        const Rows rows(experiment, "", {"t_host_s"});
+        std::vector<std::uint32_t> used;
+        const Observable host = rows.observable("t_host_s", NoiseKind::Level, used);
+        gather_counts(experiment, host);
+        const auto column = [&](std::string_view name, double fallback) {
+            return taken(rows.column(name, fallback), used);
+        };
+        const auto bytes = column("bytes", 0), baud = column("baud", kBaud);
+        for (std::size_t i = 0; i < bytes.size(); ++i)
+            wire_.push_back(bytes[i] * kBits / baud[i]);
+        reads_ = column("i2c_reads", 0);
+        if (clocks_) {
+            const auto robot = column("t_robot_s", NAN);
+            robot_ = robot;
+            observables_.push_back(host);
+            Observable& period = observables_.back();
+            period.name = "robot_clock";
+            period.y = robot;
+            set_up(period);
+        } else {
+            robot_ = periods_;
+        }
+        observables_.push_back(host);
+        observables_.back().name = "arrival";
+        observables_.back().noise = NoiseKind::Carry;
+        set_up(observables_.back());
+        gather_events(rows, experiment);
+        declare();
+        apply_nominal(experiment);
+    }
+
+    void predict(const std::vector<double>& v, Prediction& out) const override {
+        out.resize(observables_.size());
+        std::size_t o = 0;
+        if (clocks_) predict_clock(v, out[o++]);
+        predict_arrival(v, out[o++]);
+        if (ok_ >= 0) predict_frames(v, out[static_cast<std::size_t>(ok_)]);
+        if (shift_ >= 0) predict_shifts(v, out[static_cast<std::size_t>(shift_)]);
+    }
+
+  private:
+    static double at(const std::vector<double>& v, int index) { return v[static_cast<std::size_t>(index)]; }
+
+    static void set_up(Observable& one) {
+        one.unit = "s";
+        one.time.clear();
+        one.instrument = {NAN, NAN, one.instrument.quantum};
+        for (std::size_t i = 1; i < one.y.size(); ++i)
+            one.starts[i] = one.run[i] != one.run[i - 1] ? 1 : 0;
+    }
+
+    void gather_counts(const Experiment& experiment, const Observable& host) {
+        for (std::size_t i = 0; i < host.y.size(); ++i) {
+            const Run& run = experiment.runs[host.run[i]];
+            const auto &seq = run.column("seq"), &nominal = run.column("nominal_period");
+            const double number =
+                seq.empty() || std::isnan(seq[host.row[i]]) ? host.row[i] : seq[host.row[i]];
+            periods_.push_back(number * (nominal.empty() || std::isnan(nominal[host.row[i]])
+                                             ? kPeriod
+                                             : nominal[host.row[i]]));
+            count_.push_back(number);
+        }
+    }
+
+    void gather_events(const Rows& rows, const Experiment& experiment) {
+        std::vector<std::uint32_t> used;
+        if (experiment.has("frame_ok")) {
+            ok_ = static_cast<int>(observables_.size());
+            observables_.push_back(rows.observable("frame_ok", NoiseKind::Event, used));
+            observables_.back().time.clear();
+            edges_ = taken(rows.column("edges", 0), used);
+            ok_load_ = taken(rows.column("load", 0), used);
+        }
+        if (experiment.has("shifted")) {
+            shift_ = static_cast<int>(observables_.size());
+            observables_.push_back(rows.observable("shifted", NoiseKind::Event, used));
+            observables_.back().time.clear();
+            load_ = taken(rows.column("load", 0), used);
+        }
+    }
+
+    void declare() {
+        longer_ = add("timing.extra_period", "s", 0.0);
+        jitter_ = add("timing.period_jitter", "s", 0.0);
+        drift_ = add("timing.clock_drift", "1", 0.0);
+        stretch_ = add("timing.i2c_stretch", "s", 0.0);
+        batch_ = add("timing.batch", "s", 0.0);
+        misread_ = add("timing.edge_errors", "1", 0.0);
+        overrun_ = add("timing.overrun", "1", 0.0);
+        cut_ = add("timing.truncation", "1", 0.0);
+        stays_ = add("timing.truncation_burst", "1", 0.0);
+        rate_ = add("timing.baud_error", "1", 0.0);
+    }
+
+    /// The first row of a run sets the zero.
+    template <class Value>
+    void sums(const Observable& o, std::vector<double>& mean, Value value) const {
+        mean.resize(o.y.size());
+        double zero = 0.0;
+        for (std::size_t i = 0; i < mean.size(); ++i) {
+            if (o.starts[i] != 0) zero = o.y[i] - value(i);
+            mean[i] = zero + value(i);
+        }
+    }
+
+    void predict_clock(const std::vector<double>& v, Predicted& p) const {
+        const double longer = at(v, longer_);
+        sums(observables_[0], p.mean, [&](std::size_t i) { return periods_[i] + longer * count_[i]; });
+        p.extra.assign(at(v, jitter_) > 0 ? p.mean.size() : 0, at(v, jitter_));
+    }
+
+    void predict_arrival(const std::vector<double>& v, Predicted& p) const {
+        const Observable& o = observables_[clocks_ ? 1 : 0];
+        const double drift = at(v, drift_), stretch = at(v, stretch_), batch = at(v, batch_),
+                     longer = clocks_ ? 0.0 : at(v, longer_);
+        const double slower = 1 / (1 + at(v, rate_));
+        const auto arrival = [&](std::size_t i) {
+            return robot_[i] * (1 + drift) + longer * count_[i] + wire_[i] * slower + stretch * reads_[i];
+        };
+        if (batch <= 0) {
+            // The run's own zero: the median of what is left, so that no single row decides.
+            p.mean.resize(o.y.size());
+            p.extra.clear();
+            for (std::size_t i = 0; i < o.y.size();) {
+                std::size_t end = i + 1;
+                while (end < o.y.size() && o.run[end] == o.run[i])
+                    ++end;
+                std::vector<double> left;
+                for (std::size_t k = i; k < end; ++k)
+                    left.push_back(o.y[k] - arrival(k));
+                double sum = 0.0;
+                std::sort(left.begin(), left.end());
+                const std::size_t cut = left.size() / 4;
+                for (std::size_t k = cut; k < left.size() - cut; ++k)
+                    sum += left[k];
+                const double zero = sum / static_cast<double>(left.size() - 2 * cut);
+                for (std::size_t k = i; k < end; ++k)
+                    p.mean[k] = arrival(k) + zero;
+                i = end;
+            }
+            return;
+        }
+        // Delivered at whole multiples of the batch: each frame waits for the next one.
+        p.mean.resize(o.y.size());
+        for (std::size_t i = 0; i < p.mean.size(); ++i)
+            p.mean[i] = std::ceil(arrival(i) / batch) * batch;
+        p.extra.assign(p.mean.size(), 0.0);
+    }
+
+    void predict_frames(const std::vector<double>& v, Predicted& p) const {
+        const Observable& o = observables_[static_cast<std::size_t>(ok_)];
+        const double error = std::max(at(v, misread_), 0.0), overrun = at(v, overrun_), cut = at(v, cut_),
+                     stays = at(v, stays_);
+        p.mean.resize(o.y.size());
+        for (std::size_t i = 0; i < p.mean.size(); ++i) {
+            double broken = cut;
+            if (stays > 0 && o.starts[i] == 0 && o.y[i - 1] < 0.5) broken = cut + (1 - cut) * stays;
+            p.mean[i] = kWhole * std::pow(1 - std::min(error, 0.99), edges_[i]) *
+                        (1 - std::min(overrun * ok_load_[i], 0.99)) * (1 - broken);
+        }
+    }
+
+    void predict_shifts(const std::vector<double>& v, Predicted& p) const {
+        const double overrun = at(v, overrun_);
+        p.mean.resize(load_.size());
+        for (std::size_t i = 0; i < p.mean.size(); ++i)
+            p.mean[i] = 1 - kWhole + overrun * load_[i];
+    }
+
+    bool clocks_ = false;
+    int ok_ = -1, shift_ = -1;
+    std::vector<double> periods_, count_, wire_, reads_, robot_, edges_, ok_load_, load_;
+    int longer_ = 0, jitter_ = 0, drift_ = 0, stretch_ = 0, batch_ = 0, misread_ = 0, overrun_ = 0, cut_ = 0,
+        stays_ = 0, rate_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Model> make_timing_model(const Experiment& experiment) {
+    return std::make_unique<TimingModel>(experiment);
+}
+
+}  // namespace puckloop::gap

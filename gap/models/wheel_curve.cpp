@@ -1,0 +1,90 @@
+#include "gap/models/wheel_curve.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace puckloop::gap {
+
+namespace {
+
+constexpr double kTicksPerSecond = 1e4;
+constexpr double kSmallJump = 20.0;  // steps/s: below, a change of counted speed is rounding
+
+/// Speeds counted between rows, with the parts of one change that fell into two rows put together.
+std::vector<SpeedJump> counted_jumps(const WheelCurve& curve) {
+    std::vector<SpeedJump> jumps;
+    double before = 0.0;
+    for (std::size_t i = 1; i < curve.time.size(); ++i) {
+        const double span = curve.time[i] - curve.time[i - 1];
+        if (span <= 0) continue;
+        const double speed = (curve.steps[i] - curve.steps[i - 1]) / span;
+        const double change = speed - before;
+        before = speed;
+        if (std::abs(change) < kSmallJump) continue;
+        const bool goes_on = !jumps.empty() && curve.time[i] - jumps.back().time < 2.5 * span &&
+                             change * jumps.back().change > 0;
+        if (goes_on)
+            jumps.back().change += change;
+        else
+            jumps.push_back({curve.time[i - 1], change});
+    }
+    return jumps;
+}
+
+}  // namespace
+
+double agenda_speed(double command) {
+    const double speed = std::abs(command);
+    if (speed < 1e-9) return 0.0;
+    const double ticks = std::floor(kTicksPerSecond / speed);
+    return std::copysign(kTicksPerSecond / std::max(ticks, 1.0), command);
+}
+
+WheelCurve WheelCurve::commanded(const Run& run, std::string_view command) {
+    WheelCurve curve;
+    const auto &time = run.column("t_s"), &asked = run.column(command);
+    double sum = 0.0, speed = 0.0, last = 0.0;
+    for (std::size_t i = 0; i < asked.size(); ++i) {
+        if (std::isnan(time[i])) continue;
+        if (!curve.empty()) sum += speed * (time[i] - last);
+        last = time[i];
+        curve.time.push_back(time[i]);
+        curve.steps.push_back(sum);
+        if (std::isnan(asked[i])) continue;
+        const double next = agenda_speed(asked[i]);
+        if (next != speed) curve.jumps.push_back({time[i], next - speed});
+        speed = next;
+    }
+    if (curve.empty()) return curve;
+    curve.time.push_back(last + 1.0);
+    curve.steps.push_back(sum + speed);
+    return curve;
+}
+
+WheelCurve WheelCurve::counted(const Run& run, std::string_view counter, std::string_view command) {
+    WheelCurve curve;
+    const auto &time = run.column("t_s"), &steps = run.column(counter);
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        if (std::isnan(time[i]) || std::isnan(steps[i])) continue;
+        curve.time.push_back(time[i]);
+        curve.steps.push_back(steps[i]);
+    }
+    if (curve.empty()) return commanded(run, command);
+    curve.jumps = run.has(command) ? commanded(run, command).jumps : counted_jumps(curve);
+    return curve;
+}
+
+double CurveReader::at(double time) {
+    const auto &times = curve_.time, &steps = curve_.steps;
+    if (times.size() < 2) return times.empty() ? 0.0 : steps[0];
+    if (time <= times.front()) return steps.front();  // it stood before the record began
+    while (place_ + 1 < times.size() && times[place_] < time)
+        ++place_;
+    while (place_ > 1 && times[place_ - 1] > time)
+        --place_;
+    const double span = times[place_] - times[place_ - 1];
+    if (span <= 0) return steps[place_];
+    return steps[place_ - 1] + (steps[place_] - steps[place_ - 1]) * (time - times[place_ - 1]) / span;
+}
+
+}  // namespace puckloop::gap

@@ -1,0 +1,43 @@
+#pragma once
+// What a wheel's motor did over a run: cumulative steps as a curve over time, from the counter or from
+// commands.
+
+#include "gap/experiment.h"
+
+#include <cstddef>
+#include <string_view>
+#include <vector>
+
+namespace puckloop::gap {
+
+/// Speed (steps/s) that the original firmware's 0.1 ms agenda makes of a command: the emulated firmware gives
+/// exactly this, it is never fitted.
+double agenda_speed(double command);
+
+/// A change of speed, steps/s.
+struct SpeedJump {
+    double time, change;
+};
+
+struct WheelCurve {
+    std::vector<double> time, steps;
+    std::vector<SpeedJump> jumps;
+
+    /// From the counter; from commands if there is none. `lowest` to `highest` the times that are asked for.
+    static WheelCurve counted(const Run& run, std::string_view counter, std::string_view command);
+    static WheelCurve commanded(const Run& run, std::string_view command);
+    bool empty() const { return time.empty(); }
+};
+
+/// Reads a curve at rising times; before the first and after the last point it goes on at the speed there.
+class CurveReader {
+  public:
+    explicit CurveReader(const WheelCurve& curve) : curve_(curve) {}
+    double at(double time);
+
+  private:
+    const WheelCurve& curve_;
+    std::size_t place_ = 1;
+};
+
+}  // namespace puckloop::gap
