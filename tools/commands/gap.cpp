@@ -2,13 +2,23 @@
 
 #include "tools/commands/gap.h"
 #include "base/error.h"
+#include "gap/analyse.h"
 #include "gap/experiment.h"
+#include "gap/report/report.h"
 #include "tools/command.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <functional>
 #include <memory>
 
 namespace puckloop::tools {
@@ -25,6 +35,58 @@ void tell_experiment(const gap::Experiment& experiment) {
                experiment.runs.size(), experiment.rows());
     for (const auto& caution : experiment.cautions)
         fmt::print("caution: {}\n", caution);
+}
+
+void write_text(const std::filesystem::path& file, const std::string& text) {
+    std::ofstream stream(file, std::ios::binary);
+    stream << text;
+    stream.flush();
+    if (!stream)
+        throw RunError(
+            fmt::format("{}: cannot write: {}", file.string(), std::strerror(errno != 0 ? errno : EIO)));
+}
+
+/// One line that is written over, on a terminal only.
+std::function<void(const std::string&, double)> progress_line() {
+    if (::isatty(STDERR_FILENO) == 0) return {};
+    return [](const std::string& what, double share) {
+        fmt::print(stderr, "\r\033[K{:3.0f} %  {}", 100 * share, what);
+        std::fflush(stderr);
+    };
+}
+
+void tell_verdict(const gap::Verdict& verdict) {
+    fmt::print("verdict: {}\n{}\n", gap::decision_name(verdict.decision), verdict.summary);
+    for (const auto& cause : verdict.causes)
+        fmt::print("  {} ({}): {}\n", cause.name, cause.number, cause.sentence);
+    for (const auto& rival : verdict.rivals)
+        fmt::print("  rival of {}: {} ({}), delta BIC {:.1f}\n", rival.instead_of, rival.cause.name,
+                   rival.cause.number, rival.delta_bic);
+    for (const auto& left : verdict.leftovers)
+        fmt::print("  left: {} against {}: {} (p {:.2g})\n", left.observable, left.covariate, left.shape,
+                   left.p_value);
+}
+
+void analyse_folder(const Request& request) {
+    const gap::Experiment experiment = gap::read_experiment(request.folder);
+    if (!request.out.empty()) {
+        std::error_code failed;
+        std::filesystem::create_directories(request.out, failed);
+        if (failed)
+            throw InputError(request.out.string(), "", "cannot be made: " + failed.message(),
+                             "a folder that can be written");
+    }
+    gap::Options options{request.seed, progress_line()};
+    const auto begun = std::chrono::steady_clock::now();
+    gap::Verdict verdict = gap::analyse(experiment, options);
+    verdict.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+    if (options.progress) fmt::print(stderr, "\r\033[K");
+    tell_experiment(experiment);
+    tell_verdict(verdict);
+    if (request.out.empty()) return;
+    write_text(request.out / "gap.json", gap::to_json(verdict));
+    write_text(request.out / "overlay.toml", gap::overlay_toml(experiment, verdict));
+    gap::report::write_report(experiment, verdict, request.out / "report.html");
 }
 
 }  // namespace
@@ -47,7 +109,7 @@ void declare_gap(CLI::App& app, int& status) {
         if (!command->get_subcommands().empty()) return;
         if (request->folder.empty())
             throw InputError("", "", "gap: no folder", "DIR, a folder with experiment.toml");
-        tell_experiment(gap::read_experiment(request->folder));
+        analyse_folder(*request);
         status = 0;
     });
 }

@@ -1,0 +1,326 @@
+// The whole way from an experiment to a verdict: select effects, fit them together with what the measuring
+// chain always adds, judge what is gained on held-out runs and what is left.
+
+#include "gap/analyse.h"
+
+#include "base/random.h"
+#include "gap/fit/intervals.h"
+#include "gap/fit/select.h"
+#include "gap/leftovers.h"
+#include "gap/sentences.h"
+#include "gap/suggest.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace puckloop::gap {
+
+namespace {
+
+constexpr int kDraws = 1000;         // of the bootstrap over runs
+constexpr double kLeftLevel = 0.01;  // corrected p of a structure worth telling
+constexpr double kUnexplainedShare =
+    0.35;  // of the gain: a free form that would add this much was not explained
+constexpr double kUnexplainedLeast = 6.0;  // nats: less is not worth the word
+constexpr double kFixedByOthers =
+    0.97;  // correlation beyond which a parameter of the measuring chain is not fitted along
+
+const char* const kNuisances[] = {"marker_offset", "tracker_delay", "stale_readings"};
+
+class Analysis {
+  public:
+    Analysis(const Experiment& experiment, const Options& options)
+        : experiment_(experiment), options_(options), study_(experiment, options.seed) {}
+
+    Verdict run() {
+        verdict_.kind = experiment_.kind;
+        verdict_.seed = options_.seed;
+        verdict_.cautions = experiment_.cautions;
+        selection_ = select(study_, options_.progress);
+        tell("intervals", 0.88);
+        fill_causes();
+        fill_tried();
+        fill_held();
+        tell("what is left", 0.93);
+        fill_series();
+        decide();
+        verdict_.suggestions = suggestions_for(study_, selection_);
+        verdict_.heldout.sentence = gain_sentence(verdict_.heldout);
+        verdict_.summary = summary_of(verdict_);
+        return std::move(verdict_);
+    }
+
+  private:
+    void tell(const std::string& what, double share) const {
+        if (options_.progress) options_.progress(what, share);
+    }
+
+    const Effect& effect(std::size_t candidate) const { return *study_.candidates()[candidate].effect; }
+
+    FittedParameter parameter_of(const Fit& fit, const Precision& precision, std::size_t j) const {
+        const Freed& freed = fit.freed[j];
+        const ModelParameter& parameter = study_.model().parameters()[static_cast<std::size_t>(freed.index)];
+        const double value = fit.fitted.state.values[static_cast<std::size_t>(freed.index)];
+        const double reach = precision.quantile * precision.sd[j];
+        return {parameter.name,
+                parameter.unit,
+                value,
+                std::max(value - reach, freed.low),
+                std::min(value + reach, freed.high),
+                parameter.neutral,
+                parameter.simulator || parameter.name.starts_with("wheel_") ||
+                    parameter.name == "inverse_friction"};
+    }
+
+    Cause cause_of(const Fit& fit, const Precision& precision, std::size_t candidate) const {
+        const Effect& own = effect(candidate);
+        Cause cause;
+        cause.name = own.name;
+        cause.number = own.number;
+        cause.title = own.title;
+        for (const Freed& freed : study_.candidates()[candidate].freed)
+            for (std::size_t j = 0; j < fit.freed.size(); ++j)
+                if (fit.freed[j].index == freed.index)
+                    cause.parameters.push_back(parameter_of(fit, precision, j));
+        cause.sentence = cause_sentence(cause);
+        return cause;
+    }
+
+    /// The chosen set with tracker offset, tracker delay and sensor age fitted along, where the data tells
+    /// them from it.
+    Fit with_nuisances() const {
+        Fit fit = selection_.chosen;
+        if (fit.effects.empty()) return fit;
+        for (const char* name : kNuisances)
+            for (std::size_t i = 0; i < study_.candidates().size(); ++i) {
+                const Candidate& candidate = study_.candidates()[i];
+                if (candidate.effect->name != std::string_view(name) || !candidate.remark.empty()) continue;
+                if (std::find(fit.effects.begin(), fit.effects.end(), i) != fit.effects.end()) continue;
+                auto set = fit.effects;
+                set.push_back(i);
+                const Fit wider = study_.fit_set(set, fit.fitted.state);
+                const Precision precision = precision_of(study_, wider);
+                bool fixed = false;
+                for (std::size_t j = 0; j < wider.freed.size(); ++j)
+                    for (std::size_t k = 0; k < j; ++k)
+                        fixed = fixed || std::abs(precision.correlation(static_cast<Eigen::Index>(j),
+                                                                        static_cast<Eigen::Index>(k))) >
+                                             kFixedByOthers;
+                if (!fixed && wider.bic < fit.bic + 40) fit = wider;
+            }
+        return fit;
+    }
+
+    void fill_causes() {
+        final_ = with_nuisances();
+        const Precision precision = precision_of(study_, final_);
+        for (const Trial& step : selection_.steps) {
+            Cause cause = cause_of(final_, precision, step.effect);
+            cause.evidence = step.delta_bic;
+            cause.score_gain = step.held.sum;
+            cause.score_low = step.held.sum - 1.645 * step.held.sd;
+            cause.score_high = step.held.sum + 1.645 * step.held.sd;
+            verdict_.causes.push_back(std::move(cause));
+        }
+        for (std::size_t k = selection_.chosen.effects.size(); k < final_.effects.size(); ++k)
+            for (const auto& parameter : cause_of(final_, precision, final_.effects[k]).parameters)
+                verdict_.nuisance.push_back(parameter);
+        for (const Draw& draw : selection_.draws) {
+            Rival rival;
+            rival.cause = cause_of(draw.fit, precision_of(study_, draw.fit), draw.rival);
+            rival.instead_of = effect(draw.chosen).name;
+            rival.delta_bic = draw.delta_bic;
+            rival.separated_by = effect(draw.chosen).separated_by;
+            rival.cause.evidence = selection_.none.bic - draw.fit.bic;
+            rival.cause.score_gain = -draw.held.sum;
+            verdict_.rivals.push_back(std::move(rival));
+        }
+    }
+
+    void fill_tried() {
+        for (const Trial& trial : selection_.trials) {
+            Tried tried{effect(trial.effect).name,
+                        effect(trial.effect).number,
+                        trial.delta_bic,
+                        trial.held.sum,
+                        1.0,
+                        trial.remark};
+            if (trial.validated && trial.held.sd > 0)
+                tried.p_value = std::erfc(trial.held.sum / trial.held.sd / std::sqrt(2.0)) / 2;
+            for (std::size_t k = 0; k < selection_.steps.size(); ++k)
+                if (selection_.steps[k].effect == trial.effect)
+                    tried.remark = fmt::format("chosen, step {}", k + 1);
+            verdict_.tried.push_back(std::move(tried));
+        }
+    }
+
+    /// Held-out errors run by run, in units of the noise.
+    void fill_held() {
+        const auto& observables = study_.model().observables();
+        const std::size_t units = study_.blocks().count;
+        std::vector<std::vector<double>> before(observables.size() + 1, std::vector<double>(units, 0.0)),
+            after = before;
+        std::vector<double> counts(units, 0.0);
+        for (std::size_t o = 0; o < observables.size(); ++o) {
+            const double sd = observables[o].noise == NoiseKind::Event
+                                  ? 1.0
+                                  : std::exp(selection_.chosen.fitted.state.noise[o].log_sd);
+            for (std::size_t i = 0; i < observables[o].y.size(); ++i) {
+                const std::uint32_t block = study_.blocks().of[o][i];
+                const double old_error = observables[o].y[i] - selection_.held_none.mean[o][i];
+                const double new_error = observables[o].y[i] - selection_.held_chosen.mean[o][i];
+                before[o][block] += old_error * old_error;
+                after[o][block] += new_error * new_error;
+                before.back()[block] += old_error * old_error / (sd * sd);
+                after.back()[block] += new_error * new_error / (sd * sd);
+                counts[block] += 1;
+            }
+        }
+        Held& held = verdict_.heldout;
+        double rows = 0.0;
+        for (const double count : counts)
+            rows += count;
+        ratio_of(before.back(), after.back(), held.ratio, held.low, held.high);
+        held.before = root_mean(before.back(), rows);
+        held.after = root_mean(after.back(), rows);
+        for (std::size_t o = 0; o < observables.size(); ++o) {
+            HeldObservable one{observables[o].name, observables[o].unit};
+            ratio_of(before[o], after[o], one.ratio, one.low, one.high);
+            one.before = root_mean(before[o], static_cast<double>(observables[o].y.size()));
+            one.after = root_mean(after[o], static_cast<double>(observables[o].y.size()));
+            verdict_.observables.push_back(std::move(one));
+            for (std::size_t i = 0; i < observables[o].y.size(); ++i) {
+                held.score_before += selection_.held_none.score[o][i] / rows;
+                held.score_after += selection_.held_chosen.score[o][i] / rows;
+            }
+        }
+        const auto gains = gains_by_block(study_.blocks(), selection_.held_none, selection_.held_chosen);
+        const Gain gain = gain_of(gains);
+        held.score_low = (gain.sum - 1.645 * gain.sd) / rows;
+        held.score_high = (gain.sum + 1.645 * gain.sd) / rows;
+        held.runs = static_cast<int>(units);
+        held.runs_better = static_cast<int>(std::lround(gain.share_better * static_cast<double>(units)));
+        held.gain = !verdict_.causes.empty() && held.score_low > 0;
+    }
+
+    static double root_mean(const std::vector<double>& sums, double rows) {
+        double sum = 0.0;
+        for (const double one : sums)
+            sum += one;
+        return std::sqrt(sum / std::max(rows, 1.0));
+    }
+
+    void ratio_of(const std::vector<double>& before, const std::vector<double>& after, double& ratio,
+                  double& low, double& high) const {
+        RandomStream random(options_.seed, "gap/ratio");
+        std::vector<double> ratios;
+        const std::size_t n = before.size();
+        double all_before = 0, all_after = 0;
+        for (std::size_t i = 0; i < n; ++i) {
+            all_before += before[i];
+            all_after += after[i];
+        }
+        ratio = all_before > 0 ? std::sqrt(all_after / all_before) : 1.0;
+        for (int draw = 0; draw < kDraws; ++draw) {
+            double b = 0, a = 0;
+            for (std::size_t i = 0; i < n; ++i) {
+                const std::size_t k = random.below(n);
+                b += before[k];
+                a += after[k];
+            }
+            if (b > 0) ratios.push_back(std::sqrt(a / b));
+        }
+        std::sort(ratios.begin(), ratios.end());
+        low = ratios.empty() ? ratio : ratios[ratios.size() / 20];
+        high = ratios.empty() ? ratio : ratios[ratios.size() - 1 - ratios.size() / 20];
+    }
+
+    void fill_series() {
+        verdict_.series = series_of(study_.model(), selection_.none.fitted.state, final_.fitted.state);
+    }
+
+    void decide() {
+        const auto left = leftovers_of(experiment_, verdict_.series, options_.seed, kLeftLevel);
+        double free_form = 0.0;
+        for (const LeftStructure& one : left) {
+            verdict_.leftovers.push_back(one.told);
+            free_form = std::max(free_form, one.gain);
+        }
+        const double won = selection_.chosen.fitted.log_likelihood - selection_.none.fitted.log_likelihood;
+        const bool much_left =
+            !left.empty() &&
+            (verdict_.causes.empty() || free_form > std::max(kUnexplainedLeast, kUnexplainedShare * won));
+        if (much_left)
+            verdict_.decision = Decision::Unexplained;
+        else if (verdict_.causes.empty())
+            verdict_.decision = Decision::NoEffect;
+        else
+            verdict_.decision = verdict_.rivals.empty() ? Decision::Named : Decision::CannotTell;
+    }
+
+  public:
+    static std::vector<Series> series_of(const Model& model, const State& before, const State& after) {
+        Prediction old_prediction, new_prediction;
+        const auto old_costs = costs_at(model, before, old_prediction),
+                   new_costs = costs_at(model, after, new_prediction);
+        std::vector<Series> all;
+        for (std::size_t o = 0; o < model.observables().size(); ++o) {
+            const Observable& observable = model.observables()[o];
+            // Rows of a run in the order they were measured.
+            std::vector<std::size_t> order(observable.y.size());
+            for (std::size_t i = 0; i < order.size(); ++i)
+                order[i] = i;
+            std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+                return std::pair(observable.run[a], observable.row[a]) <
+                       std::pair(observable.run[b], observable.row[b]);
+            });
+            Series one;
+            one.observable = observable.name;
+            one.unit = observable.unit;
+            for (const std::size_t i : order) {
+                one.run.push_back(observable.run[i]);
+                one.row.push_back(observable.row[i]);
+                one.measured.push_back(observable.y[i]);
+                one.before.push_back(old_prediction[o].mean[i]);
+                one.after.push_back(new_prediction[o].mean[i]);
+                one.scale.push_back(
+                    observable.noise == NoiseKind::Event
+                        ? std::sqrt(
+                              std::max(new_prediction[o].mean[i] * (1 - new_prediction[o].mean[i]), 1e-6))
+                        : row_sd(observable, new_prediction[o], after.noise[o], i));
+                one.innovation_before.push_back(old_costs[o].innovation[i]);
+                one.innovation_after.push_back(new_costs[o].innovation[i]);
+            }
+            all.push_back(std::move(one));
+        }
+        return all;
+    }
+
+  private:
+    const Experiment& experiment_;
+    const Options& options_;
+    Study study_;
+    Selection selection_;
+    Fit final_;
+    Verdict verdict_;
+};
+
+}  // namespace
+
+Verdict analyse(const Experiment& experiment, const Options& options) {
+    return Analysis(experiment, options).run();
+}
+
+std::vector<Series> simulate(const Experiment& experiment, const std::map<std::string, double>& changed) {
+    const auto model = make_model(experiment);
+    const State before = neutral_state(*model);
+    State after = before;
+    for (const auto& [name, value] : changed)
+        for (const int index : model->matching(name))
+            after.values[static_cast<std::size_t>(index)] = value;
+    return Analysis::series_of(*model, before, after);
+}
+
+}  // namespace puckloop::gap

@@ -1,0 +1,86 @@
+#include "gap/sentences.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace puckloop::gap {
+
+namespace {
+
+constexpr double kDegree = 57.29577951308232;
+
+std::string listed(const std::vector<std::string>& words, const char* last) {
+    std::string text;
+    for (std::size_t i = 0; i < words.size(); ++i)
+        text += (i == 0 ? "" : i + 1 == words.size() ? fmt::format(" {} ", last) : ", ") + words[i];
+    return text;
+}
+
+}  // namespace
+
+std::string quantity(double value, const std::string& unit) {
+    const double size = std::abs(value);
+    if (unit == "m" && size < 1) return fmt::format("{:.4g} mm", value * 1e3);
+    if (unit == "s" && size < 1) return fmt::format("{:.4g} ms", value * 1e3);
+    if (unit == "rad" && size < 7) return fmt::format("{:.3g} deg", value * kDegree);
+    if (unit == "1" && size < 0.2 && size > 0) return fmt::format("{:.3g} %", value * 100);
+    return unit == "1" || unit.empty() ? fmt::format("{:.4g}", value) : fmt::format("{:.4g} {}", value, unit);
+}
+
+std::string cause_sentence(const Cause& cause) {
+    std::string text = cause.title;
+    if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+    std::vector<std::string> figures;
+    for (const FittedParameter& p : cause.parameters)
+        figures.push_back(fmt::format("{} = {} ({} to {})", p.name, quantity(p.value, p.unit),
+                                      quantity(p.low, p.unit), quantity(p.high, p.unit)));
+    if (!figures.empty()) text += ": " + listed(figures, "and");
+    return text + ".";
+}
+
+std::string gain_sentence(const Held& held) {
+    if (held.runs == 0) return "Nothing was held out.";
+    const std::string figures =
+        fmt::format("held-out error {:.0f} % of what it was (90 % interval {:.0f} to {:.0f} %), log score "
+                    "{:+.3g} a row, better in {} of {}",
+                    100 * held.ratio, 100 * held.low, 100 * held.high, held.score_after - held.score_before,
+                    held.runs_better, held.runs);
+    if (!held.gain) return "No gain is claimed: " + figures + ".";
+    return "Gain on data that was not fitted: " + figures + ".";
+}
+
+std::string summary_of(const Verdict& verdict) {
+    std::vector<std::string> titles;
+    for (const Cause& cause : verdict.causes)
+        titles.push_back(cause.title);
+    switch (verdict.decision) {
+    case Decision::NoEffect:
+        return "No effect found: what differs from the simulation is not more than the noise. " +
+               verdict.heldout.sentence;
+    case Decision::Named:
+        return fmt::format("The simulation is wrong because {}. {}", listed(titles, "and"),
+                           verdict.heldout.sentence);
+    case Decision::CannotTell: {
+        std::vector<std::string> names{verdict.causes.empty() ? "" : verdict.causes.front().title};
+        for (const Rival& rival : verdict.rivals)
+            names.push_back(rival.cause.title);
+        return fmt::format("Cannot tell whether {}.{} {}", listed(names, "or"),
+                           verdict.suggestions.empty()
+                               ? ""
+                               : fmt::format(" This experiment would: {}.", verdict.suggestions.front().what),
+                           verdict.heldout.sentence);
+    }
+    case Decision::Unexplained:
+        break;
+    }
+    std::string text = "Structure remains that nothing in the catalogue explains";
+    if (!verdict.leftovers.empty())
+        text += fmt::format(": {} {}", verdict.leftovers.front().observable, verdict.leftovers.front().shape);
+    text += ".";
+    if (!titles.empty())
+        text += fmt::format(" What comes nearest, and explains only a part: {}.", listed(titles, "and"));
+    return text;
+}
+
+}  // namespace puckloop::gap
