@@ -31,10 +31,9 @@ RabLog::RabLog(const std::string& path, const image::Image& image)
     frames_.on_frame = [this](const EmittedFrame& emitted) { frame(emitted); };
     frames_.on_irregular = [this](Time start, Time seen, std::size_t chips) {
         if (is_milestone(frames_.irregular()))
-            chip_.note(seen,
-                       fmt::format("emitters on for about {} chips from {:.6f} s that are no frame, {} times "
-                                   "so far",
-                                   chips, cosim::to_seconds(start), frames_.irregular()));
+            chip_.note(
+                seen, fmt::format("emitters on for about {} chips from {:.6f} s that are no frame, {} so far",
+                                  chips, cosim::to_seconds(start), frames_.irregular()));
     };
 }
 

@@ -90,9 +90,9 @@ TEST_CASE("stretched time is summed, long stretches are told at powers of two") 
     CHECK(w.watch.counters().stretched == (5 * 808 + 28) * cosim::kMicrosecond);
     CHECK(w.watch.counters().longest_stretch == 808 * cosim::kMicrosecond);
     CHECK(w.lines ==
-          std::vector<std::string>{"i2c: SCL held for 0.808 ms after 0x34 for register 14, 1 times so far",
-                                   "i2c: SCL held for 0.808 ms after 0x34 for register 14, 2 times so far",
-                                   "i2c: SCL held for 0.808 ms after 0x34 for register 14, 4 times so far"});
+          std::vector<std::string>{"i2c: SCL held for 0.808 ms after 0x34 for register 14, 1 so far",
+                                   "i2c: SCL held for 0.808 ms after 0x34 for register 14, 2 so far",
+                                   "i2c: SCL held for 0.808 ms after 0x34 for register 14, 4 so far"});
 }
 
 TEST_CASE("a board that does not answer is told; a Start for another board is not its business") {
