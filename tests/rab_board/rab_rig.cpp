@@ -70,7 +70,7 @@ void RabRig::later(double time_s, const std::string& signal, double value) {
 }
 
 void RabRig::show(double time_s, const std::string& chips, const std::vector<Seen>& sensors, double chip_s,
-                  double delay_s) {
+                  double on_s, double off_s) {
     std::vector<exec::StimulusLine> lines;
     char before = '0';
     for (std::size_t i = 0; i <= chips.size(); ++i) {
@@ -78,7 +78,8 @@ void RabRig::show(double time_s, const std::string& chips, const std::vector<See
         if (chip == before) continue;
         before = chip;
         const bool on = chip == '1';
-        const cosim::Time edge = cosim::from_seconds(time_s + static_cast<double>(i) * chip_s + delay_s);
+        const cosim::Time edge =
+            cosim::from_seconds(time_s + static_cast<double>(i) * chip_s + (on ? on_s : off_s));
         for (const Seen& seen : sensors) {
             lines.push_back({edge, static_cast<SignalId>(kDemodulator + seen.sensor), on ? 1.0 : 0.0});
             lines.push_back({edge, static_cast<SignalId>(kPeak + seen.sensor),

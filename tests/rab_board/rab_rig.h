@@ -56,9 +56,9 @@ class RabRig {
     void send(int size, std::uint32_t payload);
 
     /// From `time_s` on these sensors see the chips; their detectors' inputs rise with them. The
-    /// demodulators need `delay_s` to come on and to go off.
+    /// demodulators need `on_s` to come on and `off_s` to go off.
     void show(double time_s, const std::string& chips, const std::vector<Seen>& sensors,
-              double chip_s = kChip, double delay_s = 8e-6);
+              double chip_s = kChip, double on_s = 8e-6, double off_s = 8e-6);
     /// A signal that takes a value later.
     void later(double time_s, const std::string& signal, double value);
 
