@@ -1,5 +1,6 @@
 // The built `puckloop exec`, as a user runs it: statuses, one-line errors, ends, JSON.
 
+#include "tests/exec/command.h"
 #include "tests/exec/rig.h"
 
 #include "emu/dspic/assembler/assembler.h"
@@ -17,39 +18,12 @@
 
 using namespace puckloop;
 using Catch::Contains;
+using exec::one_line;
+using exec::Outcome;
+using exec::text_of;
+using exec::Workbench;
 
 namespace {
-
-struct Outcome {
-    int status = -1;
-    std::string out;
-    std::string err;
-};
-
-std::string text_of(const std::string& path) {
-    std::ifstream in(path, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
-
-struct Workbench {
-    std::string folder =
-        std::filesystem::temp_directory_path() / ("puckloop_cli_" + std::to_string(getpid()));
-    Workbench() { std::filesystem::create_directories(folder); }
-    ~Workbench() { std::filesystem::remove_all(folder); }
-
-    std::string file(const std::string& name, const std::string& content) const {
-        std::ofstream(folder + "/" + name, std::ios::binary) << content;
-        return folder + "/" + name;
-    }
-    /// `input` goes to standard input.
-    Outcome run(const std::string& arguments, const std::string& input = {}) const {
-        const std::string in = file("stdin", input), out = folder + "/stdout", err = folder + "/stderr";
-        const std::string command =
-            std::string(PUCKLOOP_PROGRAM) + " exec " + arguments + " <" + in + " >" + out + " 2>" + err;
-        const int status = std::system(command.c_str());
-        return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(out), text_of(err)};
-    }
-};
 
 /// Echoes UART1 at 115200, each byte plus one; drives RD0 with what stands at RF1.
 std::string echo_image(const Workbench& bench) {
@@ -86,10 +60,6 @@ echo:   mov U1RXREG, w0
         bra wait
 )";
     return bench.file("echo.hex", image::write_dspic_hex(dspic::assemble(kSource).words));
-}
-
-bool one_line(const std::string& text) {
-    return !text.empty() && text.find('\n') == text.size() - 1;
 }
 
 }  // namespace
@@ -171,7 +141,7 @@ TEST_CASE("exec refuses what it cannot use with one line and status 2") {
     const std::pair<std::string, const char*> cases[] = {
         {image, "nothing lies on the bench"},
         {"--board pic", "IMAGE: missing"},
-        {"--board nic " + image, "no board 'nic' (expected pic)"},
+        {"--board nic " + image, "no board 'nic' (expected pic or rab; did you mean pic?)"},
         {"--mcu dspic30f " + image, "no chip 'dspic30f'"},
         {"--board pic " + bench.folder + "/none.hex", "no such file"},
         {"--board pic " + bad, "expected"},

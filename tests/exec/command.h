@@ -1,0 +1,33 @@
+#pragma once
+// The built `puckloop exec` as a user runs it, in a folder of its own.
+
+#include <string>
+
+namespace puckloop::exec {
+
+struct Outcome {
+    int status = -1;
+    std::string out;
+    std::string err;
+};
+
+std::string text_of(const std::string& path);
+/// Exactly one line, and not an empty one.
+bool one_line(const std::string& text);
+
+class Workbench {
+  public:
+    Workbench();
+    ~Workbench();
+    Workbench(const Workbench&) = delete;
+    Workbench& operator=(const Workbench&) = delete;
+
+    /// Writes a file of the folder; returns its path.
+    std::string file(const std::string& name, const std::string& content) const;
+    /// `puckloop exec ARGUMENTS`; `input` goes to standard input.
+    Outcome run(const std::string& arguments, const std::string& input = {}) const;
+
+    const std::string folder;
+};
+
+}  // namespace puckloop::exec
