@@ -2,6 +2,7 @@
 
 #include "board.h"
 #include "frames.h"
+#include "receiver.h"
 #include "registers.h"
 #include "sampler.h"
 
@@ -22,7 +23,7 @@ static u8 waited;
 static u16 lottery;
 
 static void wait_for_air(void) {
-    if (sampler_lit() != 0) {
+    if (sampler_lit() & ~receiver_dazzled()) {
         silence = 0;
     } else if (silence != 0xFF) {
         ++silence;

@@ -64,6 +64,7 @@ static u8 bits;
 static u16 lit;      /* as the receivers know it */
 static u16 active;   /* not WAITING */
 static u16 long_run; /* level unchanged for FORGOTTEN ticks */
+static volatile u16 dazzled;
 static volatile u8 dark_wanted;
 static u8 dark_step;
 static u16 dark_since;
@@ -250,7 +251,7 @@ static void close_groups(u16 now) {
 /* Darkness: the detectors discharged, 2 ms without light, then a reading. Gives the detectors to discharge.
  */
 static u16 measure_dark(u16 now) {
-    const u8 air_is_free = (lit == 0 && active == 0) || (u16)(now - dark_begun) >= DARK_ANYWAY;
+    const u8 air_is_free = ((lit & ~dazzled) == 0 && active == 0) || (u16)(now - dark_begun) >= DARK_ANYWAY;
     const u16 passed = now - dark_since;
     if (dark_step == 0) {
         dark_begun = now;
@@ -299,6 +300,7 @@ void INTERRUPT _INT1Interrupt(void) {
     now = sampler_tick(); /* not before any change that was taken */
     if (sampler_overrun()) forget();
     discharge = take_time(now);
+    dazzled = lit & long_run;
     if (dark_wanted) discharge |= measure_dark(now);
     peaks_reset(discharge);
     close_groups(now);
@@ -321,6 +323,10 @@ u8 receiver_take(struct reception* reception) {
     *reception = receptions[out];
     receptions_out = out + 1 == RECEPTIONS ? 0 : out + 1;
     return 1;
+}
+
+u16 receiver_dazzled(void) {
+    return dazzled;
 }
 
 void receiver_measure_dark(void) {

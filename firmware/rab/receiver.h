@@ -19,6 +19,9 @@ void receiver_set_bits(u8 bits);
 /* The oldest reception not yet taken; 0 if there is none. Main loop. */
 u8 receiver_take(struct reception* reception);
 
+/* Sensors lit for 2 ms and more: that is no frame but the sun or a lamp. */
+u16 receiver_dazzled(void);
+
 /* Measures darkness again: when the air has been free of light for 2 ms after the detectors were discharged.
  */
 void receiver_measure_dark(void);

@@ -201,10 +201,21 @@ TEST_CASE("own RAB firmware: while it hears a frame it keeps its own back, ten m
     REQUIRE(polite.sent(1).size() == 1);
     CHECK(polite.sent(1)[0].start > end + 25 * kChip);
     CHECK(polite.sent(1)[0].start < end + 62 * kChip);
-    RabBench lit(kImage);
-    lit.light(kReady, std::string(400, '1'), levels({{3, 1000}}));
-    lit.write(kReady + 0.001, {14, 1});
-    lit.run(kReady + 0.03);
-    REQUIRE(lit.sent(1).size() == 1);
-    CHECK(lit.sent(1)[0].start == Approx(kReady + 0.0115).margin(0.0005));
+    RabBench busy(kImage);  // frame after frame by others
+    double time = kReady;
+    while (time < kReady + 0.02)
+        time = busy.light(time, heard, levels({{3, 1000}})) + 5 * kChip;
+    busy.write(kReady + 0.001, {14, 1});
+    busy.run(kReady + 0.03);
+    REQUIRE(busy.sent(1).size() == 1);
+    CHECK(busy.sent(1)[0].start == Approx(kReady + 0.0115).margin(0.0005));
+}
+
+TEST_CASE("own RAB firmware: a sensor in the sun delays nothing") {
+    RabBench bench(kImage);
+    bench.signal(kReady - 0.010, "demod4", 1);
+    bench.write(kReady, {14, 1});
+    bench.run(kReady + 0.01);
+    REQUIRE(bench.sent(1).size() == 1);
+    CHECK(bench.sent(1)[0].start < kReady + 0.001);
 }
