@@ -6,7 +6,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <set>
 #include <stdexcept>
 
@@ -180,6 +182,9 @@ class Checker {
             const auto& b = parameters.robot;
             moving_.push_back({what, r.place, circle_shape(r.x, r.y, b.radius, b.height, b.reflectivity)});
             if (b.com_z >= b.height) fail(what, r.place, "robot.com_z is above robot.height");
+            const auto& path = parameters.ir.distance;
+            if (r.rab && std::adjacent_find(path.begin(), path.end(), std::greater_equal<>()) != path.end())
+                fail(what, r.place, "ir.distance does not rise from point to point");
         }
     }
     void check_bodies() const {

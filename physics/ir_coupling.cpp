@@ -76,7 +76,8 @@ class Coupler {
     }
     void mirrored(const Shape& shape) {
         const double share = rx_.reflection * shape.reflectivity;
-        if (share <= 0.0 || shape.kind != Shape::Kind::Box) return;
+        const bool high = shape.height > std::min(tx_.height, rx_.height);
+        if (share <= 0.0 || shape.kind != Shape::Kind::Box || !high) return;
         for (const Face& face : faces_of(shape))
             for (std::size_t e = 0; e < kIrSensors; ++e)
                 for (std::size_t k = 0; k < kIrSensors; ++k)

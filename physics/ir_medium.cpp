@@ -28,7 +28,14 @@ IrMedium::IrMedium(const World& world) : fixed_(fixed_shapes(world)) {
             board_of_.back() = world.robots.size();
             continue;
         }
-        Board board{robot.name, IrBoard(parameters.ir, world.seed, robot.name), moving_.size() - 1, 0, 0, kPotentiometerAtPowerOn, 0.0, 0};
+        Board board{robot.name,
+                    IrBoard(parameters.ir, world.seed, robot.name),
+                    moving_.size() - 1,
+                    0,
+                    0,
+                    kPotentiometerAtPowerOn,
+                    0.0,
+                    0};
         board.model.place(robot.x, robot.y, robot.heading);
         boards_.push_back(std::move(board));
         auto& dark = dark_level_.emplace_back();

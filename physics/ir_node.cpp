@@ -68,7 +68,7 @@ struct IrNode::Impl {
     /// Everything stamped `now` has been taken.
     void apply(Time now);
     /// The sender's light has changed; `everywhere`: at boards that it no longer reaches, too.
-    void see_from(std::size_t sender, Time now, bool everywhere);
+    void mark(std::size_t sender, bool everywhere);
     void release(Time until, std::vector<Message>& outbox);
 
     World world;
@@ -81,6 +81,7 @@ struct IrNode::Impl {
     std::vector<Time> refresh, looked;  ///< period, and when the board's coupling was last looked at
     std::vector<std::array<double, kPoseSignals>> poses;
     std::vector<bool> moved, touched;  ///< bodies and boards changed by the messages of one instant
+    std::vector<bool> reached;         ///< boards at which the light changed with them
     std::vector<std::uint16_t> masks;
     std::vector<IrOutput> released;
     bool any_moved = false;
@@ -103,6 +104,7 @@ IrNode::Impl::Impl(const World& description, const IrNodeOptions& options)
         if (cylinder.movable) poses.push_back({cylinder.x, cylinder.y, 0.0});
     moved.resize(poses.size());
     touched.resize(receivers.size());
+    reached.resize(receivers.size());
     masks.resize(receivers.size());
     looked.resize(receivers.size());
     for (std::size_t r = 0; r < receivers.size(); ++r)
@@ -134,9 +136,9 @@ void IrNode::Impl::take(const Message& message) {
         masks[board] = static_cast<std::uint16_t>(masks[board] & ~(1U << what));
 }
 
-void IrNode::Impl::see_from(std::size_t sender, Time now, bool everywhere) {
+void IrNode::Impl::mark(std::size_t sender, bool everywhere) {
     for (std::size_t r = 0; r < receivers.size(); ++r)
-        if (everywhere || medium.coupled(sender, r)) receivers[r].see(now, medium.at(r));
+        if (everywhere || medium.coupled(sender, r)) reached[r] = true;
 }
 
 void IrNode::Impl::apply(Time now) {
@@ -151,9 +153,10 @@ void IrNode::Impl::apply(Time now) {
         for (std::size_t s = 0; s < receivers.size(); ++s) {
             if (medium.emitters(s) == 0 || touched[s] || now - looked[s] < refresh[s]) continue;
             looked[s] = now;
-            if (medium.refresh(s)) see_from(s, now, true);
+            if (medium.refresh(s)) mark(s, true);
         }
     }
+    // All boards change at once: only then do receivers look.
     for (std::size_t s = 0; s < receivers.size(); ++s) {
         if (!touched[s]) continue;
         touched[s] = false;
@@ -166,7 +169,12 @@ void IrNode::Impl::apply(Time now) {
             everywhere = medium.relight(s);
         }
         if (masks[s] != 0) frames.seen(s);
-        see_from(s, now, everywhere);
+        mark(s, everywhere);
+    }
+    for (std::size_t r = 0; r < receivers.size(); ++r) {
+        if (!reached[r]) continue;
+        reached[r] = false;
+        receivers[r].see(now, medium.at(r));
     }
 }
 

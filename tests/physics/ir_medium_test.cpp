@@ -237,4 +237,6 @@ TEST_CASE("parameters of the medium are set by name and number") {
     CHECK_THROWS_AS(check(world), InputError);
     world.robots[1].parameters = {{"ir.receiver_gain01", 0.5}};
     CHECK_THROWS_AS(check(world), InputError);
+    world.robots[1].parameters = {{"ir.distance3", 0.2}};  // beyond the next point
+    CHECK_THROWS_AS(check(world), InputError);
 }

@@ -269,6 +269,33 @@ TEST_CASE("two senders heard at once are told at the third") {
     std::filesystem::remove_all(folder);
 }
 
+TEST_CASE("boards that change over at one instant make no level that never was") {
+    World world = rab_pair(0.2);
+    world.robots.push_back(rab_robot("c", 0.135, 0.3));
+    make_ideal(world);
+    IrNode node(world, {});
+    std::vector<Message> messages;
+    for (PortIndex board = 0; board < 3; ++board)
+        set_up_board(messages, board);
+    send(messages, 5 * kMillisecond, 0, "101010101010");
+    send(messages, 5 * kMillisecond, 1, "010101010101");
+    double highest[2] = {};
+    for (const auto& message : run(node, messages, 5 * kMillisecond + 4 * kChip, kMillisecond))
+        if (const auto& s = std::get<Signal>(message.payload); message.port == 2 && s.id >= kPeak)
+            highest[0] = std::max(highest[0], s.value);
+    IrMedium medium(world);
+    for (const std::size_t sender : {0U, 1U}) {
+        medium.set_power(sender, 115);
+        medium.set_carrier(sender, kFirmwareCarrier);
+        medium.set_emitters(sender, kAllEmitters);
+        medium.begin_burst(sender);
+        const auto level = medium.at(2).level;
+        highest[1] = std::max<double>(highest[1], *std::max_element(level.begin(), level.end()));
+        medium.set_emitters(sender, 0);
+    }
+    CHECK(highest[0] == Approx(highest[1]).margin(1));
+}
+
 TEST_CASE("alone, a board is told its baseline and nothing can reach it") {
     World world;
     world.arena = rectangular_arena(1, 1);
