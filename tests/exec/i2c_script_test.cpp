@@ -112,6 +112,16 @@ TEST_CASE("without repeated START a read stops and starts again") {
     CHECK(phases[3].start >= phases[2].start + 2 * kClock);
 }
 
+TEST_CASE("a read that names no register starts with the read") {
+    Slave slave;
+    exec::I2cScriptMaster master(exec::parse_i2c_script("s", "0 r 0x20 - 1\n"), {}, slave, nullptr);
+    const auto phases = play(master, slave, acknowledge);
+    REQUIRE(phases.size() == 3);
+    CHECK(phases[0].byte == 0x41);
+    CHECK(phases[1].kind == I2cPhaseKind::Read);
+    CHECK_FALSE(master.report().reads[0].register_number.has_value());
+}
+
 TEST_CASE("stretching delays what follows; a line that is late follows at once") {
     Slave slave;
     exec::I2cScriptMaster master(exec::parse_i2c_script("s", "0 w 0x20 0e 55\n0.0001 w 0x20 0e 55\n"), {},

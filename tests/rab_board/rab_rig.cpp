@@ -56,6 +56,12 @@ std::vector<std::uint8_t> RabRig::read(int number, int count) {
     return bus().reads[0].bytes;
 }
 
+std::vector<std::uint8_t> RabRig::read_on(int count) {
+    play(fmt::format("{:.12f} r 0x20 - {}\n", now_s(), count));
+    REQUIRE(bus().reads.size() == 1);
+    return bus().reads[0].bytes;
+}
+
 void RabRig::send(int size, std::uint32_t payload) {
     constexpr int kRegisters[] = {14, 20, 19, 13};  // of byte 0, 1, 2, 3
     if (size < 32) write(13, {0});                  // the only one that clears the rest

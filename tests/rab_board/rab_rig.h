@@ -47,6 +47,8 @@ class RabRig {
     /// One transfer, now; returns when it is over.
     const exec::I2cScriptReport& write(int number, const std::vector<std::uint8_t>& bytes);
     std::vector<std::uint8_t> read(int number, int count = 1);
+    /// Reads on without naming a register.
+    std::vector<std::uint8_t> read_on(int count);
     int get(int number) { return read(number).at(0); }
     int get16(int number) { return get(number) << 8 | get(number + 1); }
     /// Lines of a script, "<time_s> w ...", while time goes on.

@@ -171,6 +171,17 @@ TEST_CASE("2.2: the register pointer's rules") {
     // r, r, r+1, r+2: off by one after the first byte.
     CHECK(rig.read(1, 4) ==
           std::vector<std::uint8_t>{0x11, 0x11, 0x22, static_cast<std::uint8_t>(rig.get(3))});
+    // The pointer stays from one transfer to the next, and so does the count of bytes read since it was
+    // written.
+    rig.write(12, {100});
+    CHECK(rig.read(1) == std::vector<std::uint8_t>{0x11});
+    CHECK(rig.read_on(1) == std::vector<std::uint8_t>{0x11});
+    CHECK(rig.read_on(1) == std::vector<std::uint8_t>{0x11});
+    rig.read(1, 2);
+    const std::uint8_t bearing = static_cast<std::uint8_t>(rig.get(3));
+    rig.read(1, 2);
+    CHECK(rig.read_on(2) == std::vector<std::uint8_t>{0x11, 0x22});
+    CHECK(rig.read_on(2) == std::vector<std::uint8_t>{0x11, bearing});
     // A poll of two bytes takes two messages.
     board.show(0x0001);
     board.show(0x0002);
@@ -219,6 +230,22 @@ TEST_CASE("4.7: noise of up to four samples is ignored") {
         INFO(length << " samples");
         REQUIRE(message);
         CHECK(message->peak == 1500);
+    }
+}
+
+TEST_CASE("4.7: five, six or eight samples of noise leave their peaks to the next message") {
+    const auto file = exec::real_image(rab::kRandb);
+    if (!file) return;
+    for (const std::size_t length : {5u, 6u, 8u}) {
+        Ready board(*file);
+        board.show(std::string(length, '1'), 3000);
+        CHECK_FALSE(board.data());
+        board.show(0x1234, 1500);
+        auto message = board.rig.poll();
+        INFO(length << " samples");
+        REQUIRE(message);
+        CHECK(message->data == 0x1234);
+        CHECK(message->peak == 3000);
     }
 }
 
@@ -280,6 +307,63 @@ TEST_CASE("4.7: a wrong check that ends in an off chip costs the next frame") {
     CHECK_FALSE(board.data());
     board.show(0x6666);
     CHECK(board.data() == 0x6666);
+}
+
+TEST_CASE("4.7: a wrong check that ends in an on chip leaves nothing but its peaks") {
+    const auto file = exec::real_image(rab::kRandb);
+    if (!file) return;
+    Ready board(*file);
+    std::string wrong = encode_rab(16, 0x0B9B);  // check 8: ends 10 01 01 01, on
+    REQUIRE(wrong.ends_with("10010101"));
+    wrong.replace(wrong.size() - 8, 2, "01");
+    board.show(wrong, 900);
+    CHECK_FALSE(board.data());
+    board.show(0x5555, 1500);
+    auto message = board.rig.poll();
+    REQUIRE(message);
+    CHECK(message->data == 0x5555);
+    CHECK(message->peak == 900);
+    board.show(0x6666, 1500);
+    message = board.rig.poll();
+    REQUIRE(message);
+    CHECK(message->peak == 1500);
+}
+
+TEST_CASE(
+    "4.7: a receiver lit from the first sample on drops out, the others' message arrives once it is dark") {
+    const auto file = exec::real_image(rab::kRandb);
+    if (!file) return;
+    Ready board(*file);
+    const double start = board.rig.now_s() + kLead, dark = start + 0.02;
+    board.rig.show(start, encode_rab(16, 0x1234), {{0, 1500}});
+    board.rig.show(start, std::string(1, '1'), {{6, 100}}, dark - start);
+    board.rig.run_to(dark - 0.001);
+    CHECK_FALSE(board.data());
+    board.rig.run_to(dark + 0.01);
+    const auto message = board.rig.poll();
+    REQUIRE(message);
+    CHECK(message->data == 0x1234);
+    CHECK(message->sensor == 0);
+}
+
+TEST_CASE(
+    "4.7: two payloads on one receiver spoil it; a receiver that sees one of them only still delivers it") {
+    const auto file = exec::real_image(rab::kRandb);
+    if (!file) return;
+    Ready board(*file);
+    const std::string one = encode_rab(16, 0x1234), other = encode_rab(16, 0x4321);
+    std::string both = one;
+    for (std::size_t i = 0; i < both.size(); ++i)
+        if (other[i] == '1') both[i] = '1';
+    const double start = board.rig.now_s() + kLead;
+    board.rig.show(start, one, {{0, 1500}});
+    board.rig.show(start, both, {{1, 2000}});
+    board.rig.run_for(0.02);
+    CHECK(board.data() == 0x1234);
+    const double again = board.rig.now_s() + kLead;
+    board.rig.show(again, both, {{1, 2000}});
+    board.rig.run_for(0.02);
+    CHECK_FALSE(board.data());
 }
 
 TEST_CASE("4.7: payload sizes that differ") {

@@ -74,7 +74,7 @@ void describe(CLI::App& app, Arguments& a) {
         ->check(number_between(0.0, kLongestRun));
     app.add_option("--i2c", o.i2c,
                    "script:FILE, a bus master for I2C module 1 of targets that are slaves: lines `<time_s> w "
-                   "<addr> <hex bytes>` or `<time_s> r <addr> <register> <count>`");
+                   "<addr> <hex bytes>` or `<time_s> r <addr> <register or -> <count>`");
     app.add_option("--i2c-clock", o.i2c_master.clock_hertz, "its SCL in Hz")
         ->check(number_between(kSlowestI2c, kFastestI2c))
         ->capture_default_str();

@@ -40,10 +40,11 @@ nlohmann::ordered_json script_json(const I2cScriptReport& script) {
     if (script.first_refused != 0) json["first_refused_line"] = script.first_refused;
     json["reads"] = nlohmann::ordered_json::array();
     for (const I2cScriptReport::Read& read : script.reads)
-        json["reads"].push_back({{"time_s", seconds_of(read.time)},
-                                 {"address", read.address},
-                                 {"register", read.register_number},
-                                 {"bytes", hexadecimal(read.bytes)}});
+        json["reads"].push_back(
+            {{"time_s", seconds_of(read.time)},
+             {"address", read.address},
+             {"register", read.register_number ? nlohmann::ordered_json(*read.register_number) : nullptr},
+             {"bytes", hexadecimal(read.bytes)}});
     if (script.stuck_since)
         json["bus_stuck"] = {{"since_s", seconds_of(*script.stuck_since)}, {"line", script.stuck_line}};
     return json;
@@ -58,8 +59,9 @@ std::string script_text(const I2cScriptReport& script) {
         seconds_of(script.stretched), seconds_of(script.longest_stretch));
     for (std::size_t i = 0; i < script.reads.size() && i < kShownInText; ++i) {
         const I2cScriptReport::Read& read = script.reads[i];
+        const std::string number = read.register_number ? fmt::format("{}", *read.register_number) : "-";
         text += fmt::format("i2c read: {:.6f} s, 0x{:02x} register {}: {}\n", seconds_of(read.time),
-                            read.address, read.register_number, hexadecimal(read.bytes));
+                            read.address, number, hexadecimal(read.bytes));
     }
     if (script.reads.size() > kShownInText)
         text += fmt::format("i2c reads: {} in all\n", script.reads.size());

@@ -32,12 +32,15 @@ I2cScriptMaster::I2cScriptMaster(std::vector<I2cScriptLine> script, const I2cMas
 void I2cScriptMaster::plan() {
     const I2cScriptLine& line = script_[line_];
     const auto address = static_cast<std::uint8_t>(line.address << 1);
-    steps_ = {{I2cPhaseKind::Start, address}};
+    steps_.clear();
     step_ = 0;
     reading_ = false;
+    if (!line.read || line.register_number) steps_.push_back({I2cPhaseKind::Start, address});
     if (line.read) {
-        steps_.push_back({I2cPhaseKind::Write, line.register_number});
-        if (!repeated_start_) steps_.push_back({I2cPhaseKind::Stop});
+        if (line.register_number) {
+            steps_.push_back({I2cPhaseKind::Write, *line.register_number});
+            if (!repeated_start_) steps_.push_back({I2cPhaseKind::Stop});
+        }
         steps_.push_back({I2cPhaseKind::Start, static_cast<std::uint8_t>(address | kReadBit)});
         for (int i = 1; i <= line.count; ++i)
             steps_.push_back({I2cPhaseKind::Read, 0, static_cast<std::uint8_t>(i < line.count ? 1 : 0)});

@@ -5,8 +5,8 @@
 // repeated START take one. The master never gives up on a byte that is not acknowledged: it sends STOP and
 // goes on with the next line.
 //
-// Deviations: nobody else is on the bus, and SCL low for 100 ms counts as stuck (SMBus says 25 to 35 ms, Linux
-// drivers wait up to a second; the firmware known here holds it for 2 ms). The script then ends.
+// Deviations: nobody else is on the bus, and SCL low for 100 ms counts as stuck (SMBus says 25 to 35 ms,
+// Linux drivers wait up to a second; the firmware known here holds it for 2 ms). The script then ends.
 
 #include "tools/exec/logs.h"
 #include "tools/exec/scripts.h"
@@ -26,7 +26,8 @@ struct I2cMasterOptions {
 struct I2cScriptReport {
     struct Read {
         cosim::Time time = 0;  ///< of its first START
-        std::uint8_t address = 0, register_number = 0;
+        std::uint8_t address = 0;
+        std::optional<std::uint8_t> register_number;
         std::vector<std::uint8_t> bytes;
     };
     std::size_t lines = 0, played = 0;
@@ -35,7 +36,7 @@ struct I2cScriptReport {
     int first_refused = 0;  ///< line in the file; 0: none
     cosim::Time stretched = 0, longest_stretch = 0;
     cosim::Time last_stop = 0;  ///< when the bus was free again after the last line
-    std::vector<Read> reads;  ///< the first 1000 that returned a byte
+    std::vector<Read> reads;    ///< the first 1000 that returned a byte
     std::optional<cosim::Time> stuck_since;
     int stuck_line = 0;
 };

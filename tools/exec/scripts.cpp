@@ -94,8 +94,9 @@ std::vector<I2cScriptLine> parse_i2c_script(std::string_view file, std::string_v
         } else if (line.words[1] == "r") {
             if (line.words.size() != 5) wrong_shape(file, line, "wrong number of words", kShape);
             entry.read = true;
-            entry.register_number =
-                static_cast<std::uint8_t>(parse_integer(file, line.number, line.words[3], "register", 0xFF));
+            if (line.words[3] != "-")
+                entry.register_number = static_cast<std::uint8_t>(
+                    parse_integer(file, line.number, line.words[3], "register", 0xFF));
             entry.count =
                 static_cast<int>(parse_integer(file, line.number, line.words[4], "count", kLongestRead));
             if (entry.count == 0) wrong_shape(file, line, "count 0", "1 to 256 bytes");

@@ -6,6 +6,7 @@
 #include "cosim/time.h"
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -19,15 +20,16 @@ struct UartScriptLine {
 };
 std::vector<UartScriptLine> parse_uart_script(std::string_view file, std::string_view text);
 
-/// `<time_s> w <addr> <hex bytes>` or `<time_s> r <addr> <register> <count>`, addresses of 7 bits.
+/// `<time_s> w <addr> <hex bytes>` or `<time_s> r <addr> <register> <count>`, addresses of 7 bits; `-` for
+/// the register: none is written, the device goes on from where it stands.
 struct I2cScriptLine {
     int line = 0;  ///< in the file, from 1
     cosim::Time time = 0;
     std::uint8_t address = 0;
     bool read = false;
-    std::vector<std::uint8_t> bytes;   ///< of a write
-    std::uint8_t register_number = 0;  ///< of a read: written first, then a repeated START
-    int count = 0;                     ///< of a read: bytes, 1 to 256
+    std::vector<std::uint8_t> bytes;              ///< of a write
+    std::optional<std::uint8_t> register_number;  ///< of a read: written first, then a repeated START
+    int count = 0;                                ///< of a read: bytes, 1 to 256
 };
 std::vector<I2cScriptLine> parse_i2c_script(std::string_view file, std::string_view text);
 
