@@ -233,6 +233,8 @@ TEST_CASE("own RAB firmware: after any broken frame the next one is received, wi
     broken.push_back(encode_rab(8, 0x5A));
     broken.push_back(encode_rab(32, 0x0000005A));
     broken.push_back(encode_rab(24, 0x12345));
+    broken.push_back(encode_rab(32, 0));  // begins as a good frame of 16 bits does
+    broken.push_back(encode_rab(24, 0));
     RabBench bench(kImage);
     double time = kReady;
     for (const std::string& chips : broken) {
