@@ -115,7 +115,9 @@ void declare_bench_rab(CLI::App& bench, int& status) {
     command->add_option("--power", what.power, "potentiometer byte, 0 = strongest")
         ->check(CLI::Range(0, 255))
         ->type_name("BYTE");
-    command->add_option("--seed", what.seed, "of headings and parts")->type_name("N");
+    command->add_option("--seed", what.seed, "of headings and parts")
+        ->check(count_up_to(1'000'000'000))
+        ->type_name("N");
     command->add_option("--set", options->parameters, "a physical parameter over its default (repeatable)")
         ->type_name("NAME=NUMBER");
     command->add_option("--out", options->out, "folder for the results")->type_name("DIR");
