@@ -57,20 +57,22 @@ void take_out(Run& run, const std::set<std::size_t>& rows) {
     run.rows -= rows.size();
 }
 
+/// "row 3" or "rows 3-7"
+std::string rows_text(std::size_t first, std::size_t count) {
+    return count == 1 ? fmt::format("row {}", first + 1)
+                      : fmt::format("rows {}-{}", first + 1, first + count);
+}
+
 std::string sentence(const Experiment& experiment, const Copy& copy) {
     const Run& first = experiment.runs[copy.run_a];
     const Run& second = experiment.runs[copy.run_b];
-    const bool whole = copy.rows == second.rows;
-    const std::string later =
-        whole ? fmt::format("run {}", second.name)
-              : fmt::format("row {}{} of run {}", copy.row_b + 1,
-                            copy.rows > 1 ? fmt::format("-{}", copy.row_b + copy.rows) : "", second.name);
-    const std::string earlier = copy.rows == first.rows
-                                    ? fmt::format("run {}", first.name)
-                                    : fmt::format("run {} from row {} on", first.name, copy.row_a + 1);
-    return fmt::format(
-        "{} repeats {} to the last digit in {} row{}: copied, not measured again; it is left out", later,
-        earlier, copy.rows, copy.rows == 1 ? "" : "s");
+    const bool whole = copy.rows == second.rows && copy.rows == first.rows;
+    const std::string what =
+        whole
+            ? fmt::format("run {} repeats run {}", second.name, first.name)
+            : fmt::format("{} of run {} repeat{} {} of run {}", rows_text(copy.row_b, copy.rows), second.name,
+                          copy.rows == 1 ? "s" : "", rows_text(copy.row_a, copy.rows), first.name);
+    return what + " to the last digit: copied, not measured again; the later one is left out";
 }
 
 }  // namespace

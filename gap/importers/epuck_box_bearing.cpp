@@ -2,9 +2,10 @@
 // sensors, each value the mean of 20 reads. From clamesc/ePuck-Box-Pushing, GPL-3.
 //
 // Assumed, because the set does not say it: 1. the box's face is flat, wider than the robot and touches the
-// body (37 mm from the axle's middle). 2. At turn 0 it stands straight behind and the robot turns clockwise:
-// the readings say so (sensors 3 and 4 are highest, then 2, 1, 0, 7, ...). 3. Sensors sit where the simulator
-// has them. 4. A sensor that looks away from the face, or whose line meets it beyond 12 cm, sees nothing.
+// body (the simulator's radius from the axle's middle; sensors at saturation over 70 degrees say it is
+// near). 2. At turn 0 it stands straight behind and the robot turns clockwise: the readings say so (sensors 3
+// and 4 are highest, then 2, 1, 0, 7, ...). 3. Sensors sit where the simulator has them. 4. A sensor that
+// looks away from the face, or whose line meets it beyond 12 cm, sees nothing.
 
 #include "base/error.h"
 #include "gap/importers/importers.h"
@@ -21,7 +22,6 @@ namespace puckloop::gap::importers {
 namespace {
 
 constexpr const char* kFile = "proximity_by_turn.csv";
-constexpr double kFace = 0.037;   // m from the axle's middle
 constexpr double kReach = 0.12;   // m, the simulator's reach of a proximity sensor
 constexpr double kNothing = 1.0;  // m, written where a sensor sees nothing
 constexpr double kDegree = std::numbers::pi / 180;
@@ -38,7 +38,7 @@ std::pair<double, double> seen(const physics::Parameters& p, std::size_t sensor,
     const double along =
         p.proximity.x[sensor] * std::cos(towards_box) + p.proximity.y[sensor] * std::sin(towards_box);
     const double facing = std::cos(incidence);
-    const double distance = facing > 0 ? (kFace - along) / facing : kNothing;
+    const double distance = facing > 0 ? (p.robot.radius - along) / facing : kNothing;
     if (facing <= 0 || distance > kReach) return {kNothing, 0.0};
     return {distance, incidence};
 }
@@ -53,7 +53,7 @@ std::vector<ImportedExperiment> read(const std::filesystem::path& folder) {
     e.robot = "e-puck 1";
     e.description = "36 steps of 10 degrees, each value the mean of 20 reads. The distance to the box is not "
                     "given: taken is a "
-                    "flat face that touches the body (37 mm from the axle's middle), so amplitude, origin "
+                    "flat face that touches the body, so amplitude, origin "
                     "and distance cannot be "
                     "told apart. One sweep; each sensor is written as a run, held-out runs are other sensors "
                     "of the same sweep.";

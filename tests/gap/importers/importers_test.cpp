@@ -200,30 +200,21 @@ TEST_CASE("a box's turn gives each sensor distance and incidence") {
     CHECK(std::fabs(column(0, 2)[16]) < 0.2);  // 160 degrees on, sensor 0 (-17 degrees) faces it within 3
 }
 
-TEST_CASE("a published table of log-normal fits becomes quantiles, a run a distance") {
-    const Folder f;
-    put(f.in / "rab_lognormal_iridia.csv", "distance_cm,mu,sigma\n2,7.5,0.3\n60,6.8,0.1\n80,6.9,0.1\n");
-    f.import_all();
-    const Experiment e = read_experiment(f.out / "argos3_epuck_rab");
-    REQUIRE(e.runs.size() == 3);
-    CHECK(e.runs[1].column("distance_m")[0] == Approx(0.6));
-    CHECK(e.runs[1].column("strength")[4] == Approx(std::exp(6.8)));
-    CHECK(std::log(e.runs[0].column("strength")[8] / e.runs[0].column("strength")[0]) ==
-          Approx(2 * 1.28155 * 0.3).epsilon(1e-3));
-}
-
-TEST_CASE("a distance copied from another is found, told and left out") {
+TEST_CASE(
+    "a published table of log-normal fits becomes a row a distance; a copied line is told and left out") {
     const Folder f;
     put(f.in / "rab_lognormal_iridia.csv", "distance_cm,mu,sigma\n2,7.59652,0.319231\n30,6.91745,0."
                                            "121653\n60,6.82855,0.141843\n80,6.82855,0.141843\n");
     f.import_all();
     const Experiment e = read_experiment(f.out / "argos3_epuck_rab");
-    REQUIRE(e.runs.size() == 3);
-    CHECK(e.runs.back().name == "distance_60cm");
+    REQUIRE(e.runs.size() == 1);
+    REQUIRE(e.runs[0].rows == 3);
+    CHECK(e.runs[0].column("distance_m")[2] == Approx(0.6));
+    CHECK(e.runs[0].column("strength")[0] == Approx(std::exp(7.59652)));
     std::string told;
     for (const std::string& caution : e.cautions)
         told += caution;
-    CHECK_THAT(told, Contains("run distance_80cm repeats run distance_60cm to the last digit"));
+    CHECK_THAT(told, Contains("row 4 of run strength_by_distance repeats row 3 of run"));
 }
 
 TEST_CASE("what is no known set is told with what is known") {
@@ -254,7 +245,8 @@ TEST_CASE("all published sets are imported and read back") {
             INFO(e.folder);
             const Experiment read = read_experiment(f.out / e.folder);
             const bool copied = e.folder == "argos3_epuck_rab";  // its 80 cm are its 60 cm
-            CHECK(read.runs.size() == e.runs.size() - (copied ? 1 : 0));
+            CHECK(read.runs.size() == e.runs.size());
+            if (copied) CHECK(read.rows() == 8);
             for (const std::string& caution : read.cautions)
                 CHECK((copied || caution.find("copied") == std::string::npos));
             ++experiments;
