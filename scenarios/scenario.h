@@ -55,6 +55,7 @@ struct Scenario {
     std::uint64_t seed = 1;
     double uart_baud = 115200.0;  ///< nominal rate of the UART links
     double i2c_clock = 100e3;     ///< Hz, of Linux as bus master
+    bool record_ir = false;       ///< light of range-and-bearing boards, chip by chip, in trace.csv
     physics::World world;         ///< robots in the same order as `robots`
     std::vector<RobotBoards> robots;
     std::vector<cosim::FaultSpec> faults;

@@ -6,6 +6,7 @@
 #include "cosim/trace_vcd.h"
 #include "tools/command.h"
 #include "tools/commands/number_checks.h"
+#include "tools/commands/trace_rab.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -69,6 +70,8 @@ void check_known(const char* option, const std::vector<std::string>& asked,
 }
 
 void run(const Options& options) {
+    if (options.file.empty())
+        throw InputError("", "trace", "no file given", "trace.csv of a run, or rab and its results folder");
     std::ifstream in(options.file, std::ios::binary);
     if (!in) throw InputError(options.file, "", std::strerror(errno), "a trace.csv that a run recorded");
     std::vector<TraceRow> rows;
@@ -109,7 +112,7 @@ void declare_trace(CLI::App& app, int&) {
     auto options = std::make_shared<Options>();
     CLI::App* command = app.add_subcommand(
         "trace", "read a recorded trace: count, filter, convert; without --csv or --vcd, counts");
-    command->add_option("file", options->file, "trace.csv of a run")->required();
+    command->add_option("file", options->file, "trace.csv of a run");
     command->add_option("--link", options->links, "only these links (repeatable)")->allow_extra_args(false);
     command->add_option("--from-node", options->nodes, "only what these nodes sent (repeatable)")
         ->allow_extra_args(false);
@@ -123,7 +126,10 @@ void declare_trace(CLI::App& app, int&) {
     command->add_option("--vcd", options->vcd,
                         "write a value change dump, for GTKWave; - is the standard output");
     command->add_flag("--json", options->json, "counts as JSON");
-    command->callback([options] { run(*options); });
+    declare_trace_rab(*command);
+    command->callback([command, options] {
+        if (command->get_subcommands().empty()) run(*options);
+    });
 }
 
 }  // namespace puckloop::tools

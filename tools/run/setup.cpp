@@ -134,6 +134,7 @@ void add_rab(RunSetup& setup, const RobotBoards& robot) {
     setup.links.push_back({robot.name + ".i2c.rab", {rab, "i2c"}, {robot.name + ".i2c", "rab"}});
     cosim::LinkSpec air{robot.name + ".ir", {rab, "ir"}, {"ir", robot.name + ".ir"}};
     air.signal_names = names_of(rab::signals());
+    air.record_from_a = air.record_from_b = setup.scenario.record_ir;
     setup.links.push_back(air);
     if (!robot.linux_board)
         setup.warnings.push_back(fmt::format("{}: no Linux board: nobody asks the range-and-bearing board "

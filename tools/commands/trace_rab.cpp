@@ -1,0 +1,48 @@
+// `puckloop trace rab DIR`: which range-and-bearing frames of a run became messages, and why the others did
+// not.
+
+#include "tools/commands/trace_rab.h"
+
+#include "tools/commands/number_checks.h"
+#include "tools/rab_losses/results.h"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include <memory>
+
+namespace puckloop::tools {
+
+namespace {
+
+constexpr double kLongest = 9e6;  // s
+
+struct Options {
+    std::string folder;
+    double from_s = 0.0, until_s = kLongest;
+    double bin_cm = 10.0;
+    bool json = false;
+};
+
+}  // namespace
+
+void declare_trace_rab(CLI::App& trace) {
+    auto options = std::make_shared<Options>();
+    CLI::App* command =
+        trace.add_subcommand("rab", "range-and-bearing frames of a run: delivered, lost, and why");
+    command->add_option("folder", options->folder, "results folder of a run")->required()->type_name("DIR");
+    command->add_option("--from", options->from_s, "first time, s")->check(number_between(0.0, kLongest));
+    command->add_option("--to", options->until_s, "end time, s; not included")
+        ->check(number_between(0.0, kLongest));
+    command->add_option("--bin", options->bin_cm, "width of a class of distances, cm")
+        ->check(positive_number());
+    command->add_flag("--json", options->json, "print JSON");
+    command->callback([options] {
+        constexpr double kCmOfM = 100.0;
+        const RabResults results = read_rab_results(options->folder, options->from_s, options->until_s);
+        const double bin = options->bin_cm / kCmOfM;
+        fmt::print("{}", options->json ? to_json(results, bin) : to_text(results, bin));
+    });
+}
+
+}  // namespace puckloop::tools
