@@ -12,19 +12,20 @@ using cosim::Time;
 namespace {
 
 // Times of the board's firmware, from the end of the last light of a frame.
-constexpr Time kEarliestMessage = 2'300 * kMicrosecond;  // twelve conversions and the arithmetic
-constexpr Time kLatestMessage = 8 * kMillisecond;        // the same, with much service of the bus
-constexpr Time kPeaksRead = 2'450 * kMicrosecond;        // earliest start of another frame that is decoded
-constexpr Time kEndOfFrame = 300 * kMicrosecond;         // three dark samples end it
+constexpr Time kEarliestMessage = 200 * kMicrosecond;  // the original needs 2.9 ms
+constexpr Time kLatestMessage = 8 * kMillisecond;      // the same, with much service of the bus
+constexpr Time kPeaksRead = 2'450 * kMicrosecond;      // earliest start of another frame that is decoded
+constexpr Time kEndOfFrame = 300 * kMicrosecond;       // three dark samples end it
 // An overlap with the service of the bus that moves a sample or a chip.
 constexpr Time kFelt = 20 * kMicrosecond;
 constexpr Time kNotFetched = 50 * kMillisecond;
+constexpr Time kLongestWait = 10 * cosim::kSecond;  // of a message for its host
 // A request that has waited longer was dropped: the queue holds ten frames of 8 ms.
 constexpr Time kLongestQueue = 150 * kMillisecond;
 
-constexpr std::array<std::string_view, kCauses> kNames{"below_threshold", "collision",  "receiver_peaks",
-                                                       "receiver_i2c",    "sender_i2c", "receiver_sending",
-                                                       "after_error",     "other"};
+constexpr std::array<std::string_view, kCauses> kNames{"below_threshold",  "queue_full",   "collision",
+                                                       "receiver_peaks",   "receiver_i2c", "sender_i2c",
+                                                       "receiver_sending", "after_error",  "other"};
 
 /// Does the service of the bus take part of [begin, end)?
 bool disturbed(const std::vector<Busy>& busy, Time begin, Time end) {
@@ -90,12 +91,22 @@ std::uint64_t deliver(std::vector<Fate*>& fates, const std::vector<Poll>& polls,
             if (!frame.heard || frame.end + kLatestMessage < empty || !carries(payloads.of(frame), poll))
                 continue;
             fates[f]->delivered = found = true;
+            fates[f]->fetched = poll.time;
             first = f + 1;
             break;
         }
         unexplained += found ? 0 : 1;
     }
     return unexplained;
+}
+
+/// Ten messages fit. Frames with the same bytes cannot be told apart, so two of them may be mistaken.
+bool queue_full(const std::vector<Fate*>& fates, std::size_t index) {
+    constexpr std::size_t kQueue = 10, kDoubt = 2;
+    std::size_t waiting = 0;
+    for (std::size_t f = index; f-- > 0 && fates[index]->frame.end - fates[f]->frame.end < kLongestWait;)
+        waiting += fates[f]->delivered && fates[f]->fetched > fates[index]->frame.end ? 1 : 0;
+    return waiting >= kQueue - kDoubt;
 }
 
 void find_conditions(std::vector<Fate*>& fates, const std::map<std::string, BoardTraffic>& boards) {
@@ -105,12 +116,14 @@ void find_conditions(std::vector<Fate*>& fates, const std::map<std::string, Boar
         return found == boards.end() ? kNone : found->second.busy;
     };
     const Fate* before = nullptr;  // the last one that could be heard
-    for (Fate* fate : fates) {
+    for (std::size_t index = 0; index < fates.size(); ++index) {
+        Fate* fate = fates[index];
         const HeardFrame& frame = fate->frame;
         const auto meets = [fate](Cause cause, bool yes) {
             fate->met[static_cast<std::size_t>(cause)] = yes;
         };
         meets(Cause::BelowThreshold, !frame.heard);
+        meets(Cause::QueueFull, !fate->delivered && queue_full(fates, index));
         meets(Cause::Collision, frame.overlapped);
         meets(Cause::ReceiverSending, frame.receiver_sending);
         meets(Cause::ReceiverPeaks, before != nullptr && frame.start >= before->frame.end &&
@@ -135,19 +148,27 @@ Losses explain(const std::vector<HeardFrame>& frames, const std::map<std::string
     Losses losses;
     const Payloads payloads(frames, boards);
     for (const HeardFrame& frame : frames)
-        losses.fates.push_back({frame});
+        losses.fates.push_back({frame, false, 0, Cause::Other, {}});
     std::stable_sort(losses.fates.begin(), losses.fates.end(),
                      [](const Fate& a, const Fate& b) { return a.frame.end < b.frame.end; });
     std::map<std::string, std::vector<Fate*>> of_receiver;
     for (Fate& fate : losses.fates)
         of_receiver[fate.frame.receiver].push_back(&fate);
+    std::map<std::string, Time> known;  // until when everything has been fetched, by receiver
     for (auto& [receiver, fates] : of_receiver) {
+        known[receiver] = end - kNotFetched;
         const auto board = boards.find(receiver);
         if (board != boards.end())
             losses.unexplained[receiver] = deliver(fates, board->second.polls, payloads);
         find_conditions(fates, boards);
+        if (board == boards.end() || board->second.polls.empty() || !board->second.polls.back().message)
+            continue;
+        for (const Fate* fate : fates)  // more may have been waiting behind the last one
+            if (fate->delivered && fate->fetched == board->second.polls.back().time)
+                known[receiver] = std::min(known[receiver], fate->frame.end);
     }
-    std::erase_if(losses.fates, [end](const Fate& fate) { return fate.frame.end > end - kNotFetched; });
+    std::erase_if(losses.fates,
+                  [&known](const Fate& fate) { return fate.frame.end > known.at(fate.frame.receiver); });
     return losses;
 }
 

@@ -19,6 +19,7 @@ namespace puckloop::tools {
 
 enum class Cause : std::uint8_t {
     BelowThreshold,   ///< no receiver saw enough carrier
+    QueueFull,        ///< ten messages waited: the receiver's host polled too slowly
     Collision,        ///< another board's frame overlapped it at the receiver
     ReceiverPeaks,    ///< the receiver still read the peak detectors after the frame before
     ReceiverI2c,      ///< the receiver's processor served the I2C bus meanwhile
@@ -27,7 +28,7 @@ enum class Cause : std::uint8_t {
     AfterError,       ///< the frame before was spoilt: the decoder may have been left in the middle of it
     Other,            ///< samples at the edges of chips, clocks that differ
 };
-inline constexpr std::size_t kCauses = 8;
+inline constexpr std::size_t kCauses = 9;
 /// "below_threshold", ...
 std::string_view name_of(Cause cause);
 
@@ -43,6 +44,7 @@ struct HeardFrame {
 struct Fate {
     HeardFrame frame;
     bool delivered = false;
+    cosim::Time fetched = 0;          ///< by the host, if delivered
     Cause cause = Cause::Other;       ///< of a loss
     std::array<bool, kCauses> met{};  ///< conditions, whatever became of the frame
 };
@@ -60,8 +62,7 @@ struct Losses {
     std::map<std::string, std::uint64_t> unexplained;
 };
 
-/// `boards` by robot. Frames of the last 50 ms before `end`, which may not have been fetched yet, are left
-/// out.
+/// `boards` by robot. Frames whose messages may not have been fetched yet at `end` are left out.
 Losses explain(const std::vector<HeardFrame>& frames, const std::map<std::string, BoardTraffic>& boards,
                cosim::Time end);
 

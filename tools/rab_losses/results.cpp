@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <set>
 
 namespace puckloop::tools {
 
@@ -18,6 +19,7 @@ constexpr std::string_view kBoardLink = ".i2c.rab";  // robot0.i2c.rab
 constexpr std::string_view kFrameColumns =
     "t_s,end_s,sender,receiver,distance_m,level_counts,carrier,receivers,heard,overlap,receiver_sending";
 constexpr std::size_t kColumns = 11;
+constexpr double kRounding = 1e-9;  // 0.3 / 0.1 belongs to the class that begins there
 
 std::vector<std::string> cells_of(const std::string& line) {
     std::vector<std::string> cells(1);
@@ -107,6 +109,11 @@ RabResults read_rab_results(const std::filesystem::path& folder, double from_s, 
         std::erase_if(traffic.sends, outside);
         std::erase_if(traffic.polls, outside);
     }
+    std::map<std::string, std::set<cosim::Time>> starts;
+    for (const HeardFrame& frame : frames)
+        starts[frame.sender].insert(frame.start);
+    for (const auto& [sender, times] : starts)
+        results.on_air[sender] = times.size();
     results.from_s = from_s;
     results.to_s = std::min(to_s, cosim::to_seconds(last));
     results.losses = explain(frames, results.boards, cosim::from_seconds(results.to_s));
@@ -121,7 +128,7 @@ std::vector<RabGroup> groups_of(const Losses& losses, double bin) {
     for (const Fate& fate : losses.fates) {
         add(all, fate);
         add(pairs[fate.frame.sender + " -> " + fate.frame.receiver], fate);
-        add(bins[std::lround(std::floor(fate.frame.distance / bin))], fate);
+        add(bins[std::lround(std::floor(fate.frame.distance / bin + kRounding))], fate);
     }
     std::vector<RabGroup> groups{all};
     for (auto& [name, group] : pairs) {

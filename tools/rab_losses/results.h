@@ -16,6 +16,7 @@ inline constexpr double kSeedDelivered = 0.7;
 
 struct RabResults {
     std::map<std::string, BoardTraffic> boards;  ///< by robot
+    std::map<std::string, std::size_t> on_air;   ///< frames sent, by robot
     Losses losses;
     double from_s = 0.0, to_s = 0.0;  ///< frames considered
 };

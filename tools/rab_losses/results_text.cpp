@@ -12,8 +12,8 @@ namespace {
 using nlohmann::ordered_json;
 
 /// Column heads of the table, in the order of Cause.
-constexpr std::array<std::string_view, kCauses> kHeads{"dark",   "collide", "peaks", "i2c rx",
-                                                       "i2c tx", "sending", "error", "other"};
+constexpr std::array<std::string_view, kCauses> kHeads{"dark",   "queue",   "collide", "peaks", "i2c rx",
+                                                       "i2c tx", "sending", "error",   "other"};
 
 std::string row_of(const RabGroup& group) {
     std::string text = fmt::format("{:22} {:>7} {:>9} {:>6.3f} {:>7.1f} ", group.name, group.frames,
@@ -23,11 +23,9 @@ std::string row_of(const RabGroup& group) {
     return text + '\n';
 }
 
-std::size_t frames_on_air(const Losses& losses, const std::string& sender) {
-    std::map<cosim::Time, int> starts;
-    for (const Fate& fate : losses.fates)
-        if (fate.frame.sender == sender) starts[fate.frame.start] = 1;
-    return starts.size();
+std::size_t frames_on_air(const RabResults& results, const std::string& sender) {
+    const auto found = results.on_air.find(sender);
+    return found == results.on_air.end() ? 0 : found->second;
 }
 
 std::size_t messages_of(const BoardTraffic& traffic) {
@@ -62,10 +60,10 @@ std::string to_text(const RabResults& results, double bin) {
     text += fmt::format("\n{:22} {:>7} {:>9} {:>7} {:>8} {:>8} {:>11}\n", "board", "asked", "on air", "polls",
                         "every ms", "messages", "unexplained");
     for (const auto& [robot, traffic] : results.boards)
-        text += fmt::format("{:22} {:>7} {:>9} {:>7} {:>8.2f} {:>8} {:>11}\n", robot, traffic.sends.size(),
-                            frames_on_air(results.losses, robot), traffic.polls.size(),
-                            poll_period(traffic.polls) * 1e3, messages_of(traffic),
-                            unexplained_of(results.losses, robot));
+        text +=
+            fmt::format("{:22} {:>7} {:>9} {:>7} {:>8.2f} {:>8} {:>11}\n", robot, traffic.sends.size(),
+                        frames_on_air(results, robot), traffic.polls.size(), poll_period(traffic.polls) * 1e3,
+                        messages_of(traffic), unexplained_of(results.losses, robot));
     return text;
 }
 
@@ -90,7 +88,7 @@ std::string to_json(const RabResults& results, double bin) {
     ordered_json boards;
     for (const auto& [robot, traffic] : results.boards)
         boards[robot] = {{"sends_asked", traffic.sends.size()},
-                         {"frames_on_air", frames_on_air(results.losses, robot)},
+                         {"frames_on_air", frames_on_air(results, robot)},
                          {"polls", traffic.polls.size()},
                          {"poll_period_s", poll_period(traffic.polls)},
                          {"messages", messages_of(traffic)},
