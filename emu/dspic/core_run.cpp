@@ -12,12 +12,6 @@ namespace puckloop::dspic {
 
 namespace {
 
-/// From the cycle in which the flag is set to the first cycle of the service routine (DS70053, latency).
-constexpr Cycle kLatency = 5;
-/// Overhead of an entry after an instruction that ran longer than the latency.
-constexpr Cycle kEntryOverhead = 4;
-constexpr Cycle kShortestEntry = 2;
-
 /// A pointer was just written (one cycle of stall) or never written (reset). The instruction has not started.
 const Op* execute_with_hazard(Machine& m, const Op* op) {
     if (op->uses & m.watch & 0xFFFF0000) {
@@ -112,12 +106,30 @@ void enter_interrupt(Machine& m) {
 
     const std::uint32_t table = m.irq.alternate_table() ? m.device.aivt : m.device.ivt;
     const std::uint32_t handler = read_program(m, table + 2u * static_cast<std::uint32_t>(taken.vector));
-    Cycle start = m.since + kLatency;
-    if (start < m.st.cycle + kShortestEntry) start = m.st.cycle + kEntryOverhead;
+    const Cycle start = service_start(m.since, m.st.cycle);
     m.eligible = false;
     reconsider(m, m.st.cycle);
     m.st.cycle = start;
     m.current = at(m, handler & 0x7FFFFE);
+}
+
+/// The interrupt first in line, its routine included, in one step, if that is exact and over by `horizon`.
+bool pass_service(Machine& m, Cycle horizon) {
+    if (!m.skip_idle || m.st.sr & sr::RA || m.st.disi_end > m.st.cycle || m.observer.on_interrupt)
+        return false;
+    const ServiceShortcut* shortcut = service_shortcut(m);
+    if (!shortcut) return false;
+    const Cycle end = service_start(m.since, m.st.cycle) + shortcut->cycles;
+    if (end > horizon || !shortcut_holds(m, *shortcut)) return false;
+    m.irq.acknowledge(m.irq.first(), cpu_level(m));
+    push_trace(m, *shortcut, m.pc_of(m.current));
+    m.irq.serve_alone();
+    m.eligible = m.disi_waits = false;
+    m.watch = (m.watch & shortcut->keep) | shortcut->writes;
+    m.repeat_first = true;
+    m.instructions += shortcut->instructions;
+    m.st.cycle = end;
+    return true;
 }
 
 /// Executes the instruction under a stop address that was reported before.
@@ -239,7 +251,7 @@ Core::Outcome run_until(Machine& m, Cycle until) {
         }
         if (m.disi_waits && m.st.cycle >= m.st.disi_end) reconsider(m, m.st.disi_end);
         if (m.eligible && m.since < m.st.cycle) {
-            enter_interrupt(m);
+            if (!pass_service(m, quiet)) enter_interrupt(m);
             continue;
         }
         m.limit = quiet;

@@ -113,6 +113,23 @@ bool InterruptController::any_enabled_flag() const {
     return first_.level > 7;
 }
 
+bool InterruptController::waits_alone() const {
+    if (first_.level < 1 || first_.level > 7) return false;
+    const int irq = first_.vector - kTrapVectors;
+    for (int i = 0; i < device_.ifs_words; ++i) {
+        const unsigned waiting = sfr_.raw(static_cast<std::uint16_t>(device_.ifs + 2 * i)) &
+                                 sfr_.raw(static_cast<std::uint16_t>(device_.iec + 2 * i));
+        if (waiting != (i == irq / 16 ? bit_of(irq) : 0u)) return false;
+    }
+    return true;
+}
+
+void InterruptController::serve_alone() {
+    const int irq = first_.vector - kTrapVectors;
+    sfr_.raw(word_of(device_.ifs, irq)) &= static_cast<std::uint16_t>(~bit_of(irq));
+    first_ = {};
+}
+
 void InterruptController::set_listener(void* owner, void (*changed)(void*, Cycle)) {
     listener_ = owner;
     changed_ = changed;

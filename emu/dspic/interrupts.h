@@ -69,6 +69,10 @@ class InterruptController {
     };
     /// The first in line of everything flagged and enabled, whatever the CPU's priority is.
     const Request& first() const { return first_; }
+    /// first() is a user interrupt, and no other source is flagged and enabled.
+    bool waits_alone() const;
+    /// Clears the flag of first(), which waits alone; the listener need not be told.
+    void serve_alone();
     bool nesting_disabled() const;
     bool alternate_table() const;
     /// True when some source is flagged and enabled, priority 0 included: what ends Sleep and Idle.

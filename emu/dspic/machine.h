@@ -4,6 +4,7 @@
 
 #include "emu/dspic/core.h"
 #include "emu/dspic/isa.h"
+#include "emu/dspic/service_shortcut.h"
 
 #include <bit>
 #include <cstring>
@@ -121,6 +122,7 @@ struct Machine {
     std::vector<std::uint32_t> warned;
     bool skip_idle = true;
     std::unique_ptr<SkipLoops> skip;
+    ServiceShortcuts shortcuts;
 
     std::uint32_t pc_of(const Op* op) const {
         const auto index = static_cast<std::uint32_t>(op - code);

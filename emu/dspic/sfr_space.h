@@ -36,6 +36,13 @@ class SfrSpace {
     /// Claims the word and routes its accesses; either hook may be null (plain storage on that side).
     void hook(std::uint16_t address, void* owner, ReadHook read, WriteHook write);
 
+    /// Writing the word the value that it holds does nothing, although a hook stands behind it.
+    void mark_idempotent(std::uint16_t address) { words_[address >> 1].idempotent = true; }
+    bool idempotent(std::uint16_t address) const {
+        const Word& word = words_[address >> 1];
+        return word.idempotent || (!word.write && word.behaviour == Behaviour::Modelled);
+    }
+
     /// Called at the first touch of each Unmodelled or Absent word: name (or empty), address, true for a
     /// write.
     std::function<void(std::string_view name, std::uint16_t address, bool write)> on_first_touch;
@@ -82,6 +89,7 @@ class SfrSpace {
         const RegisterInfo* info = nullptr;
         std::uint16_t implemented = 0;
         Behaviour behaviour = Behaviour::Absent;
+        bool idempotent = false;
     };
     void touch(std::uint16_t address, bool write);
 

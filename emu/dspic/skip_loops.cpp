@@ -103,6 +103,7 @@ void make_plan(Machine& m, SkipLoops::Branch& known, const Op* branch, const Op*
 void forget_loops(Machine& m) {
     m.skip->index.clear();
     m.skip->branches.clear();
+    m.shortcuts.known.clear();
 }
 
 void try_skip(Machine& m, const Op* branch, const Op* head) {

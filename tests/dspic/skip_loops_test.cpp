@@ -17,6 +17,8 @@ namespace {
 constexpr int kT1 = 3;
 constexpr std::uint16_t kPolled = 0x0D8;  ///< unused word of the SFR space, plain storage
 
+constexpr std::uint16_t kRefreshed = 0x0DA;  ///< the same, written by the routine without a trace
+
 /// Raises T1 again and again and sets a polled register's bit now and then.
 struct Ticker {
     Rig& rig;
@@ -30,6 +32,7 @@ struct Ticker {
         auto& t = *static_cast<Ticker*>(self);
         t.rig.interrupts.raise(kT1, due);
         if (++t.count % 7 == 0) t.rig.sfr.raw(kPolled) ^= 1;
+        if (t.count % 64 == 0) t.rig.sfr.raw(kRefreshed) ^= 2;
         t.rig.events.schedule(t.slot, due + t.period);
     }
 };
@@ -53,6 +56,8 @@ void compare(const std::string& source, Cycle until, Cycle event_period, std::ui
     slow.core.set_skip_idle(false);
     for (Rig* rig : {&fast, &slow}) {
         rig->sfr.claim(kPolled);
+        rig->sfr.claim(kRefreshed);
+        rig->core.observer().on_interrupt = nullptr;  // it would have to be told of each
         if (rig->program.symbols.contains("isr")) rig->vector(kTrapVectors + kT1, "isr");
     }
     std::unique_ptr<Ticker> fast_ticker, slow_ticker;
@@ -89,6 +94,22 @@ isr:    push    w0
         btsc    w13, #4
         inc     [w9], [w9]
         bclr    0x84, #3
+        pop     w0
+        retfie
+)";
+
+/// A routine that leaves nothing but dead words on the stack, as a compiler without optimisation makes it.
+const std::string kTracelessTail = R"(
+done:   inc     w12, w12
+        bra     again
+isr:    push    w0
+        push.d  w2
+        lnk     #4
+        mov     #2, w0
+        mov     w0, 0x0da
+        bclr    0x84, #3
+        ulnk
+        pop.d   w2
         pop     w0
         retfie
 )";
@@ -249,4 +270,48 @@ TEST_CASE("random loops") {
         const Cycle periods[] = {0, 30'011, 1474, 211};
         compare(source, 150'000, periods[random.below(4)], static_cast<std::uint64_t>(round));
     }
+}
+
+TEST_CASE("service routines without a trace are taken in one step, wherever they interrupt") {
+    const std::string sources[] = {
+        // Polling through calls, words above the stack pointer live and dead, stalls, REPEAT, DISI.
+        R"(
+again:  mov     #40, w10
+loop:   rcall   first
+        cp0.b   w0
+        bra     nz, done
+        rcall   second
+        dec     w10, w10
+        bra     nz, loop
+        bra     done
+first:  lnk     #6
+        mov     w0, [w14+2]
+        mov     #0x0C00, w1
+        mov     [w1], w0
+        add     w0, #0, w1
+        ze      w1, w0
+        ulnk
+        return
+second: lnk     #2
+        mov     w12, [w14]
+        mov     [w14], w1
+        repeat  #5
+        inc     w2, w2
+        disi    #3
+        inc     w3, w3
+        ulnk
+        return
+)",
+        R"(
+again:  mov     #0x1000, w1
+wait:   mov     [w1], w0
+        mov     [w15+4], w4
+        btst    0x84, #3
+        bra     wait
+)",
+        "again:  bra     again\n",
+    };
+    for (const auto& source : sources)
+        for (const Cycle period : {Cycle{20'011}, Cycle{997}, Cycle{113}, Cycle{85}, Cycle{31}})
+            compare(kHead + source + kTracelessTail, 100'000, period, period);
 }

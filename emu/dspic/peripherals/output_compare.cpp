@@ -26,6 +26,7 @@ OutputCompare::OutputCompare(const Surroundings& around, std::span<const Unit> u
       slot_(around.events.add(this, due)) {
     for (const Unit& unit : units_) {
         around_.sfr.hook(unit.rs, this, nullptr, write_rs);
+        around_.sfr.mark_idempotent(unit.rs);
         around_.sfr.hook(static_cast<std::uint16_t>(unit.rs + 2), this, nullptr, write_r);
         around_.sfr.hook(static_cast<std::uint16_t>(unit.rs + 4), this, nullptr, write_con);
     }
