@@ -117,12 +117,14 @@ void enter_interrupt(Machine& m) {
 bool pass_service(Machine& m, Cycle horizon) {
     if (!m.skip_idle || m.st.sr & sr::RA || m.st.disi_end > m.st.cycle || m.observer.on_interrupt)
         return false;
-    const ServiceShortcut* shortcut = service_shortcut(m);
-    if (!shortcut) return false;
+    const ServiceShortcut* shortcut = service_shortcut(m, m.irq.first().vector);
+    if (!shortcut || shortcut->uses & m.watch & 0xFFFF0000) return false;
     const Cycle end = service_start(m.since, m.st.cycle) + shortcut->cycles;
-    if (end > horizon || !shortcut_holds(m, *shortcut)) return false;
+    if (end > horizon || !stack_holds(m, *shortcut, m.st.w[15]) || !refreshes_hold(m, *shortcut) ||
+        !m.irq.waits_alone())
+        return false;
     m.irq.acknowledge(m.irq.first(), cpu_level(m));
-    push_trace(m, *shortcut, m.pc_of(m.current));
+    push_trace(m, *shortcut, {m.st.w.data(), m.st.sr, m.pc_of(m.current)});
     m.irq.serve_alone();
     m.eligible = m.disi_waits = false;
     m.watch = (m.watch & shortcut->keep) | shortcut->writes;
@@ -228,6 +230,7 @@ void perform_reset(Machine& m, ResetCause cause) {
 
 Core::Outcome run_until(Machine& m, Cycle until) {
     m.end_requested = false;
+    m.until = until;
     while (true) {
         if (m.reset_request) perform_reset(m, *m.reset_request);
         const Cycle horizon = std::min(m.st.cycle, until == 0 ? 0 : until - 1);

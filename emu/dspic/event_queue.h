@@ -22,6 +22,14 @@ class EventQueue {
     using Handler = void (*)(void* owner, Cycle due);
     using Slot = std::uint8_t;
 
+    /// An event that comes every `period` cycles and does nothing but raise `irq`, until told otherwise.
+    struct Steady {
+        int irq = -1;  ///< -1: the slot's event is not of this kind
+        Cycle period = 0;
+        /// Does in one go what `times` events do, the flag that they raise left out; the first was due.
+        void (*pass)(void* owner, std::uint64_t times) = nullptr;
+    };
+
     Slot add(void* owner, Handler handler);
     void schedule(Slot slot, Cycle due) {
         if (due_[slot] == due) return;
@@ -39,6 +47,18 @@ class EventQueue {
     Cycle next() const { return next_; }
     /// The slot whose event is next(), if there is one.
     Slot next_slot() const { return winners_[1]; }
+    /// The first event of all other slots.
+    Cycle next_except(Slot slot) const {
+        Cycle first = kNoCycle;
+        for (unsigned place = kCapacity + slot; place > 1; place /= 2) {
+            const Cycle beside = due_[winner(place ^ 1u)];
+            if (beside < first) first = beside;
+        }
+        return first;
+    }
+    void set_steady(Slot slot, const Steady& steady) { steady_[slot] = steady; }
+    const Steady& steady(Slot slot) const { return steady_[slot]; }
+    void pass(Slot slot, std::uint64_t times) { steady_[slot].pass(handlers_[slot].owner, times); }
     /// Runs every handler due at or before `now`, by due cycle, then by slot. Handlers may schedule again.
     void service(Cycle now) {
         while (next_ <= now) {
@@ -62,6 +82,7 @@ class EventQueue {
     std::array<Cycle, kCapacity> due_ = never();
     std::array<Slot, kCapacity> winners_ = first_slots();  ///< of inner places, 1 = the top
     std::array<Entry, kCapacity> handlers_{};
+    std::array<Steady, kCapacity> steady_{};
     unsigned size_ = 0;
     Cycle next_ = kNoCycle;
 

@@ -18,12 +18,14 @@ void LoopWalk::walk(const Op* branch, const Op* head) {
     plan_.count = plan_.polled_count = 0;
     plan_.cycles = plan_.instructions = 0;
     plan_.clears_watchdog = false;
+    trace_.clear();
     bound_ = kForever;
     watch_ = 0;
     w_ = {};
     c_ = z_ = n_ = ov_ = {};
     const Op* op = head;
     for (int i = 0; i < kMostSteps; ++i) {
+        record(op);
         hazards(op);
         const Op* next = execute(op);
         plan_.cycles += op->cycles;
@@ -32,6 +34,35 @@ void LoopWalk::walk(const Op* branch, const Op* head) {
         op = next;
     }
     fail(Verdict::NotNow);
+}
+
+void LoopWalk::record(const Op* op) {
+    LoopTrace::Boundary& boundary = trace_.boundaries.emplace_back();
+    boundary.op = op;
+    boundary.offset = static_cast<std::uint32_t>(plan_.cycles);
+    boundary.stall = op->uses & watch_;
+    const auto note = [&](const Flag& flag, std::uint16_t bit) {
+        if (flag.known) boundary.known |= static_cast<std::uint8_t>(bit);
+        if (flag.known && flag.value) boundary.flags |= static_cast<std::uint8_t>(bit);
+    };
+    note(c_, sr::C);
+    note(z_, sr::Z);
+    note(n_, sr::N);
+    note(ov_, sr::OV);
+    for (std::size_t reg = 0; reg < 16; ++reg)
+        boundary.w[reg] = w_[reg] ? static_cast<std::uint16_t>(w_[reg]->now) : m_.st.w[reg];
+}
+
+/// A flag that an iteration sets late still has at its head what the iteration before left.
+void LoopWalk::settle_flags() {
+    record(trace_.boundaries.front().op);
+    const LoopTrace::Boundary end = trace_.boundaries.back();
+    trace_.boundaries.pop_back();
+    for (LoopTrace::Boundary& boundary : trace_.boundaries) {
+        const auto missing = static_cast<std::uint8_t>(end.known & ~boundary.known);
+        boundary.flags |= static_cast<std::uint8_t>(end.flags & missing);
+        boundary.known |= missing;
+    }
 }
 
 LoopWalk::Verdict LoopWalk::analyse(const Op* branch, const Op* head) {
@@ -58,6 +89,8 @@ LoopWalk::Verdict LoopWalk::analyse(const Op* branch, const Op* head) {
             if (c.carried) hold(c.start, c.step, 0, 0xFFFF);
         }
         plan_.iterations = bound_;
+        trace_.steady = !moves && !plan_.clears_watchdog;
+        if (trace_.steady) settle_flags();
         return Verdict::Pure;
     } catch (const Stop& stop) {
         return stop.verdict;

@@ -13,9 +13,11 @@ class LoopWalk {
     /// Unknown: an instruction that the walk will never follow. NotNow: this state does not allow it.
     enum class Verdict : std::uint8_t { Pure, NotNow, Unknown };
 
-    LoopWalk(const Machine& m, SkipLoops::Plan& plan) : m_(m), plan_(plan) {}
+    LoopWalk(const Machine& m, SkipLoops::Plan& plan, LoopTrace& trace) : m_(m), plan_(plan), trace_(trace) {}
     /// Walks from `head` until `branch` is taken again, twice: to find the steps, then to prove them.
     Verdict analyse(const Op* branch, const Op* head);
+    /// The walk came by a conditional branch.
+    bool chose() const { return chose_; }
 
   private:
     /// v + step * n after n iterations; within its width for every n up to the bound found so far.
@@ -38,11 +40,14 @@ class LoopWalk {
     const Op* execute_skip(const Op* op);
     bool holds(FormId id);
     void hazards(const Op* op);
+    void record(const Op* op);
+    void settle_flags();
 
     // Cells.
     SkipLoops::Cell& cell(std::uint16_t key);
     Value read_cell(std::uint16_t key);
     void write_cell(std::uint16_t key, Value value);
+    void note_access(std::uint16_t address, std::int32_t value, bool write);
     Value w(int reg) { return read_cell(static_cast<std::uint16_t>(reg)); }
     void set_w(int reg, Value value);
     std::uint16_t constant_w(int reg);
@@ -71,11 +76,13 @@ class LoopWalk {
 
     const Machine& m_;
     SkipLoops::Plan& plan_;
+    LoopTrace& trace_;
     std::array<SkipLoops::Cell*, 16> w_{};                              ///< the W registers among the cells
     std::array<SkipLoops::Cell, SkipLoops::Plan::kMostCells> first_{};  ///< what the first walk found
     std::size_t first_count_ = 0;                                       ///< 0: this is the first walk
     std::uint64_t bound_ = 0;
     std::uint32_t watch_ = 0;
+    bool chose_ = false;
     Flag c_, z_, n_, ov_;
 };
 

@@ -346,6 +346,7 @@ const Op* LoopWalk::execute(const Op* op) {
         break;
     }
     if (op->form >= FormId::BRA_OV_Expr && op->form <= FormId::BRA_GTU_Expr) {
+        chose_ = true;
         if (!holds(op->form)) return op + 1;
         ++plan_.cycles;
         return to(op->target);

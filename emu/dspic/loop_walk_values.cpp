@@ -37,6 +37,7 @@ SkipLoops::Cell& LoopWalk::cell(std::uint16_t key) {
 LoopWalk::Value LoopWalk::read_cell(std::uint16_t key) {
     SkipLoops::Cell& c = cell(key);
     if (!c.written) c.carried = true;
+    if (key >= 16) note_access(key, c.now, false);
     return {c.now, c.now_step};
 }
 
@@ -45,6 +46,12 @@ void LoopWalk::write_cell(std::uint16_t key, Value value) {
     c.written = true;
     c.now = value.v;
     c.now_step = value.step;
+    if (key >= 16) note_access(key, value.v, true);
+}
+
+void LoopWalk::note_access(std::uint16_t address, std::int32_t value, bool write) {
+    trace_.accesses.push_back({static_cast<std::uint32_t>(trace_.boundaries.size() - 1), address,
+                               static_cast<std::uint16_t>(value), write});
 }
 
 void LoopWalk::set_w(int reg, Value value) {

@@ -59,6 +59,7 @@ struct Machine {
     CoreState st;
     // Hot, beside the state.
     const Op* current = nullptr;  ///< the operation being executed, or next to execute between instructions
+    Cycle until = 0;              ///< the end of the run in progress
     Cycle limit = 0;              ///< the inner loop leaves when st.cycle reaches this; 0 = leave now
     std::uint32_t watch = 0;      ///< low half: just written; high half: not written since reset
     std::uint16_t special = 0x8000;  ///< pointer registers that need special_ea(): W15, modulo, bit-reversed

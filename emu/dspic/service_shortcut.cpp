@@ -162,8 +162,7 @@ class Walk {
 
 }  // namespace
 
-const ServiceShortcut* service_shortcut(Machine& m) {
-    const int vector = m.irq.first().vector;
+const ServiceShortcut* service_shortcut(Machine& m, int vector) {
     if (vector < kTrapVectors) return nullptr;
     auto& known = m.shortcuts.known;
     const auto index = static_cast<std::size_t>(vector);
@@ -193,25 +192,27 @@ Cycle service_start(Cycle since, Cycle now) {
     return start < now + kShortestEntry ? now + kEntryOverhead : start;
 }
 
-bool shortcut_holds(const Machine& m, const ServiceShortcut& shortcut) {
-    if (shortcut.uses & m.watch & 0xFFFF0000) return false;
-    const auto lowest = static_cast<std::uint16_t>(m.st.w[15] - 0x0800);
-    if (lowest + shortcut.depth > m.stack_span || lowest / 2 + shortcut.depth / 2 > m.ram_words) return false;
-    for (std::size_t i = 0; i < shortcut.refresh_count; ++i)
-        if (m.sfr.raw(shortcut.refreshes[i].address) != shortcut.refreshes[i].value) return false;
-    return m.irq.waits_alone();
+bool stack_holds(const Machine& m, const ServiceShortcut& shortcut, std::uint16_t stack) {
+    const auto lowest = static_cast<std::uint16_t>(stack - 0x0800);
+    return lowest + shortcut.depth <= m.stack_span && lowest / 2 + shortcut.depth / 2 <= m.ram_words;
 }
 
-void push_trace(Machine& m, const ServiceShortcut& shortcut, std::uint32_t pc) {
+bool refreshes_hold(const Machine& m, const ServiceShortcut& shortcut) {
+    for (std::size_t i = 0; i < shortcut.refresh_count; ++i)
+        if (m.sfr.raw(shortcut.refreshes[i].address) != shortcut.refreshes[i].value) return false;
+    return true;
+}
+
+void push_trace(Machine& m, const ServiceShortcut& shortcut, const Interrupted& interrupted) {
     constexpr std::uint32_t kIpl3OnStack = 0x80;
-    const std::uint16_t stack = m.st.w[15];
+    const std::uint16_t stack = interrupted.w[15];
     std::uint16_t* const words = m.ram + (stack - 0x0800) / 2;
     for (std::size_t i = 0; i < shortcut.push_count; ++i) {
         const ServiceShortcut::Push& push = shortcut.pushes[i];
         std::uint32_t value = push.value;
         switch (push.kind) {
         case Word::Register:
-            value = m.st.w[push.value];
+            value = interrupted.w[push.value];
             break;
         case Word::Constant:
             break;
@@ -219,11 +220,11 @@ void push_trace(Machine& m, const ServiceShortcut& shortcut, std::uint32_t pc) {
             value = stack + push.value;
             break;
         case Word::ReturnLow:
-            value = pc;
+            value = interrupted.pc;
             break;
         case Word::ReturnHigh:
-            value =
-                (m.st.sr & 0xFFu) << 8 | (m.st.corcon & corcon::IPL3 ? kIpl3OnStack : 0u) | (pc >> 16 & 0x7F);
+            value = (interrupted.sr & 0xFFu) << 8 | (m.st.corcon & corcon::IPL3 ? kIpl3OnStack : 0u) |
+                    (interrupted.pc >> 16 & 0x7F);
             break;
         }
         words[push.offset / 2] = static_cast<std::uint16_t>(value);

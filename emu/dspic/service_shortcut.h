@@ -54,14 +54,23 @@ struct ServiceShortcuts {
     std::vector<std::optional<ServiceShortcut>> known;
 };
 
-/// The shortcut for the first interrupt in line, if its routine has one.
-const ServiceShortcut* service_shortcut(Machine& m);
-/// True if what it expects of the registers and the stack is so now, and nobody else waits for service.
-bool shortcut_holds(const Machine& m, const ServiceShortcut& shortcut);
+/// What a routine interrupts: registers, status and the address to come back to.
+struct Interrupted {
+    const std::uint16_t* w = nullptr;
+    std::uint16_t sr = 0;
+    std::uint32_t pc = 0;
+};
+
+/// The shortcut for an interrupt vector, if its routine has one.
+const ServiceShortcut* service_shortcut(Machine& m, int vector);
+/// True if what it expects of the modules' registers is so now.
+bool refreshes_hold(const Machine& m, const ServiceShortcut& shortcut);
+/// True if it finds room with the stack pointer at `stack`.
+bool stack_holds(const Machine& m, const ServiceShortcut& shortcut, std::uint16_t stack);
 /// Cycle in which the routine's first instruction starts, entered between instructions at cycle `now` for a
 /// flag set at cycle `since`.
 Cycle service_start(Cycle since, Cycle now);
-/// Does what the routine leaves behind: `pc` is where it interrupts.
-void push_trace(Machine& m, const ServiceShortcut& shortcut, std::uint32_t pc);
+/// Does what the routine leaves behind.
+void push_trace(Machine& m, const ServiceShortcut& shortcut, const Interrupted& interrupted);
 
 }  // namespace puckloop::dspic

@@ -2,6 +2,7 @@
 
 #include "emu/dspic/loop_walk.h"
 #include "emu/dspic/machine.h"
+#include "emu/dspic/steady_leap.h"
 
 #include <algorithm>
 
@@ -12,6 +13,8 @@ namespace {
 /// With less than this to the next event a walk is not begun.
 constexpr Cycle kWorthwhile = 64;
 constexpr std::uint8_t kMostPatience = 7;
+/// For loops that do something unknown on one of their ways round.
+constexpr std::uint8_t kMostPatienceUnknown = 12;
 constexpr std::uint64_t kFewestIterations = 4;
 
 std::uint16_t& word_of(Machine& m, std::uint16_t key) {
@@ -35,7 +38,8 @@ bool as_predicted(Machine& m, const SkipLoops::Plan& plan, Cycle arrival) {
     if (!plan.proven && plan.proof_due != arrival) return false;
     for (std::size_t i = 0; i < plan.count; ++i) {
         const SkipLoops::Cell& cell = plan.cells[i];
-        if (plan.proven && !cell.carried) continue;  // scratch, an interrupt may have used it
+        // Scratch, an interrupt may have used it.
+        if (!cell.carried && (plan.proven || (plan.proof_interrupted && cell.key >= 16))) continue;
         if (word_of(m, cell.key) != static_cast<std::uint16_t>(cell.now)) return false;
     }
     return true;
@@ -70,14 +74,14 @@ void leap(Machine& m, SkipLoops::Plan& plan, Cycle arrival) {
     m.skip->skipped_cycles += cycles;
 }
 
-void give_up_for_now(SkipLoops::Branch& known) {
-    if (known.patience < kMostPatience) ++known.patience;
-    known.wait = static_cast<std::uint8_t>((1u << known.patience) - 1);
+void give_up_for_now(SkipLoops::Branch& known, std::uint8_t most = kMostPatience) {
+    if (known.patience < most) ++known.patience;
+    known.wait = static_cast<std::uint16_t>((1u << known.patience) - 1);
 }
 
 void make_plan(Machine& m, SkipLoops::Branch& known, const Op* branch, const Op* head, Cycle arrival) {
     SkipLoops::Plan& plan = known.plan;
-    LoopWalk walk(m, plan);
+    LoopWalk walk(m, plan, known.trace);
     switch (walk.analyse(branch, head)) {
     case LoopWalk::Verdict::Pure:
         known.walked = true;
@@ -85,6 +89,12 @@ void make_plan(Machine& m, SkipLoops::Branch& known, const Op* branch, const Op*
         plan.alive = true;
         plan.proven = plan.used = false;
         plan.proof_due = arrival + plan.cycles;
+        plan.proof_interrupted = false;
+        if (m.limit < plan.proof_due) {
+            plan.proof_due = steady_arrival(m, known, arrival, 1, plan.proof_interrupted);
+            plan.alive = plan.proof_due != kNoCycle;
+            if (!plan.alive && !known.trace.steady) return give_up_for_now(known);
+        }
         --plan.iterations;  // the one that runs now
         break;
     case LoopWalk::Verdict::NotNow:
@@ -93,6 +103,7 @@ void make_plan(Machine& m, SkipLoops::Branch& known, const Op* branch, const Op*
     case LoopWalk::Verdict::Unknown:
         // On its last round a loop leaves by instructions that the walk need not know.
         if (known.walked) return give_up_for_now(known);
+        if (walk.chose()) return give_up_for_now(known, kMostPatienceUnknown);  // another way round may do
         m.code[branch - m.code].may_skip = false;
         break;
     }
@@ -118,7 +129,7 @@ void try_skip(Machine& m, const Op* branch, const Op* head) {
     if (plan.alive) {
         if (plan.iterations >= 2 && as_predicted(m, plan, arrival)) {
             plan.proven = true;
-            leap(m, plan, arrival);
+            if (!steady_leap(m, known, arrival)) leap(m, plan, arrival);
             advance(plan, 1);  // the real iteration that follows
             return;
         }
@@ -126,7 +137,7 @@ void try_skip(Machine& m, const Op* branch, const Op* head) {
         if (!plan.used) return give_up_for_now(known);
         known.patience = 0;
     }
-    if (m.limit < arrival + kWorthwhile) return;
+    if (m.limit < arrival + kWorthwhile && !steady_event_next(m)) return;
     make_plan(m, known, branch, head, arrival);
 }
 

@@ -11,6 +11,9 @@
 //   - the registers that it polls, and their values.
 // The next real iteration must end in the state that the walk predicted; only then are iterations leapt over,
 // at most up to the next event, and one fewer than could be, so that a real one sets flags and scratch cells.
+// A loop that changes nothing at all from iteration to iteration (it waits for somebody else) is leapt over
+// together with the interrupts that leave no trace (service_shortcut.h): see steady_leap.h.
+//
 // A plan stays good over events and interrupts for as long as its cells and registers are as predicted at
 // every arrival at the branch.
 
@@ -23,6 +26,37 @@
 namespace puckloop::dspic {
 
 struct Op;
+
+/// One iteration, instruction by instruction, of a loop that changes nothing.
+struct LoopTrace {
+    /// Between two instructions: where an interrupt may come in.
+    struct Boundary {
+        const Op* op = nullptr;    ///< the next instruction
+        std::uint32_t offset = 0;  ///< cycles from the loop's head
+        bool stall = false;        ///< of one cycle, before it; an interrupt takes its place
+        std::uint8_t known = 0;    ///< flags that the iteration has set by then, bits as in SR
+        std::uint8_t flags = 0;
+        std::array<std::uint16_t, 16> w{};
+    };
+    struct Access {
+        std::uint32_t boundary = 0;  ///< before the instruction that does it
+        std::uint16_t address = 0;
+        std::uint16_t value = 0;
+        bool write = false;
+    };
+    std::vector<Boundary> boundaries;
+    std::vector<Access> accesses;
+    bool steady = false;
+    std::uint16_t depth = 0;  ///< bytes above the stack pointer known to be dead at every boundary
+    bool live = false;        ///< there are live ones
+
+    void clear() {
+        boundaries.clear();
+        accesses.clear();
+        steady = live = false;
+        depth = 0;
+    }
+};
 
 struct SkipLoops {
     /// A cell of the loop: 0..15 a W register, above a RAM byte address.
@@ -52,21 +86,24 @@ struct SkipLoops {
         std::size_t polled_count = 0;
 
         bool alive = false;
-        bool proven = false;          ///< a real iteration ended as the walk predicted
-        bool used = false;            ///< it has skipped something
-        std::uint64_t proof_due = 0;  ///< cycle at which the proof must be there, nothing in between
+        bool proven = false;             ///< a real iteration ended as the walk predicted
+        bool used = false;               ///< it has skipped something
+        std::uint64_t proof_due = 0;     ///< cycle at which the proof must be there, nothing in between ...
+        bool proof_interrupted = false;  ///< ... but routines without a trace
     };
     /// What is known of one backward branch.
     struct Branch {
-        std::uint8_t wait = 0;      ///< arrivals until the next try
+        std::uint16_t wait = 0;     ///< arrivals until the next try
         std::uint8_t patience = 0;  ///< failures in a row
         bool walked = false;        ///< a walk came round once: no way out of the loop decides for all of it
         Plan plan;
+        LoopTrace trace;
     };
     std::vector<std::uint16_t> index;  ///< by program word: place in `branches` plus 1, 0 = not seen yet
     std::deque<Branch> branches;
     std::uint64_t leaps = 0;  ///< for tests and curiosity
     std::uint64_t skipped_cycles = 0;
+    std::uint64_t passed_services = 0;  ///< routines without a trace that fell into leaps
 };
 
 }  // namespace puckloop::dspic

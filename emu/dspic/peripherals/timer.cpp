@@ -110,6 +110,24 @@ void Timer::plan() {
     const Cycle next = next_match();
     state_.reload = next == kNoCycle ? 0 : period_cycles();
     around_.events.schedule(slot_, next);
+    tell_steady();
+}
+
+void Timer::tell_steady() {
+    const Timer& source = paired() ? *upper_ : *this;
+    EventQueue::Steady steady;
+    if (state_.reload && !source.on_match && !period_wanted_)
+        steady = {source.setup_.irq, state_.reload, matches_passed};
+    around_.events.set_steady(slot_, steady);
+}
+
+void Timer::matches_passed(void* owner, std::uint64_t times) {
+    Timer& self = *static_cast<Timer*>(owner);
+    const Cycle last = self.around_.events.due(self.slot_) + (times - 1) * self.state_.reload;
+    self.state_.count = 0;
+    self.state_.fraction = 0;
+    self.state_.base = last;
+    self.around_.events.schedule(self.slot_, last + self.state_.reload);
 }
 
 void Timer::match(Cycle at) {
@@ -131,6 +149,7 @@ void Timer::match_due(void* owner, Cycle due) {
     if (self.period_wanted_) {
         self.period_wanted_ = false;
         self.period_(self.served_, due);
+        self.tell_steady();
     }
 }
 

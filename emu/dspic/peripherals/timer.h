@@ -56,7 +56,10 @@ class Timer {
     /// `changed` is called after every write that may move the times of counts to come, with the first cycle
     /// of the new order; `period` at the next period match after want_period().
     void serve(void* owner, void (*changed)(void* owner, Cycle at), void (*period)(void* owner, Cycle at));
-    void want_period() { period_wanted_ = true; }
+    void want_period() {
+        period_wanted_ = true;
+        tell_steady();
+    }
 
   private:
     struct State {
@@ -73,6 +76,8 @@ class Timer {
     static void write_pr(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask);
     static void write_con(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask);
     static void match_due(void* owner, Cycle due);
+    static void matches_passed(void* owner, std::uint64_t times);
+    void tell_steady();  ///< to the timetable: whether matches do no more than interrupt
 
     bool paired() const;           ///< this lower timer counts 32 bits
     bool ruled_by_lower() const;   ///< this upper timer is the high word of a pair
