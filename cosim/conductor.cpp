@@ -8,11 +8,13 @@
 #include "cosim/schedule.h"
 #include "cosim/trace_hash.h"
 #include "cosim/trace_merger.h"
+#include "cosim/workers.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
 #include <set>
 #include <thread>
 
@@ -70,6 +72,7 @@ class Conductor::State {
     void plan();
     void grant(std::size_t n, Time until);
     void collect();
+    void work_here();
     void take_reply(std::size_t n);
     void take_stop(std::size_t n, Time before);
     void end_with(const Stop& stop, std::size_t n);
@@ -98,6 +101,10 @@ class Conductor::State {
     TraceMerger merger_;
     TraceHash hash_;
     std::optional<RandomStream> chop_;
+    std::unique_ptr<Workers> workers_;
+    std::vector<std::size_t> here_;             ///< nodes of this process that are granted
+    std::vector<std::size_t> shared_;           ///< those of them that any thread may advance
+    std::vector<std::exception_ptr> failures_;  ///< of nodes, by index
 
     Time end_ = kNever;
     std::vector<std::pair<Stop, std::size_t>> wishes_;  ///< to stop together, and whose
@@ -136,6 +143,8 @@ Conductor::State::State(std::vector<NodeSpec> nodes, std::vector<LinkSpec> links
     times_.resize(handles_.size());
     slots_.resize(handles_.size());
     stats_.resize(2 * links_.size());
+    failures_.resize(handles_.size());
+    workers_ = std::make_unique<Workers>(options_.threads > 1 ? options_.threads - 1 : 0);
     if (options_.chop_seed) chop_.emplace(*options_.chop_seed, "chop");
 }
 
@@ -230,19 +239,36 @@ void Conductor::State::grant(std::size_t n, Time until) {
     handles_[n]->grant({sure, until}, slot.inbox, slot.echoes);
 }
 
+/// Lets the granted nodes of this process work, and takes their replies in order.
+void Conductor::State::work_here() {
+    shared_.clear();
+    for (const std::size_t n : here_)
+        if (specs_[n].any_thread) shared_.push_back(n);
+    workers_->run(shared_.size(), [this](std::size_t piece) {
+        const std::size_t n = shared_[piece];
+        try {
+            handles_[n]->poll(false);
+        } catch (...) {
+            failures_[n] = std::current_exception();
+        }
+    });
+    for (const std::size_t n : here_) {
+        current_ = n;
+        if (!specs_[n].any_thread) handles_[n]->poll(false);
+        if (failures_[n]) std::rethrow_exception(failures_[n]);
+        take_reply(n);
+    }
+}
+
 void Conductor::State::collect() {
     std::vector<std::size_t> elsewhere;
-    bool any = false;
+    here_.clear();
     for (std::size_t n = 0; n < handles_.size(); ++n) {
         if (!times_[n].busy) continue;
-        if (handles_[n]->descriptor() >= 0) {
-            elsewhere.push_back(n);
-            continue;
-        }
-        current_ = n;
-        if (handles_[n]->poll(false)) take_reply(n);
-        any = true;
+        (handles_[n]->descriptor() >= 0 ? elsewhere : here_).push_back(n);
     }
+    const bool any = !here_.empty();
+    if (any) work_here();
     if (elsewhere.empty()) {
         if (any) return;
         // Nobody works and nobody may be granted: ahead of the wall clock, or locked for good.

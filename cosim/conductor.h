@@ -22,6 +22,8 @@ struct NodeSpec {
     std::string json;  ///< what the factory makes the node from
     /// Where this node lives, if not as the run's option says.
     std::optional<bool> in_process{};
+    /// Any thread may advance it: it has nothing to do with processes, signals or other nodes' state.
+    bool any_thread = false;
 };
 
 struct Progress {
@@ -35,6 +37,7 @@ struct RunOptions {
     bool in_process = false;
     bool realtime = false;        ///< simulated time never runs ahead of the wall clock
     std::uint64_t seed = 1;       ///< for the faults' random streams
+    unsigned threads = 1;         ///< of this process, for nodes that any thread may advance
     double stall_seconds = 10.0;  ///< a node process that does not answer for so long ends the run
     /// A node's wish to end the run (Node::stop) takes effect so much later; no node runs further ahead.
     Time stop_latency = 10 * kMillisecond;
@@ -63,7 +66,7 @@ struct Outcome {
 
     struct NodeReport {
         std::string name;
-        std::string json;  ///< from Node::finish(); empty if the node could not give it
+        std::string json;          ///< from Node::finish(); empty if the node could not give it
         std::uint64_t grants = 0;  ///< differs with placement and load
     };
     struct LinkReport {

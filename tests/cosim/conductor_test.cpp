@@ -187,6 +187,24 @@ TEST_CASE("a node's wish to stop ends the run at the same time in every placemen
     }
 }
 
+TEST_CASE("several threads leave the same trace as one, and name the node that fails") {
+    for (const std::uint64_t seed : {1u, 2u, 3u}) {
+        Run run = toy::random_chatter(seed, 6);
+        const Outcome alone = run();
+        for (NodeSpec& node : run.nodes)
+            node.any_thread = node.name != "n0";
+        for (const unsigned threads : {2u, 4u}) {
+            run.options.threads = threads;
+            check_same(alone, run());
+        }
+        run.nodes.push_back({"bad", "thrower at_us=1000", {}, true});
+        const Outcome failed = run();
+        CHECK(failed.reason == EndReason::Failed);
+        CHECK(failed.node == "bad");
+        CHECK_THAT(failed.text, Catch::Contains("thrown on purpose"));
+    }
+}
+
 TEST_CASE("nodes that want to stop together end the run with the last of them") {
     const int one_us = GENERATE(1, 50'000), other_us = GENERATE(12'345, 49'999);
     Run run = toy::random_chatter(3, 4);

@@ -87,6 +87,12 @@ void declare_run(CLI::App& app, int& status) {
     command->add_option("--linux-arg", options->linux_args)->group("");
     command->add_flag("--in-process", request.in_process,
                       "all nodes in this process (default: each in its own)");
+    command
+        ->add_option(
+            "--threads", request.threads,
+            "with --in-process: threads for the boards (default: by the number of range-and-bearing boards)")
+        ->check(CLI::Range(1, 16))
+        ->type_name("N");
     command->add_flag("--realtime", request.realtime, "pace simulated time by the wall clock");
     command->add_option("--duration", request.duration, "simulated seconds")
         ->check(number_between(kShortestRun, kLongestRun))

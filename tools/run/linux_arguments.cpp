@@ -8,9 +8,9 @@ namespace puckloop::tools {
 
 namespace {
 
-constexpr std::array<std::string_view, 10> kRunOptions{"--firmware", "--linux", "--in-process", "--realtime",
+constexpr std::array<std::string_view, 11> kRunOptions{"--firmware", "--linux", "--in-process", "--realtime",
                                                        "--duration", "--seed",  "--model",      "--out",
-                                                       "--json",     "--stall"};
+                                                       "--json",     "--stall", "--threads"};
 
 bool is_run_option(std::string_view word) {
     return std::any_of(kRunOptions.begin(), kRunOptions.end(), [&](std::string_view option) {

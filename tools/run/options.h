@@ -19,6 +19,7 @@ struct RunRequest {
     std::optional<std::uint64_t> seed;
     bool in_process = false;
     bool realtime = false;
+    unsigned threads = 0;  ///< of this process with in_process; 0: as many as serve
     double stall_seconds = 10.0;
 };
 

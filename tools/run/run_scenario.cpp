@@ -9,7 +9,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
+#include <thread>
 
 namespace puckloop::tools {
 
@@ -35,6 +37,18 @@ void write_results(const RunSetup& setup, cosim::Outcome& outcome, ReservedFile&
     guarded([&] { write_report(setup, outcome, report); });
 }
 
+/// Range-and-bearing boards go in steps of 20 us, each with enough to do to share them out; others hardly.
+unsigned threads_for(const RunSetup& setup, const RunRequest& request) {
+    constexpr unsigned kBoardsOfThread = 3, kMost = 4;
+    if (!request.in_process) return 1;
+    if (request.threads != 0) return request.threads;
+    const auto& robots = setup.scenario.robots;
+    const auto boards = static_cast<unsigned>(
+        std::count_if(robots.begin(), robots.end(), [](const auto& robot) { return robot.rab.has_value(); }));
+    const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
+    return std::clamp(boards / kBoardsOfThread, 1U, std::min(cores, kMost));
+}
+
 }  // namespace
 
 cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
@@ -50,6 +64,7 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
     if (setup.scenario.duration) options.duration = cosim::from_seconds(*setup.scenario.duration);
     options.in_process = request.in_process;
     options.realtime = request.realtime;
+    options.threads = threads_for(setup, request);
     options.seed = setup.scenario.seed;
     options.stall_seconds = request.stall_seconds;
     options.interrupted = interrupted;

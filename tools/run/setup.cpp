@@ -126,11 +126,17 @@ void add_uart1(RunSetup& setup, const RobotBoards& robot, const RunRequest& requ
     setup.links.push_back({name, {name, "uart"}, {robot.name + ".pic", "uart1"}, setup.scenario.uart_baud});
 }
 
+/// A node that any thread may advance.
+void add_free(RunSetup& setup, const std::string& name, const json& spec) {
+    setup.nodes.push_back({name, spec.dump()});
+    setup.nodes.back().any_thread = true;
+}
+
 /// The range-and-bearing board: on the bus, and in the air.
 void add_rab(RunSetup& setup, const RobotBoards& robot) {
     if (!robot.rab) return;
     const std::string rab = robot.name + ".rab";
-    setup.nodes.push_back({rab, rab_spec(setup, robot).dump()});
+    add_free(setup, rab, rab_spec(setup, robot));
     setup.links.push_back({robot.name + ".i2c.rab", {rab, "i2c"}, {robot.name + ".i2c", "rab"}});
     cosim::LinkSpec air{robot.name + ".ir", {rab, "ir"}, {"ir", robot.name + ".ir"}};
     air.signal_names = names_of(rab::signals());
@@ -154,8 +160,8 @@ void add_linux(RunSetup& setup, const RobotBoards& robot, std::int64_t programs,
 void add_robot(RunSetup& setup, const RobotBoards& robot, std::int64_t programs, const RunRequest& request) {
     const std::string pic = robot.name + ".pic";
     const std::string bus = robot.name + ".i2c";
-    setup.nodes.push_back({pic, pic_spec(setup, robot).dump()});
-    setup.nodes.push_back({bus, bus_spec(setup, robot).dump()});
+    add_free(setup, pic, pic_spec(setup, robot));
+    add_free(setup, bus, bus_spec(setup, robot));
     cosim::LinkSpec world{robot.name + ".world", {pic, "world"}, {"world", robot.name + ".board"}};
     world.signal_names = names_of(pic::signals());
     world.record_from_b = false;  // a thousand sensor values a second: in the hash, not in the file
