@@ -12,16 +12,15 @@ namespace {
 constexpr double kOffset = 0.25;  // (level - level0 + 1/4) has curvature 2 at level0, as the likelihood has
 constexpr double kRelativeStep = 2e-5;  // of a prior's width, for differences
 constexpr double kNoiseStep = 1e-5;
-constexpr int kRecentrings = 4;
+constexpr double kConverged = 0.1;  // nats that another round must still bring
 
 /// Which numbers a solver moves: scaled model parameters first, then the noise of each observable.
 class Layout {
   public:
-    Layout(const Model& model, const std::vector<Freed>& freed) : freed_(freed) {
+    Layout(const Model& model, const std::vector<Freed>& freed, bool all_noise) : freed_(freed) {
         for (std::size_t o = 0; o < model.observables().size(); ++o)
-            if (model.observables()[o].noise != NoiseKind::Event)
-                for (int k = 0; k < kNoiseParameters; ++k)
-                    noise_.emplace_back(o, k);
+            for (int k = 0; k < std::min(noise_parameters(model.observables()[o]), all_noise ? 4 : 1); ++k)
+                noise_.emplace_back(o, k);
     }
     std::size_t size() const { return freed_.size() + noise_.size(); }
     std::size_t freed() const { return freed_.size(); }
@@ -203,7 +202,7 @@ ceres::Solver::Options options_for(int iterations) {
     ceres::Solver::Options options;
     options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
     options.max_num_iterations = iterations;
-    options.function_tolerance = 1e-7;
+    options.function_tolerance = 1e-6;
     options.gradient_tolerance = 1e-9;
     options.parameter_tolerance = 1e-7;
     options.initial_trust_region_radius = 1e2;
@@ -211,6 +210,14 @@ ceres::Solver::Options options_for(int iterations) {
     options.minimizer_progress_to_stdout = false;
     options.num_threads = 1;
     return options;
+}
+
+double total(const std::vector<std::vector<double>>& scores, const Weights& weights) {
+    double sum = 0.0;
+    for (std::size_t o = 0; o < scores.size(); ++o)
+        for (std::size_t i = 0; i < scores[o].size(); ++i)
+            sum += (weights.empty() ? 1.0 : weights[o][i]) * scores[o][i];
+    return sum;
 }
 
 }  // namespace
@@ -245,8 +252,8 @@ std::vector<std::vector<double>> row_scores(const Model& model, const State& sta
 }
 
 Fitted fit(const Model& model, const std::vector<Freed>& freed, const State& start, const Weights& weights,
-           int most_iterations) {
-    const Layout layout(model, freed);
+           const Effort& effort) {
+    const Layout layout(model, freed, effort.noise);
     Fitted result;
     result.state = start;
     std::vector<double> x(std::max<std::size_t>(layout.size(), 1));
@@ -259,7 +266,8 @@ Fitted fit(const Model& model, const std::vector<Freed>& freed, const State& sta
     layout.unpack(x.data(), result.state);
     if (layout.size() > 0) {
         Cost cost(model, layout, result.state, weights);
-        for (int round = 0; round < kRecentrings; ++round) {
+        double reached = -INFINITY;
+        for (int round = 0; round < effort.rounds; ++round) {
             ceres::Problem::Options problem_options;
             problem_options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
             ceres::Problem problem(problem_options);
@@ -271,16 +279,17 @@ Fitted fit(const Model& model, const std::vector<Freed>& freed, const State& sta
                 problem.SetParameterUpperBound(x.data(), static_cast<int>(j), high);
             }
             ceres::Solver::Summary summary;
-            ceres::Solve(options_for(most_iterations), &problem, &summary);
+            ceres::Solve(options_for(effort.iterations), &problem, &summary);
             result.iterations += static_cast<int>(summary.iterations.size());
             layout.unpack(x.data(), result.state);
-            if (cost.recentre(result.state) < 0.03) break;
+            if (round + 1 == effort.rounds) break;
+            cost.recentre(result.state);
+            const double better = total(row_scores(model, result.state), weights);
+            if (better < reached + kConverged) break;
+            reached = better;
         }
     }
-    const auto scores = row_scores(model, result.state);
-    for (std::size_t o = 0; o < scores.size(); ++o)
-        for (std::size_t i = 0; i < scores[o].size(); ++i)
-            result.log_likelihood += (weights.empty() ? 1.0 : weights[o][i]) * scores[o][i];
+    result.log_likelihood = total(row_scores(model, result.state), weights);
     for (std::size_t j = 0; j < freed.size(); ++j)
         result.log_prior -= x[j] * x[j] / 2;
     return result;

@@ -33,8 +33,16 @@ struct Fitted {
 
 State neutral_state(const Model& model);
 
+/// How thorough a fit is.
+struct Effort {
+    int iterations = 20;  ///< of the solver
+    int rounds = 6;       ///< of solver and centring
+    bool noise = true;    ///< false: of the noise only its size is fitted
+};
+inline constexpr Effort kThorough{}, kQuick{4, 1, true}, kPart{5, 1, false};
+
 Fitted fit(const Model& model, const std::vector<Freed>& freed, const State& start, const Weights& weights,
-           int most_iterations = 20);
+           const Effort& effort = kThorough);
 
 /// log likelihood of every row, an observable each.
 std::vector<std::vector<double>> row_scores(const Model& model, const State& state);

@@ -17,9 +17,8 @@ class Gradients {
   public:
     Gradients(const Study& study, const Fit& fit) : study_(study), fit_(fit) {
         for (std::size_t o = 0; o < study.model().observables().size(); ++o)
-            if (study.model().observables()[o].noise != NoiseKind::Event)
-                for (int k = 0; k < kNoiseParameters; ++k)
-                    noise_.emplace_back(o, k);
+            for (int k = 0; k < noise_parameters(study.model().observables()[o]); ++k)
+                noise_.emplace_back(o, k);
     }
     std::size_t size() const { return fit_.freed.size() + noise_.size(); }
 

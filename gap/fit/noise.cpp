@@ -13,6 +13,8 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kLeastProbability = 1e-3;  // a model is never surer than this of a single event or clip
 constexpr double kClip = 5.0;               // innovations beyond do not pull the filter further
 constexpr double kLeastSd = 1e-12;
+constexpr double kFixedDrift = -4.0;  // of noise that is not fitted
+constexpr double kFixedTail = 4.0;
 
 double t_constant(double nu) {
     return std::lgamma((nu + 1) / 2) - std::lgamma(nu / 2) - 0.5 * std::log(nu * kPi);
@@ -59,22 +61,33 @@ struct Line {
     }
 };
 
-/// Random walk under noise; variances in units of the noise.
+/// Random walk plus carried-over measurement error; variances in units of the error's.
 struct Walk {
-    double level = 0.0, variance = 1.0;
+    double level = 0.0, error = 0.0;
+    double p00 = 1.0, p01 = -1.0, p11 = 1.0;
 
-    double filter(double value, double drift, double& innovation) {
-        variance += drift;
-        const double total = variance + 1;
-        innovation = value - level;
-        const double root = std::sqrt(total);
-        if (std::abs(innovation) > kClip * root) {  // pushed: the sum goes on from there
-            level = value;
-            variance = 1;
-        } else {
-            level += variance / total * innovation;
-            variance /= total;
+    /// The first row: level and error are known only together.
+    void begin(double value) { *this = {value, 0.0, 1.0, -1.0, 1.0}; }
+
+    /// Returns the innovation's variance.
+    double filter(double value, double drift, double memory, double& innovation) {
+        p00 += drift;
+        p01 *= memory;
+        p11 = memory * memory * p11 + 1 - memory * memory;
+        error *= memory;
+        innovation = value - level - error;
+        const double total = std::max(p00 + 2 * p01 + p11, 1e-9);
+        if (innovation * innovation > kClip * kClip * total) {  // pushed: the sum goes on from there
+            begin(value);
+            return total;
         }
+        const double k0 = (p00 + p01) / total, k1 = (p01 + p11) / total;
+        level += k0 * innovation;
+        error += k1 * innovation;
+        const double g0 = p00 + p01, g1 = p01 + p11;
+        p00 -= k0 * g0;
+        p01 -= k0 * g1;
+        p11 -= k1 * g1;
         return total;
     }
 };
@@ -93,7 +106,12 @@ void event_costs(const Observable& o, const Predicted& p, RowCosts& out) {
 }  // namespace
 
 double& noise_parameter(NoiseParameters& noise, int index) {
-    return index == 0 ? noise.log_sd : index == 1 ? noise.carry : noise.log_tail;
+    return index == 0 ? noise.log_sd : index == 1 ? noise.carry : index == 2 ? noise.log_tail : noise.memory;
+}
+
+int noise_parameters(const Observable& observable) {
+    if (observable.fixed_sd > 0) return 0;
+    return observable.noise == NoiseKind::Event ? 0 : observable.noise == NoiseKind::Level ? 4 : 3;
 }
 
 void noise_bounds(NoiseKind kind, int index, double& low, double& high) {
@@ -103,9 +121,12 @@ void noise_bounds(NoiseKind kind, int index, double& low, double& high) {
     } else if (index == 1) {
         low = kind == NoiseKind::Level ? -16.0 : -0.5;
         high = kind == NoiseKind::Level ? 6.0 : 0.97;
-    } else {
+    } else if (index == 2) {
         low = std::log(2.2);
         high = std::log(60.0);
+    } else {
+        low = 0.0;
+        high = 0.95;
     }
 }
 
@@ -160,12 +181,12 @@ void row_costs(const Observable& o, const Predicted& p, const NoiseParameters& n
         double innovation = error, variance = 1.0;
         if (o.noise == NoiseKind::Level) {
             if (!carried) {  // the first row only says where the sum begins
-                walk.level = error;
+                walk.begin(error);
                 out.shape[i] = out.level[i] = out.innovation[i] = 0.0;
                 carried = true;
                 continue;
             }
-            variance = walk.filter(error, drift, innovation);
+            variance = walk.filter(error, drift + at(o.walk, i, 0.0), noise.memory, innovation);
         } else {
             const double kept = carried ? noise.carry : 0.0;
             innovation = error - kept * last;
@@ -211,6 +232,7 @@ NoiseParameters first_guess(const Observable& o, const Predicted& p) {
     NoiseParameters guess;
     if (o.noise == NoiseKind::Event) return guess;
     const bool level = o.noise == NoiseKind::Level;
+    if (o.fixed_sd > 0) return {std::log(o.fixed_sd), kFixedDrift, std::log(kFixedTail), 0.0};
     std::vector<double> sizes;
     double last = 0.0, product = 0.0, square = 0.0;
     for (std::size_t i = 0; i < o.y.size(); ++i) {
@@ -235,7 +257,8 @@ NoiseParameters first_guess(const Observable& o, const Predicted& p) {
     }
     guess.log_sd = std::log(sd);
     guess.log_tail = std::log(8.0);
-    guess.carry = level ? -4.0 : std::clamp(square > 0 ? product / square : 0.0, 0.0, 0.9);
+    guess.memory = level ? 0.3 : 0.0;
+    guess.carry = level ? -7.0 : std::clamp(square > 0 ? product / square : 0.0, 0.0, 0.9);
     return guess;
 }
 

@@ -18,8 +18,10 @@ struct NoiseParameters {
     double carry =
         0.0;  ///< Carry: share of the previous error kept. Level: ln(drift variance / noise variance)
     double log_tail = 3.0;  ///< ln of Student's degrees of freedom
+    double memory = 0.0;    ///< Level only: share of the previous measurement error kept
 };
-inline constexpr int kNoiseParameters = 3;
+/// How many of the four an observable's noise has free.
+int noise_parameters(const Observable& observable);
 double& noise_parameter(NoiseParameters& noise, int index);
 /// Bounds of the three, by kind of noise.
 void noise_bounds(NoiseKind kind, int index, double& low, double& high);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace puckloop::gap {
 
@@ -14,7 +15,10 @@ constexpr double kEnoughBic = 8.0;         // to be chosen; calibrated on data w
 constexpr double kEnoughDeviations = 1.6;  // of the held-out gain
 constexpr double kEnoughBlocks = 0.5;      // share of blocks that gain
 constexpr std::size_t kValidated = 3;      // best by BIC that are cross-validated
-constexpr double kDraw = 6.0;              // difference of BIC that tells nothing
+constexpr std::size_t kRefined = 5;        // best by a quick fit that are fitted to the end
+constexpr double kHopeless = 10.0;
+constexpr double kNoRival = 0.3;  // share of the evidence that a rival has alone, at least
+constexpr double kDraw = 6.0;     // difference of BIC that tells nothing
 
 bool has(const std::vector<std::size_t>& set, std::size_t effect) {
     return std::find(set.begin(), set.end(), effect) != set.end();
@@ -73,13 +77,24 @@ class Selector {
                  begin + 0.15 * static_cast<double>(i) / static_cast<double>(count));
             auto set = chosen.effects;
             set.push_back(i);
-            Fit fit = study_.fit_set(set, chosen.fitted.state);
-            Trial& trial = result_.trials[i];
-            if (chosen.effects.empty() || !trial.validated) trial.delta_bic = chosen.bic - fit.bic;
-            fits.emplace_back(chosen.bic - fit.bic, std::move(fit));
+            Fit fit = study_.fit_set(set, chosen.fitted.state, kQuick);
+            const double delta = chosen.bic - fit.bic;
+            fits.emplace_back(delta, std::move(fit));
         }
-        std::stable_sort(fits.begin(), fits.end(),
-                         [](const auto& a, const auto& b) { return a.first > b.first; });
+        const auto best_first = [](const auto& x, const auto& y) { return x.first > y.first; };
+        std::stable_sort(fits.begin(), fits.end(), best_first);
+        for (std::size_t k = 0; k < std::min(fits.size(), kRefined); ++k) {
+            if (fits[k].first < -kHopeless) break;
+            fits[k].second = study_.refined(fits[k].second);
+            fits[k].first = chosen.bic - fits[k].second.bic;
+        }
+        std::stable_sort(fits.begin(), fits.end(), best_first);
+        for (const auto& [delta, fit] : fits) {
+            Trial& trial = result_.trials[fit.effects.back()];
+            if (chosen.effects.empty() || !trial.validated) trial.delta_bic = delta;
+            if (chosen.effects.empty()) alone_[fit.effects.back()] = delta;
+        }
+        last_step_ = fits;
         if (fits.size() > kValidated) fits.resize(kValidated);
         double best_gain = 0.0;
         std::size_t best = fits.size();
@@ -104,6 +119,7 @@ class Selector {
             }
         }
         if (best == fits.size()) return false;
+        last_step_of_choice_ = last_step_;
         result_.steps.push_back({fits[best].second.effects.back(), fits[best].first, gains[best], true, ""});
         result_.chosen = std::move(fits[best].second);
         result_.held_chosen = std::move(helds[best]);
@@ -134,6 +150,7 @@ class Selector {
             for (std::size_t rival = 0; rival < study_.candidates().size(); ++rival) {
                 if (!study_.candidates()[rival].remark.empty() || has(result_.chosen.effects, rival))
                     continue;
+                if (alone_[rival] < kNoRival * alone_[effect]) continue;
                 Fit fit = study_.fit_set(replaced(result_.chosen.effects, effect, rival),
                                          without(study_, result_.chosen, effect));
                 if (fit.bic > result_.chosen.bic - kDraw) continue;
@@ -153,8 +170,16 @@ class Selector {
                 if (!study_.candidates()[rival].remark.empty() || has(result_.chosen.effects, rival))
                     continue;
                 if (nested(rival, effect)) continue;
-                Fit fit = study_.fit_set(replaced(result_.chosen.effects, effect, rival),
+                Fit fit;
+                if (effect == result_.chosen.effects.back() && known(rival, fit)) {
+                    if (fit.bic > result_.chosen.bic + kDraw) continue;
+                } else {
+                    // An effect that alone said next to nothing of what the chosen one said is no rival of
+                    // it.
+                    if (alone_[rival] < kNoRival * alone_[effect]) continue;
+                    fit = study_.fit_set(replaced(result_.chosen.effects, effect, rival),
                                          without(study_, result_.chosen, effect));
+                }
                 const double delta = fit.bic - result_.chosen.bic;
                 if (delta > kDraw) continue;
                 const HeldOut held = study_.hold_out(fit);
@@ -165,6 +190,20 @@ class Selector {
             }
         std::stable_sort(result_.draws.begin(), result_.draws.end(),
                          [](const Draw& a, const Draw& b) { return a.delta_bic < b.delta_bic; });
+    }
+
+    /// The last step has tried `rival` in the place of the last choice.
+    bool known(std::size_t rival, Fit& fit) const {
+        for (const auto& [delta, tried] : last_step_of_choice_) {
+            (void)delta;
+            auto set = tried.effects, chosen = result_.chosen.effects;
+            if (set.size() != chosen.size() || set.back() != rival ||
+                !std::equal(set.begin(), set.end() - 1, chosen.begin()))
+                continue;
+            fit = tried;
+            return true;
+        }
+        return false;
     }
 
     /// Does `outer` free all that `inner` does? Then it can always say the same, and says it with more words.
@@ -179,6 +218,8 @@ class Selector {
     const Study& study_;
     const std::function<void(const std::string&, double)>& progress_;
     Selection result_;
+    std::map<std::size_t, double> alone_;  // delta BIC at the first step
+    std::vector<std::pair<double, Fit>> last_step_, last_step_of_choice_;
 };
 
 }  // namespace

@@ -17,7 +17,6 @@ namespace {
 constexpr std::size_t kMostFolds = 5;
 constexpr std::size_t kLeastBlocks = 16;  // fewer independent blocks make no interval
 constexpr std::size_t kLeastBlockRows = 8;
-constexpr int kHeldOutIterations = 6;
 
 bool varies(const Experiment& experiment, std::string_view column) {
     double low = INFINITY, high = -INFINITY;
@@ -147,7 +146,7 @@ Fit Study::fit_none() const {
     return result;
 }
 
-Fit Study::fit_set(const std::vector<std::size_t>& effects, const State& from) const {
+Fit Study::fit_set(const std::vector<std::size_t>& effects, const State& from, const Effort& effort) const {
     Fit best;
     best.effects = effects;
     best.freed = freed_by(effects);
@@ -157,16 +156,26 @@ Fit Study::fit_set(const std::vector<std::size_t>& effects, const State& from) c
         State state = from;
         for (std::size_t j = 0; j < last.freed.size(); ++j)
             state.values[static_cast<std::size_t>(last.freed[j].index)] = start[j];
-        const Fitted fitted = fit(*model_, best.freed, state, {});
-        const double bic =
-            -2 * fitted.log_likelihood + static_cast<double>(best.freed.size()) *
-                                             std::log(static_cast<double>(std::max<std::size_t>(rows_, 2)));
+        const Fitted fitted = fit(*model_, best.freed, state, {}, effort);
+        const double bic = bic_of(fitted, best.freed.size());
         if (bic < best.bic) {
             best.bic = bic;
             best.fitted = fitted;
         }
     }
     return best;
+}
+
+Fit Study::refined(const Fit& quick) const {
+    Fit fit_again = quick;
+    fit_again.fitted = fit(*model_, quick.freed, quick.fitted.state, {});
+    fit_again.bic = bic_of(fit_again.fitted, quick.freed.size());
+    return fit_again;
+}
+
+double Study::bic_of(const Fitted& fitted, std::size_t parameters) const {
+    return -2 * fitted.log_likelihood +
+           static_cast<double>(parameters) * std::log(static_cast<double>(std::max<std::size_t>(rows_, 2)));
 }
 
 HeldOut Study::hold_out(const Fit& whole) const {
@@ -184,7 +193,7 @@ HeldOut Study::hold_out(const Fit& whole) const {
             for (const int f : fold)
                 weights.back().push_back(f == static_cast<int>(k) ? 0.0 : 1.0);
         }
-        const Fitted part = fit(*model_, whole.freed, whole.fitted.state, weights, kHeldOutIterations);
+        const Fitted part = fit(*model_, whole.freed, whole.fitted.state, weights, kPart);
         const auto costs = costs_at(*model_, part.state, prediction);
         for (std::size_t o = 0; o < observables.size(); ++o)
             for (std::size_t i = 0; i < fold_[o].size(); ++i)

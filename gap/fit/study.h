@@ -49,7 +49,10 @@ class Study {
     const Blocks& blocks() const { return blocks_; }
 
     /// Fits a set; begins at `from` and, for the last effect of the set, at each of its starts.
-    Fit fit_set(const std::vector<std::size_t>& effects, const State& from) const;
+    Fit fit_set(const std::vector<std::size_t>& effects, const State& from,
+                const Effort& effort = kThorough) const;
+    /// The same set again, from where `quick` ended.
+    Fit refined(const Fit& quick) const;
     Fit fit_none() const;
     /// Cross-validation of a set that was fitted to all rows.
     HeldOut hold_out(const Fit& fit) const;
@@ -57,6 +60,7 @@ class Study {
   private:
     void make_candidates();
     void make_folds(std::uint64_t seed);
+    double bic_of(const Fitted& fitted, std::size_t parameters) const;
     std::string missing_for(const Effect& effect) const;
     std::vector<Freed> freed_by(const std::vector<std::size_t>& effects) const;
 

@@ -32,7 +32,10 @@ struct Observable {
     std::vector<char> starts;  ///< 1: nothing is carried over into this row
     std::vector<double> time;  ///< s; empty when unknown
     std::vector<double> gate;  ///< weight of the spectral line in this row; empty: 1
-    double known_sd = 0.0;     ///< noise that the simulator claims; 0: it claims none
+    std::vector<double>
+        walk;  ///< Level: variance that the sum gains in this row for sure, in units of the noise's
+    double fixed_sd = 0.0;  ///< > 0: the noise is this and is not fitted (whole steps of an emulated counter)
+    double known_sd = 0.0;  ///< noise that the simulator claims; 0: it claims none
 };
 
 /// What the model says of one observable. Empty vectors stand for the neutral value.

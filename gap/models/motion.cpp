@@ -23,6 +23,7 @@ namespace {
 constexpr double kStill = 1e-6;  // m: less than this between rows is standing
 constexpr double kEdge = 0.05;   // width of the dead band's edge, share of it
 constexpr double kGravity = 9.81;
+constexpr double kCounterSd = 0.7;  // steps: whole steps, and when a row was taken
 
 struct Path {
     std::uint32_t run = 0;
@@ -114,6 +115,11 @@ class MotionModel final : public Model {
             one.unit = o == 2 ? "rad" : "m";
             one.instrument = {NAN, NAN, 0.0};
             one.y = sums[o];
+            // Turning mixes the tracker's noise of along and across: their sums wander.
+            if (o < 2)
+                for (const Path& path : paths_)
+                    for (const double turned : path.turned)
+                        one.walk.push_back(turned * turned);
             for (std::size_t i = 1; i < one.y.size(); ++i)
                 one.starts[i] = base.run[i] != base.run[i - 1] ? 1 : 0;
         }
@@ -126,7 +132,8 @@ class MotionModel final : public Model {
             const Rows rows(experiment, "", {"t_s", kNames[w]});
             Observable one = rows.observable(kNames[w], NoiseKind::Level, counter_rows_[w]);
             one.unit = "steps";
-            one.instrument.quantum = std::max(one.instrument.quantum, 1.0);
+            one.instrument.quantum = 0.0;
+            one.fixed_sd = kCounterSd;
             for (std::size_t i = 0; i < one.y.size(); ++i)
                 one.starts[i] = i == 0 || one.run[i] != one.run[i - 1] ? 1 : 0;
             observables_.push_back(std::move(one));
@@ -291,8 +298,13 @@ class MotionModel final : public Model {
                 const double start = own.at(o.time[i]);
                 const double origin = o.y[i];
                 CurveReader again(paths_[path].asked[w]);
+                double last = start,
+                       half = 0.0;  // a step is counted when it is over: half a step late on average
                 for (; i < o.y.size() && o.run[i] == run; ++i) {
-                    p.mean[i] = origin + again.at(o.time[i] - latency) - start;
+                    const double asked = again.at(o.time[i] - latency);
+                    if (std::abs(asked - last) > 0.5) half = std::copysign(0.5, asked - last);
+                    last = asked;
+                    p.mean[i] = origin + asked - start - half;
                     if (drop <= 0) continue;
                     const double span = o.starts[i] != 0 ? 0.0 : o.time[i] - o.time[i - 1];
                     const double scale =

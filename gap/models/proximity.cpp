@@ -96,20 +96,27 @@ class ProximityModel final : public Model {
                      age = value(age_);
         const double light_offset = value(ambient_offset_), light_gain = value(ambient_gain_),
                      volt = value(per_volt_), drift = value(drift_);
+        // What the curve says changes with few parameters: the rest reuse it.
+        std::vector<double> key{response.curve,
+                                response.amplitude,
+                                response.origin,
+                                response.exponent,
+                                response.saturation,
+                                response.reach,
+                                response.compression,
+                                response.extra_exponent,
+                                shift,
+                                exponent,
+                                age};
+        for (const int index : first_of_.direction)
+            if (index >= 0) key.push_back(value(index));
+        if (key != seen_key_) {
+            seen_key_ = key;
+            see(response, shift, exponent, age, v);
+        }
         for (std::size_t i = 0; i < n; ++i) {
             const auto s = static_cast<std::size_t>(sensor_[i]);
-            double distance = distance_[i] - age * velocity_[i];
-            const double normal = (distance + shift) * cosine_[i];  // from the sensor to the wall's plane
-            const double turned = value(first_of_.direction[s]) - angle0_[s];
-            double seen = 0.0;
-            for (std::size_t k = 0; k < spread_.size(); ++k) {
-                const double cosine = turned == 0.0 ? ray_cosine_[i * spread_.size() + k]
-                                                    : std::cos(angle_[i] - turned + spread_[k]);
-                if (cosine < kGrazing) continue;
-                const double weight = exponent == 1.0 ? cosine : std::pow(cosine, exponent);
-                seen += weight * physics::proximity_response(response, normal / cosine);
-            }
-            seen *= reflectivity_[i] / static_cast<double>(spread_.size());
+            double seen = seen_[i];
             if (!object_.empty()) seen *= value(object_parameter_[static_cast<std::size_t>(object_[i])]);
             seen += pair * pair_[i] + near * neighbour_[i];
             double gain =
@@ -131,6 +138,29 @@ class ProximityModel final : public Model {
     }
 
   private:
+    /// Reflected counts of every row before gains: the part that costs time.
+    void see(const physics::ProximityParameters& response, double shift, double exponent, double age,
+             const std::vector<double>& v) const {
+        const auto value = [&](int index) { return v[static_cast<std::size_t>(index)]; };
+        seen_.resize(distance_.size());
+        for (std::size_t i = 0; i < seen_.size(); ++i) {
+            const auto s = static_cast<std::size_t>(sensor_[i]);
+            double distance = distance_[i] - age * velocity_[i];
+            const double normal = (distance + shift) * cosine_[i];  // from the sensor to the wall's plane
+            const double turned = value(first_of_.direction[s]) - angle0_[s];
+            double seen = 0.0;
+            for (std::size_t k = 0; k < spread_.size(); ++k) {
+                const double cosine = turned == 0.0 ? ray_cosine_[i * spread_.size() + k]
+                                                    : std::cos(angle_[i] - turned + spread_[k]);
+                if (cosine < kGrazing) continue;
+                const double weight = exponent == 1.0 ? cosine : std::pow(cosine, exponent);
+                seen += weight * physics::proximity_response(response, normal / cosine);
+            }
+            seen *= reflectivity_[i] / static_cast<double>(spread_.size());
+            seen_[i] = seen;
+        }
+    }
+
     struct PerSensor {
         std::array<int, physics::kProximitySensors> gain{}, offset{}, direction{};
     };
@@ -252,6 +282,7 @@ class ProximityModel final : public Model {
     }
 
     physics::ProximityParameters physics_;
+    mutable std::vector<double> seen_, seen_key_;
     std::vector<double> spread_, cosine_, ray_cosine_;
     std::vector<double> distance_, angle_, reflectivity_, ambient_, pair_, neighbour_, motor_, velocity_,
         time_, others_, battery_, order_;
