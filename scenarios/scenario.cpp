@@ -123,6 +123,9 @@ void apply_overlay(Scenario& scenario, const std::filesystem::path& file) {
                 body->parameters[parameter] = value;
         reader.finish();
     }
+    if (const TomlValue* table = top.table("measurement"))
+        for (const auto& [parameter, value] : std::get<TomlTable>(table->data))
+            scenario.passed_over.push_back(parameter);
     top.finish();
     physics::check(scenario.world);
 }

@@ -59,6 +59,8 @@ struct Scenario {
     physics::World world;         ///< robots in the same order as `robots`
     std::vector<RobotBoards> robots;
     std::vector<cosim::FaultSpec> faults;
+    std::vector<std::string>
+        passed_over{};  ///< an overlay's [measurement]: of the measuring chain, not of a run
 };
 
 /// Reads and checks a scenario; paths in it are relative to its own folder. Throws InputError with file and

@@ -10,7 +10,7 @@ Effect dead_zone() {
         .mechanism = "A threshold in the sensor or its software.",
         .equation = "y = 0 where y < theta",
         .kinds = {Kind::Proximity},
-        .parameters = {{"proximity.threshold", 1.0, 2500.0, 150.0, {20.0, 80.0}, "1060 on another robot"}},
+        .parameters = {{"proximity.threshold", 1.0, 2500.0, 150.0, {}, "1060 on another robot"}},
         .needs = {},
         .observables = "readings near the floor",
         .enters = "proximity.threshold",

@@ -18,7 +18,7 @@ Effect pulsed_interference() {
                         200.0,
                         {60.0, 200.0},
                         "tens to hundreds of counts"}},
-        .needs = {"neighbours"},
+        .needs = {},
         .observables = "two-sided outliers",
         .enters = "other robots in the scenario",
         .confounded = {"proportional_noise"},

@@ -12,7 +12,8 @@ namespace {
 constexpr double kOffset = 0.25;  // (level - level0 + 1/4) has curvature 2 at level0, as the likelihood has
 constexpr double kRelativeStep = 2e-5;  // of a prior's width, for differences
 constexpr double kNoiseStep = 1e-5;
-constexpr double kConverged = 0.1;  // nats that another round must still bring
+constexpr double kClaimDoubt = 0.08;  // of ln sd, where the simulator claims one
+constexpr double kConverged = 0.1;    // nats that another round must still bring
 
 /// Which numbers a solver moves: scaled model parameters first, then the noise of each observable.
 class Layout {
@@ -57,6 +58,14 @@ class Layout {
     std::vector<std::pair<std::size_t, int>> noise_;
 };
 
+/// How far the noise is from what the simulator claims, in units of the claim's own doubt.
+double claim_error(const Observable& observable, const NoiseParameters& noise) {
+    if (observable.known_sd <= 0) return 0.0;
+    const double nu = std::exp(noise.log_tail);
+    const double sd = noise.log_sd + 0.5 * std::log(nu / std::max(nu - 2, 0.5));
+    return (sd - std::log(observable.known_sd)) / kClaimDoubt;
+}
+
 /// All rows as one vector of residuals: shape and other of each row, level of each row (or one for all where
 /// the noise is the same in all rows), and the priors.
 class Cost final : public ceres::CostFunction {
@@ -71,7 +80,7 @@ class Cost final : public ceres::CostFunction {
             rows += rich_ ? 3 * n : n + 1;
         }
         priors_ = rows;
-        rows += static_cast<int>(layout.freed());
+        rows += static_cast<int>(layout.freed() + model.observables().size());
         set_num_residuals(rows);
         mutable_parameter_block_sizes()->push_back(static_cast<int>(layout.size()));
         recentre(state_);
@@ -100,6 +109,9 @@ class Cost final : public ceres::CostFunction {
         const auto n = static_cast<std::size_t>(num_residuals()), width = layout_.size();
         for (std::size_t j = 0; j < layout_.freed(); ++j)
             residuals[static_cast<std::size_t>(priors_) + j] = x[j];
+        const std::size_t claims = static_cast<std::size_t>(priors_) + layout_.freed();
+        for (std::size_t o = 0; o < model_.observables().size(); ++o)
+            residuals[claims + o] = claim_error(model_.observables()[o], state_.noise[o]);
         if (jacobians == nullptr || jacobians[0] == nullptr) return true;
         std::fill(jacobians[0], jacobians[0] + n * width, 0.0);
         std::vector<double> moved_x(x, x + width);
@@ -127,6 +139,11 @@ class Cost final : public ceres::CostFunction {
                                                        : static_cast<std::size_t>(priors_);
                 for (std::size_t i = begin; i < end; ++i)
                     jacobians[0][i * width + j] = (moved_[i] - residuals[i]) / step;
+            }
+            if (j >= layout_.freed()) {
+                const std::size_t o = layout_.observable(j);
+                jacobians[0][(claims + o) * width + j] =
+                    (claim_error(model_.observables()[o], state_.noise[o]) - residuals[claims + o]) / step;
             }
             if (j < layout_.freed()) jacobians[0][(static_cast<std::size_t>(priors_) + j) * width + j] = 1.0;
         }
@@ -290,6 +307,10 @@ Fitted fit(const Model& model, const std::vector<Freed>& freed, const State& sta
         }
     }
     result.log_likelihood = total(row_scores(model, result.state), weights);
+    for (std::size_t o = 0; o < model.observables().size(); ++o) {
+        const double off = claim_error(model.observables()[o], result.state.noise[o]);
+        result.log_likelihood -= off * off / 2;
+    }
     for (std::size_t j = 0; j < freed.size(); ++j)
         result.log_prior -= x[j] * x[j] / 2;
     return result;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <string_view>
 
 namespace puckloop::gap {
 
@@ -19,6 +20,17 @@ constexpr std::size_t kRefined = 5;        // best by a quick fit that are fitte
 constexpr double kHopeless = 10.0;
 constexpr double kNoRival = 0.3;  // share of the evidence that a rival has alone, at least
 constexpr double kDraw = 6.0;     // difference of BIC that tells nothing
+
+/// Effects that act as rare outliers: heavy-tailed noise looks much the same, so they must say far more.
+constexpr std::string_view kOutliers[] = {"multipath", "collision_push", "pulsed_interference",
+                                          "command_loss"};
+constexpr double kEnoughForOutliers = 60.0;
+
+double enough_for(const Effect& effect) {
+    return std::find(std::begin(kOutliers), std::end(kOutliers), effect.name) != std::end(kOutliers)
+               ? kEnoughForOutliers
+               : kEnoughBic;
+}
 
 bool has(const std::vector<std::size_t>& set, std::size_t effect) {
     return std::find(set.begin(), set.end(), effect) != set.end();
@@ -101,7 +113,8 @@ class Selector {
         std::vector<HeldOut> helds(fits.size());
         std::vector<Gain> gains(fits.size());
         for (std::size_t k = 0; k < fits.size(); ++k) {
-            if (fits[k].first < kEnoughBic) break;
+            if (fits[k].first < enough_for(*study_.candidates()[fits[k].second.effects.back()].effect))
+                continue;
             helds[k] = study_.hold_out(fits[k].second);
             gains[k] = gain_of(gains_by_block(study_.blocks(), result_.held_chosen, helds[k]));
             Trial& trial = result_.trials[fits[k].second.effects.back()];

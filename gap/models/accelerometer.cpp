@@ -36,10 +36,8 @@ class AccelerometerModel final : public Model {
             for (std::size_t i = 0; i < used.size(); ++i) {
                 const double sp = std::sin(pitch[i]), cp = std::cos(pitch[i]), sr = std::sin(roll[i]),
                              cr = std::cos(roll[i]);
-                one.felt.push_back({-(left[i] * cr + kGravity * cp * sr * -1) / kGravity,
-                                    -(forward[i] * cp + kGravity * sp) / kGravity,
-                                    (kGravity * cp * cr - forward[i] * sp) / kGravity});
-                one.felt.back()[0] = -(left[i] / kGravity * cr - cp * sr);
+                one.felt.push_back({-left[i] * cr / kGravity - cp * sr, -forward[i] * cp / kGravity - sp,
+                                    cp * cr - forward[i] * sp / kGravity + left[i] * sr / kGravity});
             }
             one.motor = column("motor_speed");
             for (double& speed : one.motor)

@@ -24,6 +24,7 @@ namespace puckloop::gap {
 namespace {
 
 constexpr std::size_t kMostObjects = 8;  // stated reflectivities that count as objects
+constexpr double kEdge = 0.01;           // width of the dead zone's edge, share of it
 constexpr double kGrazing = 0.02;        // cosine below which a wall is not met
 constexpr double kSpeedUnit = 1000.0;    // steps/s: motor effects are given at this speed
 
@@ -94,6 +95,7 @@ class ProximityModel final : public Model {
                      near = value(neighbour_crosstalk_);
         const double warm = value(warmup_), warm_time = value(warmup_time_), sag = value(sag_),
                      age = value(age_);
+        const double threshold = value(threshold_);
         const double light_offset = value(ambient_offset_), light_gain = value(ambient_gain_),
                      volt = value(per_volt_), drift = value(drift_);
         // What the curve says changes with few parameters: the rest reuse it.
@@ -124,20 +126,41 @@ class ProximityModel final : public Model {
             if (warm != 0.0) gain *= 1 + warm * (1 - std::exp(-std::max(time_[i], 0.0) / warm_time));
             if (!battery_.empty()) gain *= 1 + volt * battery_[i];
             if (!order_.empty()) gain *= 1 + drift * order_[i];
-            p.mean[i] = gain * seen + value(first_of_.offset[s]) + light_offset * ambient_[i];
+            double answer = gain * seen;
+            if (threshold > 0) answer *= 1 / (1 + std::exp(-(answer - threshold) / (kEdge * threshold)));
+            p.mean[i] = answer + value(first_of_.offset[s]) + light_offset * ambient_[i];
         }
         noise(v, p);
     }
 
     /// The strongest line of the residuals' differences, all chains together.
     std::vector<double> starts(std::string_view parameter) const override {
-        if (parameter != "proximity.flicker_frequency") return {};
         Prediction prediction;
+        if (parameter == "proximity.threshold") return thresholds();
+        if (parameter != "proximity.flicker_frequency") return {};
         predict(neutral(), prediction);
         return strongest_line(observables_[0], prediction[0].mean);
     }
 
   private:
+    /// The two dead zones that leave the smallest errors, of a grid.
+    std::vector<double> thresholds() const {
+        constexpr double kLowest = 3.0, kHighest = 2000.0, kRatio = 1.25;
+        std::vector<std::pair<double, double>> found;
+        std::vector<double> values = neutral();
+        Prediction prediction;
+        for (double threshold = kLowest; threshold < kHighest; threshold *= kRatio) {
+            values[static_cast<std::size_t>(threshold_)] = threshold;
+            predict(values, prediction);
+            double sum = 0.0;
+            for (std::size_t i = 0; i < prediction[0].mean.size(); ++i)
+                sum += std::abs(observables_[0].y[i] - prediction[0].mean[i]);
+            found.emplace_back(sum, threshold);
+        }
+        std::sort(found.begin(), found.end());
+        return {found[0].second, found[1].second};
+    }
+
     /// Reflected counts of every row before gains: the part that costs time.
     void see(const physics::ProximityParameters& response, double shift, double exponent, double age,
              const std::vector<double>& v) const {
@@ -276,7 +299,6 @@ class ProximityModel final : public Model {
             for (std::size_t i = 0; i < n; ++i)
                 p.lapse[i] = std::min(rate * others_[i], 0.9);
         }
-        p.floor = value(threshold_);
         p.line_amplitude = value(line_);
         p.line_frequency = value(line_frequency_);
     }

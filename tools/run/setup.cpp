@@ -196,6 +196,10 @@ RunSetup set_up(const RunRequest& request) {
     setup.scenario = scenarios::read_scenario(request.scenario);
     Scenario& scenario = setup.scenario;
     apply(request, scenario);
+    if (!scenario.passed_over.empty())
+        setup.warnings.push_back(
+            fmt::format("{}: [measurement] is of the measuring chain and not of this run: {}",
+                        request.overlay.string(), fmt::join(scenario.passed_over, ", ")));
     setup.out = std::filesystem::absolute(request.out.empty() ? std::filesystem::path("out") / scenario.name
                                                               : request.out);
 
