@@ -16,7 +16,25 @@ namespace {
 
 constexpr std::size_t kMostFolds = 5;
 constexpr std::size_t kLeastBlocks = 16;  // fewer independent blocks make no interval
+constexpr std::size_t kEnoughRuns =
+    6;  // then whole runs are the blocks: parts of a run share its day and place
 constexpr std::size_t kLeastBlockRows = 8;
+
+constexpr int kMostRounds = 20;   // of fitting the noise alone
+constexpr double kSettled = 0.1;  // nats that a round must bring
+
+bool same(const std::vector<double>& a, const std::vector<double>& b) {
+    if (a.size() != b.size()) return false;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        if (a[i] != b[i] && !(std::isnan(a[i]) && std::isnan(b[i]))) return false;
+    return true;
+}
+
+bool differ(const Predicted& a, const Predicted& b) {
+    return !same(a.mean, b.mean) || !same(a.factor, b.factor) || !same(a.extra, b.extra) ||
+           !same(a.lapse, b.lapse) || !same(a.lapse_scale, b.lapse_scale) || a.lapse_shift != b.lapse_shift ||
+           a.floor != b.floor || a.line_amplitude != b.line_amplitude || a.line_frequency != b.line_frequency;
+}
 
 bool varies(const Experiment& experiment, std::string_view column) {
     double low = INFINITY, high = -INFINITY;
@@ -67,6 +85,22 @@ std::string Study::missing_for(const Effect& effect) const {
     return "";
 }
 
+/// Does any prediction change with the candidate's parameters?
+bool Study::matters(const Candidate& candidate) const {
+    Prediction neutral, moved;
+    model_->predict(model_->neutral(), neutral);
+    for (const double sign : {1.0, -1.0}) {
+        std::vector<double> values = model_->neutral();
+        for (const Freed& one : candidate.freed)
+            values[static_cast<std::size_t>(one.index)] =
+                std::clamp(one.centre + sign * one.prior_sd, one.low, one.high);
+        model_->predict(values, moved);
+        for (std::size_t o = 0; o < neutral.size(); ++o)
+            if (differ(neutral[o], moved[o])) return true;
+    }
+    return false;
+}
+
 void Study::make_candidates() {
     for (const Effect* effect : effects_of(experiment_.kind)) {
         Candidate candidate;
@@ -93,6 +127,8 @@ void Study::make_candidates() {
                                                : own[j][std::min(round, own[j].size() - 1)]);
             candidate.starts.push_back(std::move(start));
         }
+        if (candidate.remark.empty() && !matters(candidate))
+            candidate.remark = "nothing in this data depends on it";
         candidates_.push_back(std::move(candidate));
     }
 }
@@ -110,7 +146,7 @@ void Study::make_folds(std::uint64_t seed) {
     for (std::size_t i = 0; i < runs; ++i)
         place[order[i]] = i;
     const std::size_t pieces =
-        std::max<std::size_t>(1, (kLeastBlocks + runs - 1) / std::max<std::size_t>(runs, 1));
+        runs >= kEnoughRuns ? 1 : (kLeastBlocks + runs - 1) / std::max<std::size_t>(runs, 1);
     blocks_.count = runs * pieces;
     for (const Observable& observable : model_->observables()) {
         std::vector<int> fold;
@@ -142,6 +178,14 @@ std::vector<Freed> Study::freed_by(const std::vector<std::size_t>& effects) cons
 Fit Study::fit_none() const {
     Fit result;
     result.fitted = fit(*model_, {}, neutral_state(*model_), {});
+    // Noise far from its first guess takes several rounds; what it lacked would be credited to the first
+    // effect.
+    for (int round = 0; round < kMostRounds; ++round) {
+        Fitted better = fit(*model_, {}, result.fitted.state, {});
+        const bool settled = better.log_likelihood < result.fitted.log_likelihood + kSettled;
+        if (better.log_likelihood > result.fitted.log_likelihood) result.fitted = std::move(better);
+        if (settled) break;
+    }
     result.bic = -2 * result.fitted.log_likelihood;
     return result;
 }

@@ -62,6 +62,7 @@ class Study {
     void make_folds(std::uint64_t seed);
     double bic_of(const Fitted& fitted, std::size_t parameters) const;
     std::string missing_for(const Effect& effect) const;
+    bool matters(const Candidate& candidate) const;
     std::vector<Freed> freed_by(const std::vector<std::size_t>& effects) const;
 
     const Experiment& experiment_;

@@ -48,7 +48,8 @@ class TimingModel final : public Model {
         }
         observables_.push_back(host);
         observables_.back().name = "arrival";
-        observables_.back().noise = NoiseKind::Carry;
+        // Against the robot's clock each arrival errs by itself; without one the periods' errors add up.
+        observables_.back().noise = clocks_ ? NoiseKind::Carry : NoiseKind::Level;
         set_up(observables_.back());
         gather_events(rows, experiment);
         declare();
