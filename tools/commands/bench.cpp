@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "cosim/interrupt.h"
 #include "emu/dspic/core_bench.h"
+#include "tools/bench/rab_scenario.h"
 #include "tools/bench/reference.h"
 #include "tools/commands.h"
 #include "tools/commands/bench_rab.h"
@@ -25,10 +26,14 @@ namespace {
 
 /// Where this program was built; `bench` works from any folder.
 const std::filesystem::path kHello = PUCKLOOP_SCENARIOS "/hello.toml";
+const std::filesystem::path kMainImage = PUCKLOOP_SCENARIOS "/../firmware/epuck/epuck.hex";
+const std::filesystem::path kRabImage = PUCKLOOP_SCENARIOS "/../firmware/rab/rab.hex";
 
 struct Options {
     std::filesystem::path scenario;  ///< empty: the project's hello.toml
     std::string image;
+    std::vector<std::string> cases{"core", "scenario"};
+    std::filesystem::path rab_image = kRabImage;
     double simulated_s = 20.0;
     double slice_s = 0.4;
     int rounds = 5;
@@ -58,11 +63,12 @@ Figure measure(const std::string& name, const std::string& unit, const Options& 
     return figure;
 }
 
-double real_time_factor(const Options& options, bool in_process, const std::filesystem::path& folder) {
+double real_time_factor(const std::filesystem::path& scenario, double seconds, bool in_process,
+                        const std::filesystem::path& folder) {
     RunRequest request;
-    request.scenario = options.scenario.empty() ? kHello : options.scenario;
+    request.scenario = scenario;
     request.out = folder;
-    request.duration = options.simulated_s;
+    request.duration = seconds;
     request.in_process = in_process;
     const cosim::InterruptGuard interrupt;
     const cosim::Outcome outcome = run_scenario(set_up(request), request, {}, interrupt.flag());
@@ -87,11 +93,10 @@ class Scratch {
     std::filesystem::path path_;
 };
 
-std::vector<Figure> measure_all(const Options& options) {
+void measure_core(const Options& options, std::vector<Figure>& figures) {
     const auto millions = [](const dspic::CoreBenchResult& result) {
         return result.instructions_per_second() * 1e-6;
     };
-    std::vector<Figure> figures;
     figures.push_back(measure("core, compute loop", "M instructions/s", options,
                               [&] { return millions(dspic::bench_compute_loop(options.slice_s)); }));
     if (!options.image.empty()) {
@@ -104,12 +109,40 @@ std::vector<Figure> measure_all(const Options& options) {
             return static_cast<double>(result.cycles) / kCyclesPerSecond / result.wall_s;
         }));
     }
+}
+
+void measure_scenario(const Options& options, std::vector<Figure>& figures) {
     const Scratch scratch;
-    const std::string name = options.scenario.empty() ? "hello.toml" : options.scenario.filename().string();
-    figures.push_back(measure(name + ", one process", "x real time", options,
-                              [&] { return real_time_factor(options, true, scratch.path()); }));
-    figures.push_back(measure(name + ", a process a node", "x real time", options,
-                              [&] { return real_time_factor(options, false, scratch.path()); }));
+    const auto scenario = options.scenario.empty() ? kHello : options.scenario;
+    const std::string name = scenario.filename().string();
+    for (const bool in_process : {true, false})
+        figures.push_back(measure(
+            name + (in_process ? ", one process" : ", a process a node"), "x real time", options,
+            [&] { return real_time_factor(scenario, options.simulated_s, in_process, scratch.path()); }));
+}
+
+/// `name` is "rab" and the number of robots.
+void measure_rab_boards(const std::string& name, const Options& options, std::vector<Figure>& figures) {
+    constexpr double kShare = 0.2;  // of the duration: boards that are never idle take their time
+    const Scratch scratch;
+    const int robots = name.back() - '0';
+    const auto scenario =
+        write_rab_scenario(scratch.path() / "scenario", robots, kMainImage, options.rab_image);
+    figures.push_back(measure(name + ", one process", "x real time", options, [&] {
+        return real_time_factor(scenario, kShare * options.simulated_s, true, scratch.path());
+    }));
+}
+
+std::vector<Figure> measure_all(const Options& options) {
+    std::vector<Figure> figures;
+    for (const std::string& name : options.cases) {
+        if (name == "core")
+            measure_core(options, figures);
+        else if (name == "scenario")
+            measure_scenario(options, figures);
+        else
+            measure_rab_boards(name, options, figures);
+    }
     return figures;
 }
 
@@ -147,6 +180,15 @@ void declare_bench(CLI::App& app, int& status) {
     command->add_option("--scenario", options->scenario, "scenario to time (default scenarios/hello.toml)")
         ->type_name("SCENARIO");
     command->add_option("--image", options->image, "firmware image to run on the bare chip as well")
+        ->type_name("IMAGE");
+    command
+        ->add_option("--case", options->cases,
+                     "what to measure: core, scenario, rab1, rab2, rab8 = so many robots with "
+                     "range-and-bearing boards in one process (repeatable; default core and scenario)")
+        ->allow_extra_args(false)
+        ->check(CLI::IsMember({"core", "scenario", "rab1", "rab2", "rab8"}));
+    command
+        ->add_option("--rab-image", options->rab_image, "firmware of these boards (default: the project's)")
         ->type_name("IMAGE");
     command->add_option("--duration", options->simulated_s, "simulated seconds of each run of the scenario")
         ->check(positive_number())
