@@ -7,6 +7,7 @@
 #include "gap/fit/intervals.h"
 #include "gap/fit/select.h"
 #include "gap/leftovers.h"
+#include "gap/placements.h"
 #include "gap/sentences.h"
 #include "gap/suggest.h"
 
@@ -22,7 +23,8 @@ namespace {
 constexpr int kDraws = 1000;         // of the bootstrap over runs
 constexpr double kLeftLevel = 0.01;  // corrected p of a structure worth telling
 constexpr double kUnexplainedShare =
-    0.35;  // of the gain: a free form that would add this much was not explained
+    0.35;                        // of the gain: a free form that would add this much was not explained
+constexpr double kEdge = 0.005;  // of a plausible range: this near to its end is at its end
 constexpr double kUnexplainedLeast = 6.0;  // nats: less is not worth the word
 constexpr double kFixedByOthers =
     0.97;  // correlation beyond which a parameter of the measuring chain is not fitted along
@@ -45,6 +47,9 @@ class Analysis {
         fill_held();
         tell("what is left", 0.93);
         fill_series();
+        for (const Series& series : verdict_.series)
+            if (const std::string caution = placement_caution(experiment_, series); !caution.empty())
+                verdict_.cautions.push_back(caution);
         decide();
         verdict_.suggestions = suggestions_for(study_, selection_);
         verdict_.heldout.sentence = gain_sentence(verdict_.heldout);
@@ -124,6 +129,7 @@ class Analysis {
             cause.score_high = step.held.sum + 1.645 * step.held.sd;
             verdict_.causes.push_back(std::move(cause));
         }
+        caution_of_edges();
         for (std::size_t k = selection_.chosen.effects.size(); k < final_.effects.size(); ++k)
             for (const auto& parameter : cause_of(final_, precision, final_.effects[k]).parameters)
                 verdict_.nuisance.push_back(parameter);
@@ -136,6 +142,22 @@ class Analysis {
             rival.cause.evidence = selection_.none.bic - draw.fit.bic;
             rival.cause.score_gain = -draw.held.sum;
             verdict_.rivals.push_back(std::move(rival));
+        }
+    }
+
+    /// A value at the end of its plausible range was stopped there, not found there.
+    void caution_of_edges() {
+        for (const Freed& freed : final_.freed) {
+            const ModelParameter& parameter =
+                study_.model().parameters()[static_cast<std::size_t>(freed.index)];
+            const double value = final_.fitted.state.values[static_cast<std::size_t>(freed.index)];
+            const double near = kEdge * (freed.high - freed.low);
+            for (const double edge : {freed.low, freed.high})
+                if (std::abs(value - edge) < near && std::abs(edge - parameter.neutral) > near)
+                    verdict_.cautions.push_back(fmt::format("{} stands at the end of its plausible range "
+                                                            "({}): it was stopped there, so its value and "
+                                                            "its cause are doubtful",
+                                                            parameter.name, quantity(edge, parameter.unit)));
         }
     }
 

@@ -1,6 +1,7 @@
 // An experiment's own columns become the covariates of its residuals.
 
 #include "base/random.h"
+#include "gap/placements.h"
 #include "gap/residual_structure.h"
 
 #include <catch2/catch.hpp>
@@ -76,4 +77,33 @@ TEST_CASE("structure against the sign of the speed is there before and gone afte
     const auto after = residual_structure(e, s, Stage::After, options);
     for (const auto& f : after)
         CHECK(f.p_adjusted > 0.01);
+}
+
+TEST_CASE("offsets that belong to the placement are told apart from the scatter of repeats") {
+    const auto caution = [](double offset) {
+        RandomStream random(5, "placement");
+        Experiment e;
+        e.kind = Kind::Proximity;
+        Series s;
+        s.observable = "reading";
+        s.unit = "counts";
+        for (int r = 0; r < 3; ++r) {
+            Run run;
+            run.rows = 200;
+            for (int d = 0; d < 10; ++d) {
+                const double placed = offset * random.normal();
+                for (int i = 0; i < 20; ++i) {
+                    run.columns["distance_m"].push_back(0.01 * d);
+                    s.run.push_back(static_cast<std::uint32_t>(r));
+                    s.row.push_back(static_cast<std::uint32_t>(20 * d + i));
+                    s.measured.push_back(placed + random.normal());
+                    s.after.push_back(0);
+                }
+            }
+            e.runs.push_back(run);
+        }
+        return placement_caution(e, s);
+    };
+    CHECK(caution(0.0).empty());
+    CHECK(caution(3.0).find("30 placements") != std::string::npos);
 }

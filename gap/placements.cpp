@@ -1,0 +1,71 @@
+#include "gap/placements.h"
+
+#include "gap/residual_structure.h"
+#include "gap/stats/noise_floor.h"
+#include "gap/stats/profile.h"
+#include "gap/stats/robust.h"
+#include "gap/stats/series.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace puckloop::gap {
+
+namespace {
+
+constexpr std::size_t kLeastPlacements = 6, kRowsEach = 10;
+constexpr double kClearly = 3.0;  // times what the repeats' scatter makes of a mean
+
+/// Rows in sequence with the same stimulus in one run.
+std::vector<stats::Stretch> placements_of(const Experiment& experiment, const Series& series) {
+    std::vector<std::vector<double>> stimuli;
+    for (const stats::Covariate& c : covariates_of(experiment, series))
+        if (c.name != "time" && c.name != "order") stimuli.push_back(c.value);
+    if (stimuli.empty()) return {};
+    const std::vector<int> number = stats::stimulus_numbers(stimuli);
+    std::vector<stats::Stretch> list;
+    for (std::size_t i = 0; i < number.size(); ++i) {
+        if (number[i] < 0) continue;
+        if (list.empty() || list.back().last != i || number[i] != number[i - 1] ||
+            series.run[i] != series.run[i - 1])
+            list.push_back({i, i, static_cast<int>(series.run[i])});
+        list.back().last = i + 1;
+    }
+    return list;
+}
+
+}  // namespace
+
+std::string placement_caution(const Experiment& experiment, const Series& series) {
+    if (series.after.size() != series.measured.size()) return {};
+    const std::vector<stats::Stretch> placements = placements_of(experiment, series);
+    if (placements.size() < kLeastPlacements || placements.size() * kRowsEach > series.measured.size())
+        return {};
+    std::vector<double> means;
+    stats::Series inside;
+    double rows = 0;
+    for (std::size_t p = 0; p < placements.size(); ++p) {
+        std::vector<double> rest;
+        for (std::size_t i = placements[p].first; i < placements[p].last; ++i)
+            rest.push_back(series.measured[i] - series.after[i]);
+        means.push_back(stats::mean(rest));
+        for (const double r : rest)
+            if (std::isfinite(r)) {
+                inside.value.push_back(r - means.back());
+                inside.run.push_back(static_cast<int>(p));
+                rows += 1;
+            }
+    }
+    const double between = stats::standard_deviation(means), within = stats::standard_deviation(inside.value);
+    const double each = rows / static_cast<double>(placements.size());
+    const double by_chance = within * std::sqrt(stats::correlation_length(inside) / each);
+    if (!(between > within && between > kClearly * by_chance)) return {};
+    return fmt::format(
+        "what is left of {0} differs from placement to placement by {1} {3} (standard deviation of {4} "
+        "placements), while repeats at one placement scatter by {2} {3} only: no effect explains these "
+        "offsets, and more repeats would not help, more placements would",
+        series.observable, stats::plain(between), stats::plain(within), series.unit, placements.size());
+}
+
+}  // namespace puckloop::gap

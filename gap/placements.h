@@ -1,0 +1,16 @@
+#pragma once
+// Readings repeated at one placement share its error. Is that error larger than the repeats' scatter?
+
+#include "gap/experiment.h"
+#include "gap/verdict.h"
+
+#include <string>
+
+namespace puckloop::gap {
+
+/// A sentence for the verdict if what is left (after) differs from placement to placement by more than
+/// repeats scatter at one; empty if not, or if there are fewer than six placements with ten rows each on
+/// average.
+std::string placement_caution(const Experiment& experiment, const Series& series);
+
+}  // namespace puckloop::gap
