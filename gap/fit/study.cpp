@@ -20,8 +20,9 @@ constexpr std::size_t kEnoughRuns =
     6;  // then whole runs are the blocks: parts of a run share its day and place
 constexpr std::size_t kLeastBlockRows = 8;
 
-constexpr int kMostRounds = 20;   // of fitting the noise alone
-constexpr double kSettled = 0.1;  // nats that a round must bring
+constexpr double kHeavyTail = 2.5, kLightTail = 20;  // degrees of freedom to begin at
+constexpr int kMostRounds = 6;                       // of fitting the noise alone
+constexpr double kSettled = 0.1;                     // nats that a round must bring
 
 bool same(const std::vector<double>& a, const std::vector<double>& b) {
     if (a.size() != b.size()) return false;
@@ -178,13 +179,22 @@ std::vector<Freed> Study::freed_by(const std::vector<std::size_t>& effects) cons
 Fit Study::fit_none() const {
     Fit result;
     result.fitted = fit(*model_, {}, neutral_state(*model_), {});
-    // Noise far from its first guess takes several rounds; what it lacked would be credited to the first
+    // Noise far from its first guess may stop at a bound; what it lacked would be credited to the first
     // effect.
-    for (int round = 0; round < kMostRounds; ++round) {
-        Fitted better = fit(*model_, {}, result.fitted.state, {});
-        const bool settled = better.log_likelihood < result.fitted.log_likelihood + kSettled;
-        if (better.log_likelihood > result.fitted.log_likelihood) result.fitted = std::move(better);
-        if (settled) break;
+    bool won = true;
+    for (int round = 0; won && round < kMostRounds; ++round) {
+        won = false;
+        for (const double narrower : {0.0, 0.9, -0.9}) {
+            State start = result.fitted.state;
+            for (NoiseParameters& noise : start.noise) {
+                noise.log_sd -= narrower;
+                if (narrower != 0.0) noise.log_tail = std::log(narrower > 0 ? kHeavyTail : kLightTail);
+            }
+            Fitted better = fit(*model_, {}, start, {});
+            if (better.log_likelihood < result.fitted.log_likelihood + kSettled) continue;
+            result.fitted = std::move(better);
+            won = true;
+        }
     }
     result.bic = -2 * result.fitted.log_likelihood;
     return result;
