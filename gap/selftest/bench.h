@@ -76,7 +76,7 @@ class BenchOf : public Bench {
         rig_.measure(made.experiment, knobs, style, plan.seed);
         RandomStream holes(plan.seed, "holes");
         for (HiddenRun& run : made.experiment.runs)
-            punch_holes(run, style, holes);
+            punch_holes(run, style, made.kind == "motion", holes);
         return made;
     }
 

@@ -70,7 +70,7 @@ double quantised(double value, double quantum) {
     return quantum > 0.0 ? std::round(value / quantum) * quantum : value;
 }
 
-void punch_holes(HiddenRun& run, const NoiseStyle& style, RandomStream& random) {
+void punch_holes(HiddenRun& run, const NoiseStyle& style, bool keep_rows, RandomStream& random) {
     const std::size_t rows = run.rows();
     std::vector<bool> keep(rows, true);
     for (std::size_t r = 1; r + 1 < rows; ++r)
@@ -79,8 +79,10 @@ void punch_holes(HiddenRun& run, const NoiseStyle& style, RandomStream& random) 
         std::vector<double> left;
         const bool holes = measured(column.name);
         for (std::size_t r = 0; r < rows; ++r) {
-            const bool empty = holes && r > 0 && random.uniform() < style.missing_cells;
-            if (keep[r]) left.push_back(empty ? std::numeric_limits<double>::quiet_NaN() : column.values[r]);
+            const bool empty =
+                holes && ((r > 0 && random.uniform() < style.missing_cells) || (keep_rows && !keep[r]));
+            if (keep[r] || keep_rows)
+                left.push_back(empty ? std::numeric_limits<double>::quiet_NaN() : column.values[r]);
         }
         column.values = std::move(left);
     }

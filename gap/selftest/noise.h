@@ -39,7 +39,8 @@ class NoiseSeries {
 /// Rounded to multiples of `quantum` (0: left alone).
 double quantised(double value, double quantum);
 
-/// Takes rows and cells away; the columns "t_s" and those that say what was done stay whole.
-void punch_holes(HiddenRun& run, const NoiseStyle& style, RandomStream& random);
+/// Takes rows and cells of what was measured away. `keep_rows`: a lost row keeps what was commanded and
+/// counted, as a log of commands does when the tracker loses the robot.
+void punch_holes(HiddenRun& run, const NoiseStyle& style, bool keep_rows, RandomStream& random);
 
 }  // namespace puckloop::gap::selftest
