@@ -12,7 +12,7 @@ constexpr double kSend = 0.1;                   // s between two commands of the
 constexpr double kMetresPerStep = 1.288053e-4;  // of a 41 mm wheel
 constexpr double kAxle = 0.053;                 // m
 constexpr double kLoad = 0.2;                   // kg, in one line
-constexpr double kRest = 1.0;                   // s before and after
+constexpr double kRest = 0.5;                   // s before and after
 
 /// A manoeuvre of constant speeds.
 struct Leg {
@@ -41,7 +41,7 @@ std::vector<Leg> rested(std::vector<Leg> legs) {
 }
 
 std::vector<Leg> square(double sense) {
-    constexpr double kSpeed = 500, kTurn = 250, kSide = 0.25;
+    constexpr double kSpeed = 500, kTurn = 250, kSide = 0.15;
     std::vector<Leg> legs;
     const double side = kSide / (kSpeed * kMetresPerStep);
     const double corner = std::numbers::pi / 2 * kAxle / 2 / (kTurn * kMetresPerStep);
@@ -54,7 +54,7 @@ std::vector<Leg> square(double sense) {
 
 std::vector<Leg> hops() {
     std::vector<Leg> legs;
-    for (int k = 0; k < 8; ++k) {
+    for (int k = 0; k < 6; ++k) {
         legs.push_back({0.7, 800, 800});
         legs.push_back({0.6, 0, 0});
     }
@@ -63,7 +63,7 @@ std::vector<Leg> hops() {
 
 std::vector<Leg> reversals() {
     std::vector<Leg> legs;
-    for (int k = 0; k < 5; ++k) {
+    for (int k = 0; k < 3; ++k) {
         legs.push_back({1.2, 400, 400});
         legs.push_back({1.2, -400, -400});
     }
@@ -72,7 +72,7 @@ std::vector<Leg> reversals() {
 
 std::vector<Leg> free_drive(RandomStream& random) {
     std::vector<Leg> legs;
-    for (int k = 0; k < 16; ++k) {
+    for (int k = 0; k < 10; ++k) {
         const double base = std::round(-300 + 1000 * random.uniform());
         const double turn = std::round(-200 + 400 * random.uniform());
         const double least = k % 4 == 3 ? 0.08 : 1.0;  // some of it slowly
@@ -96,17 +96,17 @@ std::vector<PlannedDrive> planned_drives(RandomStream& random, bool one_circle) 
                 add("circle", "ccw", {{12, 250, 450}});
             continue;
         }
-        add("line", "forward", {{8, 300, 300}});
-        add("line", "forward", {{8, 450, 450}});
+        add("line", "forward", {{5, 300, 300}});
+        add("line", "forward", {{5, 450, 450}});
         plan.back().script.load = kLoad;
-        add("line", "forward", {{8, 850, 850}});
-        add("line", "backward", {{8, -500, -500}});
-        add("spin", "ccw", {{8, -300, 300}});
-        add("spin", "cw", {{8, 600, -600}});
+        add("line", "forward", {{5, 850, 850}});
+        add("line", "backward", {{5, -500, -500}});
+        add("spin", "ccw", {{5, -300, 300}});
+        add("spin", "cw", {{5, 600, -600}});
         add("square", "ccw", square(1));
         add("square", "cw", square(-1));
-        add("circle", "ccw", {{10, 250, 450}});
-        add("circle", "cw", {{10, 450, 250}});
+        add("circle", "ccw", {{6, 250, 450}});
+        add("circle", "cw", {{6, 450, 250}});
         add("hops", "forward", hops());
         add("reversals", "both", reversals());
         add("free", "both", free_drive(random));

@@ -14,7 +14,7 @@ constexpr double kRow = 0.1;    // s between rows
 constexpr double kPause = 40;   // s between runs
 constexpr double kGrey = 0.45;  // stated reflectivity of the grey wall
 constexpr double kLamp = 1.0;   // ambient level
-constexpr int kRepeats = 3;
+constexpr int kRepeats = 2;
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr std::array<double, 12> kGaps{2, 4, 7, 10, 14, 18, 24, 31, 40, 52, 66, 90};  // mm
 constexpr std::array<std::size_t, 4> kSome{0, 2, 5, 7};
@@ -91,7 +91,7 @@ std::vector<PlannedScenes> planned_scenes(RandomStream& random, bool one_object)
         plan.end();
         plan.begin("white", "lamp", "off", 0);
         for (const std::size_t sensor : kSome)
-            plan.distances(sensor, 3);
+            plan.distances(sensor, 2);
         plan.end();
         plan.begin("grey", "dark", "off", 0);
         for (const std::size_t sensor : kSome)

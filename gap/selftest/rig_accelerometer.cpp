@@ -17,7 +17,7 @@ constexpr double kFullScale = 4095;
 constexpr double kPause = 30;  // s between runs
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr const char* kAxisNames[] = {"ax", "ay", "az"};
-constexpr int kRowsOfARun = 120;
+constexpr int kRowsOfARun = 80;
 
 enum class Doing { Tilts, Steady, StopAndGo, Spin };
 
@@ -29,12 +29,12 @@ Attitude attitude(Doing doing, int k, double t, int session, RandomStream& rando
     if (doing == Doing::Tilts) {
         constexpr std::array<std::pair<double, double>, 6> tilts{
             {{0, 0}, {10, 0}, {-10, 0}, {0, 10}, {0, -10}, {6, -6}}};
-        const auto& tilt = tilts[static_cast<std::size_t>(k / 20) % tilts.size()];
+        const auto& tilt = tilts[static_cast<std::size_t>(k / 13) % tilts.size()];
         a.pitch = tilt.first * kDegree;
         a.roll = tilt.second * kDegree;
     } else if (doing == Doing::Steady) {
         constexpr std::array<double, 4> speeds{200, 500, 800, 1000};
-        a.steps = speeds[static_cast<std::size_t>(k / 30) % speeds.size()];
+        a.steps = speeds[static_cast<std::size_t>(k / 20) % speeds.size()];
     } else if (doing == Doing::StopAndGo) {
         const int phase = k % 20;
         a.steps = phase < 10 ? 600 : 0;
@@ -42,7 +42,7 @@ Attitude attitude(Doing doing, int k, double t, int session, RandomStream& rando
         a.since_stop = phase >= 10 ? (phase - 10) * kRow : 1e3;
     } else {
         a.steps = 300 + 300 * std::floor(3 * random.uniform()) / 2;
-        a.turning = (k / 30) % 2 == 0 ? 2 * a.steps : -2 * a.steps;
+        a.turning = (k / 20) % 2 == 0 ? 2 * a.steps : -2 * a.steps;
     }
     return a;
 }

@@ -25,7 +25,7 @@ std::vector<Stand> path(RandomStream& random, int shape, int repeat) {
                            : shape == 1 ? std::numbers::pi
                                         : third * (repeat + 0.2 + 0.2 * random.uniform());
     double speed = 0.0;
-    for (int k = 0; k < 70; ++k) {
+    for (int k = 0; k < 50; ++k) {
         const double t = k * kRow;
         const double wanted = shape == 3 ? ((k / 6) % 2 == 0 ? 0.10 : 0.0) : 0.04 + 0.04 * shape;
         const double acceleration = std::clamp((wanted - speed) / kRow, -1.0, 1.0);
@@ -47,7 +47,8 @@ HiddenExperiment exact_ground(const GroundKnobs& knobs, std::uint64_t seed, cons
             const auto stands = path(random, shape, repeat);
             const auto readings = look_down(knobs, stands);
             HiddenRun run;
-            run.conditions = {{"drive", shape == 3 ? "stop and go" : "steady"}};
+            run.conditions = {{"drive", shape == 3 ? "stop and go" : "steady"},
+                              {"course", std::sin(stands.front().heading) > 0.5 ? "north" : "other"}};
             for (std::size_t i = 0; i < kGroundRow; ++i)
                 for (std::size_t k = 0; k < stands.size(); ++k) {
                     const Stand& s = stands[k];

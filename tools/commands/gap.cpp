@@ -105,6 +105,7 @@ void declare_gap(CLI::App& app, int& status) {
     command->require_subcommand(0, 1);
     declare_gap_import(*command, status);
     declare_gap_record(*command, status);
+    declare_gap_selftest(*command, status);
     command->callback([command, request, &status] {
         if (!command->get_subcommands().empty()) return;
         if (request->folder.empty())

@@ -11,6 +11,7 @@ namespace puckloop::tools {
 
 void declare_gap_import(CLI::App& gap, int& status);
 void declare_gap_record(CLI::App& gap, int& status);
+void declare_gap_selftest(CLI::App& gap, int& status);
 
 /// The project's own firmware and recording program, as built.
 gap::emulate::Tools emulation_tools();

@@ -1,0 +1,24 @@
+#pragma once
+// Makes cases, writes each to a folder of its own, has the tool read and judge it, and removes it.
+
+#include "gap/selftest/case_list.h"
+#include "gap/selftest/score.h"
+
+#include <filesystem>
+#include <functional>
+#include <vector>
+
+namespace puckloop::gap::selftest {
+
+struct RunOptions {
+    std::filesystem::path scratch;
+    unsigned workers = 2;
+    bool keep = false;  ///< leave the folders
+    std::function<void(std::size_t, std::size_t)>
+        done;  ///< cases done, of all; called from one thread at a time
+};
+
+/// In the order of `plans`. A case that the tool fails on is judged with its error.
+std::vector<Judged> run_cases(const std::vector<CasePlan>& plans, const RunOptions& options);
+
+}  // namespace puckloop::gap::selftest
