@@ -27,7 +27,7 @@ std::unique_ptr<Bench> microphone_bench() {
         {42, "short window", 0.9, false, [](K& k, double a, RandomStream) { k.short_window = a; return Truths{{"microphone.window_lost", a}}; }},
         {33, "warm-up drift", 0.3, true, [](K& k, double a, RandomStream) { k.warm = a; return Truths{{"microphone.warmup_gain", a}}; }},
         {0, "room mode", 0.5, false, [](K& k, double a, RandomStream) { k.node = a; return Truths{}; }},
-        {0, "late loss", 0.5, false, [](K& k, double a, RandomStream) { k.burst = a; return Truths{}; }},
+        {0, "spells of loss", 0.5, false, [](K& k, double a, RandomStream) { k.burst = a; return Truths{}; }},
     });
     // clang-format on
 }

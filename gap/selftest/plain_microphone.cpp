@@ -11,6 +11,7 @@ constexpr double kReference = 0.1;   // m
 constexpr double kRoomMode = 0.055;  // m from node to node
 constexpr double kFullScale = 4095;
 constexpr double kWarmSeconds = 200.0;
+constexpr double kSpells = 7;  // a run, of less and of all
 }  // namespace
 
 double loudness(const MicrophoneKnobs& k, const Listening& l) {
@@ -18,7 +19,7 @@ double loudness(const MicrophoneKnobs& k, const Listening& l) {
     level *= 1.0 + k.directivity * std::cos(l.angle);
     level *= 1.0 + k.node * std::sin(2 * std::numbers::pi * l.distance / kRoomMode);
     level *= k.gain[l.microphone] * (1.0 + k.warm * (1.0 - std::exp(-l.t / kWarmSeconds)));
-    if (l.share > 2.0 / 3) level *= 1.0 - k.burst;
+    if (std::fmod(kSpells * l.share, 1.0) > 0.5) level *= 1.0 - k.burst;
     level += k.self_noise + (l.motors != 0.0 ? k.motor_floor : 0.0);
     // Extremes of N samples of noise lie about sqrt(2 ln N) from the mean: fewer samples, a smaller level.
     const double used = std::max(2.0, l.window * (1.0 - k.short_window));

@@ -18,7 +18,7 @@ struct MicrophoneKnobs {
     double short_window = 0.0;                       // [42] share of the window really used is 1 minus this
     double warm = 0.0;                               // [33] share in the end, 95 % after ten minutes
     double node = 0.0;                               // unknown: share, a room mode along the distance
-    double burst = 0.0;                              // unknown: share lost in the last third of each run
+    double burst = 0.0;                              // unknown: share lost in seven spells of each run
 };
 
 struct Listening {

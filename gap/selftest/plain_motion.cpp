@@ -35,14 +35,18 @@ std::vector<Arrival> arrivals(const MotionKnobs& k, const MotionScript& script, 
 
 /// One wheel from motor steps to ground speed.
 struct Wheel {
-    double motor = 0.0;   // m commanded to the gear
-    double geared = 0.0;  // m behind the play
-    double ground = 0.0;  // m/s over the floor
-    double steps = 0.0;   // what the firmware counts
+    double motor = 0.0;    // m commanded to the gear
+    double geared = 0.0;   // m behind the play
+    double ground = 0.0;   // m/s over the floor
+    double steps = 0.0;    // commanded so far
+    double counted = 0.0;  // what the firmware counts
 
     double advance(const MotionKnobs& k, double radius, double steps_per_second, RandomStream& chance) {
         const double wanted = steps_per_second * kTick;
         steps += wanted;
+        // A step is counted when it is over, in either direction.
+        if (steps >= counted + 1) counted += 1;
+        if (steps <= counted - 1) counted -= 1;
         double real = std::abs(steps_per_second) < k.deadband ? 0.0 : wanted;
         if (k.loss_speed > 0.0 && wanted != 0.0) {
             const double share =
@@ -110,8 +114,8 @@ std::vector<MotionRow> drive(const MotionKnobs& k, const MotionScript& script, d
             const double mx = p.x + std::cos(p.heading) * k.marker_x - std::sin(p.heading) * k.marker_y;
             const double my = p.y + std::sin(p.heading) * k.marker_x + std::cos(p.heading) * k.marker_y;
             const double stretch = 1.0 + k.lens * (mx * mx + my * my);
-            rows.push_back({t, cl, cr, std::trunc(left.steps), std::trunc(right.steps), mx * stretch,
-                            my * stretch, p.heading + k.marker_angle + k.heading_drift * t});
+            rows.push_back({t, cl, cr, left.counted, right.counted, mx * stretch, my * stretch,
+                            p.heading + k.marker_angle + k.heading_drift * t});
         }
         double vl = kept * left.advance(k, radius_left, agenda_speed(command_left), chance);
         double vr = kept * right.advance(k, radius_right, agenda_speed(command_right), chance);

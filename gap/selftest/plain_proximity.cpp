@@ -18,6 +18,7 @@ constexpr double kMotorReference = 800;       // steps/s
 constexpr double kDark = 4000;                // counts of the light channel without light
 constexpr double kRoom = 300;                 // counts lost at ambient level 1
 constexpr double kLawReference = 20;          // mm: where a changed exponent leaves the answer alone
+constexpr double kSpells = 11;                // a run, of loose and of good contact
 constexpr double kFringe = 6;                 // mm from ripple to ripple
 
 struct Place {
@@ -113,7 +114,7 @@ RingReading see(const ProximityKnobs& k, const Scene& s, bool law, RandomStream&
     for (std::size_t i = 0; i < kRing; ++i) {
         double seen = own[i] + k.pair * own[(i + 4) % kRing] +
                       k.neighbours * (own[(i + 1) % kRing] + own[(i + kRing - 1) % kRing]);
-        if ((i == 2 || i == 3) && s.share > 1.0 / 3 && s.share < 2.0 / 3) seen *= 1.0 - k.step;
+        if ((i == 2 || i == 3) && std::fmod(kSpells * s.share, 1.0) > 0.5) seen *= 1.0 - k.step;
         double counts = warm * bright * swing * k.gain[i] * seen + kPlaces[i].idle + k.offset[i] +
                         k.light_offset * s.ambient;
         counts += k.flicker * s.ambient *

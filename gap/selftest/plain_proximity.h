@@ -42,7 +42,7 @@ struct ProximityKnobs {
     double fringe = 0.0;        // unknown: share, rippling with distance
     double notch = 0.0;         // unknown: share lost where the wall is 25-35 mm away
     double swing = 0.0;         // unknown: share, with the wall's bearing as cos 3a
-    double step = 0.0;          // unknown: share lost by sensors 2 and 3 in the middle third of each run
+    double step = 0.0;          // unknown: share lost by sensors 2 and 3 in spells
 };
 
 /// What is before the robot at one time: a flat wall that one sensor looks at.
