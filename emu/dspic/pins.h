@@ -42,6 +42,12 @@ class Pins {
     virtual void output_compare_changed(int unit, Cycle now);
 };
 
+/// When a slave's answer stands on the wire.
+constexpr cosim::Time i2c_answer_time(const cosim::I2cPhase& answer) {
+    constexpr cosim::Time kClocksToAnswer = 8;
+    return answer.start + kClocksToAnswer * answer.clock_period + answer.stretch;
+}
+
 inline void Pins::i2c_slave_answer(int, const cosim::I2cPhase&) {}
 inline std::uint16_t Pins::spi_exchange(int, std::uint16_t, int bits, Cycle) {
     return static_cast<std::uint16_t>((1u << bits) - 1u);

@@ -142,7 +142,7 @@ double Board::analog(int channel, dspic::Cycle now) {
 }
 
 void Board::i2c_slave_answer(int unit, const cosim::I2cPhase& answer) {
-    if (unit == kI2cUnit) listener_.i2c_answer(answer, answer_time(answer));
+    if (unit == kI2cUnit) listener_.i2c_answer(answer, dspic::i2c_answer_time(answer));
 }
 
 std::uint16_t Board::spi_exchange(int unit, std::uint16_t sent, int bits, dspic::Cycle /*now*/) {

@@ -102,10 +102,4 @@ class Board : public dspic::Pins {
     bool supply_ = false;
 };
 
-/// Answer's time on the wire: the eighth clock of its byte, or later by the stretch.
-constexpr cosim::Time answer_time(const cosim::I2cPhase& answer) {
-    constexpr cosim::Time kClocksToAnswer = 8;
-    return answer.start + kClocksToAnswer * answer.clock_period + answer.stretch;
-}
-
 }  // namespace puckloop::rab

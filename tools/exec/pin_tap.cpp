@@ -33,9 +33,7 @@ void PinTap::i2c_phase(int unit, const cosim::I2cPhase& phase) {
 
 void PinTap::i2c_slave_answer(int unit, const cosim::I2cPhase& answer) {
     inner_.i2c_slave_answer(unit, answer);
-    if (unit != kI2cScriptUnit) return;
-    constexpr cosim::Time kClocksToAnswer = 8;
-    listener_.i2c_answered(answer, answer.start + kClocksToAnswer * answer.clock_period + answer.stretch);
+    if (unit == kI2cScriptUnit) listener_.i2c_answered(answer, dspic::i2c_answer_time(answer));
 }
 
 }  // namespace puckloop::exec

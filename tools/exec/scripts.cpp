@@ -1,6 +1,7 @@
 #include "tools/exec/scripts.h"
 
 #include "base/error.h"
+#include "base/suggest.h"
 #include "tools/exec/text_input.h"
 
 #include <fmt/format.h>
@@ -13,6 +14,7 @@ namespace {
 
 constexpr std::uint32_t kHighestAddress = 0x7F;
 constexpr std::uint32_t kLongestRead = 256;
+constexpr std::size_t kShownOfName = 40;
 
 template <typename Line>
 void sort_by_time(std::vector<Line>& lines) {
@@ -25,22 +27,6 @@ void sort_by_time(std::vector<Line>& lines) {
     throw InputError(file, fmt::format("line {}", line.number), problem, expected);
 }
 
-/// Single-character edits between two short names.
-std::size_t distance(std::string_view a, std::string_view b) {
-    std::vector<std::size_t> row(b.size() + 1);
-    for (std::size_t j = 0; j <= b.size(); ++j)
-        row[j] = j;
-    for (std::size_t i = 1; i <= a.size(); ++i) {
-        std::size_t diagonal = row[0]++;
-        for (std::size_t j = 1; j <= b.size(); ++j) {
-            const std::size_t above = row[j];
-            row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0u : 1u)});
-            diagonal = above;
-        }
-    }
-    return row.back();
-}
-
 std::uint16_t signal_named(std::string_view file, const TextLine& line,
                            std::span<const cosim::SignalInfo> signals) {
     const std::string_view name = line.words[1];
@@ -50,18 +36,13 @@ std::uint16_t signal_named(std::string_view file, const TextLine& line,
         return *id;
     }
     std::string expected = "one of --list-signals";
-    if (name.size() < 40) {
-        const cosim::SignalInfo* best = nullptr;
-        std::size_t nearest = 3;
-        for (const cosim::SignalInfo& info : signals)
-            if (const std::size_t d = distance(name, info.name); d < nearest) {
-                nearest = d;
-                best = &info;
-            }
-        if (best != nullptr) expected += fmt::format("; did you mean {}?", best->name);
-    }
+    std::vector<std::string_view> known;
+    for (const cosim::SignalInfo& info : signals)
+        if (info.direction == cosim::SignalDirection::Input) known.push_back(info.name);
+    const std::string near = nearest_name(name.substr(0, kShownOfName), known);
+    if (!near.empty()) expected += fmt::format("; did you mean {}?", near);
     std::string readable;
-    for (const char c : name.substr(0, 40))
+    for (const char c : name.substr(0, kShownOfName))
         readable += c >= ' ' && c <= '~' ? c : '?';
     wrong_shape(file, line, fmt::format("no signal '{}'", readable), expected);
 }
