@@ -1,20 +1,12 @@
 #include "cosim/conductor.h"
 
 #include "base/error.h"
-#include "base/random.h"
-#include "cosim/bounds.h"
-#include "cosim/network.h"
+#include "cosim/conductor_state.h"
 #include "cosim/remote_node.h"
-#include "cosim/schedule.h"
-#include "cosim/trace_hash.h"
-#include "cosim/trace_merger.h"
-#include "cosim/workers.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
-#include <exception>
 #include <set>
 #include <thread>
 
@@ -22,7 +14,6 @@ namespace puckloop::cosim {
 
 namespace {
 
-using WallClock = std::chrono::steady_clock;
 constexpr double kProgressSeconds = 0.2;
 // What is recorded is on disk after so long, should this very process be killed.
 constexpr double kFlushSeconds = 1.0;
@@ -32,10 +23,6 @@ constexpr std::chrono::microseconds kPaceSleep{500};
 // Records held back before the trace is put in order and released.
 constexpr std::size_t kTraceBatch = 512;
 
-double seconds_since(WallClock::time_point start) {
-    return std::chrono::duration<double>(WallClock::now() - start).count();
-}
-
 /// Thrown through the loop when the user ends the run.
 struct Interrupted {};
 
@@ -44,79 +31,6 @@ bool after(const TraceRecord& a, const TraceRecord& b) {
 }
 
 }  // namespace
-
-class Conductor::State {
-  public:
-    State(std::vector<NodeSpec> nodes, std::vector<LinkSpec> links, std::vector<FaultSpec> faults,
-          RunOptions options, const NodeFactory& factory);
-
-    Outcome run();
-
-    std::vector<TraceSink*> sinks;
-    const std::vector<std::unique_ptr<NodeHandle>>& handles() const { return handles_; }
-
-  private:
-    /// What has been asked of a node and what waits for it.
-    struct Slot {
-        Time asked = 0;
-        std::uint64_t grants = 0;
-        Time first_in = kNever;          ///< of the grant under way
-        std::vector<TraceRecord> queue;  ///< heap, earliest first
-        std::vector<TraceRecord> taken;  ///< of the queue, for the grant under way
-        std::vector<Message> inbox;      ///< the same, as the node gets it
-        std::vector<PortEcho> echoes;
-        bool stop_seen = false;
-    };
-
-    void loop();
-    void plan();
-    void grant(std::size_t n, Time until);
-    void collect();
-    void work_here();
-    void take_reply(std::size_t n);
-    void take_stop(std::size_t n, Time before);
-    void end_with(const Stop& stop, std::size_t n);
-    void take_deliveries(std::size_t sender);
-    void release_trace(Time floor);
-    void keep_house();
-    bool stuck() const;
-    [[noreturn]] void deadlock() const;
-    void fail(Outcome& outcome, const std::string& text);
-    void finish(Outcome& outcome);
-    void report(Outcome& outcome);
-
-    std::vector<NodeSpec> specs_;
-    std::vector<LinkSpec> links_;
-    std::vector<FaultSpec> fault_specs_;
-    RunOptions options_;
-    std::vector<std::unique_ptr<NodeHandle>> handles_;
-    std::unique_ptr<Network> network_;
-
-    std::vector<NodeTimes> times_;
-    std::vector<Slot> slots_;
-    std::vector<Time> pending_;
-    Schedule schedule_;
-    std::vector<TraceRecord> deliveries_;
-    std::vector<LinkStats> stats_;  ///< one a wire
-    TraceMerger merger_;
-    TraceHash hash_;
-    std::optional<RandomStream> chop_;
-    std::unique_ptr<Workers> workers_;
-    std::vector<std::size_t> here_;             ///< nodes of this process that are granted
-    std::vector<std::size_t> shared_;           ///< those of them that any thread may advance
-    std::vector<std::exception_ptr> failures_;  ///< of nodes, by index
-
-    Time end_ = kNever;
-    std::vector<std::pair<Stop, std::size_t>> wishes_;  ///< to stop together, and whose
-    std::optional<Stop> stop_;
-    std::size_t stopper_ = kNobody;
-    std::size_t current_ = kNobody;  ///< whose call is under way: names the one that failed
-    std::uint64_t grants_ = 0;
-    WallClock::time_point start_{};
-    double told_wall_ = 0.0;
-    double flushed_wall_ = 0.0;
-    Time told_time_ = 0;
-};
 
 Conductor::State::State(std::vector<NodeSpec> nodes, std::vector<LinkSpec> links,
                         std::vector<FaultSpec> faults, RunOptions options, const NodeFactory& factory)
@@ -302,30 +216,6 @@ void Conductor::State::take_reply(std::size_t n) {
     take_stop(n, before);
 }
 
-void Conductor::State::take_stop(std::size_t n, Time before) {
-    const std::optional<Stop>& stop = handles_[n]->state().stop;
-    if (!stop || slots_[n].stop_seen) return;
-    slots_[n].stop_seen = true;
-    // Nobody has been granted more than the stop latency beyond `before`, so this end is in nobody's past.
-    Stop wish = *stop;
-    wish.time = std::max(wish.time, before);
-    if (wish.together <= 1) return end_with(wish, n);
-    wishes_.emplace_back(wish, n);
-    if (wishes_.size() < wish.together) return;
-    const auto last = std::max_element(wishes_.begin(), wishes_.end(), [](const auto& a, const auto& b) {
-        return std::pair(a.first.time, a.second) < std::pair(b.first.time, b.second);
-    });
-    end_with(last->first, last->second);
-}
-
-void Conductor::State::end_with(const Stop& stop, std::size_t n) {
-    if (stop_ && (stop_->time < stop.time || (stop_->time == stop.time && stopper_ < n))) return;
-    if (stop.time >= end_) return;
-    stop_ = stop;
-    stopper_ = n;
-    end_ = std::min(end_, later(stop.time, options_.stop_latency));
-}
-
 void Conductor::State::take_deliveries(std::size_t sender) {
     for (const TraceRecord& record : deliveries_) {
         merger_.add(record);
@@ -367,88 +257,6 @@ void Conductor::State::keep_house() {
             sink->flush();
         flushed_wall_ = wall;
     }
-}
-
-bool Conductor::State::stuck() const {
-    const Time ceiling = std::min(end_, later(schedule_.reached(), options_.stop_latency));
-    for (std::size_t n = 0; n < times_.size(); ++n)
-        if (std::min(schedule_.bounds().limit(n), ceiling) > times_[n].granted) return false;
-    return true;
-}
-
-void Conductor::State::deadlock() const {
-    // Follow who limits whom, from a node that may not move, until a node comes again: those are the cycle.
-    std::size_t n = 0;
-    while (n < times_.size() && schedule_.bounds().limit(n) > times_[n].granted)
-        ++n;
-    std::vector<std::size_t> path;
-    while (n < times_.size() && std::find(path.begin(), path.end(), n) == path.end()) {
-        path.push_back(n);
-        n = schedule_.bounds().limiter(n);
-    }
-    std::string names;
-    bool in_cycle = false;
-    for (const std::size_t step : path) {
-        in_cycle = in_cycle || step == n;
-        if (in_cycle) names += handles_[step]->name() + " <- ";
-    }
-    if (n < times_.size()) names += handles_[n]->name();
-    throw RunError(fmt::format(
-        "deadlock at simulated time {:.12f} s: each node waits for the next and none can promise to "
-        "be silent: {} (a cycle of links needs a positive sum of promises, reactions and latencies)",
-        to_seconds(schedule_.reached()), names));
-}
-
-void Conductor::State::fail(Outcome& outcome, const std::string& text) {
-    outcome.reason = EndReason::Failed;
-    outcome.success = false;
-    outcome.text = text;
-    if (current_ != kNobody) outcome.node = handles_[current_]->name();
-}
-
-void Conductor::State::finish(Outcome& outcome) {
-    // What was sent before a failure is kept whole; an interrupted trace ends where all of it is known.
-    const bool failed = outcome.reason == EndReason::Failed;
-    const auto guarded = [&](auto work) {
-        try {
-            work();
-        } catch (const std::exception& error) {
-            if (outcome.reason != EndReason::Failed)
-                fail(outcome, error.what());
-            else if (outcome.text != error.what())
-                outcome.warnings.emplace_back(error.what());
-        }
-    };
-    guarded([&] { release_trace(failed ? kNever : std::min(schedule_.bounds().floor(), end_)); });
-    for (TraceSink* sink : sinks)
-        guarded([&] { sink->flush(); });
-    for (std::size_t n = 0; n < handles_.size(); ++n) {
-        outcome.nodes.push_back({handles_[n]->name(), {}, slots_[n].grants});
-        guarded([&] {
-            current_ = n;
-            outcome.nodes.back().json = handles_[n]->finish();
-        });
-    }
-}
-
-void Conductor::State::report(Outcome& outcome) {
-    outcome.wall_s = seconds_since(start_);
-    outcome.grants = grants_;
-    outcome.trace_sha256 = hash_.finish();
-    for (std::size_t l = 0; l < links_.size(); ++l) {
-        const LinkSpec& link = links_[l];
-        outcome.links.push_back({link.name, link.a.node + "." + link.a.port, link.b.node + "." + link.b.port,
-                                 stats_[2 * l], stats_[2 * l + 1]});
-    }
-    for (const FaultSpec& spec : fault_specs_)
-        outcome.faults.push_back({describe(spec), 0});
-    for (std::size_t f = 0; f < network_->faults().size(); ++f)
-        outcome.faults[network_->fault_specs()[f]].fired += network_->faults()[f]->fired();
-    for (const Outcome::FaultReport& fault : outcome.faults)
-        if (fault.fired == 0) outcome.warnings.push_back(fmt::format("fault never fired: {}", fault.text));
-    if (network_->unlinked() != 0)
-        outcome.warnings.push_back(
-            fmt::format("{} messages were sent by ports without a link", network_->unlinked()));
 }
 
 Conductor::Conductor(std::vector<NodeSpec> nodes, std::vector<LinkSpec> links, std::vector<FaultSpec> faults,

@@ -1,0 +1,118 @@
+// How a run ends: a node's wish, a deadlock, a failure; and what is told of it.
+
+#include "base/error.h"
+#include "cosim/conductor_state.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace puckloop::cosim {
+
+void Conductor::State::take_stop(std::size_t n, Time before) {
+    const std::optional<Stop>& stop = handles_[n]->state().stop;
+    if (!stop || slots_[n].stop_seen) return;
+    slots_[n].stop_seen = true;
+    // Nobody has been granted more than the stop latency beyond `before`, so this end is in nobody's past.
+    Stop wish = *stop;
+    wish.time = std::max(wish.time, before);
+    if (wish.together <= 1) return end_with(wish, n);
+    wishes_.emplace_back(wish, n);
+    if (wishes_.size() < wish.together) return;
+    const auto last = std::max_element(wishes_.begin(), wishes_.end(), [](const auto& a, const auto& b) {
+        return std::pair(a.first.time, a.second) < std::pair(b.first.time, b.second);
+    });
+    end_with(last->first, last->second);
+}
+
+void Conductor::State::end_with(const Stop& stop, std::size_t n) {
+    if (stop_ && (stop_->time < stop.time || (stop_->time == stop.time && stopper_ < n))) return;
+    if (stop.time >= end_) return;
+    stop_ = stop;
+    stopper_ = n;
+    end_ = std::min(end_, later(stop.time, options_.stop_latency));
+}
+
+bool Conductor::State::stuck() const {
+    const Time ceiling = std::min(end_, later(schedule_.reached(), options_.stop_latency));
+    for (std::size_t n = 0; n < times_.size(); ++n)
+        if (std::min(schedule_.bounds().limit(n), ceiling) > times_[n].granted) return false;
+    return true;
+}
+
+void Conductor::State::deadlock() const {
+    // Follow who limits whom, from a node that may not move, until a node comes again: those are the cycle.
+    std::size_t n = 0;
+    while (n < times_.size() && schedule_.bounds().limit(n) > times_[n].granted)
+        ++n;
+    std::vector<std::size_t> path;
+    while (n < times_.size() && std::find(path.begin(), path.end(), n) == path.end()) {
+        path.push_back(n);
+        n = schedule_.bounds().limiter(n);
+    }
+    std::string names;
+    bool in_cycle = false;
+    for (const std::size_t step : path) {
+        in_cycle = in_cycle || step == n;
+        if (in_cycle) names += handles_[step]->name() + " <- ";
+    }
+    if (n < times_.size()) names += handles_[n]->name();
+    throw RunError(fmt::format(
+        "deadlock at simulated time {:.12f} s: each node waits for the next and none can promise to "
+        "be silent: {} (a cycle of links needs a positive sum of promises, reactions and latencies)",
+        to_seconds(schedule_.reached()), names));
+}
+
+void Conductor::State::fail(Outcome& outcome, const std::string& text) {
+    outcome.reason = EndReason::Failed;
+    outcome.success = false;
+    outcome.text = text;
+    if (current_ != kNobody) outcome.node = handles_[current_]->name();
+}
+
+void Conductor::State::finish(Outcome& outcome) {
+    // What was sent before a failure is kept whole; an interrupted trace ends where all of it is known.
+    const bool failed = outcome.reason == EndReason::Failed;
+    const auto guarded = [&](auto work) {
+        try {
+            work();
+        } catch (const std::exception& error) {
+            if (outcome.reason != EndReason::Failed)
+                fail(outcome, error.what());
+            else if (outcome.text != error.what())
+                outcome.warnings.emplace_back(error.what());
+        }
+    };
+    guarded([&] { release_trace(failed ? kNever : std::min(schedule_.bounds().floor(), end_)); });
+    for (TraceSink* sink : sinks)
+        guarded([&] { sink->flush(); });
+    for (std::size_t n = 0; n < handles_.size(); ++n) {
+        outcome.nodes.push_back({handles_[n]->name(), {}, slots_[n].grants});
+        guarded([&] {
+            current_ = n;
+            outcome.nodes.back().json = handles_[n]->finish();
+        });
+    }
+}
+
+void Conductor::State::report(Outcome& outcome) {
+    outcome.wall_s = seconds_since(start_);
+    outcome.grants = grants_;
+    outcome.trace_sha256 = hash_.finish();
+    for (std::size_t l = 0; l < links_.size(); ++l) {
+        const LinkSpec& link = links_[l];
+        outcome.links.push_back({link.name, link.a.node + "." + link.a.port, link.b.node + "." + link.b.port,
+                                 stats_[2 * l], stats_[2 * l + 1]});
+    }
+    for (const FaultSpec& spec : fault_specs_)
+        outcome.faults.push_back({describe(spec), 0});
+    for (std::size_t f = 0; f < network_->faults().size(); ++f)
+        outcome.faults[network_->fault_specs()[f]].fired += network_->faults()[f]->fired();
+    for (const Outcome::FaultReport& fault : outcome.faults)
+        if (fault.fired == 0) outcome.warnings.push_back(fmt::format("fault never fired: {}", fault.text));
+    if (network_->unlinked() != 0)
+        outcome.warnings.push_back(
+            fmt::format("{} messages were sent by ports without a link", network_->unlinked()));
+}
+
+}  // namespace puckloop::cosim

@@ -1,0 +1,102 @@
+#pragma once
+// The conductor's state and the loop over it; private to its source files: conductor.cpp (the loop),
+// conductor_end.cpp (how a run ends, what is told of it).
+
+#include "base/random.h"
+#include "cosim/conductor.h"
+#include "cosim/network.h"
+#include "cosim/schedule.h"
+#include "cosim/trace_hash.h"
+#include "cosim/trace_merger.h"
+#include "cosim/workers.h"
+
+#include <chrono>
+#include <exception>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace puckloop::cosim {
+
+using WallClock = std::chrono::steady_clock;
+
+inline double seconds_since(WallClock::time_point start) {
+    return std::chrono::duration<double>(WallClock::now() - start).count();
+}
+
+class Conductor::State {
+  public:
+    State(std::vector<NodeSpec> nodes, std::vector<LinkSpec> links, std::vector<FaultSpec> faults,
+          RunOptions options, const NodeFactory& factory);
+
+    Outcome run();
+
+    std::vector<TraceSink*> sinks;
+    const std::vector<std::unique_ptr<NodeHandle>>& handles() const { return handles_; }
+
+  private:
+    /// What has been asked of a node and what waits for it.
+    struct Slot {
+        Time asked = 0;
+        std::uint64_t grants = 0;
+        Time first_in = kNever;          ///< of the grant under way
+        std::vector<TraceRecord> queue;  ///< heap, earliest first
+        std::vector<TraceRecord> taken;  ///< of the queue, for the grant under way
+        std::vector<Message> inbox;      ///< the same, as the node gets it
+        std::vector<PortEcho> echoes;
+        bool stop_seen = false;
+    };
+
+    void loop();
+    void plan();
+    void grant(std::size_t n, Time until);
+    void collect();
+    void work_here();
+    void take_reply(std::size_t n);
+    void take_stop(std::size_t n, Time before);
+    void end_with(const Stop& stop, std::size_t n);
+    void take_deliveries(std::size_t sender);
+    void release_trace(Time floor);
+    void keep_house();
+    bool stuck() const;
+    [[noreturn]] void deadlock() const;
+    void fail(Outcome& outcome, const std::string& text);
+    void finish(Outcome& outcome);
+    void report(Outcome& outcome);
+
+    std::vector<NodeSpec> specs_;
+    std::vector<LinkSpec> links_;
+    std::vector<FaultSpec> fault_specs_;
+    RunOptions options_;
+    std::vector<std::unique_ptr<NodeHandle>> handles_;
+    std::unique_ptr<Network> network_;
+
+    std::vector<NodeTimes> times_;
+    std::vector<Slot> slots_;
+    std::vector<Time> pending_;
+    Schedule schedule_;
+    std::vector<TraceRecord> deliveries_;
+    std::vector<LinkStats> stats_;  ///< one a wire
+    TraceMerger merger_;
+    TraceHash hash_;
+    std::optional<RandomStream> chop_;
+    std::unique_ptr<Workers> workers_;
+    std::vector<std::size_t> here_;             ///< nodes of this process that are granted
+    std::vector<std::size_t> shared_;           ///< those of them that any thread may advance
+    std::vector<std::exception_ptr> failures_;  ///< of nodes, by index
+
+    Time end_ = kNever;
+    std::vector<std::pair<Stop, std::size_t>> wishes_;  ///< to stop together, and whose
+    std::optional<Stop> stop_;
+    std::size_t stopper_ = kNobody;
+    std::size_t current_ = kNobody;  ///< whose call is under way: names the one that failed
+    std::uint64_t grants_ = 0;
+    WallClock::time_point start_{};
+    double told_wall_ = 0.0;
+    double flushed_wall_ = 0.0;
+    Time told_time_ = 0;
+};
+
+}  // namespace puckloop::cosim
