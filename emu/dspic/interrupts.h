@@ -42,9 +42,10 @@ class InterruptController {
     void raise(int irq, Cycle now);
     /// The source asks for service without an interrupt of its own: what a DMA channel may serve, too.
     void request(int irq, Cycle now) {
-        if (tapped_[static_cast<std::size_t>(irq) / 64] >> (irq % 64) & 1) [[unlikely]]
+        if (tapped(irq)) [[unlikely]]
             tap_(tap_owner_, irq, now);
     }
+    bool tapped(int irq) const { return tapped_[static_cast<std::size_t>(irq) / 64] >> (irq % 64) & 1; }
     /// Calls `served` at every raise() and request() of the sources in `irqs` (bit n % 64 of word n / 64).
     void set_tap(void* owner, void (*served)(void* owner, int irq, Cycle now),
                  const std::array<std::uint64_t, 2>& irqs) {

@@ -74,7 +74,8 @@ bool prepare(Machine& m, SkipLoops::Branch& known, Leap& leap) {
     leap.due = m.events.next();
     leap.steady = m.events.steady(leap.slot);
     const int irq = leap.steady.irq;
-    if (leap.due == kNoCycle || irq < 0 || !m.irq.enabled(irq) || m.irq.priority(irq) <= cpu_level(m))
+    if (leap.due == kNoCycle || irq < 0 || m.irq.tapped(irq) || !m.irq.enabled(irq) ||
+        m.irq.priority(irq) <= cpu_level(m))
         return false;
     if (m.irq.first().level != 0 || m.irq.any_enabled_flag()) return false;
     leap.shortcut = service_shortcut(m, irq + kTrapVectors);

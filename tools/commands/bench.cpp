@@ -4,6 +4,7 @@
 #include "cosim/interrupt.h"
 #include "emu/dspic/core_bench.h"
 #include "tools/bench/rab_scenario.h"
+#include "tools/bench/rab_speed.h"
 #include "tools/bench/reference.h"
 #include "tools/commands.h"
 #include "tools/commands/bench_rab.h"
@@ -16,6 +17,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -93,6 +95,16 @@ class Scratch {
     std::filesystem::path path_;
 };
 
+/// The chosen firmware for the board, and the original where somebody has it.
+std::vector<std::filesystem::path> rab_images(const Options& options) {
+    std::vector<std::filesystem::path> images{options.rab_image};
+    if (const char* folder = std::getenv("PUCKLOOP_IMAGES")) {
+        const std::filesystem::path original = std::filesystem::path(folder) / "randb.hex";
+        if (std::filesystem::exists(original)) images.push_back(original);
+    }
+    return images;
+}
+
 void measure_core(const Options& options, std::vector<Figure>& figures) {
     const auto millions = [](const dspic::CoreBenchResult& result) {
         return result.instructions_per_second() * 1e-6;
@@ -109,6 +121,16 @@ void measure_core(const Options& options, std::vector<Figure>& figures) {
             return static_cast<double>(result.cycles) / kCyclesPerSecond / result.wall_s;
         }));
     }
+}
+
+/// Boards alone, one at a time.
+void measure_boards(const Options& options, std::vector<Figure>& figures) {
+    for (const auto& [work, title] :
+         {std::pair{RabWork::Idle, "idle"}, std::pair{RabWork::Sending, "sending"}})
+        for (const std::filesystem::path& image : rab_images(options))
+            figures.push_back(measure(fmt::format("rab board, {}, {}", title, image.filename().string()),
+                                      "x real time", options,
+                                      [&] { return rab_board_speed(image, work, options.slice_s); }));
 }
 
 void measure_scenario(const Options& options, std::vector<Figure>& figures) {
@@ -138,6 +160,8 @@ std::vector<Figure> measure_all(const Options& options) {
     for (const std::string& name : options.cases) {
         if (name == "core")
             measure_core(options, figures);
+        else if (name == "board")
+            measure_boards(options, figures);
         else if (name == "scenario")
             measure_scenario(options, figures);
         else
@@ -186,7 +210,7 @@ void declare_bench(CLI::App& app, int& status) {
                      "what to measure: core, scenario, rab1, rab2, rab8 = so many robots with "
                      "range-and-bearing boards in one process (repeatable; default core and scenario)")
         ->allow_extra_args(false)
-        ->check(CLI::IsMember({"core", "scenario", "rab1", "rab2", "rab8"}));
+        ->check(CLI::IsMember({"core", "board", "scenario", "rab1", "rab2", "rab8"}));
     command
         ->add_option("--rab-image", options->rab_image, "firmware of these boards (default: the project's)")
         ->type_name("IMAGE");
