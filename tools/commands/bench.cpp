@@ -206,9 +206,10 @@ void declare_bench(CLI::App& app, int& status) {
     command->add_option("--image", options->image, "firmware image to run on the bare chip as well")
         ->type_name("IMAGE");
     command
-        ->add_option("--case", options->cases,
-                     "what to measure: core, scenario, rab1, rab2, rab8 = so many robots with "
-                     "range-and-bearing boards in one process (repeatable; default core and scenario)")
+        ->add_option(
+            "--case", options->cases,
+            "what to measure: core, board = one range-and-bearing board alone, scenario, rab1, rab2, rab8 = "
+            "so many robots with such boards in one process (repeatable; default core and scenario)")
         ->allow_extra_args(false)
         ->check(CLI::IsMember({"core", "board", "scenario", "rab1", "rab2", "rab8"}));
     command
