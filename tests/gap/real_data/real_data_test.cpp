@@ -1,0 +1,108 @@
+// Published measurements, through importers and analysis: the essential points of each verdict
+// (docs/gap_real_data.md), above all what must not be claimed. Needs the sets: PUCKLOOP_MEASURED names their
+// folder.
+
+#include "gap/analyse.h"
+#include "gap/importers/importers.h"
+#include "tests/scratch.h"
+
+#include <catch2/catch.hpp>
+
+#include <cstdlib>
+#include <optional>
+
+using namespace puckloop;
+using namespace puckloop::gap;
+using Catch::Matchers::Contains;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Empty if the sets are not there.
+std::optional<Verdict> verdict_on(const char* set, const char* experiment) {
+    const char* measured = std::getenv("PUCKLOOP_MEASURED");
+    if (measured == nullptr) {
+        WARN("skipped: PUCKLOOP_MEASURED is not set");
+        return std::nullopt;
+    }
+    const fs::path out = tests::scratch_path("gap_real");
+    fs::remove_all(out);
+    importers::import_set(fs::path(measured) / set, "", out);
+    const Verdict verdict = analyse(read_experiment(out / experiment));
+    fs::remove_all(out);
+    return verdict;
+}
+
+bool names(const Verdict& verdict, std::string_view effect) {
+    for (const Cause& cause : verdict.causes)
+        if (cause.name == effect) return true;
+    return false;
+}
+
+std::string cautions_of(const Verdict& verdict) {
+    std::string all;
+    for (const std::string& caution : verdict.cautions)
+        all += caution + "\n";
+    return all;
+}
+
+const FittedParameter* parameter_of(const Verdict& verdict, std::string_view name) {
+    for (const Cause& cause : verdict.causes)
+        for (const FittedParameter& p : cause.parameters)
+            if (p.name == name) return &p;
+    return nullptr;
+}
+
+}  // namespace
+
+TEST_CASE("trap: the strength table whose last line is a copy makes no far floor") {
+    const auto v = verdict_on("argos3_epuck_rab", "argos3_epuck_rab");
+    if (!v) return;
+    CHECK(v->decision == Decision::NoEffect);
+    CHECK_FALSE(names(*v, "far_floor"));
+    CHECK_FALSE(v->heldout.gain);
+    CHECK_THAT(cautions_of(*v), Contains("row 9") && Contains("repeats row 8") && Contains("left out"));
+    CHECK_THAT(cautions_of(*v), Contains("one run only"));
+}
+
+TEST_CASE("trap: bearing offsets that belong to the place are not named as one offset") {
+    const auto v = verdict_on("roh_ir_bearing", "roh_ir_bearing");
+    if (!v) return;
+    CHECK(v->decision != Decision::Named);
+    CHECK_FALSE((v->heldout.gain && v->heldout.high > 1));
+    CHECK_THAT(cautions_of(*v), Contains("from placement to placement"));
+}
+
+TEST_CASE("durations of host loops: nothing is named from two runs of a sum that drifts") {
+    for (const char* part : {"unifr_timing_pipuck", "unifr_timing_wifi"}) {
+        const auto v = verdict_on("unifr_epuck2_timing", part);
+        if (!v) return;
+        INFO(part);
+        CHECK(v->decision != Decision::Named);
+        CHECK_FALSE(names(*v, "truncation"));  // the set does not say which frames were whole
+        CHECK_THAT(cautions_of(*v), Contains("2 runs"));
+    }
+}
+
+TEST_CASE("a box at a distance that nobody wrote down is not explained away") {
+    const auto v = verdict_on("epuck1_box_bearing", "epuck1_box_bearing");
+    if (!v) return;
+    CHECK(v->decision == Decision::Unexplained);
+    CHECK_FALSE(v->leftovers.empty());
+}
+
+TEST_CASE(
+    "the Thymio's right ground sensor reads higher than its left one; directions differ more than repeats") {
+    const auto v = verdict_on("thymio_sensors_resilient-swarms", "thymio_ground");
+    if (!v) return;
+    REQUIRE(names(*v, "ground_gain"));
+    const FittedParameter* right = parameter_of(*v, "ground.offset2");
+    REQUIRE(right != nullptr);
+    CHECK(right->low > 50);
+    const FittedParameter* left = parameter_of(*v, "ground.offset0");
+    REQUIRE(left != nullptr);
+    CHECK(left->low < 0);
+    CHECK(left->high > 0);
+    CHECK(v->heldout.high < 1);
+    CHECK_THAT(cautions_of(*v), Contains("from placement to placement"));
+}
