@@ -1,38 +1,21 @@
 // puckloop asm and puckloop disasm from the outside.
+#include "tests/tools/shell.h"
+
 #include <catch2/catch.hpp>
 #include <unistd.h>
 
-#include <sys/wait.h>
-
-#include <array>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
 
+using puckloop::tests::Result;
+using puckloop::tests::run_puckloop;
+
 namespace {
 
 namespace fs = std::filesystem;
-
-struct Result {
-    int status = 0;
-    std::string output;  ///< standard output and error together
-};
-
-/// Runs "puckloop ARGUMENTS" in a shell.
-Result puckloop(const std::string& arguments) {
-    const std::string command = std::string(PUCKLOOP_PROGRAM) + " " + arguments + " 2>&1";
-    std::FILE* pipe = popen(command.c_str(), "r");
-    REQUIRE(pipe != nullptr);
-    Result result;
-    std::array<char, 4096> buffer{};
-    while (const std::size_t got = std::fread(buffer.data(), 1, buffer.size(), pipe))
-        result.output.append(buffer.data(), got);
-    result.status = WEXITSTATUS(pclose(pipe));
-    return result;
-}
 
 class Folder {
   public:
@@ -68,13 +51,13 @@ TEST_CASE("asm, disasm and asm again give the same program") {
     const Folder folder;
     const std::string source = folder.file("a.s", kSource);
     const std::string first = folder.file("first.hex");
-    const Result assembled = puckloop("asm " + source + " -o " + first);
+    const Result assembled = run_puckloop("asm " + source + " -o " + first);
     CHECK(assembled.output == "");
     CHECK(assembled.status == 0);
     const std::string text = folder.file("b.s");
-    CHECK(puckloop("disasm " + first + " > " + text).status == 0);
+    CHECK(run_puckloop("disasm " + first + " > " + text).status == 0);
     const std::string second = folder.file("second.hex");
-    CHECK(puckloop("asm " + text + " -o " + second).status == 0);
+    CHECK(run_puckloop("asm " + text + " -o " + second).status == 0);
     CHECK(content_of(first).size() > 60);
     CHECK(content_of(first) == content_of(second));
 }
@@ -82,28 +65,28 @@ TEST_CASE("asm, disasm and asm again give the same program") {
 TEST_CASE("disasm prints address, words, text and branch targets") {
     const Folder folder;
     const std::string image = folder.file("x.hex");
-    puckloop("asm " + folder.file("x.s", kSource) + " -o " + image);
-    const Result all = puckloop("disasm " + image);
+    run_puckloop("asm " + folder.file("x.s", kSource) + " -o " + image);
+    const Result all = run_puckloop("disasm " + image);
     CHECK(all.output.find("goto      L_000100                      ; 000000: 040100 000000") !=
           std::string::npos);
     CHECK(all.output.find("bra       L_000104                      ; 000104: 37ffff") != std::string::npos);
-    const Result part = puckloop("disasm " + image + " --start 0x102 --end 102");
+    const Result part = run_puckloop("disasm " + image + " --start 0x102 --end 102");
     CHECK(part.output.find("#0x1234") == std::string::npos);
     CHECK(part.output.find("; 000102: 801611") != std::string::npos);
     CHECK(part.output.find("000104") == std::string::npos);
-    CHECK(puckloop("disasm --words fa0004,0x3f0000").output ==
+    CHECK(run_puckloop("disasm --words fa0004,0x3f0000").output ==
           "lnk       #0x4                          ; 000000: fa0004\n"
           ".pword    0x3f0000                      ; 000002: 3f0000\n");
 }
 
 TEST_CASE("asm lists and reports") {
     const Folder folder;
-    const Result list = puckloop("asm " + folder.file("l.s", "x: call x\nnop\n") + " --format list");
+    const Result list = run_puckloop("asm " + folder.file("l.s", "x: call x\nnop\n") + " --format list");
     CHECK(list.output == "000000: 020000 000000      1  call x\n000004: 000000             2  nop\n");
-    const Result placed = puckloop("asm " + folder.file("o.s", ".org 0x200\nnop\n") + " --format list");
+    const Result placed = run_puckloop("asm " + folder.file("o.s", ".org 0x200\nnop\n") + " --format list");
     CHECK(placed.output == "000200: 000000             2  nop\n");
     const std::string bad = folder.file("bad.s", "nop\n  mvo w0, w1\n");
-    const Result failed = puckloop("asm " + bad);
+    const Result failed = run_puckloop("asm " + bad);
     CHECK(failed.status == 2);
     CHECK(failed.output == "puckloop: " + bad + ": line 2: unknown instruction \"mvo\" (expected mov?)\n");
 }
@@ -116,13 +99,13 @@ TEST_CASE("Wrong use and bad input give status 2 and one line") {
           "disasm " + damaged, std::string("disasm --words xyz"), std::string("asm"),
           std::string("asm /no/such/file.s"), std::string("asm - --mcu pic16 < /dev/null"),
           std::string("asm - < /dev/null")}) {
-        const Result result = puckloop(arguments);
+        const Result result = run_puckloop(arguments);
         INFO(arguments << ": " << result.output);
         CHECK(result.status == 2);
         CHECK_FALSE(result.output.empty());
     }
-    CHECK(puckloop("disasm " + damaged).output ==
+    CHECK(run_puckloop("disasm " + damaged).output ==
           "puckloop: " + damaged +
               ": line 1: the file ends without an end-of-file record (expected :00000001FF as last line)\n");
-    CHECK(puckloop("asm " + folder.file("n.s", "nop\n") + " -o /dev/full").status == 1);
+    CHECK(run_puckloop("asm " + folder.file("n.s", "nop\n") + " -o /dev/full").status == 1);
 }

@@ -1,31 +1,17 @@
 // puckloop frames from the outside.
+#include "tests/tools/shell.h"
+
 #include <catch2/catch.hpp>
 
-#include <sys/wait.h>
-
-#include <array>
-#include <cstdio>
 #include <string>
+
+using puckloop::tests::Result;
 
 namespace {
 
-struct Result {
-    int status = 0;
-    std::string output;  ///< standard output and error together
-};
-
-/// Runs "puckloop frames ARGUMENTS" in a shell with `input` on standard input.
+/// puckloop frames ARGUMENTS.
 Result frames(const std::string& arguments, const std::string& input = "") {
-    const std::string command =
-        "printf '" + input + "' | " + std::string(PUCKLOOP_PROGRAM) + " frames " + arguments + " 2>&1";
-    std::FILE* pipe = popen(command.c_str(), "r");
-    REQUIRE(pipe != nullptr);
-    Result result;
-    std::array<char, 4096> buffer{};
-    while (const std::size_t got = std::fread(buffer.data(), 1, buffer.size(), pipe))
-        result.output.append(buffer.data(), got);
-    result.status = WEXITSTATUS(pclose(pipe));
-    return result;
+    return puckloop::tests::run_puckloop("frames " + arguments, input);
 }
 
 void expect(const Result& result, int status, const std::string& output) {
