@@ -139,19 +139,29 @@ void Picture::header() {
     constexpr double kLeft = 56;
     canvas_.text({kLeft, 30}, fmt::format("{:g} s of simulated time", std::round(seconds * 10) / 10),
                  "font-size=\"16\" font-weight=\"bold\"");
-    double x = kLeft;
-    for (std::size_t i = 0; i < robots_.size() && x < canvas_.width() - 200; ++i) {
+    constexpr double kCharacter = 7.4, kMark = 22, kGap = 48;
+    constexpr double kFirstRow = 46, kRow = 15, kLastRow = kFirstRow + kRow;
+    double x = kLeft, y = kFirstRow;
+    for (std::size_t i = 0; i < robots_.size(); ++i) {
         const auto& [name, points] = robots_[i];
         double length = 0.0;
         for (std::size_t k = 1; k < points.size(); ++k)
             length += std::hypot(points[k].x - points[k - 1].x, points[k].y - points[k - 1].y);
-        canvas_.line(
-            {x, 48}, {x + 22, 48},
-            fmt::format("stroke=\"{}\" stroke-width=\"3\" stroke-linecap=\"round\"", hex(colour_of(i))));
         const std::string text = fmt::format("{}: {:.2f} m", name, length);
-        canvas_.text({x + 28, 52}, text, "");
-        constexpr double kCharacter = 7.4;
-        x += 48 + kCharacter * static_cast<double>(text.size());
+        const double wide = kGap + kCharacter * static_cast<double>(text.size());
+        if (x + wide > canvas_.width() - kLeft && x > kLeft) {
+            if (y >= kLastRow) {  // names stand beside the robots, too
+                canvas_.text({x, y + 4}, "...", "");
+                break;
+            }
+            x = kLeft;
+            y += kRow;
+        }
+        canvas_.line(
+            {x, y}, {x + kMark, y},
+            fmt::format("stroke=\"{}\" stroke-width=\"3\" stroke-linecap=\"round\"", hex(colour_of(i))));
+        canvas_.text({x + kMark + 6, y + 4}, text, "");
+        x += wide;
     }
     canvas_.text({canvas_.width() - kLeft, 30}, "dashed: start · solid: end · paler: earlier",
                  "text-anchor=\"end\" fill=\"#777\" font-size=\"11\"");
