@@ -1,5 +1,6 @@
 #include "gap/fit/fit.h"
 
+#include <Eigen/Dense>
 #include <ceres/ceres.h>
 
 #include <algorithm>
@@ -13,7 +14,9 @@ constexpr double kOffset = 0.25;  // (level - level0 + 1/4) has curvature 2 at l
 constexpr double kRelativeStep = 2e-5;  // of a prior's width, for differences
 constexpr double kNoiseStep = 1e-5;
 constexpr double kClaimDoubt = 0.08;  // of ln sd, where the simulator claims one
-constexpr double kConverged = 0.1;    // nats that another round must still bring
+constexpr int kNewtonRounds = 12;
+constexpr double kLongest = 20.0;   // a Newton step, in units of the differences
+constexpr double kConverged = 0.1;  // nats that another round must still bring
 
 /// Which numbers a solver moves: scaled model parameters first, then the noise of each observable.
 class Layout {
@@ -219,7 +222,7 @@ ceres::Solver::Options options_for(int iterations) {
     ceres::Solver::Options options;
     options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
     options.max_num_iterations = iterations;
-    options.function_tolerance = 1e-6;
+    options.function_tolerance = 1e-7;
     options.gradient_tolerance = 1e-9;
     options.parameter_tolerance = 1e-7;
     options.initial_trust_region_radius = 1e2;
@@ -235,6 +238,80 @@ double total(const std::vector<std::vector<double>>& scores, const Weights& weig
         for (std::size_t i = 0; i < scores[o].size(); ++i)
             sum += (weights.empty() ? 1.0 : weights[o][i]) * scores[o][i];
     return sum;
+}
+
+/// Newton's steps on the noise of each observable by itself: the solver's steps are good for means and slow
+/// for tails and drifts, whose curvature it does not see.
+void polish_noise(const Model& model, const Weights& weights, State& state) {
+    Prediction prediction;
+    model.predict(state.values, prediction);
+    RowCosts costs;
+    for (std::size_t o = 0; o < model.observables().size(); ++o) {
+        const Observable& observable = model.observables()[o];
+        const int n = noise_parameters(observable);
+        if (n == 0) continue;
+        const auto cost = [&](const Eigen::VectorXd& x) {
+            NoiseParameters noise;
+            for (int k = 0; k < n; ++k)
+                noise_parameter(noise, k) = x[k];
+            row_costs(observable, prediction[o], noise, costs);
+            double sum = 0.0;
+            for (std::size_t i = 0; i < costs.shape.size(); ++i)
+                sum += (weights.empty() ? 1.0 : weights[o][i]) * costs.cost(i);
+            const double off = claim_error(observable, noise);
+            return std::isfinite(sum) ? sum + off * off / 2 : 1e300;
+        };
+        Eigen::VectorXd low(n), high(n), x(n), reach(n);
+        for (int k = 0; k < n; ++k) {
+            noise_bounds(observable.noise, k, low[k], high[k]);
+            reach[k] = k == 1 && observable.noise == NoiseKind::Level ? 0.1 : k == 2 ? 0.05 : 0.01;
+            x[k] =
+                std::clamp(noise_parameter(state.noise[o], k), low[k] + 2 * reach[k], high[k] - 2 * reach[k]);
+        }
+        double here = cost(x);
+        double damping = 1e-2;
+        for (int round = 0; round < kNewtonRounds; ++round) {
+            Eigen::VectorXd gradient(n), up(n);
+            Eigen::MatrixXd curvature = Eigen::MatrixXd::Zero(n, n);
+            for (int k = 0; k < n; ++k) {
+                const Eigen::VectorXd step = reach[k] * Eigen::VectorXd::Unit(n, k);
+                up[k] = cost(x + step);
+                const double down = cost(x - step);
+                gradient[k] = (up[k] - down) / 2;  // in units of the reach
+                curvature(k, k) = up[k] + down - 2 * here;
+            }
+            for (int k = 0; k < n; ++k)
+                for (int l = 0; l < k; ++l) {
+                    const Eigen::VectorXd both =
+                        reach[k] * Eigen::VectorXd::Unit(n, k) + reach[l] * Eigen::VectorXd::Unit(n, l);
+                    curvature(k, l) = curvature(l, k) = cost(x + both) - up[k] - up[l] + here;
+                }
+            bool better = false;
+            for (int attempt = 0; attempt < 4 && !better; ++attempt) {
+                Eigen::MatrixXd damped = curvature;
+                for (int k = 0; k < n; ++k)
+                    damped(k, k) = std::max(std::abs(curvature(k, k)), 1e-4) * (1 + damping);
+                Eigen::VectorXd step = -damped.ldlt().solve(gradient);
+                Eigen::VectorXd moved = x;
+                for (int k = 0; k < n; ++k)
+                    moved[k] = std::clamp(x[k] + std::clamp(step[k], -kLongest, kLongest) * reach[k],
+                                          low[k] + 2 * reach[k], high[k] - 2 * reach[k]);
+                const double there = cost(moved);
+                if (there < here) {
+                    better = here - there > kConverged / 4;
+                    x = moved;
+                    here = there;
+                    damping = std::max(damping / 5, 1e-4);
+                    if (!better) break;
+                } else {
+                    damping = std::max(damping * 10, 0.3);
+                }
+            }
+            if (!better) break;
+        }
+        for (int k = 0; k < n; ++k)
+            noise_parameter(state.noise[o], k) = x[k];
+    }
 }
 
 }  // namespace
@@ -299,6 +376,10 @@ Fitted fit(const Model& model, const std::vector<Freed>& freed, const State& sta
             ceres::Solve(options_for(effort.iterations), &problem, &summary);
             result.iterations += static_cast<int>(summary.iterations.size());
             layout.unpack(x.data(), result.state);
+            if (effort.noise) {
+                polish_noise(model, weights, result.state);
+                layout.pack(result.state, x.data());
+            }
             if (round + 1 == effort.rounds) break;
             cost.recentre(result.state);
             const double better = total(row_scores(model, result.state), weights);

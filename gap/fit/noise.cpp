@@ -13,7 +13,7 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kLeastProbability = 1e-3;  // a model is never surer than this of a single event or clip
 constexpr double kClip = 5.0;               // innovations beyond do not pull the filter further
 constexpr double kLeastSd = 1e-12;
-constexpr double kFixedDrift = -4.0;  // of noise that is not fitted
+constexpr double kFixedDrift = -9.0;  // of noise that is not fitted
 constexpr double kFixedTail = 4.0;
 
 double t_constant(double nu) {
@@ -215,8 +215,10 @@ void row_costs(const Observable& o, const Predicted& p, const NoiseParameters& n
             const double wide =
                 lapse * std::exp(-0.5 * std::log(2 * kPi) - constant) / std::sqrt(width * width + 1);
             const double peak = 1 - lapse + wide;
-            const double here = (1 - lapse) * std::exp(-tail / 2) +
-                                wide * std::exp(-square(z - shift) / (2 * (width * width + 1)));
+            const double spread = 2 * (width * width + 1);
+            const double up = std::exp(-square(z - shift) / spread);
+            const double hit = p.lapse_both ? (up + std::exp(-square(z + shift) / spread)) / 2 : up;
+            const double here = (1 - lapse) * std::exp(-tail / 2) + wide * hit;
             out.shape[i] = std::copysign(std::sqrt(2 * std::max(std::log(peak / here), 0.0)), z);
             out.other[i] += std::max(-std::log(peak), 0.0);
         }

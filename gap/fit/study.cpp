@@ -14,6 +14,7 @@ namespace puckloop::gap {
 
 namespace {
 
+constexpr double kLittleDrift = -9.0;  // ln of drift variance over noise variance
 constexpr std::size_t kMostFolds = 5;
 constexpr std::size_t kLeastBlocks = 16;  // fewer independent blocks make no interval
 constexpr std::size_t kEnoughRuns =
@@ -200,6 +201,34 @@ Fit Study::fit_none() const {
     return result;
 }
 
+/// The start, or the same way at a tenth, a hundredth, ...: whatever the rows like best. A fit that begins
+/// where nothing fits does not find back.
+State Study::begun(const Candidate& candidate, const std::vector<double>& start, const State& from) const {
+    State best = from;
+    double best_score = -INFINITY;
+    for (const double share : {1.0, 0.3, 0.1, 0.03, 0.01, 0.001}) {
+        State state = from;
+        bool moved = false;
+        for (std::size_t j = 0; j < candidate.freed.size(); ++j) {
+            const auto index = static_cast<std::size_t>(candidate.freed[j].index);
+            const double neutral = model_->parameters()[index].neutral;
+            const bool scalable = neutral >= candidate.freed[j].low && neutral <= candidate.freed[j].high;
+            state.values[index] = scalable ? neutral + share * (start[j] - neutral) : start[j];
+            moved = moved || (scalable && start[j] != neutral);
+        }
+        double score = 0.0;
+        for (const auto& rows : row_scores(*model_, state))
+            for (const double one : rows)
+                score += one;
+        if (score > best_score) {
+            best_score = score;
+            best = std::move(state);
+        }
+        if (!moved) break;
+    }
+    return best;
+}
+
 Fit Study::fit_set(const std::vector<std::size_t>& effects, const State& from, const Effort& effort) const {
     Fit best;
     best.effects = effects;
@@ -207,9 +236,11 @@ Fit Study::fit_set(const std::vector<std::size_t>& effects, const State& from, c
     best.bic = INFINITY;
     const Candidate& last = candidates_[effects.back()];
     for (const auto& start : last.starts) {
-        State state = from;
-        for (std::size_t j = 0; j < last.freed.size(); ++j)
-            state.values[static_cast<std::size_t>(last.freed[j].index)] = start[j];
+        State state = begun(last, start, from);
+        // A sum's drift would swallow what the effect explains: it has to earn itself anew.
+        for (std::size_t o = 0; o < state.noise.size(); ++o)
+            if (model_->observables()[o].noise == NoiseKind::Level && model_->observables()[o].fixed_sd <= 0)
+                state.noise[o].carry = std::min(state.noise[o].carry, kLittleDrift);
         const Fitted fitted = fit(*model_, best.freed, state, {}, effort);
         const double bic = bic_of(fitted, best.freed.size());
         if (bic < best.bic) {

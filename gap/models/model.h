@@ -46,6 +46,7 @@ struct Predicted {
     std::vector<double> lapse;        ///< probability that the row is a lapse (0)
     std::vector<double> lapse_scale;  ///< sd of a lapse, observable's unit
     double lapse_shift = 0.0;         ///< mean of a lapse, observable's unit
+    bool lapse_both = false;          ///< shifted up or down, equally likely
     double floor = 0.0;               ///< reading 0 means "below this" (dead zone); 0: the instrument's floor
     double line_amplitude = 0.0;      ///< of a spectral line with unknown phase, observable's unit
     double line_frequency = 0.0;      ///< Hz

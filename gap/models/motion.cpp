@@ -23,7 +23,8 @@ namespace {
 constexpr double kStill = 1e-6;  // m: less than this between rows is standing
 constexpr double kEdge = 0.05;   // width of the dead band's edge, share of it
 constexpr double kGravity = 9.81;
-constexpr double kCounterSd = 0.7;  // steps: whole steps, and when a row was taken
+constexpr double kLateStep = 0.25;  // a step is counted when it is over
+constexpr double kCounterSd = 3.0;  // steps: whole steps, and when a row was taken
 
 struct Path {
     std::uint32_t run = 0;
@@ -302,7 +303,7 @@ class MotionModel final : public Model {
                        half = 0.0;  // a step is counted when it is over: half a step late on average
                 for (; i < o.y.size() && o.run[i] == run; ++i) {
                     const double asked = again.at(o.time[i] - latency);
-                    if (std::abs(asked - last) > 0.5) half = std::copysign(0.5, asked - last);
+                    if (std::abs(asked - last) > 0.5) half = std::copysign(kLateStep, asked - last);
                     last = asked;
                     p.mean[i] = origin + asked - start - half;
                     if (drop <= 0) continue;

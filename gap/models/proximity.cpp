@@ -24,6 +24,7 @@ namespace puckloop::gap {
 namespace {
 
 constexpr std::size_t kMostObjects = 8;  // stated reflectivities that count as objects
+constexpr double kHitSpread = 0.3;       // of a foreign pulse's counts, share
 constexpr double kEdge = 0.01;           // width of the dead zone's edge, share of it
 constexpr double kGrazing = 0.02;        // cosine below which a wall is not met
 constexpr double kSpeedUnit = 1000.0;    // steps/s: motor effects are given at this speed
@@ -295,7 +296,9 @@ class ProximityModel final : public Model {
         }
         if (rate != 0.0) {
             p.lapse.resize(n);
-            p.lapse_scale.assign(n, value(hit_size_));
+            p.lapse_scale.assign(n, kHitSpread * value(hit_size_));
+            p.lapse_shift = value(hit_size_);
+            p.lapse_both = true;
             for (std::size_t i = 0; i < n; ++i)
                 p.lapse[i] = std::min(rate * others_[i], 0.9);
         }

@@ -9,15 +9,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <numbers>
 
 namespace puckloop::gap {
 
 namespace {
 
 constexpr double kPeriod = 0.1;  // s, of the control loop
+constexpr double kTick = 1e-5;   // s, no robot's clock is written finer
 constexpr double kBaud = 115200;
 constexpr double kBits = 10;         // a byte on the line
 constexpr double kTolerance = 0.02;  // error of the rate that a receiver stands
+constexpr double kEdge = 0.02;       // of a batch: rounding of clocks
 constexpr double kWhole = 0.999;
 
 class TimingModel final : public Model {
@@ -43,6 +47,7 @@ class TimingModel final : public Model {
             period.name = "robot_clock";
             period.y = robot;
             set_up(period);
+            period.instrument.quantum = std::max(period.instrument.quantum, kTick);
         } else {
             robot_ = periods_;
         }
@@ -63,6 +68,47 @@ class TimingModel final : public Model {
         predict_arrival(v, out[o++]);
         if (ok_ >= 0) predict_frames(v, out[static_cast<std::size_t>(ok_)]);
         if (shift_ >= 0) predict_shifts(v, out[static_cast<std::size_t>(shift_)]);
+    }
+
+    /// The longest batch that arrivals keep to: first by intervals, then by the clock itself.
+    std::vector<double> starts(std::string_view parameter) const override {
+        if (parameter != "timing.batch") return {};
+        const Observable& o = observables_[clocks_ ? 1 : 0];
+        double best = 0.05, best_power = 0.0;
+        for (double batch = 0.5; batch > 0.004; batch /= 1.005) {
+            std::complex<double> sum;
+            double count = 0;
+            for (std::size_t i = 1; i < o.y.size(); ++i)
+                if (o.starts[i] == 0) {
+                    sum += std::polar(1.0, 2 * std::numbers::pi * (o.y[i] - o.y[i - 1]) / batch);
+                    ++count;
+                }
+            const double power = std::abs(sum) / std::max(count, 1.0);
+            if (power > 1.02 * best_power) {
+                best_power = power;
+                best = batch;
+            }
+        }
+        const double middle = best;
+        best_power = 0.0;
+        for (int k = -1000; k <= 1000; ++k) {
+            const double batch = middle * (1 + 1e-5 * k);
+            double power = 0.0;
+            std::complex<double> sum;
+            for (std::size_t i = 0; i < o.y.size(); ++i) {
+                if (o.starts[i] != 0) {
+                    power += std::abs(sum);
+                    sum = {};
+                }
+                sum += std::polar(1.0, 2 * std::numbers::pi * o.y[i] / batch);
+            }
+            power += std::abs(sum);
+            if (power > best_power) {
+                best_power = power;
+                best = batch;
+            }
+        }
+        return {best};
     }
 
   private:
@@ -169,9 +215,22 @@ class TimingModel final : public Model {
         }
         // Delivered at whole multiples of the batch: each frame waits for the next one.
         p.mean.resize(o.y.size());
-        for (std::size_t i = 0; i < p.mean.size(); ++i)
-            p.mean[i] = std::ceil(arrival(i) / batch) * batch;
         p.extra.assign(p.mean.size(), 0.0);
+        for (std::size_t i = 0; i < o.y.size();) {
+            std::size_t end = i;
+            std::complex<double> beat;
+            std::vector<double> waits;
+            for (; end < o.y.size() && o.run[end] == o.run[i]; ++end) {
+                beat += std::polar(1.0, 2 * std::numbers::pi * o.y[end] / batch);
+                waits.push_back(o.y[end] - arrival(end));
+            }
+            const double phase = std::arg(beat) / (2 * std::numbers::pi) * batch;
+            const auto least = waits.begin() + static_cast<std::ptrdiff_t>(waits.size() / 50);
+            std::nth_element(waits.begin(), least, waits.end());
+            for (std::size_t k = i; k < end; ++k)
+                p.mean[k] = phase + batch * std::ceil((arrival(k) + *least - phase) / batch - kEdge);
+            i = end;
+        }
     }
 
     void predict_frames(const std::vector<double>& v, Predicted& p) const {
