@@ -109,6 +109,15 @@ void make_plan(Machine& m, SkipLoops::Branch& known, const Op* branch, const Op*
     }
 }
 
+/// When the iteration that begins at `arrival` is over, if nothing but routines without a trace can come
+/// between.
+Cycle clean_arrival(Machine& m, SkipLoops::Branch& known, Cycle arrival) {
+    if (!known.trace.steady) return kNoCycle;
+    if (arrival + known.plan.cycles < m.limit) return arrival + known.plan.cycles;
+    bool interrupted = false;
+    return steady_arrival(m, known, arrival, 1, interrupted);
+}
+
 }  // namespace
 
 void forget_loops(Machine& m) {
@@ -128,8 +137,10 @@ void try_skip(Machine& m, const Op* branch, const Op* head) {
     SkipLoops::Plan& plan = known.plan;
     if (plan.alive) {
         if (plan.iterations >= 2 && as_predicted(m, plan, arrival)) {
+            const bool clean = !plan.proven || plan.clean_due == arrival;
             plan.proven = true;
-            if (!steady_leap(m, known, arrival)) leap(m, plan, arrival);
+            if (!clean || !steady_leap(m, known, arrival)) leap(m, plan, arrival);
+            plan.clean_due = clean_arrival(m, known, m.st.cycle + branch->cycles);
             advance(plan, 1);  // the real iteration that follows
             return;
         }

@@ -86,9 +86,12 @@ struct SkipLoops {
         std::size_t polled_count = 0;
 
         bool alive = false;
-        bool proven = false;             ///< a real iteration ended as the walk predicted
-        bool used = false;               ///< it has skipped something
-        std::uint64_t proof_due = 0;     ///< cycle at which the proof must be there, nothing in between ...
+        bool proven = false;          ///< a real iteration ended as the walk predicted
+        bool used = false;            ///< it has skipped something
+        std::uint64_t proof_due = 0;  ///< cycle at which the proof must be there, nothing in between ...
+        /// An arrival at this cycle ends an iteration that began as predicted: every scratch cell and flag is
+        /// as an undisturbed iteration leaves it.
+        std::uint64_t clean_due = 0;
         bool proof_interrupted = false;  ///< ... but routines without a trace
     };
     /// What is known of one backward branch.

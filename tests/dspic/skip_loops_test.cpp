@@ -435,3 +435,23 @@ TEST_CASE("waiting under a steady beat really is skipped") {
     CHECK(rig.core.cycle() >= 2'000'000'000);  // would take twenty seconds if executed
     CHECK(rig.core.instructions() > 1'000'000'000);
 }
+
+TEST_CASE("after a disturbance a waiting loop has to come round once before it is leapt over") {
+    // W5 follows W4 an iteration late.
+    const std::string source = kHead + R"(
+again:  push    w4
+        pop     w5
+        rcall   look
+        mov     w0, w4
+        cp0.b   w0
+        bra     nz, done
+        bra     again
+look:   lnk     #8
+        mov     w1, [w14]
+        mov.b   0x0d8, wreg
+        ulnk
+        return
+)" + kTracelessTail;
+    for (std::uint64_t seed = 0; seed < 60; ++seed)
+        compare_steady(source, 60'000, seed % 2 ? 1474 : 113, seed);
+}
