@@ -263,6 +263,21 @@ class Analysis {
         verdict_.series = series_of(study_.model(), selection_.none.fitted.state, final_.fitted.state);
     }
 
+    /// Offsets of placements say more than that rows carry over.
+    void tell_placements() {
+        for (const Series& series : verdict_.series) {
+            const std::string shape = placement_shape(experiment_, series);
+            if (shape.empty()) continue;
+            const auto serial =
+                std::find_if(verdict_.leftovers.begin(), verdict_.leftovers.end(), [&](const Leftover& one) {
+                    return one.observable == series.observable && one.covariate == "previous sample";
+                });
+            if (serial == verdict_.leftovers.end()) continue;
+            serial->covariate = "placement";
+            serial->shape = shape;
+        }
+    }
+
     void decide() {
         const auto left = leftovers_of(experiment_, verdict_.series, options_.seed, kLeftLevel);
         double free_form = 0.0;
@@ -270,6 +285,7 @@ class Analysis {
             verdict_.leftovers.push_back(one.told);
             free_form = std::max(free_form, one.gain);
         }
+        tell_placements();
         const double won = selection_.chosen.fitted.log_likelihood - selection_.none.fitted.log_likelihood;
         const bool much_left =
             !left.empty() &&

@@ -9,13 +9,20 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <numbers>
 
 namespace puckloop::gap {
 
 namespace {
 
 constexpr std::size_t kLeastPlacements = 6, kRowsEach = 10;
+constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr double kClearly = 3.0;  // times what the repeats' scatter makes of a mean
+
+std::string with_unit(double value, const std::string& unit) {
+    if (unit == "rad") return stats::plain(value * kDegrees) + " deg";
+    return stats::plain(value) + (unit.empty() || unit == "1" ? "" : " " + unit);
+}
 
 /// Rows in sequence with the same stimulus in one run.
 std::vector<stats::Stretch> placements_of(const Experiment& experiment, const Series& series) {
@@ -37,7 +44,7 @@ std::vector<stats::Stretch> placements_of(const Experiment& experiment, const Se
 
 }  // namespace
 
-std::string placement_caution(const Experiment& experiment, const Series& series) {
+std::string placement_shape(const Experiment& experiment, const Series& series) {
     if (series.after.size() != series.measured.size()) return {};
     const std::vector<stats::Stretch> placements = placements_of(experiment, series);
     if (placements.size() < kLeastPlacements || placements.size() * kRowsEach > series.measured.size())
@@ -61,11 +68,19 @@ std::string placement_caution(const Experiment& experiment, const Series& series
     const double each = rows / static_cast<double>(placements.size());
     const double by_chance = within * std::sqrt(stats::correlation_length(inside) / each);
     if (!(between > within && between > kClearly * by_chance)) return {};
-    return fmt::format(
-        "what is left of {0} differs from placement to placement by {1} {3} (standard deviation of {4} "
-        "placements), while repeats at one placement scatter by {2} {3} only: no effect explains these "
-        "offsets, and more repeats would not help, more placements would",
-        series.observable, stats::plain(between), stats::plain(within), series.unit, placements.size());
+    return fmt::format("differs from placement to placement by {} (standard deviation of {} placements), "
+                       "while repeats at one "
+                       "placement scatter by {}",
+                       with_unit(between, series.unit), placements.size(), with_unit(within, series.unit));
+}
+
+std::string placement_caution(const Experiment& experiment, const Series& series) {
+    const std::string shape = placement_shape(experiment, series);
+    if (shape.empty()) return {};
+    return fmt::format("what is left of {} {}: no effect explains these offsets; more repeats would not "
+                       "help, more placements "
+                       "would",
+                       series.observable, shape);
 }
 
 }  // namespace puckloop::gap

@@ -8,9 +8,11 @@
 
 namespace puckloop::gap {
 
-/// A sentence for the verdict if what is left (after) differs from placement to placement by more than
-/// repeats scatter at one; empty if not, or if there are fewer than six placements with ten rows each on
-/// average.
+/// "differs from placement to placement by ..." if what is left (after) does so by more than repeats scatter
+/// at one placement; empty if not, or if there are fewer than six placements with ten rows each on average.
+std::string placement_shape(const Experiment& experiment, const Series& series);
+
+/// The same as a caution for the verdict.
 std::string placement_caution(const Experiment& experiment, const Series& series);
 
 }  // namespace puckloop::gap
