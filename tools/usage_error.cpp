@@ -20,6 +20,14 @@ const CLI::App& command_of(const CLI::App& app) {
     return *command;
 }
 
+/// The words that reach it: "bench rab".
+std::string path_of(const CLI::App& app, const CLI::App& command) {
+    std::string path = command.get_name();
+    for (const CLI::App* above = command.get_parent(); above && above != &app; above = above->get_parent())
+        path = above->get_name() + " " + path;
+    return path;
+}
+
 std::string nearest_option(const CLI::App& command, const std::string& word) {
     std::vector<std::string> names;
     const bool option = word.starts_with("--");
@@ -49,7 +57,7 @@ std::string unexpected_word(const CLI::App& app) {
 std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
     const CLI::App& command = command_of(app);
     const bool in_command = &command != &app;
-    const std::string name = in_command ? command.get_name() : std::string();
+    const std::string name = in_command ? path_of(app, command) : std::string();
     std::string help = fmt::format("see puckloop {}--help", in_command ? name + " " : "");
     std::string problem = error.what();
     if (const auto end = problem.find('\n'); end != std::string::npos) problem.resize(end);

@@ -92,6 +92,10 @@ TEST_CASE("options that make no sense are refused in one line") {
     refused(bench, {"--seed", "x"}, {"--seed"});
     refused(bench, {"--model", "nowhere.toml"}, {"nowhere.toml"});
     refused(bench, {"another.toml"}, {"another.toml"});
+    check_one_line(bench.puckloop({"bench", "rab", "--pairs", "0"}), 2,
+                   {"bench rab: --pairs", "see puckloop bench rab --help"});
+    check_one_line(bench.puckloop({"trace", "rab", "nowhere", "--from", "5", "--to", "2"}), 2,
+                   {"--to", "2 s is not after --from"});
     check_one_line(bench.puckloop({"runn"}), 2, {"'runn'", "perhaps run"});
     check_one_line(bench.puckloop({}), 2, {"no command"});
 }

@@ -86,7 +86,7 @@ void run(Options& options, int& status) {
          rab_picture(summary, fmt::format("{}, {} pairs of boards, {} frames a distance, potentiometer {}",
                                           what.firmware.filename().string(), what.pairs,
                                           2 * what.pairs * what.repeats, what.power)));
-    fmt::print("{}{:.0f} simulated seconds in {:.0f} s; {}\n", summary_text(summary), measured.simulated_s,
+    fmt::print("{}{:.1f} simulated seconds in {:.1f} s; {}\n", summary_text(summary), measured.simulated_s,
                measured.wall_s, options.out.string());
     status = 0;
 }

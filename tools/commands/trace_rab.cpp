@@ -3,6 +3,7 @@
 
 #include "tools/commands/trace_rab.h"
 
+#include "base/error.h"
 #include "tools/commands/number_checks.h"
 #include "tools/rab_losses/results.h"
 
@@ -39,6 +40,9 @@ void declare_trace_rab(CLI::App& trace) {
     command->add_flag("--json", options->json, "print JSON");
     command->callback([options] {
         constexpr double kCmOfM = 100.0;
+        if (options->until_s <= options->from_s)
+            throw InputError("--to", "", fmt::format("{} s is not after --from", options->until_s),
+                             fmt::format("more than {} s", options->from_s));
         const RabResults results = read_rab_results(options->folder, options->from_s, options->until_s);
         const double bin = options->bin_cm / kCmOfM;
         fmt::print("{}", options->json ? to_json(results, bin) : to_text(results, bin));

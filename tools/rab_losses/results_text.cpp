@@ -57,11 +57,11 @@ std::string to_text(const RabResults& results, double bin) {
     for (std::size_t c = 0; c + 1 < kCauses; ++c)
         text += fmt::format("{:22} {:>7} {:>9}\n", name_of(static_cast<Cause>(c)), groups[0].met[c],
                             groups[0].met_lost[c]);
-    text += fmt::format("\n{:22} {:>7} {:>9} {:>7} {:>8} {:>8} {:>11}\n", "board", "asked", "on air", "polls",
-                        "every ms", "messages", "unexplained");
+    text += fmt::format("\n{:22} {:>7} {:>9} {:>7} {:>9} {:>8} {:>11}\n", "board", "asked", "on air", "polls",
+                        "median ms", "messages", "unexplained");
     for (const auto& [robot, traffic] : results.boards)
         text +=
-            fmt::format("{:22} {:>7} {:>9} {:>7} {:>8.2f} {:>8} {:>11}\n", robot, traffic.sends.size(),
+            fmt::format("{:22} {:>7} {:>9} {:>7} {:>9.2f} {:>8} {:>11}\n", robot, traffic.sends.size(),
                         frames_on_air(results, robot), traffic.polls.size(), poll_period(traffic.polls) * 1e3,
                         messages_of(traffic), unexplained_of(results.losses, robot));
     return text;
