@@ -55,6 +55,15 @@ bool settled(const std::vector<Row>& rows, std::size_t k) {
     return rows[k].ok;
 }
 
+/// Rows well inside a drive at even speed.
+bool steady(const std::vector<Row>& rows, std::size_t k) {
+    constexpr std::size_t kSteadyRows = 8;
+    if (k < kSteadyRows || rows[k].left == 0.0) return false;
+    for (std::size_t i = k - kSteadyRows; i < k; ++i)
+        if (rows[i].left != rows[k].left || rows[i].right != rows[k].right) return false;
+    return true;
+}
+
 HiddenRun proximity_run(const std::vector<Row>& rows, bool lamp, RandomStream& noise) {
     const physics::Parameters nominal;
     HiddenRun run;
@@ -86,7 +95,9 @@ HiddenRun proximity_run(const std::vector<Row>& rows, bool lamp, RandomStream& n
 HiddenRun ground_run(const std::vector<Row>& rows) {
     const physics::Parameters nominal;
     HiddenRun run;
-    for (const Row& r : rows)
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+        if (!steady(rows, k)) continue;  // a start or stop tips the robot a little
+        const Row& r = rows[k];
         for (std::size_t i = 0; i < physics::kGroundSensors; ++i) {
             const double x =
                 r.x + std::cos(r.theta) * nominal.ground.x - std::sin(r.theta) * nominal.ground.y[i];
@@ -96,6 +107,7 @@ HiddenRun ground_run(const std::vector<Row>& rows) {
             run.column("grey").values.push_back(stripe_grey(x));
             run.column("reading", "counts").values.push_back(r.gs[i]);
         }
+    }
     return run;
 }
 

@@ -72,6 +72,9 @@ class MotionModel final : public Model {
         const auto load = taken(rows.column("load_kg", 0), used),
                    incline = taken(rows.column("incline_rad", 0), used);
         counted_ = experiment.has("steps_left") && experiment.has("cmd_left");
+        const auto agenda = experiment.nominal.find("firmware.agenda");
+        const bool own = agenda != experiment.nominal.end() && agenda->second == 0;
+        const MotorDriver driver = own ? MotorDriver::Timer : MotorDriver::Agenda;
         std::array<std::vector<double>, 3> sums;
         double along = 0, across = 0, heading = 0;
         for (std::size_t i = 0; i < base.y.size(); ++i) {
@@ -80,11 +83,11 @@ class MotionModel final : public Model {
                 const Run& run = experiment.runs[base.run[i]];
                 Path path;
                 path.run = base.run[i];
-                path.wheel[0] = WheelCurve::counted(run, "steps_left", "cmd_left");
-                path.wheel[1] = WheelCurve::counted(run, "steps_right", "cmd_right");
+                path.wheel[0] = WheelCurve::counted(run, "steps_left", "cmd_left", driver);
+                path.wheel[1] = WheelCurve::counted(run, "steps_right", "cmd_right", driver);
                 if (counted_) {
-                    path.asked[0] = WheelCurve::commanded(run, "cmd_left");
-                    path.asked[1] = WheelCurve::commanded(run, "cmd_right");
+                    path.asked[0] = WheelCurve::commanded(run, "cmd_left", driver);
+                    path.asked[1] = WheelCurve::commanded(run, "cmd_right", driver);
                 }
                 paths_.push_back(std::move(path));
                 along = across = heading = 0;
@@ -147,6 +150,7 @@ class MotionModel final : public Model {
         radius_right_ = add("robot.wheel_radius_right", "m", defaults.robot.wheel_radius_right);
         axle_ = add("robot.axle_length", "m", defaults.robot.axle_length);
         steps_per_turn_ = add("robot.steps_per_turn", "1", defaults.robot.steps_per_turn);
+        (void)add("firmware.agenda", "1", 1.0);  // 0: the project's own firmware; read before the fit
         scale_ = add("wheel_scale", "1", 0.0);
         mismatch_ = add("wheel_mismatch", "1", 0.0);
         scrub_ = add("robot.turn_scrub", "1", 0.0);

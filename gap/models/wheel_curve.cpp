@@ -8,7 +8,10 @@ namespace puckloop::gap {
 namespace {
 
 constexpr double kTicksPerSecond = 1e4;
-constexpr double kSmallJump = 20.0;  // steps/s: below, a change of counted speed is rounding
+constexpr double kFineClock = 230400,
+                 kCoarseClock = 57600;        // Hz, the own firmware's timers (firmware/epuck/motors.c)
+constexpr double kSlow = 4, kFastest = 1000;  // steps/s
+constexpr double kSmallJump = 20.0;           // steps/s: below, a change of counted speed is rounding
 
 /// Speeds counted between rows, with the parts of one change that fell into two rows put together.
 std::vector<SpeedJump> counted_jumps(const WheelCurve& curve) {
@@ -40,7 +43,14 @@ double agenda_speed(double command) {
     return std::copysign(kTicksPerSecond / std::max(ticks, 1.0), command);
 }
 
-WheelCurve WheelCurve::commanded(const Run& run, std::string_view command) {
+double timer_speed(double command) {
+    const double speed = std::min(std::abs(command), kFastest);
+    if (speed < 1.0) return 0.0;
+    const double clock = speed < kSlow ? kCoarseClock : kFineClock;
+    return std::copysign(clock / std::floor((clock + std::floor(speed / 2)) / speed), command);
+}
+
+WheelCurve WheelCurve::commanded(const Run& run, std::string_view command, MotorDriver driver) {
     WheelCurve curve;
     const auto &time = run.column("t_s"), &asked = run.column(command);
     double sum = 0.0, speed = 0.0, last = 0.0;
@@ -51,7 +61,7 @@ WheelCurve WheelCurve::commanded(const Run& run, std::string_view command) {
         curve.time.push_back(time[i]);
         curve.steps.push_back(sum);
         if (std::isnan(asked[i])) continue;
-        const double next = agenda_speed(asked[i]);
+        const double next = driver == MotorDriver::Agenda ? agenda_speed(asked[i]) : timer_speed(asked[i]);
         if (next != speed) curve.jumps.push_back({time[i], next - speed});
         speed = next;
     }
@@ -61,7 +71,8 @@ WheelCurve WheelCurve::commanded(const Run& run, std::string_view command) {
     return curve;
 }
 
-WheelCurve WheelCurve::counted(const Run& run, std::string_view counter, std::string_view command) {
+WheelCurve WheelCurve::counted(const Run& run, std::string_view counter, std::string_view command,
+                               MotorDriver driver) {
     WheelCurve curve;
     const auto &time = run.column("t_s"), &steps = run.column(counter);
     for (std::size_t i = 0; i < steps.size(); ++i) {
@@ -69,8 +80,8 @@ WheelCurve WheelCurve::counted(const Run& run, std::string_view counter, std::st
         curve.time.push_back(time[i]);
         curve.steps.push_back(steps[i]);
     }
-    if (curve.empty()) return commanded(run, command);
-    curve.jumps = run.has(command) ? commanded(run, command).jumps : counted_jumps(curve);
+    if (curve.empty()) return commanded(run, command, driver);
+    curve.jumps = run.has(command) ? commanded(run, command, driver).jumps : counted_jumps(curve);
     return curve;
 }
 

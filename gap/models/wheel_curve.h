@@ -13,6 +13,10 @@ namespace puckloop::gap {
 /// Speed (steps/s) that the original firmware's 0.1 ms agenda makes of a command: the emulated firmware gives
 /// exactly this, it is never fitted.
 double agenda_speed(double command);
+/// The speed that the project's own firmware makes of a command: whole counts of a 230.4 kHz timer a step.
+double timer_speed(double command);
+/// Which of the two drives the motors.
+enum class MotorDriver { Agenda, Timer };
 
 /// A change of speed, steps/s.
 struct SpeedJump {
@@ -24,8 +28,9 @@ struct WheelCurve {
     std::vector<SpeedJump> jumps;
 
     /// From the counter; from commands if there is none. `lowest` to `highest` the times that are asked for.
-    static WheelCurve counted(const Run& run, std::string_view counter, std::string_view command);
-    static WheelCurve commanded(const Run& run, std::string_view command);
+    static WheelCurve counted(const Run& run, std::string_view counter, std::string_view command,
+                              MotorDriver driver);
+    static WheelCurve commanded(const Run& run, std::string_view command, MotorDriver driver);
     bool empty() const { return time.empty(); }
 };
 

@@ -1,6 +1,7 @@
 // puckloop gap selftest: does the tool find what was hidden?
 
 #include "base/error.h"
+#include "gap/emulate/secret_cases.h"
 #include "gap/selftest/run_cases.h"
 #include "tools/commands/gap.h"
 #include "tools/commands/number_checks.h"
@@ -24,7 +25,7 @@ struct Request {
     std::uint64_t cases = 0, seed = 1;
     unsigned workers = 2;
     std::string kind;
-    bool quick = false, json = false, keep = false;
+    bool quick = false, json = false, keep = false, emulator = false;
     std::filesystem::path scratch;
 };
 
@@ -40,12 +41,35 @@ std::vector<st::CasePlan> chosen_plans(const Request& request) {
     return plans;
 }
 
+std::filesystem::path scratch_of(const Request& request) {
+    if (!request.scratch.empty()) return request.scratch;
+    return std::filesystem::temp_directory_path() / fmt::format("puckloop-selftest.{}", ::getpid());
+}
+
+/// Robots changed in secret; found all means 0.
+int secret_test(const Request& request) {
+    namespace em = gap::emulate;
+    em::RecordOptions options;
+    options.tools = emulation_tools();
+    options.seed = request.seed;
+    options.brief = request.quick;
+    std::vector<em::SecretResult> results;
+    for (const em::Secret& secret : em::secrets()) {
+        if (!request.kind.empty() && request.kind != secret.kind) continue;
+        options.scratch = scratch_of(request) / fmt::format("secret{:02}", results.size() + 1);
+        results.push_back(em::try_secret(secret, options));
+        if (::isatty(STDERR_FILENO) != 0)
+            fmt::print(stderr, "\r{} of {} robots ", results.size(), em::secrets().size());
+    }
+    fmt::print("{}", em::secrets_text(results));
+    return std::all_of(results.begin(), results.end(), [](const auto& r) { return r.found; }) ? 0 : 1;
+}
+
 int self_test(const Request& request) {
+    if (request.emulator) return secret_test(request);
     st::RunOptions options;
     const bool own = request.scratch.empty();
-    options.scratch =
-        own ? std::filesystem::temp_directory_path() / fmt::format("puckloop-selftest.{}", ::getpid())
-            : request.scratch;
+    options.scratch = scratch_of(request);
     options.keep = request.keep;
     options.workers = request.workers;
     if (::isatty(STDERR_FILENO) != 0)
@@ -75,6 +99,8 @@ void declare_gap_selftest(CLI::App& gap, int& status) {
     command->add_option("--scratch", request->scratch, "where the cases are written (a temporary folder)")
         ->type_name("DIR");
     command->add_flag("--keep", request->keep, "leave the cases' folders");
+    command->add_flag("--emulator", request->emulator,
+                      "robots changed in secret and recorded on the emulator, in place of made experiments");
     command->add_flag("--quick", request->quick, "a small sample");
     command->add_flag("--json", request->json, "the result for programs");
     command->callback([request, &status] { status = self_test(*request); });
