@@ -77,7 +77,7 @@ Options parse(int argc, char** argv) {
     return options;
 }
 
-/// One line an exchange; what was not answered is left empty.
+/// One line an exchange; of what was not answered, the time at which it was given up.
 class RecordLog {
   public:
     explicit RecordLog(const std::string& path) : file_(std::fopen(path.c_str(), "w")) {
@@ -104,7 +104,7 @@ class RecordLog {
             for (const auto value : s->light)
                 std::fprintf(file_, ",%d", static_cast<int>(value));
         } else {
-            std::fputs(",0,,,,,,,,,,,,,,,,", file_);
+            std::fprintf(file_, "%.6f,0,,,,,,,,,,,,,,,,,", answered);
         }
         if (ground)
             std::fprintf(file_, ",%g,%g,%g\n", (*ground)[0], (*ground)[1], (*ground)[2]);
@@ -142,7 +142,7 @@ int run(const Options& options) {
         const auto grey = ground ? ground->read() : std::nullopt;
         const double sent = serial.now();
         const auto answer = session.exchange(record);
-        log.row(sent, commands[next], session.newest_time(), answer, grey);
+        log.row(sent, commands[next], answer ? session.newest_time() : serial.now(), answer, grey);
         if (session.lost() && !session.resync(serial.now() + kStartWait)) return 1;
     }
     session.end();
