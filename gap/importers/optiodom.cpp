@@ -1,7 +1,8 @@
 // optiodom_diffdrive: a differential-drive robot on circles (both senses) and free paths under motion
 // capture. From sousarbarb/optiodom, MIT. A folder a session with `<session>_metadata.csv` (nominal geometry)
 // and
-// `<session>_run-NN.csv`: t[s], x[m], y[m], theta[rad], right and left wheel counts since the last row.
+// `<session>_run-NN.csv`: t[s], x[m], y[m], theta[rad], right and left wheel counts since the last row. Of
+// the 20 rows a second every fourth is kept: counts are summed first, so only resolution in time is lost.
 
 #include "base/error.h"
 #include "gap/importers/importers.h"
@@ -46,6 +47,15 @@ Geometry read_geometry(const std::filesystem::path& file) {
     return g;
 }
 
+constexpr std::size_t kEvery = 4;
+
+std::vector<double> thinned(const std::vector<double>& values) {
+    std::vector<double> kept;
+    for (std::size_t i = 0; i < values.size(); i += kEvery)
+        kept.push_back(values[i]);
+    return kept;
+}
+
 std::vector<double> summed(const std::vector<double>& counts) {
     std::vector<double> sum;
     for (const double c : counts)
@@ -65,8 +75,9 @@ ImportedRun read_run(const std::filesystem::path& file, const std::string& sessi
         if (table[0][i] <= table[0][i - 1])
             throw InputError(file.string(), fmt::format("row {}", i + 1), "time does not rise",
                              "rising times");
-    run.columns = {{"t_s", table[0]},       {"x_m", table[1]},    {"y_m", table[2]},
-                   {"theta_rad", table[3]}, {"steps_left", left}, {"steps_right", right}};
+    run.columns = {{"t_s", thinned(table[0])},    {"x_m", thinned(table[1])},
+                   {"y_m", thinned(table[2])},    {"theta_rad", thinned(table[3])},
+                   {"steps_left", thinned(left)}, {"steps_right", thinned(right)}};
     return run;
 }
 
@@ -78,7 +89,8 @@ ImportedExperiment read_part(const std::filesystem::path& folder, const char* pa
     e.robot = "differential-drive robot, 84 mm wheels, 0.2 m axle";
     e.description = "Wheel counts are the encoders' (what the wheels did), so commands and latency are not "
                     "part of this set. "
-                    "Positions are motion capture. Session = one folder of the set.";
+                    "Positions are motion capture. Every fourth of 20 rows a second is kept. Session = one "
+                    "folder of the set.";
     e.source = "github.com/sousarbarb/optiodom";
     e.licence = "MIT";
     Geometry first;

@@ -68,9 +68,9 @@ TEST_CASE("counts and poses of a differential drive become a motion experiment")
     const Experiment e = read_experiment(f.out / "optiodom_circular");
     CHECK(e.kind == Kind::Motion);
     REQUIRE(e.runs.size() == 1);
-    CHECK(e.runs[0].rows == 40);
-    CHECK(e.runs[0].column("steps_right").back() == 39 * 25);
-    CHECK(e.runs[0].column("steps_left").back() == 39 * 15);
+    CHECK(e.runs[0].rows == 10);
+    CHECK(e.runs[0].column("steps_right").back() == 36 * 25);
+    CHECK(e.runs[0].column("steps_left").back() == 36 * 15);
     CHECK(e.runs[0].condition("sense") == "counter-clockwise");
     CHECK(e.runs[0].condition("session") == "s1");
     CHECK(e.nominal.at("robot.steps_per_turn") == 1000);
