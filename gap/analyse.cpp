@@ -48,8 +48,9 @@ class Analysis {
         tell("what is left", 0.93);
         fill_series();
         for (const Series& series : verdict_.series)
-            if (const std::string caution = placement_caution(experiment_, series); !caution.empty())
-                verdict_.cautions.push_back(caution);
+            for (const std::string& caution :
+                 {placement_caution(experiment_, series), circular_caution(series)})
+                if (!caution.empty()) verdict_.cautions.push_back(caution);
         decide();
         verdict_.suggestions = suggestions_for(study_, selection_);
         verdict_.heldout.sentence = gain_sentence(verdict_.heldout);

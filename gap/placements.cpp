@@ -17,7 +17,8 @@ namespace {
 
 constexpr std::size_t kLeastPlacements = 6, kRowsEach = 10;
 constexpr double kDegrees = 180 / std::numbers::pi;
-constexpr double kClearly = 3.0;  // times what the repeats' scatter makes of a mean
+constexpr double kSameNumber = 1e-6;  // of the spread
+constexpr double kClearly = 3.0;      // times what the repeats' scatter makes of a mean
 
 std::string with_unit(double value, const std::string& unit) {
     if (unit == "rad") return stats::plain(value * kDegrees) + " deg";
@@ -81,6 +82,17 @@ std::string placement_caution(const Experiment& experiment, const Series& series
                        "help, more placements "
                        "would",
                        series.observable, shape);
+}
+
+std::string circular_caution(const Series& series) {
+    const double spread = stats::standard_deviation(series.measured);
+    if (!(spread > 0)) return {};
+    for (std::size_t i = 0; i < series.measured.size(); ++i)
+        if (std::fabs(series.measured[i] - series.before[i]) > kSameNumber * spread) return {};
+    return fmt::format("the simulator says every {} to the last digit: its own numbers were taken from this "
+                       "data, so the agreement "
+                       "proves nothing",
+                       series.observable);
 }
 
 }  // namespace puckloop::gap

@@ -15,4 +15,8 @@ std::string placement_shape(const Experiment& experiment, const Series& series);
 /// The same as a caution for the verdict.
 std::string placement_caution(const Experiment& experiment, const Series& series);
 
+/// A sentence if the simulator as it is says every row to a millionth of the spread: its numbers come from
+/// this data.
+std::string circular_caution(const Series& series);
+
 }  // namespace puckloop::gap

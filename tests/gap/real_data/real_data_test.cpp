@@ -63,6 +63,8 @@ TEST_CASE("trap: the strength table whose last line is a copy makes no far floor
     CHECK_FALSE(v->heldout.gain);
     CHECK_THAT(cautions_of(*v), Contains("row 9") && Contains("repeats row 8") && Contains("left out"));
     CHECK_THAT(cautions_of(*v), Contains("one run only"));
+    // The simulator's strength curve was made from this table.
+    CHECK_THAT(cautions_of(*v), Contains("proves nothing"));
 }
 
 TEST_CASE("trap: bearing offsets that belong to the place are not named as one offset") {
