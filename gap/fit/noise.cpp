@@ -70,20 +70,23 @@ struct Walk {
     void begin(double value) { *this = {value, 0.0, 1.0, -1.0, 1.0}; }
 
     /// Returns the innovation's variance.
-    double filter(double value, double drift, double memory, double& innovation) {
+    double filter(double value, double drift, double memory, double tail, bool jumps, double& innovation) {
         p00 += drift;
         p01 *= memory;
         p11 = memory * memory * p11 + 1 - memory * memory;
         error *= memory;
         innovation = value - level - error;
         const double total = std::max(p00 + 2 * p01 + p11, 1e-9);
-        if (innovation * innovation > kClip * kClip * total) {  // pushed: the sum goes on from there
+        const double squared = innovation * innovation / total;
+        if (jumps && squared > kClip * kClip) {  // pushed: the sum goes on from there
             begin(value);
             return total;
         }
+        // An outlier of a heavy tail says little about the sum; smooth, so that the likelihood is.
+        const double trust = std::min((tail + 1) / (tail + squared), 1.0);
         const double k0 = (p00 + p01) / total, k1 = (p01 + p11) / total;
-        level += k0 * innovation;
-        error += k1 * innovation;
+        level += k0 * trust * innovation;
+        error += k1 * trust * innovation;
         const double g0 = p00 + p01, g1 = p01 + p11;
         p00 -= k0 * g0;
         p01 -= k0 * g1;
@@ -186,7 +189,8 @@ void row_costs(const Observable& o, const Predicted& p, const NoiseParameters& n
                 carried = true;
                 continue;
             }
-            variance = walk.filter(error, drift + at(o.walk, i, 0.0), noise.memory, innovation);
+            variance = walk.filter(error, drift + at(o.walk, i, 0.0), noise.memory, nu, !p.lapse.empty(),
+                                   innovation);
         } else {
             const double kept = carried ? noise.carry : 0.0;
             innovation = error - kept * last;
