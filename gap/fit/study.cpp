@@ -187,9 +187,11 @@ Fit Study::fit_none() const {
         won = false;
         for (const double narrower : {0.0, 0.9, -0.9}) {
             State start = result.fitted.state;
-            for (NoiseParameters& noise : start.noise) {
-                noise.log_sd -= narrower;
-                if (narrower != 0.0) noise.log_tail = std::log(narrower > 0 ? kHeavyTail : kLightTail);
+            for (std::size_t o = 0; o < start.noise.size(); ++o) {
+                if (noise_parameters(model_->observables()[o]) == 0) continue;
+                start.noise[o].log_sd -= narrower;
+                if (narrower != 0.0)
+                    start.noise[o].log_tail = std::log(narrower > 0 ? kHeavyTail : kLightTail);
             }
             Fitted better = fit(*model_, {}, start, {});
             if (better.log_likelihood < result.fitted.log_likelihood + kSettled) continue;
