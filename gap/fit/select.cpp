@@ -12,7 +12,7 @@ namespace puckloop::gap {
 namespace {
 
 constexpr std::size_t kMostEffects = 5;
-constexpr double kEnoughBic = 8.0;         // to be chosen; calibrated on data without effects (docs/gap.md)
+constexpr double kEnoughBic = 8.0;         // to be chosen; set by judgement on a few runs without effects (docs/gap.md)
 constexpr double kEnoughDeviations = 1.3;  // of the held-out gain
 constexpr double kEnoughBlocks = 0.5;      // share of blocks that gain
 constexpr std::size_t kValidated = 3;      // best by BIC that are cross-validated
