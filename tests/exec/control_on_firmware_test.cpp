@@ -32,7 +32,7 @@ struct Mission {
         const double before = rig.get("wheel_left");
         control::Session session{line, [](const std::string&) {}, [] { return false; }};
         const bool reached = run_control_loop(
-            session, line, behaviour, [] { return std::nullopt; }, [] { return false; }, settings);
+            session, line, behaviour, control::Surroundings{}, [] { return false; }, settings);
         line.sleep_until(line.now() + 0.25);
         counters = session.counters();
         steps = rig.get("wheel_left") - before;
