@@ -39,7 +39,7 @@ TEST_CASE("a recorded line is as long as the firmware's timers make it") {
     const Experiment experiment = recorded("motion", options);
     REQUIRE(experiment.runs.size() >= 3);
     const Run& run = experiment.runs.front();
-    const double command = 300, seconds = 8;
+    const double command = 300, seconds = 5;
     // Timer counts of a step are whole at 230.4 kHz; 41 mm wheels, 1000 steps a turn.
     const double speed = 230400 / std::round(230400 / command);
     const double expected = speed * seconds * std::numbers::pi * 0.041 / 1000;
