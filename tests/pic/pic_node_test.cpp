@@ -3,8 +3,7 @@
 #include "emu/pic/pic_node.h"
 
 #include "base/random.h"
-#include "emu/dspic/assembler/assembler.h"
-#include "emu/dspic/device.h"
+#include "tests/node_under_test.h"
 #include "tests/scratch.h"
 
 #include <catch2/catch.hpp>
@@ -12,9 +11,7 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <map>
-#include <sstream>
 
 using namespace puckloop;
 using cosim::Message;
@@ -23,13 +20,7 @@ using cosim::Time;
 namespace {
 
 image::Image assembled(const std::string& source) {
-    dspic::AssembleOptions options;
-    for (const dspic::RegisterInfo& info : dspic::dspic30f6014a().registers)
-        options.predefined[std::string(info.name)] = info.address;
-    image::Image image;
-    image.file = "test.s";
-    image.program = dspic::assemble("        goto main\n" + source, options).words;
-    return image;
+    return tests::assembled(dspic::dspic30f6014a(), source);
 }
 
 // Timer 1 turns the left motor one phase forward each 1 ms and toggles LED 0; the receiver of UART2 sends
@@ -173,20 +164,10 @@ std::map<int, std::vector<Message>> run_cut(const std::vector<Time>& cuts, bool 
 
 /// Grants that end anywhere, none longer than `longest`.
 std::vector<Time> random_cuts(RandomStream& random, Time longest) {
-    std::vector<Time> cuts;
-    for (Time at = 0; at < 40 * cosim::kMillisecond;) {
-        at += 1 + static_cast<Time>(random.below(static_cast<std::uint64_t>(longest)));
-        cuts.push_back(std::min(at, 40 * cosim::kMillisecond));
-    }
-    return cuts;
+    return tests::random_cuts(random, longest, 40 * cosim::kMillisecond);
 }
 
-std::string contents(const std::filesystem::path& file) {
-    std::ostringstream text;
-    text << std::ifstream(file).rdbuf();
-    std::filesystem::remove(file);
-    return text.str();
-}
+using tests::contents;
 
 }  // namespace
 

@@ -2,9 +2,8 @@
 // what matters. Runs a small program of its own.
 
 #include "base/random.h"
-#include "emu/dspic/assembler/assembler.h"
-#include "emu/dspic/device.h"
 #include "emu/rab_board/rab_node.h"
+#include "tests/node_under_test.h"
 #include "tests/scratch.h"
 
 #include <catch2/catch.hpp>
@@ -12,9 +11,7 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <map>
-#include <sstream>
 
 using namespace puckloop;
 using cosim::I2cPhase;
@@ -25,13 +22,7 @@ using cosim::Time;
 namespace {
 
 image::Image assembled(const std::string& source) {
-    dspic::AssembleOptions options;
-    for (const dspic::RegisterInfo& info : dspic::dspic33fj256gp710().registers)
-        options.predefined[std::string(info.name)] = info.address;
-    image::Image image;
-    image.file = "test.s";
-    image.program = dspic::assemble("        goto main\n" + source, options).words;
-    return image;
+    return tests::assembled(dspic::dspic33fj256gp710(), source);
 }
 
 // On the internal oscillator: a carrier of FCY / 85, all emitters toggled each 1000 cycles; as I2C slave 0x20
@@ -157,20 +148,10 @@ std::map<int, std::vector<Message>> run_cut(const std::vector<Time>& cuts, bool 
 }
 
 std::vector<Time> random_cuts(RandomStream& random, Time longest) {
-    std::vector<Time> cuts;
-    for (Time at = 0; at < kEnd;) {
-        at += 1 + static_cast<Time>(random.below(static_cast<std::uint64_t>(longest)));
-        cuts.push_back(std::min(at, kEnd));
-    }
-    return cuts;
+    return tests::random_cuts(random, longest, kEnd);
 }
 
-std::string contents(const std::filesystem::path& file) {
-    std::ostringstream text;
-    text << std::ifstream(file).rdbuf();
-    std::filesystem::remove(file);
-    return text.str();
-}
+using tests::contents;
 
 }  // namespace
 
