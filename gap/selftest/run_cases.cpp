@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <atomic>
+#include <chrono>
 #include <exception>
 #include <mutex>
 #include <thread>
@@ -22,7 +23,9 @@ Judged run_one(const CasePlan& plan, std::size_t index, const RunOptions& option
     try {
         Options analysis;
         analysis.seed = plan.seed;
+        const auto begin = std::chrono::steady_clock::now();
         judged = judge(hidden, analyse(read_experiment(folder), analysis));
+        judged.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     } catch (const std::exception& error) {
         judged = judge(hidden, Verdict{});
         judged.said = "error";
@@ -52,7 +55,7 @@ std::vector<Judged> run_cases(const std::vector<CasePlan>& plans, const RunOptio
                 return;
             }
             const std::lock_guard lock(telling);
-            if (options.done) options.done(++finished, plans.size());
+            if (options.done) options.done(k, results[k], ++finished, plans.size());
         }
     };
     std::vector<std::thread> threads;

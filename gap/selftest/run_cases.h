@@ -14,8 +14,8 @@ struct RunOptions {
     std::filesystem::path scratch;
     unsigned workers = 2;
     bool keep = false;  ///< leave the folders
-    std::function<void(std::size_t, std::size_t)>
-        done;  ///< cases done, of all; called from one thread at a time
+    /// A case is done: its plan's place, how it was judged, cases done, of all. From one thread at a time.
+    std::function<void(std::size_t, const Judged&, std::size_t, std::size_t)> done;
 };
 
 /// In the order of `plans`. A case that the tool fails on is judged with its error.

@@ -26,8 +26,7 @@ void count_intervals(const HiddenCase& hidden, const Verdict& verdict, Judged& j
             if (!is_hidden(hidden, cause)) continue;
             for (const FittedParameter& p : cause.parameters) {
                 if (p.name != truth.parameter) continue;
-                ++judged.intervals;
-                if (p.low <= truth.value && truth.value <= p.high) ++judged.covered;
+                judged.estimates.push_back({p.name, truth.value, p.value, p.low, p.high});
             }
         }
 }
@@ -43,7 +42,6 @@ Judged judge(const HiddenCase& hidden, const Verdict& verdict) {
     j.numbers = hidden.numbers;
     j.labels = hidden.labels;
     j.said = std::string(decision_name(verdict.decision));
-    j.wall_s = verdict.wall_s;
     for (const Cause& cause : verdict.causes) {
         j.named.push_back(cause.number);
         j.names.push_back(cause.name);
@@ -106,10 +104,11 @@ std::vector<Requirement> requirements(const std::vector<Judged>& cases) {
     add("unknown effects given a wrong name", 0, 0.05, unknown,
         [](const Judged& j) { return !j.named.empty(); });
     int intervals = 0, covered = 0;
-    for (const Judged& j : cases) {
-        intervals += j.intervals;
-        covered += j.covered;
-    }
+    for (const Judged& j : cases)
+        for (const Estimate& estimate : j.estimates) {
+            ++intervals;
+            covered += estimate.covered() ? 1 : 0;
+        }
     list.push_back({"90 % intervals that hold the true parameter",
                     intervals == 0 ? 0.0 : static_cast<double>(covered) / intervals, 0.85, 0.95, intervals});
     return list;

@@ -114,6 +114,17 @@ bool missed(const Judged& j) {
 
 }  // namespace
 
+std::string case_line(const Judged& j) {
+    std::string text = fmt::format("{:<14}{:<34}{:>7}  expected {:<12} said {:<12} {}{}  {:.1f} s{}", j.kind,
+                                   j.labels.empty() ? "nothing" : joined(j.labels), strength_name(j.strength),
+                                   expect_name(j.expect), j.said, joined(j.names), j.error, j.wall_s,
+                                   missed(j) ? "  MISSED" : "");
+    for (const Estimate& e : j.estimates)
+        text += fmt::format("\n      {:<28} true {:>11.5g}  said {:>11.5g} ({:.5g}..{:.5g}){}", e.parameter,
+                            e.truth, e.value, e.low, e.high, e.covered() ? "" : "  outside");
+    return text;
+}
+
 std::string report_text(const std::vector<Judged>& cases, std::uint64_t seed) {
     std::string text = fmt::format("{} cases, seed {}\n\n", cases.size(), seed);
     for (const Requirement& r : requirements(cases))
@@ -182,6 +193,13 @@ std::string report_json(const std::vector<Judged>& cases, std::uint64_t seed) {
                                    {"listed", j.listed},
                                    {"error", j.error},
                                    {"missed", missed(j)}});
+    for (std::size_t k = 0; k < cases.size(); ++k)
+        for (const Estimate& e : cases[k].estimates)
+            root["results"][k]["estimates"].push_back({{"parameter", e.parameter},
+                                                       {"true", e.truth},
+                                                       {"value", e.value},
+                                                       {"low", e.low},
+                                                       {"high", e.high}});
     return root.dump(1);
 }
 

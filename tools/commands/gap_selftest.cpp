@@ -23,22 +23,37 @@ constexpr std::size_t kQuick = 24;
 
 struct Request {
     std::uint64_t cases = 0, seed = 1;
+    std::vector<std::size_t> only;
     unsigned workers = 2;
     std::string kind;
     bool quick = false, json = false, keep = false, emulator = false;
     std::filesystem::path scratch;
 };
 
-std::vector<st::CasePlan> chosen_plans(const Request& request) {
-    auto plans = st::planned_cases(request.seed, request.quick ? kQuick : request.cases);
-    if (!request.kind.empty())
-        std::erase_if(plans, [&](const st::CasePlan& plan) {
-            return st::benches()[plan.bench]->kind() != request.kind;
-        });
-    if (plans.empty())
+struct Chosen {
+    std::vector<st::CasePlan> plans;
+    std::vector<std::size_t> number;  ///< of each, in the whole list
+};
+
+Chosen chosen_plans(const Request& request) {
+    const auto plans = st::planned_cases(request.seed, request.quick ? kQuick : request.cases);
+    Chosen chosen;
+    bool kind_known = request.kind.empty();
+    for (std::size_t k = 0; k < plans.size(); ++k) {
+        const bool kind = request.kind.empty() || st::benches()[plans[k].bench]->kind() == request.kind;
+        kind_known = kind_known || kind;
+        const auto& only = request.only;
+        if (!kind || (!only.empty() && std::find(only.begin(), only.end(), k) == only.end())) continue;
+        chosen.plans.push_back(plans[k]);
+        chosen.number.push_back(k);
+    }
+    if (!kind_known)
         throw InputError("", "gap selftest", fmt::format("no case of kind '{}'", request.kind),
                          "proximity, motion, rab, microphone, ground, accelerometer or timing");
-    return plans;
+    if (chosen.plans.empty())
+        throw InputError("", "gap selftest", "no case has the number given with --case",
+                         fmt::format("0..{}", plans.size() - 1));
+    return chosen;
 }
 
 std::filesystem::path scratch_of(const Request& request) {
@@ -72,12 +87,11 @@ int self_test(const Request& request) {
     options.scratch = scratch_of(request);
     options.keep = request.keep;
     options.workers = request.workers;
-    if (::isatty(STDERR_FILENO) != 0)
-        options.done = [](std::size_t done, std::size_t all) {
-            fmt::print(stderr, "\r{} of {} cases ", done, all);
-        };
-    const auto judged = st::run_cases(chosen_plans(request), options);
-    if (options.done) fmt::print(stderr, "\n");
+    const Chosen chosen = chosen_plans(request);
+    options.done = [&](std::size_t k, const st::Judged& judged, std::size_t done, std::size_t all) {
+        fmt::print(stderr, "{:>3}/{} case {:<4}{}\n", done, all, chosen.number[k], st::case_line(judged));
+    };
+    const auto judged = st::run_cases(chosen.plans, options);
     if (own && !request.keep) std::filesystem::remove_all(options.scratch);
     fmt::print("{}\n",
                request.json ? st::report_json(judged, request.seed) : st::report_text(judged, request.seed));
@@ -95,6 +109,8 @@ void declare_gap_selftest(CLI::App& gap, int& status) {
     command->add_option("--cases", request->cases, "how many (default: all, over 300)")->type_name("N");
     command->add_option("--seed", request->seed, "of everything made up")->type_name("N");
     command->add_option("--kind", request->kind, "cases of this kind only")->type_name("KIND");
+    command->add_option("--case", request->only, "the case of this number only (may be repeated)")
+        ->type_name("N");
     command->add_option("--workers", request->workers, "cases at a time")->type_name("N");
     command->add_option("--scratch", request->scratch, "where the cases are written (a temporary folder)")
         ->type_name("DIR");

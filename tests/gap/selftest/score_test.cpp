@@ -57,11 +57,13 @@ TEST_CASE("the right name counts when it stands first and is said") {
 }
 
 TEST_CASE("an interval is counted only where the cause was found, and covers or not") {
-    CHECK(judge(hidden(Expect::Named, {3}), said(Decision::Named, {3}, 0.0535, 0.0545)).covered == 1);
+    CHECK(judge(hidden(Expect::Named, {3}), said(Decision::Named, {3}, 0.0535, 0.0545))
+              .estimates.at(0)
+              .covered());
     const Judged outside = judge(hidden(Expect::Named, {3}), said(Decision::Named, {3}, 0.0525, 0.0535));
-    CHECK(outside.intervals == 1);
-    CHECK(outside.covered == 0);
-    CHECK(judge(hidden(Expect::Named, {3}), said(Decision::Named, {2}, 0, 1)).intervals == 0);
+    REQUIRE(outside.estimates.size() == 1);
+    CHECK_FALSE(outside.estimates[0].covered());
+    CHECK(judge(hidden(Expect::Named, {3}), said(Decision::Named, {2}, 0, 1)).estimates.empty());
 }
 
 TEST_CASE("false alarms, unexplained and wrong names are counted apart") {
