@@ -12,9 +12,10 @@ namespace puckloop::gap {
 namespace {
 
 constexpr std::size_t kMostEffects = 5;
-constexpr double kEnoughBic = 8.0;         // to be chosen; set by judgement on a few runs without effects (docs/gap.md)
+constexpr double kEnoughBic =
+    8.0;  // to be chosen; set by judgement on a few runs without effects (docs/gap.md)
 constexpr double kEnoughDeviations = 1.3;  // of the held-out gain
-constexpr double kEnoughBlocks = 0.5;      // share of blocks that gain
+constexpr double kEnoughBlocks = 0.5;      // share of blocks that gain, of those touched
 constexpr std::size_t kValidated = 3;      // best by BIC that are cross-validated
 constexpr std::size_t kRefined = 5;        // best by a quick fit that are fitted to the end
 constexpr double kHopeless = 60.0;
@@ -127,7 +128,7 @@ class Selector {
             const bool claim =
                 effect_of(fits[k].second).name == std::string_view("range_noise") && gains[k].sum > -1;
             const bool enough = claim || (gains[k].sum > kEnoughDeviations * gains[k].sd &&
-                                          gains[k].share_better > kEnoughBlocks);
+                                          gains[k].share_touched > kEnoughBlocks);
             if (!enough) continue;
             // BIC says how simply, the held-out score how well: the sum of both decides.
             const double merit = gains[k].sum + fits[k].first / 2;
