@@ -145,7 +145,8 @@ void read_parameter_level(const std::string& file, const std::string& where, con
                 names.emplace_back(entry.name);
             const std::string meant = nearest_name(name, names);
             reader.fail(key, fmt::format("unknown parameter '{}'", name),
-                        meant.empty() ? "a name from docs/scenario.md" : fmt::format("perhaps '{}'", meant));
+                        meant.empty() ? "a name that 'puckloop run --list-parameters' shows"
+                                      : fmt::format("perhaps '{}'", meant));
         }
         const double number = reader.quantity(key, dimension_of(info->unit));
         if (number < info->min || number > info->max)

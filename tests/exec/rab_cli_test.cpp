@@ -146,6 +146,13 @@ TEST_CASE("a slave that holds SCL for ever fails the run and is named") {
     CHECK(json["i2c_script"]["played"] == 0);
 }
 
+TEST_CASE("a selector belongs to the main board alone") {
+    const Workbench bench;
+    const Outcome run = bench.run("--board rab " + slave_image(bench) + " --selector 3");
+    CHECK(run.status == 2);
+    CHECK_THAT(run.out + run.err, Contains("--selector: rab has no selector (expected --board pic)"));
+}
+
 TEST_CASE("the real board's first line: a script reads its registers") {
     const auto image = exec::real_image("randb.hex");
     if (!image) return;

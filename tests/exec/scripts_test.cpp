@@ -99,6 +99,8 @@ TEST_CASE("a stimulus file: signals by name, values in range") {
     CHECK_THAT(stimulus_error("0 led0 1"), Contains("'led0' is an output of the board"));
     CHECK_THAT(stimulus_error("0 selector 16"), Contains("selector 16 is out of range (expected 0 to 15)"));
     CHECK_THAT(stimulus_error("0 selector"), Contains("wrong number of words"));
+    CHECK(stimulus_error("0 battery_low 0.5") ==
+          "s.txt: line 1: battery_low is a level, not 0.5 (expected 0 or 1)");
     CHECK_THAT(stimulus_error("0 adc0 inf"), Contains("not a adc0") || Contains("number"));
 }
 

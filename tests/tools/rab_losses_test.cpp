@@ -164,6 +164,12 @@ TEST_CASE("a results folder is read and wrong ones are named") {
     CHECK(results.losses.fates[0].cause == Cause::ReceiverSending);
     CHECK_THAT(to_text(results, 0.1), Catch::Contains("a -> b"));
     CHECK_THAT(to_json(results, 0.1), Catch::Contains("\"receiver_sending\": 1"));
+    std::ofstream(folder / "ir.csv", std::ios::app) << "0.2,0.3";  // as a killed run leaves it
+    CHECK(read_rab_results(folder, 0, 9).losses.fates.size() == 1);
+    std::ofstream(folder / "ir.csv", std::ios::app) << "\n";
+    CHECK_THROWS_WITH(read_rab_results(folder, 0, 9),
+                      Catch::Contains("line 3") && Catch::Contains("columns"));
+    std::filesystem::resize_file(folder / "ir.csv", std::filesystem::file_size(folder / "ir.csv") - 8);
     std::ofstream(folder / "ir.csv", std::ios::app) << "0.2,x,a,b,0.25,900,5.0,4,1,,1\n";
     CHECK_THROWS_WITH(read_rab_results(folder, 0, 1), Catch::Contains("line 3") && Catch::Contains("'x'"));
     std::filesystem::remove_all(folder);

@@ -91,7 +91,7 @@ void describe(CLI::App& app, Arguments& a) {
     app.add_option("--adc-noise", t.adc_noise_counts, "standard deviation in counts (board)")
         ->check(number_between(0.0, 1000.0))
         ->capture_default_str();
-    app.add_option("--selector", t.selector, "initial position of the selector (board)")
+    app.add_option("--selector", t.selector, "initial position of the selector (pic)")
         ->check(CLI::Range(0, 15))
         ->capture_default_str();
     app.add_option("--crystal", a.crystal_hertz, "in Hz (7372800; of the dsPIC33F 4000000)")
@@ -117,11 +117,15 @@ void declare_exec(CLI::App& app, int& status) {
     CLI::App* command = app.add_subcommand("exec", "run one chip or board alone on the bench");
     const auto arguments = std::make_shared<Arguments>();
     describe(*command, *arguments);
-    command->callback([arguments, &status] {
+    command->callback([command, arguments, &status] {
         Arguments& a = *arguments;
         if (a.options.bench.mcu.empty() && a.options.bench.board.empty())
             throw InputError("", "exec", "nothing lies on the bench", "--mcu CHIP or --board BOARD");
         exec::BenchOptions& bench = a.options.bench;
+        if (command->count("--selector") > 0 && bench.board != "pic")
+            throw InputError("", "--selector",
+                             fmt::format("{} has no selector", bench.board.empty() ? bench.mcu : bench.board),
+                             "--board pic");
         const exec::TargetDefaults defaults = exec::defaults_of(bench.mcu, bench.board);
         bench.target.chip.crystal_hertz = a.crystal_hertz.value_or(defaults.crystal_hertz);
         bench.target.chip.fosc = fosc_word(a.fosc, defaults.fosc);

@@ -101,6 +101,9 @@ std::vector<StimulusLine> parse_stimulus(std::string_view file, std::string_view
         entry.signal = signal_named(file, line, signals);
         const cosim::SignalInfo& info = signals[entry.signal];
         entry.value = parse_number(file, line.number, line.words[2], info.name, info.min, info.max);
+        if (info.unit == "level" && entry.value != info.min && entry.value != info.max)
+            wrong_shape(file, line, fmt::format("{} is a level, not {}", info.name, line.words[2]),
+                        fmt::format("{} or {}", info.min, info.max));
         script.push_back(entry);
     }
     sort_by_time(script);

@@ -50,7 +50,7 @@ std::vector<HeardFrame> read_frames(const std::filesystem::path& path, double fr
     for (std::size_t n = 2; std::getline(in, line); ++n) {
         const auto cells = cells_of(line);
         if (cells.size() != kColumns) {
-            if (in.peek() == EOF) break;  // the writer was killed in the middle of a line
+            if (in.eof()) break;  // no newline: the writer was killed in the middle of a line
             throw InputError(file, fmt::format("line {}", n), "wrong number of columns",
                              fmt::format("{}", kColumns));
         }
