@@ -252,6 +252,16 @@ Fit Study::fit_set(const std::vector<std::size_t>& effects, const State& from, c
             best.fitted = fitted;
         }
     }
+    // A sum that really drifts cannot be begun without its drift.
+    const bool sums =
+        std::any_of(model_->observables().begin(), model_->observables().end(),
+                    [](const Observable& one) { return one.noise == NoiseKind::Level && one.fixed_sd <= 0; });
+    if (!sums) return best;
+    const Fitted fitted = fit(*model_, best.freed, begun(last, last.starts.front(), from), {}, effort);
+    if (const double bic = bic_of(fitted, best.freed.size()); bic < best.bic) {
+        best.bic = bic;
+        best.fitted = fitted;
+    }
     return best;
 }
 
