@@ -17,6 +17,7 @@ struct RecordOptions {
     Tools tools;
     std::uint64_t seed = 1;
     bool brief = false;
+    bool keep = false;                                   ///< of a secret's trial: leave its folders
     std::filesystem::path scratch;                       ///< for the runs' own results
     std::function<void(std::size_t, std::size_t)> done;  ///< runs done, of all
 };

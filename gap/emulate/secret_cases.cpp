@@ -38,25 +38,30 @@ SecretResult try_secret(const Secret& secret, const RecordOptions& given) {
         result.decision = "error";
         result.error = error.what();
     }
-    std::filesystem::remove_all(given.scratch);
+    if (!given.keep) std::filesystem::remove_all(given.scratch);
     return result;
 }
 
-std::string secrets_text(const std::vector<SecretResult>& results) {
+std::string secret_line(const SecretResult& r) {
     constexpr std::size_t kMostTold = 4;
+    std::string names;
+    for (const std::string& name : r.named)
+        names += (names.empty() ? "" : ", ") + name;
+    std::string text = fmt::format("{:<11}{:<46}{:<8}{:<12} {}{}\n", r.secret->kind, r.secret->what,
+                                   r.found ? "found" : "MISSED", r.decision, names, r.error);
+    for (std::size_t k = 0; k < std::min(r.told.size(), kMostTold); ++k)
+        text += fmt::format("{:>13}{}\n", "", r.told[k]);
+    return text;
+}
+
+std::string secrets_text(const std::vector<SecretResult>& results) {
     int changed = 0, found = 0, plain = 0, quiet = 0;
     std::string text;
     for (const SecretResult& r : results) {
         const bool hidden = !r.secret->names.empty();
         (hidden ? changed : plain) += 1;
         (hidden ? found : quiet) += r.found ? 1 : 0;
-        std::string names;
-        for (const std::string& name : r.named)
-            names += (names.empty() ? "" : ", ") + name;
-        text += fmt::format("{:<11}{:<46}{:<8}{:<12} {}{}\n", r.secret->kind, r.secret->what,
-                            r.found ? "found" : "MISSED", r.decision, names, r.error);
-        for (std::size_t k = 0; k < std::min(r.told.size(), kMostTold); ++k)
-            text += fmt::format("{:>13}{}\n", "", r.told[k]);
+        text += secret_line(r);
     }
     return fmt::format("secret changes found: {} of {}; robots left alone called so: {} of {}\n\n{}", found,
                        changed, quiet, plain, text);

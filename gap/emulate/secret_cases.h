@@ -18,9 +18,11 @@ struct SecretResult {
     bool found = false;              ///< the first cause is a right one; of nothing changed: no effect
 };
 
-/// Records and analyses one. Folders are made in `options.scratch` and removed.
+/// Records and analyses one. Folders are made in `options.scratch` and, unless they are kept, removed.
 SecretResult try_secret(const Secret& secret, const RecordOptions& options);
 
+/// What was changed and what was said, with the first parameters; ends with a line feed.
+std::string secret_line(const SecretResult& result);
 /// A table for people.
 std::string secrets_text(const std::vector<SecretResult>& results);
 

@@ -68,14 +68,21 @@ int secret_test(const Request& request) {
     options.tools = emulation_tools();
     options.seed = request.seed;
     options.brief = request.quick;
+    options.keep = request.keep;
     std::vector<em::SecretResult> results;
-    for (const em::Secret& secret : em::secrets()) {
+    for (std::size_t k = 0; k < em::secrets().size(); ++k) {
+        const em::Secret& secret = em::secrets()[k];
         if (!request.kind.empty() && request.kind != secret.kind) continue;
-        options.scratch = scratch_of(request) / fmt::format("secret{:02}", results.size() + 1);
+        if (!request.only.empty() &&
+            std::find(request.only.begin(), request.only.end(), k) == request.only.end())
+            continue;
+        options.scratch = scratch_of(request) / fmt::format("robot{:02}", k);
         results.push_back(em::try_secret(secret, options));
-        if (::isatty(STDERR_FILENO) != 0)
-            fmt::print(stderr, "\r{} of {} robots ", results.size(), em::secrets().size());
+        fmt::print(stderr, "{:>3} {}", k, em::secret_line(results.back()));
     }
+    if (results.empty())
+        throw InputError("", "gap selftest", "no robot changed in secret is of this kind and number",
+                         fmt::format("0..{}", em::secrets().size() - 1));
     fmt::print("{}", em::secrets_text(results));
     return std::all_of(results.begin(), results.end(), [](const auto& r) { return r.found; }) ? 0 : 1;
 }
