@@ -40,7 +40,7 @@ std::vector<ParameterInfo> build_table() {
         {"robot.steps_per_turn", "1", 1, {1000}, 100, 10000, AT(robot.steps_per_turn), "[L] 20 steps x 50:1 gear"},
         {"robot.stall_torque", "N m", 1, {0.02}, 0.001, 0.1, AT(robot.stall_torque), "? 0.005-0.02 at the wheel"},
         {"robot.drive_compliance", "s", 1, {0.004}, 0.001, 0.1, AT(robot.drive_compliance), "? time constant of wheel behind rotor"},
-        {"robot.settle_time", "s", 1, {0.002}, 0.0005, 0.02, AT(robot.settle_time), "? duration of one single step"},
+        {"robot.settle_time", "s", 1, {0.008}, 0.0005, 0.02, AT(robot.settle_time), "? duration of one single step: a small stepper swings at about 100 Hz, damped by the gear"},
         {"robot.smoothing_limit", "s", 1, {0.02}, 0.001, 0.1, AT(robot.smoothing_limit), "? steps further apart are single steps"},
         {"robot.pull_out_steps", "steps", 1, {2.0}, 1.0, 100.0, AT(robot.pull_out_steps), "four-phase stepper: the rotor falls to the next pole pair beyond 2 steps"},
         {"robot.backlash", "rad", 1, {0.0}, 0.0, 0.1, AT(robot.backlash), "? gearbox play at the wheel, 0.5-2 deg real"},

@@ -31,6 +31,16 @@ TEST_CASE("a straight run is as long as its steps say") {
     CHECK(world.robot(0).drive(Side::Left).lost() == 0);
 }
 
+TEST_CASE("single steps move the robot too") {
+    const double speed = GENERATE(10.0, 25.0, 48.0, -30.0);
+    WorldModel world(world_with_robot());
+    Driver driver(world);
+    driver.drive(speed, speed, 6.0);
+    const double asked = driver.steps(Side::Left) * kMetresPerStep;
+    INFO("speed " << speed << " moved " << world.state(0).x << " asked " << asked);
+    CHECK(std::abs(world.state(0).x - asked) < 1.5 * kMetresPerStep);  // the last step may be under way
+}
+
 TEST_CASE("a spin is as wide as steps and axle say") {
     const double speed = GENERATE(307.0, 993.0, -500.0);
     WorldModel world(world_with_robot());
