@@ -30,6 +30,9 @@ constexpr double kClearOfEdge = 0.004;  // m
 /// Commands reach the motors this much after the row's time: twelve bytes, of which the last is held back 4
 /// ms.
 constexpr double kCommandLatency = 0.0052;  // s
+/// 1 / mu that tells what starts and stops cost in the world model, where the motors' glide softens them and
+/// the skids take weight off the wheels; contact.mu itself is 0.7.
+constexpr double kStartLoss = 1.14;
 
 HiddenRun motion_run(const std::vector<Row>& rows, RandomStream& noise) {
     HiddenRun run;
@@ -132,7 +135,8 @@ HiddenExperiment record(std::string_view kind, const RecordOptions& options) {
     experiment.kind = std::string(kind);
     if (kind == "motion")
         experiment.nominal = {{"firmware.agenda", "0"},
-                              {"command.latency", fmt::format("{}", kCommandLatency)}};
+                              {"command.latency", fmt::format("{}", kCommandLatency)},
+                              {"inverse_friction", fmt::format("{}", kStartLoss)}};
     if (kind == "proximity") experiment.instrument = {{"reading", "{ ceiling = 4095, quantum = 1 }"}};
     if (kind == "ground") experiment.instrument = {{"reading", "{ floor = 0, ceiling = 967, quantum = 1 }"}};
     RandomStream noise(options.seed, "laboratory");

@@ -189,8 +189,8 @@ void row_costs(const Observable& o, const Predicted& p, const NoiseParameters& n
                 carried = true;
                 continue;
             }
-            variance = walk.filter(error, drift + at(o.walk, i, 0.0), noise.memory, nu, !p.lapse.empty(),
-                                   innovation);
+            const double gained = at(o.walk, i, 0.0) + at(o.jolt, i, 0.0) / (sd * sd);
+            variance = walk.filter(error, drift + gained, noise.memory, nu, !p.lapse.empty(), innovation);
         } else {
             const double kept = carried ? noise.carry : 0.0;
             innovation = error - kept * last;

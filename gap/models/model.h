@@ -34,6 +34,7 @@ struct Observable {
     std::vector<double> gate;  ///< weight of the spectral line in this row; empty: 1
     std::vector<double>
         walk;  ///< Level: variance that the sum gains in this row for sure, in units of the noise's
+    std::vector<double> jolt;  ///< Level: the same, in the observable's unit squared
     double fixed_sd = 0.0;  ///< > 0: the noise is this and is not fitted (whole steps of an emulated counter)
     double known_sd = 0.0;  ///< noise that the simulator claims; 0: it claims none
 };

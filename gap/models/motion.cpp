@@ -24,6 +24,8 @@ constexpr double kStill = 1e-6;  // m: less than this between rows is standing
 constexpr double kEdge = 0.05;   // width of the dead band's edge, share of it
 constexpr double kGravity = 9.81;
 constexpr double kLateStep = 0.25;  // a step is counted when it is over
+constexpr double kOpenSteps = 0.6;  // of a wheel, each time its speed changes: the timer's phase
+constexpr double kOpenSlip = 0.2;   // share of the way lost to sliding that no formula tells
 constexpr double kCounterSd = 3.0;  // steps: whole steps, and when a row was taken
 
 struct Path {
@@ -124,10 +126,33 @@ class MotionModel final : public Model {
                 for (const Path& path : paths_)
                     for (const double turned : path.turned)
                         one.walk.push_back(turned * turned);
+            if (own && !counted_ && o != 1) one.jolt = jolts(o == 2);
             for (std::size_t i = 1; i < one.y.size(); ++i)
                 one.starts[i] = base.run[i] != base.run[i - 1] ? 1 : 0;
         }
         if (counted_) gather_counters(experiment);
+    }
+
+    /// What a change of command leaves open: where in a step it came, and how exactly the tyres slid.
+    std::vector<double> jolts(bool turning) const {
+        const physics::Parameters defaults;
+        const double metre =
+            2 * std::numbers::pi * defaults.robot.wheel_radius_left / defaults.robot.steps_per_turn;
+        const double lever = turning ? 1 / defaults.robot.axle_length : 0.5;
+        std::vector<double> variance;
+        for (const Path& path : paths_)
+            for (std::size_t i = 0; i < path.time.size(); ++i) {
+                double sum = 0.0;
+                for (std::size_t w = 0; i > 0 && w < 2; ++w)
+                    for (const SpeedJump& jump : path.wheel[w].jumps)
+                        if (jump.time >= path.time[i - 1] && jump.time < path.time[i]) {
+                            const double slid =
+                                std::pow(jump.change * metre, 2) / (2 * defaults.contact.mu * kGravity);
+                            sum += std::pow(kOpenSteps * metre, 2) + std::pow(kOpenSlip * slid, 2);
+                        }
+                variance.push_back(sum * lever * lever);
+            }
+        return variance;
     }
 
     void gather_counters(const Experiment& experiment) {
