@@ -36,32 +36,8 @@ const char kUsage[] =
     "  --rab-gain G       of the distances, from --rab-calibrate (1)\n"
     "  --rab-calibrate N  measure the gain from N messages (100 is usual) of a robot 20 cm away, and end\n";
 
-[[noreturn]] void wrong(const char* option, const char* text, const std::string& expected) {
-    std::fprintf(stderr, "puckloop-control: --%s %s: expected %s\n", option, text, expected.c_str());
-    std::exit(kWrongUse);
-}
-
-double number(const char* option, const char* text, const std::string& expected, double low, double high) {
-    char* end = nullptr;
-    const double value = std::strtod(text, &end);
-    if (end == text || *end != '\0' || !(value >= low) || !(value <= high)) wrong(option, text, expected);
-    return value;
-}
-
-double seconds(const char* option, const char* text) {
-    return number(option, text, "a number of seconds", 0, 1e9);
-}
-
 double milliseconds(const char* option, const char* text) {
     return number(option, text, "milliseconds, 1 to 10000", 1, 10000) / 1e3;
-}
-
-int whole(const char* option, const char* text, int low, int high) {
-    char* end = nullptr;
-    const long value = std::strtol(text, &end, 10);
-    const std::string expected = "a whole number from " + std::to_string(low) + " to " + std::to_string(high);
-    if (end == text || *end != '\0' || value < low || value > high) wrong(option, text, expected);
-    return static_cast<int>(value);
 }
 
 enum {
@@ -169,7 +145,7 @@ void take(Options& options, int choice, const char* name) {
 /// What only shows when all options are known.
 void check(Options& options) {
     if (make_behaviour(options.behaviour) == nullptr)
-        wrong("behaviour", options.behaviour.c_str(), "wander, light, aggregate, follow or still");
+        wrong_value("behaviour", options.behaviour.c_str(), "wander, light, aggregate, follow or still");
     if (needs_neighbours(options.behaviour)) options.rab = true;
     if (options.rab && options.rab_id == 0 && options.calibrate == 0) {
         std::fprintf(stderr, "puckloop-control: %s needs --rab-id N, 1 to 255, another on each robot\n",

@@ -2,13 +2,13 @@
 // The command line of puckloop-control.
 
 #include "linuxboard/control/control_loop.h"
+#include "linuxboard/control/option_values.h"
 #include "linuxboard/control/rab_link.h"
 
 #include <string>
 
 namespace puckloop::control {
 
-inline constexpr int kWrongUse = 2;  ///< exit status: wrong use, or a device that cannot be opened
 inline constexpr char kDefaultBus[] = "/dev/i2c-3";
 
 struct Options {

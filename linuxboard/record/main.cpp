@@ -4,6 +4,7 @@
 // Exit status: 0 the script is through; 1 the PIC could not be reached or the line failed; 2 wrong use.
 
 #include "linuxboard/control/ground_sensor.h"
+#include "linuxboard/control/option_values.h"
 #include "linuxboard/control/posix_serial.h"
 #include "linuxboard/control/session.h"
 #include "linuxboard/record/command_script.h"
@@ -19,14 +20,14 @@ namespace {
 
 using namespace puckloop::control;
 
-constexpr int kWrongUse = 2;
-constexpr double kStartWait = 60.0;  // s
+constexpr double kLeastPeriod = 0.01;  // s: an exchange takes 8 ms on the line
+constexpr double kStartWait = 60.0;    // s
 
 const char kUsage[] =
     "usage: puckloop-record --script FILE --log FILE [--period S] [--tty DEVICE] [--i2c DEVICE]\n"
     "  --script FILE   lines: seconds, left, right (steps/s)\n"
     "  --log FILE      CSV, a row an exchange with the PIC\n"
-    "  --period S      between two exchanges (0.1)\n"
+    "  --period S      between two exchanges, at least 0.01 (0.1)\n"
     "  --tty DEVICE    serial line to the PIC, 115200 8N1 (/dev/ttyS0)\n"
     "  --i2c DEVICE    bus of the ground sensors; without the option they are not read\n";
 
@@ -54,7 +55,7 @@ Options parse(int argc, char** argv) {
             options.log = optarg;
             break;
         case kPeriod:
-            options.period = std::strtod(optarg, nullptr);
+            options.period = seconds("period", optarg, kLeastPeriod);
             break;
         case kTty:
             options.tty = optarg;
@@ -70,7 +71,7 @@ Options parse(int argc, char** argv) {
             std::exit(kWrongUse);
         }
     }
-    if (optind < argc || options.script.empty() || options.log.empty() || !(options.period > 0)) {
+    if (optind < argc || options.script.empty() || options.log.empty()) {
         std::fputs(kUsage, stderr);
         std::exit(kWrongUse);
     }

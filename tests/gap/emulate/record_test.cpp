@@ -8,8 +8,11 @@
 
 #include <catch2/catch.hpp>
 
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
+#include <sys/wait.h>
 
 using namespace puckloop;
 using namespace puckloop::gap;
@@ -83,6 +86,21 @@ TEST_CASE("what cannot be recorded or changed is refused in one line") {
     CHECK_THROWS_AS(emulate::record("microphone", options), InputError);
     CHECK_THROWS_AS(emulate::set_parameter(options.robot, "robot.axle_lenght=0.05"), InputError);
     CHECK_THROWS_AS(emulate::set_parameter(options.robot, "robot.axle_length"), InputError);
+}
+
+TEST_CASE("the recording program refuses a period that is none, in one line") {
+    const std::string period = GENERATE("0", "-1", "nan", "0.1s", "soon");
+    const std::string command =
+        std::string(PUCKLOOP_RECORD) + " --script none --log none --period " + period + " 2>&1";
+    std::FILE* pipe = ::popen(command.c_str(), "r");
+    REQUIRE(pipe != nullptr);
+    std::array<char, 256> line{};
+    std::string said;
+    while (std::fgets(line.data(), line.size(), pipe) != nullptr)
+        said += line.data();
+    const int status = ::pclose(pipe);
+    CHECK(WEXITSTATUS(status) == 2);
+    CHECK(said == "puckloop-record: --period " + period + ": expected at least 0.01 seconds\n");
 }
 
 TEST_CASE("every secret can be set, and at least twelve hide something") {
