@@ -66,10 +66,10 @@ double expected_nats(const Model& design, const State& truth, const State& other
         as_if.y = p;
         row_costs(as_if, from_truth[o], truth.noise[o], costs);
         for (std::size_t i = 0; i < p.size(); ++i)
-            sum -= costs.cost(i);
+            sum -= costs.cost[i];
         row_costs(as_if, from_other[o], truth.noise[o], costs);
         for (std::size_t i = 0; i < p.size(); ++i)
-            sum += costs.cost(i);
+            sum += costs.cost[i];
     }
     return std::max(sum, 0.0);
 }

@@ -1,7 +1,7 @@
 #pragma once
 // Maximum posterior fit of a model's freed parameters together with the noise of its observables (Ceres).
 
-#include "gap/fit/noise.h"
+#include "gap/fit/likelihood.h"
 #include "gap/models/model.h"
 
 #include <string>
@@ -35,17 +35,16 @@ State neutral_state(const Model& model);
 
 /// How thorough a fit is.
 struct Effort {
-    int iterations = 20;  ///< of the solver
-    int rounds = 6;       ///< of solver and centring
+    int iterations = 40;  ///< of the solver
     bool noise = true;    ///< false: of the noise only its size is fitted
 };
-inline constexpr Effort kThorough{}, kQuick{4, 1, true}, kPart{5, 1, false};
+inline constexpr Effort kThorough{}, kQuick{6, true}, kPart{6, false};
 
 Fitted fit(const Model& model, const std::vector<Freed>& freed, const State& start, const Weights& weights,
            const Effort& effort = kThorough);
 
-/// log likelihood of every row, an observable each.
-std::vector<std::vector<double>> row_scores(const Model& model, const State& state);
+/// log likelihood of all rows, with what the noise loses for being off the simulator's claim.
+double log_likelihood(const Model& model, const State& state);
 /// Everything about the rows at a state.
 std::vector<RowCosts> costs_at(const Model& model, const State& state, Prediction& prediction);
 

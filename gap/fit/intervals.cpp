@@ -52,8 +52,8 @@ class Gradients {
         Eigen::VectorXd all(static_cast<Eigen::Index>(study_.rows()));
         Eigen::Index at = 0;
         for (const RowCosts& one : rows)
-            for (std::size_t i = 0; i < one.shape.size(); ++i)
-                all[at++] = one.cost(i);
+            for (std::size_t i = 0; i < one.cost.size(); ++i)
+                all[at++] = one.cost[i];
         return all;
     }
 

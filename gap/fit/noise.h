@@ -1,10 +1,6 @@
 #pragma once
-// The noise of an observable: carried-over errors, heavy tails, lapses, clipping, quantisation, a spectral
-// line. Each row's cost (minus log likelihood) is split into parts that are non-negative by construction, so
-// that a least-squares solver sees the true likelihood.
-//
-// Deviations: 1. rows beside a clipped one count as the first of a chain. 2. The tails of innovations are
-// Student's t also where the line or the level is filtered.
+// The noise of an observable: its size, errors carried over, heavy tails. gap/fit/filter.h says what a row
+// adds to those before it, gap/fit/likelihood.h how likely that is.
 
 #include "gap/models/model.h"
 
@@ -25,21 +21,6 @@ int noise_parameters(const Observable& observable);
 double& noise_parameter(NoiseParameters& noise, int index);
 /// Bounds of the three, by kind of noise.
 void noise_bounds(NoiseKind kind, int index, double& low, double& high);
-
-/// A row's cost is shape^2 / 2 + level + other.
-struct RowCosts {
-    std::vector<double> shape;  ///< signed root deviance of the innovation
-    std::vector<double> level;  ///< ln of the innovation's scale and the density's constant; any sign
-    std::vector<double> other;  ///< >= 0: lapses and dead zone; empty when nothing of the kind is modelled
-    std::vector<double> innovation;  ///< standardised; of a clipped row the middle of what it may be
-
-    double cost(std::size_t i) const {
-        return shape[i] * shape[i] / 2 + level[i] + (other.empty() ? 0.0 : other[i]);
-    }
-};
-
-void row_costs(const Observable& observable, const Predicted& predicted, const NoiseParameters& noise,
-               RowCosts& out);
 
 /// Robust first guess from the residuals of a prediction.
 NoiseParameters first_guess(const Observable& observable, const Predicted& predicted);

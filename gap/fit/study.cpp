@@ -24,6 +24,7 @@ constexpr std::size_t kLeastBlockRows = 8;
 constexpr double kNoticed = 0.05;  // nats: a block that gains or loses less was not touched
 
 constexpr double kHeavyTail = 2.5, kLightTail = 20;  // degrees of freedom to begin at
+constexpr double kLightEnough = 8;                   // degrees of freedom that hide nothing
 constexpr int kMostRounds = 6;                       // of fitting the noise alone
 constexpr double kSettled = 0.1;                     // nats that a round must bring
 
@@ -220,10 +221,7 @@ State Study::begun(const Candidate& candidate, const std::vector<double>& start,
             state.values[index] = scalable ? neutral + share * (start[j] - neutral) : start[j];
             moved = moved || (scalable && start[j] != neutral);
         }
-        double score = 0.0;
-        for (const auto& rows : row_scores(*model_, state))
-            for (const double one : rows)
-                score += one;
+        const double score = log_likelihood(*model_, state);
         if (score > best_score) {
             best_score = score;
             best = std::move(state);
@@ -239,30 +237,47 @@ Fit Study::fit_set(const std::vector<std::size_t>& effects, const State& from, c
     best.freed = freed_by(effects);
     best.bic = INFINITY;
     const Candidate& last = candidates_[effects.back()];
+    const auto take_better = [&](const State& state, const Effort& how) {
+        const Fitted fitted = fit(*model_, best.freed, state, {}, how);
+        const double bic = bic_of(fitted, best.freed.size());
+        if (!(bic < best.bic)) return;
+        best.bic = bic;
+        best.fitted = fitted;
+    };
+    // All starts quickly, the best to the end.
     for (const auto& start : last.starts) {
         State state = begun(last, start, from);
         // A sum's drift would swallow what the effect explains: it has to earn itself anew.
         for (std::size_t o = 0; o < state.noise.size(); ++o)
             if (model_->observables()[o].noise == NoiseKind::Level && model_->observables()[o].fixed_sd <= 0)
                 state.noise[o].carry = std::min(state.noise[o].carry, kLittleDrift);
-        const Fitted fitted = fit(*model_, best.freed, state, {}, effort);
-        const double bic = bic_of(fitted, best.freed.size());
-        if (bic < best.bic) {
-            best.bic = bic;
-            best.fitted = fitted;
-        }
+        take_better(state, kQuick);
+        if (lighten_tails(state)) take_better(fit(*model_, best.freed, state, {}, kPart).state, kQuick);
     }
     // A sum that really drifts cannot be begun without its drift.
-    const bool sums =
-        std::any_of(model_->observables().begin(), model_->observables().end(),
-                    [](const Observable& one) { return one.noise == NoiseKind::Level && one.fixed_sd <= 0; });
-    if (!sums) return best;
-    const Fitted fitted = fit(*model_, best.freed, begun(last, last.starts.front(), from), {}, effort);
-    if (const double bic = bic_of(fitted, best.freed.size()); bic < best.bic) {
-        best.bic = bic;
-        best.fitted = fitted;
-    }
+    const auto drifts = [&](std::size_t o) {
+        const Observable& one = model_->observables()[o];
+        return one.noise == NoiseKind::Level && one.fixed_sd <= 0 && from.noise[o].carry > kLittleDrift;
+    };
+    bool sums = false;
+    for (std::size_t o = 0; o < from.noise.size(); ++o)
+        sums = sums || drifts(o);
+    if (sums) take_better(begun(last, last.starts.front(), from), kQuick);
+    if (effort.iterations > kQuick.iterations) take_better(best.fitted.state, effort);
     return best;
+}
+
+/// Heavy tails take rows that an effect explains for outliers, which then pull at nothing.
+bool Study::lighten_tails(State& state) const {
+    bool any = false;
+    for (std::size_t o = 0; o < state.noise.size(); ++o) {
+        if (noise_parameters(model_->observables()[o]) == 0) continue;
+        NoiseParameters& noise = state.noise[o];
+        if (std::exp(noise.log_tail) > kLightEnough) continue;
+        any = true;
+        noise.log_tail = std::log(kLightTail);
+    }
+    return any;
 }
 
 Fit Study::refined(const Fit& quick) const {
@@ -297,7 +312,7 @@ HeldOut Study::hold_out(const Fit& whole) const {
         for (std::size_t o = 0; o < observables.size(); ++o)
             for (std::size_t i = 0; i < fold_[o].size(); ++i)
                 if (fold_[o][i] == static_cast<int>(k)) {
-                    held.score[o][i] = -costs[o].cost(i);
+                    held.score[o][i] = -costs[o].cost[i];
                     held.mean[o][i] = prediction[o].mean[i];
                 }
     }

@@ -61,6 +61,7 @@ class Study {
     void make_candidates();
     void make_folds(std::uint64_t seed);
     State begun(const Candidate& candidate, const std::vector<double>& start, const State& from) const;
+    bool lighten_tails(State& state) const;
     double bic_of(const Fitted& fitted, std::size_t parameters) const;
     std::string missing_for(const Effect& effect) const;
     bool matters(const Candidate& candidate) const;

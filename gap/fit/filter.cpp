@@ -1,0 +1,187 @@
+#include "gap/fit/filter.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace puckloop::gap {
+
+namespace {
+
+constexpr double kClip = 5.0;  // innovations beyond do not pull the filter further
+constexpr double kLeastVariance = 1e-9;
+
+double at(const std::vector<double>& values, std::size_t i, double neutral) {
+    return values.empty() ? neutral : values[i];
+}
+
+/// Sinusoid of unknown phase: two amplitudes learnt row by row.
+struct Line {
+    std::array<double, 2> mean{};
+    double p00 = 0.5, p01 = 0.0, p11 = 0.5;
+
+    /// Takes what is known off the innovation, widens its variance, learns from it.
+    void filter(const std::array<double, 2>& h, double& innovation, double& variance) {
+        innovation -= h[0] * mean[0] + h[1] * mean[1];
+        const double g0 = p00 * h[0] + p01 * h[1], g1 = p01 * h[0] + p11 * h[1];
+        variance += h[0] * g0 + h[1] * g1;
+        const double root = std::sqrt(variance);
+        const double pull = std::clamp(innovation / root, -kClip, kClip) / root;
+        mean[0] += g0 * pull;
+        mean[1] += g1 * pull;
+        p00 -= g0 * g0 / variance;
+        p01 -= g0 * g1 / variance;
+        p11 -= g1 * g1 / variance;
+    }
+};
+
+/// Random walk plus carried-over measurement error; variances in units of the error's.
+struct Walk {
+    double level = 0.0, error = 0.0;
+    double p00 = 1.0, p01 = -1.0, p11 = 1.0;
+
+    /// The first row: level and error are known only together.
+    void begin(double value) { *this = {value, 0.0, 1.0, -1.0, 1.0}; }
+
+    /// Returns the innovation's variance.
+    double filter(double value, double drift, double memory, double tail, bool jumps, double& innovation) {
+        p00 += drift;
+        p01 *= memory;
+        p11 = memory * memory * p11 + 1 - memory * memory;
+        error *= memory;
+        innovation = value - level - error;
+        const double total = std::max(p00 + 2 * p01 + p11, kLeastVariance);
+        const double inverse = 1 / total;
+        const double squared = innovation * innovation * inverse;
+        if (jumps && squared > kClip * kClip) {  // pushed: the sum goes on from there
+            begin(value);
+            return total;
+        }
+        // An outlier of a heavy tail says little about the sum; smooth, so that the likelihood is.
+        const double trusted = squared > 1 ? innovation * (tail + 1) / (tail + squared) : innovation;
+        const double g0 = p00 + p01, g1 = p01 + p11;
+        const double k0 = g0 * inverse, k1 = g1 * inverse;
+        level += k0 * trusted;
+        error += k1 * trusted;
+        p00 -= k0 * g0;
+        p01 -= k0 * g1;
+        p11 -= k1 * g1;
+        return total;
+    }
+};
+
+/// The noise's size row by row; the same in all rows unless the prediction says otherwise.
+class Size {
+  public:
+    Size(const Observable& o, const Predicted& p, const NoiseParameters& noise)
+        : o_(o),
+          p_(p),
+          noise_(noise),
+          even_(p.factor.empty() && p.extra.empty()),
+          sd_(o.y.empty() ? 1.0 : row_sd(o, p, noise, 0)) {}
+    double at(std::size_t i) const { return even_ ? sd_ : row_sd(o_, p_, noise_, i); }
+
+  private:
+    const Observable& o_;
+    const Predicted& p_;
+    const NoiseParameters& noise_;
+    bool even_;
+    double sd_;
+};
+
+/// Is the row at an end of the instrument's range? Then its role and limit are noted.
+bool clipped(const Observable& o, const Predicted& p, std::size_t i, double sd, Innovations& out) {
+    const bool low = o.y[i] <= o.instrument.floor, high = o.y[i] >= o.instrument.ceiling;
+    if (!low && !high) return false;
+    const double floor = p.floor > 0.0 ? p.floor : o.instrument.floor;
+    out.role[i] = low ? RowRole::Low : RowRole::High;
+    out.z[i] = ((low ? floor : o.instrument.ceiling) - p.mean[i]) / sd;
+    return true;
+}
+
+void filter_level(const Observable& o, const Predicted& p, const NoiseParameters& noise, Innovations& out) {
+    const double drift = std::exp(noise.carry), nu = std::exp(noise.log_tail);
+    const Size size(o, p, noise);
+    const bool jumps = !p.lapse.empty();
+    Walk walk;
+    bool carried = false;
+    for (std::size_t i = 0; i < o.y.size(); ++i) {
+        const double sd = size.at(i);
+        if (o.starts[i] != 0) carried = false;
+        if (clipped(o, p, i, sd, out)) {
+            carried = false;
+            continue;
+        }
+        const double error = (o.y[i] - p.mean[i]) / sd;
+        if (!carried) {
+            walk.begin(error);
+            out.role[i] = RowRole::First;
+            out.z[i] = 0.0;
+            carried = true;
+            continue;
+        }
+        double innovation = 0.0;
+        const double gained = at(o.walk, i, 0.0) + at(o.jolt, i, 0.0) / (sd * sd);
+        const double variance = walk.filter(error, drift + gained, noise.memory, nu, jumps, innovation);
+        out.z[i] = innovation / std::sqrt(variance);
+        out.variance[i] = variance * sd * sd;
+    }
+}
+
+void filter_carry(const Observable& o, const Predicted& p, const NoiseParameters& noise, Innovations& out) {
+    const Size size(o, p, noise);
+    const bool has_line = p.line_amplitude > 0.0 && !o.time.empty();
+    const double omega = 2 * std::numbers::pi * p.line_frequency;
+    Line line;
+    bool carried = false;
+    double last = 0.0;
+    std::array<double, 2> last_h{};
+    for (std::size_t i = 0; i < o.y.size(); ++i) {
+        const double sd = size.at(i);
+        if (o.starts[i] != 0) {
+            carried = false;
+            line = Line{};
+        }
+        if (clipped(o, p, i, sd, out)) {
+            carried = false;
+            continue;
+        }
+        const double error = (o.y[i] - p.mean[i]) / sd;
+        const double kept = carried ? noise.carry : 0.0;
+        double innovation = error - kept * last, variance = 1 - kept * kept;
+        last = error;
+        if (has_line) {
+            const double reach = p.line_amplitude * at(o.gate, i, 1.0) / sd;
+            const std::array<double, 2> own{reach * std::cos(omega * o.time[i]),
+                                            reach * std::sin(omega * o.time[i])};
+            const std::array<double, 2> h{own[0] - kept * last_h[0], own[1] - kept * last_h[1]};
+            last_h = own;
+            line.filter(h, innovation, variance);
+        }
+        carried = true;
+        out.z[i] = innovation / std::sqrt(variance);
+        out.variance[i] = variance * sd * sd;
+    }
+}
+
+}  // namespace
+
+void filter(const Observable& observable, const Predicted& predicted, const NoiseParameters& noise,
+            Innovations& out) {
+    const std::size_t n = observable.y.size();
+    out.z.resize(n);
+    out.variance.assign(n, 1.0);
+    out.role.assign(n, RowRole::Plain);
+    if (observable.noise == NoiseKind::Event) {
+        out.role.assign(n, RowRole::Event);
+        for (std::size_t i = 0; i < n; ++i)
+            out.z[i] = std::clamp(predicted.mean[i], kLeastProbability, 1 - kLeastProbability);
+    } else if (observable.noise == NoiseKind::Level) {
+        filter_level(observable, predicted, noise, out);
+    } else {
+        filter_carry(observable, predicted, noise, out);
+    }
+}
+
+}  // namespace puckloop::gap

@@ -1,0 +1,34 @@
+#pragma once
+// Innovations: what each row says that the rows before it did not.
+//
+// Deviations: 1. rows beside a clipped one count as the first of a chain. 2. Where a sum may be pushed, an
+// innovation beyond five sd begins the sum anew.
+
+#include "gap/fit/noise.h"
+
+#include <vector>
+
+namespace puckloop::gap {
+
+enum class RowRole : char {
+    Plain,  ///< an innovation
+    First,  ///< only says where a sum begins
+    Low,    ///< at or below the instrument's floor
+    High,   ///< at or above its ceiling
+    Event,  ///< happened or not
+};
+
+struct Innovations {
+    /// Plain: standardised innovation. Low, High: the limit, in sd above the mean. Event: its probability.
+    std::vector<double> z;
+    std::vector<double> variance;  ///< Plain: of the innovation, observable's unit squared; else 1
+    std::vector<RowRole> role;
+};
+
+/// A model is never surer than this of a single event or clip.
+inline constexpr double kLeastProbability = 1e-3;
+
+void filter(const Observable& observable, const Predicted& predicted, const NoiseParameters& noise,
+            Innovations& out);
+
+}  // namespace puckloop::gap

@@ -1,0 +1,203 @@
+#include "gap/fit/likelihood.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace puckloop::gap {
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kSmall = 1e-4;  // below, the series of ln(1 + q) is exact to rounding
+
+double square(double value) {
+    return value * value;
+}
+
+double normal_below(double z) {
+    return 0.5 * std::erfc(-z / std::numbers::sqrt2);
+}
+
+double normal_density(double z) {
+    return std::exp(-z * z / 2) / std::sqrt(2 * kPi);
+}
+
+/// Inverse of the normal distribution, good to 1e-4: enough for a picture of a clipped row.
+double normal_quantile(double p) {
+    const bool low = p < 0.5;
+    const double t = std::sqrt(-2 * std::log(std::max(low ? p : 1 - p, 1e-300)));
+    const double z =
+        t - (2.515517 + t * (0.802853 + t * 0.010328)) / (1 + t * (1.432788 + t * (0.189269 + t * 0.001308)));
+    return low ? -z : z;
+}
+
+/// ln(1 + q), q >= 0; std::log1p takes twice as long.
+double log_above(double q) {
+    return q < kSmall ? q * (1 - q * (0.5 - q / 3)) : std::log(1 + q);
+}
+
+double t_constant(double nu) {
+    return std::lgamma((nu + 1) / 2) - std::lgamma(nu / 2) - 0.5 * std::log(nu * kPi);
+}
+
+/// First derivative of lgamma.
+double digamma(double x) {
+    double sum = 0.0;
+    for (; x < 8; x += 1)
+        sum -= 1 / x;
+    const double r = 1 / (x * x);
+    return sum + std::log(x) - 0.5 / x - r * (1.0 / 12 - r * (1.0 / 120 - r / 252));
+}
+
+/// Second derivative of lgamma.
+double trigamma(double x) {
+    double sum = 0.0;
+    for (; x < 8; x += 1)
+        sum += 1 / (x * x);
+    const double r = 1 / (x * x);
+    return sum + 1 / x + r / 2 + r / x * (1.0 / 6 - r * (1.0 / 30 - r / 42));
+}
+
+double clip_likelihood(RowRole role, double z) {
+    return kLeastProbability + (1 - kLeastProbability) * normal_below(role == RowRole::Low ? z : -z);
+}
+
+double event_cost(double y, double mean) {
+    return -std::log(y > 0.5 ? mean : 1 - mean);
+}
+
+/// A row that is a lapse with some probability; `tail` is twice the deviance of t.
+double lapse_cost(const Predicted& p, std::size_t i, double z, double sd, double tail, double constant) {
+    const double lapse = p.lapse[i];
+    const double width = p.lapse_scale[i] / sd, shift = p.lapse_shift / sd;
+    const double wide = lapse * std::exp(-0.5 * std::log(2 * kPi) - constant) / std::sqrt(width * width + 1);
+    const double peak = 1 - lapse + wide;
+    const double spread = 2 * (width * width + 1);
+    const double up = std::exp(-square(z - shift) / spread);
+    const double hit = p.lapse_both ? (up + std::exp(-square(z + shift) / spread)) / 2 : up;
+    const double here = (1 - lapse) * std::exp(-tail / 2) + wide * hit;
+    return std::max(std::log(peak / here), 0.0) + std::max(-std::log(peak), 0.0);
+}
+
+/// Readings inside a dead zone should not be there.
+double dead_zone_cost(const Observable& o, double floor, double y) {
+    const double step = std::max(o.instrument.quantum, 1e-3 * floor);
+    const double inside = (floor - y) / step;
+    return inside > 30 ? inside : std::log1p(std::exp(inside));
+}
+
+}  // namespace
+
+bool is_simple(const Predicted& predicted) {
+    return predicted.lapse.empty() && predicted.floor <= 0.0;
+}
+
+void costs_of(const Observable& o, const Predicted& p, const NoiseParameters& noise,
+              const Innovations& innovations, std::vector<double>& cost) {
+    const std::size_t n = o.y.size();
+    cost.resize(n);
+    const double nu = std::exp(noise.log_tail), constant = t_constant(nu);
+    double variance = 1.0, log_scale = 0.0;  // mostly the same as the row before's
+    for (std::size_t i = 0; i < n; ++i) {
+        const double z = innovations.z[i];
+        switch (innovations.role[i]) {
+        case RowRole::First:
+            cost[i] = 0.0;
+            continue;
+        case RowRole::Event:
+            cost[i] = event_cost(o.y[i], z);
+            continue;
+        case RowRole::Low:
+        case RowRole::High:
+            cost[i] = -std::log(clip_likelihood(innovations.role[i], z));
+            continue;
+        case RowRole::Plain:
+            break;
+        }
+        if (innovations.variance[i] != variance) {
+            variance = innovations.variance[i];
+            log_scale = 0.5 * std::log(variance);
+        }
+        const double tail = (nu + 1) * log_above(z * z / nu);
+        const bool lapses = !p.lapse.empty() && p.lapse[i] > 0.0;
+        cost[i] = log_scale - constant +
+                  (lapses ? lapse_cost(p, i, z, std::sqrt(variance), tail, constant) : tail / 2);
+        if (p.floor > 0.0) cost[i] += dead_zone_cost(o, p.floor, o.y[i]);
+    }
+}
+
+void row_costs(const Observable& o, const Predicted& p, const NoiseParameters& noise, RowCosts& out) {
+    Innovations innovations;
+    filter(o, p, noise, innovations);
+    costs_of(o, p, noise, innovations, out.cost);
+    out.innovation = std::move(innovations.z);
+    for (std::size_t i = 0; i < out.innovation.size(); ++i) {
+        double& z = out.innovation[i];
+        const RowRole role = innovations.role[i];
+        if (role == RowRole::Event)
+            z = ((o.y[i] > 0.5 ? 1.0 : 0.0) - z) / std::sqrt(z * (1 - z));
+        else if (role == RowRole::Low || role == RowRole::High)
+            z = (role == RowRole::Low ? 1 : -1) * normal_quantile(clip_likelihood(role, z) / 2);
+    }
+}
+
+void slopes_of(const Observable& o, const NoiseParameters& noise, const Innovations& innovations,
+               std::vector<double>& slope, std::vector<double>& curvature) {
+    const std::size_t n = o.y.size();
+    slope.resize(n);
+    curvature.resize(n);
+    const double nu = std::exp(noise.log_tail), expected = (nu + 1) / (nu + 3);
+    for (std::size_t i = 0; i < n; ++i) {
+        const double z = innovations.z[i];
+        switch (innovations.role[i]) {
+        case RowRole::Plain:
+            slope[i] = (nu + 1) * z / (nu + z * z);
+            curvature[i] = expected;
+            break;
+        case RowRole::First:
+            slope[i] = curvature[i] = 0.0;
+            break;
+        case RowRole::Event:
+            slope[i] = o.y[i] > 0.5 ? -1 / z : 1 / (1 - z);
+            curvature[i] = 1 / (z * (1 - z));
+            break;
+        case RowRole::Low:
+        case RowRole::High: {
+            const double sign = innovations.role[i] == RowRole::Low ? 1 : -1;
+            const double hazard =
+                (1 - kLeastProbability) * normal_density(z) / clip_likelihood(innovations.role[i], z);
+            const double bend = hazard * (hazard + sign * z);
+            slope[i] = -sign * hazard;
+            curvature[i] = bend > 0 ? bend : hazard * hazard;
+            break;
+        }
+        }
+    }
+}
+
+void tail_slopes_of(const NoiseParameters& noise, const Innovations& innovations,
+                    std::vector<double>& slope) {
+    const double nu = std::exp(noise.log_tail);
+    const double constant = (digamma((nu + 1) / 2) - digamma(nu / 2) - 1 / nu) / 2;
+    slope.resize(innovations.z.size());
+    for (std::size_t i = 0; i < slope.size(); ++i) {
+        const double q = square(innovations.z[i]) / nu;
+        slope[i] = innovations.role[i] == RowRole::Plain
+                       ? nu * (log_above(q) / 2 - (nu + 1) / (2 * nu) * q / (1 + q) - constant)
+                       : 0.0;
+    }
+}
+
+ScaleInformation scale_information(const NoiseParameters& noise) {
+    const double nu = std::exp(noise.log_tail);
+    ScaleInformation information;
+    information.scale = 2 * nu / (nu + 3);
+    information.both = -2 * nu / ((nu + 1) * (nu + 3));
+    information.tail =
+        nu * nu *
+        ((trigamma(nu / 2) - trigamma((nu + 1) / 2)) / 4 - (nu + 5) / (2 * nu * (nu + 1) * (nu + 3)));
+    return information;
+}
+
+}  // namespace puckloop::gap

@@ -1,0 +1,40 @@
+#pragma once
+// What a row costs (minus log likelihood) given its innovation: Student's t, lapses, clipping, a dead zone,
+// events; and how steeply.
+//
+// Deviation: the tails of innovations are Student's t also where the line or the level is filtered.
+
+#include "gap/fit/filter.h"
+
+#include <vector>
+
+namespace puckloop::gap {
+
+struct RowCosts {
+    std::vector<double> cost;        ///< minus log likelihood, nats
+    std::vector<double> innovation;  ///< standardised; of a clipped row the middle of what it may be
+};
+
+void row_costs(const Observable& observable, const Predicted& predicted, const NoiseParameters& noise,
+               RowCosts& out);
+
+/// The costs alone, of innovations already filtered.
+void costs_of(const Observable& observable, const Predicted& predicted, const NoiseParameters& noise,
+              const Innovations& innovations, std::vector<double>& cost);
+
+/// Is a row's cost a function of its z and its scale alone (no lapses, no dead zone)?
+bool is_simple(const Predicted& predicted);
+
+/// First derivative of each row's cost by z, and its curvature (expected over rows where that is known).
+void slopes_of(const Observable& observable, const NoiseParameters& noise, const Innovations& innovations,
+               std::vector<double>& slope, std::vector<double>& curvature);
+/// Derivative of each plain row's cost by the ln of the degrees of freedom, at fixed z.
+void tail_slopes_of(const NoiseParameters& noise, const Innovations& innovations, std::vector<double>& slope);
+
+/// Expected curvature of a row's cost by ln scale, ln degrees of freedom and both.
+struct ScaleInformation {
+    double scale = 0.0, tail = 0.0, both = 0.0;
+};
+ScaleInformation scale_information(const NoiseParameters& noise);
+
+}  // namespace puckloop::gap

@@ -1,0 +1,218 @@
+#include "gap/fit/objective.h"
+
+#include <cmath>
+
+namespace puckloop::gap {
+
+namespace {
+
+constexpr double kRelativeStep = 2e-5;  // of a prior's width, for differences
+constexpr double kNoiseStep = 1e-5;
+constexpr double kClaimDoubt = 0.08;  // of ln sd, where the simulator claims one
+constexpr double kLeastCurvature = 1e-8;
+constexpr int kTail = 2;  // as noise_parameter counts
+
+bool equal(const Predicted& a, const Predicted& b) {
+    return a.mean == b.mean && a.factor == b.factor && a.extra == b.extra && a.lapse == b.lapse &&
+           a.lapse_scale == b.lapse_scale && a.lapse_shift == b.lapse_shift && a.floor == b.floor &&
+           a.line_amplitude == b.line_amplitude && a.line_frequency == b.line_frequency;
+}
+
+Eigen::Index as_index(std::size_t i) {
+    return static_cast<Eigen::Index>(i);
+}
+
+}  // namespace
+
+double claim_error(const Observable& observable, const NoiseParameters& noise) {
+    if (observable.known_sd <= 0) return 0.0;
+    const double nu = std::exp(noise.log_tail);
+    const double sd = noise.log_sd + 0.5 * std::log(nu / std::max(nu - 2, 0.5));
+    return (sd - std::log(observable.known_sd)) / kClaimDoubt;
+}
+
+Objective::Objective(const Model& model, const Layout& layout, State base, const Weights& weights)
+    : model_(model),
+      layout_(layout),
+      state_(std::move(base)),
+      weights_(weights),
+      bases_(model.observables().size()),
+      columns_(bases_.size()),
+      used_(bases_.size()) {}
+
+double Objective::fill(std::size_t o) {
+    Base& base = bases_[o];
+    const Observable& observable = model_.observables()[o];
+    filter(observable, prediction_[o], state_.noise[o], base.innovations);
+    costs_of(observable, prediction_[o], state_.noise[o], base.innovations, base.cost);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < base.cost.size(); ++i)
+        sum += weight(o, i) * base.cost[i];
+    return sum;
+}
+
+double Objective::priors(const double* x) const {
+    double sum = 0.0;
+    for (std::size_t j = 0; j < layout_.freed(); ++j)
+        sum += x[j] * x[j] / 2;
+    for (std::size_t o = 0; o < bases_.size(); ++o) {
+        const double off = claim_error(model_.observables()[o], state_.noise[o]);
+        sum += off * off / 2;
+    }
+    return sum;
+}
+
+double Objective::value(const double* x) {
+    layout_.unpack(x, state_);
+    model_.predict(state_.values, prediction_);
+    double sum = priors(x);
+    for (std::size_t o = 0; o < bases_.size(); ++o)
+        sum += fill(o);
+    return sum;
+}
+
+/// state_ holds the moved number; `moved` is its prediction.
+void Objective::difference(std::size_t o, const Predicted& moved, double step, bool tail, Column& column) {
+    const Observable& observable = model_.observables()[o];
+    const Base& base = bases_[o];
+    filter(observable, moved, state_.noise[o], other_);
+    const bool simple = is_simple(moved) && is_simple(prediction_[o]);
+    if (!simple) costs_of(observable, moved, state_.noise[o], other_, other_cost_);
+    const std::size_t n = observable.y.size();
+    for (Eigen::VectorXd* one : {&column.shift, &column.scale, &column.gradient})
+        one->resize(as_index(n));
+    column.other.resize(simple ? 0 : as_index(n));
+    column.scales = false;
+    for (std::size_t i = 0; i < n; ++i) {
+        const auto k = as_index(i);
+        const double dz = (other_.z[i] - base.innovations.z[i]) / step,
+                     variance = base.innovations.variance[i];
+        const double change = other_.variance[i] - variance;
+        const double scale = change == 0.0 ? 0.0 : change / (2 * variance * step);
+        column.scales = column.scales || change != 0.0;
+        column.scale[k] = scale;
+        column.shift[k] = dz + base.innovations.z[i] * scale;
+        column.gradient[k] = base.slope[i] * dz + scale + (tail ? base.tail[i] : 0.0);
+        if (simple) continue;
+        const double whole = (other_cost_[i] - base.cost[i]) / step;
+        column.other[k] = whole - column.gradient[k];
+        column.gradient[k] = whole;
+    }
+}
+
+/// Adds one observable's part.
+void Objective::gather(std::size_t o, Eigen::VectorXd& gradient, Eigen::MatrixXd& curvature) const {
+    const Base& base = bases_[o];
+    const std::size_t count = used_[o];
+    const auto n = as_index(base.cost.size()), width = as_index(count);
+    if (count == 0) return;
+    Eigen::VectorXd weights(n), bend(n);
+    for (std::size_t i = 0; i < base.cost.size(); ++i) {
+        weights[as_index(i)] = weight(o, i);
+        bend[as_index(i)] = std::sqrt(weight(o, i) * base.curvature[i]);
+    }
+    const ScaleInformation information = scale_information(state_.noise[o]);
+    Eigen::MatrixXd shifts(n, width), scales = Eigen::MatrixXd::Zero(n, width), others;
+    bool any_other = false, any_scale = false;
+    double plain = 0.0;
+    for (std::size_t i = 0; i < base.cost.size(); ++i)
+        if (base.innovations.role[i] == RowRole::Plain) plain += weight(o, i);
+    for (Eigen::Index a = 0; a < width; ++a) {
+        const Column& column = columns_[o][static_cast<std::size_t>(a)];
+        shifts.col(a) = column.shift.cwiseProduct(bend);
+        if (column.scales) scales.col(a) = column.scale.cwiseProduct(weights.cwiseSqrt());
+        any_scale = any_scale || column.scales;
+        gradient[as_index(column.number)] += column.gradient.dot(weights);
+        if (column.other.size() == 0) continue;
+        if (!any_other) others = Eigen::MatrixXd::Zero(n, width);
+        any_other = true;
+        others.col(a) = column.other.cwiseProduct(weights.cwiseSqrt());
+    }
+    Eigen::MatrixXd part = Eigen::MatrixXd::Zero(width, width);
+    part.selfadjointView<Eigen::Lower>().rankUpdate(shifts.transpose());
+    if (any_scale) part.selfadjointView<Eigen::Lower>().rankUpdate(scales.transpose(), information.scale);
+    if (any_other) part.selfadjointView<Eigen::Lower>().rankUpdate(others.transpose());
+    for (Eigen::Index a = 0; a < width; ++a) {
+        const std::size_t row = columns_[o][static_cast<std::size_t>(a)].number;
+        for (Eigen::Index b = 0; b <= a; ++b) {
+            const std::size_t col = columns_[o][static_cast<std::size_t>(b)].number;
+            curvature(as_index(row), as_index(col)) += part(a, b);
+            if (row != col) curvature(as_index(col), as_index(row)) += part(a, b);
+        }
+        if (row < layout_.freed() || layout_.noise_index(row) != kTail) continue;
+        curvature(as_index(row), as_index(row)) += information.tail * plain;
+        for (Eigen::Index b = 0; b < width; ++b) {
+            const Column& column = columns_[o][static_cast<std::size_t>(b)];
+            if (!column.scales) continue;
+            const double both = information.both * column.scale.dot(weights);
+            curvature(as_index(row), as_index(column.number)) += both;
+            curvature(as_index(column.number), as_index(row)) += both;
+        }
+    }
+}
+
+double Objective::slopes(const double* x, Eigen::VectorXd& gradient, Eigen::MatrixXd& curvature,
+                         Eigen::MatrixXd* rows) {
+    double sum = value(x);
+    const std::size_t width = layout_.size();
+    gradient = Eigen::VectorXd::Zero(as_index(width));
+    curvature = kLeastCurvature * Eigen::MatrixXd::Identity(as_index(width), as_index(width));
+    if (!std::isfinite(sum)) return sum;
+    for (std::size_t o = 0; o < bases_.size(); ++o) {
+        Base& base = bases_[o];
+        slopes_of(model_.observables()[o], state_.noise[o], base.innovations, base.slope, base.curvature);
+        tail_slopes_of(state_.noise[o], base.innovations, base.tail);
+        used_[o] = 0;
+    }
+    const auto next = [&](std::size_t o, std::size_t j) -> Column& {
+        if (columns_[o].size() <= used_[o]) columns_[o].emplace_back();
+        Column& column = columns_[o][used_[o]++];
+        column.number = j;
+        return column;
+    };
+    std::vector<double> near(x, x + width);
+    for (std::size_t j = 0; j < width; ++j) {
+        double low = 0, high = 0;
+        layout_.bounds(j, low, high);
+        const bool of_model = j < layout_.freed();
+        double step = of_model ? kRelativeStep : kNoiseStep;
+        if (x[j] + step > high) step = -step;
+        near[j] = x[j] + step;
+        layout_.unpack(near.data(), state_);
+        if (of_model) {
+            model_.predict(state_.values, moved_);
+            for (std::size_t o = 0; o < bases_.size(); ++o)
+                if (!equal(moved_[o], prediction_[o])) difference(o, moved_[o], step, false, next(o, j));
+            gradient[as_index(j)] += x[j];
+            curvature(as_index(j), as_index(j)) += 1;
+        } else {
+            const std::size_t o = layout_.observable(j);
+            const double claimed = claim_error(model_.observables()[o], state_.noise[o]);
+            difference(o, prediction_[o], step, layout_.noise_index(j) == kTail, next(o, j));
+            near[j] = x[j];
+            layout_.unpack(near.data(), state_);
+            const double off = claim_error(model_.observables()[o], state_.noise[o]);
+            const double slope = (claimed - off) / step;
+            gradient[as_index(j)] += off * slope;
+            curvature(as_index(j), as_index(j)) += slope * slope;
+        }
+        near[j] = x[j];
+    }
+    layout_.unpack(x, state_);
+    for (std::size_t o = 0; o < bases_.size(); ++o)
+        gather(o, gradient, curvature);
+    if (rows == nullptr) return sum;
+    Eigen::Index first = 0, all = 0;
+    for (const Base& base : bases_)
+        all += as_index(base.cost.size());
+    *rows = Eigen::MatrixXd::Zero(all, as_index(width));
+    for (std::size_t o = 0; o < bases_.size(); ++o) {
+        const auto n = as_index(bases_[o].cost.size());
+        for (std::size_t k = 0; k < used_[o]; ++k)
+            rows->col(as_index(columns_[o][k].number)).segment(first, n) = columns_[o][k].gradient;
+        first += n;
+    }
+    return sum;
+}
+
+}  // namespace puckloop::gap

@@ -1,0 +1,59 @@
+#pragma once
+// What a fit minimises, as a function of the numbers it moves: minus the weighted log likelihood of all rows,
+// the weak priors, and how far the noise is from what the simulator claims. With its gradient and a curvature
+// that is expected over rows (Fisher's), so it is never negative and knows the tails' and drifts' as well.
+
+#include "gap/fit/layout.h"
+#include "gap/fit/likelihood.h"
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace puckloop::gap {
+
+/// How far the noise is from what the simulator claims, in units of the claim's own doubt.
+double claim_error(const Observable& observable, const NoiseParameters& noise);
+
+class Objective {
+  public:
+    /// `base` gives all numbers that are not moved. All references must outlive it.
+    Objective(const Model& model, const Layout& layout, State base, const Weights& weights);
+
+    /// Not finite where the model makes no sense.
+    double value(const double* x);
+    /// The same with derivatives. `rows`, when asked for, receives the gradient of every row's own cost (rows
+    /// of all observables one after another), priors left out.
+    double slopes(const double* x, Eigen::VectorXd& gradient, Eigen::MatrixXd& curvature,
+                  Eigen::MatrixXd* rows = nullptr);
+
+  private:
+    struct Base {
+        Innovations innovations;
+        std::vector<double> cost, slope, curvature, tail;
+    };
+    /// How one moved number changes the rows of one observable.
+    struct Column {
+        std::size_t number = 0;
+        bool scales = false;  ///< `scale` is not all 0
+        Eigen::VectorXd shift, scale, other, gradient;
+    };
+    double fill(std::size_t o);
+    double priors(const double* x) const;
+    double weight(std::size_t o, std::size_t i) const { return weights_.empty() ? 1.0 : weights_[o][i]; }
+    void difference(std::size_t o, const Predicted& moved, double step, bool tail, Column& column);
+    void gather(std::size_t o, Eigen::VectorXd& gradient, Eigen::MatrixXd& curvature) const;
+
+    const Model& model_;
+    const Layout& layout_;
+    State state_;
+    const Weights& weights_;
+    Prediction prediction_, moved_;
+    std::vector<Base> bases_;
+    std::vector<std::vector<Column>> columns_;  ///< an observable each
+    std::vector<std::size_t> used_;             ///< how many of its columns are in use
+    Innovations other_;
+    std::vector<double> other_cost_;
+};
+
+}  // namespace puckloop::gap
