@@ -9,6 +9,7 @@ namespace puckloop::gap {
 namespace {
 
 constexpr double kLeastSd = 1e-12;
+constexpr double kLeastTail = 0.5;    // degrees of freedom above 2: nearer, a sd says nothing of the scale
 constexpr double kFixedDrift = -9.0;  // of noise that is not fitted
 constexpr double kFixedTail = 4.0;
 
@@ -45,9 +46,10 @@ void noise_bounds(NoiseKind kind, int index, double& low, double& high) {
 
 double row_sd(const Observable& o, const Predicted& p, const NoiseParameters& noise, std::size_t i) {
     const double sd = std::exp(noise.log_sd) * at(p.factor, i, 1.0);
+    const double nu = std::exp(noise.log_tail), tail = std::max(nu - 2, kLeastTail) / nu;
     const double extra = at(p.extra, i, 0.0);
     const double quantum = o.instrument.quantum;
-    return std::max(std::sqrt(sd * sd + extra * extra + quantum * quantum / 12), kLeastSd);
+    return std::max(std::sqrt(sd * sd + tail * extra * extra + quantum * quantum / 12), kLeastSd);
 }
 
 NoiseParameters first_guess(const Observable& o, const Predicted& p) {

@@ -25,7 +25,7 @@ void noise_bounds(NoiseKind kind, int index, double& low, double& high);
 /// Robust first guess from the residuals of a prediction.
 NoiseParameters first_guess(const Observable& observable, const Predicted& predicted);
 
-/// sd of the noise in a row.
+/// Scale of the noise in a row: of Student's t, so less than its sd. What is added in quadrature is a sd.
 double row_sd(const Observable& observable, const Predicted& predicted, const NoiseParameters& noise,
               std::size_t i);
 

@@ -64,11 +64,14 @@ double Objective::priors(const double* x) const {
 
 double Objective::value(const double* x) {
     layout_.unpack(x, state_);
+    std::vector<double> here(x, x + layout_.size());
+    if (!last_x_.empty() && here == last_x_) return last_value_;
+    last_x_ = std::move(here);
     model_.predict(state_.values, prediction_);
     double sum = priors(x);
     for (std::size_t o = 0; o < bases_.size(); ++o)
         sum += fill(o);
-    return sum;
+    return last_value_ = sum;
 }
 
 /// state_ holds the moved number; `moved` is its prediction.

@@ -48,6 +48,8 @@ class Objective {
     const Layout& layout_;
     State state_;
     const Weights& weights_;
+    std::vector<double> last_x_;  ///< where value() was asked last
+    double last_value_ = 0.0;
     Prediction prediction_, moved_;
     std::vector<Base> bases_;
     std::vector<std::vector<Column>> columns_;  ///< an observable each
