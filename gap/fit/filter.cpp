@@ -1,5 +1,7 @@
 #include "gap/fit/filter.h"
 
+#include "gap/fit/walk.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,8 +12,6 @@ namespace puckloop::gap {
 namespace {
 
 constexpr double kClip = 5.0;  // innovations beyond do not pull the filter further
-constexpr double kLeastVariance = 1e-9;
-constexpr double kPileWidths = 3.0;  // from the ceiling: nearer readings were cut to it
 
 double at(const std::vector<double>& values, std::size_t i, double neutral) {
     return values.empty() ? neutral : values[i];
@@ -37,41 +37,6 @@ struct Line {
     }
 };
 
-/// Random walk plus carried-over measurement error; variances in units of the error's.
-struct Walk {
-    double level = 0.0, error = 0.0;
-    double p00 = 1.0, p01 = -1.0, p11 = 1.0;
-
-    /// The first row: level and error are known only together.
-    void begin(double value) { *this = {value, 0.0, 1.0, -1.0, 1.0}; }
-
-    /// Returns the innovation's variance.
-    double filter(double value, double drift, double memory, double tail, bool jumps, double& innovation) {
-        p00 += drift;
-        p01 *= memory;
-        p11 = memory * memory * p11 + 1 - memory * memory;
-        error *= memory;
-        innovation = value - level - error;
-        const double total = std::max(p00 + 2 * p01 + p11, kLeastVariance);
-        const double inverse = 1 / total;
-        const double squared = innovation * innovation * inverse;
-        if (jumps && squared > kClip * kClip) {  // pushed: the sum goes on from there
-            begin(value);
-            return total;
-        }
-        // An outlier of a heavy tail says little about the sum; smooth, so that the likelihood is.
-        const double trusted = squared > 1 ? innovation * (tail + 1) / (tail + squared) : innovation;
-        const double g0 = p00 + p01, g1 = p01 + p11;
-        const double k0 = g0 * inverse, k1 = g1 * inverse;
-        level += k0 * trusted;
-        error += k1 * trusted;
-        p00 -= k0 * g0;
-        p01 -= k0 * g1;
-        p11 -= k1 * g1;
-        return total;
-    }
-};
-
 /// The noise's size row by row; the same in all rows unless the prediction says otherwise.
 class Size {
   public:
@@ -91,24 +56,23 @@ class Size {
     double sd_;
 };
 
-/// Is the row at an end of what the instrument shows? Then its role and limit are noted.
+/// Is the row at an end of the instrument's range? Then its role and limit are noted.
 bool clipped(const Observable& o, const Predicted& p, std::size_t i, double sd, Innovations& out) {
-    const bool dead_zone = p.floor > 0.0;
-    const bool low = o.y[i] <= (dead_zone && std::isnan(o.instrument.floor) ? 0.0 : o.instrument.floor);
-    const bool high = o.y[i] >= o.instrument.ceiling;
-    const bool piled = !low && !high && p.ceiling > 0.0 && o.y[i] >= p.ceiling - kPileWidths * p.pile;
-    if (!low && !high && !piled) return false;
-    const double floor = dead_zone ? p.floor : o.instrument.floor;
-    out.role[i] = low ? RowRole::Low : high ? RowRole::High : RowRole::Piled;
-    out.z[i] = ((low ? floor : high ? o.instrument.ceiling : p.ceiling) - p.mean[i]) / sd;
+    const bool low = o.y[i] <= o.instrument.floor, high = o.y[i] >= o.instrument.ceiling;
+    if (!low && !high) return false;
+    const double floor = p.floor > 0.0 ? p.floor : o.instrument.floor;
+    out.role[i] = low ? RowRole::Low : RowRole::High;
+    out.z[i] = ((low ? floor : o.instrument.ceiling) - p.mean[i]) / sd;
     return true;
 }
 
 void filter_level(const Observable& o, const Predicted& p, const NoiseParameters& noise, Innovations& out) {
     const double drift = std::exp(noise.carry), nu = std::exp(noise.log_tail);
     const Size size(o, p, noise);
-    const bool jumps = !p.lapse.empty();
+    const bool pushes = !p.lapse.empty();
+    if (pushes) out.mixed.assign(o.y.size(), 0.0);
     Walk walk;
+    PushedWalk pushed;
     bool carried = false;
     for (std::size_t i = 0; i < o.y.size(); ++i) {
         const double sd = size.at(i);
@@ -120,6 +84,7 @@ void filter_level(const Observable& o, const Predicted& p, const NoiseParameters
         const double error = (o.y[i] - p.mean[i]) / sd;
         if (!carried) {
             walk.begin(error);
+            if (pushes) pushed.begin(error);
             out.role[i] = RowRole::First;
             out.z[i] = 0.0;
             carried = true;
@@ -127,9 +92,14 @@ void filter_level(const Observable& o, const Predicted& p, const NoiseParameters
         }
         double innovation = 0.0;
         const double gained = at(o.walk, i, 0.0) + at(o.jolt, i, 0.0) / (sd * sd);
-        const double variance = walk.filter(error, drift + gained, noise.memory, nu, jumps, innovation);
+        const double variance = walk.filter(error, drift + gained, noise.memory, nu, innovation);
         out.z[i] = innovation / std::sqrt(variance);
         out.variance[i] = variance * sd * sd;
+        if (!pushes) continue;
+        const double width = p.lapse_scale[i] / sd;
+        const auto row = pushed.filter(error, drift + gained, noise.memory, nu, p.lapse[i], width * width);
+        out.z[i] = row.innovation;
+        out.mixed[i] = row.cost + std::log(sd);
     }
 }
 
@@ -177,6 +147,7 @@ void filter(const Observable& observable, const Predicted& predicted, const Nois
     out.z.resize(n);
     out.variance.assign(n, 1.0);
     out.role.assign(n, RowRole::Plain);
+    out.mixed.clear();
     if (observable.noise == NoiseKind::Event) {
         out.role.assign(n, RowRole::Event);
         for (std::size_t i = 0; i < n; ++i)

@@ -1,8 +1,8 @@
 #pragma once
 // Innovations: what each row says that the rows before it did not.
 //
-// Deviations: 1. rows beside a clipped one count as the first of a chain. 2. Where a sum may be pushed, an
-// innovation beyond five sd begins the sum anew.
+// Deviations: 1. rows beside a clipped one count as the first of a chain. 2. Where a sum may be pushed, a few
+// likely histories stand for all.
 
 #include "gap/fit/noise.h"
 
@@ -15,15 +15,16 @@ enum class RowRole : char {
     First,  ///< only says where a sum begins
     Low,    ///< at or below the instrument's floor
     High,   ///< at or above its ceiling
-    Piled,  ///< cut to the prediction's ceiling
     Event,  ///< happened or not
 };
 
 struct Innovations {
-    /// Plain: standardised innovation. Low, High, Piled: the limit, in sd above the mean. Event: its probability.
+    /// Plain: standardised innovation. Low, High: the limit, in sd above the mean. Event: its probability.
     std::vector<double> z;
     std::vector<double> variance;  ///< Plain: of the innovation, observable's unit squared; else 1
     std::vector<RowRole> role;
+    /// A sum that may be pushed: what a plain row costs, but for the density's constant; else empty.
+    std::vector<double> mixed;
 };
 
 /// A model is never surer than this of a single event or clip.

@@ -127,8 +127,10 @@ class Selector {
             // Against a claimed noise the claim is the evidence: a fit of the noise itself predicts as well.
             const bool claim =
                 effect_of(fits[k].second).name == std::string_view("range_noise") && gains[k].sum > -1;
+            // What happens rarely is not seen in most blocks.
+            const bool rare = enough_for(effect_of(fits[k].second)) > kEnoughBic;
             const bool enough = claim || (gains[k].sum > kEnoughDeviations * gains[k].sd &&
-                                          gains[k].share_touched > kEnoughBlocks);
+                                          (rare || gains[k].share_touched > kEnoughBlocks));
             if (!enough) continue;
             // BIC says how simply, the held-out score how well: the sum of both decides.
             const double merit = gains[k].sum + fits[k].first / 2;

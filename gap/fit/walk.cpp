@@ -1,0 +1,76 @@
+#include "gap/fit/walk.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace puckloop::gap {
+
+namespace {
+
+constexpr double kLeastVariance = 1e-9;
+constexpr double kLeastDensity = 1e-300;
+constexpr std::size_t kHistories = 5;
+constexpr double kForgotten = 1e-4;  // of the likeliest history's weight
+
+}  // namespace
+
+double Walk::filter(double value, double drift, double memory, double tail, double& innovation) {
+    p00 += drift;
+    p01 *= memory;
+    p11 = memory * memory * p11 + 1 - memory * memory;
+    error *= memory;
+    innovation = value - level - error;
+    const double total = std::max(p00 + 2 * p01 + p11, kLeastVariance);
+    const double squared = innovation * innovation / total;
+    // Sum and error together are seen exactly. An outlier of a heavy tail says little about the sum (smooth,
+    // so that the likelihood is); then it is an error, and carried over as errors are.
+    const double trust = squared > 1 ? (tail + 1) / (tail + squared) : 1.0;
+    const double gain = trust * (p00 + p01) / total;
+    level += gain * innovation;
+    error += (1 - gain) * innovation;
+    p00 -= gain * (p00 + p01);
+    p11 = p00;
+    p01 = -p00;
+    return total;
+}
+
+void PushedWalk::begin(double value) {
+    Walk first;
+    first.begin(value);
+    kept_.assign(1, {first, 1.0});
+}
+
+PushedWalk::Row PushedWalk::filter(double value, double drift, double memory, double tail, double chance,
+                                   double push) {
+    next_.clear();
+    double likely = 0.0, innovations = 0.0;
+    for (const History& old : kept_)
+        for (const bool pushed : {false, true}) {
+            if (pushed && (chance <= 0 || push <= 0)) continue;
+            History history = old;
+            if (push > 0) history.weight *= pushed ? chance : 1 - chance;
+            double innovation = 0.0;
+            const double variance =
+                history.walk.filter(value, drift + (pushed ? push : 0.0), memory, tail, innovation);
+            const double z = innovation / std::sqrt(variance);
+            history.weight *= std::exp(-(tail + 1) / 2 * std::log(1 + z * z / tail)) / std::sqrt(variance);
+            likely += history.weight;
+            innovations += history.weight * z;
+            next_.push_back(history);
+        }
+    std::sort(next_.begin(), next_.end(),
+              [](const History& a, const History& b) { return a.weight > b.weight; });
+    if (next_.size() > kHistories) next_.resize(kHistories);
+    while (next_.size() > 1 && next_.back().weight < kForgotten * next_.front().weight)
+        next_.pop_back();
+    double sum = 0.0;
+    for (const History& history : next_)
+        sum += history.weight;
+    std::swap(kept_, next_);
+    for (History& history : kept_)
+        history.weight = sum > 0 ? history.weight / sum : 1.0 / static_cast<double>(kept_.size());
+    likely = std::max(likely, kLeastDensity);
+    return {-std::log(likely), innovations / likely};
+}
+
+}  // namespace puckloop::gap
