@@ -10,7 +10,7 @@ Effect batching() {
         .mechanism = "Radio and operating system deliver at their own ticks.",
         .equation = "t_host = ceil(t / B) B",
         .kinds = {Kind::Timing},
-        .parameters = {{"timing.batch", 0.002, 1.0, 0.05, {}, "intervals bimodal"}},
+        .parameters = {{"timing.batch", 0.002, 1.0, 0.001, {0.02}, "ticks of 5..50 ms; intervals bimodal"}},
         .needs = {},
         .observables = "arrival: intervals of 0 and more than a period",
         .enters = "measuring chain",

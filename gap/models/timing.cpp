@@ -19,9 +19,16 @@ namespace {
 constexpr double kPeriod = 0.1;  // s, of the control loop
 constexpr double kTick = 1e-5;   // s, no robot's clock is written finer
 constexpr double kBaud = 115200;
-constexpr double kBits = 10;         // a byte on the line
-constexpr double kTolerance = 0.02;  // error of the rate that a receiver stands
-constexpr double kEdge = 0.02;       // of a batch: rounding of clocks
+constexpr double kBits = 10;              // a byte on the line
+constexpr double kTolerance = 0.02;       // error of the rate that a receiver stands
+constexpr double kEdge = 0.02;            // of a batch: rounding of clocks
+constexpr double kClockDoubt = 3e-4;      // s: when in its loop the robot reads its clock
+constexpr std::size_t kShareEarly = 30;   // one frame in so many is taken to have waited least
+constexpr double kLongestBatch = 0.5;     // s, looked for
+constexpr double kAsGood = 0.9;           // share of the coherence that noise would leave
+constexpr double kNeighbour = 1.01;       // nearer is the same peak
+constexpr std::size_t kTried = 3;         // peaks
+constexpr double kShortestBatch = 0.002;  // s
 constexpr double kWhole = 0.999;
 
 class TimingModel final : public Model {
@@ -70,48 +77,84 @@ class TimingModel final : public Model {
         if (shift_ >= 0) predict_shifts(v, out[static_cast<std::size_t>(shift_)]);
     }
 
-    /// The longest batch that arrivals keep to: first by intervals, then by the clock itself.
+    /// The longest batch that intervals between arrivals keep to, and those of frames that are ready do not;
+    /// then by the clock itself.
     std::vector<double> starts(std::string_view parameter) const override {
         if (parameter != "timing.batch") return {};
-        const Observable& o = observables_[clocks_ ? 1 : 0];
-        double best = 0.05, best_power = 0.0;
-        for (double batch = 0.5; batch > 0.004; batch /= 1.005) {
-            std::complex<double> sum;
-            double count = 0;
-            for (std::size_t i = 1; i < o.y.size(); ++i)
-                if (o.starts[i] == 0) {
-                    sum += std::polar(1.0, 2 * std::numbers::pi * (o.y[i] - o.y[i - 1]) / batch);
-                    ++count;
-                }
-            const double power = std::abs(sum) / std::max(count, 1.0);
-            if (power > 1.02 * best_power) {
-                best_power = power;
-                best = batch;
+        std::vector<double> seen, expected;
+        const Observable& o = arrivals();
+        for (std::size_t i = 1; i < o.y.size(); ++i)
+            if (o.starts[i] == 0) {
+                seen.push_back(o.y[i] - o.y[i - 1]);
+                expected.push_back(robot_[i] + wire_[i] - robot_[i - 1] - wire_[i - 1]);
+            }
+        std::vector<std::pair<double, double>> peaks;  // score, batch
+        for (double batch = kLongestBatch; batch > kShortestBatch; batch /= 1.003) {
+            const double score = keep_to(seen, batch) - std::max(keep_to(expected, batch), 0.0);
+            if (!peaks.empty() && peaks.back().second < kNeighbour * batch) {
+                if (score > peaks.back().first) peaks.back() = {score, batch};
+            } else {
+                peaks.emplace_back(score, batch);
             }
         }
-        const double middle = best;
-        best_power = 0.0;
-        for (int k = -1000; k <= 1000; ++k) {
-            const double batch = middle * (1 + 1e-5 * k);
-            double power = 0.0;
-            std::complex<double> sum;
-            for (std::size_t i = 0; i < o.y.size(); ++i) {
-                if (o.starts[i] != 0) {
-                    power += std::abs(sum);
-                    sum = {};
-                }
-                sum += std::polar(1.0, 2 * std::numbers::pi * o.y[i] / batch);
-            }
-            power += std::abs(sum);
-            if (power > best_power) {
-                best_power = power;
-                best = batch;
-            }
-        }
-        return {best};
+        std::sort(peaks.rbegin(), peaks.rend());
+        peaks.resize(std::min(peaks.size(), kTried));
+        std::vector<double> found;
+        for (const auto& [score, batch] : peaks)
+            found.push_back(refined(whole(seen, batch)));
+        return found;
     }
 
   private:
+    const Observable& arrivals() const { return observables_[clocks_ ? 1 : 0]; }
+
+    /// 1: all intervals are whole multiples of the batch.
+    static double keep_to(const std::vector<double>& intervals, double batch) {
+        double sum = 0.0;
+        for (const double interval : intervals)
+            sum += std::cos(2 * std::numbers::pi * interval / batch);
+        return intervals.empty() ? 0.0 : sum / static_cast<double>(intervals.size());
+    }
+
+    /// What keeps to a grid keeps to its halves and thirds; noise blurs the finer ones more.
+    static double whole(const std::vector<double>& seen, double batch) {
+        const double kept = std::max(keep_to(seen, batch), 0.0);
+        for (const int times : {5, 4, 3, 2})
+            if (keep_to(seen, times * batch) > kAsGood * std::pow(kept, 1.0 / (times * times)))
+                return times * batch;
+        return batch;
+    }
+
+    /// The batch near by that the clock itself keeps to.
+    double refined(double batch) const {
+        for (const double step : {1e-5, 1e-6}) {
+            const double middle = batch;
+            const int reach = step > 5e-6 ? 500 : 15;
+            double best = 0.0;
+            for (int k = -reach; k <= reach; ++k) {
+                const double power = beat_of_clock(middle * (1 + step * k));
+                if (power <= best) continue;
+                best = power;
+                batch = middle * (1 + step * k);
+            }
+        }
+        return batch;
+    }
+
+    double beat_of_clock(double batch) const {
+        const Observable& o = arrivals();
+        double power = 0.0;
+        std::complex<double> sum;
+        for (std::size_t i = 0; i < o.y.size(); ++i) {
+            if (o.starts[i] != 0) {
+                power += std::abs(sum);
+                sum = {};
+            }
+            sum += std::polar(1.0, 2 * std::numbers::pi * o.y[i] / batch);
+        }
+        return power + std::abs(sum);
+    }
+
     static double at(const std::vector<double>& v, int index) { return v[static_cast<std::size_t>(index)]; }
 
     static void set_up(Observable& one) {
@@ -183,7 +226,7 @@ class TimingModel final : public Model {
     }
 
     void predict_arrival(const std::vector<double>& v, Predicted& p) const {
-        const Observable& o = observables_[clocks_ ? 1 : 0];
+        const Observable& o = arrivals();
         const double drift = at(v, drift_), stretch = at(v, stretch_), batch = at(v, batch_),
                      longer = clocks_ ? 0.0 : at(v, longer_);
         const double slower = 1 / (1 + at(v, rate_));
@@ -213,23 +256,36 @@ class TimingModel final : public Model {
             }
             return;
         }
-        // Delivered at whole multiples of the batch: each frame waits for the next one.
         p.mean.resize(o.y.size());
-        p.extra.assign(p.mean.size(), 0.0);
+        p.extra.clear();
         for (std::size_t i = 0; i < o.y.size();) {
             std::size_t end = i;
             std::complex<double> beat;
-            std::vector<double> waits;
-            for (; end < o.y.size() && o.run[end] == o.run[i]; ++end) {
+            for (; end < o.y.size() && o.run[end] == o.run[i]; ++end)
                 beat += std::polar(1.0, 2 * std::numbers::pi * o.y[end] / batch);
-                waits.push_back(o.y[end] - arrival(end));
-            }
             const double phase = std::arg(beat) / (2 * std::numbers::pi) * batch;
-            const auto least = waits.begin() + static_cast<std::ptrdiff_t>(waits.size() / 50);
-            std::nth_element(waits.begin(), least, waits.end());
-            for (std::size_t k = i; k < end; ++k)
-                p.mean[k] = phase + batch * std::ceil((arrival(k) + *least - phase) / batch - kEdge);
+            deliver(o, i, end, batch, phase, arrival, p.mean);
             i = end;
+        }
+    }
+
+    /// Delivered at whole multiples of the batch: each frame waits for the next one. A frame that is ready
+    /// just as a batch leaves may catch it or not: there the arrival itself says which.
+    template <class Arrival>
+    static void deliver(const Observable& o, std::size_t from, std::size_t to, double batch, double phase,
+                        Arrival arrival, std::vector<double>& mean) {
+        const auto nearest = [&](double time) { return phase + batch * std::round((time - phase) / batch); };
+        std::vector<double> waits;
+        for (std::size_t k = from; k < to; ++k)
+            waits.push_back(nearest(o.y[k]) - arrival(k));
+        const auto least = waits.begin() + static_cast<std::ptrdiff_t>(waits.size() / kShareEarly);
+        std::nth_element(waits.begin(), least, waits.end());
+        const double doubt = std::max(kEdge * batch, kClockDoubt);
+        for (std::size_t k = from; k < to; ++k) {
+            const double ready = arrival(k) + *least;
+            const double first = phase + batch * std::ceil((ready - doubt - phase) / batch);
+            const double last = phase + batch * std::ceil((ready + doubt - phase) / batch);
+            mean[k] = std::clamp(nearest(o.y[k]), first, last);
         }
     }
 

@@ -16,7 +16,8 @@ struct TimingKnobs {
     double drift = 0.0;        // [62] share
     double batch = 0.0;        // [63] s between two deliveries of the host
     double limp = 0.0;         // unknown: s later, every seventh frame
-    double sag = 0.0;          // unknown: s, growing with the square of the time since the run began
+    double sag =
+        0.0;  // unknown: s that the host's clock lags in the middle of a run: it is slewed, slow then fast
 };
 
 struct Cycle {
