@@ -72,11 +72,11 @@ std::vector<ParameterInfo> build_table() {
         {"proximity.compression", "1/counts", 1, {0.0}, 0.0, 1e-3, AT(proximity.compression), "y/(1+c y), any curve; 0 = none; [M] saturation at 3500-5000 counts"},
         {"proximity.extra_exponent", "1", 1, {0.0}, -1.5, 1.5, AT(proximity.extra_exponent), "any curve falls by ((d+d0)/(30 mm+d0))^-q more; [M] p 1.5-2.5"},
         {"proximity.distance_shift", "m", 1, {0.0}, -0.02, 0.02, AT(proximity.distance_shift), "effective origin: added to every distance; 3-10 mm between tables [M]"},
-        {"proximity.threshold", "counts", 1, {0.0}, 0.0, 2000, AT(proximity.threshold), "below this a reading is 0; [M] 1060 on another robot"},
+        {"proximity.threshold", "counts", 1, {0.0}, 0.0, 2000, AT(proximity.threshold), "below this the reflected counts are none; [M] 1060 on another robot"},
         {"proximity.ambient_offset", "counts", 1, {0.0}, -500, 500, AT(proximity.ambient_offset), "counts that room light at level 1 adds; [M] 60-140"},
         {"proximity.ambient_gain", "1", 1, {0.0}, -0.5, 0.9, AT(proximity.ambient_gain), "share of the answer lost at ambient level 1: the transistor nears its rail"},
         {"proximity.battery_gain", "1/V", 1, {0.0}, -1.0, 1.0, AT(proximity.battery_gain), "? emitter power a volt of battery, about 3.7 V"},
-        {"proximity.motor_sag", "1", 1, {0.0}, 0.0, 0.2, AT(proximity.motor_sag), "? share of the whole reading lost with both motors stepping (reference sag), 0-0.02"},
+        {"proximity.motor_sag", "1", 1, {0.0}, 0.0, 0.2, AT(proximity.motor_sag), "? share lost with both motors stepping (reference sag), 0-0.02"},
 
         // Ambient light.
         {"light.gain", "1", 8, {1.0}, 0.0, 5.0, FIRST(light.gain), "as proximity.gain"},

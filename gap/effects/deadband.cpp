@@ -14,7 +14,7 @@ Effect deadband() {
                         1.0,
                         500.0,
                         80.0,
-                        {25.0, 60.0, 120.0},
+                        {60.0},
                         "near 0 for a good stepper, 20 % of the range for DC motors"}},
         .needs = {},
         .observables = "way along, heading",

@@ -14,19 +14,23 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
+#include <map>
 #include <numbers>
 
 namespace puckloop::gap {
 
 namespace {
 
-constexpr double kStill = 1e-6;  // m: less than this between rows is standing
-constexpr double kEdge = 0.05;   // width of the dead band's edge, share of it
+constexpr double kStill = 1e-6;  // steps: less than this between rows is standing
+constexpr double kEdge = 0.004;  // width of the dead band's edge, share of it
 constexpr double kGravity = 9.81;
-constexpr double kLateStep = 0.25;  // a step is counted when it is over
-constexpr double kOpenSteps = 0.6;  // of a wheel, each time its speed changes: the timer's phase
-constexpr double kOpenSlip = 0.2;   // share of the way lost to sliding that no formula tells
-constexpr double kCounterSd = 3.0;  // steps: whole steps, and when a row was taken
+constexpr double kLateStep = 0.25;     // a step is counted when it is over
+constexpr double kOpenSteps = 0.6;     // of a wheel, each time its speed changes: the timer's phase
+constexpr double kOpenSlip = 0.2;      // share of the way lost to sliding that no formula tells
+constexpr double kSameTime = 1e-6;     // s
+constexpr double kLeastChance = 1e-6;  // of losing a command again and again
+constexpr double kCounterSd = 3.0;     // steps: whole steps, and when a row was taken
 
 struct Path {
     std::uint32_t run = 0;
@@ -61,6 +65,45 @@ class MotionModel final : public Model {
             first += path.time.size();
         }
         if (counted_) predict_counters(v, out);
+    }
+
+    /// A dead band begins between the fastest speed that moved nothing and the next one.
+    std::vector<double> starts(std::string_view parameter) const override {
+        if (parameter != "robot.deadband") return {};
+        std::map<double, std::array<double, 2>> moves;  // speed -> metres asked for, metres seen
+        const double metre = 2 * std::numbers::pi *
+                             parameters_[static_cast<std::size_t>(radius_left_)].neutral /
+                             parameters_[static_cast<std::size_t>(steps_per_turn_)].neutral;
+        const double arm = parameters_[static_cast<std::size_t>(axle_)].neutral / 2;
+        std::size_t row = 0;
+        for (const Path& path : paths_) {
+            std::array<CurveReader, 2> pacer{CurveReader(pace_of(path, 0)), CurveReader(pace_of(path, 1))};
+            std::array<double, 2> last{pacer[0].at(path.time[0]), pacer[1].at(path.time[0])};
+            for (std::size_t i = 1; i < path.time.size(); ++i)
+                for (std::size_t w = 0; w < 2; ++w) {
+                    const double way = observables_[0].y[row + i] - observables_[0].y[row + i - 1],
+                                 turn = observables_[2].y[row + i] - observables_[2].y[row + i - 1];
+                    const double steps = pacer[w].at(path.time[i]), asked = steps - last[w];
+                    last[w] = steps;
+                    const double speed =
+                        std::abs(asked) / std::max(path.time[i] - path.time[i - 1], kSameTime);
+                    if (speed < 1) continue;
+                    auto& sums = moves[std::round(speed * 10) / 10];
+                    sums[0] += std::abs(asked) * metre;
+                    sums[1] += std::copysign(1.0, asked) * (way + (w == 0 ? -arm : arm) * turn);
+                }
+            row += path.time.size();
+        }
+        // Every split of the speeds in those that move nothing and the others: which fits best?
+        double misfit = 0.0, least = 0.0, best = 0.0;
+        for (auto move = moves.begin(); move != moves.end(); ++move) {
+            const auto& [asked, seen] = move->second;
+            misfit += seen * seen - (seen - asked) * (seen - asked);
+            if (misfit >= least || std::next(move) == moves.end()) continue;
+            least = misfit;
+            best = (move->first + std::next(move)->first) / 2;
+        }
+        return best > 0 ? std::vector{best} : std::vector<double>{};
     }
 
   private:
@@ -192,6 +235,7 @@ class MotionModel final : public Model {
         drift_y_ = add("robot.drift_y", "m/s", 0.0);
         push_rate_ = add("push.rate", "1/s", 0.0);
         push_size_ = add("push.size", "m", 0.02);
+        push_turn_ = add("push.turn", "rad", 0.0);
         marker_x_ = add("tracker.marker_x", "m", 0.0);
         marker_y_ = add("tracker.marker_y", "m", 0.0);
         marker_angle_ = add("tracker.marker_angle", "rad", 0.0);
@@ -199,9 +243,10 @@ class MotionModel final : public Model {
         heading_drift_ = add("tracker.heading_drift", "rad/s", 0.0);
     }
 
-    /// Metres that a change of speed has cost by `time`: wheels follow no faster than mu g.
-    static double slipped(const std::vector<SpeedJump>& jumps, double metre, double inverse_mu, double from,
-                          double to) {
+    /// Metres that a change of speed has cost by `to`: wheels follow no faster than mu g. On reversal the
+    /// wheel rolls on while its gear crosses the play (metres), and slides less.
+    static double slipped(const std::vector<SpeedJump>& jumps, double metre, double inverse_mu, double play,
+                          double from, double to) {
         double sum = 0.0;
         for (auto jump = std::lower_bound(jumps.begin(), jumps.end(), from - 0.7,
                                           [](const SpeedJump&j, double t) { return j.time < t; });
@@ -212,9 +257,18 @@ class MotionModel final : public Model {
                 const double share = std::clamp((t - jump->time) / std::max(lasts, 1e-6), 0.0, 1.0);
                 return 1 - (1 - share) * (1 - share);
             };
-            sum += std::copysign(speed * lasts / 2, jump->change) * (done(to) - done(from));
+            double way = speed * lasts / 2;
+            if (play > 0 && jump->before * (jump->before + jump->change) < 0)
+                way -= std::min(play, std::abs(jump->before * (jump->before + jump->change)) * metre * metre *
+                                          inverse_mu / kGravity);
+            sum += std::copysign(way, jump->change) * (done(to) - done(from));
         }
         return sum;
+    }
+
+    /// What tells the speed of a wheel: the command, where there is one; a counter's speeds are rounded.
+    static const WheelCurve& pace_of(const Path& path, std::size_t wheel) {
+        return path.asked[wheel].empty() ? path.wheel[wheel] : path.asked[wheel];
     }
 
     void drive(const std::vector<double>& v, const Path& path, std::size_t first, Prediction& out) const {
@@ -229,27 +283,37 @@ class MotionModel final : public Model {
         const double drift_x = at(v, drift_x_), drift_y = at(v, drift_y_), push = at(v, push_rate_);
         const double drop = counted_ ? 0.0 : at(v, drop_);
         std::array<CurveReader, 2> reader{CurveReader(path.wheel[0]), CurveReader(path.wheel[1])};
+        std::array<CurveReader, 2> pacer{CurveReader(pace_of(path, 0)), CurveReader(pace_of(path, 1))};
+        std::array<double, 2> last_pace{};
+        const bool paced = deadband > 0 || drift_x != 0.0 || drift_y != 0.0;
         std::array<double, 2> last{}, driven{}, geared{}, last_geared{};
         double along = 0, across = 0, heading = 0;
         for (std::size_t i = 0; i < path.time.size(); ++i) {
+            bool moves = false;
             const double now = path.time[i] - late, before = i == 0 ? now : path.time[i - 1] - late,
                          span = now - before;
             std::array<double, 2> moved{};
             for (std::size_t w = 0; w < 2; ++w) {
+                const double pace = paced ? pacer[w].at(now) : 0.0;
+                const double asked = i == 0 ? 0.0 : std::abs(pace - last_pace[w]);
+                moves = moves || asked > kStill;
+                last_pace[w] = pace;
                 const double steps = reader[w].at(now);
                 double change = i == 0 ? 0.0 : steps - last[w];
                 last[w] = steps;
                 if (change != 0.0 && span > 0) {
                     const double rate = std::abs(change) / span;
                     if (loss_speed > 0) change *= 1 - 1 / (1 + std::exp(-(rate - loss_speed) / loss_width));
-                    if (deadband > 0) change *= 1 / (1 + std::exp(-(rate - deadband) / (kEdge * deadband)));
+                    if (deadband > 0)
+                        change *= 1 / (1 + std::exp(-(asked / span - deadband) / (kEdge * deadband)));
                 }
                 driven[w] += change * metre[w];
                 const double play = at(v, backlash_) / 2 * metre[w] / turn;
                 geared[w] = std::clamp(geared[w], driven[w] - play, driven[w] + play);
                 moved[w] = geared[w] - last_geared[w];
                 last_geared[w] = geared[w];
-                if (span > 0) moved[w] -= slipped(path.wheel[w].jumps, metre[w], inverse_mu, before, now);
+                if (span > 0)
+                    moved[w] -= slipped(path.wheel[w].jumps, metre[w], inverse_mu, 2 * play, before, now);
                 moved[w] *= 1 - at(v, creep_) * path.load[i] - at(v, slope_creep_) * path.incline[i];
             }
             double way = (moved[0] + moved[1]) / 2;
@@ -260,7 +324,7 @@ class MotionModel final : public Model {
             if (std::abs(turned) > 1e-6) way *= std::sin(turned / 2) / (turned / 2);
             double aside = 0.0;
             if (drift_x != 0.0 || drift_y != 0.0) {
-                if (std::abs(moved[0]) + std::abs(moved[1]) > kStill) {
+                if (moves) {
                     const double c = std::cos(path.middle[i]), s = std::sin(path.middle[i]);
                     way += (drift_x * c + drift_y * s) * span;
                     aside += (-drift_x * s + drift_y * c) * span;
@@ -269,9 +333,11 @@ class MotionModel final : public Model {
             const double lever = 2 * std::sin(turned / 2);
             way -= lever * at(v, marker_y_);
             aside += lever * at(v, marker_x_);
-            const double skew = at(v, marker_angle_);
-            along += way + skew * aside;
-            across += aside - skew * way;
+            // Way is told along the tracker's heading: what turns that turns the way.
+            const double skew =
+                at(v, marker_angle_) + at(v, heading_drift_) * (path.time[i] - path.time.front() - span / 2);
+            along += way * std::cos(skew) + aside * std::sin(skew);
+            across += aside * std::cos(skew) - way * std::sin(skew);
             heading += turned + at(v, heading_drift_) * span;
             out[0].mean[first + i] = along;
             out[1].mean[first + i] = across;
@@ -279,31 +345,41 @@ class MotionModel final : public Model {
             if (push > 0) {
                 for (std::size_t o = 0; o < 3; ++o) {
                     out[o].lapse[first + i] = std::min(push * span, 0.5);
-                    out[o].lapse_scale[first + i] = o == 2 ? 10 * at(v, push_size_) : at(v, push_size_);
+                    out[o].lapse_scale[first + i] = at(v, o == 2 ? push_turn_ : push_size_);
                 }
             }
-            if (drop > 0) lapses_of_loss(drop, metre, axle, path, before, span, first + i, out);
+            if (drop > 0) lapses_of_loss(drop, metre, axle, path, before, now, first + i, out);
         }
     }
 
-    /// A lost command leaves the wheel at its old speed: the row is off by the change.
+    /// A lost command leaves the wheel at its old speed until the host says the same again, in the next row:
+    /// how likely a row is off by one lost after a change, and by how many steps.
+    struct Loss {
+        double chance = 0.0, steps = 0.0;
+    };
+    static Loss lost(const std::vector<SpeedJump>& jumps, double drop, double from, double to) {
+        const auto after = std::upper_bound(jumps.begin(), jumps.end(), from + kSameTime,
+                                            [](double t, const SpeedJump& j) { return t < j.time; });
+        if (after == jumps.begin() || to <= from) return {};
+        const SpeedJump& last = *(after - 1);
+        const double again = std::round((from - last.time) / (to - from));
+        const double chance = std::pow(drop, 1 + std::max(again, 0.0));
+        if (chance < kLeastChance) return {};
+        return {chance, std::abs(last.change) * (to - from)};
+    }
+
     static void lapses_of_loss(double drop, const std::array<double, 2>& metre, double axle, const Path& path,
-                               double before, double span, std::size_t row, Prediction& out) {
-        std::array<double, 2> off{};
-        for (std::size_t w = 0; w < 2; ++w)
-            off[w] = last_change(path.wheel[w].jumps, before) * metre[w] * span;
-        const double way = std::abs(off[0] + off[1]) / 2, turn = std::abs(off[1] - off[0]) / axle;
-        for (const auto& [o, scale] : {std::pair{0, way}, std::pair{2, turn}}) {
+                               double before, double now, std::size_t row, Prediction& out) {
+        const std::array<Loss, 2> loss{lost(path.wheel[0].jumps, drop, before, now),
+                                       lost(path.wheel[1].jumps, drop, before, now)};
+        const double left = loss[0].steps * metre[0], right = loss[1].steps * metre[1];
+        const double chance = std::max(loss[0].chance, loss[1].chance);
+        for (const auto& [o, scale] :
+             {std::pair{0, (left + right) / 2}, std::pair{2, (left + right) / axle}}) {
             if (scale <= 1e-9) continue;
-            out[static_cast<std::size_t>(o)].lapse[row] = drop;
+            out[static_cast<std::size_t>(o)].lapse[row] = chance;
             out[static_cast<std::size_t>(o)].lapse_scale[row] = scale;
         }
-    }
-
-    static double last_change(const std::vector<SpeedJump>& jumps, double time) {
-        const auto after = std::upper_bound(jumps.begin(), jumps.end(), time + 1e-6,
-                                            [](double t, const SpeedJump& j) { return t < j.time; });
-        return after == jumps.begin() ? 0.0 : (after - 1)->change;
     }
 
     void predict_counters(const std::vector<double>& v, Prediction& out) const {
@@ -336,13 +412,10 @@ class MotionModel final : public Model {
                     last = asked;
                     p.mean[i] = origin + asked - start - half;
                     if (drop <= 0) continue;
-                    const double span = o.starts[i] != 0 ? 0.0 : o.time[i] - o.time[i - 1];
-                    const double scale =
-                        std::abs(last_change(paths_[path].asked[w].jumps, o.time[i] - span)) * span;
-                    if (scale > 0.5) {
-                        p.lapse[i] = drop;
-                        p.lapse_scale[i] = scale;
-                    }
+                    const double before = o.starts[i] != 0 ? o.time[i] : o.time[i - 1];
+                    const Loss loss = lost(paths_[path].asked[w].jumps, drop, before, o.time[i]);
+                    p.lapse[i] = loss.chance;
+                    p.lapse_scale[i] = loss.steps;
                 }
             }
         }
@@ -354,7 +427,8 @@ class MotionModel final : public Model {
     int radius_left_ = 0, radius_right_ = 0, axle_ = 0, steps_per_turn_ = 0, scale_ = 0, mismatch_ = 0,
         scrub_ = 0, friction_ = 0, creep_ = 0, slope_creep_ = 0, loss_speed_ = 0, loss_width_ = 0,
         deadband_ = 0, backlash_ = 0, latency_ = 0, drop_ = 0, drift_x_ = 0, drift_y_ = 0, push_rate_ = 0,
-        push_size_ = 0, marker_x_ = 0, marker_y_ = 0, marker_angle_ = 0, delay_ = 0, heading_drift_ = 0;
+        push_size_ = 0, push_turn_ = 0, marker_x_ = 0, marker_y_ = 0, marker_angle_ = 0, delay_ = 0,
+        heading_drift_ = 0;
 };
 
 }  // namespace

@@ -29,7 +29,7 @@ std::vector<SpeedJump> counted_jumps(const WheelCurve& curve) {
         if (goes_on)
             jumps.back().change += change;
         else
-            jumps.push_back({curve.time[i - 1], change});
+            jumps.push_back({curve.time[i - 1], change, speed - change});
     }
     return jumps;
 }
@@ -62,7 +62,7 @@ WheelCurve WheelCurve::commanded(const Run& run, std::string_view command, Motor
         curve.steps.push_back(sum);
         if (std::isnan(asked[i])) continue;
         const double next = driver == MotorDriver::Agenda ? agenda_speed(asked[i]) : timer_speed(asked[i]);
-        if (next != speed) curve.jumps.push_back({time[i], next - speed});
+        if (next != speed) curve.jumps.push_back({time[i], next - speed, speed});
         speed = next;
     }
     if (curve.empty()) return curve;

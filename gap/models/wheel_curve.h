@@ -21,6 +21,7 @@ enum class MotorDriver { Agenda, Timer };
 /// A change of speed, steps/s.
 struct SpeedJump {
     double time, change;
+    double before = 0.0;
 };
 
 struct WheelCurve {

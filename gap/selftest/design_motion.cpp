@@ -105,8 +105,8 @@ std::vector<PlannedDrive> planned_drives(RandomStream& random, bool one_circle) 
         add("spin", "cw", {{5, 600, -600}});
         add("square", "ccw", square(1));
         add("square", "cw", square(-1));
-        add("circle", "ccw", {{6, 250, 450}});
-        add("circle", "cw", {{6, 450, 250}});
+        add("circle", "ccw", {{15, 450, 800}});
+        add("circle", "cw", {{15, 800, 450}});
         add("hops", "forward", hops());
         add("reversals", "both", reversals());
         add("free", "both", free_drive(random));

@@ -44,15 +44,16 @@ struct Wheel {
     double advance(const MotionKnobs& k, double radius, double steps_per_second, RandomStream& chance) {
         const double wanted = steps_per_second * kTick;
         steps += wanted;
-        // A step is counted when it is over, in either direction.
-        if (steps >= counted + 1) counted += 1;
-        if (steps <= counted - 1) counted -= 1;
-        double real = std::abs(steps_per_second) < k.deadband ? 0.0 : wanted;
+        // The rotor jumps to the next step as it is counted: counter and wheel part by half a step at most,
+        // in either direction alike, so that the counter adds no play of its own.
+        counted = std::round(steps);
+        const double real = std::abs(steps_per_second) < k.deadband ? 0.0 : wanted;
+        double skipped = 0.0;  // steps that the rotor slid back
         if (k.loss_speed > 0.0 && wanted != 0.0) {
             const double share =
                 1.0 / (1.0 + std::exp((k.loss_speed - std::abs(steps_per_second)) / k.loss_width));
             if (chance.uniform() < share * std::abs(wanted) / kSlipGroup)
-                real -= std::copysign(kSlipGroup, wanted);
+                skipped = std::copysign(kSlipGroup, wanted);
         }
         const double turned = motor / radius;
         motor +=
@@ -62,7 +63,7 @@ struct Wheel {
         const double rim = (geared - before) / kTick;
         const double most = k.friction * kGravity * kTick;
         ground += std::clamp(rim - ground, -most, most);
-        return ground;
+        return ground - skipped * 2 * std::numbers::pi * radius / kStepsPerTurn / kTick;
     }
 };
 
