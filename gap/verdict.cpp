@@ -68,6 +68,23 @@ Json held_json(const Verdict& verdict) {
             {"observables", observables}};
 }
 
+Json rerun_json(const Rerun& rerun) {
+    if (!rerun.asked) return nullptr;
+    if (!rerun.not_done.empty()) return {{"done", false}, {"why", rerun.not_done}};
+    Json observables = Json::array();
+    for (const RerunObservable& one : rerun.observables)
+        observables.push_back({{"name", one.name},
+                               {"unit", one.unit},
+                               {"before", number(one.before)},
+                               {"after", number(one.after)},
+                               {"ratio", number(one.after / one.before)}});
+    return {{"done", true},
+            {"runs", rerun.runs},
+            {"rows", rerun.rows},
+            {"observables", observables},
+            {"left_out", rerun.left_out}};
+}
+
 }  // namespace
 
 std::string_view decision_name(Decision decision) {
@@ -115,6 +132,7 @@ std::string to_json(const Verdict& verdict) {
     for (const auto& parameter : verdict.nuisance)
         json["nuisance"].push_back(parameter_json(parameter));
     json["cautions"] = verdict.cautions;
+    json["rerun"] = rerun_json(verdict.rerun);
     return json.dump(2) + "\n";
 }
 

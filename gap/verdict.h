@@ -87,6 +87,19 @@ struct Suggestion {
     std::vector<std::string> between;
 };
 
+/// The experiment performed again on the emulator, without and with the overlay: measured against emulated.
+struct RerunObservable {
+    std::string name, unit;
+    double before = 0.0, after = 0.0;  ///< rms error; of what happens or not: difference of the shares
+};
+struct Rerun {
+    bool asked = false;
+    std::string not_done;  ///< why not, in plain words; empty: it was done
+    std::size_t runs = 0, rows = 0;
+    std::vector<RerunObservable> observables;
+    std::vector<std::string> left_out;  ///< parameters of the overlay that the emulation could not take
+};
+
 struct Verdict {
     Decision decision = Decision::NoEffect;
     Kind kind = Kind::Proximity;
@@ -101,6 +114,7 @@ struct Verdict {
     std::vector<Tried> tried;
     std::vector<FittedParameter> nuisance;  ///< fitted along with every model: tracker offset and delay, ...
     std::vector<std::string> cautions;
+    Rerun rerun;
     std::vector<Series> series;  ///< not in gap.json
     double wall_s = 0.0;         ///< not in gap.json
 };

@@ -8,11 +8,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace puckloop::scenarios {
 
 namespace {
 
+constexpr double kLongestDelay = 10.0;         // s, of an overlay's [uart]
+constexpr double kMostClockError = 2e5;        // ppm, of an overlay's [clock]
 constexpr double kLongestRun = 86'400.0 * 30;  // s; simulated time itself reaches 106 days
 
 /// Faults sit on the UART links, which join the boards of a robot.
@@ -55,6 +58,48 @@ cosim::FaultSpec read_fault(const std::string& file, std::size_t index, const To
         reader.fail("from", fmt::format("'{}' is at no end of {}", fault.from, fault.link),
                     fmt::format("{0}.linux or {0}.pic", robot));
     return fault;
+}
+
+double probability(Reader& reader, const char* key) {
+    const double value = reader.quantity(key, Dimension::Ratio, 0.0);
+    if (!(value >= 0 && value <= 1)) reader.fail(key, "probability is out of range", "0 to 1, or \"5 %\"");
+    return value;
+}
+
+/// An overlay's [uart]: what the line between the boards of every robot does to its bytes.
+void apply_uart(const std::string& file, const TomlValue& table, Scenario& scenario) {
+    Reader reader(file, "uart", table);
+    const double late = reader.quantity("command_delay", Dimension::Time, 0.0);
+    if (!(late >= 0 && late <= kLongestDelay))
+        reader.fail("command_delay", "command_delay is out of range", "0 to 10 s");
+    const double commands = probability(reader, "command_loss"), answers = probability(reader, "answer_loss");
+    reader.finish();
+    for (const RobotBoards& robot : scenario.robots) {
+        if (!robot.linux_board) continue;
+        const auto add = [&](const char* from, cosim::FaultKind kind, double share, double amount) {
+            cosim::FaultSpec fault;
+            fault.link = robot.name + ".uart";
+            fault.from = robot.name + from;
+            fault.kind = kind;
+            fault.probability = share;
+            fault.amount = amount;
+            scenario.faults.push_back(fault);
+        };
+        if (late > 0) add(".linux", cosim::FaultKind::Delay, 1.0, late);
+        if (commands > 0) add(".linux", cosim::FaultKind::Drop, commands, 0.0);
+        if (answers > 0) add(".pic", cosim::FaultKind::Drop, answers, 0.0);
+    }
+}
+
+/// An overlay's [clock]: the main boards' crystals run by so much faster than the scenario says.
+void apply_clock(const std::string& file, const TomlValue& table, Scenario& scenario) {
+    Reader reader(file, "clock", table);
+    const double error = reader.quantity("pic_error", Dimension::Ratio, 0.0) * 1e6;
+    if (!(std::abs(error) <= kMostClockError))
+        reader.fail("pic_error", "pic_error is out of range", "-20 % to 20 %, such as \"20 ppm\"");
+    reader.finish();
+    for (RobotBoards& robot : scenario.robots)
+        robot.pic.crystal_ppm += error;
 }
 
 }  // namespace
@@ -123,6 +168,8 @@ void apply_overlay(Scenario& scenario, const std::filesystem::path& file) {
                 body->parameters[parameter] = value;
         reader.finish();
     }
+    if (const TomlValue* table = top.table("uart")) apply_uart(name, *table, scenario);
+    if (const TomlValue* table = top.table("clock")) apply_clock(name, *table, scenario);
     if (const TomlValue* table = top.table("measurement"))
         for (const auto& [parameter, value] : std::get<TomlTable>(table->data))
             scenario.passed_over.push_back(parameter);

@@ -67,7 +67,8 @@ struct Scenario {
 /// line.
 Scenario read_scenario(const std::filesystem::path& file);
 
-/// Applies an overlay file (`--model`): parameters for all robots, or for one in [[robot]] tables.
+/// Applies an overlay file (`--model`): parameters for all robots, or for one in [[robot]] tables; [uart] and
+/// [clock] for all robots.
 void apply_overlay(Scenario& scenario, const std::filesystem::path& file);
 
 }  // namespace puckloop::scenarios

@@ -165,6 +165,14 @@ std::map<std::string, double> read_parameters(const std::string& file, const std
     return result;
 }
 
+std::string parameter_text(const std::string& name, double value) {
+    int index = -1;
+    const physics::ParameterInfo* info = physics::find_parameter(name, index);
+    const Dimension dimension = info == nullptr ? Dimension::Number : dimension_of(info->unit);
+    if (dimension == Dimension::Number || dimension == Dimension::Ratio) return fmt::format("{:.17g}", value);
+    return fmt::format("\"{:.17g} {}\"", value, info->unit);
+}
+
 physics::World read_world(Reader& top) {
     physics::World world;
     world.file = top.file();

@@ -16,4 +16,7 @@ physics::World read_world(Reader& top);
 std::map<std::string, double> read_parameters(const std::string& file, const std::string& where,
                                               const TomlValue& table);
 
+/// A physical parameter's value as such a table has it: with its unit where one is required.
+std::string parameter_text(const std::string& name, double value);
+
 }  // namespace puckloop::scenarios

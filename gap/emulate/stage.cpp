@@ -1,7 +1,7 @@
 #include "gap/emulate/stage.h"
 
 #include "base/error.h"
-#include "physics/parameters.h"
+#include "scenarios/world_tables.h"
 #include "tools/run/run_scenario.h"
 #include "tools/run/setup.h"
 
@@ -26,22 +26,12 @@ void write_text(const std::filesystem::path& file, const std::string& text) {
     if (!out.flush()) throw RunError(file.string() + ": cannot be written");
 }
 
-/// A parameter's value as a scenario has it: with its unit where it has a dimension.
-std::string quantity_text(const std::string& name, double value) {
-    int index = -1;
-    const physics::ParameterInfo* info = physics::find_parameter(name, index);
-    const std::string unit = info == nullptr ? "" : info->unit;
-    for (const char* dimension : {"m", "rad", "kg", "s"})
-        if (unit == dimension) return fmt::format("\"{:.17g} {}\"", value, unit);
-    return fmt::format("{:.17g}", value);
-}
-
 std::string scenario_text(const Robot& robot, const Act& act, const Tools& tools, std::uint64_t seed,
                           const std::filesystem::path& scratch) {
     std::string text =
         fmt::format("[run]\nseed = {}\nrecord_every = \"{}\"\n{}\n[parameters]\n", seed, kEvery, act.arena);
     for (const auto& [name, value] : robot.parameters)
-        text += fmt::format("{} = {}\n", name, quantity_text(name, value));
+        text += fmt::format("{} = {}\n", name, scenarios::parameter_text(name, value));
     text +=
         fmt::format("[[robot]]\nname = \"robot0\"\nposition = [\"{} m\", \"{} m\"]\nheading = \"{} rad\"\n",
                     act.x, act.y, act.heading);
@@ -118,6 +108,7 @@ std::vector<Row> perform(const Robot& robot, const Act& act, const Tools& tools,
     request.scenario = scratch / "scenario.toml";
     request.out = scratch / "out";
     request.in_process = true;
+    request.overlay = robot.overlay;
     const auto setup = tools::set_up(request);
     const auto outcome = tools::run_scenario(setup, request, {}, nullptr);
     if (!outcome.success) throw RunError("recording on the emulator failed: " + outcome.text);

@@ -24,6 +24,7 @@ struct Robot {
     double uart_loss = 0.0;          ///< probability that a byte to the Linux board is lost
     double uart_delay = 0.0;         ///< s by which bytes from the Linux board come later
     std::filesystem::path firmware;  ///< empty: the project's own
+    std::filesystem::path overlay;   ///< as for `run --model`; empty: none
 };
 
 /// What happens in one run.

@@ -44,6 +44,7 @@ std::string report_html(const Experiment& experiment, const Verdict& verdict) {
     out += verdict_section(verdict);
     out += cautions_section(verdict);
     out += gain_section(verdict);
+    out += rerun_section(verdict);
     out += all_pictures(experiment, verdict);
     out += parameters_section(verdict);
     out += rivals_section(verdict);

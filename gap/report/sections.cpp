@@ -96,6 +96,25 @@ std::string gain_section(const Verdict& verdict) {
     return out;
 }
 
+std::string rerun_section(const Verdict& verdict) {
+    const Rerun& rerun = verdict.rerun;
+    if (!rerun.asked) return {};
+    std::string out = "<h2>The extended simulation, run again</h2>\n";
+    if (!rerun.not_done.empty()) return out + paragraph("Not run again: " + rerun.not_done + ".");
+    Table table({"observable", "unit", "#error before", "#error after", "#ratio"});
+    for (const RerunObservable& o : rerun.observables)
+        table.row({o.name, o.unit, cell(o.before), cell(o.after), cell(o.after / o.before)});
+    out += table.html();
+    out += paragraph(fmt::format("The whole robot emulated, firmware in the loop: {} runs a side, {} rows of "
+                                 "the measurement compared; first as the simulator is, then with "
+                                 "overlay.toml. Measurement noise is in both errors.",
+                                 rerun.runs, rerun.rows));
+    if (!rerun.left_out.empty())
+        out += paragraph(
+            fmt::format("Without a counterpart in a run, so left out: {}.", fmt::join(rerun.left_out, ", ")));
+    return out;
+}
+
 std::string parameters_section(const Verdict& verdict) {
     Table table({"cause", "parameter", "unit", "#simulator", "#fitted", "90 % interval", "goes into"});
     const auto add = [&](const std::string& cause, const FittedParameter& p) {

@@ -12,6 +12,8 @@ std::string header_section(const Experiment& experiment, const Verdict& verdict)
 std::string verdict_section(const Verdict& verdict);
 std::string cautions_section(const Verdict& verdict);
 std::string gain_section(const Verdict& verdict);
+/// The experiment performed again on the emulator; empty when it was not asked for.
+std::string rerun_section(const Verdict& verdict);
 std::string parameters_section(const Verdict& verdict);
 std::string rivals_section(const Verdict& verdict);
 /// Noise floor and structure tests, before and after.

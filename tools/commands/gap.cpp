@@ -3,6 +3,7 @@
 #include "tools/commands/gap.h"
 #include "base/error.h"
 #include "gap/analyse.h"
+#include "gap/emulate/rerun.h"
 #include "gap/experiment.h"
 #include "gap/report/report.h"
 #include "tools/command.h"
@@ -26,8 +27,9 @@ namespace puckloop::tools {
 namespace {
 
 struct Request {
-    std::filesystem::path folder, out;
+    std::filesystem::path folder, out, firmware;
     std::uint64_t seed = 1;
+    bool rerun = false;
 };
 
 void tell_experiment(const gap::Experiment& experiment) {
@@ -67,7 +69,29 @@ void tell_verdict(const gap::Verdict& verdict) {
                    left.p_value);
 }
 
+/// With the overlay as written, which is what anybody's run would load.
+void run_again(const Request& request, const gap::Experiment& experiment, gap::Verdict& verdict) {
+    gap::emulate::RerunOptions options;
+    options.tools = emulation_tools();
+    options.overlay = std::filesystem::absolute(request.out / "overlay.toml");
+    if (!request.firmware.empty()) options.firmware = std::filesystem::absolute(request.firmware);
+    options.scratch = std::filesystem::absolute(request.out / "rerun");
+    options.seed = request.seed;
+    if (::isatty(STDERR_FILENO) != 0)
+        options.done = [](std::size_t done, std::size_t all) {
+            fmt::print(stderr, "\r\033[K{} of {} runs again ", done, all);
+        };
+    verdict.rerun = gap::emulate::rerun(experiment, verdict, options);
+    if (options.done) fmt::print(stderr, "\r\033[K");
+    if (!verdict.rerun.not_done.empty()) fmt::print("not run again: {}\n", verdict.rerun.not_done);
+    for (const auto& one : verdict.rerun.observables)
+        fmt::print("run again with the overlay: {}, error {:.4g} {} before, {:.4g} after\n", one.name,
+                   one.before, one.unit, one.after);
+}
+
 void analyse_folder(const Request& request) {
+    if (request.rerun && request.out.empty())
+        throw InputError("", "--rerun", "needs the overlay that --out writes", "--out OUT");
     const gap::Experiment experiment = gap::read_experiment(request.folder);
     if (!request.out.empty()) {
         std::error_code failed;
@@ -84,8 +108,9 @@ void analyse_folder(const Request& request) {
     tell_experiment(experiment);
     tell_verdict(verdict);
     if (request.out.empty()) return;
-    write_text(request.out / "gap.json", gap::to_json(verdict));
     write_text(request.out / "overlay.toml", gap::overlay_toml(experiment, verdict));
+    if (request.rerun) run_again(request, experiment, verdict);
+    write_text(request.out / "gap.json", gap::to_json(verdict));
     gap::report::write_report(experiment, verdict, request.out / "report.html");
 }
 
@@ -102,6 +127,11 @@ void declare_gap(CLI::App& app, int& status) {
     command->add_option("--out", request->out, "folder for report.html, gap.json and overlay.toml")
         ->type_name("OUT");
     command->add_option("--seed", request->seed, "of everything random in the analysis")->type_name("N");
+    command->add_flag("--rerun", request->rerun,
+                      "perform the experiment again on the emulator, without and with the overlay "
+                      "(motion, proximity, ground, timing)");
+    command->add_option("--firmware", request->firmware, "of the main board, for --rerun (the project's own)")
+        ->type_name("IMAGE");
     command->require_subcommand(0, 1);
     declare_gap_import(*command, status);
     declare_gap_record(*command, status);

@@ -1,0 +1,39 @@
+#pragma once
+// What has to be done on the emulator to perform a measured experiment again, and what is compared then.
+
+#include "gap/emulate/stage.h"
+#include "gap/experiment.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace puckloop::gap::emulate {
+
+/// Squared errors of one observable.
+struct ErrorSum {
+    double squares = 0.0;
+    std::size_t rows = 0;
+};
+
+/// One run of the emulator with the measured rows that it stands for.
+struct React {
+    Act act;
+    double period = 0.1;               ///< s between two exchanges
+    std::size_t run = 0;               ///< of the experiment
+    std::vector<std::size_t> rows{};   ///< of the run; ground, proximity: run and row in turn
+    std::size_t sensor = 0;            ///< proximity: the sensor before the wall
+    double x = 0, y = 0, heading = 0;  ///< motion: measured pose that the act's start stands for
+};
+
+/// Empty with `why` said: this experiment cannot be performed.
+std::vector<React> reacts_of(const Experiment& experiment, std::string& why);
+
+/// Names and units of what is compared, in the order of ErrorSums.
+std::vector<std::pair<const char*, const char*>> compared(Kind kind);
+
+/// Adds the errors of `emulated` against the rows measured.
+void add_errors(const Experiment& experiment, const React& react, const std::vector<Row>& emulated,
+                std::vector<ErrorSum>& errors);
+
+}  // namespace puckloop::gap::emulate

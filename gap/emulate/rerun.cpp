@@ -1,0 +1,94 @@
+#include "gap/emulate/rerun.h"
+
+#include "gap/emulate/reacts.h"
+#include "physics/parameters.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace puckloop::gap::emulate {
+
+namespace {
+
+/// What the experiment says of its robot, as far as the simulator has it.
+Robot nominal_robot(const Experiment& experiment, const RerunOptions& options) {
+    Robot robot;
+    robot.firmware = options.firmware;
+    for (const auto& [name, value] : experiment.nominal) {
+        int index = -1;
+        if (physics::find_parameter(name, index) != nullptr) robot.parameters[name] = value;
+    }
+    return robot;
+}
+
+/// The period is the Linux program's own, and the one performed here is the recorder's.
+double extra_period(const Verdict& verdict) {
+    for (const Cause& cause : verdict.causes)
+        for (const FittedParameter& parameter : cause.parameters)
+            if (parameter.name == "timing.extra_period") return parameter.value - parameter.neutral;
+    return 0.0;
+}
+
+/// Parameters that neither an overlay's run nor this one takes.
+std::vector<std::string> left_out(const Experiment& experiment, const Verdict& verdict) {
+    const std::string text = overlay_toml(experiment, verdict);
+    std::vector<std::string> names;
+    const auto measuring = text.find("\n[measurement]\n");
+    if (measuring == std::string::npos) return names;
+    for (std::size_t from = text.find('"', measuring); from != std::string::npos;) {
+        const std::size_t to = text.find('"', from + 1);
+        const std::string name = text.substr(from + 1, to - from - 1);
+        if (name != "timing.extra_period") names.push_back(name);
+        from = text.find('"', to + 1);
+    }
+    return names;
+}
+
+}  // namespace
+
+Rerun rerun(const Experiment& experiment, const Verdict& verdict, const RerunOptions& options) {
+    Rerun result;
+    result.asked = true;
+    if (verdict.causes.empty()) {
+        result.not_done = "no cause was named, so there is nothing to add to the simulation";
+        return result;
+    }
+    const auto agenda = experiment.nominal.find("firmware.agenda");
+    if (experiment.kind == Kind::Motion && options.firmware.empty() &&
+        (agenda == experiment.nominal.end() || agenda->second != 0)) {
+        result.not_done = "the robot ran another firmware than the project's own; name its image";
+        return result;
+    }
+    const auto reacts = reacts_of(experiment, result.not_done);
+    if (!result.not_done.empty()) return result;
+    const auto names = compared(experiment.kind);
+    std::vector<ErrorSum> errors[2] = {std::vector<ErrorSum>(names.size()),
+                                       std::vector<ErrorSum>(names.size())};
+    std::size_t done = 0;
+    for (std::size_t k = 0; k < reacts.size(); ++k)
+        for (const int side : {0, 1}) {
+            Robot robot = nominal_robot(experiment, options);
+            robot.period = reacts[k].period + (side == 1 ? extra_period(verdict) : 0.0);
+            if (side == 1) robot.overlay = options.overlay;
+            Act act = reacts[k].act;
+            act.commands.back().seconds *= robot.period / reacts[k].period;  // as many exchanges
+            const auto rows = perform(robot, act, options.tools, options.seed + k, options.scratch);
+            add_errors(experiment, reacts[k], rows, errors[side]);
+            std::filesystem::remove_all(options.scratch);
+            if (options.done) options.done(++done, 2 * reacts.size());
+        }
+    result.runs = reacts.size();
+    result.rows = errors[0][0].rows;
+    for (std::size_t o = 0; o < names.size(); ++o) {
+        if (errors[0][o].rows == 0) continue;
+        const auto rms = [](const ErrorSum& sum) {
+            return std::sqrt(sum.squares / static_cast<double>(sum.rows));
+        };
+        result.observables.push_back({names[o].first, names[o].second, rms(errors[0][o]), rms(errors[1][o])});
+    }
+    result.left_out = left_out(experiment, verdict);
+    return result;
+}
+
+}  // namespace puckloop::gap::emulate

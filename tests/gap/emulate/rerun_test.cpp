@@ -1,0 +1,116 @@
+// A robot that is not as the simulator believes is recorded; the overlay of the cause makes the emulator do
+// what was measured, from the TOML file on to the readings.
+
+#include "gap/emulate/record.h"
+#include "gap/emulate/rerun.h"
+#include "scenarios/scenario.h"
+#include "tests/scratch.h"
+
+#include <catch2/catch.hpp>
+
+#include <fstream>
+
+using namespace puckloop;
+using namespace puckloop::gap;
+
+namespace {
+
+/// What the analysis would say: the test is of what follows from it.
+Verdict named(const std::string& cause, const std::string& parameter, double value, double neutral) {
+    Verdict verdict;
+    verdict.decision = Decision::Named;
+    verdict.causes.emplace_back();
+    verdict.causes.back().name = cause;
+    verdict.causes.back().parameters.push_back({parameter, "", value, value, value, neutral, true});
+    return verdict;
+}
+
+Rerun again(const std::string& kind, const std::vector<std::string>& changes, const Verdict& verdict) {
+    const auto scratch = puckloop::tests::scratch_path("gap_rerun_" + kind);
+    emulate::RecordOptions options;
+    options.tools = {PUCKLOOP_RECORD, PUCKLOOP_FIRMWARE};
+    options.brief = true;
+    options.scratch = scratch / "emulated";
+    for (const std::string& change : changes)
+        emulate::set_parameter(options.robot, change);
+    selftest::write_folder(emulate::record(kind, options), scratch / "experiment");
+    const Experiment experiment = read_experiment(scratch / "experiment");
+    std::ofstream(scratch / "overlay.toml") << overlay_toml(experiment, verdict);
+    emulate::RerunOptions how;
+    how.tools = options.tools;
+    how.overlay = scratch / "overlay.toml";
+    how.scratch = scratch / "again";
+    const Rerun result = emulate::rerun(experiment, verdict, how);
+    std::filesystem::remove_all(scratch);
+    INFO(result.not_done);
+    REQUIRE(result.not_done.empty());
+    return result;
+}
+
+}  // namespace
+
+TEST_CASE("a wheel's size from an overlay drives the emulated robot as far as the measured one") {
+    const Rerun result =
+        again("motion", {"robot.wheel_radius_left=0.02112", "robot.wheel_radius_right=0.02112"},
+              named("wheel_scale", "wheel_scale", 0.0302, 0.0));
+    REQUIRE(result.observables.size() == 2);
+    CHECK(result.observables[0].before > 0.003);  // 3 % of up to half a metre
+    CHECK(result.observables[0].after < 0.0012);  // the tracker's 0.5 mm in x and y
+    CHECK(result.observables[1].after < 0.005);   // its 0.2 degrees
+}
+
+TEST_CASE("a late command from an overlay is late on the emulated line") {
+    const Rerun result =
+        again("motion", {"uart.delay=0.06"}, named("command_latency", "command.latency", 0.0652, 0.0052));
+    CHECK(result.observables[0].before > 2 * result.observables[0].after);
+    CHECK(result.observables[0].after < 0.0012);
+    CHECK(result.left_out.empty());
+}
+
+TEST_CASE("a sensor's gain from an overlay is the emulated sensor's") {
+    const Rerun ground =
+        again("ground", {"ground.gain1=0.9"}, named("ground_gain", "ground.gain1", 0.9, 1.0));
+    CHECK(ground.observables[0].before > 15);
+    CHECK(ground.observables[0].after < 3);  // noise of 1.5 counts
+    const Rerun proximity =
+        again("proximity", {"proximity.gain0=1.3"}, named("sensor_gain", "proximity.gain0", 1.3, 1.0));
+    CHECK(proximity.observables[0].before > 20);
+    CHECK(proximity.observables[0].after < 5);  // two conversions of 2 counts each
+}
+
+TEST_CASE("a longer period is the recorder's when it is performed again") {
+    const Rerun result =
+        again("timing", {"host.period=0.104"}, named("long_period", "timing.extra_period", 0.004, 0.0));
+    CHECK(result.observables[0].before > 0.01);
+    CHECK(result.observables[0].after < 0.0004);  // the host's time stamps, 0.2 ms
+}
+
+TEST_CASE("an overlay's links and clocks reach every robot of a scenario") {
+    const auto scratch = puckloop::tests::scratch_path("gap_overlay_links");
+    std::filesystem::create_directories(scratch);
+    std::ofstream(scratch / "overlay.toml") << "[uart]\ncommand_delay = \"30 ms\"\nanswer_loss = 0.001\n"
+                                               "[clock]\npic_error = \"250 ppm\"\n";
+    auto scenario = scenarios::read_scenario(PUCKLOOP_SCENARIO);
+    const auto faults = scenario.faults.size();
+    const double before = scenario.robots[0].pic.crystal_ppm;
+    scenarios::apply_overlay(scenario, scratch / "overlay.toml");
+    REQUIRE(scenario.faults.size() == faults + 2 * scenario.robots.size());
+    CHECK(scenario.faults[faults].kind == cosim::FaultKind::Delay);
+    CHECK(scenario.faults[faults].amount == Approx(0.03));
+    CHECK(scenario.faults[faults].from == scenario.robots[0].name + ".linux");
+    CHECK(scenario.faults[faults + 1].kind == cosim::FaultKind::Drop);
+    CHECK(scenario.faults[faults + 1].probability == Approx(0.001));
+    CHECK(scenario.robots[0].pic.crystal_ppm == Approx(before + 250));
+    std::filesystem::remove_all(scratch);
+}
+
+TEST_CASE("what cannot be performed again is said, not guessed") {
+    Experiment experiment;
+    experiment.kind = Kind::Microphone;
+    emulate::RerunOptions how;
+    CHECK(emulate::rerun(experiment, {}, how).not_done.find("no cause") != std::string::npos);
+    const Verdict verdict = named("microphone_gain", "microphone.gain0", 1.2, 1.0);
+    CHECK(emulate::rerun(experiment, verdict, how).not_done.find("microphone") != std::string::npos);
+    experiment.kind = Kind::Motion;  // no word of its firmware
+    CHECK(emulate::rerun(experiment, verdict, how).not_done.find("firmware") != std::string::npos);
+}
