@@ -1,6 +1,7 @@
 #include "gap/check_kinds.h"
 
 #include "base/error.h"
+#include "gap/check_motion.h"
 #include "gap/columns.h"
 
 #include <fmt/format.h>
@@ -69,6 +70,16 @@ void check_proximity(Experiment& experiment) {
                            "ambient minus lit",
                            correlation),
                "readings that fall with distance");
+    std::vector<double> angles;
+    for (const Run& run : experiment.runs)
+        if (run.has("angle_rad"))
+            for (const double angle : run.column("angle_rad"))
+                angles.push_back(std::abs(angle));
+        else
+            angles.insert(angles.end(), run.rows, std::nan(""));
+    if (std::abs(correlation) < 0.3 && rank_correlation(angles, readings) < -0.85)
+        experiment.cautions.push_back(
+            "readings fall with angle_rad and not with distance_m: are the two columns swapped?");
     const double furthest = *std::max_element(distances.begin(), distances.end(), [](double a, double b) {
         return std::isnan(a) || (!std::isnan(b) && a < b);
     });
@@ -79,104 +90,90 @@ void check_proximity(Experiment& experiment) {
             "distances below 1 m; say unit = \"cm\" or \"mm\" in [columns]");
 }
 
-struct Path {
-    double length = 0.0, turned = 0.0;  // tracked
-    double left = 0.0, right = 0.0;     // steps of either wheel, absolute
-    double largest_jump = 0.0, duration = 0.0;
-    double largest_turn = 0.0;
-    double forward = 0.0;  // signed displacement along the heading
-};
-
-Path measure(const Run& run) {
-    const auto &x = run.column("x_m"), &y = run.column("y_m"), &theta = run.column("theta_rad");
-    const auto &left = run.column("steps_left"), &right = run.column("steps_right"),
-               &time = run.column("t_s");
-    Path path;
-    std::size_t last = run.rows;
-    for (std::size_t i = 0; i < run.rows; ++i) {
-        if (std::isnan(x[i]) || std::isnan(y[i]) || std::isnan(theta[i])) continue;
-        if (last < run.rows) {
-            const double step = std::hypot(x[i] - x[last], y[i] - y[last]);
-            const double turn = std::remainder(theta[i] - theta[last], 2 * std::numbers::pi);
-            path.length += step;
-            path.turned += turn;
-            path.largest_jump = std::max(path.largest_jump, step / std::max(time[i] - time[last], 1e-3));
-            path.largest_turn = std::max(path.largest_turn, std::abs(turn));
-            path.forward += (x[i] - x[last]) * std::cos(theta[i]) + (y[i] - y[last]) * std::sin(theta[i]);
-            if (!left.empty() && !right.empty() &&
-                !std::isnan(left[i] + right[i] + left[last] + right[last])) {
-                path.left += std::abs(left[i] - left[last]);
-                path.right += std::abs(right[i] - right[last]);
-            }
-            path.duration += time[i] - time[last];
-        }
-        last = i;
-    }
-    return path;
-}
-
 double nominal(const Experiment& experiment, const std::string& name, double fallback) {
     const auto place = experiment.nominal.find(name);
     return place == experiment.nominal.end() ? fallback : place->second;
 }
 
-/// Left and right wheel exchanged turn the other way; millimetres taken for metres go a thousand times too
-/// far.
-void check_motion(Experiment& experiment) {
-    double agree = 0.0, turned = 0.0;
-    double driven = 0.0, tracked = 0.0, duration = 0.0;
-    bool steps = false;
-    const double metre_per_step = 2 * std::numbers::pi *
-                                  nominal(experiment, "robot.wheel_radius_left", 0.0205) /
-                                  nominal(experiment, "robot.steps_per_turn", 1000);
+/// Plain correlation of two columns over rows where both are there.
+double correlation(const std::vector<double>& a, const std::vector<double>& b) {
+    double n = 0, sa = 0, sb = 0, aa = 0, bb = 0, ab = 0;
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+        if (std::isnan(a[i] + b[i])) continue;
+        n += 1, sa += a[i], sb += b[i];
+    }
+    if (n < 8) return 0.0;
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+        if (std::isnan(a[i] + b[i])) continue;
+        const double da = a[i] - sa / n, db = b[i] - sb / n;
+        aa += da * da, bb += db * db, ab += da * db;
+    }
+    return aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : 0.0;
+}
+
+/// What the rear axis should feel, from the truth columns; the right axis likewise.
+std::vector<double> felt(const Run& run, const char* tilt, const char* push, double sign) {
+    const auto &angle = run.column(tilt), &force = run.column(push);
+    std::vector<double> out;
+    for (std::size_t i = 0; i < run.rows; ++i) {
+        const double a = angle.empty() ? 0.0 : angle[i], f = force.empty() ? 0.0 : force[i];
+        out.push_back(sign * (std::sin(a) + f * std::cos(a) / 9.81));
+    }
+    return out;
+}
+
+/// Intervals between rows.
+struct Pace {
+    double median = 0.0, mean = 0.0, scatter = 0.0;  ///< s; 0 where there are few
+};
+
+Pace pace(const std::vector<double>& times) {
+    std::vector<double> steps;
+    for (std::size_t i = 1; i < times.size(); ++i)
+        if (!std::isnan(times[i] - times[i - 1])) steps.push_back(times[i] - times[i - 1]);
+    if (steps.size() < 8) return {};
+    const auto median = [](std::vector<double> values) {
+        const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+        std::nth_element(values.begin(), middle, values.end());
+        return *middle;
+    };
+    Pace pace{median(steps), 0.0, 0.0};
+    for (double& step : steps) {
+        pace.mean += step / static_cast<double>(steps.size());
+        step = std::abs(step - pace.median);
+    }
+    pace.scatter = 1.4826 * median(steps);
+    return pace;
+}
+
+/// Batches move the median and gaps the mean: a wrong unit moves both.
+bool differ(const Pace& a, const Pace& b, double factor) {
+    const auto off = [factor](double x, double y) { return x > factor * y || y > factor * x; };
+    return a.mean > 0 && b.mean > 0 && off(a.mean, b.mean) && off(a.median, b.median);
+}
+
+void check_timing(Experiment& experiment) {
+    constexpr double kDefaultPeriod = 0.1, kClocks = 3.0, kPeriods = 20.0;
     for (const Run& run : experiment.runs) {
-        const Path path = measure(run);
-        tracked += path.length;
-        duration += path.duration;
-        if (run.has("steps_left") != run.has("steps_right") || run.has("cmd_left") != run.has("cmd_right"))
-            refuse(experiment, run, "has one wheel's column without the other's", "both");
-        if (!run.has("steps_left") && !run.has("cmd_left"))
-            refuse(experiment, run, "has neither steps_left, steps_right nor cmd_left, cmd_right",
-                   "what the wheels did or were told");
-        if (path.largest_turn > 2.5)
-            experiment.cautions.push_back(
-                fmt::format("{}: theta_rad jumps by {:.2f} rad between two rows: too sparse, or a wrong unit",
-                            run.file, path.largest_turn));
-        const auto &left = run.column(run.has("steps_left") ? "steps_left" : "cmd_left"),
-                   &right = run.column(run.has("steps_left") ? "steps_right" : "cmd_right");
-        const auto &theta = run.column("theta_rad"), &time = run.column("t_s");
-        steps = steps || run.has("steps_left");
-        driven += (path.left + path.right) / 2 * metre_per_step;
-        for (std::size_t i = 1; i < run.rows; ++i) {
-            const double turn = std::remainder(theta[i] - theta[i - 1], 2 * std::numbers::pi);
-            const double asked = run.has("steps_left")
-                                     ? (right[i] - right[i - 1]) - (left[i] - left[i - 1])
-                                     : (right[i - 1] - left[i - 1]) * (time[i] - time[i - 1]);
-            if (std::isnan(turn) || std::isnan(asked)) continue;
-            agree += turn * asked;
-            turned += std::abs(turn * asked);
-        }
+        const Pace host = pace(run.column("t_host_s")), robot = pace(run.column("t_robot_s"));
+        if (differ(host, robot, kClocks))
+            refuse(
+                experiment, run,
+                fmt::format("a frame takes {:.4g} s by t_host_s and {:.4g} s by t_robot_s: wrong unit of one",
+                            host.mean, robot.mean),
+                "clocks that agree within a factor of three");
+        const auto& given = run.column("nominal_period");
+        const double period = given.empty() || std::isnan(given.front()) ? kDefaultPeriod : given.front();
+        if (differ(host, {period, period, 0.0}, kPeriods))
+            refuse(experiment, run,
+                   fmt::format("a frame takes {:.4g} s where nominal_period is {:.4g} s{}", host.mean, period,
+                               given.empty() ? " (not given)" : ""),
+                   "times in seconds, and the loop's nominal_period");
+        // The host sees the robot's jitter and adds its own; the other way round, the columns are.
+        if (robot.scatter > 3 * host.scatter && robot.scatter > 1e-6)
+            refuse(experiment, run, "t_robot_s is more irregular than t_host_s: swapped columns",
+                   "the host's clock in t_host_s");
     }
-    const Run& first = experiment.runs.front();
-    if (turned > 0 && agree < -0.5 * turned)
-        refuse(experiment, first,
-               "the robot turns the other way than its wheels: left and right are swapped, or theta_rad runs "
-               "clockwise",
-               "the right wheel faster for a counter-clockwise turn");
-    if (steps && driven > 0.1 && (tracked > 5 * driven || tracked < driven / 5) && tracked > 1e-9) {
-        if (tracked > 5 * driven || turned == 0 || tracked > 0.01 * driven)
-            refuse(experiment, first,
-                   fmt::format("the tracker saw {:.3g} m while the wheels turned {:.3g} m: wrong unit of "
-                               "x_m, y_m or a wrong "
-                               "robot.wheel_radius / steps_per_turn in [nominal]",
-                               tracked, driven),
-                   "the same within a factor of five");
-    }
-    if (duration > 0 && tracked / duration > 3.0)
-        refuse(experiment, first,
-               fmt::format("the robot moves {:.3g} m/s on average: wrong unit of x_m, y_m or t_s",
-                           tracked / duration),
-               "at most 3 m/s");
 }
 
 void check_microphone(Experiment& experiment) {
@@ -210,6 +207,15 @@ void check_accelerometer(Experiment& experiment) {
                                "another sensor",
                                sum / count),
                    "about 1 g; say accelerometer.zero and accelerometer.gain in [nominal]");
+        constexpr double kClear = 0.7, kNone = 0.3;
+        const auto rear = felt(run, "pitch_rad", "acceleration", -1.0),
+                   right = felt(run, "roll_rad", "lateral", -1.0);
+        const double own = correlation(run.column("ay"), rear), other = correlation(run.column("ax"), rear);
+        if (std::abs(other) > kClear && std::abs(own) < kNone)
+            refuse(experiment, run, "ax follows pitch and forward acceleration, ay does not: axes swapped",
+                   "ax to the right, ay to the rear");
+        if (own < -kClear || correlation(run.column("ax"), right) < -kClear)
+            refuse(experiment, run, "an axis has the wrong sign", "ax to the right, ay to the rear, az up");
     }
 }
 
@@ -244,7 +250,7 @@ void check_kind(Experiment& experiment) {
     case Kind::Accelerometer:
         return check_accelerometer(experiment);
     case Kind::Timing:
-        return;
+        return check_timing(experiment);
     }
 }
 

@@ -32,6 +32,34 @@ std::vector<std::string_view> cells_of(std::string_view line, char separator) {
     }
 }
 
+/// The text with what is not UTF-8 as '?': files of another encoding are common, their numbers are fine.
+std::string readable(std::string_view text) {
+    std::string out;
+    for (std::size_t i = 0; i < text.size();) {
+        const auto lead = static_cast<unsigned char>(text[i]);
+        const std::size_t length = lead < 0x80   ? 1
+                                   : lead < 0xC2 ? 0
+                                   : lead < 0xE0 ? 2
+                                   : lead < 0xF0 ? 3
+                                   : lead < 0xF5 ? 4
+                                                 : 0;
+        bool good = length > 0 && i + length <= text.size() && lead >= 0x20 && lead != 0x7F;
+        for (std::size_t k = 1; good && k < length; ++k)
+            good = (static_cast<unsigned char>(text[i + k]) & 0xC0) == 0x80;
+        out += good ? std::string(text.substr(i, length)) : "?";
+        i += good ? length : 1;
+    }
+    constexpr std::size_t kLongest = 40;
+    if (out.size() > kLongest) {
+        out.resize(kLongest);
+        while (!out.empty() && (static_cast<unsigned char>(out.back()) & 0xC0) == 0x80)
+            out.pop_back();
+        if (!out.empty() && static_cast<unsigned char>(out.back()) >= 0xC2) out.pop_back();
+        out += "...";
+    }
+    return out;
+}
+
 /// False for text that is no number.
 bool parse(std::string_view cell, double& value) {
     value = std::numeric_limits<double>::quiet_NaN();
@@ -52,6 +80,11 @@ CsvTable read_csv(const std::filesystem::path& file) {
     std::string line;
     for (int number = 1; std::getline(stream, line); ++number) {
         if (number == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
+        if (number == 1 && (line.starts_with("\xFF\xFE") || line.starts_with("\xFE\xFF")))
+            throw InputError(file.string(), "", "is UTF-16 text", "UTF-8 or plain ASCII");
+        if (const auto inner = line.find('\r'); inner != std::string::npos && inner + 1 < line.size())
+            throw InputError(file.string(), fmt::format("line {}", number),
+                             "ends its lines with carriage returns only", "line feeds, with or without them");
         const std::string_view text = trimmed(line);
         if (text.empty() || text.front() == '#') continue;
         const std::string place = fmt::format("line {}", number);
@@ -64,13 +97,14 @@ CsvTable read_csv(const std::filesystem::path& file) {
                 double ignored = 0.0;
                 if (!cell.empty() && parse(cell, ignored))
                     throw InputError(file.string(), place,
-                                     fmt::format("has the number {} as a column's name", cell),
+                                     fmt::format("has the number {} as a column's name", readable(cell)),
                                      "a header line with names");
+                const std::string own = readable(cell);
                 for (const auto& name : table.names)
-                    if (name == cell)
+                    if (name == own)
                         throw InputError(file.string(), place,
-                                         fmt::format("names the column \"{}\" twice", cell));
-                table.names.emplace_back(cell);
+                                         fmt::format("names the column \"{}\" twice", own));
+                table.names.push_back(own);
             }
             table.columns.resize(table.names.size());
             continue;
@@ -82,10 +116,12 @@ CsvTable read_csv(const std::filesystem::path& file) {
         for (std::size_t i = 0; i < cells.size(); ++i) {
             double value = 0.0;
             if (!parse(cells[i], value) || std::isinf(value))
-                throw InputError(
-                    file.string(), place,
-                    fmt::format("\"{}\" in column \"{}\" is not a finite number", cells[i], table.names[i]),
-                    "a number, or nothing where it is missing");
+                throw InputError(file.string(), place,
+                                 fmt::format("\"{}\" in column \"{}\" is not a finite number",
+                                             readable(cells[i]), table.names[i]),
+                                 cells[i].find(',') != std::string_view::npos
+                                     ? "a decimal point, not a comma"
+                                     : "a number, or nothing where it is missing");
             table.columns[i].push_back(value);
         }
         if (table.rows() > kMostRows)

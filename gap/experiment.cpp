@@ -180,11 +180,15 @@ Run read_run(const TomlValue& table, std::size_t index, Experiment& experiment, 
             throw InputError(path.string(), "line 1", fmt::format("has no column \"{}\"", origin.from),
                              fmt::format("it, as {} says", frame.file));
     read_constants(reader, experiment.kind, table, frame, run);
+    const std::vector<std::string_view> names(csv.names.begin(), csv.names.end());
     for (const ColumnInfo& info : columns_of(experiment.kind))
-        if (info.required && !run.has(info.name))
+        if (info.required && !run.has(info.name)) {
+            const std::string near = nearest_name(info.name, names);
             throw InputError(path.string(), "line 1",
-                             fmt::format("has no column \"{}\" ({})", info.name, info.meaning),
+                             fmt::format("has no column \"{}\" ({}){}", info.name, info.meaning,
+                                         near.empty() ? "" : fmt::format("; is it \"{}\"?", near)),
                              fmt::format("it, or where to find it in [columns] of {}", frame.file));
+        }
     for (const std::string& name : csv.names)
         if (!used.contains(name) && !name.empty())
             experiment.cautions.push_back(fmt::format("{}: column \"{}\" is not used", run.file, name));

@@ -21,6 +21,9 @@ struct Run {
     std::size_t rows = 0;
     std::map<std::string, std::vector<double>, std::less<>> columns;  ///< canonical names, SI units
 
+    /// s: where each row's tracker time stands on the counters' clock; empty: the two are one (gap/clocks).
+    std::vector<double> counted_at;
+
     /// The column, or an empty vector if this run does not have it.
     const std::vector<double>& column(std::string_view name) const;
     bool has(std::string_view name) const { return !column(name).empty(); }

@@ -70,6 +70,34 @@ std::string reason_of(const std::exception& error) {
     return text;
 }
 
+/// Deeper than this the parser would run out of stack.
+constexpr int kDeepest = 100;
+
+/// The line on which brackets are open too deep, 0 if nowhere; texts and comments do not count.
+int too_deep_at(const std::string& text) {
+    int depth = 0, line = 1;
+    char quote = 0;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (c == '\n') ++line;
+        if (c == '\n' && quote != 0) quote = 0;  // a text that was not closed: the parser's business
+        if (quote != 0) {
+            if (c == '\\' && quote == '"') ++i;
+            if (c == quote) quote = 0;
+        } else if (c == '"' || c == '\'') {
+            quote = c;
+        } else if (c == '#') {
+            while (i + 1 < text.size() && text[i + 1] != '\n')
+                ++i;
+        } else if (c == '[' || c == '{') {
+            if (++depth > kDeepest) return line;
+        } else if (c == ']' || c == '}') {
+            --depth;
+        }
+    }
+    return 0;
+}
+
 }  // namespace
 
 TomlValue read_toml(const std::filesystem::path& file) {
@@ -83,6 +111,9 @@ TomlValue read_toml(const std::filesystem::path& file) {
     text.resize(static_cast<std::size_t>(stream.gcount()));
     if (text.size() > kLargestFile)
         throw InputError(file.string(), "", "is too large", "at most 4 MB of TOML");
+    if (const int line = too_deep_at(text); line > 0)
+        throw InputError(file.string(), fmt::format("line {}", line), "is nested too deeply",
+                         fmt::format("at most {} brackets open at once", kDeepest));
     std::istringstream content(text);
     try {
         return convert(toml::parse<toml::discard_comments, std::map, std::vector>(content, file.string()),

@@ -75,7 +75,23 @@ void Model::apply_nominal(const Experiment& experiment) {
     }
 }
 
-std::unique_ptr<Model> make_model(const Experiment& experiment) {
+namespace {
+
+/// A nominal number far outside anything built gives no prediction to start from.
+void check_finite(const Experiment& experiment, const Model& model) {
+    constexpr double kLargest = 1e9;
+    Prediction prediction;
+    model.predict(model.neutral(), prediction);
+    for (std::size_t o = 0; o < prediction.size(); ++o)
+        for (const double mean : prediction[o].mean)
+            if (!(std::abs(mean) < kLargest))
+                throw InputError((experiment.folder / "experiment.toml").string(), "",
+                                 fmt::format("the simulation gives {} = {:g} with these [nominal] numbers",
+                                             model.observables()[o].name, mean),
+                                 "numbers of a robot that can be built");
+}
+
+std::unique_ptr<Model> make_unchecked(const Experiment& experiment) {
     switch (experiment.kind) {
     case Kind::Proximity:
         return make_proximity_model(experiment);
@@ -93,6 +109,14 @@ std::unique_ptr<Model> make_model(const Experiment& experiment) {
         break;
     }
     return make_timing_model(experiment);
+}
+
+}  // namespace
+
+std::unique_ptr<Model> make_model(const Experiment& experiment) {
+    auto model = make_unchecked(experiment);
+    check_finite(experiment, *model);
+    return model;
 }
 
 }  // namespace puckloop::gap

@@ -87,7 +87,7 @@ class Model {
     std::vector<Observable> observables_;
 };
 
-/// `experiment` must outlive the model.
+/// `experiment` must outlive the model. InputError if its nominal numbers give no prediction.
 std::unique_ptr<Model> make_model(const Experiment& experiment);
 
 std::unique_ptr<Model> make_proximity_model(const Experiment& experiment);

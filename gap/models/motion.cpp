@@ -147,7 +147,8 @@ class MotionModel final : public Model {
                 across += -dx * std::sin(middle) + dy * std::cos(middle);
                 heading += turned;
             }
-            path.time.push_back(base.time[i]);
+            const auto& clock = experiment.runs[path.run].counted_at;
+            path.time.push_back(clock.empty() ? base.time[i] : clock[base.row[i]]);
             path.turned.push_back(turned);
             path.middle.push_back(middle);
             path.load.push_back(load[i]);

@@ -1,0 +1,172 @@
+// What is wrong inside the columns: units, exchanged columns, clocks, constants, missing and impossible
+// values.
+
+#include "gap/models/model.h"
+#include "tests/gap/bad_input/made_experiment.h"
+
+#include <catch2/catch.hpp>
+
+using namespace puckloop::gap;
+using namespace puckloop::gap::tests;
+using Catch::Matchers::Contains;
+
+namespace {
+
+std::string cautions_of(const Made& made) {
+    std::string cautions;
+    CHECK(refusal(made, &cautions) == "");
+    return cautions;
+}
+
+std::string degrees(std::size_t, double value) {
+    return fmt::format("{:.6g}", value * 57.29578);
+}
+
+}  // namespace
+
+TEST_CASE("clean experiments of every kind are read without a word about their columns") {
+    for (const char* kind :
+         {"proximity", "motion", "rab", "microphone", "ground", "accelerometer", "timing"}) {
+        INFO(kind);
+        const std::string cautions = cautions_of(clean(kind));
+        for (const char* word : {"swapped", "unit", "impossible", "missing", "clock", "hang"})
+            CHECK_THAT(cautions, !Contains(word));
+    }
+}
+
+TEST_CASE("wrong units are refused") {
+    CHECK_THAT(refusal(scaled(clean("proximity"), "distance_m", 100)), Contains("unit"));
+    CHECK_THAT(refusal(scaled(clean("proximity"), "distance_m", 1000)), Contains("unit"));
+    CHECK_THAT(refusal(changed(clean("proximity"), "angle_rad", degrees)), Contains("unit"));
+    CHECK_THAT(refusal(scaled(scaled(clean("motion"), "x_m", 1000), "y_m", 1000)), Contains("unit"));
+    CHECK_THAT(refusal(scaled(scaled(clean("motion"), "x_m", 100), "y_m", 100)), Contains("unit"));
+    CHECK_THAT(refusal(changed(clean("motion"), "theta_rad", degrees)), Contains("degrees"));
+    CHECK_THAT(refusal(scaled(clean("motion"), "t_s", 1000)), Contains("unit of t_s"));
+    CHECK_THAT(refusal(scaled(clean("timing"), "t_host_s", 1000)), Contains("unit"));
+    CHECK_THAT(refusal(scaled(scaled(clean("timing"), "t_host_s", 1000), "t_robot_s", 1000)),
+               Contains("nominal_period"));
+    CHECK_THAT(refusal(scaled(clean("ground"), "grey", 255)), Contains("unit"));
+    CHECK_THAT(refusal(scaled(clean("rab"), "distance_m", 100)), Contains("unit"));
+    CHECK_THAT(refusal(changed(clean("rab"), "bearing_rad", degrees)), Contains("unit"));
+    CHECK_THAT(refusal(scaled(clean("microphone"), "distance_m", 100)), Contains("unit"));
+}
+
+TEST_CASE("swapped columns are refused, or said where both are plausible") {
+    const auto said = [](const char* kind, const char* a, const char* b) {
+        return refusal(swapped(clean(kind), a, b));
+    };
+    CHECK_THAT(said("proximity", "distance_m", "reading"), Contains("swapped"));
+    CHECK_THAT(said("motion", "steps_left", "steps_right"), Contains("swapped"));
+    CHECK_THAT(said("motion", "cmd_left", "cmd_right"), Contains("swapped"));
+    CHECK_THAT(said("motion", "x_m", "y_m"), Contains("swapped"));
+    CHECK(said("motion", "y_m", "theta_rad") != "");
+    CHECK_THAT(said("ground", "grey", "reading"), Contains("swapped"));
+    CHECK_THAT(said("accelerometer", "ax", "az"), Contains("swapped"));
+    CHECK_THAT(said("accelerometer", "ax", "ay"), Contains("swapped"));
+    CHECK_THAT(said("timing", "t_robot_s", "t_host_s"), Contains("swapped"));
+    CHECK_THAT(said("rab", "distance_m", "strength"), Contains("swapped"));
+    CHECK_THAT(said("microphone", "distance_m", "level"), Contains("swapped"));
+    // Distances and angles of the same size: only what they do to the reading tells.
+    Made made = clean("proximity");
+    for (auto& row : made.rows)
+        row[3] = fmt::format("{}", 0.01 * (std::stod(row[0]) * 10 - 10 * std::floor(std::stod(row[0]))));
+    CHECK_THAT(cautions_of(swapped(made, "distance_m", "angle_rad")), Contains("swapped"));
+}
+
+TEST_CASE("clocks that go back, stand still, wrap or jump") {
+    const auto back = [](std::size_t i, double t) { return fmt::format("{}", i > 40 ? t - 3 : t); };
+    CHECK_THAT(refusal(changed(clean("motion"), "t_s", back)), Contains("goes back") && Contains("row 42"));
+    CHECK_THAT(refusal(changed(clean("timing"), "t_host_s", back)), Contains("goes back"));
+    CHECK_THAT(refusal(changed(clean("motion"), "t_s", [](std::size_t, double) { return "5"; })),
+               Contains("stands still"));
+    CHECK_THAT(
+        cautions_of(changed(clean("motion"), "t_s",
+                            [](std::size_t i, double t) { return fmt::format("{}", i > 40 ? t + 100 : t); })),
+        Contains("jumps by"));
+    CHECK_THAT(
+        refusal(changed(clean("motion"), "t_s",
+                        [](std::size_t i, double t) { return fmt::format("{}", i > 40 ? t + 1e9 : t); })),
+        Contains("jumps by"));
+    const auto wrap = [](std::size_t, double steps) {
+        return fmt::format("{}", std::fmod(steps + 32000 + 32768, 65536) - 32768);
+    };
+    CHECK_THAT(refusal(changed(clean("motion"), "steps_left", wrap)), Contains("16-bit"));
+}
+
+TEST_CASE("constant columns") {
+    const auto always = [](const char* text) {
+        return [text](std::size_t, double) { return std::string(text); };
+    };
+    Made same = changed(clean("accelerometer"), "ax", always("2048"));
+    CHECK_THAT(refusal(same), Contains("in every row of every run"));
+    CHECK_THAT(cautions_of(changed(clean("proximity"), "distance_m", always("0.03"))),
+               Contains("distance_m is 0.03 m"));
+    CHECK_THAT(
+        refusal(changed(changed(clean("motion"), "steps_left", always("0")), "steps_right", always("0"))),
+        Contains("counters ran 0"));
+    CHECK_THAT(refusal(changed(clean("motion"), "steps_left", always("0"))),
+               Contains("steps_left stands still"));
+    Made still = changed(changed(clean("motion"), "x_m", always("0")), "y_m", always("0"));
+    still = changed(still, "theta_rad", always("0"));
+    CHECK_THAT(refusal(still), Contains("pose is the same"));
+    Made floor = clean("ground");
+    floor.toml = "[instrument]\nreading = { floor = 2000, ceiling = 4000 }\n";
+    CHECK_THAT(refusal(floor), Contains("[instrument]"));
+}
+
+TEST_CASE("a sensor that hung in one run is said") {
+    const Folder folder(clean("ground"));
+    std::string csv = "t_s,sensor,grey,reading\n";
+    for (int i = 0; i < 60; ++i)
+        csv += fmt::format("{},{},{},500\n", i * 0.1, i % 3, i % 5 / 4.0);
+    write_file(folder.path() / "run2.csv", csv);
+    std::string cautions;
+    CHECK(refusal(folder.path(), &cautions) == "");
+    CHECK_THAT(cautions, Contains("run2.csv") && Contains("did it hang"));
+}
+
+TEST_CASE("missing, impossible and few values") {
+    const auto gone = [](std::size_t every) {
+        return
+            [every](std::size_t i, double value) { return i % every == 0 ? "" : fmt::format("{}", value); };
+    };
+    CHECK_THAT(refusal(changed(clean("ground"), "grey", gone(1))), Contains("grey is missing in 60 of 60"));
+    CHECK_THAT(cautions_of(changed(clean("ground"), "grey", gone(5))),
+               Contains("grey is missing in 12 of 60"));
+    CHECK_THAT(cautions_of(changed(clean("ground"), "sensor", gone(1))), Contains("sensor is empty"));
+    CHECK_THAT(cautions_of(changed(clean("ground"), "sensor", gone(7))),
+               Contains("sensor is missing in 9 of 60"));
+    CHECK_THAT(
+        cautions_of(changed(clean("ground"), "reading",
+                            [](std::size_t i, double v) { return i == 7 ? "1e300" : fmt::format("{}", v); })),
+        Contains("row 8") && Contains("impossible") && Contains("taken as missing"));
+    CHECK_THAT(
+        refusal(changed(clean("ground"), "reading",
+                        [](std::size_t i, double v) { return i == 7 ? "1e999" : fmt::format("{}", v); })),
+        Contains("not a finite number"));
+    CHECK_THAT(refusal(changed(clean("proximity"), "sensor", [](std::size_t, double) { return "1.5"; })),
+               Contains("not whole"));
+    Made few = clean("ground");
+    few.rows.resize(4);
+    CHECK_THAT(cautions_of(few), Contains("only 12 rows"));
+    Made alone = clean("ground");
+    alone.runs = 1;
+    CHECK_THAT(cautions_of(alone), Contains("one run only"));
+    Made blind = clean("motion");
+    blind.names.back() = "other";
+    CHECK_THAT(refusal(blind), Contains("theta_rad"));
+    Made mixed = clean("ground");
+    mixed.names.emplace_back("unit");
+    for (std::size_t i = 0; i < mixed.rows.size(); ++i)
+        mixed.rows[i].push_back(i % 2 == 0 ? "1" : "2");
+    mixed.runs = 1;
+    CHECK_THAT(cautions_of(mixed), Contains("2 robots are mixed"));
+}
+
+TEST_CASE("nominal numbers of nothing that can be built are refused") {
+    Made made = clean("ground");
+    made.toml = "[nominal]\n\"ground.white\" = 1e300\n";
+    const Folder folder(made);
+    const Experiment experiment = read_experiment(folder.path());
+    CHECK_THROWS_WITH(make_model(experiment), Contains("[nominal]"));
+}

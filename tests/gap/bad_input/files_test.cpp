@@ -1,0 +1,102 @@
+// Files as editors, spreadsheets and broken disks leave them.
+
+#include "tests/gap/bad_input/made_experiment.h"
+
+#include <catch2/catch.hpp>
+
+using namespace puckloop::gap;
+using namespace puckloop::gap::tests;
+using Catch::Matchers::Contains;
+
+namespace {
+
+constexpr const char* kToml = "kind = \"ground\"\n[[run]]\nfile = \"a.csv\"\n";
+
+std::string table() {
+    std::string text = "t_s,sensor,grey,reading\n";
+    for (int i = 0; i < 60; ++i)
+        text += fmt::format("{:.1f},{},{:.2f},{}\n", i * 0.1, i % 3, i % 5 / 4.0,
+                            331 + 155 * (i % 5) + i * 37 % 11);
+    return text;
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+    for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+        text.replace(at, from.size(), to);
+    return text;
+}
+
+std::string of_csv(const std::string& csv, std::string* cautions = nullptr) {
+    const Folder folder;
+    write_file(folder.path() / "experiment.toml", kToml);
+    write_file(folder.path() / "a.csv", csv);
+    return refusal(folder.path(), cautions);
+}
+
+std::string of_toml(const std::string& toml) {
+    const Folder folder;
+    write_file(folder.path() / "experiment.toml", toml);
+    write_file(folder.path() / "a.csv", table());
+    return refusal(folder.path());
+}
+
+}  // namespace
+
+TEST_CASE("line ends, separators, byte order marks and comments of all sorts are read") {
+    CHECK(of_csv(table()) == "");
+    CHECK(of_csv(replaced(table(), "\n", "\r\n")) == "");
+    CHECK(of_csv("\xEF\xBB\xBF" + table()) == "");
+    CHECK(of_csv(replaced(table(), ",", ";")) == "");
+    CHECK(of_csv(replaced(table(), ",", "\t")) == "");
+    CHECK(of_csv("# by hand\n\n" + table() + "\n\n") == "");
+    std::string cautions;
+    const std::string latin =
+        replaced(replaced(table(), "reading\n", "reading,temp\xE9rature\n"), "\n", ",20\n");
+    CHECK(of_csv(latin.substr(0, latin.find(",20\n")) + latin.substr(latin.find(",20\n") + 3), &cautions) ==
+          "");
+    CHECK_THAT(cautions, Contains("temp?rature"));
+}
+
+TEST_CASE("files that cannot be used are refused with a line") {
+    CHECK_THAT(of_csv(""), Contains("empty"));
+    CHECK_THAT(of_csv("t_s,sensor,grey,reading\n"), Contains("no rows"));
+    CHECK_THAT(of_csv(table() + "6.0,1,0.5\n"), Contains("line 62") && Contains("3 cells"));
+    CHECK_THAT(of_csv(table() + "6.0,1,0.5,300,7\n"), Contains("line 62") && Contains("5 cells"));
+    CHECK_THAT(of_csv(replaced(table(), "sensor", "reading")), Contains("twice"));
+    CHECK_THAT(of_csv(table().substr(table().find('\n') + 1)), Contains("header"));
+    CHECK_THAT(of_csv(replaced(replaced(table(), ",", ";"), ".", ",")), Contains("decimal point"));
+    CHECK_THAT(of_csv(replaced(table(), "\n", "\r")), Contains("carriage returns"));
+    CHECK_THAT(of_csv("\xFF\xFE" + table()), Contains("UTF-16"));
+    CHECK_THAT(of_csv(replaced(table(), "reading", "Reading")), Contains("\"Reading\"?"));
+    CHECK_THAT(of_csv(table() + "6.0,1,0.5,n/a\n"), Contains("line 62") && Contains("n/a"));
+    CHECK_THAT(of_csv(std::string("\0\1\2\n\3", 5)), Contains("a.csv"));
+    const Folder folder;
+    CHECK_THAT(refusal(folder.path()), Contains("experiment.toml"));
+    CHECK_THAT(refusal(folder.path() / "none"), Contains("not a folder"));
+    write_file(folder.path() / "experiment.toml", kToml);
+    CHECK_THAT(refusal(folder.path()), Contains("a.csv") && Contains("cannot be opened"));
+}
+
+TEST_CASE("descriptions that cannot be used are refused with a line") {
+    const std::string run = "[[run]]\nfile = \"a.csv\"\n";
+    CHECK(of_toml(kToml) == "");
+    CHECK(of_toml(replaced(kToml, "\n", "\r\n")) == "");
+    CHECK_THAT(of_toml(""), Contains("kind"));
+    CHECK_THAT(of_toml("kind = \"grond\"\n" + run), Contains("ground"));
+    CHECK_THAT(of_toml("kind = 3\n" + run), Contains("not a text"));
+    CHECK_THAT(of_toml("kind = \"ground\"\n"), Contains("no run"));
+    CHECK_THAT(of_toml("kind = \"ground\n" + run), Contains("line 1"));
+    CHECK_THAT(of_toml("kind = \"ground\"\nkind = \"motion\"\n" + run), Contains("line 2"));
+    CHECK_THAT(of_toml("kind = \"ground\"\ntitel = \"x\"\n" + run), Contains("title"));
+    CHECK_THAT(of_toml("kind = \"ground\"\ntitle = \"caf\xE9\"\n" + run), Contains("line 2"));
+    CHECK_THAT(of_toml("kind = \"ground\"\n[columns]\nt_s = \"kg\"\n" + run), Contains("kg"));
+    CHECK_THAT(of_toml("kind = \"ground\"\n[columns]\ngray = \"1\"\n" + run), Contains("grey"));
+    CHECK_THAT(of_toml("kind = \"ground\"\n[columns]\ngrey = { from = \"shade\" }\n" + run),
+               Contains("shade"));
+    CHECK_THAT(of_toml("kind = \"ground\"\n[nominal]\n\"ground.white\" = nan\n" + run), Contains("finite"));
+    CHECK_THAT(of_toml(run + "kind = \"ground\"\n"), Contains("kind"));
+    const int deep = 20000;
+    CHECK_THAT(
+        of_toml("kind = \"ground\"\nx = " + std::string(deep, '[') + std::string(deep, ']') + "\n" + run),
+        Contains("line 2") && Contains("deep"));
+}
