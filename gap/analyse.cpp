@@ -322,8 +322,8 @@ class Analysis {
                 one.run.push_back(observable.run[i]);
                 one.row.push_back(observable.row[i]);
                 one.measured.push_back(observable.y[i]);
-                one.before.push_back(old_prediction[o].mean[i]);
-                one.after.push_back(new_prediction[o].mean[i]);
+                one.before.push_back(shown(old_prediction[o], i));
+                one.after.push_back(shown(new_prediction[o], i));
                 one.scale.push_back(
                     observable.noise == NoiseKind::Event
                         ? std::sqrt(

@@ -3,6 +3,7 @@
 // over it.
 
 #include "gap/analyse.h"
+#include "gap/overlay_rab.h"
 #include "physics/parameters.h"
 #include "protocols/epuck_serial.h"
 #include "scenarios/world_tables.h"
@@ -74,6 +75,7 @@ std::string overlay_toml(const Experiment& experiment, const Verdict& verdict) {
     std::replace(text.begin(), text.end(), '\t', ' ');
     Values simulator, measuring;
     wheels(experiment, fitted, simulator);
+    rab_overlay(fitted, simulator);
     for (const auto& [name, value] : fitted) {
         int index = -1;
         if (name == "wheel_scale" || name == "wheel_mismatch") continue;

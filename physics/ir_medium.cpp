@@ -140,6 +140,7 @@ void IrMedium::draw_noise(std::size_t sender) {
             to.factor.level[k] = static_cast<float>(std::exp(common + p.receiver_noise * to.noise.normal()));
             to.factor.carrier[k] = static_cast<float>(std::exp(p.carrier_noise * to.noise.normal()));
         }
+        if (p.loss > 0.0 && to.noise.uniform() < p.loss) to.factor.carrier = {};
     }
 }
 

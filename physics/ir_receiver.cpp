@@ -8,16 +8,14 @@ using cosim::Time;
 
 namespace {
 
-constexpr float kFullScale = 4095;
-
 /// A decision falls a tenth of the delay before it shows at the latest, so that it is never due when it
 /// falls.
 Time decided_within(double seconds, Time delay) {
     return std::min(cosim::from_seconds(seconds), delay - delay / 10);
 }
 
-int counts(float level) {
-    return static_cast<int>(std::clamp(level, 0.0F, kFullScale) + 0.5F);
+int counts(float level, float rail) {
+    return static_cast<int>(std::clamp(level, 0.0F, rail) + 0.5F);
 }
 
 }  // namespace
@@ -31,7 +29,8 @@ IrReceiver::IrReceiver(const IrParameters& p)
       level_hold_(cosim::from_seconds(p.level_hold)),
       reaction_(std::min({delay_on_, delay_off_, level_delay_})),
       settled_(std::min({delay_on_ - min_burst_, delay_off_ - min_gap_, level_delay_})),
-      threshold_(static_cast<float>(p.threshold)) {
+      threshold_(static_cast<float>(p.threshold)),
+      rail_(static_cast<float>(p.rail)) {
     level_.fill(-1);
     shown_.fill(-1);
 }
@@ -79,7 +78,7 @@ void IrReceiver::measure(Time now, const IrArray<float>& level) {
     std::uint16_t fell = 0;
     std::uint16_t back = 0;
     for (std::size_t k = 0; k < kIrSensors; ++k) {
-        const int value = counts(level[k]);
+        const int value = counts(level[k], rail_);
         if (value == level_[k]) continue;
         const bool was_lower = level_[k] < shown_[k];
         level_[k] = value;

@@ -55,7 +55,7 @@ class IrReceiver {
 
     cosim::Time delay_on_, delay_off_, min_burst_, min_gap_, level_delay_, level_hold_;
     cosim::Time reaction_, settled_;
-    float threshold_;
+    float threshold_, rail_;
     std::uint16_t above_ = 0;
     std::deque<Change> rising_, falling_, lower_;
     IrArray<int> level_, shown_;

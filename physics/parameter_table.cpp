@@ -72,11 +72,11 @@ std::vector<ParameterInfo> build_table() {
         {"proximity.compression", "1/counts", 1, {0.0}, 0.0, 1e-3, AT(proximity.compression), "y/(1+c y), any curve; 0 = none; [M] saturation at 3500-5000 counts"},
         {"proximity.extra_exponent", "1", 1, {0.0}, -1.5, 1.5, AT(proximity.extra_exponent), "any curve falls by ((d+d0)/(30 mm+d0))^-q more; [M] p 1.5-2.5"},
         {"proximity.distance_shift", "m", 1, {0.0}, -0.02, 0.02, AT(proximity.distance_shift), "effective origin: added to every distance; 3-10 mm between tables [M]"},
-        {"proximity.threshold", "counts", 1, {0.0}, 0.0, 2000, AT(proximity.threshold), "below this the reflected counts are none; [M] 1060 on another robot"},
+        {"proximity.threshold", "counts", 1, {0.0}, 0.0, 2000, AT(proximity.threshold), "below this a reading is 0; [M] 1060 on another robot"},
         {"proximity.ambient_offset", "counts", 1, {0.0}, -500, 500, AT(proximity.ambient_offset), "counts that room light at level 1 adds; [M] 60-140"},
         {"proximity.ambient_gain", "1", 1, {0.0}, -0.5, 0.9, AT(proximity.ambient_gain), "share of the answer lost at ambient level 1: the transistor nears its rail"},
         {"proximity.battery_gain", "1/V", 1, {0.0}, -1.0, 1.0, AT(proximity.battery_gain), "? emitter power a volt of battery, about 3.7 V"},
-        {"proximity.motor_sag", "1", 1, {0.0}, 0.0, 0.2, AT(proximity.motor_sag), "? share lost with both motors stepping (reference sag), 0-0.02"},
+        {"proximity.motor_sag", "1", 1, {0.0}, 0.0, 0.2, AT(proximity.motor_sag), "? share of the whole reading lost with both motors stepping (reference sag), 0-0.02"},
 
         // Ambient light.
         {"light.gain", "1", 8, {1.0}, 0.0, 5.0, FIRST(light.gain), "as proximity.gain"},
@@ -158,6 +158,8 @@ std::vector<ParameterInfo> build_table() {
         {"ir.reflection", "1", 1, {0.0}, 0.0, 1.0, AT(ir.reflection), "? share of irradiance mirrored by a white wall or box (first order)"},
         {"ir.self_coupling", "1", 1, {0.0}, 0.0, 1e3, AT(ir.self_coupling), "? carrier of each own emitter at each own receiver, in thresholds; 0: a board hears itself by walls only"},
         {"ir.chip", "s", 1, {98.09e-6}, 1e-6, 1e-3, AT(ir.chip), "[R] half a bit: a frame has ended after 3 dark chips"},
+        {"ir.rail", "counts", 1, {4095}, 1, 4095, AT(ir.rail), "highest count that a strength measurement reaches: the peak detector's rail"},
+        {"ir.loss", "1", 1, {0.0}, 0.0, 1.0, AT(ir.loss), "share of frames that a board does not hear, whoever sends and however near; 0: losses emerge"},
         {"ir.refresh", "s", 1, {0.005}, 0.001, 1.0, AT(ir.refresh), "a burst that lasts longer is looked at anew when something moved"},
 
         // Contacts.

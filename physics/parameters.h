@@ -70,7 +70,7 @@ struct IrParameters {
     double threshold, delay_on, delay_off, min_burst, min_gap, level_delay, level_hold, ambient;
     double emitter_spread, receiver_spread, demodulator_spread;
     double frame_noise, receiver_noise, carrier_noise, near_noise, near_range;
-    double reflection, self_coupling, chip, refresh;
+    double reflection, self_coupling, chip, refresh, rail, loss;
 };
 
 /// Contacts between any two things; one set for the whole world.

@@ -103,16 +103,15 @@ std::array<double, kProximitySensors> ProximityRing::sense(const SensorView& vie
     }
     double scale = p.scale * (1.0 - p.ambient_gain * view.ambient);
     if (p.battery_gain != 0.0) scale *= 1.0 + p.battery_gain * (view.battery - kBatteryReference);
-    if (p.motor_sag != 0.0) scale *= 1.0 - p.motor_sag * view.motors;
     if (p.warmup_gain != 0.0) scale *= 1.0 + p.warmup_gain * (1.0 - std::exp(-view.seconds / p.warmup_time));
     std::array<double, kProximitySensors> counts{};
     for (std::size_t i = 0; i < kProximitySensors; ++i) {
         const double pair = own[(i + 4) % kProximitySensors];
         const double neighbours = own[(i + 1) % kProximitySensors] + own[(i + 7) % kProximitySensors];
         const double seen = own[i] + p.pair_crosstalk * pair + p.neighbour_crosstalk * neighbours;
-        double answer = scale * p.gain[i] * seen;
-        if (answer < p.threshold) answer = 0.0;
-        counts[i] = std::clamp(answer + p.offset[i] + p.ambient_offset * view.ambient, 0.0, kFullScale);
+        const double answer = scale * p.gain[i] * seen + p.offset[i] + p.ambient_offset * view.ambient;
+        counts[i] = std::clamp(answer * (1.0 - p.motor_sag * view.motors), 0.0, kFullScale);
+        if (counts[i] < p.threshold) counts[i] = 0.0;
     }
     return counts;
 }

@@ -13,7 +13,7 @@ Effect bearing_offset() {
         .parameters = {{"rab.bearing_offset", -1.5, 1.5, 0.1, {}, "-2..+8 degrees"}},
         .needs = {},
         .observables = "bearing",
-        .enters = "measuring chain",
+        .enters = "ir.receiver_angle",
         .confounded = {"strength_spread_parts"},
         .separated_by = "the sender moved round the receiver",
         .measuring_chain = true,

@@ -19,6 +19,7 @@ struct EffectParameter {
     double prior_sd;             ///< weak normal prior about neutral
     std::vector<double> starts;  ///< where a fit begins, in the parameter's unit; several = tried one by one
     const char* source;          ///< of the range
+    const char* unless = nullptr;  ///< not freed where the model has this parameter, which does the same
 };
 
 struct Effect {

@@ -13,7 +13,7 @@ Effect far_floor() {
         .parameters = {{"rab.far_floor", 100.0, 3000.0, 400.0, {950.0, 1150.0}, "median 920 beyond 45 cm"}},
         .needs = {},
         .observables = "strength at large distance",
-        .enters = "ir.* background",
+        .enters = "ir.level",
         .confounded = {"strength_spread_parts"},
         .separated_by = "distances beyond half a metre",
         .measuring_chain = false,

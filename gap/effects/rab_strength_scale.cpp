@@ -14,7 +14,7 @@ Effect rab_strength_scale() {
             {{"rab.strength_gain", -2.0, 2.0, 0.25, {}, "641 against 1050 counts at 20 cm between robots"}},
         .needs = {},
         .observables = "strength",
-        .enters = "ir.power",
+        .enters = "ir.receiver_gain, all twelve",
         .confounded = {"strength_spread_parts"},
         .separated_by = "a second pair of boards",
         .measuring_chain = false,

@@ -13,7 +13,7 @@ Effect random_loss() {
         .parameters = {{"rab.random_loss", 0.0, 0.95, 0.15, {0.05}, "30 % to 85 % reported"}},
         .needs = {},
         .observables = "reception",
-        .enters = "emerges; ir.* sensitivity",
+        .enters = "ir.loss, beside the losses that emerge",
         .confounded = {"beat_loss", "collision_loss"},
         .separated_by = "one sender only, many messages in a row",
         .measuring_chain = false,

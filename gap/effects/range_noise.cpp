@@ -13,7 +13,7 @@ Effect range_noise() {
         .parameters = {{"rab.strength_spread", -0.9, 5.0, 0.5, {0.2}, "0.36 at contact, 0.11-0.15 beyond"}},
         .needs = {},
         .observables = "scatter of strength",
-        .enters = "ir.* noise",
+        .enters = "ir.frame_noise, ir.receiver_noise, ir.near_noise",
         .confounded = {"strength_spread_parts"},
         .separated_by = "several pairs of boards at one distance, turned",
         .measuring_chain = false,

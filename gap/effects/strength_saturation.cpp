@@ -10,11 +10,10 @@ Effect strength_saturation() {
         .mechanism = "The peak detector reaches its rail.",
         .equation = "s = min(s, S)",
         .kinds = {Kind::Rab},
-        .parameters =
-            {{"rab.saturation", 300.0, 4095.0, 1500.0, {1900.0, 1300.0}, "4095; readings fold below 2 cm"}},
+        .parameters = {{"rab.saturation", 300.0, 4095.0, 1500.0, {}, "4095; readings fold below 2 cm"}},
         .needs = {},
         .observables = "strength at small distance",
-        .enters = "ir.* saturation",
+        .enters = "ir.rail",
         .confounded = {"far_floor"},
         .separated_by = "distances below 5 cm",
         .measuring_chain = false,

@@ -11,7 +11,8 @@ namespace puckloop::gap {
 
 namespace {
 
-constexpr double kClip = 5.0;  // innovations beyond do not pull the filter further
+constexpr double kClip = 5.0;        // innovations beyond do not pull the filter further
+constexpr double kPileWidths = 3.0;  // from the ceiling: nearer readings were cut to it
 
 double at(const std::vector<double>& values, std::size_t i, double neutral) {
     return values.empty() ? neutral : values[i];
@@ -56,13 +57,16 @@ class Size {
     double sd_;
 };
 
-/// Is the row at an end of the instrument's range? Then its role and limit are noted.
+/// Is the row at an end of what the instrument shows? Then its role and limit are noted.
 bool clipped(const Observable& o, const Predicted& p, std::size_t i, double sd, Innovations& out) {
-    const bool low = o.y[i] <= o.instrument.floor, high = o.y[i] >= o.instrument.ceiling;
-    if (!low && !high) return false;
-    const double floor = p.floor > 0.0 ? p.floor : o.instrument.floor;
-    out.role[i] = low ? RowRole::Low : RowRole::High;
-    out.z[i] = ((low ? floor : o.instrument.ceiling) - p.mean[i]) / sd;
+    const bool dead_zone = p.floor > 0.0;
+    const bool low = o.y[i] <= (dead_zone && std::isnan(o.instrument.floor) ? 0.0 : o.instrument.floor);
+    const bool high = o.y[i] >= o.instrument.ceiling;
+    const bool piled = !low && !high && p.ceiling > 0.0 && o.y[i] >= p.ceiling - kPileWidths * p.pile;
+    if (!low && !high && !piled) return false;
+    const double floor = dead_zone ? p.floor : o.instrument.floor;
+    out.role[i] = low ? RowRole::Low : high ? RowRole::High : RowRole::Piled;
+    out.z[i] = ((low ? floor : high ? o.instrument.ceiling : p.ceiling) - p.mean[i]) / sd;
     return true;
 }
 

@@ -15,11 +15,12 @@ enum class RowRole : char {
     First,  ///< only says where a sum begins
     Low,    ///< at or below the instrument's floor
     High,   ///< at or above its ceiling
+    Piled,  ///< cut to the prediction's ceiling
     Event,  ///< happened or not
 };
 
 struct Innovations {
-    /// Plain: standardised innovation. Low, High: the limit, in sd above the mean. Event: its probability.
+    /// Plain: standardised innovation. Low, High, Piled: the limit, in sd above the mean. Event: its probability.
     std::vector<double> z;
     std::vector<double> variance;  ///< Plain: of the innovation, observable's unit squared; else 1
     std::vector<RowRole> role;

@@ -87,10 +87,20 @@ double dead_zone_cost(const Observable& o, double floor, double y) {
     return inside > 30 ? inside : std::log1p(std::exp(inside));
 }
 
+/// Readings cut to the ceiling lie within the pile's width of it; beyond they should not be. The density is a
+/// normal one near the ceiling and falls exponentially further off.
+double pile_cost(const Predicted& p, double y, RowRole role) {
+    if (p.ceiling <= 0.0 || role == RowRole::Low) return 0.0;
+    constexpr double kStraight = 3.0;  // widths
+    const double off = std::abs(y - p.ceiling) / p.pile;
+    const double beside = off < kStraight ? off * off / 2 : kStraight * (off - kStraight / 2);
+    return role == RowRole::High ? beside : beside + std::log(p.pile) + 0.5 * std::log(2 * kPi);
+}
+
 }  // namespace
 
 bool is_simple(const Predicted& predicted) {
-    return predicted.lapse.empty() && predicted.floor <= 0.0;
+    return predicted.lapse.empty() && predicted.floor <= 0.0 && predicted.ceiling <= 0.0;
 }
 
 void costs_of(const Observable& o, const Predicted& p, const NoiseParameters& noise,
@@ -110,7 +120,9 @@ void costs_of(const Observable& o, const Predicted& p, const NoiseParameters& no
             continue;
         case RowRole::Low:
         case RowRole::High:
-            cost[i] = -std::log(clip_likelihood(innovations.role[i], z));
+        case RowRole::Piled:
+            cost[i] = -std::log(clip_likelihood(innovations.role[i], z)) +
+                      pile_cost(p, o.y[i], innovations.role[i]);
             continue;
         case RowRole::Plain:
             break;
@@ -141,7 +153,7 @@ void row_costs(const Observable& o, const Predicted& p, const NoiseParameters& n
         const RowRole role = innovations.role[i];
         if (role == RowRole::Event)
             z = ((o.y[i] > 0.5 ? 1.0 : 0.0) - z) / std::sqrt(z * (1 - z));
-        else if (role == RowRole::Low || role == RowRole::High)
+        else if (role == RowRole::Low || role == RowRole::High || role == RowRole::Piled)
             z = (role == RowRole::Low ? 1 : -1) * normal_quantile(clip_likelihood(role, z) / 2);
     }
 }
@@ -167,7 +179,8 @@ void slopes_of(const Observable& o, const NoiseParameters& noise, const Innovati
             curvature[i] = 1 / (z * (1 - z));
             break;
         case RowRole::Low:
-        case RowRole::High: {
+        case RowRole::High:
+        case RowRole::Piled: {
             const double sign = innovations.role[i] == RowRole::Low ? 1 : -1;
             const double hazard =
                 (1 - kLeastProbability) * normal_density(z) / clip_likelihood(innovations.role[i], z);

@@ -15,7 +15,8 @@ constexpr int kTail = 2;  // as noise_parameter counts
 bool equal(const Predicted& a, const Predicted& b) {
     return a.mean == b.mean && a.factor == b.factor && a.extra == b.extra && a.lapse == b.lapse &&
            a.lapse_scale == b.lapse_scale && a.lapse_shift == b.lapse_shift && a.floor == b.floor &&
-           a.line_amplitude == b.line_amplitude && a.line_frequency == b.line_frequency;
+           a.ceiling == b.ceiling && a.line_amplitude == b.line_amplitude &&
+           a.line_frequency == b.line_frequency;
 }
 
 Eigen::Index as_index(std::size_t i) {

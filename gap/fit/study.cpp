@@ -38,7 +38,8 @@ bool same(const std::vector<double>& a, const std::vector<double>& b) {
 bool differ(const Predicted& a, const Predicted& b) {
     return !same(a.mean, b.mean) || !same(a.factor, b.factor) || !same(a.extra, b.extra) ||
            !same(a.lapse, b.lapse) || !same(a.lapse_scale, b.lapse_scale) || a.lapse_shift != b.lapse_shift ||
-           a.floor != b.floor || a.line_amplitude != b.line_amplitude || a.line_frequency != b.line_frequency;
+           a.floor != b.floor || a.ceiling != b.ceiling || a.line_amplitude != b.line_amplitude ||
+           a.line_frequency != b.line_frequency;
 }
 
 bool varies(const Experiment& experiment, std::string_view column) {
@@ -113,7 +114,8 @@ void Study::make_candidates() {
         candidate.remark = missing_for(*effect);
         std::vector<std::vector<double>> own;  // starts of each freed parameter
         std::size_t rounds = 1;
-        for (const EffectParameter& parameter : effect->parameters)
+        for (const EffectParameter& parameter : effect->parameters) {
+            if (parameter.unless != nullptr && model_->find(parameter.unless) >= 0) continue;
             for (const int index : model_->matching(parameter.name)) {
                 candidate.freed.push_back(freed_at(*model_, parameter, index));
                 own.push_back(parameter.starts);
@@ -123,6 +125,7 @@ void Study::make_candidates() {
                         own.back().push_back(start);
                 rounds = std::max(rounds, own.back().size());
             }
+        }
         if (candidate.freed.empty() && candidate.remark.empty())
             candidate.remark = "nothing in this data depends on it";
         for (std::size_t round = 0; round < rounds; ++round) {
@@ -147,6 +150,11 @@ void Study::make_folds(std::uint64_t seed) {
     RandomStream random(seed, "gap/folds");
     for (std::size_t i = runs; i > 1; --i)
         std::swap(order[i - 1], order[random.below(i)]);
+    // Repeats of one condition are dealt to different folds: what only they show could not be learnt from the
+    // others.
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return experiment_.runs[a].conditions < experiment_.runs[b].conditions;
+    });
     std::vector<std::size_t> place(runs);
     for (std::size_t i = 0; i < runs; ++i)
         place[order[i]] = i;
@@ -313,7 +321,7 @@ HeldOut Study::hold_out(const Fit& whole) const {
             for (std::size_t i = 0; i < fold_[o].size(); ++i)
                 if (fold_[o][i] == static_cast<int>(k)) {
                     held.score[o][i] = -costs[o].cost[i];
-                    held.mean[o][i] = prediction[o].mean[i];
+                    held.mean[o][i] = shown(prediction[o], i);
                 }
     }
     return held;

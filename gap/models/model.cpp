@@ -6,9 +6,16 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace puckloop::gap {
+
+double shown(const Predicted& predicted, std::size_t i) {
+    const double mean = predicted.mean[i];
+    if (predicted.floor > 0.0 && mean < predicted.floor) return 0.0;
+    return predicted.ceiling > 0.0 ? std::min(mean, predicted.ceiling) : mean;
+}
 
 int Model::find(std::string_view name) const {
     for (std::size_t i = 0; i < parameters_.size(); ++i)

@@ -49,10 +49,15 @@ struct Predicted {
     double lapse_shift = 0.0;         ///< mean of a lapse, observable's unit
     bool lapse_both = false;          ///< shifted up or down, equally likely
     double floor = 0.0;               ///< reading 0 means "below this" (dead zone); 0: the instrument's floor
+    double ceiling = 0.0;             ///< readings above this, noise included, are cut to it; 0: none are
+    double pile = 0.0;                ///< sd of a reading cut to the ceiling, observable's unit
     double line_amplitude = 0.0;      ///< of a spectral line with unknown phase, observable's unit
     double line_frequency = 0.0;      ///< Hz
 };
 using Prediction = std::vector<Predicted>;
+
+/// The mean of row `i` as a reading shows it: cut to nothing in a dead zone, to the ceiling above it.
+double shown(const Predicted& predicted, std::size_t i);
 
 struct ModelParameter {
     std::string name, unit;

@@ -3,8 +3,8 @@
 // physics::ProximityRing.
 //
 // Deviations: 1. the wall is flat and as wide as the bundle of rays. 2. Crosstalk uses the partners' measured
-// readings. 3. Emitter rise, sampling pairs and calibration are the firmware's and the board's; the reading
-// is taken as they leave it.
+// readings less their idle ones, with the gains and the noise that are in them. 3. Emitter rise, sampling
+// pairs and calibration are the firmware's and the board's; the reading is taken as they leave it.
 
 #include "physics/proximity.h"
 #include "gap/models/model.h"
@@ -23,11 +23,13 @@ namespace puckloop::gap {
 
 namespace {
 
-constexpr std::size_t kMostObjects = 8;  // stated reflectivities that count as objects
-constexpr double kHitSpread = 0.3;       // of a foreign pulse's counts, share
-constexpr double kEdge = 0.01;           // width of the dead zone's edge, share of it
-constexpr double kGrazing = 0.02;        // cosine below which a wall is not met
-constexpr double kSpeedUnit = 1000.0;    // steps/s: motor effects are given at this speed
+constexpr std::size_t kMostObjects = 8;   // stated reflectivities that count as objects
+constexpr double kHitSpread = 0.3;        // of a foreign pulse's counts, share
+constexpr double kGrazing = 0.02;         // cosine below which a wall is not met
+constexpr double kSpeedUnit = 1000.0;     // steps/s: motor noise is given at this speed
+constexpr double kSchedule = 63.015;      // Hz: each sensor is sampled anew so often (e-puck facts 5.1)
+constexpr int kPhases = 8;                // of the schedule against the log's clock that are tried
+constexpr double kClearlyStronger = 1.2;  // a line's power, to believe a phase
 
 class ProximityModel final : public Model {
   public:
@@ -53,7 +55,6 @@ class ProximityModel final : public Model {
         const auto sensors = column("sensor", 0);
         for (const double sensor : sensors)
             sensor_.push_back(static_cast<int>(sensor));
-        if (experiment.has("ambient")) observables_[0].gate = ambient_;
         const auto rays = std::lround(physics::Parameters().proximity.rays);
         for (long k = 0; k < rays; ++k)
             spread_.push_back(
@@ -64,9 +65,12 @@ class ProximityModel final : public Model {
             for (const double aside : spread_)
                 ray_cosine_.push_back(std::cos(angle + aside));
         }
-        for (auto& speed : motor_)
+        for (auto& speed : motor_) {
+            stepping_.push_back(speed != 0.0 ? 1.0 : 0.0);
             speed = std::abs(speed) / kSpeedUnit;
+        }
         const auto curve = experiment.nominal.find("proximity.curve");
+        others_ = exposed();
         declare(objects_of(experiment, column), curve == experiment.nominal.end() || curve->second == 0);
         apply_nominal(experiment);
         angle0_ = physics_.direction;
@@ -74,6 +78,10 @@ class ProximityModel final : public Model {
             angle0_[s] = parameters_[static_cast<std::size_t>(
                                          first_of_.direction[s] >= 0 ? first_of_.direction[s] : 0)]
                              .neutral;
+        if (experiment.has("ambient")) {
+            observables_[0].gate = ambient_;
+            find_schedule();
+        }
     }
 
     void predict(const std::vector<double>& v, Prediction& out) const override {
@@ -96,7 +104,6 @@ class ProximityModel final : public Model {
                      near = value(neighbour_crosstalk_);
         const double warm = value(warmup_), warm_time = value(warmup_time_), sag = value(sag_),
                      age = value(age_);
-        const double threshold = value(threshold_);
         const double light_offset = value(ambient_offset_), light_gain = value(ambient_gain_),
                      volt = value(per_volt_), drift = value(drift_);
         // What the curve says changes with few parameters: the rest reuse it.
@@ -121,45 +128,133 @@ class ProximityModel final : public Model {
             const auto s = static_cast<std::size_t>(sensor_[i]);
             double seen = seen_[i];
             if (!object_.empty()) seen *= value(object_parameter_[static_cast<std::size_t>(object_[i])]);
-            seen += pair * pair_[i] + near * neighbour_[i];
-            double gain =
-                scale * value(first_of_.gain[s]) * (1 - light_gain * ambient_[i]) * (1 - sag * motor_[i]);
+            if (pair != 0.0) seen += pair * (pair_[i] - idle(v, s + kOpposite));
+            if (near != 0.0)
+                seen += near * (neighbour_[i] - idle(v, s + 1) - idle(v, s + physics::kProximitySensors - 1));
+            double gain = scale * value(first_of_.gain[s]) * (1 - light_gain * ambient_[i]);
             if (warm != 0.0) gain *= 1 + warm * (1 - std::exp(-std::max(time_[i], 0.0) / warm_time));
             if (!battery_.empty()) gain *= 1 + volt * battery_[i];
             if (!order_.empty()) gain *= 1 + drift * order_[i];
-            double answer = gain * seen;
-            if (threshold > 0) answer *= 1 / (1 + std::exp(-(answer - threshold) / (kEdge * threshold)));
-            p.mean[i] = answer + value(first_of_.offset[s]) + light_offset * ambient_[i];
+            p.mean[i] = (gain * seen + value(first_of_.offset[s]) + light_offset * ambient_[i]) *
+                        (1 - sag * stepping_[i]);
         }
+        p.floor = value(threshold_);
         noise(v, p);
     }
 
-    /// The strongest line of the residuals' differences, all chains together.
     std::vector<double> starts(std::string_view parameter) const override {
-        Prediction prediction;
         if (parameter == "proximity.threshold") return thresholds();
-        if (parameter != "proximity.flicker_frequency") return {};
-        predict(neutral(), prediction);
-        return strongest_line(observables_[0], prediction[0].mean);
+        if (parameter == "proximity.interference_size" && jump_size_ > 0) return {jump_size_};
+        if (parameter == "proximity.flicker_frequency" && line_frequency_found_ > 0)
+            return {line_frequency_found_};
+        return {};
     }
 
   private:
-    /// The two dead zones that leave the smallest errors, of a grid.
+    /// The dead zone that parts the readings of nothing from the others best; none where nothing reads 0.
     std::vector<double> thresholds() const {
-        constexpr double kLowest = 3.0, kHighest = 2000.0, kRatio = 1.25;
-        std::vector<std::pair<double, double>> found;
-        std::vector<double> values = neutral();
+        constexpr double kLowest = 3.0, kHighest = 2000.0, kRatio = 1.02;
+        const auto& y = observables_[0].y;
+        if (std::none_of(y.begin(), y.end(), [](double reading) { return reading <= 0; })) return {};
         Prediction prediction;
+        predict(neutral(), prediction);
+        double best = 0.0;
+        std::size_t fewest = y.size() + 1;
         for (double threshold = kLowest; threshold < kHighest; threshold *= kRatio) {
-            values[static_cast<std::size_t>(threshold_)] = threshold;
-            predict(values, prediction);
-            double sum = 0.0;
-            for (std::size_t i = 0; i < prediction[0].mean.size(); ++i)
-                sum += std::abs(observables_[0].y[i] - prediction[0].mean[i]);
-            found.emplace_back(sum, threshold);
+            std::size_t wrong = 0;
+            for (std::size_t i = 0; i < y.size(); ++i)
+                wrong += y[i] <= 0 ? prediction[0].mean[i] > threshold : y[i] < threshold;
+            if (wrong > fewest) continue;
+            fewest = wrong;
+            best = threshold;
         }
-        std::sort(found.begin(), found.end());
-        return {found[0].second, found[1].second};
+        return {best};
+    }
+
+    /// Idle reading of a sensor, as far as the data or the simulator says.
+    double idle(const std::vector<double>& v, std::size_t sensor) const {
+        sensor %= physics::kProximitySensors;
+        const int index = first_of_.offset[sensor];
+        return index >= 0 ? v[static_cast<std::size_t>(index)] : physics_.offset[sensor];
+    }
+
+    /// 1 for the rows of sensors that a foreign source may hit: those side by side on the ring whose repeats
+    /// at one place jump clearly more often than the others', or all.
+    std::vector<double> exposed() {
+        constexpr double kJump = 2.5, kMad = 1.4826;
+        constexpr double kBelieved = 10.0;  // log likelihood ratio, above the number of arcs that are tried
+        constexpr int kRing = physics::kProximitySensors;
+        std::vector<double> sizes;
+        std::vector<std::pair<int, double>> repeats;  // sensor, difference
+        const Observable& o = observables_[0];
+        for (std::size_t i = 1; i < o.y.size(); ++i)
+            if (o.starts[i] == 0 && distance_[i] == distance_[i - 1] && angle_[i] == angle_[i - 1]) {
+                repeats.emplace_back(sensor_[i], std::abs(o.y[i] - o.y[i - 1]));
+                sizes.push_back(repeats.back().second);
+            }
+        std::vector<double> all = others_;
+        if (sizes.size() < 2 * kRing) return all;
+        std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2),
+                         sizes.end());
+        const double limit = kJump * kMad * std::max(sizes[sizes.size() / 2], 1.0);
+        std::vector<double> beyond;
+        std::array<double, kRing> jumps{}, counts{};
+        for (const auto& [sensor, size] : repeats) {
+            counts[static_cast<std::size_t>(sensor)] += 1;
+            jumps[static_cast<std::size_t>(sensor)] += size > limit ? 1 : 0;
+            if (size > limit) beyond.push_back(size);
+        }
+        std::sort(beyond.begin(), beyond.end());
+        if (!beyond.empty()) jump_size_ = beyond[beyond.size() / 2];
+        const auto fit = [](double yes, double of) {
+            return yes <= 0 || yes >= of ? 0.0
+                                         : yes * std::log(yes / of) + (of - yes) * std::log1p(-yes / of);
+        };
+        double best = kBelieved;
+        int first = 0, length = kRing;
+        for (int from = 0; from < kRing; ++from)
+            for (int wide = 1; wide < kRing; ++wide) {
+                double in = 0, in_of = 0, out = 0, out_of = 0;
+                for (int k = 0; k < kRing; ++k) {
+                    const auto s = static_cast<std::size_t>((from + k) % kRing);
+                    (k < wide ? in : out) += jumps[s];
+                    (k < wide ? in_of : out_of) += counts[s];
+                }
+                if (in_of == 0 || out_of == 0 || in * out_of <= out * in_of) continue;
+                const double ratio = fit(in, in_of) + fit(out, out_of) - fit(in + out, in_of + out_of);
+                if (ratio <= best) continue;
+                best = ratio;
+                first = from;
+                length = wide;
+            }
+        for (std::size_t i = 0; i < all.size(); ++i)
+            if ((sensor_[i] - first + kRing) % kRing >= length) all[i] = 0.0;
+        return all;
+    }
+
+    /// Readings are held between two samples of the sensor's schedule, whose phase the log does not tell: the
+    /// one that gives the strongest line is taken, where it is clearly stronger than without a schedule.
+    void find_schedule() {
+        Prediction prediction;
+        predict(neutral(), prediction);
+        Observable& o = observables_[0];
+        if (o.time.empty()) return;
+        const std::vector<double> logged = o.time;
+        std::vector<double> best_time = logged;
+        Line best = strongest_line(o, prediction[0].mean);
+        line_frequency_found_ = best.frequency;
+        best.power *= kClearlyStronger;
+        for (int phase = 0; phase < kPhases; ++phase) {
+            const double late = static_cast<double>(phase) / kPhases;
+            for (std::size_t i = 0; i < logged.size(); ++i)
+                o.time[i] = (std::floor(logged[i] * kSchedule - late) + late) / kSchedule;
+            const Line line = strongest_line(o, prediction[0].mean, kSchedule / 2);
+            if (line.power <= best.power) continue;
+            best = line;
+            best_time = o.time;
+            line_frequency_found_ = line.frequency;
+        }
+        o.time = best_time;
     }
 
     /// Reflected counts of every row before gains: the part that costs time.
@@ -170,7 +265,7 @@ class ProximityModel final : public Model {
         for (std::size_t i = 0; i < seen_.size(); ++i) {
             const auto s = static_cast<std::size_t>(sensor_[i]);
             double distance = distance_[i] - age * velocity_[i];
-            const double normal = (distance + shift) * cosine_[i];  // from the sensor to the wall's plane
+            const double normal = distance * cosine_[i];  // from the sensor to the wall's plane
             const double turned = value(first_of_.direction[s]) - angle0_[s];
             double seen = 0.0;
             for (std::size_t k = 0; k < spread_.size(); ++k) {
@@ -178,7 +273,7 @@ class ProximityModel final : public Model {
                                                     : std::cos(angle_[i] - turned + spread_[k]);
                 if (cosine < kGrazing) continue;
                 const double weight = exponent == 1.0 ? cosine : std::pow(cosine, exponent);
-                seen += weight * physics::proximity_response(response, normal / cosine);
+                seen += weight * physics::proximity_response(response, normal / cosine + shift);
             }
             seen *= reflectivity_[i] / static_cast<double>(spread_.size());
             seen_[i] = seen;
@@ -225,7 +320,8 @@ class ProximityModel final : public Model {
         const physics::Parameters defaults;
         physics_ = defaults.proximity;
         curve_ = add("proximity.curve", "choice", physics_.curve);
-        amplitude_ = add("proximity.amplitude", "counts", physics_.amplitude);
+        amplitude_ =
+            add(table ? "-proximity.amplitude" : "proximity.amplitude", "counts", physics_.amplitude);
         origin_ = add(table ? "-proximity.origin" : "proximity.origin", "m", physics_.origin);
         exponent_ = add(table ? "-proximity.exponent" : "proximity.exponent", "1", physics_.exponent);
         saturation_ =
@@ -257,6 +353,8 @@ class ProximityModel final : public Model {
         line_ = add("proximity.flicker", "counts", 0.0);
         line_frequency_ = add("proximity.flicker_frequency", "Hz", 1.0);
         first_of_.gain.fill(-1);
+        first_of_.offset.fill(-1);
+        first_of_.direction.fill(-1);
         for (const int sensor : sensor_) {
             const auto s = static_cast<std::size_t>(sensor);
             if (first_of_.gain[s] >= 0) continue;
@@ -307,10 +405,12 @@ class ProximityModel final : public Model {
     }
 
     physics::ProximityParameters physics_;
+    static constexpr std::size_t kOpposite = 4;  // places on the ring to the sensor lit by the same pulse
+    double line_frequency_found_ = 0.0, jump_size_ = 0.0;
     mutable std::vector<double> seen_, seen_key_;
     std::vector<double> spread_, cosine_, ray_cosine_;
-    std::vector<double> distance_, angle_, reflectivity_, ambient_, pair_, neighbour_, motor_, velocity_,
-        time_, others_, battery_, order_;
+    std::vector<double> distance_, angle_, reflectivity_, ambient_, pair_, neighbour_, motor_, stepping_,
+        velocity_, time_, others_, battery_, order_;
     std::vector<int> sensor_, object_, object_parameter_;
     std::array<double, physics::kProximitySensors> angle0_{};
     PerSensor first_of_;

@@ -6,11 +6,14 @@
 // 2. Reception is a probability; in the simulator losses emerge from frames and interrupts.
 
 #include "gap/models/model.h"
+#include "gap/models/rab_table.h"
 #include "gap/models/rows.h"
+#include "physics/parameters.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -18,34 +21,29 @@ namespace puckloop::gap {
 
 namespace {
 
-struct Measured {
-    double distance, log_median, spread;
-};
-/// Medians and sds of ln(counts), measured between two boards (argos3-epuck).
-constexpr Measured kTable[] = {
-    {0.00, 7.64689, 0.357061}, {0.02, 7.59652, 0.319231}, {0.05, 7.24955, 0.192649},
-    {0.10, 7.08464, 0.15294},  {0.15, 6.9845, 0.109233},  {0.30, 6.91745, 0.121653},
-    {0.45, 6.82319, 0.153155}, {0.60, 6.82855, 0.141843}, {0.80, 6.82855, 0.141843}};
 constexpr double kReception = 0.999;
 constexpr double kFullScale = 4095;
+constexpr std::size_t kReceivers = 12;
+constexpr std::size_t kLeastReceivers = 3;  // with a gain: fewer tell nothing of a bearing
+constexpr std::size_t kLeastPiled = 5;      // equal highest strengths that look like a rail
 
-double between(double Measured::*what, double distance) {
-    if (distance <= kTable[0].distance) return kTable[0].*what;
-    for (std::size_t i = 1; i < std::size(kTable); ++i)
-        if (distance <= kTable[i].distance) {
+double between(double RabMeasured::*what, double distance) {
+    if (distance <= kRabTable[0].distance) return kRabTable[0].*what;
+    for (std::size_t i = 1; i < std::size(kRabTable); ++i)
+        if (distance <= kRabTable[i].distance) {
             const double share =
-                (distance - kTable[i - 1].distance) / (kTable[i].distance - kTable[i - 1].distance);
-            return kTable[i - 1].*what + share * (kTable[i].*what - kTable[i - 1].*what);
+                (distance - kRabTable[i - 1].distance) / (kRabTable[i].distance - kRabTable[i - 1].distance);
+            return kRabTable[i - 1].*what + share * (kRabTable[i].*what - kRabTable[i - 1].*what);
         }
-    return std::end(kTable)[-1].*what;
+    return kRabTable.back().*what;
 }
 
 class RabModel final : public Model {
   public:
     explicit RabModel(const Experiment& experiment) {
         const Rows rows(experiment, "", {"distance_m"});
-        if (experiment.has("strength")) gather_strength(rows);
-        if (experiment.has("bearing_rad")) gather_bearing(rows);
+        if (experiment.has("strength")) gather_strength(rows, experiment);
+        if (experiment.has("bearing_rad")) gather_bearing(rows, experiment);
         if (experiment.has("received")) gather_reception(rows);
         declare();
         apply_nominal(experiment);
@@ -58,7 +56,22 @@ class RabModel final : public Model {
         if (reception_ >= 0) predict_reception(v, out[static_cast<std::size_t>(reception_)]);
     }
 
+    std::vector<double> starts(std::string_view parameter) const override {
+        if (parameter == "rab.saturation" && rail_ > 0) return {rail_};
+        return {};
+    }
+
   private:
+    /// The rail that the highest strengths lie at; 0 where none is to be seen.
+    double rail_seen() const {
+        if (strength_ < 0) return 0.0;
+        const auto& y = observables_[static_cast<std::size_t>(strength_)].y;
+        const double top = std::exp(*std::max_element(y.begin(), y.end()));
+        const auto piled = static_cast<std::size_t>(
+            std::count_if(y.begin(), y.end(), [&](double one) { return std::exp(one) > top - 1; }));
+        return piled < kLeastPiled || top > kFullScale - 1 ? 0.0 : top;
+    }
+
     static double at(const std::vector<double>& v, int index) {
         return index < 0 ? 0.0 : v[static_cast<std::size_t>(index)];
     }
@@ -70,7 +83,7 @@ class RabModel final : public Model {
         return out;
     }
 
-    void gather_strength(const Rows& rows) {
+    void gather_strength(const Rows& rows, const Experiment& experiment) {
         std::vector<std::uint32_t> used;
         Observable one = rows.observable("strength", NoiseKind::Carry, used);
         for (double& y : one.y)
@@ -80,17 +93,18 @@ class RabModel final : public Model {
                           one.instrument.ceiling > 0 ? std::log(one.instrument.ceiling) : NAN, 0.0};
         one.known_sd = 1.0;
         for (const double distance : taken(rows.column("distance_m", 0), used)) {
-            log_median_.push_back(between(&Measured::log_median, distance));
-            spread_.push_back(between(&Measured::spread, distance));
+            log_median_.push_back(between(&RabMeasured::log_median, distance));
+            spread_.push_back(between(&RabMeasured::spread, distance));
         }
-        receiver_ = whole(taken(rows.column("receiver", 0), used));
-        emitter_ = whole(taken(rows.column("emitter", 0), used));
+        // What is not told cannot differ: one common gain would be the strength's scale by another name.
+        if (experiment.has("receiver")) receiver_ = whole(taken(rows.column("receiver", 0), used));
+        if (experiment.has("emitter")) emitter_ = whole(taken(rows.column("emitter", 0), used));
         occluded_ = taken(rows.column("occluded", 0), used);
         strength_ = static_cast<int>(observables_.size());
         observables_.push_back(std::move(one));
     }
 
-    void gather_bearing(const Rows& rows) {
+    void gather_bearing(const Rows& rows, const Experiment& experiment) {
         std::vector<std::uint32_t> used;
         Observable one = rows.observable("bearing_rad", NoiseKind::Carry, used);
         one.name = "bearing";
@@ -98,7 +112,14 @@ class RabModel final : public Model {
         const auto truth = taken(rows.column("true_bearing_rad", 0), used);
         for (std::size_t i = 0; i < one.y.size(); ++i)
             one.y[i] = std::remainder(one.y[i] - truth[i], 2 * std::numbers::pi);
-        bearing_receiver_ = whole(taken(rows.column("receiver", 0), used));
+        const physics::Parameters defaults;
+        for (const double bearing : truth)
+            for (std::size_t r = 0; r < kReceivers && experiment.has("true_bearing_rad"); ++r) {
+                const double way = defaults.ir.receiver_angle[r];
+                const double facing = std::cos(bearing - way);
+                const double strength = facing > 0 ? std::pow(facing, defaults.ir.receiver_exponent) : 0.0;
+                lobe_.push_back({strength * std::cos(way), strength * std::sin(way)});
+            }
         bearing_ = static_cast<int>(observables_.size());
         observables_.push_back(std::move(one));
     }
@@ -125,7 +146,9 @@ class RabModel final : public Model {
             emitter_gain_.emplace_back(e, add(fmt::format("rab.emitter_gain{}", e), "1", 1.0));
         more_spread_ = add("rab.strength_spread", "1", 0.0);
         far_floor_ = add("rab.far_floor", "counts", 0.0);
-        saturation_ = add("rab.saturation", "counts", kFullScale);
+        rail_ = rail_seen();
+        // A rail that no strength lies at has no say.
+        saturation_ = add(rail_ > 0 ? "rab.saturation" : "-rab.saturation", "counts", kFullScale);
         multipath_ = add("rab.multipath", "1", 0.0);
         multipath_loss_ = add("rab.multipath_loss", "ln counts", 0.7);
         offset_ = add("rab.bearing_offset", "rad", 0.0);
@@ -153,17 +176,19 @@ class RabModel final : public Model {
         p.mean.resize(n);
         p.factor = spread_;
         const double more = 1 + at(v, more_spread_), gain = at(v, gain_), low = at(v, far_floor_),
-                     high = std::log(at(v, saturation_));
+                     rail = at(v, saturation_);
         const double other = at(v, multipath_);
         for (std::size_t i = 0; i < n; ++i) {
-            double level = log_median_[i] + gain +
-                           std::log(std::max(of(receiver_gain_, receiver_[i], v), 0.01)) +
-                           std::log(std::max(of(emitter_gain_, emitter_[i], v), 0.01));
-            level = std::min(level, high);
+            double level = log_median_[i] + gain;
+            if (!receiver_.empty()) level += std::log(std::max(of(receiver_gain_, receiver_[i], v), 0.01));
+            if (!emitter_.empty()) level += std::log(std::max(of(emitter_gain_, emitter_[i], v), 0.01));
             if (low > 0) level = std::max(level, std::log(low));
             p.mean[i] = level;
             p.factor[i] *= more;
         }
+        // The detector's rail cuts each message's strength, with what chance added to it.
+        p.ceiling = rail < kFullScale - 1 ? std::log(rail) : 0.0;
+        p.pile = 1 / rail;
         p.lapse.assign(other > 0 ? n : 0, other);
         p.lapse_scale.assign(other > 0 ? n : 0, 0.3);
         p.lapse_shift = other > 0 ? -at(v, multipath_loss_) : 0.0;
@@ -173,19 +198,36 @@ class RabModel final : public Model {
     }
 
     void predict_bearing(const std::vector<double>& v, Predicted& p) const {
-        const std::size_t n = bearing_receiver_.size();
+        const std::size_t n = observables_[static_cast<std::size_t>(bearing_)].y.size();
         const double other = at(v, multipath_);
         p.mean.assign(n, at(v, offset_));
         p.lapse.assign(other > 0 ? n : 0, other);
         p.lapse_scale.assign(other > 0 ? n : 0, 0.6);
-        const int around = 12;
-        if (receiver_gain_.size() < 3) return;
-        for (std::size_t i = 0; i < n; ++i) {  // a louder neighbour draws the vector sum towards it
-            const int r = bearing_receiver_[i];
-            if (r < 1) continue;
-            p.mean[i] +=
-                kPull * (std::log(std::max(of(receiver_gain_, r % around + 1, v), 0.01)) -
-                         std::log(std::max(of(receiver_gain_, (r + around - 2) % around + 1, v), 0.01)));
+        if (receiver_gain_.size() < kLeastReceivers || lobe_.empty()) return;
+        std::array<double, kReceivers> gain{};
+        for (std::size_t r = 0; r < kReceivers; ++r)
+            gain[r] = of(receiver_gain_, static_cast<int>(r) + 1, v);
+        if (gain != pull_gain_) {
+            pull_gain_ = gain;
+            find_pull(n);
+        }
+        for (std::size_t i = 0; i < n; ++i)
+            p.mean[i] += pull_[i];
+    }
+
+    /// How far unequal receivers turn the sum of what they measure, by which the board tells bearings.
+    void find_pull(std::size_t n) const {
+        pull_.resize(n);
+        for (std::size_t i = 0; i < n; ++i) {
+            double x = 0, y = 0, equal_x = 0, equal_y = 0;
+            for (std::size_t r = 0; r < kReceivers; ++r) {
+                const Lobe& lobe = lobe_[i * kReceivers + r];
+                equal_x += lobe.x;
+                equal_y += lobe.y;
+                x += pull_gain_[r] * lobe.x;
+                y += pull_gain_[r] * lobe.y;
+            }
+            pull_[i] = std::atan2(y * equal_x - x * equal_y, x * equal_x + y * equal_y);
         }
     }
 
@@ -212,11 +254,16 @@ class RabModel final : public Model {
         }
     }
 
-    static constexpr double kPull =
-        0.25;  // rad a unit of ln gain: two receivers 30 degrees apart, cosine lobes
+    struct Lobe {
+        double x, y;
+    };
 
+    double rail_ = 0.0;       // counts
+    std::vector<Lobe> lobe_;  // of the receivers in turn, for each bearing
+    mutable std::array<double, kReceivers> pull_gain_{};
+    mutable std::vector<double> pull_;
     std::vector<double> log_median_, spread_, occluded_, senders_, frame_, period_, rate_;
-    std::vector<int> receiver_, emitter_, bearing_receiver_;
+    std::vector<int> receiver_, emitter_;
     std::vector<std::pair<int, int>> receiver_gain_, emitter_gain_;
     int strength_ = -1, bearing_ = -1, reception_ = -1;
     int gain_ = -1, more_spread_ = -1, far_floor_ = -1, saturation_ = -1, multipath_ = -1,

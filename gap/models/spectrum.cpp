@@ -2,25 +2,45 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <numbers>
 
 namespace puckloop::gap {
 
 namespace {
 
-constexpr std::size_t kMostRows = 4000;  // enough to find a line worth naming
+constexpr std::size_t kMostRows = 1500;  // enough to find a line worth naming
 constexpr std::size_t kMostFrequencies = 3000;
 constexpr double kClip = 4.0;
 
 struct Difference {
-    double time, value;
+    double time, before, value;  // times of the row and of the one before it
     bool starts;
+};
+
+/// Cosine and sine of one chain, differenced as the rows are, fitted to its differences.
+class Fitted {
+  public:
+    void take(double cosine, double sine, double value) {
+        cc_ += cosine * cosine;
+        cs_ += cosine * sine;
+        ss_ += sine * sine;
+        cv_ += cosine * value;
+        sv_ += sine * value;
+    }
+    /// By how much the sum of squares falls.
+    double power() const {
+        constexpr double kLeast = 1e-3;  // lines that differencing takes away have none
+        const double cc = cc_ + kLeast, ss = ss_ + kLeast;
+        return (ss * cv_ * cv_ - 2 * cs_ * cv_ * sv_ + cc * sv_ * sv_) / (cc * ss - cs_ * cs_);
+    }
+
+  private:
+    double cc_ = 0, cs_ = 0, ss_ = 0, cv_ = 0, sv_ = 0;
 };
 
 }  // namespace
 
-std::vector<double> strongest_line(const Observable& o, const std::vector<double>& mean) {
+Line strongest_line(const Observable& o, const std::vector<double>& mean, double highest) {
     if (o.time.empty()) return {};
     std::vector<Difference> differences;
     std::vector<double> spans, sizes;
@@ -34,10 +54,11 @@ std::vector<double> strongest_line(const Observable& o, const std::vector<double
         }
         const double span = o.time[i] - o.time[i - 1];
         if (span <= 0) continue;
+        if (!o.gate.empty() && o.gate[i] <= 0) continue;
         spans.push_back(span);
         longest = std::max(longest, o.time[i] - begun);
-        const double gate = o.gate.empty() ? 1.0 : o.gate[i];
-        differences.push_back({o.time[i], gate * ((o.y[i] - mean[i]) - (o.y[i - 1] - mean[i - 1])), fresh});
+        differences.push_back(
+            {o.time[i], o.time[i - 1], (o.y[i] - mean[i]) - (o.y[i - 1] - mean[i - 1]), fresh});
         sizes.push_back(std::abs(differences.back().value));
         fresh = false;
     }
@@ -46,31 +67,31 @@ std::vector<double> strongest_line(const Observable& o, const std::vector<double
                      spans.end());
     std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2),
                      sizes.end());
-    const double highest = 0.5 / spans[spans.size() / 2],
-                 limit = kClip * std::max(sizes[sizes.size() / 2], 1e-9);
+    if (highest <= 0) highest = 0.5 / spans[spans.size() / 2];
+    const double limit = kClip * std::max(sizes[sizes.size() / 2], 1e-9);
     const auto count = std::min(kMostFrequencies, static_cast<std::size_t>(4 * longest * highest) + 8);
     double best = 0.0, best_power = -1.0;
     for (std::size_t k = 1; k <= count; ++k) {
         const double frequency = highest * static_cast<double>(k) / static_cast<double>(count);
         const double omega = 2 * std::numbers::pi * frequency;
-        std::complex<double> sum;
         double power = 0.0;
+        Fitted chain;
         for (const Difference& d : differences) {
             if (d.starts) {
-                power += std::norm(sum);
-                sum = {};
+                power += chain.power();
+                chain = {};
             }
-            sum += std::clamp(d.value, -limit, limit) * std::polar(1.0, omega * d.time);
+            chain.take(std::cos(omega * d.time) - std::cos(omega * d.before),
+                       std::sin(omega * d.time) - std::sin(omega * d.before),
+                       std::clamp(d.value, -limit, limit));
         }
-        power += std::norm(sum);
-        power /=
-            1 - std::cos(omega * spans[spans.size() / 2]) + 1e-3;  // differencing makes high lines stronger
+        power += chain.power();
         if (power > best_power) {
             best_power = power;
             best = frequency;
         }
     }
-    return {best};
+    return {best, best_power};
 }
 
 }  // namespace puckloop::gap

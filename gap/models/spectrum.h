@@ -5,7 +5,13 @@
 
 namespace puckloop::gap {
 
-/// Frequency (Hz) of the strongest line in the differences of y - mean, chains summed; empty without times.
-std::vector<double> strongest_line(const Observable& observable, const std::vector<double>& mean);
+struct Line {
+    double frequency = 0.0;  ///< Hz; 0: none can be looked for
+    double power = 0.0;      ///< comparable between time axes of the same rows
+};
+
+/// The strongest line in the differences of y - mean, chains summed. Looks up to `highest` (Hz; 0: half the
+/// usual rate of rows).
+Line strongest_line(const Observable& observable, const std::vector<double>& mean, double highest = 0.0);
 
 }  // namespace puckloop::gap

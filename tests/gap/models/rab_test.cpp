@@ -1,0 +1,176 @@
+// The range-and-bearing model: neutral it says what the default medium and the boards' formula give; each
+// parameter acts by the amount of its equation.
+
+#include "base/random.h"
+#include "gap/models/rab_table.h"
+#include "protocols/rab_reading.h"
+#include "tests/gap/models/made_table.h"
+#include "tests/physics/ir_worlds.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <complex>
+#include <numbers>
+
+using namespace puckloop;
+using namespace puckloop::gap;
+using namespace puckloop::gap::tests;
+
+namespace {
+
+constexpr std::array<double, 12> kDegrees{15, 50, 75, 105, 133, 159, -165, -135, -105, -77, -50, -15};
+constexpr std::size_t kStrength = 0, kBearing = 1, kReceived = 2;  // the model's observables
+
+double radians(double degrees) {
+    return degrees * std::numbers::pi / 180;
+}
+
+/// A message to every receiver in turn at 30 cm, then one at each distance of the table to receiver 1.
+Table table() {
+    Table rows;
+    const auto add = [&](double distance, std::size_t receiver) {
+        rows["t_s"].push_back(0.1 * static_cast<double>(rows["t_s"].size()));
+        rows["distance_m"].push_back(distance);
+        rows["receiver"].push_back(static_cast<double>(receiver));
+        rows["true_bearing_rad"].push_back(radians(kDegrees[receiver - 1] + 3));
+        rows["bearing_rad"].push_back(radians(kDegrees[receiver - 1] + 3));
+        rows["strength"].push_back(900 + static_cast<double>(receiver));
+        rows["received"].push_back(1);
+        rows["senders"].push_back(1.0 + static_cast<double>(receiver % 3));
+        rows["frame_time"].push_back(0.0092);
+        rows["send_period"].push_back(0.1);
+        rows["arrival_rate"].push_back(20.0 * static_cast<double>(receiver));
+    };
+    for (std::size_t receiver = 1; receiver <= 12; ++receiver)
+        add(0.30, receiver);
+    for (const RabMeasured& one : kRabTable)
+        add(one.distance, 1);
+    return rows;
+}
+
+/// Bearing of the sum of what receivers of these gains measure of a sender at `bearing`.
+double vector_sum(const std::array<double, 12>& gain, double bearing) {
+    std::complex<double> sum;
+    for (std::size_t r = 0; r < 12; ++r) {
+        const double facing = std::cos(bearing - radians(kDegrees[r]));
+        if (facing > 0) sum += std::polar(gain[r] * std::sqrt(facing), radians(kDegrees[r]));
+    }
+    return std::arg(sum);
+}
+
+/// Median strength that the default medium and the board's formula give over pairs of boards and headings.
+double simulated_median(double surface) {
+    constexpr int kPairs = 60, kHeadings = 10;
+    std::vector<double> all;
+    RandomStream random(5, "headings");
+    for (int pair = 0; pair < kPairs; ++pair) {
+        physics::World world = physics::test::rab_pair(surface);
+        world.seed = 40 + static_cast<std::uint64_t>(pair);
+        physics::IrMedium medium(world);
+        for (int k = 0; k < kHeadings; ++k) {
+            medium.move(0, 0, 0, 2 * std::numbers::pi * random.uniform());
+            medium.move(1, 2 * physics::test::kBodyRadius + surface, 0,
+                        2 * std::numbers::pi * random.uniform());
+            const physics::IrLight& light = physics::test::shine(medium);
+            std::array<int, 12> peaks{};
+            for (std::size_t r = 0; r < 12; ++r)
+                if (light.carrier[r] >= medium.parameters(1).threshold)
+                    peaks[r] = static_cast<int>(std::min(4000L, std::lround(light.level[r])));
+            all.push_back(protocols::rab_reading(peaks).range);
+        }
+    }
+    std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2), all.end());
+    return all[all.size() / 2];
+}
+
+}  // namespace
+
+TEST_CASE("neutral, the strength is what the default medium gives a board") {
+    const Experiment experiment = experiment_of(Kind::Rab, table());
+    const auto model = make_model(experiment);
+    const Prediction rest = predicted(*model);
+    for (std::size_t k = 0; k < kRabTable.size(); ++k) {
+        CHECK(rest[kStrength].mean[12 + k] == Approx(kRabTable[k].log_median));
+        CHECK(rest[kStrength].factor[12 + k] == Approx(kRabTable[k].spread));
+    }
+    // 600 readings: their median's error is 1.7 % at contact and 0.7 % beyond; the medium's own is 1 %.
+    for (const std::size_t k : {std::size_t{1}, std::size_t{3}, std::size_t{5}, std::size_t{7}})
+        CHECK(simulated_median(kRabTable[k].distance) ==
+              Approx(std::exp(rest[kStrength].mean[12 + k])).epsilon(0.04));
+    for (const double error : rest[kBearing].mean)
+        CHECK(error == Approx(0).margin(1e-12));
+    for (const double share : rest[kReceived].mean)
+        CHECK(share == Approx(0.999));
+}
+
+TEST_CASE("strength: gains add, a floor lifts, a rail cuts what is shown, spread widens") {
+    const Experiment experiment = experiment_of(Kind::Rab, table());
+    const auto model = make_model(experiment);
+    const Prediction rest = predicted(*model);
+    const std::size_t n = rest[kStrength].mean.size();
+    const Prediction louder = predicted(*model, {{"rab.strength_gain", 0.2}});
+    const Prediction one = predicted(*model, {{"rab.receiver_gain4", 1.5}});
+    const Prediction floored = predicted(*model, {{"rab.far_floor", 1000}});
+    const Prediction wide = predicted(*model, {{"rab.strength_spread", 0.5}});
+    for (std::size_t i = 0; i < n; ++i) {
+        const double level = rest[kStrength].mean[i];
+        CHECK(louder[kStrength].mean[i] == Approx(level + 0.2));
+        CHECK(one[kStrength].mean[i] == Approx(level + (i == 3 ? std::log(1.5) : 0.0)));
+        CHECK(floored[kStrength].mean[i] == Approx(std::max(level, std::log(1000.0))));
+        CHECK(wide[kStrength].factor[i] == Approx(1.5 * rest[kStrength].factor[i]));
+    }
+}
+
+TEST_CASE("a rail is looked for only where strengths pile up, and then cuts there") {
+    Table rows = table();
+    const Experiment plain = experiment_of(Kind::Rab, rows);
+    CHECK(make_model(plain)->find("rab.saturation") == -1);
+    for (std::size_t i = 12; i < 18; ++i)
+        rows["strength"][i] = 1234.5;
+    const Experiment cut = experiment_of(Kind::Rab, rows);
+    const auto model = make_model(cut);
+    REQUIRE(model->starts("rab.saturation").size() == 1);
+    CHECK(model->starts("rab.saturation")[0] == Approx(1234.5));
+    const Prediction said = predicted(*model, {{"rab.saturation", 1234.5}});
+    CHECK(shown(said[kStrength], 12) == Approx(std::log(1234.5)));
+    CHECK(said[kStrength].mean[12] == Approx(kRabTable[0].log_median));
+    CHECK(shown(said[kStrength], 19) == Approx(kRabTable[7].log_median));
+}
+
+TEST_CASE("unequal receivers turn bearings as the boards' vector sum does") {
+    const Experiment experiment = experiment_of(Kind::Rab, table());
+    const auto model = make_model(experiment);
+    std::array<double, 12> equal{}, gain{};
+    equal.fill(1);
+    gain.fill(1);
+    gain[3] = 1.6;
+    gain[8] = 0.7;
+    const Prediction said = predicted(
+        *model, {{"rab.receiver_gain4", 1.6}, {"rab.receiver_gain9", 0.7}, {"rab.bearing_offset", 0.05}});
+    double most = 0.0;
+    for (std::size_t i = 0; i < 12; ++i) {
+        const double bearing = radians(kDegrees[i] + 3);
+        const double turned =
+            std::remainder(vector_sum(gain, bearing) - vector_sum(equal, bearing), 2 * std::numbers::pi);
+        CHECK(said[kBearing].mean[i] ==
+              Approx(0.05 + turned).margin(1e-5));  // the table of angles has 5 digits
+        most = std::max(most, std::abs(turned));
+    }
+    CHECK(most > 0.05);
+}
+
+TEST_CASE("reception falls by chance, with senders and with the poll's rate") {
+    const Experiment experiment = experiment_of(Kind::Rab, table());
+    const auto model = make_model(experiment);
+    const Table& rows = experiment.runs[0].columns;
+    const Prediction lossy = predicted(*model, {{"rab.random_loss", 0.2}});
+    const Prediction crowded = predicted(*model, {{"rab.collisions", 0.5}});
+    const Prediction slow = predicted(*model, {{"rab.fetch_time", 0.01}});
+    for (std::size_t i = 0; i < 12; ++i) {
+        const double others = rows.at("senders")[i] - 1, rate = rows.at("arrival_rate")[i];
+        CHECK(lossy[kReceived].mean[i] == Approx(0.999 * 0.8));
+        CHECK(crowded[kReceived].mean[i] == Approx(0.999 * std::exp(-2 * 0.5 * others * 0.0092 / 0.1)));
+        CHECK(slow[kReceived].mean[i] == Approx(0.999 * std::min(1.0, 100 / rate)));
+    }
+}
