@@ -34,7 +34,7 @@ const char* const kNuisances[] = {"marker_offset", "tracker_delay", "stale_readi
 class Analysis {
   public:
     Analysis(const Experiment& experiment, const Options& options)
-        : experiment_(experiment), options_(options), study_(experiment, options.seed) {}
+        : experiment_(experiment), options_(options), study_(experiment, options.seed, options.threads) {}
 
     Verdict run() {
         verdict_.kind = experiment_.kind;

@@ -12,6 +12,7 @@ namespace puckloop::gap {
 
 struct Options {
     std::uint64_t seed = 1;
+    unsigned threads = 1;  ///< the verdict is the same for any number
     /// What is being done and how far (0..1); may be empty.
     std::function<void(const std::string&, double)> progress;
 };

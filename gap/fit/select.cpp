@@ -1,10 +1,13 @@
 #include "gap/fit/select.h"
 
+#include "gap/fit/parallel.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <mutex>
 #include <string_view>
 
 namespace puckloop::gap {
@@ -84,25 +87,30 @@ class Selector {
         const std::size_t count = study_.candidates().size();
         const double begin =
             0.05 + 0.2 * static_cast<double>(std::min<std::size_t>(chosen.effects.size(), 3));
-        std::vector<std::pair<double, Fit>> fits;  // delta BIC
-        for (std::size_t i = 0; i < count; ++i) {
-            const Candidate& candidate = study_.candidates()[i];
-            if (!candidate.remark.empty() || has(chosen.effects, i)) continue;
-            tell(fmt::format("trying {}", candidate.effect->name),
-                 begin + 0.15 * static_cast<double>(i) / static_cast<double>(count));
+        std::vector<std::size_t> tried;
+        for (std::size_t i = 0; i < count; ++i)
+            if (study_.candidates()[i].remark.empty() && !has(chosen.effects, i)) tried.push_back(i);
+        std::vector<std::pair<double, Fit>> fits(tried.size());  // delta BIC
+        std::mutex telling;
+        std::size_t begun = 0;
+        in_parallel(tried.size(), study_.threads(), [&](std::size_t k) {
+            {
+                const std::lock_guard lock(telling);
+                tell(fmt::format("trying {}", study_.candidates()[tried[k]].effect->name),
+                     begin + 0.15 * static_cast<double>(begun++) / static_cast<double>(tried.size()));
+            }
             auto set = chosen.effects;
-            set.push_back(i);
+            set.push_back(tried[k]);
             Fit fit = study_.fit_set(set, chosen.fitted.state, kQuick);
-            const double delta = chosen.bic - fit.bic;
-            fits.emplace_back(delta, std::move(fit));
-        }
+            fits[k] = {chosen.bic - fit.bic, std::move(fit)};
+        });
         const auto best_first = [](const auto& x, const auto& y) { return x.first > y.first; };
         std::stable_sort(fits.begin(), fits.end(), best_first);
-        for (std::size_t k = 0; k < std::min(fits.size(), kRefined); ++k) {
-            if (fits[k].first < -kHopeless) break;
+        in_parallel(std::min(fits.size(), kRefined), study_.threads(), [&](std::size_t k) {
+            if (fits[k].first < -kHopeless) return;
             fits[k].second = study_.refined(fits[k].second);
             fits[k].first = chosen.bic - fits[k].second.bic;
-        }
+        });
         std::stable_sort(fits.begin(), fits.end(), best_first);
         for (const auto& [delta, fit] : fits) {
             Trial& trial = result_.trials[fit.effects.back()];

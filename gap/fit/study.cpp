@@ -2,6 +2,7 @@
 
 #include "base/random.h"
 #include "gap/columns.h"
+#include "gap/fit/parallel.h"
 
 #include <fmt/format.h>
 
@@ -71,8 +72,10 @@ Freed freed_at(const Model& model, const EffectParameter& parameter, int index) 
 
 }  // namespace
 
-Study::Study(const Experiment& experiment, std::uint64_t seed)
-    : experiment_(experiment), model_(make_model(experiment)) {
+Study::Study(const Experiment& experiment, std::uint64_t seed, unsigned threads)
+    : experiment_(experiment),
+      model_(make_model(experiment)),
+      threads_(model_->side_by_side() ? threads : 1) {
     for (const Observable& observable : model_->observables())
         rows_ += observable.y.size();
     make_candidates();
@@ -307,8 +310,7 @@ HeldOut Study::hold_out(const Fit& whole) const {
         held.score.emplace_back(observable.y.size(), 0.0);
         held.mean.emplace_back(observable.y.size(), 0.0);
     }
-    Prediction prediction;
-    for (std::size_t k = 0; k < folds_; ++k) {
+    in_parallel(folds_, threads_, [&](std::size_t k) {
         Weights weights;
         for (const auto& fold : fold_) {
             weights.emplace_back();
@@ -316,6 +318,7 @@ HeldOut Study::hold_out(const Fit& whole) const {
                 weights.back().push_back(f == static_cast<int>(k) ? 0.0 : 1.0);
         }
         const Fitted part = fit(*model_, whole.freed, whole.fitted.state, weights, kPart);
+        Prediction prediction;
         const auto costs = costs_at(*model_, part.state, prediction);
         for (std::size_t o = 0; o < observables.size(); ++o)
             for (std::size_t i = 0; i < fold_[o].size(); ++i)
@@ -323,7 +326,7 @@ HeldOut Study::hold_out(const Fit& whole) const {
                     held.score[o][i] = -costs[o].cost[i];
                     held.mean[o][i] = shown(prediction[o], i);
                 }
-    }
+    });
     return held;
 }
 

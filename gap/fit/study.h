@@ -39,7 +39,8 @@ struct Blocks {
 
 class Study {
   public:
-    Study(const Experiment& experiment, std::uint64_t seed);
+    /// On `threads` threads; what comes out does not depend on how many.
+    Study(const Experiment& experiment, std::uint64_t seed, unsigned threads = 1);
 
     const Experiment& experiment() const { return experiment_; }
     const Model& model() const { return *model_; }
@@ -47,6 +48,9 @@ class Study {
     std::size_t rows() const { return rows_; }
     std::size_t folds() const { return folds_; }
     const Blocks& blocks() const { return blocks_; }
+    unsigned threads() const { return threads_; }
+    /// Which part a row is held out with: an observable each.
+    const std::vector<std::vector<int>>& fold_of() const { return fold_; }
 
     /// Fits a set; begins at `from` and, for the last effect of the set, at each of its starts.
     Fit fit_set(const std::vector<std::size_t>& effects, const State& from,
@@ -73,6 +77,7 @@ class Study {
     std::vector<std::vector<int>> fold_;  // of each row, an observable each
     Blocks blocks_;
     std::size_t rows_ = 0, folds_ = 0;
+    unsigned threads_ = 1;
 };
 
 /// Sum over rows of `after` - `before`, block by block.

@@ -84,6 +84,8 @@ class ProximityModel final : public Model {
         }
     }
 
+    bool side_by_side() const override { return false; }
+
     void predict(const std::vector<double>& v, Prediction& out) const override {
         out.resize(1);
         Predicted& p = out[0];

@@ -49,6 +49,8 @@ class RabModel final : public Model {
         apply_nominal(experiment);
     }
 
+    bool side_by_side() const override { return false; }
+
     void predict(const std::vector<double>& v, Prediction& out) const override {
         out.resize(observables_.size());
         if (strength_ >= 0) predict_strength(v, out[static_cast<std::size_t>(strength_)]);

@@ -13,6 +13,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
@@ -21,6 +22,7 @@
 #include <fstream>
 #include <functional>
 #include <memory>
+#include <thread>
 
 namespace puckloop::tools {
 
@@ -100,7 +102,7 @@ void analyse_folder(const Request& request) {
             throw InputError(request.out.string(), "", "cannot be made: " + failed.message(),
                              "a folder that can be written");
     }
-    gap::Options options{request.seed, progress_line()};
+    gap::Options options{request.seed, std::max(1U, std::thread::hardware_concurrency()), progress_line()};
     const auto begun = std::chrono::steady_clock::now();
     gap::Verdict verdict = gap::analyse(experiment, options);
     verdict.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();

@@ -1,0 +1,174 @@
+#include "base/random.h"
+#include "gap/fit/objective.h"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <limits>
+
+using namespace puckloop;
+using namespace puckloop::gap;
+
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// y = slope * t + offset in one observable; lapses at a rate that can be freed.
+class Straight final : public Model {
+  public:
+    Straight(NoiseKind kind, std::vector<double> y) {
+        Observable one;
+        one.noise = kind;
+        one.instrument = {kNone, kNone, 0.0};
+        one.starts.assign(y.size(), 0);
+        one.starts[0] = 1;
+        one.run.assign(y.size(), 0);
+        one.row.assign(y.size(), 0);
+        one.y = std::move(y);
+        observables_.push_back(std::move(one));
+        slope_ = add("slope", "1", 0.0);
+        offset_ = add("offset", "1", 0.0);
+        rate_ = add("rate", "1", 0.0);
+    }
+    Observable& only() { return observables_[0]; }
+    static double x(std::size_t i) { return std::sin(0.7 * static_cast<double>(i)); }
+
+    void predict(const std::vector<double>& v, Prediction& out) const override {
+        const auto at = [&](int index) { return v[static_cast<std::size_t>(index)]; };
+        const std::size_t n = observables_[0].y.size();
+        out.resize(1);
+        out[0].mean.resize(n);
+        for (std::size_t i = 0; i < n; ++i)
+            out[0].mean[i] = at(slope_) * x(i) + at(offset_);
+        out[0].lapse.assign(at(rate_) > 0 ? n : 0, at(rate_));
+        out[0].lapse_scale.assign(at(rate_) > 0 ? n : 0, 20.0);
+    }
+
+  private:
+    int slope_ = 0, offset_ = 0, rate_ = 0;
+};
+
+double student(RandomStream& random, int freedom) {
+    double chi = 0.0;
+    for (int k = 0; k < freedom; ++k) {
+        const double one = random.normal();
+        chi += one * one;
+    }
+    return random.normal() * std::sqrt(freedom / chi);
+}
+
+constexpr Freed kSlope{0, -50, 50, 5, 0}, kOffset{1, -50, 50, 5, 0}, kRate{2, 0, 0.5, 0.1, 0};
+
+Fitted fitted(const Model& model, const std::vector<Freed>& freed) {
+    return fit(model, freed, neutral_state(model), {});
+}
+
+}  // namespace
+
+TEST_CASE("a row's likelihood integrates to one", "[gap][fit]") {
+    const double lapse = GENERATE(0.0, 0.1);
+    Straight model(NoiseKind::Carry, {0.0});
+    Predicted p;
+    p.mean = {0.3};
+    if (lapse > 0) p.lapse = {lapse}, p.lapse_scale = {4.0};
+    const NoiseParameters noise{std::log(0.8), 0.0, std::log(4.0), 0.0};
+    double sum = 0.0;
+    RowCosts costs;
+    constexpr double kStep = 0.01;
+    for (double y = -200; y < 200; y += kStep) {
+        model.only().y = {y};
+        row_costs(model.observables()[0], p, noise, costs);
+        sum += std::exp(-costs.cost[0]) * kStep;
+    }
+    CHECK(sum == Approx(1.0).margin(0.01));
+}
+
+TEST_CASE("a fit finds line, carry, size and tails of known noise", "[gap][fit]") {
+    RandomStream random(3, "test/carry");
+    std::vector<double> y;
+    double last = 0.0;
+    for (std::size_t i = 0; i < 4000; ++i) {
+        last = 0.6 * last + 0.8 * student(random, 4);
+        y.push_back(2.0 * Straight::x(i) + 5.0 + 0.5 * last);
+    }
+    const Straight model(NoiseKind::Carry, std::move(y));
+    const Fitted found = fitted(model, {kSlope, kOffset});
+    const NoiseParameters& noise = found.state.noise[0];
+    CHECK(found.state.values[0] == Approx(2.0).margin(0.06));
+    CHECK(found.state.values[1] == Approx(5.0).margin(0.08));
+    CHECK(noise.carry == Approx(0.6).margin(0.05));
+    CHECK(std::exp(noise.log_sd) == Approx(0.5).epsilon(0.08));
+    CHECK(std::exp(noise.log_tail) == Approx(4.0).margin(1.0));
+}
+
+TEST_CASE("a fit tells a sum's drift from the noise on it", "[gap][fit]") {
+    RandomStream random(3, "test/level");
+    std::vector<double> y;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < 4000; ++i) {
+        sum += 0.2 * random.normal();
+        y.push_back(1.5 * Straight::x(i) + sum + random.normal());
+    }
+    const Straight model(NoiseKind::Level, std::move(y));
+    const Fitted found = fitted(model, {kSlope});
+    CHECK(found.state.values[0] == Approx(1.5).margin(0.08));
+    CHECK(std::exp(found.state.noise[0].log_sd) == Approx(1.0).epsilon(0.08));
+    CHECK(std::exp(found.state.noise[0].carry / 2) == Approx(0.2).margin(0.05));
+}
+
+TEST_CASE("clipped rows say at least this far, not this far", "[gap][fit]") {
+    RandomStream random(3, "test/clip");
+    std::vector<double> y;
+    for (std::size_t i = 0; i < 2000; ++i)
+        y.push_back(std::min(3.0 * Straight::x(i) + 1.0 + 0.5 * random.normal(), 2.0));
+    Straight model(NoiseKind::Carry, y);
+    model.only().instrument.ceiling = 2.0;
+    CHECK(fitted(model, {kSlope, kOffset}).state.values[0] == Approx(3.0).margin(0.1));
+    Straight naive(NoiseKind::Carry, y);
+    CHECK(fitted(naive, {kSlope, kOffset}).state.values[0] < 2.8);
+}
+
+TEST_CASE("a fit finds how often rows are lapses", "[gap][fit]") {
+    RandomStream random(3, "test/lapse");
+    std::vector<double> y;
+    for (std::size_t i = 0; i < 3000; ++i)
+        y.push_back(random.normal() * (random.uniform() < 0.08 ? 20.0 : 1.0));
+    const Straight model(NoiseKind::Carry, std::move(y));
+    State start = neutral_state(model);
+    start.values[2] = 0.02;
+    CHECK(fit(model, {kRate}, start, {}).state.values[2] == Approx(0.08).margin(0.02));
+}
+
+TEST_CASE("gradients are the value's own", "[gap][fit]") {
+    const NoiseKind kind = GENERATE(NoiseKind::Carry, NoiseKind::Level);
+    RandomStream random(3, "test/gradient");
+    std::vector<double> y;
+    for (std::size_t i = 0; i < 60; ++i)
+        y.push_back(Straight::x(i) + student(random, 3));
+    Straight model(kind, std::move(y));
+    model.only().instrument.ceiling = 2.0;
+    const std::vector<Freed> freed{kSlope, kOffset, kRate};
+    const Layout layout(model, freed, true);
+    State state = neutral_state(model);
+    state.noise[0] = {0.1, kind == NoiseKind::Level ? -2.0 : 0.3, 1.5, kind == NoiseKind::Level ? 0.2 : 0.0};
+    state.values = {0.4, 0.1, GENERATE(0.0, 0.05)};
+    std::vector<double> x(layout.size());
+    layout.pack(state, x.data());
+    Weights weights{std::vector<double>(60, 1.0)};
+    weights[0][7] = 0.0;
+    Objective objective(model, layout, state, weights);
+    Eigen::VectorXd gradient;
+    Eigen::MatrixXd curvature, rows;
+    objective.slopes(x.data(), gradient, curvature, &rows);
+    CHECK(rows.rows() == 60);
+    for (std::size_t j = 0; j < layout.size(); ++j) {
+        if (j == 2 && state.values[2] == 0.0) continue;  // at its bound
+        constexpr double kStep = 1e-4;
+        auto up = x, down = x;
+        up[j] += kStep;
+        down[j] -= kStep;
+        const double slope = (objective.value(up.data()) - objective.value(down.data())) / (2 * kStep);
+        CHECK(gradient[static_cast<Eigen::Index>(j)] == Approx(slope).margin(0.02).epsilon(0.01));
+        CHECK(curvature(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(j)) > 0);
+    }
+}

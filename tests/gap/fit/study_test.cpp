@@ -1,0 +1,150 @@
+#include "base/random.h"
+#include "gap/fit/intervals.h"
+#include "gap/fit/parallel.h"
+#include "gap/fit/select.h"
+
+#include <catch2/catch.hpp>
+
+#include <atomic>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+#include <string>
+
+using namespace puckloop;
+using namespace puckloop::gap;
+
+namespace {
+
+constexpr double kRow = 0.1, kSd = 3.0;  // s, counts
+
+/// A ground sensor driven over waves of grey: readings late by `lag` s. Formulas of its own: noise carried
+/// over, whole counts.
+Experiment drives(std::uint64_t seed, double lag, std::size_t runs = 6, std::size_t rows = 60) {
+    Experiment experiment;
+    experiment.kind = Kind::Ground;
+    experiment.folder = "made";
+    experiment.instruments["reading"] = {0.0, 967.0, 1.0};
+    for (std::size_t r = 0; r < runs; ++r) {
+        RandomStream random(seed, "test/drive " + std::to_string(r));
+        Run run;
+        run.name = run.file = "run" + std::to_string(r);
+        run.conditions["floor"] = r < runs / 2 ? "a" : "b";
+        run.rows = rows;
+        const double speed = 0.03 + 0.02 * static_cast<double>(r % 3), begin = random.uniform();
+        double last = 0.0;
+        for (std::size_t k = 0; k < rows; ++k) {
+            const double t = kRow * static_cast<double>(k), x = begin + speed * t;
+            const auto grey = [](double place) { return 0.5 + 0.3 * std::sin(40 * place); };
+            last = 0.4 * last + std::sqrt(1 - 0.16) * random.normal();
+            run.columns["t_s"].push_back(t);
+            run.columns["sensor"].push_back(0);
+            run.columns["grey"].push_back(grey(x));
+            run.columns["grey_rate"].push_back(12 * std::cos(40 * x));
+            run.columns["speed"].push_back(speed);
+            run.columns["noise"].push_back(kSd * last);
+            run.columns["reading"].push_back(0.0);
+        }
+        experiment.runs.push_back(std::move(run));
+    }
+    // Black and white as the model has them, so that without lag nothing is wrong.
+    const auto model = make_model(experiment);
+    const double black = model->neutral()[static_cast<std::size_t>(model->find("ground.black"))];
+    const double white = model->neutral()[static_cast<std::size_t>(model->find("ground.white"))];
+    for (Run& run : experiment.runs)
+        for (std::size_t k = 0; k < run.rows; ++k) {
+            const double grey =
+                run.columns["grey"][k] - lag * run.columns["speed"][k] * run.columns["grey_rate"][k];
+            run.columns["reading"][k] = std::round(black + (white - black) * grey + run.columns["noise"][k]);
+        }
+    return experiment;
+}
+
+std::size_t candidate(const Study& study, std::string_view name) {
+    for (std::size_t i = 0; i < study.candidates().size(); ++i)
+        if (study.candidates()[i].effect->name == name) return i;
+    throw std::logic_error("no such effect");
+}
+
+}  // namespace
+
+TEST_CASE("90 % intervals hold the truth in about 90 of 100 small experiments", "[gap][fit]") {
+    constexpr double kLag = 0.02;  // s
+    int held = 0;
+    for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+        const Experiment experiment = drives(seed, kLag, 8, 40);
+        const Study study(experiment, seed);
+        const Fit none = study.fit_none();
+        const Fit fit = study.fit_set({candidate(study, "ground_lag")}, none.fitted.state);
+        const Precision precision = precision_of(study, fit);
+        const double value = fit.fitted.state.values[static_cast<std::size_t>(fit.freed[0].index)];
+        held += std::abs(value - kLag) <= precision.quantile * precision.sd[0] ? 1 : 0;
+    }
+    CHECK(held >= 82);
+    CHECK(held <= 97);
+}
+
+TEST_CASE("selection takes nothing from data without effects", "[gap][fit]") {
+    int taken = 0;
+    for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+        const Experiment experiment = drives(seed, 0.0);
+        taken += select(Study(experiment, seed), {}).steps.empty() ? 0 : 1;
+    }
+    CHECK(taken <= 1);
+}
+
+TEST_CASE("selection names a hidden lag, the same on any number of threads", "[gap][fit]") {
+    const Experiment experiment = drives(7, 0.1);
+    const Study alone(experiment, 1), many(experiment, 1, 3);
+    const Selection first = select(alone, {}), second = select(many, {});
+    REQUIRE_FALSE(first.steps.empty());
+    CHECK(alone.candidates()[first.steps[0].effect].effect->name == std::string("ground_lag"));
+    REQUIRE(second.steps.size() == first.steps.size());
+    for (std::size_t k = 0; k < first.steps.size(); ++k) {
+        CHECK(second.steps[k].effect == first.steps[k].effect);
+        CHECK(second.steps[k].delta_bic == first.steps[k].delta_bic);
+        CHECK(second.steps[k].held.sum == first.steps[k].held.sum);
+    }
+    CHECK(second.chosen.fitted.state.values == first.chosen.fitted.state.values);
+}
+
+TEST_CASE("runs are held out whole, and not all of one condition at once", "[gap][fit]") {
+    const Experiment experiment = drives(1, 0.0, 6, 20);
+    const Study study(experiment, 4);
+    CHECK(study.folds() == 5);
+    CHECK(study.blocks().count == 6);
+    const auto& observable = study.model().observables()[0];
+    std::vector<std::set<int>> of_run(6);
+    std::set<int> of_first, of_second;
+    for (std::size_t i = 0; i < observable.y.size(); ++i) {
+        of_run[observable.run[i]].insert(study.fold_of()[0][i]);
+        (observable.run[i] < 3 ? of_first : of_second).insert(study.fold_of()[0][i]);
+        CHECK(study.blocks().of[0][i] == observable.run[i]);
+    }
+    for (const auto& folds : of_run)
+        CHECK(folds.size() == 1);
+    CHECK(of_first.size() == 3);
+    CHECK(of_second.size() == 3);
+}
+
+TEST_CASE("a single run is cut into blocks and stretches", "[gap][fit]") {
+    const Experiment experiment = drives(1, 0.0, 1, 160);
+    const Study study(experiment, 1);
+    CHECK(study.folds() == 5);
+    CHECK(study.blocks().count == 16);
+    std::set<int> folds(study.fold_of()[0].begin(), study.fold_of()[0].end());
+    CHECK(folds.size() == 5);
+}
+
+TEST_CASE("work side by side is done once each, and its first failure is told", "[gap][fit]") {
+    const unsigned threads = GENERATE(1U, 4U);
+    std::vector<std::atomic<int>> done(50);
+    in_parallel(50, threads, [&](std::size_t k) { ++done[k]; });
+    for (const auto& one : done)
+        CHECK(one == 1);
+    CHECK_THROWS_WITH(in_parallel(9, threads,
+                                  [](std::size_t k) {
+                                      if (k >= 3) throw std::runtime_error(std::to_string(k));
+                                  }),
+                      "3");
+}
