@@ -58,7 +58,8 @@ std::string verdict_section(const Verdict& verdict) {
     std::set<std::string> said{verdict.summary};
     for (const Cause& cause : verdict.causes)
         if (said.insert(cause.sentence).second) out += paragraph(cause.sentence);
-    if (said.insert(verdict.heldout.sentence).second) out += paragraph(verdict.heldout.sentence);
+    if (verdict.summary.find(verdict.heldout.sentence) == std::string::npos)
+        out += paragraph(verdict.heldout.sentence);
     if (!verdict.suggestions.empty())
         out += paragraph("Next experiment: " + verdict.suggestions.front().what);
     return out + "</div>\n";
