@@ -61,7 +61,7 @@ std::unique_ptr<Bench> proximity_bench() {
         {29, "motor noise", 6.0, false, [](K& k, double a, RandomStream) {
             k.motor_noise = a;
             return Truths{{"proximity.motor_noise", a / 0.8}}; }},
-        {31, "reference sag", 0.04, false, [](K& k, double a, RandomStream) { k.sag = a; return Truths{}; }},
+        {31, "reference sag", 0.04, false, [](K& k, double a, RandomStream) { k.sag = a; return Truths{{"proximity.motor_sag", a}}; }},
         {32, "sample age", 0.1, false, [](K& k, double a, RandomStream) { k.age = a; return Truths{{"proximity.age", a}}; }},
         {33, "warm-up", 0.3, true, [](K& k, double a, RandomStream) {
             k.warm_gain = a; k.warm_time = 200;
