@@ -69,12 +69,12 @@ class Analysis {
         const Freed& freed = fit.freed[j];
         const ModelParameter& parameter = study_.model().parameters()[static_cast<std::size_t>(freed.index)];
         const double value = fit.fitted.state.values[static_cast<std::size_t>(freed.index)];
-        const double reach = precision.quantile * precision.sd[j];
+        const Interval interval = interval_of(study_, fit, precision, j);
         return {parameter.name,
                 parameter.unit,
                 value,
-                std::max(value - reach, freed.low),
-                std::min(value + reach, freed.high),
+                interval.low,
+                interval.high,
                 parameter.neutral,
                 parameter.simulator || parameter.name.starts_with("wheel_") ||
                     parameter.name == "inverse_friction"};

@@ -20,6 +20,7 @@ struct EffectParameter {
     std::vector<double> starts;  ///< where a fit begins, in the parameter's unit; several = tried one by one
     const char* source;          ///< of the range
     const char* unless = nullptr;  ///< not freed where the model has this parameter, which does the same
+    double resolution = 0.0;       ///< the model says no finer what it is, parameter's unit
 };
 
 struct Effect {

@@ -13,6 +13,7 @@ namespace puckloop::gap {
 struct Freed {
     int index = -1;  ///< in Model::parameters()
     double low = 0.0, high = 0.0, prior_sd = 1.0, centre = 0.0;
+    double resolution = 0.0;  ///< no interval is narrower than this to either side
 };
 
 /// Where a fit starts and where it ended.

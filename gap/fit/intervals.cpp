@@ -53,4 +53,16 @@ Precision precision_of(const Study& study, const Fit& fit) {
     return result;
 }
 
+Interval interval_of(const Study& study, const Fit& fit, const Precision& precision, std::size_t j) {
+    const Freed& freed = fit.freed[j];
+    const auto index = static_cast<std::size_t>(freed.index);
+    const double value = fit.fitted.state.values[index];
+    const double reach = std::max(precision.quantile * precision.sd[j], freed.resolution);
+    // What cannot be negative (rates, noise, times) is about symmetric in its root, not in itself: a rate
+    // seen in few events may be twice as high, hardly zero.
+    const bool one_sided = freed.low == study.model().parameters()[index].neutral && freed.low == 0.0;
+    const double shift = one_sided ? reach * reach / (4 * std::max(value, reach)) : 0.0;
+    return {std::max(value - reach + shift, freed.low), std::min(value + reach + shift, freed.high)};
+}
+
 }  // namespace puckloop::gap

@@ -18,4 +18,10 @@ struct Precision {
 };
 Precision precision_of(const Study& study, const Fit& fit);
 
+/// The 90 % interval of the fit's freed parameter `j`, within its plausible range.
+struct Interval {
+    double low = 0.0, high = 0.0;
+};
+Interval interval_of(const Study& study, const Fit& fit, const Precision& precision, std::size_t j);
+
 }  // namespace puckloop::gap

@@ -57,7 +57,7 @@ bool varies(const Experiment& experiment, std::string_view column) {
 /// One effect's parameter on one index of the model.
 Freed freed_at(const Model& model, const EffectParameter& parameter, int index) {
     const double neutral = model.parameters()[static_cast<std::size_t>(index)].neutral;
-    Freed freed{index, parameter.low, parameter.high, parameter.prior_sd, neutral};
+    Freed freed{index, parameter.low, parameter.high, parameter.prior_sd, neutral, parameter.resolution};
     if (neutral < parameter.low || neutral > parameter.high) {
         const bool zero_is_off = neutral == 0.0;
         if (zero_is_off)
