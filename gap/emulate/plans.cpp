@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace puckloop::gap::emulate {
 
@@ -20,8 +21,8 @@ constexpr double kMetresPerStep = 1.288053e-4;
 constexpr const char* kOpenFloor = "[arena]\nsize = [\"6 m\", \"6 m\"]\n";
 constexpr double kStripe = 0.06;  // m
 constexpr std::array<double, 6> kGreys{1.0, 0.0, 0.5, 1.0, 0.25, 0.75};
-constexpr double kNearest = 0.0375;  // m from the axle to the wall: the body just does not touch
-constexpr double kSettled = 0.5;     // s at each stop of an approach
+constexpr double kNearest = 0.041;  // m from the axle to the wall: nearer, a micrometre is a count
+constexpr double kSettled = 0.5;    // s at each stop of an approach
 
 std::vector<Act> motion_acts(std::uint64_t seed, bool brief) {
     RandomStream random(seed, "drives on the emulator");
@@ -85,6 +86,9 @@ std::vector<Act> proximity_acts(std::uint64_t seed, bool brief) {
                 if (lamp && (brief || k % 4 != 0)) continue;
                 acts.push_back(approach(facing[k] * kDegree, 0.12 + 0.01 * random.uniform(), lamp, brief));
             }
+    // In random order, so that what changes with time is not what changes with the sensor.
+    for (std::size_t k = acts.size(); k > 1; --k)
+        std::swap(acts[k - 1], acts[random.below(k)]);
     return acts;
 }
 
@@ -124,7 +128,7 @@ std::vector<Act> timing_acts(std::uint64_t, bool brief) {
 }  // namespace
 
 const std::vector<std::string>& recordable_kinds() {
-    static const std::vector<std::string> kinds{"motion", "proximity", "ground", "timing"};
+    static const std::vector<std::string> kinds{"motion", "proximity", "ground", "timing", "serial", "rab"};
     return kinds;
 }
 
@@ -133,8 +137,9 @@ std::vector<Act> acts_of(std::string_view kind, std::uint64_t seed, bool brief) 
     if (kind == "proximity") return proximity_acts(seed, brief);
     if (kind == "ground") return ground_acts(seed, brief);
     if (kind == "timing") return timing_acts(seed, brief);
+    if (kind == "rab" || kind == "serial") return {};  // record_rab.h, record_serial.h
     throw InputError("", "gap record", fmt::format("'{}' cannot be recorded on the emulator", kind),
-                     "motion, proximity, ground, timing or all");
+                     "motion, proximity, ground, timing, serial, rab or all");
 }
 
 double stripe_grey(double x) {

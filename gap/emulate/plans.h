@@ -9,7 +9,8 @@
 
 namespace puckloop::gap::emulate {
 
-/// Kinds that can be recorded: "motion", "proximity", "ground", "timing".
+/// What can be recorded: "motion", "proximity", "ground", "timing", "rab", and "serial": timing of the bytes
+/// on the line.
 const std::vector<std::string>& recordable_kinds();
 
 /// The acts of one kind; `seed` decides start headings and free drives. `short_plan`: each once and briefly,

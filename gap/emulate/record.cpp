@@ -2,6 +2,8 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "gap/emulate/record_rab.h"
+#include "gap/emulate/record_serial.h"
 #include "physics/parameters.h"
 
 #include <fmt/format.h>
@@ -22,7 +24,7 @@ using selftest::HiddenRun;
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kPlaceNoise = 0.0005, kPlaceQuantum = 1e-4;         // m, of the tracker
 constexpr double kAngleNoise = 0.2 * kDegree, kAngleQuantum = 1e-4;  // rad
-constexpr double kJigNoise = 1e-5;                                   // m: a measuring table's
+constexpr double kJigNoise = 1e-6;                                   // m: a measuring table's
 constexpr double kHostNoise = 2e-4;                                  // s, of the host's time stamps
 constexpr int kSettledRows = 3;
 constexpr double kMostSlanting = 65 * kDegree, kFurthest = 0.11;
@@ -119,7 +121,8 @@ HiddenRun timing_run(const std::vector<Row>& rows, RandomStream& noise) {
     HiddenRun run;
     for (std::size_t k = 0; k < rows.size(); ++k) {
         run.column("seq").values.push_back(static_cast<double>(k));
-        run.column("t_host_s", "s").values.push_back(rows[k].answered + kHostNoise * noise.normal());
+        const double stamp = rows[k].answered + kHostNoise * noise.normal();
+        run.column("t_host_s", "s").values.push_back(rows[k].ok ? stamp : std::nan(""));
         run.column("nominal_period", "ms").values.push_back(100);
         run.column("bytes").values.push_back(kBytes);
         run.column("frame_ok").values.push_back(rows[k].ok ? 1 : 0);
@@ -130,6 +133,8 @@ HiddenRun timing_run(const std::vector<Row>& rows, RandomStream& noise) {
 }  // namespace
 
 HiddenExperiment record(std::string_view kind, const RecordOptions& options) {
+    if (kind == "rab") return record_rab(options);
+    if (kind == "serial") return record_serial(options);
     const std::vector<Act> acts = acts_of(kind, options.seed, options.brief);
     HiddenExperiment experiment;
     experiment.kind = std::string(kind);

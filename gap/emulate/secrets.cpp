@@ -40,6 +40,9 @@ const std::vector<Secret>& secrets() {
         {"timing", "nothing", {}, {}},
         {"timing", "control period 104 ms", {"host.period=0.104"}, {"long_period", "clock_drift"}},
         {"timing", "one byte of 3000 lost", {"uart.loss=0.00033"}, {"truncation"}},
+        {"serial", "nothing", {}, {}},
+        {"serial", "main board's crystal 120 ppm slow", {"board.crystal_ppm=-120"}, {"clock_drift"}},
+        {"serial", "baud rate 0.6 % high, by the crystal", {"board.crystal_ppm=6000"}, {"clock_drift"}},
     };
     return list;
 }

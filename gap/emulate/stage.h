@@ -24,6 +24,7 @@ struct Robot {
     double uart_loss = 0.0;          ///< probability that a byte to the Linux board is lost
     double uart_delay = 0.0;         ///< s by which bytes from the Linux board come later
     std::filesystem::path firmware;  ///< empty: the project's own
+    std::filesystem::path rab;       ///< image for the range-and-bearing boards; empty: the project's own
     std::filesystem::path overlay;   ///< as for `run --model`; empty: none
 };
 
@@ -47,7 +48,7 @@ struct Row {
 
 /// Programs and firmware of the project.
 struct Tools {
-    std::filesystem::path record, firmware;
+    std::filesystem::path record, firmware, rab;  ///< recorder, main board's and range-and-bearing board's
 };
 
 /// Runs in `scratch` (made, left behind). Throws RunError when the run fails.

@@ -55,6 +55,7 @@ class TimingModel final : public Model {
             period.y = robot;
             set_up(period);
             period.instrument.quantum = std::max(period.instrument.quantum, kTick);
+            if (keeps_to_periods(period)) take_periods(period);
         } else {
             robot_ = periods_;
         }
@@ -63,7 +64,7 @@ class TimingModel final : public Model {
         // Against the robot's clock each arrival errs by itself; without one the periods' errors add up.
         observables_.back().noise = clocks_ ? NoiseKind::Carry : NoiseKind::Level;
         set_up(observables_.back());
-        gather_events(rows, experiment);
+        gather_events(experiment);
         declare();
         apply_nominal(experiment);
     }
@@ -178,7 +179,29 @@ class TimingModel final : public Model {
         }
     }
 
-    void gather_events(const Rows& rows, const Experiment& experiment) {
+    /// A clock that was reckoned from the periods themselves has no noise that could be fitted.
+    bool keeps_to_periods(const Observable& clock) const {
+        double zero = 0.0;
+        for (std::size_t i = 0; i < clock.y.size(); ++i) {
+            if (clock.starts[i] != 0) zero = clock.y[i] - periods_[i];
+            if (std::abs(clock.y[i] - periods_[i] - zero) > clock.instrument.quantum / 2) return false;
+        }
+        return true;
+    }
+
+    /// Its rounding says nothing.
+    void take_periods(Observable& clock) const {
+        clock.fixed_sd = clock.instrument.quantum;
+        double zero = 0.0;
+        for (std::size_t i = 0; i < clock.y.size(); ++i) {
+            if (clock.starts[i] != 0) zero = clock.y[i] - periods_[i];
+            clock.y[i] = zero + periods_[i];
+        }
+    }
+
+    void gather_events(const Experiment& experiment) {
+        // A lost frame has no arrival.
+        const Rows rows(experiment, "", {});
         std::vector<std::uint32_t> used;
         if (experiment.has("frame_ok")) {
             ok_ = static_cast<int>(observables_.size());

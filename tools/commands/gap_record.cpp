@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 struct Request {
     std::string kind;
-    fs::path out, firmware;
+    fs::path out, firmware, rab;
     std::vector<std::string> changes;
     std::uint64_t seed = 1;
     bool brief = false;
@@ -41,6 +41,7 @@ void record(const Request& request) {
     options.seed = request.seed;
     options.brief = request.brief;
     options.robot.firmware = request.firmware.empty() ? fs::path() : fs::absolute(request.firmware);
+    options.robot.rab = request.rab.empty() ? fs::path() : fs::absolute(request.rab);
     for (const std::string& change : request.changes)
         gap::emulate::set_parameter(options.robot, change);
     const bool terminal = ::isatty(STDERR_FILENO) != 0;
@@ -62,14 +63,14 @@ void record(const Request& request) {
 }  // namespace
 
 gap::emulate::Tools emulation_tools() {
-    return {find_program("puckloop-record", "."), PUCKLOOP_FIRMWARE};
+    return {find_program("puckloop-record", "."), PUCKLOOP_FIRMWARE, PUCKLOOP_RAB_FIRMWARE};
 }
 
 void declare_gap_record(CLI::App& gap, int& status) {
     CLI::App* command = gap.add_subcommand(
         "record", "Perform an experiment on the emulator, firmware in the loop, and write its folder");
     auto request = std::make_shared<Request>();
-    command->add_option("kind", request->kind, "motion, proximity, ground, timing or all")
+    command->add_option("kind", request->kind, "motion, proximity, ground, timing, serial, rab or all")
         ->type_name("KIND")
         ->required();
     command
@@ -82,6 +83,10 @@ void declare_gap_record(CLI::App& gap, int& status) {
         "PARAMETER=NUMBER: a physical parameter (puckloop run --list-parameters), board.crystal_ppm, "
         "host.period, uart.factor, uart.loss, uart.delay");
     command->add_option("--firmware", request->firmware, "image for the main board (the project's own)")
+        ->type_name("IMAGE");
+    command
+        ->add_option("--rab-firmware", request->rab,
+                     "image for the range-and-bearing boards (the project's own)")
         ->type_name("IMAGE");
     command->add_option("--seed", request->seed, "of drives, sensors' noise and the tracker's")
         ->type_name("N");

@@ -23,7 +23,7 @@ struct Errors {
 
 Errors errors_of(const std::string& kind, const std::string& observable) {
     emulate::RecordOptions options;
-    options.tools = {PUCKLOOP_RECORD, PUCKLOOP_FIRMWARE};
+    options.tools = {PUCKLOOP_RECORD, PUCKLOOP_FIRMWARE, PUCKLOOP_RAB_FIRMWARE};
     options.brief = true;
     options.scratch = tests::scratch_path("gap_fast_" + kind);
     const auto folder = options.scratch / "experiment";

@@ -21,7 +21,7 @@ namespace {
 
 emulate::RecordOptions options_in(const std::filesystem::path& scratch) {
     emulate::RecordOptions options;
-    options.tools = {PUCKLOOP_RECORD, PUCKLOOP_FIRMWARE};
+    options.tools = {PUCKLOOP_RECORD, PUCKLOOP_FIRMWARE, PUCKLOOP_RAB_FIRMWARE};
     options.brief = true;
     options.scratch = scratch;
     return options;
@@ -79,6 +79,37 @@ TEST_CASE("ground and timing can be recorded") {
     const Experiment timing = recorded("timing", options);
     const auto& host = timing.runs.front().column("t_host_s");
     CHECK((host.back() - host.front()) / static_cast<double>(host.size() - 1) == Approx(0.1).margin(2e-4));
+}
+
+TEST_CASE("the serial line tells the main board's crystal") {
+    auto options = options_in(tests::scratch_path("gap_serial"));
+    emulate::set_parameter(options.robot, "board.crystal_ppm=-300");
+    const Experiment serial = recorded("serial", options);
+    REQUIRE(serial.kind == Kind::Timing);
+    REQUIRE(serial.runs.size() == 8);
+    const auto &host = serial.runs[3].column("t_host_s"), &robot = serial.runs[3].column("t_robot_s");
+    REQUIRE(host.size() == 72);
+    // 6 ms, timed to 0.1 us at both ends.
+    CHECK((host.back() - host.front()) / (robot.back() - robot.front()) == Approx(1.0003).margin(6e-5));
+}
+
+TEST_CASE("range and bearing is recorded through the boards' firmware") {
+    auto options = options_in(tests::scratch_path("gap_rab"));
+    const Experiment plain = recorded("rab", options);
+    REQUIRE(plain.kind == Kind::Rab);
+    REQUIRE(plain.runs.size() == 3);
+    emulate::set_parameter(options.robot, "ir.receiver_gain=0.5");
+    const Experiment weak = recorded("rab", options);
+    double sum = 0.0, count = 0.0;
+    for (std::size_t r = 0; r < plain.runs.size(); ++r)
+        for (std::size_t k = 0; k < plain.runs[r].rows; ++k) {
+            const double ratio = weak.runs[r].column("strength")[k] / plain.runs[r].column("strength")[k];
+            if (std::isnan(ratio)) continue;
+            sum += ratio;
+            ++count;
+        }
+    CHECK(count > 100);
+    CHECK(sum / count == Approx(0.5).margin(0.02));
 }
 
 TEST_CASE("what cannot be recorded or changed is refused in one line") {

@@ -28,7 +28,7 @@ Verdict named(const std::string& cause, const std::string& parameter, double val
 Rerun again(const std::string& kind, const std::vector<std::string>& changes, const Verdict& verdict) {
     const auto scratch = puckloop::tests::scratch_path("gap_rerun_" + kind);
     emulate::RecordOptions options;
-    options.tools = {PUCKLOOP_RECORD, PUCKLOOP_FIRMWARE};
+    options.tools = {PUCKLOOP_RECORD, PUCKLOOP_FIRMWARE, PUCKLOOP_RAB_FIRMWARE};
     options.brief = true;
     options.scratch = scratch / "emulated";
     for (const std::string& change : changes)

@@ -1,0 +1,12 @@
+#pragma once
+// Range and bearing recorded on the emulator: pairs of boards with firmware on a stage that turns and parts
+// them, infra-red medium between them, read over I2C as a robot does (tools/rab).
+
+#include "gap/emulate/record.h"
+
+namespace puckloop::gap::emulate {
+
+/// Of the robot only `parameters` (ir.*) and `rab` count: the boards stand on the stage by themselves.
+selftest::HiddenExperiment record_rab(const RecordOptions& options);
+
+}  // namespace puckloop::gap::emulate
