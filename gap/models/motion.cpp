@@ -133,6 +133,8 @@ class MotionModel final : public Model {
                 if (counted_) {
                     path.asked[0] = WheelCurve::commanded(run, "cmd_left", driver);
                     path.asked[1] = WheelCurve::commanded(run, "cmd_right", driver);
+                    for (std::size_t w = 0; w < 2; ++w)
+                        path.wheel[w].unround(path.asked[w]);
                 }
                 paths_.push_back(std::move(path));
                 along = across = heading = 0;
@@ -343,7 +345,7 @@ class MotionModel final : public Model {
             out[0].mean[first + i] = along;
             out[1].mean[first + i] = across;
             out[2].mean[first + i] = heading;
-            if (push > 0) {
+            if (push > 0 && settled(path, before, span)) {
                 for (std::size_t o = 0; o < 3; ++o) {
                     out[o].lapse[first + i] = std::min(push * span, 0.5);
                     out[o].lapse_scale[first + i] = at(v, o == 2 ? push_turn_ : push_size_);
@@ -351,6 +353,16 @@ class MotionModel final : public Model {
             }
             if (drop > 0) lapses_of_loss(drop, metre, axle, path, before, now, first + i, out);
         }
+    }
+
+    /// Has neither wheel changed its speed in this row or the one before? What happens there cannot be told
+    /// from what the change itself does, and is not taken for a push.
+    static bool settled(const Path& path, double before, double span) {
+        return std::all_of(path.wheel, path.wheel + 2, [&](const WheelCurve& wheel) {
+            const auto after = std::upper_bound(wheel.jumps.begin(), wheel.jumps.end(), before + kSameTime,
+                                                [](double t, const SpeedJump& j) { return t < j.time; });
+            return after == wheel.jumps.begin() || before - (after - 1)->time > 1.5 * span;
+        });
     }
 
     /// A lost command leaves the wheel at its old speed until the host says the same again, in the next row:

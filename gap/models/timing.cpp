@@ -303,9 +303,10 @@ class TimingModel final : public Model {
             waits.push_back(nearest(o.y[k]) - arrival(k));
         const auto least = waits.begin() + static_cast<std::ptrdiff_t>(waits.size() / kShareEarly);
         std::nth_element(waits.begin(), least, waits.end());
+        const double shortest = *least - batch / static_cast<double>(kShareEarly);  // waits are even
         const double doubt = std::max(kEdge * batch, kClockDoubt);
         for (std::size_t k = from; k < to; ++k) {
-            const double ready = arrival(k) + *least;
+            const double ready = arrival(k) + shortest;
             const double first = phase + batch * std::ceil((ready - doubt - phase) / batch);
             const double last = phase + batch * std::ceil((ready + doubt - phase) / batch);
             mean[k] = std::clamp(nearest(o.y[k]), first, last);

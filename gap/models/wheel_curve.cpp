@@ -11,6 +11,7 @@ constexpr double kTicksPerSecond = 1e4;
 constexpr double kFineClock = 230400,
                  kCoarseClock = 57600;        // Hz, the own firmware's timers (firmware/epuck/motors.c)
 constexpr double kSlow = 4, kFastest = 1000;  // steps/s
+constexpr double kRounded = 1.1;              // steps that a counter may be behind for being whole
 constexpr double kSmallJump = 20.0;           // steps/s: below, a change of counted speed is rounding
 
 /// Speeds counted between rows, with the parts of one change that fell into two rows put together.
@@ -83,6 +84,18 @@ WheelCurve WheelCurve::counted(const Run& run, std::string_view counter, std::st
     if (curve.empty()) return commanded(run, command, driver);
     curve.jumps = run.has(command) ? commanded(run, command, driver).jumps : counted_jumps(curve);
     return curve;
+}
+
+void WheelCurve::unround(const WheelCurve& asked) {
+    if (empty() || asked.empty()) return;
+    CurveReader plan(asked);
+    double offset = steps.front() - plan.at(time.front());
+    CurveReader again(asked);
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        const double planned = again.at(time[i]);
+        if (std::abs(planned + offset - steps[i]) > kRounded) offset = steps[i] - planned;
+        steps[i] = planned + offset;
+    }
 }
 
 double CurveReader::at(double time) {

@@ -32,6 +32,9 @@ struct WheelCurve {
     static WheelCurve counted(const Run& run, std::string_view counter, std::string_view command,
                               MotorDriver driver);
     static WheelCurve commanded(const Run& run, std::string_view command, MotorDriver driver);
+    /// Puts the fractions of a step back that a counter rounds off: as `asked` has them, wherever counter and
+    /// command agree.
+    void unround(const WheelCurve& asked);
     bool empty() const { return time.empty(); }
 };
 

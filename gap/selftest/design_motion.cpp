@@ -70,6 +70,14 @@ std::vector<Leg> reversals() {
     return legs;
 }
 
+/// Through zero in small steps.
+std::vector<Leg> crawl() {
+    std::vector<Leg> legs;
+    for (const double speed : {-120.0, -70.0, -42.0, -25.0, -15.0, 11.0, 20.0, 33.0, 55.0, 90.0})
+        legs.push_back({1.2, speed, speed});
+    return legs;
+}
+
 std::vector<Leg> free_drive(RandomStream& random) {
     std::vector<Leg> legs;
     for (int k = 0; k < 10; ++k) {
@@ -93,14 +101,14 @@ std::vector<PlannedDrive> planned_drives(RandomStream& random, bool one_circle) 
         };
         if (one_circle) {
             for (int k = 0; k < 4; ++k)
-                add("circle", "ccw", {{12, 250, 450}});
+                add("circle", "ccw", {{24, 250, 450}});
             continue;
         }
         add("line", "forward", {{5, 300, 300}});
         add("line", "forward", {{5, 450, 450}});
         plan.back().script.load = kLoad;
-        add("line", "forward", {{5, 850, 850}});
-        add("line", "backward", {{5, -500, -500}});
+        add("line", "forward", {{15, 850, 850}});
+        add("line", "backward", {{5, -850, -850}});
         add("spin", "ccw", {{5, -300, 300}});
         add("spin", "cw", {{5, 600, -600}});
         add("square", "ccw", square(1));
@@ -109,6 +117,7 @@ std::vector<PlannedDrive> planned_drives(RandomStream& random, bool one_circle) 
         add("circle", "cw", {{15, 800, 450}});
         add("hops", "forward", hops());
         add("reversals", "both", reversals());
+        add("crawl", "both", crawl());
         add("free", "both", free_drive(random));
     }
     return plan;

@@ -1,0 +1,59 @@
+// The forward model of timing against frames made by other formulas.
+
+#include "tests/gap/models/exact_tables.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+
+using namespace puckloop::gap;
+using selftest::TimingKnobs;
+
+namespace {
+
+constexpr double kRounding = 2e-6;  // s: tables have nine digits
+
+Exact<TimingKnobs> exact(const TimingKnobs& knobs, const char* name) {
+    return {selftest::timing_rig(), knobs, name};
+}
+
+}  // namespace
+
+TEST_CASE("with nothing wrong frames come when the model says") {
+    const auto rest = exact({}, "timing_rest");
+    CHECK(rest.misfit("robot_clock", {}) < kRounding);
+    CHECK(rest.misfit("arrival", {}) < kRounding);
+}
+
+TEST_CASE("each effect of timing moves the model as it moves the frames") {
+    TimingKnobs drift, stretch, longer;
+    drift.drift = 1e-3;
+    stretch.i2c_stretch = 1e-4;
+    longer.longer = 1e-3;
+    const auto drifted = exact(drift, "timing_drift");
+    CHECK(drifted.misfit("arrival", {}) > 3e-3);
+    CHECK(drifted.misfit("arrival", {{"timing.clock_drift", 1e-3}}) < kRounding);
+    const auto stretched = exact(stretch, "timing_stretch");
+    CHECK(stretched.misfit("arrival", {}) > 3e-4);
+    CHECK(stretched.misfit("arrival", {{"timing.i2c_stretch", 1e-4}}) < kRounding);
+    const auto slow = exact(longer, "timing_longer");
+    CHECK(slow.misfit("robot_clock", {}) > 0.05);
+    CHECK(slow.misfit("robot_clock", {{"timing.extra_period", 1e-3}}) < kRounding);
+    CHECK(slow.misfit("arrival", {}) < kRounding);  // the wire is as fast as it was
+}
+
+TEST_CASE("batches are found by the grid that arrivals keep to") {
+    for (const double batch : {0.0031, 0.017}) {
+        INFO(batch);
+        TimingKnobs knobs;
+        knobs.batch = batch;
+        const auto table = exact(knobs, "timing_batch");
+        const auto starts = table.model().starts("timing.batch");
+        REQUIRE_FALSE(starts.empty());
+        CHECK(std::any_of(starts.begin(), starts.end(),
+                          [&](double start) { return std::abs(start - batch) < 1e-5 * batch; }));
+        CHECK(table.misfit("arrival", {}) > 0.2 * batch);
+        CHECK(table.misfit("arrival", {{"timing.batch", batch}}) < 0.1 * batch);
+    }
+    CHECK(exact({}, "timing_no_batch").model().starts("proximity.gain").empty());
+}
