@@ -23,11 +23,11 @@ constexpr std::size_t kValidated = 3;      // best by BIC that are cross-validat
 constexpr std::size_t kRefined = 5;        // best by a quick fit that are fitted to the end
 constexpr double kHopeless = 60.0;
 constexpr double kNoRival = 0.3;  // share of the evidence that a rival has alone, at least
+constexpr double kTie = 2.0;      // nats of merit, or of BIC: not even a hint
 constexpr double kDraw = 6.0;     // difference of BIC that tells nothing
 
 /// Effects that act as rare outliers: heavy-tailed noise looks much the same, so they must say far more.
-constexpr std::string_view kOutliers[] = {"multipath", "collision_push", "pulsed_interference",
-                                          "command_loss"};
+constexpr std::string_view kOutliers[] = {"multipath", "pulsed_interference"};
 constexpr double kEnoughForOutliers = 60.0;
 
 double enough_for(const Effect& effect) {
@@ -135,14 +135,18 @@ class Selector {
             // Against a claimed noise the claim is the evidence: a fit of the noise itself predicts as well.
             const bool claim =
                 effect_of(fits[k].second).name == std::string_view("range_noise") && gains[k].sum > -1;
-            // What happens rarely is not seen in most blocks.
-            const bool rare = enough_for(effect_of(fits[k].second)) > kEnoughBic;
-            const bool enough = claim || (gains[k].sum > kEnoughDeviations * gains[k].sd &&
-                                          (rare || gains[k].share_touched > kEnoughBlocks));
+            // What happens rarely, or in few runs, is not seen in most blocks, but more than once.
+            const bool here_and_there = gains[k].clearly_better > 1 && gains[k].clearly_worse == 0;
+            const bool enough =
+                claim || here_and_there ||
+                (gains[k].sum > kEnoughDeviations * gains[k].sd && gains[k].share_touched > kEnoughBlocks);
             if (!enough) continue;
             // BIC says how simply, the held-out score how well: the sum of both decides.
             const double merit = gains[k].sum + fits[k].first / 2;
-            if (merit > best_gain) {
+            // In a draw the sheet's order decides, which begins with what is met most often.
+            const bool draw = best < fits.size() && std::abs(merit - best_gain) < kTie;
+            const bool earlier = draw && fits[k].second.effects.back() < fits[best].second.effects.back();
+            if (draw ? earlier : merit > best_gain) {
                 best_gain = merit;
                 best = k;
             }
@@ -217,8 +221,11 @@ class Selector {
                           std::move(fit)};
                 result_.draws.push_back(std::move(draw));
             }
+        const auto rank = [](const Draw& draw) {
+            return std::pair(std::max(draw.delta_bic, kTie), draw.delta_bic < kTie ? draw.rival : 0);
+        };
         std::stable_sort(result_.draws.begin(), result_.draws.end(),
-                         [](const Draw& a, const Draw& b) { return a.delta_bic < b.delta_bic; });
+                         [&](const Draw& a, const Draw& b) { return rank(a) < rank(b); });
     }
 
     /// The last step has tried `rival` in the place of the last choice.

@@ -84,9 +84,10 @@ class Study {
 std::vector<double> gains_by_block(const Blocks& blocks, const HeldOut& before, const HeldOut& after);
 
 struct Gain {
-    double sum = 0.0, sd = 0.0;  ///< sd of the sum, from the spread between blocks
-    double share_better = 0.0;   ///< of the blocks
-    double share_touched = 0.0;  ///< that gain, of the blocks that notice at all
+    double sum = 0.0, sd = 0.0;                 ///< sd of the sum, from the spread between blocks
+    double share_better = 0.0;                  ///< of the blocks
+    double share_touched = 0.0;                 ///< that gain, of the blocks that notice at all
+    int clearly_better = 0, clearly_worse = 0;  ///< blocks, by some nats
 };
 Gain gain_of(const std::vector<double>& by_block);
 
