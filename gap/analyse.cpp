@@ -6,6 +6,7 @@
 #include "base/random.h"
 #include "gap/fit/intervals.h"
 #include "gap/fit/select.h"
+#include "gap/free_form.h"
 #include "gap/leftovers.h"
 #include "gap/placements.h"
 #include "gap/sentences.h"
@@ -22,10 +23,10 @@ namespace {
 
 constexpr int kDraws = 1000;         // of the bootstrap over runs
 constexpr double kLeftLevel = 0.01;  // corrected p of a structure worth telling
-constexpr double kUnexplainedShare =
-    0.35;                        // of the gain: a free form that would add this much was not explained
-constexpr double kEdge = 0.005;  // of a plausible range: this near to its end is at its end
-constexpr double kUnexplainedLeast = 6.0;  // nats: less is not worth the word
+constexpr double kSureLevel = 1e-3;  // of a structure that by itself makes a verdict
+constexpr double kUnexplainedShareOfSums = 0.5;
+constexpr double kUnexplainedShare = 0.2;  // of all that is gained: what leaves this much is not the cause
+constexpr double kEdge = 0.005;            // of a plausible range: this near to its end is at its end
 constexpr double kFixedByOthers =
     0.97;  // correlation beyond which a parameter of the measuring chain is not fitted along
 
@@ -41,12 +42,14 @@ class Analysis {
         verdict_.seed = options_.seed;
         verdict_.cautions = experiment_.cautions;
         selection_ = select(study_, options_.progress);
-        tell("intervals", 0.88);
+        tell("what is left", 0.88);
+        final_ = with_nuisances();
+        look_at_rest();
+        if (!selection_.steps.empty() && verdict_.unexplained_share > share_allowed()) take_back();
+        tell("intervals", 0.96);
         fill_causes();
         fill_tried();
         fill_held();
-        tell("what is left", 0.93);
-        fill_series();
         for (const Series& series : verdict_.series)
             for (const std::string& caution :
                  {placement_caution(experiment_, series), circular_caution(series)})
@@ -119,17 +122,22 @@ class Analysis {
         return fit;
     }
 
-    void fill_causes() {
-        final_ = with_nuisances();
-        const Precision precision = precision_of(study_, final_);
+    std::vector<Cause> chosen_causes(const Precision& precision) const {
+        std::vector<Cause> causes;
         for (const Trial& step : selection_.steps) {
             Cause cause = cause_of(final_, precision, step.effect);
             cause.evidence = step.delta_bic;
             cause.score_gain = step.held.sum;
             cause.score_low = step.held.sum - 1.645 * step.held.sd;
             cause.score_high = step.held.sum + 1.645 * step.held.sd;
-            verdict_.causes.push_back(std::move(cause));
+            causes.push_back(std::move(cause));
         }
+        return causes;
+    }
+
+    void fill_causes() {
+        const Precision precision = precision_of(study_, final_);
+        verdict_.causes = chosen_causes(precision);
         caution_of_edges();
         for (std::size_t k = selection_.chosen.effects.size(); k < final_.effects.size(); ++k)
             for (const auto& parameter : cause_of(final_, precision, final_.effects[k]).parameters)
@@ -260,10 +268,6 @@ class Analysis {
         high = ratios.empty() ? ratio : ratios[ratios.size() - 1 - ratios.size() / 20];
     }
 
-    void fill_series() {
-        verdict_.series = series_of(study_.model(), selection_.none.fitted.state, final_.fitted.state);
-    }
-
     /// Offsets of placements say more than that rows carry over.
     void tell_placements() {
         for (const Series& series : verdict_.series) {
@@ -279,24 +283,57 @@ class Analysis {
         }
     }
 
-    void decide() {
-        const auto left = leftovers_of(experiment_, verdict_.series, options_.seed, kLeftLevel);
-        double free_form = 0.0;
-        for (const LeftStructure& one : left) {
-            verdict_.leftovers.push_back(one.told);
-            free_form = std::max(free_form, one.gain);
-        }
+    /// Structures and free forms that are left with what is chosen, and their share of all that is gained.
+    void look_at_rest() {
+        verdict_.series = series_of(study_.model(), selection_.none.fitted.state, final_.fitted.state);
+        verdict_.leftovers = leftovers_of(experiment_, verdict_.series, options_.seed, kLeftLevel);
         tell_placements();
-        const double won = selection_.chosen.fitted.log_likelihood - selection_.none.fitted.log_likelihood;
-        const bool much_left =
-            !left.empty() &&
-            (verdict_.causes.empty() || free_form > std::max(kUnexplainedLeast, kUnexplainedShare * won));
-        if (much_left)
-            verdict_.decision = Decision::Unexplained;
-        else if (verdict_.causes.empty())
-            verdict_.decision = Decision::NoEffect;
-        else
+        verdict_.free_forms = free_forms_of(experiment_, study_.model(), final_.fitted.state, options_.seed);
+        const double left = gained(verdict_.free_forms);
+        const double won = std::max(
+            gain_of(gains_by_block(study_.blocks(), selection_.held_none, selection_.held_chosen)).sum, 0.0);
+        verdict_.unexplained_share = left > 0 ? left / (left + won) : 0.0;
+    }
+
+    static double gained(const std::vector<FreeForm>& forms) {
+        double sum = 0.0;
+        for (const FreeForm& form : forms)
+            if (form.clear && !form.wild) sum += form.gain;
+        return sum;
+    }
+
+    /// Of sums more may be left: their free forms act on single steps, and cannot say what adds up.
+    double share_allowed() const {
+        const auto& all = study_.model().observables();
+        const bool sums = std::any_of(all.begin(), all.end(), [](const Observable& observable) {
+            return observable.noise == NoiseKind::Level;
+        });
+        return sums ? kUnexplainedShareOfSums : kUnexplainedShare;
+    }
+
+    /// An effect fitted to what it does not describe soaks up some of it and leaves much. Then nothing is
+    /// named: what came nearest is told as such, and all that is left is looked at again.
+    void take_back() {
+        verdict_.nearest = chosen_causes(precision_of(study_, final_));
+        for (const Trial& step : selection_.steps)
+            selection_.trials[step.effect].remark = "came nearest, but leaves much";
+        selection_.steps.clear();
+        selection_.draws.clear();
+        selection_.chosen = final_ = selection_.none;
+        selection_.held_chosen = selection_.held_none;
+        look_at_rest();
+    }
+
+    void decide() {
+        const bool sure = std::any_of(verdict_.leftovers.begin(), verdict_.leftovers.end(),
+                                      [](const Leftover& one) { return one.p_value < kSureLevel; }) ||
+                          std::any_of(verdict_.free_forms.begin(), verdict_.free_forms.end(),
+                                      [](const FreeForm& form) { return form.clear; });
+        if (!verdict_.causes.empty())
             verdict_.decision = verdict_.rivals.empty() ? Decision::Named : Decision::CannotTell;
+        else
+            verdict_.decision =
+                sure || !verdict_.nearest.empty() ? Decision::Unexplained : Decision::NoEffect;
     }
 
   public:

@@ -1,8 +1,7 @@
 #pragma once
-// What is left after the best model, and whether a free-form correction would say much more than the
-// catalogue did.
+// What is left after the best model: the structures that chance does not explain.
 
-#include "gap/fit/study.h"
+#include "gap/experiment.h"
 #include "gap/verdict.h"
 
 #include <cstdint>
@@ -10,16 +9,9 @@
 
 namespace puckloop::gap {
 
-/// A structure that is left with what a free-form correction along its covariate would gain.
-struct LeftStructure {
-    Leftover told;
-    double relative = 0.0;  ///< size over the residual's scale
-    double gain = 0.0;      ///< log likelihood, nats; 0 where the structure is not one of the mean
-};
-
 /// Structures of the series' innovations after the fit that chance does not explain (corrected over all
 /// observables), the surest first.
-std::vector<LeftStructure> leftovers_of(const Experiment& experiment, const std::vector<Series>& series,
-                                        std::uint64_t seed, double level);
+std::vector<Leftover> leftovers_of(const Experiment& experiment, const std::vector<Series>& series,
+                                   std::uint64_t seed, double level);
 
 }  // namespace puckloop::gap

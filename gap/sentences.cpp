@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace puckloop::gap {
@@ -75,11 +76,19 @@ std::string summary_of(const Verdict& verdict) {
         break;
     }
     std::string text = "Structure remains that nothing in the catalogue explains";
-    if (!verdict.leftovers.empty())
+    if (const auto form = std::find_if(verdict.free_forms.begin(), verdict.free_forms.end(),
+                                       [](const FreeForm& one) { return one.clear; });
+        form != verdict.free_forms.end())
+        text += fmt::format(": {}: {}", form->observable, form->shape);
+    else if (!verdict.leftovers.empty())
         text += fmt::format(": {} {}", verdict.leftovers.front().observable, verdict.leftovers.front().shape);
     text += ".";
+    titles.clear();
+    for (const Cause& cause : verdict.nearest)
+        titles.push_back(cause.title);
     if (!titles.empty())
-        text += fmt::format(" What comes nearest, and explains only a part: {}.", listed(titles, "and"));
+        text += fmt::format(" What comes nearest, and leaves too much to be the cause: {}.",
+                            listed(titles, "and"));
     return text;
 }
 

@@ -85,6 +85,24 @@ Json rerun_json(const Rerun& rerun) {
             {"left_out", rerun.left_out}};
 }
 
+Json free_form_json(const FreeForm& form) {
+    Json terms = Json::array();
+    for (const auto& term : form.terms) {
+        Json cells = Json::array();
+        for (std::size_t k = 0; k < term.values.size(); ++k)
+            cells.push_back({{"at", term.where[k]}, {"value", number(term.values[k])}});
+        terms.push_back(
+            {{"over", term.over}, {"share", number(term.share)}, {"shape", term.shape}, {"cells", cells}});
+    }
+    return {{"observable", form.observable},
+            {"unit", form.unit},
+            {"score_gain", number(form.gain)},
+            {"sd", number(form.sd)},
+            {"size", number(form.size)},
+            {"shape", form.shape},
+            {"terms", terms}};
+}
+
 }  // namespace
 
 std::string_view decision_name(Decision decision) {
@@ -120,6 +138,14 @@ std::string to_json(const Verdict& verdict) {
                                      {"covariate", left.covariate},
                                      {"p_value", number(left.p_value)},
                                      {"shape", left.shape}});
+    json["free_form"] = {{"label", "unexplained: a correction without a mechanism"},
+                         {"share", number(verdict.unexplained_share)},
+                         {"forms", Json::array()}};
+    for (const auto& form : verdict.free_forms)
+        if (form.clear) json["free_form"]["forms"].push_back(free_form_json(form));
+    json["nearest"] = Json::array();
+    for (const auto& cause : verdict.nearest)
+        json["nearest"].push_back(cause_json(cause));
     json["tried"] = Json::array();
     for (const auto& tried : verdict.tried)
         json["tried"].push_back({{"name", tried.name},

@@ -81,6 +81,27 @@ struct Leftover {
     std::string shape;     ///< in words: "rises from -3 to 5 counts over distance 2..8 cm"
 };
 
+/// A covariate, or two, over which a free-form correction differs.
+struct FreeFormTerm {
+    std::string over;                ///< "grey", "course and sensor"
+    double share = 0.0;              ///< of the correction's variance
+    std::vector<std::string> where;  ///< a cell each: "grey 0.31"
+    std::vector<double> values;      ///< mean correction in each cell, observable's unit
+    std::string shape;               ///< in words
+};
+
+/// What a correction without a mechanism would say of one observable after the named effects.
+struct FreeForm {
+    std::string observable, unit;
+    double gain = 0.0;   ///< log score it wins on held-out rows, nats; below 0: there is nothing
+    double sd = 0.0;     ///< of the gain
+    double size = 0.0;   ///< root mean square of the correction, in units of the noise
+    bool clear = false;  ///< chance does not make it
+    bool wild = false;   ///< of where readings go far astray; not added to the gain of the same rows
+    std::string shape;   ///< in words
+    std::vector<FreeFormTerm> terms;  ///< the largest first
+};
+
 struct Suggestion {
     std::string what;   ///< in plain words
     double bits = 0.0;  ///< expected information about which rival is true
@@ -111,6 +132,9 @@ struct Verdict {
     std::vector<HeldObservable> observables;
     std::vector<Suggestion> suggestions;  ///< best first
     std::vector<Leftover> leftovers;
+    std::vector<FreeForm> free_forms;  ///< of each observable, what gains most first: unexplained
+    double unexplained_share = 0.0;    ///< of all that is gained: free forms over free forms and causes
+    std::vector<Cause> nearest;        ///< where nothing stands as a cause: what came nearest, and left much
     std::vector<Tried> tried;
     std::vector<FittedParameter> nuisance;  ///< fitted along with every model: tracker offset and delay, ...
     std::vector<std::string> cautions;

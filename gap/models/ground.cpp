@@ -1,8 +1,9 @@
 // Ground sensors: the printed grey under a sensor as counts, in the order of physics::GroundRow: black and
 // white level, height, gain, offset, saturation.
 //
-// Deviations: 1. the footprint is the experiment's: `grey` is the mean under the nominal one. 2. A shift of
-// the sensor moves along the stated slope of the grey.
+// Deviations: 1. the footprint is the experiment's: `grey` is the mean under the nominal one. 2. Where a
+// sensor stands ahead or answers late, the grey there is read off the sensor's own track (cubic between rows,
+// a straight line beyond its ends); aside it goes along the stated slope.
 
 #include "gap/models/model.h"
 #include "gap/models/rows.h"
@@ -35,6 +36,7 @@ class GroundModel final : public Model {
         acceleration_ = column("acceleration", 0);
         ambient_ = column("ambient", 0);
         time_ = column("t_s", 0);
+        lay_track();
         for (const double sensor : column("sensor", 0))
             sensor_.push_back(static_cast<int>(sensor));
         const physics::Parameters defaults;
@@ -72,8 +74,8 @@ class GroundModel final : public Model {
                      warm = value(warmup_);
         for (std::size_t i = 0; i < mean.size(); ++i) {
             const auto s = static_cast<std::size_t>(sensor_[i]);
-            const double ahead = value(forward_) - value(lag_) * speed_[i];
-            const double grey = grey_[i] + ahead * along_[i] + value(left_) * across_[i];
+            const double ahead = value(forward_) - way_since(i, value(lag_));
+            const double grey = grey_ahead(i, ahead) + value(left_) * across_[i];
             const double lift =
                 value(raised_) + value(x_) * std::sin(pitch_[i] + value(tilt_) * acceleration_[i]);
             double level = (black + contrast * grey) * (1 - slope * lift);
@@ -84,6 +86,58 @@ class GroundModel final : public Model {
     }
 
   private:
+    /// Way along each chain, by the mean of the speeds at both ends of a step.
+    void lay_track() {
+        const Observable& o = observables_[0];
+        const std::size_t n = grey_.size();
+        way_.assign(n, 0.0);
+        first_.assign(n, 0);
+        last_.assign(n, 0);
+        for (std::size_t i = 0; i < n; ++i) {
+            const bool begins = i == 0 || o.starts[i] != 0;
+            first_[i] = begins ? i : first_[i - 1];
+            if (!begins) way_[i] = way_[i - 1] + (speed_[i] + speed_[i - 1]) / 2 * (time_[i] - time_[i - 1]);
+        }
+        for (std::size_t i = n; i-- > 0;)
+            last_[i] = i + 1 == n || first_[i + 1] == i + 1 ? i : last_[i + 1];
+    }
+
+    /// Way driven in the time `lag` before row i; before the chain began, as if its speed had been the same.
+    double way_since(std::size_t i, double lag) const {
+        if (lag == 0.0) return 0.0;
+        const double then = time_[i] - lag;
+        std::size_t k = i;
+        while (lag > 0 && k > first_[i] && time_[k] > then)
+            --k;
+        while (lag < 0 && k < last_[i] && time_[k + 1] <= then)
+            ++k;
+        if (k == last_[i] || time_[k] > then) return way_[i] - way_[k] + (time_[k] - then) * speed_[k];
+        const double share = (then - time_[k]) / std::max(time_[k + 1] - time_[k], 1e-9);
+        return way_[i] - way_[k] - share * (way_[k + 1] - way_[k]);
+    }
+
+    /// The grey `ahead` metres farther on (or back) along the track of row i.
+    double grey_ahead(std::size_t i, double ahead) const {
+        if (ahead == 0.0) return grey_[i];
+        const double at = way_[i] + ahead;
+        const double sense = speed_[i] < 0 ? -1.0 : 1.0;  // rows run the other way when the robot backs up
+        std::size_t k = i;
+        const auto behind = [&](std::size_t row) { return sense * (way_[row] - at) > 0; };
+        while (k > first_[i] && behind(k) && sense * (way_[k - 1] - way_[k]) <= 0)
+            --k;
+        while (k < last_[i] && !behind(k + 1) && sense * (way_[k + 1] - way_[k]) >= 0)
+            ++k;
+        const double rest = at - way_[k];
+        const double step = k < last_[i] ? way_[k + 1] - way_[k] : 0.0;
+        if (behind(k) || std::abs(step) < 1e-6 || sense * (at - way_[k] - step) > 0)
+            return grey_[k] + rest * along_[k];
+        const double u = rest / step, v = 1 - u;  // Hermite's cubic through both greys and slopes
+        return (1 + 2 * u) * v * v * grey_[k] + u * v * v * step * along_[k] +
+               (3 - 2 * u) * u * u * grey_[k + 1] - u * u * v * step * along_[k + 1];
+    }
+
+    std::vector<double> way_;
+    std::vector<std::size_t> first_, last_;  // row of the chain that this row is in
     std::vector<double> grey_, along_, across_, speed_, pitch_, acceleration_, ambient_, time_;
     std::vector<int> sensor_;
     std::array<int, physics::kGroundSensors> gain_{-1, -1, -1}, offset_{-1, -1, -1};

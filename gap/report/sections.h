@@ -18,6 +18,8 @@ std::string parameters_section(const Verdict& verdict);
 std::string rivals_section(const Verdict& verdict);
 /// Noise floor and structure tests, before and after.
 std::string structure_section(const Experiment& experiment, const Verdict& verdict);
+/// What came nearest where nothing is named, and the free-form correction of what is left.
+std::string free_form_section(const Verdict& verdict);
 std::string evidence_section(const Verdict& verdict);
 std::string reading_section();
 

@@ -1,0 +1,374 @@
+#include "gap/stats/boosting.h"
+
+#include "base/random.h"
+#include "gap/stats/robust.h"
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace puckloop::gap::stats {
+
+namespace {
+
+constexpr int kMostSteps = 60;
+constexpr double kPace = 0.6;        // of each step
+constexpr double kFreedom = 1.5;     // degrees of freedom of each step, whatever the number of cells
+constexpr double kTrim = 4.0;        // deviations
+constexpr double kLeastWon = 1.0;    // of the errors' squares in units of their variance: less is not pursued
+constexpr double kLooseEnds = 0.05;  // ridge of ordered cells beside their differences
+constexpr std::size_t kEnoughRuns = 3;
+constexpr std::size_t kStretches = 12;  // of a run, where runs are few
+constexpr std::size_t kKept = 40;       // components that stay in view between two looks at all
+constexpr double kLessCarry = 0.35;
+constexpr int kLookAgain = 10;  // steps
+
+/// Errors and cells freed of what is carried over: a row has its own cell and the one of the row before.
+class Design {
+  public:
+    Design(const ErrorRows& rows, const std::vector<Component>& components, double carry)
+        : components_(components), carry_(carry), first_(std::sqrt(1 - carry * carry)) {
+        const std::size_t n = rows.error.size();
+        target_.assign(n, 0.0);
+        used_.assign(n, 0);
+        chained_.assign(n, 0);
+        for (std::size_t i = 0; i < n; ++i) {
+            if (!std::isfinite(rows.error[i])) continue;
+            used_[i] = 1;
+            chained_[i] = rows.follows[i] != 0 && std::isfinite(rows.error[i - 1]) ? 1 : 0;
+            target_[i] = follows(i) ? rows.error[i] - carry * rows.error[i - 1] : first_ * rows.error[i];
+        }
+        if (!rows.trimmed) return;
+        std::vector<double> values;
+        for (std::size_t i = 0; i < n; ++i)
+            if (used_[i] != 0) values.push_back(target_[i]);
+        const double limit = kTrim * robust_scale(values);
+        if (!(limit > 0)) return;
+        for (double& value : target_)
+            value = std::clamp(value, -limit, limit);
+    }
+
+    bool follows(std::size_t i) const { return chained_[i] != 0; }
+    bool used(std::size_t i) const { return used_[i] != 0; }
+    std::size_t rows() const { return target_.size(); }
+    const std::vector<double>& target() const { return target_; }
+
+    /// The row's share of cell values: own cell (p, a) and that of the row before (q, b); cell -1: none.
+    void parts(std::size_t g, std::size_t i, int& p, double& a, int& q, double& b) const {
+        const Component& c = components_[g];
+        p = c.cell[i];
+        const bool chained = follows(i);
+        a = (chained ? 1.0 : first_) * (c.weight.empty() ? 1.0 : c.weight[i]);
+        q = chained && carry_ != 0.0 ? c.cell[i - 1] : -1;
+        b = q < 0 ? 0.0 : -carry_ * (c.weight.empty() ? 1.0 : c.weight[i - 1]);
+    }
+
+  private:
+    const std::vector<Component>& components_;
+    double carry_, first_;
+    std::vector<double> target_;
+    std::vector<char> used_, chained_;
+};
+
+/// What each component's cells know of each other in the rows of the folds but one (held = -1: of all).
+std::vector<Eigen::MatrixXd> grams_of(const Design& design, const std::vector<Component>& components,
+                                      const std::vector<int>& fold, int held) {
+    std::vector<Eigen::MatrixXd> grams;
+    for (std::size_t g = 0; g < components.size(); ++g) {
+        grams.push_back(Eigen::MatrixXd::Zero(components[g].cells, components[g].cells));
+        Eigen::MatrixXd& gram = grams.back();
+        for (std::size_t i = 0; i < design.rows(); ++i) {
+            if (!design.used(i) || fold[i] == held) continue;
+            int p = 0, q = 0;
+            double a = 0, b = 0;
+            design.parts(g, i, p, a, q, b);
+            if (p >= 0) gram(p, p) += a * a;
+            if (q >= 0) gram(q, q) += b * b;
+            if (p >= 0 && q >= 0) {
+                gram(p, q) += a * b;
+                gram(q, p) += a * b;
+            }
+        }
+    }
+    return grams;
+}
+
+/// Pulls the cells of a component towards nothing, ordered ones towards their neighbours.
+Eigen::MatrixXd penalty_of(const Component& component) {
+    const int n = component.cells;
+    Eigen::MatrixXd penalty = Eigen::MatrixXd::Identity(n, n);
+    if (!component.ordered) return penalty;
+    penalty *= kLooseEnds;
+    for (int k = 0; k + 1 < n; ++k) {
+        penalty(k, k) += 1;
+        penalty(k + 1, k + 1) += 1;
+        penalty(k, k + 1) -= 1;
+        penalty(k + 1, k) -= 1;
+    }
+    return penalty;
+}
+
+/// Strength of the penalty that leaves a component its freedom; 0: its cells are empty.
+double strength_for(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& penalty) {
+    const double size = gram.trace();
+    if (!(size > 1e-9)) return 0.0;
+    double low = std::log(size) - 25, high = std::log(size) + 10;
+    const double wanted = std::min(kFreedom, 0.75 * static_cast<double>(gram.rows()));
+    for (int k = 0; k < 25; ++k) {
+        const double middle = (low + high) / 2;
+        const double freedom = (gram + std::exp(middle) * penalty).ldlt().solve(gram).trace();
+        (freedom > wanted ? low : high) = middle;
+    }
+    return std::exp(high);
+}
+
+std::vector<double> strengths_of(const Design& design, const std::vector<Component>& components,
+                                 const std::vector<int>& fold) {
+    const auto grams = grams_of(design, components, fold, -1);
+    std::vector<double> strengths;
+    for (std::size_t g = 0; g < components.size(); ++g)
+        strengths.push_back(strength_for(grams[g], penalty_of(components[g])));
+    return strengths;
+}
+
+/// Steps on the rows that are not held out.
+class Booster {
+  public:
+    Booster(const Design& design, const std::vector<Component>& components, const std::vector<int>& fold,
+            int held, const std::vector<double>& strength)
+        : design_(design),
+          components_(components),
+          fold_(fold),
+          held_(held),
+          rest_(design.target()),
+          gram_(grams_of(design, components, fold, held)),
+          inverse_(components.size()),
+          values_(components.size()) {
+        for (std::size_t i = 0; i < rest_.size(); ++i)
+            if (learns(i)) ++count_;
+        for (std::size_t g = 0; g < components.size(); ++g)
+            if (strength[g] > 0)
+                inverse_[g] = (gram_[g] + strength[g] * penalty_of(components[g]))
+                                  .ldlt()
+                                  .solve(Eigen::MatrixXd::Identity(gram_[g].rows(), gram_[g].rows()));
+        view_.resize(components.size());
+        std::iota(view_.begin(), view_.end(), std::size_t{0});
+    }
+
+    /// One step; false when nothing is worth it.
+    bool step() {
+        if (taken_ % kLookAgain == 0) {
+            view_.resize(components_.size());
+            std::iota(view_.begin(), view_.end(), std::size_t{0});
+        }
+        std::vector<std::pair<double, std::size_t>> won;
+        std::vector<Eigen::VectorXd> moves(components_.size());
+        for (const std::size_t g : view_) {
+            if (inverse_[g].size() == 0) continue;
+            Eigen::VectorXd pull = Eigen::VectorXd::Zero(components_[g].cells);
+            for (std::size_t i = 0; i < rest_.size(); ++i) {
+                if (!learns(i)) continue;
+                int p = 0, q = 0;
+                double a = 0, b = 0;
+                design_.parts(g, i, p, a, q, b);
+                if (p >= 0) pull[p] += a * rest_[i];
+                if (q >= 0) pull[q] += b * rest_[i];
+            }
+            moves[g] = inverse_[g] * pull;
+            won.emplace_back(2 * moves[g].dot(pull) - moves[g].dot(gram_[g] * moves[g]), g);
+        }
+        if (won.empty()) return false;
+        std::stable_sort(won.begin(), won.end(),
+                         [](const auto& x, const auto& y) { return x.first > y.first; });
+        if (won.front().first < kLeastWon * variance()) return false;
+        if (taken_ % kLookAgain == 0 && won.size() > kKept) won.resize(kKept);
+        view_.clear();
+        for (const auto& [gain, g] : won)
+            view_.push_back(g);
+        const std::size_t g = won.front().second;
+        const Eigen::VectorXd move = kPace * moves[g];
+        for (std::size_t i = 0; i < rest_.size(); ++i) {
+            if (!design_.used(i)) continue;
+            int p = 0, q = 0;
+            double a = 0, b = 0;
+            design_.parts(g, i, p, a, q, b);
+            rest_[i] -= (p >= 0 ? a * move[p] : 0.0) + (q >= 0 ? b * move[q] : 0.0);
+        }
+        if (values_[g].size() == 0) values_[g] = Eigen::VectorXd::Zero(move.size());
+        values_[g] += move;
+        ++taken_;
+        return true;
+    }
+
+    /// Mean square of what is left of the rows that were learnt from.
+    double variance() const {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < rest_.size(); ++i)
+            if (learns(i)) sum += rest_[i] * rest_[i];
+        return std::max(sum / std::max(count_, 1.0), 1e-12);
+    }
+    /// Log score of a row with what is left.
+    double score(std::size_t i, double variance) const {
+        return -rest_[i] * rest_[i] / variance / 2 - std::log(variance) / 2;
+    }
+    const std::vector<Eigen::VectorXd>& values() const { return values_; }
+
+  private:
+    bool learns(std::size_t i) const { return design_.used(i) && fold_[i] != held_; }
+
+    const Design& design_;
+    const std::vector<Component>& components_;
+    const std::vector<int>& fold_;
+    int held_;
+    std::vector<double> rest_;
+    double count_ = 0.0;
+    int taken_ = 0;
+    std::vector<Eigen::MatrixXd> gram_, inverse_;
+    std::vector<Eigen::VectorXd> values_;
+    std::vector<std::size_t> view_;
+};
+
+/// Parts to hold out, and the blocks over which gains are judged.
+void make_parts(const ErrorRows& rows, std::uint64_t seed, std::vector<int>& fold, std::vector<int>& block,
+                std::size_t& folds, std::size_t& blocks) {
+    const std::size_t n = rows.run.size();
+    std::vector<int> runs = rows.run;
+    std::sort(runs.begin(), runs.end());
+    runs.erase(std::unique(runs.begin(), runs.end()), runs.end());
+    fold.assign(n, 0);
+    block.assign(n, 0);
+    const auto place = [&](int run) {
+        return static_cast<std::size_t>(std::lower_bound(runs.begin(), runs.end(), run) - runs.begin());
+    };
+    if (runs.size() >= kEnoughRuns) {
+        std::vector<std::size_t> order(runs.size());
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        RandomStream random(seed, "gap/free form");
+        for (std::size_t i = order.size(); i > 1; --i)
+            std::swap(order[i - 1], order[random.below(i)]);
+        folds = std::min(rows.folds, runs.size());
+        blocks = runs.size();
+        for (std::size_t i = 0; i < n; ++i) {
+            block[i] = static_cast<int>(place(rows.run[i]));
+            fold[i] = static_cast<int>(order[place(rows.run[i])] % folds);
+        }
+        return;
+    }
+    folds = rows.folds;
+    blocks = runs.size() * kStretches;
+    std::vector<std::size_t> length(runs.size(), 0), seen(runs.size(), 0);
+    for (const int run : rows.run)
+        ++length[place(run)];
+    for (std::size_t i = 0; i < n; ++i) {
+        const std::size_t r = place(rows.run[i]);
+        const std::size_t stretch = seen[r]++ * kStretches / std::max<std::size_t>(length[r], 1);
+        block[i] = static_cast<int>(r * kStretches + stretch);
+        fold[i] = static_cast<int>(stretch % folds);
+    }
+}
+
+/// Held-out gain over no correction at the given carry, by block, for each number of steps.
+using Gains = std::vector<std::vector<double>>;
+
+}  // namespace
+
+Boosted boosted(const ErrorRows& rows, const std::vector<Component>& components, std::uint64_t seed) {
+    Boosted result;
+    const std::size_t n = rows.error.size();
+    result.carry = rows.carry;
+    result.correction.assign(n, 0.0);
+    result.weight.assign(components.size(), 0.0);
+    std::vector<int> fold, block;
+    std::size_t folds = 0, blocks = 0;
+    make_parts(rows, seed, fold, block, folds, blocks);
+    if (components.empty() || folds < 2) return result;
+
+    // What a missing structure does to a fit is to make errors look as if they carried over.
+    std::vector<double> carries{rows.carry};
+    if (std::abs(rows.carry) > 0.1) carries.push_back(kLessCarry * rows.carry);
+    std::vector<double> baseline(n, 0.0);
+    std::vector<std::vector<double>> strengths;
+    std::vector<Gains> gains(carries.size(), Gains(kMostSteps + 1, std::vector<double>(blocks, 0.0)));
+    for (std::size_t c = 0; c < carries.size(); ++c) {
+        const Design design(rows, components, carries[c]);
+        strengths.push_back(strengths_of(design, components, fold));
+        for (std::size_t k = 0; k < folds; ++k) {
+            Booster booster(design, components, fold, static_cast<int>(k), strengths[c]);
+            bool more = true;
+            double variance = booster.variance();
+            for (int m = 0; m <= kMostSteps; ++m) {
+                if (m > 0 && more) {
+                    more = booster.step();
+                    variance = booster.variance();
+                }
+                for (std::size_t i = 0; i < n; ++i) {
+                    if (fold[i] != static_cast<int>(k) || !design.used(i)) continue;
+                    const double score = booster.score(i, variance);
+                    if (c == 0 && m == 0) baseline[i] = score;
+                    gains[c][static_cast<std::size_t>(m)][static_cast<std::size_t>(block[i])] +=
+                        score - baseline[i];
+                }
+            }
+        }
+    }
+    // How many steps, and which carry: chosen for each fold by what the other folds say.
+    std::vector<std::size_t> fold_of(blocks, 0);
+    for (std::size_t i = 0; i < n; ++i)
+        fold_of[static_cast<std::size_t>(block[i])] = static_cast<std::size_t>(fold[i]);
+    const auto best_without = [&](std::size_t fold_left, std::size_t& carry, std::size_t& steps) {
+        double most = 0.0;
+        carry = steps = 0;
+        for (std::size_t c = 0; c < carries.size(); ++c)
+            for (std::size_t m = 0; m <= kMostSteps; ++m) {
+                double sum = 0.0;
+                for (std::size_t b = 0; b < blocks; ++b)
+                    if (fold_of[b] != fold_left) sum += gains[c][m][b];
+                if (sum > most) {
+                    most = sum;
+                    carry = c;
+                    steps = m;
+                }
+            }
+    };
+    std::vector<double> by_block(blocks, 0.0);
+    for (std::size_t k = 0; k < folds; ++k) {
+        std::size_t c = 0, m = 0;
+        best_without(k, c, m);
+        for (std::size_t b = 0; b < blocks; ++b)
+            if (fold_of[b] == k) by_block[b] = gains[c][m][b];
+    }
+    double squares = 0.0;
+    for (const double one : by_block)
+        result.gain += one;
+    for (const double one : by_block)
+        squares += std::pow(one - result.gain / static_cast<double>(blocks), 2);
+    result.sd = std::sqrt(squares * static_cast<double>(blocks) / static_cast<double>(blocks - 1));
+
+    std::size_t c = 0, steps = 0;
+    best_without(folds, c, steps);
+    result.carry = carries[c];
+    const Design design(rows, components, carries[c]);
+    Booster booster(design, components, fold, -1, strengths[c]);
+    for (std::size_t m = 0; m < steps && booster.step(); ++m)
+        ++result.steps;
+    for (std::size_t g = 0; g < components.size(); ++g) {
+        const Eigen::VectorXd& values = booster.values()[g];
+        if (values.size() == 0) continue;
+        double sum = 0.0, square = 0.0, count = 0.0;
+        for (std::size_t i = 0; i < n; ++i) {
+            const int cell = components[g].cell[i];
+            if (cell < 0 || !std::isfinite(rows.error[i])) continue;
+            const double one = values[cell] * (components[g].weight.empty() ? 1.0 : components[g].weight[i]);
+            result.correction[i] += one;
+            sum += one;
+            square += one * one;
+            count += 1;
+        }
+        if (count > 0) result.weight[g] = std::max(square / count - sum * sum / count / count, 0.0);
+    }
+    return result;
+}
+
+}  // namespace puckloop::gap::stats

@@ -1,0 +1,45 @@
+#pragma once
+// A free-form correction of errors: step functions over cells of covariates and of pairs of them, added in
+// small steps where they help most (componentwise boosting), and judged on runs that it did not see.
+//
+// Errors that carry over from row to row (first-order) are handled as generalised least squares does: error
+// and correction are both freed of the share that is kept.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace puckloop::gap::stats {
+
+/// Every row lies in one cell of a component.
+struct Component {
+    std::string name;                ///< "grey" or "sensor and grey"
+    std::vector<std::string> where;  ///< a cell each, in words; "grey 0.31"; may be empty
+    std::vector<double> at;          ///< mean of the covariate in each cell, of an ordered component
+    std::vector<int> cell;           ///< 0..cells-1; -1: unknown, no correction
+    std::vector<double> weight;      ///< of the correction in a row; empty: 1
+    int cells = 0;
+    bool ordered = false;  ///< neighbouring cells are alike
+};
+
+struct ErrorRows {
+    std::vector<double> error;  ///< in units of the noise; NaN: left out
+    std::vector<char> follows;  ///< 1: carries over from the row before it in this list
+    std::vector<int> run;
+    double carry = 0.0;     ///< share of the previous error kept, -1..1
+    bool trimmed = true;    ///< errors beyond four deviations are pulled in
+    std::size_t folds = 6;  ///< parts that are held out in turn; runs stay whole when there are three or more
+};
+
+struct Boosted {
+    double gain = 0.0;   ///< log score that held-out rows win, nats; below 0: nothing is there
+    double sd = 0.0;     ///< of the gain, from the spread between runs (or stretches, where runs are few)
+    int steps = 0;       ///< of the fit to all rows
+    double carry = 0.0;  ///< that goes best with the correction
+    std::vector<double> correction;  ///< a row each, in the error's unit; 0 where nothing is there
+    std::vector<double> weight;      ///< a component each: variance of its part of the correction
+};
+
+Boosted boosted(const ErrorRows& rows, const std::vector<Component>& components, std::uint64_t seed);
+
+}  // namespace puckloop::gap::stats
