@@ -108,3 +108,27 @@ TEST_CASE(
     CHECK(v->heldout.high < 1);
     CHECK_THAT(cautions_of(*v), Contains("from placement to placement"));
 }
+
+TEST_CASE(
+    "drives whose tracker and counters were lined up by hand: their clocks run apart, and that is said") {
+    const char* measured = std::getenv("PUCKLOOP_MEASURED");
+    if (measured == nullptr) {
+        WARN("skipped: PUCKLOOP_MEASURED is not set");
+        return;
+    }
+    const fs::path out = tests::scratch_path("gap_real");
+    fs::remove_all(out);
+    importers::import_set(fs::path(measured) / "optiodom_diffdrive", "", out);
+    importers::import_set(fs::path(measured) / "thymio_ground_vicon_epfl", "", out);
+    const auto apart = [&](const char* name) {
+        const Experiment experiment = read_experiment(out / name);
+        for (const std::string& caution : experiment.cautions)
+            if (caution.find("run apart") != std::string::npos)
+                return !experiment.runs.front().counted_at.empty();
+        return false;
+    };
+    CHECK(apart("optiodom_free"));
+    CHECK(apart("optiodom_circular"));
+    CHECK_FALSE(apart("thymio_vicon_motion"));
+    fs::remove_all(out);
+}
