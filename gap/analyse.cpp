@@ -26,7 +26,8 @@ constexpr double kLeftLevel = 0.01;  // corrected p of a structure worth telling
 constexpr double kSureLevel = 1e-3;  // of a structure that by itself makes a verdict
 constexpr double kUnexplainedShareOfSums = 0.5;
 constexpr double kUnexplainedShare = 0.2;  // of all that is gained: what leaves this much is not the cause
-constexpr double kEdge = 0.005;            // of a plausible range: this near to its end is at its end
+constexpr std::size_t kRunsThatJudge = 3;
+constexpr double kEdge = 0.005;  // of a plausible range: this near to its end is at its end
 constexpr double kFixedByOthers =
     0.97;  // correlation beyond which a parameter of the measuring chain is not fitted along
 
@@ -45,7 +46,10 @@ class Analysis {
         tell("what is left", 0.88);
         final_ = with_nuisances();
         look_at_rest();
-        if (!selection_.steps.empty() && verdict_.unexplained_share > share_allowed()) take_back();
+        if (!selection_.steps.empty() &&
+            (verdict_.unexplained_share > share_allowed() ||
+             (stopped_at_edge() && !verdict_.leftovers.empty()) || few_runs_disagree()))
+            take_back();
         tell("intervals", 0.96);
         fill_causes();
         fill_tried();
@@ -154,20 +158,49 @@ class Analysis {
         }
     }
 
-    /// A value at the end of its plausible range was stopped there, not found there.
+    /// Is a freed parameter at an end of its plausible range? It was stopped there, not found there.
+    bool at_edge(const Freed& freed, double& edge) const {
+        const double neutral = study_.model().parameters()[static_cast<std::size_t>(freed.index)].neutral;
+        const double value = final_.fitted.state.values[static_cast<std::size_t>(freed.index)];
+        const double near = kEdge * (freed.high - freed.low);
+        for (const double end : {freed.low, freed.high})
+            if (std::abs(value - end) < near && std::abs(end - neutral) > near) {
+                edge = end;
+                return true;
+            }
+        return false;
+    }
+
+    bool stopped_at_edge() const {
+        double edge = 0.0;
+        return std::any_of(final_.freed.begin(), final_.freed.end(),
+                           [&](const Freed& freed) { return at_edge(freed, edge); });
+    }
+
     void caution_of_edges() {
+        double edge = 0.0;
         for (const Freed& freed : final_.freed) {
+            if (!at_edge(freed, edge)) continue;
             const ModelParameter& parameter =
                 study_.model().parameters()[static_cast<std::size_t>(freed.index)];
-            const double value = final_.fitted.state.values[static_cast<std::size_t>(freed.index)];
-            const double near = kEdge * (freed.high - freed.low);
-            for (const double edge : {freed.low, freed.high})
-                if (std::abs(value - edge) < near && std::abs(edge - parameter.neutral) > near)
-                    verdict_.cautions.push_back(fmt::format("{} stands at the end of its plausible range "
-                                                            "({}): it was stopped there, so its value and "
-                                                            "its cause are doubtful",
-                                                            parameter.name, quantity(edge, parameter.unit)));
+            verdict_.cautions.push_back(
+                fmt::format("{} stands at the end of its plausible range ({}): it was "
+                            "stopped there, so its value and its cause are doubtful",
+                            parameter.name, quantity(edge, parameter.unit)));
         }
+    }
+
+    /// With fewer than three runs stretches of the same run are held out: a drift of that run predicts
+    /// itself. Then the error has to fall for sure, not only the score to rise.
+    bool few_runs_disagree() {
+        if (experiment_.runs.size() >= kRunsThatJudge) return false;
+        verdict_.observables.clear();
+        verdict_.heldout = {};
+        fill_held();
+        const bool disagree = verdict_.heldout.high >= 1.0;
+        verdict_.observables.clear();
+        verdict_.heldout = {};
+        return disagree;
     }
 
     void fill_tried() {

@@ -20,7 +20,9 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr int kFine = 12, kMiddle = 8, kCoarse = 5;  // bins of a covariate alone, with its past, with another
 constexpr int kPlaces = 36;                          // of a run
 constexpr std::size_t kLately = 5;                   // rows
-constexpr double kStepsOfATurn = 1000;               // of the motor, of one turn of the wheel
+constexpr double kPlaceGrain = 0.05;                 // m, far over any tracker's noise
+constexpr double kHeadingGrain = std::numbers::pi / 6;  // rad
+constexpr double kStepsOfATurn = 1000;                  // of the motor, of one turn of the wheel
 
 /// Bins that leave missing values out. A label's values are its bins.
 Component cells_of(const std::string& name, const std::vector<double>& values, int bins, bool label,
@@ -104,6 +106,12 @@ bool varies(const std::vector<double>& values) {
     return false;
 }
 
+/// The tracker's own errors must not choose the cell they fall into: a drive along y = 0 would seem to pull
+/// away from its line on either side.
+double whole(double value, double grain) {
+    return grain * std::round(value / grain);
+}
+
 /// Tracked place and wheel phase of a drive: what no single column of the commands says.
 void add_places(const Experiment& experiment, const Series& rows, std::vector<Covariate>& list) {
     if (experiment.kind != Kind::Motion) return;
@@ -118,12 +126,13 @@ void add_places(const Experiment& experiment, const Series& rows, std::vector<Co
             const auto& column = run.column(name);
             return column.empty() ? kNan : column[rows.row[i]];
         };
-        const double at_x = value("x_m"), at_y = value("y_m");
+        const double at_x = whole(value("x_m"), kPlaceGrain), at_y = whole(value("y_m"), kPlaceGrain);
         x.value.push_back(at_x);
         y.value.push_back(at_y);
-        out.value.push_back(std::hypot(at_x, at_y));
+        out.value.push_back(whole(std::hypot(at_x, at_y), kPlaceGrain));
         outward.value.push_back(
-            std::remainder(value("theta_rad") - std::atan2(at_y, at_x), 2 * std::numbers::pi));
+            whole(std::remainder(value("theta_rad") - std::atan2(at_y, at_x), 2 * std::numbers::pi),
+                  kHeadingGrain));
         left.value.push_back(std::remainder(value("steps_left"), kStepsOfATurn));
         right.value.push_back(std::remainder(value("steps_right"), kStepsOfATurn));
     }

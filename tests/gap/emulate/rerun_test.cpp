@@ -43,6 +43,8 @@ Rerun again(const std::string& kind, const std::vector<std::string>& changes, co
     const Rerun result = emulate::rerun(experiment, verdict, how);
     std::filesystem::remove_all(scratch);
     INFO(result.not_done);
+    for (const auto& o : result.observables)
+        UNSCOPED_INFO(o.name << " before " << o.before << " after " << o.after);
     REQUIRE(result.not_done.empty());
     return result;
 }

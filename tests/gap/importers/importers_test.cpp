@@ -62,7 +62,7 @@ TEST_CASE("counts and poses of a differential drive become a motion experiment")
     std::string rows;
     for (int i = 0; i < 40; ++i)
         rows += fmt::format("{},{},{},{},{},{}\n", 0.05 * i, 0.01 * i, 0.002 * i, 0.25 * i, i == 0 ? 0 : 25,
-                            i == 0 ? 0 : 15);
+                            i == 0 ? 0 : -165);
     put(f.in / "circular/s1/s1_run-01.csv", rows);
     REQUIRE(f.import_all().size() == 1);
     const Experiment e = read_experiment(f.out / "optiodom_circular");
@@ -70,7 +70,7 @@ TEST_CASE("counts and poses of a differential drive become a motion experiment")
     REQUIRE(e.runs.size() == 1);
     CHECK(e.runs[0].rows == 10);
     CHECK(e.runs[0].column("steps_right").back() == 36 * 25);
-    CHECK(e.runs[0].column("steps_left").back() == 36 * 15);
+    CHECK(e.runs[0].column("steps_left").back() == 36 * -165);
     CHECK(e.runs[0].condition("sense") == "counter-clockwise");
     CHECK(e.runs[0].condition("session") == "s1");
     CHECK(e.nominal.at("robot.steps_per_turn") == 1000);
