@@ -61,8 +61,8 @@ TEST_CASE("counts and poses of a differential drive become a motion experiment")
     put(f.in / "circular/s1/s1_metadata.csv", optiodom_metadata());
     std::string rows;
     for (int i = 0; i < 40; ++i)
-        rows += fmt::format("{},{},{},{},{},{}\n", 0.05 * i, 0.01 * i, 0.002 * i, 0.25 * i, i == 0 ? 0 : 25,
-                            i == 0 ? 0 : -165);
+        rows += fmt::format("{},{},{},{},{},{}\n", 0.05 * i, -0.0372 * std::sin(0.25 * i),
+                            0.0372 * (std::cos(0.25 * i) - 1), 0.25 * i, i == 0 ? 0 : 25, i == 0 ? 0 : -165);
     put(f.in / "circular/s1/s1_run-01.csv", rows);
     REQUIRE(f.import_all().size() == 1);
     const Experiment e = read_experiment(f.out / "optiodom_circular");
