@@ -2,6 +2,8 @@
 
 #include "gap/fit/walk.h"
 
+#include <Eigen/Core>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +12,8 @@
 namespace puckloop::gap {
 
 namespace {
+
+using Lanes = Eigen::Array<double, static_cast<int>(kLanes), 1>;
 
 constexpr double kClip = 5.0;        // innovations beyond do not pull the filter further
 constexpr double kPileWidths = 3.0;  // from the ceiling: nearer readings were cut to it
@@ -38,25 +42,6 @@ struct Line {
     }
 };
 
-/// The noise's size row by row; the same in all rows unless the prediction says otherwise.
-class Size {
-  public:
-    Size(const Observable& o, const Predicted& p, const NoiseParameters& noise)
-        : o_(o),
-          p_(p),
-          noise_(noise),
-          even_(p.factor.empty() && p.extra.empty()),
-          sd_(o.y.empty() ? 1.0 : row_sd(o, p, noise, 0)) {}
-    double at(std::size_t i) const { return even_ ? sd_ : row_sd(o_, p_, noise_, i); }
-
-  private:
-    const Observable& o_;
-    const Predicted& p_;
-    const NoiseParameters& noise_;
-    bool even_;
-    double sd_;
-};
-
 /// Is the row at an end of what the instrument shows? Then its role and limit are noted.
 bool clipped(const Observable& o, const Predicted& p, std::size_t i, double sd, Innovations& out) {
     const bool dead_zone = p.floor > 0.0;
@@ -72,10 +57,10 @@ bool clipped(const Observable& o, const Predicted& p, std::size_t i, double sd, 
 
 void filter_level(const Observable& o, const Predicted& p, const NoiseParameters& noise, Innovations& out) {
     const double drift = std::exp(noise.carry), nu = std::exp(noise.log_tail);
-    const Size size(o, p, noise);
+    const RowSize size(o, p, noise);
     const bool pushes = !p.lapse.empty();
     if (pushes) out.mixed.assign(o.y.size(), 0.0);
-    Walk walk;
+    Walk walk{};
     PushedWalk pushed;
     bool carried = false;
     for (std::size_t i = 0; i < o.y.size(); ++i) {
@@ -108,12 +93,13 @@ void filter_level(const Observable& o, const Predicted& p, const NoiseParameters
 }
 
 void filter_carry(const Observable& o, const Predicted& p, const NoiseParameters& noise, Innovations& out) {
-    const Size size(o, p, noise);
+    const RowSize size(o, p, noise);
     const bool has_line = p.line_amplitude > 0.0 && !o.time.empty();
     const double omega = 2 * std::numbers::pi * p.line_frequency;
     Line line;
     bool carried = false;
     double last = 0.0;
+    const double rest = 1 - noise.carry * noise.carry, root = std::sqrt(rest);
     std::array<double, 2> last_h{};
     for (std::size_t i = 0; i < o.y.size(); ++i) {
         const double sd = size.at(i);
@@ -127,16 +113,20 @@ void filter_carry(const Observable& o, const Predicted& p, const NoiseParameters
         }
         const double error = (o.y[i] - p.mean[i]) / sd;
         const double kept = carried ? noise.carry : 0.0;
-        double innovation = error - kept * last, variance = 1 - kept * kept;
+        double innovation = error - kept * last, variance = carried ? rest : 1.0;
         last = error;
-        if (has_line) {
-            const double reach = p.line_amplitude * at(o.gate, i, 1.0) / sd;
-            const std::array<double, 2> own{reach * std::cos(omega * o.time[i]),
-                                            reach * std::sin(omega * o.time[i])};
-            const std::array<double, 2> h{own[0] - kept * last_h[0], own[1] - kept * last_h[1]};
-            last_h = own;
-            line.filter(h, innovation, variance);
+        if (!has_line) {
+            out.z[i] = carried ? innovation / root : innovation;
+            out.variance[i] = variance * sd * sd;
+            carried = true;
+            continue;
         }
+        const double reach = p.line_amplitude * at(o.gate, i, 1.0) / sd;
+        const std::array<double, 2> own{reach * std::cos(omega * o.time[i]),
+                                        reach * std::sin(omega * o.time[i])};
+        const std::array<double, 2> h{own[0] - kept * last_h[0], own[1] - kept * last_h[1]};
+        last_h = own;
+        line.filter(h, innovation, variance);
         carried = true;
         out.z[i] = innovation / std::sqrt(variance);
         out.variance[i] = variance * sd * sd;
@@ -144,6 +134,58 @@ void filter_carry(const Observable& o, const Predicted& p, const NoiseParameters
 }
 
 }  // namespace
+
+bool is_plain_sum(const Observable& o, const Predicted& p) {
+    return o.noise == NoiseKind::Level && p.factor.empty() && p.extra.empty() && p.lapse.empty() &&
+           p.floor <= 0.0 && p.ceiling <= 0.0 && std::isnan(o.instrument.floor) &&
+           std::isnan(o.instrument.ceiling);
+}
+
+void filter_sums(const Observable& o, const std::array<const Predicted*, kLanes>& predicted,
+                 const std::array<NoiseParameters, kLanes>& noise,
+                 const std::array<Innovations*, kLanes>& out) {
+    const std::size_t n = o.y.size();
+    std::array<const double*, kLanes> mean{};
+    std::array<double*, kLanes> z{}, variance{};
+    Lanes sd, memory, drift, tail;
+    for (std::size_t k = 0; k < kLanes; ++k) {
+        const auto lane = static_cast<Eigen::Index>(k);
+        mean[k] = predicted[k]->mean.data();
+        sd[lane] = RowSize(o, *predicted[k], noise[k]).at(0);
+        memory[lane] = noise[k].memory;
+        drift[lane] = std::exp(noise[k].carry);
+        tail[lane] = std::exp(noise[k].log_tail);
+        out[k]->z.resize(n);
+        out[k]->variance.assign(n, 1.0);
+        out[k]->role.assign(n, RowRole::Plain);
+        out[k]->mixed.clear();
+        z[k] = out[k]->z.data();
+        variance[k] = out[k]->variance.data();
+    }
+    const Lanes squared_sd = sd * sd;
+    WalkOf<Lanes> walk;
+    for (std::size_t i = 0; i < n; ++i) {
+        Lanes error, innovation;
+        for (std::size_t k = 0; k < kLanes; ++k)
+            error[static_cast<Eigen::Index>(k)] = o.y[i] - mean[k][i];
+        error /= sd;
+        if (i == 0 || o.starts[i] != 0) {
+            walk.begin(error);
+            for (std::size_t k = 0; k < kLanes; ++k) {
+                out[k]->role[i] = RowRole::First;
+                z[k][i] = 0.0;
+            }
+            continue;
+        }
+        const Lanes gained = at(o.walk, i, 0.0) + at(o.jolt, i, 0.0) / squared_sd;
+        const Lanes total = walk.filter(error, drift + gained, memory, tail, innovation);
+        const Lanes standard = innovation / total.sqrt(), own = total * sd * sd;
+        for (std::size_t k = 0; k < kLanes; ++k) {
+            z[k][i] = standard[static_cast<Eigen::Index>(k)];
+            variance[k][i] = own[static_cast<Eigen::Index>(k)];
+        }
+    }
+}
 
 void filter(const Observable& observable, const Predicted& predicted, const NoiseParameters& noise,
             Innovations& out) {

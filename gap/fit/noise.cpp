@@ -13,7 +13,7 @@ constexpr double kLeastTail = 0.5;    // degrees of freedom above 2: nearer, a s
 constexpr double kFixedDrift = -9.0;  // of noise that is not fitted
 constexpr double kFixedTail = 4.0;
 
-double at(const std::vector<double>& values, std::size_t i, double neutral) {
+double of_row(const std::vector<double>& values, std::size_t i, double neutral) {
     return values.empty() ? neutral : values[i];
 }
 
@@ -44,12 +44,23 @@ void noise_bounds(NoiseKind kind, int index, double& low, double& high) {
     }
 }
 
+RowSize::RowSize(const Observable& o, const Predicted& p, const NoiseParameters& noise)
+    : predicted_(p),
+      own_(std::exp(noise.log_sd)),
+      rounding_(o.instrument.quantum * o.instrument.quantum / 12),
+      even_(p.factor.empty() && p.extra.empty()) {
+    const double nu = std::exp(noise.log_tail);
+    tail_ = std::max(nu - 2, kLeastTail) / nu;
+    if (even_) sd_ = of(0);
+}
+
+double RowSize::of(std::size_t i) const {
+    const double sd = own_ * of_row(predicted_.factor, i, 1.0), extra = of_row(predicted_.extra, i, 0.0);
+    return std::max(std::sqrt(sd * sd + tail_ * extra * extra + rounding_), kLeastSd);
+}
+
 double row_sd(const Observable& o, const Predicted& p, const NoiseParameters& noise, std::size_t i) {
-    const double sd = std::exp(noise.log_sd) * at(p.factor, i, 1.0);
-    const double nu = std::exp(noise.log_tail), tail = std::max(nu - 2, kLeastTail) / nu;
-    const double extra = at(p.extra, i, 0.0);
-    const double quantum = o.instrument.quantum;
-    return std::max(std::sqrt(sd * sd + tail * extra * extra + quantum * quantum / 12), kLeastSd);
+    return RowSize(o, p, noise).at(i);
 }
 
 NoiseParameters first_guess(const Observable& o, const Predicted& p) {

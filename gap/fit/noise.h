@@ -25,7 +25,21 @@ void noise_bounds(NoiseKind kind, int index, double& low, double& high);
 /// Robust first guess from the residuals of a prediction.
 NoiseParameters first_guess(const Observable& observable, const Predicted& predicted);
 
-/// Scale of the noise in a row: of Student's t, so less than its sd. What is added in quadrature is a sd.
+/// Scale of the noise in each row: of Student's t, so less than its sd. What is added in quadrature is a sd.
+class RowSize {
+  public:
+    /// Keeps references to `predicted`.
+    RowSize(const Observable& observable, const Predicted& predicted, const NoiseParameters& noise);
+    double at(std::size_t i) const { return even_ ? sd_ : of(i); }
+    bool even() const { return even_; }  ///< the same in all rows
+
+  private:
+    double of(std::size_t i) const;
+
+    const Predicted& predicted_;
+    double own_, tail_, rounding_, sd_ = 0.0;
+    bool even_;
+};
 double row_sd(const Observable& observable, const Predicted& predicted, const NoiseParameters& noise,
               std::size_t i);
 

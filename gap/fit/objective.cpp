@@ -1,5 +1,6 @@
 #include "gap/fit/objective.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace puckloop::gap {
@@ -75,30 +76,60 @@ double Objective::value(const double* x) {
     return last_value_ = sum;
 }
 
-/// state_ holds the moved number; `moved` is its prediction.
-void Objective::difference(std::size_t o, const Predicted& moved, double step, bool tail, Column& column) {
+/// A column for each; at most kLanes.
+void Objective::take_differences(std::size_t o, const std::vector<Moved>& moved) {
+    if (moved.empty()) return;
+    const Observable& observable = model_.observables()[o];
+    const bool together = moved.size() > 1 && std::all_of(moved.begin(), moved.end(), [&](const Moved& one) {
+                              return is_plain_sum(observable, *one.predicted);
+                          });
+    if (together) {
+        std::array<const Predicted*, kLanes> predicted{};
+        std::array<NoiseParameters, kLanes> noise;
+        std::array<Innovations*, kLanes> out{};
+        for (std::size_t k = 0; k < kLanes; ++k) {
+            const Moved& one = moved[std::min(k, moved.size() - 1)];  // the last one fills up
+            predicted[k] = one.predicted;
+            noise[k] = one.noise;
+            out[k] = &other_[k];
+        }
+        filter_sums(observable, predicted, noise, out);
+    }
+    for (std::size_t k = 0; k < moved.size(); ++k) {
+        if (!together) filter(observable, *moved[k].predicted, moved[k].noise, other_[k]);
+        difference(o, moved[k], other_[k]);
+    }
+}
+
+void Objective::difference(std::size_t o, const Moved& moved, const Innovations& other) {
     const Observable& observable = model_.observables()[o];
     const Base& base = bases_[o];
-    filter(observable, moved, state_.noise[o], other_);
-    const bool simple = is_simple(moved) && is_simple(prediction_[o]);
-    if (!simple) costs_of(observable, moved, state_.noise[o], other_, other_cost_);
+    if (columns_[o].size() <= used_[o]) columns_[o].emplace_back();
+    Column& column = columns_[o][used_[o]++];
+    column.number = moved.number;
+    const bool simple = is_simple(*moved.predicted) && is_simple(prediction_[o]);
+    if (!simple) costs_of(observable, *moved.predicted, moved.noise, other, other_cost_);
     const std::size_t n = observable.y.size();
     for (Eigen::VectorXd* one : {&column.shift, &column.scale, &column.gradient})
         one->resize(as_index(n));
     column.other.resize(simple ? 0 : as_index(n));
-    column.scales = false;
+    column.scales = other.variance != base.innovations.variance;
+    if (!column.scales) column.scale.setZero();
     for (std::size_t i = 0; i < n; ++i) {
         const auto k = as_index(i);
-        const double dz = (other_.z[i] - base.innovations.z[i]) / step,
-                     variance = base.innovations.variance[i];
-        const double change = other_.variance[i] - variance;
-        const double scale = change == 0.0 ? 0.0 : change / (2 * variance * step);
-        column.scales = column.scales || change != 0.0;
-        column.scale[k] = scale;
-        column.shift[k] = dz + base.innovations.z[i] * scale;
-        column.gradient[k] = base.slope[i] * dz + scale + (tail ? base.tail[i] : 0.0);
+        const double dz = (other.z[i] - base.innovations.z[i]) / moved.step;
+        column.shift[k] = dz;
+        column.gradient[k] = base.slope[i] * dz + (moved.tail ? base.tail[i] : 0.0);
+        if (column.scales) {
+            const double variance = base.innovations.variance[i];
+            const double change = other.variance[i] - variance;
+            const double scale = change == 0.0 ? 0.0 : change / (2 * variance * moved.step);
+            column.scale[k] = scale;
+            column.shift[k] += base.innovations.z[i] * scale;
+            column.gradient[k] += scale;
+        }
         if (simple) continue;
-        const double whole = (other_cost_[i] - base.cost[i]) / step;
+        const double whole = (other_cost_[i] - base.cost[i]) / moved.step;
         column.other[k] = whole - column.gradient[k];
         column.gradient[k] = whole;
     }
@@ -168,39 +199,49 @@ double Objective::slopes(const double* x, Eigen::VectorXd& gradient, Eigen::Matr
         tail_slopes_of(state_.noise[o], base.innovations, base.tail);
         used_[o] = 0;
     }
-    const auto next = [&](std::size_t o, std::size_t j) -> Column& {
-        if (columns_[o].size() <= used_[o]) columns_[o].emplace_back();
-        Column& column = columns_[o][used_[o]++];
-        column.number = j;
-        return column;
-    };
     std::vector<double> near(x, x + width);
-    for (std::size_t j = 0; j < width; ++j) {
+    const auto move = [&](std::size_t j, double by) {
         double low = 0, high = 0;
         layout_.bounds(j, low, high);
-        const bool of_model = j < layout_.freed();
-        double step = of_model ? kRelativeStep : kNoiseStep;
-        if (x[j] + step > high) step = -step;
+        const double step = x[j] + by > high ? -by : by;
         near[j] = x[j] + step;
         layout_.unpack(near.data(), state_);
-        if (of_model) {
-            model_.predict(state_.values, moved_);
-            for (std::size_t o = 0; o < bases_.size(); ++o)
-                if (!equal(moved_[o], prediction_[o])) difference(o, moved_[o], step, false, next(o, j));
+        near[j] = x[j];
+        return step;
+    };
+    std::vector<Moved> group;
+    for (std::size_t first = 0; first < layout_.freed(); first += kLanes) {
+        const std::size_t count = std::min(kLanes, layout_.freed() - first);
+        std::array<double, kLanes> step{};
+        for (std::size_t k = 0; k < count; ++k) {
+            const std::size_t j = first + k;
+            step[k] = move(j, kRelativeStep);
+            model_.predict(state_.values, moved_[k]);
             gradient[as_index(j)] += x[j];
             curvature(as_index(j), as_index(j)) += 1;
-        } else {
-            const std::size_t o = layout_.observable(j);
-            const double claimed = claim_error(model_.observables()[o], state_.noise[o]);
-            difference(o, prediction_[o], step, layout_.noise_index(j) == kTail, next(o, j));
-            near[j] = x[j];
-            layout_.unpack(near.data(), state_);
-            const double off = claim_error(model_.observables()[o], state_.noise[o]);
-            const double slope = (claimed - off) / step;
-            gradient[as_index(j)] += off * slope;
-            curvature(as_index(j), as_index(j)) += slope * slope;
         }
-        near[j] = x[j];
+        for (std::size_t o = 0; o < bases_.size(); ++o) {
+            group.clear();
+            for (std::size_t k = 0; k < count; ++k)
+                if (!equal(moved_[k][o], prediction_[o]))
+                    group.push_back({first + k, &moved_[k][o], state_.noise[o], step[k], false});
+            take_differences(o, group);
+        }
+    }
+    group.clear();
+    for (std::size_t j = layout_.freed(); j < width; ++j) {
+        const std::size_t o = layout_.observable(j);
+        const double step = move(j, kNoiseStep);
+        group.push_back({j, &prediction_[o], state_.noise[o], step, layout_.noise_index(j) == kTail});
+        const double claimed = claim_error(model_.observables()[o], state_.noise[o]);
+        layout_.unpack(x, state_);
+        const double off = claim_error(model_.observables()[o], state_.noise[o]);
+        const double slope = (claimed - off) / step;
+        gradient[as_index(j)] += off * slope;
+        curvature(as_index(j), as_index(j)) += slope * slope;
+        if (j + 1 < width && layout_.observable(j + 1) == o && group.size() < kLanes) continue;
+        take_differences(o, group);
+        group.clear();
     }
     layout_.unpack(x, state_);
     for (std::size_t o = 0; o < bases_.size(); ++o)

@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include <array>
 #include <vector>
 
 namespace puckloop::gap {
@@ -38,10 +39,19 @@ class Objective {
         bool scales = false;  ///< `scale` is not all 0
         Eigen::VectorXd shift, scale, other, gradient;
     };
+    /// A number moved a little, as one observable sees it.
+    struct Moved {
+        std::size_t number = 0;
+        const Predicted* predicted = nullptr;
+        NoiseParameters noise;
+        double step = 0.0;
+        bool tail = false;  ///< the number is the noise's degrees of freedom
+    };
     double fill(std::size_t o);
     double priors(const double* x) const;
     double weight(std::size_t o, std::size_t i) const { return weights_.empty() ? 1.0 : weights_[o][i]; }
-    void difference(std::size_t o, const Predicted& moved, double step, bool tail, Column& column);
+    void take_differences(std::size_t o, const std::vector<Moved>& moved);
+    void difference(std::size_t o, const Moved& moved, const Innovations& other);
     void gather(std::size_t o, Eigen::VectorXd& gradient, Eigen::MatrixXd& curvature) const;
 
     const Model& model_;
@@ -50,11 +60,12 @@ class Objective {
     const Weights& weights_;
     std::vector<double> last_x_;  ///< where value() was asked last
     double last_value_ = 0.0;
-    Prediction prediction_, moved_;
+    Prediction prediction_;
+    std::array<Prediction, kLanes> moved_;
     std::vector<Base> bases_;
     std::vector<std::vector<Column>> columns_;  ///< an observable each
     std::vector<std::size_t> used_;             ///< how many of its columns are in use
-    Innovations other_;
+    std::array<Innovations, kLanes> other_;
     std::vector<double> other_cost_;
 };
 

@@ -7,35 +7,14 @@ namespace puckloop::gap {
 
 namespace {
 
-constexpr double kLeastVariance = 1e-9;
 constexpr double kLeastDensity = 1e-300;
 constexpr std::size_t kHistories = 5;
 constexpr double kForgotten = 1e-4;  // of the likeliest history's weight
 
 }  // namespace
 
-double Walk::filter(double value, double drift, double memory, double tail, double& innovation) {
-    p00 += drift;
-    p01 *= memory;
-    p11 = memory * memory * p11 + 1 - memory * memory;
-    error *= memory;
-    innovation = value - level - error;
-    const double total = std::max(p00 + 2 * p01 + p11, kLeastVariance);
-    const double squared = innovation * innovation / total;
-    // Sum and error together are seen exactly. An outlier of a heavy tail says little about the sum (smooth,
-    // so that the likelihood is); then it is an error, and carried over as errors are.
-    const double trust = squared > 1 ? (tail + 1) / (tail + squared) : 1.0;
-    const double gain = trust * (p00 + p01) / total;
-    level += gain * innovation;
-    error += (1 - gain) * innovation;
-    p00 -= gain * (p00 + p01);
-    p11 = p00;
-    p01 = -p00;
-    return total;
-}
-
 void PushedWalk::begin(double value) {
-    Walk first;
+    Walk first{};
     first.begin(value);
     kept_.assign(1, {first, 1.0});
 }

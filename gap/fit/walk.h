@@ -2,22 +2,69 @@
 // Sums that drift: a random walk seen with carried-over errors, and the same where something may have pushed.
 // Variances in units of the error's.
 
+#include <algorithm>
 #include <cstddef>
 #include <vector>
 
 namespace puckloop::gap {
 
-/// Random walk plus carried-over measurement error.
-struct Walk {
-    double level = 0.0, error = 0.0;
-    double p00 = 1.0, p01 = -1.0, p11 = 1.0;
+inline constexpr double kLeastWalkVariance = 1e-9;
+
+/// How far an innovation is believed, by its square in variances. An outlier of a heavy tail says little
+/// about the sum (smooth, so that the likelihood is).
+inline double trust_in(double squared, double tail) {
+    return squared > 1 ? (tail + 1) / (tail + squared) : 1.0;
+}
+template <class Lanes>
+Lanes trust_in(const Lanes& squared, const Lanes& tail) {
+    return (squared > 1.0).select((tail + 1.0) / (tail + squared), Lanes::Ones());
+}
+inline double at_least(double value, double least) {
+    return std::max(value, least);
+}
+template <class Lanes>
+Lanes at_least(const Lanes& value, double least) {
+    return value.max(least);
+}
+
+/// Random walk plus carried-over measurement error. `Number`: double, or an Eigen array of walks side by
+/// side.
+template <class Number>
+struct WalkOf {
+    Number level, error, p00, p01, p11;
 
     /// The first row: level and error are known only together.
-    void begin(double value) { *this = {value, 0.0, 1.0, -1.0, 1.0}; }
+    void begin(const Number& value) {
+        level = value;
+        error = 0.0;
+        p00 = 1.0;
+        p01 = -1.0;
+        p11 = 1.0;
+    }
 
     /// Returns the innovation's variance. `tail`: degrees of freedom of the errors' Student t.
-    double filter(double value, double drift, double memory, double tail, double& innovation);
+    Number filter(const Number& value, const Number& drift, const Number& memory, const Number& tail,
+                  Number& innovation) {
+        p00 += drift;
+        p01 *= memory;
+        p11 = memory * memory * p11 + 1.0 - memory * memory;
+        error *= memory;
+        innovation = value - level - error;
+        const Number total = at_least(Number(p00 + 2.0 * p01 + p11), kLeastWalkVariance);
+        const Number squared = innovation * innovation / total;
+        // Sum and error together are seen exactly. What is not believed of the sum is an error, and carried
+        // over as errors are.
+        const Number trust = trust_in(squared, tail);
+        const Number gain = trust * (p00 + p01) / total;
+        level += gain * innovation;
+        error += (1.0 - gain) * innovation;
+        p00 -= gain * (p00 + p01);
+        p11 = p00;
+        p01 = -p00;
+        return total;
+    }
 };
+using Walk = WalkOf<double>;
 
 /// What a sum may be: it goes on, or something pushed it by an unknown amount in one of the last rows. Each
 /// history is a Walk with a weight; the likely ones are kept.

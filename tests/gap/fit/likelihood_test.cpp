@@ -172,3 +172,33 @@ TEST_CASE("gradients are the value's own", "[gap][fit]") {
         CHECK(curvature(static_cast<Eigen::Index>(j), static_cast<Eigen::Index>(j)) > 0);
     }
 }
+
+TEST_CASE("predictions of a sum filtered side by side give what each gives alone", "[gap][fit]") {
+    RandomStream random(5, "test/side by side");
+    std::vector<double> y{0.0};
+    for (int i = 1; i < 300; ++i)
+        y.push_back(y.back() + 0.3 * random.normal() + (i % 90 == 0 ? 20 : 0));
+    Straight model(NoiseKind::Level, y);
+    model.only().starts[140] = 1;
+    std::array<Prediction, kLanes> predictions;
+    std::array<const Predicted*, kLanes> predicted{};
+    std::array<NoiseParameters, kLanes> noise;
+    std::array<Innovations, kLanes> together;
+    std::array<Innovations*, kLanes> out{};
+    for (std::size_t k = 0; k < kLanes; ++k) {
+        const auto some = static_cast<double>(k);
+        model.predict({0.1 * some, 0.2, 0.0}, predictions[k]);
+        predicted[k] = &predictions[k][0];
+        noise[k] = {-0.5 + 0.2 * some, -3 + some, 1.5, 0.2 * some};
+        out[k] = &together[k];
+    }
+    REQUIRE(is_plain_sum(model.only(), *predicted[0]));
+    filter_sums(model.only(), predicted, noise, out);
+    for (std::size_t k = 0; k < kLanes; ++k) {
+        Innovations alone;
+        filter(model.only(), *predicted[k], noise[k], alone);
+        CHECK(together[k].z == alone.z);
+        CHECK(together[k].variance == alone.variance);
+        CHECK((together[k].role == alone.role));
+    }
+}
