@@ -76,7 +76,7 @@ Freed freed_at(const Model& model, const EffectParameter& parameter, int index) 
 Study::Study(const Experiment& experiment, std::uint64_t seed, unsigned threads)
     : experiment_(experiment),
       model_(make_model(experiment)),
-      threads_(model_->side_by_side() ? threads : 1) {
+      threads_(threads) {
     for (const Observable& observable : model_->observables())
         rows_ += observable.y.size();
     make_candidates();

@@ -77,11 +77,8 @@ class Model {
     std::vector<int> matching(std::string_view pattern) const;
     std::vector<double> neutral() const;
 
-    /// `values` as parameters(). Reuses the memory of `out`.
+    /// `values` as parameters(). Reuses the memory of `out`. May run on several threads at a time.
     virtual void predict(const std::vector<double>& values, Prediction& out) const = 0;
-
-    /// May predict() run on several threads at a time? Not where it remembers what it worked out last.
-    virtual bool side_by_side() const { return true; }
 
     /// Where the data itself suggests that a fit of this parameter begins; mostly nowhere.
     virtual std::vector<double> starts(std::string_view) const { return {}; }

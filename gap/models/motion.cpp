@@ -6,6 +6,7 @@
 // Deviations from the world model: 1. the wheel follows its motor at once, but for the loss a start or stop
 // costs at friction mu. 2. Between rows speed is even. 3. No contacts with things.
 
+#include "gap/models/keyed_cache.h"
 #include "gap/models/model.h"
 #include "gap/models/rows.h"
 #include "gap/models/wheel_curve.h"
@@ -17,6 +18,7 @@
 #include <iterator>
 #include <map>
 #include <numbers>
+#include <span>
 
 namespace puckloop::gap {
 
@@ -25,6 +27,7 @@ namespace {
 constexpr double kStill = 1e-6;  // steps: less than this between rows is standing
 constexpr double kEdge = 0.004;  // width of the dead band's edge, share of it
 constexpr double kGravity = 9.81;
+constexpr double kLongestSlip = 0.7;   // s: no change of speed costs way for longer
 constexpr double kLateStep = 0.25;     // a step is counted when it is over
 constexpr double kOpenSteps = 0.6;     // of a wheel, each time its speed changes: the timer's phase
 constexpr double kOpenSlip = 0.2;      // share of the way lost to sliding that no formula tells
@@ -37,6 +40,16 @@ struct Path {
     WheelCurve wheel[2], asked[2];
     std::vector<double> time, turned, middle, load,
         incline;  ///< of the rows used; measured turn since the row before
+};
+
+/// What a path's motors did in each of its rows, for one lateness of the tracker.
+struct Driven {
+    struct Wheel {
+        std::vector<double> steps, asked;                  ///< steps made; steps told, without sign
+        std::vector<std::uint32_t> first_jump, last_jump;  ///< changes of speed that may still cost way
+    };
+    Wheel wheel[2];
+    std::vector<char> settled;  ///< neither wheel has changed its speed in this row or the one before
 };
 
 class MotionModel final : public Model {
@@ -60,9 +73,11 @@ class MotionModel final : public Model {
             p.lapse_scale.assign(noisy ? n : 0, 0.0);
         }
         std::size_t first = 0;
-        for (const Path& path : paths_) {
-            drive(v, path, first, out);
-            first += path.time.size();
+        const double late = at(v, delay_) + (counted_ ? 0.0 : at(v, latency_));
+        const auto driven = driven_.get({late}, [&] { return driven_by(late); });
+        for (std::size_t k = 0; k < paths_.size(); ++k) {
+            drive(v, paths_[k], (*driven)[k], late, first, out);
+            first += paths_[k].time.size();
         }
         if (counted_) predict_counters(v, out);
     }
@@ -248,25 +263,57 @@ class MotionModel final : public Model {
 
     /// Metres that a change of speed has cost by `to`: wheels follow no faster than mu g. On reversal the
     /// wheel rolls on while its gear crosses the play (metres), and slides less.
-    static double slipped(const std::vector<SpeedJump>& jumps, double metre, double inverse_mu, double play,
+    static double slipped(std::span<const SpeedJump> jumps, double metre, double inverse_mu, double play,
                           double from, double to) {
         double sum = 0.0;
-        for (auto jump = std::lower_bound(jumps.begin(), jumps.end(), from - 0.7,
-                                          [](const SpeedJump&j, double t) { return j.time < t; });
-             jump != jumps.end() && jump->time < to; ++jump) {
-            const double speed = std::abs(jump->change) * metre;
+        for (const SpeedJump& jump : jumps) {
+            const double speed = std::abs(jump.change) * metre;
             const double lasts = speed * inverse_mu / kGravity;
             const auto done = [&](double t) {
-                const double share = std::clamp((t - jump->time) / std::max(lasts, 1e-6), 0.0, 1.0);
+                const double share = std::clamp((t - jump.time) / std::max(lasts, 1e-6), 0.0, 1.0);
                 return 1 - (1 - share) * (1 - share);
             };
             double way = speed * lasts / 2;
-            if (play > 0 && jump->before * (jump->before + jump->change) < 0)
-                way -= std::min(play, std::abs(jump->before * (jump->before + jump->change)) * metre * metre *
+            if (play > 0 && jump.before * (jump.before + jump.change) < 0)
+                way -= std::min(play, std::abs(jump.before * (jump.before + jump.change)) * metre * metre *
                                           inverse_mu / kGravity);
-            sum += std::copysign(way, jump->change) * (done(to) - done(from));
+            sum += std::copysign(way, jump.change) * (done(to) - done(from));
         }
         return sum;
+    }
+
+    std::vector<Driven> driven_by(double late) const {
+        std::vector<Driven> all(paths_.size());
+        for (std::size_t k = 0; k < paths_.size(); ++k) {
+            const Path& path = paths_[k];
+            const std::size_t n = path.time.size();
+            for (std::size_t w = 0; w < 2; ++w) {
+                Driven::Wheel& wheel = all[k].wheel[w];
+                CurveReader reader(path.wheel[w]), pacer(pace_of(path, w));
+                const auto& jumps = path.wheel[w].jumps;
+                double last = 0.0, last_pace = 0.0;
+                for (std::size_t i = 0; i < n; ++i) {
+                    const double now = path.time[i] - late, before = i == 0 ? now : path.time[i - 1] - late;
+                    const double steps = reader.at(now), pace = pacer.at(now);
+                    wheel.steps.push_back(i == 0 ? 0.0 : steps - last);
+                    wheel.asked.push_back(i == 0 ? 0.0 : std::abs(pace - last_pace));
+                    last = steps;
+                    last_pace = pace;
+                    const auto first =
+                        std::lower_bound(jumps.begin(), jumps.end(), before - kLongestSlip,
+                                         [](const SpeedJump& j, double t) { return j.time < t; });
+                    const auto end = std::lower_bound(
+                        first, jumps.end(), now, [](const SpeedJump& j, double t) { return j.time < t; });
+                    wheel.first_jump.push_back(static_cast<std::uint32_t>(first - jumps.begin()));
+                    wheel.last_jump.push_back(static_cast<std::uint32_t>(end - jumps.begin()));
+                }
+            }
+            for (std::size_t i = 0; i < n; ++i) {
+                const double now = path.time[i] - late, before = i == 0 ? now : path.time[i - 1] - late;
+                all[k].settled.push_back(settled(path, before, now - before) ? 1 : 0);
+            }
+        }
+        return all;
     }
 
     /// What tells the speed of a wheel: the command, where there is one; a counter's speeds are rounded.
@@ -274,7 +321,8 @@ class MotionModel final : public Model {
         return path.asked[wheel].empty() ? path.wheel[wheel] : path.asked[wheel];
     }
 
-    void drive(const std::vector<double>& v, const Path& path, std::size_t first, Prediction& out) const {
+    void drive(const std::vector<double>& v, const Path& path, const Driven& ways, double late,
+               std::size_t first, Prediction& out) const {
         const double turn = 2 * std::numbers::pi / at(v, steps_per_turn_);
         const std::array<double, 2> metre{
             turn * at(v, radius_left_) * (1 + at(v, scale_)) * (1 - at(v, mismatch_)),
@@ -282,14 +330,14 @@ class MotionModel final : public Model {
         const double axle = at(v, axle_), scrub = at(v, scrub_), inverse_mu = at(v, friction_);
         const double loss_speed = at(v, loss_speed_), loss_width = at(v, loss_width_),
                      deadband = at(v, deadband_);
-        const double late = at(v, delay_) + (counted_ ? 0.0 : at(v, latency_));
         const double drift_x = at(v, drift_x_), drift_y = at(v, drift_y_), push = at(v, push_rate_);
         const double drop = counted_ ? 0.0 : at(v, drop_);
-        std::array<CurveReader, 2> reader{CurveReader(path.wheel[0]), CurveReader(path.wheel[1])};
-        std::array<CurveReader, 2> pacer{CurveReader(pace_of(path, 0)), CurveReader(pace_of(path, 1))};
-        std::array<double, 2> last_pace{};
-        const bool paced = deadband > 0 || drift_x != 0.0 || drift_y != 0.0;
-        std::array<double, 2> last{}, driven{}, geared{}, last_geared{};
+        const double creep = at(v, creep_), slope_creep = at(v, slope_creep_), backlash = at(v, backlash_),
+                     marker_x = at(v, marker_x_), marker_y = at(v, marker_y_),
+                     marker_angle = at(v, marker_angle_), heading_drift = at(v, heading_drift_),
+                     push_size = at(v, push_size_), push_turn = at(v, push_turn_);
+        std::array<double, 2> driven{}, geared{}, last_geared{};
+        double skew_cosine = std::cos(marker_angle), skew_sine = std::sin(marker_angle);
         double along = 0, across = 0, heading = 0;
         for (std::size_t i = 0; i < path.time.size(); ++i) {
             bool moves = false;
@@ -297,13 +345,10 @@ class MotionModel final : public Model {
                          span = now - before;
             std::array<double, 2> moved{};
             for (std::size_t w = 0; w < 2; ++w) {
-                const double pace = paced ? pacer[w].at(now) : 0.0;
-                const double asked = i == 0 ? 0.0 : std::abs(pace - last_pace[w]);
+                const Driven::Wheel& wheel = ways.wheel[w];
+                const double asked = wheel.asked[i];
                 moves = moves || asked > kStill;
-                last_pace[w] = pace;
-                const double steps = reader[w].at(now);
-                double change = i == 0 ? 0.0 : steps - last[w];
-                last[w] = steps;
+                double change = wheel.steps[i];
                 if (change != 0.0 && span > 0) {
                     const double rate = std::abs(change) / span;
                     if (loss_speed > 0) change *= 1 - 1 / (1 + std::exp(-(rate - loss_speed) / loss_width));
@@ -311,20 +356,24 @@ class MotionModel final : public Model {
                         change *= 1 / (1 + std::exp(-(asked / span - deadband) / (kEdge * deadband)));
                 }
                 driven[w] += change * metre[w];
-                const double play = at(v, backlash_) / 2 * metre[w] / turn;
+                const double play = backlash / 2 * metre[w] / turn;
                 geared[w] = std::clamp(geared[w], driven[w] - play, driven[w] + play);
                 moved[w] = geared[w] - last_geared[w];
                 last_geared[w] = geared[w];
-                if (span > 0)
-                    moved[w] -= slipped(path.wheel[w].jumps, metre[w], inverse_mu, 2 * play, before, now);
-                moved[w] *= 1 - at(v, creep_) * path.load[i] - at(v, slope_creep_) * path.incline[i];
+                if (span > 0 && wheel.first_jump[i] != wheel.last_jump[i])
+                    moved[w] -=
+                        slipped(std::span(path.wheel[w].jumps)
+                                    .subspan(wheel.first_jump[i], wheel.last_jump[i] - wheel.first_jump[i]),
+                                metre[w], inverse_mu, 2 * play, before, now);
+                moved[w] *= 1 - creep * path.load[i] - slope_creep * path.incline[i];
             }
             double way = (moved[0] + moved[1]) / 2;
             const double twist = std::abs(moved[1] - moved[0]) / 2;
             const double wide =
                 scrub == 0.0 || twist < 1e-9 ? axle : axle * (1 + scrub * twist / (std::abs(way) + twist));
             const double turned = (moved[1] - moved[0]) / wide;
-            if (std::abs(turned) > 1e-6) way *= std::sin(turned / 2) / (turned / 2);
+            const double lever = 2 * std::sin(turned / 2);
+            if (std::abs(turned) > 1e-6) way *= lever / turned;
             double aside = 0.0;
             if (drift_x != 0.0 || drift_y != 0.0) {
                 if (moves) {
@@ -333,22 +382,25 @@ class MotionModel final : public Model {
                     aside += (-drift_x * s + drift_y * c) * span;
                 }
             }
-            const double lever = 2 * std::sin(turned / 2);
-            way -= lever * at(v, marker_y_);
-            aside += lever * at(v, marker_x_);
+            way -= lever * marker_y;
+            aside += lever * marker_x;
             // Way is told along the tracker's heading: what turns that turns the way.
-            const double skew =
-                at(v, marker_angle_) + at(v, heading_drift_) * (path.time[i] - path.time.front() - span / 2);
-            along += way * std::cos(skew) + aside * std::sin(skew);
-            across += aside * std::cos(skew) - way * std::sin(skew);
-            heading += turned + at(v, heading_drift_) * span;
+            if (heading_drift != 0.0) {
+                const double skew =
+                    marker_angle + heading_drift * (path.time[i] - path.time.front() - span / 2);
+                skew_cosine = std::cos(skew);
+                skew_sine = std::sin(skew);
+            }
+            along += way * skew_cosine + aside * skew_sine;
+            across += aside * skew_cosine - way * skew_sine;
+            heading += turned + heading_drift * span;
             out[0].mean[first + i] = along;
             out[1].mean[first + i] = across;
             out[2].mean[first + i] = heading;
-            if (push > 0 && settled(path, before, span)) {
+            if (push > 0 && ways.settled[i] != 0) {
                 for (std::size_t o = 0; o < 3; ++o) {
                     out[o].lapse[first + i] = std::min(push * span, 0.5);
-                    out[o].lapse_scale[first + i] = at(v, o == 2 ? push_turn_ : push_size_);
+                    out[o].lapse_scale[first + i] = o == 2 ? push_turn : push_size;
                 }
             }
             if (drop > 0) lapses_of_loss(drop, metre, axle, path, before, now, first + i, out);
@@ -435,6 +487,7 @@ class MotionModel final : public Model {
     }
 
     std::vector<Path> paths_;
+    KeyedCache<std::vector<Driven>> driven_;  // by lateness
     bool counted_ = false;
     std::array<std::vector<std::uint32_t>, 2> counter_rows_;
     int radius_left_ = 0, radius_right_ = 0, axle_ = 0, steps_per_turn_ = 0, scale_ = 0, mismatch_ = 0,

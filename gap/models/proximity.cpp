@@ -7,6 +7,7 @@
 // pairs and calibration are the firmware's and the board's; the reading is taken as they leave it.
 
 #include "physics/proximity.h"
+#include "gap/models/keyed_cache.h"
 #include "gap/models/model.h"
 #include "gap/models/rows.h"
 #include "gap/models/spectrum.h"
@@ -53,8 +54,10 @@ class ProximityModel final : public Model {
         center(column("battery_v", NAN), battery_);
         center(column("order", NAN), order_);
         const auto sensors = column("sensor", 0);
-        for (const double sensor : sensors)
+        for (const double sensor : sensors) {
             sensor_.push_back(static_cast<int>(sensor));
+            rows_of_[static_cast<std::size_t>(sensor)].push_back(sensor_.size() - 1);
+        }
         const auto rays = std::lround(physics::Parameters().proximity.rays);
         for (long k = 0; k < rays; ++k)
             spread_.push_back(
@@ -62,8 +65,10 @@ class ProximityModel final : public Model {
                 (rays == 1 ? 0.0 : static_cast<double>(k) / static_cast<double>(rays - 1) - 0.5));
         for (const double angle : angle_) {
             cosine_.push_back(std::cos(angle));
-            for (const double aside : spread_)
+            for (const double aside : spread_) {
                 ray_cosine_.push_back(std::cos(angle + aside));
+                ray_sine_.push_back(std::sin(angle + aside));
+            }
         }
         for (auto& speed : motor_) {
             stepping_.push_back(speed != 0.0 ? 1.0 : 0.0);
@@ -83,8 +88,6 @@ class ProximityModel final : public Model {
             find_schedule();
         }
     }
-
-    bool side_by_side() const override { return false; }
 
     void predict(const std::vector<double>& v, Prediction& out) const override {
         out.resize(1);
@@ -108,27 +111,32 @@ class ProximityModel final : public Model {
                      age = value(age_);
         const double light_offset = value(ambient_offset_), light_gain = value(ambient_gain_),
                      volt = value(per_volt_), drift = value(drift_);
-        // What the curve says changes with few parameters: the rest reuse it.
-        std::vector<double> key{response.curve,
-                                response.amplitude,
-                                response.origin,
-                                response.exponent,
-                                response.saturation,
-                                response.reach,
-                                response.compression,
-                                response.extra_exponent,
-                                shift,
-                                exponent,
-                                age};
-        for (const int index : first_of_.direction)
-            if (index >= 0) key.push_back(value(index));
-        if (key != seen_key_) {
-            seen_key_ = key;
-            see(response, shift, exponent, age, v);
+        // What the curve says changes with few parameters: the rest reuse it. One sensor's direction moves
+        // only that sensor's rows.
+        const std::vector<double> key{response.curve,
+                                      response.amplitude,
+                                      response.origin,
+                                      response.exponent,
+                                      response.saturation,
+                                      response.reach,
+                                      response.compression,
+                                      response.extra_exponent,
+                                      shift,
+                                      exponent,
+                                      age};
+        for (std::size_t s = 0; s < rows_of_.size(); ++s) {
+            if (rows_of_[s].empty()) continue;
+            const double turned = value(first_of_.direction[s]) - angle0_[s];
+            auto own = key;
+            own.push_back(turned);
+            const auto seen =
+                seen_[s].get(own, [&] { return see(response, shift, exponent, age, s, turned); });
+            for (std::size_t k = 0; k < seen->size(); ++k)
+                p.mean[rows_of_[s][k]] = (*seen)[k];
         }
         for (std::size_t i = 0; i < n; ++i) {
             const auto s = static_cast<std::size_t>(sensor_[i]);
-            double seen = seen_[i];
+            double seen = p.mean[i];
             if (!object_.empty()) seen *= value(object_parameter_[static_cast<std::size_t>(object_[i])]);
             if (pair != 0.0) seen += pair * (pair_[i] - idle(v, s + kOpposite));
             if (near != 0.0)
@@ -259,27 +267,27 @@ class ProximityModel final : public Model {
         o.time = best_time;
     }
 
-    /// Reflected counts of every row before gains: the part that costs time.
-    void see(const physics::ProximityParameters& response, double shift, double exponent, double age,
-             const std::vector<double>& v) const {
-        const auto value = [&](int index) { return v[static_cast<std::size_t>(index)]; };
-        seen_.resize(distance_.size());
-        for (std::size_t i = 0; i < seen_.size(); ++i) {
-            const auto s = static_cast<std::size_t>(sensor_[i]);
-            double distance = distance_[i] - age * velocity_[i];
-            const double normal = distance * cosine_[i];  // from the sensor to the wall's plane
-            const double turned = value(first_of_.direction[s]) - angle0_[s];
+    /// Reflected counts of a sensor's rows before gains: the part that costs time.
+    std::vector<double> see(const physics::ProximityParameters& response, double shift, double exponent,
+                            double age, std::size_t sensor, double turned) const {
+        std::vector<double> all;
+        all.reserve(rows_of_[sensor].size());
+        const double turned_cosine = std::cos(turned), turned_sine = std::sin(turned);
+        for (const std::size_t i : rows_of_[sensor]) {
+            const double normal =
+                (distance_[i] - age * velocity_[i]) * cosine_[i];  // from the sensor to the wall's plane
             double seen = 0.0;
-            for (std::size_t k = 0; k < spread_.size(); ++k) {
-                const double cosine = turned == 0.0 ? ray_cosine_[i * spread_.size() + k]
-                                                    : std::cos(angle_[i] - turned + spread_[k]);
+            for (std::size_t ray = i * spread_.size(); ray < (i + 1) * spread_.size(); ++ray) {
+                const double cosine = turned == 0.0
+                                          ? ray_cosine_[ray]
+                                          : ray_cosine_[ray] * turned_cosine + ray_sine_[ray] * turned_sine;
                 if (cosine < kGrazing) continue;
                 const double weight = exponent == 1.0 ? cosine : std::pow(cosine, exponent);
                 seen += weight * physics::proximity_response(response, normal / cosine + shift);
             }
-            seen *= reflectivity_[i] / static_cast<double>(spread_.size());
-            seen_[i] = seen;
+            all.push_back(seen * reflectivity_[i] / static_cast<double>(spread_.size()));
         }
+        return all;
     }
 
     struct PerSensor {
@@ -409,8 +417,9 @@ class ProximityModel final : public Model {
     physics::ProximityParameters physics_;
     static constexpr std::size_t kOpposite = 4;  // places on the ring to the sensor lit by the same pulse
     double line_frequency_found_ = 0.0, jump_size_ = 0.0;
-    mutable std::vector<double> seen_, seen_key_;
-    std::vector<double> spread_, cosine_, ray_cosine_;
+    std::array<KeyedCache<std::vector<double>>, physics::kProximitySensors> seen_;  // of a sensor's rows
+    std::array<std::vector<std::size_t>, physics::kProximitySensors> rows_of_;
+    std::vector<double> spread_, cosine_, ray_cosine_, ray_sine_;
     std::vector<double> distance_, angle_, reflectivity_, ambient_, pair_, neighbour_, motor_, stepping_,
         velocity_, time_, others_, battery_, order_;
     std::vector<int> sensor_, object_, object_parameter_;

@@ -5,6 +5,7 @@
 // Deviations: 1. the receiver's own table of directions is not put in: the firmware makes those errors.
 // 2. Reception is a probability; in the simulator losses emerge from frames and interrupts.
 
+#include "gap/models/keyed_cache.h"
 #include "gap/models/model.h"
 #include "gap/models/rab_table.h"
 #include "gap/models/rows.h"
@@ -48,8 +49,6 @@ class RabModel final : public Model {
         declare();
         apply_nominal(experiment);
     }
-
-    bool side_by_side() const override { return false; }
 
     void predict(const std::vector<double>& v, Prediction& out) const override {
         out.resize(observables_.size());
@@ -142,6 +141,8 @@ class RabModel final : public Model {
 
     void declare() {
         gain_ = add("rab.strength_gain", "1", 0.0);
+        receiver_place_ = places_of(receiver_);
+        emitter_place_ = places_of(emitter_);
         for (const int r : distinct_of(receiver_))
             receiver_gain_.emplace_back(r, add(fmt::format("rab.receiver_gain{}", r), "1", 1.0));
         for (const int e : distinct_of(emitter_))
@@ -167,6 +168,24 @@ class RabModel final : public Model {
         return values;
     }
 
+    /// Where each value stands among the different ones.
+    static std::vector<std::size_t> places_of(const std::vector<int>& values) {
+        const auto all = distinct_of(values);
+        std::vector<std::size_t> places;
+        for (const int value : values)
+            places.push_back(
+                static_cast<std::size_t>(std::lower_bound(all.begin(), all.end(), value) - all.begin()));
+        return places;
+    }
+
+    static std::vector<double> logs_of(const std::vector<std::pair<int, int>>& gains,
+                                       const std::vector<double>& v) {
+        std::vector<double> logs;
+        for (const auto& gain : gains)
+            logs.push_back(std::log(std::max(at(v, gain.second), 0.01)));
+        return logs;
+    }
+
     static double of(const std::vector<std::pair<int, int>>& gains, int which, const std::vector<double>& v) {
         for (const auto& [number, index] : gains)
             if (number == which) return v[static_cast<std::size_t>(index)];
@@ -180,10 +199,11 @@ class RabModel final : public Model {
         const double more = 1 + at(v, more_spread_), gain = at(v, gain_), low = at(v, far_floor_),
                      rail = at(v, saturation_);
         const double other = at(v, multipath_);
+        const auto receivers = logs_of(receiver_gain_, v), emitters = logs_of(emitter_gain_, v);
         for (std::size_t i = 0; i < n; ++i) {
             double level = log_median_[i] + gain;
-            if (!receiver_.empty()) level += std::log(std::max(of(receiver_gain_, receiver_[i], v), 0.01));
-            if (!emitter_.empty()) level += std::log(std::max(of(emitter_gain_, emitter_[i], v), 0.01));
+            if (!receiver_.empty()) level += receivers[receiver_place_[i]];
+            if (!emitter_.empty()) level += emitters[emitter_place_[i]];
             if (low > 0) level = std::max(level, std::log(low));
             p.mean[i] = level;
             p.factor[i] *= more;
@@ -206,31 +226,29 @@ class RabModel final : public Model {
         p.lapse.assign(other > 0 ? n : 0, other);
         p.lapse_scale.assign(other > 0 ? n : 0, 0.6);
         if (receiver_gain_.size() < kLeastReceivers || lobe_.empty()) return;
-        std::array<double, kReceivers> gain{};
+        std::vector<double> gain;
         for (std::size_t r = 0; r < kReceivers; ++r)
-            gain[r] = of(receiver_gain_, static_cast<int>(r) + 1, v);
-        if (gain != pull_gain_) {
-            pull_gain_ = gain;
-            find_pull(n);
-        }
+            gain.push_back(of(receiver_gain_, static_cast<int>(r) + 1, v));
+        const auto pull = pull_.get(gain, [&] { return pull_of(gain, n); });
         for (std::size_t i = 0; i < n; ++i)
-            p.mean[i] += pull_[i];
+            p.mean[i] += (*pull)[i];
     }
 
     /// How far unequal receivers turn the sum of what they measure, by which the board tells bearings.
-    void find_pull(std::size_t n) const {
-        pull_.resize(n);
+    std::vector<double> pull_of(const std::vector<double>& gain, std::size_t n) const {
+        std::vector<double> pull(n);
         for (std::size_t i = 0; i < n; ++i) {
             double x = 0, y = 0, equal_x = 0, equal_y = 0;
             for (std::size_t r = 0; r < kReceivers; ++r) {
                 const Lobe& lobe = lobe_[i * kReceivers + r];
                 equal_x += lobe.x;
                 equal_y += lobe.y;
-                x += pull_gain_[r] * lobe.x;
-                y += pull_gain_[r] * lobe.y;
+                x += gain[r] * lobe.x;
+                y += gain[r] * lobe.y;
             }
-            pull_[i] = std::atan2(y * equal_x - x * equal_y, x * equal_x + y * equal_y);
+            pull[i] = std::atan2(y * equal_x - x * equal_y, x * equal_x + y * equal_y);
         }
+        return pull;
     }
 
     void predict_reception(const std::vector<double>& v, Predicted& p) const {
@@ -260,12 +278,12 @@ class RabModel final : public Model {
         double x, y;
     };
 
-    double rail_ = 0.0;       // counts
-    std::vector<Lobe> lobe_;  // of the receivers in turn, for each bearing
-    mutable std::array<double, kReceivers> pull_gain_{};
-    mutable std::vector<double> pull_;
+    double rail_ = 0.0;                     // counts
+    std::vector<Lobe> lobe_;                // of the receivers in turn, for each bearing
+    KeyedCache<std::vector<double>> pull_;  // of each bearing, by the receivers' gains
     std::vector<double> log_median_, spread_, occluded_, senders_, frame_, period_, rate_;
     std::vector<int> receiver_, emitter_;
+    std::vector<std::size_t> receiver_place_, emitter_place_;  // among the gains
     std::vector<std::pair<int, int>> receiver_gain_, emitter_gain_;
     int strength_ = -1, bearing_ = -1, reception_ = -1;
     int gain_ = -1, more_spread_ = -1, far_floor_ = -1, saturation_ = -1, multipath_ = -1,
