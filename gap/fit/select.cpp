@@ -21,10 +21,12 @@ constexpr double kEnoughDeviations = 1.3;  // of the held-out gain
 constexpr double kEnoughBlocks = 0.5;      // share of blocks that gain, of those touched
 constexpr std::size_t kValidated = 3;      // best by BIC that are cross-validated
 constexpr std::size_t kRefined = 5;        // best by a quick fit that are fitted to the end
+constexpr std::size_t kLookedAt = 7;       // best on a part of many rows that are fitted to all
 constexpr double kHopeless = 60.0;
-constexpr double kNoRival = 0.3;  // share of the evidence that a rival has alone, at least
-constexpr double kTie = 2.0;      // nats of merit, or of BIC: not even a hint
-constexpr double kDraw = 6.0;     // difference of BIC that tells nothing
+constexpr double kHopelessOnPart = 20.0;  // of BIC, of a part's rows
+constexpr double kNoRival = 0.3;          // share of the evidence that a rival has alone, at least
+constexpr double kTie = 2.0;              // nats of merit, or of BIC: not even a hint
+constexpr double kDraw = 6.0;             // difference of BIC that tells nothing
 
 /// Effects that act as rare outliers: heavy-tailed noise looks much the same, so they must say far more.
 constexpr std::string_view kOutliers[] = {"multipath", "pulsed_interference"};
@@ -44,6 +46,11 @@ bool has(const std::vector<std::size_t>& set, std::size_t effect) {
 std::vector<std::size_t> replaced(std::vector<std::size_t> set, std::size_t effect, std::size_t rival) {
     std::erase(set, effect);
     set.push_back(rival);
+    return set;
+}
+
+std::vector<std::size_t> with(std::vector<std::size_t> set, std::size_t effect) {
+    set.push_back(effect);
     return set;
 }
 
@@ -90,6 +97,8 @@ class Selector {
         std::vector<std::size_t> tried;
         for (std::size_t i = 0; i < count; ++i)
             if (study_.candidates()[i].remark.empty() && !has(chosen.effects, i)) tried.push_back(i);
+        std::map<std::size_t, Fit> guesses;
+        if (study_.part() != nullptr) tried = promising(tried, begin, guesses);
         std::vector<std::pair<double, Fit>> fits(tried.size());  // delta BIC
         std::mutex telling;
         std::size_t begun = 0;
@@ -99,9 +108,10 @@ class Selector {
                 tell(fmt::format("trying {}", study_.candidates()[tried[k]].effect->name),
                      begin + 0.15 * static_cast<double>(begun++) / static_cast<double>(tried.size()));
             }
-            auto set = chosen.effects;
-            set.push_back(tried[k]);
-            Fit fit = study_.fit_set(set, chosen.fitted.state, kQuick);
+            const auto guess = guesses.find(tried[k]);
+            Fit fit = guess == guesses.end()
+                          ? study_.fit_set(with(chosen.effects, tried[k]), chosen.fitted.state, kQuick)
+                          : study_.from_part(guess->second, chosen.fitted.state, kQuick);
             fits[k] = {chosen.bic - fit.bic, std::move(fit)};
         });
         const auto best_first = [](const auto& x, const auto& y) { return x.first > y.first; };
@@ -159,68 +169,152 @@ class Selector {
         return true;
     }
 
+    /// Of many rows: the effects that a part of them speaks for most, with their fits to the part. What the
+    /// part says of the others is taken for what all rows would.
+    std::vector<std::size_t> promising(const std::vector<std::size_t>& tried, double begin,
+                                       std::map<std::size_t, Fit>& guesses) {
+        const auto& chosen = result_.chosen;
+        const Study& part = *study_.part();
+        const Fit before = study_.on_part(chosen);
+        std::vector<Fit> fits(tried.size());
+        std::mutex telling;
+        std::size_t begun = 0;
+        in_parallel(tried.size(), study_.threads(), [&](std::size_t k) {
+            const Candidate& candidate = part.candidates()[tried[k]];
+            {
+                const std::lock_guard lock(telling);
+                tell(fmt::format("a first look at {}", candidate.effect->name),
+                     begin + 0.05 * static_cast<double>(begun++) / static_cast<double>(tried.size()));
+            }
+            if (candidate.remark.empty())
+                fits[k] = part.fit_set(with(chosen.effects, tried[k]), before.fitted.state, kQuick);
+        });
+        std::vector<std::size_t> order, taken;
+        for (std::size_t k = 0; k < tried.size(); ++k)
+            (fits[k].effects.empty() ? taken : order).push_back(k);
+        std::stable_sort(order.begin(), order.end(),
+                         [&](std::size_t a, std::size_t b) { return fits[a].bic < fits[b].bic; });
+        const double rows = static_cast<double>(study_.rows()), few = static_cast<double>(part.rows());
+        for (const std::size_t k : order) {
+            if (taken.size() < kLookedAt) {
+                taken.push_back(k);
+                guesses[tried[k]] = std::move(fits[k]);
+                continue;
+            }
+            const double won = 2 * (fits[k].fitted.log_likelihood - before.fitted.log_likelihood),
+                         parameters = static_cast<double>(fits[k].freed.size() - before.freed.size());
+            Trial& trial = result_.trials[tried[k]];
+            const double delta = won * rows / few - parameters * std::log(rows);
+            if (!trial.validated) trial.delta_bic = delta;
+            if (chosen.effects.empty()) alone_[tried[k]] = delta;
+        }
+        std::sort(taken.begin(), taken.end());
+        std::vector<std::size_t> result;
+        for (const std::size_t k : taken)
+            result.push_back(tried[k]);
+        return result;
+    }
+
     /// After a choice an earlier one may have become needless, or another effect may stand better in its
     /// place.
     void improve() {
         if (result_.chosen.effects.size() < 2) return;
         tell("looking back at earlier choices", 0.7);
+        look_at_part();
         for (bool changed = true; changed;) {
             changed = false;
             for (const std::size_t effect : std::vector(result_.chosen.effects)) {
                 if (result_.chosen.effects.size() < 2) break;
                 auto set = result_.chosen.effects;
                 std::erase(set, effect);
+                if (needed_on_part(set, effect)) continue;
                 Fit fit = study_.fit_set(set, without(study_, result_.chosen, effect));
                 if (fit.bic > result_.chosen.bic + kEnoughBic) continue;
                 result_.chosen = std::move(fit);
                 result_.held_chosen = study_.hold_out(result_.chosen);
                 std::erase_if(result_.steps, [&](const Trial& trial) { return trial.effect == effect; });
+                look_at_part();
                 changed = true;
             }
         }
         for (const std::size_t effect : std::vector(result_.chosen.effects)) {
             if (effect == result_.chosen.effects.back()) continue;
+            std::vector<std::size_t> rivals;
             for (std::size_t rival = 0; rival < study_.candidates().size(); ++rival) {
                 if (!study_.candidates()[rival].remark.empty() || has(result_.chosen.effects, rival))
                     continue;
                 if (alone_[rival] < kNoRival * alone_[effect]) continue;
-                Fit fit = study_.fit_set(replaced(result_.chosen.effects, effect, rival),
-                                         without(study_, result_.chosen, effect));
-                if (fit.bic > result_.chosen.bic - kDraw) continue;
-                result_.chosen = std::move(fit);
+                rivals.push_back(rival);
+            }
+            std::vector<Fit> fits(rivals.size());
+            in_parallel(rivals.size(), study_.threads(), [&](std::size_t k) {
+                fits[k] = in_its_place(effect, rivals[k], result_.chosen.bic - kDraw);
+            });
+            for (std::size_t k = 0; k < rivals.size(); ++k) {
+                if (!(fits[k].bic <= result_.chosen.bic - kDraw)) continue;
+                result_.chosen = std::move(fits[k]);
                 result_.held_chosen = study_.hold_out(result_.chosen);
                 for (Trial& trial : result_.steps)
-                    if (trial.effect == effect) trial.effect = rival;
+                    if (trial.effect == effect) trial.effect = rivals[k];
+                look_at_part();
                 break;
             }
         }
     }
 
+    void look_at_part() {
+        if (study_.part() != nullptr) on_part_ = study_.on_part(result_.chosen).bic;
+    }
+
+    /// Of many rows: does already a part say clearly that the rest of the set is not enough?
+    bool needed_on_part(const std::vector<std::size_t>& rest, std::size_t effect) const {
+        if (study_.part() == nullptr || !study_.part()->candidates()[effect].remark.empty()) return false;
+        const State from = study_.in_part(without(study_, result_.chosen, effect));
+        return study_.part()->fit_set(rest, from).bic > on_part_ + kEnoughBic + kHopelessOnPart;
+    }
+
+    /// The chosen set with `rival` in the place of `effect`. Of many rows a part may say clearly that its BIC
+    /// will not be as good as `good_enough`: then its BIC is infinite and nothing is fitted.
+    Fit in_its_place(std::size_t effect, std::size_t rival, double good_enough) const {
+        const auto set = replaced(result_.chosen.effects, effect, rival);
+        const State from = without(study_, result_.chosen, effect);
+        if (study_.part() == nullptr || !study_.part()->candidates()[rival].remark.empty())
+            return study_.fit_set(set, from);
+        Fit guess = study_.part()->fit_set(set, study_.in_part(from));
+        if (guess.bic > on_part_ + (good_enough - result_.chosen.bic) + kHopelessOnPart) {
+            guess.bic = INFINITY;
+            return guess;
+        }
+        return study_.from_part(guess, from);
+    }
+
     void find_draws() {
         tell("looking for rivals", 0.8);
+        look_at_part();
+        std::vector<Draw> draws;
         for (const std::size_t effect : result_.chosen.effects)
             for (std::size_t rival = 0; rival < study_.candidates().size(); ++rival) {
                 if (!study_.candidates()[rival].remark.empty() || has(result_.chosen.effects, rival))
                     continue;
                 if (nested(rival, effect)) continue;
-                Fit fit;
-                if (effect == result_.chosen.effects.back() && known(rival, fit)) {
-                    if (fit.bic > result_.chosen.bic + kDraw) continue;
-                } else {
-                    // An effect that alone said next to nothing of what the chosen one said is no rival of
-                    // it.
-                    if (alone_[rival] < kNoRival * alone_[effect]) continue;
-                    fit = study_.fit_set(replaced(result_.chosen.effects, effect, rival),
-                                         without(study_, result_.chosen, effect));
-                }
-                const double delta = fit.bic - result_.chosen.bic;
-                if (delta > kDraw) continue;
-                const HeldOut held = study_.hold_out(fit);
-                Draw draw{effect, rival, delta,
-                          gain_of(gains_by_block(study_.blocks(), held, result_.held_chosen)),
-                          std::move(fit)};
-                result_.draws.push_back(std::move(draw));
+                Draw draw{effect, rival, 0.0, {}, {}};
+                const bool last = effect == result_.chosen.effects.back() && known(rival, draw.fit);
+                // An effect that alone said next to nothing of what the chosen one said is no rival of it.
+                if (!last && alone_[rival] < kNoRival * alone_[effect]) continue;
+                draws.push_back(std::move(draw));
             }
+        in_parallel(draws.size(), study_.threads(), [&](std::size_t k) {
+            Draw& draw = draws[k];
+            if (draw.fit.effects.empty())
+                draw.fit = in_its_place(draw.chosen, draw.rival, result_.chosen.bic + kDraw);
+        });
+        for (Draw& draw : draws) {
+            draw.delta_bic = draw.fit.bic - result_.chosen.bic;
+            if (!(draw.delta_bic <= kDraw)) continue;
+            const HeldOut held = study_.hold_out(draw.fit);
+            draw.held = gain_of(gains_by_block(study_.blocks(), held, result_.held_chosen));
+            result_.draws.push_back(std::move(draw));
+        }
         const auto rank = [](const Draw& draw) {
             return std::pair(std::max(draw.delta_bic, kTie), draw.delta_bic < kTie ? draw.rival : 0);
         };
@@ -255,6 +349,7 @@ class Selector {
     const std::function<void(const std::string&, double)>& progress_;
     Selection result_;
     std::map<std::size_t, double> alone_;  // delta BIC at the first step
+    double on_part_ = 0.0;                 // BIC of the chosen set on the study's part
     std::vector<std::pair<double, Fit>> last_step_, last_step_of_choice_;
 };
 

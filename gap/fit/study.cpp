@@ -3,6 +3,7 @@
 #include "base/random.h"
 #include "gap/columns.h"
 #include "gap/fit/parallel.h"
+#include "gap/fit/thinned.h"
 
 #include <fmt/format.h>
 
@@ -29,6 +30,9 @@ constexpr double kHeavyTail = 2.5, kLightTail = 20;  // degrees of freedom to be
 constexpr double kLightEnough = 8;                   // degrees of freedom that hide nothing
 constexpr int kMostRounds = 6;                       // of fitting the noise alone
 constexpr double kSettled = 0.1;                     // nats that a round must bring
+
+constexpr std::size_t kManyRows = 6000;  // beyond, fits are begun on a part of them
+constexpr std::size_t kPartRows = 3000;
 
 bool same(const std::vector<double>& a, const std::vector<double>& b) {
     if (a.size() != b.size()) return false;
@@ -74,13 +78,81 @@ Freed freed_at(const Model& model, const EffectParameter& parameter, int index) 
 }  // namespace
 
 Study::Study(const Experiment& experiment, std::uint64_t seed, unsigned threads)
-    : experiment_(experiment),
-      model_(make_model(experiment)),
-      threads_(threads) {
+    : experiment_(experiment), model_(make_model(experiment)), threads_(threads) {
     for (const Observable& observable : model_->observables())
         rows_ += observable.y.size();
     make_candidates();
     make_folds(seed);
+    if (experiment.rows() > kManyRows) make_part();
+}
+
+Study::Study(std::unique_ptr<Experiment> thin, const Study& whole)
+    : own_(std::move(thin)), experiment_(*own_), model_(make_model(experiment_)) {
+    for (const Observable& observable : model_->observables())
+        rows_ += observable.y.size();
+    take_candidates(whole);
+}
+
+void Study::make_part() {
+    std::unique_ptr<Study> part(
+        new Study(std::make_unique<Experiment>(thinned(experiment_, kPartRows)), *this));
+    const auto &own = model_->observables(), &others = part->model().observables();
+    const auto alike = [](const Observable& a, const Observable& b) {
+        return a.name == b.name && noise_parameters(a) == noise_parameters(b) && !b.y.empty();
+    };
+    if (!std::equal(own.begin(), own.end(), others.begin(), others.end(), alike)) return;
+    for (const ModelParameter& parameter : model_->parameters())
+        place_in_part_.push_back(part->model().find(parameter.name));
+    part_ = std::move(part);
+}
+
+void Study::take_candidates(const Study& whole) {
+    for (const Candidate& theirs : whole.candidates_) {
+        Candidate own;
+        own.effect = theirs.effect;
+        own.remark = theirs.remark;
+        own.starts.resize(theirs.starts.size());
+        for (std::size_t j = 0; j < theirs.freed.size(); ++j) {
+            Freed freed = theirs.freed[j];
+            freed.index =
+                model_->find(whole.model_->parameters()[static_cast<std::size_t>(freed.index)].name);
+            if (freed.index < 0) continue;
+            own.freed.push_back(freed);
+            for (std::size_t k = 0; k < theirs.starts.size(); ++k)
+                own.starts[k].push_back(theirs.starts[k][j]);
+        }
+        if (own.remark.empty() && (own.freed.empty() || !matters(own))) own.remark = "not in this part";
+        candidates_.push_back(std::move(own));
+    }
+}
+
+State Study::in_part(const State& whole) const {
+    State part{part_->model().neutral(), whole.noise};
+    for (std::size_t i = 0; i < place_in_part_.size(); ++i)
+        if (place_in_part_[i] >= 0)
+            part.values[static_cast<std::size_t>(place_in_part_[i])] = whole.values[i];
+    return part;
+}
+
+Fit Study::on_part(const Fit& whole) const {
+    Fit part;
+    part.effects = whole.effects;
+    part.freed = part_->freed_by(whole.effects);
+    part.fitted.state = in_part(whole.fitted.state);
+    return part_->refined(part);
+}
+
+Fit Study::from_part(const Fit& guess, const State& from, const Effort& effort) const {
+    State begin{from.values, guess.fitted.state.noise};
+    for (std::size_t i = 0; i < place_in_part_.size(); ++i)
+        if (place_in_part_[i] >= 0)
+            begin.values[i] = guess.fitted.state.values[static_cast<std::size_t>(place_in_part_[i])];
+    Fit whole;
+    whole.effects = guess.effects;
+    whole.freed = freed_by(guess.effects);
+    whole.fitted = fit(*model_, whole.freed, begin, {}, effort);
+    whole.bic = bic_of(whole.fitted, whole.freed.size());
+    return whole;
 }
 
 std::string Study::missing_for(const Effect& effect) const {
@@ -193,6 +265,7 @@ std::vector<Freed> Study::freed_by(const std::vector<std::size_t>& effects) cons
 }
 
 Fit Study::fit_none() const {
+    if (part_) return from_part(part_->fit_none(), neutral_state(*model_));
     Fit result;
     result.fitted = fit(*model_, {}, neutral_state(*model_), {});
     // Noise far from its first guess may stop at a bound; what it lacked would be credited to the first
@@ -249,6 +322,8 @@ Fit Study::fit_set(const std::vector<std::size_t>& effects, const State& from, c
     best.freed = freed_by(effects);
     best.bic = INFINITY;
     const Candidate& last = candidates_[effects.back()];
+    if (part_ && part_->candidates_[effects.back()].remark.empty())
+        return from_part(part_->fit_set(effects, in_part(from), kQuick), from, effort);
     const auto take_better = [&](const State& state, const Effort& how) {
         const Fitted fitted = fit(*model_, best.freed, state, {}, how);
         const double bic = bic_of(fitted, best.freed.size());

@@ -5,6 +5,7 @@
 #include "gap/effects/effect.h"
 #include "gap/fit/fit.h"
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,16 @@ class Study {
     /// Which part a row is held out with: an observable each.
     const std::vector<std::vector<int>>& fold_of() const { return fold_; }
 
+    /// The same study on few of the rows, where there are many; else nullptr. Candidates are counted alike.
+    /// What it says of a set is a guess, which costs little.
+    const Study* part() const { return part_.get(); }
+    /// A state of this study, as the part has it.
+    State in_part(const State& whole) const;
+    /// The set of a fit to all rows, fitted to the part's.
+    Fit on_part(const Fit& whole) const;
+    /// From the part's fit of a set to one of all rows; the part leaves `from` what it does not know.
+    Fit from_part(const Fit& guess, const State& from, const Effort& effort = kThorough) const;
+
     /// Fits a set; begins at `from` and, for the last effect of the set, at each of its starts.
     Fit fit_set(const std::vector<std::size_t>& effects, const State& from,
                 const Effort& effort = kThorough) const;
@@ -62,6 +73,10 @@ class Study {
     HeldOut hold_out(const Fit& fit) const;
 
   private:
+    /// The part of `whole`.
+    Study(std::unique_ptr<Experiment> thin, const Study& whole);
+    void make_part();
+    void take_candidates(const Study& whole);
     void make_candidates();
     void make_folds(std::uint64_t seed);
     State begun(const Candidate& candidate, const std::vector<double>& start, const State& from) const;
@@ -71,8 +86,11 @@ class Study {
     bool matters(const Candidate& candidate) const;
     std::vector<Freed> freed_by(const std::vector<std::size_t>& effects) const;
 
+    std::unique_ptr<Experiment> own_;  // of a part
     const Experiment& experiment_;
     std::unique_ptr<Model> model_;
+    std::unique_ptr<Study> part_;
+    std::vector<int> place_in_part_;  // of each parameter; -1: the part does not have it
     std::vector<Candidate> candidates_;
     std::vector<std::vector<int>> fold_;  // of each row, an observable each
     Blocks blocks_;

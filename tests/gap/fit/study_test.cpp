@@ -2,6 +2,7 @@
 #include "gap/fit/intervals.h"
 #include "gap/fit/parallel.h"
 #include "gap/fit/select.h"
+#include "gap/fit/thinned.h"
 
 #include <catch2/catch.hpp>
 
@@ -147,4 +148,43 @@ TEST_CASE("work side by side is done once each, and its first failure is told", 
                                       if (k >= 3) throw std::runtime_error(std::to_string(k));
                                   }),
                       "3");
+}
+
+TEST_CASE("a part of many rows comes from all over every run", "[gap][fit]") {
+    const Experiment experiment = drives(2, 0.0, 5, 2000);
+    const Experiment part = thinned(experiment, 3000);
+    CHECK(part.rows() >= 2700);
+    CHECK(part.rows() <= 3300);
+    std::set<std::string> names;
+    std::set<int> tenths;  // of a run
+    for (const Run& run : part.runs) {
+        names.insert(run.name);
+        const auto& t = run.column("t_s");
+        REQUIRE(t.size() == run.rows);
+        tenths.insert(static_cast<int>(t.front() / (200 * kRow)));
+        CHECK(t.back() - t.front() == Approx(kRow * static_cast<double>(run.rows - 1)));
+    }
+    CHECK(names.size() == 5);
+    CHECK(tenths.size() >= 8);
+}
+
+TEST_CASE("many rows are looked at in part first, and say what few say", "[gap][fit]") {
+    const Experiment few = drives(7, 0.1, 6, 100), many = drives(7, 0.1, 6, 1400);
+    CHECK(Study(few, 1).part() == nullptr);
+    const Study study(many, 1, 2);
+    REQUIRE(study.part() != nullptr);
+    REQUIRE(study.part()->candidates().size() == study.candidates().size());
+    const std::size_t lag = candidate(study, "ground_lag");
+    const Fit none = study.fit_none();
+    const Fit guess = study.part()->fit_set({lag}, study.in_part(none.fitted.state), kQuick);
+    const Fit whole = study.from_part(guess, none.fitted.state);
+    const auto index = static_cast<std::size_t>(whole.freed[0].index);
+    CHECK(whole.fitted.state.values[index] == Approx(0.1).margin(0.01));
+    CHECK(study.in_part(whole.fitted.state).values.size() == study.part()->model().parameters().size());
+    const Selection selection = select(study, {});
+    REQUIRE_FALSE(selection.steps.empty());
+    CHECK(selection.steps[0].effect == lag);
+    // Also what was looked at in part only has its figure.
+    for (const Trial& trial : selection.trials)
+        CHECK((!trial.remark.empty() || trial.delta_bic != 0.0));
 }
