@@ -156,6 +156,22 @@ class Analysis {
             rival.cause.score_gain = -draw.held.sum;
             verdict_.rivals.push_back(std::move(rival));
         }
+        pass_over_empty();
+    }
+
+    /// A later cause whose intervals hold what the simulator has says nothing for sure: what could stand in
+    /// its place does not make a clear first cause doubtful.
+    void pass_over_empty() {
+        for (std::size_t k = 1; k < verdict_.causes.size(); ++k) {
+            const Cause& cause = verdict_.causes[k];
+            if (!std::all_of(cause.parameters.begin(), cause.parameters.end(),
+                             [](const auto& p) { return p.low <= p.neutral && p.neutral <= p.high; }))
+                continue;
+            verdict_.cautions.push_back(
+                fmt::format("{}: its interval holds the simulator's value, so it may be none", cause.name));
+            std::erase_if(verdict_.rivals,
+                          [&](const Rival& rival) { return rival.instead_of == cause.name; });
+        }
     }
 
     /// Is a freed parameter at an end of its plausible range? It was stopped there, not found there.

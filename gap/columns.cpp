@@ -65,13 +65,14 @@ const std::vector<ColumnInfo> kRab{
     {"received", "1", Observable, false, 0, 1, "1: this message arrived, 0: it did not"},
     {"valid", "1", Observable, false, 0, 1, "1: its payload was what had been sent, 0: wrong data; missing when not received"},
     {"true_bearing_rad", "rad", Truth, false, -7, 7, "true bearing of the sender in the receiver's frame"},
+    {"sender_bearing_rad", "rad", Truth, false, -7, 7, "true bearing of the receiver in the sender's frame"},
     {"emitter", "1", Stimulus, false, 0, 12, "which emitter sent (1..12), 0 = all"},
     {"receiver", "1", Stimulus, false, 0, 12, "receiver nearest to the sender's direction (1..12)"},
     {"senders", "1", Stimulus, false, 0, 1000, "boards that were sending, this message's included"},
     {"frame_time", "s", Stimulus, false, 0, 1, "duration of one frame on the air"},
     {"send_period", "s", Stimulus, false, 0, 100, "period of each sender"},
     {"poll_period", "s", Stimulus, false, 0, 100, "period of the receiver's host polls"},
-    {"arrival_rate", "Hz", Stimulus, false, 0, 10000, "messages a second on the air at this receiver"},
+    {"arrival_rate", "Hz", Stimulus, false, 0, 10000, "messages a second on the air at this receiver; 0 where each was waited for"},
     {"occluded", "1", Stimulus, false, 0, 1, "1: a third body stands in the line"},
 };
 

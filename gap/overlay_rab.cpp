@@ -42,6 +42,8 @@ class RabOverlay {
             for (std::size_t k = 0; k < defaults_.ir.receiver_angle.size(); ++k)
                 set(fmt::format("ir.receiver_angle{}", k),
                     std::remainder(defaults_.ir.receiver_angle[k] - *turned, 2 * std::numbers::pi));
+        if (const auto lobe = take("rab.emitter_lobe")) set("ir.emitter_exponent", *lobe);
+        if (const auto lobe = take("rab.receiver_lobe")) set("ir.receiver_exponent", *lobe);
         if (const auto lost = take("rab.random_loss")) set("ir.loss", *lost);
     }
 

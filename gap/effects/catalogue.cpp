@@ -57,6 +57,7 @@ std::span<const Effect> catalogue() {
         microphone_directivity(),
         microphone_window(),
         strength_spread_parts(),
+        rab_lobe(),
         range_noise(),
         far_floor(),
         strength_saturation(),

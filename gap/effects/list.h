@@ -63,6 +63,7 @@ Effect random_loss();
 Effect poll_loss();
 Effect beat_loss();
 Effect bearing_offset();
+Effect rab_lobe();
 Effect rab_strength_scale();
 Effect i2c_stretch();
 Effect baud_mismatch();

@@ -89,7 +89,8 @@ HiddenRun proximity_run(const std::vector<Row>& rows, bool lamp, RandomStream& n
             run.column("angle_rad", "deg").values.push_back(-way / kDegree);
             run.column("ambient").values.push_back(lamp ? 1 : 0);
             run.column("reading", "counts").values.push_back(r.ps[i]);
-            run.column("ambient_reading", "counts").values.push_back(r.amb[i]);
+            // Of the exchange before, standing too: a reading is ambient minus lit, and would share the noise.
+            run.column("ambient_reading", "counts").values.push_back(rows[k - 1].amb[i]);
             run.column("pair_reading", "counts").values.push_back(others(i + 4));
             run.column("neighbour_reading", "counts").values.push_back(others(i + 1) + others(i + 7));
         }
@@ -170,8 +171,9 @@ void set_parameter(Robot& robot, const std::string& assignment) {
         throw InputError("", "--set", fmt::format("'{}' is not an assignment", assignment),
                          "PARAMETER=NUMBER");
     const std::string name = assignment.substr(0, equals);
-    const std::array<std::pair<const char*, double*>, 5> own{{{"board.crystal_ppm", &robot.crystal_ppm},
+    const std::array<std::pair<const char*, double*>, 6> own{{{"board.crystal_ppm", &robot.crystal_ppm},
                                                               {"host.period", &robot.period},
+                                                              {"host.rab_poll", &robot.rab_poll},
                                                               {"uart.factor", &robot.uart_factor},
                                                               {"uart.loss", &robot.uart_loss},
                                                               {"uart.delay", &robot.uart_delay}}};
@@ -185,7 +187,7 @@ void set_parameter(Robot& robot, const std::string& assignment) {
     } catch (const std::invalid_argument& error) {
         throw InputError("", "--set " + assignment, error.what(),
                          "a parameter of `puckloop run --list-parameters`, board.crystal_ppm, host.period, "
-                         "uart.factor, uart.loss or uart.delay");
+                         "host.rab_poll, uart.factor, uart.loss or uart.delay");
     }
     robot.parameters[name] = value;
 }

@@ -26,7 +26,7 @@ struct RecordOptions {
 selftest::HiddenExperiment record(std::string_view kind, const RecordOptions& options);
 
 /// "robot.axle_length=0.054": a physical parameter, or one of board.crystal_ppm, host.period (s),
-/// uart.factor, uart.loss, uart.delay (s). Throws InputError.
+/// host.rab_poll (s), uart.factor, uart.loss, uart.delay (s). Throws InputError.
 void set_parameter(Robot& robot, const std::string& assignment);
 
 }  // namespace puckloop::gap::emulate

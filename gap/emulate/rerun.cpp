@@ -1,5 +1,6 @@
 #include "gap/emulate/rerun.h"
 
+#include "base/error.h"
 #include "gap/emulate/reacts.h"
 #include "physics/parameters.h"
 
@@ -47,7 +48,7 @@ std::vector<std::string> left_out(const Experiment& experiment, const Verdict& v
 
 }  // namespace
 
-Rerun rerun(const Experiment& experiment, const Verdict& verdict, const RerunOptions& options) {
+Rerun rerun(const Experiment& experiment, const Verdict& verdict, const RerunOptions& options) try {
     Rerun result;
     result.asked = true;
     if (verdict.causes.empty()) {
@@ -88,6 +89,11 @@ Rerun rerun(const Experiment& experiment, const Verdict& verdict, const RerunOpt
         result.observables.push_back({names[o].first, names[o].second, rms(errors[0][o]), rms(errors[1][o])});
     }
     result.left_out = left_out(experiment, verdict);
+    return result;
+} catch (const RunError& error) {  // an overlay may stop the robot's line altogether
+    Rerun result;
+    result.asked = true;
+    result.not_done = error.what();
     return result;
 }
 

@@ -18,11 +18,12 @@ namespace puckloop::gap::emulate {
 /// What stands in for the robot on the table. Parameters are those of `run --list-parameters`.
 struct Robot {
     std::map<std::string, double> parameters;
-    double crystal_ppm = 0.0;        ///< of the main board
-    double period = 0.1;             ///< s between two exchanges of the Linux program
-    double uart_factor = 1.0;        ///< bit time of the main board's frames over nominal
-    double uart_loss = 0.0;          ///< probability that a byte to the Linux board is lost
-    double uart_delay = 0.0;         ///< s by which bytes from the Linux board come later
+    double crystal_ppm = 0.0;  ///< of the main board
+    double period = 0.1;       ///< s between two exchanges of the Linux program
+    double uart_factor = 1.0;  ///< bit time of the main board's frames over nominal
+    double uart_loss = 0.0;    ///< probability that a byte to the Linux board is lost
+    double uart_delay = 0.0;   ///< s by which bytes from the Linux board come later
+    double rab_poll = 0.0;     ///< s between two polls of a range-and-bearing board; 0: until none waits
     std::filesystem::path firmware;  ///< empty: the project's own
     std::filesystem::path rab;       ///< image for the range-and-bearing boards; empty: the project's own
     std::filesystem::path overlay;   ///< as for `run --model`; empty: none
@@ -51,7 +52,8 @@ struct Tools {
     std::filesystem::path record, firmware, rab;  ///< recorder, main board's and range-and-bearing board's
 };
 
-/// Runs in `scratch` (made, left behind). Throws RunError when the run fails.
+/// Runs in `scratch` (made, left behind). Throws RunError when the run fails or most exchanges are not
+/// answered.
 std::vector<Row> perform(const Robot& robot, const Act& act, const Tools& tools, std::uint64_t seed,
                          const std::filesystem::path& scratch);
 

@@ -167,20 +167,26 @@ std::string Study::missing_for(const Effect& effect) const {
     return "";
 }
 
-/// Does any prediction change with the candidate's parameters?
+/// Does any prediction change with the candidate's parameters, near neutral or where a fit begins?
 bool Study::matters(const Candidate& candidate) const {
     Prediction neutral, moved;
     model_->predict(model_->neutral(), neutral);
+    auto places = candidate.starts;
     for (const double sign : {1.0, -1.0}) {
-        std::vector<double> values = model_->neutral();
+        std::vector<double> place;
         for (const Freed& one : candidate.freed)
-            values[static_cast<std::size_t>(one.index)] =
-                std::clamp(one.centre + sign * one.prior_sd, one.low, one.high);
+            place.push_back(std::clamp(one.centre + sign * one.prior_sd, one.low, one.high));
+        places.push_back(std::move(place));
+    }
+    return std::any_of(places.begin(), places.end(), [&](const std::vector<double>& place) {
+        std::vector<double> values = model_->neutral();
+        for (std::size_t j = 0; j < place.size(); ++j)
+            values[static_cast<std::size_t>(candidate.freed[j].index)] = place[j];
         model_->predict(values, moved);
         for (std::size_t o = 0; o < neutral.size(); ++o)
             if (differ(neutral[o], moved[o])) return true;
-    }
-    return false;
+        return false;
+    });
 }
 
 void Study::make_candidates() {

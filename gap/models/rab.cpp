@@ -1,12 +1,15 @@
 // Range and bearing: strength, bearing and reception of one message. Medians and spread of the strength are
 // the published ones at nine distances, which the infra-red medium's default curve reproduces; ln of the
 // counts is compared. Bearings are compared as errors. Every message arrives unless something here takes it.
+// With "rab.ring" = 1 strength and bearing are those of the simulator's boards (rab_ring.h): uneven rings,
+// light from emitter to receiver, the firmware's formulas.
 //
-// Deviations: 1. the receiver's own table of directions is not put in: the firmware makes those errors.
-// 2. Reception is a probability; in the simulator losses emerge from frames and interrupts.
+// Deviations: 1. without the ring the receiver's own table of directions is not put in: the firmware makes
+// those errors. 2. Reception is a probability; in the simulator losses emerge from frames and interrupts.
 
 #include "gap/models/keyed_cache.h"
 #include "gap/models/model.h"
+#include "gap/models/rab_ring.h"
 #include "gap/models/rab_table.h"
 #include "gap/models/rows.h"
 #include "physics/parameters.h"
@@ -17,6 +20,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 namespace puckloop::gap {
 
@@ -43,6 +47,9 @@ class RabModel final : public Model {
   public:
     explicit RabModel(const Experiment& experiment) {
         const Rows rows(experiment, "", {"distance_m"});
+        const auto ring = experiment.nominal.find("rab.ring");
+        if (ring != experiment.nominal.end() && ring->second != 0 && experiment.has("true_bearing_rad"))
+            make_ring(rows, experiment);
         if (experiment.has("strength")) gather_strength(rows, experiment);
         if (experiment.has("bearing_rad")) gather_bearing(rows, experiment);
         if (experiment.has("received")) gather_reception(rows);
@@ -84,9 +91,24 @@ class RabModel final : public Model {
         return out;
     }
 
+    void make_ring(const Rows& rows, const Experiment& experiment) {
+        physics::Parameters parameters;
+        for (const auto& [name, value] : experiment.nominal)
+            if (name.starts_with("ir.")) parameters.set(name, value);
+        const auto distance = rows.column("distance_m", 0), bearing = rows.column("true_bearing_rad", 0),
+                   facing = rows.column("sender_bearing_rad", NAN), emitter = rows.column("emitter", 0);
+        std::vector<RabLook> looks;
+        for (std::size_t i = 0; i < rows.size(); ++i)
+            looks.push_back({distance[i], bearing[i], facing[i], static_cast<int>(std::lround(emitter[i]))});
+        const auto carrier = experiment.nominal.find("rab.carrier");
+        ring_.emplace(std::move(looks), parameters.ir,
+                      carrier == experiment.nominal.end() ? 0.0 : carrier->second);
+    }
+
     void gather_strength(const Rows& rows, const Experiment& experiment) {
         std::vector<std::uint32_t> used;
         Observable one = rows.observable("strength", NoiseKind::Carry, used);
+        strength_row_ = used;
         for (double& y : one.y)
             y = std::log(std::max(y, 1.0));
         one.unit = "ln counts";
@@ -97,6 +119,7 @@ class RabModel final : public Model {
             log_median_.push_back(between(&RabMeasured::log_median, distance));
             spread_.push_back(between(&RabMeasured::spread, distance));
         }
+        if (ring_) spread_ = taken(ring_->strength_sd(), used);
         // What is not told cannot differ: one common gain would be the strength's scale by another name.
         if (experiment.has("receiver")) receiver_ = whole(taken(rows.column("receiver", 0), used));
         if (experiment.has("emitter")) emitter_ = whole(taken(rows.column("emitter", 0), used));
@@ -110,12 +133,19 @@ class RabModel final : public Model {
         Observable one = rows.observable("bearing_rad", NoiseKind::Carry, used);
         one.name = "bearing";
         one.unit = "rad";
-        const auto truth = taken(rows.column("true_bearing_rad", 0), used);
+        bearing_row_ = used;
+        truth_ = taken(rows.column("true_bearing_rad", 0), used);
         for (std::size_t i = 0; i < one.y.size(); ++i)
-            one.y[i] = std::remainder(one.y[i] - truth[i], 2 * std::numbers::pi);
+            one.y[i] = std::remainder(one.y[i] - truth_[i], 2 * std::numbers::pi);
+        if (ring_) {
+            bearing_factor_ = taken(ring_->bearing_sd(), used);
+            const double usual = *std::min_element(bearing_factor_.begin(), bearing_factor_.end());
+            for (double& factor : bearing_factor_)
+                factor /= usual;
+        }
         const physics::Parameters defaults;
-        for (const double bearing : truth)
-            for (std::size_t r = 0; r < kReceivers && experiment.has("true_bearing_rad"); ++r) {
+        for (const double bearing : truth_)
+            for (std::size_t r = 0; !ring_ && r < kReceivers && experiment.has("true_bearing_rad"); ++r) {
                 const double way = defaults.ir.receiver_angle[r];
                 const double facing = std::cos(bearing - way);
                 const double strength = facing > 0 ? std::pow(facing, defaults.ir.receiver_exponent) : 0.0;
@@ -146,7 +176,14 @@ class RabModel final : public Model {
         for (const int r : distinct_of(receiver_))
             receiver_gain_.emplace_back(r, add(fmt::format("rab.receiver_gain{}", r), "1", 1.0));
         for (const int e : distinct_of(emitter_))
-            emitter_gain_.emplace_back(e, add(fmt::format("rab.emitter_gain{}", e), "1", 1.0));
+            if (!ring_ || e > 0)
+                emitter_gain_.emplace_back(e, add(fmt::format("rab.emitter_gain{}", e), "1", 1.0));
+        (void)add("rab.ring", "1", 0.0);  // 1: the simulator's boards; both are read before the fit
+        (void)add("rab.carrier", "Hz", 0.0);
+        if (ring_) {
+            emitter_lobe_ = add("rab.emitter_lobe", "1", ring_->neutral().emitter_lobe);
+            receiver_lobe_ = add("rab.receiver_lobe", "1", ring_->neutral().receiver_lobe);
+        }
         more_spread_ = add("rab.strength_spread", "1", 0.0);
         far_floor_ = add("rab.far_floor", "counts", 0.0);
         rail_ = rail_seen();
@@ -192,6 +229,24 @@ class RabModel final : public Model {
         return 1.0;
     }
 
+    std::shared_ptr<const std::vector<RabTold>> told(const std::vector<double>& v) const {
+        RabParts parts = ring_->neutral();
+        for (std::size_t k = 0; k < kReceivers; ++k) {
+            const int number = static_cast<int>(k) + 1;
+            parts.receiver[k] = std::max(of(receiver_gain_, number, v), 0.01);
+            parts.emitter[k] = std::max(of(emitter_gain_, number, v), 0.01);
+        }
+        // What all emitters have in common cannot be told from what all receivers have.
+        double mean = 0.0;
+        for (const double gain : parts.emitter)
+            mean += std::log(gain) / kReceivers;
+        for (double& gain : parts.emitter)
+            gain /= std::exp(mean);
+        parts.emitter_lobe = at(v, emitter_lobe_);
+        parts.receiver_lobe = at(v, receiver_lobe_);
+        return ring_->told(parts);
+    }
+
     void predict_strength(const std::vector<double>& v, Predicted& p) const {
         const std::size_t n = log_median_.size();
         p.mean.resize(n);
@@ -199,11 +254,17 @@ class RabModel final : public Model {
         const double more = 1 + at(v, more_spread_), gain = at(v, gain_), low = at(v, far_floor_),
                      rail = at(v, saturation_);
         const double other = at(v, multipath_);
+        const auto told_of_ring = ring_ ? told(v) : nullptr;
         const auto receivers = logs_of(receiver_gain_, v), emitters = logs_of(emitter_gain_, v);
         for (std::size_t i = 0; i < n; ++i) {
-            double level = log_median_[i] + gain;
-            if (!receiver_.empty()) level += receivers[receiver_place_[i]];
-            if (!emitter_.empty()) level += emitters[emitter_place_[i]];
+            double level = gain;
+            if (ring_) {
+                level += (*told_of_ring)[strength_row_[i]].log_strength;
+            } else {
+                level += log_median_[i];
+                if (!receiver_.empty()) level += receivers[receiver_place_[i]];
+                if (!emitter_.empty()) level += emitters[emitter_place_[i]];
+            }
             if (low > 0) level = std::max(level, std::log(low));
             p.mean[i] = level;
             p.factor[i] *= more;
@@ -225,6 +286,14 @@ class RabModel final : public Model {
         p.mean.assign(n, at(v, offset_));
         p.lapse.assign(other > 0 ? n : 0, other);
         p.lapse_scale.assign(other > 0 ? n : 0, 0.6);
+        if (ring_) {
+            p.factor = bearing_factor_;
+            const auto all = told(v);
+            for (std::size_t i = 0; i < n; ++i)
+                p.mean[i] +=
+                    std::remainder((*all)[bearing_row_[i]].bearing - truth_[i], 2 * std::numbers::pi);
+            return;
+        }
         if (receiver_gain_.size() < kLeastReceivers || lobe_.empty()) return;
         std::vector<double> gain;
         for (std::size_t r = 0; r < kReceivers; ++r)
@@ -278,6 +347,9 @@ class RabModel final : public Model {
         double x, y;
     };
 
+    std::optional<RabRing> ring_;  // of all rows
+    std::vector<std::uint32_t> strength_row_, bearing_row_;
+    std::vector<double> truth_, bearing_factor_;
     double rail_ = 0.0;                     // counts
     std::vector<Lobe> lobe_;                // of the receivers in turn, for each bearing
     KeyedCache<std::vector<double>> pull_;  // of each bearing, by the receivers' gains
@@ -287,8 +359,8 @@ class RabModel final : public Model {
     std::vector<std::pair<int, int>> receiver_gain_, emitter_gain_;
     int strength_ = -1, bearing_ = -1, reception_ = -1;
     int gain_ = -1, more_spread_ = -1, far_floor_ = -1, saturation_ = -1, multipath_ = -1,
-        multipath_loss_ = -1, offset_ = -1, collisions_ = -1, loss_ = -1, fetch_ = -1, beat_ = -1,
-        burst_ = -1;
+        multipath_loss_ = -1, emitter_lobe_ = -1, receiver_lobe_ = -1, offset_ = -1, collisions_ = -1,
+        loss_ = -1, fetch_ = -1, beat_ = -1, burst_ = -1;
 };
 
 }  // namespace

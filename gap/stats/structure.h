@@ -31,7 +31,7 @@ struct StructureInput {
 };
 
 /// Every test that applies, in a fixed order; `p_adjusted` by Holm over the whole table. A covariate without
-/// two different values is left out.
+/// two different values is left out; a residual without any has no findings.
 std::vector<Finding> structure_table(const StructureInput& input, const TestOptions& options);
 
 /// Holm over several observables' tables together.

@@ -81,7 +81,7 @@ void declare_gap_record(CLI::App& gap, int& status) {
     command->add_option(
         "--set", request->changes,
         "PARAMETER=NUMBER: a physical parameter (puckloop run --list-parameters), board.crystal_ppm, "
-        "host.period, uart.factor, uart.loss, uart.delay");
+        "host.period, host.rab_poll, uart.factor, uart.loss, uart.delay");
     command->add_option("--firmware", request->firmware, "image for the main board (the project's own)")
         ->type_name("IMAGE");
     command

@@ -44,6 +44,9 @@ std::vector<RabReadingRow> measure_pair(const RabMeasurement& what, const image:
     plan.distances = what.distances;
     plan.repeats = what.repeats;
     plan.power = what.power;
+    plan.turn = what.turn;
+    plan.one_emitter = what.one_emitter;
+    plan.poll_period = what.poll_period;
     plan.seed = seed;
     std::vector<RabReadingRow> rows;
     const auto factory = [&](const std::string& kind) -> std::unique_ptr<cosim::Node> {

@@ -19,6 +19,9 @@ struct RabMeasurement {
     int pairs = 6;                   ///< pairs of boards
     int repeats = 20;                ///< poses of each pair at each distance
     int power = 115;
+    double turn = 0.024;       ///< s, as in StagePlan
+    bool one_emitter = false;  ///< the same
+    double poll_period = 0.0;  ///< the same
     std::uint64_t seed = 1;
     std::map<std::string, double> parameters{};  ///< physical ones, over the defaults
 };

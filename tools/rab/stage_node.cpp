@@ -1,5 +1,6 @@
 #include "tools/rab/stage_node.h"
 
+#include "physics/parameters.h"
 #include "physics/pose_signals.h"
 
 #include <algorithm>
@@ -16,15 +17,18 @@ namespace {
 
 constexpr std::uint8_t kAddress = 0x20;
 constexpr double kI2cHertz = 400e3;
-// One turn: a frame of 16 bits is on the air for 4.5 ms from about 2 ms after its command, and can be read
-// 2.9 ms after its end.
-constexpr Time kTurn = 24 * kMillisecond;
+// Within a turn of 24 ms or more: a frame of 16 bits is on the air for 4.5 ms from about 2 ms after its
+// command, and can be read 2.9 ms after its end.
 constexpr Time kFirstSend = kMillisecond / 5;
 constexpr Time kSecondSend = 12 * kMillisecond;
 constexpr Time kPollAfter = 10 * kMillisecond + kMillisecond / 2;
 // Registers of the board.
 constexpr std::uint8_t kMessage = 0, kData = 1, kBearing = 3, kRange = 5, kLast = 6;
-constexpr std::uint8_t kPowerRegister = 12, kHighByte = 13, kSendAll = 14, kCalibrate = 16, kOnBoard = 17;
+constexpr std::uint8_t kPowerRegister = 12, kHighByte = 13, kSendAll = 14, kSendEach = 15, kCalibrate = 16,
+                       kOnBoard = 17;
+
+constexpr int kQueue = 10;                        // messages that wait on a board
+constexpr double kWithin = std::numbers::pi / 4;  // of the line, for a single emitter
 
 double wrapped(double angle) {
     return std::remainder(angle, 2 * std::numbers::pi);
@@ -34,7 +38,7 @@ double wrapped(double angle) {
 
 double StagePlan::duration() const {
     const auto turns = static_cast<double>(distances.size()) * repeats + 1;
-    return boot + turns * cosim::to_seconds(kTurn);
+    return boot + turns * turn + (kQueue + 1) * poll_period;
 }
 
 StageNode::StageNode(const StagePlan& plan, std::vector<RabReadingRow>& rows)
@@ -44,6 +48,7 @@ StageNode::StageNode(const StagePlan& plan, std::vector<RabReadingRow>& rows)
              {"i2c0", cosim::PortKind::I2c},
              {"i2c1", cosim::PortKind::I2c}},
       headings_(plan.seed, "stage/headings"),
+      emitters_(plan.seed, "stage/emitters"),
       hosts_{I2cHost(kAddress, kI2cHertz), I2cHost(kAddress, kI2cHertz)} {
     const Time ready = cosim::from_seconds(plan.boot);
     for (I2cHost& host : hosts_) {
@@ -52,6 +57,10 @@ StageNode::StageNode(const StagePlan& plan, std::vector<RabReadingRow>& rows)
         host.write(ready - 4 * kMillisecond, {kCalibrate, 0});
     }
     next_pose_ = plan.distances.empty() || plan.repeats < 1 ? kNever : ready;
+    for (const int receiver : {0, 1})
+        if (plan.poll_period > 0)
+            schedule(ready + cosim::from_seconds(plan.poll_period * (receiver + 1) / 3),
+                     [this, receiver](Time at) { poll_again(receiver, at); });
 }
 
 void StageNode::schedule(Time at, std::function<void(Time)> action) {
@@ -70,13 +79,30 @@ void StageNode::pose(Time now, std::vector<cosim::Message>& outbox) {
     for (int sender = 0; sender < 2; ++sender) {
         const Time start = now + kFirstSend + sender * kSecondSend;
         schedule(start, [this, sender](Time at) { send(sender, at); });
+        if (plan_.poll_period > 0) continue;
         schedule(start + kPollAfter, [this, sender](Time at) { poll(1 - sender, at); });
     }
     if (++repeat_ == plan_.repeats) {
         repeat_ = 0;
         ++distance_;
     }
-    next_pose_ = distance_ == plan_.distances.size() ? kNever : now + kTurn;
+    next_pose_ = distance_ == plan_.distances.size() ? kNever : now + cosim::from_seconds(plan_.turn);
+}
+
+/// One of those within 45 degrees of the receiver, by the drawing.
+int StageNode::facing_emitter(double bearing) {
+    const physics::Parameters drawing;
+    std::vector<int> near;
+    for (int e = 0; e < physics::kIrSensors; ++e)
+        if (std::abs(wrapped(bearing - drawing.ir.emitter_angle[static_cast<std::size_t>(e)])) < kWithin)
+            near.push_back(e + 1);
+    return near[emitters_.below(near.size())];
+}
+
+void StageNode::poll_again(int receiver, Time now) {
+    poll(receiver, now);
+    schedule(now + cosim::from_seconds(plan_.poll_period),
+             [this, receiver](Time at) { poll_again(receiver, at); });
 }
 
 void StageNode::send(int sender, Time now) {
@@ -86,11 +112,19 @@ void StageNode::send(int sender, Time now) {
     row.sender = sender;
     const double direction = sender == 0 ? std::numbers::pi : 0.0;  // seen from the receiver
     row.bearing_true = wrapped(direction - heading_[static_cast<std::size_t>(1 - sender)]);
+    row.bearing_back = wrapped(direction - std::numbers::pi - heading_[static_cast<std::size_t>(sender)]);
+    row.emitter = plan_.one_emitter ? facing_emitter(row.bearing_back) : 0;
     rows_.push_back(row);
     I2cHost& host = hosts_[static_cast<std::size_t>(sender)];
     now += host.clock();  // a lookahead, as every answer has
     host.write(now, {kHighByte, static_cast<std::uint8_t>(payload_ >> 8)});
-    host.write(now, {kSendAll, static_cast<std::uint8_t>(payload_ & 0xFF)});
+    const auto low = static_cast<std::uint8_t>(payload_ & 0xFF);
+    if (row.emitter == 0) {
+        host.write(now, {kSendAll, low});
+    } else {
+        host.write(now, {static_cast<std::uint8_t>(row.emitter - 1), low});
+        host.write(now, {kSendEach, 0});
+    }
 }
 
 void StageNode::poll(int receiver, Time now) {
@@ -124,7 +158,7 @@ void StageNode::message(int receiver, Time now) {
     } else if (!rows_.empty()) {
         ++rows_.back().strays;
     }
-    poll(receiver, now);  // until there is no other
+    if (plan_.poll_period == 0) poll(receiver, now);  // until there is no other
 }
 
 void StageNode::advance(Time until, std::span<const cosim::Message> inbox,

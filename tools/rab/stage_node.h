@@ -24,6 +24,11 @@ struct StagePlan {
     std::uint64_t seed = 1;         ///< of the headings
     /// Time from power-up until the boards are ready, s.
     double boot = 0.1;
+    double turn = 0.024;       ///< s between two poses
+    bool one_emitter = false;  ///< a frame leaves by one emitter within 45 degrees of the line, not by all
+    /// s between two polls of a host, each for one message; 0: a host asks after each frame until there is
+    /// no other.
+    double poll_period = 0.0;
 
     /// When all is measured, s.
     double duration() const;
@@ -33,7 +38,9 @@ struct StagePlan {
 struct RabReadingRow {
     std::size_t distance = 0;  ///< index of the plan's
     int sender = 0;
+    int emitter = 0;            ///< 1..12, 0: all
     double bearing_true = 0.0;  ///< rad, of the sender as the receiver sees it
+    double bearing_back = 0.0;  ///< rad, of the receiver as the sender sees it
     bool received = false;
     bool late = false;     ///< it came with a later frame
     int strays = 0;        ///< messages read meanwhile that nobody sent, or that had been read before
@@ -55,7 +62,9 @@ class StageNode final : public cosim::Node {
 
   private:
     void pose(cosim::Time now, std::vector<cosim::Message>& outbox);
+    int facing_emitter(double bearing);
     void send(int sender, cosim::Time now);
+    void poll_again(int receiver, cosim::Time now);
     void poll(int receiver, cosim::Time now);
     void fetch(int receiver, cosim::Time now);
     void message(int receiver, cosim::Time now);
@@ -64,7 +73,7 @@ class StageNode final : public cosim::Node {
     StagePlan plan_;
     std::vector<RabReadingRow>& rows_;
     std::vector<cosim::Port> ports_;
-    RandomStream headings_;
+    RandomStream headings_, emitters_;
     std::array<I2cHost, 2> hosts_;
     std::array<double, 2> heading_{};
     std::size_t distance_ = 0;

@@ -1,6 +1,7 @@
 // Experiments recorded on the emulator: what a laboratory would have, and what the robot really did.
 
 #include "base/error.h"
+#include "gap/analyse.h"
 #include "gap/emulate/record.h"
 #include "gap/emulate/secrets.h"
 #include "gap/experiment.h"
@@ -93,11 +94,23 @@ TEST_CASE("the serial line tells the main board's crystal") {
     CHECK((host.back() - host.front()) / (robot.back() - robot.front()) == Approx(1.0003).margin(6e-5));
 }
 
-TEST_CASE("range and bearing is recorded through the boards' firmware") {
+TEST_CASE(
+    "range and bearing is recorded through the boards' firmware, and is what the model with the ring says") {
     auto options = options_in(tests::scratch_path("gap_rab"));
+    for (const char* part : {"ir.emitter_spread", "ir.receiver_spread", "ir.demodulator_spread"})
+        emulate::set_parameter(options.robot, std::string(part) + "=0");
     const Experiment plain = recorded("rab", options);
     REQUIRE(plain.kind == Kind::Rab);
-    REQUIRE(plain.runs.size() == 3);
+    REQUIRE(plain.runs.size() == 4);
+    for (const Series& series : simulate(plain, {})) {
+        if (series.observable == "received") continue;
+        double mean = 0.0;
+        for (std::size_t i = 0; i < series.measured.size(); ++i)
+            mean += (series.measured[i] - series.before[i]) / static_cast<double>(series.measured.size());
+        INFO(series.observable << " " << mean);
+        REQUIRE(series.measured.size() > 100);
+        CHECK(std::abs(mean) < 0.03);  // chance of 0.1 to 0.35 a message; of a bearing 0.05 rad
+    }
     emulate::set_parameter(options.robot, "ir.receiver_gain=0.5");
     const Experiment weak = recorded("rab", options);
     double sum = 0.0, count = 0.0;
@@ -110,6 +123,31 @@ TEST_CASE("range and bearing is recorded through the boards' firmware") {
         }
     CHECK(count > 100);
     CHECK(sum / count == Approx(0.5).margin(0.02));
+}
+
+TEST_CASE("a host that polls too slowly gets a message a poll once the board's queue is full") {
+    auto options = options_in(tests::scratch_path("gap_rab_poll"));
+    emulate::set_parameter(options.robot, "host.rab_poll=0.06");
+    const Experiment slow = recorded("rab", options);
+    double read = 0.0, sent = 0.0;
+    for (const Run& run : slow.runs)
+        for (std::size_t k = 0; k < run.rows; ++k) {
+            if (run.column("arrival_rate")[k] == 0.0) {
+                CHECK(run.column("received")[k] == 1.0);
+                continue;
+            }
+            read += run.column("received")[k];
+            ++sent;
+        }
+    REQUIRE(sent == 16);
+    CHECK(read / sent == Approx(24.0 / 60).margin(0.1));
+}
+
+TEST_CASE("a line so late that no exchange is answered is told, not recorded") {
+    auto options = options_in(tests::scratch_path("gap_unanswered"));
+    emulate::set_parameter(options.robot, "uart.delay=0.06");  // the session gives up after 64 ms
+    CHECK_THROWS_AS(emulate::record("timing", options), RunError);
+    std::filesystem::remove_all(options.scratch);
 }
 
 TEST_CASE("what cannot be recorded or changed is refused in one line") {

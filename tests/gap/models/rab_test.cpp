@@ -174,3 +174,125 @@ TEST_CASE("reception falls by chance, with senders and with the poll's rate") {
         CHECK(slow[kReceived].mean[i] == Approx(0.999 * std::min(1.0, 100 / rate)));
     }
 }
+
+namespace {
+
+/// Messages at random headings and distances, by all emitters or by the one that faces the receiver most.
+struct Look {
+    double distance, bearing, facing;
+    int emitter;
+};
+std::vector<Look> random_looks(std::size_t count) {
+    std::vector<Look> looks;
+    RandomStream random(9, "looks");
+    for (std::size_t k = 0; k < count; ++k) {
+        Look look{0.02 + 0.3 * random.uniform(), radians(360 * random.uniform()),
+                  radians(360 * random.uniform()), 0};
+        if (k % 2 == 1)
+            for (std::size_t e = 0; e < 12; ++e)
+                if (look.emitter == 0 ||
+                    std::cos(look.facing - radians(kDegrees[e])) >
+                        std::cos(look.facing - radians(kDegrees[static_cast<std::size_t>(look.emitter) - 1])))
+                    look.emitter = static_cast<int>(e) + 1;
+        looks.push_back(look);
+    }
+    return looks;
+}
+
+Experiment ring_experiment(const std::vector<Look>& looks) {
+    Table rows;
+    for (const Look& look : looks) {
+        rows["t_s"].push_back(0.1 * static_cast<double>(rows["t_s"].size()));
+        rows["distance_m"].push_back(look.distance);
+        rows["true_bearing_rad"].push_back(look.bearing);
+        rows["bearing_rad"].push_back(look.bearing);
+        rows["sender_bearing_rad"].push_back(look.facing);
+        rows["emitter"].push_back(look.emitter);
+        rows["receiver"].push_back(1.0 + static_cast<double>(rows["receiver"].size() % 12));
+        rows["strength"].push_back(1000);
+    }
+    std::map<std::string, double> plain{{"rab.ring", 1}};
+    for (const char* name : {"ir.emitter_spread", "ir.receiver_spread", "ir.demodulator_spread",
+                             "ir.frame_noise", "ir.receiver_noise", "ir.carrier_noise", "ir.near_noise"})
+        plain[name] = 0.0;
+    return experiment_of(Kind::Rab, std::move(rows), plain);
+}
+
+/// What the medium and the board's formula give for a look.
+protocols::RabReading simulated(const Look& look, const std::map<std::string, double>& parameters) {
+    physics::World world = physics::test::rab_pair(look.distance);
+    physics::test::make_ideal(world);
+    for (const auto& [name, value] : parameters)
+        world.parameters[name] = value;
+    physics::IrMedium medium(world);
+    // The sender is robot 0, to the receiver's west.
+    medium.move(0, 0, 0, -look.facing);
+    medium.move(1, 2 * physics::test::kBodyRadius + look.distance, 0, std::numbers::pi - look.bearing);
+    const auto mask = static_cast<std::uint16_t>(look.emitter == 0 ? physics::test::kAllEmitters
+                                                                   : 1U << (look.emitter - 1));
+    const physics::IrLight& light = physics::test::shine(medium, mask, 115, 455e3);
+    std::array<int, 12> peaks{};
+    for (std::size_t r = 0; r < 12; ++r)
+        if (light.carrier[r] >= 1)
+            peaks[r] = static_cast<int>(std::min<long>(std::lround(light.level[r]),
+                                                       4095 - std::lround(medium.parameters(1).baseline[r])));
+    return protocols::rab_reading(peaks);
+}
+
+}  // namespace
+
+TEST_CASE("with the ring, strength and bearing are those of the medium through the board's formulas") {
+    const auto looks = random_looks(40);
+    const Experiment experiment = ring_experiment(looks);
+    const auto model = make_model(experiment);
+    const auto same = [&](const std::map<std::string, double>& ours,
+                          const std::map<std::string, double>& theirs) {
+        const Prediction said = predicted(*model, ours);
+        for (std::size_t i = 0; i < looks.size(); ++i) {
+            CAPTURE(i, looks[i].distance, looks[i].bearing, looks[i].facing, looks[i].emitter);
+            const auto told = simulated(looks[i], theirs);
+            REQUIRE(told.range > 0);
+            // Whole counts of twelve peaks, of which the smallest read 100.
+            CHECK(std::exp(said[kStrength].mean[i]) == Approx(told.range).epsilon(0.005).margin(2));
+            CHECK(std::remainder(said[kBearing].mean[i] + looks[i].bearing - 1e-4 * told.bearing,
+                                 2 * std::numbers::pi) == Approx(0).margin(0.005));
+        }
+    };
+    same({}, {});
+    same({{"rab.receiver_gain4", 1.4}}, {{"ir.receiver_gain3", 1.4}});
+    const int one = looks[1].emitter;
+    const double others = std::pow(0.7, 1.0 / 12);  // their mean stays 1
+    std::map<std::string, double> emitters;
+    for (int e = 0; e < 12; ++e)
+        emitters["ir.emitter_gain" + std::to_string(e)] = (e + 1 == one ? 0.7 : 1.0) / others;
+    same({{"rab.emitter_gain" + std::to_string(one), 0.7}}, emitters);
+    same({{"rab.emitter_lobe", 2.0}, {"rab.receiver_lobe", 1.0}},
+         {{"ir.emitter_exponent", 2.0}, {"ir.receiver_exponent", 1.0}});
+}
+
+TEST_CASE("with the ring, the noise claimed is what spread parts and the medium's chance make") {
+    Experiment experiment = ring_experiment(std::vector<Look>(60, Look{0.30, 0.9, 2.0, 0}));
+    experiment.nominal = {{"rab.ring", 1}};
+    const auto model = make_model(experiment);
+    std::vector<double> all;
+    double mean = 0.0, square = 0.0;
+    for (int pair = 0; pair < 400; ++pair) {
+        physics::World world = physics::test::rab_pair(0.30);
+        world.seed = 900 + static_cast<std::uint64_t>(pair);
+        physics::IrMedium medium(world);
+        medium.move(0, 0, 0, -2.0);
+        medium.move(1, 2 * physics::test::kBodyRadius + 0.30, 0, std::numbers::pi - 0.9);
+        const physics::IrLight& light = physics::test::shine(medium, physics::test::kAllEmitters, 115, 455e3);
+        std::array<int, 12> peaks{};
+        for (std::size_t r = 0; r < 12; ++r)
+            if (light.carrier[r] >= 1) peaks[r] = static_cast<int>(std::lround(light.level[r]));
+        const double strength = std::log(protocols::rab_reading(peaks).range);
+        mean += strength / 400;
+        square += strength * strength / 400;
+    }
+    const Prediction said = predicted(*model);
+    const double sd = std::sqrt(square - mean * mean);
+    // 400 pairs: 5 % of an sd for the mean, 3.5 % for the sd itself.
+    CHECK(said[kStrength].mean[0] == Approx(mean).margin(0.2 * sd));
+    CHECK(said[kStrength].factor[0] == Approx(sd).epsilon(0.12));
+}

@@ -152,3 +152,13 @@ TEST_CASE("a whole table on noise has a false finding in one case of twenty") {
     }
     CHECK(hits <= 8);  // 3 expected, deviation 1.7
 }
+
+TEST_CASE("a residual that never varies has no structure, whatever rounding makes of its means") {
+    RandomStream random(3, "constant");
+    StructureInput input;
+    input.residual = made_noise(5, 60, 0.0, random);
+    for (double& value : input.residual.value)
+        value = 0.0316385998584166;
+    input.covariates.push_back({"x", CovariateKind::Number, made_covariate(5, 60, 0.0, random), {}});
+    CHECK(structure_table(input, {.seed = 1, .permutations = 99}).empty());
+}

@@ -1,0 +1,290 @@
+#include "gap/models/rab_ring.h"
+
+#include "base/random.h"
+#include "physics/parameters.h"
+
+#include <algorithm>
+#include <map>
+#include <numbers>
+#include <utility>
+
+namespace puckloop::gap {
+
+namespace {
+
+constexpr double kHalfTurn = std::numbers::pi;
+constexpr std::size_t kDraws = 24;     // a message; each with its mirror image, so that odd parts cancel
+constexpr std::size_t kHeadings = 24;  // of a sender that nobody looked at
+constexpr double kMillimetre = 1e-3;
+constexpr double kLeastCosine = 1e-3;
+constexpr double kFaintest = 1e-6;  // counts
+
+double below(double z) {
+    return 0.5 * std::erfc(-z / std::numbers::sqrt2);
+}
+
+/// The firmware's table, degrees: not the receivers' true directions, which a board may have otherwise.
+constexpr std::array<double, kRabParts> kTable{15, 50, 75, 105, 133, 159, -165, -135, -105, -77, -50, -15};
+
+struct Direction {
+    double angle, cosine, sine;
+};
+const std::array<Direction, kRabParts>& table() {
+    static const auto directions = [] {
+        std::array<Direction, kRabParts> all{};
+        for (std::size_t k = 0; k < kRabParts; ++k) {
+            const double angle = kTable[k] * kHalfTurn / 180;
+            all[k] = {angle, std::cos(angle), std::sin(angle)};
+        }
+        return all;
+    }();
+    return directions;
+}
+
+/// How much of its strength a receiver at a bearing would read with the light ahead of it, by the firmware.
+double log_ahead(double bearing, std::size_t sensor) {
+    return -0.5 * std::log(std::max(std::abs(std::cos(bearing - table()[sensor].angle)), kLeastCosine));
+}
+
+/// The mean of what is told when each receiver's ln strength scatters by `spread`: which receiver is the
+/// second best is chance then, and the better of two scattered ones is better than their means.
+double mean_log_strength(const std::array<double, kRabParts>& peaks, double bearing, double spread) {
+    std::array<std::size_t, kRabParts> order{};
+    for (std::size_t k = 0; k < kRabParts; ++k)
+        order[k] = k;
+    std::partial_sort(order.begin(), order.begin() + 3, order.end(),
+                      [&](std::size_t a, std::size_t b) { return peaks[a] > peaks[b]; });
+    std::array<double, 3> level{}, told{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        level[k] = std::log(std::max(peaks[order[k]], kFaintest));
+        told[k] = level[k] + log_ahead(bearing, order[k]);
+    }
+    const double apart = spread * std::numbers::sqrt2;
+    const double lead = (level[1] - level[2]) / apart;
+    const double second = told[2] + below(lead) * (told[1] - told[2]) +
+                          apart * std::exp(-lead * lead / 2) / std::sqrt(2 * kHalfTurn);
+    const double share = 1 / (1 + std::exp(4 * (told[0] - second)));  // of the second in the sum
+    return told[0] - 0.25 * std::log(1 - share) + 4 * share * (1 - share) * spread * spread;
+}
+
+}  // namespace
+
+RabTold rab_told(const std::array<double, kRabParts>& peaks) {
+    double x = 0, y = 0;
+    std::size_t first = 0, second = 0;
+    double first_peak = 0, second_peak = 0;
+    for (std::size_t k = 0; k < kRabParts; ++k) {
+        x += peaks[k] * table()[k].cosine;
+        y += peaks[k] * table()[k].sine;
+        if (peaks[k] > first_peak) {
+            second = std::exchange(first, k);
+            second_peak = std::exchange(first_peak, peaks[k]);
+        } else if (peaks[k] > second_peak) {
+            second = k;
+            second_peak = peaks[k];
+        }
+    }
+    if (first_peak <= 0) return {};
+    RabTold told;
+    told.bearing = std::atan2(y, x);
+    const auto share = [&](double peak, std::size_t sensor) {
+        return std::exp(4 * (std::log(peak) + log_ahead(told.bearing, sensor)));
+    };
+    told.log_strength =
+        0.25 * std::log(share(first_peak, first) + (second_peak > 0 ? share(second_peak, second) : 0.0));
+    return told;
+}
+
+RabRing::RabRing(std::vector<RabLook> looks, const physics::IrParameters& parameters, double carrier)
+    : looks_(std::move(looks)),
+      parameters_(parameters),
+      carrier_(carrier > 0 ? carrier : parameters.centre_frequency) {
+    draw_chance();
+}
+
+RabParts RabRing::neutral() const {
+    RabParts parts;
+    parts.receiver.fill(1.0);
+    parts.emitter.fill(1.0);
+    parts.emitter_lobe = parameters_.emitter_exponent;
+    parts.receiver_lobe = parameters_.receiver_exponent;
+    return parts;
+}
+
+double RabRing::full_scale(std::size_t receiver) const {
+    return std::max(parameters_.rail - parameters_.baseline[receiver], 1.0);
+}
+
+RabRing::Light RabRing::light_of(const RabLook& look, const physics::IrBoard& sender,
+                                 const physics::IrBoard& receiver) const {
+    Light light;
+    const auto coupling = physics::couple(sender, receiver, {1.0, carrier_}, {}, {});
+    for (std::size_t e = 0; e < kRabParts; ++e) {
+        if (look.emitter != 0 && static_cast<std::size_t>(look.emitter) != e + 1) continue;
+        light.level[e] = coupling.level[e];
+        light.carrier[e] = coupling.carrier[e];
+    }
+    return light;
+}
+
+/// Light of every look with lobes of these exponents, gains of all parts 1.
+std::vector<RabRing::Light> RabRing::shine(double emitter_lobe, double receiver_lobe) const {
+    auto p = parameters_;
+    p.emitter_exponent = emitter_lobe;
+    p.receiver_exponent = receiver_lobe;
+    p.emitter_spread = p.receiver_spread = p.demodulator_spread = 0.0;  // they are chance here
+    physics::IrBoard sender(p, 0, "sender"), receiver(p, 0, "receiver");
+    const double bodies = 2 * physics::Parameters().robot.radius;
+    std::vector<Light> all(looks_.size());
+    for (std::size_t i = 0; i < looks_.size(); ++i) {
+        const RabLook& look = looks_[i];
+        const double apart = bodies + look.distance;
+        const auto stand = [&](double facing) {
+            sender.place(apart * std::cos(look.bearing), apart * std::sin(look.bearing),
+                         look.bearing + kHalfTurn - facing);
+        };
+        const bool one = look.emitter != 0;
+        if (!std::isnan(look.facing) || one) {
+            // Of a single emitter and an unknown heading: that it looked at the receiver.
+            const auto number = static_cast<std::size_t>(std::max(look.emitter, 1)) - 1;
+            stand(std::isnan(look.facing) ? p.emitter_angle[number] : look.facing);
+            all[i] = light_of(look, sender, receiver);
+            continue;
+        }
+        for (std::size_t h = 0; h < kHeadings; ++h) {
+            stand(2 * kHalfTurn * static_cast<double>(h) / kHeadings);
+            const Light light = light_of(look, sender, receiver);
+            for (std::size_t e = 0; e < kRabParts; ++e)
+                for (std::size_t k = 0; k < kRabParts; ++k) {
+                    all[i].level[e][k] += light.level[e][k] / static_cast<float>(kHeadings);
+                    all[i].carrier[e][k] += light.carrier[e][k] / static_cast<float>(kHeadings);
+                }
+        }
+    }
+    return all;
+}
+
+/// What reaches each receiver of each look, and whether it counts.
+std::shared_ptr<const std::vector<RabRing::Seen>> RabRing::gather(const RabParts& parts) const {
+    const std::vector<double> lobes{parts.emitter_lobe, parts.receiver_lobe};
+    auto key = lobes;
+    key.insert(key.end(), parts.emitter.begin(), parts.emitter.end());
+    return seen_.get(key, [&] {
+        const auto light = light_.get(lobes, [&] { return shine(parts.emitter_lobe, parts.receiver_lobe); });
+        const double soft = std::hypot(parameters_.carrier_noise, parameters_.demodulator_spread);
+        std::vector<Seen> all(looks_.size());
+        for (std::size_t i = 0; i < looks_.size(); ++i)
+            for (std::size_t k = 0; k < kRabParts; ++k) {
+                double level = 0, carrier = 0;
+                for (std::size_t e = 0; e < kRabParts; ++e) {
+                    level += parts.emitter[e] * static_cast<double>((*light)[i].level[e][k]);
+                    carrier += parts.emitter[e] * static_cast<double>((*light)[i].carrier[e][k]);
+                }
+                all[i].level[k] = level;
+                if (level <= 0 || carrier <= 0) continue;
+                if (soft > 0)
+                    all[i].heard[k] = below(std::log(carrier / parameters_.threshold) / soft);
+                else
+                    all[i].heard[k] = carrier >= parameters_.threshold ? 1.0 : 0.0;
+            }
+        return all;
+    });
+}
+
+RabTold RabRing::told_of(const Seen& seen, const RabParts& parts) const {
+    std::array<double, kRabParts> peaks{};
+    for (std::size_t k = 0; k < kRabParts; ++k)
+        peaks[k] = seen.heard[k] * std::min(parts.receiver[k] * seen.level[k], full_scale(k));
+    RabTold told = rab_told(peaks);
+    const double spread = std::hypot(parameters_.receiver_spread, parameters_.receiver_noise);
+    if (spread > 0 && told.log_strength != 0)
+        told.log_strength = mean_log_strength(peaks, told.bearing, spread);
+    return told;
+}
+
+std::shared_ptr<const std::vector<RabTold>> RabRing::told(const RabParts& parts) const {
+    std::vector<double> key{parts.emitter_lobe, parts.receiver_lobe};
+    key.insert(key.end(), parts.emitter.begin(), parts.emitter.end());
+    key.insert(key.end(), parts.receiver.begin(), parts.receiver.end());
+    return told_.get(key, [&] {
+        const auto seen = gather(parts);
+        std::vector<RabTold> all(looks_.size());
+        for (std::size_t i = 0; i < looks_.size(); ++i) {
+            all[i] = told_of((*seen)[i], parts);
+            all[i].log_strength += shift_[i].log_strength;
+            all[i].bearing += shift_[i].bearing;
+        }
+        return all;
+    });
+}
+
+/// As IrMedium::draw_noise and IrBoard draw it; parts anew for every message.
+void RabRing::draw_chance() {
+    const RabParts plain = neutral();
+    const auto seen = gather(plain);
+    const auto all_light = shine(plain.emitter_lobe, plain.receiver_lobe);
+    const auto& p = parameters_;
+    RandomStream random(1, "gap/rab ring");
+    struct Sum {
+        double n = 0, strength = 0, bearing = 0;  // squares
+    };
+    std::map<std::pair<long, bool>, Sum> sums;
+    const auto group = [](const RabLook& look) {
+        return std::pair(std::lround(look.distance / kMillimetre), look.emitter != 0);
+    };
+    shift_.assign(looks_.size(), {});
+    std::array<double, kRabParts> emitter{}, receiver{}, demodulator{};
+    for (std::size_t i = 0; i < looks_.size(); ++i) {
+        const RabTold plainly = told_of((*seen)[i], plain);
+        const double near = p.near_noise * std::exp(-std::max(looks_[i].distance, 0.0) / p.near_range);
+        double n = 0;
+        Sum sum;
+        for (std::size_t draw = 0; draw < kDraws; ++draw) {
+            const double common = std::hypot(p.frame_noise, near) * random.normal();
+            for (std::size_t k = 0; k < kRabParts; ++k) {
+                emitter[k] = p.emitter_spread * random.normal();
+                receiver[k] = common + std::hypot(p.receiver_spread, p.receiver_noise) * random.normal();
+                demodulator[k] = std::hypot(p.demodulator_spread, p.carrier_noise) * random.normal();
+            }
+            for (const double sign : {1.0, -1.0}) {
+                std::array<double, kRabParts> gain{}, peaks{};
+                for (std::size_t e = 0; e < kRabParts; ++e)
+                    gain[e] = std::exp(sign * emitter[e]);
+                for (std::size_t k = 0; k < kRabParts; ++k) {
+                    double level = 0, carrier = 0;
+                    for (std::size_t e = 0; e < kRabParts; ++e) {
+                        level += gain[e] * static_cast<double>(all_light[i].level[e][k]);
+                        carrier += gain[e] * static_cast<double>(all_light[i].carrier[e][k]);
+                    }
+                    if (carrier * std::exp(sign * demodulator[k]) < p.threshold) continue;
+                    peaks[k] =
+                        std::min(std::max(level, kFaintest) * std::exp(sign * receiver[k]), full_scale(k));
+                }
+                if (*std::max_element(peaks.begin(), peaks.end()) <= 0) continue;
+                const RabTold told = rab_told(peaks);
+                const double strength = told.log_strength - plainly.log_strength;
+                const double bearing = std::remainder(told.bearing - plainly.bearing, 2 * kHalfTurn);
+                ++n;
+                shift_[i].log_strength += strength;
+                shift_[i].bearing += bearing;
+                sum.strength += strength * strength;
+                sum.bearing += bearing * bearing;
+            }
+        }
+        if (n == 0) continue;
+        shift_[i].log_strength /= n;
+        shift_[i].bearing /= n;
+        Sum& all = sums[group(looks_[i])];
+        all.n += n;
+        all.strength += sum.strength - n * shift_[i].log_strength * shift_[i].log_strength;
+        all.bearing += sum.bearing - n * shift_[i].bearing * shift_[i].bearing;
+    }
+    for (const RabLook& look : looks_) {
+        const Sum& all = sums[group(look)];
+        const double count = std::max(all.n, 1.0);
+        strength_sd_.push_back(std::sqrt(std::max(all.strength / count, kFaintest)));
+        bearing_sd_.push_back(std::sqrt(std::max(all.bearing / count, kFaintest)));
+    }
+}
+
+}  // namespace puckloop::gap
