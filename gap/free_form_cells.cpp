@@ -109,7 +109,7 @@ bool varies(const std::vector<double>& values) {
 /// The tracker's own errors must not choose the cell they fall into: a drive along y = 0 would seem to pull
 /// away from its line on either side.
 double whole(double value, double grain) {
-    return grain * std::round(value / grain);
+    return grain * std::round(value / grain) + 0.0;  // no -0: its sign would be the error's
 }
 
 /// Tracked place and wheel phase of a drive: what no single column of the commands says.

@@ -1,6 +1,7 @@
 // The free-form correction: finds what is there on runs it did not see, and nothing in noise.
 
 #include "base/random.h"
+#include "gap/free_form_cells.h"
 #include "gap/stats/boosting.h"
 
 #include <catch2/catch.hpp>
@@ -110,4 +111,28 @@ TEST_CASE("what is peculiar to one run is not learnt") {
     }
     m.components = {place};
     CHECK(boosted(m.rows, m.components, 1).gain < 6);
+}
+
+TEST_CASE("errors of a tracker about a place choose no cell") {
+    puckloop::gap::Experiment experiment;
+    experiment.kind = puckloop::gap::Kind::Motion;
+    puckloop::gap::Run run;
+    puckloop::gap::Series rows;
+    std::vector<char> starts;
+    for (std::size_t k = 0; k < 40; ++k) {
+        run.columns["x_m"].push_back(k % 2 == 0 ? 3e-4 : -3e-4);
+        run.columns["y_m"].push_back(k % 3 == 0 ? 2e-4 : -2e-4);
+        run.columns["theta_rad"].push_back(0.4);
+        run.columns["t_s"].push_back(0.1 * static_cast<double>(k));
+        rows.run.push_back(0);
+        rows.row.push_back(static_cast<std::uint32_t>(k));
+        starts.push_back(k == 0 ? 1 : 0);
+    }
+    run.rows = 40;
+    experiment.runs.push_back(std::move(run));
+    for (const auto& component : puckloop::gap::free_form_cells(experiment, rows, starts)) {
+        INFO(component.name);
+        CHECK(component.name.find("outward") == std::string::npos);
+        CHECK(component.name.find("place x") == std::string::npos);
+    }
 }
