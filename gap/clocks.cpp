@@ -20,6 +20,7 @@ constexpr double kEvidence = 20.0;      // BIC by which drifting clocks must do 
 constexpr double kLeastDrift = 0.02;    // s: less hides in the spacing of rows
 constexpr double kLeastDrifting = 0.3;  // share of runs whose clock must drift by itself
 constexpr double kDeviations = 4.0;
+constexpr double kAgreed = 3.0;  // times what runs differ by: a mean lateness that is theirs in common
 
 /// A run as changes over windows of rows.
 struct Path {
@@ -256,6 +257,12 @@ void align_clocks(Experiment& experiment) {
     }
     if (better < kEvidence || clear < kLeastDrifting * runs) return;
     common /= weights;
+    // Runs lined up by hand, each its own way, have a mean lateness too, but nothing that makes it: only one
+    // that they agree about is a tracker's.
+    double squares = 0.0;
+    for (const ClockError& clock : drifting.errors)
+        squares += (clock.late - common) * (clock.late - common) / runs;
+    if (std::abs(common) < kAgreed * std::sqrt(squares)) common = 0.0;
     double earliest = INFINITY, latest = -INFINITY, slowest = INFINITY, fastest = -INFINITY;
     for (std::size_t r = 0; r < paths.size(); ++r) {
         const ClockError& clock = drifting.errors[r];

@@ -20,7 +20,7 @@ struct ClockError {
 std::vector<ClockError> clock_errors(const Experiment& experiment);
 
 /// Where lateness drifts inside runs beyond doubt, sets Run::counted_at and says so as a caution. A lateness
-/// that is the same in all runs is left to the effect of that name.
+/// that is about the same in all runs is left to the effect of that name.
 void align_clocks(Experiment& experiment);
 
 }  // namespace puckloop::gap

@@ -80,6 +80,20 @@ TEST_CASE("lateness and its drift are found, each run its own") {
     const double grown = (run.column("t_s").back() - run.counted_at.back()) -
                          (run.column("t_s").front() - run.counted_at.front());
     CHECK(grown == Approx(0.3).margin(0.03));
+    // Of lateness that differs from run to run nothing is left to a tracker that is late.
+    const double late_in_the_middle = run.column("t_s")[run.rows / 2] - run.counted_at[run.rows / 2];
+    CHECK(late_in_the_middle == Approx(0.05).margin(0.02));
+}
+
+TEST_CASE("a lateness that runs with drifting clocks have in common is left to the tracker's delay") {
+    Experiment e =
+        of({drive("a", 0.2, 0.3, 0.01), drive("b", 0.21, 0.2, 0.01), drive("c", 0.19, -0.2, 0.01)});
+    align_clocks(e);
+    REQUIRE(e.cautions.size() == 1);
+    const Run& run = e.runs[0];
+    REQUIRE(run.counted_at.size() == run.rows);
+    const double late_in_the_middle = run.column("t_s")[run.rows / 2] - run.counted_at[run.rows / 2];
+    CHECK(late_in_the_middle == Approx(0.0).margin(0.02));
 }
 
 TEST_CASE("a robot of other numbers and a tracker that is always late are no clocks that run apart") {
