@@ -47,7 +47,7 @@ class Analysis {
         final_ = with_nuisances();
         look_at_rest();
         if (!selection_.steps.empty() &&
-            (verdict_.unexplained_share > share_allowed() ||
+            (!experiment_.assumed.empty() || verdict_.unexplained_share > share_allowed() ||
              (stopped_at_edge() && !verdict_.leftovers.empty()) || few_runs_disagree()))
             take_back();
         tell("intervals", 0.96);

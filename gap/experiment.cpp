@@ -235,6 +235,25 @@ bool Experiment::has(std::string_view column) const {
     return std::any_of(runs.begin(), runs.end(), [&](const Run& run) { return run.has(column); });
 }
 
+namespace {
+
+/// assumed = ["distance_m"]
+void read_assumed(Reader& top, Experiment& experiment) {
+    experiment.assumed = top.texts("assumed");
+    for (const std::string& name : experiment.assumed) {
+        const ColumnInfo* info = find_column(experiment.kind, name);
+        if (info == nullptr || info->role != Role::Truth)
+            top.fail("assumed", fmt::format("{} is no truth of kind {}", name, kind_name(experiment.kind)),
+                     "a truth column of docs/gap.md");
+        experiment.cautions.push_back(fmt::format(
+            "{} was not measured but assumed: whatever is found may be an error of it, so nothing "
+            "is named",
+            name));
+    }
+}
+
+}  // namespace
+
 Experiment read_experiment(const std::filesystem::path& folder) {
     if (!std::filesystem::is_directory(folder))
         throw InputError(folder.string(), "", "is not a folder", "a folder with experiment.toml");
@@ -255,6 +274,7 @@ Experiment read_experiment(const std::filesystem::path& folder) {
     experiment.description = top.text("description", "");
     experiment.source = top.text("source", "");
     experiment.licence = top.text("licence", "");
+    read_assumed(top, experiment);
     if (const TomlValue* table = top.table("columns")) read_columns(*table, experiment.kind, frame);
     if (const TomlValue* table = top.table("nominal"))
         flatten(top, "", std::get<TomlTable>(table->data), experiment.nominal);

@@ -59,6 +59,7 @@ std::vector<ImportedExperiment> read(const std::filesystem::path& folder) {
                     "of the same sweep.";
     e.source = "github.com/clamesc/ePuck-Box-Pushing";
     e.licence = "GPL-3";
+    e.assumed = {"distance_m"};
     for (std::size_t s = 0; s < kSensors; ++s) {
         ImportedRun run;
         run.name = fmt::format("ps{}", s);

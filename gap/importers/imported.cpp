@@ -71,6 +71,10 @@ std::string toml_of(const ImportedExperiment& e) {
                                                                 {"licence", e.licence}};
     for (const auto& [key, value] : texts)
         if (!value.empty()) text += fmt::format("{} = {}\n", key, quoted(value));
+    std::string assumed;
+    for (const std::string& name : e.assumed)
+        assumed += (assumed.empty() ? "" : ", ") + quoted(name);
+    if (!assumed.empty()) text += fmt::format("assumed = [{}]\n", assumed);
     if (!e.nominal.empty()) text += "\n[nominal]\n";
     for (const auto& [name, value] : e.nominal)
         text += fmt::format("{} = {}\n", quoted(name), toml_number(value));

@@ -26,6 +26,7 @@ struct ImportedInstrument {
 struct ImportedExperiment {
     std::string folder;  ///< name of its folder under the output
     std::string kind, title, robot, description, source, licence;
+    std::vector<std::string> assumed;       ///< truth columns that the set does not hold
     std::map<std::string, double> nominal;  ///< model parameters of that robot
     std::vector<ImportedInstrument> instruments;
     std::vector<ImportedRun> runs;

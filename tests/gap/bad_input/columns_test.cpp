@@ -170,3 +170,13 @@ TEST_CASE("nominal numbers of nothing that can be built are refused") {
     const Experiment experiment = read_experiment(folder.path());
     CHECK_THROWS_WITH(make_model(experiment), Contains("[nominal]"));
 }
+
+TEST_CASE("a truth that nobody measured is said, and only truth can be assumed") {
+    Made made = clean("proximity");
+    made.toml = "assumed = [\"distance_m\"]\n" + made.toml;
+    CHECK_THAT(cautions_of(made), Contains("distance_m was not measured but assumed"));
+    made.toml = "assumed = [\"reading\"]\n";
+    CHECK_THAT(refusal(made), Contains("no truth"));
+    made.toml = "assumed = [\"distanz\"]\n";
+    CHECK_THAT(refusal(made), Contains("no truth"));
+}
