@@ -28,7 +28,9 @@ std::optional<Verdict> verdict_on(const char* set, const char* experiment) {
     const fs::path out = tests::scratch_path("gap_real");
     fs::remove_all(out);
     importers::import_set(fs::path(measured) / set, "", out);
-    const Verdict verdict = analyse(read_experiment(out / experiment));
+    Options options;
+    options.threads = 2;
+    const Verdict verdict = analyse(read_experiment(out / experiment), options);
     fs::remove_all(out);
     return verdict;
 }
@@ -48,6 +50,15 @@ std::string cautions_of(const Verdict& verdict) {
 
 const FittedParameter* parameter_of(const Verdict& verdict, std::string_view name) {
     for (const Cause& cause : verdict.causes)
+        for (const FittedParameter& p : cause.parameters)
+            if (p.name == name) return &p;
+    return nullptr;
+}
+
+/// Of a cause, or of what comes nearest where nothing is named.
+const FittedParameter* told(const Verdict& verdict, std::string_view name) {
+    if (const FittedParameter* named = parameter_of(verdict, name)) return named;
+    for (const Cause& cause : verdict.nearest)
         for (const FittedParameter& p : cause.parameters)
             if (p.name == name) return &p;
     return nullptr;
@@ -91,6 +102,71 @@ TEST_CASE("a box at a distance that nobody wrote down is not explained away") {
     if (!v) return;
     CHECK(v->decision == Decision::Unexplained);
     CHECK_FALSE(v->leftovers.empty());
+    CHECK_FALSE(v->heldout.gain);
+    CHECK_THAT(cautions_of(*v), Contains("distance_m was not measured but assumed"));
+}
+
+TEST_CASE("a Thymio's proximity sensors are no e-puck's: nothing is named, and its dead zone is seen") {
+    const auto v = verdict_on("thymio_sensors_resilient-swarms", "thymio_proximity");
+    if (!v) return;
+    CHECK(v->decision == Decision::Unexplained);
+    CHECK_FALSE(v->heldout.gain);
+    // Its readings are 0 or above 1000.
+    const FittedParameter* threshold = told(*v, "proximity.threshold");
+    REQUIRE(threshold != nullptr);
+    CHECK(threshold->value > 1000);
+    CHECK(threshold->value < 1300);
+    CHECK_THAT(cautions_of(*v), Contains("from placement to placement"));
+}
+
+TEST_CASE("a Thymio's accelerometer reads a tenth of 1 g ahead at rest") {
+    const auto v = verdict_on("thymio_sensors_resilient-swarms", "thymio_accelerometer");
+    if (!v) return;
+    CHECK(v->decision != Decision::NoEffect);
+    const FittedParameter* ahead = told(*v, "accelerometer.bias0");
+    REQUIRE(ahead != nullptr);
+    CHECK(ahead->low > 2.0);  // of about 22 counts a g
+    CHECK(ahead->high < 2.5);
+    CHECK_FALSE(names(*v, "vibration"));
+}
+
+TEST_CASE("a Thymio under motion capture: its marker lies beside the axle") {
+    const auto v = verdict_on("thymio_ground_vicon_epfl", "thymio_vicon_motion");
+    if (!v) return;
+    CHECK(v->decision != Decision::NoEffect);
+    const FittedParameter* aside = told(*v, "tracker.marker_y");
+    REQUIRE(aside != nullptr);
+    CHECK(aside->low > -0.0100);
+    CHECK(aside->high < -0.0075);
+    // Geared motors ramp: nothing slides.
+    CHECK(told(*v, "inverse_friction") == nullptr);
+}
+
+TEST_CASE("free drives: the axle is longer and the wheels are smaller than the metadata say") {
+    const auto v = verdict_on("optiodom_diffdrive", "optiodom_free");
+    if (!v) return;
+    CHECK_THAT(cautions_of(*v), Contains("run apart"));
+    // What plain least squares say of the same rows: 201.8 mm (runs: 201.3-202.1), -0.27 % +- 0.02 %.
+    const FittedParameter* axle = told(*v, "robot.axle_length");
+    REQUIRE(axle != nullptr);
+    CHECK(axle->value == Approx(0.2018).margin(0.0006));
+    const FittedParameter* scale = told(*v, "wheel_scale");
+    REQUIRE(scale != nullptr);
+    CHECK(scale->value == Approx(-0.0027).margin(0.0004));
+    // Every run's clock is its own: no delay of the tracker, above all none at the end of its range.
+    CHECK(told(*v, "tracker.delay") == nullptr);
+    CHECK(told(*v, "inverse_friction") == nullptr);
+}
+
+TEST_CASE("circles: the same robot has about the same axle") {
+    const auto v = verdict_on("optiodom_diffdrive", "optiodom_circular");
+    if (!v) return;
+    const FittedParameter* axle = told(*v, "robot.axle_length");
+    REQUIRE(axle != nullptr);
+    CHECK(axle->value > 0.2015);
+    CHECK(axle->value < 0.2030);
+    CHECK(told(*v, "tracker.delay") == nullptr);
+    CHECK(told(*v, "inverse_friction") == nullptr);
 }
 
 TEST_CASE(
