@@ -158,17 +158,6 @@ TEST_CASE("free drives: the axle is longer and the wheels are smaller than the m
     CHECK(told(*v, "inverse_friction") == nullptr);
 }
 
-TEST_CASE("circles: the same robot has about the same axle") {
-    const auto v = verdict_on("optiodom_diffdrive", "optiodom_circular");
-    if (!v) return;
-    const FittedParameter* axle = told(*v, "robot.axle_length");
-    REQUIRE(axle != nullptr);
-    CHECK(axle->value > 0.2015);
-    CHECK(axle->value < 0.2030);
-    CHECK(told(*v, "tracker.delay") == nullptr);
-    CHECK(told(*v, "inverse_friction") == nullptr);
-}
-
 TEST_CASE(
     "the Thymio's right ground sensor reads higher than its left one; directions differ more than repeats") {
     const auto v = verdict_on("thymio_sensors_resilient-swarms", "thymio_ground");
