@@ -89,7 +89,8 @@ HiddenRun proximity_run(const std::vector<Row>& rows, bool lamp, RandomStream& n
             run.column("angle_rad", "deg").values.push_back(-way / kDegree);
             run.column("ambient").values.push_back(lamp ? 1 : 0);
             run.column("reading", "counts").values.push_back(r.ps[i]);
-            // Of the exchange before, standing too: a reading is ambient minus lit, and would share the noise.
+            // Of the exchange before, standing too: a reading is ambient minus lit, and would share the
+            // noise.
             run.column("ambient_reading", "counts").values.push_back(rows[k - 1].amb[i]);
             run.column("pair_reading", "counts").values.push_back(others(i + 4));
             run.column("neighbour_reading", "counts").values.push_back(others(i + 1) + others(i + 7));
@@ -144,7 +145,8 @@ HiddenExperiment record(std::string_view kind, const RecordOptions& options) {
                               {"command.latency", fmt::format("{}", kCommandLatency)},
                               {"inverse_friction", fmt::format("{}", kStartLoss)}};
     if (kind == "proximity") experiment.instrument = {{"reading", "{ ceiling = 4095, quantum = 1 }"}};
-    if (kind == "ground") experiment.instrument = {{"reading", "{ floor = 0, ceiling = 967, quantum = 1 }"}};
+    // The sensors saturate at 967, and the converter's noise comes after that.
+    if (kind == "ground") experiment.instrument = {{"reading", "{ floor = 0, ceiling = 963, quantum = 1 }"}};
     RandomStream noise(options.seed, "laboratory");
     for (std::size_t k = 0; k < acts.size(); ++k) {
         const auto rows = perform(options.robot, acts[k], options.tools, options.seed + k,
