@@ -174,6 +174,17 @@ TEST_CASE(
     CHECK_THAT(cautions_of(*v), Contains("from placement to placement"));
 }
 
+TEST_CASE("circles: the same robot has about the same axle") {
+    const auto v = verdict_on("optiodom_diffdrive", "optiodom_circular");
+    if (!v) return;
+    const FittedParameter* axle = told(*v, "robot.axle_length");
+    REQUIRE(axle != nullptr);
+    CHECK(axle->value > 0.2015);
+    CHECK(axle->value < 0.2030);
+    CHECK(told(*v, "tracker.delay") == nullptr);
+    CHECK(told(*v, "inverse_friction") == nullptr);
+}
+
 TEST_CASE(
     "drives whose tracker and counters were lined up by hand: their clocks run apart, and that is said") {
     const char* measured = std::getenv("PUCKLOOP_MEASURED");
