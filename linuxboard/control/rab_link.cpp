@@ -106,6 +106,7 @@ double RabLink::poll_step() {
         if (away_) break;
         if (clock_.now() < quiet_until_) return std::max(quiet_until_, begun);
         RabPacket packet;
+        ++counters_.polls;
         const RabPoll found = board_.poll(packet);
         if (found == RabPoll::Failed) watch_board();
         if (found != RabPoll::Message) break;

@@ -29,6 +29,7 @@ struct RabLinkSettings {
 struct RabLinkCounters {
     RabBoardCounters bus;
     unsigned long sent = 0;      ///< frames handed to the board
+    unsigned long polls = 0;     ///< times the board was asked for a message
     unsigned long received = 0;  ///< messages read
     unsigned long dropped = 0;   ///< messages nobody took
     unsigned long setups = 0;    ///< times the board was set up, the first included
