@@ -1,6 +1,7 @@
 #include "gap/residual_structure.h"
 
 #include "gap/columns.h"
+#include "gap/stats/series.h"
 
 #include <algorithm>
 #include <cmath>
@@ -34,15 +35,6 @@ std::vector<double> gathered(const Series& series, const std::vector<const std::
         if (series.row[i] < column.size()) values[i] = column[series.row[i]];
     }
     return values;
-}
-
-bool varies(const std::vector<double>& values) {
-    double first = kNan;
-    for (const double v : values) {
-        if (std::isfinite(v) && std::isfinite(first) && v != first) return true;
-        if (std::isfinite(v)) first = v;
-    }
-    return false;
 }
 
 std::vector<double> of_column(const Experiment& experiment, const Series& series, std::string_view name) {
@@ -107,7 +99,7 @@ void add_derived(const Experiment& experiment, const Series& series, std::vector
         for (const Derived& d : derived)
             by_run.push_back(&(d.*member));
         Covariate c{name, kind, gathered(series, by_run), {}};
-        if (varies(c.value)) list.push_back(std::move(c));
+        if (stats::varies(c.value)) list.push_back(std::move(c));
     };
     add("wheel speed", CovariateKind::Signed, &Derived::speed);
     add("turn rate", CovariateKind::Signed, &Derived::turn_rate);
@@ -148,7 +140,7 @@ std::vector<Covariate> covariates_of(const Experiment& experiment, const Series&
                                    : kSigned.contains(name) ? CovariateKind::Signed
                                                             : CovariateKind::Number;
         Covariate c{plain_name(info.name), kind, of_column(experiment, series, name), {}};
-        if (varies(c.value)) list.push_back(std::move(c));
+        if (stats::varies(c.value)) list.push_back(std::move(c));
     }
     add_conditions(experiment, series, list);
     add_derived(experiment, series, list);

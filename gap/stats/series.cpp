@@ -25,6 +25,16 @@ std::vector<double> centred(const Series& series) {
 
 }  // namespace
 
+bool varies(const std::vector<double>& values) {
+    double first = NAN;
+    for (const double v : values) {
+        if (!std::isfinite(v)) continue;
+        if (std::isfinite(first) && v != first) return true;
+        first = v;
+    }
+    return false;
+}
+
 std::vector<Stretch> runs_of(const std::vector<int>& run) {
     std::vector<Stretch> stretches;
     for (std::size_t i = 0; i < run.size(); ++i) {

@@ -23,6 +23,9 @@ struct Stretch {
     std::size_t size() const { return last - first; }
 };
 
+/// Do the known values differ? NaN is not known.
+bool varies(const std::vector<double>& values);
+
 std::vector<Stretch> runs_of(const std::vector<int>& run);
 
 /// Autocorrelation at 1..longest rows, pooled over runs, each about its own mean.

@@ -13,16 +13,6 @@ namespace {
 
 constexpr std::size_t kRowsAfterReversal = 5;
 
-bool varies(const std::vector<double>& values) {
-    double first = NAN;
-    for (const double v : values) {
-        if (!std::isfinite(v)) continue;
-        if (std::isfinite(first) && v != first) return true;
-        first = v;
-    }
-    return false;
-}
-
 bool has_both_signs(const std::vector<double>& values) {
     return std::any_of(values.begin(), values.end(), [](double v) { return v > 0; }) &&
            std::any_of(values.begin(), values.end(), [](double v) { return v < 0; });
