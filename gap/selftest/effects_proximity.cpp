@@ -74,7 +74,7 @@ std::unique_ptr<Bench> proximity_bench() {
             {}, "one object", 26},
         {0, "ripple with distance", 0.3, false, [](K& k, double a, RandomStream) { k.fringe = a; return Truths{}; }},
         {0, "notch at 30 mm", 0.9, false, [](K& k, double a, RandomStream) { k.notch = a; return Truths{}; }},
-        {0, "threefold bearing", 0.5, false, [](K& k, double a, RandomStream) { k.swing = a; return Truths{}; }},
+        {0, "threefold incidence", 0.5, false, [](K& k, double a, RandomStream) { k.swing = a; return Truths{}; }},
         {0, "loose contact", 0.9, false, [](K& k, double a, RandomStream) { k.step = a; return Truths{}; }},
     });
     // clang-format on

@@ -107,7 +107,8 @@ RingReading see(const ProximityKnobs& k, const Scene& s, bool law, RandomStream&
     const double warm = (1.0 + k.warm_gain * (1.0 - std::exp(-s.t / k.warm_time))) *
                         (1.0 + k.per_volt * s.volts) * (1.0 + k.per_run * s.order);
     const double bright = 1.0 - k.light_gain * lit / kFullScale;
-    const double swing = 1.0 + k.swing * std::cos(3 * (nominal_direction(s.sensor) - s.incidence));
+    // Nothing head-on, where a sensor's swing would be no other than its gain.
+    const double swing = 1.0 - k.swing * std::pow(std::sin(3 * s.incidence), 2);
     const double sampled = std::floor(s.t / kSensorPeriod) * kSensorPeriod;
     const double sag = s.motors != 0.0 ? 1.0 - k.sag : 1.0;
     RingReading reading{};

@@ -41,7 +41,7 @@ struct ProximityKnobs {
     double noise_share = 0.0;   // [35] sd as a share of the level
     double fringe = 0.0;        // unknown: share, rippling with distance
     double notch = 0.0;         // unknown: share lost where the wall is 25-35 mm away
-    double swing = 0.0;         // unknown: share, with the wall's bearing as cos 3a
+    double swing = 0.0;         // unknown: share lost, with the incidence as sin^2 3a
     double step = 0.0;          // unknown: share lost by sensors 2 and 3 in spells
 };
 

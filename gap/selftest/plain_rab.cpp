@@ -73,8 +73,8 @@ Hearing hear(const RabKnobs& k, const Sending& s, RandomStream& chance) {
     const double phase = s.t / k.beat_period - std::floor(s.t / k.beat_period);
     if (phase < k.beat) kept = 0.0;
     const bool received = chance.uniform() < kept;
-    return {received, std::clamp(std::exp(level), k.far_floor, k.saturation),
-            std::remainder(bearing, 2 * std::numbers::pi)};
+    const double light = std::max(std::exp(level), k.far_floor);
+    return {received, light, std::min(light, k.saturation), std::remainder(bearing, 2 * std::numbers::pi)};
 }
 
 }  // namespace puckloop::gap::selftest

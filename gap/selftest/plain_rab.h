@@ -41,6 +41,7 @@ struct Sending {
 
 struct Hearing {
     bool received;
+    double light;     ///< counts that would be read below the rail, without noise
     double strength;  ///< counts, without noise
     double bearing;   ///< rad, without noise
 };

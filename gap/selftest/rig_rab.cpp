@@ -21,6 +21,7 @@ constexpr double kFrame = 0.0092;         // s
 constexpr double kBearingQuantum = 1e-4;  // rad
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 constexpr int kRepeats = 3;
+constexpr const char* kLight = "light";  // what the rail cuts: noise comes before it
 
 class Plan {
   public:
@@ -50,6 +51,7 @@ class Plan {
             run.column("received").values.push_back(h.received ? 1 : 0);
             run.column("strength", "counts").values.push_back(h.received ? h.strength : kNothing);
             run.column("bearing_rad", "rad").values.push_back(h.received ? h.bearing : kNothing);
+            run.column(kLight).values.push_back(h.light);
             run.column("order").values.push_back(static_cast<double>(runs_.size()));
         }
     }
@@ -96,12 +98,13 @@ void measure_rab(HiddenExperiment& experiment, const RabKnobs& knobs, const Nois
             const double sd =
                 strength_spread(run.find("distance_m")->values[k] / 100) * (1.0 + knobs.more_spread);
             double& level = run.column("strength").values[k];
-            level = std::clamp(std::round(level * std::exp(sd * strength.next())), 0.0,
-                               std::min(kFullScale, knobs.saturation));
+            const double light = run.find(kLight)->values[k] * std::exp(sd * strength.next());
+            level = std::round(std::min({light, knobs.saturation, kFullScale}));
             double& way = run.column("bearing_rad").values[k];
             way = quantised(way + bearing.next(), kBearingQuantum);
             if (run.find("received")->values[k] == 0.0) level = way = kNothing;
         }
+        std::erase_if(run.columns, [](const HiddenColumn& column) { return column.name == kLight; });
     }
 }
 
