@@ -347,6 +347,12 @@ Fit Study::fit_set(const std::vector<std::size_t>& effects, const State& from, c
         take_better(state, kQuick);
         if (lighten_tails(state)) take_better(fit(*model_, best.freed, state, {}, kPart).state, kQuick);
     }
+    // Where another effect was dropped or replaced, this one already stands somewhere.
+    const bool stands = std::any_of(last.freed.begin(), last.freed.end(), [&](const Freed& freed) {
+        const auto index = static_cast<std::size_t>(freed.index);
+        return from.values[index] != model_->parameters()[index].neutral;
+    });
+    if (stands) take_better(from, kQuick);
     // A sum that really drifts cannot be begun without its drift.
     const auto drifts = [&](std::size_t o) {
         const Observable& one = model_->observables()[o];
