@@ -9,6 +9,7 @@
 #include "gap/free_form.h"
 #include "gap/leftovers.h"
 #include "gap/placements.h"
+#include "gap/scatter.h"
 #include "gap/sentences.h"
 #include "gap/suggest.h"
 
@@ -31,6 +32,8 @@ constexpr double kEdge = 0.005;  // of a plausible range: this near to its end i
 constexpr double kFixedByOthers =
     0.97;  // correlation beyond which a parameter of the measuring chain is not fitted along
 
+constexpr const char* kPlacement = "placement";
+
 const char* const kNuisances[] = {"marker_offset", "tracker_delay", "stale_readings"};
 
 class Analysis {
@@ -48,7 +51,8 @@ class Analysis {
         look_at_rest();
         if (!selection_.steps.empty() &&
             (!experiment_.assumed.empty() || verdict_.unexplained_share > share_allowed() ||
-             (stopped_at_edge() && !verdict_.leftovers.empty()) || few_runs_disagree()))
+             (stopped_at_edge() && !verdict_.leftovers.empty()) || few_runs_disagree() ||
+             scatter_hides_a_mean()))
             take_back();
         tell("intervals", 0.96);
         fill_causes();
@@ -219,6 +223,25 @@ class Analysis {
         return disagree;
     }
 
+    /// A mean that the model lacks looks like larger errors. What repeats at each placement is no scatter,
+    /// nor is what has a shape: the free forms are asked again without the effects that only scatter. And
+    /// what comes in spells is no lapse that has a chance of its own.
+    bool scatter_hides_a_mean() const {
+        const auto scatter = scatter_effects(study_, selection_.chosen);
+        if (scatter.empty()) return false;
+        for (const Leftover& left : verdict_.leftovers)
+            if (left.covariate == kPlacement && left.p_value < kSureLevel) return true;
+        const Fit calm = without_effects(study_, selection_.chosen, scatter);
+        const auto forms = free_forms_of(experiment_, study_.model(), calm.fitted.state, options_.seed);
+        const bool spells =
+            std::any_of(forms.begin(), forms.end(), [](const FreeForm& form) { return form.spells; });
+        if (spells && lapses(study_, selection_.chosen)) return true;
+        const double shaped = gained(forms);
+        const double won = std::max(
+            gain_of(gains_by_block(study_.blocks(), study_.hold_out(calm), selection_.held_chosen)).sum, 0.0);
+        return shaped > 0 && shaped > share_allowed() * (shaped + won);
+    }
+
     void fill_tried() {
         for (const Trial& trial : selection_.trials) {
             Tried tried{effect(trial.effect).name,
@@ -327,7 +350,7 @@ class Analysis {
                     return one.observable == series.observable && one.covariate == "previous sample";
                 });
             if (serial == verdict_.leftovers.end()) continue;
-            serial->covariate = "placement";
+            serial->covariate = kPlacement;
             serial->shape = shape;
         }
     }

@@ -1,5 +1,6 @@
 #include "gap/free_form.h"
 
+#include "gap/fit/study.h"
 #include "gap/free_form_cells.h"
 #include "gap/stats/profile.h"
 #include "gap/stats/robust.h"
@@ -16,16 +17,17 @@ namespace puckloop::gap {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kTerms = 4;           // told, the largest first
-constexpr double kLeastTerm = 0.05;         // of the correction's variance
-constexpr double kWild = 5.0;               // robust deviations
-constexpr double kLeastWild = 5.0;          // values
-constexpr double kFar = 20.0;               // robust deviations: no tail of a noise goes there
-constexpr double kOneSided = 1e-3;          // chance that all wild values lie on one side
-constexpr double kClear = 6.0;              // nats on held-out rows
-constexpr double kSure = 2.0;               // their deviations between blocks
-constexpr std::ptrdiff_t kLeastEvents = 5;  // of the rarer kind: of fewer nothing is learnt
-constexpr std::size_t kMostRows = 12000;    // beyond, stretches are left out
+constexpr std::size_t kTerms = 4;                          // told, the largest first
+constexpr double kLeastTerm = 0.05;                        // of the correction's variance
+constexpr double kWild = 5.0;                              // robust deviations
+constexpr double kLeastWild = 5.0;                         // values
+constexpr double kFar = 20.0;                              // robust deviations: no tail of a noise goes there
+constexpr double kOneSided = 1e-3;                         // chance that all wild values lie on one side
+constexpr double kManyTimes = 1.5, kManyDeviations = 4.0;  // neighbours that chance does not make
+constexpr double kClear = 6.0;                             // nats on held-out rows
+constexpr double kSure = 2.0;                              // their deviations between blocks
+constexpr std::ptrdiff_t kLeastEvents = 5;                 // of the rarer kind: of fewer nothing is learnt
+constexpr std::size_t kMostRows = 12000;                   // beyond, stretches are left out
 
 /// Errors of one observable or more, rows in chains.
 struct Errors {
@@ -160,8 +162,9 @@ FreeForm told(const Errors& errors, const std::vector<stats::Component>& compone
     FreeForm form;
     form.observable = errors.observable;
     form.unit = errors.unit;
-    form.gain = fit.gain;
-    form.sd = fit.sd;
+    const Gain gain = gain_of(fit.gains);
+    form.gain = gain.sum;
+    form.sd = gain.sd;
     const double all = std::accumulate(fit.weight.begin(), fit.weight.end(), 0.0);
     std::vector<std::size_t> order(components.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
@@ -178,9 +181,33 @@ FreeForm told(const Errors& errors, const std::vector<stats::Component>& compone
         if (fit.weight[order[k]] > kLeastTerm * all)
             form.terms.push_back(term_of(components[order[k]], fit.correction, errors.scale,
                                          fit.weight[order[k]] / all, errors.unit));
-    form.clear = form.gain > kClear && form.gain > kSure * form.sd && !form.terms.empty();
+    // What only a few runs can show is clear when several gain by it and none loses.
+    const bool here_and_there = gain.clearly_better > 1 && gain.clearly_worse == 0;
+    form.clear = form.gain > kClear && (form.gain > kSure * form.sd || here_and_there) && !form.terms.empty();
     if (form.clear) form.shape = form.terms.front().shape;
     return form;
+}
+
+/// Do wild values (not 0) keep together within their chains, more than rare chances that know nothing of each
+/// other? Of k among n in a chain, k (k - 1) / n neighbours are expected.
+bool in_spells(const stats::ErrorRows& rows) {
+    double seen = 0.0, expected = 0.0, n = 0.0, k = 0.0;
+    bool last = false;
+    for (std::size_t i = 0; i < rows.error.size(); ++i) {
+        if (rows.follows[i] == 0) {
+            expected += n > 0 ? k * (k - 1) / n : 0.0;
+            n = k = 0.0;
+            last = false;
+        }
+        if (!std::isfinite(rows.error[i])) continue;
+        const bool wild = rows.error[i] != 0.0;
+        seen += wild && last ? 1 : 0;
+        n += 1;
+        k += wild ? 1 : 0;
+        last = wild;
+    }
+    expected += n > 0 ? k * (k - 1) / n : 0.0;
+    return seen > kManyTimes * expected && seen - expected > kManyDeviations * std::sqrt(expected + 1);
 }
 
 /// Single readings far astray, always to one side or always in one place, are a structure that means do not
@@ -207,6 +234,7 @@ FreeForm wild_form(Errors errors, const std::vector<stats::Component>& component
         error = last = wild;
     }
     if (rows < kLeastWild) return form;
+    const bool spells = in_spells(errors.rows);
     const double sd = std::sqrt(rows / static_cast<double>(known.size()));
     for (double& error : errors.rows.error)
         error /= sd;
@@ -218,6 +246,7 @@ FreeForm wild_form(Errors errors, const std::vector<stats::Component>& component
     errors.rows.trimmed = false;
     form = told(errors, components, seed);
     form.wild = true;
+    form.spells = spells;
     const bool one_sided = std::pow(0.5, low + high - 1) < kOneSided && std::min(low, high) == 0;
     if (!form.clear && (one_sided || far >= kLeastWild)) {
         form.clear = true;

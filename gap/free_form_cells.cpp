@@ -2,6 +2,7 @@
 
 #include "gap/residual_structure.h"
 #include "gap/stats/profile.h"
+#include "gap/stats/series.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +19,7 @@ using stats::CovariateKind;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr int kFine = 12, kMiddle = 8, kCoarse = 5;  // bins of a covariate alone, with its past, with another
+constexpr int kFinest = 40;                          // of a covariate alone, for what ripples
 constexpr int kPlaces = 36;                          // of a run
 constexpr std::size_t kLately = 5;                   // rows
 constexpr double kPlaceGrain = 0.05;                 // m, far over any tracker's noise
@@ -51,6 +53,12 @@ Component cells_of(const std::string& name, const std::vector<double>& values, i
                           (label && code < labels.size() ? labels[code] : stats::plain(c.at.back())));
     }
     return c;
+}
+
+/// So few that each is a bin of its own.
+bool few_values(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    return std::unique(values.begin(), values.end()) - values.begin() <= kFine;
 }
 
 Component crossed(const Component& a, const Component& b) {
@@ -97,15 +105,6 @@ Lately lately(const std::vector<double>& x, const std::vector<double>& time,
     return out;
 }
 
-bool varies(const std::vector<double>& values) {
-    double first = kNan;
-    for (const double v : values) {
-        if (std::isfinite(v) && std::isfinite(first) && v != first) return true;
-        if (std::isfinite(v)) first = v;
-    }
-    return false;
-}
-
 /// The tracker's own errors must not choose the cell they fall into: a drive along y = 0 would seem to pull
 /// away from its line on either side.
 double whole(double value, double grain) {
@@ -137,7 +136,7 @@ void add_places(const Experiment& experiment, const Series& rows, std::vector<Co
         right.value.push_back(std::remainder(value("steps_right"), kStepsOfATurn));
     }
     for (Covariate* one : {&x, &y, &out, &outward, &left, &right})
-        if (varies(one->value)) list.push_back(std::move(*one));
+        if (stats::varies(one->value)) list.push_back(std::move(*one));
 }
 
 }  // namespace
@@ -150,6 +149,8 @@ std::vector<Component> free_form_cells(const Experiment& experiment, const Serie
     for (const Covariate& c : covariates) {
         const bool label = c.kind == CovariateKind::Label;
         all.push_back(cells_of(c.name, c.value, kFine, label, c.labels));
+        if (!label && !few_values(c.value))
+            all.push_back(cells_of(c.name + ", finely", c.value, kFinest, false));
         if (c.name != "order" && c.name != "time")
             coarse.push_back(cells_of(c.name, c.value, kCoarse, label, c.labels));
     }
@@ -169,7 +170,7 @@ std::vector<Component> free_form_cells(const Experiment& experiment, const Serie
         const Lately past = lately(c.value, time, starts);
         const Component now = cells_of(c.name, c.value, kMiddle, false);
         const auto add = [&](const std::string& name, const std::vector<double>& values) {
-            if (!varies(values)) return;
+            if (!stats::varies(values)) return;
             all.push_back(cells_of(name, values, kFine, false));
             all.push_back(crossed(now, cells_of(name, values, kMiddle, false)));
         };

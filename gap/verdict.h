@@ -93,12 +93,13 @@ struct FreeFormTerm {
 /// What a correction without a mechanism would say of one observable after the named effects.
 struct FreeForm {
     std::string observable, unit;
-    double gain = 0.0;   ///< log score it wins on held-out rows, nats; below 0: there is nothing
-    double sd = 0.0;     ///< of the gain
-    double size = 0.0;   ///< root mean square of the correction, in units of the noise
-    bool clear = false;  ///< chance does not make it
-    bool wild = false;   ///< of where readings go far astray; not added to the gain of the same rows
-    std::string shape;   ///< in words
+    double gain = 0.0;    ///< log score it wins on held-out rows, nats; below 0: there is nothing
+    double sd = 0.0;      ///< of the gain
+    double size = 0.0;    ///< root mean square of the correction, in units of the noise
+    bool clear = false;   ///< chance does not make it
+    bool wild = false;    ///< of where readings go far astray; not added to the gain of the same rows
+    bool spells = false;  ///< of these: they come together
+    std::string shape;    ///< in words
     std::vector<FreeFormTerm> terms;  ///< the largest first
 };
 

@@ -339,12 +339,7 @@ Boosted boosted(const ErrorRows& rows, const std::vector<Component>& components,
         for (std::size_t b = 0; b < blocks; ++b)
             if (fold_of[b] == k) by_block[b] = gains[c][m][b];
     }
-    double squares = 0.0;
-    for (const double one : by_block)
-        result.gain += one;
-    for (const double one : by_block)
-        squares += std::pow(one - result.gain / static_cast<double>(blocks), 2);
-    result.sd = std::sqrt(squares * static_cast<double>(blocks) / static_cast<double>(blocks - 1));
+    result.gains = std::move(by_block);
 
     std::size_t c = 0, steps = 0;
     best_without(folds, c, steps);

@@ -32,8 +32,8 @@ struct ErrorRows {
 };
 
 struct Boosted {
-    double gain = 0.0;   ///< log score that held-out rows win, nats; below 0: nothing is there
-    double sd = 0.0;     ///< of the gain, from the spread between runs (or stretches, where runs are few)
+    /// Log score that held-out rows win, nats: a run each (or a stretch, where runs are few).
+    std::vector<double> gains;
     int steps = 0;       ///< of the fit to all rows
     double carry = 0.0;  ///< that goes best with the correction
     std::vector<double> correction;  ///< a row each, in the error's unit; 0 where nothing is there

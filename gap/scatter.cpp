@@ -1,0 +1,58 @@
+#include "gap/scatter.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace puckloop::gap {
+
+namespace {
+
+void put_back(const Study& study, std::size_t effect, std::vector<double>& values) {
+    for (const Freed& freed : study.candidates()[effect].freed)
+        values[static_cast<std::size_t>(freed.index)] =
+            study.model().parameters()[static_cast<std::size_t>(freed.index)].neutral;
+}
+
+bool same_means(const Prediction& a, const Prediction& b) {
+    const auto same = [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); };
+    return std::equal(a.begin(), a.end(), b.begin(), [&](const Predicted& one, const Predicted& other) {
+        return std::equal(one.mean.begin(), one.mean.end(), other.mean.begin(), other.mean.end(), same);
+    });
+}
+
+}  // namespace
+
+std::vector<std::size_t> scatter_effects(const Study& study, const Fit& fit) {
+    Prediction with, without;
+    study.model().predict(fit.fitted.state.values, with);
+    std::vector<std::size_t> list;
+    for (const std::size_t effect : fit.effects) {
+        auto values = fit.fitted.state.values;
+        put_back(study, effect, values);
+        study.model().predict(values, without);
+        const bool cuts = std::any_of(with.begin(), with.end(), [](const Predicted& p) {
+            return p.floor > 0 || p.ceiling > 0;  // these move what is read, if not the mean before them
+        });
+        if (!cuts && same_means(with, without)) list.push_back(effect);
+    }
+    return list;
+}
+
+bool lapses(const Study& study, const Fit& fit) {
+    Prediction prediction;
+    study.model().predict(fit.fitted.state.values, prediction);
+    return std::any_of(prediction.begin(), prediction.end(),
+                       [](const Predicted& one) { return !one.lapse.empty(); });
+}
+
+Fit without_effects(const Study& study, const Fit& fit, const std::vector<std::size_t>& dropped) {
+    std::vector<std::size_t> rest = fit.effects;
+    State state = fit.fitted.state;
+    for (const std::size_t effect : dropped) {
+        std::erase(rest, effect);
+        put_back(study, effect, state.values);
+    }
+    return rest.empty() ? study.fit_none() : study.fit_set(rest, state);
+}
+
+}  // namespace puckloop::gap

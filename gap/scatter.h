@@ -1,0 +1,20 @@
+#pragma once
+// Effects that change no mean: they only make errors larger, rarer or more regular. A mean that the model
+// lacks looks like them, for larger errors are all that a fit can make of it.
+
+#include "gap/fit/study.h"
+
+#include <vector>
+
+namespace puckloop::gap {
+
+/// The effects of a fit that move no prediction's mean.
+std::vector<std::size_t> scatter_effects(const Study& study, const Fit& fit);
+
+/// Does the fit take single rows for lapses, each by a chance of its own?
+bool lapses(const Study& study, const Fit& fit);
+
+/// The fit's other effects, fitted again without them.
+Fit without_effects(const Study& study, const Fit& fit, const std::vector<std::size_t>& dropped);
+
+}  // namespace puckloop::gap

@@ -1,0 +1,130 @@
+// Effects that only scatter, on toy experiments: they are named for scatter, and not for a mean that the
+// model lacks or for spells.
+
+#include "base/random.h"
+#include "gap/analyse.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+using namespace puckloop;
+using namespace puckloop::gap;
+
+namespace {
+
+constexpr int kRuns = 8;
+
+struct Row {
+    int run, place, read, row;
+};
+
+/// What the simulator says of each row, in order, with `wrong` on top.
+void fill(Experiment& experiment, const char* column, const std::function<double(double, const Row&)>& wrong,
+          int reads) {
+    const Series told = simulate(experiment, {}).front();
+    for (std::size_t i = 0; i < told.before.size(); ++i) {
+        const int row = static_cast<int>(told.row[i]);
+        experiment.runs[told.run[i]].columns[column][told.row[i]] =
+            wrong(told.before[i], {static_cast<int>(told.run[i]), row / reads, row % reads, row});
+    }
+}
+
+/// One board heard from twenty distances, ten messages each.
+Experiment strengths(const std::function<double(double level, const Row&)>& wrong) {
+    constexpr int kPlaces = 20, kReads = 10;
+    RandomStream random(11, "places of the scatter test");
+    Experiment experiment;
+    experiment.kind = Kind::Rab;
+    experiment.title = "toy messages";
+    experiment.instruments["strength"] = {0, 4095, 1};
+    for (int r = 0; r < kRuns; ++r) {
+        Run run;
+        run.name = "run" + std::to_string(r);
+        run.rows = kPlaces * kReads;
+        for (int k = 0; k < kPlaces; ++k) {
+            const double distance = 0.1 + 0.6 * random.uniform();
+            for (int n = 0; n < kReads; ++n) {
+                run.columns["t_s"].push_back(0.1 * (k * kReads + n));
+                run.columns["distance_m"].push_back(distance);
+                run.columns["strength"].push_back(1000);
+            }
+        }
+        experiment.runs.push_back(std::move(run));
+    }
+    fill(
+        experiment, "strength",
+        [&](double level, const Row& row) { return std::round(std::exp(wrong(level, row))); }, kReads);
+    return experiment;
+}
+
+/// Sensors 0 and 6 before a wall at forty distances.
+Experiment readings(const std::function<double(double level, const Row&)>& wrong) {
+    constexpr int kRows = 80;
+    RandomStream random(12, "places of the scatter test");
+    Experiment experiment;
+    experiment.kind = Kind::Proximity;
+    experiment.title = "toy wall";
+    experiment.instruments["reading"] = {0, 4095, 1};
+    for (int r = 0; r < kRuns; ++r) {
+        Run run;
+        run.name = "run" + std::to_string(r);
+        run.rows = kRows;
+        for (int k = 0; k < kRows; ++k) {
+            run.columns["t_s"].push_back(0.1 * k);
+            run.columns["sensor"].push_back(k < kRows / 2 ? 0 : 6);
+            run.columns["distance_m"].push_back(0.01 + 0.02 * random.uniform());
+            run.columns["reading"].push_back(100);
+        }
+        experiment.runs.push_back(std::move(run));
+    }
+    fill(experiment, "reading", wrong, 1);
+    return experiment;
+}
+
+Verdict verdict_on(const Experiment& experiment) {
+    return analyse(experiment, {});
+}
+
+}  // namespace
+
+TEST_CASE("strengths that scatter more, message by message, are named so") {
+    RandomStream random(13, "scatter test");
+    const Verdict verdict =
+        verdict_on(strengths([&](double level, const Row&) { return level + 0.4 * random.normal(); }));
+    REQUIRE_FALSE(verdict.causes.empty());
+    CHECK(verdict.causes.front().name == "range_noise");
+}
+
+TEST_CASE("strengths that differ from place to place and repeat at each are not scatter") {
+    RandomStream random(13, "scatter test");
+    double offset = 0.0;
+    const Verdict verdict = verdict_on(strengths([&](double level, const Row& row) {
+        if (row.read == 0) offset = 0.5 * random.normal();
+        return level + offset + 0.12 * random.normal();
+    }));
+    CHECK(verdict.decision == Decision::Unexplained);
+    CHECK(verdict.causes.empty());
+}
+
+TEST_CASE("pulses that hit single readings are named, spells of bad contact are not") {
+    RandomStream random(14, "scatter test");
+    const auto noisy = [&](double level) {
+        return std::clamp(std::round(level + 3 * random.normal()), 0.0, 4095.0);
+    };
+    const Verdict pulses = verdict_on(readings([&](double level, const Row&) {
+        const double hit = random.uniform();
+        return noisy(level + (hit < 0.05 ? 150 : hit < 0.1 ? -150 : 0));
+    }));
+    REQUIRE_FALSE(pulses.causes.empty());
+    CHECK(pulses.causes.front().name == "pulsed_interference");
+    const Verdict spells = verdict_on(readings([&](double level, const Row& row) {
+        // Six rows in forty, of a contact that lets pass what it likes.
+        const bool loose = (row.row + 7 * row.run) % 40 < 6;
+        return noisy(loose ? level + 150 * (row.row % 2 == 0 ? 1 : -1) : level);
+    }));
+    CHECK(spells.decision == Decision::Unexplained);
+    CHECK(spells.causes.empty());
+}
