@@ -239,7 +239,7 @@ class Analysis {
         const double shaped = gained(forms);
         const double won = std::max(
             gain_of(gains_by_block(study_.blocks(), study_.hold_out(calm), selection_.held_chosen)).sum, 0.0);
-        return shaped > 0 && shaped > share_allowed() * (shaped + won);
+        return shaped > 0 && shaped > kUnexplainedShare * (shaped + won);
     }
 
     void fill_tried() {

@@ -20,7 +20,7 @@ using stats::CovariateKind;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr int kFine = 12, kMiddle = 8, kCoarse = 5;  // bins of a covariate alone, with its past, with another
 constexpr int kFinest = 40;                          // of a covariate alone, for what ripples
-constexpr int kPlaces = 36;                          // of a run
+constexpr int kPlaces = 60;                          // of a run
 constexpr std::size_t kLately = 5;                   // rows
 constexpr double kPlaceGrain = 0.05;                 // m, far over any tracker's noise
 constexpr double kHeadingGrain = std::numbers::pi / 6;  // rad

@@ -23,6 +23,7 @@ constexpr std::size_t kValidated = 3;      // best by BIC that are cross-validat
 constexpr std::size_t kRefined = 5;        // best by a quick fit that are fitted to the end
 constexpr std::size_t kLookedAt = 7;       // best on a part of many rows that are fitted to all
 constexpr double kHopeless = 60.0;
+constexpr double kPromising = 40.0;       // BIC of an effect that may want a partner
 constexpr double kHopelessOnPart = 20.0;  // of BIC, of a part's rows
 constexpr double kNoRival = 0.3;          // share of the evidence that a rival has alone, at least
 constexpr double kTie = 2.0;              // nats of merit, or of BIC: not even a hint
@@ -89,6 +90,46 @@ class Selector {
 
     const Effect& effect_of(const Fit& fit) const { return *study_.candidates()[fit.effects.back()].effect; }
 
+    bool enough(const Fit& fit, const Gain& gain) const {
+        // Against a claimed noise the claim is the evidence: a fit of the noise itself predicts as well.
+        const bool claim = effect_of(fit).name == std::string_view("range_noise") && gain.sum > -1;
+        // What happens rarely, or in few runs, is not seen in most blocks, but more than once.
+        const bool here_and_there = gain.clearly_better > 1 && gain.clearly_worse == 0;
+        return claim || here_and_there ||
+               (gain.sum > kEnoughDeviations * gain.sd && gain.share_touched > kEnoughBlocks);
+    }
+
+    /// An effect that explains much, and makes as many runs worse as better, may have a partner that pulls
+    /// the other way where they meet. `first` is tried with each other effect, and both are taken or none.
+    bool step_of_two(const std::pair<double, Fit>& first, const HeldOut& first_held, const Gain& first_gain) {
+        std::vector<std::size_t> partners;
+        for (std::size_t i = 0; i < study_.candidates().size(); ++i)
+            if (study_.candidates()[i].remark.empty() && !has(first.second.effects, i)) partners.push_back(i);
+        if (partners.empty() || first.second.effects.size() >= kMostEffects) return false;
+        std::vector<std::pair<double, Fit>> fits(partners.size());
+        in_parallel(partners.size(), study_.threads(), [&](std::size_t k) {
+            auto set = first.second.effects;
+            set.push_back(partners[k]);
+            Fit fit = study_.fit_set(set, first.second.fitted.state, kQuick);
+            fits[k] = {first.second.bic - fit.bic, std::move(fit)};
+        });
+        std::stable_sort(fits.begin(), fits.end(),
+                         [](const auto& x, const auto& y) { return x.first > y.first; });
+        Fit& both = fits.front().second;
+        both = study_.refined(both);
+        const double delta = fits.front().first = first.second.bic - both.bic;
+        if (delta < enough_for(effect_of(both))) return false;
+        HeldOut held = study_.hold_out(both);
+        if (!enough(both, gain_of(gains_by_block(study_.blocks(), result_.held_chosen, held)))) return false;
+        const Gain second_gain = gain_of(gains_by_block(study_.blocks(), first_held, held));
+        result_.steps.push_back({first.second.effects.back(), first.first, first_gain, true, ""});
+        result_.steps.push_back({both.effects.back(), delta, second_gain, true, ""});
+        result_.chosen = both;
+        result_.held_chosen = std::move(held);
+        last_step_of_choice_ = std::move(fits);
+        return true;
+    }
+
     bool step() {
         const auto& chosen = result_.chosen;
         const std::size_t count = study_.candidates().size();
@@ -142,15 +183,7 @@ class Selector {
             trial.held = gains[k];
             trial.validated = true;
             trial.delta_bic = fits[k].first;
-            // Against a claimed noise the claim is the evidence: a fit of the noise itself predicts as well.
-            const bool claim =
-                effect_of(fits[k].second).name == std::string_view("range_noise") && gains[k].sum > -1;
-            // What happens rarely, or in few runs, is not seen in most blocks, but more than once.
-            const bool here_and_there = gains[k].clearly_better > 1 && gains[k].clearly_worse == 0;
-            const bool enough =
-                claim || here_and_there ||
-                (gains[k].sum > kEnoughDeviations * gains[k].sd && gains[k].share_touched > kEnoughBlocks);
-            if (!enough) continue;
+            if (!enough(fits[k].second, gains[k])) continue;
             // BIC says how simply, the held-out score how well: the sum of both decides.
             const double merit = gains[k].sum + fits[k].first / 2;
             // In a draw the sheet's order decides, which begins with what is met most often.
@@ -161,6 +194,9 @@ class Selector {
                 best = k;
             }
         }
+        if (best > 0 && fits.front().first > kPromising &&
+            step_of_two(fits.front(), helds.front(), gains.front()))
+            return true;
         if (best == fits.size()) return false;
         last_step_of_choice_ = last_step_;
         result_.steps.push_back({fits[best].second.effects.back(), fits[best].first, gains[best], true, ""});
