@@ -90,6 +90,19 @@ class Selector {
 
     const Effect& effect_of(const Fit& fit) const { return *study_.candidates()[fit.effects.back()].effect; }
 
+    /// `state` with an effect where it stood when it was tried alone: beside another, a fit from nothing may
+    /// not find it.
+    State with_alone(std::size_t effect, State state) const {
+        const auto known = alone_state_.find(effect);
+        if (known == alone_state_.end()) return state;
+        for (const Freed& freed : study_.candidates()[effect].freed) {
+            const auto index = static_cast<std::size_t>(freed.index);
+            if (state.values[index] == study_.model().parameters()[index].neutral)
+                state.values[index] = known->second[index];
+        }
+        return state;
+    }
+
     bool enough(const Fit& fit, const Gain& gain) const {
         // Against a claimed noise the claim is the evidence: a fit of the noise itself predicts as well.
         const bool claim = effect_of(fit).name == std::string_view("range_noise") && gain.sum > -1;
@@ -151,7 +164,8 @@ class Selector {
             }
             const auto guess = guesses.find(tried[k]);
             Fit fit = guess == guesses.end()
-                          ? study_.fit_set(with(chosen.effects, tried[k]), chosen.fitted.state, kQuick)
+                          ? study_.fit_set(with(chosen.effects, tried[k]),
+                                           with_alone(tried[k], chosen.fitted.state), kQuick)
                           : study_.from_part(guess->second, chosen.fitted.state, kQuick);
             fits[k] = {chosen.bic - fit.bic, std::move(fit)};
         });
@@ -166,7 +180,9 @@ class Selector {
         for (const auto& [delta, fit] : fits) {
             Trial& trial = result_.trials[fit.effects.back()];
             if (chosen.effects.empty() || !trial.validated) trial.delta_bic = delta;
-            if (chosen.effects.empty()) alone_[fit.effects.back()] = delta;
+            if (!chosen.effects.empty()) continue;
+            alone_[fit.effects.back()] = delta;
+            if (delta > 0) alone_state_[fit.effects.back()] = fit.fitted.state.values;
         }
         last_step_ = fits;
         if (fits.size() > kValidated) fits.resize(kValidated);
@@ -384,8 +400,9 @@ class Selector {
     const Study& study_;
     const std::function<void(const std::string&, double)>& progress_;
     Selection result_;
-    std::map<std::size_t, double> alone_;  // delta BIC at the first step
-    double on_part_ = 0.0;                 // BIC of the chosen set on the study's part
+    std::map<std::size_t, double> alone_;                     // delta BIC at the first step
+    std::map<std::size_t, std::vector<double>> alone_state_;  // and where the parameters stood then
+    double on_part_ = 0.0;                                    // BIC of the chosen set on the study's part
     std::vector<std::pair<double, Fit>> last_step_, last_step_of_choice_;
 };
 
