@@ -45,7 +45,8 @@ std::vector<double> Rows::column(std::string_view name, double fallback) const {
     return values;
 }
 
-Observable Rows::observable(std::string_view name, NoiseKind noise, std::vector<std::uint32_t>& used) const {
+Observable Rows::observable(std::string_view name, NoiseKind noise, std::vector<std::uint32_t>& used,
+                            const std::vector<double>& skipped) const {
     Observable out;
     out.name = name;
     const ColumnInfo* info = find_column(experiment_.kind, name);
@@ -65,7 +66,7 @@ Observable Rows::observable(std::string_view name, NoiseKind noise, std::vector<
     used.clear();
     for (std::size_t i = 0; i < size(); ++i) {
         if (starts_[i] != 0) fresh = true;
-        if (std::isnan(y[i])) continue;
+        if (std::isnan(y[i]) || (!skipped.empty() && skipped[i] > 0.5)) continue;
         if (!used.empty() && longest > 0 && time[i] - time[used.back()] > longest) fresh = true;
         used.push_back(static_cast<std::uint32_t>(i));
         out.y.push_back(y[i]);

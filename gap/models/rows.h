@@ -22,8 +22,9 @@ class Rows {
     /// The column in these rows; `fallback` where it is missing.
     std::vector<double> column(std::string_view name, double fallback) const;
     /// An observable of the column, rows without it left out: fills y, run, row, starts, time. `used`
-    /// receives the places of its rows in these rows.
-    Observable observable(std::string_view name, NoiseKind noise, std::vector<std::uint32_t>& used) const;
+    /// receives the places of its rows in these rows. Rows where `skipped` is above a half are left out, too.
+    Observable observable(std::string_view name, NoiseKind noise, std::vector<std::uint32_t>& used,
+                          const std::vector<double>& skipped = {}) const;
 
   private:
     const Experiment& experiment_;

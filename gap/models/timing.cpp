@@ -205,10 +205,14 @@ class TimingModel final : public Model {
         std::vector<std::uint32_t> used;
         if (experiment.has("frame_ok")) {
             ok_ = static_cast<int>(observables_.size());
-            observables_.push_back(rows.observable("frame_ok", NoiseKind::Event, used));
+            // A frame that is broken because bytes shifted tells nothing that `shifted` does not.
+            const auto shifted = rows.column("shifted", 0);
+            observables_.push_back(rows.observable("frame_ok", NoiseKind::Event, used, shifted));
             observables_.back().time.clear();
             edges_ = taken(rows.column("edges", 0), used);
-            ok_load_ = taken(rows.column("load", 0), used);
+            // Whether bytes shifted is known where the column is there.
+            ok_load_ = experiment.has("shifted") ? std::vector<double>(used.size(), 0.0)
+                                                 : taken(rows.column("load", 0), used);
         }
         if (experiment.has("shifted")) {
             shift_ = static_cast<int>(observables_.size());
