@@ -16,7 +16,7 @@ namespace puckloop::gap {
 struct EffectParameter {
     const char* name;
     double low, high;            ///< beyond the simulator's neutral value these are not believed
-    double prior_sd;             ///< weak normal prior about neutral
+    double prior_sd;             ///< width of the weak prior about neutral
     std::vector<double> starts;  ///< where a fit begins, in the parameter's unit; several = tried one by one
     const char* source;          ///< of the range
     const char* unless = nullptr;  ///< not freed where the model has this parameter, which does the same

@@ -1,6 +1,7 @@
 #include "gap/fit/fit.h"
 
 #include "gap/fit/objective.h"
+#include "gap/fit/prior.h"
 
 #include <Eigen/Cholesky>
 #include <ceres/ceres.h>
@@ -153,7 +154,7 @@ Fitted fit(const Model& model, const std::vector<Freed>& freed, const State& sta
     }
     layout.unpack(x.data(), result.state);
     for (std::size_t j = 0; j < freed.size(); ++j)
-        result.log_prior -= x[j] * x[j] / 2;
+        result.log_prior -= prior_cost(x[j]);
     result.log_likelihood = -cost - result.log_prior;
     return result;
 }

@@ -9,7 +9,7 @@
 
 namespace puckloop::gap {
 
-/// A model parameter that a fit may change. Weak normal prior about the neutral value.
+/// A model parameter that a fit may change. Weak prior about the neutral value (prior.h).
 struct Freed {
     int index = -1;  ///< in Model::parameters()
     double low = 0.0, high = 0.0, prior_sd = 1.0, centre = 0.0;

@@ -1,5 +1,7 @@
 #include "gap/fit/objective.h"
 
+#include "gap/fit/prior.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -56,7 +58,7 @@ double Objective::fill(std::size_t o) {
 double Objective::priors(const double* x) const {
     double sum = 0.0;
     for (std::size_t j = 0; j < layout_.freed(); ++j)
-        sum += x[j] * x[j] / 2;
+        sum += prior_cost(x[j]);
     for (std::size_t o = 0; o < bases_.size(); ++o) {
         const double off = claim_error(model_.observables()[o], state_.noise[o]);
         sum += off * off / 2;
@@ -217,8 +219,8 @@ double Objective::slopes(const double* x, Eigen::VectorXd& gradient, Eigen::Matr
             const std::size_t j = first + k;
             step[k] = move(j, kRelativeStep);
             model_.predict(state_.values, moved_[k]);
-            gradient[as_index(j)] += x[j];
-            curvature(as_index(j), as_index(j)) += 1;
+            gradient[as_index(j)] += prior_slope(x[j]);
+            curvature(as_index(j), as_index(j)) += prior_curvature(x[j]);
         }
         for (std::size_t o = 0; o < bases_.size(); ++o) {
             group.clear();

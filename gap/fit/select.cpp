@@ -210,7 +210,7 @@ class Selector {
                 best = k;
             }
         }
-        if (best > 0 && fits.front().first > kPromising &&
+        if (best > 0 && fits.front().first > kPromising && !helds.front().score.empty() &&
             step_of_two(fits.front(), helds.front(), gains.front()))
             return true;
         if (best == fits.size()) return false;
