@@ -51,8 +51,7 @@ class Analysis {
         look_at_rest();
         if (!selection_.steps.empty() &&
             (!experiment_.assumed.empty() || verdict_.unexplained_share > share_allowed() ||
-             (stopped_at_edge() && !verdict_.leftovers.empty()) || few_runs_disagree() ||
-             scatter_hides_a_mean()))
+             (stopped_at_edge() && something_left()) || few_runs_disagree() || scatter_hides_a_mean()))
             take_back();
         tell("intervals", 0.96);
         fill_causes();
@@ -195,6 +194,12 @@ class Analysis {
         double edge = 0.0;
         return std::any_of(final_.freed.begin(), final_.freed.end(),
                            [&](const Freed& freed) { return at_edge(freed, edge); });
+    }
+
+    bool something_left() const {
+        return !verdict_.leftovers.empty() ||
+               std::any_of(verdict_.free_forms.begin(), verdict_.free_forms.end(),
+                           [](const FreeForm& form) { return form.clear; });
     }
 
     void caution_of_edges() {
