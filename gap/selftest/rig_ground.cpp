@@ -30,9 +30,10 @@ std::vector<Stand> path(RandomStream& random, int shape, int repeat) {
         const double wanted = shape == 3 ? ((k / 6) % 2 == 0 ? 0.10 : 0.0) : 0.04 + 0.04 * shape;
         const double acceleration = std::clamp((wanted - speed) / kRow, -1.0, 1.0);
         stands.push_back({t, x, y, heading, speed, acceleration});
+        const double way = (speed + acceleration * kRow / 2) * kRow;
         speed += acceleration * kRow;
-        x += speed * kRow * std::cos(heading);
-        y += speed * kRow * std::sin(heading);
+        x += way * std::cos(heading);
+        y += way * std::sin(heading);
     }
     return stands;
 }
