@@ -32,56 +32,50 @@ void fill(Experiment& experiment, const char* column, const std::function<double
     }
 }
 
+/// Runs whose rows `add` fills; what is measured is the simulator's own, with `wrong` on top.
+Experiment toy(Kind kind, const char* column, int rows, int reads, const std::function<void(Run&, int)>& add,
+               const std::function<double(double, const Row&)>& wrong) {
+    Experiment experiment;
+    experiment.kind = kind;
+    experiment.title = "toy";
+    experiment.instruments[column] = {0, 4095, 1};
+    for (int r = 0; r < kRuns; ++r) {
+        Run run;
+        run.name = "run" + std::to_string(r);
+        run.rows = static_cast<std::size_t>(rows);
+        for (int k = 0; k < rows; ++k) {
+            run.columns["t_s"].push_back(0.1 * k);
+            run.columns[column].push_back(1000);
+            add(run, k);
+        }
+        experiment.runs.push_back(std::move(run));
+    }
+    fill(experiment, column, wrong, reads);
+    return experiment;
+}
+
 /// One board heard from twenty distances, ten messages each.
 Experiment strengths(const std::function<double(double level, const Row&)>& wrong) {
     constexpr int kPlaces = 20, kReads = 10;
     RandomStream random(11, "places of the scatter test");
-    Experiment experiment;
-    experiment.kind = Kind::Rab;
-    experiment.title = "toy messages";
-    experiment.instruments["strength"] = {0, 4095, 1};
-    for (int r = 0; r < kRuns; ++r) {
-        Run run;
-        run.name = "run" + std::to_string(r);
-        run.rows = kPlaces * kReads;
-        for (int k = 0; k < kPlaces; ++k) {
-            const double distance = 0.1 + 0.6 * random.uniform();
-            for (int n = 0; n < kReads; ++n) {
-                run.columns["t_s"].push_back(0.1 * (k * kReads + n));
-                run.columns["distance_m"].push_back(distance);
-                run.columns["strength"].push_back(1000);
-            }
-        }
-        experiment.runs.push_back(std::move(run));
-    }
-    fill(
-        experiment, "strength",
-        [&](double level, const Row& row) { return std::round(std::exp(wrong(level, row))); }, kReads);
-    return experiment;
+    double distance = 0.0;
+    const auto add = [&](Run& run, int k) {
+        if (k % kReads == 0) distance = 0.1 + 0.6 * random.uniform();
+        run.columns["distance_m"].push_back(distance);
+    };
+    const auto counts = [&](double level, const Row& row) { return std::round(std::exp(wrong(level, row))); };
+    return toy(Kind::Rab, "strength", kPlaces * kReads, kReads, add, counts);
 }
 
-/// Sensors 0 and 6 before a wall at forty distances.
+/// Sensors 0 and 6 before a wall at forty distances each.
 Experiment readings(const std::function<double(double level, const Row&)>& wrong) {
     constexpr int kRows = 80;
     RandomStream random(12, "places of the scatter test");
-    Experiment experiment;
-    experiment.kind = Kind::Proximity;
-    experiment.title = "toy wall";
-    experiment.instruments["reading"] = {0, 4095, 1};
-    for (int r = 0; r < kRuns; ++r) {
-        Run run;
-        run.name = "run" + std::to_string(r);
-        run.rows = kRows;
-        for (int k = 0; k < kRows; ++k) {
-            run.columns["t_s"].push_back(0.1 * k);
-            run.columns["sensor"].push_back(k < kRows / 2 ? 0 : 6);
-            run.columns["distance_m"].push_back(0.01 + 0.02 * random.uniform());
-            run.columns["reading"].push_back(100);
-        }
-        experiment.runs.push_back(std::move(run));
-    }
-    fill(experiment, "reading", wrong, 1);
-    return experiment;
+    const auto add = [&](Run& run, int k) {
+        run.columns["sensor"].push_back(k < kRows / 2 ? 0 : 6);
+        run.columns["distance_m"].push_back(0.01 + 0.02 * random.uniform());
+    };
+    return toy(Kind::Proximity, "reading", kRows, 1, add, wrong);
 }
 
 Verdict verdict_on(const Experiment& experiment) {
