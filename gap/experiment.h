@@ -44,7 +44,7 @@ struct Experiment {
     std::map<std::string, double> nominal;  ///< model parameter -> value, where not the simulator's default
     std::map<std::string, Instrument> instruments;  ///< by column
     std::vector<Run> runs;
-    std::vector<std::string> assumed;  ///< truth columns that nobody measured: nothing can be named on them
+    std::vector<std::string> assumed;   ///< truth columns that nobody measured: nothing can be named on them
     std::vector<std::string> cautions;  ///< what the reader noticed, in plain words; part of the verdict
 
     std::size_t rows() const;  ///< over all runs

@@ -34,8 +34,8 @@ struct ErrorRows {
 struct Boosted {
     /// Log score that held-out rows win, nats: a run each (or a stretch, where runs are few).
     std::vector<double> gains;
-    int steps = 0;       ///< of the fit to all rows
-    double carry = 0.0;  ///< that goes best with the correction
+    int steps = 0;                   ///< of the fit to all rows
+    double carry = 0.0;              ///< that goes best with the correction
     std::vector<double> correction;  ///< a row each, in the error's unit; 0 where nothing is there
     std::vector<double> weight;      ///< a component each: variance of its part of the correction
 };
