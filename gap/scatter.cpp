@@ -2,16 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace puckloop::gap {
 
 namespace {
-
-void put_back(const Study& study, std::size_t effect, std::vector<double>& values) {
-    for (const Freed& freed : study.candidates()[effect].freed)
-        values[static_cast<std::size_t>(freed.index)] =
-            study.model().parameters()[static_cast<std::size_t>(freed.index)].neutral;
-}
 
 bool same_means(const Prediction& a, const Prediction& b) {
     const auto same = [](double x, double y) { return x == y || (std::isnan(x) && std::isnan(y)); };
@@ -27,9 +22,7 @@ std::vector<std::size_t> scatter_effects(const Study& study, const Fit& fit) {
     study.model().predict(fit.fitted.state.values, with);
     std::vector<std::size_t> list;
     for (const std::size_t effect : fit.effects) {
-        auto values = fit.fitted.state.values;
-        put_back(study, effect, values);
-        study.model().predict(values, without);
+        study.model().predict(study.without(effect, fit.fitted.state).values, without);
         const bool cuts = std::any_of(with.begin(), with.end(), [](const Predicted& p) {
             return p.floor > 0 || p.ceiling > 0;  // these move what is read, if not the mean before them
         });
@@ -50,7 +43,7 @@ Fit without_effects(const Study& study, const Fit& fit, const std::vector<std::s
     State state = fit.fitted.state;
     for (const std::size_t effect : dropped) {
         std::erase(rest, effect);
-        put_back(study, effect, state.values);
+        state = study.without(effect, std::move(state));
     }
     return rest.empty() ? study.fit_none() : study.fit_set(rest, state);
 }

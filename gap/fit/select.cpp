@@ -56,15 +56,6 @@ std::vector<std::size_t> with(std::vector<std::size_t> set, std::size_t effect) 
     return set;
 }
 
-/// The fit's state with one effect's parameters back at neutral.
-State without(const Study& study, const Fit& fit, std::size_t effect) {
-    State state = fit.fitted.state;
-    const auto neutral = study.model().neutral();
-    for (const Freed& freed : study.candidates()[effect].freed)
-        state.values[static_cast<std::size_t>(freed.index)] = neutral[static_cast<std::size_t>(freed.index)];
-    return state;
-}
-
 class Selector {
   public:
     Selector(const Study& study, const std::function<void(const std::string&, double)>& progress)
@@ -284,7 +275,7 @@ class Selector {
                 auto set = result_.chosen.effects;
                 std::erase(set, effect);
                 if (needed_on_part(set, effect)) continue;
-                Fit fit = study_.fit_set(set, without(study_, result_.chosen, effect));
+                Fit fit = study_.fit_set(set, study_.without(effect, result_.chosen.fitted.state));
                 if (fit.bic > result_.chosen.bic + kEnoughBic) continue;
                 result_.chosen = std::move(fit);
                 result_.held_chosen = study_.hold_out(result_.chosen);
@@ -325,7 +316,7 @@ class Selector {
     /// Of many rows: does already a part say clearly that the rest of the set is not enough?
     bool needed_on_part(const std::vector<std::size_t>& rest, std::size_t effect) const {
         if (study_.part() == nullptr || !study_.part()->candidates()[effect].remark.empty()) return false;
-        const State from = study_.in_part(without(study_, result_.chosen, effect));
+        const State from = study_.in_part(study_.without(effect, result_.chosen.fitted.state));
         return study_.part()->fit_set(rest, from).bic > on_part_ + kEnoughBic + kHopelessOnPart;
     }
 
@@ -333,7 +324,7 @@ class Selector {
     /// will not be as good as `good_enough`: then its BIC is infinite and nothing is fitted.
     Fit in_its_place(std::size_t effect, std::size_t rival, double good_enough) const {
         const auto set = replaced(result_.chosen.effects, effect, rival);
-        const State from = without(study_, result_.chosen, effect);
+        const State from = study_.without(effect, result_.chosen.fitted.state);
         if (study_.part() == nullptr || !study_.part()->candidates()[rival].remark.empty())
             return study_.fit_set(set, from);
         Fit guess = study_.part()->fit_set(set, study_.in_part(from));

@@ -366,6 +366,14 @@ Fit Study::fit_set(const std::vector<std::size_t>& effects, const State& from, c
     return best;
 }
 
+State Study::without(std::size_t effect, State state) const {
+    for (const Freed& freed : candidates_[effect].freed) {
+        const auto index = static_cast<std::size_t>(freed.index);
+        state.values[index] = model_->parameters()[index].neutral;
+    }
+    return state;
+}
+
 /// Heavy tails take rows that an effect explains for outliers, which then pull at nothing.
 bool Study::lighten_tails(State& state) const {
     bool any = false;

@@ -63,6 +63,8 @@ class Study {
     /// From the part's fit of a set to one of all rows; the part leaves `from` what it does not know.
     Fit from_part(const Fit& guess, const State& from, const Effort& effort = kThorough) const;
 
+    /// `state` with one effect's parameters back at neutral.
+    State without(std::size_t effect, State state) const;
     /// Fits a set; begins at `from` and, for the last effect of the set, at each of its starts.
     Fit fit_set(const std::vector<std::size_t>& effects, const State& from,
                 const Effort& effort = kThorough) const;
