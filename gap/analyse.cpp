@@ -196,9 +196,10 @@ class Analysis {
                            [&](const Freed& freed) { return at_edge(freed, edge); });
     }
 
-    bool something_left() const {
-        return !verdict_.leftovers.empty() ||
-               std::any_of(verdict_.free_forms.begin(), verdict_.free_forms.end(),
+    bool something_left() const { return !verdict_.leftovers.empty() || any_form_is_clear(); }
+
+    bool any_form_is_clear() const {
+        return std::any_of(verdict_.free_forms.begin(), verdict_.free_forms.end(),
                            [](const FreeForm& form) { return form.clear; });
     }
 
@@ -404,8 +405,7 @@ class Analysis {
     void decide() {
         const bool sure = std::any_of(verdict_.leftovers.begin(), verdict_.leftovers.end(),
                                       [](const Leftover& one) { return one.p_value < kSureLevel; }) ||
-                          std::any_of(verdict_.free_forms.begin(), verdict_.free_forms.end(),
-                                      [](const FreeForm& form) { return form.clear; });
+                          any_form_is_clear();
         if (!verdict_.causes.empty())
             verdict_.decision = verdict_.rivals.empty() ? Decision::Named : Decision::CannotTell;
         else

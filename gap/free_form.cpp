@@ -182,8 +182,8 @@ FreeForm told(const Errors& errors, const std::vector<stats::Component>& compone
             form.terms.push_back(term_of(components[order[k]], fit.correction, errors.scale,
                                          fit.weight[order[k]] / all, errors.unit));
     // What only a few runs can show is clear when several gain by it and none loses.
-    const bool here_and_there = gain.clearly_better > 1 && gain.clearly_worse == 0;
-    form.clear = form.gain > kClear && (form.gain > kSure * form.sd || here_and_there) && !form.terms.empty();
+    form.clear =
+        form.gain > kClear && (form.gain > kSure * form.sd || gain.here_and_there()) && !form.terms.empty();
     if (form.clear) form.shape = form.terms.front().shape;
     return form;
 }

@@ -21,12 +21,13 @@ std::vector<std::size_t> scatter_effects(const Study& study, const Fit& fit) {
     Prediction with, without;
     study.model().predict(fit.fitted.state.values, with);
     std::vector<std::size_t> list;
+    // A dead zone or a rail moves what is read, if not the mean before it.
+    if (std::any_of(with.begin(), with.end(),
+                    [](const Predicted& p) { return p.floor > 0 || p.ceiling > 0; }))
+        return list;
     for (const std::size_t effect : fit.effects) {
         study.model().predict(study.without(effect, fit.fitted.state).values, without);
-        const bool cuts = std::any_of(with.begin(), with.end(), [](const Predicted& p) {
-            return p.floor > 0 || p.ceiling > 0;  // these move what is read, if not the mean before them
-        });
-        if (!cuts && same_means(with, without)) list.push_back(effect);
+        if (same_means(with, without)) list.push_back(effect);
     }
     return list;
 }

@@ -98,12 +98,10 @@ class Selector {
     bool enough(const Fit& fit, const Gain& gain) const {
         // Against a claimed noise the claim is the evidence: a fit of the noise itself predicts as well.
         const bool claim = effect_of(fit).name == std::string_view("range_noise") && gain.sum > -1;
-        // What happens rarely, or in few runs, is not seen in most blocks, but more than once.
-        const bool here_and_there = gain.clearly_better > 1 && gain.clearly_worse == 0;
         // Where it happens it says all, and the runs without it lose a trifle each for the possibility.
         const bool sometimes = gain.sum > kSureDeviations * gain.sd && gain.clearly_better > 2 &&
                                gain.clearly_better > 2 * gain.clearly_worse;
-        return claim || here_and_there || sometimes ||
+        return claim || gain.here_and_there() || sometimes ||
                (gain.sum > kEnoughDeviations * gain.sd && gain.share_touched > kEnoughBlocks);
     }
 
@@ -116,9 +114,8 @@ class Selector {
         if (partners.empty() || first.second.effects.size() >= kMostEffects) return false;
         std::vector<std::pair<double, Fit>> fits(partners.size());
         in_parallel(partners.size(), study_.threads(), [&](std::size_t k) {
-            auto set = first.second.effects;
-            set.push_back(partners[k]);
-            Fit fit = study_.fit_set(set, first.second.fitted.state, kQuick);
+            Fit fit =
+                study_.fit_set(with(first.second.effects, partners[k]), first.second.fitted.state, kQuick);
             fits[k] = {first.second.bic - fit.bic, std::move(fit)};
         });
         std::stable_sort(fits.begin(), fits.end(),
