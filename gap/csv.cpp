@@ -72,9 +72,18 @@ bool parse(std::string_view cell, double& value) {
 }  // namespace
 
 CsvTable read_csv(const std::filesystem::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream || std::filesystem::is_directory(file))
-        throw InputError(file.string(), "", "cannot be opened", "a CSV file with a header line");
+    // Pipes and devices may never end.
+    std::error_code failed;
+    const auto type = std::filesystem::status(file, failed).type();
+    std::ifstream stream;
+    if (type == std::filesystem::file_type::regular) stream.open(file, std::ios::binary);
+    if (!stream.is_open())
+        throw InputError(file.string(), "",
+                         type == std::filesystem::file_type::regular ||
+                                 type == std::filesystem::file_type::not_found
+                             ? "cannot be opened"
+                             : "is not a file",
+                         "a CSV file with a header line");
     CsvTable table;
     char separator = ',';
     std::string line;

@@ -160,7 +160,7 @@ Run read_run(const TomlValue& table, std::size_t index, Experiment& experiment, 
     const std::filesystem::path path = experiment.folder / run.file;
     CsvTable csv = read_csv(path);
     run.rows = csv.rows();
-    std::set<std::string> used;
+    std::map<std::string, std::string> used;  // CSV name: canonical name
     for (const ColumnInfo& info : columns_of(experiment.kind)) {
         const auto origin = frame.origins.find(info.name);
         const std::string from = origin == frame.origins.end() ? info.name : origin->second.from;
@@ -172,7 +172,11 @@ Run read_run(const TomlValue& table, std::size_t index, Experiment& experiment, 
             csv.columns[static_cast<std::size_t>(place - csv.names.begin())];
         for (double& value : values)
             value = value * factor + offset;
-        used.insert(from);
+        if (const auto [other, fresh] = used.emplace(from, info.name); !fresh)
+            throw InputError(frame.file, "",
+                             fmt::format("{} and {} are both the column \"{}\" of {}", other->second,
+                                         info.name, from, run.file),
+                             "a column of its own for each");
     }
     for (const auto& [name, origin] : frame.origins)
         if (!run.has(name) && std::find(csv.names.begin(), csv.names.end(), origin.from) == csv.names.end() &&
@@ -189,9 +193,15 @@ Run read_run(const TomlValue& table, std::size_t index, Experiment& experiment, 
                                          near.empty() ? "" : fmt::format("; is it \"{}\"?", near)),
                              fmt::format("it, or where to find it in [columns] of {}", frame.file));
         }
-    for (const std::string& name : csv.names)
-        if (!used.contains(name) && !name.empty())
-            experiment.cautions.push_back(fmt::format("{}: column \"{}\" is not used", run.file, name));
+    std::vector<std::string_view> absent;
+    for (const ColumnInfo& info : columns_of(experiment.kind))
+        if (!run.has(info.name)) absent.emplace_back(info.name);
+    for (const std::string& name : csv.names) {
+        if (used.contains(name) || name.empty()) continue;
+        const std::string near = nearest_name(name, absent);
+        experiment.cautions.push_back(fmt::format("{}: column \"{}\" is not used{}", run.file, name,
+                                                  near.empty() ? "" : fmt::format("; is it {}?", near)));
+    }
     reader.finish();
     return run;
 }
@@ -201,7 +211,7 @@ void tidy(std::vector<std::string>& cautions) {
     std::map<std::string, int> unused;  // the same column in many files: one line
     for (const auto& caution : cautions) {
         const auto at = caution.find(": column \"");
-        if (at == std::string::npos || !caution.ends_with("is not used"))
+        if (at == std::string::npos || caution.find("\" is not used", at) == std::string::npos)
             once.push_back(caution);
         else
             ++unused[caution.substr(at + 2)];
@@ -255,10 +265,13 @@ void read_assumed(Reader& top, Experiment& experiment) {
 }  // namespace
 
 Experiment read_experiment(const std::filesystem::path& folder) {
-    if (!std::filesystem::is_directory(folder))
+    std::error_code ignored;
+    if (!std::filesystem::is_directory(folder, ignored))
         throw InputError(folder.string(), "", "is not a folder", "a folder with experiment.toml");
     Frame frame;
     frame.file = (folder / "experiment.toml").string();
+    if (std::filesystem::is_fifo(frame.file, ignored))
+        throw InputError(frame.file, "", "is a pipe, which may never end", "a TOML file");
     const TomlValue root = scenarios::read_toml(frame.file);
     Reader top(frame.file, "", root);
     Experiment experiment;
@@ -285,6 +298,12 @@ Experiment read_experiment(const std::filesystem::path& folder) {
     top.finish();
     for (std::size_t i = 0; i < runs.size(); ++i)
         experiment.runs.push_back(read_run(*runs[i], i, experiment, frame));
+    for (const auto& [name, origin] : frame.origins)
+        if (!experiment.has(name))
+            throw InputError(
+                frame.file, fmt::format("line {}", origin.line),
+                fmt::format("{} is to be the column \"{}\", which no file has", name, origin.from),
+                "a column of the CSV files");
     tidy(experiment.cautions);
     check(experiment);
     return experiment;

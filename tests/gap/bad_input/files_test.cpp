@@ -4,6 +4,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <sys/stat.h>
+
 using namespace puckloop::gap;
 using namespace puckloop::gap::tests;
 using Catch::Matchers::Contains;
@@ -55,6 +57,8 @@ TEST_CASE("line ends, separators, byte order marks and comments of all sorts are
     CHECK(of_csv(latin.substr(0, latin.find(",20\n")) + latin.substr(latin.find(",20\n") + 3), &cautions) ==
           "");
     CHECK_THAT(cautions, Contains("temp?rature"));
+    CHECK(of_csv(replaced(table(), "sensor", "Sensor"), &cautions) == "");
+    CHECK_THAT(cautions, Contains("column \"Sensor\" is not used; is it sensor?"));
 }
 
 TEST_CASE("files that cannot be used are refused with a line") {
@@ -77,6 +81,21 @@ TEST_CASE("files that cannot be used are refused with a line") {
     CHECK_THAT(refusal(folder.path()), Contains("a.csv") && Contains("cannot be opened"));
 }
 
+TEST_CASE("pipes and devices, which may never end, are not waited for") {
+    const Folder folder;
+    write_file(folder.path() / "experiment.toml", "kind = \"ground\"\n[[run]]\nfile = \"/dev/zero\"\n");
+    CHECK_THAT(refusal(folder.path()), Contains("/dev/zero") && Contains("is not a file"));
+    write_file(folder.path() / "experiment.toml", kToml);
+    REQUIRE(::mkfifo((folder.path() / "a.csv").c_str(), 0600) == 0);
+    CHECK_THAT(refusal(folder.path()), Contains("a.csv") && Contains("is not a file"));
+    std::filesystem::remove(folder.path() / "experiment.toml");
+    REQUIRE(::mkfifo((folder.path() / "experiment.toml").c_str(), 0600) == 0);
+    CHECK_THAT(refusal(folder.path()), Contains("experiment.toml") && Contains("pipe"));
+    const auto loop = folder.path() / "loop";
+    std::filesystem::create_symlink("loop", loop);
+    CHECK_THAT(refusal(loop), Contains("not a folder"));
+}
+
 TEST_CASE("descriptions that cannot be used are refused with a line") {
     const std::string run = "[[run]]\nfile = \"a.csv\"\n";
     CHECK(of_toml(kToml) == "");
@@ -93,6 +112,12 @@ TEST_CASE("descriptions that cannot be used are refused with a line") {
     CHECK_THAT(of_toml("kind = \"ground\"\n[columns]\ngray = \"1\"\n" + run), Contains("grey"));
     CHECK_THAT(of_toml("kind = \"ground\"\n[columns]\ngrey = { from = \"shade\" }\n" + run),
                Contains("shade"));
+    // Of optional columns, too: the analysis would go on without them, or with one column as two.
+    CHECK_THAT(
+        of_toml("kind = \"ground\"\n[columns]\npitch_rad = { from = \"pitch\", unit = \"deg\" }\n" + run),
+        Contains("line 3") && Contains("\"pitch\", which no file has"));
+    CHECK_THAT(of_toml("kind = \"ground\"\n[columns]\nacceleration = { from = \"grey\" }\n" + run),
+               Contains("both the column \"grey\""));
     CHECK_THAT(of_toml("kind = \"ground\"\n[nominal]\n\"ground.white\" = nan\n" + run), Contains("finite"));
     CHECK_THAT(of_toml(run + "kind = \"ground\"\n"), Contains("kind"));
     const int deep = 20000;
