@@ -15,6 +15,7 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -60,6 +61,9 @@ int main(int argc, char** argv) {
         return 2;
     } catch (const RunError& error) {
         std::fprintf(stderr, "puckloop: %s\n", error.what());
+        return 1;
+    } catch (const std::filesystem::filesystem_error& error) {
+        std::fprintf(stderr, "puckloop: %s: %s\n", error.path1().c_str(), error.code().message().c_str());
         return 1;
     } catch (const std::system_error& error) {  // fmt::print on a full disk
         std::fprintf(stderr, "puckloop: standard output: %s\n", error.what());

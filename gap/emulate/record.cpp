@@ -173,15 +173,23 @@ void set_parameter(Robot& robot, const std::string& assignment) {
         throw InputError("", "--set", fmt::format("'{}' is not an assignment", assignment),
                          "PARAMETER=NUMBER");
     const std::string name = assignment.substr(0, equals);
-    const std::array<std::pair<const char*, double*>, 6> own{{{"board.crystal_ppm", &robot.crystal_ppm},
-                                                              {"host.period", &robot.period},
-                                                              {"host.rab_poll", &robot.rab_poll},
-                                                              {"uart.factor", &robot.uart_factor},
-                                                              {"uart.loss", &robot.uart_loss},
-                                                              {"uart.delay", &robot.uart_delay}}};
-    for (const auto& [known, place] : own)
-        if (name == known) {
-            *place = value;
+    struct Own {
+        const char* name;
+        double* place;
+        double low, high;
+    };
+    const std::array<Own, 6> own{{{"board.crystal_ppm", &robot.crystal_ppm, -1e4, 1e4},
+                                  {"host.period", &robot.period, 0.01, 10.0},
+                                  {"host.rab_poll", &robot.rab_poll, 0.0, 10.0},
+                                  {"uart.factor", &robot.uart_factor, 0.5, 2.0},
+                                  {"uart.loss", &robot.uart_loss, 0.0, 1.0},
+                                  {"uart.delay", &robot.uart_delay, 0.0, 10.0}}};
+    for (const Own& known : own)
+        if (name == known.name) {
+            if (!(value >= known.low && value <= known.high))
+                throw InputError("", "--set " + assignment, "is out of range",
+                                 fmt::format("{:g} to {:g}", known.low, known.high));
+            *known.place = value;
             return;
         }
     try {

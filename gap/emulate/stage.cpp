@@ -26,6 +26,20 @@ void write_text(const std::filesystem::path& file, const std::string& text) {
     if (!out.flush()) throw RunError(file.string() + ": cannot be written");
 }
 
+/// A path as a TOML text.
+std::string quoted(const std::filesystem::path& path) {
+    std::string out = "\"";
+    for (const char c : path.string()) {
+        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) {
+            out += fmt::format("\\u{:04x}", static_cast<int>(c));
+            continue;
+        }
+        if (c == '"' || c == '\\') out += '\\';
+        out += c;
+    }
+    return out + "\"";
+}
+
 std::string scenario_text(const Robot& robot, const Act& act, const Tools& tools, std::uint64_t seed,
                           const std::filesystem::path& scratch) {
     std::string text =
@@ -35,13 +49,11 @@ std::string scenario_text(const Robot& robot, const Act& act, const Tools& tools
     text +=
         fmt::format("[[robot]]\nname = \"robot0\"\nposition = [\"{} m\", \"{} m\"]\nheading = \"{} rad\"\n",
                     act.x, act.y, act.heading);
-    text +=
-        fmt::format("[robot.pic]\nfirmware = \"{}\"\ncrystal_error = \"{} ppm\"\n",
-                    (robot.firmware.empty() ? tools.firmware : robot.firmware).string(), robot.crystal_ppm);
-    text += fmt::format(
-        "[robot.linux]\nprogram = [\"{}\", \"--script\", \"{}\", \"--log\", \"{}\", \"--period\", \"{}\"",
-        tools.record.string(), (scratch / "commands.txt").string(), (scratch / "records.csv").string(),
-        robot.period);
+    text += fmt::format("[robot.pic]\nfirmware = {}\ncrystal_error = \"{} ppm\"\n",
+                        quoted(robot.firmware.empty() ? tools.firmware : robot.firmware), robot.crystal_ppm);
+    text += fmt::format("[robot.linux]\nprogram = [{}, \"--script\", {}, \"--log\", {}, \"--period\", \"{}\"",
+                        quoted(tools.record), quoted(scratch / "commands.txt"),
+                        quoted(scratch / "records.csv"), robot.period);
     if (act.ground) text += ", \"--i2c\", \"/dev/i2c-3\"";
     text += fmt::format("]\nstart = \"{} s\"\n", kStart);
     const auto fault = [&](const std::string& more, const char* from = "robot0.pic") {

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <system_error>
 
 namespace puckloop::gap::importers {
@@ -95,6 +96,17 @@ std::string toml_of(const ImportedExperiment& e) {
 }
 
 }  // namespace
+
+void refuse_edited(const ImportedExperiment& experiment, const std::filesystem::path& out) {
+    const std::filesystem::path file = out / experiment.folder / "experiment.toml";
+    std::error_code ignored;
+    if (!std::filesystem::exists(file, ignored)) return;
+    std::ifstream stream(file, std::ios::binary);
+    const std::string known{std::istreambuf_iterator<char>(stream), {}};
+    if (known != toml_of(experiment))
+        throw InputError(file.string(), "", "is there already, another or edited, and would be written over",
+                         "a new folder");
+}
 
 void write_experiment(const ImportedExperiment& experiment, const std::filesystem::path& out) {
     const std::filesystem::path folder = out / experiment.folder;

@@ -32,6 +32,9 @@ struct ImportedExperiment {
     std::vector<ImportedRun> runs;
 };
 
+/// InputError where out/folder holds an experiment.toml that this import would not write as it is.
+void refuse_edited(const ImportedExperiment& experiment, const std::filesystem::path& out);
+
 /// Writes experiment.toml and one CSV a run into out/folder, which is made. Throws RunError if that fails.
 void write_experiment(const ImportedExperiment& experiment, const std::filesystem::path& out);
 

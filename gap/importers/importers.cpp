@@ -27,7 +27,8 @@ const Importer& importer_for(const std::filesystem::path& folder, const std::str
                          near.empty() ? fmt::format("one of {}", fmt::join(names, ", "))
                                       : fmt::format("did you mean \"{}\"?", near));
     }
-    if (!std::filesystem::is_directory(folder))
+    std::error_code ignored;
+    if (!std::filesystem::is_directory(folder, ignored))
         throw InputError(folder.string(), "", "is not a folder", "a folder with a published data set");
     for (const Importer& importer : importers())
         if (importer.recognises(folder)) return importer;
@@ -40,6 +41,13 @@ const Importer& importer_for(const std::filesystem::path& folder, const std::str
 std::vector<ImportedExperiment> import_set(const std::filesystem::path& folder, const std::string& set,
                                            const std::filesystem::path& out) {
     std::vector<ImportedExperiment> experiments = importer_for(folder, set).read(folder);
+    // An importer chosen by --set may find none of its files.
+    if (experiments.empty()) throw InputError(folder.string(), "", "holds nothing of this data set");
+    for (const ImportedExperiment& experiment : experiments) {
+        if (experiment.runs.empty())
+            throw InputError(folder.string(), "", fmt::format("holds no run for {}", experiment.folder));
+        refuse_edited(experiment, out);
+    }
     for (const ImportedExperiment& experiment : experiments)
         write_experiment(experiment, out);
     return experiments;

@@ -7,6 +7,8 @@
 #include "gap/experiment.h"
 #include "gap/report/report.h"
 #include "tools/command.h"
+#include "tools/commands/gap_folders.h"
+#include "tools/commands/number_checks.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -41,15 +43,6 @@ void tell_experiment(const gap::Experiment& experiment) {
         fmt::print("caution: {}\n", caution);
 }
 
-void write_text(const std::filesystem::path& file, const std::string& text) {
-    std::ofstream stream(file, std::ios::binary);
-    stream << text;
-    stream.flush();
-    if (!stream)
-        throw RunError(
-            fmt::format("{}: cannot write: {}", file.string(), std::strerror(errno != 0 ? errno : EIO)));
-}
-
 /// One line that is written over, on a terminal only.
 std::function<void(const std::string&, double)> progress_line() {
     if (::isatty(STDERR_FILENO) == 0) return {};
@@ -75,9 +68,9 @@ void tell_verdict(const gap::Verdict& verdict) {
 void run_again(const Request& request, const gap::Experiment& experiment, gap::Verdict& verdict) {
     gap::emulate::RerunOptions options;
     options.tools = emulation_tools();
-    options.overlay = std::filesystem::absolute(request.out / "overlay.toml");
+    options.overlay = std::filesystem::absolute(beside(request.out / "overlay.toml"));
     if (!request.firmware.empty()) options.firmware = std::filesystem::absolute(request.firmware);
-    options.scratch = std::filesystem::absolute(request.out / "rerun");
+    options.scratch = std::filesystem::absolute(request.out / fmt::format("rerun.{}", ::getpid()));
     options.seed = request.seed;
     if (::isatty(STDERR_FILENO) != 0)
         options.done = [](std::size_t done, std::size_t all) {
@@ -94,13 +87,16 @@ void run_again(const Request& request, const gap::Experiment& experiment, gap::V
 void analyse_folder(const Request& request) {
     if (request.rerun && request.out.empty())
         throw InputError("", "--rerun", "needs the overlay that --out writes", "--out OUT");
+    if (!request.rerun && !request.firmware.empty())
+        throw InputError("", "--firmware", "is for --rerun only", "--rerun");
     const gap::Experiment experiment = gap::read_experiment(request.folder);
+    const auto overlay = request.out / "overlay.toml", json = request.out / "gap.json",
+               page = request.out / "report.html";
     if (!request.out.empty()) {
-        std::error_code failed;
-        std::filesystem::create_directories(request.out, failed);
-        if (failed)
-            throw InputError(request.out.string(), "", "cannot be made: " + failed.message(),
-                             "a folder that can be written");
+        prepare_folder(request.out);
+        for (const auto& file : {overlay, json, page})
+            if (std::filesystem::is_directory(file))
+                throw InputError(file.string(), "", "is a folder", "a file, or nothing yet");
     }
     gap::Options options{request.seed, std::max(1U, std::thread::hardware_concurrency()), progress_line()};
     const auto begun = std::chrono::steady_clock::now();
@@ -110,10 +106,12 @@ void analyse_folder(const Request& request) {
     tell_experiment(experiment);
     tell_verdict(verdict);
     if (request.out.empty()) return;
-    write_text(request.out / "overlay.toml", gap::overlay_toml(experiment, verdict));
+    write_beside(overlay, gap::overlay_toml(experiment, verdict));
     if (request.rerun) run_again(request, experiment, verdict);
-    write_text(request.out / "gap.json", gap::to_json(verdict));
-    gap::report::write_report(experiment, verdict, request.out / "report.html");
+    write_beside(json, gap::to_json(verdict));
+    write_beside(page, gap::report::report_html(experiment, verdict));
+    for (const auto& file : {overlay, json, page})
+        put_in_place(file);
 }
 
 }  // namespace
@@ -127,8 +125,11 @@ void declare_gap(CLI::App& app, int& status) {
                      "measured experiment: a folder with experiment.toml (docs/gap.md)")
         ->type_name("DIR");
     command->add_option("--out", request->out, "folder for report.html, gap.json and overlay.toml")
-        ->type_name("OUT");
-    command->add_option("--seed", request->seed, "of everything random in the analysis")->type_name("N");
+        ->type_name("OUT")
+        ->check(not_empty());
+    command->add_option("--seed", request->seed, "of everything random in the analysis")
+        ->check(count_up_to(kLargestSeed))
+        ->type_name("N");
     command->add_flag("--rerun", request->rerun,
                       "perform the experiment again on the emulator, without and with the overlay "
                       "(motion, proximity, ground, timing)");

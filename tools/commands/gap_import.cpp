@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "gap/importers/importers.h"
 #include "tools/commands/gap.h"
+#include "tools/commands/number_checks.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -30,7 +31,9 @@ void declare_gap_import(CLI::App& gap, int& status) {
     CLI::App* command = gap.add_subcommand("import", "Turn a published data set into experiment folders");
     auto request = std::make_shared<Request>();
     command->add_option("set_folder", request->folder, "folder of the data set")->type_name("SET_FOLDER");
-    command->add_option("--out", request->out, "where the experiment folders go")->type_name("DIR");
+    command->add_option("--out", request->out, "where the experiment folders go")
+        ->check(not_empty())
+        ->type_name("DIR");
     command->add_option("--set", request->set, "which data set it is, if its files do not tell")
         ->type_name("NAME");
     command->add_flag("--list", request->list, "list the data sets known");

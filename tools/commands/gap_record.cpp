@@ -3,6 +3,8 @@
 #include "base/error.h"
 #include "gap/emulate/record.h"
 #include "tools/commands/gap.h"
+#include "tools/commands/gap_folders.h"
+#include "tools/commands/number_checks.h"
 #include "tools/run/program_path.h"
 
 #include <CLI/CLI.hpp>
@@ -50,14 +52,21 @@ void record(const Request& request) {
             fmt::print(stderr, "\r{} of {} runs ", done, all);
         };
     const bool all = request.kind == "all";
-    for (const std::string& kind : gap::emulate::recordable_kinds()) {
-        if (!all && kind != request.kind) continue;
-        options.scratch = request.out / (all ? kind + "/emulated" : "emulated");
-        record_kind(kind, all ? request.out / kind : request.out, options);
-    }
     const auto& kinds = gap::emulate::recordable_kinds();
     if (!all && std::find(kinds.begin(), kinds.end(), request.kind) == kinds.end())
         (void)gap::emulate::acts_of(request.kind, request.seed, true);  // says what is wrong
+    if (!request.rab.empty() && !all && request.kind != "rab")
+        throw InputError("", "--rab-firmware", fmt::format("has no use in a recording of {}", request.kind),
+                         "kind rab");
+    const auto folder = [&](const std::string& kind) { return all ? request.out / kind : request.out; };
+    for (const std::string& kind : kinds)
+        if (all || kind == request.kind) refuse_experiment_in(folder(kind));
+    prepare_folder(request.out);
+    for (const std::string& kind : kinds) {
+        if (!all && kind != request.kind) continue;
+        options.scratch = folder(kind) / "emulated";
+        record_kind(kind, folder(kind), options);
+    }
 }
 
 }  // namespace
@@ -77,6 +86,7 @@ void declare_gap_record(CLI::App& gap, int& status) {
         ->add_option("--out", request->out,
                      "where the experiment goes; what the runs left is in DIR/emulated")
         ->type_name("DIR")
+        ->check(not_empty())
         ->required();
     command->add_option(
         "--set", request->changes,
@@ -89,6 +99,7 @@ void declare_gap_record(CLI::App& gap, int& status) {
                      "image for the range-and-bearing boards (the project's own)")
         ->type_name("IMAGE");
     command->add_option("--seed", request->seed, "of drives, sensors' noise and the tracker's")
+        ->check(count_up_to(kLargestSeed))
         ->type_name("N");
     command->add_flag("--brief", request->brief, "few and short runs");
     command->callback([request, &status] {

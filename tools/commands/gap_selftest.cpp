@@ -4,6 +4,7 @@
 #include "gap/emulate/secret_cases.h"
 #include "gap/selftest/run_cases.h"
 #include "tools/commands/gap.h"
+#include "tools/commands/gap_folders.h"
 #include "tools/commands/number_checks.h"
 
 #include <CLI/CLI.hpp>
@@ -20,6 +21,8 @@ namespace {
 namespace st = gap::selftest;
 
 constexpr std::size_t kQuick = 24;
+constexpr std::uint64_t kMostCases = 100'000;
+constexpr double kMostWorkers = 256;
 
 struct Request {
     std::uint64_t cases = 0, seed = 1;
@@ -57,7 +60,10 @@ Chosen chosen_plans(const Request& request) {
 }
 
 std::filesystem::path scratch_of(const Request& request) {
-    if (!request.scratch.empty()) return request.scratch;
+    if (!request.scratch.empty()) {
+        prepare_folder(request.scratch);
+        return request.scratch;
+    }
     return std::filesystem::temp_directory_path() / fmt::format("puckloop-selftest.{}", ::getpid());
 }
 
@@ -77,6 +83,7 @@ int secret_test(const Request& request) {
             std::find(request.only.begin(), request.only.end(), k) == request.only.end())
             continue;
         options.scratch = scratch_of(request) / fmt::format("robot{:02}", k);
+        refuse_foreign_files(options.scratch);
         results.push_back(em::try_secret(secret, options));
         fmt::print(stderr, "{:>3} {}", k, em::secret_line(results.back()));
     }
@@ -95,6 +102,8 @@ int self_test(const Request& request) {
     options.keep = request.keep;
     options.workers = request.workers;
     const Chosen chosen = chosen_plans(request);
+    for (std::size_t k = 0; k < chosen.plans.size(); ++k)
+        refuse_foreign_files(options.scratch / fmt::format("case{:03}", k));
     options.done = [&](std::size_t k, const st::Judged& judged, std::size_t done, std::size_t all) {
         fmt::print(stderr, "{:>3}/{} case {:<4}{}\n", done, all, chosen.number[k], st::case_line(judged));
     };
@@ -113,13 +122,21 @@ void declare_gap_selftest(CLI::App& gap, int& status) {
     CLI::App* command = gap.add_subcommand("selftest", "Hide effects in made experiments and see what the "
                                                        "analysis says; status 1 when it misses its targets");
     auto request = std::make_shared<Request>();
-    command->add_option("--cases", request->cases, "how many (default: all, over 300)")->type_name("N");
-    command->add_option("--seed", request->seed, "of everything made up")->type_name("N");
+    command->add_option("--cases", request->cases, "how many (default: all, over 300)")
+        ->check(count_up_to(kMostCases))
+        ->type_name("N");
+    command->add_option("--seed", request->seed, "of everything made up")
+        ->check(count_up_to(kLargestSeed))
+        ->type_name("N");
     command->add_option("--kind", request->kind, "cases of this kind only")->type_name("KIND");
     command->add_option("--case", request->only, "the case of this number only (may be repeated)")
+        ->check(count_up_to(kMostCases))
         ->type_name("N");
-    command->add_option("--workers", request->workers, "cases at a time")->type_name("N");
+    command->add_option("--workers", request->workers, "cases at a time")
+        ->check(number_between(1, kMostWorkers))
+        ->type_name("N");
     command->add_option("--scratch", request->scratch, "where the cases are written (a temporary folder)")
+        ->check(not_empty())
         ->type_name("DIR");
     command->add_flag("--keep", request->keep, "leave the cases' folders");
     command->add_flag("--emulator", request->emulator,

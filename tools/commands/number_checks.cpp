@@ -42,4 +42,8 @@ CLI::Validator count_up_to(std::uint64_t most) {
             fmt::format("0 to {}", most)};
 }
 
+CLI::Validator not_empty() {
+    return {[](std::string& text) { return text.empty() ? std::string("is empty") : std::string(); }, ""};
+}
+
 }  // namespace puckloop::tools

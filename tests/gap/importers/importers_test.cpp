@@ -198,6 +198,12 @@ TEST_CASE("a box's turn gives each sensor distance and incidence") {
     CHECK(column(3, 1)[0] < 0.02);
     CHECK(column(0, 1)[0] == 1.0);
     CHECK(std::fabs(column(0, 2)[16]) < 0.2);  // 160 degrees on, sensor 0 (-17 degrees) faces it within 3
+    // Imported again is the same again; what somebody edited stays.
+    const fs::path edited = f.out / "epuck1_box_bearing/experiment.toml";
+    std::ofstream(edited, std::ios::app) << "# by hand\n";
+    CHECK_THAT(f.error(), Contains("edited"));
+    std::ifstream again(edited);
+    CHECK_THAT(std::string(std::istreambuf_iterator<char>(again), {}), Contains("by hand"));
 }
 
 TEST_CASE(

@@ -1,0 +1,115 @@
+// puckloop gap as its users meet it: what cannot be done is said in one line before any work, and what stood
+// in a folder is still there afterwards.
+
+#include "base/random.h"
+#include "tests/scratch.h"
+#include "tests/tools/shell.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+using namespace puckloop;
+using namespace puckloop::tests;
+using Catch::Matchers::Contains;
+namespace fs = std::filesystem;
+
+namespace {
+
+void write(const fs::path& file, const std::string& text) {
+    fs::create_directories(file.parent_path());
+    std::ofstream(file) << text;
+}
+
+std::string text_of(const fs::path& file) {
+    std::ifstream stream(file);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// A folder with a small experiment in "floor": four runs of ground sensors.
+class Desk {
+  public:
+    Desk() : path(scratch_path("gap_commands")) {
+        fs::remove_all(path);
+        RandomStream random(1, "gap commands");
+        std::string toml = "kind = \"ground\"\n";
+        for (int r = 0; r < 4; ++r) {
+            std::string csv = "t_s,sensor,grey,reading\n";
+            for (int i = 0; i < 60; ++i)
+                csv += fmt::format("{:.1f},{},{},{:.0f}\n", i * 0.1, i % 3, i % 5 / 4.0,
+                                   331 + 155 * (i % 5) + 5 * random.normal());
+            write(path / fmt::format("floor/run{}.csv", r), csv);
+            toml += fmt::format("[[run]]\nfile = \"run{}.csv\"\n", r);
+        }
+        write(path / "floor/experiment.toml", toml);
+    }
+    ~Desk() { fs::remove_all(path); }
+    Desk(const Desk&) = delete;
+    Desk& operator=(const Desk&) = delete;
+    std::string at(const std::string& name) const { return (path / name).string(); }
+
+    const fs::path path;
+};
+
+void check_refused(const std::string& arguments, const std::string& word) {
+    const Result result = run_puckloop(arguments);
+    INFO(arguments << ": " << result.output);
+    CHECK(result.status == 2);
+    CHECK(std::count(result.output.begin(), result.output.end(), '\n') == 1);
+    CHECK_THAT(result.output, Contains(word));
+}
+
+}  // namespace
+
+TEST_CASE("gap: options and folders that cannot be used end in one line and status 2") {
+    const Desk desk;
+    const std::string floor = "gap " + desk.at("floor");
+    check_refused(floor + " --seed -1", "--seed");
+    check_refused(floor + " --seed 99999999999999999999", "--seed");
+    check_refused(floor + " --out ''", "--out");
+    check_refused(floor + " --out /dev/full", "/dev/full");
+    check_refused(floor + " --out " + desk.at("floor/run0.csv"), "run0.csv");
+    check_refused(floor + " --firmware x.hex --out " + desk.at("out"), "--rerun");
+    check_refused("gap selftest --workers 99999999", "--workers");
+    check_refused("gap selftest --cases -1", "--cases");
+    check_refused("gap selftest --quick --kind ground --scratch /dev/full", "/dev/full");
+    check_refused("gap record motion --set host.period=0 --out " + desk.at("out"), "host.period");
+    check_refused("gap record rab --set host.rab_poll=-1 --out " + desk.at("out"), "host.rab_poll");
+    check_refused("gap record ground --rab-firmware x.hex --out " + desk.at("out"), "--rab-firmware");
+    CHECK(!fs::exists(desk.path / "out"));
+}
+
+TEST_CASE("gap: what cannot be written leaves the old verdict whole") {
+    const Desk desk;
+    const fs::path out = desk.path / "out";
+    REQUIRE(run_puckloop("gap " + desk.at("floor") + " --out " + out.string()).status == 0);
+    const std::string json = text_of(out / "gap.json"), overlay = text_of(out / "overlay.toml");
+    CHECK(json.size() > 100);
+    // As a full disk would: the last of the three cannot be written.
+    fs::create_directories(out / "report.html.part");
+    const Result result = run_puckloop("gap " + desk.at("floor") + " --seed 2 --out " + out.string());
+    CHECK_THAT(result.output, Contains("report.html") && Contains("cannot write"));
+    CHECK(text_of(out / "gap.json") == json);
+    CHECK(text_of(out / "overlay.toml") == overlay);
+    fs::remove(out / "report.html");
+    fs::create_directories(out / "report.html");
+    check_refused("gap " + desk.at("floor") + " --out " + out.string(), "is a folder");
+}
+
+TEST_CASE("gap: nothing of a laboratory's is written over or removed") {
+    const Desk desk;
+    const std::string before = text_of(desk.path / "floor/experiment.toml");
+    check_refused("gap record ground --brief --out " + desk.at("floor"), "there already");
+    CHECK(text_of(desk.path / "floor/experiment.toml") == before);
+
+    write(desk.path / "scratch/case000/notes.txt", "precious");
+    check_refused("gap selftest --quick --kind ground --case 18 --scratch " + desk.at("scratch"),
+                  "notes.txt");
+    CHECK(text_of(desk.path / "scratch/case000/notes.txt") == "precious");
+
+    check_refused("gap import " + desk.at("floor") + " --set unifr_epuck2_timing --out " + desk.at("made"),
+                  "holds");
+    CHECK(!fs::exists(desk.path / "made"));
+}

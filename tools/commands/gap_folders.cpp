@@ -1,0 +1,74 @@
+#include "tools/commands/gap_folders.h"
+
+#include "base/error.h"
+
+#include <fmt/format.h>
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <system_error>
+
+namespace puckloop::tools {
+
+namespace fs = std::filesystem;
+
+void prepare_folder(const fs::path& folder) {
+    std::error_code failed;
+    if (folder.empty()) throw InputError("", "--out", "is empty", "a folder");
+    fs::create_directories(folder, failed);
+    if (failed)
+        throw InputError(folder.string(), "", "cannot be made: " + failed.message(),
+                         "a folder that can be written");
+    const fs::path trial = folder / fmt::format("puckloop.{}.part", ::getpid());
+    errno = 0;
+    const bool written = static_cast<bool>(std::ofstream(trial) << "trial" << std::flush);
+    const int reason = errno;
+    fs::remove(trial, failed);
+    if (!written)
+        throw InputError(folder.string(), "",
+                         fmt::format("cannot be written: {}", std::strerror(reason != 0 ? reason : EIO)),
+                         "a folder that can be written");
+}
+
+void refuse_experiment_in(const fs::path& folder) {
+    std::error_code failed;
+    const fs::path known = folder / "experiment.toml";
+    if (fs::exists(known, failed))
+        throw InputError(known.string(), "", "is there already and would be written over", "a new folder");
+}
+
+void refuse_foreign_files(const fs::path& folder) {
+    std::error_code failed;
+    for (fs::recursive_directory_iterator at(folder, failed), end; !failed && at != end;
+         at.increment(failed)) {
+        if (at->is_directory(failed)) continue;
+        const std::string name = at->path().filename().string();
+        if (name == "experiment.toml" || (name.starts_with("run") && name.ends_with(".csv"))) continue;
+        throw InputError(at->path().string(), "", "is no file of a made experiment and would be removed",
+                         "a --scratch folder of its own");
+    }
+}
+
+fs::path beside(const fs::path& file) {
+    return file.string() + ".part";
+}
+
+void write_beside(const fs::path& file, const std::string& text) {
+    std::ofstream stream(beside(file), std::ios::binary);
+    stream << text;
+    stream.close();
+    if (!stream)
+        throw RunError(
+            fmt::format("{}: cannot write: {}", file.string(), std::strerror(errno != 0 ? errno : EIO)));
+}
+
+void put_in_place(const fs::path& file) {
+    std::error_code failed;
+    fs::rename(beside(file), file, failed);
+    if (failed) throw RunError(fmt::format("{}: cannot write: {}", file.string(), failed.message()));
+}
+
+}  // namespace puckloop::tools
