@@ -11,6 +11,7 @@
 #include <cmath>
 #include <numeric>
 #include <sstream>
+#include <tuple>
 
 namespace puckloop::gap {
 
@@ -57,6 +58,24 @@ bool varies(const Experiment& experiment, std::string_view column) {
                 high = std::max(high, value);
             }
     return high > low;
+}
+
+/// What was done in a run, roughly: of each column that was set up or is true, whether it is nothing, one
+/// value, or several.
+std::string design_of(Kind kind, const Run& run) {
+    std::string design;
+    for (const ColumnInfo& info : columns_of(kind)) {
+        if (info.role != Role::Stimulus && info.role != Role::Truth) continue;
+        double low = INFINITY, high = -INFINITY;
+        for (const double value : run.column(info.name))
+            if (!std::isnan(value)) {
+                low = std::min(low, value);
+                high = std::max(high, value);
+            }
+        const bool nothing = !(low <= high) || (low == 0.0 && high == 0.0);
+        design += nothing ? '0' : low == high ? '1' : 'n';
+    }
+    return design;
 }
 
 /// One effect's parameter on one index of the model.
@@ -232,10 +251,14 @@ void Study::make_folds(std::uint64_t seed) {
     RandomStream random(seed, "gap/folds");
     for (std::size_t i = runs; i > 1; --i)
         std::swap(order[i - 1], order[random.below(i)]);
-    // Repeats of one condition are dealt to different folds: what only they show could not be learnt from the
-    // others.
+    // Repeats of one condition, and among them of one design, are dealt to different folds: what only they
+    // show could not be learnt from the others.
+    std::vector<std::string> design;
+    for (const Run& run : experiment_.runs)
+        design.push_back(design_of(experiment_.kind, run));
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-        return experiment_.runs[a].conditions < experiment_.runs[b].conditions;
+        return std::tie(experiment_.runs[a].conditions, design[a]) <
+               std::tie(experiment_.runs[b].conditions, design[b]);
     });
     std::vector<std::size_t> place(runs);
     for (std::size_t i = 0; i < runs; ++i)

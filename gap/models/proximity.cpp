@@ -53,6 +53,10 @@ class ProximityModel final : public Model {
         others_ = column("neighbours", experiment.has("neighbours") ? 0 : 1);
         center(column("battery_v", NAN), battery_);
         center(column("order", NAN), order_);
+        if (!order_.empty()) {
+            const auto [first, last] = std::minmax_element(order_.begin(), order_.end());
+            half_order_ = (*last - *first) / 2;
+        }
         const auto sensors = column("sensor", 0);
         for (const double sensor : sensors) {
             sensor_.push_back(static_cast<int>(sensor));
@@ -110,7 +114,7 @@ class ProximityModel final : public Model {
         const double warm = value(warmup_), warm_time = value(warmup_time_), sag = value(sag_),
                      age = value(age_);
         const double light_offset = value(ambient_offset_), light_gain = value(ambient_gain_),
-                     volt = value(per_volt_), drift = value(drift_);
+                     volt = value(per_volt_), drift = value(drift_), zero = value(drift_zero_);
         // What the curve says changes with few parameters: the rest reuse it. One sensor's direction moves
         // only that sensor's rows.
         const std::vector<double> key{response.curve,
@@ -144,7 +148,7 @@ class ProximityModel final : public Model {
             double gain = scale * value(first_of_.gain[s]) * (1 - light_gain * ambient_[i]);
             if (warm != 0.0) gain *= 1 + warm * (1 - std::exp(-std::max(time_[i], 0.0) / warm_time));
             if (!battery_.empty()) gain *= 1 + volt * battery_[i];
-            if (!order_.empty()) gain *= 1 + drift * order_[i];
+            if (!order_.empty()) gain *= 1 + drift * (order_[i] - zero * half_order_);
             p.mean[i] = (gain * seen + value(first_of_.offset[s]) + light_offset * ambient_[i]) *
                         (1 - sag * stepping_[i]);
         }
@@ -154,6 +158,7 @@ class ProximityModel final : public Model {
 
     std::vector<double> starts(std::string_view parameter) const override {
         if (parameter == "proximity.threshold") return thresholds();
+        if (parameter == "proximity.age") return ages();
         if (parameter == "proximity.interference_size" && jump_size_ > 0) return {jump_size_};
         if (parameter == "proximity.flicker_frequency" && line_frequency_found_ > 0)
             return {line_frequency_found_};
@@ -161,6 +166,30 @@ class ProximityModel final : public Model {
     }
 
   private:
+    /// The age that readings of moving surfaces are nearest to. Heavy-tailed noise takes few such rows for
+    /// outliers: a fit that begins at none stays at an age that only the far ones bear.
+    std::vector<double> ages() const {
+        constexpr double kYoungest = 5e-4, kOldest = 0.5, kRatio = 1.15;  // s
+        if (std::all_of(velocity_.begin(), velocity_.end(), [](double v) { return v == 0.0; })) return {};
+        std::vector<double> values = neutral();
+        Prediction prediction;
+        double best = 0.0, least = INFINITY;
+        const auto look_at = [&](double age) {
+            values[static_cast<std::size_t>(age_)] = age;
+            predict(values, prediction);
+            double sum = 0.0;
+            for (std::size_t i = 0; i < velocity_.size(); ++i)
+                if (velocity_[i] != 0.0) sum += std::abs(observables_[0].y[i] - prediction[0].mean[i]);
+            if (sum >= least) return;
+            least = sum;
+            best = age;
+        };
+        look_at(0.0);
+        for (double age = kYoungest; age < kOldest; age *= kRatio)
+            look_at(age);
+        return {best};
+    }
+
     /// The dead zone that parts the readings of nothing from the others best; none where nothing reads 0.
     std::vector<double> thresholds() const {
         constexpr double kLowest = 3.0, kHighest = 2000.0, kRatio = 1.02;
@@ -355,6 +384,7 @@ class ProximityModel final : public Model {
         ambient_noise_ = add("proximity.ambient_noise", "counts", 0.0);
         per_volt_ = add("proximity.battery_gain", "1/V", 0.0);
         drift_ = add("proximity.order_drift", "1", 0.0);
+        drift_zero_ = add("proximity.order_zero", "1", 0.0);
         motor_noise_ = add("proximity.motor_noise", "1", 0.0);
         proportional_ = add("proximity.proportional_noise", "1", 0.0);
         threshold_ = add("proximity.threshold", "counts", 0.0);
@@ -417,6 +447,7 @@ class ProximityModel final : public Model {
     physics::ProximityParameters physics_;
     static constexpr std::size_t kOpposite = 4;  // places on the ring to the sensor lit by the same pulse
     double line_frequency_found_ = 0.0, jump_size_ = 0.0;
+    double half_order_ = 0.0;  // half the range of `order`: the unit of the drift's zero
     std::array<KeyedCache<std::vector<double>>, physics::kProximitySensors> seen_;  // of a sensor's rows
     std::array<std::vector<std::size_t>, physics::kProximitySensors> rows_of_;
     std::vector<double> spread_, cosine_, ray_cosine_, ray_sine_;
@@ -429,8 +460,8 @@ class ProximityModel final : public Model {
     int curve_ = 0, amplitude_ = 0, origin_ = 0, exponent_ = 0, saturation_ = 0, reach_ = 0, scale_ = 0,
         incidence_ = 0, pair_crosstalk_ = 0, neighbour_crosstalk_ = 0, warmup_ = 0, warmup_time_ = 0,
         sag_ = 0, age_ = 0, ambient_offset_ = 0, ambient_gain_ = 0, ambient_noise_ = 0, per_volt_ = 0,
-        drift_ = 0, motor_noise_ = 0, proportional_ = 0, threshold_ = 0, hit_rate_ = 0, hit_size_ = 0,
-        line_ = 0, line_frequency_ = 0;
+        drift_ = 0, drift_zero_ = 0, motor_noise_ = 0, proportional_ = 0, threshold_ = 0, hit_rate_ = 0,
+        hit_size_ = 0, line_ = 0, line_frequency_ = 0;
 };
 
 }  // namespace

@@ -128,6 +128,24 @@ TEST_CASE("runs are held out whole, and not all of one condition at once", "[gap
     CHECK(of_second.size() == 3);
 }
 
+TEST_CASE("what only two runs show is never held out in both at once", "[gap][fit]") {
+    Experiment experiment = drives(1, 0.0, 6, 20);
+    for (Run& run : experiment.runs)
+        run.conditions.clear();
+    for (const std::size_t r : {1, 4})  // nothing says that these stand
+        for (const char* column : {"grey", "grey_rate"})
+            experiment.runs[r].columns[column].assign(20, column == std::string("grey") ? 0.4 : 0.0);
+    for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+        const Study study(experiment, seed);
+        const auto& observable = study.model().observables()[0];
+        std::vector<int> fold(6);
+        for (std::size_t i = 0; i < observable.y.size(); ++i)
+            fold[observable.run[i]] = study.fold_of()[0][i];
+        INFO("seed " << seed);
+        CHECK(fold[1] != fold[4]);
+    }
+}
+
 TEST_CASE("a single run is cut into blocks and stretches", "[gap][fit]") {
     const Experiment experiment = drives(1, 0.0, 1, 160);
     const Study study(experiment, 1);

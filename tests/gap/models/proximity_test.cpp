@@ -128,6 +128,8 @@ TEST_CASE("time, motors, battery and age move a reading by what their equations 
     const Prediction sagged = predicted(*model, {{"proximity.motor_sag", 0.02}});
     const Prediction drooped = predicted(*model, {{"proximity.battery_gain", 0.2}});
     const Prediction drifted = predicted(*model, {{"proximity.order_drift", 0.01}});
+    const Prediction from_last =
+        predicted(*model, {{"proximity.order_drift", 0.01}, {"proximity.order_zero", 1.0}});
     const Prediction noisy = predicted(*model, {{"proximity.motor_noise", 0.5}});
     for (std::size_t i = 0; i < kPlaces.size(); ++i) {
         const double seconds = rows["t_s"][i], speed = rows["motor_speed"][i];
@@ -135,6 +137,7 @@ TEST_CASE("time, motors, battery and age move a reading by what their equations 
         CHECK(sagged[0].mean[i] == Approx(rest[0].mean[i] * (speed != 0 ? 0.98 : 1.0)));
         CHECK(answer(drooped, i) == Approx(answer(rest, i) * (1 + 0.2 * (rows["battery_v"][i] - 3.7))));
         CHECK(answer(drifted, i) == Approx(answer(rest, i) * (1 + 0.01 * (rows["order"][i] - 2))));
+        CHECK(answer(from_last, i) == Approx(answer(rest, i) * (1 + 0.01 * (rows["order"][i] - 3))));
         CHECK(noisy[0].factor[i] == Approx(1 + 0.5 * std::abs(speed) / 1000));
     }
     // A reading 60 ms old belongs to where the wall was then.
@@ -164,6 +167,34 @@ TEST_CASE("a lamp's flicker is found on the sensors' sampling schedule") {
     const auto starts = model->starts("proximity.flicker_frequency");
     REQUIRE(starts.size() == 1);
     CHECK(starts[0] == Approx(2 * kSchedule - kMains).margin(0.1));
+}
+
+TEST_CASE("the age's start is found though few rows move and most are far") {
+    constexpr double kAge = 0.0123;  // s
+    Table rows;
+    for (int i = 0; i < 200; ++i) {
+        const bool moves = i % 20 == 0;
+        const double distance = moves ? 0.005 + 4e-4 * i : 0.03;
+        rows["t_s"].push_back(0.1 * i);
+        rows["sensor"].push_back(0);
+        rows["distance_m"].push_back(distance);
+        rows["velocity"].push_back(moves ? -0.12 : 0.0);
+        rows["reading"].push_back(0);
+    }
+    const auto read = [&] {
+        const Experiment experiment = experiment_of(Kind::Proximity, rows);
+        const auto model = make_model(experiment);
+        return std::pair(predicted(*model, {{"proximity.age", kAge}})[0].mean,
+                         model->starts("proximity.age"));
+    };
+    rows["reading"] = read().first;
+    for (std::size_t i = 0; i < 200; ++i)
+        rows["reading"][i] += i % 2 == 0 ? 4.0 : -4.0;
+    const auto starts = read().second;
+    REQUIRE(starts.size() == 1);
+    CHECK(starts[0] == Approx(kAge).epsilon(0.1));
+    rows["velocity"].assign(200, 0.0);
+    CHECK(read().second.empty());
 }
 
 TEST_CASE("the dead zone's start parts the readings of nothing from the others") {
