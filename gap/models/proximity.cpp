@@ -56,6 +56,9 @@ class ProximityModel final : public Model {
         if (!order_.empty()) {
             const auto [first, last] = std::minmax_element(order_.begin(), order_.end());
             half_order_ = (*last - *first) / 2;
+            const auto& run = observables_[0].run;
+            for (std::size_t i = 1; i < run.size(); ++i)
+                if (run[i] == run[i - 1] && order_[i] != order_[i - 1]) half_order_ = 0.0;
         }
         const auto sensors = column("sensor", 0);
         for (const double sensor : sensors) {
@@ -384,7 +387,9 @@ class ProximityModel final : public Model {
         ambient_noise_ = add("proximity.ambient_noise", "counts", 0.0);
         per_volt_ = add("proximity.battery_gain", "1/V", 0.0);
         drift_ = add("proximity.order_drift", "1", 0.0);
-        drift_zero_ = add("proximity.order_zero", "1", 0.0);
+        // Inside a run the order goes with what was varied there, mostly the distance: with a zero of its own
+        // a drift could take the place of any law.
+        drift_zero_ = add(half_order_ > 0 ? "proximity.order_zero" : "-proximity.order_zero", "1", 0.0);
         motor_noise_ = add("proximity.motor_noise", "1", 0.0);
         proportional_ = add("proximity.proportional_noise", "1", 0.0);
         threshold_ = add("proximity.threshold", "counts", 0.0);
@@ -447,7 +452,7 @@ class ProximityModel final : public Model {
     physics::ProximityParameters physics_;
     static constexpr std::size_t kOpposite = 4;  // places on the ring to the sensor lit by the same pulse
     double line_frequency_found_ = 0.0, jump_size_ = 0.0;
-    double half_order_ = 0.0;  // half the range of `order`: the unit of the drift's zero
+    double half_order_ = 0.0;  // half the range of the runs' `order`: the unit of the drift's zero
     std::array<KeyedCache<std::vector<double>>, physics::kProximitySensors> seen_;  // of a sensor's rows
     std::array<std::vector<std::size_t>, physics::kProximitySensors> rows_of_;
     std::vector<double> spread_, cosine_, ray_cosine_, ray_sine_;

@@ -128,8 +128,6 @@ TEST_CASE("time, motors, battery and age move a reading by what their equations 
     const Prediction sagged = predicted(*model, {{"proximity.motor_sag", 0.02}});
     const Prediction drooped = predicted(*model, {{"proximity.battery_gain", 0.2}});
     const Prediction drifted = predicted(*model, {{"proximity.order_drift", 0.01}});
-    const Prediction from_last =
-        predicted(*model, {{"proximity.order_drift", 0.01}, {"proximity.order_zero", 1.0}});
     const Prediction noisy = predicted(*model, {{"proximity.motor_noise", 0.5}});
     for (std::size_t i = 0; i < kPlaces.size(); ++i) {
         const double seconds = rows["t_s"][i], speed = rows["motor_speed"][i];
@@ -137,7 +135,6 @@ TEST_CASE("time, motors, battery and age move a reading by what their equations 
         CHECK(sagged[0].mean[i] == Approx(rest[0].mean[i] * (speed != 0 ? 0.98 : 1.0)));
         CHECK(answer(drooped, i) == Approx(answer(rest, i) * (1 + 0.2 * (rows["battery_v"][i] - 3.7))));
         CHECK(answer(drifted, i) == Approx(answer(rest, i) * (1 + 0.01 * (rows["order"][i] - 2))));
-        CHECK(answer(from_last, i) == Approx(answer(rest, i) * (1 + 0.01 * (rows["order"][i] - 3))));
         CHECK(noisy[0].factor[i] == Approx(1 + 0.5 * std::abs(speed) / 1000));
     }
     // A reading 60 ms old belongs to where the wall was then.
@@ -167,6 +164,29 @@ TEST_CASE("a lamp's flicker is found on the sensors' sampling schedule") {
     const auto starts = model->starts("proximity.flicker_frequency");
     REQUIRE(starts.size() == 1);
     CHECK(starts[0] == Approx(2 * kSchedule - kMains).margin(0.1));
+}
+
+TEST_CASE("nobody knows at which run the simulator was right: a drift between runs has a zero of its own") {
+    Experiment runs = experiment_of(Kind::Proximity, table());
+    for (int more = 0; more < 2; ++more)
+        runs.runs.push_back(runs.runs.front());
+    for (std::size_t r = 0; r < 3; ++r)
+        runs.runs[r].columns["order"].assign(kPlaces.size(), static_cast<double>(r) + 1);
+    const auto model = make_model(runs);
+    const Prediction rest = predicted(*model);
+    const Prediction drifted =
+        predicted(*model, {{"proximity.order_drift", 0.01}, {"proximity.order_zero", 1.0}});
+    const double idle = physics::Parameters().proximity.offset[2];
+    for (std::size_t i = 0; i < rest[0].mean.size(); ++i) {
+        const double order = runs.runs[model->observables()[0].run[i]].columns["order"][0];
+        CHECK(drifted[0].mean[i] - idle == Approx((rest[0].mean[i] - idle) * (1 + 0.01 * (order - 3))));
+    }
+    // Row by row it would go with the distance.
+    for (Run& run : runs.runs)
+        for (std::size_t i = 0; i < kPlaces.size(); ++i)
+            run.columns["order"][i] = static_cast<double>(i);
+    CHECK(make_model(runs)->find("proximity.order_drift") >= 0);
+    CHECK(make_model(runs)->find("proximity.order_zero") < 0);
 }
 
 TEST_CASE("the age's start is found though few rows move and most are far") {
