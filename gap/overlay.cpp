@@ -20,9 +20,30 @@ namespace {
 
 using Values = std::map<std::string, double>;
 
+/// One line, whatever the text holds: TOML knows no control characters in comments.
+std::string comment(std::string text) {
+    std::replace_if(
+        text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; }, ' ');
+    return "# " + text + "\n";
+}
+
 double get(const Values& values, const std::string& name, double neutral) {
     const auto place = values.find(name);
     return place == values.end() ? neutral : place->second;
+}
+
+constexpr double kLeastSlip = 1e-3;  // of inverse_friction: no floor holds better
+
+/// What the world model cannot take is cut to its range, and said.
+std::string parameter_line(const std::string& name, double value) {
+    int index = -1;
+    const auto* info = physics::find_parameter(name, index);
+    const double taken = std::clamp(value, info->min, info->max);
+    std::string text;
+    if (taken != value)
+        text = comment(fmt::format("{} = {:.6g} {} was found or told; the simulator takes {:g} to {:g}", name,
+                                   value, info->unit, info->min, info->max));
+    return text + fmt::format("\"{}\" = {}\n", name, scenarios::parameter_text(name, taken));
 }
 
 /// Ratios of the motion model are radii of the world model.
@@ -35,6 +56,28 @@ void wheels(const Experiment& experiment, const Values& fitted, Values& simulato
         get(experiment.nominal, "robot.wheel_radius_left", both) * scale * (1 - mismatch);
     simulator["robot.wheel_radius_right"] =
         get(experiment.nominal, "robot.wheel_radius_right", both) * scale * (1 + mismatch);
+}
+
+/// The ground board's place and height over the floor: the board reads like the model's (physics/ground.cpp),
+/// where height scales the answer as gains do.
+void ground_board(const Experiment& experiment, Values& fitted, Values& simulator) {
+    const physics::Parameters defaults;
+    const auto take = [&](const char* name) {
+        const double value = get(fitted, name, 0.0);
+        fitted.erase(name);
+        return value;
+    };
+    const double forward = take("ground.forward_error"), left = take("ground.left_error"),
+                 lost = take("ground.raised") *
+                        get(experiment.nominal, "ground.height_slope", defaults.ground.height_slope);
+    if (forward != 0)
+        simulator["ground.x"] = get(experiment.nominal, "ground.x", defaults.ground.x) + forward;
+    for (std::size_t i = 0; i < physics::kGroundSensors; ++i) {
+        const std::string y = fmt::format("ground.y{}", i), gain = fmt::format("ground.gain{}", i);
+        if (left != 0) simulator[y] = get(experiment.nominal, y, defaults.ground.y[i]) + left;
+        const double all = get(experiment.nominal, "ground.gain", 1.0);
+        if (lost != 0) fitted[gain] = get(fitted, gain, get(experiment.nominal, gain, all)) * (1 - lost);
+    }
 }
 
 /// What acts on links and clocks: taken out of `measuring` and told as the run's tables [uart] and [clock].
@@ -65,24 +108,24 @@ std::string links_and_clocks(const Experiment& experiment, Values& measuring) {
 
 std::string overlay_toml(const Experiment& experiment, const Verdict& verdict) {
     Values fitted;
-    std::string text = fmt::format("# Overlay of a measured experiment: {}\n# Verdict: {}\n",
-                                   experiment.title, decision_name(verdict.decision));
+    std::string text = comment("Overlay of a measured experiment: " + experiment.title) +
+                       comment(fmt::format("Verdict: {}", decision_name(verdict.decision)));
     for (const Cause& cause : verdict.causes) {
-        text += fmt::format("# {} ({}): {}\n", cause.name, cause.number, cause.sentence);
+        text += comment(fmt::format("{} ({}): {}", cause.name, cause.number, cause.sentence));
         for (const FittedParameter& parameter : cause.parameters)
             fitted[parameter.name] = parameter.value;
     }
-    std::replace(text.begin(), text.end(), '\t', ' ');
     Values simulator, measuring;
     wheels(experiment, fitted, simulator);
     rab_overlay(fitted, simulator);
+    ground_board(experiment, fitted, simulator);
     for (const auto& [name, value] : fitted) {
         int index = -1;
         if (name == "wheel_scale" || name == "wheel_mismatch") continue;
         if (name == "inverse_friction") {
-            simulator["contact.mu"] = simulator["contact.mu_lateral"] = 1 / value;
-        } else if (const auto* info = physics::find_parameter(name, index); info != nullptr) {
-            simulator[name] = std::clamp(value, info->min, info->max);
+            simulator["contact.mu"] = simulator["contact.mu_lateral"] = 1 / std::max(value, kLeastSlip);
+        } else if (physics::find_parameter(name, index) != nullptr) {
+            simulator[name] = value;
         } else {
             measuring[name] = value;
         }
@@ -94,7 +137,7 @@ std::string overlay_toml(const Experiment& experiment, const Verdict& verdict) {
     }
     text += "\n[parameters]\n";
     for (const auto& [name, value] : simulator)
-        text += fmt::format("\"{}\" = {}\n", name, scenarios::parameter_text(name, value));
+        text += parameter_line(name, value);
     text += links_and_clocks(experiment, measuring);
     if (!measuring.empty())
         text += "\n# Of the measuring chain, or without a counterpart in the world model.\n[measurement]\n";

@@ -149,7 +149,7 @@ void read_parameter_level(const std::string& file, const std::string& where, con
                                       : fmt::format("perhaps '{}'", meant));
         }
         const double number = reader.quantity(key, dimension_of(info->unit));
-        if (number < info->min || number > info->max)
+        if (!(number >= info->min && number <= info->max))  // nan, too
             reader.fail(key, fmt::format("{} = {} is out of range", name, number),
                         fmt::format("{} to {} {}", info->min, info->max, info->unit));
         result[name] = number;

@@ -13,7 +13,7 @@ Effect clock_drift() {
         .parameters = {{"timing.clock_drift", -0.2, 0.2, 0.003, {}, "+-50 ppm; 1-2 % without crystal"}},
         .needs = {"t_robot_s"},
         .observables = "arrival, growing with time",
-        .enters = "crystal_ppm",
+        .enters = "the overlay's [clock] pic_error",
         .confounded = {"long_period"},
         .separated_by = "a longer run",
         .measuring_chain = false,

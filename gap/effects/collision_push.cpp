@@ -15,7 +15,7 @@ Effect collision_push() {
                        {"push.turn", 0.0, 3.0, 0.3, {0.0, 0.05}, "none to a turn"}},
         .needs = {},
         .observables = "rare jumps of all pose components",
-        .enters = "other robots or things in the scenario",
+        .enters = "nothing by itself: other robots or things in the scenario",
         .confounded = {"command_loss"},
         .separated_by = "film the arena; a run with nobody near",
         .measuring_chain = false,

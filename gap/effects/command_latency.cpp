@@ -18,7 +18,7 @@ Effect command_latency() {
                         "20..150 ms and jitter; 0.11 rad a manoeuvre over Bluetooth"}},
         .needs = {"cmd_left"},
         .observables = "steps, way along, heading",
-        .enters = "measuring chain or the Linux program; the emulated serial line makes its own share",
+        .enters = "the overlay's [uart] command_delay",
         .confounded = {"tracker_delay", "wheel_scale"},
         .separated_by = "log the step counters beside the commands, or the time a command is sent and one it "
                         "takes effect",

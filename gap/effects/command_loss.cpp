@@ -13,7 +13,7 @@ Effect command_loss() {
         .parameters = {{"command.loss", 0.0, 0.5, 0.05, {0.01, 0.05}, "0..5 %"}},
         .needs = {"cmd_left"},
         .observables = "steps, way along, heading: rare errors of whole commands",
-        .enters = "[[fault]] drop on the serial link",
+        .enters = "the overlay's [uart] command_loss",
         .confounded = {"collision_push"},
         .separated_by = "log sequence numbers at both ends",
         .measuring_chain = false,

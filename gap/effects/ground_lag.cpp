@@ -13,7 +13,7 @@ Effect ground_lag() {
         .parameters = {{"ground.lag", -0.05, 1.0, 0.1, {}, "18 of 37 samples of pitch"}},
         .needs = {"grey_rate"},
         .observables = "readings where the grey changes, in proportion to speed",
-        .enters = "ground.period and the measuring chain",
+        .enters = "measuring chain, but for ground.period",
         .confounded = {"ground_position"},
         .separated_by = "an edge crossed at two speeds and in both directions",
         .measuring_chain = false,

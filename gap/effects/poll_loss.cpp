@@ -13,7 +13,7 @@ Effect poll_loss() {
         .parameters = {{"rab.fetch_time", 0.0, 0.5, 0.02, {0.02, 0.04}, "50 messages a second at 20 ms"}},
         .needs = {"arrival_rate|senders"},
         .observables = "reception by message rate",
-        .enters = "poll period of the Linux program",
+        .enters = "emerges from the poll period of the Linux program",
         .confounded = {"collision_loss"},
         .separated_by = "the same senders with a faster and a slower poll",
         .measuring_chain = false,

@@ -21,7 +21,7 @@ Effect slow_drift() {
                         "or after"}},
         .needs = {"order"},
         .observables = "all readings, run by run",
-        .enters = "none: repeat the session",
+        .enters = "nothing: repeat the session",
         .confounded = {"warm_up", "battery_droop"},
         .separated_by = "random order over several days",
         .measuring_chain = false,

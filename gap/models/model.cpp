@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/suggest.h"
+#include "gap/overlay_names.h"
 #include "physics/parameters.h"
 
 #include <fmt/format.h>
@@ -49,8 +50,7 @@ std::vector<double> Model::neutral() const {
 }
 
 int Model::add(std::string name, std::string unit, double neutral) {
-    int index = -1;
-    const bool simulator = physics::find_parameter(name, index) != nullptr;
+    const bool simulator = overlay_takes(name);
     parameters_.push_back({std::move(name), std::move(unit), neutral, simulator});
     return static_cast<int>(parameters_.size()) - 1;
 }

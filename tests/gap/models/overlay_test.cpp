@@ -1,0 +1,137 @@
+// What a verdict's overlay says, and that every effect enters the simulator where its file says.
+
+#include "gap/analyse.h"
+#include "gap/effects/effect.h"
+#include "gap/overlay_names.h"
+#include "physics/parameters.h"
+#include "scenarios/scenario.h"
+#include "tests/scratch.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <regex>
+
+using namespace puckloop;
+using namespace puckloop::gap;
+using Catch::Matchers::Contains;
+
+namespace {
+
+Verdict said(const std::map<std::string, double>& parameters) {
+    Verdict verdict;
+    verdict.decision = Decision::Named;
+    verdict.causes.emplace_back();
+    for (const auto& [name, value] : parameters) {
+        verdict.causes[0].parameters.emplace_back();
+        verdict.causes[0].parameters.back().name = name;
+        verdict.causes[0].parameters.back().value = value;
+    }
+    return verdict;
+}
+
+/// The parameters of a scenario of one robot that loads the overlay.
+physics::Parameters loaded(const Experiment& experiment, const std::map<std::string, double>& parameters) {
+    scenarios::Scenario scenario;
+    scenario.world.arena = physics::rectangular_arena(1, 1);
+    const auto file = tests::scratch_path("overlay_test.toml");
+    std::ofstream(file) << overlay_toml(experiment, said(parameters));
+    scenarios::apply_overlay(scenario, file);
+    std::filesystem::remove(file);
+    physics::Parameters result;
+    for (const auto& [name, value] : scenario.world.parameters)
+        result.set(name, value);
+    return result;
+}
+
+/// "a*|b": one of the first kind, "a0" (boards number from 1).
+std::string one_of(std::string name) {
+    if (const auto other = name.find('|'); other != std::string::npos) name = name.substr(other + 1);
+    if (name.ends_with('*')) name.back() = name.starts_with("rab.") ? '1' : '0';
+    return name;
+}
+
+/// Nothing of it stands under [measurement].
+bool taken_whole(const Effect& effect) {
+    std::map<std::string, double> values;
+    for (const EffectParameter& p : effect.parameters)
+        values[one_of(p.name)] = p.low + 0.4 * (p.high - p.low);
+    Experiment experiment;
+    experiment.kind = effect.kinds.front();
+    return overlay_toml(experiment, said(values)).find("\n[measurement]") == std::string::npos;
+}
+
+bool takes_any(const Effect& effect) {
+    return std::any_of(effect.parameters.begin(), effect.parameters.end(),
+                       [](const EffectParameter& p) { return overlay_takes(one_of(p.name)); });
+}
+
+}  // namespace
+
+TEST_CASE("every effect enters the simulator where its file says") {
+    for (const Effect& effect : catalogue()) {
+        INFO(effect.name << ": " << effect.enters);
+        const std::string where = effect.enters;
+        const bool nowhere = where.starts_with("nothing") || where.starts_with("measuring chain") ||
+                             where.starts_with("emerges");
+        CHECK(takes_any(effect) == !nowhere);
+        // What is named is a parameter of the world.
+        static const std::regex name(
+            "(contact|ground|ir|light|proximity|robot|world|accelerometer)\\.[a-z_]+");
+        for (std::sregex_iterator at(where.begin(), where.end(), name), end; at != end; ++at) {
+            int index = -1;
+            CHECK(physics::find_parameter(at->str(), index) != nullptr);
+        }
+    }
+}
+
+TEST_CASE("an overlay takes the parameters that are said to be taken, and no others") {
+    for (const Effect& effect : catalogue()) {
+        INFO(effect.name);
+        bool all = true;
+        for (const EffectParameter& p : effect.parameters)
+            all = all && overlay_takes(one_of(p.name));
+        CHECK(taken_whole(effect) == all);
+    }
+}
+
+TEST_CASE("an overlay can be loaded whatever the experiment is called and the fit says") {
+    Experiment experiment;
+    experiment.kind = Kind::Ground;
+    experiment.title = "floor\n\"ground.white\" = 1\n[parameters]\x1b[31m\ttab";
+    experiment.nominal = {{"ground.white", 4095}};  // of a converter that the simulator does not have
+    CHECK(loaded(experiment, {{"ground.gain1", 0.9}}).get("ground.gain1") == 0.9);
+    CHECK(loaded(experiment, {}).get("ground.white") == 1023);
+    CHECK_THAT(overlay_toml(experiment, said({})),
+               Contains("ground.white = 4095") && Contains("takes 0 to 1023"));
+    experiment.kind = Kind::Motion;
+    CHECK(loaded(experiment, {{"inverse_friction", 0.3}}).get("contact.mu") == 3);
+    CHECK(loaded(experiment, {{"inverse_friction", 0.0}}).get("contact.mu") == 3);
+    CHECK(loaded(experiment, {{"inverse_friction", 2.0}}).get("contact.mu") == 0.5);
+}
+
+TEST_CASE("an overlay moves the ground board and lifts it as the forward model does") {
+    Experiment experiment;
+    experiment.kind = Kind::Ground;
+    experiment.nominal = {{"ground.x", 0.029}};
+    const auto moved = loaded(experiment, {{"ground.forward_error", 0.004}, {"ground.left_error", -0.003}});
+    const physics::Parameters defaults;
+    CHECK(moved.ground.x == Approx(0.033));
+    for (std::size_t i = 0; i < physics::kGroundSensors; ++i)
+        CHECK(moved.ground.y[i] == Approx(defaults.ground.y[i] - 0.003));
+    const auto raised = loaded(experiment, {{"ground.raised", 0.002}, {"ground.gain1", 0.9}});
+    const double less = 1 - 0.002 * defaults.ground.height_slope;
+    CHECK(raised.ground.gain[0] == Approx(less));
+    CHECK(raised.ground.gain[1] == Approx(0.9 * less));
+}
+
+TEST_CASE("an overlay's number that is none is refused in its own file") {
+    scenarios::Scenario scenario;
+    const auto file = tests::scratch_path("overlay_nan.toml");
+    std::ofstream(file) << "[parameters]\n\"ground.gain0\" = nan\n";
+    CHECK_THROWS_WITH(scenarios::apply_overlay(scenario, file),
+                      Contains(file.string()) && Contains("line 2") && Contains("out of range"));
+    std::filesystem::remove(file);
+}
