@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "gap/check_kinds.h"
+#include "gap/check_mixed.h"
 #include "gap/clocks.h"
 #include "gap/columns.h"
 #include "gap/copies.h"
@@ -249,6 +250,7 @@ void check(Experiment& experiment) {
             if (run.has(clock)) check_clock(experiment, run, clock);
     drop_copies(experiment);
     check_runs(experiment);
+    check_mixed(experiment);
     check_kind(experiment);
     align_clocks(experiment);
 }

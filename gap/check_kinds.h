@@ -1,6 +1,5 @@
 #pragma once
-// Checks that need to know what a kind of experiment is: swapped columns, wrong units that stay plausible,
-// two robots in one file.
+// Checks that need to know what a kind of experiment is: swapped columns, wrong units that stay plausible.
 
 #include "gap/experiment.h"
 
