@@ -219,6 +219,18 @@ void check_accelerometer(Experiment& experiment) {
     }
 }
 
+/// How well one bearing follows the other, or the other's mirror image: mean vectors of their difference, so
+/// that an offset counts for nothing.
+double follows(const std::vector<double>& bearing, const std::vector<double>& truth, double sign) {
+    double c = 0, s = 0, n = 0;
+    for (std::size_t i = 0; i < std::min(bearing.size(), truth.size()); ++i) {
+        const double off = bearing[i] - sign * truth[i];
+        if (std::isnan(off)) continue;
+        c += std::cos(off), s += std::sin(off), n += 1;
+    }
+    return n < 8 ? 0.0 : std::hypot(c, s) / n;
+}
+
 void check_rab(Experiment& experiment) {
     if (!experiment.has("strength") && !experiment.has("bearing_rad") && !experiment.has("received"))
         refuse(experiment, experiment.runs.front(), "has none of strength, bearing_rad, received",
@@ -227,6 +239,12 @@ void check_rab(Experiment& experiment) {
         if (run.has("bearing_rad") && !run.has("true_bearing_rad"))
             refuse(experiment, run, "has bearing_rad but no true_bearing_rad",
                    "the truth beside the measurement");
+        constexpr double kClear = 0.8, kNone = 0.5;
+        const auto &bearing = run.column("bearing_rad"), &truth = run.column("true_bearing_rad");
+        if (follows(bearing, truth, -1) > kClear && follows(bearing, truth, 1) < kNone)
+            refuse(experiment, run,
+                   "bearing_rad is the mirror image of true_bearing_rad: one of them runs clockwise",
+                   "counter-clockwise bearings in the receiver's frame");
         if (rank_correlation(run.column("distance_m"), run.column("strength")) > 0.6)
             refuse(experiment, run, "strength grows with distance_m: swapped columns",
                    "strengths that fall with distance");

@@ -134,6 +134,7 @@ void check_pose(const Experiment& experiment, const Run& run, double metre_per_s
     if (!run.has("steps_left")) return;
     const auto &x = run.column("x_m"), &y = run.column("y_m"), &theta = run.column("theta_rad"),
                &left = run.column("steps_left"), &right = run.column("steps_right");
+    constexpr double kLeastTurned = 0.25;                   // a turn for a radian is 0.16
     constexpr double kLeastWay = 0.002, kLeastTurn = 0.02;  // m, rad: beyond a tracker's noise
     double along = 0.0, all = 0.0;
     std::vector<double> turns;
@@ -163,6 +164,12 @@ void check_pose(const Experiment& experiment, const Run& run, double metre_per_s
             refuse(experiment, run,
                    fmt::format("theta_rad turns {:.3g} times as far as the wheels do: degrees?", *middle),
                    "radians, or theta_rad = \"deg\" in [columns]");
+        if (*middle < kLeastTurned)
+            refuse(experiment, run,
+                   fmt::format("theta_rad turns {:.3g} times as far as the wheels do: wrong unit, or not the "
+                               "heading",
+                               *middle),
+                   "radians; \"turn\" and \"deg\" are known in [columns]");
     }
     constexpr double kEnough = 0.1;  // m
     if (all > kEnough && along < -kSideways * all)

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 namespace puckloop::gap {
@@ -77,7 +78,34 @@ std::string sentence(const Experiment& experiment, const Copy& copy) {
 
 }  // namespace
 
+namespace {
+
+/// Rows that repeat the one before, clock and all: written twice.
+void drop_twins(Experiment& experiment, Run& run) {
+    const char* clock = run.has("t_s") ? "t_s" : "t_host_s";
+    if (!run.has(clock)) return;
+    std::set<std::size_t> twins;
+    for (std::size_t i = 1; i < run.rows; ++i) {
+        if (std::isnan(run.column(clock)[i])) continue;
+        const bool same = std::all_of(run.columns.begin(), run.columns.end(), [i](const auto& column) {
+            const double now = column.second[i], before = column.second[i - 1];
+            return now == before || (std::isnan(now) && std::isnan(before));
+        });
+        if (same) twins.insert(i);
+    }
+    if (twins.empty()) return;
+    experiment.cautions.push_back(
+        fmt::format("{}: {} of {} rows repeat the row before, clock included (row {}): written twice; the "
+                    "later one is left out",
+                    run.file, twins.size(), run.rows, *twins.begin() + 1));
+    take_out(run, twins);
+}
+
+}  // namespace
+
 void drop_copies(Experiment& experiment) {
+    for (Run& run : experiment.runs)
+        drop_twins(experiment, run);
     const std::vector<std::string> measured = measured_columns(experiment);
     if (measured.empty()) return;
     const bool series = experiment.kind == Kind::Motion || experiment.kind == Kind::Accelerometer ||

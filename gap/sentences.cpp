@@ -44,7 +44,7 @@ std::string gain_sentence(const Held& held) {
     if (held.runs == 0) return "Nothing was held out.";
     const std::string figures =
         fmt::format("held-out error {:.0f} % of what it was (90 % interval {:.0f} to {:.0f} %), log score "
-                    "{:+.3g} a row, better in {} of {}",
+                    "{:+.3g} a row, better in {} of {} blocks",
                     100 * held.ratio, 100 * held.low, 100 * held.high, held.score_after - held.score_before,
                     held.runs_better, held.runs);
     if (!held.gain) return "No gain is claimed: " + figures + ".";

@@ -53,7 +53,7 @@ void refuse_foreign_files(const fs::path& folder) {
 }
 
 fs::path beside(const fs::path& file) {
-    return file.string() + ".part";
+    return fmt::format("{}.{}.part", file.string(), ::getpid());
 }
 
 void write_beside(const fs::path& file, const std::string& text) {

@@ -41,6 +41,8 @@ TEST_CASE("wrong units are refused") {
     CHECK_THAT(refusal(scaled(scaled(clean("motion"), "x_m", 1000), "y_m", 1000)), Contains("unit"));
     CHECK_THAT(refusal(scaled(scaled(clean("motion"), "x_m", 100), "y_m", 100)), Contains("unit"));
     CHECK_THAT(refusal(changed(clean("motion"), "theta_rad", degrees)), Contains("degrees"));
+    for (const double factor : {0.01, 1 / 6.2832})
+        CHECK_THAT(refusal(scaled(clean("motion"), "theta_rad", factor)), Contains("unit"));
     CHECK_THAT(refusal(scaled(clean("motion"), "t_s", 1000)), Contains("unit of t_s"));
     CHECK_THAT(refusal(scaled(clean("timing"), "t_host_s", 1000)), Contains("unit"));
     CHECK_THAT(refusal(scaled(scaled(clean("timing"), "t_host_s", 1000), "t_robot_s", 1000)),
@@ -71,6 +73,34 @@ TEST_CASE("swapped columns are refused, or said where both are plausible") {
     for (auto& row : made.rows)
         row[3] = fmt::format("{}", 0.01 * (std::stod(row[0]) * 10 - 10 * std::floor(std::stod(row[0]))));
     CHECK_THAT(cautions_of(swapped(made, "distance_m", "angle_rad")), Contains("swapped"));
+}
+
+TEST_CASE("bearings told the other way round are refused, offsets are not") {
+    Made made = clean("rab");
+    made = changed(made, "true_bearing_rad", [](std::size_t i, double) {
+        return fmt::format("{}", -3 + 0.07 * static_cast<double>(i));
+    });
+    const auto told = [&](double sign, double offset) {
+        return refusal(changed(made, "bearing_rad", [=](std::size_t i, double) {
+            return fmt::format(
+                "{:.4f}", std::remainder(sign * (-3 + 0.07 * static_cast<double>(i)) + offset, 6.2831853));
+        }));
+    };
+    CHECK(told(1, 0) == "");
+    CHECK(told(1, 0.4) == "");
+    CHECK_THAT(told(-1, 0), Contains("mirror image"));
+    CHECK_THAT(told(-1, 0.4), Contains("mirror image"));
+}
+
+TEST_CASE("rows written twice are said and left out once") {
+    for (const char* kind : {"proximity", "motion", "accelerometer", "microphone"}) {
+        INFO(kind);
+        Made made = clean(kind);
+        for (std::size_t i = made.rows.size(); i-- > 0;)
+            made.rows.insert(made.rows.begin() + static_cast<std::ptrdiff_t>(i), made.rows[i]);
+        made.runs = 1;
+        CHECK_THAT(cautions_of(made), Contains("rows repeat the row before, clock included"));
+    }
 }
 
 TEST_CASE("clocks that go back, stand still, wrap or jump") {
