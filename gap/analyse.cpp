@@ -9,6 +9,7 @@
 #include "gap/free_form.h"
 #include "gap/leftovers.h"
 #include "gap/placements.h"
+#include "gap/pushes.h"
 #include "gap/scatter.h"
 #include "gap/sentences.h"
 #include "gap/suggest.h"
@@ -33,6 +34,7 @@ constexpr double kFixedByOthers =
     0.97;  // correlation beyond which a parameter of the measuring chain is not fitted along
 
 constexpr const char* kPlacement = "placement";
+constexpr std::string_view kPushes = "collision_push";
 
 const char* const kNuisances[] = {"marker_offset", "tracker_delay", "stale_readings"};
 
@@ -50,8 +52,9 @@ class Analysis {
         final_ = with_nuisances();
         look_at_rest();
         if (!selection_.steps.empty() &&
-            (!experiment_.assumed.empty() || verdict_.unexplained_share > share_allowed() ||
-             (stopped_at_edge() && something_left()) || few_runs_disagree() || scatter_hides_a_mean()))
+            (pushes_keep_to_something() || !experiment_.assumed.empty() ||
+             verdict_.unexplained_share > share_allowed() || (stopped_at_edge() && something_left()) ||
+             few_runs_disagree() || scatter_hides_a_mean()))
             take_back();
         tell("intervals", 0.96);
         fill_causes();
@@ -246,6 +249,30 @@ class Analysis {
         const double won = std::max(
             gain_of(gains_by_block(study_.blocks(), study_.hold_out(calm), selection_.held_chosen)).sum, 0.0);
         return shaped > 0 && shaped > kUnexplainedShare * (shaped + won);
+    }
+
+    /// Pushes that keep to a place or to a command are none. First of the causes, they were all there was;
+    /// beside another cause they go and it stays.
+    bool pushes_keep_to_something() {
+        const auto step = std::find_if(selection_.steps.begin(), selection_.steps.end(),
+                                       [&](const Trial& one) { return effect(one.effect).name == kPushes; });
+        if (step == selection_.steps.end()) return false;
+        const auto pattern = push_pattern(experiment_, study_.model(), final_.fitted.state);
+        if (!pattern) return false;
+        verdict_.cautions.push_back(
+            fmt::format("jumps look like pushes, but {:.0f} of {:.0f} come at {} (by chance {:.1f}): no push "
+                        "knows of that",
+                        pattern->pushes, pattern->all, pattern->where, pattern->expected));
+        if (step == selection_.steps.begin()) return true;
+        const std::size_t pushes = step->effect;
+        selection_.chosen = without_effects(study_, selection_.chosen, {pushes});
+        selection_.held_chosen = study_.hold_out(selection_.chosen);
+        selection_.trials[pushes].remark = "comes nearest to what is left, but keeps to something";
+        selection_.steps.erase(step);
+        std::erase_if(selection_.draws, [&](const Draw& draw) { return draw.chosen == pushes; });
+        final_ = with_nuisances();
+        look_at_rest();
+        return false;
     }
 
     void fill_tried() {

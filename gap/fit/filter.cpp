@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <type_traits>
 
 namespace puckloop::gap {
 
@@ -15,7 +16,9 @@ namespace {
 
 using Lanes = Eigen::Array<double, static_cast<int>(kLanes), 1>;
 
-constexpr double kClip = 5.0;        // innovations beyond do not pull the filter further
+constexpr double kClip = 5.0;  // innovations beyond do not pull the filter further
+constexpr std::size_t kFirstRows = 5;
+constexpr unsigned kLookBack = 5;    // rows: an error is forgotten, a push stays
 constexpr double kPileWidths = 3.0;  // from the ceiling: nearer readings were cut to it
 
 double at(const std::vector<double>& values, std::size_t i, double neutral) {
@@ -42,40 +45,96 @@ struct Line {
     }
 };
 
+/// Plain, or the end of what the instrument shows at which the row is.
+RowRole role_of(const Observable& o, const Predicted& p, std::size_t i) {
+    const bool dead_zone = p.floor > 0.0 && std::isnan(o.instrument.floor);
+    if (o.y[i] <= (dead_zone ? 0.0 : o.instrument.floor)) return RowRole::Low;
+    if (o.y[i] >= o.instrument.ceiling) return RowRole::High;
+    return p.ceiling > 0.0 && o.y[i] >= p.ceiling - kPileWidths * p.pile ? RowRole::Piled : RowRole::Plain;
+}
+
 /// Is the row at an end of what the instrument shows? Then its role and limit are noted.
 bool clipped(const Observable& o, const Predicted& p, std::size_t i, double sd, Innovations& out) {
-    const bool dead_zone = p.floor > 0.0;
-    const bool low = o.y[i] <= (dead_zone && std::isnan(o.instrument.floor) ? 0.0 : o.instrument.floor);
-    const bool high = o.y[i] >= o.instrument.ceiling;
-    const bool piled = !low && !high && p.ceiling > 0.0 && o.y[i] >= p.ceiling - kPileWidths * p.pile;
-    if (!low && !high && !piled) return false;
-    const double floor = dead_zone ? p.floor : o.instrument.floor;
-    out.role[i] = low ? RowRole::Low : high ? RowRole::High : RowRole::Piled;
-    out.z[i] = ((low ? floor : high ? o.instrument.ceiling : p.ceiling) - p.mean[i]) / sd;
+    const RowRole role = role_of(o, p, i);
+    if (role == RowRole::Plain) return false;
+    const double limit = role == RowRole::Piled  ? p.ceiling
+                         : role == RowRole::High ? o.instrument.ceiling
+                         : p.floor > 0.0         ? p.floor
+                                                 : o.instrument.floor;
+    out.role[i] = role;
+    out.z[i] = (limit - p.mean[i]) / sd;
     return true;
+}
+
+/// Where a sum begins: the median of its first errors, since the very first may be an outlier of a heavy
+/// tail. Errors are in the unit of the observable.
+struct Beginning {
+    double error = 0.0;  ///< of the first row
+    double guess = 0.0;  ///< the sum's own part of it
+    double rows = 1.0;   ///< that the guess rests on
+};
+
+Beginning beginning(const Observable& o, const Predicted& p, std::size_t i) {
+    std::array<double, kFirstRows> errors;
+    std::size_t n = 0;
+    for (std::size_t k = i; n < kFirstRows && k < o.y.size() && (k == i || o.starts[k] == 0) &&
+                            role_of(o, p, k) == RowRole::Plain;
+         ++k)
+        errors[n++] = o.y[k] - p.mean[k];
+    const double first = errors[0];
+    if (n < kFirstRows) return {first, first, 1.0};
+    std::nth_element(errors.begin(), errors.begin() + kFirstRows / 2, errors.end());
+    return {first, errors[kFirstRows / 2], static_cast<double>(kFirstRows)};
+}
+
+/// Variance of the guess, in units of the error's: that of a median of so many errors that carry over; of one
+/// row it is the error's own.
+template <class Number>
+Number unsure_of(double rows, const Number& memory) {
+    if (rows < 2) return Number(memory * 0.0 + 1.0);
+    const Number variance = std::numbers::pi / 2 * (1.0 + memory) / ((1.0 - memory) * rows);
+    if constexpr (std::is_same_v<Number, double>)
+        return std::min(variance, 1.0);
+    else
+        return variance.min(1.0);
 }
 
 void filter_level(const Observable& o, const Predicted& p, const NoiseParameters& noise, Innovations& out) {
     const double drift = std::exp(noise.carry), nu = std::exp(noise.log_tail);
     const RowSize size(o, p, noise);
     const bool pushes = !p.lapse.empty();
-    if (pushes) out.mixed.assign(o.y.size(), 0.0);
+    if (pushes) {
+        out.mixed.assign(o.y.size(), 0.0);
+        out.pushed.assign(o.y.size(), 0.0);
+    }
     Walk walk{};
     PushedWalk pushed;
+    unsigned behind = 0;  // rows of the chain that do not yet know whether they were pushed
+    const auto look_back = [&](std::size_t row, unsigned rows) {
+        for (; behind > rows; --behind)
+            out.pushed[row - (behind - 1)] = pushed.pushed(behind - 1);
+    };
     bool carried = false;
     for (std::size_t i = 0; i < o.y.size(); ++i) {
         const double sd = size.at(i);
         if (o.starts[i] != 0) carried = false;
-        if (clipped(o, p, i, sd, out)) {
+        const bool cut = clipped(o, p, i, sd, out);
+        if (!carried || cut) {
+            if (behind > 0) look_back(i - 1, 0);
             carried = false;
-            continue;
         }
+        if (cut) continue;
         const double error = (o.y[i] - p.mean[i]) / sd;
         if (!carried) {
-            walk.begin(error);
-            if (pushes) pushed.begin(error);
-            out.role[i] = RowRole::First;
-            out.z[i] = 0.0;
+            const Beginning first = beginning(o, p, i);
+            const double guess = first.guess / sd, unsure = unsure_of(first.rows, noise.memory);
+            walk.begin(error, guess, unsure);
+            if (pushes) pushed.begin(error, guess, unsure);
+            const bool plain = first.rows > 1;
+            out.role[i] = plain ? RowRole::Plain : RowRole::First;
+            out.z[i] = error - guess;
+            if (plain) out.variance[i] = sd * sd;
+            if (pushes) out.mixed[i] = (nu + 1) / 2 * std::log1p(out.z[i] * out.z[i] / nu) + std::log(sd);
             carried = true;
             continue;
         }
@@ -89,7 +148,10 @@ void filter_level(const Observable& o, const Predicted& p, const NoiseParameters
         const auto row = pushed.filter(error, drift + gained, noise.memory, nu, p.lapse[i], width * width);
         out.z[i] = row.innovation;
         out.mixed[i] = row.cost + std::log(sd);
+        ++behind;
+        look_back(i, kLookBack);
     }
+    if (behind > 0) look_back(o.y.size() - 1, 0);
 }
 
 void filter_carry(const Observable& o, const Predicted& p, const NoiseParameters& noise, Innovations& out) {
@@ -159,6 +221,7 @@ void filter_sums(const Observable& o, const std::array<const Predicted*, kLanes>
         out[k]->variance.assign(n, 1.0);
         out[k]->role.assign(n, RowRole::Plain);
         out[k]->mixed.clear();
+        out[k]->pushed.clear();
         z[k] = out[k]->z.data();
         variance[k] = out[k]->variance.data();
     }
@@ -166,17 +229,31 @@ void filter_sums(const Observable& o, const std::array<const Predicted*, kLanes>
     WalkOf<Lanes> walk;
     for (std::size_t i = 0; i < n; ++i) {
         Lanes error, innovation;
-        for (std::size_t k = 0; k < kLanes; ++k)
-            error[static_cast<Eigen::Index>(k)] = o.y[i] - mean[k][i];
-        error /= sd;
         if (i == 0 || o.starts[i] != 0) {
-            walk.begin(error);
+            Lanes guess;
+            double rows = 1.0;
             for (std::size_t k = 0; k < kLanes; ++k) {
-                out[k]->role[i] = RowRole::First;
-                z[k][i] = 0.0;
+                const Beginning first = beginning(o, *predicted[k], i);
+                error[static_cast<Eigen::Index>(k)] = first.error;
+                guess[static_cast<Eigen::Index>(k)] = first.guess;
+                rows = first.rows;
+            }
+            error /= sd;
+            guess /= sd;
+            walk.begin(error, guess, unsure_of(rows, memory));
+            for (std::size_t k = 0; k < kLanes; ++k) {
+                const auto lane = static_cast<Eigen::Index>(k);
+                z[k][i] = error[lane] - guess[lane];
+                if (rows > 1)
+                    variance[k][i] = squared_sd[lane];
+                else
+                    out[k]->role[i] = RowRole::First;
             }
             continue;
         }
+        for (std::size_t k = 0; k < kLanes; ++k)
+            error[static_cast<Eigen::Index>(k)] = o.y[i] - mean[k][i];
+        error /= sd;
         const Lanes gained = at(o.walk, i, 0.0) + at(o.jolt, i, 0.0) / squared_sd;
         const Lanes total = walk.filter(error, drift + gained, memory, tail, innovation);
         const Lanes standard = innovation / total.sqrt(), own = total * sd * sd;
@@ -194,6 +271,7 @@ void filter(const Observable& observable, const Predicted& predicted, const Nois
     out.variance.assign(n, 1.0);
     out.role.assign(n, RowRole::Plain);
     out.mixed.clear();
+    out.pushed.clear();
     if (observable.noise == NoiseKind::Event) {
         out.role.assign(n, RowRole::Event);
         for (std::size_t i = 0; i < n; ++i)

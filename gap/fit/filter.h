@@ -14,7 +14,7 @@ namespace puckloop::gap {
 
 enum class RowRole : char {
     Plain,  ///< an innovation
-    First,  ///< only says where a sum begins
+    First,  ///< only says where a short sum begins
     Low,    ///< at or below the instrument's floor
     High,   ///< at or above its ceiling
     Piled,  ///< cut to the prediction's ceiling
@@ -29,6 +29,8 @@ struct Innovations {
     std::vector<RowRole> role;
     /// A sum that may be pushed: what a plain row costs, but for the density's constant; else empty.
     std::vector<double> mixed;
+    /// Of the same: how likely each row was pushed, by what a few rows after it say.
+    std::vector<double> pushed;
 };
 
 /// A model is never surer than this of a single event or clip.

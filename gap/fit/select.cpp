@@ -31,13 +31,15 @@ constexpr double kTie = 2.0;              // nats of merit, or of BIC: not even 
 constexpr double kDraw = 6.0;             // difference of BIC that tells nothing
 
 /// Effects that act as rare outliers: heavy-tailed noise looks much the same, so they must say far more.
-constexpr std::string_view kOutliers[] = {"multipath", "pulsed_interference"};
+constexpr std::string_view kOutliers[] = {"multipath", "pulsed_interference", "collision_push"};
 constexpr double kEnoughForOutliers = 60.0;
 
+bool acts_as_outliers(const Effect& effect) {
+    return std::find(std::begin(kOutliers), std::end(kOutliers), effect.name) != std::end(kOutliers);
+}
+
 double enough_for(const Effect& effect) {
-    return std::find(std::begin(kOutliers), std::end(kOutliers), effect.name) != std::end(kOutliers)
-               ? kEnoughForOutliers
-               : kEnoughBic;
+    return acts_as_outliers(effect) ? kEnoughForOutliers : kEnoughBic;
 }
 
 bool has(const std::vector<std::size_t>& set, std::size_t effect) {
@@ -96,6 +98,7 @@ class Selector {
     }
 
     bool enough(const Fit& fit, const Gain& gain) const {
+        if (acts_as_outliers(effect_of(fit))) return gain.sum > kSureDeviations * gain.sd;
         // Against a claimed noise the claim is the evidence: a fit of the noise itself predicts as well.
         const bool claim = effect_of(fit).name == std::string_view("range_noise") && gain.sum > -1;
         // Where it happens it says all, and the runs without it lose a trifle each for the possibility.

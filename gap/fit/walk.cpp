@@ -13,10 +13,10 @@ constexpr double kForgotten = 1e-4;  // of the likeliest history's weight
 
 }  // namespace
 
-void PushedWalk::begin(double value) {
+void PushedWalk::begin(double value, double guess, double unsure) {
     Walk first{};
-    first.begin(value);
-    kept_.assign(1, {first, 1.0});
+    first.begin(value, guess, unsure);
+    kept_.assign(1, {first, 1.0, 0});
 }
 
 PushedWalk::Row PushedWalk::filter(double value, double drift, double memory, double tail, double chance,
@@ -27,6 +27,7 @@ PushedWalk::Row PushedWalk::filter(double value, double drift, double memory, do
         for (const bool pushed : {false, true}) {
             if (pushed && (chance <= 0 || push <= 0)) continue;
             History history = old;
+            history.pushed = old.pushed << 1U | (pushed ? 1U : 0U);
             if (push > 0) history.weight *= pushed ? chance : 1 - chance;
             double innovation = 0.0;
             const double variance =
@@ -50,6 +51,13 @@ PushedWalk::Row PushedWalk::filter(double value, double drift, double memory, do
         history.weight = sum > 0 ? history.weight / sum : 1.0 / static_cast<double>(kept_.size());
     likely = std::max(likely, kLeastDensity);
     return {-std::log(likely), innovations / likely};
+}
+
+double PushedWalk::pushed(unsigned back) const {
+    double sum = 0.0;
+    for (const History& history : kept_)
+        if ((history.pushed >> back & 1U) != 0) sum += history.weight;
+    return sum;
 }
 
 }  // namespace puckloop::gap

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace puckloop::gap {
@@ -33,13 +34,13 @@ template <class Number>
 struct WalkOf {
     Number level, error, p00, p01, p11;
 
-    /// The first row: level and error are known only together.
-    void begin(const Number& value) {
-        level = value;
-        error = 0.0;
-        p00 = 1.0;
-        p01 = -1.0;
-        p11 = 1.0;
+    /// The first row: level and error are known together, and the level for itself with variance `unsure`.
+    void begin(const Number& value, const Number& guess, const Number& unsure) {
+        level = guess;
+        error = value - guess;
+        p00 = unsure;
+        p01 = -unsure;
+        p11 = unsure;
     }
 
     /// Returns the innovation's variance. `tail`: degrees of freedom of the errors' Student t.
@@ -75,14 +76,17 @@ class PushedWalk {
         double innovation;  ///< standardised, the mean over histories
     };
 
-    void begin(double value);
+    void begin(double value, double guess, double unsure);
     /// `chance` that the row was pushed, by an amount of variance `push`; the rest as Walk::filter.
     Row filter(double value, double drift, double memory, double tail, double chance, double push);
+    /// How likely the row `back` rows ago (fewer than 32) was pushed, as seen from the last one.
+    double pushed(unsigned back) const;
 
   private:
     struct History {
         Walk walk;
         double weight;
+        std::uint32_t pushed;  ///< a bit for each of the last rows, the last one lowest
     };
     std::vector<History> kept_, next_;
 };
