@@ -4,6 +4,7 @@
 #include "gap/free_form_cells.h"
 #include "gap/stats/profile.h"
 #include "gap/stats/robust.h"
+#include "gap/sum_form.h"
 
 #include <fmt/format.h>
 
@@ -286,6 +287,12 @@ std::vector<FreeForm> free_forms_of(const Experiment& experiment, const Model& m
             continue;
         }
         auto components = free_form_cells(experiment, errors.at, errors.starts);
+        if (observable.noise == NoiseKind::Level) {
+            FreeForm rows = told(errors, components, seed),
+                     sums = sum_form_of(experiment, model, state, prediction, o, components, seed);
+            forms.push_back(sums.gain > rows.gain ? std::move(sums) : std::move(rows));
+            continue;
+        }
         if (observable.noise == NoiseKind::Carry) add_proportional(errors, components);
         forms.push_back(told(errors, components, seed));
         if (observable.noise == NoiseKind::Carry) forms.push_back(wild_form(errors, components, seed));

@@ -99,7 +99,8 @@ Number unsure_of(double rows, const Number& memory) {
         return variance.min(1.0);
 }
 
-void filter_level(const Observable& o, const Predicted& p, const NoiseParameters& noise, Innovations& out) {
+void filter_level(const Observable& o, const Predicted& p, const NoiseParameters& noise, Innovations& out,
+                  std::vector<double>* gain) {
     const double drift = std::exp(noise.carry), nu = std::exp(noise.log_tail);
     const RowSize size(o, p, noise);
     const bool pushes = !p.lapse.empty();
@@ -140,7 +141,9 @@ void filter_level(const Observable& o, const Predicted& p, const NoiseParameters
         }
         double innovation = 0.0;
         const double gained = at(o.walk, i, 0.0) + at(o.jolt, i, 0.0) / (sd * sd);
+        const double level = walk.level;
         const double variance = walk.filter(error, drift + gained, noise.memory, nu, innovation);
+        if (gain != nullptr && innovation != 0.0) (*gain)[i] = (walk.level - level) / innovation;
         out.z[i] = innovation / std::sqrt(variance);
         out.variance[i] = variance * sd * sd;
         if (!pushes) continue;
@@ -265,7 +268,7 @@ void filter_sums(const Observable& o, const std::array<const Predicted*, kLanes>
 }
 
 void filter(const Observable& observable, const Predicted& predicted, const NoiseParameters& noise,
-            Innovations& out) {
+            Innovations& out, std::vector<double>* gain) {
     const std::size_t n = observable.y.size();
     out.z.resize(n);
     out.variance.assign(n, 1.0);
@@ -277,7 +280,8 @@ void filter(const Observable& observable, const Predicted& predicted, const Nois
         for (std::size_t i = 0; i < n; ++i)
             out.z[i] = std::clamp(predicted.mean[i], kLeastProbability, 1 - kLeastProbability);
     } else if (observable.noise == NoiseKind::Level) {
-        filter_level(observable, predicted, noise, out);
+        if (gain != nullptr) gain->assign(n, 0.0);
+        filter_level(observable, predicted, noise, out, gain);
     } else {
         filter_carry(observable, predicted, noise, out);
     }

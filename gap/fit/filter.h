@@ -36,8 +36,9 @@ struct Innovations {
 /// A model is never surer than this of a single event or clip.
 inline constexpr double kLeastProbability = 1e-3;
 
+/// `gain`: of a Level observable, the share of each innovation that the sum took over; may be null.
 void filter(const Observable& observable, const Predicted& predicted, const NoiseParameters& noise,
-            Innovations& out);
+            Innovations& out, std::vector<double>* gain = nullptr);
 
 /// A sum in which nothing is cut, pushed, or noisier here than there: several predictions of it can be
 /// filtered at a time, which takes little longer than one and gives the same numbers.

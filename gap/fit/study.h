@@ -108,6 +108,7 @@ struct Gain {
     double share_better = 0.0;                  ///< of the blocks
     double share_touched = 0.0;                 ///< that gain, of the blocks that notice at all
     int clearly_better = 0, clearly_worse = 0;  ///< blocks, by some nats
+    double without_best = 0.0;                  ///< sum over all blocks but the one that gains most
 
     /// What is rare, or shows in few runs only, is not seen in most blocks, but more than once.
     bool here_and_there() const { return clearly_better > 1 && clearly_worse == 0; }

@@ -1,6 +1,6 @@
 #include "gap/stats/boosting.h"
 
-#include "base/random.h"
+#include "gap/stats/parts.h"
 #include "gap/stats/robust.h"
 
 #include <Eigen/Dense>
@@ -19,8 +19,6 @@ constexpr double kFreedom = 1.5;     // degrees of freedom of each step, whateve
 constexpr double kTrim = 4.0;        // deviations
 constexpr double kLeastWon = 1.0;    // of the errors' squares in units of their variance: less is not pursued
 constexpr double kLooseEnds = 0.05;  // ridge of ordered cells beside their differences
-constexpr std::size_t kEnoughRuns = 3;
-constexpr std::size_t kStretches = 12;  // of a run, where runs are few
 constexpr std::size_t kKept = 40;       // components that stay in view between two looks at all
 constexpr double kLessCarry = 0.35;
 constexpr int kLookAgain = 10;  // steps
@@ -230,45 +228,6 @@ class Booster {
     std::vector<std::size_t> view_;
 };
 
-/// Parts to hold out, and the blocks over which gains are judged.
-void make_parts(const ErrorRows& rows, std::uint64_t seed, std::vector<int>& fold, std::vector<int>& block,
-                std::size_t& folds, std::size_t& blocks) {
-    const std::size_t n = rows.run.size();
-    std::vector<int> runs = rows.run;
-    std::sort(runs.begin(), runs.end());
-    runs.erase(std::unique(runs.begin(), runs.end()), runs.end());
-    fold.assign(n, 0);
-    block.assign(n, 0);
-    const auto place = [&](int run) {
-        return static_cast<std::size_t>(std::lower_bound(runs.begin(), runs.end(), run) - runs.begin());
-    };
-    if (runs.size() >= kEnoughRuns) {
-        std::vector<std::size_t> order(runs.size());
-        std::iota(order.begin(), order.end(), std::size_t{0});
-        RandomStream random(seed, "gap/free form");
-        for (std::size_t i = order.size(); i > 1; --i)
-            std::swap(order[i - 1], order[random.below(i)]);
-        folds = std::min(rows.folds, runs.size());
-        blocks = runs.size();
-        for (std::size_t i = 0; i < n; ++i) {
-            block[i] = static_cast<int>(place(rows.run[i]));
-            fold[i] = static_cast<int>(order[place(rows.run[i])] % folds);
-        }
-        return;
-    }
-    folds = rows.folds;
-    blocks = runs.size() * kStretches;
-    std::vector<std::size_t> length(runs.size(), 0), seen(runs.size(), 0);
-    for (const int run : rows.run)
-        ++length[place(run)];
-    for (std::size_t i = 0; i < n; ++i) {
-        const std::size_t r = place(rows.run[i]);
-        const std::size_t stretch = seen[r]++ * kStretches / std::max<std::size_t>(length[r], 1);
-        block[i] = static_cast<int>(r * kStretches + stretch);
-        fold[i] = static_cast<int>(stretch % folds);
-    }
-}
-
 /// Held-out gain over no correction at the given carry, by block, for each number of steps.
 using Gains = std::vector<std::vector<double>>;
 
@@ -280,9 +239,7 @@ Boosted boosted(const ErrorRows& rows, const std::vector<Component>& components,
     result.carry = rows.carry;
     result.correction.assign(n, 0.0);
     result.weight.assign(components.size(), 0.0);
-    std::vector<int> fold, block;
-    std::size_t folds = 0, blocks = 0;
-    make_parts(rows, seed, fold, block, folds, blocks);
+    const auto [fold, block, folds, blocks] = parts_of(rows.run, rows.folds, seed);
     if (components.empty() || folds < 2) return result;
 
     // What a missing structure does to a fit is to make errors look as if they carried over.

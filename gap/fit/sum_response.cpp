@@ -1,0 +1,39 @@
+#include "gap/fit/sum_response.h"
+
+#include "gap/fit/filter.h"
+
+#include <cmath>
+#include <limits>
+
+namespace puckloop::gap {
+
+SumResponse::SumResponse(const Observable& observable, const Predicted& predicted,
+                         const NoiseParameters& noise)
+    : memory_(noise.memory) {
+    const std::size_t n = observable.y.size();
+    Predicted calm = predicted;
+    calm.lapse.clear();
+    calm.lapse_scale.clear();
+    Innovations innovations;
+    filter(observable, calm, noise, innovations, &gain_);
+    role_.assign(n, Role::Silent);
+    z_.assign(n, std::numeric_limits<double>::quiet_NaN());
+    log_sd_.assign(n, 0.0);
+    sd_.assign(n, 1.0);
+    bool begun = false;
+    for (std::size_t i = 0; i < n; ++i) {
+        if (observable.starts[i] != 0) begun = false;
+        if (innovations.role[i] != RowRole::Plain && innovations.role[i] != RowRole::First) {
+            begun = false;
+            continue;
+        }
+        role_[i] = begun ? Role::Follows : Role::Begins;
+        begun = true;
+        if (role_[i] == Role::Begins) continue;
+        z_[i] = innovations.z[i];
+        sd_[i] = std::sqrt(innovations.variance[i]);
+        log_sd_[i] = std::log(sd_[i]);
+    }
+}
+
+}  // namespace puckloop::gap
