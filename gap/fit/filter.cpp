@@ -140,7 +140,7 @@ void filter_level(const Observable& o, const Predicted& p, const NoiseParameters
             continue;
         }
         double innovation = 0.0;
-        const double gained = at(o.walk, i, 0.0) + at(o.jolt, i, 0.0) / (sd * sd);
+        const double gained = at(o.walk, i, 0.0) + (at(o.jolt, i, 0.0) + at(p.jolt, i, 0.0)) / (sd * sd);
         const double level = walk.level;
         const double variance = walk.filter(error, drift + gained, noise.memory, nu, innovation);
         if (gain != nullptr && innovation != 0.0) (*gain)[i] = (walk.level - level) / innovation;
@@ -201,8 +201,8 @@ void filter_carry(const Observable& o, const Predicted& p, const NoiseParameters
 }  // namespace
 
 bool is_plain_sum(const Observable& o, const Predicted& p) {
-    return o.noise == NoiseKind::Level && p.factor.empty() && p.extra.empty() && p.lapse.empty() &&
-           p.floor <= 0.0 && p.ceiling <= 0.0 && std::isnan(o.instrument.floor) &&
+    return o.noise == NoiseKind::Level && p.factor.empty() && p.extra.empty() && p.jolt.empty() &&
+           p.lapse.empty() && p.floor <= 0.0 && p.ceiling <= 0.0 && std::isnan(o.instrument.floor) &&
            std::isnan(o.instrument.ceiling);
 }
 

@@ -16,9 +16,9 @@ constexpr double kLeastCurvature = 1e-8;
 constexpr int kTail = 2;  // as noise_parameter counts
 
 bool equal(const Predicted& a, const Predicted& b) {
-    return a.mean == b.mean && a.factor == b.factor && a.extra == b.extra && a.lapse == b.lapse &&
-           a.lapse_scale == b.lapse_scale && a.lapse_shift == b.lapse_shift && a.floor == b.floor &&
-           a.ceiling == b.ceiling && a.line_amplitude == b.line_amplitude &&
+    return a.mean == b.mean && a.factor == b.factor && a.extra == b.extra && a.jolt == b.jolt &&
+           a.lapse == b.lapse && a.lapse_scale == b.lapse_scale && a.lapse_shift == b.lapse_shift &&
+           a.floor == b.floor && a.ceiling == b.ceiling && a.line_amplitude == b.line_amplitude &&
            a.line_frequency == b.line_frequency;
 }
 

@@ -44,6 +44,7 @@ struct Predicted {
     std::vector<double> mean;         ///< of an Event: its probability
     std::vector<double> factor;       ///< noise is this many times larger (1)
     std::vector<double> extra;        ///< noise sd added in quadrature, observable's unit (0)
+    std::vector<double> jolt;         ///< Level: variance that the sum gains, observable's unit squared (0)
     std::vector<double> lapse;        ///< probability that the row is a lapse (0)
     std::vector<double> lapse_scale;  ///< sd of a lapse, observable's unit
     double lapse_shift = 0.0;         ///< mean of a lapse, observable's unit

@@ -28,6 +28,7 @@ constexpr double kStill = 1e-6;  // steps: less than this between rows is standi
 constexpr double kEdge = 0.004;  // width of the dead band's edge, share of it
 constexpr double kGravity = 9.81;
 constexpr double kLongestSlip = 0.7;   // s: no change of speed costs way for longer
+constexpr double kSlip = 4;            // steps that a motor loses at a time: its coils' pattern repeats
 constexpr double kLateStep = 0.25;     // a step is counted when it is over
 constexpr double kOpenSteps = 0.6;     // of a wheel, each time its speed changes: the timer's phase
 constexpr double kOpenSlip = 0.2;      // share of the way lost to sliding that no formula tells
@@ -69,6 +70,7 @@ class MotionModel final : public Model {
         const bool noisy = at(v, push_rate_) > 0 || (!counted_ && at(v, drop_) > 0);
         for (int o = 0; o < 3; ++o) {
             Predicted& p = out[static_cast<std::size_t>(o)];
+            p.jolt.assign(at(v, loss_speed_) > 0 && o != 1 ? n : 0, 0.0);
             p.lapse.assign(noisy ? n : 0, 0.0);
             p.lapse_scale.assign(noisy ? n : 0, 0.0);
         }
@@ -344,6 +346,7 @@ class MotionModel final : public Model {
             const double now = path.time[i] - late, before = i == 0 ? now : path.time[i - 1] - late,
                          span = now - before;
             std::array<double, 2> moved{};
+            double slips = 0.0;  // variance of the way that is lost, m2
             for (std::size_t w = 0; w < 2; ++w) {
                 const Driven::Wheel& wheel = ways.wheel[w];
                 const double asked = wheel.asked[i];
@@ -351,7 +354,11 @@ class MotionModel final : public Model {
                 double change = wheel.steps[i];
                 if (change != 0.0 && span > 0) {
                     const double rate = std::abs(change) / span;
-                    if (loss_speed > 0) change *= 1 - 1 / (1 + std::exp(-(rate - loss_speed) / loss_width));
+                    if (loss_speed > 0) {
+                        const double lost = change / (1 + std::exp(-(rate - loss_speed) / loss_width));
+                        change -= lost;
+                        slips += kSlip * std::abs(lost) * metre[w] * metre[w];
+                    }
                     if (deadband > 0)
                         change *= 1 / (1 + std::exp(-(asked / span - deadband) / (kEdge * deadband)));
                 }
@@ -397,6 +404,10 @@ class MotionModel final : public Model {
             out[0].mean[first + i] = along;
             out[1].mean[first + i] = across;
             out[2].mean[first + i] = heading;
+            if (loss_speed > 0) {
+                out[0].jolt[first + i] = slips / 4;
+                out[2].jolt[first + i] = slips / (axle * axle);
+            }
             if (push > 0 && ways.settled[i] != 0) {
                 for (std::size_t o = 0; o < 3; ++o) {
                     out[o].lapse[first + i] = std::min(push * span, 0.5);
