@@ -29,7 +29,7 @@ constexpr double kCalmer[] = {1.0, 0.1, 0.01};  // shares of the fitted drift; s
 
 /// What a cell's rows add: the same each, or in proportion to what some sum gains in them.
 struct Amount {
-    std::string of;  ///< empty: the same each
+    std::string of, unit;  ///< empty: the same each
     std::vector<double> value;
 };
 
@@ -195,11 +195,11 @@ std::vector<double> increments(const std::vector<double>& sum, const std::vector
 
 std::vector<Amount> amounts_of(const Model& model, const Prediction& prediction, std::size_t o) {
     const Observable& own = model.observables()[o];
-    std::vector<Amount> amounts{{"", std::vector<double>(own.y.size(), 1.0)}};
+    std::vector<Amount> amounts{{"", "", std::vector<double>(own.y.size(), 1.0)}};
     for (std::size_t k = 0; k < prediction.size(); ++k) {
         const Observable& other = model.observables()[k];
         if (other.noise != NoiseKind::Level || other.fixed_sd > 0 || other.row != own.row) continue;
-        Amount one{other.name, increments(prediction[k].mean, own.starts)};
+        Amount one{other.name, other.unit, increments(prediction[k].mean, own.starts)};
         const Eigen::Map<const Eigen::ArrayXd> value(one.value.data(),
                                                      static_cast<Eigen::Index>(one.value.size()));
         if (value.size() > 0 && std::sqrt(value.square().mean()) > kStill) amounts.push_back(std::move(one));
@@ -287,7 +287,9 @@ FreeFormTerm term_of(const Column& column, double move, const std::vector<stats:
     const std::string where =
         (column.above ? "from " : "at ") + term.where.front() + (column.above ? " on" : "");
     term.shape = amount.of.empty() ? fmt::format("{:+.3g} {} a row {}", move, unit, where)
-                                   : fmt::format("{:+.3g} {} of {} {}", move, unit, amount.of, where);
+                 : amount.unit == unit
+                     ? fmt::format("{:+.3g} % of {} {}", 100 * move, amount.of, where)
+                     : fmt::format("{:+.3g} {}/{} of {} {}", move, unit, amount.unit, amount.of, where);
     return term;
 }
 
