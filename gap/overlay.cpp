@@ -58,26 +58,19 @@ void wheels(const Experiment& experiment, const Values& fitted, Values& simulato
         get(experiment.nominal, "robot.wheel_radius_right", both) * scale * (1 + mismatch);
 }
 
-/// The ground board's place and height over the floor: the board reads like the model's (physics/ground.cpp),
-/// where height scales the answer as gains do.
+/// The ground board's place and height over the floor.
 void ground_board(const Experiment& experiment, Values& fitted, Values& simulator) {
-    const physics::Parameters defaults;
-    const auto take = [&](const char* name) {
+    const physics::GroundParameters drawn = physics::Parameters().ground;
+    const auto move = [&](const char* name, const std::string& place, double neutral) {
         const double value = get(fitted, name, 0.0);
-        fitted.erase(name);
-        return value;
+        if (value != 0) simulator[place] = get(experiment.nominal, place, neutral) + value;
     };
-    const double forward = take("ground.forward_error"), left = take("ground.left_error"),
-                 lost = take("ground.raised") *
-                        get(experiment.nominal, "ground.height_slope", defaults.ground.height_slope);
-    if (forward != 0)
-        simulator["ground.x"] = get(experiment.nominal, "ground.x", defaults.ground.x) + forward;
-    for (std::size_t i = 0; i < physics::kGroundSensors; ++i) {
-        const std::string y = fmt::format("ground.y{}", i), gain = fmt::format("ground.gain{}", i);
-        if (left != 0) simulator[y] = get(experiment.nominal, y, defaults.ground.y[i]) + left;
-        const double all = get(experiment.nominal, "ground.gain", 1.0);
-        if (lost != 0) fitted[gain] = get(fitted, gain, get(experiment.nominal, gain, all)) * (1 - lost);
-    }
+    move("ground.forward_error", "ground.x", drawn.x);
+    move("ground.raised", "ground.height", drawn.height);
+    for (std::size_t i = 0; i < physics::kGroundSensors; ++i)
+        move("ground.left_error", fmt::format("ground.y{}", i), drawn.y[i]);
+    for (const char* name : {"ground.forward_error", "ground.raised", "ground.left_error"})
+        fitted.erase(name);
 }
 
 /// What acts on links and clocks: taken out of `measuring` and told as the run's tables [uart] and [clock].

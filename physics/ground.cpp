@@ -7,7 +7,8 @@ namespace puckloop::physics {
 
 namespace {
 
-constexpr double kLeastSignal = 0.05;  // of the nominal signal, however high the sensor is
+constexpr double kDrawnHeight = 0.0015;  // m over the floor: where black and white were measured
+constexpr double kLeastSignal = 0.05;    // of the nominal signal, however high the sensor is
 constexpr double kMostSignal = 1.2;
 
 bool covers(const Patch& patch, double x, double y) {
@@ -45,7 +46,8 @@ std::array<double, kGroundSensors> GroundRow::sense(const RobotState& robot) con
         for (const Point& spot : spots)
             grey += floor_grey(base_grey_, patches_, x + spot.x, y + spot.y);
         grey /= static_cast<double>(spots.size());
-        const double lift = -p.x * std::sin(robot.pitch) + p.y[i] * std::sin(robot.roll);
+        const double lift =
+            p.height - kDrawnHeight - p.x * std::sin(robot.pitch) + p.y[i] * std::sin(robot.roll);
         const double signal = std::clamp(1.0 - p.height_slope * lift, kLeastSignal, kMostSignal);
         const double level = (p.black + (p.white - p.black) * grey) * signal;
         counts[i] = std::clamp(p.gain[i] * level + p.offset[i], 0.0, p.saturation);

@@ -187,6 +187,9 @@ TEST_CASE("ground sensors read the floor under them, left to right") {
     CHECK(channel(world, kGroundChannel + 2) == Approx(330.5).margin(0.01));
     world.parameters["ground.gain1"] = 2;
     CHECK(channel(world, kGroundChannel + 1) == 967);  // saturated
+    // A board 1 mm higher sees 4.4 % less.
+    world.parameters["ground.height"] = 0.0025;
+    CHECK(channel(world, kGroundChannel + 0) == Approx(329 * (1 - 0.04375)).margin(0.01));
 }
 
 TEST_CASE("a ground sensor crosses an edge where the edge is, softened by its footprint") {
