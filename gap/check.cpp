@@ -6,6 +6,7 @@
 #include "gap/clocks.h"
 #include "gap/columns.h"
 #include "gap/copies.h"
+#include "gap/fill_missing.h"
 
 #include <fmt/format.h>
 
@@ -89,7 +90,7 @@ void check_missing(Experiment& experiment, const Run& run, const ColumnInfo& inf
     if (info.required)
         experiment.cautions.push_back(fmt::format("{}: {} is missing in {} of {} rows, which are left out",
                                                   run.file, info.name, missing, values.size()));
-    else if (info.role != Role::Observable)
+    else if (info.role != Role::Observable && experiment.kind == Kind::Motion)  // others: fill_missing()
         experiment.cautions.push_back(
             fmt::format("{}: {} is missing in {} of {} rows, which are left out or filled in", run.file,
                         info.name, missing, values.size()));
@@ -248,6 +249,7 @@ void check(Experiment& experiment) {
     for (const Run& run : experiment.runs)
         for (const char* clock : {"t_s", "t_host_s", "t_robot_s"})
             if (run.has(clock)) check_clock(experiment, run, clock);
+    fill_missing(experiment);
     drop_copies(experiment);
     check_runs(experiment);
     check_mixed(experiment);
