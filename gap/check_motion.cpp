@@ -89,7 +89,7 @@ void check_commands(const Experiment& experiment, const Run& run) {
                &right = run.column("steps_right"), &cmd_left = run.column("cmd_left"),
                &cmd_right = run.column("cmd_right");
     double own = 0.0, crossed = 0.0, counted = 0.0, asked = 0.0;
-    std::array<double, 2> ran{}, told{};  // a wheel each
+    std::array<double, 2> ran{}, told{}, along{};  // a wheel each
     std::vector<double> spans;
     for (std::size_t i = 1; i < run.rows; ++i)
         if (!std::isnan(time[i] - time[i - 1])) spans.push_back(time[i] - time[i - 1]);
@@ -105,6 +105,7 @@ void check_commands(const Experiment& experiment, const Run& run) {
         crossed += std::abs(l - cr) + std::abs(r - cl);
         ran[0] += std::abs(l), ran[1] += std::abs(r);
         told[0] += std::abs(cl), told[1] += std::abs(cr);
+        along[0] += std::copysign(l, l * cl), along[1] += std::copysign(r, r * cr);
         counted += std::abs(l) + std::abs(r);
         asked += std::abs(cl) + std::abs(cr);
     }
@@ -122,6 +123,12 @@ void check_commands(const Experiment& experiment, const Run& run) {
                 experiment, run,
                 fmt::format("steps_{} stands still while its wheel is commanded", w == 0 ? "left" : "right"),
                 "a counter that counts");
+    for (std::size_t w = 0; w < 2; ++w)
+        if (told[w] > kEnough && along[w] < -ran[w] / 2)
+            refuse(experiment, run,
+                   fmt::format("steps_{0} runs against cmd_{0}: one of them has the wrong sign",
+                               w == 0 ? "left" : "right"),
+                   "forward positive in both");
     if (asked > kEnough && crossed < 0.3 * own)
         refuse(experiment, run,
                "steps_left follows cmd_right and steps_right cmd_left: left and right are swapped in one",

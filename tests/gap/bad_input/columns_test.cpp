@@ -61,6 +61,8 @@ TEST_CASE("swapped columns are refused, or said where both are plausible") {
     CHECK_THAT(said("motion", "steps_left", "steps_right"), Contains("swapped"));
     CHECK_THAT(said("motion", "cmd_left", "cmd_right"), Contains("swapped"));
     CHECK_THAT(said("motion", "x_m", "y_m"), Contains("swapped"));
+    CHECK_THAT(refusal(scaled(clean("motion"), "cmd_left", -1)),
+               Contains("steps_left runs against cmd_left"));
     CHECK(said("motion", "y_m", "theta_rad") != "");
     CHECK_THAT(said("ground", "grey", "reading"), Contains("swapped"));
     CHECK_THAT(said("accelerometer", "ax", "az"), Contains("swapped"));
