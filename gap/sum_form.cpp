@@ -21,6 +21,7 @@ constexpr std::size_t kKept = 60;         // columns that a pursuit looks at, th
 constexpr std::size_t kMostTerms = 4;     // of a pursuit
 constexpr double kMostDeviations = 10.0;  // that a term may move an innovation, root mean square
 constexpr Effort kEffort{12, true};
+constexpr std::size_t kManyRows = 6000;
 constexpr std::size_t kFolds = 6;               // runs are held out in
 constexpr double kClear = 6.0;                  // nats on held-out rows
 constexpr double kSure = 2.0;                   // their deviations between runs
@@ -231,6 +232,15 @@ struct View {
     }
 };
 
+/// Where rows are many, covariates by themselves only: their pairs would take minutes.
+std::vector<stats::Component> affordable(std::vector<stats::Component> components, std::size_t rows) {
+    if (rows > kManyRows)
+        std::erase_if(components, [](const stats::Component& one) {
+            return one.name.find(" and ") != std::string::npos;
+        });
+    return components;
+}
+
 /// Runs of the same conditions repeat each other.
 std::vector<int> likeness_of(const Experiment& experiment) {
     std::map<decltype(Run::conditions), int> kinds;
@@ -296,9 +306,10 @@ FreeFormTerm term_of(const Column& column, double move, const std::vector<stats:
 }  // namespace
 
 FreeForm sum_form_of(const Experiment& experiment, const Model& model, const State& state,
-                     const Prediction& prediction, std::size_t o, const std::vector<stats::Component>& cells,
-                     std::uint64_t seed) {
+                     const Prediction& prediction, std::size_t o,
+                     const std::vector<stats::Component>& components, std::uint64_t seed) {
     const Observable& observable = model.observables()[o];
+    const std::vector<stats::Component> cells = affordable(components, observable.y.size());
     FreeForm form;
     form.observable = observable.name;
     form.unit = observable.unit;
