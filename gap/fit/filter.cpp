@@ -53,6 +53,25 @@ RowRole role_of(const Observable& o, const Predicted& p, std::size_t i) {
     return p.ceiling > 0.0 && o.y[i] >= p.ceiling - kPileWidths * p.pile ? RowRole::Piled : RowRole::Plain;
 }
 
+/// Height of the normal density over the tail beyond z.
+double hazard(double z) {
+    constexpr double kFar = 20.0;  // beyond, the tail runs out; the series is exact to 1e-7
+    if (z > kFar) return z + 1 / z - 2 / (z * z * z);
+    return std::exp(-z * z / 2) * std::sqrt(2 / std::numbers::pi) / std::erfc(z / std::numbers::sqrt2);
+}
+
+/// What is known of a row's error in units of its noise: a mean and a variance.
+struct Known {
+    double mean = 0.0, variance = 0.0;
+
+    /// Learns that the error lies beyond a limit, `z` deviations above the mean (`low`: below it).
+    void cut(double z, bool low) {
+        const double side = low ? -z : z, steep = hazard(side), sd = std::sqrt(variance);
+        mean += low ? -sd * steep : sd * steep;
+        variance *= std::clamp(1 + side * steep - steep * steep, 0.0, 1.0);
+    }
+};
+
 /// Is the row at an end of what the instrument shows? Then its role and limit are noted.
 bool clipped(const Observable& o, const Predicted& p, std::size_t i, double sd, Innovations& out) {
     const RowRole role = role_of(o, p, i);
@@ -163,7 +182,7 @@ void filter_carry(const Observable& o, const Predicted& p, const NoiseParameters
     const double omega = 2 * std::numbers::pi * p.line_frequency;
     Line line;
     bool carried = false;
-    double last = 0.0;
+    Known last;
     const double rest = 1 - noise.carry * noise.carry, root = std::sqrt(rest);
     std::array<double, 2> last_h{};
     for (std::size_t i = 0; i < o.y.size(); ++i) {
@@ -172,16 +191,22 @@ void filter_carry(const Observable& o, const Predicted& p, const NoiseParameters
             carried = false;
             line = Line{};
         }
+        const double kept = carried ? noise.carry : 0.0;
         if (clipped(o, p, i, sd, out)) {
-            carried = false;
+            carried = !has_line;
+            if (has_line) continue;
+            last = {kept * last.mean, kept * kept * last.variance + 1 - kept * kept};
+            out.z[i] = (out.z[i] - last.mean) / std::sqrt(last.variance);
+            last.cut(out.z[i], out.role[i] == RowRole::Low);
             continue;
         }
         const double error = (o.y[i] - p.mean[i]) / sd;
-        const double kept = carried ? noise.carry : 0.0;
-        double innovation = error - kept * last, variance = carried ? rest : 1.0;
-        last = error;
+        double innovation = error - kept * last.mean,
+               variance = carried ? rest + kept * kept * last.variance : 1.0;
+        const double deviation = last.variance == 0.0 ? root : std::sqrt(variance);
+        last = {error, 0.0};
         if (!has_line) {
-            out.z[i] = carried ? innovation / root : innovation;
+            out.z[i] = carried ? innovation / deviation : innovation;
             out.variance[i] = variance * sd * sd;
             carried = true;
             continue;
