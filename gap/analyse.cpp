@@ -10,8 +10,10 @@
 #include "gap/leftovers.h"
 #include "gap/placements.h"
 #include "gap/pushes.h"
+#include "gap/repeats.h"
 #include "gap/scatter.h"
 #include "gap/sentences.h"
+#include "gap/stats/tails.h"
 #include "gap/suggest.h"
 
 #include <fmt/format.h>
@@ -28,6 +30,7 @@ constexpr double kLeftLevel = 0.01;  // corrected p of a structure worth telling
 constexpr double kSureLevel = 1e-3;  // of a structure that by itself makes a verdict
 constexpr double kUnexplainedShareOfSums = 0.5;
 constexpr double kUnexplainedShare = 0.2;  // of all that is gained: what leaves this much is not the cause
+constexpr double kRepeats = 4.0;           // deviations of chance: what passes for scatter is there again
 constexpr std::size_t kRunsThatJudge = 3;
 constexpr double kEdge = 0.005;  // of a plausible range: this near to its end is at its end
 constexpr double kFixedByOthers =
@@ -240,6 +243,7 @@ class Analysis {
         if (scatter.empty()) return false;
         for (const Leftover& left : verdict_.leftovers)
             if (left.covariate == kPlacement && left.p_value < kSureLevel) return true;
+        if (stats::normal_tail(repeats_at_once(study_, selection_.chosen, scatter)) < kSureLevel) return true;
         const Fit calm = without_effects(study_, selection_.chosen, scatter);
         const auto forms = free_forms_of(experiment_, study_.model(), calm.fitted.state, options_.seed);
         const bool spells =

@@ -67,15 +67,19 @@ Experiment strengths(const std::function<double(double level, const Row&)>& wron
     return toy(Kind::Rab, "strength", kPlaces * kReads, kReads, add, counts);
 }
 
-/// Sensors 0 and 6 before a wall at forty distances each.
-Experiment readings(const std::function<double(double level, const Row&)>& wrong) {
+/// Sensors 0 and 6 before a wall at forty distances each, or at fewer that are read more than once, up to
+/// `farthest` m.
+Experiment readings(const std::function<double(double level, const Row&)>& wrong, int reads = 1,
+                    double farthest = 0.03) {
     constexpr int kRows = 80;
     RandomStream random(12, "places of the scatter test");
+    double distance = 0.0;
     const auto add = [&](Run& run, int k) {
+        if (k % reads == 0) distance = 0.01 + (farthest - 0.01) * random.uniform();
         run.columns["sensor"].push_back(k < kRows / 2 ? 0 : 6);
-        run.columns["distance_m"].push_back(0.01 + 0.02 * random.uniform());
+        run.columns["distance_m"].push_back(distance);
     };
-    return toy(Kind::Proximity, "reading", kRows, 1, add, wrong);
+    return toy(Kind::Proximity, "reading", kRows, reads, add, wrong);
 }
 
 Verdict verdict_on(const Experiment& experiment) {
@@ -121,4 +125,23 @@ TEST_CASE("pulses that hit single readings are named, spells of bad contact are 
     }));
     CHECK(spells.decision == Decision::Unexplained);
     CHECK(spells.causes.empty());
+}
+
+TEST_CASE("noise in proportion errs anew at each reading; what is there again at the next one is none") {
+    RandomStream random(15, "scatter test");
+    double share = 0.0;
+    const auto told = [&](bool anew) {
+        return verdict_on(readings(
+            [&](double level, const Row& row) {
+                if (anew || row.read == 0) share = 0.01 * random.normal();
+                return std::clamp(std::round(level * (1 + share) + 3 * random.normal()), 0.0, 4095.0);
+            },
+            2, 0.08));
+    };
+    const Verdict scatter = told(true);
+    REQUIRE(scatter.causes.size() == 1);
+    CHECK(scatter.causes.front().name == "proportional_noise");
+    const Verdict offsets = told(false);
+    CHECK(offsets.decision == Decision::Unexplained);
+    CHECK(offsets.causes.empty());
 }
