@@ -54,11 +54,8 @@ class Analysis {
         tell("what is left", 0.88);
         final_ = with_nuisances();
         look_at_rest();
-        if (!selection_.steps.empty() &&
-            (pushes_keep_to_something() || !experiment_.assumed.empty() ||
-             verdict_.unexplained_share > share_allowed() || (stopped_at_edge() && something_left()) ||
-             few_runs_disagree() || scatter_hides_a_mean()))
-            take_back();
+        const std::string doubt = selection_.steps.empty() ? "" : doubt_of_causes();
+        if (!doubt.empty()) take_back(doubt);
         tell("intervals", 0.96);
         fill_causes();
         fill_tried();
@@ -255,6 +252,20 @@ class Analysis {
         return shaped > 0 && shaped > kUnexplainedShare * (shaped + won);
     }
 
+    /// Why what was chosen is not the cause, in words that follow "but"; empty: nothing speaks against it.
+    std::string doubt_of_causes() {
+        if (pushes_keep_to_something()) return "keeps to something that no push knows of";
+        if (!experiment_.assumed.empty())
+            return fmt::format("{} was assumed, not measured, and an error of it may look the same",
+                               fmt::join(experiment_.assumed, ", "));
+        if (verdict_.unexplained_share > share_allowed()) return "leaves too much to be the cause";
+        if (stopped_at_edge() && something_left())
+            return "stopped at the end of its plausible range and leaves something";
+        if (few_runs_disagree()) return "lowers the error of so few runs by chance only, as far as they tell";
+        if (scatter_hides_a_mean()) return "explains scatter that repeats, has a shape or comes in spells";
+        return "";
+    }
+
     /// Pushes that keep to a place or to a command are none. First of the causes, they were all there was;
     /// beside another cause they go and it stays.
     bool pushes_keep_to_something() {
@@ -422,10 +433,11 @@ class Analysis {
 
     /// An effect fitted to what it does not describe soaks up some of it and leaves much. Then nothing is
     /// named: what came nearest is told as such, and all that is left is looked at again.
-    void take_back() {
+    void take_back(const std::string& doubt) {
+        verdict_.doubt = doubt;
         verdict_.nearest = chosen_causes(precision_of(study_, final_));
         for (const Trial& step : selection_.steps)
-            selection_.trials[step.effect].remark = "came nearest, but leaves much";
+            selection_.trials[step.effect].remark = "came nearest, but " + doubt;
         selection_.steps.clear();
         selection_.draws.clear();
         selection_.chosen = final_ = selection_.none;

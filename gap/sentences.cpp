@@ -9,6 +9,8 @@ namespace puckloop::gap {
 
 namespace {
 
+constexpr double kLeastBits = 0.1;  // of one: an experiment that promises less would not tell
+
 constexpr double kDegree = 57.29577951308232;
 
 std::string listed(const std::vector<std::string>& words, const char* last) {
@@ -66,10 +68,11 @@ std::string summary_of(const Verdict& verdict) {
         std::vector<std::string> names{verdict.causes.empty() ? "" : verdict.causes.front().title};
         for (const Rival& rival : verdict.rivals)
             names.push_back(rival.cause.title);
-        return fmt::format("Cannot tell whether {}.{} {}", listed(names, "or"),
-                           verdict.suggestions.empty()
-                               ? ""
-                               : fmt::format(" This experiment would: {}.", verdict.suggestions.front().what),
+        const bool advice = !verdict.suggestions.empty() && verdict.suggestions.front().bits >= kLeastBits;
+        return fmt::format("Cannot tell whether {}. {} {}", listed(names, "or"),
+                           advice
+                               ? fmt::format("This experiment would: {}.", verdict.suggestions.front().what)
+                               : "None of the experiments that were looked at would.",
                            verdict.heldout.sentence);
     }
     case Decision::Unexplained:
@@ -87,8 +90,7 @@ std::string summary_of(const Verdict& verdict) {
     for (const Cause& cause : verdict.nearest)
         titles.push_back(cause.title);
     if (!titles.empty())
-        text += fmt::format(" What comes nearest, and leaves too much to be the cause: {}.",
-                            listed(titles, "and"));
+        text += fmt::format(" What comes nearest, but {}: {}.", verdict.doubt, listed(titles, "and"));
     return text;
 }
 

@@ -143,6 +143,7 @@ std::string to_json(const Verdict& verdict) {
                          {"forms", Json::array()}};
     for (const auto& form : verdict.free_forms)
         if (form.clear) json["free_form"]["forms"].push_back(free_form_json(form));
+    json["doubt"] = verdict.doubt;
     json["nearest"] = Json::array();
     for (const auto& cause : verdict.nearest)
         json["nearest"].push_back(cause_json(cause));

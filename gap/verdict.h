@@ -135,6 +135,7 @@ struct Verdict {
     std::vector<Leftover> leftovers;
     std::vector<FreeForm> free_forms;  ///< of each observable, what gains most first: unexplained
     double unexplained_share = 0.0;    ///< of all that is gained: free forms over free forms and causes
+    std::string doubt;                 ///< why what came nearest is no cause, in words that follow "but"
     std::vector<Cause> nearest;        ///< where nothing stands as a cause: what came nearest, and left much
     std::vector<Tried> tried;
     std::vector<FittedParameter> nuisance;  ///< fitted along with every model: tracker offset and delay, ...

@@ -15,7 +15,8 @@ std::string free_form_section(const Verdict& verdict) {
             table.row({cause.name, std::to_string(cause.number), cell(cause.evidence), cell(cause.score_gain),
                        cause.sentence});
         out +=
-            "<h2>What came nearest</h2>\n<p>These effects gain something and leave too much, or less than a "
+            "<h2>What came nearest</h2>\n<p>These effects gain something, but not as a cause would, or less "
+            "than a "
             "correction without any mechanism: they are not told as causes, and the figures below are those "
             "of the simulator without them.</p>\n" +
             table.html();
