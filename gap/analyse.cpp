@@ -450,7 +450,7 @@ class Analysis {
                                       [](const Leftover& one) { return one.p_value < kSureLevel; }) ||
                           any_form_is_clear();
         if (!verdict_.causes.empty())
-            verdict_.decision = verdict_.rivals.empty() ? Decision::Named : Decision::CannotTell;
+            verdict_.decision = doubtful(verdict_) ? Decision::CannotTell : Decision::Named;
         else
             verdict_.decision =
                 sure || !verdict_.nearest.empty() ? Decision::Unexplained : Decision::NoEffect;

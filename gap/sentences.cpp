@@ -55,8 +55,14 @@ std::string gain_sentence(const Held& held) {
 
 std::string summary_of(const Verdict& verdict) {
     std::vector<std::string> titles;
-    for (const Cause& cause : verdict.causes)
+    for (const Cause& cause : verdict.causes) {
         titles.push_back(cause.title);
+        if (verdict.decision != Decision::Named) continue;
+        for (const Rival& rival : verdict.rivals)
+            if (rival.instead_of == cause.name)
+                titles.back() +=
+                    fmt::format(" (or {}: a small part, and the data cannot tell)", rival.cause.title);
+    }
     switch (verdict.decision) {
     case Decision::NoEffect:
         return "No effect found: what differs from the simulation is not more than the noise. " +
@@ -65,11 +71,18 @@ std::string summary_of(const Verdict& verdict) {
         return fmt::format("The simulation is wrong because {}. {}", listed(titles, "and"),
                            verdict.heldout.sentence);
     case Decision::CannotTell: {
-        std::vector<std::string> names{verdict.causes.empty() ? "" : verdict.causes.front().title};
+        std::vector<std::string> sure, names;
+        for (const Cause& cause : verdict.causes) {
+            const bool open = std::any_of(verdict.rivals.begin(), verdict.rivals.end(),
+                                          [&](const Rival& rival) { return rival.instead_of == cause.name; });
+            (open ? names : sure).push_back(cause.title);
+        }
         for (const Rival& rival : verdict.rivals)
             names.push_back(rival.cause.title);
         const bool advice = !verdict.suggestions.empty() && verdict.suggestions.front().bits >= kLeastBits;
-        return fmt::format("Cannot tell whether {}. {} {}", listed(names, "or"),
+        const std::string known =
+            sure.empty() ? "" : fmt::format("The simulation is wrong because {}. ", listed(sure, "and"));
+        return fmt::format("{}Cannot tell whether {}. {} {}", known, listed(names, "or"),
                            advice
                                ? fmt::format("This experiment would: {}.", verdict.suggestions.front().what)
                                : "None of the experiments that were looked at would.",

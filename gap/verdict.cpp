@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace puckloop::gap {
@@ -161,6 +162,19 @@ std::string to_json(const Verdict& verdict) {
     json["cautions"] = verdict.cautions;
     json["rerun"] = rerun_json(verdict.rerun);
     return json.dump(2) + "\n";
+}
+
+bool doubtful(const Verdict& verdict) {
+    constexpr double kSmallPart = 0.2;
+    double all = 0.0;
+    for (const Cause& cause : verdict.causes)
+        all += std::max(cause.score_gain, 0.0);
+    return std::any_of(verdict.rivals.begin(), verdict.rivals.end(), [&](const Rival& rival) {
+        return std::any_of(verdict.causes.begin(), verdict.causes.end(), [&](const Cause& cause) {
+            const bool matters = &cause == &verdict.causes.front() || cause.score_gain > kSmallPart * all;
+            return cause.name == rival.instead_of && matters;
+        });
+    });
 }
 
 }  // namespace puckloop::gap

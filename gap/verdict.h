@@ -148,4 +148,9 @@ struct Verdict {
 /// gap.json as text. Same verdict, same bytes.
 std::string to_json(const Verdict& verdict);
 
+/// Could another effect stand in the place of a cause that matters: of the first, or of one that makes more
+/// than a fifth of what all gain? A smaller part is told with its rival and leaves the first as clear as it
+/// is.
+bool doubtful(const Verdict& verdict);
+
 }  // namespace puckloop::gap
