@@ -7,6 +7,7 @@
 #include "gap/columns.h"
 #include "gap/copies.h"
 #include "gap/fill_missing.h"
+#include "gap/missing_cells.h"
 
 #include <fmt/format.h>
 
@@ -77,36 +78,45 @@ void check_index(const Experiment& experiment, const Run& run, const ColumnInfo&
                              "whole numbers; or the columns are swapped");
 }
 
-void check_missing(Experiment& experiment, const Run& run, const ColumnInfo& info) {
-    const auto& values = run.column(info.name);
-    const auto missing =
-        std::count_if(values.begin(), values.end(), [](double value) { return std::isnan(value); });
-    if (missing == 0) return;
-    const double share = static_cast<double>(missing) / static_cast<double>(values.size());
-    if (info.required && share > kMostMissing)
-        throw InputError(place_of(experiment, run), "",
-                         fmt::format("{} is missing in {} of {} rows", info.name, missing, values.size()),
-                         info.role == Role::Truth ? "the truth in most rows" : "it in most rows");
+/// Missing cells, in one caution for all runs.
+void check_missing(Experiment& experiment, const ColumnInfo& info) {
+    std::vector<MissingIn> files;
+    for (const Run& run : experiment.runs) {
+        const auto& values = run.column(info.name);
+        const auto missing = static_cast<std::size_t>(
+            std::count_if(values.begin(), values.end(), [](double value) { return std::isnan(value); }));
+        if (missing == 0) continue;
+        const double share = static_cast<double>(missing) / static_cast<double>(values.size());
+        if (info.required && share > kMostMissing)
+            throw InputError(place_of(experiment, run), "",
+                             fmt::format("{} is missing in {} of {} rows", info.name, missing, values.size()),
+                             info.role == Role::Truth ? "the truth in most rows" : "it in most rows");
+        files.push_back({run.file, missing, values.size()});
+    }
+    if (files.empty()) return;
     if (info.required)
-        experiment.cautions.push_back(fmt::format("{}: {} is missing in {} of {} rows, which are left out",
-                                                  run.file, info.name, missing, values.size()));
+        experiment.cautions.push_back(missing_sentence(info.name, files, "which are left out"));
     else if (info.role != Role::Observable && experiment.kind == Kind::Motion)  // others: fill_missing()
-        experiment.cautions.push_back(
-            fmt::format("{}: {} is missing in {} of {} rows, which are left out or filled in", run.file,
-                        info.name, missing, values.size()));
+        experiment.cautions.push_back(missing_sentence(info.name, files, "which are left out or filled in"));
 }
 
 /// A column without a single value says nothing; it goes.
 void drop_empty(Experiment& experiment, const ColumnInfo& info) {
     if (info.required) return;
+    std::size_t runs = 0;
+    std::string first;
     for (Run& run : experiment.runs) {
         const auto& values = run.column(info.name);
         if (values.empty() ||
             !std::all_of(values.begin(), values.end(), [](double value) { return std::isnan(value); }))
             continue;
         run.columns.erase(run.columns.find(info.name));
-        experiment.cautions.push_back(fmt::format("{}: {} is empty in every row", run.file, info.name));
+        if (runs++ == 0) first = run.file;
     }
+    if (runs == 1)
+        experiment.cautions.push_back(fmt::format("{}: {} is empty in every row", first, info.name));
+    else if (runs > 1)
+        experiment.cautions.push_back(fmt::format("{} is empty in every row of {} runs", info.name, runs));
 }
 
 /// Readings beyond what the instrument can say tell next to nothing.
@@ -239,9 +249,9 @@ void check(Experiment& experiment) {
         for (Run& run : experiment.runs)
             if (run.has(info.name)) {
                 check_range(experiment, run, info);
-                check_missing(experiment, run, info);
                 if (is_index(info)) check_index(experiment, run, info);
             }
+        check_missing(experiment, info);
         check_constant(experiment, info);
         check_hung(experiment, info);
         check_clipped(experiment, info);

@@ -2,12 +2,14 @@
 
 #include "base/error.h"
 #include "gap/columns.h"
+#include "gap/missing_cells.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 
 namespace puckloop::gap {
@@ -61,7 +63,10 @@ void blank(const Experiment& experiment, Run& run, const char* missing,
     }
 }
 
-void fill(Experiment& experiment, Run& run, const ColumnInfo& info) {
+/// Files by what was done about the cells missing in them.
+using Told = std::map<std::string, std::vector<MissingIn>>;
+
+void fill(Experiment& experiment, Run& run, const ColumnInfo& info, Told& told) {
     static const std::set<std::string_view> slow{"t_s", "temperature_c", "battery_v", "ambient_reading"};
     auto& values = run.columns.at(info.name);
     std::vector<std::size_t> missing;
@@ -88,8 +93,7 @@ void fill(Experiment& experiment, Run& run, const ColumnInfo& info) {
                 values[i] = usual;
         done = "which are left out";
     }
-    experiment.cautions.push_back(fmt::format("{}: {} is missing in {} of {} rows, {}", run.file, info.name,
-                                              missing.size(), run.rows, done));
+    told[done].push_back({run.file, missing.size(), run.rows});
 }
 
 }  // namespace
@@ -98,8 +102,11 @@ void fill_missing(Experiment& experiment) {
     if (experiment.kind == Kind::Motion) return;
     for (const ColumnInfo& info : columns_of(experiment.kind)) {
         if (info.role == Role::Observable || info.required) continue;
+        Told told;
         for (Run& run : experiment.runs)
-            if (run.has(info.name)) fill(experiment, run, info);
+            if (run.has(info.name)) fill(experiment, run, info, told);
+        for (const auto& [done, files] : told)
+            experiment.cautions.push_back(missing_sentence(info.name, files, done));
     }
 }
 

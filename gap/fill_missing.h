@@ -10,7 +10,7 @@ namespace puckloop::gap {
 /// In each run: a column with one value only is filled with it, other covariates are drawn on between their
 /// neighbours (temperature, battery, time) or held; where a truth or stimulus that varies is missing, what
 /// was measured is left out (counts of events, received or whole, stay, with the run's usual value beside
-/// them). A caution each. InputError where most of a measurement would go. Motion has rules of its own
+/// them). A caution a column. InputError where most of a measurement would go. Motion has rules of its own
 /// (gap/models).
 void fill_missing(Experiment& experiment);
 

@@ -157,6 +157,28 @@ TEST_CASE("a sensor that hung in one run is said") {
     CHECK_THAT(cautions, Contains("run2.csv") && Contains("did it hang"));
 }
 
+TEST_CASE("missing cells are told once a column") {
+    const Folder folder(clean("ground"));
+    const auto holed = [](std::size_t every) {
+        std::string csv = "t_s,sensor,grey,reading\n";
+        for (std::size_t i = 0; i < 60; ++i)
+            csv += fmt::format("{:.1f},{},{},{}\n", static_cast<double>(i) * 0.1, i % 3,
+                               i % every == 0 ? "" : fmt::format("{}", static_cast<double>(i % 5) / 4.0),
+                               331 + 155 * (i % 5) + (i * i + every) % 37);
+        return csv;
+    };
+    write_file(folder.path() / "run2.csv", holed(20));
+    std::string cautions;
+    CHECK(refusal(folder.path(), &cautions) == "");
+    CHECK_THAT(cautions, Contains("run2.csv: grey is missing in 3 of 60 rows, which are left out\n"));
+    write_file(folder.path() / "run1.csv", holed(6));
+    cautions.clear();
+    CHECK(refusal(folder.path(), &cautions) == "");
+    CHECK_THAT(cautions, Contains("grey is missing in 13 of 120 rows (2 runs), which are left out; most in "
+                                  "run1.csv: 10 of 60\n") &&
+                             !Contains(": grey is missing"));
+}
+
 TEST_CASE("missing, impossible and few values") {
     const auto gone = [](std::size_t every) {
         return
@@ -164,10 +186,11 @@ TEST_CASE("missing, impossible and few values") {
     };
     CHECK_THAT(refusal(changed(clean("ground"), "grey", gone(1))), Contains("grey is missing in 60 of 60"));
     CHECK_THAT(cautions_of(changed(clean("ground"), "grey", gone(5))),
-               Contains("grey is missing in 12 of 60"));
-    CHECK_THAT(cautions_of(changed(clean("ground"), "sensor", gone(1))), Contains("sensor is empty"));
+               Contains("grey is missing in 36 of 180 rows (3 runs), which are left out"));
+    CHECK_THAT(cautions_of(changed(clean("ground"), "sensor", gone(1))),
+               Contains("sensor is empty in every row of 3 runs"));
     CHECK_THAT(cautions_of(changed(clean("ground"), "sensor", gone(7))),
-               Contains("sensor is missing in 9 of 60"));
+               Contains("sensor is missing in 27 of 180 rows (3 runs)"));
     CHECK_THAT(
         cautions_of(changed(clean("ground"), "reading",
                             [](std::size_t i, double v) { return i == 7 ? "1e300" : fmt::format("{}", v); })),

@@ -45,7 +45,8 @@ TEST_CASE("a column with one value is filled with it") {
     for (const Run& run : e.runs)
         for (const double bytes : run.column("bytes"))
             CHECK(bytes == 84);
-    CHECK_THAT(said(e), Contains("bytes is missing in 27 of 80 rows, filled with the run's only value"));
+    CHECK_THAT(said(e),
+               Contains("bytes is missing in 81 of 240 rows (3 runs), filled with the run's only value"));
 }
 
 TEST_CASE("missing cells of the bytes on the line do not make batches") {
@@ -70,7 +71,7 @@ TEST_CASE("a reading whose stimulus is not known is left out, another row's stay
     const auto &reading = e.runs[0].column("reading"), &angle = e.runs[0].column("angle_rad");
     for (std::size_t i = 0; i < reading.size(); ++i)
         CHECK(std::isnan(reading[i]) == std::isnan(angle[i]));
-    CHECK_THAT(said(e), Contains("angle_rad is missing in 20 of 60 rows, which are left out"));
+    CHECK_THAT(said(e), Contains("angle_rad is missing in 60 of 180 rows (3 runs), which are left out"));
     Made most = changed(clean("proximity"), "angle_rad", [](std::size_t i, double value) {
         return i % 3 != 1 ? "" : fmt::format("{}", value);
     });
