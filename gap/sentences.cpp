@@ -20,24 +20,39 @@ std::string listed(const std::vector<std::string>& words, const char* last) {
     return text;
 }
 
+/// Digits beyond the usual ones that a narrow interval takes: its ends and middle read differently.
+int digits_to_tell(const FittedParameter& p) {
+    constexpr int kMost = 4;
+    int more = 0;
+    const auto read = [&](double value) { return quantity(value, p.unit, more); };
+    const double middle = (p.low + p.high) / 2;
+    while (more < kMost && p.low < p.high && (read(p.low) == read(middle) || read(middle) == read(p.high)))
+        ++more;
+    return more;
+}
+
 }  // namespace
 
-std::string quantity(double value, const std::string& unit) {
+std::string quantity(double value, const std::string& unit, int more_digits) {
     const double size = std::abs(value);
-    if (unit == "m" && size < 1) return fmt::format("{:.4g} mm", value * 1e3);
-    if (unit == "s" && size < 1) return fmt::format("{:.4g} ms", value * 1e3);
-    if (unit == "rad" && size < 7) return fmt::format("{:.3g} deg", value * kDegree);
-    if (unit == "1" && size < 0.2 && size > 0) return fmt::format("{:.3g} %", value * 100);
-    return unit == "1" || unit.empty() ? fmt::format("{:.4g}", value) : fmt::format("{:.4g} {}", value, unit);
+    const int three = 3 + more_digits, four = 4 + more_digits;
+    if (unit == "m" && size < 1) return fmt::format("{:.{}g} mm", value * 1e3, four);
+    if (unit == "s" && size < 1) return fmt::format("{:.{}g} ms", value * 1e3, four);
+    if (unit == "rad" && size < 7) return fmt::format("{:.{}g} deg", value * kDegree, three);
+    if (unit == "1" && size < 0.2 && size > 0) return fmt::format("{:.{}g} %", value * 100, three);
+    return unit == "1" || unit.empty() ? fmt::format("{:.{}g}", value, four)
+                                       : fmt::format("{:.{}g} {}", value, four, unit);
 }
 
 std::string cause_sentence(const Cause& cause) {
     std::string text = cause.title;
     if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
     std::vector<std::string> figures;
-    for (const FittedParameter& p : cause.parameters)
-        figures.push_back(fmt::format("{} = {} ({} to {})", p.name, quantity(p.value, p.unit),
-                                      quantity(p.low, p.unit), quantity(p.high, p.unit)));
+    for (const FittedParameter& p : cause.parameters) {
+        const int more = digits_to_tell(p);
+        figures.push_back(fmt::format("{} = {} ({} to {})", p.name, quantity(p.value, p.unit, more),
+                                      quantity(p.low, p.unit, more), quantity(p.high, p.unit, more)));
+    }
     if (!figures.empty()) text += ": " + listed(figures, "and");
     return text + ".";
 }
