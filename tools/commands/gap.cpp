@@ -24,7 +24,9 @@
 #include <fstream>
 #include <functional>
 #include <memory>
+#include <string>
 #include <thread>
+#include <vector>
 
 namespace puckloop::tools {
 
@@ -59,9 +61,15 @@ void tell_verdict(const gap::Verdict& verdict) {
     for (const auto& rival : verdict.rivals)
         fmt::print("  rival of {}: {} ({}), delta BIC {:.1f}\n", rival.instead_of, rival.cause.name,
                    rival.cause.number, rival.delta_bic);
-    for (const auto& left : verdict.leftovers)
-        fmt::print("  left: {} against {}: {} (p {:.2g})\n", left.observable, left.covariate, left.shape,
-                   left.p_value);
+    constexpr std::size_t kLines = 6;  // the clearest come first; all are in gap.json and the report
+    std::vector<std::string> told;
+    for (const auto& left : verdict.leftovers) {
+        auto line = fmt::format("{} against {}: {}", left.observable, left.covariate, left.shape);
+        if (std::find(told.begin(), told.end(), line) != told.end()) continue;
+        if (told.size() < kLines) fmt::print("  left: {} (p {:.2g})\n", line, left.p_value);
+        told.push_back(std::move(line));
+    }
+    if (told.size() > kLines) fmt::print("  left: and {} more\n", told.size() - kLines);
 }
 
 /// With the overlay as written, which is what anybody's run would load.
@@ -112,6 +120,7 @@ void analyse_folder(const Request& request) {
     write_beside(page, gap::report::report_html(experiment, verdict));
     for (const auto& file : {overlay, json, page})
         put_in_place(file);
+    fmt::print("report in {}\n", page.string());
 }
 
 }  // namespace
