@@ -101,7 +101,7 @@ void declare_gap_record(CLI::App& gap, int& status) {
     command->add_option("--seed", request->seed, "of drives, sensors' noise and the tracker's")
         ->check(count_up_to(kLargestSeed))
         ->type_name("N");
-    command->add_flag("--brief", request->brief, "few and short runs");
+    command->add_flag("--brief", request->brief, "few and short runs: to look at, too few for a verdict");
     command->callback([request, &status] {
         status = 0;
         record(*request);
