@@ -196,7 +196,26 @@ class Analysis {
     bool stopped_at_edge() const {
         double edge = 0.0;
         return std::any_of(final_.freed.begin(), final_.freed.end(),
-                           [&](const Freed& freed) { return at_edge(freed, edge); });
+                           [&](const Freed& freed) { return at_edge(freed, edge) && carries(freed); });
+    }
+
+    /// Does a parameter make much of what is gained? Of an effect with several, one may stop at its end
+    /// beside the one that explains. With it back at neutral and nothing else fitted again, this errs towards
+    /// yes.
+    bool carries(const Freed& freed) const {
+        const auto at = [&](const State& state) {
+            Prediction prediction;
+            double sum = 0.0;
+            for (const RowCosts& costs : costs_at(study_.model(), state, prediction))
+                for (const double cost : costs.cost)
+                    sum += cost;
+            return sum;
+        };
+        const auto index = static_cast<std::size_t>(freed.index);
+        State without = final_.fitted.state;
+        without.values[index] = study_.model().parameters()[index].neutral;
+        const double best = at(final_.fitted.state), none = at(selection_.none.fitted.state);
+        return at(without) - best > kUnexplainedShare * (none - best);
     }
 
     bool something_left() const { return !verdict_.leftovers.empty() || any_form_is_clear(); }
