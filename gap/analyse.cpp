@@ -3,10 +3,10 @@
 
 #include "gap/analyse.h"
 
-#include "base/random.h"
 #include "gap/fit/intervals.h"
 #include "gap/fit/select.h"
 #include "gap/free_form.h"
+#include "gap/heldout.h"
 #include "gap/leftovers.h"
 #include "gap/placements.h"
 #include "gap/pushes.h"
@@ -25,7 +25,6 @@ namespace puckloop::gap {
 
 namespace {
 
-constexpr int kDraws = 1000;         // of the bootstrap over runs
 constexpr double kLeftLevel = 0.01;  // corrected p of a structure worth telling
 constexpr double kSureLevel = 1e-3;  // of a structure that by itself makes a verdict
 constexpr double kUnexplainedShareOfSums = 0.5;
@@ -241,14 +240,8 @@ class Analysis {
     /// With fewer than three runs stretches of the same run are held out: a drift of that run predicts
     /// itself. Then the error has to fall for sure, not only the score to rise.
     bool few_runs_disagree() {
-        if (experiment_.runs.size() >= kRunsThatJudge) return false;
-        verdict_.observables.clear();
-        verdict_.heldout = {};
-        fill_held();
-        const bool disagree = verdict_.heldout.high >= 1.0;
-        verdict_.observables.clear();
-        verdict_.heldout = {};
-        return disagree;
+        return experiment_.runs.size() < kRunsThatJudge &&
+               held_figures(study_, selection_, options_.seed).all.high >= 1.0;
     }
 
     /// A mean that the model lacks looks like larger errors. What repeats at each placement is no scatter,
@@ -326,85 +319,11 @@ class Analysis {
         }
     }
 
-    /// Held-out errors run by run, in units of the noise.
     void fill_held() {
-        const auto& observables = study_.model().observables();
-        const std::size_t units = study_.blocks().count;
-        std::vector<std::vector<double>> before(observables.size() + 1, std::vector<double>(units, 0.0)),
-            after = before;
-        std::vector<double> counts(units, 0.0);
-        for (std::size_t o = 0; o < observables.size(); ++o) {
-            const double sd = observables[o].noise == NoiseKind::Event
-                                  ? 1.0
-                                  : std::exp(selection_.chosen.fitted.state.noise[o].log_sd);
-            for (std::size_t i = 0; i < observables[o].y.size(); ++i) {
-                const std::uint32_t block = study_.blocks().of[o][i];
-                const double old_error = observables[o].y[i] - selection_.held_none.mean[o][i];
-                const double new_error = observables[o].y[i] - selection_.held_chosen.mean[o][i];
-                before[o][block] += old_error * old_error;
-                after[o][block] += new_error * new_error;
-                before.back()[block] += old_error * old_error / (sd * sd);
-                after.back()[block] += new_error * new_error / (sd * sd);
-                counts[block] += 1;
-            }
-        }
-        Held& held = verdict_.heldout;
-        double rows = 0.0;
-        for (const double count : counts)
-            rows += count;
-        ratio_of(before.back(), after.back(), held.ratio, held.low, held.high);
-        held.before = root_mean(before.back(), rows);
-        held.after = root_mean(after.back(), rows);
-        for (std::size_t o = 0; o < observables.size(); ++o) {
-            HeldObservable one{observables[o].name, observables[o].unit};
-            ratio_of(before[o], after[o], one.ratio, one.low, one.high);
-            one.before = root_mean(before[o], static_cast<double>(observables[o].y.size()));
-            one.after = root_mean(after[o], static_cast<double>(observables[o].y.size()));
-            verdict_.observables.push_back(std::move(one));
-            for (std::size_t i = 0; i < observables[o].y.size(); ++i) {
-                held.score_before += selection_.held_none.score[o][i] / rows;
-                held.score_after += selection_.held_chosen.score[o][i] / rows;
-            }
-        }
-        const auto gains = gains_by_block(study_.blocks(), selection_.held_none, selection_.held_chosen);
-        const Gain gain = gain_of(gains);
-        held.score_low = (gain.sum - 1.645 * gain.sd) / rows;
-        held.score_high = (gain.sum + 1.645 * gain.sd) / rows;
-        held.runs = static_cast<int>(units);
-        held.runs_better = static_cast<int>(std::lround(gain.share_better * static_cast<double>(units)));
-        held.gain = !verdict_.causes.empty() && held.score_low > 0;
-    }
-
-    static double root_mean(const std::vector<double>& sums, double rows) {
-        double sum = 0.0;
-        for (const double one : sums)
-            sum += one;
-        return std::sqrt(sum / std::max(rows, 1.0));
-    }
-
-    void ratio_of(const std::vector<double>& before, const std::vector<double>& after, double& ratio,
-                  double& low, double& high) const {
-        RandomStream random(options_.seed, "gap/ratio");
-        std::vector<double> ratios;
-        const std::size_t n = before.size();
-        double all_before = 0, all_after = 0;
-        for (std::size_t i = 0; i < n; ++i) {
-            all_before += before[i];
-            all_after += after[i];
-        }
-        ratio = all_before > 0 ? std::sqrt(all_after / all_before) : 1.0;
-        for (int draw = 0; draw < kDraws; ++draw) {
-            double b = 0, a = 0;
-            for (std::size_t i = 0; i < n; ++i) {
-                const std::size_t k = random.below(n);
-                b += before[k];
-                a += after[k];
-            }
-            if (b > 0) ratios.push_back(std::sqrt(a / b));
-        }
-        std::sort(ratios.begin(), ratios.end());
-        low = ratios.empty() ? ratio : ratios[ratios.size() / 20];
-        high = ratios.empty() ? ratio : ratios[ratios.size() - 1 - ratios.size() / 20];
+        HeldFigures figures = held_figures(study_, selection_, options_.seed);
+        verdict_.heldout = figures.all;
+        verdict_.heldout.gain = !verdict_.causes.empty() && verdict_.heldout.score_low > 0;
+        verdict_.observables = std::move(figures.observables);
     }
 
     /// Offsets of placements say more than that rows carry over.

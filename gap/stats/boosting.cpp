@@ -19,7 +19,7 @@ constexpr double kFreedom = 1.5;     // degrees of freedom of each step, whateve
 constexpr double kTrim = 4.0;        // deviations
 constexpr double kLeastWon = 1.0;    // of the errors' squares in units of their variance: less is not pursued
 constexpr double kLooseEnds = 0.05;  // ridge of ordered cells beside their differences
-constexpr std::size_t kKept = 40;       // components that stay in view between two looks at all
+constexpr std::size_t kKept = 40;    // components that stay in view between two looks at all
 constexpr double kLessCarry = 0.35;
 constexpr int kLookAgain = 10;  // steps
 
