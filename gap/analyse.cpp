@@ -29,7 +29,6 @@ constexpr double kLeftLevel = 0.01;  // corrected p of a structure worth telling
 constexpr double kSureLevel = 1e-3;  // of a structure that by itself makes a verdict
 constexpr double kUnexplainedShareOfSums = 0.5;
 constexpr double kUnexplainedShare = 0.2;  // of all that is gained: what leaves this much is not the cause
-constexpr double kRepeats = 4.0;           // deviations of chance: what passes for scatter is there again
 constexpr std::size_t kRunsThatJudge = 3;
 constexpr double kEdge = 0.005;  // of a plausible range: this near to its end is at its end
 constexpr double kFixedByOthers =
