@@ -95,7 +95,7 @@ std::vector<stats::Component> turned_with_robot(const Experiment& experiment, co
     }
     std::vector<stats::Component> all;
     for (const auto& component : components) {
-        if (component.name.find(" and ") != std::string::npos) continue;  // twice as many, on twice the rows
+        if (component.pair) continue;  // twice as many, on twice the rows
         all.push_back(component);
         all.back().name = component.name + ", along";
         all.back().weight = along;
@@ -118,7 +118,7 @@ void add_proportional(const Errors& errors, std::vector<stats::Component>& compo
         weight.push_back(level / rms);
     const std::size_t count = components.size();
     for (std::size_t g = 0; g < count; ++g) {
-        if (components[g].name.find(" and ") != std::string::npos) continue;
+        if (components[g].pair) continue;
         components.push_back(components[g]);
         components.back().name += ", in proportion";
         components.back().weight = weight;

@@ -64,6 +64,7 @@ bool few_values(std::vector<double> values) {
 Component crossed(const Component& a, const Component& b) {
     Component c;
     c.name = a.name + " and " + b.name;
+    c.pair = true;
     c.cells = a.cells * b.cells;
     for (const std::string& one : a.where)
         for (const std::string& other : b.where)

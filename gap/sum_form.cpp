@@ -234,10 +234,7 @@ struct View {
 
 /// Where rows are many, covariates by themselves only: their pairs would take minutes.
 std::vector<stats::Component> affordable(std::vector<stats::Component> components, std::size_t rows) {
-    if (rows > kManyRows)
-        std::erase_if(components, [](const stats::Component& one) {
-            return one.name.find(" and ") != std::string::npos;
-        });
+    if (rows > kManyRows) std::erase_if(components, [](const stats::Component& one) { return one.pair; });
     return components;
 }
 

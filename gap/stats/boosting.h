@@ -20,6 +20,7 @@ struct Component {
     std::vector<double> weight;      ///< of the correction in a row; empty: 1
     int cells = 0;
     bool ordered = false;  ///< neighbouring cells are alike
+    bool pair = false;     ///< cells of two covariates crossed
 };
 
 struct ErrorRows {
