@@ -137,8 +137,9 @@ std::size_t Dynamics::add_robot(const BodyParameters& p, double x, double y, dou
     robot.parameters = p;
     robot.shape = circle_shape(x, y, p.radius, p.height, p.reflectivity);
     dMass mass;
-    dMassSetParameters(&mass, p.mass - 2 * p.wheel_mass, 0, 0, 0, p.inertia_x, p.inertia_y, p.inertia_z, 0, 0,
-                       0);
+    const double disc = p.load * p.radius * p.radius / 4;  // inertia of the load about a diameter
+    dMassSetParameters(&mass, p.mass - 2 * p.wheel_mass + p.load, 0, 0, 0, p.inertia_x + disc,
+                       p.inertia_y + disc, p.inertia_z + 2 * disc, 0, 0, 0);
     robot.chassis = make_body(impl_->world, mass, x + cosine * p.com_x, y + sine * p.com_x, p.com_z, heading);
     robot.wheel_radius = {p.wheel_radius_left, p.wheel_radius_right};
     for (std::size_t side = 0; side < 2; ++side) {
@@ -192,6 +193,10 @@ void Dynamics::drive(std::size_t robot, double left, double right) {
     const auto& motor = impl_->robots[robot].motor;
     dJointSetHingeParam(motor[0], dParamVel, left);
     dJointSetHingeParam(motor[1], dParamVel, right);
+}
+
+void Dynamics::move_floor(std::size_t robot, const FloorVelocity& velocity) {
+    impl_->robots[robot].floor = velocity;
 }
 
 void Dynamics::step() {

@@ -2,7 +2,8 @@
 // Rigid bodies and contacts: robots, movable things and the floor in one ODE world (double precision,
 // dWorldStep, 1 ms). Sources: ODE 0.16 manual; physics facts, section 8.
 //
-// Deviations: 1. a wheel touches the floor in one point, the lowest of a thin disc, so that it never scrubs.
+// Deviations: 1. a wheel touches the floor in one point, the lowest of a thin disc, so that it scrubs and
+// creeps only as floor_motion.h says.
 // 2. Contacts of robots and cylinders with anything upright are found in plan (they do not topple over each
 // other); boxes meet boxes and the floor in space. 3. No gyroscopic torques. 4. Rolling resistance is nil.
 
@@ -19,6 +20,7 @@ namespace puckloop::physics {
 
 struct Parameters;
 struct BodyParameters;
+struct FloorVelocity;
 
 inline constexpr double kStepSeconds = 1e-3;
 
@@ -58,6 +60,8 @@ class Dynamics {
 
     /// Wheel speeds (rad/s relative to the body) that the motors ask for during the next step.
     void drive(std::size_t robot, double left, double right);
+    /// How the floor moves under the robot from the next step on; without this it stands still.
+    void move_floor(std::size_t robot, const FloorVelocity& velocity);
     /// One kStepSeconds. Throws RunError when a body has left the numbers.
     void step();
 

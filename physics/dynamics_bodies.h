@@ -2,10 +2,13 @@
 // The ODE objects behind Dynamics: bodies and contacts. Only the dynamics' own files include this.
 
 #include "physics/dynamics.h"
+#include "physics/floor_motion.h"
 #include "physics/ode_library.h"
 #include "physics/parameters.h"
 
 #include <ode/ode.h>
+
+#include <optional>
 
 namespace puckloop::physics {
 
@@ -16,6 +19,7 @@ struct RobotBody {
     std::array<double, 2> wheel_radius{};
     std::array<dJointID, 2> motor{};
     std::array<double, 2> last_angle{};
+    std::optional<FloorVelocity> floor;  // if it moves
     Shape shape;
     RobotState state;
 };

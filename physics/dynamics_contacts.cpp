@@ -24,6 +24,17 @@ dContactGeom floor_point(const dReal* point) {
     return geom;
 }
 
+/// The floor's velocity at a contact's point, along `forward` and to its left; `more` is forward only.
+void carry(const RobotBody& robot, const dReal* point, const dReal* forward, double more,
+           dSurfaceParameters& surface) {
+    const auto& floor = *robot.floor;
+    const double x = floor.x - floor.turn * (point[1] - robot.state.y);
+    const double y = floor.y + floor.turn * (point[0] - robot.state.x);
+    surface.mode |= dContactMotion1 | dContactMotion2;
+    surface.motion1 = x * forward[0] + y * forward[1] + more;
+    surface.motion2 = y * forward[0] - x * forward[1];
+}
+
 /// Bounding circles apart: nothing to look at.
 bool apart(const Shape& a, const Shape& b) {
     const double dx = a.x - b.x;
@@ -71,6 +82,7 @@ void Dynamics::Impl::wheels_on_floor(const RobotBody& robot) {
         }
         const double length = std::hypot(ax, ay);
         const dReal forward[3] = {ay / length, -ax / length, 0};
+        if (robot.floor) carry(robot, lowest, forward, robot.floor->forward[side], s);
         add_contact(s, floor_point(lowest), robot.wheel[side], nullptr, forward);
     }
 }
@@ -80,7 +92,16 @@ void Dynamics::Impl::skids_on_floor(const RobotBody& robot) {
     for (const double end : {p.skid_distance, -p.skid_distance}) {
         dVector3 point;
         dBodyGetRelPointPos(robot.chassis, end - p.com_x, 0, p.skid_clearance - p.com_z, point);
-        if (point[2] <= 0) add_contact(surface(contact.mu_skid), floor_point(point), robot.chassis, nullptr);
+        if (point[2] > 0) continue;
+        auto s = surface(contact.mu_skid);
+        if (!robot.floor) {
+            add_contact(s, floor_point(point), robot.chassis, nullptr);
+            continue;
+        }
+        constexpr dReal kEast[3] = {1, 0, 0};
+        s.mode |= dContactFDir1;
+        carry(robot, point, kEast, 0.0, s);
+        add_contact(s, floor_point(point), robot.chassis, nullptr, kEast);
     }
 }
 

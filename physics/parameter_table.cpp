@@ -46,6 +46,18 @@ std::vector<ParameterInfo> build_table() {
         {"robot.backlash", "rad", 1, {0.0}, 0.0, 0.1, AT(robot.backlash), "? gearbox play at the wheel, 0.5-2 deg real"},
         {"robot.step_loss_speed", "steps/s", 1, {0.0}, 0.0, 2000, AT(robot.step_loss_speed), "? half of the step groups lost at this speed; 0 = never; real 700-1000"},
         {"robot.step_loss_width", "steps/s", 1, {50}, 1, 500, AT(robot.step_loss_width), "? 30-100"},
+        {"robot.deadband", "steps/s", 1, {0.0}, 0.0, 500, AT(robot.deadband), "slower steps do not move the rotor: static friction; near 0 for a good stepper"},
+        {"robot.load", "kg", 1, {0.0}, 0.0, 1.0, AT(robot.load), "carried over the axle, as a disc of the body's radius at the height of com_z"},
+        {"robot.turn_scrub", "1", 1, {0.0}, -0.05, 3.0, AT(robot.turn_scrub), "share by which a spot turn is too small (L longer), less in wide turns; 0-0.04, 0.007 measured [M]"},
+        {"robot.load_creep", "1/kg", 1, {0.0}, -0.1, 1.0, AT(robot.load_creep), "? share of the way lost a kilogram of robot.load; 0-3 % of travel"},
+        {"robot.slope_creep", "1/rad", 1, {0.0}, -0.5, 1.0, AT(robot.slope_creep), "? share of the way lost a radian that the floor rises along the heading"},
+        {"robot.drift_x", "m/s", 1, {0.0}, -0.05, 0.05, AT(robot.drift_x), "? a cable's or tilted floor's pull while the wheels are driven, in the world's axes"},
+        {"robot.drift_y", "m/s", 1, {0.0}, -0.05, 0.05, AT(robot.drift_y), "as drift_x"},
+
+        // Pushes by hands and collisions that are not in the scenario.
+        {"push.rate", "1/s", 1, {0.0}, 0.0, 1.0, AT(push.rate), "pushes a second, at random; 0: none"},
+        {"push.size", "m", 1, {0.02}, 0.0, 0.2, AT(push.size), "standard deviation of a push in x and in y; mm to cm"},
+        {"push.turn", "rad", 1, {0.0}, 0.0, 3.0, AT(push.turn), "standard deviation of the turn that comes with it"},
 
         // Infra-red proximity.
         {"proximity.gain", "1", 8, {1.0}, 0.0, 5.0, FIRST(proximity.gain), "[M] spread between sensors 1.08-1.65"},

@@ -23,7 +23,8 @@ struct BodyParameters {
     double wheel_radius_left, wheel_radius_right, axle_length, wheel_mass;
     double skid_distance, skid_clearance, pitch_damping;
     double steps_per_turn, stall_torque, drive_compliance, settle_time, smoothing_limit, pull_out_steps;
-    double backlash, step_loss_speed, step_loss_width;
+    double backlash, step_loss_speed, step_loss_width, deadband;
+    double load, turn_scrub, load_creep, slope_creep, drift_x, drift_y;
 };
 
 /// Reflective infra-red sensors, clockwise from front right.
@@ -53,6 +54,11 @@ struct GroundParameters {
 struct AccelerometerParameters {
     std::array<double, 3> bias;
     double zero, gain, bandwidth;
+};
+
+/// Pushes that move a robot without its wheels, now and then.
+struct PushParameters {
+    double rate, size, turn;
 };
 
 struct BatteryParameters {
@@ -88,6 +94,7 @@ struct Parameters {
     Parameters();  ///< defaults from the table
 
     BodyParameters robot;
+    PushParameters push;
     ProximityParameters proximity;
     LightParameters light;
     GroundParameters ground;

@@ -15,6 +15,7 @@ RobotModel::RobotModel(const World& world, const Robot& robot, const Parameters&
       drives_{
           WheelDrive(parameters.robot, RandomStream(world.seed, "physics/" + robot.name + "/steps_left")),
           WheelDrive(parameters.robot, RandomStream(world.seed, "physics/" + robot.name + "/steps_right"))},
+      floor_motion_(parameters, RandomStream(world.seed, "physics/" + robot.name + "/pushes")),
       proximity_(parameters.proximity),
       light_(parameters.light, parameters.proximity, world.ambient_light, world.lamps),
       ground_(parameters.ground, world.arena.floor_grey, world.patches),
@@ -37,6 +38,15 @@ double RobotModel::wheel_speed(Side side, double seconds, double wheel_angle) {
     asked_angle_[i] = drive.angle(seconds);
     return (asked_angle_[i] - before) / kStepSeconds +
            (before - wheel_angle) / parameters_.robot.drive_compliance;
+}
+
+FloorVelocity RobotModel::floor_velocity(const RobotState& state, double seconds) {
+    const auto& body = parameters_.robot;
+    const std::array<double, 2> rolls{(state.wheel[0] - rolled_[0]) / kStepSeconds * body.wheel_radius_left,
+                                      (state.wheel[1] - rolled_[1]) / kStepSeconds * body.wheel_radius_right};
+    rolled_ = state.wheel;
+    const bool driven = drives_[0].driven(seconds) || drives_[1].driven(seconds);
+    return floor_motion_.velocity({rolls, state.heading, driven, seconds}, kStepSeconds);
 }
 
 void RobotModel::sense_proximity(const SensorView& view) {

@@ -4,6 +4,7 @@
 #include "physics/accelerometer.h"
 #include "physics/battery.h"
 #include "physics/channels.h"
+#include "physics/floor_motion.h"
 #include "physics/ground.h"
 #include "physics/light.h"
 #include "physics/proximity.h"
@@ -26,6 +27,11 @@ class RobotModel {
     /// Wheel speed (rad/s) to ask for in the step that ends at `seconds`, from where the wheel is now.
     double wheel_speed(Side side, double seconds, double wheel_angle);
 
+    const FloorMotion& floor_motion() const { return floor_motion_; }
+    /// How the floor moves under the robot in the step that ends at `seconds`; not asked for where it is
+    /// still.
+    FloorVelocity floor_velocity(const RobotState& state, double seconds);
+
     void sense_proximity(const SensorView& view);
     void sense_light(const SensorView& view);
     void sense_ground(const RobotState& state);
@@ -47,6 +53,8 @@ class RobotModel {
     double ambient_light_;
     std::array<WheelDrive, 2> drives_;
     std::array<double, 2> asked_angle_{};
+    FloorMotion floor_motion_;
+    std::array<double, 2> rolled_{};  // rad, when the floor's motion was last asked for
     ProximityRing proximity_;
     LightRing light_;
     GroundRow ground_;

@@ -8,7 +8,9 @@ namespace puckloop::physics {
 
 namespace {
 constexpr double kPolePair = 4.0;  // steps after which the coils' pattern repeats
-}
+constexpr double kOverdue = 1.5;   // intervals after which no further step is expected
+constexpr double kSlowest = 0.2;   // s: steps further apart do not drive a wheel
+}  // namespace
 
 WheelDrive::WheelDrive(const BodyParameters& parameters, RandomStream losses)
     : parameters_(parameters),
@@ -21,10 +23,12 @@ void WheelDrive::step_to(double steps, double seconds) {
     begun_ = seconds;
     const double interval = seconds - last_step_;
     duration_ = interval <= parameters_.smoothing_limit ? interval : parameters_.settle_time;
+    interval_ = interval;
     last_step_ = seconds;
     const double change = steps - steps_;
     steps_ = steps;
     if (parameters_.step_loss_speed > 0.0) lose_at_speed(change, interval);
+    if (parameters_.deadband > 0.0) hold_if_slow(change, interval);
 }
 
 void WheelDrive::lose_at_speed(double change, double interval) {
@@ -32,6 +36,17 @@ void WheelDrive::lose_at_speed(double change, double interval) {
     const double x = (speed - parameters_.step_loss_speed) / parameters_.step_loss_width;
     const double share = 1.0 / (1.0 + std::exp(-x));
     if (losses_.uniform() < share * std::abs(change) / kPolePair) lost_ += std::copysign(kPolePair, change);
+}
+
+/// A step too slow is lost, but the last one is still there to be taken along: two steps pull harder.
+void WheelDrive::hold_if_slow(double change, double interval) {
+    if (std::abs(change) < parameters_.deadband * interval) {
+        lost_ += change;
+        held_ = std::copysign(std::min(std::abs(change), 1.0), change);
+        return;
+    }
+    if (held_ * change > 0.0) lost_ -= held_;
+    held_ = 0.0;
 }
 
 double WheelDrive::rotor(double seconds) const {
@@ -60,6 +75,11 @@ double WheelDrive::pull_out(double wheel_angle) {
 
 bool WheelDrive::running(double seconds) const {
     return seconds - last_step_ <= parameters_.smoothing_limit;
+}
+
+bool WheelDrive::driven(double seconds) const {
+    const double expected = interval_ <= kSlowest ? kOverdue * interval_ : 0.0;
+    return seconds - last_step_ <= std::max(parameters_.smoothing_limit, expected);
 }
 
 }  // namespace puckloop::physics

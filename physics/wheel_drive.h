@@ -4,7 +4,8 @@
 //
 // Deviations: 1. between two steps the rotor is taken to turn evenly (a real one swings into each step);
 // the wheel thus runs one step interval behind the coils, and ends exactly on the last step. 2. Pull-out is a
-// threshold on the lag, not a torque curve.
+// threshold on the lag, not a torque curve. 3. Below robot.deadband the rotor
+// does not follow at all; a first step that is not taken comes with the second if that is fast enough.
 
 #include "base/random.h"
 #include "physics/parameters.h"
@@ -28,13 +29,16 @@ class WheelDrive {
 
     /// Did a step come within the smoothing limit before `seconds`?
     bool running(double seconds) const;
+    /// Do steps still come at `seconds`? A single step counts until the next one is overdue.
+    bool driven(double seconds) const;
     double steps() const { return steps_; }
-    /// Steps lost so far, signed: pulled out or too fast.
+    /// Steps lost so far, signed: pulled out, too fast or too slow.
     double lost() const { return lost_; }
 
   private:
     double rotor(double seconds) const;
     void lose_at_speed(double change, double interval);
+    void hold_if_slow(double change, double interval);
 
     BodyParameters parameters_;
     RandomStream losses_;
@@ -45,6 +49,8 @@ class WheelDrive {
     double begun_ = 0.0;       // s, when it came
     double duration_ = 0.0;    // s, until the rotor has arrived
     double last_step_ = -1e9;  // s
+    double interval_ = 0.0;    // s, between the last two steps
+    double held_ = 0.0;        // last step if it was too slow to move the rotor
     double geared_ = 0.0;      // rad, behind the backlash
 };
 

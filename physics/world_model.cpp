@@ -76,6 +76,8 @@ void WorldModel::step() {
         const double left = robots_[i].wheel_speed(Side::Left, seconds(), wheel[0]);
         const double right = robots_[i].wheel_speed(Side::Right, seconds(), wheel[1]);
         dynamics_.drive(i, left, right);
+        if (!robots_[i].floor_motion().still())
+            dynamics_.move_floor(i, robots_[i].floor_velocity(dynamics_.robot(i), seconds()));
     }
     dynamics_.step();
     for (std::size_t i = 0; i < robots_.size(); ++i) {

@@ -15,7 +15,8 @@ Effect collision_push() {
                        {"push.turn", 0.0, 3.0, 0.3, {0.0, 0.05}, "none to a turn"}},
         .needs = {},
         .observables = "rare jumps of all pose components",
-        .enters = "nothing by itself: other robots or things in the scenario",
+        .enters =
+            "push.rate, push.size, push.turn (physics/floor_motion); other robots and things push as well",
         .confounded = {"command_loss"},
         .separated_by = "film the arena; a run with nobody near",
         .measuring_chain = false,

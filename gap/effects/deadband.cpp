@@ -18,7 +18,7 @@ Effect deadband() {
                         "near 0 for a good stepper, 20 % of the range for DC motors"}},
         .needs = {},
         .observables = "way along, heading",
-        .enters = "nothing yet",
+        .enters = "robot.deadband (physics/wheel_drive)",
         .confounded = {"backlash"},
         .separated_by = "commands in small steps through zero",
         .measuring_chain = false,

@@ -14,7 +14,7 @@ Effect floor_tilt() {
                        {"robot.drift_y", -0.05, 0.05, 0.003, {}, "?"}},
         .needs = {},
         .observables = "way along and across",
-        .enters = "nothing by itself: world.slope_x, world.slope_y with contact.creep come near",
+        .enters = "robot.drift_x, robot.drift_y (physics/floor_motion)",
         .confounded = {"marker_offset"},
         .separated_by = "the same run with other headings at the start",
         .measuring_chain = false,

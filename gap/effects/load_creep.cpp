@@ -15,7 +15,8 @@ Effect load_creep() {
                        {"robot.slope_creep", -0.5, 1.0, 0.2, {}, "?"}},
         .needs = {"load_kg|incline_rad"},
         .observables = "way along, heading",
-        .enters = "nothing yet",
+        .enters = "robot.load_creep with robot.load, robot.slope_creep with world.slope_x, world.slope_y "
+                  "(physics/floor_motion)",
         .confounded = {"wheel_scale"},
         .separated_by = "the same runs with and without added mass, and on a slope",
         .measuring_chain = false,

@@ -19,7 +19,7 @@ Effect turn_scrub() {
                         "0..4 % between circle and spot turn; measured 0.7 % on another robot"}},
         .needs = {},
         .observables = "heading",
-        .enters = "nothing yet",
+        .enters = "robot.turn_scrub (physics/floor_motion)",
         .confounded = {"axle_length"},
         .separated_by = "spot turns beside wide circles of the same angle",
         .measuring_chain = false,

@@ -1,0 +1,211 @@
+// How the floor moves under a robot, alone and under a robot that drives on it.
+
+#include "tests/physics/worlds.h"
+
+#include <catch2/catch.hpp>
+
+#include <numbers>
+
+using namespace puckloop;
+using namespace puckloop::physics;
+using namespace puckloop::physics::test;
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr double kMetresPerStep = 2 * kPi * 0.0205 / 1000;
+constexpr double kAxle = 0.053;
+using Values = std::map<std::string, double>;
+
+FloorMotion motion_with(const Values& values) {
+    Parameters parameters;
+    for (const auto& [name, value] : values)
+        parameters.set(name, value);
+    return {parameters, RandomStream(7, "pushes")};
+}
+
+/// A leg of a drive, steps/s and s.
+struct Leg {
+    double left, right, seconds;
+};
+
+RobotState after(const Values& values, const std::vector<Leg>& legs, double heading = 0.0) {
+    auto description = world_with_robot(6, 6);
+    description.robots[0].heading = heading;
+    description.parameters = values;
+    WorldModel world(description);
+    Driver driver(world);
+    for (const Leg& leg : legs)
+        driver.drive(leg.left, leg.right, leg.seconds);
+    driver.drive(0, 0, 0.5);
+    return world.state(0);
+}
+
+/// What one drive loses when `values` hold, of what it makes without them.
+double share_lost(const Values& values, const std::vector<Leg>& legs, double heading = 0.0) {
+    Values slope;  // holds in both
+    for (const auto& [name, value] : values)
+        if (name.starts_with("world.") || name == "robot.load") slope[name] = value;
+    const auto with = after(values, legs, heading), without = after(slope, legs, heading);
+    return 1 - std::hypot(with.x, with.y) / std::hypot(without.x, without.y);
+}
+
+}  // namespace
+
+TEST_CASE("a floor that nobody asked to move is still") {
+    CHECK(motion_with({}).still());
+    CHECK(motion_with({{"robot.load", 0.3}, {"world.slope_x", 0.1}, {"push.size", 0.1}}).still());
+    CHECK(motion_with({{"robot.load_creep", 0.3}, {"robot.slope_creep", 0.1}}).still());
+    CHECK_FALSE(motion_with({{"robot.turn_scrub", 0.01}}).still());
+    CHECK_FALSE(motion_with({{"robot.load_creep", 0.1}, {"robot.load", 0.1}}).still());
+    CHECK_FALSE(motion_with({{"robot.slope_creep", 0.1}, {"world.slope_y", 0.1}}).still());
+    CHECK_FALSE(motion_with({{"robot.drift_y", -0.001}}).still());
+    CHECK_FALSE(motion_with({{"push.rate", 0.1}}).still());
+}
+
+TEST_CASE("pushes come at their rate and with their size, and move the floor as far as they say") {
+    auto floor = motion_with({{"push.rate", 0.5}, {"push.size", 0.02}, {"push.turn", 0.2}});
+    constexpr int kSeconds = 2000;
+    std::array<double, 3> moved{}, last{};
+    double squares = 0.0, turns = 0.0;
+    int seen = 0, moving = 0;
+    for (int ms = 1; ms <= kSeconds * 1000; ++ms) {
+        const auto v = floor.velocity({.seconds = ms * 1e-3}, 1e-3);
+        const std::array<double, 3> now{v.x, v.y, v.turn};
+        moving += now == std::array<double, 3>{} ? 0 : 1;
+        for (std::size_t i = 0; i < 3; ++i)
+            moved[i] += now[i] * 1e-3;
+        if (floor.pushes() == seen) continue;
+        seen = floor.pushes();
+        const auto& all = floor.pushed();
+        squares += std::pow(all[0] - last[0], 2) + std::pow(all[1] - last[1], 2);
+        turns += std::pow(all[2] - last[2], 2);
+        last = all;
+    }
+    CHECK(floor.pushes() == Approx(0.5 * kSeconds).margin(100));  // 3 standard deviations
+    CHECK(std::sqrt(squares / seen / 2) == Approx(0.02).epsilon(0.1));
+    CHECK(std::sqrt(turns / seen) == Approx(0.2).epsilon(0.1));
+    CHECK(moving / static_cast<double>(seen) < 250);  // ms a push: half of 0.7 g
+    for (std::size_t i = 0; i < 3; ++i)
+        CHECK(moved[i] == Approx(last[i]).margin(1e-3));  // the last one may be under way
+}
+
+TEST_CASE("a robot that stands is taken where pushes take it") {
+    auto description = world_with_robot(4, 4);
+    description.parameters = {{"push.rate", 0.3}, {"push.size", 0.02}, {"push.turn", 0.2}};
+    WorldModel world(description);
+    double x = 0.0, y = 0.0, heading = 0.0;
+    int seen = 0;
+    for (int ms = 0; ms < 30000; ++ms) {
+        world.step();
+        const auto& floor = world.robot(0).floor_motion();
+        if (floor.pushes() == seen) continue;
+        seen = floor.pushes();
+        x = floor.pushed()[0];
+        y = floor.pushed()[1];
+        heading = floor.pushed()[2];
+    }
+    for (int ms = 0; ms < 300; ++ms)
+        world.step();
+    REQUIRE(seen > 3);
+    REQUIRE(world.robot(0).floor_motion().pushes() == seen);
+    CHECK(world.state(0).x == Approx(x).margin(0.001));
+    CHECK(world.state(0).y == Approx(y).margin(0.001));
+    CHECK(world.state(0).heading == Approx(heading).margin(0.02));
+    CHECK(std::hypot(x, y) > 0.01);
+}
+
+TEST_CASE("a push against a wall does not go through it") {
+    auto description = world_with_robot(0.08, 0.08);
+    description.parameters = {{"push.rate", 1}, {"push.size", 0.05}};
+    WorldModel world(description);
+    double furthest = 0.0;
+    for (int ms = 0; ms < 20000; ++ms) {
+        world.step();
+        furthest = std::max({furthest, std::abs(world.state(0).x), std::abs(world.state(0).y)});
+    }
+    CHECK(world.robot(0).floor_motion().pushes() > 10);
+    CHECK(furthest < 0.005 + 0.0005);  // of half a millimetre of compliance
+    CHECK(furthest > 0.004);
+}
+
+TEST_CASE("tyres that scrub turn less, the tighter the turn the more") {
+    const Values scrub{{"robot.turn_scrub", 0.06}};
+    const std::vector<Leg> spin{{-300, 300, 4}}, arc{{300, 500, 4}}, line{{500, 500, 4}}, pivot{{0, -400, 4}};
+    const auto ratio = [&](const std::vector<Leg>& legs) {
+        return after({}, legs).heading / after(scrub, legs).heading - 1;
+    };
+    CHECK(ratio(spin) == Approx(0.06).epsilon(0.02));
+    CHECK(ratio(pivot) == Approx(0.06 / 2).epsilon(0.02));
+    CHECK(ratio(arc) == Approx(0.06 * 100 / (400 + 100)).epsilon(0.02));
+    const auto with = after(scrub, line), without = after({}, line);
+    CHECK(with.x == Approx(without.x).margin(1e-6));
+    CHECK(with.heading == Approx(0).margin(1e-6));
+}
+
+TEST_CASE("a load costs its share of the way, both ways and in turns") {
+    const Values creep{{"robot.load", 0.2}, {"robot.load_creep", 0.1}};
+    CHECK(share_lost(creep, {{450, 450, 4}}) == Approx(0.02).epsilon(0.02));
+    CHECK(share_lost(creep, {{-450, -450, 4}}) == Approx(0.02).epsilon(0.02));
+    const auto with = after(creep, {{-300, 300, 4}}),
+               without = after({{"robot.load", 0.2}}, {{-300, 300, 4}});
+    CHECK(1 - with.heading / without.heading == Approx(0.02).epsilon(0.02));
+}
+
+TEST_CASE("a load alone leaves the way as it is") {
+    const std::vector<Leg> legs{{450, 450, 4}, {0, 0, 0.5}, {-200, 300, 2}};
+    const auto with = after({{"robot.load", 0.2}}, legs), without = after({}, legs);
+    CHECK(with.x == Approx(without.x).margin(5e-4));
+    CHECK(with.heading == Approx(without.heading).margin(5e-3));
+}
+
+TEST_CASE("a slope costs way uphill, gives some with the nose downhill, and none along the contour") {
+    const Values creep{{"world.slope_x", 0.1}, {"robot.slope_creep", 0.3}};
+    CHECK(share_lost(creep, {{450, 450, 4}}, 0.0) == Approx(0.03).epsilon(0.03));
+    CHECK(share_lost(creep, {{450, 450, 4}}, kPi) == Approx(-0.03).epsilon(0.03));
+    CHECK(share_lost(creep, {{450, 450, 4}}, kPi / 2) == Approx(0).margin(0.001));
+    CHECK(share_lost(creep, {{450, 450, 4}}, kPi / 3) == Approx(0.015).epsilon(0.05));
+}
+
+TEST_CASE("a drift acts in the world's axes while the wheels are driven, however slowly") {
+    const Values drift{{"robot.drift_x", 0.003}, {"robot.drift_y", -0.002}};
+    const double speed = GENERATE(20.0, 300.0);
+    const double heading = 1.0;
+    const auto with = after(drift, {{speed, speed, 5}}, heading),
+               without = after({}, {{speed, speed, 5}}, heading);
+    // It ends some 20 ms after the last fast step, or when the next slow one is overdue: 75 ms.
+    CHECK(with.x - without.x == Approx(5 * 0.003).margin(3e-4));
+    CHECK(with.y - without.y == Approx(-5 * 0.002).margin(3e-4));
+    CHECK(with.heading == Approx(without.heading).margin(2e-3));
+    const auto standing = after(drift, {{0, 0, 5}});
+    CHECK(std::hypot(standing.x, standing.y) < 1e-5);
+}
+
+TEST_CASE("steps slower than the dead band leave the wheel, faster ones turn it") {
+    const Values band{{"robot.deadband", 60}};
+    const double slow = GENERATE(10.0, 40.0, 59.0);
+    CHECK(std::abs(after(band, {{slow, -slow, 4}}).heading) < 1e-6);
+    const auto with = after(band, {{65, 65, 4}}), without = after({}, {{65, 65, 4}});
+    CHECK(with.x == Approx(without.x).margin(0.3 * kMetresPerStep));  // the first step, too
+    CHECK(with.x > 4 * 60 * kMetresPerStep);
+}
+
+TEST_CASE("a step that was too slow comes with the next one if that is fast enough") {
+    Parameters parameters;
+    parameters.robot.deadband = 60;
+    WheelDrive wheel(parameters.robot, RandomStream(1, "losses"));
+    wheel.step_to(1, 1.0);  // after standing: held
+    CHECK(wheel.angle(1.005) == 0);
+    CHECK(wheel.lost() == 1);
+    wheel.step_to(2, 1.01);  // 100 steps/s
+    CHECK(wheel.lost() == 0);
+    CHECK(wheel.angle(1.1) == Approx(2 * 2 * kPi / 1000));
+    wheel.step_to(3, 1.2);  // one step of many that are too slow is taken along
+    wheel.step_to(4, 1.3);
+    wheel.step_to(5, 1.31);
+    CHECK(wheel.lost() == 1);
+    CHECK(wheel.angle(2) == Approx(4 * 2 * kPi / 1000));
+    wheel.step_to(4, 2.0);  // back: the coils find the rotor where it was left
+    wheel.step_to(5, 2.01);
+    CHECK(wheel.angle(3) == Approx(5 * 2 * kPi / 1000));
+}
