@@ -23,20 +23,35 @@ constexpr double kStripe = 0.06;  // m
 constexpr std::array<double, 6> kGreys{1.0, 0.0, 0.5, 1.0, 0.25, 0.75};
 constexpr double kNearest = 0.041;  // m from the axle to the wall: nearer, a micrometre is a count
 constexpr double kSettled = 0.5;    // s at each stop of an approach
+constexpr double kTilt = 0.1;       // rad of the table in some drives
+
+Act drive_of(const selftest::PlannedDrive& plan) {
+    Act act;
+    act.conditions = {{"path", plan.path}, {"sense", plan.sense}};
+    act.arena = kOpenFloor;
+    act.heading = plan.script.heading;
+    act.load = plan.script.load;
+    for (const auto& c : plan.script.commands)
+        act.commands.push_back({c.begin, c.left, c.right});
+    act.commands.push_back({plan.script.seconds, 0, 0});
+    return act;
+}
 
 std::vector<Act> motion_acts(std::uint64_t seed, bool brief) {
     RandomStream random(seed, "drives on the emulator");
-    std::vector<Act> acts;
+    std::vector<Act> acts, loaded;
     for (const auto& plan : selftest::planned_drives(random, false)) {
-        if (plan.script.load > 0.0) continue;  // the emulated robot carries nothing
         if (brief && acts.size() >= 4) break;
-        Act act;
-        act.conditions = {{"path", plan.path}, {"sense", plan.sense}};
-        act.arena = kOpenFloor;
-        act.heading = plan.script.heading;
-        for (const auto& c : plan.script.commands)
-            act.commands.push_back({c.begin, c.left, c.right});
-        act.commands.push_back({plan.script.seconds, 0, 0});
+        (plan.script.load > 0.0 ? loaded : acts).push_back(drive_of(plan));
+    }
+    if (brief) return acts;
+    // With a load on the back, and the same line up, down and along a tilted table without it.
+    acts.insert(acts.end(), loaded.begin(), loaded.end());
+    for (const double uphill : {0.0, std::numbers::pi, 0.5 * std::numbers::pi, 0.1}) {
+        Act act = loaded.front();
+        act.load = 0.0;
+        act.slope_x = kTilt;
+        act.heading = uphill + 0.1 * (random.uniform() - 0.5);
         acts.push_back(std::move(act));
     }
     return acts;

@@ -1,6 +1,7 @@
 #include "gap/emulate/reacts.h"
 
 #include "gap/emulate/plans.h"
+#include "gap/emulate/surroundings.h"
 #include "physics/parameters.h"
 
 #include <fmt/format.h>
@@ -89,6 +90,7 @@ std::vector<React> motion(const Experiment& experiment, std::string& why) {
         if (react.rows.empty() || !(react.period > 0) || std::isnan(react.x)) continue;
         react.act.commands.push_back({t.back() - t[0], left.back(), right.back()});
         react.act.arena = open_floor(reach);
+        restore_surroundings(run, react.act);
         reacts.push_back(std::move(react));
     }
     if (reacts.empty()) why = "no run with wheel commands beside its path";

@@ -4,6 +4,7 @@
 #include "base/random.h"
 #include "gap/emulate/record_rab.h"
 #include "gap/emulate/record_serial.h"
+#include "gap/emulate/surroundings.h"
 #include "physics/parameters.h"
 
 #include <fmt/format.h>
@@ -153,6 +154,7 @@ HiddenExperiment record(std::string_view kind, const RecordOptions& options) {
                                   options.scratch / fmt::format("act{:02}", k + 1));
         HiddenRun run;
         if (kind == "motion") run = motion_run(rows, noise);
+        if (kind == "motion" && !options.brief) note_surroundings(acts[k], rows, run);
         if (kind == "proximity") run = proximity_run(rows, acts[k].conditions.at("light") == "lamp", noise);
         if (kind == "ground") run = ground_run(rows);
         if (kind == "timing") run = timing_run(rows, noise);

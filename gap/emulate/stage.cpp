@@ -44,7 +44,11 @@ std::string scenario_text(const Robot& robot, const Act& act, const Tools& tools
                           const std::filesystem::path& scratch) {
     std::string text =
         fmt::format("[run]\nseed = {}\nrecord_every = \"{}\"\n{}\n[parameters]\n", seed, kEvery, act.arena);
-    for (const auto& [name, value] : robot.parameters)
+    auto parameters = robot.parameters;
+    if (act.load != 0.0) parameters["robot.load"] += act.load;
+    if (act.slope_x != 0.0) parameters["world.slope_x"] += act.slope_x;
+    if (act.slope_y != 0.0) parameters["world.slope_y"] += act.slope_y;
+    for (const auto& [name, value] : parameters)
         text += fmt::format("{} = {}\n", name, scenarios::parameter_text(name, value));
     text +=
         fmt::format("[[robot]]\nname = \"robot0\"\nposition = [\"{} m\", \"{} m\"]\nheading = \"{} rad\"\n",

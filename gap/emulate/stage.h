@@ -36,6 +36,8 @@ struct Act {
     double x = 0.0, y = 0.0, heading = 0.0;
     std::vector<control::ScriptedCommand> commands;  ///< the last one ends the run
     bool ground = false;
+    double load = 0.0;                    ///< kg laid on the robot, known to the laboratory
+    double slope_x = 0.0, slope_y = 0.0;  ///< rad that the table is tilted, known as well
 };
 
 /// One exchange between Linux board and main board, and where the tracker saw the robot when it was begun.

@@ -3,11 +3,13 @@
 
 #include "gap/emulate/record.h"
 #include "gap/emulate/rerun.h"
+#include "gap/emulate/surroundings.h"
 #include "scenarios/scenario.h"
 #include "tests/scratch.h"
 
 #include <catch2/catch.hpp>
 
+#include <cmath>
 #include <fstream>
 
 using namespace puckloop;
@@ -105,6 +107,40 @@ TEST_CASE("an overlay's links and clocks reach every robot of a scenario") {
     CHECK(scenario.faults[faults + 1].probability == Approx(0.001));
     CHECK(scenario.robots[0].pic.crystal_ppm == Approx(before + 250));
     std::filesystem::remove_all(scratch);
+}
+
+TEST_CASE("load and tilt of the table are noted beside a run, and set up again from there") {
+    emulate::Act act;
+    act.load = 0.2;
+    act.slope_x = 0.08;
+    act.slope_y = -0.03;
+    const bool turns = GENERATE(true, false);
+    selftest::HiddenRun noted;
+    std::vector<emulate::Row> rows(40);
+    Run run;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        rows[i].theta = 0.5 + (turns ? 0.1 * static_cast<double>(i) : 0.0);
+        run.columns["theta_rad"].push_back(rows[i].theta);
+    }
+    emulate::note_surroundings(act, rows, noted);
+    run.rows = rows.size();
+    for (const char* name : {"load_kg", "incline_rad"})
+        run.columns[name] = noted.column(name).values;
+    const auto rise = [](const emulate::Act& a, double theta) {
+        return std::sin(a.slope_x) * std::cos(theta) + std::sin(a.slope_y) * std::sin(theta);
+    };
+    CHECK(run.columns["incline_rad"].back() == Approx(std::asin(rise(act, rows.back().theta))).margin(1e-4));
+    emulate::Act again;
+    emulate::restore_surroundings(run, again);
+    CHECK(again.load == 0.2);
+    // A line tells the tilt along itself only.
+    for (const emulate::Row& row : rows)
+        CHECK(rise(again, row.theta) == Approx(rise(act, row.theta)).margin(1e-4));
+    CHECK(again.slope_x == Approx(turns ? 0.08 : rise(act, 0.5) * std::cos(0.5)).margin(2e-4));
+    CHECK(again.slope_y == Approx(turns ? -0.03 : rise(act, 0.5) * std::sin(0.5)).margin(2e-4));
+    emulate::Act flat;
+    emulate::restore_surroundings(Run{}, flat);
+    CHECK((flat.load == 0.0 && flat.slope_x == 0.0 && flat.slope_y == 0.0));
 }
 
 TEST_CASE("what cannot be performed again is said, not guessed") {
