@@ -34,6 +34,10 @@
 #define PULSE2 (1 << 0) /* 2 and 6 */
 #define PULSE3 (1 << 1) /* 3 and 7 */
 
+/* Microphones right, left, rear are AN2..AN4, about mid scale; the accelerometer's x, y, z AN5..AN7 */
+#define MICROPHONES 0x001C
+#define ACCELEROMETER 0x00E0
+
 /* Phototransistors 0..7 are AN8..AN15; more light gives a lower value */
 #define PHOTOTRANSISTORS 0xFF00
 

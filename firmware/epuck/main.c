@@ -1,5 +1,6 @@
 /* The e-puck main board's firmware: start everything, then serve the Linux board. */
 
+#include "analog.h"
 #include "board.h"
 #include "clock.h"
 #include "leds.h"
@@ -25,6 +26,7 @@ int main(void) {
     motors_start();
     clock_start();
     proximity_start();
+    analog_start();
     uart_start();
     while (!proximity_ready())
         IDLE(); /* 13 ms; what Linux sends meanwhile is kept */

@@ -1,11 +1,11 @@
 #include "proximity.h"
 
+#include "analog.h"
 #include "board.h"
-#include "registers.h"
 
-/* A scan is 8 channels of (1 TAD sampling + 14 TAD conversion) of 10 cycles each: 1200 cycles. */
-#define SCANS_LIT 4   /* 325.5 us: the phototransistor has settled */
-#define SCANS_PAIR 40 /* 3.26 ms: each emitter is on 2.5 % of the time */
+#define FIRST_PHOTOTRANSISTOR 8 /* AN8, the others follow */
+#define SCANS_LIT 2             /* 284.8 us: the phototransistor has settled */
+#define SCANS_PAIR 23           /* 3.28 ms: each emitter is on 2.2 % of the time */
 #define PAIRS 4
 
 static volatile s16 ambient_value[SENSORS];
@@ -27,14 +27,13 @@ static void pulse(u8 on) {
 
 /* Results of sensors pair and pair + 4. */
 static s16 front_result(void) {
-    return (&ADCBUF0)[pair];
+    return ANALOG(FIRST_PHOTOTRANSISTOR + pair);
 }
 static s16 rear_result(void) {
-    return (&ADCBUF4)[pair];
+    return ANALOG(FIRST_PHOTOTRANSISTOR + PAIRS + pair);
 }
 
-void INTERRUPT _ADCInterrupt(void) {
-    IFS0 &= ~ADIF;
+void proximity_scanned(void) {
     if (scan == 0) {
         before_front = front_result();
         before_rear = rear_result();
@@ -60,15 +59,6 @@ void proximity_start(void) {
     LATG &= ~(PULSE2 | PULSE3);
     TRISF &= ~(PULSE0 | PULSE1);
     TRISG &= ~(PULSE2 | PULSE3);
-    ADPCFG = ~PHOTOTRANSISTORS; /* 0 = analogue */
-    ADCSSL = PHOTOTRANSISTORS;
-    ADCHS = 0;
-    ADCON2 = CSCNA | SMPI(SENSORS);
-    ADCON3 = SAMC(1) | ADCS(20); /* TAD = 10 cycles = 678 ns */
-    IFS0 &= ~ADIF;
-    IPC2 = (IPC2 & ~IP_MASK(ADIP)) | ADIP(LEVEL_ADC);
-    IEC0 |= ADIF;
-    ADCON1 = ADON | SSRC_AUTO | ASAM;
 }
 
 u8 proximity_ready(void) {

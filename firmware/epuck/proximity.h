@@ -1,6 +1,5 @@
-/* Proximity and ambient light: the converter scans the eight phototransistors without pause (81.38 us a
- * scan); the emitters of one pair of opposite sensors are pulsed in turn, and the value just before the pulse
- * and the one at its end are kept. A round of four pairs takes 13.02 ms. */
+/* Proximity and ambient light: the emitters of one pair of opposite sensors are pulsed in turn, and the value
+ * in the scan just before the pulse and in the one at its end are kept. A round of four pairs takes 13.10 ms. */
 #ifndef EPUCK_PROXIMITY_H
 #define EPUCK_PROXIMITY_H
 
@@ -9,6 +8,8 @@
 #define SENSORS 8
 
 void proximity_start(void);
+/* By the converter's interrupt. */
+void proximity_scanned(void);
 /* 0 until the first round is complete. */
 u8 proximity_ready(void);
 /* Ambient minus lit, ADC counts; more than 0 where something reflects. */

@@ -30,7 +30,7 @@ struct sensor_record {
     s16 proximity[8];
     u16 battery_ok;
     s16 accelerometer[3];
-    s16 microphones[4];
+    s16 microphones[4]; /* the last stays 0 */
     s16 light[8];
     u16 rab_received;
     u16 ircom_received;

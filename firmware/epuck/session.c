@@ -1,8 +1,10 @@
 #include "session.h"
 
+#include "accelerometer.h"
 #include "board.h"
 #include "clock.h"
 #include "leds.h"
+#include "microphones.h"
 #include "motors.h"
 #include "proximity.h"
 #include "records.h"
@@ -39,6 +41,10 @@ static void answer(void) {
         out.record.proximity[i] = proximity(i);
         out.record.light[i] = ambient(i);
     }
+    for (i = 0; i < AXES; ++i)
+        out.record.accelerometer[i] = acceleration(i);
+    for (i = 0; i < EARS; ++i)
+        out.record.microphones[i] = volume(i);
     out.record.battery_ok = PORTF & BATTERY_OK ? 1 : 0;
     uart_send(out.bytes, SENSOR_BYTES);
 }

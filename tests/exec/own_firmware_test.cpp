@@ -144,7 +144,43 @@ TEST_CASE("own firmware: each sensor in its place, fresh within 30 ms") {
     CHECK(s.battery_ok == 0);
 }
 
-TEST_CASE("own firmware: the emitters are pulsed in turn, 325.5 us each 13.02 ms") {
+TEST_CASE("own firmware: the accelerometer's axes are raw counts of the newest scan") {
+    InSession session;
+    Rig& rig = session.rig;
+    CHECK(sensors_of(ask(rig, actuators(0, 0))).accelerometer ==
+          std::array<std::int16_t, 3>{2048, 2048, 2848});
+    rig.set("acc_x", 1892);
+    rig.set("acc_y", 2206);
+    rig.set("acc_z", 2800);
+    rig.run_for(0.0003);  // two scans
+    CHECK(sensors_of(ask(rig, actuators(0, 0))).accelerometer ==
+          std::array<std::int16_t, 3>{1892, 2206, 2800});
+}
+
+TEST_CASE("own firmware: a volume is largest minus smallest of the last window, each microphone its own") {
+    InSession session;
+    Rig& rig = session.rig;
+    rig.run_for(0.03);
+    CHECK(sensors_of(ask(rig, actuators(0, 0))).microphones == std::array<std::int16_t, 4>{});
+    for (int i = 0; i < 40; ++i) {
+        const int sign = i % 2 == 0 ? 1 : -1;
+        rig.set("mic0", 2048 + 150 * sign);
+        rig.set("mic1", 2000 + 30 * sign);
+        rig.set("mic2", 2048 + (i % 2) * 2047);
+        rig.run_for(0.001);
+    }
+    rig.send(2, actuators(0, 0));
+    rig.run_for(0.0013);  // the record is there, the answer begun
+    rig.set("mic0", 2048);
+    const EpuckSensors s = sensors_of((rig.run_for(kWire), rig.take_bytes(2)));
+    CHECK(s.microphones == std::array<std::int16_t, 4>{300, 60, 2047, 0});
+    for (const char* mic : {"mic1", "mic2"})
+        rig.set(mic, 2048);
+    rig.run_for(0.029);  // two windows of 14.24 ms
+    CHECK(sensors_of(ask(rig, actuators(0, 0))).microphones == std::array<std::int16_t, 4>{});
+}
+
+TEST_CASE("own firmware: the emitters are pulsed in turn, 284.8 us each 13.10 ms") {
     InSession session;
     Rig& rig = session.rig;
     rig.clear_changes();
@@ -153,8 +189,8 @@ TEST_CASE("own firmware: the emitters are pulsed in turn, 325.5 us each 13.02 ms
         const auto changes = rig.changes(pulse);
         REQUIRE(changes.size() > 150);
         for (std::size_t i = changes[0].value == 1 ? 0 : 1; i + 2 < changes.size(); i += 2) {
-            CHECK(changes[i + 1].time_s - changes[i].time_s == Approx(325.5e-6).margin(3e-6));
-            CHECK(changes[i + 2].time_s - changes[i].time_s == Approx(13.02e-3).margin(5e-6));
+            CHECK(changes[i + 1].time_s - changes[i].time_s == Approx(284.8e-6).margin(3e-6));
+            CHECK(changes[i + 2].time_s - changes[i].time_s == Approx(13.10e-3).margin(5e-6));
         }
     }
 }
