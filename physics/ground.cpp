@@ -32,24 +32,34 @@ double floor_grey(double base, std::span<const Patch> patches, double x, double 
 GroundRow::GroundRow(const GroundParameters& parameters, double base_grey, std::span<const Patch> patches)
     : parameters_(parameters), base_grey_(base_grey), patches_(patches) {}
 
-std::array<double, kGroundSensors> GroundRow::sense(const RobotState& robot) const {
+std::array<double, kGroundSensors> GroundRow::greys(const RobotState& robot) const {
     const auto& p = parameters_;
     const double cosine = std::cos(robot.heading);
     const double sine = std::sin(robot.heading);
     const double reach = p.footprint / 2;
     const std::array<Point, 5> spots{{{0, 0}, {reach, 0}, {-reach, 0}, {0, reach}, {0, -reach}}};
-    std::array<double, kGroundSensors> counts{};
+    std::array<double, kGroundSensors> greys{};
     for (std::size_t i = 0; i < kGroundSensors; ++i) {
         const double x = robot.x + cosine * p.x - sine * p.y[i];
         const double y = robot.y + sine * p.x + cosine * p.y[i];
-        double grey = 0.0;
         for (const Point& spot : spots)
-            grey += floor_grey(base_grey_, patches_, x + spot.x, y + spot.y);
-        grey /= static_cast<double>(spots.size());
-        const double lift =
-            p.height - kDrawnHeight - p.x * std::sin(robot.pitch) + p.y[i] * std::sin(robot.roll);
+            greys[i] += floor_grey(base_grey_, patches_, x + spot.x, y + spot.y);
+        greys[i] /= static_cast<double>(spots.size());
+    }
+    return greys;
+}
+
+std::array<double, kGroundSensors> GroundRow::counts(const std::array<double, kGroundSensors>& greys,
+                                                     const RobotState& robot, const GroundMoment& now) const {
+    const auto& p = parameters_;
+    const double pitch = robot.pitch - p.acceleration_tilt * now.acceleration;  // nose down is positive
+    const double warm =
+        p.warmup_gain == 0.0 ? 1.0 : 1.0 + p.warmup_gain * warmed_up(now.seconds, p.warmup_time);
+    std::array<double, kGroundSensors> counts{};
+    for (std::size_t i = 0; i < kGroundSensors; ++i) {
+        const double lift = p.height - kDrawnHeight - p.x * std::sin(pitch) + p.y[i] * std::sin(robot.roll);
         const double signal = std::clamp(1.0 - p.height_slope * lift, kLeastSignal, kMostSignal);
-        const double level = (p.black + (p.white - p.black) * grey) * signal;
+        const double level = (p.black + (p.white - p.black) * greys[i]) * signal * warm;
         counts[i] = std::clamp(p.gain[i] * level + p.offset[i], 0.0, p.saturation);
     }
     return counts;

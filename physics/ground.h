@@ -13,12 +13,21 @@ namespace puckloop::physics {
 /// Grey (0 black .. 1 white) of the floor at a point; later patches lie on top.
 double floor_grey(double base, std::span<const Patch> patches, double x, double y);
 
+/// What else a reading depends on.
+struct GroundMoment {
+    double seconds = 0.0;
+    double acceleration = 0.0;  ///< m/s2, forward
+};
+
 class GroundRow {
   public:
     GroundRow(const GroundParameters& parameters, double base_grey, std::span<const Patch> patches);
 
-    /// Left, centre, right: noise-free counts, 0..saturation.
-    std::array<double, kGroundSensors> sense(const RobotState& robot) const;
+    /// Mean grey under each sensor: left, centre, right.
+    std::array<double, kGroundSensors> greys(const RobotState& robot) const;
+    /// Noise-free counts over such greys, 0..saturation; of `robot` pitch and roll count.
+    std::array<double, kGroundSensors> counts(const std::array<double, kGroundSensors>& greys,
+                                              const RobotState& robot, const GroundMoment& now) const;
 
   private:
     GroundParameters parameters_;

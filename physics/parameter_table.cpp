@@ -89,6 +89,18 @@ std::vector<ParameterInfo> build_table() {
         {"proximity.ambient_gain", "1", 1, {0.0}, -0.5, 0.9, AT(proximity.ambient_gain), "share of the answer lost at ambient level 1: the transistor nears its rail"},
         {"proximity.battery_gain", "1/V", 1, {0.0}, -1.0, 1.0, AT(proximity.battery_gain), "? emitter power a volt of battery, about 3.7 V"},
         {"proximity.motor_sag", "1", 1, {0.0}, 0.0, 0.2, AT(proximity.motor_sag), "? share of the whole reading lost with both motors stepping (reference sag), 0-0.02"},
+        {"proximity.age", "s", 1, {0.0}, 0.0, 0.5, AT(proximity.age), "what is reflected shows this much later, beside the firmware's own schedule (0-16 ms)"},
+        {"proximity.order", "1", 1, {0.0}, -1000, 1000, AT(proximity.order), "this run's place in a series, from the run whose readings are as simulated"},
+        {"proximity.order_drift", "1", 1, {0.0}, -0.2, 0.2, AT(proximity.order_drift), "? share that the answer gains from one run to the next: daylight, dust"},
+        {"proximity.flicker", "counts", 1, {0.0}, 0.0, 300, AT(proximity.flicker), "amplitude on the reading at ambient level 1; [M] 2-30 counts"},
+        {"proximity.flicker_frequency", "Hz", 1, {1.0}, 0.01, 400, AT(proximity.flicker_frequency), "of the lamp, or of the alias that the readings show; phase by the run's seed"},
+        {"proximity.interference_rate", "1", 1, {0.0}, 0.0, 0.6, AT(proximity.interference_rate), "[M] share of samples that a foreign pulse hits, .02-.2"},
+        {"proximity.interference_size", "counts", 1, {100}, 0.0, 2000, AT(proximity.interference_size), "mean height of a foreign pulse, up or down alike; scatter 0.3 of it"},
+        {"proximity.interference_share", "1", 8, {1.0}, 0.0, 1.0, FIRST(proximity.interference_share), "share of the foreign pulses that this sensor is exposed to"},
+        {"proximity.still_noise", "counts", 1, {2.83}, 0.0, 100, AT(proximity.still_noise), "scatter of a reading at rest, which motor_noise multiplies; not added itself: dark and lit sample with the board's adc_noise of 2"},
+        {"proximity.motor_noise", "1", 1, {0.0}, 0.0, 20, AT(proximity.motor_noise), "scatter grows by this share of still_noise at a mean rate of 1000 steps/s; [M] .2-1 at 800"},
+        {"proximity.proportional_noise", "1", 1, {0.0}, 0.0, 0.6, AT(proximity.proportional_noise), "scatter as a share of the reading, each ms anew; 0.002-0.05 in a published table, about 0 [M]"},
+        {"proximity.ambient_noise", "counts", 1, {0.0}, 0.0, 200, AT(proximity.ambient_noise), "? scatter at ambient level 1, with its root; each ms anew"},
 
         // Ambient light.
         {"light.gain", "1", 8, {1.0}, 0.0, 5.0, FIRST(light.gain), "as proximity.gain"},
@@ -115,12 +127,23 @@ std::vector<ParameterInfo> build_table() {
         {"ground.ambient", "counts", 1, {30}, 0, 1023, AT(ground.ambient), "? ambient registers under the robot at ambient level 1"},
         {"ground.noise", "counts", 1, {1.5}, 0.0, 100, AT(ground.noise), "[M] standard deviation 1-3 on white, 20 on black (texture)"},
         {"ground.period", "s", 1, {0.01}, 0.001, 1.0, AT(ground.period), "? the board samples faster than the 0.1 s of the control loop"},
+        {"ground.lag", "s", 1, {0.0}, 0.0, 1.0, AT(ground.lag), "the grey under the row shows this much later; [M] 18 of 37 samples of pitch"},
+        {"ground.acceleration_tilt", "rad s2/m", 1, {0.0}, -1.0, 1.0, AT(ground.acceleration_tilt), "? nose up by forward acceleration, taken between two of the row's samples; beside the body's own pitch"},
+        {"ground.warmup_gain", "1", 1, {0.0}, -0.6, 0.6, AT(ground.warmup_gain), "[M] -67 to -114 counts in 200 s"},
+        {"ground.warmup_time", "s", 1, {300}, 1, 3600, AT(ground.warmup_time), "? as proximity.warmup_time"},
 
         // Accelerometer.
         {"accelerometer.bias", "counts", 3, {0.0}, -500, 500, FIRST(accelerometer.bias), "zero 2048+-100"},
+        {"accelerometer.scale", "1", 3, {1.0}, 0.5, 1.6, FIRST(accelerometer.scale), "of each axis, beside accelerometer.gain; [M] 744-800 counts a g"},
+        {"accelerometer.session_spread", "counts", 3, {0.0}, 0.0, 900, FIRST(accelerometer.session_spread), "sd of the zero from run to run, drawn once a run; [M] x -223 and -17 in two sessions"},
         {"accelerometer.zero", "counts", 1, {2048}, 0, 4095, AT(accelerometer.zero), "mid scale"},
         {"accelerometer.gain", "counts", 1, {800}, 100, 2000, AT(accelerometer.gain), "counts for 1 g, 744-800"},
         {"accelerometer.bandwidth", "Hz", 1, {150}, 1, 480, AT(accelerometer.bandwidth), "about 150 Hz"},
+        {"accelerometer.turn", "rad", 1, {0.0}, -0.6, 0.6, AT(accelerometer.turn), "? chip turned on its board"},
+        {"accelerometer.motor_sag", "1", 1, {0.0}, -0.05, 0.3, AT(accelerometer.motor_sag), "? share of the whole value lost with both motors stepping (reference sag), 0-0.02"},
+        {"accelerometer.vibration", "counts", 1, {0.0}, 0.0, 1000, AT(accelerometer.vibration), "sd at a mean rate of 1000 steps/s, in proportion, each ms anew; [M] gyroscope's sd 640 while driving"},
+        {"accelerometer.warmup", "counts", 1, {0.0}, -500, 500, AT(accelerometer.warmup), "? drift of the zero"},
+        {"accelerometer.warmup_time", "s", 1, {300}, 1, 3600, AT(accelerometer.warmup_time), "? as proximity.warmup_time"},
 
         // Battery.
         {"battery.capacity", "W h", 1, {5.0}, 0.001, 50, AT(battery.capacity), "[W,S]"},

@@ -29,12 +29,14 @@ struct BodyParameters {
 
 /// Reflective infra-red sensors, clockwise from front right.
 struct ProximityParameters {
-    std::array<double, kProximitySensors> gain, offset, x, y, direction;
+    std::array<double, kProximitySensors> gain, offset, x, y, direction, interference_share;
     double height, curve, amplitude, origin, exponent, saturation, scale, reach;
     double rays, aperture, incidence_exponent;
     double pair_crosstalk, neighbour_crosstalk, warmup_gain, warmup_time;
     double compression, extra_exponent, distance_shift, threshold, ambient_offset, ambient_gain, battery_gain,
         motor_sag;
+    double age, order, order_drift, flicker, flicker_frequency, interference_rate, interference_size;
+    double still_noise, motor_noise, proportional_noise, ambient_noise;
 };
 
 /// Ambient light at the same eight places.
@@ -47,13 +49,13 @@ struct LightParameters {
 struct GroundParameters {
     std::array<double, kGroundSensors> gain, offset, y;
     double x, height, black, white, saturation, height_slope, footprint, ambient;
-    double noise, period;
+    double noise, period, lag, acceleration_tilt, warmup_gain, warmup_time;
 };
 
 /// Three-axis accelerometer; arrays are x (right), y (rear), z (up).
 struct AccelerometerParameters {
-    std::array<double, 3> bias;
-    double zero, gain, bandwidth;
+    std::array<double, 3> bias, scale, session_spread;
+    double zero, gain, bandwidth, turn, motor_sag, vibration, warmup, warmup_time;
 };
 
 /// Pushes that move a robot without its wheels, now and then.

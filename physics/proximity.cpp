@@ -73,8 +73,7 @@ ProximityRing::ProximityRing(const ProximityParameters& parameters) : parameters
     }
 }
 
-double ProximityRing::reflected(const SensorView& view, std::size_t sensor, double cosine,
-                                double sine) const {
+double ProximityRing::seen_by(const SensorView& view, std::size_t sensor, double cosine, double sine) const {
     double sum = 0.0;
     for (const Ray& own : rays_[sensor]) {
         const Ray ray = in_world(view.robot, cosine, sine, own);
@@ -92,26 +91,40 @@ double ProximityRing::reflected(const SensorView& view, std::size_t sensor, doub
     return sum / static_cast<double>(rays_[sensor].size());
 }
 
-std::array<double, kProximitySensors> ProximityRing::sense(const SensorView& view) const {
-    const auto& p = parameters_;
+std::array<double, kProximitySensors> ProximityRing::reflected(const SensorView& view) const {
     std::array<double, kProximitySensors> own{};
-    if (!view.shapes.empty()) {
-        const double cosine = std::cos(view.robot.heading);
-        const double sine = std::sin(view.robot.heading);
-        for (std::size_t i = 0; i < kProximitySensors; ++i)
-            own[i] = reflected(view, i, cosine, sine);
-    }
-    double scale = p.scale * (1.0 - p.ambient_gain * view.ambient);
-    if (p.battery_gain != 0.0) scale *= 1.0 + p.battery_gain * (view.battery - kBatteryReference);
-    if (p.warmup_gain != 0.0) scale *= 1.0 + p.warmup_gain * (1.0 - std::exp(-view.seconds / p.warmup_time));
+    if (view.shapes.empty()) return own;
+    const double cosine = std::cos(view.robot.heading);
+    const double sine = std::sin(view.robot.heading);
+    for (std::size_t i = 0; i < kProximitySensors; ++i)
+        own[i] = seen_by(view, i, cosine, sine);
+    return own;
+}
+
+std::array<double, kProximitySensors>
+ProximityRing::answer(const std::array<double, kProximitySensors>& reflected, const Surroundings& now) const {
+    const auto& p = parameters_;
+    double scale = p.scale * (1.0 - p.ambient_gain * now.ambient);
+    if (p.battery_gain != 0.0) scale *= 1.0 + p.battery_gain * (now.battery - kBatteryReference);
+    if (p.warmup_gain != 0.0) scale *= 1.0 + p.warmup_gain * warmed_up(now.seconds, p.warmup_time);
+    if (p.order_drift != 0.0) scale *= 1.0 + p.order_drift * p.order;
     std::array<double, kProximitySensors> counts{};
     for (std::size_t i = 0; i < kProximitySensors; ++i) {
-        const double pair = own[(i + 4) % kProximitySensors];
-        const double neighbours = own[(i + 1) % kProximitySensors] + own[(i + 7) % kProximitySensors];
-        const double seen = own[i] + p.pair_crosstalk * pair + p.neighbour_crosstalk * neighbours;
-        const double answer = scale * p.gain[i] * seen + p.offset[i] + p.ambient_offset * view.ambient;
-        counts[i] = std::clamp(answer * (1.0 - p.motor_sag * view.motors), 0.0, kFullScale);
-        if (counts[i] < p.threshold) counts[i] = 0.0;
+        const double pair = reflected[(i + 4) % kProximitySensors];
+        const double neighbours =
+            reflected[(i + 1) % kProximitySensors] + reflected[(i + 7) % kProximitySensors];
+        const double seen = reflected[i] + p.pair_crosstalk * pair + p.neighbour_crosstalk * neighbours;
+        const double whole = scale * p.gain[i] * seen + p.offset[i] + p.ambient_offset * now.ambient;
+        counts[i] = whole * (1.0 - p.motor_sag * now.motors);
+    }
+    return counts;
+}
+
+std::array<double, kProximitySensors>
+ProximityRing::readable(std::array<double, kProximitySensors> counts) const {
+    for (double& count : counts) {
+        count = std::clamp(count, 0.0, kFullScale);
+        if (count < parameters_.threshold) count = 0.0;
     }
     return counts;
 }

@@ -21,9 +21,14 @@ class ProximityRing {
   public:
     explicit ProximityRing(const ProximityParameters& parameters);
 
-    /// Noise-free reflected counts, 0..4095.
-    std::array<double, kProximitySensors> sense(const SensorView& view) const;
-    /// Do values change by themselves (warm-up)?
+    /// What each sensor sees of its own light, by the response curve alone.
+    std::array<double, kProximitySensors> reflected(const SensorView& view) const;
+    /// What the readings become of it: crosstalk, gains, offsets, sag. Neither noise nor a converter's range.
+    std::array<double, kProximitySensors> answer(const std::array<double, kProximitySensors>& reflected,
+                                                 const Surroundings& now) const;
+    /// Counts as they can be read: 0..4095, nothing in the dead zone.
+    std::array<double, kProximitySensors> readable(std::array<double, kProximitySensors> counts) const;
+    /// Does the answer change by itself (warm-up, battery, motors)?
     bool varies_with_time() const {
         return parameters_.warmup_gain != 0.0 || parameters_.battery_gain != 0.0 ||
                parameters_.motor_sag != 0.0;
@@ -32,7 +37,7 @@ class ProximityRing {
     double horizon() const { return horizon_; }
 
   private:
-    double reflected(const SensorView& view, std::size_t sensor, double cosine, double sine) const;
+    double seen_by(const SensorView& view, std::size_t sensor, double cosine, double sine) const;
 
     ProximityParameters parameters_;
     std::array<std::vector<Ray>, kProximitySensors> rays_;  // in the robot's frame

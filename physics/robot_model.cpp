@@ -17,10 +17,13 @@ RobotModel::RobotModel(const World& world, const Robot& robot, const Parameters&
           WheelDrive(parameters.robot, RandomStream(world.seed, "physics/" + robot.name + "/steps_right"))},
       floor_motion_(parameters, RandomStream(world.seed, "physics/" + robot.name + "/pushes")),
       proximity_(parameters.proximity),
+      proximity_noise_(parameters.proximity, world.seed, robot.name),
+      late_reflected_(parameters.proximity.age),
       light_(parameters.light, parameters.proximity, world.ambient_light, world.lamps),
       ground_(parameters.ground, world.arena.floor_grey, world.patches),
+      late_greys_(parameters.ground.lag),
       ground_noise_(world.seed, "physics/" + robot.name + "/ground_noise"),
-      accelerometer_(parameters.accelerometer, parameters.world),
+      accelerometer_(parameters.accelerometer, parameters.world, world.seed, robot.name),
       battery_(parameters.battery) {
     const double ambient = std::min(parameters.ground.ambient * world.ambient_light, kGroundFullScale);
     store(kGroundAmbientChannel, std::array<double, kGroundSensors>{ambient, ambient, ambient});
@@ -49,25 +52,50 @@ FloorVelocity RobotModel::floor_velocity(const RobotState& state, double seconds
     return floor_motion_.velocity({rolls, state.heading, driven, seconds}, kStepSeconds);
 }
 
-void RobotModel::sense_proximity(const SensorView& view) {
-    SensorView whole = view;
-    whole.ambient = ambient_light_;
-    whole.battery = battery_.voltage();
-    whole.motors =
-        ((drives_[0].running(view.seconds) ? 1 : 0) + (drives_[1].running(view.seconds) ? 1 : 0)) / 2.0;
-    store(kProximityChannel, proximity_.sense(whole));
+void RobotModel::look_around(const SensorView& view) {
+    reflected_ = proximity_.reflected(view);
+    looked_around_ = true;
 }
 
 void RobotModel::sense_light(const SensorView& view) {
     store(kAmbientChannel, light_.sense(view));
 }
 
-void RobotModel::sense_ground(const RobotState& state) {
-    ground_seen_ = ground_.sense(state);
+void RobotModel::look_down(const RobotState& state) {
+    greys_ = ground_.greys(state);
+    over_ground_ = state;
 }
 
-void RobotModel::sample_ground() {
-    auto counts = ground_seen_;
+int RobotModel::motors_running(double seconds) const {
+    return (drives_[0].running(seconds) ? 1 : 0) + (drives_[1].running(seconds) ? 1 : 0);
+}
+
+Surroundings RobotModel::surroundings(double seconds) const {
+    return {.seconds = seconds,
+            .ambient = ambient_light_,
+            .battery = battery_.voltage(),
+            .motors = motors_running(seconds) / 2.0,
+            .motor_speed = (drives_[0].speed(seconds) + drives_[1].speed(seconds)) / 2.0};
+}
+
+void RobotModel::sense_proximity(const Surroundings& now) {
+    const bool same = !looked_around_ && !late_reflected_.delays() && !proximity_.varies_with_time() &&
+                      !proximity_noise_.any();
+    if (same) return;
+    looked_around_ = false;
+    auto counts = proximity_.answer(late_reflected_.next(reflected_), now);
+    if (proximity_noise_.any()) proximity_noise_.add(counts, now);
+    store(kProximityChannel, proximity_.readable(counts));
+}
+
+void RobotModel::sample_ground(const RobotState& state, double seconds) {
+    const double speed =
+        state.velocity[0] * std::cos(state.heading) + state.velocity[1] * std::sin(state.heading);
+    const double acceleration =
+        seconds > sampled_at_ ? (speed - sampled_speed_) / (seconds - sampled_at_) : 0.0;
+    sampled_speed_ = speed;
+    sampled_at_ = seconds;
+    auto counts = ground_.counts(greys_to_sample_, over_ground_, {seconds, acceleration});
     if (parameters_.ground.noise > 0.0)
         for (double& value : counts)
             value = std::clamp(value + parameters_.ground.noise * ground_noise_.normal(), 0.0,
@@ -76,11 +104,14 @@ void RobotModel::sample_ground() {
 }
 
 void RobotModel::sense_each_step(const RobotState& state, double seconds) {
+    const Surroundings now = surroundings(seconds);
+    sense_proximity(now);
+    greys_to_sample_ = late_greys_.next(greys_);
     const auto step = std::llround(seconds / kStepSeconds);
-    if (step % std::max(1L, std::lround(parameters_.ground.period / kStepSeconds)) == 0) sample_ground();
-    store(kAccelerationChannel, accelerometer_.sense(state));
-    const int running = (drives_[0].running(seconds) ? 1 : 0) + (drives_[1].running(seconds) ? 1 : 0);
-    channels_[kBatteryVoltageChannel] = battery_.draw(running);
+    if (step % std::max(1L, std::lround(parameters_.ground.period / kStepSeconds)) == 0)
+        sample_ground(state, seconds);
+    store(kAccelerationChannel, accelerometer_.sense(state, now));
+    channels_[kBatteryVoltageChannel] = battery_.draw(motors_running(seconds));
     channels_[kBatteryLowChannel] = battery_.low() ? 1.0 : 0.0;
 }
 

@@ -4,10 +4,12 @@
 #include "physics/accelerometer.h"
 #include "physics/battery.h"
 #include "physics/channels.h"
+#include "physics/delay_line.h"
 #include "physics/floor_motion.h"
 #include "physics/ground.h"
 #include "physics/light.h"
 #include "physics/proximity.h"
+#include "physics/proximity_noise.h"
 #include "physics/wheel_drive.h"
 
 #include <array>
@@ -32,10 +34,11 @@ class RobotModel {
     /// still.
     FloorVelocity floor_velocity(const RobotState& state, double seconds);
 
-    void sense_proximity(const SensorView& view);
+    /// These three when something moved: what the sensors look at is another.
+    void look_around(const SensorView& view);
     void sense_light(const SensorView& view);
-    void sense_ground(const RobotState& state);
-    /// Accelerometer, battery and, when it is time, the ground board's sampling; once a step.
+    void look_down(const RobotState& state);
+    /// What the sensors say of it, and what changes by itself; once a step, after the others.
     void sense_each_step(const RobotState& state, double seconds);
 
     const ProximityRing& proximity() const { return proximity_; }
@@ -45,7 +48,10 @@ class RobotModel {
     const Channels& channels() const { return channels_; }
 
   private:
-    void sample_ground();
+    int motors_running(double seconds) const;
+    Surroundings surroundings(double seconds) const;
+    void sense_proximity(const Surroundings& now);
+    void sample_ground(const RobotState& state, double seconds);
     template <std::size_t N>
     void store(std::size_t channel, const std::array<double, N>& values);
 
@@ -56,9 +62,17 @@ class RobotModel {
     FloorMotion floor_motion_;
     std::array<double, 2> rolled_{};  // rad, when the floor's motion was last asked for
     ProximityRing proximity_;
+    ProximityNoise proximity_noise_;
+    std::array<double, kProximitySensors> reflected_{};
+    DelayLine<kProximitySensors> late_reflected_;
+    bool looked_around_ = false;  // since the last reading
     LightRing light_;
     GroundRow ground_;
-    std::array<double, kGroundSensors> ground_seen_{};
+    RobotState over_ground_;  // when it last looked
+    std::array<double, kGroundSensors> greys_{}, greys_to_sample_{};
+    DelayLine<kGroundSensors> late_greys_;
+    double sampled_speed_ = 0.0;  // m/s forward, when the ground row was sampled last
+    double sampled_at_ = 0.0;     // s
     RandomStream ground_noise_;
     Accelerometer accelerometer_;
     Battery battery_;

@@ -10,6 +10,7 @@ namespace {
 constexpr double kPolePair = 4.0;  // steps after which the coils' pattern repeats
 constexpr double kOverdue = 1.5;   // intervals after which no further step is expected
 constexpr double kSlowest = 0.2;   // s: steps further apart do not drive a wheel
+constexpr double kStands = 0.1;    // s without a step: the motor stands
 }  // namespace
 
 WheelDrive::WheelDrive(const BodyParameters& parameters, RandomStream losses)
@@ -26,6 +27,7 @@ void WheelDrive::step_to(double steps, double seconds) {
     interval_ = interval;
     last_step_ = seconds;
     const double change = steps - steps_;
+    change_ = change;
     steps_ = steps;
     if (parameters_.step_loss_speed > 0.0) lose_at_speed(change, interval);
     if (parameters_.deadband > 0.0) hold_if_slow(change, interval);
@@ -71,6 +73,11 @@ double WheelDrive::pull_out(double wheel_angle) {
     from_ -= slip;
     geared_ -= slip * radians_per_step_;
     return slip * radians_per_step_;
+}
+
+double WheelDrive::speed(double seconds) const {
+    const double since = seconds - last_step_;
+    return since > kStands ? 0.0 : std::abs(change_) / std::max({interval_, since, 1e-6});
 }
 
 bool WheelDrive::running(double seconds) const {

@@ -31,6 +31,8 @@ class WheelDrive {
     bool running(double seconds) const;
     /// Do steps still come at `seconds`? A single step counts until the next one is overdue.
     bool driven(double seconds) const;
+    /// Rate of the steps, steps/s without sign; falls with the time since the last one, to 0 after 0.1 s.
+    double speed(double seconds) const;
     double steps() const { return steps_; }
     /// Steps lost so far, signed: pulled out, too fast or too slow.
     double lost() const { return lost_; }
@@ -51,6 +53,7 @@ class WheelDrive {
     double last_step_ = -1e9;  // s
     double interval_ = 0.0;    // s, between the last two steps
     double held_ = 0.0;        // last step if it was too slow to move the rotor
+    double change_ = 0.0;      // steps, the last one
     double geared_ = 0.0;      // rad, behind the backlash
 };
 

@@ -135,10 +135,10 @@ void WorldModel::look_around(std::size_t index, bool any_moved) {
             robot.sense_light({seen, view_, seconds()});
         }
     }
-    if (robot.proximity().varies_with_time() || neighbour_moved(index)) {
+    if (neighbour_moved(index)) {
         gather(robot.proximity().horizon());
         std::erase_if(view_, [&](const Shape* s) { return s->height < robot.sensor_height(); });
-        robot.sense_proximity({seen, view_, seconds()});
+        robot.look_around({seen, view_, seconds()});
     }
 }
 
@@ -149,7 +149,7 @@ void WorldModel::look_down(std::size_t index) {
         std::abs(state.pitch - tilt[0]) > kSeenTurn || std::abs(state.roll - tilt[1]) > kSeenTurn;
     if (!moving_[index].moved && !tilted) return;
     tilt = {state.pitch, state.roll};
-    robots_[index].sense_ground(state);
+    robots_[index].look_down(state);
 }
 
 }  // namespace puckloop::physics
