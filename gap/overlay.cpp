@@ -4,6 +4,7 @@
 
 #include "gap/analyse.h"
 #include "gap/overlay_rab.h"
+#include "gap/overlay_sensors.h"
 #include "physics/parameters.h"
 #include "protocols/epuck_serial.h"
 #include "scenarios/world_tables.h"
@@ -112,6 +113,7 @@ std::string overlay_toml(const Experiment& experiment, const Verdict& verdict) {
     wheels(experiment, fitted, simulator);
     rab_overlay(fitted, simulator);
     ground_board(experiment, fitted, simulator);
+    sensors_overlay(experiment, fitted, simulator);
     for (const auto& [name, value] : fitted) {
         int index = -1;
         if (name == "wheel_scale" || name == "wheel_mismatch") continue;

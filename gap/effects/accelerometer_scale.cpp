@@ -14,7 +14,7 @@ Effect accelerometer_scale() {
                        {"accelerometer.turn", -0.6, 0.6, 0.1, {}, "?"}},
         .needs = {},
         .observables = "each axis, in proportion",
-        .enters = "nothing by itself: accelerometer.gain is one for all axes",
+        .enters = "accelerometer.scale, accelerometer.turn",
         .confounded = {"accelerometer_bias"},
         .separated_by = "all six faces down",
         .measuring_chain = false,

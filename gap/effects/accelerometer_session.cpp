@@ -18,7 +18,7 @@ Effect accelerometer_session() {
                         "accX -223 against -17, gyroX -41 against -577"}},
         .needs = {"session"},
         .observables = "each axis, constant inside a session",
-        .enters = "nothing by itself: accelerometer.bias, another each run",
+        .enters = "accelerometer.session_spread: each run draws its own zero; accelerometer.bias",
         .confounded = {"warm_up"},
         .separated_by = "switch the robot off and on where it stands",
         .measuring_chain = false,

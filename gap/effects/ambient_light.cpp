@@ -16,7 +16,7 @@ Effect ambient_light() {
                        {"proximity.ambient_noise", 0.0, 200.0, 8.0, {2.0}, "sd ~ sqrt(ambient)"}},
         .needs = {"ambient"},
         .observables = "all readings in light",
-        .enters = "proximity.ambient_offset, proximity.ambient_gain; its noise nothing yet",
+        .enters = "proximity.ambient_offset, proximity.ambient_gain, proximity.ambient_noise",
         .confounded = {"sensor_offset", "flicker"},
         .separated_by = "every distance once in the dark and once in light",
         .measuring_chain = false,

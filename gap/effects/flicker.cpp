@@ -15,8 +15,7 @@ Effect flicker() {
              {"proximity.flicker_frequency", 0.02, 35.0, 5.0, {}, "alias of 100 Hz; found in the spectrum"}},
         .needs = {"t_s"},
         .observables = "a spectral line, in light only",
-        .enters =
-            "nothing by itself: light.flicker, light.flicker_frequency are of the lamp, not of its alias",
+        .enters = "proximity.flicker, proximity.flicker_frequency; light.flicker is of the ambient counts",
         .confounded = {"ambient_light"},
         .separated_by = "the same stillness in the dark and in light",
         .measuring_chain = false,

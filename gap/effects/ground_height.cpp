@@ -14,7 +14,7 @@ Effect ground_height() {
                        {"ground.raised", -0.01, 0.01, 0.002, {}, "1-2 mm"}},
         .needs = {"acceleration"},
         .observables = "readings at starts and stops",
-        .enters = "ground.height; the tilt at starts nothing yet",
+        .enters = "ground.height, ground.acceleration_tilt",
         .confounded = {"ground_gain"},
         .separated_by = "starts and stops on one plain grey",
         .measuring_chain = false,

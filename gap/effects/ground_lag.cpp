@@ -13,7 +13,7 @@ Effect ground_lag() {
         .parameters = {{"ground.lag", -0.05, 1.0, 0.1, {}, "18 of 37 samples of pitch"}},
         .needs = {"grey_rate"},
         .observables = "readings where the grey changes, in proportion to speed",
-        .enters = "measuring chain, but for ground.period",
+        .enters = "ground.lag, less the emulated board's and host's own share",
         .confounded = {"ground_position"},
         .separated_by = "an edge crossed at two speeds and in both directions",
         .measuring_chain = false,

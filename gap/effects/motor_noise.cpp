@@ -13,7 +13,7 @@ Effect motor_noise() {
         .parameters = {{"proximity.motor_noise", -0.5, 20.0, 1.0, {0.3}, "0.2..1 at 800 steps/s"}},
         .needs = {"motor_speed"},
         .observables = "scatter with motors on",
-        .enters = "nothing by itself: the board's adc_noise is the same with motors off",
+        .enters = "proximity.motor_noise",
         .confounded = {"proportional_noise"},
         .separated_by = "the same distance with wheels on and off",
         .measuring_chain = false,

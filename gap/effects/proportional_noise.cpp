@@ -18,7 +18,7 @@ Effect proportional_noise() {
                         "b 0.2-5 % in a published table, about 0 measured"}},
         .needs = {},
         .observables = "scatter near contact",
-        .enters = "nothing by itself: the board's adc_noise is the same at every level",
+        .enters = "proximity.proportional_noise",
         .confounded = {"motor_noise"},
         .separated_by = "many repeats at several distances",
         .measuring_chain = false,

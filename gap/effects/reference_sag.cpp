@@ -14,7 +14,7 @@ Effect reference_sag() {
                        {"accelerometer.motor_sag", -0.05, 0.3, 0.015, {}, "r 0..2 %"}},
         .needs = {"motor_speed"},
         .observables = "all channels at once, accelerometer zero included",
-        .enters = "proximity.motor_sag",
+        .enters = "proximity.motor_sag, accelerometer.motor_sag",
         .confounded = {"reflectivity"},
         .separated_by = "all channels, with motors on and off at the same place",
         .measuring_chain = false,

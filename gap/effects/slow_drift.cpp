@@ -21,7 +21,7 @@ Effect slow_drift() {
                         "or after"}},
         .needs = {"order"},
         .observables = "all readings, run by run",
-        .enters = "nothing: repeat the session",
+        .enters = "proximity.order_drift; proximity.order is the run's place in a series",
         .confounded = {"warm_up", "battery_droop"},
         .separated_by = "random order over several days",
         .measuring_chain = false,

@@ -13,7 +13,7 @@ Effect stale_readings() {
         .parameters = {{"proximity.age", -0.02, 0.5, 0.03, {}, "0..15.9 ms plus the host's hold"}},
         .needs = {"velocity"},
         .observables = "readings while the distance changes",
-        .enters = "measuring chain; the emulated schedule makes its own share",
+        .enters = "proximity.age, less the emulated schedule's own share",
         .confounded = {"response_law"},
         .separated_by = "approach and retreat at the same speed",
         .measuring_chain = true,

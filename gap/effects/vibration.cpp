@@ -13,7 +13,7 @@ Effect vibration() {
         .parameters = {{"accelerometer.vibration", 0.0, 1000.0, 60.0, {15.0}, "gyroZ sd 640 while driving"}},
         .needs = {"motor_speed"},
         .observables = "scatter while driving",
-        .enters = "nothing yet: noise on the accelerometer inputs",
+        .enters = "accelerometer.vibration",
         .confounded = {"reference_sag"},
         .separated_by = "wheels in the air at several speeds",
         .measuring_chain = false,

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "gap/emulate/reacts.h"
+#include "gap/overlay_sensors.h"
 #include "physics/parameters.h"
 
 #include <fmt/format.h>
@@ -18,7 +19,8 @@ Robot nominal_robot(const Experiment& experiment, const RerunOptions& options) {
     robot.firmware = options.firmware;
     for (const auto& [name, value] : experiment.nominal) {
         int index = -1;
-        if (physics::find_parameter(name, index) != nullptr) robot.parameters[name] = value;
+        if (physics::find_parameter(name, index) != nullptr && !made_by_firmware(name))
+            robot.parameters[name] = value;
     }
     return robot;
 }

@@ -10,6 +10,7 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <regex>
@@ -123,6 +124,51 @@ TEST_CASE("an overlay moves the ground board and lifts it as the forward model d
         CHECK(moved.ground.y[i] == Approx(defaults.ground.y[i] - 0.003));
     CHECK(loaded(experiment, {{"ground.raised", 0.002}}).ground.height ==
           Approx(defaults.ground.height + 0.002));
+}
+
+TEST_CASE("zeros of several sessions become a bias and a spread for each run to draw from") {
+    Experiment experiment;
+    experiment.kind = Kind::Accelerometer;
+    experiment.nominal = {{"accelerometer.bias0", 7}};
+    // Three sessions: 0, 30, -60 counts on x; two on z: 0, 40.
+    const auto drawn = loaded(experiment, {{"accelerometer.session_bias20", 30},
+                                           {"accelerometer.session_bias30", -60},
+                                           {"accelerometer.session_bias22", 40},
+                                           {"accelerometer.bias2", -5}});
+    CHECK(drawn.accelerometer.bias[0] == Approx(7 - 10));
+    CHECK(drawn.accelerometer.session_spread[0] == Approx(std::sqrt((10 * 10 + 40 * 40 + 50 * 50) / 2.0)));
+    CHECK(drawn.accelerometer.bias[1] == 0);
+    CHECK(drawn.accelerometer.session_spread[1] == 0);
+    CHECK(drawn.accelerometer.bias[2] == Approx(-5 + 20));
+    CHECK(drawn.accelerometer.session_spread[2] == Approx(40 / std::sqrt(2.0)));
+}
+
+TEST_CASE("an overlay's age is what firmware and host do not make by themselves") {
+    Experiment experiment;
+    experiment.kind = Kind::Proximity;
+    CHECK(loaded(experiment, {{"proximity.age", 0.05}}).proximity.age == Approx(0.05 - 0.5 / 63.015));
+    CHECK(loaded(experiment, {{"proximity.age", 0.004}}).proximity.age == 0);
+    CHECK(loaded(experiment, {}).proximity.age == 0);
+    experiment.nominal = {{"proximity.age", 0.012}};
+    CHECK(loaded(experiment, {{"proximity.age", 0.05}}).proximity.age == Approx(0.038));
+    CHECK(loaded(experiment, {}).proximity.age == 0);
+    experiment.kind = Kind::Ground;
+    experiment.nominal = {};
+    CHECK(loaded(experiment, {{"ground.lag", 0.1}}).ground.lag == Approx(0.095));
+}
+
+TEST_CASE("a drift over a series leaves a run in its middle where the fit says") {
+    Experiment experiment;
+    experiment.kind = Kind::Proximity;
+    for (const double order : {3.0, 5.0, 11.0}) {
+        experiment.runs.emplace_back();
+        experiment.runs.back().rows = 1;
+        experiment.runs.back().columns["order"] = {order};
+    }
+    const auto drifted =
+        loaded(experiment, {{"proximity.order_drift", 0.02}, {"proximity.order_zero", -0.5}});
+    CHECK(drifted.proximity.order_drift == 0.02);
+    CHECK(drifted.proximity.order == Approx(0.5 * 4));
 }
 
 TEST_CASE("an overlay's number that is none is refused in its own file") {
