@@ -16,7 +16,7 @@ double floor_grey(double base, std::span<const Patch> patches, double x, double 
 /// What else a reading depends on.
 struct GroundMoment {
     double seconds = 0.0;
-    double acceleration = 0.0;  ///< m/s2, forward
+    double acceleration = 0.0;  ///< m/s2 forward, over the last 0.1 s
 };
 
 class GroundRow {

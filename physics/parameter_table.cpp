@@ -128,7 +128,7 @@ std::vector<ParameterInfo> build_table() {
         {"ground.noise", "counts", 1, {1.5}, 0.0, 100, AT(ground.noise), "[M] standard deviation 1-3 on white, 20 on black (texture)"},
         {"ground.period", "s", 1, {0.01}, 0.001, 1.0, AT(ground.period), "? the board samples faster than the 0.1 s of the control loop"},
         {"ground.lag", "s", 1, {0.0}, 0.0, 1.0, AT(ground.lag), "the grey under the row shows this much later; [M] 18 of 37 samples of pitch"},
-        {"ground.acceleration_tilt", "rad s2/m", 1, {0.0}, -1.0, 1.0, AT(ground.acceleration_tilt), "? nose up by forward acceleration, taken between two of the row's samples; beside the body's own pitch"},
+        {"ground.acceleration_tilt", "rad s2/m", 1, {0.0}, -1.0, 1.0, AT(ground.acceleration_tilt), "? nose up by forward acceleration over the last 0.1 s, beside the body's own pitch"},
         {"ground.warmup_gain", "1", 1, {0.0}, -0.6, 0.6, AT(ground.warmup_gain), "[M] -67 to -114 counts in 200 s"},
         {"ground.warmup_time", "s", 1, {300}, 1, 3600, AT(ground.warmup_time), "? as proximity.warmup_time"},
 

@@ -7,7 +7,8 @@ namespace puckloop::physics {
 
 namespace {
 constexpr double kGroundFullScale = 1023;
-}
+constexpr double kAccelerationWindow = 0.1;  // s: what a log at the control period calls acceleration
+}  // namespace
 
 RobotModel::RobotModel(const World& world, const Robot& robot, const Parameters& parameters)
     : parameters_(parameters),
@@ -22,6 +23,7 @@ RobotModel::RobotModel(const World& world, const Robot& robot, const Parameters&
       light_(parameters.light, parameters.proximity, world.ambient_light, world.lamps),
       ground_(parameters.ground, world.arena.floor_grey, world.patches),
       late_greys_(parameters.ground.lag),
+      late_speed_(kAccelerationWindow),
       ground_noise_(world.seed, "physics/" + robot.name + "/ground_noise"),
       accelerometer_(parameters.accelerometer, parameters.world, world.seed, robot.name),
       battery_(parameters.battery) {
@@ -88,14 +90,8 @@ void RobotModel::sense_proximity(const Surroundings& now) {
     store(kProximityChannel, proximity_.readable(counts));
 }
 
-void RobotModel::sample_ground(const RobotState& state, double seconds) {
-    const double speed =
-        state.velocity[0] * std::cos(state.heading) + state.velocity[1] * std::sin(state.heading);
-    const double acceleration =
-        seconds > sampled_at_ ? (speed - sampled_speed_) / (seconds - sampled_at_) : 0.0;
-    sampled_speed_ = speed;
-    sampled_at_ = seconds;
-    auto counts = ground_.counts(greys_to_sample_, over_ground_, {seconds, acceleration});
+void RobotModel::sample_ground(double seconds) {
+    auto counts = ground_.counts(greys_to_sample_, over_ground_, {seconds, acceleration_});
     if (parameters_.ground.noise > 0.0)
         for (double& value : counts)
             value = std::clamp(value + parameters_.ground.noise * ground_noise_.normal(), 0.0,
@@ -107,9 +103,12 @@ void RobotModel::sense_each_step(const RobotState& state, double seconds) {
     const Surroundings now = surroundings(seconds);
     sense_proximity(now);
     greys_to_sample_ = late_greys_.next(greys_);
+    const double speed =
+        state.velocity[0] * std::cos(state.heading) + state.velocity[1] * std::sin(state.heading);
+    acceleration_ = (speed - late_speed_.next({speed})[0]) / kAccelerationWindow;
     const auto step = std::llround(seconds / kStepSeconds);
     if (step % std::max(1L, std::lround(parameters_.ground.period / kStepSeconds)) == 0)
-        sample_ground(state, seconds);
+        sample_ground(seconds);
     store(kAccelerationChannel, accelerometer_.sense(state, now));
     channels_[kBatteryVoltageChannel] = battery_.draw(motors_running(seconds));
     channels_[kBatteryLowChannel] = battery_.low() ? 1.0 : 0.0;

@@ -51,7 +51,7 @@ class RobotModel {
     int motors_running(double seconds) const;
     Surroundings surroundings(double seconds) const;
     void sense_proximity(const Surroundings& now);
-    void sample_ground(const RobotState& state, double seconds);
+    void sample_ground(double seconds);
     template <std::size_t N>
     void store(std::size_t channel, const std::array<double, N>& values);
 
@@ -71,8 +71,8 @@ class RobotModel {
     RobotState over_ground_;  // when it last looked
     std::array<double, kGroundSensors> greys_{}, greys_to_sample_{};
     DelayLine<kGroundSensors> late_greys_;
-    double sampled_speed_ = 0.0;  // m/s forward, when the ground row was sampled last
-    double sampled_at_ = 0.0;     // s
+    DelayLine<1> late_speed_;
+    double acceleration_ = 0.0;  // m/s2 forward, over the control period
     RandomStream ground_noise_;
     Accelerometer accelerometer_;
     Battery battery_;

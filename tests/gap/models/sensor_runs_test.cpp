@@ -117,27 +117,26 @@ TEST_CASE("the ground row in the world tilts and warms up as the forward model s
     physics::World world = worlds::world_with_robot(3, 3);
     world.parameters = {{"ground.noise", 0}, {"ground.white", 700}};
     const Changes changes{
-        {"ground.acceleration_tilt", 0.03}, {"ground.warmup_gain", 0.1}, {"ground.warmup_time", 25}};
+        {"ground.acceleration_tilt", 0.1}, {"ground.warmup_gain", 0.1}, {"ground.warmup_time", 25}};
     physics::WorldModel model(worlds::with(world, changes));
     worlds::Driver driver(model);
     Table rows;
-    std::vector<double> readings;
     double speed = 0;
     for (int k = 0; k < 40; ++k) {
-        driver.drive(k < 20 ? 500 : 0, k < 20 ? 500 : 0, 0.01);
+        driver.drive(k % 4 < 2 ? 500 : 0, k % 4 < 2 ? 500 : 0, 0.1);
         const auto& state = model.state(0);
         rows["t_s"].push_back(model.seconds());
         rows["sensor"].push_back(1);
         rows["grey"].push_back(1);
         rows["pitch_rad"].push_back(-state.pitch);
-        rows["acceleration"].push_back((state.velocity[0] - speed) / 0.01);
+        rows["acceleration"].push_back((state.velocity[0] - speed) / 0.1);
         rows["reading"].push_back(model.robot(0).channels()[physics::kGroundChannel + 1]);
         speed = state.velocity[0];
     }
     const Experiment experiment =
         experiment_of(Kind::Ground, rows, {{"ground.white", 700}, {"ground.warmup_time", 25}});
     const Prediction said =
-        predicted(*make_model(experiment), {{"ground.acceleration_tilt", 0.03}, {"ground.warmup_gain", 0.1}});
+        predicted(*make_model(experiment), {{"ground.acceleration_tilt", 0.1}, {"ground.warmup_gain", 0.1}});
     double most = 0;
     for (std::size_t k = 0; k < 40; ++k) {
         const double signal = std::min(said[0].mean[k], 1.2 * 700);
