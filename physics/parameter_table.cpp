@@ -93,7 +93,7 @@ std::vector<ParameterInfo> build_table() {
         {"proximity.order", "1", 1, {0.0}, -1000, 1000, AT(proximity.order), "this run's place in a series, from the run whose readings are as simulated"},
         {"proximity.order_drift", "1", 1, {0.0}, -0.2, 0.2, AT(proximity.order_drift), "? share that the answer gains from one run to the next: daylight, dust"},
         {"proximity.flicker", "counts", 1, {0.0}, 0.0, 300, AT(proximity.flicker), "amplitude on the reading at ambient level 1; [M] 2-30 counts"},
-        {"proximity.flicker_frequency", "Hz", 1, {1.0}, 0.01, 400, AT(proximity.flicker_frequency), "of the lamp, or of the alias that the readings show; phase by the run's seed"},
+        {"proximity.flicker_frequency", "Hz", 1, {1.0}, 0.01, 400, AT(proximity.flicker_frequency), "of the lamp, or of the alias that the readings show; phases by the run's seed"},
         {"proximity.interference_rate", "1", 1, {0.0}, 0.0, 0.6, AT(proximity.interference_rate), "[M] share of samples that a foreign pulse hits, .02-.2"},
         {"proximity.interference_size", "counts", 1, {100}, 0.0, 2000, AT(proximity.interference_size), "mean height of a foreign pulse, up or down alike; scatter 0.3 of it"},
         {"proximity.interference_share", "1", 8, {1.0}, 0.0, 1.0, FIRST(proximity.interference_share), "share of the foreign pulses that this sensor is exposed to"},

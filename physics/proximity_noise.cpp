@@ -20,20 +20,21 @@ ProximityNoise::ProximityNoise(const ProximityParameters& parameters, std::uint6
                                const std::string& robot)
     : parameters_(parameters),
       scatter_(stream(seed, robot, "proximity_scatter")),
-      pulses_(stream(seed, robot, "proximity_pulses")),
-      phase_(2 * std::numbers::pi * stream(seed, robot, "proximity_flicker").uniform()) {}
+      pulses_(stream(seed, robot, "proximity_pulses")) {
+    RandomStream phases = stream(seed, robot, "proximity_flicker");
+    for (double& phase : phase_)
+        phase = 2 * std::numbers::pi * phases.uniform();
+}
 
 void ProximityNoise::add(std::array<double, kProximitySensors>& counts, const Surroundings& now) {
     const auto& p = parameters_;
-    const double flicker =
-        flickers() ? p.flicker * now.ambient *
-                         std::sin(2 * std::numbers::pi * p.flicker_frequency * now.seconds + phase_)
-                   : 0.0;
+    const double swing = 2 * std::numbers::pi * p.flicker_frequency * now.seconds;
     const double growth = 1.0 + p.motor_noise * now.motor_speed / kSpeedUnit;
     const double common = p.still_noise * p.still_noise * (growth * growth - 1.0) +
                           p.ambient_noise * p.ambient_noise * now.ambient;
     for (std::size_t i = 0; i < counts.size(); ++i) {
-        double more = flicker;
+        double more = 0.0;
+        if (flickers()) more += p.flicker * now.ambient * std::sin(swing + phase_[i]);
         if (scatters())
             more += std::hypot(std::sqrt(common), p.proportional_noise * counts[i]) * scatter_.normal();
         if (hits() && pulses_.uniform() < p.interference_rate * p.interference_share[i]) {

@@ -85,13 +85,13 @@ TEST_CASE("motors add what makes the noise at rest grow by their share") {
     CHECK(sd_of(scatter(world, noise, kFar, {0, 0, 1})) == 0);
 }
 
-TEST_CASE("lamps flicker as a sine in light only, with a phase of the run's own") {
+TEST_CASE("lamps flicker as a sine in light only, with a phase of the sensor's and the run's own") {
     const std::map<std::string, double> flicker{{"proximity.flicker", 20},
                                                 {"proximity.flicker_frequency", 4}};
-    const auto phase = [&](std::uint64_t seed) {
+    const auto phase = [&](std::uint64_t seed, std::size_t channel = kSide) {
         World world = before_wall(0.5);
         world.seed = seed;
-        const auto wave = scatter(world, flicker, kSide, {0, 0, 2.2});  // 8 periods from 0.2 s on
+        const auto wave = scatter(world, flicker, channel, {0, 0, 2.2});  // 8 periods from 0.2 s on
         double sine = 0, cosine = 0;
         for (std::size_t k = 0; k < wave.size(); ++k) {
             const double angle = 2 * std::numbers::pi * 4 * (static_cast<double>(k) + 201) * kStepSeconds;
@@ -104,6 +104,7 @@ TEST_CASE("lamps flicker as a sine in light only, with a phase of the run's own"
     };
     CHECK(phase(1) == Approx(phase(1)));
     CHECK(std::abs(phase(1) - phase(2)) > 0.01);
+    CHECK(std::abs(phase(1) - phase(1, kFar)) > 0.01);
     CHECK(sd_of(scatter(before_wall(0.0), flicker, kSide, {0, 0, 1})) == 0);
 }
 
