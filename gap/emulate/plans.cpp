@@ -2,7 +2,9 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "gap/emulate/wave_floor.h"
 #include "gap/selftest/design_motion.h"
+#include "physics/parameters.h"
 
 #include <fmt/format.h>
 
@@ -17,13 +19,15 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kSend = 0.1;  // s
-constexpr double kMetresPerStep = 1.288053e-4;
 constexpr const char* kOpenFloor = "[arena]\nsize = [\"6 m\", \"6 m\"]\n";
 constexpr double kStripe = 0.06;  // m
 constexpr std::array<double, 6> kGreys{1.0, 0.0, 0.5, 1.0, 0.25, 0.75};
 constexpr double kNearest = 0.041;  // m from the axle to the wall: nearer, a micrometre is a count
 constexpr double kSettled = 0.5;    // s at each stop of an approach
-constexpr double kTilt = 0.1;       // rad of the table in some drives
+constexpr double kSlow = 80;        // steps/s: a sensor's schedule of 13 ms is then 0.13 mm
+constexpr double kAside = 0.013;    // m from a side sensor to the wall that the robot drives along
+constexpr double kBegin = 0.085, kEnd = 0.052;  // m from the axle to the wall, of a slow drive to and fro
+constexpr double kTilt = 0.1;                   // rad of the table in some drives
 
 Act drive_of(const selftest::PlannedDrive& plan) {
     Act act;
@@ -57,15 +61,52 @@ std::vector<Act> motion_acts(std::uint64_t seed, bool brief) {
     return acts;
 }
 
+std::string wall(bool lamp) {
+    return fmt::format(
+        "[arena]\nsize = [\"4 m\", \"4 m\"]\n[light]\nambient = {}\n[[box]]\ncentre = [\"{} m\", \"0 m\"]\n"
+        "size = [\"10 cm\", \"120 cm\", \"12 cm\"]\n",
+        lamp ? 1 : 0, kWallFace + 0.05);
+}
+
+/// The robot drives along the wall, which stays as far from the sensor: motors on and off at one distance.
+Act along_wall(double facing) {
+    Act act;
+    act.conditions = {{"light", "dark"}, {"drive", "along"}};
+    act.arena = wall(false);
+    act.heading = -facing;
+    act.x = kWallFace - physics::Parameters().proximity.y[5] - kAside;
+    act.y = std::copysign(0.3, facing);
+    act.commands = {{0, 0, 0}, {2, 150, 150}, {8, 0, 0}, {10, 500, 500}, {16, 0, 0}, {18, 0, 0}};
+    return act;
+}
+
+/// Slowly towards the wall and back, twice, with a sensor facing it.
+Act to_and_fro(double facing) {
+    Act act;
+    act.conditions = {{"light", "dark"}, {"drive", "to and fro"}};
+    act.arena = wall(false);
+    act.heading = -facing;
+    act.x = kWallFace - kBegin;
+    const double steps = std::copysign(kSlow, std::cos(facing));
+    const double seconds = std::round((kBegin - kEnd) / (kSlow * kMetresPerStep) / kSend) * kSend;
+    double t = 1.0;
+    act.commands.push_back({0, 0, 0});
+    for (int k = 0; k < 4; ++k) {
+        const double now = k % 2 == 0 ? steps : -steps;
+        act.commands.push_back({t, now, now});
+        t += seconds;
+    }
+    act.commands.push_back({t, 0, 0});
+    act.commands.push_back({t + kSettled, 0, 0});
+    return act;
+}
+
 /// The robot goes towards the wall (or backs up to it) with one sensor facing it, and stops to look.
 Act approach(double facing, double start, bool lamp, bool brief) {
     Act act;
     const bool backing = std::abs(facing) > 90 * kDegree;
     act.conditions = {{"light", lamp ? "lamp" : "dark"}};
-    act.arena = fmt::format(
-        "[arena]\nsize = [\"4 m\", \"4 m\"]\n[light]\nambient = {}\n[[box]]\ncentre = [\"{} m\", \"0 m\"]\n"
-        "size = [\"10 cm\", \"120 cm\", \"12 cm\"]\n",
-        lamp ? 1 : 0, kWallFace + 0.05);
+    act.arena = wall(lamp);
     // The sides look along the axle: the robot comes up slantwise.
     const double turned =
         std::abs(std::abs(facing) - 90 * kDegree) < 1 * kDegree ? std::copysign(35 * kDegree, facing) : 0.0;
@@ -101,10 +142,36 @@ std::vector<Act> proximity_acts(std::uint64_t seed, bool brief) {
                 if (lamp && (brief || k % 4 != 0)) continue;
                 acts.push_back(approach(facing[k] * kDegree, 0.12 + 0.01 * random.uniform(), lamp, brief));
             }
+    if (!brief)
+        for (const double side : {facing[2], facing[5]})
+            acts.push_back(along_wall(side * kDegree));
+    if (!brief)
+        for (const double one : {facing[0], facing[7], facing[3], facing[4]})
+            acts.push_back(to_and_fro(one * kDegree));
     // In random order, so that what changes with time is not what changes with the sensor.
     for (std::size_t k = acts.size(); k > 1; --k)
         std::swap(acts[k - 1], acts[random.below(k)]);
     return acts;
+}
+
+/// Over the wave floor at two speeds, with starts and stops between.
+Act over_waves(bool back) {
+    Act act;
+    act.ground = true;
+    act.arena = wave_floor();
+    act.conditions = {{"drive", back ? "waves fro" : "waves to"}};
+    act.heading = back ? std::numbers::pi : 0.0;
+    act.x = back ? 0.1502 : -0.1502;  // no sensor stands on the seam between two stripes
+    double t = 0.5;
+    act.commands.push_back({0, 0, 0});
+    for (const double speed : {150, 300, 150, 300}) {
+        act.commands.push_back({t, speed, speed});
+        t += speed > 200 ? 1.5 : 2.5;
+        act.commands.push_back({t, 0, 0});
+        t += 0.6;
+    }
+    act.commands.push_back({t, 0, 0});
+    return act;
 }
 
 std::vector<Act> ground_acts(std::uint64_t seed, bool brief) {
@@ -126,6 +193,8 @@ std::vector<Act> ground_acts(std::uint64_t seed, bool brief) {
         act.commands = {{0, 0, 0}, {1, speed, speed}, {brief ? 6.0 : 13.0, 0, 0}, {brief ? 6.5 : 13.5, 0, 0}};
         acts.push_back(std::move(act));
     }
+    for (int k = 0; k < (brief ? 0 : 4); ++k)
+        acts.push_back(over_waves(k % 2 == 1));
     return acts;
 }
 

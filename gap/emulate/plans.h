@@ -17,6 +17,8 @@ const std::vector<std::string>& recordable_kinds();
 /// for tests. Throws InputError for a kind that cannot be recorded.
 std::vector<Act> acts_of(std::string_view kind, std::uint64_t seed, bool short_plan);
 
+/// Way of a wheel a motor step.
+inline constexpr double kMetresPerStep = 1.288053e-4;
 /// The flat face before which the proximity sensors are tried: x of the plane, m.
 inline constexpr double kWallFace = 0.30;
 /// Printed stripes on the floor of the ground acts: grey at x (m), and whether an edge lies within `reach`.

@@ -17,7 +17,8 @@ namespace puckloop::gap::emulate {
 
 namespace {
 
-constexpr double kStanding = 1.0;        // s of an act without a motion of its own
+constexpr double kStanding = 1.0;        // s of an act without a motion of its own, at least
+constexpr double kAround = 0.5;          // s: readings as near as this to a row's time are its mean
 constexpr double kSettled = 0.45;        // s after which readings count
 constexpr double kSmallestArena = 6.0;   // m
 constexpr double kMargin = 1.0;          // m between the measured path and a wall
@@ -120,7 +121,15 @@ std::vector<React> timing(const Experiment& experiment, std::string& why) {
     return reacts;
 }
 
-std::vector<React> ground(const Experiment& experiment, std::string& why) {
+/// The robot stands until the row was measured, as far as `longest` lets it.
+void stand(const Run& run, std::size_t row, double longest, Act& act) {
+    const double t = value_of(run, "t_s", row, 0.0);
+    const double until = std::clamp(std::isnan(t) ? 0.0 : t, kStanding, std::max(longest, kStanding));
+    const double so_far = act.commands.empty() ? 0.0 : act.commands.back().seconds;
+    act.commands = {{0, 0, 0}, {std::max(until, so_far), 0, 0}};
+}
+
+std::vector<React> ground(const Experiment& experiment, double longest, std::string& why) {
     std::map<double, React> by_grey;
     for (std::size_t r = 0; r < experiment.runs.size(); ++r) {
         const Run& run = experiment.runs[r];
@@ -136,7 +145,7 @@ std::vector<React> ground(const Experiment& experiment, std::string& why) {
                 "[arena]\nsize = [\"2 m\", \"2 m\"]\n[[floor_patch]]\ncentre = [\"0 m\", \"0 m\"]\n"
                 "size = [\"1.8 m\", \"1.8 m\"]\ngrey = {:.9g}\n",
                 grey);
-            react.act.commands = {{0, 0, 0}, {kStanding, 0, 0}};
+            stand(run, i, longest, react.act);
             react.rows.push_back(r);
             react.rows.push_back(i);  // rows of all runs: pairs of run and row
         }
@@ -156,6 +165,8 @@ bool stand_before_wall(const Run& run, std::size_t row, React& react) {
     if (!(sensor >= 0 && sensor < physics::kProximitySensors) || !(distance > 0) || std::isnan(angle) ||
         std::isnan(value_of(run, "reading", row, NAN)))
         return false;
+    // A robot that stands says nothing of one that drives.
+    if (value_of(run, "velocity", row, 0) != 0.0 || value_of(run, "motor_speed", row, 0) != 0.0) return false;
     const auto s = static_cast<std::size_t>(sensor);
     const auto& ring = nominal.proximity;
     react.sensor = s;
@@ -168,11 +179,10 @@ bool stand_before_wall(const Run& run, std::size_t row, React& react) {
                                   "size = [\"10 cm\", \"120 cm\", \"12 cm\"]\nreflectivity = {:.9g}\n",
                                   std::clamp(value_of(run, "ambient", row, 0), 0.0, 1.0), kWallFace + 0.05,
                                   std::max(value_of(run, "reflectivity", row, 1), 0.0));
-    react.act.commands = {{0, 0, 0}, {kStanding, 0, 0}};
     return true;
 }
 
-std::vector<React> proximity(const Experiment& experiment, std::string& why) {
+std::vector<React> proximity(const Experiment& experiment, double longest, std::string& why) {
     if (experiment.has("off_axis_rad")) {
         why = "objects narrower than a wall are not put up again";
         return {};
@@ -194,6 +204,7 @@ std::vector<React> proximity(const Experiment& experiment, std::string& why) {
                                   whole("angle_rad", 0), whole("ambient", 0), whole("reflectivity", 1)},
                                  react)
                     .first->second;
+            stand(run, i, longest, place.act);
             place.rows.push_back(r);
             place.rows.push_back(i);
         }
@@ -257,11 +268,14 @@ void timing_errors(const Run& run, const React& react, const std::vector<Row>& e
     if (judged > 0) add(errors[1], (broken_measured - broken) / judged);
 }
 
-double standing_mean(const std::vector<Row>& emulated, const std::function<double(const Row&)>& value) {
+/// Mean about the time `t`, or the nearest to it at which the robot stood.
+double standing_mean(const std::vector<Row>& emulated, double t,
+                     const std::function<double(const Row&)>& value) {
+    const double about = std::clamp(std::isnan(t) ? 0.0 : t, kSettled, emulated.back().t);
     double sum = 0.0, count = 0.0;
     for (const Row& row : emulated) {
         const double one = value(row);
-        if (row.t < kSettled || !row.ok || std::isnan(one)) continue;
+        if (row.t < kSettled || std::abs(row.t - about) > kAround || !row.ok || std::isnan(one)) continue;
         sum += one;
         ++count;
     }
@@ -270,16 +284,16 @@ double standing_mean(const std::vector<Row>& emulated, const std::function<doubl
 
 }  // namespace
 
-std::vector<React> reacts_of(const Experiment& experiment, std::string& why) {
+std::vector<React> reacts_of(const Experiment& experiment, double longest, std::string& why) {
     switch (experiment.kind) {
     case Kind::Motion:
         return motion(experiment, why);
     case Kind::Timing:
         return timing(experiment, why);
     case Kind::Ground:
-        return ground(experiment, why);
+        return ground(experiment, longest, why);
     case Kind::Proximity:
-        return proximity(experiment, why);
+        return proximity(experiment, longest, why);
     default:
         why = fmt::format("experiments of kind {} are not performed again", kind_name(experiment.kind));
         return {};
@@ -308,8 +322,9 @@ void add_errors(const Experiment& experiment, const React& react, const std::vec
         const std::size_t row = react.rows[k + 1];
         const bool floor = experiment.kind == Kind::Ground;
         const auto sensor = floor ? static_cast<std::size_t>(value_of(run, "sensor", row, 0)) : react.sensor;
-        const double told = standing_mean(
-            emulated, [&](const Row& r) { return floor ? r.gs[sensor % 3] : r.ps[sensor % 8]; });
+        const double told = standing_mean(emulated, value_of(run, "t_s", row, 0.0), [&](const Row& r) {
+            return floor ? r.gs[sensor % 3] : r.ps[sensor % 8];
+        });
         add(errors[0], run.column("reading")[row] - told);
     }
 }

@@ -26,8 +26,9 @@ struct React {
     double x = 0, y = 0, heading = 0;  ///< motion: measured pose that the act's start stands for
 };
 
-/// Empty with `why` said: this experiment cannot be performed.
-std::vector<React> reacts_of(const Experiment& experiment, std::string& why);
+/// Empty with `why` said: this experiment cannot be performed. Where the robot only stands it does so until
+/// the row was measured, but for no more than `longest` seconds (1 at least).
+std::vector<React> reacts_of(const Experiment& experiment, double longest, std::string& why);
 
 /// Names and units of what is compared, in the order of ErrorSums.
 std::vector<std::pair<const char*, const char*>> compared(Kind kind);

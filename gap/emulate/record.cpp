@@ -5,6 +5,7 @@
 #include "gap/emulate/record_rab.h"
 #include "gap/emulate/record_serial.h"
 #include "gap/emulate/surroundings.h"
+#include "gap/emulate/wave_floor.h"
 #include "physics/parameters.h"
 
 #include <fmt/format.h>
@@ -29,10 +30,14 @@ constexpr double kJigNoise = 1e-6;                                   // m: a mea
 constexpr double kHostNoise = 2e-4;                                  // s, of the host's time stamps
 constexpr int kSettledRows = 3;
 constexpr double kMostSlanting = 65 * kDegree, kFurthest = 0.11;
-constexpr double kClearOfEdge = 0.004;  // m
+constexpr double kClearOfEdge = 0.008;  // m: a row 0.1 s late is still on the same stripe
 /// Commands reach the motors this much after the row's time: twelve bytes, of which the last is held back 4
 /// ms.
 constexpr double kCommandLatency = 0.0052;  // s
+/// Of a reading at the row's time, on average: it was sampled up to 13 ms before it was asked for.
+constexpr double kOwnAge = 0.005;  // s
+/// Of the ground row: its period, the world's step, the reading of the bus before the row's time.
+constexpr double kOwnLag = 0.009;  // s
 /// 1 / mu that tells what starts and stops cost in the world model, where the motors' glide softens them and
 /// the skids take weight off the wheels; contact.mu itself is 0.7.
 constexpr double kStartLoss = 1.14;
@@ -70,12 +75,15 @@ bool steady(const std::vector<Row>& rows, std::size_t k) {
     return true;
 }
 
-HiddenRun proximity_run(const std::vector<Row>& rows, bool lamp, RandomStream& noise) {
+HiddenRun proximity_run(const std::vector<Row>& rows, const Act& act, RandomStream& noise) {
     const physics::Parameters nominal;
+    const bool lamp = act.conditions.at("light") == "lamp", drives_on = act.conditions.contains("drive");
     HiddenRun run;
     for (std::size_t k = 0; k < rows.size(); ++k) {
-        if (!settled(rows, k)) continue;
+        const bool drives = drives_on && steady(rows, k);
+        if (!drives && !settled(rows, k)) continue;
         const Row& r = rows[k];
+        const double speed = drives ? (r.left + r.right) / 2 : 0.0;  // steps/s
         for (std::size_t i = 0; i < physics::kProximitySensors; ++i) {
             const double c = std::cos(r.theta), s = std::sin(r.theta);
             const double x = r.x + c * nominal.proximity.x[i] - s * nominal.proximity.y[i];
@@ -95,12 +103,16 @@ HiddenRun proximity_run(const std::vector<Row>& rows, bool lamp, RandomStream& n
             run.column("ambient_reading", "counts").values.push_back(rows[k - 1].amb[i]);
             run.column("pair_reading", "counts").values.push_back(others(i + 4));
             run.column("neighbour_reading", "counts").values.push_back(others(i + 1) + others(i + 7));
+            run.column("motor_speed", "steps/s").values.push_back(speed);
+            run.column("velocity", "mm/s")
+                .values.push_back(-speed * kMetresPerStep * c / std::cos(way) * 1e3);
         }
     }
     return run;
 }
 
-HiddenRun ground_run(const std::vector<Row>& rows) {
+/// Between printed stripes: rows well inside one, at even speed.
+HiddenRun stripes_run(const std::vector<Row>& rows) {
     const physics::Parameters nominal;
     HiddenRun run;
     for (std::size_t k = 0; k < rows.size(); ++k) {
@@ -114,9 +126,43 @@ HiddenRun ground_run(const std::vector<Row>& rows) {
             run.column("sensor").values.push_back(static_cast<double>(i));
             run.column("grey").values.push_back(stripe_grey(x));
             run.column("reading", "counts").values.push_back(r.gs[i]);
+            run.column("grey_rate", "1/m").values.push_back(0);
         }
     }
     return run;
+}
+
+/// Over waves: rows of the drives, 0.3 s after the last change of speed, since starts and stops tip the
+/// robot. They are read before their command goes out.
+HiddenRun waves_run(const std::vector<Row>& rows) {
+    constexpr std::size_t kLevelRows = 4;
+    const physics::Parameters nominal;
+    HiddenRun run;
+    for (std::size_t k = kLevelRows; k < rows.size(); ++k) {
+        const Row& r = rows[k];
+        const double steps = rows[k - 1].left;
+        bool level = steps != 0.0;
+        for (std::size_t i = k - kLevelRows; i < k; ++i)
+            level = level && rows[i].left == steps;
+        if (!level) continue;
+        const double c = std::cos(r.theta), s = std::sin(r.theta);
+        for (std::size_t i = 0; i < physics::kGroundSensors; ++i) {
+            if (std::isnan(r.gs[i])) continue;
+            const double x = r.x + c * nominal.ground.x - s * nominal.ground.y[i];
+            run.column("t_s", "s").values.push_back(r.t);
+            run.column("sensor").values.push_back(static_cast<double>(i));
+            run.column("grey").values.push_back(wave_grey(x));
+            run.column("reading", "counts").values.push_back(r.gs[i]);
+            run.column("grey_rate", "1/m").values.push_back(wave_slope(x) * c);
+            run.column("speed", "m/s").values.push_back(steps * kMetresPerStep);
+        }
+    }
+    return run;
+}
+
+HiddenRun ground_run(const std::vector<Row>& rows, const Act& act) {
+    const bool waves = act.conditions.at("drive").starts_with("waves");
+    return waves ? waves_run(rows) : stripes_run(rows);
 }
 
 HiddenRun timing_run(const std::vector<Row>& rows, RandomStream& noise) {
@@ -145,7 +191,9 @@ HiddenExperiment record(std::string_view kind, const RecordOptions& options) {
         experiment.nominal = {{"firmware.agenda", "0"},
                               {"command.latency", fmt::format("{}", kCommandLatency)},
                               {"inverse_friction", fmt::format("{}", kStartLoss)}};
+    if (kind == "proximity") experiment.nominal = {{"proximity.age", fmt::format("{}", kOwnAge)}};
     if (kind == "proximity") experiment.instrument = {{"reading", "{ ceiling = 4095, quantum = 1 }"}};
+    if (kind == "ground") experiment.nominal = {{"ground.lag", fmt::format("{}", kOwnLag)}};
     // The sensors saturate at 967, and the converter's noise comes after that.
     if (kind == "ground") experiment.instrument = {{"reading", "{ floor = 0, ceiling = 963, quantum = 1 }"}};
     RandomStream noise(options.seed, "laboratory");
@@ -155,8 +203,8 @@ HiddenExperiment record(std::string_view kind, const RecordOptions& options) {
         HiddenRun run;
         if (kind == "motion") run = motion_run(rows, noise);
         if (kind == "motion" && !options.brief) note_surroundings(acts[k], rows, run);
-        if (kind == "proximity") run = proximity_run(rows, acts[k].conditions.at("light") == "lamp", noise);
-        if (kind == "ground") run = ground_run(rows);
+        if (kind == "proximity") run = proximity_run(rows, acts[k], noise);
+        if (kind == "ground") run = ground_run(rows, acts[k]);
         if (kind == "timing") run = timing_run(rows, noise);
         run.conditions = acts[k].conditions;
         run.column("order").values.assign(run.rows(), static_cast<double>(k + 1));

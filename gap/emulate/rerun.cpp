@@ -33,6 +33,15 @@ double extra_period(const Verdict& verdict) {
     return 0.0;
 }
 
+/// What warms up is looked at as late as it was measured; else a moment tells all.
+double longest_stand(const Verdict& verdict) {
+    constexpr double kLongest = 20.0;  // s
+    for (const Cause& cause : verdict.causes)
+        for (const FittedParameter& parameter : cause.parameters)
+            if (parameter.name.find("warmup") != std::string::npos) return kLongest;
+    return 0.0;
+}
+
 /// Parameters that neither an overlay's run nor this one takes.
 std::vector<std::string> left_out(const Experiment& experiment, const Verdict& verdict) {
     const std::string text = overlay_toml(experiment, verdict);
@@ -63,7 +72,7 @@ Rerun rerun(const Experiment& experiment, const Verdict& verdict, const RerunOpt
         result.not_done = "the robot ran another firmware than the project's own; name its image";
         return result;
     }
-    const auto reacts = reacts_of(experiment, result.not_done);
+    const auto reacts = reacts_of(experiment, longest_stand(verdict), result.not_done);
     if (!result.not_done.empty()) return result;
     const auto names = compared(experiment.kind);
     std::vector<ErrorSum> errors[2] = {std::vector<ErrorSum>(names.size()),

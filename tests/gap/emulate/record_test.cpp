@@ -4,7 +4,9 @@
 #include "gap/analyse.h"
 #include "gap/emulate/record.h"
 #include "gap/emulate/secrets.h"
+#include "gap/emulate/wave_floor.h"
 #include "gap/experiment.h"
+#include "physics/ground.h"
 #include "tests/scratch.h"
 
 #include <catch2/catch.hpp>
@@ -13,6 +15,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <regex>
 #include <sys/wait.h>
 
 using namespace puckloop;
@@ -80,6 +83,31 @@ TEST_CASE("ground and timing can be recorded") {
     const Experiment timing = recorded("timing", options);
     const auto& host = timing.runs.front().column("t_host_s");
     CHECK((host.back() - host.front()) / static_cast<double>(host.size() - 1) == Approx(0.1).margin(2e-4));
+}
+
+TEST_CASE("the wave floor's grey is what the simulator's ground row sees of it") {
+    // Read back from the text: each stripe's middle and grey.
+    const std::string floor = emulate::wave_floor();
+    std::vector<physics::Patch> patches;
+    const std::regex stripe(
+        R"(centre = \["([-0-9.e]+) m".*\nsize = \["([-0-9.e]+) m".*\ngrey = ([-0-9.e]+))");
+    for (std::sregex_iterator at(floor.begin(), floor.end(), stripe), end; at != end; ++at) {
+        physics::Patch patch;
+        patch.x = std::stod((*at)[1]);
+        patch.length = std::stod((*at)[2]);
+        patch.width = 1.8;
+        patch.grey = std::stod((*at)[3]);
+        patches.push_back(patch);
+    }
+    REQUIRE(patches.size() > 1000);
+    const physics::Parameters parameters;
+    const physics::GroundRow row(parameters.ground, 1.0, patches);
+    for (const double x : {-0.1411, -0.0502, 0.0001, 0.0333, 0.1207}) {
+        const double seen = row.greys({.x = x - parameters.ground.x})[1];
+        CHECK(emulate::wave_grey(x) == Approx(seen).margin(1e-9));
+        CHECK((emulate::wave_grey(x + 0.01) - emulate::wave_grey(x - 0.01)) / 0.02 ==
+              Approx(emulate::wave_slope(x)).margin(0.3));
+    }
 }
 
 TEST_CASE("the serial line tells the main board's crystal") {

@@ -83,6 +83,14 @@ TEST_CASE("a sensor's gain from an overlay is the emulated sensor's") {
     CHECK(proximity.observables[0].after < 5);  // two conversions of 2 counts each
 }
 
+TEST_CASE("what warms up is looked at again as late as it was measured") {
+    Verdict verdict = named("warm_up", "ground.warmup_gain", -0.2, 0.0);
+    verdict.causes[0].parameters.push_back({"ground.warmup_time", "", 3, 3, 3, 300, true});
+    const Rerun ground = again("ground", {"ground.warmup_gain=-0.2", "ground.warmup_time=3"}, verdict);
+    CHECK(ground.observables[0].before > 50);  // 7 to 17 % of 330 to 950 counts
+    CHECK(ground.observables[0].after < 4);    // a second's mean of what still drifts
+}
+
 TEST_CASE("a longer period is the recorder's when it is performed again") {
     const Rerun result =
         again("timing", {"host.period=0.104"}, named("long_period", "timing.extra_period", 0.004, 0.0));
