@@ -1,5 +1,7 @@
 #include "gap/overlay_sensors.h"
 
+#include "gap/models/model.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -83,12 +85,20 @@ void series(const Experiment& experiment, Values& fitted, Values& simulator) {
     simulator["proximity.order"] = -take(fitted, "proximity.order_zero", 0.0) * half;
 }
 
+/// Which sensors the pulses reach the model sees in the data.
+void pulses(const Experiment& experiment, const Values& fitted, Values& simulator) {
+    if (!fitted.contains("proximity.interference_rate") || experiment.runs.empty()) return;
+    for (const auto& [name, value] : make_model(experiment)->implied())
+        simulator[name] = value;
+}
+
 }  // namespace
 
 void sensors_overlay(const Experiment& experiment, Values& fitted, Values& simulator) {
     ages(experiment, fitted, simulator);
     sessions(experiment, fitted, simulator);
     series(experiment, fitted, simulator);
+    pulses(experiment, fitted, simulator);
 }
 
 bool made_by_firmware(const std::string& parameter) {

@@ -16,8 +16,8 @@ Effect pulsed_interference() {
              {"proximity.interference_size", 5.0, 2000.0, 200.0, {100.0}, "tens to hundreds of counts"}},
         .needs = {},
         .observables = "two-sided outliers",
-        .enters = "proximity.interference_rate, proximity.interference_size; which sensors are exposed, "
-                  "proximity.interference_share, is for the user to say",
+        .enters = "proximity.interference_rate, proximity.interference_size; proximity.interference_share of "
+                  "sensors that the data shows sheltered",
         .confounded = {"proportional_noise"},
         .separated_by = "the same with the other robots switched off",
         .measuring_chain = false,

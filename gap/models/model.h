@@ -7,6 +7,7 @@
 #include "gap/experiment.h"
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -83,6 +84,10 @@ class Model {
 
     /// Where the data itself suggests that a fit of this parameter begins; mostly nowhere.
     virtual std::vector<double> starts(std::string_view) const { return {}; }
+
+    /// Parameters of the simulator that the model took from the data without fitting them, where they are not
+    /// neutral.
+    virtual std::map<std::string, double> implied() const { return {}; }
 
   protected:
     int add(std::string name, std::string unit, double neutral);

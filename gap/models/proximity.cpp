@@ -168,6 +168,14 @@ class ProximityModel final : public Model {
         return {};
     }
 
+    /// Sensors that no foreign pulse hits.
+    std::map<std::string, double> implied() const override {
+        std::map<std::string, double> shares;
+        for (std::size_t s = 0; s < sheltered_.size(); ++s)
+            if (sheltered_[s]) shares[fmt::format("proximity.interference_share{}", s)] = 0.0;
+        return shares;
+    }
+
   private:
     /// The age that readings of moving surfaces are nearest to. Heavy-tailed noise takes few such rows for
     /// outliers: a fit that begins at none stays at an age that only the far ones bear.
@@ -269,8 +277,10 @@ class ProximityModel final : public Model {
                 first = from;
                 length = wide;
             }
+        for (int s = 0; s < kRing; ++s)
+            sheltered_[static_cast<std::size_t>(s)] = (s - first + kRing) % kRing >= length;
         for (std::size_t i = 0; i < all.size(); ++i)
-            if ((sensor_[i] - first + kRing) % kRing >= length) all[i] = 0.0;
+            if (sheltered_[static_cast<std::size_t>(sensor_[i])]) all[i] = 0.0;
         return all;
     }
 
@@ -459,6 +469,7 @@ class ProximityModel final : public Model {
     std::vector<double> distance_, angle_, reflectivity_, ambient_, pair_, neighbour_, motor_, stepping_,
         velocity_, time_, others_, battery_, order_;
     std::vector<int> sensor_, object_, object_parameter_;
+    std::array<bool, physics::kProximitySensors> sheltered_{};
     std::array<double, physics::kProximitySensors> angle0_{};
     PerSensor first_of_;
     int compression_ = 0, extra_exponent_ = 0, shift_ = 0;

@@ -157,6 +157,24 @@ TEST_CASE("an overlay's age is what firmware and host do not make by themselves"
     CHECK(loaded(experiment, {{"ground.lag", 0.1}}).ground.lag == Approx(0.095));
 }
 
+TEST_CASE("sensors that no foreign pulse reached are sheltered in a run, too") {
+    Experiment experiment;
+    experiment.kind = Kind::Proximity;
+    experiment.runs.emplace_back();
+    Run& run = experiment.runs.back();
+    for (int sensor = 0; sensor < 8; ++sensor)
+        for (int i = 0; i < 80; ++i, ++run.rows) {
+            run.columns["sensor"].push_back(sensor);
+            run.columns["distance_m"].push_back(0.03);
+            run.columns["t_s"].push_back(8.0 * sensor + 0.1 * i);
+            run.columns["reading"].push_back(290 + i * 7 % 5 + (sensor == 4 && i % 8 == 0 ? 60 : 0));
+        }
+    const auto hit = loaded(experiment, {{"proximity.interference_rate", 0.1}});
+    for (std::size_t sensor = 0; sensor < 8; ++sensor)
+        CHECK(hit.proximity.interference_share[sensor] == (sensor == 4 ? 1 : 0));
+    CHECK(loaded(experiment, {}).proximity.interference_share[0] == 1);
+}
+
 TEST_CASE("a drift over a series leaves a run in its middle where the fit says") {
     Experiment experiment;
     experiment.kind = Kind::Proximity;

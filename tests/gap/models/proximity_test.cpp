@@ -248,4 +248,9 @@ TEST_CASE("foreign pulses are looked for on the side of the ring that they hit")
         const double sensor = rows["sensor"][i];
         CHECK(said[0].lapse[i] == Approx(sensor < 2 || sensor > 5 ? 0.1 : 0.0));
     }
+    const std::map<std::string, double> sheltered{{"proximity.interference_share2", 0},
+                                                  {"proximity.interference_share3", 0},
+                                                  {"proximity.interference_share4", 0},
+                                                  {"proximity.interference_share5", 0}};
+    CHECK(model->implied() == sheltered);
 }
