@@ -19,6 +19,8 @@ namespace {
 constexpr double kFarthest = 1000.0;      // m: nothing is further out or bigger
 constexpr double kMostReflective = 10.0;  // foil is 1.5
 constexpr double kBrightest = 100.0;
+constexpr double kLoudest = 1e5;  // counts: full scale 2 m away
+constexpr double kLongest = 1e9;  // s
 
 class Checker {
   public:
@@ -36,6 +38,8 @@ class Checker {
             check_cylinder(c);
         for (const auto& l : world_.lamps)
             check_lamp(l);
+        for (const auto& s : world_.speakers)
+            check_speaker(s);
         for (const auto& p : world_.patches)
             check_patch(p);
         check_robots();
@@ -157,6 +161,14 @@ class Checker {
         position(what, l.place, l.x, l.y);
         range(what, l.place, "height", l.height, 0.0, kFarthest);
         range(what, l.place, "intensity", l.intensity, 0.0, kBrightest);
+    }
+    void check_speaker(const Speaker& s) {
+        const auto what = named("speaker", s.name, s.place);
+        position(what, s.place, s.x, s.y);
+        range(what, s.place, "height", s.height, 0.0, kFarthest);
+        range(what, s.place, "level", s.level, 0.0, kLoudest);
+        range(what, s.place, "on", s.on, 0.0, kLongest);
+        range(what, s.place, "off", s.off, s.on, kLongest);
     }
     void check_patch(const Patch& p) {
         const auto what = named("patch", p.name, p.place);

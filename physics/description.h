@@ -69,6 +69,17 @@ struct Lamp {
     Place place{};
 };
 
+/// A loudspeaker with a steady noise-like sound.
+struct Speaker {
+    std::string name;
+    double x = 0.0, y = 0.0;
+    double height = 0.03;
+    double level = 0.0;  ///< counts (volume) at a plain microphone 0.1 m away, on its axis
+    double on = 0.0;     ///< s: when it begins
+    double off = 1e9;    ///< s: when it ends
+    Place place{};
+};
+
 /// A piece of floor of another grey; later patches lie on top of earlier ones.
 struct Patch {
     std::string name;
@@ -85,9 +96,9 @@ struct Robot {
     std::string name;
     double x = 0.0, y = 0.0, heading = 0.0;
     std::map<std::string, double> parameters;  ///< over the world's, e.g. "robot.axle_length"
-    /// Signal ids on the links to the board ("wheel_left", "proximity0", "ambient0", "acc_x", "battery_v")
-    /// and to the ground sensor ("ground0".."ground2", "ground_ambient0".."2"). Names that are absent are
-    /// neither read nor published.
+    /// Signal ids on the links to the board ("wheel_left", "proximity0", "ambient0", "acc_x", "battery_v",
+    /// "mic_level0") and to the ground sensor ("ground0".."ground2", "ground_ambient0".."2"). Names that are
+    /// absent are neither read nor published.
     std::map<std::string, std::uint16_t> board_signals;
     std::map<std::string, std::uint16_t> ground_signals;
     bool rab = false;  ///< carries a range-and-bearing board
@@ -113,6 +124,7 @@ struct World {
     std::vector<Box> boxes;
     std::vector<Cylinder> cylinders;
     std::vector<Lamp> lamps;
+    std::vector<Speaker> speakers;
     std::vector<Patch> patches;
     std::vector<Robot> robots;
     std::map<std::string, double> parameters;  ///< for all robots and the world

@@ -15,12 +15,13 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Box, name, x, y, heading, length, width, heig
                                    reflectivity, place)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Cylinder, name, x, y, radius, height, movable, mass, reflectivity, place)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Lamp, name, x, y, height, intensity, place)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Speaker, name, x, y, height, level, on, off, place)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Patch, name, shape, x, y, heading, length, width, radius, grey, place)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Robot, name, x, y, heading, parameters, board_signals, ground_signals, rab,
                                    rab_signals, place)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Recording, directory, period, log)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(World, node_name, file, seed, ambient_light, arena, walls, boxes,
-                                   cylinders, lamps, patches, robots, parameters, recording)
+                                   cylinders, lamps, speakers, patches, robots, parameters, recording)
 
 std::string to_json(const World& world) {
     return nlohmann::json(world).dump();

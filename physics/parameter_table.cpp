@@ -145,6 +145,20 @@ std::vector<ParameterInfo> build_table() {
         {"accelerometer.warmup", "counts", 1, {0.0}, -500, 500, AT(accelerometer.warmup), "? drift of the zero"},
         {"accelerometer.warmup_time", "s", 1, {300}, 1, 3600, AT(accelerometer.warmup_time), "? as proximity.warmup_time"},
 
+        // Microphones. A level is a volume: largest minus smallest of 100 samples, counts.
+        {"microphone.gain", "1", 3, {1.0}, 0.0, 10.0, FIRST(microphone.gain), "[M] spread +-8 % (e-puck2)"},
+        {"microphone.x", "m", 3, {.015, .015, -.03}, -0.06, 0.06, FIRST(microphone.x), "? right front, left front, rear as described; no coordinates published; 3 cm from the axle's middle"},
+        {"microphone.y", "m", 3, {-.026, .026, 0}, -0.06, 0.06, FIRST(microphone.y), "? as x"},
+        {"microphone.direction", "rad", 3, {-1.0472, 1.0472, 3.14159}, -3.2, 3.2, FIRST(microphone.direction), "? outwards: -60 60 180 deg"},
+        {"microphone.height", "m", 1, {0.03}, 0.0, 0.1, AT(microphone.height), "? as the loudspeakers'"},
+        {"microphone.exponent", "1", 1, {1.0}, 0.0, 4.0, AT(microphone.exponent), "p of (0.1 m/d)^p: 1 in the open; [M] 1.16 in a room"},
+        {"microphone.directivity", "1", 1, {0.0}, -1.0, 2.0, AT(microphone.directivity), "D of 1 + D cos(angle); [M] 0.3"},
+        {"microphone.self_noise", "counts", 1, {0.0}, 0.0, 2000, AT(microphone.self_noise), "added to every level; [M] idle 8-10, which adc_noise of 2 counts makes by itself"},
+        {"microphone.motor_noise", "counts", 1, {0.0}, 0.0, 2000, AT(microphone.motor_noise), "added at a mean of 1000 steps/s; [M] 9-15 with motors"},
+        {"microphone.window_lost", "1", 1, {0.0}, 0.0, 0.99, AT(microphone.window_lost), "share of a microphone's samples that hold the one before"},
+        {"microphone.warmup_gain", "1", 1, {0.0}, -0.9, 0.9, AT(microphone.warmup_gain), "[M] mean rose 290 to 316 in 60 s"},
+        {"microphone.warmup_time", "s", 1, {300}, 1, 3600, AT(microphone.warmup_time), "as proximity's"},
+
         // Battery.
         {"battery.capacity", "W h", 1, {5.0}, 0.001, 50, AT(battery.capacity), "[W,S]"},
         {"battery.charge", "1", 1, {0.9}, 0.0, 1.0, AT(battery.charge), "state of charge at the start"},

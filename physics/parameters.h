@@ -12,6 +12,7 @@ namespace puckloop::physics {
 
 inline constexpr int kProximitySensors = 8;
 inline constexpr int kGroundSensors = 3;
+inline constexpr int kMicrophones = 3;
 /// Emitters, and receivers, of a range-and-bearing board; index 0 is hardware number 1.
 inline constexpr int kIrSensors = 12;
 /// Distances at which the board's strength was measured.
@@ -63,6 +64,12 @@ struct PushParameters {
     double rate, size, turn;
 };
 
+/// Microphones: right, left, rear.
+struct MicrophoneParameters {
+    std::array<double, kMicrophones> gain, x, y, direction;
+    double height, exponent, directivity, self_noise, motor_noise, window_lost, warmup_gain, warmup_time;
+};
+
 struct BatteryParameters {
     double capacity, charge, resistance, idle_power, motor_power, low_voltage;
 };
@@ -101,6 +108,7 @@ struct Parameters {
     LightParameters light;
     GroundParameters ground;
     AccelerometerParameters accelerometer;
+    MicrophoneParameters microphone;
     BatteryParameters battery;
     IrParameters ir;
     ContactParameters contact;

@@ -26,7 +26,9 @@ RobotModel::RobotModel(const World& world, const Robot& robot, const Parameters&
       late_speed_(kAccelerationWindow),
       ground_noise_(world.seed, "physics/" + robot.name + "/ground_noise"),
       accelerometer_(parameters.accelerometer, parameters.world, world.seed, robot.name),
+      ears_(parameters.microphone, world.speakers),
       battery_(parameters.battery) {
+    channels_[kMicrophoneLostChannel] = parameters.microphone.window_lost;
     const double ambient = std::min(parameters.ground.ambient * world.ambient_light, kGroundFullScale);
     store(kGroundAmbientChannel, std::array<double, kGroundSensors>{ambient, ambient, ambient});
 }
@@ -110,6 +112,7 @@ void RobotModel::sense_each_step(const RobotState& state, double seconds) {
     if (step % std::max(1L, std::lround(parameters_.ground.period / kStepSeconds)) == 0)
         sample_ground(seconds);
     store(kAccelerationChannel, accelerometer_.sense(state, now));
+    if (ears_.any()) store(kMicrophoneChannel, ears_.hear(state, seconds, now.motor_speed));
     channels_[kBatteryVoltageChannel] = battery_.draw(motors_running(seconds));
     channels_[kBatteryLowChannel] = battery_.low() ? 1.0 : 0.0;
 }

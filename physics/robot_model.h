@@ -10,6 +10,7 @@
 #include "physics/light.h"
 #include "physics/proximity.h"
 #include "physics/proximity_noise.h"
+#include "physics/sound.h"
 #include "physics/wheel_drive.h"
 
 #include <array>
@@ -75,6 +76,7 @@ class RobotModel {
     double acceleration_ = 0.0;  // m/s2 forward, over the control period
     RandomStream ground_noise_;
     Accelerometer accelerometer_;
+    Ears ears_;
     Battery battery_;
     Channels channels_{};
 };

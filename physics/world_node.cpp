@@ -42,7 +42,7 @@ RobotLinks links_of(const Robot& robot, cosim::PortIndex board) {
         if (channel == kBatteryLowChannel && has_voltage) continue;  // the board derives it
         const auto name = channel_name(channel);
         if (const auto id = id_of(robot.board_signals, name); id != kUnused)
-            links.outputs.push_back({channel, board, id});
+            links.outputs.push_back({channel, board, id, silent_at_zero(channel) ? 0.0 : std::nan("")});
         if (const auto id = id_of(robot.ground_signals, name); id != kUnused)
             links.outputs.push_back({channel, static_cast<cosim::PortIndex>(board + 1), id});
     }

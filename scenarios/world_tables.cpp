@@ -102,6 +102,16 @@ void read_lamp(Reader& reader, physics::Lamp& lamp) {
     lamp.intensity = reader.quantity("intensity", Dimension::Ratio, lamp.intensity);
 }
 
+void read_speaker(Reader& reader, physics::Speaker& speaker) {
+    const auto position = reader.quantities("position", Dimension::Length, 2);
+    speaker.x = position[0];
+    speaker.y = position[1];
+    speaker.height = reader.quantity("height", Dimension::Length, speaker.height);
+    speaker.level = reader.quantity("level", Dimension::Number);
+    speaker.on = reader.quantity("on", Dimension::Time, speaker.on);
+    speaker.off = reader.quantity("off", Dimension::Time, speaker.off);
+}
+
 void read_patch(Reader& reader, physics::Patch& patch) {
     read_centre(reader, patch.x, patch.y);
     patch.heading = reader.quantity("heading", Dimension::Angle, 0.0);
@@ -181,6 +191,7 @@ physics::World read_world(Reader& top) {
     read_each(top, "box", world.boxes, read_box);
     read_each(top, "cylinder", world.cylinders, read_cylinder);
     read_each(top, "lamp", world.lamps, read_lamp);
+    read_each(top, "speaker", world.speakers, read_speaker);
     read_each(top, "floor_patch", world.patches, read_patch);
     if (const TomlValue* table = top.table("light")) {
         Reader reader(top.file(), "light", *table);

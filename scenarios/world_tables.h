@@ -9,7 +9,8 @@
 
 namespace puckloop::scenarios {
 
-/// Reads [arena], [[wall]], [[box]], [[cylinder]], [[lamp]], [[floor_patch]], [light] and [parameters].
+/// Reads [arena], [[wall]], [[box]], [[cylinder]], [[lamp]], [[speaker]], [[floor_patch]], [light] and
+/// [parameters].
 physics::World read_world(Reader& top);
 
 /// A [parameters] table: dotted names of the physical parameters, each with its unit.

@@ -44,6 +44,9 @@ Board::Board(const BoardParameters& parameters, BoardListener& listener)
                 Emitter{cycles(parameters.light_time_constant_s, parameters)},
                 Emitter{cycles(parameters.light_time_constant_s, parameters)},
                 Emitter{cycles(parameters.light_time_constant_s, parameters)}},
+      microphones_{Microphone{parameters.seed, parameters.name + "/mic0"},
+                   Microphone{parameters.seed, parameters.name + "/mic1"},
+                   Microphone{parameters.seed, parameters.name + "/mic2"}},
       motors_{motor(StepSense::LeftMotor, parameters), motor(StepSense::RightMotor, parameters)} {
     for (SignalId id = 0; id < kSignalCount; ++id)
         values_[id].value = values_[id].before = signals()[id].initial;
@@ -133,6 +136,11 @@ double Board::analog(int channel, dspic::Cycle now) {
         const int sensor = channel - kFirstProximityChannel;
         const Emitter& emitter = emitters_[static_cast<std::size_t>(sensor % kPulseCount)];
         counts -= values_[static_cast<std::size_t>(kProximity + sensor)].at(now) * emitter.intensity(now);
+    }
+    if (channel >= kFirstMicrophoneChannel && channel < kFirstMicrophoneChannel + kMicrophoneCount) {
+        const auto i = static_cast<std::size_t>(channel - kFirstMicrophoneChannel);
+        counts +=
+            microphones_[i].sample(values_[kMicrophoneLevel + i].at(now), values_[kMicrophoneLost].value);
     }
     if (parameters_.adc_noise_counts > 0) counts += parameters_.adc_noise_counts * noise_.normal();
     const double code = std::fmin(std::fmax(std::nearbyint(counts), 0.0), kFullScale);

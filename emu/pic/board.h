@@ -12,6 +12,7 @@
 #include "base/random.h"
 #include "emu/dspic/pins.h"
 #include "emu/pic/emitter.h"
+#include "emu/pic/microphone.h"
 #include "emu/pic/signals.h"
 #include "emu/pic/stepper.h"
 
@@ -24,7 +25,7 @@ namespace puckloop::pic {
 
 /// What differs from one robot to the next. All of it may be set by a scenario.
 struct BoardParameters {
-    std::string name = "epuck";  ///< random streams are "<name>/adc", ...
+    std::string name = "epuck";  ///< random streams are "<name>/adc", "<name>/mic0", ...
     std::uint64_t seed = 1;      ///< the run's seed
     double crystal_hertz =
         7'372'800.0;                ///< FCY is twice this (XT with PLL x8), whatever the image's FOSC says
@@ -89,6 +90,7 @@ class Board : public dspic::Pins {
     RandomStream noise_;
     std::array<Input, kSignalCount> values_{};
     std::array<Emitter, kPulseCount> emitters_;
+    std::array<Microphone, kMicrophoneCount> microphones_;
     std::array<StepperDecoder, 2> motors_;
     std::array<std::uint16_t, kPorts> outputs_{};  ///< pins that are driven high
     std::array<std::uint16_t, kPorts> levels_{};   ///< what the board puts on the pins

@@ -89,6 +89,8 @@ inline constexpr std::array<SignalId, kAdcCount> kAnalogWiring{
     kAmbient + 2,  kAmbient + 3,      kAmbient + 4,      kAmbient + 5,    kAmbient + 6,
     kAmbient + 7,
 };
+/// First of the three microphones: AN2 is mic0.
+inline constexpr int kFirstMicrophoneChannel = 2;
 /// First of the eight proximity channels: AN8 is proximity0.
 inline constexpr int kFirstProximityChannel = 8;
 

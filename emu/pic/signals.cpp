@@ -45,7 +45,7 @@ std::vector<SignalInfo> build() {
         b.counts(fmt::format("ambient{}", i), kRoomLight,
                  fmt::format("AN{} with its pulse off; dark 4000, brighter is smaller", 8 + i));
     const char* const microphones[] = {"right", "left", "back"};
-    for (int i = 0; i < 3; ++i)
+    for (int i = 0; i < kMicrophoneCount; ++i)
         b.counts(fmt::format("mic{}", i), kMidScale,
                  fmt::format("microphone {}, AN{}", microphones[i], 2 + i));
     b.counts("acc_x", kMidScale, "accelerometer x (right), AN5; 1 g is 800 counts");
@@ -79,6 +79,11 @@ std::vector<SignalInfo> build() {
         b.level(fmt::format("pulse{}", i), fmt::format("infra-red emitters of sensors {} and {}", i, i + 4));
     b.level("audio_on", "codec and amplifier out of reset");
     b.level("camera_reset", "camera reset line, active low");
+
+    for (int i = 0; i < kMicrophoneCount; ++i)
+        b.counts(fmt::format("mic_level{}", i), 0,
+                 fmt::format("sound about mic{}: largest minus smallest of 100 samples", i));
+    b.input("mic_lost", "1", 0, 1, 0, "share of microphone samples that hold the one before");
     return b.list;
 }
 

@@ -31,14 +31,18 @@ inline constexpr SignalId kLedBody = 53;
 inline constexpr SignalId kPulse = 54;    ///< 4: infra-red emitters of the sensors i and i+4
 inline constexpr SignalId kAudioOn = 58;  ///< codec and amplifier out of reset
 inline constexpr SignalId kCameraReset = 59;
-inline constexpr SignalId kSignalCount = 60;
+// Inputs that came later; ids of the others stay what they are in recorded runs.
+inline constexpr SignalId kMicrophoneLevel = 60;  ///< 3: volume of the sound at microphone i, counts
+inline constexpr SignalId kMicrophoneLost = 63;   ///< share of microphone samples that hold the one before
+inline constexpr SignalId kSignalCount = 64;
 
 inline constexpr int kProximityCount = 8;
+inline constexpr int kMicrophoneCount = 3;
 inline constexpr int kAdcCount = 16;
 inline constexpr int kLedCount = 8;
 inline constexpr int kPulseCount = 4;
 
-/// kSignalCount entries, inputs first.
+/// kSignalCount entries in the order of their ids.
 std::span<const cosim::SignalInfo> signals();
 
 }  // namespace puckloop::pic

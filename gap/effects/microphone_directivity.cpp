@@ -13,7 +13,7 @@ Effect microphone_directivity() {
         .parameters = {{"microphone.directivity", -0.5, 1.5, 0.2, {}, "D 0.3"}},
         .needs = {"angle_rad"},
         .observables = "levels over direction",
-        .enters = "nothing: microphones are not simulated",
+        .enters = "microphone.directivity",
         .confounded = {"microphone_gain"},
         .separated_by = "turn the robot before a steady sound",
         .measuring_chain = false,

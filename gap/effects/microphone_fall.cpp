@@ -13,7 +13,7 @@ Effect microphone_fall() {
         .parameters = {{"microphone.exponent", 0.2, 2.5, 0.2, {}, "p 1.16 in a room"}},
         .needs = {},
         .observables = "the shape over distance",
-        .enters = "nothing: microphones are not simulated",
+        .enters = "microphone.exponent",
         .confounded = {"microphone_self_noise"},
         .separated_by = "distances over a decade, outdoors and in a room",
         .measuring_chain = false,

@@ -13,7 +13,7 @@ Effect microphone_gain() {
         .parameters = {{"microphone.gain*", 0.1, 5.0, 0.2, {}, "+-8 %"}},
         .needs = {},
         .observables = "all levels of a microphone",
-        .enters = "nothing: microphones are not simulated",
+        .enters = "microphone.gain",
         .confounded = {"microphone_window"},
         .separated_by = "one sound on the axis of each microphone in turn",
         .measuring_chain = false,

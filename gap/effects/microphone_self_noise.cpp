@@ -14,7 +14,7 @@ Effect microphone_self_noise() {
                        {"microphone.motor_noise", -20.0, 300.0, 15.0, {}, "9-15 with motors"}},
         .needs = {},
         .observables = "weak levels",
-        .enters = "nothing: microphones are not simulated",
+        .enters = "microphone.self_noise, microphone.motor_noise",
         .confounded = {"microphone_fall"},
         .separated_by = "silence, with motors on and off",
         .measuring_chain = false,

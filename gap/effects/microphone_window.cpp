@@ -13,7 +13,7 @@ Effect microphone_window() {
         .parameters = {{"microphone.window_lost", -0.5, 0.97, 0.3, {0.3}, "level ~ sqrt(2 ln N)"}},
         .needs = {"window"},
         .observables = "levels, by window length",
-        .enters = "nothing: microphones are not simulated",
+        .enters = "microphone.window_lost: samples that the board holds",
         .confounded = {"microphone_gain"},
         .separated_by = "two window lengths on the same sound",
         .measuring_chain = false,

@@ -20,7 +20,8 @@ Effect warm_up() {
                        {"accelerometer.warmup_time", 20.0, 2000.0, 250.0, {}, "?"}},
         .needs = {"t_s"},
         .observables = "everything, slowly",
-        .enters = "proximity.warmup_gain, proximity.warmup_time, ground.warmup_gain, "
+        .enters = "proximity.warmup_gain, proximity.warmup_time, microphone.warmup_gain, "
+                  "microphone.warmup_time, ground.warmup_gain, "
                   "ground.warmup_time, accelerometer.warmup, accelerometer.warmup_time",
         .confounded = {"slow_drift", "battery_droop"},
         .separated_by = "random order of distances, and the first one again at the end",

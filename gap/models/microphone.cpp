@@ -1,10 +1,15 @@
 // The level of a microphone before a loudspeaker: the stated level at 0.1 m, falling with the distance.
 //
-// Deviations: 1. the simulator has no sound; the level's law is this file's. 2. Level is taken as the
-// firmware reports it (largest minus smallest of a window).
+// The law is the simulator's (physics/sound.h). With "microphone.gaussian" = 1 the sound is known to be
+// Gaussian noise, as the simulator's loudspeakers make it: a level then falls with lost samples as the range
+// of so many normal samples, and scatters as that range.
+//
+// Deviations: 1. the converter's own noise is left out (in a run it adds to the sound's as powers). 2. Level
+// is taken as the firmware reports it (largest minus smallest of a window).
 
 #include "gap/models/model.h"
 #include "gap/models/rows.h"
+#include "gap/models/sample_range.h"
 
 #include <fmt/format.h>
 
@@ -44,6 +49,7 @@ class MicrophoneModel final : public Model {
         self_noise_ = add("microphone.self_noise", "counts", 0.0);
         motor_noise_ = add("microphone.motor_noise", "counts", 0.0);
         window_lost_ = add("microphone.window_lost", "1", 0.0);
+        gaussian_ = add("microphone.gaussian", "1", 0.0);
         warmup_ = add("microphone.warmup_gain", "1", 0.0);
         warmup_time_ = add("microphone.warmup_time", "s", 300.0);
         for (const int mic : mic_)
@@ -58,6 +64,9 @@ class MicrophoneModel final : public Model {
         mean.resize(distance_.size());
         const auto value = [&](int index) { return v[static_cast<std::size_t>(index)]; };
         const double warm = value(warmup_), lost = value(window_lost_);
+        const bool gaussian = value(gaussian_) != 0.0;
+        out[0].extra.assign(gaussian ? mean.size() : 0, 0.0);
+        Window window{};
         for (std::size_t i = 0; i < mean.size(); ++i) {
             double level = amplitude_[i] > 0 ? amplitude_[i] : value(level_);
             level *= std::pow(kReference / std::max(distance_[i], 1e-3), value(exponent_));
@@ -66,8 +75,11 @@ class MicrophoneModel final : public Model {
             if (warm != 0.0)
                 level *= 1 + warm * (1 - std::exp(-std::max(time_[i], 0.0) / value(warmup_time_)));
             level += value(self_noise_) + value(motor_noise_) * std::abs(motor_[i]) / kSpeedUnit;
-            // Extremes of N samples lie about sqrt(2 ln N) from the mean.
-            if (lost != 0.0)
+            if (gaussian) {
+                window.become(window_[i], lost);
+                level *= window.share;
+                out[0].extra[i] = std::abs(level) * window.scatter;
+            } else if (lost != 0.0)  // Extremes of N samples lie about sqrt(2 ln N) from the mean.
                 level *= std::sqrt(std::log(std::max(window_[i] * (1 - lost), 2.0)) /
                                    std::log(std::max(window_[i], 2.0)));
             mean[i] = level;
@@ -75,11 +87,23 @@ class MicrophoneModel final : public Model {
     }
 
   private:
+    /// Of Gaussian sound: what lost samples leave of a level, and how far one level scatters, in parts of it.
+    struct Window {
+        double samples = -1.0, share = 1.0, scatter = 0.0;
+        void become(double of, double lost) {
+            if (of == samples) return;
+            samples = of;
+            const double all = std::max(of, 2.0), used = std::max(of * (1 - lost), 2.0);
+            const double range = normal_range(used);
+            share = lost != 0.0 ? range / normal_range(all) : 1.0;
+            scatter = normal_range_sd(used) / range;
+        }
+    };
     std::vector<double> distance_, angle_, amplitude_, window_, motor_, time_;
     std::vector<int> mic_;
     std::array<int, 8> gain_{-1, -1, -1, -1, -1, -1, -1, -1};
     int level_ = 0, exponent_ = 0, directivity_ = 0, self_noise_ = 0, motor_noise_ = 0, window_lost_ = 0,
-        warmup_ = 0, warmup_time_ = 0;
+        warmup_ = 0, warmup_time_ = 0, gaussian_ = 0;
 };
 
 }  // namespace

@@ -52,6 +52,26 @@ void check_ascii(Rig& rig, const std::string& version) {
     CHECK(help.size() > 600);
 }
 
+/// Tilt and sound: U tells volumes of 256 samples, whose range is 5.65 deviations.
+void check_tilt_and_sound(Rig& rig) {
+    rig.set("acc_x", 2048 + 160);
+    rig.run_for(0.05);
+    CHECK(ask(rig, "A\r") == "a,160,0,0\r\n");
+    rig.set("acc_x", 2048);
+    CHECK(ask(rig, "U\r") == "u,0,0,0\r\n");
+    rig.set("mic_level2", 300);
+    double sum = 0.0;
+    constexpr int kAsked = 20;  // each scatters by 10 %
+    for (int i = 0; i < kAsked; ++i) {
+        const std::string told = ask(rig, "U\r");
+        REQUIRE(told.starts_with("u,0,0,"));
+        sum += std::stod(told.substr(6));
+    }
+    CHECK(sum / kAsked == Approx(300 * 5.65 / 5.015).epsilon(0.08));
+    rig.set("mic_level2", 0);
+    rig.run_for(0.05);
+}
+
 void check_leds(Rig& rig) {
     CHECK(ask(rig, "F,1\r") == "f\r\n");
     CHECK(rig.get("led_front") == 1);
@@ -158,6 +178,7 @@ TEST_CASE("BTcom_default.hex boots twice, prints its banner and answers as on th
     CHECK(resets[1].cause == "SWR");
     CHECK(cosim::to_seconds(rig.chip().clock().time_of(resets[1].cycle)) == Approx(0.2).margin(0.02));
     check_ascii(rig, "Version 1.1.4 December 2006");
+    check_tilt_and_sound(rig);
     check_leds(rig);
     check_sensors(rig);
     check_motors(rig);

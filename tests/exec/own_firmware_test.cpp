@@ -180,6 +180,22 @@ TEST_CASE("own firmware: a volume is largest minus smallest of the last window, 
     CHECK(sensors_of(ask(rig, actuators(0, 0))).microphones == std::array<std::int16_t, 4>{});
 }
 
+TEST_CASE("own firmware: a sound's level comes out as volume") {
+    InSession session;
+    Rig& rig = session.rig;
+    rig.set("mic_level1", 400);
+    rig.run_for(0.03);
+    double sum = 0.0;
+    constexpr int kWindows = 60;  // each scatters by 12 %: their mean by 6 counts
+    for (int i = 0; i < kWindows; ++i) {
+        rig.run_for(0.01);
+        const EpuckSensors s = sensors_of(ask(rig, actuators(0, 0)));
+        sum += s.microphones[1];
+        CHECK(s.microphones[0] == 0);
+    }
+    CHECK(sum / kWindows == Approx(400).margin(20));
+}
+
 TEST_CASE("own firmware: the emitters are pulsed in turn, 284.8 us each 13.10 ms") {
     InSession session;
     Rig& rig = session.rig;

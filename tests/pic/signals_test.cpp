@@ -27,9 +27,11 @@ TEST_CASE("the board's signal list stands where its ids say") {
     CHECK(list[pic::kPulse + 3].name == "pulse3");
     CHECK(list[pic::kAudioOn].name == "audio_on");
     CHECK(list[pic::kCameraReset].name == "camera_reset");
+    CHECK(list[pic::kMicrophoneLevel + 2].name == "mic_level2");
+    CHECK(list[pic::kMicrophoneLost].name == "mic_lost");
 }
 
-TEST_CASE("signal names are unique, found by name, and inputs come before outputs") {
+TEST_CASE("signal names are unique, found by name, and inputs come before outputs but for later ones") {
     std::set<std::string> names;
     for (const auto& info : pic::signals()) {
         CHECK(names.insert(info.name).second);
@@ -41,7 +43,7 @@ TEST_CASE("signal names are unique, found by name, and inputs come before output
     for (std::uint16_t id = 0; id < pic::kSignalCount; ++id) {
         CHECK(cosim::find_signal(pic::signals(), pic::signals()[id].name) == id);
         const bool input = pic::signals()[id].direction == SignalDirection::Input;
-        CHECK(input == (id < pic::kWheelLeft));
+        CHECK(input == (id < pic::kWheelLeft || id >= pic::kMicrophoneLevel));
     }
     CHECK_FALSE(cosim::find_signal(pic::signals(), "proximity8"));
 }

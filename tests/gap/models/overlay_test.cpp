@@ -80,7 +80,7 @@ TEST_CASE("every effect enters the simulator where its file says") {
         CHECK(takes_any(effect) == !nowhere);
         // What is named is a parameter of the world.
         static const std::regex name(
-            "(contact|ground|ir|light|proximity|push|robot|world|accelerometer)\\.[a-z_]+");
+            "(contact|ground|ir|light|microphone|proximity|push|robot|world|accelerometer)\\.[a-z_]+");
         for (std::sregex_iterator at(where.begin(), where.end(), name), end; at != end; ++at) {
             int index = -1;
             CHECK(physics::find_parameter(at->str(), index) != nullptr);
