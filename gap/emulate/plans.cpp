@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "gap/emulate/plans_sensors.h"
 #include "gap/emulate/wave_floor.h"
 #include "gap/selftest/design_motion.h"
 #include "physics/parameters.h"
@@ -212,7 +213,8 @@ std::vector<Act> timing_acts(std::uint64_t, bool brief) {
 }  // namespace
 
 const std::vector<std::string>& recordable_kinds() {
-    static const std::vector<std::string> kinds{"motion", "proximity", "ground", "timing", "serial", "rab"};
+    static const std::vector<std::string> kinds{"motion",     "proximity",     "ground", "timing",
+                                                "microphone", "accelerometer", "serial", "rab"};
     return kinds;
 }
 
@@ -221,9 +223,11 @@ std::vector<Act> acts_of(std::string_view kind, std::uint64_t seed, bool brief) 
     if (kind == "proximity") return proximity_acts(seed, brief);
     if (kind == "ground") return ground_acts(seed, brief);
     if (kind == "timing") return timing_acts(seed, brief);
+    if (kind == "microphone") return microphone_acts(seed, brief);
+    if (kind == "accelerometer") return accelerometer_acts(seed, brief);
     if (kind == "rab" || kind == "serial") return {};  // record_rab.h, record_serial.h
     throw InputError("", "gap record", fmt::format("'{}' cannot be recorded on the emulator", kind),
-                     "motion, proximity, ground, timing, serial, rab or all");
+                     "motion, proximity, ground, timing, microphone, accelerometer, serial, rab or all");
 }
 
 double stripe_grey(double x) {

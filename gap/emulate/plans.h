@@ -9,8 +9,8 @@
 
 namespace puckloop::gap::emulate {
 
-/// What can be recorded: "motion", "proximity", "ground", "timing", "rab", and "serial": timing of the bytes
-/// on the line.
+/// What can be recorded: "motion", "proximity", "ground", "microphone", "accelerometer", "timing", "rab", and
+/// "serial": timing of the bytes on the line.
 const std::vector<std::string>& recordable_kinds();
 
 /// The acts of one kind; `seed` decides start headings and free drives. `short_plan`: each once and briefly,

@@ -1,6 +1,7 @@
 #include "gap/emulate/reacts.h"
 
 #include "gap/emulate/plans.h"
+#include "gap/emulate/reacts_sensors.h"
 #include "gap/emulate/surroundings.h"
 #include "physics/parameters.h"
 
@@ -25,12 +26,6 @@ constexpr double kMargin = 1.0;          // m between the measured path and a wa
 constexpr std::size_t kPlacements = 24;  // of a proximity experiment
 constexpr double kClear = 0.0005;        // m between body and wall
 constexpr double kFine = 1e-5;           // m and rad: closer placements are one
-
-/// The value of a row, or `fallback` without the column; NaN where it is missing.
-double value_of(const Run& run, std::string_view name, std::size_t row, double fallback) {
-    const auto& column = run.column(name);
-    return column.empty() ? fallback : column[row];
-}
 
 double median_step(const std::vector<double>& times) {
     std::vector<double> steps;
@@ -218,12 +213,6 @@ std::vector<React> proximity(const Experiment& experiment, double longest, std::
     return chosen;
 }
 
-void add(ErrorSum& sum, double error) {
-    if (std::isnan(error)) return;
-    sum.squares += error * error;
-    ++sum.rows;
-}
-
 void motion_errors(const Run& run, const React& react, const std::vector<Row>& emulated,
                    std::vector<ErrorSum>& errors) {
     std::size_t place = 0;
@@ -284,6 +273,17 @@ double standing_mean(const std::vector<Row>& emulated, double t,
 
 }  // namespace
 
+double value_of(const Run& run, std::string_view name, std::size_t row, double fallback) {
+    const auto& column = run.column(name);
+    return column.empty() ? fallback : column[row];
+}
+
+void add(ErrorSum& sum, double error) {
+    if (std::isnan(error)) return;
+    sum.squares += error * error;
+    ++sum.rows;
+}
+
 std::vector<React> reacts_of(const Experiment& experiment, double longest, std::string& why) {
     switch (experiment.kind) {
     case Kind::Motion:
@@ -294,6 +294,10 @@ std::vector<React> reacts_of(const Experiment& experiment, double longest, std::
         return ground(experiment, longest, why);
     case Kind::Proximity:
         return proximity(experiment, longest, why);
+    case Kind::Microphone:
+        return microphone_reacts(experiment, why);
+    case Kind::Accelerometer:
+        return accelerometer_reacts(experiment, why);
     default:
         why = fmt::format("experiments of kind {} are not performed again", kind_name(experiment.kind));
         return {};
@@ -306,6 +310,10 @@ std::vector<std::pair<const char*, const char*>> compared(Kind kind) {
         return {{"position", "m"}, {"heading", "rad"}};
     case Kind::Timing:
         return {{"arrival", "s"}, {"broken frames", "1"}};
+    case Kind::Microphone:
+        return {{"level", "counts"}};
+    case Kind::Accelerometer:
+        return {{"ax", "counts"}, {"ay", "counts"}, {"az", "counts"}};
     default:
         return {{"reading", "counts"}};
     }
@@ -317,6 +325,9 @@ void add_errors(const Experiment& experiment, const React& react, const std::vec
         return motion_errors(experiment.runs[react.run], react, emulated, errors);
     if (experiment.kind == Kind::Timing)
         return timing_errors(experiment.runs[react.run], react, emulated, errors);
+    if (experiment.kind == Kind::Microphone) return microphone_errors(experiment, react, emulated, errors);
+    if (experiment.kind == Kind::Accelerometer)
+        return accelerometer_errors(experiment, react, emulated, errors);
     for (std::size_t k = 0; k + 1 < react.rows.size(); k += 2) {
         const Run& run = experiment.runs[react.rows[k]];
         const std::size_t row = react.rows[k + 1];

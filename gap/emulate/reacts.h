@@ -21,8 +21,8 @@ struct React {
     Act act;
     double period = 0.1;               ///< s between two exchanges
     std::size_t run = 0;               ///< of the experiment
-    std::vector<std::size_t> rows{};   ///< of the run; ground, proximity: run and row in turn
-    std::size_t sensor = 0;            ///< proximity: the sensor before the wall
+    std::vector<std::size_t> rows{};   ///< of the run; of placements: run and row in turn
+    std::size_t sensor = 0;            ///< proximity, microphone: which sensor it is about
     double x = 0, y = 0, heading = 0;  ///< motion: measured pose that the act's start stands for
 };
 

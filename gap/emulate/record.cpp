@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "gap/emulate/plans_sensors.h"
 #include "gap/emulate/record_rab.h"
 #include "gap/emulate/record_serial.h"
 #include "gap/emulate/surroundings.h"
@@ -28,7 +29,6 @@ constexpr double kPlaceNoise = 0.0005, kPlaceQuantum = 1e-4;         // m, of th
 constexpr double kAngleNoise = 0.2 * kDegree, kAngleQuantum = 1e-4;  // rad
 constexpr double kJigNoise = 1e-6;                                   // m: a measuring table's
 constexpr double kHostNoise = 2e-4;                                  // s, of the host's time stamps
-constexpr int kSettledRows = 3;
 constexpr double kMostSlanting = 65 * kDegree, kFurthest = 0.11;
 constexpr double kClearOfEdge = 0.008;  // m: a row 0.1 s late is still on the same stripe
 /// Commands reach the motors this much after the row's time: twelve bytes, of which the last is held back 4
@@ -56,23 +56,6 @@ HiddenRun motion_run(const std::vector<Row>& rows, RandomStream& noise) {
         run.column("cmd_right", "steps/s").values.push_back(r.right);
     }
     return run;
-}
-
-/// Rows where the robot has stood for a while: a reading is then as old as it likes.
-bool settled(const std::vector<Row>& rows, std::size_t k) {
-    if (k < kSettledRows) return false;
-    for (std::size_t i = k - kSettledRows; i < k; ++i)
-        if (rows[i].left != 0.0 || rows[i].right != 0.0) return false;
-    return rows[k].ok;
-}
-
-/// Rows well inside a drive at even speed.
-bool steady(const std::vector<Row>& rows, std::size_t k) {
-    constexpr std::size_t kSteadyRows = 8;
-    if (k < kSteadyRows || rows[k].left == 0.0) return false;
-    for (std::size_t i = k - kSteadyRows; i < k; ++i)
-        if (rows[i].left != rows[k].left || rows[i].right != rows[k].right) return false;
-    return true;
 }
 
 HiddenRun proximity_run(const std::vector<Row>& rows, const Act& act, RandomStream& noise) {
@@ -196,6 +179,14 @@ HiddenExperiment record(std::string_view kind, const RecordOptions& options) {
     if (kind == "ground") experiment.nominal = {{"ground.lag", fmt::format("{}", kOwnLag)}};
     // The sensors saturate at 967, and the converter's noise comes after that.
     if (kind == "ground") experiment.instrument = {{"reading", "{ floor = 0, ceiling = 963, quantum = 1 }"}};
+    if (kind == "microphone") {
+        // The loudspeaker's sound is noise: one window's level scatters by 12 %.
+        experiment.nominal = {{"microphone.gaussian", "1"}};
+        experiment.instrument = {{"level", "{ floor = 0, ceiling = 4095, quantum = 1 }"}};
+    }
+    if (kind == "accelerometer")
+        for (const char* axis : {"ax", "ay", "az"})
+            experiment.instrument.emplace_back(axis, "{ floor = 0, ceiling = 4095, quantum = 1 }");
     RandomStream noise(options.seed, "laboratory");
     for (std::size_t k = 0; k < acts.size(); ++k) {
         const auto rows = perform(options.robot, acts[k], options.tools, options.seed + k,
@@ -206,6 +197,8 @@ HiddenExperiment record(std::string_view kind, const RecordOptions& options) {
         if (kind == "proximity") run = proximity_run(rows, acts[k], noise);
         if (kind == "ground") run = ground_run(rows, acts[k]);
         if (kind == "timing") run = timing_run(rows, noise);
+        if (kind == "microphone") run = microphone_run(rows);
+        if (kind == "accelerometer") run = accelerometer_run(rows, acts[k]);
         run.conditions = acts[k].conditions;
         run.column("order").values.assign(run.rows(), static_cast<double>(k + 1));
         experiment.runs.push_back(std::move(run));

@@ -2,8 +2,9 @@
 // The end of the way: the measured experiment is performed again on the emulator, first as the simulator is,
 // then with the verdict's overlay, and both are compared with what was measured.
 //
-// Kinds: motion (commands recorded), timing, ground (greys), proximity (a flat wall). Placements of ground
-// and proximity are re-made standing, a selection of them where there are many.
+// Kinds: motion (commands recorded), timing, ground (greys), proximity (a flat wall), microphone (a
+// loudspeaker), accelerometer (tilts). Placements of all but the first two are re-made standing, a selection
+// of them where there are many.
 
 #include "gap/analyse.h"
 #include "gap/emulate/stage.h"

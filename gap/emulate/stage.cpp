@@ -48,6 +48,7 @@ std::string scenario_text(const Robot& robot, const Act& act, const Tools& tools
     if (act.load != 0.0) parameters["robot.load"] += act.load;
     if (act.slope_x != 0.0) parameters["world.slope_x"] += act.slope_x;
     if (act.slope_y != 0.0) parameters["world.slope_y"] += act.slope_y;
+    if (act.shimmed) parameters["robot.skid_clearance"] = 0.0;
     for (const auto& [name, value] : parameters)
         text += fmt::format("{} = {}\n", name, scenarios::parameter_text(name, value));
     text +=
@@ -133,7 +134,7 @@ std::vector<Row> perform(const Robot& robot, const Act& act, const Tools& tools,
     std::ifstream in(scratch / "records.csv");
     std::string line;
     std::getline(in, line);
-    constexpr std::size_t kCells = 6 + 8 + 8 + 3;
+    constexpr std::size_t kCells = 6 + 8 + 8 + 3 + 3 + 3;
     std::vector<Row> rows;
     double begun = 0.0, shift = 0.0;
     while (std::getline(in, line)) {
@@ -144,10 +145,13 @@ std::vector<Row> perform(const Robot& robot, const Act& act, const Tools& tools,
             shift = std::floor(begun / 60.0) * 60.0;  // the board's clock stood at 60 s when power came
         }
         const Pose pose = pose_at(path, c[0] - shift);
-        Row row{c[0] - begun, c[3] - begun, c[1], c[2], pose.x, pose.y, pose.theta, c[4] == 1.0, {}, {}, {}};
+        Row row{c[0] - begun, c[3] - begun, c[1], c[2], pose.x, pose.y, pose.theta,
+                c[4] == 1.0,  {},           {},   {},   {},     {}};
         std::copy_n(c.begin() + 6, 8, row.ps);
         std::copy_n(c.begin() + 14, 8, row.amb);
         std::copy_n(c.begin() + 22, 3, row.gs);
+        std::copy_n(c.begin() + 25, 3, row.acc);
+        std::copy_n(c.begin() + 28, 3, row.mic);
         rows.push_back(row);
     }
     if (rows.empty()) throw RunError("recording on the emulator gave no row");

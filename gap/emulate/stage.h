@@ -2,8 +2,8 @@
 // One recorded run on the emulator: an arena, a robot with firmware and the program puckloop-record on its
 // Linux board, a tracker above. What comes back is what a laboratory would have.
 //
-// Deviations: 1. the tracker samples when the Linux board sends; its noise is white. 2. The accelerometer and
-// the microphones are not in the serial record of this firmware, so nothing is recorded of them.
+// Deviations: 1. the tracker samples when the Linux board sends; its noise is white. 2. Accelerometer and
+// microphones are in the project's own firmware's record only; another's says 0.
 
 #include "linuxboard/record/command_script.h"
 
@@ -38,6 +38,7 @@ struct Act {
     bool ground = false;
     double load = 0.0;                    ///< kg laid on the robot, known to the laboratory
     double slope_x = 0.0, slope_y = 0.0;  ///< rad that the table is tilted, known as well
+    bool shimmed = false;  ///< no play under the skids: the robot does not rock, its tilt is the table's
 };
 
 /// One exchange between Linux board and main board, and where the tracker saw the robot when it was begun.
@@ -46,7 +47,7 @@ struct Row {
     double left, right;  ///< steps/s commanded
     double x, y, theta;  ///< true pose
     bool ok;
-    double ps[8], amb[8], gs[3];  ///< NaN where not read
+    double ps[8], amb[8], gs[3], acc[3], mic[3];  ///< NaN where not read
 };
 
 /// Programs and firmware of the project.

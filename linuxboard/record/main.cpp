@@ -88,7 +88,7 @@ class RecordLog {
             std::fprintf(file_, ",ps%d", i);
         for (int i = 0; i < 8; ++i)
             std::fprintf(file_, ",amb%d", i);
-        std::fputs(",gs0,gs1,gs2\n", file_);
+        std::fputs(",gs0,gs1,gs2,acc0,acc1,acc2,mic0,mic1,mic2\n", file_);
     }
     ~RecordLog() { std::fclose(file_); }
     RecordLog(const RecordLog&) = delete;
@@ -108,9 +108,14 @@ class RecordLog {
             std::fprintf(file_, "%.6f,0,,,,,,,,,,,,,,,,,", answered);
         }
         if (ground)
-            std::fprintf(file_, ",%g,%g,%g\n", (*ground)[0], (*ground)[1], (*ground)[2]);
+            std::fprintf(file_, ",%g,%g,%g", (*ground)[0], (*ground)[1], (*ground)[2]);
         else
-            std::fputs(",,,\n", file_);
+            std::fputs(",,,", file_);
+        for (std::size_t i = 0; i < 3; ++i)
+            s ? std::fprintf(file_, ",%d", static_cast<int>(s->accelerometer[i])) : std::fputc(',', file_);
+        for (std::size_t i = 0; i < 3; ++i)
+            s ? std::fprintf(file_, ",%d", static_cast<int>(s->microphones[i])) : std::fputc(',', file_);
+        std::fputc('\n', file_);
     }
 
   private:

@@ -180,7 +180,7 @@ TEST_CASE("a line so late that no exchange is answered is told, not recorded") {
 
 TEST_CASE("what cannot be recorded or changed is refused in one line") {
     auto options = options_in(tests::scratch_path("gap_refused"));
-    CHECK_THROWS_AS(emulate::record("microphone", options), InputError);
+    CHECK_THROWS_AS(emulate::record("camera", options), InputError);
     CHECK_THROWS_AS(emulate::set_parameter(options.robot, "robot.axle_lenght=0.05"), InputError);
     CHECK_THROWS_AS(emulate::set_parameter(options.robot, "robot.axle_length"), InputError);
 }
