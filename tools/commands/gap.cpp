@@ -141,7 +141,7 @@ void declare_gap(CLI::App& app, int& status) {
         ->type_name("N");
     command->add_flag("--rerun", request->rerun,
                       "perform the experiment again on the emulator, without and with the overlay "
-                      "(motion, proximity, ground, timing)");
+                      "(motion, proximity, ground, microphone, accelerometer, timing)");
     command->add_option("--firmware", request->firmware, "of the main board, for --rerun (the project's own)")
         ->type_name("IMAGE");
     command->require_subcommand(0, 1);

@@ -79,7 +79,9 @@ void declare_gap_record(CLI::App& gap, int& status) {
     CLI::App* command = gap.add_subcommand(
         "record", "Perform an experiment on the emulator, firmware in the loop, and write its folder");
     auto request = std::make_shared<Request>();
-    command->add_option("kind", request->kind, "motion, proximity, ground, timing, serial, rab or all")
+    command
+        ->add_option("kind", request->kind,
+                     "motion, proximity, ground, microphone, accelerometer, timing, serial, rab or all")
         ->type_name("KIND")
         ->required();
     command

@@ -67,6 +67,24 @@ TEST_CASE("proximity readings are the table's through sampling and whole counts"
     CHECK(reading.most < 15.0);
 }
 
+TEST_CASE("a loudspeaker's levels come through board and firmware as the law has them") {
+    const Errors level = errors_of("microphone", "level");
+    INFO("mean " << level.mean << " rms " << level.rms << " most " << level.most << " rows " << level.rows);
+    // Levels of 300 to 900 counts, each scattering by 12 %.
+    CHECK(std::abs(level.mean) < 4 * 100 / std::sqrt(static_cast<double>(level.rows)));
+    CHECK(level.rms > 30);
+    CHECK(level.rms < 110);
+}
+
+TEST_CASE("tilts come through the accelerometer as gravity's share") {
+    for (const char* axis : {"ax", "ay", "az"}) {
+        const Errors counts = errors_of("accelerometer", axis);
+        INFO(axis << " mean " << counts.mean << " rms " << counts.rms << " most " << counts.most);
+        CHECK(std::abs(counts.mean) < 1.2);  // the converter's 2 counts, over 20 rows and more
+        CHECK(counts.rms < 3.5);             // and what the firmware's interrupts shake
+    }
+}
+
 TEST_CASE("ground readings are the printed grey's") {
     const Errors reading = errors_of("ground", "reading");
     INFO("mean " << reading.mean << " rms " << reading.rms << " most " << reading.most);

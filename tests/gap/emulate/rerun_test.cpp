@@ -91,6 +91,20 @@ TEST_CASE("what warms up is looked at again as late as it was measured") {
     CHECK(ground.observables[0].after < 4);    // a second's mean of what still drifts
 }
 
+TEST_CASE("a microphone's gain and an accelerometer's zero from an overlay are the emulated robot's") {
+    const Rerun sound =
+        again("microphone", {"microphone.gain1=1.6"}, named("microphone_gain", "microphone.gain1", 1.6, 1.0));
+    CAPTURE(sound.observables[0].before, sound.observables[0].after);
+    // A third of the rows are 60 % off; one window's level scatters by 12 %.
+    CHECK(sound.observables[0].before > 2 * sound.observables[0].after);
+    const Rerun tilt = again("accelerometer", {"accelerometer.bias0=40"},
+                             named("accelerometer_bias", "accelerometer.bias0", 40, 0.0));
+    REQUIRE(tilt.observables.size() == 3);
+    CHECK(tilt.observables[0].before == Approx(40).margin(2));
+    for (const auto& axis : tilt.observables)
+        CHECK(axis.after < 3.5);  // the converter's noise
+}
+
 TEST_CASE("a longer period is the recorder's when it is performed again") {
     const Rerun result =
         again("timing", {"host.period=0.104"}, named("long_period", "timing.extra_period", 0.004, 0.0));
