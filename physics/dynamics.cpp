@@ -124,6 +124,27 @@ void Dynamics::Impl::damp_pitch(const RobotBody& robot) const {
     dBodyAddRelTorque(robot.chassis, 0, -robot.parameters.pitch_damping * rate, 0);
 }
 
+/// What moves all of the floor under a robot moves its bodies as much, so that nothing slides or rocks; not
+/// against something upright.
+void Dynamics::Impl::take_along(std::size_t index) {
+    auto& robot = robots[index];
+    const FloorVelocity now = robot.floor.value_or(FloorVelocity{});
+    const double x = now.x - robot.floor_before.x, y = now.y - robot.floor_before.y,
+                 turn = now.turn - robot.floor_before.turn;
+    robot.floor_before = now;
+    if (x == 0.0 && y == 0.0 && turn == 0.0) return;
+    const auto held = [&](const RobotContact& c) {
+        return c.robot == index || (c.kind == RobotContact::Kind::Robot && c.other == index);
+    };
+    if (std::any_of(robot_contacts.begin(), robot_contacts.end(), held)) return;
+    for (const dBodyID body : {robot.chassis, robot.wheel[0], robot.wheel[1]}) {
+        const dReal *at = dBodyGetPosition(body), *v = dBodyGetLinearVel(body), *w = dBodyGetAngularVel(body);
+        dBodySetLinearVel(body, v[0] + x - turn * (at[1] - robot.state.y),
+                          v[1] + y + turn * (at[0] - robot.state.x), v[2]);
+        dBodySetAngularVel(body, w[0], w[1], w[2] + turn);
+    }
+}
+
 Dynamics::Dynamics(const Parameters& world, const std::vector<Shape>& fixed)
     : impl_(std::make_unique<Impl>(world, fixed)) {}
 
@@ -203,6 +224,8 @@ void Dynamics::step() {
     const OdeSession session(impl_->complaints);
     for (const auto& robot : impl_->robots)
         impl_->damp_pitch(robot);
+    for (std::size_t i = 0; i < impl_->robots.size(); ++i)
+        impl_->take_along(i);
     impl_->find_contacts();
     dWorldStep(impl_->world, kStepSeconds);
     dJointGroupEmpty(impl_->contacts);

@@ -20,6 +20,7 @@ struct RobotBody {
     std::array<dJointID, 2> motor{};
     std::array<double, 2> last_angle{};
     std::optional<FloorVelocity> floor;  // if it moves
+    FloorVelocity floor_before;          // in the step before
     Shape shape;
     RobotState state;
 };
@@ -44,6 +45,7 @@ struct Dynamics::Impl {
     void read_robot(RobotBody& robot) const;
     static void read_object(ObjectBody& object);
     void damp_pitch(const RobotBody& robot) const;
+    void take_along(std::size_t index);
 
     // Contacts (dynamics_contacts.cpp).
     void find_contacts();

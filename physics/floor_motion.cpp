@@ -7,8 +7,7 @@ namespace puckloop::physics {
 
 namespace {
 
-constexpr double kShareOfGrip = 0.5;  // of friction that a push uses: skids carry some of the weight
-constexpr double kShortest = 0.02;    // s that a push lasts
+constexpr double kPushSeconds = 0.05;  // a knock: within a tracker's row
 
 /// Share of a push that is done at `part` of its time: evenly faster, then evenly slower.
 double done(double part) {
@@ -23,8 +22,6 @@ FloorMotion::FloorMotion(const Parameters& parameters, RandomStream pushes)
       push_(parameters.push),
       rise_x_(std::sin(parameters.world.slope_x)),
       rise_y_(std::sin(parameters.world.slope_y)),
-      most_(kShareOfGrip * std::min(parameters.contact.mu, parameters.contact.mu_lateral) *
-            parameters.world.gravity),
       chance_(pushes) {
     const bool creeps = body_.load_creep * body_.load != 0.0 ||
                         (body_.slope_creep != 0.0 && (rise_x_ != 0.0 || rise_y_ != 0.0));
@@ -67,10 +64,9 @@ void FloorMotion::slide(std::array<double, 2> wheel, double lost, FloorVelocity&
 }
 
 void FloorMotion::push(double seconds, double step_seconds, FloorVelocity& floor) {
-    if (seconds >= next_push_ && seconds >= begun_ + duration_) begin_push(seconds - step_seconds);
-    if (duration_ <= 0.0) return;
+    if (seconds >= next_push_ && seconds >= begun_ + kPushSeconds) begin_push(seconds - step_seconds);
     const double share =
-        done((seconds - begun_) / duration_) - done((seconds - step_seconds - begun_) / duration_);
+        done((seconds - begun_) / kPushSeconds) - done((seconds - step_seconds - begun_) / kPushSeconds);
     floor.x += goal_[0] * share / step_seconds;
     floor.y += goal_[1] * share / step_seconds;
     floor.turn += goal_[2] * share / step_seconds;
@@ -80,8 +76,6 @@ void FloorMotion::begin_push(double seconds) {
     next_push_ -= std::log(1 - chance_.uniform()) / push_.rate;
     begun_ = seconds;
     goal_ = {push_.size * chance_.normal(), push_.size * chance_.normal(), push_.turn * chance_.normal()};
-    const double way = std::hypot(goal_[0], goal_[1]) + std::abs(goal_[2]) * body_.axle_length / 2;
-    duration_ = std::max(kShortest, 2 * std::sqrt(way / most_));
     for (std::size_t i = 0; i < goal_.size(); ++i)
         pushed_[i] += goal_[i];
     ++pushes_;

@@ -1,12 +1,12 @@
 #pragma once
 // What makes a robot go elsewhere than its wheels say, as one idea: the floor moves under it. Scrub and creep
-// move the floor under each wheel by a share of what the wheel rolls, drift and pushes move all of the floor
-// under the robot. Friction hands it on, so that a robot against a wall stays there. The formulas are those
-// of the motion effects 4, 6, 13, 14 (docs/gap.md).
+// move the floor under each wheel by a share of what the wheel rolls, and friction hands it on; drift and
+// pushes move all of the floor under the robot, which goes along until it meets something upright. The
+// formulas are those of the motion effects 4, 6, 13, 14 (docs/gap.md).
 //
 // Deviations: 1. slope_creep costs the same share of the way up and down the slope, as its formula says; a
-// tyre that creeps under a force would gain downhill. 2. A push slides robot and wheels, it does not hit or
-// topple. 3. One push at a time: one that falls due during another follows it.
+// tyre that creeps under a force would gain downhill. 2. A push takes the robot along for 50 ms, it does not
+// hit or topple. 3. One push at a time: one that falls due during another follows it.
 
 #include "base/random.h"
 #include "physics/parameters.h"
@@ -51,11 +51,10 @@ class FloorMotion {
     BodyParameters body_;
     PushParameters push_;
     double rise_x_, rise_y_;  // sine of the slope towards +x, +y
-    double most_;             // m/s2 that a push takes of what friction holds
     RandomStream chance_;
     bool still_;
-    double next_push_ = 0.0, begun_ = 0.0, duration_ = 0.0;  // s
-    std::array<double, 3> goal_{}, pushed_{};                // m, m, rad: of the push under way, of all
+    double next_push_ = 0.0, begun_ = -1.0;    // s
+    std::array<double, 3> goal_{}, pushed_{};  // m, m, rad: of the push under way, of all
     int pushes_ = 0;
 };
 
