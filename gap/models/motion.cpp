@@ -43,11 +43,18 @@ struct Path {
         incline;  ///< of the rows used; measured turn since the row before
 };
 
+/// Steps told at one speed, without sign: a row has several such pieces where the command changes in it.
+struct Pace {
+    double steps, speed;
+};
+
 /// What a path's motors did in each of its rows, for one lateness of the tracker.
 struct Driven {
     struct Wheel {
         std::vector<double> steps, asked;                  ///< steps made; steps told, without sign
         std::vector<std::uint32_t> first_jump, last_jump;  ///< changes of speed that may still cost way
+        std::vector<Pace> paces;
+        std::vector<std::uint32_t> last_pace;  ///< end of the row's pieces
     };
     Wheel wheel[2];
     std::vector<char> settled;  ///< neither wheel has changed its speed in this row or the one before
@@ -299,6 +306,8 @@ class MotionModel final : public Model {
                     const double steps = reader.at(now), pace = pacer.at(now);
                     wheel.steps.push_back(i == 0 ? 0.0 : steps - last);
                     wheel.asked.push_back(i == 0 ? 0.0 : std::abs(pace - last_pace));
+                    if (i > 0) add_paces(pace_of(path, w), before, now, wheel.paces);
+                    wheel.last_pace.push_back(static_cast<std::uint32_t>(wheel.paces.size()));
                     last = steps;
                     last_pace = pace;
                     const auto first =
@@ -316,6 +325,30 @@ class MotionModel final : public Model {
             }
         }
         return all;
+    }
+
+    static void add_paces(const WheelCurve& curve, double from, double to, std::vector<Pace>& paces) {
+        CurveReader reader(curve);
+        auto knot = std::upper_bound(curve.time.begin(), curve.time.end(), from);
+        double at = reader.at(from);
+        while (from < to) {
+            const double end = knot == curve.time.end() ? to : std::min(*knot++, to);
+            const double there = reader.at(end), steps = std::abs(there - at);
+            if (end > from) paces.push_back({steps, steps / (end - from)});
+            at = there;
+            from = end;
+        }
+    }
+
+    /// Share of a row's steps that a dead band lets through.
+    static double let_through(const Driven::Wheel& wheel, std::size_t row, double deadband) {
+        double all = 0.0, moved = 0.0;
+        for (std::uint32_t k = row == 0 ? 0 : wheel.last_pace[row - 1]; k < wheel.last_pace[row]; ++k) {
+            const Pace& pace = wheel.paces[k];
+            all += pace.steps;
+            moved += pace.steps / (1 + std::exp(-(pace.speed - deadband) / (kEdge * deadband)));
+        }
+        return all > 0 ? moved / all : 0.0;
     }
 
     /// What tells the speed of a wheel: the command, where there is one; a counter's speeds are rounded.
@@ -359,8 +392,7 @@ class MotionModel final : public Model {
                         change -= lost;
                         slips += kSlip * std::abs(lost) * metre[w] * metre[w];
                     }
-                    if (deadband > 0)
-                        change *= 1 / (1 + std::exp(-(asked / span - deadband) / (kEdge * deadband)));
+                    if (deadband > 0) change *= let_through(wheel, i, deadband);
                 }
                 driven[w] += change * metre[w];
                 const double play = backlash / 2 * metre[w] / turn;
