@@ -40,15 +40,16 @@ void WheelDrive::lose_at_speed(double change, double interval) {
     if (losses_.uniform() < share * std::abs(change) / kPolePair) lost_ += std::copysign(kPolePair, change);
 }
 
-/// A step too slow is lost, but the last one is still there to be taken along: two steps pull harder.
+/// Of steps that are too slow the rotor leans towards the last one only: whether it is the first of a drive
+/// is not known before the next.
 void WheelDrive::hold_if_slow(double change, double interval) {
-    if (std::abs(change) < parameters_.deadband * interval) {
-        lost_ += change;
-        held_ = std::copysign(std::min(std::abs(change), 1.0), change);
+    if (std::abs(change) >= parameters_.deadband * interval) {
+        held_ = 0.0;
         return;
     }
-    if (held_ * change > 0.0) lost_ -= held_;
-    held_ = 0.0;
+    const double lean = std::clamp(change, -1.0, 1.0);
+    lost_ += held_ + change - lean;
+    held_ = lean;
 }
 
 double WheelDrive::rotor(double seconds) const {

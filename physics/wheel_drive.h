@@ -5,7 +5,7 @@
 // Deviations: 1. between two steps the rotor is taken to turn evenly (a real one swings into each step);
 // the wheel thus runs one step interval behind the coils, and ends exactly on the last step. 2. Pull-out is a
 // threshold on the lag, not a torque curve. 3. Below robot.deadband the rotor
-// does not follow at all; a first step that is not taken comes with the second if that is fast enough.
+// leans one step towards where it is asked to and no further, so that a drive's first step is not lost.
 
 #include "base/random.h"
 #include "physics/parameters.h"
@@ -52,8 +52,8 @@ class WheelDrive {
     double duration_ = 0.0;    // s, until the rotor has arrived
     double last_step_ = -1e9;  // s
     double interval_ = 0.0;    // s, between the last two steps
-    double held_ = 0.0;        // last step if it was too slow to move the rotor
     double change_ = 0.0;      // steps, the last one
+    double held_ = 0.0;        // last step if it was too slow: no more than this of slow steps is followed
     double geared_ = 0.0;      // rad, behind the backlash
 };
 
