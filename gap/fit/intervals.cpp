@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 namespace puckloop::gap {
 
@@ -16,6 +17,26 @@ double t_quantile(double freedom) {
     const double z = 1.6449;
     return z + (z * z * z + z) / (4 * freedom) +
            (5 * std::pow(z, 5) + 16 * z * z * z + 3 * z) / (96 * freedom * freedom);
+}
+
+constexpr std::string_view kThreshold = "robot.deadband";  // acts only where a speed meets it
+constexpr int kLooks = 48;
+constexpr double kNearest = 1e-3;  // of the reach, the first look
+
+/// A threshold between two speeds that were tried moves no row until it meets one of them: slopes say nothing
+/// of it, and what bounds it is where the likelihood falls off. How far from the fitted value, up (1) or down
+/// (-1), no further than `reach`.
+double fall_off(const Study& study, const Fit& fit, std::size_t index, double quantile, double reach,
+                int side) {
+    State state = fit.fitted.state;
+    const double value = state.values[index];
+    const double lost = quantile * quantile / 2, here = log_likelihood(study.model(), state);
+    for (int k = 0; k < kLooks; ++k) {
+        const double way = reach * std::pow(kNearest, 1 - (k + 1.0) / kLooks);
+        state.values[index] = value + side * way;
+        if (log_likelihood(study.model(), state) < here - lost) return way;
+    }
+    return reach;
 }
 
 }  // namespace
@@ -62,6 +83,12 @@ Interval interval_of(const Study& study, const Fit& fit, const Precision& precis
     // seen in few events may be twice as high, hardly zero.
     const bool one_sided = freed.low == study.model().parameters()[index].neutral && freed.low == 0.0;
     const double shift = one_sided ? reach * reach / (4 * std::max(value, reach)) : 0.0;
+    if (study.model().parameters()[index].name == kThreshold) {
+        const double most = precision.quantile * freed.prior_sd;
+        return {
+            value - fall_off(study, fit, index, precision.quantile, std::min(most, value - freed.low), -1),
+            value + fall_off(study, fit, index, precision.quantile, std::min(most, freed.high - value), 1)};
+    }
     return {std::max(value - reach + shift, freed.low), std::min(value + reach + shift, freed.high)};
 }
 

@@ -8,6 +8,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <numbers>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -83,6 +84,38 @@ TEST_CASE("90 % intervals hold the truth in about 90 of 100 small experiments", 
     }
     CHECK(held >= 82);
     CHECK(held <= 97);
+}
+
+TEST_CASE("a dead band lies between the last speed that moved nothing and the first that did", "[gap][fit]") {
+    constexpr double kStep = 2 * std::numbers::pi * 0.0205 / 1000;
+    Experiment experiment;
+    experiment.kind = Kind::Motion;
+    experiment.folder = "made";
+    for (int r = 0; r < 6; ++r) {
+        RandomStream random(3, "test/crawl " + std::to_string(r));
+        Run run;
+        run.name = run.file = "run" + std::to_string(r);
+        double x = 0.0;
+        for (const double speed : {20.0, 40.0, 50.0, 80.0, 0.0})  // of the agenda's staircase
+            for (int k = 0; k < 12; ++k) {
+                run.columns["t_s"].push_back(kRow * static_cast<double>(run.rows++));
+                run.columns["x_m"].push_back(x + 1.5e-4 * random.normal());
+                run.columns["y_m"].push_back(1.5e-4 * random.normal());
+                run.columns["theta_rad"].push_back(3e-4 * random.normal());
+                run.columns["cmd_left"].push_back(speed);
+                run.columns["cmd_right"].push_back(speed);
+                if (speed > 45) x += speed * kStep * kRow;
+            }
+        experiment.runs.push_back(std::move(run));
+    }
+    const Study study(experiment, 1);
+    const Fit fit = study.fit_set({candidate(study, "deadband")}, study.fit_none().fitted.state);
+    const Interval interval = interval_of(study, fit, precision_of(study, fit), 0);
+    INFO(interval.low << " to " << interval.high);
+    CHECK(interval.low > 38);
+    CHECK(interval.low < 45);
+    CHECK(interval.high > 45);
+    CHECK(interval.high < 53);
 }
 
 TEST_CASE("selection takes nothing from data without effects", "[gap][fit]") {
