@@ -99,3 +99,24 @@ TEST_CASE("what cannot be run is said with its line") {
               kArena + "[[box]]\nname = \"b\"\ncentre = [\"0 m\", \"0 m\"]\nsize = [\"1 cm\", \"1 cm\"]\n" +
               kRobot) == "line 8: box 1: size is not a list of 3 (expected a length such as \"25 cm\")");
 }
+
+TEST_CASE("loudspeakers are read with their level and times") {
+    const TemporaryFile file(kArena + kRobot +
+                             "[[speaker]]\nposition = [\"30 cm\", \"-1 cm\"]\nlevel = 450\n"
+                             "[[speaker]]\nname = \"horn\"\nposition = [\"0 m\", \"20 cm\"]\nlevel = 90\n"
+                             "height = \"8 cm\"\non = \"500 ms\"\noff = \"2 s\"\n");
+    const auto speakers = read_scenario(file.path()).world.speakers;
+    REQUIRE(speakers.size() == 2);
+    CHECK(speakers[0].name == "speaker 1");
+    CHECK(speakers[0].x == 0.3);
+    CHECK(speakers[0].level == 450);
+    CHECK(speakers[0].on == 0);
+    CHECK(speakers[0].off > 1e6);
+    CHECK(speakers[1].name == "horn");
+    CHECK(speakers[1].height == 0.08);
+    CHECK(speakers[1].on == 0.5);
+    CHECK(speakers[1].off == 2);
+    const std::string begun = kArena + kRobot + "[[speaker]]\nposition = [\"0 m\", \"0 m\"]\n";
+    CHECK(problem_of(begun).find("level") != std::string::npos);
+    CHECK(problem_of(begun + "level = 5\nvolume = 3\n").find("volume") != std::string::npos);
+}
