@@ -20,6 +20,8 @@ double t_quantile(double freedom) {
 }
 
 constexpr std::string_view kThreshold = "robot.deadband";  // acts only where a speed meets it
+constexpr double kSoftEdge =
+    0.012;  // the model's edge is soft, 0.4 % wide: a sharp one may lie three of these on
 constexpr int kLooks = 48;
 constexpr double kNearest = 1e-3;  // of the reach, the first look
 
@@ -34,7 +36,8 @@ double fall_off(const Study& study, const Fit& fit, std::size_t index, double qu
     for (int k = 0; k < kLooks; ++k) {
         const double way = reach * std::pow(kNearest, 1 - (k + 1.0) / kLooks);
         state.values[index] = value + side * way;
-        if (log_likelihood(study.model(), state) < here - lost) return way;
+        if (log_likelihood(study.model(), state) < here - lost)
+            return std::min(way + kSoftEdge * value, reach);
     }
     return reach;
 }
