@@ -16,6 +16,7 @@ enum class FaultKind : std::uint8_t {
     Disconnect,  ///< nothing arrives during the window: the plug is out, the line idles high
     Stuck,       ///< the line is low during the window: one break, then nothing
     Rate,        ///< the sender's bit time is multiplied by the fault's amount
+    Cut,         ///< the rest of a record, bytes sent without a pause, never arrives
 };
 
 /// "drop", "flip", ...; empty for None.
@@ -23,7 +24,8 @@ std::string_view fault_name(FaultKind kind);
 std::optional<FaultKind> fault_of_name(std::string_view name);
 
 constexpr bool keeps_from_arriving(FaultKind kind) {
-    return kind == FaultKind::Drop || kind == FaultKind::Disconnect || kind == FaultKind::Stuck;
+    return kind == FaultKind::Drop || kind == FaultKind::Disconnect || kind == FaultKind::Stuck ||
+           kind == FaultKind::Cut;
 }
 
 }  // namespace puckloop::cosim

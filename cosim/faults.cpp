@@ -8,13 +8,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace puckloop::cosim {
 
 namespace {
 
-constexpr std::array<std::string_view, 8> kNames{"",          "drop",       "flip",  "delay",
-                                                 "duplicate", "disconnect", "stuck", "rate"};
+constexpr std::array<std::string_view, 9> kNames{"",           "drop",  "flip", "delay", "duplicate",
+                                                 "disconnect", "stuck", "rate", "cut"};
+constexpr int kPauseFrames = 2;  // frame times without a start bit: a record has ended
 // A bit slower than 1/64 or faster than 64 times the sender's is no clock error but a mistake in the spec.
 constexpr double kLargestRateFactor = 64.0;
 
@@ -35,6 +37,9 @@ class WindowFault : public LinkFault {
             auto* frame = std::get_if<UartFrame>(&batch[i].message.payload);
             if (!frame || keeps_from_arriving(batch[i].fault)) continue;
             if (frame->start < spec_.begin || frame->start >= spec_.end || fired_ >= spec_.count) continue;
+            if (!spec_.bytes.empty() &&
+                std::find(spec_.bytes.begin(), spec_.bytes.end(), frame->data) == spec_.bytes.end())
+                continue;
             if (spec_.probability < 1.0 && random_.uniform() >= spec_.probability) continue;
             ++fired_;
             batch[i].fault = spec_.kind;
@@ -113,6 +118,43 @@ class Rate : public WindowFault {
     }
 };
 
+/// Cut: radio or line drop out somewhere in a record, for the rest of it. Where is even over the length of
+/// the record before.
+class Cut : public LinkFault {
+  public:
+    Cut(const FaultSpec& spec, RandomStream random) : spec_(spec), random_(random) {}
+
+    void apply(std::vector<Delivery>& batch) override {
+        for (Delivery& delivery : batch) {
+            const auto* frame = std::get_if<UartFrame>(&delivery.message.payload);
+            if (!frame || keeps_from_arriving(delivery.fault)) continue;
+            if (frame->start > next_ + (kPauseFrames - 1) * frame_time(*frame)) begin_record(frame->start);
+            next_ = frame->start + frame_time(*frame);
+            if (cut_ && sent_ >= place_) {
+                if (sent_ == place_) ++fired_;
+                delivery.fault = FaultKind::Cut;
+            }
+            ++sent_;
+        }
+    }
+
+  private:
+    void begin_record(Time start) {
+        const double stays = cut_ ? spec_.again : 0.0;
+        const double chance = spec_.probability + (1 - spec_.probability) * stays;
+        const bool open = start >= spec_.begin && start < spec_.end && fired_ < spec_.count;
+        cut_ = open && random_.uniform() < chance;
+        if (cut_) place_ = random_.below(std::max<std::uint64_t>(sent_, 1));
+        sent_ = 0;
+    }
+
+    FaultSpec spec_;
+    RandomStream random_;
+    Time next_ = std::numeric_limits<Time>::min() / 2;  // end of the newest frame
+    bool cut_ = false;
+    std::uint64_t sent_ = 0, place_ = 0;  // frames of this record; the first that is lost
+};
+
 class Stuck : public Lose {
   public:
     Stuck(const FaultSpec& spec, RandomStream random, Time flight) : Lose(spec, random), flight_(flight) {}
@@ -140,6 +182,7 @@ void check(const FaultSpec& spec) {
     if (spec.kind == FaultKind::Rate &&
         !(spec.amount >= 1.0 / kLargestRateFactor && spec.amount <= kLargestRateFactor))
         refuse("bad rate factor", "1/64 to 64");
+    if (!(spec.again >= 0.0 && spec.again <= 1.0)) refuse("bad probability of staying", "0 to 1");
 }
 
 }  // namespace
@@ -173,6 +216,8 @@ std::unique_ptr<LinkFault> make_fault(const FaultSpec& spec, Direction direction
         return std::make_unique<Stuck>(spec, random, flight);
     case FaultKind::Rate:
         return std::make_unique<Rate>(spec, random);
+    case FaultKind::Cut:
+        return std::make_unique<Cut>(spec, random);
     case FaultKind::None:
         break;
     }

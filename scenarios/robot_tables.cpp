@@ -1,6 +1,5 @@
 #include "scenarios/robot_tables.h"
 
-#include "scenarios/reader.h"
 #include "scenarios/world_tables.h"
 
 #include <fmt/format.h>
@@ -79,6 +78,7 @@ LinuxBoard read_linux(const std::string& file, const std::string& where, const T
     board.start = reader.quantity("start", Dimension::Time, 0.0);
     if (board.start < 0) reader.fail("start", "start is before the run begins", "0 s or later");
     board.restarts = read_times(reader, "restart", board.start);
+    read_lateness(reader, board.late);
     board.place_line = table.line;
     reader.finish();
     return board;
@@ -102,6 +102,19 @@ std::string read_name(Reader& reader, const std::string& fallback, const Scenari
 }
 
 }  // namespace
+
+void read_lateness(Reader& reader, LinuxLateness& late) {
+    constexpr double kLongest = 1.0;  // s
+    const auto read = [&](const char* key, double& value) {
+        value = reader.quantity(key, Dimension::Time, value);
+        if (!(value >= 0 && value <= kLongest))
+            reader.fail(key, fmt::format("{} is out of range", key), "0 to 1 s, such as \"4 ms\"");
+    };
+    read("tty_batch", late.tty_batch);
+    read("i2c_hold", late.i2c_hold);
+    read("oversleep", late.oversleep);
+    read("oversleep_jitter", late.oversleep_jitter);
+}
 
 void read_robot(const std::string& file, const TomlValue& table, const std::filesystem::path& folder,
                 Scenario& scenario) {

@@ -1,6 +1,7 @@
 #pragma once
 // The [[robot]] tables of a scenario.
 
+#include "scenarios/reader.h"
 #include "scenarios/scenario.h"
 #include "scenarios/toml_file.h"
 
@@ -12,5 +13,8 @@ namespace puckloop::scenarios {
 /// Reads one robot and adds it, boards and body. Throws InputError with file and line.
 void read_robot(const std::string& file, const TomlValue& table, const std::filesystem::path& folder,
                 Scenario& scenario);
+
+/// The keys of [robot.linux] and of an overlay's [linux]; those that are absent leave `late` as it is.
+void read_lateness(Reader& reader, LinuxLateness& late);
 
 }  // namespace puckloop::scenarios

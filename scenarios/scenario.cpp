@@ -8,14 +8,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 namespace puckloop::scenarios {
 
 namespace {
 
-constexpr double kLongestDelay = 10.0;         // s, of an overlay's [uart]
-constexpr double kMostClockError = 2e5;        // ppm, of an overlay's [clock]
 constexpr double kLongestRun = 86'400.0 * 30;  // s; simulated time itself reaches 106 days
 
 /// Faults sit on the UART links, which join the boards of a robot.
@@ -31,13 +30,30 @@ void check_fault_link(Reader& reader, const std::string& link, const Scenario& s
                 known.empty() ? "a robot with a [robot.linux] program" : known);
 }
 
+/// bytes = ["0x00", "0xFF"].
+std::vector<std::uint8_t> read_bytes(Reader& reader) {
+    std::vector<std::uint8_t> bytes;
+    for (const std::string& text : reader.texts("bytes")) {
+        const bool hexadecimal = text.starts_with("0x") || text.starts_with("0X");
+        const char* const first = text.data() + (hexadecimal ? 2 : 0);
+        const char* const last = text.data() + text.size();
+        std::uint8_t value = 0;
+        const auto [end, error] = std::from_chars(first, last, value, hexadecimal ? 16 : 10);
+        if (error != std::errc() || end != last)
+            reader.fail("bytes", fmt::format("'{}' is not a byte", text), "such as \"0x7F\" or \"127\"");
+        bytes.push_back(value);
+    }
+    return bytes;
+}
+
 cosim::FaultSpec read_fault(const std::string& file, std::size_t index, const TomlValue& table,
                             const Scenario& scenario) {
     Reader reader(file, fmt::format("fault {}", index + 1), table);
     cosim::FaultSpec fault;
     fault.link = reader.text("link");
     fault.from = reader.text("from", "");
-    const std::vector<std::string> kinds{"drop", "flip", "delay", "duplicate", "disconnect", "stuck", "rate"};
+    const std::vector<std::string> kinds{"drop",       "flip",  "delay", "duplicate",
+                                         "disconnect", "stuck", "rate",  "cut"};
     fault.kind = *cosim::fault_of_name(reader.choice("kind", "drop", kinds));
     fault.probability = reader.quantity("probability", Dimension::Ratio, 1.0);
     if (!(fault.probability >= 0 && fault.probability <= 1))
@@ -51,6 +67,13 @@ cosim::FaultSpec read_fault(const std::string& file, std::size_t index, const To
         reader.fail("begin", "the fault's window is empty", "0 s <= begin < end");
     if (fault.kind == cosim::FaultKind::Delay) fault.amount = reader.quantity("delay", Dimension::Time);
     if (fault.kind == cosim::FaultKind::Rate) fault.amount = reader.quantity("factor", Dimension::Ratio);
+    if (fault.kind == cosim::FaultKind::Cut) {
+        fault.again = reader.quantity("again", Dimension::Ratio, 0.0);
+        if (!(fault.again >= 0 && fault.again <= 1))
+            reader.fail("again", "again is out of range", "0 to 1, or \"30 %\"");
+    } else if (reader.has("bytes")) {
+        fault.bytes = read_bytes(reader);
+    }
     reader.finish();
     check_fault_link(reader, fault.link, scenario);
     const std::string robot = fault.link.substr(0, fault.link.rfind('.'));
@@ -58,48 +81,6 @@ cosim::FaultSpec read_fault(const std::string& file, std::size_t index, const To
         reader.fail("from", fmt::format("'{}' is at no end of {}", fault.from, fault.link),
                     fmt::format("{0}.linux or {0}.pic", robot));
     return fault;
-}
-
-double probability(Reader& reader, const char* key) {
-    const double value = reader.quantity(key, Dimension::Ratio, 0.0);
-    if (!(value >= 0 && value <= 1)) reader.fail(key, "probability is out of range", "0 to 1, or \"5 %\"");
-    return value;
-}
-
-/// An overlay's [uart]: what the line between the boards of every robot does to its bytes.
-void apply_uart(const std::string& file, const TomlValue& table, Scenario& scenario) {
-    Reader reader(file, "uart", table);
-    const double late = reader.quantity("command_delay", Dimension::Time, 0.0);
-    if (!(late >= 0 && late <= kLongestDelay))
-        reader.fail("command_delay", "command_delay is out of range", "0 to 10 s");
-    const double commands = probability(reader, "command_loss"), answers = probability(reader, "answer_loss");
-    reader.finish();
-    for (const RobotBoards& robot : scenario.robots) {
-        if (!robot.linux_board) continue;
-        const auto add = [&](const char* from, cosim::FaultKind kind, double share, double amount) {
-            cosim::FaultSpec fault;
-            fault.link = robot.name + ".uart";
-            fault.from = robot.name + from;
-            fault.kind = kind;
-            fault.probability = share;
-            fault.amount = amount;
-            scenario.faults.push_back(fault);
-        };
-        if (late > 0) add(".linux", cosim::FaultKind::Delay, 1.0, late);
-        if (commands > 0) add(".linux", cosim::FaultKind::Drop, commands, 0.0);
-        if (answers > 0) add(".pic", cosim::FaultKind::Drop, answers, 0.0);
-    }
-}
-
-/// An overlay's [clock]: the main boards' crystals run by so much faster than the scenario says.
-void apply_clock(const std::string& file, const TomlValue& table, Scenario& scenario) {
-    Reader reader(file, "clock", table);
-    const double error = reader.quantity("pic_error", Dimension::Ratio, 0.0) * 1e6;
-    if (!(std::abs(error) <= kMostClockError))
-        reader.fail("pic_error", "pic_error is out of range", "-20 % to 20 %, such as \"20 ppm\"");
-    reader.finish();
-    for (RobotBoards& robot : scenario.robots)
-        robot.pic.crystal_ppm += error;
 }
 
 }  // namespace
@@ -147,34 +128,6 @@ Scenario read_scenario(const std::filesystem::path& file) {
                  "[run] with a duration, or a robot with a [robot.linux] program");
     physics::check(scenario.world);
     return scenario;
-}
-
-void apply_overlay(Scenario& scenario, const std::filesystem::path& file) {
-    const TomlValue root = read_toml(file);
-    const std::string name = file.string();
-    Reader top(name, "", root);
-    if (const TomlValue* table = top.table("parameters"))
-        for (const auto& [parameter, value] : read_parameters(name, "parameters", *table))
-            scenario.world.parameters[parameter] = value;
-    for (const TomlValue* table : top.tables("robot")) {
-        Reader reader(name, "robot", *table);
-        const std::string robot_name = reader.text("name");
-        const auto body = std::find_if(scenario.world.robots.begin(), scenario.world.robots.end(),
-                                       [&](const physics::Robot& robot) { return robot.name == robot_name; });
-        if (body == scenario.world.robots.end())
-            reader.fail("name", fmt::format("the scenario has no robot '{}'", robot_name));
-        if (const TomlValue* parameters = reader.table("parameters"))
-            for (const auto& [parameter, value] : read_parameters(name, robot_name, *parameters))
-                body->parameters[parameter] = value;
-        reader.finish();
-    }
-    if (const TomlValue* table = top.table("uart")) apply_uart(name, *table, scenario);
-    if (const TomlValue* table = top.table("clock")) apply_clock(name, *table, scenario);
-    if (const TomlValue* table = top.table("measurement"))
-        for (const auto& [parameter, value] : std::get<TomlTable>(table->data))
-            scenario.passed_over.push_back(parameter);
-    top.finish();
-    physics::check(scenario.world);
 }
 
 }  // namespace puckloop::scenarios

@@ -30,12 +30,21 @@ struct RabBoard {
     double adc_noise = 1.0;    ///< counts, standard deviation
 };
 
+/// What a Linux board is late with, s. All zero: nothing.
+struct LinuxLateness {
+    double tty_batch = 0.0;         ///< received bytes are handed on at whole multiples of this
+    double i2c_hold = 0.0;          ///< each transfer waits so long for the bus
+    double oversleep = 0.0;         ///< a sleep ends so much later than asked
+    double oversleep_jitter = 0.0;  ///< standard deviation; no sleep ends early
+};
+
 /// The Linux board of a robot: one program under the shim.
 struct LinuxBoard {
     std::vector<std::string> command;  ///< program and arguments; the program's path is resolved
     std::string hostname;              ///< what gethostname() says
     double start = 0.0;                ///< s: when the program is started
     std::vector<double> restarts;      ///< s: killed and started again
+    LinuxLateness late{};
     int place_line = 0;
 };
 
@@ -67,8 +76,8 @@ struct Scenario {
 /// line.
 Scenario read_scenario(const std::filesystem::path& file);
 
-/// Applies an overlay file (`--model`): parameters for all robots, or for one in [[robot]] tables; [uart] and
-/// [clock] for all robots.
+/// Applies an overlay file (`--model`): parameters for all robots, or for one in [[robot]] tables; [uart],
+/// [linux] and [clock] for all robots.
 void apply_overlay(Scenario& scenario, const std::filesystem::path& file);
 
 }  // namespace puckloop::scenarios

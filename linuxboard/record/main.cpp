@@ -25,24 +25,28 @@ constexpr double kStartWait = 60.0;    // s
 
 const char kUsage[] =
     "usage: puckloop-record --script FILE --log FILE [--period S] [--tty DEVICE] [--i2c DEVICE]\n"
+    "                       [--ground-every N]\n"
     "  --script FILE   lines: seconds, left, right (steps/s)\n"
     "  --log FILE      CSV, a row an exchange with the PIC\n"
     "  --period S      between two exchanges, at least 0.01 (0.1)\n"
     "  --tty DEVICE    serial line to the PIC, 115200 8N1 (/dev/ttyS0)\n"
-    "  --i2c DEVICE    bus of the ground sensors; without the option they are not read\n";
+    "  --i2c DEVICE    bus of the ground sensors; without the option they are not read\n"
+    "  --ground-every N  exchanges from one reading of the ground sensors to the next (1)\n";
 
 struct Options {
     std::string script, log, tty = "/dev/ttyS0", i2c;
     double period = 0.1;
+    long ground_every = 1;
 };
 
 Options parse(int argc, char** argv) {
-    enum { kScript = 1, kLog, kPeriod, kTty, kI2c };
+    enum { kScript = 1, kLog, kPeriod, kTty, kI2c, kGroundEvery };
     const option table[] = {{"script", required_argument, nullptr, kScript},
                             {"log", required_argument, nullptr, kLog},
                             {"period", required_argument, nullptr, kPeriod},
                             {"tty", required_argument, nullptr, kTty},
                             {"i2c", required_argument, nullptr, kI2c},
+                            {"ground-every", required_argument, nullptr, kGroundEvery},
                             {"help", no_argument, nullptr, 'h'},
                             {nullptr, 0, nullptr, 0}};
     Options options;
@@ -62,6 +66,9 @@ Options parse(int argc, char** argv) {
             break;
         case kI2c:
             options.i2c = optarg;
+            break;
+        case kGroundEvery:
+            options.ground_every = whole("ground-every", optarg, 1, 1'000'000);
             break;
         case 'h':
             std::fputs(kUsage, stdout);
@@ -145,7 +152,8 @@ int run(const Options& options) {
         puckloop::protocols::EpuckActuators record;
         record.left = static_cast<std::int16_t>(std::lround(commands[next].left));
         record.right = static_cast<std::int16_t>(std::lround(commands[next].right));
-        const auto grey = ground ? ground->read() : std::nullopt;
+        const bool look_down = ground && step % options.ground_every == 0;
+        const auto grey = look_down ? ground->read() : std::nullopt;
         const double sent = serial.now();
         const auto answer = session.exchange(record);
         log.row(sent, commands[next], answer ? session.newest_time() : serial.now(), answer, grey);

@@ -39,8 +39,8 @@ std::string bytes_of(const T& object) {
 }  // namespace
 
 BoardKernel::BoardKernel(const LinuxSpec& spec)
-    : tty_(spec.clock_ppm, spec.fifo_trigger),
-      adapter_(std::llround(kPicosecondsPerSecond / spec.i2c_hertz), spec.i2c_nack_error),
+    : tty_(spec.clock_ppm, spec.fifo_trigger, spec.tty_batch),
+      adapter_(std::llround(kPicosecondsPerSecond / spec.i2c_hertz), spec.i2c_nack_error, spec.i2c_hold),
       has_tty_(!spec.tty.empty()),
       i2c_files_(spec.i2c.size()) {}
 

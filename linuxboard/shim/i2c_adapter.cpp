@@ -38,7 +38,7 @@ void I2cAdapter::begin_next(Time now) {
     result_.owner = queue_.front().owner;
     message_ = 0;
     step_ = Step::Start;
-    next_ = std::max(now, bus_free_);
+    next_ = std::max(now, bus_free_) + hold_;
     if (queue_.front().messages.empty()) step_ = Step::Finish;
 }
 

@@ -44,8 +44,10 @@ struct I2cResult {
 class I2cAdapter {
   public:
     /// `clock_period` of SCL in picoseconds; `nack_error` is what the board's driver returns when a slave
-    /// does not acknowledge (EREMOTEIO or ENXIO).
-    I2cAdapter(cosim::Time clock_period, int nack_error) : period_(clock_period), nack_error_(nack_error) {}
+    /// does not acknowledge (EREMOTEIO or ENXIO). Each transfer waits `hold` for the bus before its START:
+    /// other masters, slaves that stretch the clock.
+    I2cAdapter(cosim::Time clock_period, int nack_error, cosim::Time hold = 0)
+        : period_(clock_period), nack_error_(nack_error), hold_(hold) {}
 
     void submit(I2cTransfer transfer, cosim::Time now);
     /// The owner does not wait any more; what is on the bus goes on to its STOP.
@@ -71,6 +73,7 @@ class I2cAdapter {
 
     cosim::Time period_;
     int nack_error_;
+    cosim::Time hold_;
     std::deque<I2cTransfer> queue_;
     Step step_ = Step::Idle;
     cosim::Time next_ = cosim::kNever;

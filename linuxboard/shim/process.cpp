@@ -124,6 +124,7 @@ void Process::prepare_page() {
     page_->uptime = cosim::from_seconds(spec_.uptime_s) / cosim::kNanosecond;
     page_->seed = RandomStream(spec_.seed, "linux." + spec_.name).next();
     page_->charges = spec_.charges;
+    page_->oversleep = spec_.oversleep;
     std::strncpy(page_->host_name, spec_.host_name.c_str(), sizeof page_->host_name - 1);
     std::size_t index = 0;
     const auto add = [&](wire::DeviceKind kind, const std::string& path) {

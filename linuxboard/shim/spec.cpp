@@ -124,6 +124,10 @@ LinuxSpec parse_linux_spec(std::string_view text) {
     object.read("i2c_nack_error", nack_error);
     spec.i2c_nack_error = error_number(nack_error, object.where("i2c_nack_error"));
     object.read("clock_ppm", spec.clock_ppm);
+    object.read_seconds("tty_batch_s", spec.tty_batch);
+    object.read_seconds("i2c_hold_s", spec.i2c_hold);
+    object.read_seconds("oversleep_s", spec.oversleep.mean);
+    object.read_seconds("oversleep_jitter_s", spec.oversleep.jitter);
     object.read("real_time", spec.real_time);
     if (const json* charges = object.find("charges_us"))
         read_charges(*charges, object.where("charges_us"), spec.charges);

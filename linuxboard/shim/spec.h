@@ -36,8 +36,11 @@ struct LinuxSpec {
     int fifo_trigger = TtyPort::kTrigger;        ///< of the UART's receive FIFO, 1..64
     std::vector<std::string> i2c{"/dev/i2c-3"};  ///< names of the one adapter at the port `i2c`
     double i2c_hertz = 100'000.0;
-    int i2c_nack_error = 121;  ///< errno value where no slave acknowledges: EREMOTEIO, ENXIO, ...
-    double clock_ppm = 0.0;    ///< error of the board's clock, for the baud rate
+    int i2c_nack_error = 121;   ///< errno value where no slave acknowledges: EREMOTEIO, ENXIO, ...
+    double clock_ppm = 0.0;     ///< error of the board's clock, for the baud rate
+    cosim::Time tty_batch = 0;  ///< the driver hands received bytes on at whole multiples of this; 0: at once
+    cosim::Time i2c_hold = 0;   ///< for so long each transfer waits for the bus before its START
+    wire::Oversleep oversleep{};  ///< of nanosleep, usleep, sleep and clock_nanosleep
     bool real_time = false;
     wire::Charges charges;
     std::int64_t epoch_s = 1'767'225'600;  ///< wall clock at simulated time 0: 2026-01-01T00:00:00Z
@@ -57,7 +60,7 @@ struct LinuxSpec {
 };
 
 /// Throws InputError naming the key. Keys are the members above; times in seconds (`start_s`, `down_s`,
-/// `hangup_at`), charges in microseconds.
+/// `hangup_at`, `tty_batch_s`, `i2c_hold_s`, `oversleep_s`, `oversleep_jitter_s`), charges in microseconds.
 LinuxSpec parse_linux_spec(std::string_view json);
 
 }  // namespace puckloop::linuxboard

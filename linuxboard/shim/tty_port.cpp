@@ -104,7 +104,7 @@ Time TtyPort::fifo_due() const {
     if (arriving_.empty()) return kNever;
     const auto level = static_cast<std::size_t>(trigger_);
     const Time full = arriving_.size() >= level ? arriving_[level - 1].time : kNever;
-    if (trigger_ == 1) return full;
+    if (trigger_ == 1) return next_tick(full);
     const protocols::UartReceiver format = receiver_of(settings_, ppm_);
     const int bits = 2 + format.data_bits + (format.parity != 0 ? 1 : 0);
     const Time pause = kTimeoutCharacters * bits * format.bit_period;
@@ -113,7 +113,12 @@ Time TtyPort::fifo_due() const {
         const Time until = arriving_[i].time + pause;
         if (i + 1 == arriving_.size() || arriving_[i + 1].time > until) idle = until;
     }
-    return std::min(full, idle);
+    return next_tick(std::min(full, idle));
+}
+
+Time TtyPort::next_tick(Time time) const {
+    if (batch_ == 0 || time > kNever - batch_) return time;
+    return (time + batch_ - 1) / batch_ * batch_;
 }
 
 Time TtyPort::next_frame(Time now) const {

@@ -6,6 +6,7 @@
 //
 // Received characters wait in the UART's FIFO until `trigger` of them are there or the line has been idle for
 // four character times, as 16550-like UARTs do (the drivers of both 8250 and PXA set the trigger to 8).
+// Behind a radio or a USB adapter they then wait for the driver's next tick (`batch`).
 //
 // Deviations: 1. An overrun of the FIFO cannot happen: the driver empties it at once.
 // 2. No modem lines: DCD, DSR and CTS read as set, RTS and DTR are stored. 3. CRTSCTS does not stop output.
@@ -33,8 +34,9 @@ class TtyPort {
     static constexpr int kTrigger = 8;
 
     /// `ppm` is the error of the board's clock; `trigger` the receive FIFO's level, 1 hands on every
-    /// character.
-    explicit TtyPort(double ppm = 0.0, int trigger = kTrigger) : ppm_(ppm), trigger_(trigger) {}
+    /// character. With `batch` above 0 what is received is handed on at whole multiples of it.
+    explicit TtyPort(double ppm = 0.0, int trigger = kTrigger, cosim::Time batch = 0)
+        : ppm_(ppm), trigger_(trigger), batch_(batch) {}
 
     void open();
     /// The last close: what is written still goes out, what is received is dropped from now on.
@@ -89,6 +91,8 @@ class TtyPort {
   private:
     /// When the characters in the FIFO go to the line discipline, as far as those known tell.
     cosim::Time fifo_due() const;
+    /// The driver's first tick at or after `time`.
+    cosim::Time next_tick(cosim::Time time) const;
     void take(const protocols::ReceivedCharacter& character);
     bool can_send() const { return !output_.empty() && !stopped_ && bit_period(settings_, ppm_) != 0; }
 
@@ -104,6 +108,7 @@ class TtyPort {
 
     double ppm_;
     int trigger_;
+    cosim::Time batch_;
     termios settings_ = initial_termios();
     LineDiscipline discipline_;
     std::deque<Arrival> arriving_;

@@ -105,6 +105,12 @@ struct DeviceName {
     char path[60] = {};
 };
 
+/// How much later than asked a sleep ends: timer slack and whatever else runs on the board. Picoseconds.
+struct Oversleep {
+    std::int64_t mean = 0;
+    std::int64_t jitter = 0;  ///< standard deviation; no sleep ends early
+};
+
 inline constexpr std::uint32_t kMaximumDevices = 8;
 inline constexpr std::uint32_t kNameLength = 64;
 
@@ -118,6 +124,7 @@ struct Page {
     std::int64_t wall_origin = 0;  ///< real-time mode: host CLOCK_MONOTONIC at simulated time 0, ns
     std::uint64_t seed = 0;
     Charges charges;
+    Oversleep oversleep;
     DeviceName devices[kMaximumDevices];
     char host_name[kNameLength] = {};
 

@@ -162,6 +162,52 @@ TEST_CASE("faults fire the same in every placement, and with the seed alone") {
     CHECK(run().trace_sha256 != here.trace_sha256);
 }
 
+TEST_CASE("cut: a record loses its end, and the next one often does too") {
+    FaultSpec spec{"wire", "", FaultKind::Cut, 0.1};
+    spec.again = 0.5;
+    const auto fault = make_fault(spec, Direction::FromA, 0, 3, 0);
+    constexpr int kRecords = 4000, kBytes = 20;
+    int broken = 0, again = 0, after_broken = 0;
+    bool last = false;
+    double places = 0;
+    for (int record = 0; record < kRecords; ++record) {
+        int lost_from = kBytes;
+        for (int k = 0; k < kBytes; ++k) {
+            UartFrame byte;
+            byte.bit_period = 8'680'556;
+            byte.start = record * 100 * kMs + k * 10 * byte.bit_period;
+            std::vector<Delivery> batch{{Message{byte.start, 0, byte}, FaultKind::None}};
+            fault->apply(batch);
+            if (batch[0].fault != FaultKind::None) lost_from = std::min(lost_from, k);
+            CHECK((batch[0].fault == FaultKind::Cut) == (k >= lost_from));  // all the rest
+        }
+        const bool now = lost_from < kBytes;
+        broken += now ? 1 : 0;
+        after_broken += last ? 1 : 0;
+        again += last && now ? 1 : 0;
+        if (now) places += lost_from;
+        last = now;
+    }
+    // In the long run p / (1 - (1 - p) again) of all; after a broken one p + (1 - p) again.
+    CHECK(broken / static_cast<double>(kRecords) == Approx(0.1 / 0.55).margin(0.02));
+    CHECK(again / static_cast<double>(after_broken) == Approx(0.55).margin(0.05));
+    CHECK(places / broken == Approx((kBytes - 1) / 2.0).margin(1.0));
+    CHECK(fault->fired() == static_cast<std::uint64_t>(broken));
+}
+
+TEST_CASE("only the bytes that are named suffer") {
+    FaultSpec named{"", "", FaultKind::Drop};
+    named.bytes = {0x00, 0xFF};
+    const auto fault = make_fault(named, Direction::FromA, 0, 1, 0);
+    for (unsigned value = 0; value < 256; ++value) {
+        UartFrame byte;
+        byte.data = static_cast<std::uint16_t>(value);
+        std::vector<Delivery> batch{{Message{0, 0, byte}, FaultKind::None}};
+        fault->apply(batch);
+        CHECK((batch[0].fault == FaultKind::Drop) == (value == 0x00 || value == 0xFF));
+    }
+}
+
 TEST_CASE("faults that make no sense are refused") {
     Run run = talk({"", "", FaultKind::Drop, 1.5});
     CHECK_THROWS_WITH(run(), Catch::Contains("bad probability") && Catch::Contains("0 to 1"));
@@ -173,6 +219,9 @@ TEST_CASE("faults that make no sense are refused") {
     CHECK_THROWS_WITH(run(), Catch::Contains("no node nobody"));
     run = talk({"", "", FaultKind::Rate});
     CHECK_THROWS_AS(run(), InputError);
+    run = talk({"", "", FaultKind::Cut});
+    run.faults[0].again = -1;
+    CHECK_THROWS_WITH(run(), Catch::Contains("bad probability of staying"));
     CHECK(fault_of_name("stuck") == FaultKind::Stuck);
     CHECK(fault_of_name("") == std::nullopt);
     CHECK(fault_of_name("explode") == std::nullopt);

@@ -52,6 +52,33 @@ TEST_CASE("clocks and sleeps follow simulated time") {
     CHECK(to_seconds(bench.node().stop()->time) == Approx(0.3).margin(0.001));
 }
 
+TEST_CASE("sleeps end late on a board that oversleeps, waits for a device do not") {
+    auto spec = spec_for("clocks");
+    spec.oversleep.mean = 4 * kMillisecond;
+    Bench late(std::move(spec));
+    late.run(2 * kSecond);
+    CHECK(late.log().find("14001 24001 30001 0\n") != std::string::npos);  // usleep, nanosleep, select
+    spec = spec_for("clocks");
+    spec.oversleep.jitter = kMillisecond;
+    const std::string plain = "10001 20001 30001 0\n";
+    Bench unsteady(spec), again(spec);
+    unsteady.run(2 * kSecond);
+    again.run(2 * kSecond);
+    CHECK(unsteady.log().find(plain + plain + plain + plain + plain) == std::string::npos);
+    CHECK(unsteady.log() == again.log());
+}
+
+TEST_CASE("received bytes wait for the driver's tick") {
+    auto spec = spec_for("vmin", {"1", "0"});
+    spec.tty_batch = 20 * kMillisecond;
+    Bench bench(std::move(spec));
+    bench.send(50 * kMillisecond, "0123456789");
+    bench.send(90 * kMillisecond, "ab");
+    bench.send(121 * kMillisecond, "c");
+    bench.run(kSecond);
+    CHECK(bench.log() == "10 bytes at 60 ms\n2 bytes at 100 ms\n1 bytes at 140 ms\nnonblocking -1\n");
+}
+
 TEST_CASE("VMIN and VTIME are kept") {
     const auto run = [](const char* vmin, const char* vtime, bool send) {
         Bench bench(spec_for("vmin", {vmin, vtime}));
@@ -131,6 +158,18 @@ TEST_CASE("I2C transfers take their time on the bus") {
     CHECK(bench.node().stop()->success);
     // Six times (2 + 2 bytes and a STOP each), 5 bytes, 4 bytes, 1 byte: 34 bytes of 90 us and 15 STOPs.
     CHECK(to_seconds(bench.node().stop()->time) == Approx(0.00325).margin(0.0001));
+}
+
+TEST_CASE("each I2C transfer waits while the bus is held") {
+    auto spec = spec_for("ground");
+    spec.i2c_hold = 2 * kMillisecond;
+    Bench bench(std::move(spec));
+    bench.add_device(0x60, {{0, 0x03}, {1, 0x20}, {2, 0x02}, {3, 0x10}, {4, 0x01}, {5, 0xff}});
+    bench.run(kSecond);
+    CHECK(bench.log() == "03 20 02 10 01 ff | 2 02 10 | 0 20 | -1 Remote I/O error\n");
+    REQUIRE(bench.node().stop());
+    // Six times write and read, one of two messages, ...: the same as without, and 2 ms more for each of 15.
+    CHECK(to_seconds(bench.node().stop()->time) == Approx(0.00325 + 15 * 0.002).margin(0.0001));
 }
 
 TEST_CASE("a sleep costs little wall-clock time") {

@@ -73,6 +73,38 @@ TEST_CASE("an overlay replaces parameters and nothing else") {
     CHECK_THROWS_WITH(apply_overlay(scenario, arena.path()), Catch::Contains("unknown key 'arena'"));
 }
 
+TEST_CASE("an overlay acts on lines and Linux boards of robots that have them") {
+    const TemporaryFile file(
+        kArena + kRobot + "[robot.linux]\nprogram = [\"p\"]\noversleep = \"1 ms\"\n" +
+        "[[robot]]\nposition = [\"20 cm\", \"0 m\"]\n[robot.pic]\nfirmware = \"x.hex\"\n");
+    const auto with = [&](const std::string& overlay) {
+        Scenario scenario = read_scenario(file.path());
+        const TemporaryFile written(overlay);
+        apply_overlay(scenario, written.path());
+        return scenario;
+    };
+    const Scenario links =
+        with("[uart]\ncommand_delay = \"20 ms\"\nanswer_cut = 0.02\nanswer_cut_again = 0.3\n"
+             "answer_edge_loss = 0.01\n");
+    REQUIRE(links.faults.size() == 3);
+    CHECK(links.faults[0].kind == cosim::FaultKind::Delay);
+    CHECK(links.faults[0].from == "robot0.linux");
+    CHECK(links.faults[1].bytes == std::vector<std::uint8_t>{0x00, 0xFF});
+    CHECK(links.faults[2].kind == cosim::FaultKind::Cut);
+    CHECK(links.faults[2].probability == 0.02);
+    CHECK(links.faults[2].again == 0.3);
+    const auto late =
+        with("[linux]\ntty_batch = \"20 ms\"\ni2c_hold = \"2 ms\"\n").robots[0].linux_board->late;
+    CHECK(late.tty_batch == 0.02);
+    CHECK(late.i2c_hold == 0.002);
+    CHECK(late.oversleep == 0.001);  // the scenario's own stays
+    CHECK_THROWS_WITH(with("[linux]\noversleep = \"-1 ms\"\n"),
+                      Catch::Contains("line 2") && Catch::Contains("oversleep is out of range"));
+    CHECK_THROWS_WITH(with("[linux]\nslow = 1\n"), Catch::Contains("unknown key 'slow'"));
+    CHECK_THROWS_WITH(with("[uart]\nanswer_cut = 2\n"),
+                      Catch::Contains("answer_cut") && Catch::Contains("0 to 1"));
+}
+
 TEST_CASE("what cannot be run is said with its line") {
     CHECK(problem_of("[run]\nduration = \"5 s\"\n") ==
           "line 1: [arena] is missing (expected [arena] with size = [\"1 m\", \"80 cm\"])");
@@ -90,6 +122,10 @@ TEST_CASE("what cannot be run is said with its line") {
     const std::string with_linux = kArena + kRobot + "[robot.linux]\nprogram = [\"p\"]\n";
     CHECK(problem_of(with_linux + "[[fault]]\nlink = \"robot1.uart\"\n")
               .ends_with("fault 1: there is no UART link 'robot1.uart' (expected robot0.uart)"));
+    CHECK(problem_of(with_linux + "[[fault]]\nlink = \"robot0.uart\"\nbytes = [\"0x00\", \"300\"]\n")
+              .find("'300' is not a byte") != std::string::npos);
+    CHECK(problem_of(with_linux + "[[fault]]\nlink = \"robot0.uart\"\nkind = \"cut\"\nagain = 2\n")
+              .find("again is out of range") != std::string::npos);
     CHECK(problem_of(with_linux + "restart = [\"3 s\", \"2 s\"]\n").find("do not rise") != std::string::npos);
     CHECK(problem_of(with_linux + "start = \"5 s\"\nrestart = [\"1 s\"]\n").find("do not rise") !=
           std::string::npos);

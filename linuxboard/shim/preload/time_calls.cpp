@@ -1,6 +1,7 @@
 // Clocks and sleeping. Simulated time 0 stands at the node's epoch (wall clock) and uptime (monotonic
 // clocks).
 
+#include "base/random.h"
 #include "linuxboard/shim/preload/calls.h"
 #include "linuxboard/shim/preload/real.h"
 #include "linuxboard/shim/preload/scheduler.h"
@@ -72,10 +73,22 @@ bool is_valid(const timespec& time) {
     return time.tv_nsec >= 0 && time.tv_nsec < kNanosecondsPerSecond;
 }
 
+/// When a sleep that was to end at `deadline` does. Nothing is drawn without jitter.
+static Time woken(Time deadline) {
+    const wire::Oversleep& late = page().oversleep;
+    Time more = late.mean;
+    if (late.jitter > 0) {
+        static RandomStream stream(page().seed, "oversleep");
+        more += static_cast<Time>(static_cast<double>(late.jitter) * stream.normal());
+    }
+    return more <= 0 || deadline > kNever - more ? deadline : deadline + more;
+}
+
 /// Sleeps; true if a signal cut it short. Even a sleep of nothing gives way once.
 bool sleep_until(Time deadline) {
     mark_call("sleep");
     charge(page().charges.yield);
+    deadline = woken(deadline);
     if (deadline <= now()) {
         yield_token();
         return false;
