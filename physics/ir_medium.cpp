@@ -53,9 +53,14 @@ IrMedium::IrMedium(const World& world) : fixed_(fixed_shapes(world)) {
     add_movable(world.boxes);
     add_movable(world.cylinders);
     for (const Board& sender : boards_)
-        for (const Board& receiver : boards_)
-            paths_.push_back(
-                {{}, {}, {}, RandomStream(world.seed, "ir/" + sender.name + ">" + receiver.name)});
+        for (const Board& receiver : boards_) {
+            const std::string pair = sender.name + ">" + receiver.name;
+            paths_.push_back({{},
+                              {},
+                              {},
+                              RandomStream(world.seed, "ir/" + pair),
+                              IrFate(receiver.model.parameters(), world.seed, pair)});
+        }
     const auto mirror = [this](const std::vector<Shape>& shapes) {
         for (const Shape& shape : shapes)
             if (shape.kind == Shape::Kind::Box) mirrors_.push_back(&shape);
@@ -130,7 +135,7 @@ void IrMedium::couple_row(std::size_t sender) {
     from.lit_mask = 0;
 }
 
-void IrMedium::draw_noise(std::size_t sender) {
+void IrMedium::draw_noise(std::size_t sender, double seconds) {
     for (std::size_t r = 0; r < boards_.size(); ++r) {
         const IrParameters& p = parameters(r);
         Path& to = path(sender, r);
@@ -140,12 +145,17 @@ void IrMedium::draw_noise(std::size_t sender) {
             to.factor.level[k] = static_cast<float>(std::exp(common + p.receiver_noise * to.noise.normal()));
             to.factor.carrier[k] = static_cast<float>(std::exp(p.carrier_noise * to.noise.normal()));
         }
-        if (p.loss > 0.0 && to.noise.uniform() < p.loss) to.factor.carrier = {};
+        const BurstFate fate = to.fate.next(seconds);
+        to.turn = fate.turn;
+        if (fate.lost) to.factor.carrier = {};
+        if (fate.strength != 1.0F)
+            for (float& level : to.factor.level)
+                level *= fate.strength;
     }
 }
 
-void IrMedium::begin_burst(std::size_t board) {
-    draw_noise(board);
+void IrMedium::begin_burst(std::size_t board, double seconds) {
+    draw_noise(board, seconds);
     boards_[board].lit_mask = 0;
     if (boards_[board].coupled_at != changes_) boards_[board].coupled_at = 0;
     relight(board);
@@ -176,6 +186,9 @@ bool IrMedium::relight(std::size_t board) {
                 to.light.level[k] += to.coupling.level[e][k];
             }
         }
+        const auto turn = static_cast<std::ptrdiff_t>(kIrSensors - to.turn) % kIrSensors;
+        std::rotate(to.light.carrier.begin(), to.light.carrier.begin() + turn, to.light.carrier.end());
+        std::rotate(to.light.level.begin(), to.light.level.begin() + turn, to.light.level.end());
         for (std::size_t k = 0; k < kIrSensors; ++k) {
             to.light.carrier[k] *= to.factor.carrier[k];
             to.light.level[k] *= to.factor.level[k];

@@ -10,6 +10,7 @@
 
 #include "base/random.h"
 #include "physics/ir_coupling.h"
+#include "physics/ir_fate.h"
 
 #include <string>
 #include <vector>
@@ -46,8 +47,8 @@ class IrMedium {
     void set_emitters(std::size_t board, std::uint16_t mask) { boards_[board].mask = mask; }
     std::uint16_t emitters(std::size_t board) const { return boards_[board].mask; }
 
-    /// A burst of this board begins: new noise, coupling as things stand now.
-    void begin_burst(std::size_t board);
+    /// A burst of this board begins at `seconds`: new noise, coupling as things stand now.
+    void begin_burst(std::size_t board, double seconds);
     /// Emitters, power or carrier changed within the burst. True: what it reaches may have changed.
     bool relight(std::size_t board);
     /// Couples the board anew if anything moved since; true if so.
@@ -81,12 +82,14 @@ class IrMedium {
         IrCoupling coupling;
         IrLight factor, light;
         RandomStream noise;
+        IrFate fate;
+        std::size_t turn = 0;  ///< of the present burst
     };
 
     Path& path(std::size_t s, std::size_t r) { return paths_[s * boards_.size() + r]; }
     const Path& path(std::size_t s, std::size_t r) const { return paths_[s * boards_.size() + r]; }
     void couple_row(std::size_t sender);
-    void draw_noise(std::size_t sender);
+    void draw_noise(std::size_t sender, double seconds);
     /// What stands around and is high enough to shade the two boards.
     std::vector<const Shape*> between(const Board& a, const Board& b) const;
 

@@ -163,7 +163,7 @@ void IrNode::Impl::apply(Time now) {
         medium.set_emitters(s, masks[s]);
         bool everywhere = false;
         if (frames.edge(now, s, masks[s] != 0)) {
-            medium.begin_burst(s);
+            medium.begin_burst(s, cosim::to_seconds(now));
             looked[s] = now;
         } else {
             everywhere = medium.relight(s);

@@ -209,6 +209,10 @@ std::vector<ParameterInfo> build_table() {
         {"ir.chip", "s", 1, {98.09e-6}, 1e-6, 1e-3, AT(ir.chip), "[R] half a bit: a frame has ended after 3 dark chips"},
         {"ir.rail", "counts", 1, {4095}, 1, 4095, AT(ir.rail), "highest count that a strength measurement reaches: the peak detector's rail"},
         {"ir.loss", "1", 1, {0.0}, 0.0, 1.0, AT(ir.loss), "share of frames that a board does not hear, whoever sends and however near; 0: losses emerge"},
+        {"ir.spell", "1", 1, {0.0}, 0.0, 1.0, AT(ir.spell), "share of all time in which a board hears nothing of another, in spells beside those that beating crystals make"},
+        {"ir.spell_time", "s", 1, {0.5}, 0.001, 1000, AT(ir.spell_time), "? time for which a spell is remembered; beats of 10-60 s [R]"},
+        {"ir.stray", "1", 1, {0.0}, 0.0, 1.0, AT(ir.stray), "? share of frames that come by a reflection the world does not show: weaker, from elsewhere; .05-.2"},
+        {"ir.stray_loss", "ln counts", 1, {0.7}, 0.0, 5.0, AT(ir.stray_loss), "? what such a reflection costs; 3-10 dB"},
         {"ir.refresh", "s", 1, {0.005}, 0.001, 1.0, AT(ir.refresh), "a burst that lasts longer is looked at anew when something moved"},
 
         // Contacts.

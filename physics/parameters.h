@@ -85,7 +85,8 @@ struct IrParameters {
     double threshold, delay_on, delay_off, min_burst, min_gap, level_delay, level_hold, ambient;
     double emitter_spread, receiver_spread, demodulator_spread;
     double frame_noise, receiver_noise, carrier_noise, near_noise, near_range;
-    double reflection, self_coupling, chip, refresh, rail, loss;
+    double reflection, self_coupling, chip, refresh, rail;
+    double loss, spell, spell_time, stray, stray_loss;
 };
 
 /// Contacts between any two things; one set for the whole world.

@@ -11,16 +11,6 @@ using namespace puckloop;
 using namespace puckloop::physics;
 using namespace puckloop::physics::test;
 
-namespace {
-
-World ideal_pair(double surface, double heading_b = 0.0) {
-    World world = rab_pair(surface, 0.0, heading_b);
-    make_ideal(world);
-    return world;
-}
-
-}  // namespace
-
 TEST_CASE("light falls on the receivers that look at the sender, and only there") {
     // b sees a at 180 deg: receivers 5 (159) and 6 (-165) face it, 0 and 11 look away.
     IrMedium medium(ideal_pair(0.3));
@@ -146,7 +136,7 @@ TEST_CASE("two senders add up at a third; the dark reads baseline and room light
         medium.set_power(sender, 115);
         medium.set_carrier(sender, kFirmwareCarrier);
         medium.set_emitters(sender, kAllEmitters);
-        medium.begin_burst(sender);
+        medium.begin_burst(sender, 0);
     }
     for (std::size_t k = 0; k < kIrSensors; ++k) {
         const float a = medium.from(0, 2).level[k];
@@ -169,7 +159,7 @@ TEST_CASE("a board hears itself only by a parameter, or by a wall that reflects"
         medium.set_power(0, 115);
         medium.set_carrier(0, kFirmwareCarrier);
         medium.set_emitters(0, kAllEmitters);
-        medium.begin_burst(0);
+        medium.begin_burst(0, 0);
         return medium.at(0);
     };
     world.parameters["ir.self_coupling"] = 0.2;

@@ -288,7 +288,7 @@ TEST_CASE("boards that change over at one instant make no level that never was")
         medium.set_power(sender, 115);
         medium.set_carrier(sender, kFirmwareCarrier);
         medium.set_emitters(sender, kAllEmitters);
-        medium.begin_burst(sender);
+        medium.begin_burst(sender, 0);
         const auto level = medium.at(2).level;
         highest[1] = std::max<double>(highest[1], *std::max_element(level.begin(), level.end()));
         medium.set_emitters(sender, 0);

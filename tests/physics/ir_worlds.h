@@ -43,13 +43,20 @@ inline void make_ideal(World& world) {
         world.parameters[name] = 0.0;
 }
 
+/// The pair of such boards; a looks at b.
+inline World ideal_pair(double surface, double heading_b = 0.0) {
+    World world = rab_pair(surface, 0.0, heading_b);
+    make_ideal(world);
+    return world;
+}
+
 /// Light of board 0 with `mask` on, at board 1.
 inline const IrLight& shine(IrMedium& medium, std::uint16_t mask = kAllEmitters, double power = 115,
                             double carrier = kFirmwareCarrier) {
     medium.set_power(0, power);
     medium.set_carrier(0, carrier);
     medium.set_emitters(0, mask);
-    medium.begin_burst(0);
+    medium.begin_burst(0, 0);
     return medium.from(0, 1);
 }
 

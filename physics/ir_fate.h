@@ -1,0 +1,40 @@
+#pragma once
+// What becomes of one burst of light between two range-and-bearing boards, beside what distance, bodies and
+// walls make of it: lost by chance (ir.loss), lost in a spell (ir.spell, ir.spell_time), or come by a
+// reflection that the world does not show (ir.stray, ir.stray_loss). All zero: nothing is drawn.
+// Source: sheet of effects 51, 53, 55.
+//
+// Deviation: a reflection turns the light by whole receivers, 30 degrees each on average.
+
+#include "base/random.h"
+#include "physics/parameters.h"
+
+#include <cstdint>
+#include <string_view>
+
+namespace puckloop::physics {
+
+struct BurstFate {
+    bool lost = false;
+    std::size_t turn = 0;  ///< receivers by which the light is turned, 0..11
+    float strength = 1.0F;
+};
+
+class IrFate {
+  public:
+    /// `pair` names the random stream: "a>b".
+    IrFate(const IrParameters& receiver, std::uint64_t seed, std::string_view pair);
+
+    /// Of the burst that begins at `seconds`; times must not decrease.
+    BurstFate next(double seconds);
+
+  private:
+    bool in_spell(double seconds);
+
+    double loss_, spell_, spell_time_, stray_, stray_strength_;
+    RandomStream random_;
+    double last_ = -1e9;  // s, of the burst before
+    bool spell_now_ = false;
+};
+
+}  // namespace puckloop::physics
