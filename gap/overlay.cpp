@@ -1,12 +1,12 @@
-// A verdict's causes as an overlay: [parameters], [uart] and [clock] are what `puckloop run --model` takes,
-// [measurement] what belongs to the measuring chain or has no counterpart in a run; `run` says that it passes
-// over it.
+// A verdict's causes as an overlay: [parameters], [uart], [linux] and [clock] are what `puckloop run --model`
+// takes, [measurement] what belongs to the measuring chain or has no counterpart in a run; `run` says that it
+// passes over it.
 
 #include "gap/analyse.h"
+#include "gap/overlay_links.h"
 #include "gap/overlay_rab.h"
 #include "gap/overlay_sensors.h"
 #include "physics/parameters.h"
-#include "protocols/epuck_serial.h"
 #include "scenarios/world_tables.h"
 
 #include <fmt/format.h>
@@ -74,30 +74,6 @@ void ground_board(const Experiment& experiment, Values& fitted, Values& simulato
         fitted.erase(name);
 }
 
-/// What acts on links and clocks: taken out of `measuring` and told as the run's tables [uart] and [clock].
-std::string links_and_clocks(const Experiment& experiment, Values& measuring) {
-    const auto taken = [&](const std::string& name) {
-        const double neutral = get(experiment.nominal, name, 0.0);
-        const double more = get(measuring, name, neutral) - neutral;
-        if (more > 0 || name == "timing.clock_drift") measuring.erase(name);
-        return more;
-    };
-    // A frame is lost with any of its bytes.
-    const auto of_a_byte = [](double frame, std::size_t bytes) {
-        return 1 - std::pow(1 - std::clamp(frame, 0.0, 0.999), 1 / static_cast<double>(bytes));
-    };
-    std::string uart, clock;
-    if (const double late = taken("command.latency"); late > 0)
-        uart += fmt::format("command_delay = \"{:.9g} s\"\n", late);
-    if (const double lost = taken("command.loss"); lost > 0)
-        uart += fmt::format("command_loss = {:.9g}\n", of_a_byte(lost, protocols::kEpuckActuatorBytes));
-    if (const double cut = taken("timing.truncation"); cut > 0)
-        uart += fmt::format("answer_loss = {:.9g}\n", of_a_byte(cut, protocols::kEpuckSensorBytes));
-    if (const double drift = taken("timing.clock_drift"); drift != 0)
-        clock += fmt::format("pic_error = \"{:.9g} ppm\"\n", (1 / (1 + drift) - 1) * 1e6);
-    return (uart.empty() ? "" : "\n[uart]\n" + uart) + (clock.empty() ? "" : "\n[clock]\n" + clock);
-}
-
 }  // namespace
 
 std::string overlay_toml(const Experiment& experiment, const Verdict& verdict) {
@@ -133,7 +109,7 @@ std::string overlay_toml(const Experiment& experiment, const Verdict& verdict) {
     text += "\n[parameters]\n";
     for (const auto& [name, value] : simulator)
         text += parameter_line(name, value);
-    text += links_and_clocks(experiment, measuring);
+    text += links_overlay(experiment.nominal, measuring);
     if (!measuring.empty())
         text += "\n# Of the measuring chain, or without a counterpart in the world model.\n[measurement]\n";
     for (const auto& [name, value] : measuring)

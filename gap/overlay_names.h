@@ -5,8 +5,8 @@
 
 namespace puckloop::gap {
 
-/// True: it stands under [parameters], [uart] or [clock]. False: under [measurement], which a run passes
-/// over.
+/// True: it stands under [parameters], [uart], [linux] or [clock]. False: under [measurement], which a run
+/// passes over.
 bool overlay_takes(std::string_view parameter);
 
 }  // namespace puckloop::gap

@@ -45,6 +45,10 @@ class RabOverlay {
         if (const auto lobe = take("rab.emitter_lobe")) set("ir.emitter_exponent", *lobe);
         if (const auto lobe = take("rab.receiver_lobe")) set("ir.receiver_exponent", *lobe);
         if (const auto lost = take("rab.random_loss")) set("ir.loss", *lost);
+        if (const auto share = take("rab.beat")) set("ir.spell", *share);
+        if (const auto time = take("rab.beat_burst")) set("ir.spell_time", *time);
+        if (const auto share = take("rab.multipath")) set("ir.stray", *share);
+        if (const auto weaker = take("rab.multipath_loss")) set("ir.stray_loss", *weaker);
     }
 
   private:

@@ -81,6 +81,7 @@ Json rerun_json(const Rerun& rerun) {
                                {"ratio", number(one.after / one.before)}});
     return {{"done", true},
             {"runs", rerun.runs},
+            {"of_runs", rerun.of_runs},
             {"rows", rerun.rows},
             {"observables", observables},
             {"left_out", rerun.left_out}};

@@ -20,7 +20,7 @@ Effect batching() {
                         1e-6}},
         .needs = {},
         .observables = "arrival: intervals of 0 and more than a period",
-        .enters = "measuring chain",
+        .enters = "the overlay's [linux] tty_batch",
         .confounded = {"i2c_stretch"},
         .separated_by = "log the robot's own clock",
         .measuring_chain = true,

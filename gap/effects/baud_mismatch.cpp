@@ -13,7 +13,7 @@ Effect baud_mismatch() {
         .parameters = {{"timing.edge_errors", 0.0, 0.5, 0.01, {0.005}, "0 at 14.7456 MHz; 2.1 % at 16 MHz"}},
         .needs = {"edges"},
         .observables = "frames wrong by byte pattern",
-        .enters = "nothing by itself: crystal_ppm, [[fault]] rate",
+        .enters = "the overlay's [uart] answer_edge_loss",
         .confounded = {"truncation"},
         .separated_by = "frames of 0x55 against frames of 0x00 and 0xFF",
         .measuring_chain = false,

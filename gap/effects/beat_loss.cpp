@@ -14,7 +14,7 @@ Effect beat_loss() {
                        {"rab.beat_burst", 0.01, 20.0, 1.0, {0.3}, "beat 10-60 s"}},
         .needs = {"t_s"},
         .observables = "reception in bursts",
-        .enters = "emerges from the crystals of the two boards",
+        .enters = "ir.spell, ir.spell_time, beside what emerges from the crystals",
         .confounded = {"random_loss"},
         .separated_by = "long records at two temperatures",
         .measuring_chain = false,

@@ -13,7 +13,7 @@ Effect i2c_stretch() {
         .parameters = {{"timing.i2c_stretch", -0.001, 0.05, 0.0015, {}, "1..5 ms"}},
         .needs = {"i2c_reads"},
         .observables = "arrival by number of transfers",
-        .enters = "emerges from the emulated bus",
+        .enters = "the overlay's [linux] i2c_hold, beside what emerges from the emulated bus",
         .confounded = {"batching"},
         .separated_by = "the same loop with and without the I2C boards",
         .measuring_chain = false,

@@ -14,7 +14,8 @@ Effect long_period() {
                        {"timing.period_jitter", 0.0, 0.2, 0.003, {0.0005}, "1..5 ms"}},
         .needs = {},
         .observables = "robot's clock against the number of periods",
-        .enters = "emerges from the emulated loop",
+        .enters =
+            "the overlay's [linux] oversleep, oversleep_jitter, beside what emerges from the emulated loop",
         .confounded = {"clock_drift"},
         .separated_by = "count periods against a second clock",
         .measuring_chain = false,

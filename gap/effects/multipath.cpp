@@ -14,7 +14,7 @@ Effect multipath() {
                        {"rab.multipath_loss", 0.1, 2.5, 0.5, {}, "-3..-10 dB"}},
         .needs = {},
         .observables = "outliers of strength and bearing",
-        .enters = "nothing by itself: walls and bodies in the scenario",
+        .enters = "ir.stray, ir.stray_loss, beside the scenario's walls and bodies",
         .confounded = {"range_noise"},
         .separated_by = "the same in the middle of an empty room",
         .measuring_chain = false,

@@ -14,7 +14,7 @@ Effect truncation() {
                        {"timing.truncation_burst", 0.0, 0.98, 0.4, {0.3}, "bursts"}},
         .needs = {},
         .observables = "frames wrong whatever they hold",
-        .enters = "the overlay's [uart] answer_loss",
+        .enters = "the overlay's [uart] answer_cut, answer_cut_again",
         .confounded = {"baud_mismatch"},
         .separated_by = "the same frames over a cable",
         .measuring_chain = false,

@@ -205,6 +205,8 @@ std::vector<Act> timing_acts(std::uint64_t, bool brief) {
         Act act;
         act.arena = kOpenFloor;
         act.commands = {{0, 0, 0}, {1, 100.0 + 50 * k, 100}, {brief ? 6.0 : 20.0, 0, 0}};
+        act.ground = true;
+        act.ground_every = 3;
         acts.push_back(std::move(act));
     }
     return acts;

@@ -150,6 +150,7 @@ HiddenRun ground_run(const std::vector<Row>& rows, const Act& act) {
 
 HiddenRun timing_run(const std::vector<Row>& rows, RandomStream& noise) {
     constexpr double kBytes = 84;
+    constexpr double kGroundTransfers = 12;  // six registers, each a write and a read
     HiddenRun run;
     for (std::size_t k = 0; k < rows.size(); ++k) {
         run.column("seq").values.push_back(static_cast<double>(k));
@@ -158,6 +159,7 @@ HiddenRun timing_run(const std::vector<Row>& rows, RandomStream& noise) {
         run.column("nominal_period", "ms").values.push_back(100);
         run.column("bytes").values.push_back(kBytes);
         run.column("frame_ok").values.push_back(rows[k].ok ? 1 : 0);
+        run.column("i2c_reads").values.push_back(std::isnan(rows[k].gs[0]) ? 0 : kGroundTransfers);
     }
     return run;
 }
@@ -205,44 +207,6 @@ HiddenExperiment record(std::string_view kind, const RecordOptions& options) {
         if (options.done) options.done(k + 1, acts.size());
     }
     return experiment;
-}
-
-void set_parameter(Robot& robot, const std::string& assignment) {
-    const auto equals = assignment.find('=');
-    char* end = nullptr;
-    const double value =
-        equals == std::string::npos ? 0.0 : std::strtod(assignment.c_str() + equals + 1, &end);
-    if (equals == std::string::npos || end == assignment.c_str() + equals + 1 || *end != '\0')
-        throw InputError("", "--set", fmt::format("'{}' is not an assignment", assignment),
-                         "PARAMETER=NUMBER");
-    const std::string name = assignment.substr(0, equals);
-    struct Own {
-        const char* name;
-        double* place;
-        double low, high;
-    };
-    const std::array<Own, 6> own{{{"board.crystal_ppm", &robot.crystal_ppm, -1e4, 1e4},
-                                  {"host.period", &robot.period, 0.01, 10.0},
-                                  {"host.rab_poll", &robot.rab_poll, 0.0, 10.0},
-                                  {"uart.factor", &robot.uart_factor, 0.5, 2.0},
-                                  {"uart.loss", &robot.uart_loss, 0.0, 1.0},
-                                  {"uart.delay", &robot.uart_delay, 0.0, 10.0}}};
-    for (const Own& known : own)
-        if (name == known.name) {
-            if (!(value >= known.low && value <= known.high))
-                throw InputError("", "--set " + assignment, "is out of range",
-                                 fmt::format("{:g} to {:g}", known.low, known.high));
-            *known.place = value;
-            return;
-        }
-    try {
-        physics::Parameters().set(name, value);
-    } catch (const std::invalid_argument& error) {
-        throw InputError("", "--set " + assignment, error.what(),
-                         "a parameter of `puckloop run --list-parameters`, board.crystal_ppm, host.period, "
-                         "host.rab_poll, uart.factor, uart.loss or uart.delay");
-    }
-    robot.parameters[name] = value;
 }
 
 }  // namespace puckloop::gap::emulate

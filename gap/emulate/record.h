@@ -25,8 +25,8 @@ struct RecordOptions {
 /// Performs the acts of a kind and lists what was measured, with a tracker's or jig's noise on the truth.
 selftest::HiddenExperiment record(std::string_view kind, const RecordOptions& options);
 
-/// "robot.axle_length=0.054": a physical parameter, or one of board.crystal_ppm, host.period (s),
-/// host.rab_poll (s), uart.factor, uart.loss, uart.delay (s). Throws InputError.
+/// "robot.axle_length=0.054": a physical parameter, or one of the boards, the line between them (uart.*) and
+/// the Linux program (linux.*, host.*; s). Throws InputError, which names them all.
 void set_parameter(Robot& robot, const std::string& assignment);
 
 }  // namespace puckloop::gap::emulate

@@ -48,7 +48,8 @@ const std::vector<Part>& parts() {
     return all;
 }
 
-/// Hardware number of the receiver nearest to a direction, by the drawing.
+}  // namespace
+
 int nearest_receiver(double bearing) {
     const physics::Parameters nominal;
     int best = 0;
@@ -62,8 +63,6 @@ int nearest_receiver(double bearing) {
     }
     return best + 1;
 }
-
-}  // namespace
 
 selftest::HiddenExperiment record_rab(const RecordOptions& options) {
     constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();

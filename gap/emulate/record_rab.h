@@ -12,4 +12,7 @@ namespace puckloop::gap::emulate {
 /// themselves.
 selftest::HiddenExperiment record_rab(const RecordOptions& options);
 
+/// Hardware number (1..12) of the receiver nearest to a direction (rad), by the drawing.
+int nearest_receiver(double bearing);
+
 }  // namespace puckloop::gap::emulate

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "gap/emulate/reacts.h"
+#include "gap/emulate/rerun_rab.h"
 #include "gap/overlay_sensors.h"
 #include "physics/parameters.h"
 
@@ -57,6 +58,20 @@ std::vector<std::string> left_out(const Experiment& experiment, const Verdict& v
     return names;
 }
 
+/// As many as `longest` seconds allow, from all over; at least one.
+std::vector<React> chosen(const std::vector<React>& all, double longest) {
+    for (std::size_t count = all.size(); count > 0; --count) {
+        std::vector<React> some;
+        double seconds = 0.0;
+        for (std::size_t k = 0; k < count; ++k) {
+            some.push_back(all[k * all.size() / count]);
+            seconds += some.back().act.commands.back().seconds;
+        }
+        if (longest <= 0 || seconds <= longest || count == 1) return some;
+    }
+    return all;
+}
+
 }  // namespace
 
 Rerun rerun(const Experiment& experiment, const Verdict& verdict, const RerunOptions& options) try {
@@ -72,8 +87,14 @@ Rerun rerun(const Experiment& experiment, const Verdict& verdict, const RerunOpt
         result.not_done = "the robot ran another firmware than the project's own; name its image";
         return result;
     }
-    const auto reacts = reacts_of(experiment, longest_stand(verdict), result.not_done);
+    if (experiment.kind == Kind::Rab) {
+        result = rerun_rab(experiment, options);
+        result.left_out = left_out(experiment, verdict);
+        return result;
+    }
+    const auto all = reacts_of(experiment, longest_stand(verdict), result.not_done);
     if (!result.not_done.empty()) return result;
+    const auto reacts = chosen(all, options.longest);
     const auto names = compared(experiment.kind);
     std::vector<ErrorSum> errors[2] = {std::vector<ErrorSum>(names.size()),
                                        std::vector<ErrorSum>(names.size())};
@@ -91,6 +112,7 @@ Rerun rerun(const Experiment& experiment, const Verdict& verdict, const RerunOpt
             if (options.done) options.done(++done, 2 * reacts.size());
         }
     result.runs = reacts.size();
+    result.of_runs = all.size();
     result.rows = errors[0][0].rows;
     for (std::size_t o = 0; o < names.size(); ++o) {
         if (errors[0][o].rows == 0) continue;

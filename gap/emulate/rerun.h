@@ -3,8 +3,8 @@
 // then with the verdict's overlay, and both are compared with what was measured.
 //
 // Kinds: motion (commands recorded), timing, ground (greys), proximity (a flat wall), microphone (a
-// loudspeaker), accelerometer (tilts). Placements of all but the first two are re-made standing, a selection
-// of them where there are many.
+// loudspeaker), accelerometer (tilts), range and bearing (rerun_rab.h). Placements of sensors are re-made
+// standing, a selection of them where there are many.
 
 #include "gap/analyse.h"
 #include "gap/emulate/stage.h"
@@ -20,6 +20,7 @@ struct RerunOptions {
     std::filesystem::path firmware;  ///< of the main board; empty: the project's own
     std::filesystem::path scratch;   ///< made, and removed
     std::uint64_t seed = 1;
+    double longest = 0.0;  ///< s of simulated time for each of the two: runs from all over are chosen; 0: all
     std::function<void(std::size_t, std::size_t)> done;  ///< runs done, of all
 };
 

@@ -59,13 +59,27 @@ std::string scenario_text(const Robot& robot, const Act& act, const Tools& tools
     text += fmt::format("[robot.linux]\nprogram = [{}, \"--script\", {}, \"--log\", {}, \"--period\", \"{}\"",
                         quoted(tools.record), quoted(scratch / "commands.txt"),
                         quoted(scratch / "records.csv"), robot.period);
-    if (act.ground) text += ", \"--i2c\", \"/dev/i2c-3\"";
+    if (act.ground)
+        text += fmt::format(", \"--i2c\", \"/dev/i2c-3\", \"--ground-every\", \"{}\"", act.ground_every);
     text += fmt::format("]\nstart = \"{} s\"\n", kStart);
+    const auto late = [&](const char* key, double seconds) {
+        if (seconds > 0) text += fmt::format("{} = \"{} s\"\n", key, seconds);
+    };
+    late("tty_batch", robot.lateness.tty_batch);
+    late("i2c_hold", robot.lateness.i2c_hold);
+    late("oversleep", robot.lateness.oversleep);
+    late("oversleep_jitter", robot.lateness.oversleep_jitter);
     const auto fault = [&](const std::string& more, const char* from = "robot0.pic") {
         text += fmt::format("[[fault]]\nlink = \"robot0.uart\"\nfrom = \"{}\"\n{}", from, more);
     };
     if (robot.uart_factor != 1.0) fault(fmt::format("kind = \"rate\"\nfactor = {}\n", robot.uart_factor));
     if (robot.uart_loss > 0.0) fault(fmt::format("kind = \"drop\"\nprobability = {}\n", robot.uart_loss));
+    if (robot.uart_cut > 0.0)
+        fault(fmt::format("kind = \"cut\"\nprobability = {}\nagain = {}\n", robot.uart_cut,
+                          robot.uart_cut_again));
+    if (robot.uart_edge_loss > 0.0)
+        fault(fmt::format("kind = \"drop\"\nbytes = [\"0x00\", \"0xFF\"]\nprobability = {}\n",
+                          robot.uart_edge_loss));
     if (robot.uart_delay > 0.0)
         fault(fmt::format("kind = \"delay\"\ndelay = \"{} s\"\n", robot.uart_delay), "robot0.linux");
     return text;

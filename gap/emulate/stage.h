@@ -6,6 +6,7 @@
 // microphones are in the project's own firmware's record only; another's says 0.
 
 #include "linuxboard/record/command_script.h"
+#include "scenarios/scenario.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -23,7 +24,11 @@ struct Robot {
     double uart_factor = 1.0;  ///< bit time of the main board's frames over nominal
     double uart_loss = 0.0;    ///< probability that a byte to the Linux board is lost
     double uart_delay = 0.0;   ///< s by which bytes from the Linux board come later
-    double rab_poll = 0.0;     ///< s between two polls of a range-and-bearing board; 0: until none waits
+    double uart_cut = 0.0;     ///< probability that an answer is cut; then, that the next one is too
+    double uart_cut_again = 0.0;
+    double uart_edge_loss = 0.0;          ///< probability that a byte 0x00 or 0xFF to the Linux board is lost
+    scenarios::LinuxLateness lateness{};  ///< of the Linux board
+    double rab_poll = 0.0;  ///< s between two polls of a range-and-bearing board; 0: until none waits
     std::filesystem::path firmware;  ///< empty: the project's own
     std::filesystem::path rab;       ///< image for the range-and-bearing boards; empty: the project's own
     std::filesystem::path overlay;   ///< as for `run --model`; empty: none
@@ -39,6 +44,7 @@ struct Act {
     double load = 0.0;                    ///< kg laid on the robot, known to the laboratory
     double slope_x = 0.0, slope_y = 0.0;  ///< rad that the table is tilted, known as well
     bool shimmed = false;  ///< no play under the skids: the robot does not rock, its tilt is the table's
+    int ground_every = 1;                 ///< exchanges from one reading of the ground sensors to the next
 };
 
 /// One exchange between Linux board and main board, and where the tracker saw the robot when it was begun.

@@ -106,10 +106,11 @@ std::string rerun_section(const Verdict& verdict) {
     for (const RerunObservable& o : rerun.observables)
         table.row({o.name, o.unit, cell(o.before), cell(o.after), cell(o.after / o.before)});
     out += table.html();
-    out += paragraph(fmt::format("The whole robot emulated, firmware in the loop: {} runs a side, {} rows of "
-                                 "the measurement compared; first as the simulator is, then with "
-                                 "overlay.toml. Measurement noise is in both errors.",
-                                 rerun.runs, rerun.rows));
+    out +=
+        paragraph(fmt::format("The whole robot emulated, firmware in the loop: {} of {} runs a side, {} rows "
+                              "of the measurement compared; first as the simulator is, then with "
+                              "overlay.toml. Measurement noise is in both errors.",
+                              rerun.runs, rerun.of_runs, rerun.rows));
     if (!rerun.left_out.empty())
         out += paragraph(
             fmt::format("Without a counterpart in a run, so left out: {}.", fmt::join(rerun.left_out, ", ")));
@@ -119,8 +120,9 @@ std::string rerun_section(const Verdict& verdict) {
 std::string parameters_section(const Verdict& verdict) {
     Table table({"cause", "parameter", "unit", "#simulator", "#fitted", "90 % interval", "goes into"});
     const auto add = [&](const std::string& cause, const FittedParameter& p) {
-        table.row({cause, p.name, p.unit, cell(p.neutral), cell(p.value), range_cell(p.low, p.high),
-                   p.in_simulator ? "simulator" : "measuring chain"});
+        const int digits = digits_to_tell(p.low, p.value, p.high);
+        table.row({cause, p.name, p.unit, cell(p.neutral), cell(p.value, digits),
+                   range_cell(p.low, p.high, digits), p.in_simulator ? "simulator" : "measuring chain"});
     };
     for (const Cause& cause : verdict.causes)
         for (const FittedParameter& p : cause.parameters)

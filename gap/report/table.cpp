@@ -33,17 +33,26 @@ std::string Table::html() const {
     return out + "</tr></thead>\n<tbody>\n" + body_ + "</tbody></table>\n";
 }
 
-std::string cell(double value) {
+int digits_to_tell(double low, double value, double high) {
+    constexpr int kUsual = 4, kMost = 8;
+    int digits = kUsual;
+    while (digits < kMost && low < value && value < high &&
+           (cell(low, digits) == cell(value, digits) || cell(value, digits) == cell(high, digits)))
+        ++digits;
+    return digits;
+}
+
+std::string cell(double value, int digits) {
     if (!std::isfinite(value)) return "–";
-    return stats::plain(value);
+    return stats::plain(value, digits);
 }
 
 std::string p_cell(double p) {
     return p < 0.001 ? "< 0.001" : fmt::format("{:.3f}", p);
 }
 
-std::string range_cell(double low, double high) {
-    return fmt::format("{} … {}", cell(low), cell(high));
+std::string range_cell(double low, double high, int digits) {
+    return fmt::format("{} … {}", cell(low, digits), cell(high, digits));
 }
 
 }  // namespace puckloop::gap::report

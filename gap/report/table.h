@@ -22,11 +22,13 @@ class Table {
     std::size_t rows_ = 0;
 };
 
-/// A number for a table: four digits; "–" for NaN.
-std::string cell(double value);
+/// Digits by which a value and the ends of its narrow interval read differently: four or more.
+int digits_to_tell(double low, double value, double high);
+/// A number for a table: four digits or more; "–" for NaN.
+std::string cell(double value, int digits = 4);
 /// A p value: "< 0.001" or three decimals.
 std::string p_cell(double p);
 /// "low .. high".
-std::string range_cell(double low, double high);
+std::string range_cell(double low, double high, int digits = 4);
 
 }  // namespace puckloop::gap::report

@@ -131,10 +131,10 @@ std::string shape_words(const Profile& p, std::string_view covariate) {
     return fmt::format("uneven over {}: highest near {}, lowest near {}", covariate, at_x(high), at_x(low));
 }
 
-std::string plain(double value) {
+std::string plain(double value, int digits) {
     const double size = std::fabs(value);
     if (size != 0 && (size < 1e-4 || size >= 1e7)) return fmt::format("{:.2e}", value);
-    return fmt::format("{:.4g}", value);
+    return fmt::format("{:.{}g}", value, digits);
 }
 
 }  // namespace puckloop::gap::stats

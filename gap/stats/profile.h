@@ -26,6 +26,6 @@ Profile profile_of(const std::vector<double>& x, const std::vector<double>& y, i
 std::string shape_words(const Profile& profile, std::string_view covariate);
 
 /// A number as a person writes it: four significant digits, no exponent for everyday sizes.
-std::string plain(double value);
+std::string plain(double value, int digits = 4);
 
 }  // namespace puckloop::gap::stats

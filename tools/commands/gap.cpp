@@ -32,10 +32,12 @@ namespace puckloop::tools {
 
 namespace {
 
+constexpr double kBriefRerun = 40.0;  // s of simulated time
+
 struct Request {
     std::filesystem::path folder, out, firmware;
     std::uint64_t seed = 1;
-    bool rerun = false;
+    bool rerun = false, no_rerun = false;
 };
 
 void tell_experiment(const gap::Experiment& experiment) {
@@ -72,7 +74,7 @@ void tell_verdict(const gap::Verdict& verdict) {
     if (told.size() > kLines) fmt::print("  left: and {} more\n", told.size() - kLines);
 }
 
-/// With the overlay as written, which is what anybody's run would load.
+/// With the overlay as written, which is what anybody's run would load. Unasked: some seconds of it.
 void run_again(const Request& request, const gap::Experiment& experiment, gap::Verdict& verdict) {
     gap::emulate::RerunOptions options;
     options.tools = emulation_tools();
@@ -80,6 +82,7 @@ void run_again(const Request& request, const gap::Experiment& experiment, gap::V
     if (!request.firmware.empty()) options.firmware = std::filesystem::absolute(request.firmware);
     options.scratch = std::filesystem::absolute(request.out / fmt::format("rerun.{}", ::getpid()));
     options.seed = request.seed;
+    if (!request.rerun) options.longest = kBriefRerun;
     if (::isatty(STDERR_FILENO) != 0)
         options.done = [](std::size_t done, std::size_t all) {
             fmt::print(stderr, "\r\033[K{} of {} runs again ", done, all);
@@ -88,15 +91,17 @@ void run_again(const Request& request, const gap::Experiment& experiment, gap::V
     if (options.done) fmt::print(stderr, "\r\033[K");
     if (!verdict.rerun.not_done.empty()) fmt::print("not run again: {}\n", verdict.rerun.not_done);
     for (const auto& one : verdict.rerun.observables)
-        fmt::print("run again with the overlay: {}, error {:.4g} {} before, {:.4g} after\n", one.name,
-                   one.before, one.unit, one.after);
+        fmt::print("run again with the overlay ({} of {} runs): {}, error {:.4g} {} before, {:.4g} after\n",
+                   verdict.rerun.runs, verdict.rerun.of_runs, one.name, one.before, one.unit, one.after);
 }
 
 void analyse_folder(const Request& request) {
     if (request.rerun && request.out.empty())
         throw InputError("", "--rerun", "needs the overlay that --out writes", "--out OUT");
-    if (!request.rerun && !request.firmware.empty())
-        throw InputError("", "--firmware", "is for --rerun only", "--rerun");
+    if (request.rerun && request.no_rerun)
+        throw InputError("", "--no-rerun", "says the contrary of --rerun", "one of the two");
+    if (request.no_rerun && !request.firmware.empty())
+        throw InputError("", "--firmware", "is for running again only", "no --no-rerun");
     const gap::Experiment experiment = gap::read_experiment(request.folder);
     const auto overlay = request.out / "overlay.toml", json = request.out / "gap.json",
                page = request.out / "report.html";
@@ -115,7 +120,8 @@ void analyse_folder(const Request& request) {
     tell_verdict(verdict);
     if (request.out.empty()) return;
     write_beside(overlay, gap::overlay_toml(experiment, verdict));
-    if (request.rerun) run_again(request, experiment, verdict);
+    if (request.rerun || (!request.no_rerun && !verdict.causes.empty()))
+        run_again(request, experiment, verdict);
     write_beside(json, gap::to_json(verdict));
     write_beside(page, gap::report::report_html(experiment, verdict));
     for (const auto& file : {overlay, json, page})
@@ -140,9 +146,12 @@ void declare_gap(CLI::App& app, int& status) {
         ->check(count_up_to(kLargestSeed))
         ->type_name("N");
     command->add_flag("--rerun", request->rerun,
-                      "perform the experiment again on the emulator, without and with the overlay "
-                      "(motion, proximity, ground, microphone, accelerometer, timing)");
-    command->add_option("--firmware", request->firmware, "of the main board, for --rerun (the project's own)")
+                      "perform the whole experiment again on the emulator, without and with the overlay; "
+                      "unasked some 40 s of it");
+    command->add_flag("--no-rerun", request->no_rerun, "do not perform any of it again");
+    command
+        ->add_option("--firmware", request->firmware,
+                     "of the main board, for what is performed again (the project's own)")
         ->type_name("IMAGE");
     command->require_subcommand(0, 1);
     declare_gap_import(*command, status);
