@@ -20,21 +20,34 @@ struct BurstFate {
     float strength = 1.0F;
 };
 
+/// Of the bursts from one board to another.
 class IrFate {
   public:
     /// `pair` names the random stream: "a>b".
     IrFate(const IrParameters& receiver, std::uint64_t seed, std::string_view pair);
 
-    /// Of the burst that begins at `seconds`; times must not decrease.
-    BurstFate next(double seconds);
+    BurstFate next();
 
   private:
-    bool in_spell(double seconds);
-
-    double loss_, spell_, spell_time_, stray_, stray_strength_;
+    double loss_, stray_, stray_strength_;
     RandomStream random_;
-    double last_ = -1e9;  // s, of the burst before
-    bool spell_now_ = false;
+};
+
+/// Spells in which two boards do not hear each other, both ways: the share ir.spell of all time, remembered
+/// for ir.spell_time, as two crystals' beat makes them.
+class IrSpell {
+  public:
+    /// By the values of the pair's first board; `pair` names the random stream: "a,b".
+    IrSpell(const IrParameters& first, std::uint64_t seed, std::string_view pair);
+
+    /// Is the pair in one at `seconds`? Times must not decrease.
+    bool at(double seconds);
+
+  private:
+    double share_, time_;
+    RandomStream random_;
+    double last_ = -1e9;  // s, when asked last
+    bool now_ = false;
 };
 
 }  // namespace puckloop::physics

@@ -60,6 +60,7 @@ IrMedium::IrMedium(const World& world) : fixed_(fixed_shapes(world)) {
                               {},
                               RandomStream(world.seed, "ir/" + pair),
                               IrFate(receiver.model.parameters(), world.seed, pair)});
+            spells_.emplace_back(sender.model.parameters(), world.seed, sender.name + "," + receiver.name);
         }
     const auto mirror = [this](const std::vector<Shape>& shapes) {
         for (const Shape& shape : shapes)
@@ -145,9 +146,9 @@ void IrMedium::draw_noise(std::size_t sender, double seconds) {
             to.factor.level[k] = static_cast<float>(std::exp(common + p.receiver_noise * to.noise.normal()));
             to.factor.carrier[k] = static_cast<float>(std::exp(p.carrier_noise * to.noise.normal()));
         }
-        const BurstFate fate = to.fate.next(seconds);
+        const BurstFate fate = to.fate.next();
         to.turn = fate.turn;
-        if (fate.lost) to.factor.carrier = {};
+        if (spell(sender, r).at(seconds) || fate.lost) to.factor.carrier = {};
         if (fate.strength != 1.0F)
             for (float& level : to.factor.level)
                 level *= fate.strength;

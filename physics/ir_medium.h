@@ -12,6 +12,7 @@
 #include "physics/ir_coupling.h"
 #include "physics/ir_fate.h"
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -88,6 +89,10 @@ class IrMedium {
 
     Path& path(std::size_t s, std::size_t r) { return paths_[s * boards_.size() + r]; }
     const Path& path(std::size_t s, std::size_t r) const { return paths_[s * boards_.size() + r]; }
+    /// The same both ways.
+    IrSpell& spell(std::size_t a, std::size_t b) {
+        return spells_[std::min(a, b) * boards_.size() + std::max(a, b)];
+    }
     void couple_row(std::size_t sender);
     void draw_noise(std::size_t sender, double seconds);
     /// What stands around and is high enough to shade the two boards.
@@ -95,6 +100,7 @@ class IrMedium {
 
     std::vector<Board> boards_;
     std::vector<Path> paths_;  // [sender][receiver]
+    std::vector<IrSpell> spells_;
     std::vector<IrArray<float>> dark_level_;
     std::vector<Shape> fixed_, moving_;
     std::vector<const Shape*> mirrors_;

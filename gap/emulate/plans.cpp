@@ -207,6 +207,7 @@ std::vector<Act> timing_acts(std::uint64_t, bool brief) {
         act.commands = {{0, 0, 0}, {1, 100.0 + 50 * k, 100}, {brief ? 6.0 : 20.0, 0, 0}};
         act.ground = true;
         act.ground_every = 3;
+        act.relative = true;
         acts.push_back(std::move(act));
     }
     return acts;

@@ -93,6 +93,18 @@ std::vector<React> motion(const Experiment& experiment, std::string& why) {
     return reacts;
 }
 
+/// Exchanges from one reading over I2C to the next, if the run keeps to it from the first on; 0: none, or no
+/// such order.
+int reads_every(const Run& run) {
+    const auto& reads = run.column("i2c_reads");
+    std::size_t second = 1;
+    while (second < reads.size() && reads[second] == 0.0)
+        ++second;
+    for (std::size_t i = 0; i < reads.size(); ++i)
+        if ((reads[i] > 0) != (i % second == 0)) return 0;
+    return reads.empty() ? 0 : static_cast<int>(second);
+}
+
 std::vector<React> timing(const Experiment& experiment, std::string& why) {
     std::vector<React> reacts;
     for (std::size_t r = 0; r < experiment.runs.size(); ++r) {
@@ -108,6 +120,9 @@ std::vector<React> timing(const Experiment& experiment, std::string& why) {
             last = std::max(last, value_of(run, "seq", i, static_cast<double>(i)));
         }
         react.act.arena = open_floor(0);
+        react.act.relative = true;
+        react.act.ground = reads_every(run) > 0;
+        react.act.ground_every = std::max(reads_every(run), 1);
         react.act.commands = {{0, 0, 0}, {last * period, 0, 0}};
         reacts.push_back(std::move(react));
     }

@@ -26,14 +26,6 @@ Robot nominal_robot(const Experiment& experiment, const RerunOptions& options) {
     return robot;
 }
 
-/// The period is the Linux program's own, and the one performed here is the recorder's.
-double extra_period(const Verdict& verdict) {
-    for (const Cause& cause : verdict.causes)
-        for (const FittedParameter& parameter : cause.parameters)
-            if (parameter.name == "timing.extra_period") return parameter.value - parameter.neutral;
-    return 0.0;
-}
-
 /// What warms up is looked at as late as it was measured; else a moment tells all.
 double longest_stand(const Verdict& verdict) {
     constexpr double kLongest = 20.0;  // s
@@ -52,7 +44,7 @@ std::vector<std::string> left_out(const Experiment& experiment, const Verdict& v
     for (std::size_t from = text.find('"', measuring); from != std::string::npos;) {
         const std::size_t to = text.find('"', from + 1);
         const std::string name = text.substr(from + 1, to - from - 1);
-        if (name != "timing.extra_period") names.push_back(name);
+        names.push_back(name);
         from = text.find('"', to + 1);
     }
     return names;
@@ -102,11 +94,9 @@ Rerun rerun(const Experiment& experiment, const Verdict& verdict, const RerunOpt
     for (std::size_t k = 0; k < reacts.size(); ++k)
         for (const int side : {0, 1}) {
             Robot robot = nominal_robot(experiment, options);
-            robot.period = reacts[k].period + (side == 1 ? extra_period(verdict) : 0.0);
+            robot.period = reacts[k].period;
             if (side == 1) robot.overlay = options.overlay;
-            Act act = reacts[k].act;
-            act.commands.back().seconds *= robot.period / reacts[k].period;  // as many exchanges
-            const auto rows = perform(robot, act, options.tools, options.seed + k, options.scratch);
+            const auto rows = perform(robot, reacts[k].act, options.tools, options.seed + k, options.scratch);
             add_errors(experiment, reacts[k], rows, errors[side]);
             std::filesystem::remove_all(options.scratch);
             if (options.done) options.done(++done, 2 * reacts.size());

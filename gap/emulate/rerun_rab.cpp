@@ -37,7 +37,7 @@ std::vector<Message> measured(const Experiment& experiment) {
         for (std::size_t i = 0; i < run.rows; ++i) {
             Message one;
             one.distance = cell("distance_m", i);
-            if (std::isnan(one.distance)) continue;
+            if (std::isnan(one.distance) || cell("emitter", i) > 0) continue;
             const double strength = cell("strength", i), truth = cell("true_bearing_rad", i),
                          received = cell("received", i), nearest = cell("receiver", i);
             one.received = std::isnan(received) ? !std::isnan(strength) : received > 0.5;

@@ -3,8 +3,8 @@
 // their own, first as the simulator is, then with the verdict's overlay. Compared are means of groups:
 // strength by distance and nearest receiver, bearing's error by nearest receiver, share received by distance.
 //
-// Deviations: 1. boards alone in the world, one sender. 2. Each pair has its own spread of parts, which
-// counts as error in both.
+// Messages of single emitters are left out. Deviations: 1. boards alone in the world, one sender. 2. Each
+// pair has its own spread of parts, which counts as error in both.
 
 #include "gap/emulate/rerun.h"
 

@@ -61,6 +61,7 @@ std::string scenario_text(const Robot& robot, const Act& act, const Tools& tools
                         quoted(scratch / "records.csv"), robot.period);
     if (act.ground)
         text += fmt::format(", \"--i2c\", \"/dev/i2c-3\", \"--ground-every\", \"{}\"", act.ground_every);
+    if (act.relative) text += ", \"--relative\"";
     text += fmt::format("]\nstart = \"{} s\"\n", kStart);
     const auto late = [&](const char* key, double seconds) {
         if (seconds > 0) text += fmt::format("{} = \"{} s\"\n", key, seconds);

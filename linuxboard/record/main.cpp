@@ -25,28 +25,31 @@ constexpr double kStartWait = 60.0;    // s
 
 const char kUsage[] =
     "usage: puckloop-record --script FILE --log FILE [--period S] [--tty DEVICE] [--i2c DEVICE]\n"
-    "                       [--ground-every N]\n"
+    "                       [--ground-every N] [--relative]\n"
     "  --script FILE   lines: seconds, left, right (steps/s)\n"
     "  --log FILE      CSV, a row an exchange with the PIC\n"
     "  --period S      between two exchanges, at least 0.01 (0.1)\n"
     "  --tty DEVICE    serial line to the PIC, 115200 8N1 (/dev/ttyS0)\n"
     "  --i2c DEVICE    bus of the ground sensors; without the option they are not read\n"
-    "  --ground-every N  exchanges from one reading of the ground sensors to the next (1)\n";
+    "  --ground-every N  exchanges from one reading of the ground sensors to the next (1)\n"
+    "  --relative      a period counts from the start of the one before, so that what is late adds up\n";
 
 struct Options {
     std::string script, log, tty = "/dev/ttyS0", i2c;
     double period = 0.1;
     long ground_every = 1;
+    bool relative = false;
 };
 
 Options parse(int argc, char** argv) {
-    enum { kScript = 1, kLog, kPeriod, kTty, kI2c, kGroundEvery };
+    enum { kScript = 1, kLog, kPeriod, kTty, kI2c, kGroundEvery, kRelative };
     const option table[] = {{"script", required_argument, nullptr, kScript},
                             {"log", required_argument, nullptr, kLog},
                             {"period", required_argument, nullptr, kPeriod},
                             {"tty", required_argument, nullptr, kTty},
                             {"i2c", required_argument, nullptr, kI2c},
                             {"ground-every", required_argument, nullptr, kGroundEvery},
+                            {"relative", no_argument, nullptr, kRelative},
                             {"help", no_argument, nullptr, 'h'},
                             {nullptr, 0, nullptr, 0}};
     Options options;
@@ -69,6 +72,9 @@ Options parse(int argc, char** argv) {
             break;
         case kGroundEvery:
             options.ground_every = whole("ground-every", optarg, 1, 1'000'000);
+            break;
+        case kRelative:
+            options.relative = true;
             break;
         case 'h':
             std::fputs(kUsage, stdout);
@@ -143,10 +149,12 @@ int run(const Options& options) {
     }
     const double begun = serial.now();
     const long last = std::lround(commands.back().seconds / options.period);
+    double woken = begun;
     std::size_t next = 0;
     for (long step = 0; step <= last; ++step) {
         const double due = static_cast<double>(step) * options.period;
-        serial.sleep_until(begun + due);
+        if (step > 0) serial.sleep_until(options.relative ? woken + options.period : begun + due);
+        woken = serial.now();
         while (next + 1 < commands.size() && commands[next + 1].seconds <= due + options.period / 2)
             ++next;
         puckloop::protocols::EpuckActuators record;

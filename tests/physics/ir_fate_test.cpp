@@ -24,9 +24,11 @@ IrParameters with(double IrParameters::*place, double value) {
 
 TEST_CASE("without a reason every burst arrives as it is") {
     IrFate fate(Parameters().ir, 1, "a>b");
+    IrSpell spell(Parameters().ir, 1, "a,b");
     for (int k = 0; k < 100; ++k) {
-        const BurstFate one = fate.next(0.02 * k);
+        const BurstFate one = fate.next();
         CHECK(!one.lost);
+        CHECK(!spell.at(0.02 * k));
         CHECK(one.turn == 0);
         CHECK(one.strength == 1.0F);
     }
@@ -35,13 +37,13 @@ TEST_CASE("without a reason every burst arrives as it is") {
 TEST_CASE("spells: a share of all time, remembered for a time") {
     IrParameters p = with(&IrParameters::spell, 0.2);
     p.spell_time = 0.5;
-    IrFate fate(p, 1, "a>b");
+    IrSpell spell(p, 1, "a,b");
     constexpr int kBursts = 200'000;
     constexpr double kApart = 0.1;  // s
     int lost = 0, both = 0;
     bool last = false;
     for (int k = 0; k < kBursts; ++k) {
-        const bool now = fate.next(kApart * k).lost;
+        const bool now = spell.at(kApart * k);
         lost += now ? 1 : 0;
         both += now && last ? 1 : 0;
         last = now;
@@ -57,7 +59,7 @@ TEST_CASE("reflections: a share of the bursts, weaker by the loss, from about 0.
     constexpr int kBursts = 50'000;
     double stray = 0, log_sum = 0, turned = 0;
     for (int k = 0; k < kBursts; ++k) {
-        const BurstFate one = fate.next(0.0);
+        const BurstFate one = fate.next();
         if (one.strength == 1.0F) continue;
         ++stray;
         log_sum += std::log(one.strength);

@@ -105,7 +105,7 @@ TEST_CASE("a microphone's gain and an accelerometer's zero from an overlay are t
         CHECK(axis.after < 3.5);  // the converter's noise
 }
 
-TEST_CASE("a longer period is the recorder's when it is performed again") {
+TEST_CASE("a longer period is that of sleeps which end late") {
     const Rerun result =
         again("timing", {"host.period=0.104"}, named("long_period", "timing.extra_period", 0.004, 0.0));
     CHECK(result.observables[0].before > 0.01);
