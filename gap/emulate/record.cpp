@@ -30,6 +30,7 @@ constexpr double kAngleNoise = 0.2 * kDegree, kAngleQuantum = 1e-4;  // rad
 constexpr double kJigNoise = 1e-6;                                   // m: a measuring table's
 constexpr double kHostNoise = 2e-4;                                  // s, of the host's time stamps
 constexpr double kTransferTime = 1.9e-4;  // s: address, register or value, STOP at 100 kHz
+constexpr double kClockReading = 1e-6;    // s: what the recorder's loop takes beside its sleeps
 constexpr double kMostSlanting = 65 * kDegree, kFurthest = 0.11;
 constexpr double kClearOfEdge = 0.008;  // m: a row 0.1 s late is still on the same stripe
 /// Commands reach the motors this much after the row's time: twelve bytes, of which the last is held back 4
@@ -178,7 +179,9 @@ HiddenExperiment record(std::string_view kind, const RecordOptions& options) {
                               {"command.latency", fmt::format("{}", kCommandLatency)},
                               {"inverse_friction", fmt::format("{}", kStartLoss)}};
     if (kind == "proximity") experiment.nominal = {{"proximity.age", fmt::format("{}", kOwnAge)}};
-    if (kind == "timing") experiment.nominal = {{"timing.i2c_stretch", fmt::format("{}", kTransferTime)}};
+    if (kind == "timing")
+        experiment.nominal = {{"timing.i2c_stretch", fmt::format("{}", kTransferTime)},
+                              {"timing.extra_period", fmt::format("{}", kClockReading)}};
     if (kind == "proximity") experiment.instrument = {{"reading", "{ ceiling = 4095, quantum = 1 }"}};
     if (kind == "ground") experiment.nominal = {{"ground.lag", fmt::format("{}", kOwnLag)}};
     // The sensors saturate at 967, and the converter's noise comes after that.

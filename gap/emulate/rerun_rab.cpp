@@ -16,8 +16,8 @@ namespace puckloop::gap::emulate {
 namespace {
 
 constexpr std::size_t kDistances = 12;  // at most so many are performed
-constexpr int kRepeats = 12;            // poses of a pair at a distance
-constexpr int kPairs = 8, kBriefPairs = 3;
+constexpr int kRepeats = 8;             // poses of a pair at a distance
+constexpr int kPairs = 24, kBriefPairs = 6;
 constexpr double kFine = 1e-3;  // m: closer distances are one
 
 struct Message {
@@ -86,41 +86,72 @@ std::vector<Message> emulated(const tools::RabMeasurement& what) {
     return messages;
 }
 
-struct Mean {
-    double sum = 0.0;
+struct Moments {
+    double sum = 0.0, squares = 0.0;
     std::size_t rows = 0;
     void add(double value) {
         if (std::isnan(value)) return;
         sum += value;
+        squares += value * value;
         ++rows;
     }
-    double value() const { return sum / static_cast<double>(rows); }
+    double mean() const { return sum / static_cast<double>(rows); }
 };
-using Groups = std::map<std::pair<long, int>, Mean>;
+using Groups = std::map<std::pair<long, int>, Moments>;
 
-/// Three tables of means: strength, bearing's error, share received.
-std::vector<Groups> groups_of(const std::vector<Message>& messages) {
-    std::vector<Groups> groups(3);
+/// Of messages: strength by distance and nearest receiver, bearing's error by receiver, share received.
+struct Seen {
+    Groups strength, bearing, received;
+};
+
+Seen seen_in(const std::vector<Message>& messages) {
+    Seen seen;
     for (const Message& one : messages) {
-        const long place = std::lround(one.distance / kFine);
-        groups[0][{place, one.receiver}].add(one.strength);
-        groups[1][{0, one.receiver}].add(one.bearing_error);
-        groups[2][{place, 0}].add(one.received ? 1.0 : 0.0);
+        seen.strength[{std::lround(one.distance / kFine), one.receiver}].add(one.strength);
+        seen.bearing[{0, one.receiver}].add(one.bearing_error);
+        seen.received[{0, 0}].add(one.received ? 1.0 : 0.0);
     }
-    return groups;
+    return seen;
 }
 
 /// Root mean square of the groups' differences, weighted by measured rows; rows 0: nothing to compare.
 std::pair<double, std::size_t> difference(const Groups& measured, const Groups& other) {
     double squares = 0.0;
     std::size_t rows = 0;
-    for (const auto& [group, mean] : measured) {
+    for (const auto& [group, own] : measured) {
         const auto place = other.find(group);
-        if (mean.rows == 0 || place == other.end() || place->second.rows == 0) continue;
-        squares += static_cast<double>(mean.rows) * std::pow(mean.value() - place->second.value(), 2);
-        rows += mean.rows;
+        if (own.rows == 0 || place == other.end() || place->second.rows == 0) continue;
+        squares += static_cast<double>(own.rows) * std::pow(own.mean() - place->second.mean(), 2);
+        rows += own.rows;
     }
     return {std::sqrt(squares / static_cast<double>(std::max<std::size_t>(rows, 1))), rows};
+}
+
+/// Standard deviation about the groups' means.
+double scatter(const Groups& groups) {
+    double squares = 0.0, free = 0.0;
+    for (const auto& [group, own] : groups)
+        if (own.rows > 1) {
+            squares += own.squares - own.sum * own.mean();
+            free += static_cast<double>(own.rows - 1);
+        }
+    return std::sqrt(std::max(squares, 0.0) / std::max(free, 1.0));
+}
+
+void compare(const char* name, const char* unit, Groups Seen::*part, const Seen& told,
+             const Seen (&performed)[2], Rerun& result) {
+    const auto [before, rows] = difference(told.*part, performed[0].*part);
+    if (rows == 0) return;
+    result.observables.push_back({name, unit, before, difference(told.*part, performed[1].*part).first});
+    result.rows = std::max(result.rows, rows);
+}
+
+void compare_scatter(const char* name, const char* unit, Groups Seen::*part, const Seen& told,
+                     const Seen (&performed)[2], Rerun& result) {
+    if ((told.*part).empty() || (performed[0].*part).empty()) return;
+    const double own = scatter(told.*part);
+    result.observables.push_back({name, unit, std::abs(own - scatter(performed[0].*part)),
+                                  std::abs(own - scatter(performed[1].*part))});
 }
 
 }  // namespace
@@ -139,8 +170,8 @@ Rerun rerun_rab(const Experiment& experiment, const RerunOptions& options) {
         result.not_done = "no row with a distance";
         return result;
     }
-    const auto told = groups_of(messages);
-    std::vector<Groups> performed[2];
+    const Seen told = seen_in(messages);
+    Seen performed[2];
     for (const int side : {0, 1}) {
         scenarios::Scenario scenario;
         scenario.world.arena = physics::rectangular_arena(4, 4);
@@ -150,17 +181,14 @@ Rerun rerun_rab(const Experiment& experiment, const RerunOptions& options) {
         }
         if (side == 1) scenarios::apply_overlay(scenario, options.overlay);
         what.parameters = scenario.world.parameters;
-        performed[side] = groups_of(emulated(what));
+        performed[side] = seen_in(emulated(what));
         if (options.done) options.done(static_cast<std::size_t>(side) + 1, 2);
     }
-    constexpr const char* kNames[][2] = {{"strength", "ln counts"}, {"bearing", "rad"}, {"received", "1"}};
-    for (std::size_t o = 0; o < told.size(); ++o) {
-        const auto [before, rows] = difference(told[o], performed[0][o]);
-        const double after = difference(told[o], performed[1][o]).first;
-        if (rows == 0) continue;
-        result.observables.push_back({kNames[o][0], kNames[o][1], before, after});
-        result.rows = std::max(result.rows, rows);
-    }
+    compare("strength", "ln counts", &Seen::strength, told, performed, result);
+    compare_scatter("strength scatter", "ln counts", &Seen::strength, told, performed, result);
+    compare("bearing", "rad", &Seen::bearing, told, performed, result);
+    compare_scatter("bearing scatter", "rad", &Seen::bearing, told, performed, result);
+    compare("received", "1", &Seen::received, told, performed, result);
     result.runs = result.of_runs = static_cast<std::size_t>(what.pairs);
     return result;
 }

@@ -43,6 +43,7 @@ Rerun again(const std::string& kind, const std::vector<std::string>& changes, co
     how.tools = options.tools;
     how.overlay = scratch / "overlay.toml";
     how.scratch = scratch / "again";
+    if (kind == "rab") how.longest = 1;  // few pairs of boards
     const Rerun result = emulate::rerun(experiment, verdict, how);
     std::filesystem::remove_all(scratch);
     INFO(result.not_done);
@@ -110,6 +111,19 @@ TEST_CASE("a longer period is that of sleeps which end late") {
         again("timing", {"host.period=0.104"}, named("long_period", "timing.extra_period", 0.004, 0.0));
     CHECK(result.observables[0].before > 0.01);
     CHECK(result.observables[0].after < 0.0004);  // the host's time stamps, 0.2 ms
+}
+
+TEST_CASE("a receiver's gain and reflections from an overlay are those of the emulated boards") {
+    const Rerun gain = again("rab", {"ir.receiver_gain3=1.8"},
+                             named("strength_spread_parts", "rab.receiver_gain4", 1.8, 1.0));
+    REQUIRE(gain.observables.size() == 5);
+    CHECK(gain.observables[0].before > 1.1 * gain.observables[0].after);  // one receiver of twelve
+    Verdict stray = named("multipath", "rab.multipath", 0.3, 0.0);
+    stray.causes[0].parameters.push_back({"rab.multipath_loss", "", 1.0, 1.0, 1.0, 0.7, true});
+    const Rerun bent = again("rab", {"ir.stray=0.3", "ir.stray_loss=1"}, stray);
+    CHECK(bent.observables[1].before > 0.25);  // scatter of a strength: 0.3 of 0.7 at a loss of 1
+    CHECK(bent.observables[1].after < bent.observables[1].before / 2);
+    CHECK(bent.observables[3].after < bent.observables[3].before / 2);  // of a bearing
 }
 
 TEST_CASE("an overlay's links and clocks reach every robot of a scenario") {
