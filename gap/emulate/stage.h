@@ -43,9 +43,9 @@ struct Act {
     bool ground = false;
     double load = 0.0;                    ///< kg laid on the robot, known to the laboratory
     double slope_x = 0.0, slope_y = 0.0;  ///< rad that the table is tilted, known as well
-    bool shimmed = false;  ///< no play under the skids: the robot does not rock, its tilt is the table's
-    int ground_every = 1;                 ///< exchanges from one reading of the ground sensors to the next
-    bool relative = false;                ///< the program's periods count from the start of the one before
+    bool shimmed = false;   ///< no play under the skids: the robot does not rock, its tilt is the table's
+    int ground_every = 1;   ///< exchanges from one reading of the ground sensors to the next
+    bool relative = false;  ///< the program's periods count from the start of the one before
 };
 
 /// One exchange between Linux board and main board, and where the tracker saw the robot when it was begun.
