@@ -3,9 +3,8 @@
 //
 // Deviations: 1. all of it acts on the lit sample and is drawn anew each physics step, so that each sample of
 // a firmware has its own; sensors sampled within the same step do not differ from their neighbours in time.
-// 2. Scatter is Gaussian and white. 3. Each sensor sees
-// a lamp's flicker in a phase of its own, drawn once a run: they look elsewhere and are sampled at other
-// times.
+// 2. Scatter is Gaussian and white. 3. Each sensor sees a lamp's flicker in a phase of its own, drawn once a
+// run: they look elsewhere and are sampled at other times.
 
 #include "base/random.h"
 #include "physics/parameters.h"
