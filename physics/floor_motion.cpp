@@ -41,13 +41,13 @@ FloorVelocity FloorMotion::velocity(const Rolling& now, double step_seconds) {
     return floor;
 }
 
-/// Share of the way that is lost.
+/// Share of the way that is lost: all of it at most, or the floor would drive the wheel.
 double FloorMotion::creep(double heading) const {
     double lost = body_.load_creep * body_.load;
     if (body_.slope_creep != 0.0)
         lost += body_.slope_creep *
                 std::asin(std::clamp(rise_x_ * std::cos(heading) + rise_y_ * std::sin(heading), -1.0, 1.0));
-    return lost;
+    return std::min(lost, 1.0);
 }
 
 /// Wheels that roll at different speeds turn the robot as if the axle were longer by turn_scrub times the

@@ -154,6 +154,13 @@ TEST_CASE("a load costs its share of the way, both ways and in turns") {
     CHECK(1 - with.heading / without.heading == Approx(0.02).epsilon(0.02));
 }
 
+TEST_CASE("a creep that takes more than all of the way leaves the robot where it is") {
+    const Values creep{
+        {"robot.load", 1}, {"robot.load_creep", 1}, {"world.slope_x", 0.1}, {"robot.slope_creep", 1}};
+    const auto with = after(creep, {{300, 300, 4}});
+    CHECK(std::hypot(with.x, with.y) < 0.003);
+}
+
 TEST_CASE("a load alone leaves the way as it is") {
     const std::vector<Leg> legs{{450, 450, 4}, {0, 0, 0.5}, {-200, 300, 2}};
     const auto with = after({{"robot.load", 0.2}}, legs), without = after({}, legs);
