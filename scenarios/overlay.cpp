@@ -34,6 +34,9 @@ void apply_uart(const std::string& file, const TomlValue& table, Scenario& scena
     const double commands = probability(reader, "command_loss"), answers = probability(reader, "answer_loss"),
                  cut = probability(reader, "answer_cut"), again = probability(reader, "answer_cut_again"),
                  edges = probability(reader, "answer_edge_loss");
+    if (again > 0 && cut == 0)
+        reader.fail("answer_cut_again", "answer_cut_again does nothing without a cut before",
+                    "answer_cut above 0 besides");
     reader.finish();
     for (const RobotBoards& robot : scenario.robots) {
         if (!robot.linux_board) continue;

@@ -43,6 +43,8 @@ std::vector<std::uint8_t> read_bytes(Reader& reader) {
             reader.fail("bytes", fmt::format("'{}' is not a byte", text), "such as \"0x7F\" or \"127\"");
         bytes.push_back(value);
     }
+    if (bytes.empty())
+        reader.fail("bytes", "bytes is empty", "such as [\"0x00\", \"0xFF\"], or no 'bytes' for all");
     return bytes;
 }
 

@@ -103,6 +103,8 @@ TEST_CASE("an overlay acts on lines and Linux boards of robots that have them") 
     CHECK_THROWS_WITH(with("[linux]\nslow = 1\n"), Catch::Contains("unknown key 'slow'"));
     CHECK_THROWS_WITH(with("[uart]\nanswer_cut = 2\n"),
                       Catch::Contains("answer_cut") && Catch::Contains("0 to 1"));
+    CHECK_THROWS_WITH(with("[uart]\nanswer_cut_again = 0.5\n"),
+                      Catch::Contains("line 2") && Catch::Contains("answer_cut_again does nothing"));
 }
 
 TEST_CASE("what cannot be run is said with its line") {
@@ -124,6 +126,8 @@ TEST_CASE("what cannot be run is said with its line") {
               .ends_with("fault 1: there is no UART link 'robot1.uart' (expected robot0.uart)"));
     CHECK(problem_of(with_linux + "[[fault]]\nlink = \"robot0.uart\"\nbytes = [\"0x00\", \"300\"]\n")
               .find("'300' is not a byte") != std::string::npos);
+    CHECK(problem_of(with_linux + "[[fault]]\nlink = \"robot0.uart\"\nbytes = []\n").find("bytes is empty") !=
+          std::string::npos);
     CHECK(problem_of(with_linux + "[[fault]]\nlink = \"robot0.uart\"\nkind = \"cut\"\nagain = 2\n")
               .find("again is out of range") != std::string::npos);
     CHECK(problem_of(with_linux + "restart = [\"3 s\", \"2 s\"]\n").find("do not rise") != std::string::npos);
