@@ -38,8 +38,13 @@ class LinksOverlay {
         seconds("timing.extra_period", "oversleep");
         seconds("timing.period_jitter", "oversleep_jitter");
         table("clock");
-        if (const double drift = more("timing.clock_drift"); drift != 0)
-            line("pic_error", fmt::format("\"{:.9g} ppm\"", (1 / (1 + drift) - 1) * 1e6));
+        if (const double drift = more("timing.clock_drift"); drift != 0) {
+            constexpr double kMost = 2e5;  // ppm, what a run takes
+            const double ppm = (1 / (1 + drift) - 1) * 1e6, taken = std::clamp(ppm, -kMost, kMost);
+            if (taken != ppm)
+                header_ += fmt::format("# {:.6g} ppm was found; a run takes -200000 to 200000\n", ppm);
+            line("pic_error", fmt::format("\"{:.9g} ppm\"", taken));
+        }
         return text_;
     }
 

@@ -50,6 +50,15 @@ std::vector<std::string> left_out(const Experiment& experiment, const Verdict& v
     return names;
 }
 
+Rerun not_done(const RerunOptions& options, const char* why) {
+    std::error_code ignored;
+    std::filesystem::remove_all(options.scratch, ignored);
+    Rerun result;
+    result.asked = true;
+    result.not_done = why;
+    return result;
+}
+
 /// As many as `longest` seconds allow, from all over; at least one.
 std::vector<React> chosen(const std::vector<React>& all, double longest) {
     for (std::size_t count = all.size(); count > 0; --count) {
@@ -114,10 +123,9 @@ Rerun rerun(const Experiment& experiment, const Verdict& verdict, const RerunOpt
     result.left_out = left_out(experiment, verdict);
     return result;
 } catch (const RunError& error) {  // an overlay may stop the robot's line altogether
-    Rerun result;
-    result.asked = true;
-    result.not_done = error.what();
-    return result;
+    return not_done(options, error.what());
+} catch (const InputError& error) {  // no tools, or what a run does not take
+    return not_done(options, error.what());
 }
 
 }  // namespace puckloop::gap::emulate

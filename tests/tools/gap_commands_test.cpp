@@ -74,6 +74,8 @@ TEST_CASE("gap: options and folders that cannot be used end in one line and stat
     check_refused(floor + " --out " + desk.at("floor/run0.csv"), "run0.csv");
     check_refused(floor + " --no-rerun --firmware x.hex --out " + desk.at("out"), "--no-rerun");
     check_refused(floor + " --rerun --no-rerun --out " + desk.at("out"), "--no-rerun");
+    check_refused(floor + " --firmware x.hex --out " + desk.at("out"), "x.hex: no such file");
+    check_refused(floor + " --firmware x.hex", "--out");
     check_refused("gap selftest --workers 99999999", "--workers");
     check_refused("gap selftest --cases -1", "--cases");
     check_refused("gap selftest --quick --kind ground --scratch /dev/full", "/dev/full");

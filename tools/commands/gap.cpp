@@ -2,6 +2,7 @@
 
 #include "tools/commands/gap.h"
 #include "base/error.h"
+#include "emu/image/image.h"
 #include "gap/analyse.h"
 #include "gap/emulate/rerun.h"
 #include "gap/experiment.h"
@@ -102,6 +103,11 @@ void analyse_folder(const Request& request) {
         throw InputError("", "--no-rerun", "says the contrary of --rerun", "one of the two");
     if (request.no_rerun && !request.firmware.empty())
         throw InputError("", "--firmware", "is for running again only", "no --no-rerun");
+    if (!request.firmware.empty()) {  // said now, not after the analysis
+        if (request.out.empty())
+            throw InputError("", "--firmware", "needs the overlay that --out writes", "--out OUT");
+        image::load_image(request.firmware.string());
+    }
     const gap::Experiment experiment = gap::read_experiment(request.folder);
     const auto overlay = request.out / "overlay.toml", json = request.out / "gap.json",
                page = request.out / "report.html";

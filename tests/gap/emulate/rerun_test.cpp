@@ -126,6 +126,35 @@ TEST_CASE("a receiver's gain and reflections from an overlay are those of the em
     CHECK(bent.observables[3].after < bent.observables[3].before / 2);  // of a bearing
 }
 
+TEST_CASE("what cannot be performed again is said, and leaves nothing behind") {
+    const auto scratch = puckloop::tests::scratch_path("gap_rerun_impossible");
+    emulate::RecordOptions options;
+    options.tools = {PUCKLOOP_RECORD, PUCKLOOP_FIRMWARE, PUCKLOOP_RAB_FIRMWARE};
+    options.brief = true;
+    options.scratch = scratch / "emulated";
+    selftest::write_folder(emulate::record("timing", options), scratch / "experiment");
+    const Experiment experiment = read_experiment(scratch / "experiment");
+    const Verdict verdict = named("truncation", "timing.truncation", 1.0, 0.0);
+    std::ofstream(scratch / "overlay.toml") << overlay_toml(experiment, verdict);
+    emulate::RerunOptions how;
+    how.tools = options.tools;
+    how.overlay = scratch / "overlay.toml";
+    how.scratch = scratch / "again";
+    SECTION("the overlay stops the robot's line") {
+        CHECK_THAT(emulate::rerun(experiment, verdict, how).not_done, Catch::Contains("does not answer"));
+    }
+    SECTION("the recorder is missing") {
+        how.tools.record = scratch / "nothing";
+        CHECK_THAT(emulate::rerun(experiment, verdict, how).not_done, Catch::Contains("nothing"));
+    }
+    SECTION("the overlay is no overlay") {
+        std::ofstream(how.overlay) << "[parameters]\n\"push.rate\" = 7\n";
+        CHECK_THAT(emulate::rerun(experiment, verdict, how).not_done, Catch::Contains("push.rate"));
+    }
+    CHECK(!std::filesystem::exists(how.scratch));
+    std::filesystem::remove_all(scratch);
+}
+
 TEST_CASE("an overlay's links and clocks reach every robot of a scenario") {
     const auto scratch = puckloop::tests::scratch_path("gap_overlay_links");
     std::filesystem::create_directories(scratch);
@@ -142,6 +171,11 @@ TEST_CASE("an overlay's links and clocks reach every robot of a scenario") {
     CHECK(scenario.faults[faults + 1].kind == cosim::FaultKind::Drop);
     CHECK(scenario.faults[faults + 1].probability == Approx(0.001));
     CHECK(scenario.robots[0].pic.crystal_ppm == Approx(before + 250));
+    // A drift at the end of its range is a crystal beyond what a run takes.
+    std::ofstream(scratch / "overlay.toml")
+        << overlay_toml({}, named("clock_drift", "timing.clock_drift", -0.2, 0.0));
+    scenarios::apply_overlay(scenario, scratch / "overlay.toml");
+    CHECK(scenario.robots[0].pic.crystal_ppm == Approx(before + 250 + 2e5));
     std::filesystem::remove_all(scratch);
 }
 
