@@ -69,6 +69,9 @@ Json held_json(const Verdict& verdict) {
             {"observables", observables}};
 }
 
+/// Less than this share of an error is no change.
+constexpr double kNoChange = 0.01;
+
 Json rerun_json(const Rerun& rerun) {
     if (!rerun.asked) return nullptr;
     if (!rerun.not_done.empty()) return {{"done", false}, {"why", rerun.not_done}};
@@ -84,7 +87,8 @@ Json rerun_json(const Rerun& rerun) {
             {"of_runs", rerun.of_runs},
             {"rows", rerun.rows},
             {"observables", observables},
-            {"left_out", rerun.left_out}};
+            {"left_out", rerun.left_out},
+            {"caution", rerun.caution()}};
 }
 
 Json free_form_json(const FreeForm& form) {
@@ -176,6 +180,23 @@ bool doubtful(const Verdict& verdict) {
             return cause.name == rival.instead_of && matters;
         });
     });
+}
+
+std::string Rerun::caution() const {
+    const auto same = [](const RerunObservable& o) {
+        return std::abs(o.after - o.before) <= kNoChange * std::max(o.before, o.after);
+    };
+    const auto worse = [](const RerunObservable& o) { return o.after > (1 + kNoChange) * o.before; };
+    if (!not_done.empty() || observables.empty()) return {};
+    if (std::all_of(observables.begin(), observables.end(), same))
+        return "what was performed does not show the cause: it acts elsewhere, or moves no mean of what "
+               "stands "
+               "still";
+    if (std::all_of(observables.begin(), observables.end(),
+                    [&](const RerunObservable& o) { return same(o) || worse(o); }))
+        return "the error does not fall: what comes at random moments comes at others when it is performed "
+               "again";
+    return {};
 }
 
 }  // namespace puckloop::gap

@@ -116,10 +116,13 @@ struct RerunObservable {
 };
 struct Rerun {
     bool asked = false;
-    std::string not_done;  ///< why not, in plain words; empty: it was done
+    std::string not_done;                         ///< why not, in plain words; empty: it was done
     std::size_t runs = 0, of_runs = 0, rows = 0;  ///< performed, of all that could be
     std::vector<RerunObservable> observables;
     std::vector<std::string> left_out;  ///< parameters of the overlay that the emulation could not take
+
+    /// What the figures cannot say: a cause that does not act where it was looked, or acts at random moments.
+    std::string caution() const;
 };
 
 struct Verdict {

@@ -106,11 +106,12 @@ std::string rerun_section(const Verdict& verdict) {
     for (const RerunObservable& o : rerun.observables)
         table.row({o.name, o.unit, cell(o.before), cell(o.after), cell(o.after / o.before)});
     out += table.html();
-    out +=
-        paragraph(fmt::format("The whole robot emulated, firmware in the loop: {} of {} runs a side, {} rows "
-                              "of the measurement compared; first as the simulator is, then with "
-                              "overlay.toml. Measurement noise is in both errors.",
-                              rerun.runs, rerun.of_runs, rerun.rows));
+    out += paragraph(fmt::format(
+        "The whole robot emulated, firmware in the loop: {} of {} runs or placements a side, {} rows "
+        "of the measurement compared; first as the simulator is, then with "
+        "overlay.toml. Measurement noise is in both errors.",
+        rerun.runs, rerun.of_runs, rerun.rows));
+    if (const auto caution = rerun.caution(); !caution.empty()) out += paragraph("Mind: " + caution + ".");
     if (!rerun.left_out.empty())
         out += paragraph(
             fmt::format("Without a counterpart in a run, so left out: {}.", fmt::join(rerun.left_out, ", ")));

@@ -92,8 +92,11 @@ void run_again(const Request& request, const gap::Experiment& experiment, gap::V
     if (options.done) fmt::print(stderr, "\r\033[K");
     if (!verdict.rerun.not_done.empty()) fmt::print("not run again: {}\n", verdict.rerun.not_done);
     for (const auto& one : verdict.rerun.observables)
-        fmt::print("run again with the overlay ({} of {} runs): {}, error {:.4g} {} before, {:.4g} after\n",
-                   verdict.rerun.runs, verdict.rerun.of_runs, one.name, one.before, one.unit, one.after);
+        fmt::print("run again with the overlay ({} of {} runs or placements): {}, error {:.4g}{} before, "
+                   "{:.4g} after\n",
+                   verdict.rerun.runs, verdict.rerun.of_runs, one.name, one.before,
+                   one.unit == "1" ? "" : " " + one.unit, one.after);
+    if (const auto caution = verdict.rerun.caution(); !caution.empty()) fmt::print("  {}\n", caution);
 }
 
 void analyse_folder(const Request& request) {
