@@ -178,6 +178,13 @@ std::string WorldNode::finish() {
                                     {"steps_lost_left", std::llround(robot.drive(Side::Left).lost())},
                                     {"steps_lost_right", std::llround(robot.drive(Side::Right).lost())},
                                     {"battery_v", robot.channels()[kBatteryVoltageChannel]}});
+        if (const auto& floor = robot.floor_motion(); floor.pushes() > 0) {
+            auto& told = report["robots"].back();
+            told["pushes"] = floor.pushes();
+            told["pushed_x_m"] = floor.pushed()[0];
+            told["pushed_y_m"] = floor.pushed()[1];
+            told["pushed_theta_rad"] = floor.pushed()[2];
+        }
     }
     report["ode_messages"] = model.dynamics().complaints();
     if (model.dynamics().complaints() > 0) report["ode_first_message"] = model.dynamics().first_complaint();

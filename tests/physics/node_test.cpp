@@ -105,6 +105,17 @@ TEST_CASE("the node's messages do not depend on how time was granted, and repeat
     CHECK(first.finish() == second.finish());
 }
 
+TEST_CASE("the report tells where pushes took a robot, and of none where there are none") {
+    World world = busy_world();
+    WorldNode left_alone(world);
+    run(left_alone, 1000 * kMillisecond, 100 * kMillisecond);
+    CHECK_THAT(left_alone.finish(), !Catch::Contains("push"));
+    world.parameters["push.rate"] = 1.0;
+    WorldNode pushed(world);
+    run(pushed, 8000 * kMillisecond, 100 * kMillisecond);
+    CHECK_THAT(pushed.finish(), Catch::Contains("\"pushes\":") && Catch::Contains("\"pushed_x_m\":"));
+}
+
 TEST_CASE("a step is used in the step after it and seen one later") {
     WorldNode node(busy_world());
     std::vector<Message> out;
