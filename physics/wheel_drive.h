@@ -4,8 +4,8 @@
 //
 // Deviations: 1. between two steps the rotor is taken to turn evenly (a real one swings into each step);
 // the wheel thus runs one step interval behind the coils, and ends exactly on the last step. 2. Pull-out is a
-// threshold on the lag, not a torque curve. 3. Below robot.deadband the rotor leans one step towards where it is
-// asked to and no further, so that a drive's first step is not lost.
+// threshold on the lag, not a torque curve. 3. Below robot.deadband the rotor leans one step towards where it
+// is asked to and no further, so that a drive's first step is not lost.
 
 #include "base/random.h"
 #include "physics/parameters.h"

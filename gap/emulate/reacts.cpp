@@ -218,14 +218,11 @@ std::vector<React> proximity(const Experiment& experiment, double longest, std::
             place.rows.push_back(r);
             place.rows.push_back(i);
         }
-    std::vector<React> all, chosen;
+    std::vector<React> all;
     for (auto& [place, react] : placements)
         all.push_back(std::move(react));
-    const std::size_t count = std::min(all.size(), kPlacements);
-    for (std::size_t k = 0; k < count; ++k)
-        chosen.push_back(std::move(all[k * all.size() / count]));
-    if (chosen.empty()) why = "no row with a sensor before a wall that the body does not touch";
-    return chosen;
+    if (all.empty()) why = "no row with a sensor before a wall that the body does not touch";
+    return spread_of(all, kPlacements);
 }
 
 void motion_errors(const Run& run, const React& react, const std::vector<Row>& emulated,
@@ -287,6 +284,14 @@ double standing_mean(const std::vector<Row>& emulated, double t,
 }
 
 }  // namespace
+
+std::vector<React> spread_of(const std::vector<React>& all, std::size_t most) {
+    std::vector<React> some;
+    const std::size_t count = std::min(all.size(), most);
+    for (std::size_t k = 0; k < count; ++k)
+        some.push_back(all[k * all.size() / count]);
+    return some;
+}
 
 double value_of(const Run& run, std::string_view name, std::size_t row, double fallback) {
     const auto& column = run.column(name);

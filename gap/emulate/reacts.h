@@ -30,6 +30,9 @@ struct React {
 /// the row was measured, but for no more than `longest` seconds (1 at least).
 std::vector<React> reacts_of(const Experiment& experiment, double longest, std::string& why);
 
+/// `most` of them at even spaces, all if there are no more.
+std::vector<React> spread_of(const std::vector<React>& all, std::size_t most);
+
 /// Names and units of what is compared, in the order of ErrorSums.
 std::vector<std::pair<const char*, const char*>> compared(Kind kind);
 

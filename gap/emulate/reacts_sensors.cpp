@@ -27,13 +27,10 @@ using Place = std::array<long, 4>;
 using Places = std::map<Place, React>;
 
 std::vector<React> some_of(Places& places) {
-    std::vector<React> all, chosen;
+    std::vector<React> all;
     for (auto& [place, react] : places)
         all.push_back(std::move(react));
-    const std::size_t count = std::min(all.size(), kPlacements);
-    for (std::size_t k = 0; k < count; ++k)
-        chosen.push_back(std::move(all[k * all.size() / count]));
-    return chosen;
+    return spread_of(all, kPlacements);
 }
 
 void add_row(Places& places, const Place& place, const React& react, std::size_t run, std::size_t row) {

@@ -62,12 +62,10 @@ Rerun not_done(const RerunOptions& options, const char* why) {
 /// As many as `longest` seconds allow, from all over; at least one.
 std::vector<React> chosen(const std::vector<React>& all, double longest) {
     for (std::size_t count = all.size(); count > 0; --count) {
-        std::vector<React> some;
+        auto some = spread_of(all, count);
         double seconds = 0.0;
-        for (std::size_t k = 0; k < count; ++k) {
-            some.push_back(all[k * all.size() / count]);
-            seconds += some.back().act.commands.back().seconds;
-        }
+        for (const React& react : some)
+            seconds += react.act.commands.back().seconds;
         if (longest <= 0 || seconds <= longest || count == 1) return some;
     }
     return all;
