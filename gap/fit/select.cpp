@@ -25,6 +25,7 @@ constexpr std::size_t kRefined = 5;    // best by a quick fit that are fitted to
 constexpr std::size_t kLookedAt = 7;   // best on a part of many rows that are fitted to all
 constexpr double kHopeless = 60.0;
 constexpr double kPromising = 40.0;       // BIC of an effect that may want a partner
+constexpr std::size_t kPaired = 6;        // best alone that are tried two by two where none is enough
 constexpr double kHopelessOnPart = 20.0;  // of BIC, of a part's rows
 constexpr double kNoRival = 0.3;          // share of the evidence that a rival has alone, at least
 constexpr double kTie = 2.0;              // nats of merit, or of BIC: not even a hint
@@ -138,6 +139,41 @@ class Selector {
         return true;
     }
 
+    /// Two effects that pull opposite ways nearly everywhere say next to nothing alone. Where no effect is
+    /// enough, the best are tried two by two; both are taken or none.
+    bool step_of_opposites() {
+        const std::size_t count = std::min(last_step_.size(), kPaired);
+        std::vector<std::pair<std::size_t, std::size_t>> pairs;
+        for (std::size_t a = 0; a < count; ++a)
+            for (std::size_t b = a + 1; b < count; ++b)
+                pairs.emplace_back(a, b);
+        std::vector<std::pair<double, Fit>> fits(pairs.size());
+        in_parallel(pairs.size(), study_.threads(), [&](std::size_t k) {
+            const Fit &first = last_step_[pairs[k].first].second,
+                      &second = last_step_[pairs[k].second].second;
+            Fit fit = study_.fit_set(with(first.effects, second.effects.back()), first.fitted.state, kQuick);
+            fits[k] = {std::min(first.bic, second.bic) - fit.bic, std::move(fit)};
+        });
+        const auto best_first = [](const auto& x, const auto& y) { return x.first > y.first; };
+        std::stable_sort(fits.begin(), fits.end(), best_first);
+        if (fits.empty() || fits.front().first < kPromising) return false;
+        Fit both = study_.refined(fits.front().second);
+        HeldOut held = study_.hold_out(both);
+        const Gain gain = gain_of(gains_by_block(study_.blocks(), result_.held_chosen, held));
+        if (!enough(both, gain)) return false;
+        for (const std::size_t effect : both.effects) {
+            const auto alone = std::find_if(last_step_.begin(), last_step_.end(), [&](const auto& one) {
+                return one.second.effects.back() != effect && has(both.effects, one.second.effects.back());
+            });
+            const Gain own = gain_of(gains_by_block(study_.blocks(), study_.hold_out(alone->second), held));
+            result_.steps.push_back({effect, alone->second.bic - both.bic, own, true, ""});
+        }
+        result_.chosen = std::move(both);
+        result_.held_chosen = std::move(held);
+        last_step_of_choice_ = std::move(fits);
+        return true;
+    }
+
     bool step() {
         const auto& chosen = result_.chosen;
         const std::size_t count = study_.candidates().size();
@@ -208,7 +244,7 @@ class Selector {
         if (best > 0 && fits.front().first > kPromising && !helds.front().score.empty() &&
             step_of_two(fits.front(), helds.front(), gains.front()))
             return true;
-        if (best == fits.size()) return false;
+        if (best == fits.size()) return chosen.effects.empty() && step_of_opposites();
         last_step_of_choice_ = last_step_;
         result_.steps.push_back({fits[best].second.effects.back(), fits[best].first, gains[best], true, ""});
         result_.chosen = std::move(fits[best].second);
