@@ -10,7 +10,8 @@ Effect clock_drift() {
         .mechanism = "Crystals differ by tens of ppm, RC oscillators by percents.",
         .equation = "t_host = (1 + rho) t_robot",
         .kinds = {Kind::Timing},
-        .parameters = {{"timing.clock_drift", -0.2, 0.2, 0.003, {}, "+-50 ppm; 1-2 % without crystal"}},
+        .parameters =
+            {{"timing.clock_drift", -0.2, 0.2, 0.003, {0.003, -0.003}, "+-50 ppm; 1-2 % without crystal"}},
         .needs = {"t_robot_s"},
         .observables = "arrival, growing with time",
         .enters = "the overlay's [clock] pic_error",

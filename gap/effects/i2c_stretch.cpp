@@ -10,7 +10,7 @@ Effect i2c_stretch() {
         .mechanism = "Slaves stretch the clock or the bus is shared.",
         .equation = "+ s per transfer",
         .kinds = {Kind::Timing},
-        .parameters = {{"timing.i2c_stretch", -0.001, 0.05, 0.0015, {}, "1..5 ms"}},
+        .parameters = {{"timing.i2c_stretch", -0.001, 0.05, 0.0015, {0.0015}, "1..5 ms"}},
         .needs = {"i2c_reads"},
         .observables = "arrival by number of transfers",
         .enters = "the overlay's [linux] i2c_hold, beside what emerges from the emulated bus",

@@ -10,7 +10,7 @@ Effect long_period() {
         .mechanism = "Bytes and delays add to the nominal period.",
         .equation = "T = T0 + delta, with jitter",
         .kinds = {Kind::Timing},
-        .parameters = {{"timing.extra_period", -0.05, 0.2, 0.004, {}, "104 ms typical"},
+        .parameters = {{"timing.extra_period", -0.05, 0.2, 0.004, {0.004, -0.004}, "104 ms typical"},
                        {"timing.period_jitter", 0.0, 0.2, 0.003, {0.0005}, "1..5 ms"}},
         .needs = {},
         .observables = "robot's clock against the number of periods",
