@@ -32,6 +32,23 @@ std::vector<std::size_t> scatter_effects(const Study& study, const Fit& fit) {
     return list;
 }
 
+std::vector<std::string> scattered_by(const Study& study, const Fit& fit,
+                                      const std::vector<std::size_t>& effects) {
+    State state = fit.fitted.state;
+    for (const std::size_t effect : effects)
+        state = study.without(effect, std::move(state));
+    Prediction with, without;
+    study.model().predict(fit.fitted.state.values, with);
+    study.model().predict(state.values, without);
+    std::vector<std::string> names;
+    for (std::size_t o = 0; o < with.size(); ++o) {
+        with[o].mean.clear();  // the same, and may be NaN
+        without[o].mean.clear();
+        if (with[o] != without[o]) names.push_back(study.model().observables()[o].name);
+    }
+    return names;
+}
+
 bool lapses(const Study& study, const Fit& fit) {
     Prediction prediction;
     study.model().predict(fit.fitted.state.values, prediction);

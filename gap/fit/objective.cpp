@@ -15,13 +15,6 @@ constexpr double kClaimDoubt = 0.08;  // of ln sd, where the simulator claims on
 constexpr double kLeastCurvature = 1e-8;
 constexpr int kTail = 2;  // as noise_parameter counts
 
-bool equal(const Predicted& a, const Predicted& b) {
-    return a.mean == b.mean && a.factor == b.factor && a.extra == b.extra && a.jolt == b.jolt &&
-           a.lapse == b.lapse && a.lapse_scale == b.lapse_scale && a.lapse_shift == b.lapse_shift &&
-           a.floor == b.floor && a.ceiling == b.ceiling && a.line_amplitude == b.line_amplitude &&
-           a.line_frequency == b.line_frequency;
-}
-
 Eigen::Index as_index(std::size_t i) {
     return static_cast<Eigen::Index>(i);
 }
@@ -225,7 +218,7 @@ double Objective::slopes(const double* x, Eigen::VectorXd& gradient, Eigen::Matr
         for (std::size_t o = 0; o < bases_.size(); ++o) {
             group.clear();
             for (std::size_t k = 0; k < count; ++k)
-                if (!equal(moved_[k][o], prediction_[o]))
+                if (moved_[k][o] != prediction_[o])
                     group.push_back({first + k, &moved_[k][o], state_.noise[o], step[k], false});
             take_differences(o, group);
         }

@@ -55,6 +55,8 @@ struct Predicted {
     double pile = 0.0;                ///< sd of a reading cut to the ceiling, observable's unit
     double line_amplitude = 0.0;      ///< of a spectral line with unknown phase, observable's unit
     double line_frequency = 0.0;      ///< Hz
+
+    bool operator==(const Predicted&) const = default;
 };
 using Prediction = std::vector<Predicted>;
 
