@@ -106,6 +106,15 @@ Beginning beginning(const Observable& o, const Predicted& p, std::size_t i) {
     return {first, errors[kFirstRows / 2], static_cast<double>(kFirstRows)};
 }
 
+/// Variance that a sum gains where its axes turn, in units of the error's: each error comes in along one axis
+/// and leaves along another. Errors that carry over do so together, as long as the axes stay near.
+template <class Number>
+Number turned_in(const Observable& o, std::size_t i, const Number& memory) {
+    const double squared = o.turn.empty() ? 0.0 : o.turn[i] * o.turn[i];
+    const Number short_of = 1.0 - memory;
+    return squared * (1.0 - memory * memory) / (short_of * short_of + memory * squared);
+}
+
 /// Variance of the guess, in units of the error's: that of a median of so many errors that carry over; of one
 /// row it is the error's own.
 template <class Number>
@@ -128,7 +137,9 @@ void filter_level(const Observable& o, const Predicted& p, const NoiseParameters
         out.pushed.assign(o.y.size(), 0.0);
     }
     Walk walk{};
+    Lever lever{};
     PushedWalk pushed;
+    const bool levered = !p.lever.empty();
     unsigned behind = 0;  // rows of the chain that do not yet know whether they were pushed
     const auto look_back = [&](std::size_t row, unsigned rows) {
         for (; behind > rows; --behind)
@@ -149,7 +160,8 @@ void filter_level(const Observable& o, const Predicted& p, const NoiseParameters
             const Beginning first = beginning(o, p, i);
             const double guess = first.guess / sd, unsure = unsure_of(first.rows, noise.memory);
             walk.begin(error, guess, unsure);
-            if (pushes) pushed.begin(error, guess, unsure);
+            lever.begin(at(p.lever, i, 0.0) / sd, p.lever_sd * p.lever_sd);
+            if (pushes) pushed.begin(error, guess, unsure, lever);
             const bool plain = first.rows > 1;
             out.role[i] = plain ? RowRole::Plain : RowRole::First;
             out.z[i] = error - guess;
@@ -159,15 +171,19 @@ void filter_level(const Observable& o, const Predicted& p, const NoiseParameters
             continue;
         }
         double innovation = 0.0;
-        const double gained = at(o.walk, i, 0.0) + (at(o.jolt, i, 0.0) + at(p.jolt, i, 0.0)) / (sd * sd);
-        const double level = walk.level;
-        const double variance = walk.filter(error, drift + gained, noise.memory, nu, innovation);
+        const double gained =
+            turned_in(o, i, noise.memory) + (at(o.jolt, i, 0.0) + at(p.jolt, i, 0.0)) / (sd * sd);
+        const double level = walk.level, arm = at(p.lever, i, 0.0) / sd;
+        const double variance =
+            levered ? walk.filter(error, arm, lever, drift + gained, noise.memory, nu, innovation)
+                    : walk.filter(error, drift + gained, noise.memory, nu, innovation);
         if (gain != nullptr && innovation != 0.0) (*gain)[i] = (walk.level - level) / innovation;
         out.z[i] = innovation / std::sqrt(variance);
         out.variance[i] = variance * sd * sd;
         if (!pushes) continue;
         const double width = p.lapse_scale[i] / sd;
-        const auto row = pushed.filter(error, drift + gained, noise.memory, nu, p.lapse[i], width * width);
+        const auto row =
+            pushed.filter(error, arm, drift + gained, noise.memory, nu, p.lapse[i], width * width);
         out.z[i] = row.innovation;
         out.mixed[i] = row.cost + std::log(sd);
         ++behind;
@@ -255,8 +271,18 @@ void filter_sums(const Observable& o, const std::array<const Predicted*, kLanes>
     }
     const Lanes squared_sd = sd * sd;
     WalkOf<Lanes> walk;
+    LeverOf<Lanes> lever;
+    const bool levered = !predicted[0]->lever.empty();
+    Lanes arm = Lanes::Zero(), doubt;
+    for (std::size_t k = 0; k < kLanes; ++k)
+        doubt[static_cast<Eigen::Index>(k)] = predicted[k]->lever_sd * predicted[k]->lever_sd;
     for (std::size_t i = 0; i < n; ++i) {
         Lanes error, innovation;
+        if (levered) {
+            for (std::size_t k = 0; k < kLanes; ++k)
+                arm[static_cast<Eigen::Index>(k)] = predicted[k]->lever[i];
+            arm /= sd;
+        }
         if (i == 0 || o.starts[i] != 0) {
             Lanes guess;
             double rows = 1.0;
@@ -269,6 +295,7 @@ void filter_sums(const Observable& o, const std::array<const Predicted*, kLanes>
             error /= sd;
             guess /= sd;
             walk.begin(error, guess, unsure_of(rows, memory));
+            if (levered) lever.begin(arm, doubt);
             for (std::size_t k = 0; k < kLanes; ++k) {
                 const auto lane = static_cast<Eigen::Index>(k);
                 z[k][i] = error[lane] - guess[lane];
@@ -282,8 +309,9 @@ void filter_sums(const Observable& o, const std::array<const Predicted*, kLanes>
         for (std::size_t k = 0; k < kLanes; ++k)
             error[static_cast<Eigen::Index>(k)] = o.y[i] - mean[k][i];
         error /= sd;
-        const Lanes gained = at(o.walk, i, 0.0) + at(o.jolt, i, 0.0) / squared_sd;
-        const Lanes total = walk.filter(error, drift + gained, memory, tail, innovation);
+        const Lanes gained = turned_in(o, i, memory) + at(o.jolt, i, 0.0) / squared_sd;
+        const Lanes total = levered ? walk.filter(error, arm, lever, drift + gained, memory, tail, innovation)
+                                    : walk.filter(error, drift + gained, memory, tail, innovation);
         const Lanes standard = innovation / total.sqrt(), own = total * sd * sd;
         for (std::size_t k = 0; k < kLanes; ++k) {
             z[k][i] = standard[static_cast<Eigen::Index>(k)];

@@ -153,7 +153,7 @@ Fitted fit(const Model& model, const std::vector<Freed>& freed, const State& sta
         cost = objective.value(x.data());
     }
     layout.unpack(x.data(), result.state);
-    for (std::size_t j = 0; j < freed.size(); ++j)
+    for (std::size_t j = 0; j < layout.freed(); ++j)
         result.log_prior -= prior_cost(x[j]);
     result.log_likelihood = -cost - result.log_prior;
     return result;

@@ -12,6 +12,10 @@ constexpr double kLongestShare = 0.3;   // of one that is a share
 
 Layout::Layout(const Model& model, const std::vector<Freed>& freed, bool all_noise)
     : model_(model), freed_(freed) {
+    for (const Nuisance& one : model.nuisances())
+        if (all_noise)
+            freed_.push_back({one.index, one.low, one.high, one.prior_sd,
+                              model.parameters()[static_cast<std::size_t>(one.index)].neutral});
     for (std::size_t o = 0; o < model.observables().size(); ++o)
         for (int k = 0; k < std::min(noise_parameters(model.observables()[o]), all_noise ? 4 : 1); ++k)
             noise_.emplace_back(o, k);

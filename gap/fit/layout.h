@@ -7,15 +7,15 @@
 
 namespace puckloop::gap {
 
-/// Freed model parameters first (their distance from the centre in prior widths), then the noise of each
-/// observable.
+/// Freed model parameters first (their distance from the centre in prior widths), then the model's nuisances
+/// likewise, then the noise of each observable.
 class Layout {
   public:
-    /// `all_noise` false: of the noise only its size.
+    /// `all_noise` false: of the noise only its size, and no nuisance.
     Layout(const Model& model, const std::vector<Freed>& freed, bool all_noise);
 
     std::size_t size() const { return freed_.size() + noise_.size(); }
-    std::size_t freed() const { return freed_.size(); }
+    std::size_t freed() const { return freed_.size(); }  ///< nuisances too
     /// Of a number of the noise: whose, and which (as noise_parameter counts).
     std::size_t observable(std::size_t j) const { return noise_[j - freed_.size()].first; }
     int noise_index(std::size_t j) const { return noise_[j - freed_.size()].second; }

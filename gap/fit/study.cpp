@@ -45,8 +45,9 @@ bool same(const std::vector<double>& a, const std::vector<double>& b) {
 bool differ(const Predicted& a, const Predicted& b) {
     return !same(a.mean, b.mean) || !same(a.factor, b.factor) || !same(a.extra, b.extra) ||
            !same(a.jolt, b.jolt) || !same(a.lapse, b.lapse) || !same(a.lapse_scale, b.lapse_scale) ||
-           a.lapse_shift != b.lapse_shift || a.floor != b.floor || a.ceiling != b.ceiling ||
-           a.line_amplitude != b.line_amplitude || a.line_frequency != b.line_frequency;
+           !same(a.lever, b.lever) || a.lever_sd != b.lever_sd || a.lapse_shift != b.lapse_shift ||
+           a.floor != b.floor || a.ceiling != b.ceiling || a.line_amplitude != b.line_amplitude ||
+           a.line_frequency != b.line_frequency;
 }
 
 bool varies(const Experiment& experiment, std::string_view column) {

@@ -13,14 +13,14 @@ constexpr double kForgotten = 1e-4;  // of the likeliest history's weight
 
 }  // namespace
 
-void PushedWalk::begin(double value, double guess, double unsure) {
+void PushedWalk::begin(double value, double guess, double unsure, const Lever& lever) {
     Walk first{};
     first.begin(value, guess, unsure);
-    kept_.assign(1, {first, 1.0, 0});
+    kept_.assign(1, {first, lever, 1.0, 0});
 }
 
-PushedWalk::Row PushedWalk::filter(double value, double drift, double memory, double tail, double chance,
-                                   double push) {
+PushedWalk::Row PushedWalk::filter(double value, double arm, double drift, double memory, double tail,
+                                   double chance, double push) {
     next_.clear();
     double likely = 0.0, innovations = 0.0;
     for (const History& old : kept_)
@@ -30,8 +30,8 @@ PushedWalk::Row PushedWalk::filter(double value, double drift, double memory, do
             history.pushed = old.pushed << 1U | (pushed ? 1U : 0U);
             if (push > 0) history.weight *= pushed ? chance : 1 - chance;
             double innovation = 0.0;
-            const double variance =
-                history.walk.filter(value, drift + (pushed ? push : 0.0), memory, tail, innovation);
+            const double variance = history.walk.filter(
+                value, arm, history.lever, drift + (pushed ? push : 0.0), memory, tail, innovation);
             const double z = innovation / std::sqrt(variance);
             history.weight *= std::exp(-(tail + 1) / 2 * std::log(1 + z * z / tail)) / std::sqrt(variance);
             likely += history.weight;

@@ -28,6 +28,20 @@ Lanes at_least(const Lanes& value, double least) {
     return value.max(least);
 }
 
+/// A number that a chain does not know and that acts on its rows in proportion to a lever, learnt on the way.
+/// The lever goes through the same filter as the rows do, so that what is left of it is what is new in it.
+template <class Number>
+struct LeverOf {
+    Number level, error, mean, variance;
+
+    void begin(const Number& first, const Number& doubt) {
+        level = first;
+        error = first * 0.0;
+        mean = error;
+        variance = doubt;
+    }
+};
+
 /// Random walk plus carried-over measurement error. `Number`: double, or an Eigen array of walks side by
 /// side.
 template <class Number>
@@ -46,26 +60,54 @@ struct WalkOf {
     /// Returns the innovation's variance. `tail`: degrees of freedom of the errors' Student t.
     Number filter(const Number& value, const Number& drift, const Number& memory, const Number& tail,
                   Number& innovation) {
+        const Number own = foresee(drift, memory);
+        innovation = value - level - error;
+        learn(innovation, own, trust_in(Number(innovation * innovation / own), tail));
+        return own;
+    }
+
+    /// The same beside a lever, `arm` in this row.
+    Number filter(const Number& value, const Number& arm, LeverOf<Number>& lever, const Number& drift,
+                  const Number& memory, const Number& tail, Number& innovation) {
+        const Number own = foresee(drift, memory);
+        lever.error *= memory;
+        const Number news = arm - lever.level - lever.error, raw = value - level - error;
+        innovation = raw - lever.mean * news;
+        const Number total = own + lever.variance * news * news;
+        const Number trust = trust_in(Number(innovation * innovation / total), tail);
+        const Number pull = trust * lever.variance * news / total;
+        lever.mean += pull * innovation;
+        lever.variance -= pull * news * lever.variance;
+        const Number gain = learn(raw, own, trust);
+        lever.level += gain * news;
+        lever.error += (1.0 - gain) * news;
+        return total;
+    }
+
+  private:
+    /// Returns the variance of what comes.
+    Number foresee(const Number& drift, const Number& memory) {
         p00 += drift;
         p01 *= memory;
         p11 = memory * memory * p11 + 1.0 - memory * memory;
         error *= memory;
-        innovation = value - level - error;
-        const Number total = at_least(Number(p00 + 2.0 * p01 + p11), kLeastWalkVariance);
-        const Number squared = innovation * innovation / total;
-        // Sum and error together are seen exactly. What is not believed of the sum is an error, and carried
-        // over as errors are.
-        const Number trust = trust_in(squared, tail);
+        return at_least(Number(p00 + 2.0 * p01 + p11), kLeastWalkVariance);
+    }
+
+    /// Sum and error together are seen exactly. What is not believed of the sum is an error, and carried over
+    /// as errors are. Returns the share that the sum took.
+    Number learn(const Number& innovation, const Number& total, const Number& trust) {
         const Number gain = trust * (p00 + p01) / total;
         level += gain * innovation;
         error += (1.0 - gain) * innovation;
         p00 -= gain * (p00 + p01);
         p11 = p00;
         p01 = -p00;
-        return total;
+        return gain;
     }
 };
 using Walk = WalkOf<double>;
+using Lever = LeverOf<double>;
 
 /// What a sum may be: it goes on, or something pushed it by an unknown amount in one of the last rows. Each
 /// history is a Walk with a weight; the likely ones are kept.
@@ -76,15 +118,17 @@ class PushedWalk {
         double innovation;  ///< standardised, the mean over histories
     };
 
-    void begin(double value, double guess, double unsure);
+    void begin(double value, double guess, double unsure, const Lever& lever);
     /// `chance` that the row was pushed, by an amount of variance `push`; the rest as Walk::filter.
-    Row filter(double value, double drift, double memory, double tail, double chance, double push);
+    Row filter(double value, double arm, double drift, double memory, double tail, double chance,
+               double push);
     /// How likely the row `back` rows ago (fewer than 32) was pushed, as seen from the last one.
     double pushed(unsigned back) const;
 
   private:
     struct History {
         Walk walk;
+        Lever lever;
         double weight;
         std::uint32_t pushed;  ///< a bit for each of the last rows, the last one lowest
     };

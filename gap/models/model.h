@@ -33,9 +33,8 @@ struct Observable {
     std::vector<char> starts;  ///< 1: nothing is carried over into this row
     std::vector<double> time;  ///< s; empty when unknown
     std::vector<double> gate;  ///< weight of the spectral line in this row; empty: 1
-    std::vector<double>
-        walk;  ///< Level: variance that the sum gains in this row for sure, in units of the noise's
-    std::vector<double> jolt;  ///< Level: the same, in the observable's unit squared
+    std::vector<double> turn;  ///< Level: by how much the axes that are summed along turn in this row, rad
+    std::vector<double> jolt;  ///< Level: variance that the sum gains for sure, observable's unit squared
     double fixed_sd = 0.0;  ///< > 0: the noise is this and is not fitted (whole steps of an emulated counter)
     double known_sd = 0.0;  ///< noise that the simulator claims; 0: it claims none
 };
@@ -46,6 +45,8 @@ struct Predicted {
     std::vector<double> factor;       ///< noise is this many times larger (1)
     std::vector<double> extra;        ///< noise sd added in quadrature, observable's unit (0)
     std::vector<double> jolt;         ///< Level: variance that the sum gains, observable's unit squared (0)
+    std::vector<double> lever;        ///< Level: what a number that no row knows does to the sum, by one (0)
+    double lever_sd = 0.0;            ///< of that number, anew in each chain
     std::vector<double> lapse;        ///< probability that the row is a lapse (0)
     std::vector<double> lapse_scale;  ///< sd of a lapse, observable's unit
     double lapse_shift = 0.0;         ///< mean of a lapse, observable's unit
@@ -69,12 +70,20 @@ struct ModelParameter {
     bool simulator = false;  ///< a physics parameter of this name exists
 };
 
+/// A parameter of how rows are looked at, not of what the simulator does: every fit moves it, as it does the
+/// noise.
+struct Nuisance {
+    int index = -1;  ///< in Model::parameters()
+    double low = 0.0, high = 0.0, prior_sd = 1.0;
+};
+
 class Model {
   public:
     virtual ~Model() = default;
 
     const std::vector<ModelParameter>& parameters() const { return parameters_; }
     const std::vector<Observable>& observables() const { return observables_; }
+    const std::vector<Nuisance>& nuisances() const { return nuisances_; }
     /// -1: no such parameter.
     int find(std::string_view name) const;
     /// "proximity.gain*" -> the indices of proximity.gain0, ... that occur in the data.
@@ -98,6 +107,7 @@ class Model {
 
     std::vector<ModelParameter> parameters_;
     std::vector<Observable> observables_;
+    std::vector<Nuisance> nuisances_;
 };
 
 /// `experiment` must outlive the model. InputError if its nominal numbers give no prediction.

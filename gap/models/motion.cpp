@@ -1,6 +1,7 @@
 // Odometry and motion: what the tracker saw against what the motors did. A run is compared as three sums over
 // its rows: way along the heading, way across it, heading. The tracker's own heading turns its steps into
-// along and across, so an error of heading does not spread into the other two. With counters and commands
+// along and across, so an error of heading does not spread into the other two; what its noise adds to them is
+// predicted, as far as the wheels' heading can be trusted (steadied_heading.h). With counters and commands
 // both recorded, the counters are compared with the commands as well.
 //
 // Deviations from the world model: 1. the wheel follows its motor at once, but for the loss a start or stop
@@ -9,6 +10,7 @@
 #include "gap/models/keyed_cache.h"
 #include "gap/models/model.h"
 #include "gap/models/rows.h"
+#include "gap/models/steadied_heading.h"
 #include "gap/models/wheel_curve.h"
 #include "physics/parameters.h"
 
@@ -35,12 +37,16 @@ constexpr double kOpenSlip = 0.2;      // share of the way lost to sliding that 
 constexpr double kSameTime = 1e-6;     // s
 constexpr double kLeastChance = 1e-6;  // of losing a command again and again
 constexpr double kCounterSd = 3.0;     // steps: whole steps, and when a row was taken
+constexpr double kSpan = 100.0;        // s: wheels that tell the heading of a whole run
+constexpr double kShortestSpan = 0.02, kLongestSpan = 1000.0;  // s: they tell nothing, everything
+constexpr double kSpanWidth = 3.0;                             // ln s
+constexpr double kDoubt = 2e-3;                                // rad: of a run's heading as a whole
+constexpr double kLeastDoubt = 1e-5, kMostDoubt = 0.2, kDoubtWidth = 3.0;
 
 struct Path {
     std::uint32_t run = 0;
     WheelCurve wheel[2], asked[2];
-    std::vector<double> time, turned, middle, load,
-        incline;  ///< of the rows used; measured turn since the row before
+    std::vector<double> time, middle, load, incline;  ///< of the rows used
 };
 
 /// Steps told at one speed, without sign: a row has several such pieces where the command changes in it.
@@ -81,6 +87,8 @@ class MotionModel final : public Model {
             p.lapse.assign(noisy ? n : 0, 0.0);
             p.lapse_scale.assign(noisy ? n : 0, 0.0);
         }
+        out[1].lever.resize(n);
+        out[1].lever_sd = std::exp(at(v, heading_doubt_));
         std::size_t first = 0;
         const double late = at(v, delay_) + (counted_ ? 0.0 : at(v, latency_));
         const auto driven = driven_.get({late}, [&] { return driven_by(late); });
@@ -175,7 +183,6 @@ class MotionModel final : public Model {
             }
             const auto& clock = experiment.runs[path.run].counted_at;
             path.time.push_back(clock.empty() ? base.time[i] : clock[base.row[i]]);
-            path.turned.push_back(turned);
             path.middle.push_back(middle);
             path.load.push_back(load[i]);
             path.incline.push_back(incline[i]);
@@ -192,15 +199,30 @@ class MotionModel final : public Model {
             one.instrument = {NAN, NAN, 0.0};
             one.y = sums[o];
             // Turning mixes the tracker's noise of along and across: their sums wander.
-            if (o < 2)
-                for (const Path& path : paths_)
-                    for (const double turned : path.turned)
-                        one.walk.push_back(turned * turned);
+            if (o < 2) one.turn = turns();
             if (own && !counted_ && o != 1) one.jolt = jolts(o == 2);
             for (std::size_t i = 1; i < one.y.size(); ++i)
                 one.starts[i] = base.run[i] != base.run[i - 1] ? 1 : 0;
         }
         if (counted_) gather_counters(experiment);
+    }
+
+    /// By how much a robot turns in each row, by its wheels: the tracker's noise turns nothing.
+    std::vector<double> turns() const {
+        const physics::Parameters defaults;
+        const double metre =
+            2 * std::numbers::pi * defaults.robot.wheel_radius_left / defaults.robot.steps_per_turn;
+        std::vector<double> turned;
+        for (const Path& path : paths_) {
+            CurveReader left(path.wheel[0]), right(path.wheel[1]);
+            double last = 0.0;
+            for (std::size_t i = 0; i < path.time.size(); ++i) {
+                const double apart = right.at(path.time[i]) - left.at(path.time[i]);
+                turned.push_back(i == 0 ? 0.0 : (apart - last) * metre / defaults.robot.axle_length);
+                last = apart;
+            }
+        }
+        return turned;
     }
 
     /// What a change of command leaves open: where in a step it came, and how exactly the tyres slid.
@@ -268,6 +290,10 @@ class MotionModel final : public Model {
         marker_angle_ = add("tracker.marker_angle", "rad", 0.0);
         delay_ = add("tracker.delay", "s", 0.0);
         heading_drift_ = add("tracker.heading_drift", "rad/s", 0.0);
+        heading_span_ = add("tracker.heading_span", "ln s", std::log(kSpan));
+        heading_doubt_ = add("tracker.heading_doubt", "ln rad", std::log(kDoubt));
+        nuisances_.push_back({heading_doubt_, std::log(kLeastDoubt), std::log(kMostDoubt), kDoubtWidth});
+        nuisances_.push_back({heading_span_, std::log(kShortestSpan), std::log(kLongestSpan), kSpanWidth});
     }
 
     /// Metres that a change of speed has cost by `to`: wheels follow no faster than mu g. On reversal the
@@ -372,8 +398,8 @@ class MotionModel final : public Model {
                      marker_angle = at(v, marker_angle_), heading_drift = at(v, heading_drift_),
                      push_size = at(v, push_size_), push_turn = at(v, push_turn_);
         std::array<double, 2> driven{}, geared{}, last_geared{};
-        double skew_cosine = std::cos(marker_angle), skew_sine = std::sin(marker_angle);
-        double along = 0, across = 0, heading = 0;
+        double heading = 0;
+        std::vector<Step> steps(path.time.size());
         for (std::size_t i = 0; i < path.time.size(); ++i) {
             bool moves = false;
             const double now = path.time[i] - late, before = i == 0 ? now : path.time[i - 1] - late,
@@ -423,19 +449,10 @@ class MotionModel final : public Model {
             }
             way -= lever * marker_y;
             aside += lever * marker_x;
-            // Way is told along the tracker's heading: what turns that turns the way.
-            if (heading_drift != 0.0) {
-                const double skew =
-                    marker_angle + heading_drift * (path.time[i] - path.time.front() - span / 2);
-                skew_cosine = std::cos(skew);
-                skew_sine = std::sin(skew);
-            }
-            along += way * skew_cosine + aside * skew_sine;
-            across += aside * skew_cosine - way * skew_sine;
             heading += turned + heading_drift * span;
-            out[0].mean[first + i] = along;
-            out[1].mean[first + i] = across;
             out[2].mean[first + i] = heading;
+            steps[i] = {way, aside,
+                        marker_angle + heading_drift * (path.time[i] - path.time.front() - span / 2)};
             if (loss_speed > 0) {
                 out[0].jolt[first + i] = slips / 4;
                 out[2].jolt[first + i] = slips / (axle * axle);
@@ -447,6 +464,33 @@ class MotionModel final : public Model {
                 }
             }
             if (drop > 0) lapses_of_loss(drop, metre, axle, path, before, now, first + i, out);
+        }
+        tell_along(std::exp(at(v, heading_span_)), path, steps, first, out);
+    }
+
+    /// What a robot does between two rows, and the angle by which the tracker's heading is off, noise apart.
+    struct Step {
+        double way = 0.0, aside = 0.0, skew = 0.0;
+    };
+
+    /// Way is told along the tracker's heading: what turns that turns the way.
+    void tell_along(double span, const Path& path, const std::vector<Step>& steps, std::size_t first,
+                    Prediction& out) const {
+        const std::size_t n = steps.size();
+        std::vector<double> above(n), errors;
+        for (std::size_t i = 0; i < n; ++i)
+            above[i] = observables_[2].y[first + i] - out[2].mean[first + i];
+        heading_errors(above, path.time, span, errors);
+        double along = 0, across = 0;
+        for (std::size_t i = 0; i < n; ++i) {
+            const Step& step = steps[i];
+            const double off = step.skew + (i == 0 ? 0.0 : (errors[i - 1] + errors[i]) / 2);
+            const double cosine = std::cos(off), sine = std::sin(off);
+            along += step.way * cosine + step.aside * sine;
+            across += step.aside * cosine - step.way * sine;
+            out[0].mean[first + i] = along;
+            out[1].mean[first + i] = across;
+            out[1].lever[first + i] = -along;
         }
     }
 
@@ -537,7 +581,7 @@ class MotionModel final : public Model {
         scrub_ = 0, friction_ = 0, creep_ = 0, slope_creep_ = 0, loss_speed_ = 0, loss_width_ = 0,
         deadband_ = 0, backlash_ = 0, latency_ = 0, drop_ = 0, drift_x_ = 0, drift_y_ = 0, push_rate_ = 0,
         push_size_ = 0, push_turn_ = 0, marker_x_ = 0, marker_y_ = 0, marker_angle_ = 0, delay_ = 0,
-        heading_drift_ = 0;
+        heading_drift_ = 0, heading_span_ = 0, heading_doubt_ = 0;
 };
 
 }  // namespace
