@@ -41,8 +41,10 @@ const char* const kNuisances[] = {"marker_offset", "tracker_delay", "stale_readi
 
 class Analysis {
   public:
-    Analysis(const Experiment& experiment, const Options& options)
-        : experiment_(experiment), options_(options), study_(experiment, options.seed, options.threads) {}
+    Analysis(const Experiment& experiment, const Options& options, MotionView view)
+        : experiment_(experiment),
+          options_(options),
+          study_(experiment, options.seed, options.threads, view) {}
 
     Verdict run() {
         verdict_.kind = experiment_.kind;
@@ -448,7 +450,10 @@ class Analysis {
 }  // namespace
 
 Verdict analyse(const Experiment& experiment, const Options& options) {
-    return Analysis(experiment, options).run();
+    Verdict verdict = Analysis(experiment, options, MotionView::Robot).run();
+    if (experiment.kind != Kind::Motion || verdict.decision != Decision::NoEffect) return verdict;
+    Verdict from_room = Analysis(experiment, options, MotionView::Room).run();
+    return from_room.decision == Decision::NoEffect ? verdict : from_room;
 }
 
 std::vector<Series> simulate(const Experiment& experiment, const std::map<std::string, double>& changed) {

@@ -97,8 +97,8 @@ Freed freed_at(const Model& model, const EffectParameter& parameter, int index) 
 
 }  // namespace
 
-Study::Study(const Experiment& experiment, std::uint64_t seed, unsigned threads)
-    : experiment_(experiment), model_(make_model(experiment)), threads_(threads) {
+Study::Study(const Experiment& experiment, std::uint64_t seed, unsigned threads, MotionView view)
+    : experiment_(experiment), view_(view), model_(make_model(experiment, view)), threads_(threads) {
     for (const Observable& observable : model_->observables())
         rows_ += observable.y.size();
     make_candidates();
@@ -107,7 +107,7 @@ Study::Study(const Experiment& experiment, std::uint64_t seed, unsigned threads)
 }
 
 Study::Study(std::unique_ptr<Experiment> thin, const Study& whole)
-    : own_(std::move(thin)), experiment_(*own_), model_(make_model(experiment_)) {
+    : own_(std::move(thin)), experiment_(*own_), view_(whole.view_), model_(make_model(experiment_, view_)) {
     for (const Observable& observable : model_->observables())
         rows_ += observable.y.size();
     take_candidates(whole);

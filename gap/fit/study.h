@@ -41,7 +41,8 @@ struct Blocks {
 class Study {
   public:
     /// On `threads` threads; what comes out does not depend on how many.
-    Study(const Experiment& experiment, std::uint64_t seed, unsigned threads = 1);
+    Study(const Experiment& experiment, std::uint64_t seed, unsigned threads = 1,
+          MotionView view = MotionView::Robot);
 
     const Experiment& experiment() const { return experiment_; }
     const Model& model() const { return *model_; }
@@ -90,6 +91,7 @@ class Study {
 
     std::unique_ptr<Experiment> own_;  // of a part
     const Experiment& experiment_;
+    MotionView view_;
     std::unique_ptr<Model> model_;
     std::unique_ptr<Study> part_;
     std::vector<int> place_in_part_;  // of each parameter; -1: the part does not have it

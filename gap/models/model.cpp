@@ -98,12 +98,12 @@ void check_finite(const Experiment& experiment, const Model& model) {
                                  "numbers of a robot that can be built");
 }
 
-std::unique_ptr<Model> make_unchecked(const Experiment& experiment) {
+std::unique_ptr<Model> make_unchecked(const Experiment& experiment, MotionView view) {
     switch (experiment.kind) {
     case Kind::Proximity:
         return make_proximity_model(experiment);
     case Kind::Motion:
-        return make_motion_model(experiment);
+        return make_motion_model(experiment, view);
     case Kind::Rab:
         return make_rab_model(experiment);
     case Kind::Microphone:
@@ -120,8 +120,8 @@ std::unique_ptr<Model> make_unchecked(const Experiment& experiment) {
 
 }  // namespace
 
-std::unique_ptr<Model> make_model(const Experiment& experiment) {
-    auto model = make_unchecked(experiment);
+std::unique_ptr<Model> make_model(const Experiment& experiment, MotionView view) {
+    auto model = make_unchecked(experiment, view);
     check_finite(experiment, *model);
     return model;
 }

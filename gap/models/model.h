@@ -110,11 +110,16 @@ class Model {
     std::vector<Nuisance> nuisances_;
 };
 
-/// `experiment` must outlive the model. InputError if its nominal numbers give no prediction.
-std::unique_ptr<Model> make_model(const Experiment& experiment);
+/// From where a drive is looked at. Sums along the robot's own axes show what robots do wherever they are and
+/// stand the heading's wander; in the room the tracker's noise adds up to nothing, so that less shows.
+enum class MotionView { Robot, Room };
+
+/// `experiment` must outlive the model. InputError if its nominal numbers give no prediction. Kinds other
+/// than motion have one view only.
+std::unique_ptr<Model> make_model(const Experiment& experiment, MotionView view = MotionView::Robot);
 
 std::unique_ptr<Model> make_proximity_model(const Experiment& experiment);
-std::unique_ptr<Model> make_motion_model(const Experiment& experiment);
+std::unique_ptr<Model> make_motion_model(const Experiment& experiment, MotionView view);
 std::unique_ptr<Model> make_rab_model(const Experiment& experiment);
 std::unique_ptr<Model> make_microphone_model(const Experiment& experiment);
 std::unique_ptr<Model> make_ground_model(const Experiment& experiment);

@@ -68,7 +68,7 @@ struct Driven {
 
 class MotionModel final : public Model {
   public:
-    explicit MotionModel(const Experiment& experiment) {
+    MotionModel(const Experiment& experiment, MotionView view) : view_(view) {
         const Rows rows(experiment, "", {"t_s", "x_m", "y_m", "theta_rad"});
         gather(experiment, rows);
         declare();
@@ -83,12 +83,14 @@ class MotionModel final : public Model {
         const bool noisy = at(v, push_rate_) > 0 || (!counted_ && at(v, drop_) > 0);
         for (int o = 0; o < 3; ++o) {
             Predicted& p = out[static_cast<std::size_t>(o)];
-            p.jolt.assign(at(v, loss_speed_) > 0 && o != 1 ? n : 0, 0.0);
+            p.jolt.assign(at(v, loss_speed_) > 0 && (o != 1 || room()) ? n : 0, 0.0);
             p.lapse.assign(noisy ? n : 0, 0.0);
             p.lapse_scale.assign(noisy ? n : 0, 0.0);
         }
-        out[1].lever.resize(n);
-        out[1].lever_sd = std::exp(at(v, heading_doubt_));
+        for (std::size_t o = room() ? 0 : 1; o < 2; ++o) {
+            out[o].lever.resize(n);
+            out[o].lever_sd = std::exp(at(v, heading_doubt_));
+        }
         std::size_t first = 0;
         const double late = at(v, delay_) + (counted_ ? 0.0 : at(v, latency_));
         const auto driven = driven_.get({late}, [&] { return driven_by(late); });
@@ -113,7 +115,7 @@ class MotionModel final : public Model {
             std::array<double, 2> last{pacer[0].at(path.time[0]), pacer[1].at(path.time[0])};
             for (std::size_t i = 1; i < path.time.size(); ++i)
                 for (std::size_t w = 0; w < 2; ++w) {
-                    const double way = observables_[0].y[row + i] - observables_[0].y[row + i - 1],
+                    const double way = along_[row + i] - along_[row + i - 1],
                                  turn = observables_[2].y[row + i] - observables_[2].y[row + i - 1];
                     const double steps = pacer[w].at(path.time[i]), asked = steps - last[w];
                     last[w] = steps;
@@ -139,6 +141,16 @@ class MotionModel final : public Model {
     }
 
   private:
+    bool room() const { return view_ == MotionView::Room; }
+
+    /// Of a variance along the robot: the share that an observable sees.
+    double share_along(const Path& path, std::size_t row, std::size_t observable) const {
+        if (observable == 2) return 1.0;
+        if (!room()) return observable == 0 ? 1.0 : 0.0;
+        const double seen = observable == 0 ? std::cos(path.middle[row]) : std::sin(path.middle[row]);
+        return seen * seen;
+    }
+
     static double at(const std::vector<double>& v, int index) { return v[static_cast<std::size_t>(index)]; }
 
     void gather(const Experiment& experiment, const Rows& rows) {
@@ -154,6 +166,7 @@ class MotionModel final : public Model {
         const MotorDriver driver = own ? MotorDriver::Timer : MotorDriver::Agenda;
         std::array<std::vector<double>, 3> sums;
         double along = 0, across = 0, heading = 0;
+        std::size_t from = 0;
         for (std::size_t i = 0; i < base.y.size(); ++i) {
             const bool begins = i == 0 || base.run[i] != base.run[i - 1];
             if (begins) {
@@ -170,6 +183,7 @@ class MotionModel final : public Model {
                 }
                 paths_.push_back(std::move(path));
                 along = across = heading = 0;
+                from = i;
             }
             Path& path = paths_.back();
             double turned = 0, middle = theta[i];
@@ -186,21 +200,23 @@ class MotionModel final : public Model {
             path.middle.push_back(middle);
             path.load.push_back(load[i]);
             path.incline.push_back(incline[i]);
-            sums[0].push_back(along);
-            sums[1].push_back(across);
+            along_.push_back(along);
+            sums[0].push_back(room() ? x[i] - x[from] : along);
+            sums[1].push_back(room() ? y[i] - y[from] : across);
             sums[2].push_back(heading);
         }
-        constexpr const char* kNames[] = {"along", "across", "heading"};
+        const std::array<const char*, 3> names{room() ? "x_m" : "along", room() ? "y_m" : "across",
+                                               "heading"};
         for (std::size_t o = 0; o < 3; ++o) {
             observables_.push_back(base);
             Observable& one = observables_.back();
-            one.name = kNames[o];
+            one.name = names[o];
             one.unit = o == 2 ? "rad" : "m";
             one.instrument = {NAN, NAN, 0.0};
             one.y = sums[o];
             // Turning mixes the tracker's noise of along and across: their sums wander.
-            if (o < 2) one.turn = turns();
-            if (own && !counted_ && o != 1) one.jolt = jolts(o == 2);
+            if (o < 2 && !room()) one.turn = turns();
+            if (own && !counted_ && (o != 1 || room())) one.jolt = jolts(o);
             for (std::size_t i = 1; i < one.y.size(); ++i)
                 one.starts[i] = base.run[i] != base.run[i - 1] ? 1 : 0;
         }
@@ -226,11 +242,11 @@ class MotionModel final : public Model {
     }
 
     /// What a change of command leaves open: where in a step it came, and how exactly the tyres slid.
-    std::vector<double> jolts(bool turning) const {
+    std::vector<double> jolts(std::size_t observable) const {
         const physics::Parameters defaults;
         const double metre =
             2 * std::numbers::pi * defaults.robot.wheel_radius_left / defaults.robot.steps_per_turn;
-        const double lever = turning ? 1 / defaults.robot.axle_length : 0.5;
+        const double lever = observable == 2 ? 1 / defaults.robot.axle_length : 0.5;
         std::vector<double> variance;
         for (const Path& path : paths_)
             for (std::size_t i = 0; i < path.time.size(); ++i) {
@@ -242,7 +258,7 @@ class MotionModel final : public Model {
                                 std::pow(jump.change * metre, 2) / (2 * defaults.contact.mu * kGravity);
                             sum += std::pow(kOpenSteps * metre, 2) + std::pow(kOpenSlip * slid, 2);
                         }
-                variance.push_back(sum * lever * lever);
+                variance.push_back(sum * lever * lever * share_along(path, i, observable));
             }
         return variance;
     }
@@ -454,7 +470,8 @@ class MotionModel final : public Model {
             steps[i] = {way, aside,
                         marker_angle + heading_drift * (path.time[i] - path.time.front() - span / 2)};
             if (loss_speed > 0) {
-                out[0].jolt[first + i] = slips / 4;
+                for (std::size_t o = 0; o < 2; ++o)
+                    if (!out[o].jolt.empty()) out[o].jolt[first + i] = slips / 4 * share_along(path, i, o);
                 out[2].jolt[first + i] = slips / (axle * axle);
             }
             if (push > 0 && ways.settled[i] != 0) {
@@ -463,9 +480,9 @@ class MotionModel final : public Model {
                     out[o].lapse_scale[first + i] = o == 2 ? push_turn : push_size;
                 }
             }
-            if (drop > 0) lapses_of_loss(drop, metre, axle, path, before, now, first + i, out);
+            if (drop > 0) lapses_of_loss(drop, metre, axle, path, i, before, now, first + i, out);
         }
-        tell_along(std::exp(at(v, heading_span_)), path, steps, first, out);
+        tell_place(std::exp(at(v, heading_span_)), path, steps, first, out);
     }
 
     /// What a robot does between two rows, and the angle by which the tracker's heading is off, noise apart.
@@ -473,8 +490,9 @@ class MotionModel final : public Model {
         double way = 0.0, aside = 0.0, skew = 0.0;
     };
 
-    /// Way is told along the tracker's heading: what turns that turns the way.
-    void tell_along(double span, const Path& path, const std::vector<Step>& steps, std::size_t first,
+    /// Where steps lead to, told along the tracker's heading: what turns that turns the way. In the room it
+    /// is the robot's own heading that leads, as far as it is known.
+    void tell_place(double span, const Path& path, const std::vector<Step>& steps, std::size_t first,
                     Prediction& out) const {
         const std::size_t n = steps.size();
         std::vector<double> above(n), errors;
@@ -485,12 +503,14 @@ class MotionModel final : public Model {
         for (std::size_t i = 0; i < n; ++i) {
             const Step& step = steps[i];
             const double off = step.skew + (i == 0 ? 0.0 : (errors[i - 1] + errors[i]) / 2);
-            const double cosine = std::cos(off), sine = std::sin(off);
+            const double axis = room() ? off - path.middle[i] : off;
+            const double cosine = std::cos(axis), sine = std::sin(axis);
             along += step.way * cosine + step.aside * sine;
             across += step.aside * cosine - step.way * sine;
             out[0].mean[first + i] = along;
             out[1].mean[first + i] = across;
             out[1].lever[first + i] = -along;
+            if (room()) out[0].lever[first + i] = across;
         }
     }
 
@@ -520,17 +540,18 @@ class MotionModel final : public Model {
         return {chance, std::abs(last.change) * (to - from)};
     }
 
-    static void lapses_of_loss(double drop, const std::array<double, 2>& metre, double axle, const Path& path,
-                               double before, double now, std::size_t row, Prediction& out) {
+    void lapses_of_loss(double drop, const std::array<double, 2>& metre, double axle, const Path& path,
+                        std::size_t i, double before, double now, std::size_t row, Prediction& out) const {
         const std::array<Loss, 2> loss{lost(path.wheel[0].jumps, drop, before, now),
                                        lost(path.wheel[1].jumps, drop, before, now)};
         const double left = loss[0].steps * metre[0], right = loss[1].steps * metre[1];
         const double chance = std::max(loss[0].chance, loss[1].chance);
-        for (const auto& [o, scale] :
-             {std::pair{0, (left + right) / 2}, std::pair{2, (left + right) / axle}}) {
+        for (std::size_t o = 0; o < 3; ++o) {
+            const double scale =
+                o == 2 ? (left + right) / axle : (left + right) / 2 * std::sqrt(share_along(path, i, o));
             if (scale <= 1e-9) continue;
-            out[static_cast<std::size_t>(o)].lapse[row] = chance;
-            out[static_cast<std::size_t>(o)].lapse_scale[row] = scale;
+            out[o].lapse[row] = chance;
+            out[o].lapse_scale[row] = scale;
         }
     }
 
@@ -573,7 +594,9 @@ class MotionModel final : public Model {
         }
     }
 
+    MotionView view_;
     std::vector<Path> paths_;
+    std::vector<double> along_;               // way along the tracker's heading, a row each
     KeyedCache<std::vector<Driven>> driven_;  // by lateness
     bool counted_ = false;
     std::array<std::vector<std::uint32_t>, 2> counter_rows_;
@@ -586,8 +609,8 @@ class MotionModel final : public Model {
 
 }  // namespace
 
-std::unique_ptr<Model> make_motion_model(const Experiment& experiment) {
-    return std::make_unique<MotionModel>(experiment);
+std::unique_ptr<Model> make_motion_model(const Experiment& experiment, MotionView view) {
+    return std::make_unique<MotionModel>(experiment, view);
 }
 
 }  // namespace puckloop::gap
