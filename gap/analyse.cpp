@@ -252,15 +252,14 @@ class Analysis {
         const auto scatter = scatter_effects(study_, selection_.chosen);
         if (scatter.empty()) return false;
         const auto touched = scattered_by(study_, selection_.chosen, scatter);
-        const auto elsewhere = [&](const auto& one) {
-            return std::find(touched.begin(), touched.end(), one.observable) == touched.end();
-        };
         for (const Leftover& left : verdict_.leftovers)
-            if (left.covariate == kPlacement && left.p_value < kSureLevel && !elsewhere(left)) return true;
+            if (left.covariate == kPlacement && left.p_value < kSureLevel &&
+                std::find(touched.begin(), touched.end(), left.observable) != touched.end())
+                return true;
         if (stats::normal_tail(repeats_at_once(study_, selection_.chosen, scatter)) < kSureLevel) return true;
         const Fit calm = without_effects(study_, selection_.chosen, scatter);
-        auto forms = free_forms_of(experiment_, study_.model(), calm.fitted.state, options_.seed);
-        std::erase_if(forms, elsewhere);
+        const auto forms =
+            free_forms_of(experiment_, study_.model(), calm.fitted.state, options_.seed, touched);
         const bool spells =
             std::any_of(forms.begin(), forms.end(), [](const FreeForm& form) { return form.spells; });
         if (spells && lapses(study_, selection_.chosen)) return true;

@@ -272,13 +272,14 @@ bool enough_events(const Observable& observable) {
 }  // namespace
 
 std::vector<FreeForm> free_forms_of(const Experiment& experiment, const Model& model, const State& state,
-                                    std::uint64_t seed) {
+                                    std::uint64_t seed, std::span<const std::string> only) {
     Prediction prediction;
     const auto costs = costs_at(model, state, prediction);
     std::vector<FreeForm> forms;
     std::vector<Errors> track;
     for (std::size_t o = 0; o < model.observables().size(); ++o) {
         const Observable& observable = model.observables()[o];
+        if (!only.empty() && std::find(only.begin(), only.end(), observable.name) == only.end()) continue;
         if (observable.fixed_sd > 0 || observable.y.size() > 4 * kMostRows) continue;
         if (!enough_events(observable)) continue;
         Errors errors = errors_of(observable, prediction[o], state.noise[o], costs[o]);

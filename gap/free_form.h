@@ -7,13 +7,16 @@
 #include "gap/verdict.h"
 
 #include <cstdint>
+#include <span>
+#include <string>
 #include <vector>
 
 namespace puckloop::gap {
 
 /// One for each observable that can be corrected (x and y of a track together), those that gain most first.
-/// Errors are those of `model` at `state`; nothing is taken away from the model's own effects.
+/// Errors are those of `model` at `state`; nothing is taken away from the model's own effects. `only`: names
+/// of the observables asked for, all of them if empty.
 std::vector<FreeForm> free_forms_of(const Experiment& experiment, const Model& model, const State& state,
-                                    std::uint64_t seed);
+                                    std::uint64_t seed, std::span<const std::string> only = {});
 
 }  // namespace puckloop::gap

@@ -1,5 +1,6 @@
 #include "base/random.h"
 #include "gap/fit/objective.h"
+#include "gap/fit/walk.h"
 
 #include <catch2/catch.hpp>
 
@@ -116,6 +117,60 @@ TEST_CASE("a fit tells a sum's drift from the noise on it", "[gap][fit]") {
     CHECK(std::exp(found.state.noise[0].carry / 2) == Approx(0.2).margin(0.05));
 }
 
+TEST_CASE("what turning axes add to a sum is no drift", "[gap][fit]") {
+    constexpr double kTurn = 0.25, kMemory = 0.7;  // rad a row
+    constexpr std::size_t kRows = 3000, kStraight = 1500;
+    RandomStream random(3, "test/turning axes");
+    std::vector<double> y, turn;
+    double sum = 0.0, last_x = 0.0, last_y = 0.0, way = 0.0;
+    for (std::size_t i = 0; i < kRows; ++i) {
+        turn.push_back(i < kStraight ? 0.0 : kTurn);
+        way += turn.back();
+        const double rest = std::sqrt(1 - kMemory * kMemory);
+        const double x = kMemory * last_x + rest * random.normal(),
+                     other = kMemory * last_y + rest * random.normal();
+        sum += (x - last_x) * std::cos(way) + (other - last_y) * std::sin(way);
+        last_x = x, last_y = other;
+        y.push_back(sum);
+    }
+    Straight model(NoiseKind::Level, std::move(y));
+    const Fitted still = fitted(model, {});
+    model.only().turn = turn;
+    const Fitted turning = fitted(model, {});
+    CHECK(turning.log_likelihood > still.log_likelihood + 5);
+    CHECK(turning.state.noise[0].carry < still.state.noise[0].carry - 1);
+}
+
+TEST_CASE("what a lever does is learnt on the way and doubted until then", "[gap][fit]") {
+    constexpr double kDoubt = 0.5, kMemory = 0.6, kManyFreedoms = 1e6;
+    constexpr int kChains = 400, kRows = 40;
+    RandomStream random(3, "test/lever");
+    double squares = 0.0, blind = 0.0, misses = 0.0;
+    for (int chain = 0; chain < kChains; ++chain) {
+        const double amount = kDoubt * random.normal();
+        const double level = random.normal();
+        double error = random.normal();
+        Walk walk{}, other{};
+        Lever lever{};
+        walk.begin(level + error, (level + error) / 2, 0.5);
+        other.begin(level + error, (level + error) / 2, 0.5);
+        lever.begin(0.0, kDoubt * kDoubt);
+        for (int i = 1; i < kRows; ++i) {
+            error = kMemory * error + std::sqrt(1 - kMemory * kMemory) * random.normal();
+            const double arm = 0.3 * i, value = level + error + amount * arm;
+            double news = 0.0;
+            const double variance = walk.filter(value, arm, lever, 0.0, kMemory, kManyFreedoms, news);
+            squares += news * news / variance;
+            const double without = other.filter(value, 0.0, kMemory, kManyFreedoms, news);
+            blind += news * news / without;
+        }
+        misses += std::pow(lever.mean - amount, 2) / lever.variance;
+    }
+    CHECK(squares / (kChains * (kRows - 1)) == Approx(1.0).margin(0.05));
+    CHECK(blind / (kChains * (kRows - 1)) > 1.5);
+    CHECK(misses / kChains == Approx(1.0).margin(0.25));
+}
+
 TEST_CASE("clipped rows say at least this far, not this far", "[gap][fit]") {
     RandomStream random(3, "test/clip");
     std::vector<double> y;
@@ -197,6 +252,7 @@ TEST_CASE("gradients are the value's own", "[gap][fit]") {
 }
 
 TEST_CASE("predictions of a sum filtered side by side give what each gives alone", "[gap][fit]") {
+    const bool levered = GENERATE(false, true);
     RandomStream random(5, "test/side by side");
     std::vector<double> y{0.0};
     for (int i = 1; i < 300; ++i)
@@ -211,6 +267,9 @@ TEST_CASE("predictions of a sum filtered side by side give what each gives alone
     for (std::size_t k = 0; k < kLanes; ++k) {
         const auto some = static_cast<double>(k);
         model.predict({0.1 * some, 0.2, 0.0}, predictions[k]);
+        for (int i = 0; levered && i < 300; ++i)
+            predictions[k][0].lever.push_back(0.02 * i * some);
+        predictions[k][0].lever_sd = 0.3;
         predicted[k] = &predictions[k][0];
         noise[k] = {-0.5 + 0.2 * some, -3 + some, 1.5, 0.2 * some};
         out[k] = &together[k];

@@ -18,14 +18,15 @@ namespace puckloop::gap {
 template <class Knobs>
 class Exact {
   public:
-    Exact(const selftest::Rig<Knobs>& rig, const Knobs& knobs, const std::string& name) {
+    Exact(const selftest::Rig<Knobs>& rig, const Knobs& knobs, const std::string& name,
+          MotionView view = MotionView::Robot) {
         selftest::HiddenExperiment table = rig.exact(knobs, 5, "");
         table.instrument.clear();
         const auto folder = tests::scratch_path("exact_" + name);
         selftest::write_folder(table, folder);
         experiment_ = read_experiment(folder);
         std::filesystem::remove_all(folder);
-        model_ = make_model(experiment_);
+        model_ = make_model(experiment_, view);
     }
     const Model& model() const { return *model_; }
 

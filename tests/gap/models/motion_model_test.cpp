@@ -23,10 +23,10 @@ struct Case {
     double by;          ///< without it the model is off by this much at least
 };
 
-Exact<MotionKnobs> exact(const Case& one) {
+Exact<MotionKnobs> exact(const Case& one, MotionView view = MotionView::Robot) {
     MotionKnobs knobs;
     one.turn(knobs);
-    return {selftest::motion_rig(), knobs, one.name};
+    return {selftest::motion_rig(), knobs, one.name, view};
 }
 
 const std::vector<Case>& cases() {
@@ -71,6 +71,17 @@ TEST_CASE("each effect of motion moves the model as it moves the plain robot") {
         CHECK(table.misfit("across", one.truth) < kWay);
         CHECK(table.misfit("heading", one.truth) < kTurn);
         CHECK(table.misfit("steps_left", one.truth) < kSteps);
+    }
+}
+
+TEST_CASE("each effect of motion leads to the same places in the room") {
+    constexpr double kPlace = 5e-4;  // m, after up to 1.6 m and several turns
+    for (const Case& one : cases()) {
+        INFO(one.name);
+        const auto table = exact(one, MotionView::Room);
+        CHECK(table.misfit("x_m", one.truth) < kPlace);
+        CHECK(table.misfit("y_m", one.truth) < kPlace);
+        CHECK(table.misfit("heading", one.truth) < kTurn);
     }
 }
 
