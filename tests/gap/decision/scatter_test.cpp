@@ -96,6 +96,25 @@ TEST_CASE("strengths that scatter more, message by message, are named so") {
     CHECK(verdict.causes.front().name == "range_noise");
 }
 
+TEST_CASE("spells in which nothing is heard do not make scatter of what is heard a mean") {
+    RandomStream random(15, "scatter test");
+    Experiment experiment =
+        strengths([&](double level, const Row&) { return level + 0.4 * random.normal(); });
+    for (Run& run : experiment.runs) {
+        const double begin = 3 * random.uniform();
+        for (std::size_t k = 0; k < run.rows; ++k) {
+            const bool heard = std::fmod(begin + run.columns["t_s"][k], 3.0) > 0.7;
+            run.columns["received"].push_back(heard ? 1 : 0);
+            if (!heard) run.columns["strength"][k] = NAN;
+        }
+    }
+    const Verdict verdict = verdict_on(experiment);
+    CHECK(verdict.decision == Decision::Named);
+    REQUIRE(verdict.causes.size() == 2);
+    CHECK(verdict.causes[0].name == "beat_loss");
+    CHECK(verdict.causes[1].name == "range_noise");
+}
+
 TEST_CASE("strengths that differ from place to place and repeat at each are not scatter") {
     RandomStream random(13, "scatter test");
     double offset = 0.0;
