@@ -9,9 +9,9 @@
 
 #include "gap/models/keyed_cache.h"
 #include "gap/models/model.h"
+#include "gap/models/motion_path.h"
 #include "gap/models/rows.h"
 #include "gap/models/steadied_heading.h"
-#include "gap/models/wheel_curve.h"
 #include "physics/parameters.h"
 
 #include <algorithm>
@@ -27,44 +27,18 @@ namespace puckloop::gap {
 namespace {
 
 constexpr double kStill = 1e-6;  // steps: less than this between rows is standing
-constexpr double kEdge = 0.004;  // width of the dead band's edge, share of it
 constexpr double kGravity = 9.81;
-constexpr double kLongestSlip = 0.7;   // s: no change of speed costs way for longer
-constexpr double kSlip = 4;            // steps that a motor loses at a time: its coils' pattern repeats
-constexpr double kLateStep = 0.25;     // a step is counted when it is over
-constexpr double kOpenSteps = 0.6;     // of a wheel, each time its speed changes: the timer's phase
-constexpr double kOpenSlip = 0.2;      // share of the way lost to sliding that no formula tells
-constexpr double kSameTime = 1e-6;     // s
-constexpr double kLeastChance = 1e-6;  // of losing a command again and again
-constexpr double kCounterSd = 3.0;     // steps: whole steps, and when a row was taken
-constexpr double kSpan = 100.0;        // s: wheels that tell the heading of a whole run
+constexpr double kSlip = 4;         // steps that a motor loses at a time: its coils' pattern repeats
+constexpr double kLateStep = 0.25;  // a step is counted when it is over
+constexpr double kOpenSteps = 0.6;  // of a wheel, each time its speed changes: the timer's phase
+constexpr double kOpenSlip = 0.2;   // share of the way lost to sliding that no formula tells
+constexpr double kSameTime = 1e-6;  // s
+constexpr double kCounterSd = 3.0;  // steps: whole steps, and when a row was taken
+constexpr double kSpan = 100.0;     // s: wheels that tell the heading of a whole run
 constexpr double kShortestSpan = 0.02, kLongestSpan = 1000.0;  // s: they tell nothing, everything
 constexpr double kSpanWidth = 3.0;                             // ln s
 constexpr double kDoubt = 2e-3;                                // rad: of a run's heading as a whole
 constexpr double kLeastDoubt = 1e-5, kMostDoubt = 0.2, kDoubtWidth = 3.0;
-
-struct Path {
-    std::uint32_t run = 0;
-    WheelCurve wheel[2], asked[2];
-    std::vector<double> time, middle, load, incline;  ///< of the rows used
-};
-
-/// Steps told at one speed, without sign: a row has several such pieces where the command changes in it.
-struct Pace {
-    double steps, speed;
-};
-
-/// What a path's motors did in each of its rows, for one lateness of the tracker.
-struct Driven {
-    struct Wheel {
-        std::vector<double> steps, asked;                  ///< steps made; steps told, without sign
-        std::vector<std::uint32_t> first_jump, last_jump;  ///< changes of speed that may still cost way
-        std::vector<Pace> paces;
-        std::vector<std::uint32_t> last_pace;  ///< end of the row's pieces
-    };
-    Wheel wheel[2];
-    std::vector<char> settled;  ///< neither wheel has changed its speed in this row or the one before
-};
 
 class MotionModel final : public Model {
   public:
@@ -93,7 +67,12 @@ class MotionModel final : public Model {
         }
         std::size_t first = 0;
         const double late = at(v, delay_) + (counted_ ? 0.0 : at(v, latency_));
-        const auto driven = driven_.get({late}, [&] { return driven_by(late); });
+        const auto driven = driven_.get({late}, [&] {
+            std::vector<Driven> all;
+            for (const Path& path : paths_)
+                all.push_back(driven_by(path, late));
+            return all;
+        });
         for (std::size_t k = 0; k < paths_.size(); ++k) {
             drive(v, paths_[k], (*driven)[k], late, first, out);
             first += paths_[k].time.size();
@@ -312,92 +291,6 @@ class MotionModel final : public Model {
         nuisances_.push_back({heading_span_, std::log(kShortestSpan), std::log(kLongestSpan), kSpanWidth});
     }
 
-    /// Metres that a change of speed has cost by `to`: wheels follow no faster than mu g. On reversal the
-    /// wheel rolls on while its gear crosses the play (metres), and slides less.
-    static double slipped(std::span<const SpeedJump> jumps, double metre, double inverse_mu, double play,
-                          double from, double to) {
-        double sum = 0.0;
-        for (const SpeedJump& jump : jumps) {
-            const double speed = std::abs(jump.change) * metre;
-            const double lasts = speed * inverse_mu / kGravity;
-            const auto done = [&](double t) {
-                const double share = std::clamp((t - jump.time) / std::max(lasts, 1e-6), 0.0, 1.0);
-                return 1 - (1 - share) * (1 - share);
-            };
-            double way = speed * lasts / 2;
-            if (play > 0 && jump.before * (jump.before + jump.change) < 0)
-                way -= std::min(play, std::abs(jump.before * (jump.before + jump.change)) * metre * metre *
-                                          inverse_mu / kGravity);
-            sum += std::copysign(way, jump.change) * (done(to) - done(from));
-        }
-        return sum;
-    }
-
-    std::vector<Driven> driven_by(double late) const {
-        std::vector<Driven> all(paths_.size());
-        for (std::size_t k = 0; k < paths_.size(); ++k) {
-            const Path& path = paths_[k];
-            const std::size_t n = path.time.size();
-            for (std::size_t w = 0; w < 2; ++w) {
-                Driven::Wheel& wheel = all[k].wheel[w];
-                CurveReader reader(path.wheel[w]), pacer(pace_of(path, w));
-                const auto& jumps = path.wheel[w].jumps;
-                double last = 0.0, last_pace = 0.0;
-                for (std::size_t i = 0; i < n; ++i) {
-                    const double now = path.time[i] - late, before = i == 0 ? now : path.time[i - 1] - late;
-                    const double steps = reader.at(now), pace = pacer.at(now);
-                    wheel.steps.push_back(i == 0 ? 0.0 : steps - last);
-                    wheel.asked.push_back(i == 0 ? 0.0 : std::abs(pace - last_pace));
-                    if (i > 0) add_paces(pace_of(path, w), before, now, wheel.paces);
-                    wheel.last_pace.push_back(static_cast<std::uint32_t>(wheel.paces.size()));
-                    last = steps;
-                    last_pace = pace;
-                    const auto first =
-                        std::lower_bound(jumps.begin(), jumps.end(), before - kLongestSlip,
-                                         [](const SpeedJump& j, double t) { return j.time < t; });
-                    const auto end = std::lower_bound(
-                        first, jumps.end(), now, [](const SpeedJump& j, double t) { return j.time < t; });
-                    wheel.first_jump.push_back(static_cast<std::uint32_t>(first - jumps.begin()));
-                    wheel.last_jump.push_back(static_cast<std::uint32_t>(end - jumps.begin()));
-                }
-            }
-            for (std::size_t i = 0; i < n; ++i) {
-                const double now = path.time[i] - late, before = i == 0 ? now : path.time[i - 1] - late;
-                all[k].settled.push_back(settled(path, before, now - before) ? 1 : 0);
-            }
-        }
-        return all;
-    }
-
-    static void add_paces(const WheelCurve& curve, double from, double to, std::vector<Pace>& paces) {
-        CurveReader reader(curve);
-        auto knot = std::upper_bound(curve.time.begin(), curve.time.end(), from);
-        double at = reader.at(from);
-        while (from < to) {
-            const double end = knot == curve.time.end() ? to : std::min(*knot++, to);
-            const double there = reader.at(end), steps = std::abs(there - at);
-            if (end > from) paces.push_back({steps, steps / (end - from)});
-            at = there;
-            from = end;
-        }
-    }
-
-    /// Share of a row's steps that a dead band lets through.
-    static double let_through(const Driven::Wheel& wheel, std::size_t row, double deadband) {
-        double all = 0.0, moved = 0.0;
-        for (std::uint32_t k = row == 0 ? 0 : wheel.last_pace[row - 1]; k < wheel.last_pace[row]; ++k) {
-            const Pace& pace = wheel.paces[k];
-            all += pace.steps;
-            moved += pace.steps / (1 + std::exp(-(pace.speed - deadband) / (kEdge * deadband)));
-        }
-        return all > 0 ? moved / all : 0.0;
-    }
-
-    /// What tells the speed of a wheel: the command, where there is one; a counter's speeds are rounded.
-    static const WheelCurve& pace_of(const Path& path, std::size_t wheel) {
-        return path.asked[wheel].empty() ? path.wheel[wheel] : path.asked[wheel];
-    }
-
     void drive(const std::vector<double>& v, const Path& path, const Driven& ways, double late,
                std::size_t first, Prediction& out) const {
         const double turn = 2 * std::numbers::pi / at(v, steps_per_turn_);
@@ -512,32 +405,6 @@ class MotionModel final : public Model {
             out[1].lever[first + i] = -along;
             if (room()) out[0].lever[first + i] = across;
         }
-    }
-
-    /// Has neither wheel changed its speed in this row or the one before? What happens there cannot be told
-    /// from what the change itself does, and is not taken for a push.
-    static bool settled(const Path& path, double before, double span) {
-        return std::all_of(path.wheel, path.wheel + 2, [&](const WheelCurve& wheel) {
-            const auto after = std::upper_bound(wheel.jumps.begin(), wheel.jumps.end(), before + kSameTime,
-                                                [](double t, const SpeedJump& j) { return t < j.time; });
-            return after == wheel.jumps.begin() || before - (after - 1)->time > 1.5 * span;
-        });
-    }
-
-    /// A lost command leaves the wheel at its old speed until the host says the same again, in the next row:
-    /// how likely a row is off by one lost after a change, and by how many steps.
-    struct Loss {
-        double chance = 0.0, steps = 0.0;
-    };
-    static Loss lost(const std::vector<SpeedJump>& jumps, double drop, double from, double to) {
-        const auto after = std::upper_bound(jumps.begin(), jumps.end(), from + kSameTime,
-                                            [](double t, const SpeedJump& j) { return t < j.time; });
-        if (after == jumps.begin() || to <= from) return {};
-        const SpeedJump& last = *(after - 1);
-        const double again = std::round((from - last.time) / (to - from));
-        const double chance = std::pow(drop, 1 + std::max(again, 0.0));
-        if (chance < kLeastChance) return {};
-        return {chance, std::abs(last.change) * (to - from)};
     }
 
     void lapses_of_loss(double drop, const std::array<double, 2>& metre, double axle, const Path& path,
