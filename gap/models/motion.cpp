@@ -37,7 +37,8 @@ constexpr double kCounterSd = 3.0;  // steps: whole steps, and when a row was ta
 constexpr double kSpan = 100.0;     // s: wheels that tell the heading of a whole run
 constexpr double kShortestSpan = 0.02, kLongestSpan = 1000.0;  // s: they tell nothing, everything
 constexpr double kSpanWidth = 3.0;                             // ln s
-constexpr double kDoubt = 2e-3;                                // rad: of a run's heading as a whole
+constexpr double kSmallAngle = 1e-2;  // rad: below, two terms of a series do for sine and cosine
+constexpr double kDoubt = 2e-3;       // rad: of a run's heading as a whole
 constexpr double kLeastDoubt = 1e-5, kMostDoubt = 0.2, kDoubtWidth = 3.0;
 
 class MotionModel final : public Model {
@@ -388,7 +389,8 @@ class MotionModel final : public Model {
     void tell_place(double span, const Path& path, const std::vector<Step>& steps, std::size_t first,
                     Prediction& out) const {
         const std::size_t n = steps.size();
-        std::vector<double> above(n), errors;
+        thread_local std::vector<double> above, errors;
+        above.resize(n);
         for (std::size_t i = 0; i < n; ++i)
             above[i] = observables_[2].y[first + i] - out[2].mean[first + i];
         heading_errors(above, path.time, span, errors);
@@ -397,7 +399,8 @@ class MotionModel final : public Model {
             const Step& step = steps[i];
             const double off = step.skew + (i == 0 ? 0.0 : (errors[i - 1] + errors[i]) / 2);
             const double axis = room() ? off - path.middle[i] : off;
-            const double cosine = std::cos(axis), sine = std::sin(axis);
+            double cosine = 1 - axis * axis / 2, sine = axis * (1 - axis * axis / 6);
+            if (std::abs(axis) > kSmallAngle) cosine = std::cos(axis), sine = std::sin(axis);
             along += step.way * cosine + step.aside * sine;
             across += step.aside * cosine - step.way * sine;
             out[0].mean[first + i] = along;
@@ -424,47 +427,64 @@ class MotionModel final : public Model {
 
     void predict_counters(const std::vector<double>& v, Prediction& out) const {
         const double latency = at(v, latency_), drop = at(v, drop_);
+        const auto told = counts_.get({latency}, [&] {
+            return std::array{told_to(0, latency), told_to(1, latency)};
+        });
         for (std::size_t w = 0; w < 2; ++w) {
             const Observable& o = observables_[3 + w];
             Predicted& p = out[3 + w];
-            p.mean.resize(o.y.size());
+            p.mean = (*told)[w];
             p.lapse.assign(drop > 0 ? o.y.size() : 0, 0.0);
             p.lapse_scale.assign(drop > 0 ? o.y.size() : 0, 0.0);
-            std::size_t path = 0;
-            for (std::size_t i = 0; i < o.y.size();) {
-                const std::uint32_t run = o.run[i];
-                while (path < paths_.size() && paths_[path].run < run)
-                    ++path;
-                if (path >= paths_.size() || paths_[path].run != run) {  // no pose in this run
-                    p.mean[i] = o.y[i];
-                    ++i;
-                    continue;
-                }
-                CurveReader own(paths_[path].asked[w]);
-                const double start = own.at(o.time[i]);
-                const double origin = o.y[i];
-                CurveReader again(paths_[path].asked[w]);
-                double last = start,
-                       half = 0.0;  // a step is counted when it is over: half a step late on average
-                for (; i < o.y.size() && o.run[i] == run; ++i) {
-                    const double asked = again.at(o.time[i] - latency);
-                    if (std::abs(asked - last) > 0.5) half = std::copysign(kLateStep, asked - last);
-                    last = asked;
-                    p.mean[i] = origin + asked - start - half;
-                    if (drop <= 0) continue;
+            if (drop <= 0) continue;
+            for_each_path(o, [&](const Path& path, std::size_t first, std::size_t end) {
+                for (std::size_t i = first; i < end; ++i) {
                     const double before = o.starts[i] != 0 ? o.time[i] : o.time[i - 1];
-                    const Loss loss = lost(paths_[path].asked[w].jumps, drop, before, o.time[i]);
+                    const Loss loss = lost(path.asked[w].jumps, drop, before, o.time[i]);
                     p.lapse[i] = loss.chance;
                     p.lapse_scale[i] = loss.steps;
                 }
+            });
+        }
+    }
+
+    /// What a counter would have counted of the commands; where a run has no pose, what it did count.
+    std::vector<double> told_to(std::size_t wheel, double latency) const {
+        const Observable& o = observables_[3 + wheel];
+        std::vector<double> counts = o.y;
+        for_each_path(o, [&](const Path& path, std::size_t first, std::size_t end) {
+            const double start = CurveReader(path.asked[wheel]).at(o.time[first]), origin = o.y[first];
+            CurveReader reader(path.asked[wheel]);
+            double last = start,
+                   half = 0.0;  // a step is counted when it is over: half a step late on average
+            for (std::size_t i = first; i < end; ++i) {
+                const double asked = reader.at(o.time[i] - latency);
+                if (std::abs(asked - last) > 0.5) half = std::copysign(kLateStep, asked - last);
+                last = asked;
+                counts[i] = origin + asked - start - half;
             }
+        });
+        return counts;
+    }
+
+    /// `look(path, first row, row after the last)` for each run of a counter that has a pose.
+    template <class Look>
+    void for_each_path(const Observable& o, Look look) const {
+        auto path = paths_.begin();
+        for (std::size_t first = 0, end = 0; first < o.y.size(); first = end) {
+            while (end < o.y.size() && o.run[end] == o.run[first])
+                ++end;
+            while (path != paths_.end() && path->run < o.run[first])
+                ++path;
+            if (path != paths_.end() && path->run == o.run[first]) look(*path, first, end);
         }
     }
 
     MotionView view_;
     std::vector<Path> paths_;
-    std::vector<double> along_;               // way along the tracker's heading, a row each
-    KeyedCache<std::vector<Driven>> driven_;  // by lateness
+    std::vector<double> along_;                              // way along the tracker's heading, a row each
+    KeyedCache<std::vector<Driven>> driven_;                 // by lateness
+    KeyedCache<std::array<std::vector<double>, 2>> counts_;  // by latency
     bool counted_ = false;
     std::array<std::vector<std::uint32_t>, 2> counter_rows_;
     int radius_left_ = 0, radius_right_ = 0, axle_ = 0, steps_per_turn_ = 0, scale_ = 0, mismatch_ = 0,
