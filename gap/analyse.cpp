@@ -252,6 +252,7 @@ class Analysis {
         const auto scatter = scatter_effects(study_, selection_.chosen);
         if (scatter.empty()) return false;
         const auto touched = scattered_by(study_, selection_.chosen, scatter);
+        if (touched.empty()) return false;
         for (const Leftover& left : verdict_.leftovers)
             if (left.covariate == kPlacement && left.p_value < kSureLevel &&
                 std::find(touched.begin(), touched.end(), left.observable) != touched.end())

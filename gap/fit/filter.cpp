@@ -174,10 +174,11 @@ void filter_level(const Observable& o, const Predicted& p, const NoiseParameters
         const double gained =
             turned_in(o, i, noise.memory) + (at(o.jolt, i, 0.0) + at(p.jolt, i, 0.0)) / (sd * sd);
         const double level = walk.level, arm = at(p.lever, i, 0.0) / sd;
+        const double unlevered = error - walk.level - noise.memory * walk.error;
         const double variance =
             levered ? walk.filter(error, arm, lever, drift + gained, noise.memory, nu, innovation)
                     : walk.filter(error, drift + gained, noise.memory, nu, innovation);
-        if (gain != nullptr && innovation != 0.0) (*gain)[i] = (walk.level - level) / innovation;
+        if (gain != nullptr && unlevered != 0.0) (*gain)[i] = (walk.level - level) / unlevered;
         out.z[i] = innovation / std::sqrt(variance);
         out.variance[i] = variance * sd * sd;
         if (!pushes) continue;

@@ -98,10 +98,12 @@ class Selector {
         return state;
     }
 
-    bool enough(const Fit& fit, const Gain& gain) const {
-        if (acts_as_outliers(effect_of(fit))) return gain.sum > kSureDeviations * gain.sd;
+    bool enough(const Fit& fit, const Gain& gain) const { return enough(effect_of(fit), gain); }
+
+    bool enough(const Effect& effect, const Gain& gain) const {
+        if (acts_as_outliers(effect)) return gain.sum > kSureDeviations * gain.sd;
         // Against a claimed noise the claim is the evidence: a fit of the noise itself predicts as well.
-        const bool claim = effect_of(fit).name == std::string_view("range_noise") && gain.sum > -1;
+        const bool claim = effect.name == std::string_view("range_noise") && gain.sum > -1;
         // Where it happens it says all, and the runs without it lose a trifle each for the possibility.
         const bool sometimes = gain.sum > kSureDeviations * gain.sd && gain.clearly_better > 2 &&
                                gain.clearly_better > 2 * gain.clearly_worse;
@@ -160,7 +162,8 @@ class Selector {
         Fit both = study_.refined(fits.front().second);
         HeldOut held = study_.hold_out(both);
         const Gain gain = gain_of(gains_by_block(study_.blocks(), result_.held_chosen, held));
-        if (!enough(both, gain)) return false;
+        for (const std::size_t effect : both.effects)
+            if (!enough(*study_.candidates()[effect].effect, gain)) return false;
         for (const std::size_t effect : both.effects) {
             const auto alone = std::find_if(last_step_.begin(), last_step_.end(), [&](const auto& one) {
                 return one.second.effects.back() != effect && has(both.effects, one.second.effects.back());

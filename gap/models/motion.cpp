@@ -48,6 +48,8 @@ class MotionModel final : public Model {
         gather(experiment, rows);
         declare();
         apply_nominal(experiment);
+        // Turning mixes the tracker's noise of along and across: their sums wander.
+        if (!room()) observables_[0].turn = observables_[1].turn = turns();
     }
 
     void predict(const std::vector<double>& v, Prediction& out) const override {
@@ -194,8 +196,6 @@ class MotionModel final : public Model {
             one.unit = o == 2 ? "rad" : "m";
             one.instrument = {NAN, NAN, 0.0};
             one.y = sums[o];
-            // Turning mixes the tracker's noise of along and across: their sums wander.
-            if (o < 2 && !room()) one.turn = turns();
             if (own && !counted_ && (o != 1 || room())) one.jolt = jolts(o);
             for (std::size_t i = 1; i < one.y.size(); ++i)
                 one.starts[i] = base.run[i] != base.run[i - 1] ? 1 : 0;
@@ -205,16 +205,15 @@ class MotionModel final : public Model {
 
     /// By how much a robot turns in each row, by its wheels: the tracker's noise turns nothing.
     std::vector<double> turns() const {
-        const physics::Parameters defaults;
-        const double metre =
-            2 * std::numbers::pi * defaults.robot.wheel_radius_left / defaults.robot.steps_per_turn;
+        const auto neutral = [&](int index) { return parameters_[static_cast<std::size_t>(index)].neutral; };
+        const double metre = 2 * std::numbers::pi * neutral(radius_left_) / neutral(steps_per_turn_);
         std::vector<double> turned;
         for (const Path& path : paths_) {
             CurveReader left(path.wheel[0]), right(path.wheel[1]);
             double last = 0.0;
             for (std::size_t i = 0; i < path.time.size(); ++i) {
                 const double apart = right.at(path.time[i]) - left.at(path.time[i]);
-                turned.push_back(i == 0 ? 0.0 : (apart - last) * metre / defaults.robot.axle_length);
+                turned.push_back(i == 0 ? 0.0 : (apart - last) * metre / neutral(axle_));
                 last = apart;
             }
         }

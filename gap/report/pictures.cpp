@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 namespace puckloop::gap::report {
 
@@ -209,6 +210,15 @@ Track reckoned(const std::vector<double>& along, const std::vector<double>& acro
     return track;
 }
 
+/// Places told from where a run began.
+Track placed(std::vector<double> x, std::vector<double> y, double first_x, double first_y) {
+    for (double& one : x)
+        one += first_x;
+    for (double& one : y)
+        one += first_y;
+    return {std::move(x), std::move(y)};
+}
+
 const Series* series_named(const Verdict& verdict, std::string_view name) {
     for (const Series& s : verdict.series)
         if (s.observable == name) return &s;
@@ -239,8 +249,9 @@ std::vector<Picture> pictures_of(const Experiment& experiment, const Series& ser
 }
 
 std::vector<Picture> path_pictures(const Experiment& experiment, const Verdict& verdict) {
-    const Series* along = series_named(verdict, "along");
-    const Series* across = series_named(verdict, "across");
+    const bool room = series_named(verdict, "along") == nullptr;  // places, not sums
+    const Series* along = series_named(verdict, room ? "x_m" : "along");
+    const Series* across = series_named(verdict, room ? "y_m" : "across");
     const Series* heading = series_named(verdict, "heading");
     std::vector<Picture> pictures;
     if (along == nullptr || across == nullptr || heading == nullptr) return pictures;
@@ -264,10 +275,10 @@ std::vector<Picture> path_pictures(const Experiment& experiment, const Verdict& 
         for (const auto& [stage, colour, name, dashed] :
              {std::tuple{&Series::before, kBefore, "before", true},
               {&Series::after, kAfter, "after", false}}) {
-            const Track track =
-                reckoned(of_run(*along, along->*stage, number), of_run(*across, across->*stage, number),
-                         of_run(*heading, heading->*stage, number), x.front(), y.front(),
-                         run.column("theta_rad")[first]);
+            const auto a = of_run(*along, along->*stage, number), b = of_run(*across, across->*stage, number);
+            const Track track = room ? placed(a, b, x.front(), y.front())
+                                     : reckoned(a, b, of_run(*heading, heading->*stage, number), x.front(),
+                                                y.front(), run.column("theta_rad")[first]);
             chart.line(track.x, track.y, colour, name, dashed);
         }
         pictures.push_back({chart.svg(kWidth, kWidth),
