@@ -453,7 +453,10 @@ Verdict analyse(const Experiment& experiment, const Options& options) {
     Verdict verdict = Analysis(experiment, options, MotionView::Robot).run();
     if (experiment.kind != Kind::Motion || verdict.decision != Decision::NoEffect) return verdict;
     Verdict from_room = Analysis(experiment, options, MotionView::Room).run();
-    return from_room.decision == Decision::NoEffect ? verdict : from_room;
+    if (from_room.decision == Decision::NoEffect) return verdict;
+    from_room.cautions.emplace_back(
+        "seen from the room only (x_m, y_m): along the robot's own axes nothing is more than the noise");
+    return from_room;
 }
 
 std::vector<Series> simulate(const Experiment& experiment, const std::map<std::string, double>& changed) {
