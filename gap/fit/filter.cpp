@@ -110,7 +110,8 @@ Beginning beginning(const Observable& o, const Predicted& p, std::size_t i) {
 /// and leaves along another. Errors that carry over do so together, as long as the axes stay near.
 template <class Number>
 Number turned_in(const Observable& o, std::size_t i, const Number& memory) {
-    const double squared = o.turn.empty() ? 0.0 : o.turn[i] * o.turn[i];
+    if (o.turn.empty()) return Number(memory * 0.0);
+    const double squared = o.turn[i] * o.turn[i];
     const Number short_of = 1.0 - memory;
     return squared * (1.0 - memory * memory) / (short_of * short_of + memory * squared);
 }
