@@ -7,6 +7,7 @@
 #include "gap/columns.h"
 #include "gap/copies.h"
 #include "gap/fill_missing.h"
+#include "gap/frames.h"
 #include "gap/missing_cells.h"
 
 #include <fmt/format.h>
@@ -265,6 +266,7 @@ void check(Experiment& experiment) {
     check_mixed(experiment);
     check_kind(experiment);
     align_clocks(experiment);
+    align_frames(experiment);
 }
 
 }  // namespace puckloop::gap

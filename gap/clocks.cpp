@@ -1,18 +1,18 @@
 #include "gap/clocks.h"
 
+#include "gap/counted_path.h"
+
 #include <Eigen/Dense>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 namespace puckloop::gap {
 
 namespace {
 
-constexpr std::size_t kLeastRows = 60;
 constexpr double kWindow = 0.6;         // s: changes are compared over at least this long
 constexpr double kPrior = 0.3;          // s: lateness and its drift are not believed to be much larger
 constexpr int kRounds = 6;              // of correcting clocks and fitting the robot in turn
@@ -21,64 +21,6 @@ constexpr double kLeastDrift = 0.02;    // s: less hides in the spacing of rows
 constexpr double kLeastDrifting = 0.3;  // share of runs whose clock must drift by itself
 constexpr double kDeviations = 4.0;
 constexpr double kAgreed = 3.0;  // times what runs differ by: a mean lateness that is theirs in common
-
-/// A run as changes over windows of rows.
-struct Path {
-    std::vector<double> time, way, heading;  ///< of the tracker, summed
-    std::vector<double> counted_time, left, right;
-    std::size_t window = 1;
-
-    double middle() const { return (time.front() + time.back()) / 2; }
-    double span() const { return time.back() - time.front(); }
-};
-
-/// The counter at a time, straight between rows; its slope beside it.
-std::array<double, 2> counter_at(const Path& path, const std::vector<double>& steps, double time) {
-    const auto& times = path.counted_time;
-    auto after = std::upper_bound(times.begin(), times.end(), time);
-    after = std::clamp(after, times.begin() + 1, times.end() - 1);
-    const auto i = static_cast<std::size_t>(after - times.begin());
-    const double slope = (steps[i] - steps[i - 1]) / std::max(times[i] - times[i - 1], 1e-9);
-    if (time < times.front()) return {steps.front(), 0.0};
-    if (time > times.back()) return {steps.back(), 0.0};
-    return {steps[i - 1] + slope * (time - times[i - 1]), slope};
-}
-
-bool whole(const Run& run, std::size_t row) {
-    return !std::isnan(run.column("x_m")[row] + run.column("y_m")[row] + run.column("theta_rad")[row] +
-                       run.column("t_s")[row]);
-}
-
-Path path_of(const Run& run) {
-    const auto &x = run.column("x_m"), &y = run.column("y_m"), &theta = run.column("theta_rad"),
-               &time = run.column("t_s"), &left = run.column("steps_left"),
-               &right = run.column("steps_right");
-    Path path;
-    std::size_t last = run.rows;
-    for (std::size_t i = 0; i < run.rows; ++i) {
-        if (!std::isnan(left[i] + right[i] + time[i])) {
-            path.counted_time.push_back(time[i]);
-            path.left.push_back(left[i]);
-            path.right.push_back(right[i]);
-        }
-        if (!whole(run, i)) continue;
-        double way = 0.0, heading = 0.0;
-        if (last < run.rows) {
-            const double turn = std::remainder(theta[i] - theta[last], 2 * std::numbers::pi);
-            const double middle = theta[last] + turn / 2;
-            way = path.way.back() + (x[i] - x[last]) * std::cos(middle) + (y[i] - y[last]) * std::sin(middle);
-            heading = path.heading.back() + turn;
-        }
-        path.time.push_back(time[i]);
-        path.way.push_back(way);
-        path.heading.push_back(heading);
-        last = i;
-    }
-    if (path.time.size() < kLeastRows || path.counted_time.size() < kLeastRows) return {};
-    const double step = path.span() / static_cast<double>(path.time.size() - 1);
-    path.window = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(kWindow / step)));
-    return path;
-}
 
 /// One window: what the tracker saw (way, heading), what the counters say, and how that changes with lateness
 /// and its drift.
@@ -89,20 +31,22 @@ struct Window {
     double span = 0.0;
 };
 
-std::vector<Window> windows_of(const Path& path, const ClockError& clock) {
+std::vector<Window> windows_of(const CountedPath& path, const ClockError& clock) {
     std::vector<Window> all;
-    for (std::size_t i = 0; i + path.window < path.time.size(); i += path.window) {
+    const double step = path.span() / static_cast<double>(path.time.size() - 1);
+    const std::size_t rows = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(kWindow / step)));
+    for (std::size_t i = 0; i + rows < path.time.size(); i += rows) {
         Window one;
         double sign = -1.0;
-        for (const std::size_t row : {i, i + path.window}) {
+        for (const std::size_t row : {i, i + rows}) {
             const double place = (path.time[row] - path.middle()) / path.span();
             const double time = path.time[row] - clock.late - clock.drift * place;
-            const auto left = counter_at(path, path.left, time), right = counter_at(path, path.right, time);
+            const auto left = path.left_at(time), right = path.right_at(time);
             one.seen[0] += sign * path.way[row];
             one.seen[1] += sign * path.heading[row];
             one.span += sign * path.time[row];
-            const std::array<double, 2> value{(left[0] + right[0]) / 2, right[0] - left[0]},
-                rate{(left[1] + right[1]) / 2, right[1] - left[1]};
+            const std::array<double, 2> value{(left.steps + right.steps) / 2, right.steps - left.steps},
+                rate{(left.rate + right.rate) / 2, right.rate - left.rate};
             for (std::size_t k = 0; k < 2; ++k) {
                 one.counted[k] += sign * value[k];
                 one.late[k] -= sign * rate[k];
@@ -124,14 +68,6 @@ struct Robot {
 Eigen::Vector3d terms(const Window& one, std::size_t k) {
     return k == 0 ? Eigen::Vector3d(one.counted[0], one.seen[1], 0.0)
                   : Eigen::Vector3d(one.counted[1], one.counted[0], one.span);
-}
-
-/// Standard deviation from the middle of the sizes: pushes and lost sight do not count.
-double robust_sd(std::vector<double> sizes) {
-    if (sizes.empty()) return 1.0;
-    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-    std::nth_element(sizes.begin(), middle, sizes.end());
-    return std::max(1.4826 * *middle, 1e-9);
 }
 
 double weight_of(double error, double sd) {
@@ -191,7 +127,7 @@ struct Clocks {
     double changes = 0.0;
 };
 
-Clocks fit_clocks(const std::vector<Path>& paths, bool steady) {
+Clocks fit_clocks(const std::vector<CountedPath>& paths, bool steady) {
     Clocks clocks;
     clocks.errors.resize(paths.size());
     Robot robot;
@@ -223,27 +159,17 @@ Clocks fit_clocks(const std::vector<Path>& paths, bool steady) {
     return clocks;
 }
 
-std::vector<Path> paths_of(const Experiment& experiment) {
-    std::vector<Path> paths;
-    for (const Run& run : experiment.runs) {
-        if (!run.has("steps_left") || !run.has("steps_right")) return {};
-        paths.push_back(path_of(run));
-        if (paths.back().time.empty()) return {};
-    }
-    return paths;
-}
-
 }  // namespace
 
 std::vector<ClockError> clock_errors(const Experiment& experiment) {
     if (experiment.kind != Kind::Motion) return {};
-    const auto paths = paths_of(experiment);
+    const auto paths = counted_paths(experiment);
     return paths.empty() ? std::vector<ClockError>{} : fit_clocks(paths, false).errors;
 }
 
 void align_clocks(Experiment& experiment) {
     if (experiment.kind != Kind::Motion) return;
-    const auto paths = paths_of(experiment);
+    const auto paths = counted_paths(experiment);
     if (paths.empty()) return;
     const Clocks steady = fit_clocks(paths, true), drifting = fit_clocks(paths, false);
     const auto runs = static_cast<double>(paths.size());

@@ -5,65 +5,25 @@
 
 #include <catch2/catch.hpp>
 
-#include "base/random.h"
+#include "clocked_drive.h"
 
-#include <cmath>
-#include <numbers>
-
-using namespace puckloop;
 using namespace puckloop::gap;
+using namespace puckloop::gap::test;
 
 namespace {
 
-/// A drive of speeds that change smoothly; the tracker's rows come late(t) after the counters'.
-Run drive(const std::string& name, double late, double drift, double axle_error) {
-    constexpr double kMetre = 1e-4, kAxle = 0.2, kStep = 0.1, kLasts = 60.0, kFine = 0.01;
-    RandomStream random(1, "clocks test " + name);
-    const double phase = 6 * random.uniform();
-    const auto speeds = [phase](double t) {
-        const double v = 0.1 + 0.05 * std::sin(0.5 * t + phase), w = 0.6 * std::sin(0.8 * t + 2 * phase);
-        return std::pair{v - w * kAxle / 2, v + w * kAxle / 2};
-    };
-    std::vector<double> left{0}, right{0}, x{0}, y{0}, theta{0};
-    for (double t = 0; t < kLasts + 3; t += kFine) {
-        const auto [l, r] = speeds(t);
-        left.push_back(left.back() + l * kFine / kMetre);
-        right.push_back(right.back() + r * kFine / kMetre);
-        const double turn = (r - l) * kFine / (kAxle * (1 + axle_error));
-        x.push_back(x.back() + (l + r) / 2 * kFine * std::cos(theta.back()));
-        y.push_back(y.back() + (l + r) / 2 * kFine * std::sin(theta.back()));
-        theta.push_back(theta.back() + turn);
-    }
-    Run run;
-    run.name = run.file = name;
-    for (double t = 1; t < kLasts; t += kStep) {
-        const auto counted = static_cast<std::size_t>(std::lround(t / kFine));
-        // The pose in this row belongs to the counters' clock at t - late.
-        const double own = t - late - drift * ((t - 1) / (kLasts - 1) - 0.5);
-        const auto seen = static_cast<std::size_t>(std::lround(own / kFine));
-        run.columns["t_s"].push_back(t);
-        run.columns["steps_left"].push_back(std::round(left[counted]));
-        run.columns["steps_right"].push_back(std::round(right[counted]));
-        run.columns["x_m"].push_back(x[seen] + 5e-4 * random.normal());
-        run.columns["y_m"].push_back(y[seen] + 5e-4 * random.normal());
-        run.columns["theta_rad"].push_back(theta[seen] + 2e-3 * random.normal());
-        ++run.rows;
-    }
-    return run;
-}
-
-Experiment of(std::vector<Run> runs) {
-    Experiment experiment;
-    experiment.kind = Kind::Motion;
-    experiment.runs = std::move(runs);
-    return experiment;
+/// Lateness that grows by `drift` from the first row to the last, in the middle `late` (s).
+Run drifting(const std::string& name, double late, double drift, double axle_error) {
+    return drive(
+        name, [=](double t) { return late + drift * ((t - kBegins) / (kLasts - kBegins) - 0.5); },
+        axle_error);
 }
 
 }  // namespace
 
 TEST_CASE("lateness and its drift are found, each run its own") {
     Experiment e =
-        of({drive("a", 0.05, 0.3, 0.01), drive("b", -0.1, 0.2, 0.01), drive("c", 0.3, -0.2, 0.01)});
+        of({drifting("a", 0.05, 0.3, 0.01), drifting("b", -0.1, 0.2, 0.01), drifting("c", 0.3, -0.2, 0.01)});
     const auto clocks = clock_errors(e);
     REQUIRE(clocks.size() == 3);
     const double late[] = {0.05, -0.1, 0.3}, drift[] = {0.3, 0.2, -0.2};
@@ -87,7 +47,7 @@ TEST_CASE("lateness and its drift are found, each run its own") {
 
 TEST_CASE("a lateness that runs with drifting clocks have in common is left to the tracker's delay") {
     Experiment e =
-        of({drive("a", 0.2, 0.3, 0.01), drive("b", 0.21, 0.2, 0.01), drive("c", 0.19, -0.2, 0.01)});
+        of({drifting("a", 0.2, 0.3, 0.01), drifting("b", 0.21, 0.2, 0.01), drifting("c", 0.19, -0.2, 0.01)});
     align_clocks(e);
     REQUIRE(e.cautions.size() == 1);
     const Run& run = e.runs[0];
@@ -97,7 +57,8 @@ TEST_CASE("a lateness that runs with drifting clocks have in common is left to t
 }
 
 TEST_CASE("a robot of other numbers and a tracker that is always late are no clocks that run apart") {
-    Experiment e = of({drive("a", 0.1, 0.0, 0.03), drive("b", 0.1, 0.0, 0.03), drive("c", 0.1, 0.0, 0.03)});
+    Experiment e =
+        of({drifting("a", 0.1, 0.0, 0.03), drifting("b", 0.1, 0.0, 0.03), drifting("c", 0.1, 0.0, 0.03)});
     align_clocks(e);
     CHECK(e.cautions.empty());
     CHECK(e.runs[0].counted_at.empty());
