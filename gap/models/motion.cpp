@@ -19,6 +19,7 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <memory>
 #include <numbers>
 #include <span>
 
@@ -70,14 +71,28 @@ class MotionModel final : public Model {
         }
         std::size_t first = 0;
         const double late = at(v, delay_) + (counted_ ? 0.0 : at(v, latency_));
-        const auto driven = driven_.get({late}, [&] {
-            std::vector<Driven> all;
+        const auto of_all = [&](auto look) {
+            std::vector<decltype(look(paths_.front()))> all;
             for (const Path& path : paths_)
-                all.push_back(driven_by(path, late));
+                all.push_back(look(path));
             return all;
-        });
+        };
+        const auto driven = driven_.get(
+            {late}, [&] { return of_all([&](const Path& path) { return driven_by(path, late); }); });
+        std::shared_ptr<const std::vector<std::array<Paced, 2>>> paced;
+        if (at(v, deadband_) > 0)
+            paced = paced_.get({late}, [&] {
+                return of_all([&](const Path& path) {
+                    return std::array{paced_by(path, 0, late), paced_by(path, 1, late)};
+                });
+            });
+        std::shared_ptr<const std::vector<std::vector<char>>> settled;
+        if (at(v, push_rate_) > 0)
+            settled = settled_.get(
+                {late}, [&] { return of_all([&](const Path& path) { return settled_rows(path, late); }); });
         for (std::size_t k = 0; k < paths_.size(); ++k) {
-            drive(v, paths_[k], (*driven)[k], late, first, out);
+            const Ways ways{(*driven)[k], paced ? &(*paced)[k] : nullptr, settled ? &(*settled)[k] : nullptr};
+            drive(v, paths_[k], ways, late, first, out);
             first += paths_[k].time.size();
         }
         if (counted_) predict_counters(v, out);
@@ -291,7 +306,14 @@ class MotionModel final : public Model {
         nuisances_.push_back({heading_span_, std::log(kShortestSpan), std::log(kLongestSpan), kSpanWidth});
     }
 
-    void drive(const std::vector<double>& v, const Path& path, const Driven& ways, double late,
+    /// What is known of a path's motors; the last two only where a dead band or pushes ask for them.
+    struct Ways {
+        const Driven& driven;
+        const std::array<Paced, 2>* paced;
+        const std::vector<char>* settled;
+    };
+
+    void drive(const std::vector<double>& v, const Path& path, const Ways& ways, double late,
                std::size_t first, Prediction& out) const {
         const double turn = 2 * std::numbers::pi / at(v, steps_per_turn_);
         const std::array<double, 2> metre{
@@ -316,7 +338,7 @@ class MotionModel final : public Model {
             std::array<double, 2> moved{};
             double slips = 0.0;  // variance of the way that is lost, m2
             for (std::size_t w = 0; w < 2; ++w) {
-                const Driven::Wheel& wheel = ways.wheel[w];
+                const Driven::Wheel& wheel = ways.driven.wheel[w];
                 const double asked = wheel.asked[i];
                 moves = moves || asked > kStill;
                 double change = wheel.steps[i];
@@ -327,7 +349,7 @@ class MotionModel final : public Model {
                         change -= lost;
                         slips += kSlip * std::abs(lost) * metre[w] * metre[w];
                     }
-                    if (deadband > 0) change *= let_through(wheel, i, deadband);
+                    if (deadband > 0) change *= let_through((*ways.paced)[w], i, deadband);
                 }
                 driven[w] += change * metre[w];
                 const double play = backlash / 2 * metre[w] / turn;
@@ -367,7 +389,7 @@ class MotionModel final : public Model {
                     if (!out[o].jolt.empty()) out[o].jolt[first + i] = slips / 4 * share_along(path, i, o);
                 out[2].jolt[first + i] = slips / (axle * axle);
             }
-            if (push > 0 && ways.settled[i] != 0) {
+            if (push > 0 && (*ways.settled)[i] != 0) {
                 for (std::size_t o = 0; o < 3; ++o) {
                     out[o].lapse[first + i] = std::min(push * span, 0.5);
                     out[o].lapse_scale[first + i] = o == 2 ? push_turn : push_size;
@@ -483,6 +505,8 @@ class MotionModel final : public Model {
     std::vector<Path> paths_;
     std::vector<double> along_;                              // way along the tracker's heading, a row each
     KeyedCache<std::vector<Driven>> driven_;                 // by lateness
+    KeyedCache<std::vector<std::array<Paced, 2>>> paced_;    // by lateness
+    KeyedCache<std::vector<std::vector<char>>> settled_;     // by lateness
     KeyedCache<std::array<std::vector<double>, 2>> counts_;  // by latency
     bool counted_ = false;
     std::array<std::vector<std::uint32_t>, 2> counter_rows_;

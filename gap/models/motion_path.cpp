@@ -26,8 +26,6 @@ void add_paces(const WheelCurve& curve, double from, double to, std::vector<Pace
     }
 }
 
-/// Has neither wheel changed its speed in this row or the one before? What happens there cannot be told
-/// from what the change itself does, and is not taken for a push.
 bool settled(const Path& path, double before, double span) {
     return std::all_of(path.wheel, path.wheel + 2, [&](const WheelCurve& wheel) {
         const auto after = std::upper_bound(wheel.jumps.begin(), wheel.jumps.end(), before + kSameTime,
@@ -43,16 +41,19 @@ Driven driven_by(const Path& path, double late) {
     const std::size_t n = path.time.size();
     for (std::size_t w = 0; w < 2; ++w) {
         Driven::Wheel& wheel = driven.wheel[w];
-        CurveReader reader(path.wheel[w]), pacer(pace_of(path, w));
-        const auto& jumps = path.wheel[w].jumps;
+        const WheelCurve &done = path.wheel[w], &told = pace_of(path, w);
+        CurveReader reader(done), pacer(told);
+        const auto& jumps = done.jumps;
+        for (std::vector<double>* one : {&wheel.steps, &wheel.asked})
+            one->reserve(n);
+        for (std::vector<std::uint32_t>* one : {&wheel.first_jump, &wheel.last_jump})
+            one->reserve(n);
         double last = 0.0, last_pace = 0.0;
         for (std::size_t i = 0; i < n; ++i) {
             const double now = path.time[i] - late, before = i == 0 ? now : path.time[i - 1] - late;
-            const double steps = reader.at(now), pace = pacer.at(now);
+            const double steps = reader.at(now), pace = &told == &done ? steps : pacer.at(now);
             wheel.steps.push_back(i == 0 ? 0.0 : steps - last);
             wheel.asked.push_back(i == 0 ? 0.0 : std::abs(pace - last_pace));
-            if (i > 0) add_paces(pace_of(path, w), before, now, wheel.paces);
-            wheel.last_pace.push_back(static_cast<std::uint32_t>(wheel.paces.size()));
             last = steps;
             last_pace = pace;
             const auto first = std::lower_bound(jumps.begin(), jumps.end(), before - kLongestSlip,
@@ -63,20 +64,34 @@ Driven driven_by(const Path& path, double late) {
             wheel.last_jump.push_back(static_cast<std::uint32_t>(end - jumps.begin()));
         }
     }
-    for (std::size_t i = 0; i < n; ++i) {
-        const double now = path.time[i] - late, before = i == 0 ? now : path.time[i - 1] - late;
-        driven.settled.push_back(settled(path, before, now - before) ? 1 : 0);
-    }
     return driven;
+}
+
+Paced paced_by(const Path& path, std::size_t wheel, double late) {
+    Paced paced;
+    for (std::size_t i = 0; i < path.time.size(); ++i) {
+        if (i > 0) add_paces(pace_of(path, wheel), path.time[i - 1] - late, path.time[i] - late, paced.paces);
+        paced.last.push_back(static_cast<std::uint32_t>(paced.paces.size()));
+    }
+    return paced;
+}
+
+std::vector<char> settled_rows(const Path& path, double late) {
+    std::vector<char> rows;
+    for (std::size_t i = 0; i < path.time.size(); ++i) {
+        const double now = path.time[i] - late, before = i == 0 ? now : path.time[i - 1] - late;
+        rows.push_back(settled(path, before, now - before) ? 1 : 0);
+    }
+    return rows;
 }
 
 const WheelCurve& pace_of(const Path& path, std::size_t wheel) {
     return path.asked[wheel].empty() ? path.wheel[wheel] : path.asked[wheel];
 }
 
-double let_through(const Driven::Wheel& wheel, std::size_t row, double deadband) {
+double let_through(const Paced& wheel, std::size_t row, double deadband) {
     double all = 0.0, moved = 0.0;
-    for (std::uint32_t k = row == 0 ? 0 : wheel.last_pace[row - 1]; k < wheel.last_pace[row]; ++k) {
+    for (std::uint32_t k = row == 0 ? 0 : wheel.last[row - 1]; k < wheel.last[row]; ++k) {
         const Pace& pace = wheel.paces[k];
         all += pace.steps;
         moved += pace.steps / (1 + std::exp(-(pace.speed - deadband) / (kEdge * deadband)));

@@ -27,21 +27,29 @@ struct Driven {
     struct Wheel {
         std::vector<double> steps, asked;                  ///< steps made; steps told, without sign
         std::vector<std::uint32_t> first_jump, last_jump;  ///< changes of speed that may still cost way
-        std::vector<Pace> paces;
-        std::vector<std::uint32_t> last_pace;  ///< end of the row's pieces
     };
     Wheel wheel[2];
-    std::vector<char> settled;  ///< neither wheel has changed its speed in this row or the one before
 };
 
 /// `late`: s that the tracker tells a pose late.
 Driven driven_by(const Path& path, double late);
 
+/// A wheel's steps told, in pieces of one speed.
+struct Paced {
+    std::vector<Pace> paces;
+    std::vector<std::uint32_t> last;  ///< end of each row's pieces
+};
+Paced paced_by(const Path& path, std::size_t wheel, double late);
+
+/// For each row: has neither wheel changed its speed in it or in the one before? What happens after a change
+/// cannot be told from what the change itself does, and is not taken for a push.
+std::vector<char> settled_rows(const Path& path, double late);
+
 /// What tells the speed of a wheel: the command, where there is one; a counter's speeds are rounded.
 const WheelCurve& pace_of(const Path& path, std::size_t wheel);
 
 /// Share of a row's steps that a dead band (steps/s) lets through.
-double let_through(const Driven::Wheel& wheel, std::size_t row, double deadband);
+double let_through(const Paced& wheel, std::size_t row, double deadband);
 
 /// Metres that changes of speed cost between two times (s): wheels follow no faster than mu g. On reversal
 /// the wheel rolls on while its gear crosses the play (metres), and slides less. `metre`: of a step.
