@@ -184,7 +184,7 @@ FreeForm told(const Errors& errors, const std::vector<stats::Component>& compone
                                          fit.weight[order[k]] / all, errors.unit));
     // What only a few runs can show is clear when several gain by it and none loses.
     form.clear =
-        form.gain > kClear && (form.gain > kSure * form.sd || gain.here_and_there()) && !form.terms.empty();
+        form.gain > kClear && (form.gain > kSure * form.sd || gain.in_several()) && !form.terms.empty();
     if (form.clear) form.shape = form.terms.front().shape;
     return form;
 }

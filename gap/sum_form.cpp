@@ -374,7 +374,7 @@ FreeForm sum_form_of(const Experiment& experiment, const Model& model, const Sta
                                      observable.unit));
     // What is held out was not fitted: chance alone wins nothing there. That one odd run could.
     const bool several = gain.without_best > kClear && gain.clearly_better > 2 * gain.clearly_worse;
-    form.clear = form.gain > kClear && (form.gain > kSure * form.sd || gain.here_and_there() || several) &&
+    form.clear = form.gain > kClear && (form.gain > kSure * form.sd || gain.in_several() || several) &&
                  !form.terms.empty();
     if (form.clear) form.shape = form.terms.front().shape;
     return form;

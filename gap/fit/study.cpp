@@ -24,7 +24,6 @@ constexpr std::size_t kEnoughRuns =
     6;  // then whole runs are the blocks: parts of a run share its day and place
 constexpr std::size_t kLeastBlockRows = 8;
 
-constexpr double kClear = 3.0;     // nats
 constexpr double kNoticed = 0.05;  // nats: a block that gains or loses less was not touched
 
 constexpr double kHeavyTail = 2.5, kLightTail = 20;  // degrees of freedom to begin at
@@ -467,8 +466,8 @@ Gain gain_of(const std::vector<double>& by_block) {
         gain.share_better += one > 0 ? 1 / n : 0;
         better += one > kNoticed ? 1 : 0;
         worse += one < -kNoticed ? 1 : 0;
-        gain.clearly_better += one > kClear ? 1 : 0;
-        gain.clearly_worse += one < -kClear ? 1 : 0;
+        gain.clearly_better += one > kClearGain ? 1 : 0;
+        gain.clearly_worse += one < -kClearGain ? 1 : 0;
     }
     gain.share_touched = better + worse > 0 ? better / (better + worse) : 0.0;
     double squares = 0.0;

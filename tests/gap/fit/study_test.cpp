@@ -118,6 +118,21 @@ TEST_CASE("a dead band lies between the last speed that moved nothing and the fi
     CHECK(interval.high < 53);
 }
 
+TEST_CASE("what shows in few runs is clear when a second one bears out the best", "[gap][fit]") {
+    std::vector<double> two(32, 0.0);
+    two[3] = 7.0, two[9] = 5.4;
+    CHECK(gain_of(two).in_several());
+    // The same two, while the others lose by it what the second gains.
+    std::vector<double> eaten = two;
+    for (std::size_t i = 16; i < 20; ++i)
+        eaten[i] = -0.9;
+    CHECK(gain_of(eaten).here_and_there());
+    CHECK_FALSE(gain_of(eaten).in_several());
+    std::vector<double> one(32, 0.0);
+    one[3] = 20.0;
+    CHECK_FALSE(gain_of(one).in_several());
+}
+
 TEST_CASE("selection takes nothing from data without effects", "[gap][fit]") {
     int taken = 0;
     for (std::uint64_t seed = 1; seed <= 12; ++seed) {
