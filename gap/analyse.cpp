@@ -3,6 +3,7 @@
 
 #include "gap/analyse.h"
 
+#include "gap/agenda.h"
 #include "gap/fit/intervals.h"
 #include "gap/fit/select.h"
 #include "gap/free_form.h"
@@ -451,7 +452,12 @@ class Analysis {
 
 Verdict analyse(const Experiment& experiment, const Options& options) {
     Verdict verdict = Analysis(experiment, options, MotionView::Robot).run();
-    if (experiment.kind != Kind::Motion || verdict.decision != Decision::NoEffect) return verdict;
+    if (experiment.kind != Kind::Motion) return verdict;
+    if (verdict.decision != Decision::NoEffect) {
+        auto caution = agenda_caution(experiment, options.seed, options.threads);
+        if (!caution.empty()) verdict.cautions.push_back(std::move(caution));
+        return verdict;
+    }
     Verdict from_room = Analysis(experiment, options, MotionView::Room).run();
     if (from_room.decision == Decision::NoEffect) return verdict;
     from_room.cautions.emplace_back(

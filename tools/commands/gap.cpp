@@ -57,7 +57,11 @@ std::function<void(const std::string&, double)> progress_line() {
     };
 }
 
-void tell_verdict(const gap::Verdict& verdict) {
+void tell_verdict(const gap::Experiment& experiment, const gap::Verdict& verdict) {
+    const auto& known = experiment.cautions;
+    for (const auto& caution : verdict.cautions)
+        if (std::find(known.begin(), known.end(), caution) == known.end())
+            fmt::print("caution: {}\n", caution);
     fmt::print("verdict: {}\n{}\n", gap::decision_name(verdict.decision), verdict.summary);
     for (const auto& cause : verdict.causes)
         fmt::print("  {} ({}): {}\n", cause.name, cause.number, cause.sentence);
@@ -126,7 +130,7 @@ void analyse_folder(const Request& request) {
     verdict.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
     if (options.progress) fmt::print(stderr, "\r\033[K");
     tell_experiment(experiment);
-    tell_verdict(verdict);
+    tell_verdict(experiment, verdict);
     if (request.out.empty()) return;
     write_beside(overlay, gap::overlay_toml(experiment, verdict));
     if (request.rerun || (!request.no_rerun && !verdict.causes.empty()))
