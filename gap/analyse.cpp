@@ -36,6 +36,7 @@ constexpr double kFixedByOthers =
     0.97;  // correlation beyond which a parameter of the measuring chain is not fitted along
 
 constexpr const char* kPlacement = "placement";
+constexpr const char* kNoScatter = "explains scatter that repeats, has a shape or comes in spells";
 constexpr std::string_view kPushes = "collision_push";
 
 const char* const kNuisances[] = {"marker_offset", "tracker_delay", "stale_readings"};
@@ -277,12 +278,40 @@ class Analysis {
         if (!experiment_.assumed.empty())
             return fmt::format("{} was assumed, not measured, and an error of it may look the same",
                                fmt::join(experiment_.assumed, ", "));
+        if (auto doubt = doubt_of_what_is_left(); !doubt.empty()) return doubt;
+        if (!scatter_hides_a_mean()) return "";
+        const auto scatter = scatter_effects(study_, selection_.chosen);
+        if (!go_without(scatter, kNoScatter)) return kNoScatter;
+        for (const std::size_t one : scatter)
+            verdict_.cautions.push_back(fmt::format("{} would have to be part of it, but {}: not named",
+                                                    effect(one).name, kNoScatter));
+        return doubt_of_what_is_left();
+    }
+
+    std::string doubt_of_what_is_left() {
         if (verdict_.unexplained_share > share_allowed()) return "leaves too much to be the cause";
         if (stopped_at_edge() && something_left())
             return "stopped at the end of its plausible range and leaves something";
         if (few_runs_disagree()) return "lowers the error of so few runs by chance only, as far as they tell";
-        if (scatter_hides_a_mean()) return "explains scatter that repeats, has a shape or comes in spells";
         return "";
+    }
+
+    /// Effects that are doubted by themselves go, and the other causes stay. False: one of them is the first
+    /// of the causes, which the others were built on.
+    bool go_without(const std::vector<std::size_t>& doubted, const std::string& doubt) {
+        const auto is_doubted = [&](std::size_t one) {
+            return std::find(doubted.begin(), doubted.end(), one) != doubted.end();
+        };
+        if (is_doubted(selection_.steps.front().effect)) return false;
+        selection_.chosen = without_effects(study_, selection_.chosen, doubted);
+        selection_.held_chosen = study_.hold_out(selection_.chosen);
+        for (const std::size_t one : doubted)
+            selection_.trials[one].remark = "comes nearest to what is left, but " + doubt;
+        std::erase_if(selection_.steps, [&](const Trial& step) { return is_doubted(step.effect); });
+        std::erase_if(selection_.draws, [&](const Draw& draw) { return is_doubted(draw.chosen); });
+        final_ = with_nuisances();
+        look_at_rest();
+        return true;
     }
 
     /// Pushes that keep to a place or to a command are none. First of the causes, they were all there was;
@@ -297,16 +326,7 @@ class Analysis {
             fmt::format("jumps look like pushes, but {:.0f} of {:.0f} come at {} (by chance {:.1f}): no push "
                         "knows of that",
                         pattern->pushes, pattern->all, pattern->where, pattern->expected));
-        if (step == selection_.steps.begin()) return true;
-        const std::size_t pushes = step->effect;
-        selection_.chosen = without_effects(study_, selection_.chosen, {pushes});
-        selection_.held_chosen = study_.hold_out(selection_.chosen);
-        selection_.trials[pushes].remark = "comes nearest to what is left, but keeps to something";
-        selection_.steps.erase(step);
-        std::erase_if(selection_.draws, [&](const Draw& draw) { return draw.chosen == pushes; });
-        final_ = with_nuisances();
-        look_at_rest();
-        return false;
+        return !go_without({step->effect}, "keeps to something");
     }
 
     void fill_tried() {
