@@ -163,3 +163,19 @@ TEST_CASE("noise in proportion errs anew at each reading; what is there again at
     CHECK(offsets.decision == Decision::Unexplained);
     CHECK(offsets.causes.empty());
 }
+
+TEST_CASE("a cause stays where only scatter beside it is doubted") {
+    RandomStream random(16, "scatter test");
+    const Verdict verdict = verdict_on(readings([&](double level, const Row& row) {
+        const bool loose = (row.row + 7 * row.run) % 40 < 5;
+        const double off = loose ? 30 * (row.row % 2 == 0 ? 1 : -1) : 0.0;
+        return std::clamp(std::round(level + (row.row < 40 ? 0.0 : 60.0) + off + 3 * random.normal()), 0.0,
+                          4095.0);
+    }));
+    CHECK(verdict.decision == Decision::Named);
+    REQUIRE(verdict.causes.size() == 1);
+    CHECK(verdict.causes.front().name == "sensor_offset");
+    CHECK(std::any_of(verdict.cautions.begin(), verdict.cautions.end(), [](const std::string& caution) {
+        return caution.find("pulsed_interference") == 0 && caution.find("spells") != std::string::npos;
+    }));
+}
