@@ -51,6 +51,8 @@ class MotionModel final : public Model {
         apply_nominal(experiment);
         // Turning mixes the tracker's noise of along and across: their sums wander.
         if (!room()) observables_[0].turn = observables_[1].turn = turns();
+        for (std::size_t o = 0; exact_ && !counted_ && o < 3; ++o)
+            if (o != 1 || room()) observables_[o].jolt = jolts(o);
     }
 
     void predict(const std::vector<double>& v, Prediction& out) const override {
@@ -102,10 +104,8 @@ class MotionModel final : public Model {
     std::vector<double> starts(std::string_view parameter) const override {
         if (parameter != "robot.deadband") return {};
         std::map<double, std::array<double, 2>> moves;  // speed -> metres asked for, metres seen
-        const double metre = 2 * std::numbers::pi *
-                             parameters_[static_cast<std::size_t>(radius_left_)].neutral /
-                             parameters_[static_cast<std::size_t>(steps_per_turn_)].neutral;
-        const double arm = parameters_[static_cast<std::size_t>(axle_)].neutral / 2;
+        const double metre = metre_a_step();
+        const double arm = nominal(axle_) / 2;
         std::size_t row = 0;
         for (const Path& path : paths_) {
             std::array<CurveReader, 2> pacer{CurveReader(pace_of(path, 0)), CurveReader(pace_of(path, 1))};
@@ -140,6 +140,12 @@ class MotionModel final : public Model {
   private:
     bool room() const { return view_ == MotionView::Room; }
 
+    /// What the experiment says of the robot, else the simulator.
+    double nominal(int index) const { return parameters_[static_cast<std::size_t>(index)].neutral; }
+    double metre_a_step() const {
+        return 2 * std::numbers::pi * nominal(radius_left_) / nominal(steps_per_turn_);
+    }
+
     /// Of a variance along the robot: the share that an observable sees.
     double share_along(const Path& path, std::size_t row, std::size_t observable) const {
         if (observable == 2) return 1.0;
@@ -159,8 +165,8 @@ class MotionModel final : public Model {
                    incline = taken(rows.column("incline_rad", 0), used);
         counted_ = experiment.has("steps_left") && experiment.has("cmd_left");
         const auto agenda = experiment.nominal.find("firmware.agenda");
-        const bool own = agenda != experiment.nominal.end() && agenda->second == 0;
-        const MotorDriver driver = own ? MotorDriver::Timer : MotorDriver::Agenda;
+        exact_ = agenda != experiment.nominal.end() && agenda->second == 0;
+        const MotorDriver driver = exact_ ? MotorDriver::Timer : MotorDriver::Agenda;
         std::array<std::vector<double>, 3> sums;
         double along = 0, across = 0, heading = 0;
         std::size_t from = 0;
@@ -211,7 +217,6 @@ class MotionModel final : public Model {
             one.unit = o == 2 ? "rad" : "m";
             one.instrument = {NAN, NAN, 0.0};
             one.y = sums[o];
-            if (own && !counted_ && (o != 1 || room())) one.jolt = jolts(o);
             for (std::size_t i = 1; i < one.y.size(); ++i)
                 one.starts[i] = base.run[i] != base.run[i - 1] ? 1 : 0;
         }
@@ -220,15 +225,14 @@ class MotionModel final : public Model {
 
     /// By how much a robot turns in each row, by its wheels: the tracker's noise turns nothing.
     std::vector<double> turns() const {
-        const auto neutral = [&](int index) { return parameters_[static_cast<std::size_t>(index)].neutral; };
-        const double metre = 2 * std::numbers::pi * neutral(radius_left_) / neutral(steps_per_turn_);
+        const double metre = metre_a_step();
         std::vector<double> turned;
         for (const Path& path : paths_) {
             CurveReader left(path.wheel[0]), right(path.wheel[1]);
             double last = 0.0;
             for (std::size_t i = 0; i < path.time.size(); ++i) {
                 const double apart = right.at(path.time[i]) - left.at(path.time[i]);
-                turned.push_back(i == 0 ? 0.0 : (apart - last) * metre / neutral(axle_));
+                turned.push_back(i == 0 ? 0.0 : (apart - last) * metre / nominal(axle_));
                 last = apart;
             }
         }
@@ -237,10 +241,8 @@ class MotionModel final : public Model {
 
     /// What a change of command leaves open: where in a step it came, and how exactly the tyres slid.
     std::vector<double> jolts(std::size_t observable) const {
-        const physics::Parameters defaults;
-        const double metre =
-            2 * std::numbers::pi * defaults.robot.wheel_radius_left / defaults.robot.steps_per_turn;
-        const double lever = observable == 2 ? 1 / defaults.robot.axle_length : 0.5;
+        const double metre = metre_a_step();
+        const double lever = observable == 2 ? 1 / nominal(axle_) : 0.5;
         std::vector<double> variance;
         for (const Path& path : paths_)
             for (std::size_t i = 0; i < path.time.size(); ++i) {
@@ -249,7 +251,7 @@ class MotionModel final : public Model {
                     for (const SpeedJump& jump : path.wheel[w].jumps)
                         if (jump.time >= path.time[i - 1] && jump.time < path.time[i]) {
                             const double slid =
-                                std::pow(jump.change * metre, 2) / (2 * defaults.contact.mu * kGravity);
+                                std::pow(jump.change * metre, 2) * nominal(friction_) / (2 * kGravity);
                             sum += std::pow(kOpenSteps * metre, 2) + std::pow(kOpenSlip * slid, 2);
                         }
                 variance.push_back(sum * lever * lever * share_along(path, i, observable));
@@ -509,6 +511,7 @@ class MotionModel final : public Model {
     KeyedCache<std::vector<std::vector<char>>> settled_;     // by lateness
     KeyedCache<std::array<std::vector<double>, 2>> counts_;  // by latency
     bool counted_ = false;
+    bool exact_ = false;  ///< wheels keep to their commands: no agenda makes a staircase of them
     std::array<std::vector<std::uint32_t>, 2> counter_rows_;
     int radius_left_ = 0, radius_right_ = 0, axle_ = 0, steps_per_turn_ = 0, scale_ = 0, mismatch_ = 0,
         scrub_ = 0, friction_ = 0, creep_ = 0, slope_creep_ = 0, loss_speed_ = 0, loss_width_ = 0,
