@@ -23,11 +23,29 @@ std::string figures(const std::vector<Picture>& pictures) {
     return out + "</div>\n";
 }
 
+/// What sums along a drive are, under their heading; "" for what is a column of the data.
+std::string meaning_of(const Experiment& experiment, const std::string& observable) {
+    if (experiment.kind != Kind::Motion) return "";
+    if (observable == "along")
+        return "<p class=\"about\">Way ahead since the run began, summed row by row along the robot's own "
+               "heading.</p>\n";
+    if (observable == "across")
+        return "<p class=\"about\">Way to the left since the run began, summed row by row across the robot's "
+               "own "
+               "heading.</p>\n";
+    if (observable == "heading") return "<p class=\"about\">Turn since the run began, to the left.</p>\n";
+    if (observable == "x_m" || observable == "y_m")
+        return "<p class=\"about\">Place in the room, from where the run began.</p>\n";
+    return "";
+}
+
 std::string all_pictures(const Experiment& experiment, const Verdict& verdict) {
     std::string out = "<h2>Measured and simulated</h2>\n";
     if (const auto paths = path_pictures(experiment, verdict); !paths.empty()) out += figures(paths);
     for (const Series& series : verdict.series) {
-        if (verdict.series.size() > 1) out += fmt::format("<h3>{}</h3>\n", escaped(series.observable));
+        if (verdict.series.size() > 1)
+            out += fmt::format("<h3>{}</h3>\n{}", escaped(series.observable),
+                               meaning_of(experiment, series.observable));
         out += figures(pictures_of(experiment, series, verdict.seed));
     }
     return out;
