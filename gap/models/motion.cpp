@@ -164,9 +164,13 @@ class MotionModel final : public Model {
         const auto load = taken(rows.column("load_kg", 0), used),
                    incline = taken(rows.column("incline_rad", 0), used);
         counted_ = experiment.has("steps_left") && experiment.has("cmd_left");
-        const auto agenda = experiment.nominal.find("firmware.agenda");
-        exact_ = agenda != experiment.nominal.end() && agenda->second == 0;
-        const MotorDriver driver = exact_ ? MotorDriver::Timer : MotorDriver::Agenda;
+        const auto told = [&](const char* name, double otherwise) {
+            const auto known = experiment.nominal.find(name);
+            return known == experiment.nominal.end() ? otherwise : known->second;
+        };
+        exact_ = told("firmware.agenda", 1.0) == 0;
+        const Motor motor{exact_ ? MotorDriver::Timer : MotorDriver::Agenda,
+                          told("firmware.start_loss", 0.0)};
         std::array<std::vector<double>, 3> sums;
         double along = 0, across = 0, heading = 0;
         std::size_t from = 0;
@@ -176,11 +180,11 @@ class MotionModel final : public Model {
                 const Run& run = experiment.runs[base.run[i]];
                 Path path;
                 path.run = base.run[i];
-                path.wheel[0] = WheelCurve::counted(run, "steps_left", "cmd_left", driver);
-                path.wheel[1] = WheelCurve::counted(run, "steps_right", "cmd_right", driver);
+                path.wheel[0] = WheelCurve::counted(run, "steps_left", "cmd_left", motor);
+                path.wheel[1] = WheelCurve::counted(run, "steps_right", "cmd_right", motor);
                 if (counted_) {
-                    path.asked[0] = WheelCurve::commanded(run, "cmd_left", driver);
-                    path.asked[1] = WheelCurve::commanded(run, "cmd_right", driver);
+                    path.asked[0] = WheelCurve::commanded(run, "cmd_left", motor);
+                    path.asked[1] = WheelCurve::commanded(run, "cmd_right", motor);
                     for (std::size_t w = 0; w < 2; ++w)
                         path.wheel[w].unround(path.asked[w]);
                 }
@@ -279,7 +283,8 @@ class MotionModel final : public Model {
         radius_right_ = add("robot.wheel_radius_right", "m", defaults.robot.wheel_radius_right);
         axle_ = add("robot.axle_length", "m", defaults.robot.axle_length);
         steps_per_turn_ = add("robot.steps_per_turn", "1", defaults.robot.steps_per_turn);
-        (void)add("firmware.agenda", "1", 1.0);  // 0: the project's own firmware; read before the fit
+        (void)add("firmware.agenda", "1", 1.0);      // 0: the project's own firmware; read before the fit
+        (void)add("firmware.start_loss", "1", 0.0);  // as above
         scale_ = add("wheel_scale", "1", 0.0);
         mismatch_ = add("wheel_mismatch", "1", 0.0);
         scrub_ = add("robot.turn_scrub", "1", 0.0);

@@ -51,7 +51,7 @@ double timer_speed(double command) {
     return std::copysign(clock / std::floor((clock + std::floor(speed / 2)) / speed), command);
 }
 
-WheelCurve WheelCurve::commanded(const Run& run, std::string_view command, MotorDriver driver) {
+WheelCurve WheelCurve::commanded(const Run& run, std::string_view command, const Motor& motor) {
     WheelCurve curve;
     const auto &time = run.column("t_s"), &asked = run.column(command);
     double sum = 0.0, speed = 0.0, last = 0.0;
@@ -62,8 +62,14 @@ WheelCurve WheelCurve::commanded(const Run& run, std::string_view command, Motor
         curve.time.push_back(time[i]);
         curve.steps.push_back(sum);
         if (std::isnan(asked[i])) continue;
-        const double next = driver == MotorDriver::Agenda ? agenda_speed(asked[i]) : timer_speed(asked[i]);
+        const bool agenda = motor.driver == MotorDriver::Agenda;
+        const double next = agenda ? agenda_speed(asked[i]) : timer_speed(asked[i]);
         if (next != speed) curve.jumps.push_back({time[i], next - speed, speed});
+        if (speed == 0.0 && next != 0.0 && motor.start_loss > 0) {
+            sum -= std::copysign(motor.start_loss, next);
+            curve.time.push_back(time[i]);
+            curve.steps.push_back(sum);
+        }
         speed = next;
     }
     if (curve.empty()) return curve;
@@ -73,7 +79,7 @@ WheelCurve WheelCurve::commanded(const Run& run, std::string_view command, Motor
 }
 
 WheelCurve WheelCurve::counted(const Run& run, std::string_view counter, std::string_view command,
-                               MotorDriver driver) {
+                               const Motor& motor) {
     WheelCurve curve;
     const auto &time = run.column("t_s"), &steps = run.column(counter);
     for (std::size_t i = 0; i < steps.size(); ++i) {
@@ -81,8 +87,8 @@ WheelCurve WheelCurve::counted(const Run& run, std::string_view counter, std::st
         curve.time.push_back(time[i]);
         curve.steps.push_back(steps[i]);
     }
-    if (curve.empty()) return commanded(run, command, driver);
-    curve.jumps = run.has(command) ? commanded(run, command, driver).jumps : counted_jumps(curve);
+    if (curve.empty()) return commanded(run, command, motor);
+    curve.jumps = run.has(command) ? commanded(run, command, motor).jumps : counted_jumps(curve);
     return curve;
 }
 

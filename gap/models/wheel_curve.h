@@ -18,6 +18,12 @@ double timer_speed(double command);
 /// Which of the two drives the motors.
 enum class MotorDriver { Agenda, Timer };
 
+struct Motor {
+    MotorDriver driver = MotorDriver::Agenda;
+    double start_loss =
+        0.0;  ///< steps short at each start from standing: the wait for the first, the rotor's lag
+};
+
 /// A change of speed, steps/s.
 struct SpeedJump {
     double time, change;
@@ -28,10 +34,10 @@ struct WheelCurve {
     std::vector<double> time, steps;
     std::vector<SpeedJump> jumps;
 
-    /// From the counter; from commands if there is none. `lowest` to `highest` the times that are asked for.
+    /// From the counter; from commands if there is none.
     static WheelCurve counted(const Run& run, std::string_view counter, std::string_view command,
-                              MotorDriver driver);
-    static WheelCurve commanded(const Run& run, std::string_view command, MotorDriver driver);
+                              const Motor& motor);
+    static WheelCurve commanded(const Run& run, std::string_view command, const Motor& motor);
     /// Puts the fractions of a step back that a counter rounds off: as `asked` has them, wherever counter and
     /// command agree.
     void unround(const WheelCurve& asked);

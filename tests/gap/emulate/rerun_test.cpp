@@ -65,7 +65,7 @@ TEST_CASE("a wheel's size from an overlay drives the emulated robot as far as th
 
 TEST_CASE("a late command from an overlay is late on the emulated line") {
     const Rerun result =
-        again("motion", {"uart.delay=0.04"}, named("command_latency", "command.latency", 0.0452, 0.0052));
+        again("motion", {"uart.delay=0.04"}, named("command_latency", "command.latency", 0.0433, 0.0033));
     CAPTURE(result.runs, result.observables[0].before, result.observables[1].before,
             result.observables[1].after);
     CHECK(result.observables[0].before > 0.0013);  // 1.5 mm for most of the drive, 40 ms at 39 mm/s
