@@ -3,12 +3,12 @@
 #include "base/error.h"
 #include "gap/check_kinds.h"
 #include "gap/check_mixed.h"
-#include "gap/clocks.h"
 #include "gap/columns.h"
 #include "gap/copies.h"
 #include "gap/fill_missing.h"
 #include "gap/frames.h"
 #include "gap/missing_cells.h"
+#include "gap/nominal.h"
 
 #include <fmt/format.h>
 
@@ -265,8 +265,8 @@ void check(Experiment& experiment) {
     check_runs(experiment);
     check_mixed(experiment);
     check_kind(experiment);
-    align_clocks(experiment);
-    align_frames(experiment);
+    check_nominal(experiment);
+    align_times(experiment);
 }
 
 }  // namespace puckloop::gap

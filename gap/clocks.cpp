@@ -40,7 +40,7 @@ std::vector<Window> windows_of(const CountedPath& path, const ClockError& clock)
         double sign = -1.0;
         for (const std::size_t row : {i, i + rows}) {
             const double place = (path.time[row] - path.middle()) / path.span();
-            const double time = path.time[row] - clock.late - clock.drift * place;
+            const double time = path.when[row] - clock.late - clock.drift * place;
             const auto left = path.left_at(time), right = path.right_at(time);
             one.seen[0] += sign * path.way[row];
             one.seen[1] += sign * path.heading[row];
@@ -193,9 +193,11 @@ void align_clocks(Experiment& experiment) {
     for (std::size_t r = 0; r < paths.size(); ++r) {
         const ClockError& clock = drifting.errors[r];
         Run& run = experiment.runs[r];
-        run.counted_at = run.column("t_s");
-        for (double& time : run.counted_at)
-            time -= clock.late - common + clock.drift * (time - paths[r].middle()) / paths[r].span();
+        const auto& time = run.column("t_s");
+        if (run.counted_at.empty()) run.counted_at = time;
+        for (std::size_t i = 0; i < time.size(); ++i)
+            run.counted_at[i] -=
+                clock.late - common + clock.drift * (time[i] - paths[r].middle()) / paths[r].span();
         const double half = std::abs(clock.drift) / 2, rate = clock.drift / paths[r].span();
         earliest = std::min(earliest, clock.late - half);
         latest = std::max(latest, clock.late + half);

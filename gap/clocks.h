@@ -19,8 +19,8 @@ struct ClockError {
 /// are fitted along, so that none of them is taken for lateness. Empty when the runs cannot say.
 std::vector<ClockError> clock_errors(const Experiment& experiment);
 
-/// Where lateness drifts inside runs beyond doubt, sets Run::counted_at and says so as a caution. A lateness
-/// that is about the same in all runs is left to the effect of that name.
+/// Where lateness drifts inside runs beyond doubt, sets Run::counted_at (or corrects it) and says so as a
+/// caution. A lateness that is about the same in all runs is left to the effect of that name.
 void align_clocks(Experiment& experiment);
 
 }  // namespace puckloop::gap

@@ -37,6 +37,7 @@ CountedPath path_of(const Run& run) {
         }
         path.row.push_back(i);
         path.time.push_back(time[i]);
+        path.when.push_back(run.counted_at.empty() ? time[i] : run.counted_at[i]);
         path.way.push_back(way);
         path.heading.push_back(heading);
         last = i;

@@ -16,8 +16,9 @@ struct CountedPath {
 
     std::vector<std::size_t> row;            ///< of the run: those with a whole pose
     std::vector<double> time, way, heading;  ///< of the tracker in these rows: s, m and rad summed
-    std::vector<double> counted_time;        ///< s
-    std::vector<double> left, right;         ///< steps
+    std::vector<double> when;          ///< s: where they stand on the counters' clock, as far as is known
+    std::vector<double> counted_time;  ///< s
+    std::vector<double> left, right;   ///< steps
 
     Counter left_at(double time) const { return at(left, time); }
     Counter right_at(double time) const { return at(right, time); }

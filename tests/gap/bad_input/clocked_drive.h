@@ -16,9 +16,10 @@ namespace puckloop::gap::test {
 inline constexpr double kBegins = 1.0, kLasts = 60.0;  // s
 
 /// A drive of speeds that change smoothly; the pose in the row of time t (s) belongs to late(t) s before it.
-/// `wobble`: a wheel out of round, share of its speed, once in 0.37 s.
+/// `wobble`: a wheel out of round, share of its speed, once in 0.37 s. `uneven`: share of the time between
+/// rows by which rows may come later.
 inline Run drive(const std::string& name, const std::function<double(double)>& late, double axle_error,
-                 double wobble = 0.0) {
+                 double wobble = 0.0, double uneven = 0.0) {
     constexpr double kMetre = 1e-4, kAxle = 0.2, kStep = 0.1, kFine = 0.001;
     RandomStream random(1, "clocks test " + name);
     const double phase = 6 * random.uniform();
@@ -39,7 +40,8 @@ inline Run drive(const std::string& name, const std::function<double(double)>& l
     }
     Run run;
     run.name = run.file = name;
-    for (double t = kBegins; t < kLasts; t += kStep) {
+    for (double even = kBegins; even < kLasts; even += kStep) {
+        const double t = uneven > 0 ? even + uneven * kStep * random.uniform() : even;
         const auto counted = static_cast<std::size_t>(std::lround(t / kFine));
         const auto seen = static_cast<std::size_t>(std::lround((t - late(t)) / kFine));
         run.columns["t_s"].push_back(t);

@@ -2,6 +2,7 @@
 // values.
 
 #include "gap/models/model.h"
+#include "gap/nominal.h"
 #include "tests/gap/bad_input/made_experiment.h"
 
 #include <catch2/catch.hpp>
@@ -216,6 +217,32 @@ TEST_CASE("missing, impossible and few values") {
         mixed.rows[i].push_back(i % 2 == 0 ? "1" : "2");
     mixed.runs = 1;
     CHECK_THAT(cautions_of(mixed), Contains("2 robots are mixed"));
+}
+
+TEST_CASE("nominal numbers that no robot can have are refused, and doubtful units are said") {
+    const auto with = [](const std::string& line) {
+        Experiment experiment;
+        experiment.kind = Kind::Motion;
+        experiment.folder = "made";
+        const auto equals = line.find('=');
+        experiment.nominal[line.substr(0, equals)] = std::stod(line.substr(equals + 1));
+        check_nominal(experiment);
+        return experiment.cautions;
+    };
+    for (const char* line :
+         {"firmware.agenda=2", "firmware.agenda=0.5", "firmware.start_loss=-1", "firmware.start_loss=50",
+          "inverse_friction=-1", "robot.axle_length=0", "contact.mu=-0.7"}) {
+        CAPTURE(line);
+        const std::string name(line, std::string(line).find('='));
+        CHECK_THROWS_WITH(with(line), Contains("experiment.toml") && Contains(name));
+    }
+    const auto millimetres = with("robot.axle_length=53");
+    REQUIRE(millimetres.size() == 1);
+    CHECK_THAT(millimetres.front(), Contains("robot.axle_length") && Contains("unit"));
+    // Other robots than the simulator's are welcome.
+    CHECK(with("robot.axle_length=0.2").empty());
+    CHECK(with("inverse_friction=0").empty());
+    CHECK(with("firmware.start_loss=1.1").empty());
 }
 
 TEST_CASE("nominal numbers of nothing that can be built are refused") {
