@@ -49,6 +49,9 @@ class MotionModel final : public Model {
         gather(experiment, rows);
         declare();
         apply_nominal(experiment);
+        const auto mu = experiment.nominal.find("contact.mu");
+        if (mu != experiment.nominal.end() && !experiment.nominal.contains("inverse_friction"))
+            parameters_[static_cast<std::size_t>(friction_)].neutral = 1 / mu->second;
         // Turning mixes the tracker's noise of along and across: their sums wander.
         if (!room()) observables_[0].turn = observables_[1].turn = turns();
         for (std::size_t o = 0; exact_ && !counted_ && o < 3; ++o)
@@ -110,6 +113,7 @@ class MotionModel final : public Model {
         for (const Path& path : paths_) {
             std::array<CurveReader, 2> pacer{CurveReader(pace_of(path, 0)), CurveReader(pace_of(path, 1))};
             std::array<double, 2> last{pacer[0].at(path.time[0]), pacer[1].at(path.time[0])};
+            const auto settled = settled_rows(path, 0.0);
             for (std::size_t i = 1; i < path.time.size(); ++i)
                 for (std::size_t w = 0; w < 2; ++w) {
                     const double way = along_[row + i] - along_[row + i - 1],
@@ -118,7 +122,8 @@ class MotionModel final : public Model {
                     last[w] = steps;
                     const double speed =
                         std::abs(asked) / std::max(path.time[i] - path.time[i - 1], kSameTime);
-                    if (speed < 1) continue;
+                    const bool starts = nominal(start_loss_) > 0 && settled[i] == 0;  // not at one speed
+                    if (speed < 1 || starts) continue;
                     auto& sums = moves[std::round(speed * 10) / 10];
                     sums[0] += std::abs(asked) * metre;
                     sums[1] += std::copysign(1.0, asked) * (way + (w == 0 ? -arm : arm) * turn);
@@ -169,8 +174,9 @@ class MotionModel final : public Model {
             return known == experiment.nominal.end() ? otherwise : known->second;
         };
         exact_ = told("firmware.agenda", 1.0) == 0;
+        // A counter has counted what a start made.
         const Motor motor{exact_ ? MotorDriver::Timer : MotorDriver::Agenda,
-                          told("firmware.start_loss", 0.0)};
+                          counted_ ? 0.0 : told("firmware.start_loss", 0.0)};
         std::array<std::vector<double>, 3> sums;
         double along = 0, across = 0, heading = 0;
         std::size_t from = 0;
@@ -283,8 +289,8 @@ class MotionModel final : public Model {
         radius_right_ = add("robot.wheel_radius_right", "m", defaults.robot.wheel_radius_right);
         axle_ = add("robot.axle_length", "m", defaults.robot.axle_length);
         steps_per_turn_ = add("robot.steps_per_turn", "1", defaults.robot.steps_per_turn);
-        (void)add("firmware.agenda", "1", 1.0);      // 0: the project's own firmware; read before the fit
-        (void)add("firmware.start_loss", "1", 0.0);  // as above
+        (void)add("firmware.agenda", "1", 1.0);  // 0: the project's own firmware; read before the fit
+        start_loss_ = add("firmware.start_loss", "1", 0.0);  // as above
         scale_ = add("wheel_scale", "1", 0.0);
         mismatch_ = add("wheel_mismatch", "1", 0.0);
         scrub_ = add("robot.turn_scrub", "1", 0.0);
@@ -518,11 +524,11 @@ class MotionModel final : public Model {
     bool counted_ = false;
     bool exact_ = false;  ///< wheels keep to their commands: no agenda makes a staircase of them
     std::array<std::vector<std::uint32_t>, 2> counter_rows_;
-    int radius_left_ = 0, radius_right_ = 0, axle_ = 0, steps_per_turn_ = 0, scale_ = 0, mismatch_ = 0,
-        scrub_ = 0, friction_ = 0, creep_ = 0, slope_creep_ = 0, loss_speed_ = 0, loss_width_ = 0,
-        deadband_ = 0, backlash_ = 0, latency_ = 0, drop_ = 0, drift_x_ = 0, drift_y_ = 0, push_rate_ = 0,
-        push_size_ = 0, push_turn_ = 0, marker_x_ = 0, marker_y_ = 0, marker_angle_ = 0, delay_ = 0,
-        heading_drift_ = 0, heading_span_ = 0, heading_doubt_ = 0;
+    int radius_left_ = 0, radius_right_ = 0, axle_ = 0, steps_per_turn_ = 0, start_loss_ = 0, scale_ = 0,
+        mismatch_ = 0, scrub_ = 0, friction_ = 0, creep_ = 0, slope_creep_ = 0, loss_speed_ = 0,
+        loss_width_ = 0, deadband_ = 0, backlash_ = 0, latency_ = 0, drop_ = 0, drift_x_ = 0, drift_y_ = 0,
+        push_rate_ = 0, push_size_ = 0, push_turn_ = 0, marker_x_ = 0, marker_y_ = 0, marker_angle_ = 0,
+        delay_ = 0, heading_drift_ = 0, heading_span_ = 0, heading_doubt_ = 0;
 };
 
 }  // namespace

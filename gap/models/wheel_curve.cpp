@@ -55,9 +55,20 @@ WheelCurve WheelCurve::commanded(const Run& run, std::string_view command, const
     WheelCurve curve;
     const auto &time = run.column("t_s"), &asked = run.column(command);
     double sum = 0.0, speed = 0.0, last = 0.0;
+    double wait = 0.0;  // steps that are still to be lost of a start
     for (std::size_t i = 0; i < asked.size(); ++i) {
         if (std::isnan(time[i])) continue;
-        if (!curve.empty()) sum += speed * (time[i] - last);
+        const bool begins = curve.empty();
+        if (!begins) {
+            const double lost = std::min(wait, std::abs(speed) * (time[i] - last));
+            if (lost > 0) {
+                curve.time.push_back(last + lost / std::abs(speed));
+                curve.steps.push_back(sum);
+                wait -= lost;
+            }
+            sum += speed * (time[i] - last);
+            if (lost > 0) sum -= std::copysign(lost, speed);
+        }
         last = time[i];
         curve.time.push_back(time[i]);
         curve.steps.push_back(sum);
@@ -65,11 +76,10 @@ WheelCurve WheelCurve::commanded(const Run& run, std::string_view command, const
         const bool agenda = motor.driver == MotorDriver::Agenda;
         const double next = agenda ? agenda_speed(asked[i]) : timer_speed(asked[i]);
         if (next != speed) curve.jumps.push_back({time[i], next - speed, speed});
-        if (speed == 0.0 && next != 0.0 && motor.start_loss > 0) {
-            sum -= std::copysign(motor.start_loss, next);
-            curve.time.push_back(time[i]);
-            curve.steps.push_back(sum);
-        }
+        if (next == 0.0)
+            wait = 0.0;
+        else if (speed == 0.0 && !begins)  // before the first row it may have run already
+            wait = motor.start_loss;
         speed = next;
     }
     if (curve.empty()) return curve;

@@ -20,8 +20,9 @@ enum class MotorDriver { Agenda, Timer };
 
 struct Motor {
     MotorDriver driver = MotorDriver::Agenda;
-    double start_loss =
-        0.0;  ///< steps short at each start from standing: the wait for the first, the rotor's lag
+    /// Steps that each start from standing makes too few, at its beginning: the first comes late, and the
+    /// rotor does not make the last before the coils are cut.
+    double start_loss = 0.0;
 };
 
 /// A change of speed, steps/s.
