@@ -6,11 +6,14 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace puckloop::gap {
 
 /// A caution where commanded drives fit the other kind of motor driver beyond doubt, whatever the wheels'
-/// size and distance are; else "". Nothing is changed: what drives a robot is for its owner to say.
-std::string agenda_caution(const Experiment& experiment, std::uint64_t seed, unsigned threads);
+/// size and distance are and with the `effects` (names) that were found; else "". Nothing is changed: what
+/// drives a robot is for its owner to say.
+std::string agenda_caution(const Experiment& experiment, const std::vector<std::string>& effects,
+                           std::uint64_t seed, unsigned threads);
 
 }  // namespace puckloop::gap

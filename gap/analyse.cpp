@@ -188,11 +188,13 @@ class Analysis {
         const double neutral = study_.model().parameters()[static_cast<std::size_t>(freed.index)].neutral;
         const double value = final_.fitted.state.values[static_cast<std::size_t>(freed.index)];
         const double near = kEdge * (freed.high - freed.low);
-        for (const double end : {freed.low, freed.high})
-            if (std::abs(value - end) < near && std::abs(end - neutral) > near) {
+        for (const double end : {freed.low, freed.high}) {
+            const bool nothing = end == 0.0;  // a mechanism that is not there, not a belief's end
+            if (!nothing && std::abs(value - end) < near && std::abs(end - neutral) > near) {
                 edge = end;
                 return true;
             }
+        }
         return false;
     }
 
@@ -309,10 +311,37 @@ class Analysis {
         for (const std::size_t one : doubted)
             selection_.trials[one].remark = "comes nearest to what is left, but " + doubt;
         std::erase_if(selection_.steps, [&](const Trial& step) { return is_doubted(step.effect); });
-        std::erase_if(selection_.draws, [&](const Draw& draw) { return is_doubted(draw.chosen); });
+        if (!weigh_again()) return false;
+        std::erase_if(selection_.draws, [&](const Draw& draw) {
+            return std::find(selection_.chosen.effects.begin(), selection_.chosen.effects.end(),
+                             draw.chosen) == selection_.chosen.effects.end();
+        });
         final_ = with_nuisances();
         look_at_rest();
         return true;
+    }
+
+    /// What each cause says now that others are gone; those that say too little go, the weakest first. False:
+    /// the first of them would have to go.
+    bool weigh_again() {
+        while (true) {
+            std::size_t weakest = 0;
+            for (Trial& step : selection_.steps) {
+                const Fit fewer = without_effects(study_, selection_.chosen, {step.effect});
+                step.delta_bic = fewer.bic - selection_.chosen.bic;
+                step.held =
+                    gain_of(gains_by_block(study_.blocks(), study_.hold_out(fewer), selection_.held_chosen));
+                if (step.delta_bic < selection_.steps[weakest].delta_bic)
+                    weakest = static_cast<std::size_t>(&step - selection_.steps.data());
+            }
+            const Trial& least = selection_.steps[weakest];
+            if (least.delta_bic >= kEnoughBic) return true;
+            if (weakest == 0) return false;
+            selection_.trials[least.effect].remark = "says too little without what was doubted beside it";
+            selection_.chosen = without_effects(study_, selection_.chosen, {least.effect});
+            selection_.held_chosen = study_.hold_out(selection_.chosen);
+            selection_.steps.erase(selection_.steps.begin() + static_cast<std::ptrdiff_t>(weakest));
+        }
     }
 
     /// Pushes that keep to a place or to a command are none. First of the causes, they were all there was;
@@ -437,7 +466,11 @@ Verdict analyse(const Experiment& experiment, const Options& options) {
     Verdict verdict = Analysis(experiment, options, MotionView::Robot).run();
     if (experiment.kind != Kind::Motion) return verdict;
     if (verdict.decision != Decision::NoEffect) {
-        auto caution = agenda_caution(experiment, options.seed, options.threads);
+        std::vector<std::string> found;
+        for (const auto* causes : {&verdict.causes, &verdict.nearest})
+            for (const Cause& cause : *causes)
+                found.push_back(cause.name);
+        auto caution = agenda_caution(experiment, found, options.seed, options.threads);
         if (!caution.empty()) verdict.cautions.push_back(std::move(caution));
         return verdict;
     }

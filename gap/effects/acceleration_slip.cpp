@@ -6,17 +6,18 @@ Effect acceleration_slip() {
     return {
         .name = "acceleration_slip",
         .number = 5,
-        .title = "wheels slip when the speed jumps",
+        .title = "wheels slip more or less than assumed when the speed jumps",
         .mechanism =
             "Friction limits acceleration: a jump of speed costs way at starts and gives some at stops.",
         .equation = "lost = (change of speed)^2 / (2 mu g) at each jump",
         .kinds = {Kind::Motion},
         .parameters = {{"inverse_friction",
-                        0.3,
+                        0.0,
                         60.0,
                         6.0,
                         {8.0, 25.0},
-                        "mu 0.05..0.8: 17..1 mm for a jump to 12.9 cm/s"}},
+                        "mu 0.05..0.8: 17..1 mm for a jump to 12.9 cm/s; 0: they follow at once, or speeds "
+                        "do not jump"}},
         .needs = {},
         .observables = "way along, heading",
         .enters = "contact.mu and contact.mu_lateral",

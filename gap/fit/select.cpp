@@ -15,8 +15,6 @@ namespace puckloop::gap {
 namespace {
 
 constexpr std::size_t kMostEffects = 5;
-constexpr double kEnoughBic =
-    8.0;  // to be chosen; set by judgement on a few runs without effects (docs/gap.md)
 constexpr double kEnoughDeviations = 1.3;  // of the held-out gain
 constexpr double kSureDeviations = 2.0;
 constexpr double kEnoughBlocks = 0.5;  // share of blocks that gain, of those touched

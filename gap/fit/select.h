@@ -9,6 +9,10 @@
 
 namespace puckloop::gap {
 
+/// BIC by which a set must do better with an effect than without; set by judgement on a few runs without
+/// effects (docs/gap.md).
+inline constexpr double kEnoughBic = 8.0;
+
 /// How an effect did at the step where it was looked at last.
 struct Trial {
     std::size_t effect = 0;
