@@ -2,6 +2,7 @@
 // and with each effect at the true value of its parameter.
 
 #include "tests/gap/models/exact_tables.h"
+#include "tests/gap/models/made_table.h"
 
 #include <catch2/catch.hpp>
 
@@ -136,4 +137,18 @@ TEST_CASE("a push is not looked for where a command changed, and a lost command 
     CHECK(pushed < rows);
     CHECK(lost > 50);
     CHECK(lost < rows / 5);
+}
+
+TEST_CASE("friction is told as the simulator's own number or as what the model moves") {
+    const auto friction = [](const std::map<std::string, double>& nominal) {
+        const tests::Table table{
+            {"t_s", {0, 0.1, 0.2, 0.3}}, {"x_m", {0, 0, 0, 0.01}},         {"y_m", {0, 0, 0, 0}},
+            {"theta_rad", {0, 0, 0, 0}}, {"cmd_left", {0, 500, 500, 500}}, {"cmd_right", {0, 500, 500, 500}}};
+        const Experiment experiment = tests::experiment_of(Kind::Motion, table, nominal);
+        const auto model = make_model(experiment);
+        return model->neutral()[static_cast<std::size_t>(model->find("inverse_friction"))];
+    };
+    CHECK(friction({}) == Approx(1 / 0.7));
+    CHECK(friction({{"contact.mu", 0.35}}) == Approx(1 / 0.35));
+    CHECK(friction({{"contact.mu", 0.35}, {"inverse_friction", 0.0}}) == 0.0);
 }
