@@ -1,11 +1,13 @@
 #include "gap/agenda.h"
 
+#include "gap/fit/parallel.h"
 #include "gap/fit/study.h"
 #include "gap/fit/thinned.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 namespace puckloop::gap {
 
@@ -19,8 +21,8 @@ constexpr const char* kWheels[] = {"wheel_scale", "wheel_mismatch", "axle_length
 
 /// ln likelihood of the drives with all of `effects` that apply to them.
 double likelihood_of(const Experiment& experiment, const std::vector<std::string>& effects,
-                     std::uint64_t seed, unsigned threads) {
-    const Study study(experiment, seed, threads);
+                     std::uint64_t seed) {
+    const Study study(experiment, seed);
     Fit best = study.fit_none();
     std::vector<std::size_t> set;
     for (const std::string& name : effects)
@@ -44,10 +46,12 @@ std::string agenda_caution(const Experiment& experiment, const std::vector<std::
     std::vector<std::string> all(std::begin(kWheels), std::end(kWheels));
     for (const std::string& name : effects)
         if (std::find(all.begin(), all.end(), name) == all.end()) all.push_back(name);
-    Experiment part = thinned(experiment, kRows);
-    const double here = likelihood_of(part, all, seed, threads);
-    part.nominal[kAgenda] = staircase ? 0.0 : 1.0;
-    const double better = likelihood_of(part, all, seed, threads) - here;
+    std::array<Experiment, 2> parts{thinned(experiment, kRows), thinned(experiment, kRows)};
+    parts[1].nominal[kAgenda] = staircase ? 0.0 : 1.0;
+    std::array<double, 2> likelihood{};
+    in_parallel(parts.size(), threads,
+                [&](std::size_t k) { likelihood[k] = likelihood_of(parts[k], all, seed); });
+    const double better = likelihood[1] - likelihood[0];
     if (!(better > kBeyondDoubt)) return "";
     return fmt::format(
         "{} (by {:.0f} nats, whatever its wheels are): set \"firmware.agenda\" = {} in [nominal]",
