@@ -306,12 +306,16 @@ class Analysis {
             return std::find(doubted.begin(), doubted.end(), one) != doubted.end();
         };
         if (is_doubted(selection_.steps.front().effect)) return false;
+        Selection whole = selection_;
         selection_.chosen = without_effects(study_, selection_.chosen, doubted);
         selection_.held_chosen = study_.hold_out(selection_.chosen);
         for (const std::size_t one : doubted)
             selection_.trials[one].remark = "comes nearest to what is left, but " + doubt;
         std::erase_if(selection_.steps, [&](const Trial& step) { return is_doubted(step.effect); });
-        if (!weigh_again()) return false;
+        if (!weigh_again()) {
+            selection_ = std::move(whole);
+            return false;
+        }
         std::erase_if(selection_.draws, [&](const Draw& draw) {
             return std::find(selection_.chosen.effects.begin(), selection_.chosen.effects.end(),
                              draw.chosen) == selection_.chosen.effects.end();

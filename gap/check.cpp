@@ -244,6 +244,7 @@ void check_runs(Experiment& experiment) {
 }  // namespace
 
 void check(Experiment& experiment) {
+    check_nominal(experiment);
     for (const ColumnInfo& info : columns_of(experiment.kind)) {
         if (!experiment.has(info.name)) continue;
         drop_empty(experiment, info);
@@ -265,7 +266,6 @@ void check(Experiment& experiment) {
     check_runs(experiment);
     check_mixed(experiment);
     check_kind(experiment);
-    check_nominal(experiment);
     align_times(experiment);
 }
 

@@ -20,18 +20,20 @@ namespace puckloop::gap {
 
 namespace {
 
-constexpr double kLeastTurns = 5.0;        // of the beat in a run: fewer are a clock's drift
-constexpr double kFiner = 4.0;             // steps of frequency in one turn more over a run
-constexpr std::size_t kSearched = 2500;    // rows: the beat is looked for in so many, then followed
-constexpr double kUneven = 0.05;           // share of the time between rows
-constexpr double kEvenRows = 0.95;         // share of rows that must be even
+constexpr double kLeastTurns = 5.0;      // of the beat in a run: fewer are a clock's drift
+constexpr double kFiner = 4.0;           // steps of frequency in one turn more over a run
+constexpr std::size_t kSearched = 2500;  // rows: the beat is looked for in so many, then followed
+constexpr double kUneven = 0.05;         // share of the time between rows
+constexpr double kEvenRows = 0.95;       // share of rows that must be even
+constexpr double kMostMissing =
+    4.0;  // times as long as the rows alone would last: no beat is kept over long gaps
 constexpr double kOutlier = 6.0;           // sd: pushes and lost sight are left out
 constexpr double kEvidence = 60.0;         // deviance
 constexpr double kEvidenceBesides = 30.0;  // of a run whose frames are as long as those of the clear ones
 constexpr double kAlone = 4.0;       // times what stands out without it: rows late at random have many lines
 constexpr double kLeastClear = 0.5;  // share of runs
 constexpr double kAlike = 0.3;       // by how much frames of different runs may differ in length: noise
-constexpr double kLongest = 0.8;     // of the time between rows: longer, and rows repeat frames
+constexpr double kLongest = 0.9;     // of the time between rows: longer, and rows repeat frames
 constexpr double kPhaseStep = 0.03;  // of a turn
 constexpr int kRounds = 5, kReach = 4;  // of the search for frequency and phase, and its width in steps
 
@@ -92,7 +94,9 @@ std::optional<double> even_step(const std::vector<double>& time) {
         const double steps = space / step;
         return steps > 0.5 && std::abs(steps - std::round(steps)) < kUneven;
     });
-    if (static_cast<double>(even) < kEvenRows * static_cast<double>(spaces.size())) return std::nullopt;
+    const auto count = static_cast<double>(spaces.size());
+    if (static_cast<double>(even) < kEvenRows * count) return std::nullopt;
+    if (time.back() - time.front() > kMostMissing * count * step) return std::nullopt;
     return step;
 }
 

@@ -24,6 +24,9 @@ constexpr Limit kLimits[] = {
      "1: the original firmware's staircase of speeds, or 0: speeds as commanded"},
     {"firmware.start_loss", 0.0, 10.0, "0 to 10 steps"},
     {"inverse_friction", 0.0, 100.0, "0 (nothing slides) to 100"},
+    {"contact.mu", 0.01, 100.0, "0.01 to 100"},
+    {"wheel_scale", -0.5, 1.0, "-0.5 to 1"},
+    {"wheel_mismatch", -0.5, 0.5, "-0.5 to 0.5"},
 };
 constexpr double kFarOff = 10.0;  // times the ends of what a scenario takes
 
@@ -50,7 +53,7 @@ void check_nominal(Experiment& experiment) {
         const bool small = info->min > 0 && value * kFarOff < info->min;
         if (std::abs(value) > most || small)
             experiment.cautions.push_back(fmt::format(
-                "[nominal] {} = {:g} {} is far from {:g} to {:g}, which the simulator's robot can have: "
+                "[nominal] {} = {:g}{} is far from {:g} to {:g}, which the simulator's robot can have: "
                 "is the unit right?",
                 name, value, info->unit, info->min, info->max));
     }

@@ -122,7 +122,8 @@ class MotionModel final : public Model {
                     last[w] = steps;
                     const double speed =
                         std::abs(asked) / std::max(path.time[i] - path.time[i - 1], kSameTime);
-                    const bool starts = nominal(start_loss_) > 0 && settled[i] == 0;  // not at one speed
+                    const bool starts =
+                        !counted_ && nominal(start_loss_) > 0 && settled[i] == 0;  // not at one speed
                     if (speed < 1 || starts) continue;
                     auto& sums = moves[std::round(speed * 10) / 10];
                     sums[0] += std::abs(asked) * metre;

@@ -231,7 +231,7 @@ TEST_CASE("nominal numbers that no robot can have are refused, and doubtful unit
     };
     for (const char* line :
          {"firmware.agenda=2", "firmware.agenda=0.5", "firmware.start_loss=-1", "firmware.start_loss=50",
-          "inverse_friction=-1", "robot.axle_length=0", "contact.mu=-0.7"}) {
+          "inverse_friction=-1", "robot.axle_length=0", "contact.mu=0.001", "wheel_scale=-1"}) {
         CAPTURE(line);
         const std::string name(line, std::string(line).find('='));
         CHECK_THROWS_WITH(with(line), Contains("experiment.toml") && Contains(name));
@@ -239,6 +239,10 @@ TEST_CASE("nominal numbers that no robot can have are refused, and doubtful unit
     const auto millimetres = with("robot.axle_length=53");
     REQUIRE(millimetres.size() == 1);
     CHECK_THAT(millimetres.front(), Contains("robot.axle_length") && Contains("unit"));
+    // The number is blamed, not the columns that do not fit it.
+    Made drive = clean("motion");
+    drive.toml = "[nominal]\n\"robot.steps_per_turn\" = 0\n";
+    CHECK_THAT(refusal(drive), Contains("robot.steps_per_turn"));
     // Other robots than the simulator's are welcome.
     CHECK(with("robot.axle_length=0.2").empty());
     CHECK(with("inverse_friction=0").empty());

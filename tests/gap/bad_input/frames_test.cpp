@@ -99,6 +99,14 @@ TEST_CASE("rows that are late at random are no frames, nor is anything told of u
     }
 }
 
+TEST_CASE("no beat is looked for over gaps that outlast the rows") {
+    Experiment e = of({framed("a", 1.313, 0.2), framed("b", 0.871, 0.9)});
+    for (Run& run : e.runs)
+        for (std::size_t i = run.rows / 2; i < run.rows; ++i)
+            run.columns["t_s"][i] += 6 * 86400;
+    CHECK_FALSE(frame_beats(e).front().clear);
+}
+
 TEST_CASE("rows may be missing") {
     Experiment e = of({framed("a", 1.313, 0.2), framed("b", 0.871, 0.9)});
     for (Run& run : e.runs)
