@@ -2,6 +2,7 @@
 
 #include "gap/clocks.h"
 #include "gap/counted_path.h"
+#include "gap/stats/robust.h"
 
 #include <Eigen/Dense>
 #include <fmt/format.h>
@@ -85,10 +86,7 @@ std::vector<double> rates(const std::vector<double>& values, const std::vector<d
 std::optional<double> even_step(const std::vector<double>& time) {
     std::vector<double> spaces = differences(time);
     spaces.erase(spaces.begin());
-    std::vector<double> sorted = spaces;
-    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
-                     sorted.end());
-    const double step = sorted[sorted.size() / 2];
+    const double step = stats::median(spaces);
     if (!(step > 0)) return std::nullopt;
     const auto even = std::count_if(spaces.begin(), spaces.end(), [&](double space) {
         const double steps = space / step;
@@ -302,19 +300,13 @@ FrameBeat beat_of(const CountedPath& path) {
     return beat;
 }
 
-double middle_of(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 /// Has each run its counters read at its frames' times where frames are beyond doubt. False: they are not.
 bool align_frames(Experiment& experiment, const std::vector<FrameBeat>& beats) {
     std::vector<double> periods;
     for (const FrameBeat& beat : beats)
         if (beat.clear) periods.push_back(std::abs(beat.period));
     if (periods.empty()) return false;
-    const double period = middle_of(std::move(periods));
+    const double period = stats::median(periods);
     const auto alike = [&](const FrameBeat& beat) {
         return std::abs(std::abs(beat.period) - period) < kAlike * period;
     };
