@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <string_view>
 
 namespace puckloop::gap {
@@ -51,11 +52,12 @@ void check_nominal(Experiment& experiment) {
                              fmt::format("[nominal] {} = {:g} is not possible", name, value), "more than 0");
         const double most = kFarOff * std::max(std::abs(info->min), std::abs(info->max));
         const bool small = info->min > 0 && value * kFarOff < info->min;
-        if (std::abs(value) > most || small)
-            experiment.cautions.push_back(fmt::format(
-                "[nominal] {} = {:g}{} is far from {:g} to {:g}, which the simulator's robot can have: "
-                "is the unit right?",
-                name, value, info->unit, info->min, info->max));
+        if (std::abs(value) <= most && !small) continue;
+        const std::string unit = info->unit == std::string_view("1") ? "" : fmt::format(" {}", info->unit);
+        experiment.cautions.push_back(fmt::format(
+            "[nominal] {} = {:g}{} is far from {:g} to {:g}, which the simulator's robot can have: "
+            "is the unit right?",
+            name, value, unit, info->min, info->max));
     }
 }
 

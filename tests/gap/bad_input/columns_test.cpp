@@ -238,7 +238,7 @@ TEST_CASE("nominal numbers that no robot can have are refused, and doubtful unit
     }
     const auto millimetres = with("robot.axle_length=53");
     REQUIRE(millimetres.size() == 1);
-    CHECK_THAT(millimetres.front(), Contains("robot.axle_length") && Contains("unit"));
+    CHECK_THAT(millimetres.front(), Contains("robot.axle_length = 53 m is") && Contains("unit"));
     // The number is blamed, not the columns that do not fit it.
     Made drive = clean("motion");
     drive.toml = "[nominal]\n\"robot.steps_per_turn\" = 0\n";
