@@ -455,7 +455,6 @@ class Analysis {
                 sure || !verdict_.nearest.empty() ? Decision::Unexplained : Decision::NoEffect;
     }
 
-  private:
     const Experiment& experiment_;
     const Options& options_;
     Study study_;

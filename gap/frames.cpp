@@ -147,17 +147,10 @@ Disagreement disagreement(const CountedPath& path, double step) {
     return all;
 }
 
-/// What the errors would be if rows were late by `shape` (a row each), at one row.
-double effect_of(const Disagreement::Sum& sum, const std::vector<double>& shape, std::size_t row) {
-    return sum.rate[row - 1] * shape[row - 1] - sum.rate[row] * shape[row];
-}
-
-std::vector<double> sawtooth_of(const Disagreement& all, double beat, double phase) {
-    std::vector<double> shape;
-    shape.reserve(all.rows());
-    for (const double time : all.time)
-        shape.push_back(sawtooth(beat * time + phase));
-    return shape;
+/// What a row's error would be if the row before were late by `before` and it by `here`.
+template <class Number>
+Number effect_of(const Disagreement::Sum& sum, std::size_t row, const Number& before, const Number& here) {
+    return sum.rate[row - 1] * before - sum.rate[row] * here;
 }
 
 /// Least squares of the errors on a sawtooth.
@@ -171,7 +164,7 @@ Match match_sawtooth(const Disagreement& all, const Stretch& part, double beat, 
         double before = sawtooth(beat * all.time[part.from] + phase);
         for (std::size_t i = part.from + 1; i < part.to; ++i) {
             const double here = sawtooth(beat * all.time[i] + phase);
-            const double one = sum.rate[i - 1] * before - sum.rate[i] * here;
+            const double one = effect_of(sum, i, before, here);
             before = here;
             if (sum.counts[i] == 0) continue;
             product += one * sum.error[i];
@@ -204,7 +197,7 @@ Sinusoid best_sinusoid(const Disagreement& all, const Stretch& part, double step
             for (std::size_t i = 1; i < n; ++i) {
                 const std::size_t row = part.from + i;
                 if (sum.counts[row] == 0) continue;
-                const std::complex<double> one = sum.rate[row - 1] * angle[i - 1] - sum.rate[row] * angle[i];
+                const std::complex<double> one = effect_of(sum, row, angle[i - 1], angle[i]);
                 power(0, 0) += one.real() * one.real();
                 power(0, 1) += one.real() * one.imag();
                 power(1, 1) += one.imag() * one.imag();
@@ -290,10 +283,12 @@ FrameBeat beat_of(const CountedPath& path) {
     if (beat.evidence < kEvidenceBesides) return beat;
     const double there = deviance(all, searched, match_sawtooth(all, searched, best.beat, best.phase).gain);
     if (there <= deviance(all, searched, first.gain)) return beat;
-    const auto shape = sawtooth_of(all, best.beat, best.phase);
+    const auto late = [&](std::size_t row) {
+        return best.match.size * sawtooth(best.beat * all.time[row] + best.phase);
+    };
     for (Disagreement::Sum& sum : all.sums)
         for (std::size_t i = 1; i < all.rows(); ++i)
-            if (sum.counts[i] != 0) sum.error[i] -= best.match.size * effect_of(sum, shape, i);
+            if (sum.counts[i] != 0) sum.error[i] -= effect_of(sum, i, late(i - 1), late(i));
     const double next = deviance(all, searched, best_sinusoid(all, searched, finer).gain);
     beat.clear =
         beat.evidence > kEvidence && there > kAlone * next && std::abs(beat.period) < kLongest * *step;
