@@ -41,8 +41,7 @@ std::string agenda_caution(const Experiment& experiment, const std::vector<std::
                            std::uint64_t seed, unsigned threads) {
     if (experiment.kind != Kind::Motion || !experiment.has("cmd_left") || experiment.has("steps_left"))
         return "";
-    const auto told = experiment.nominal.find(kAgenda);
-    const bool staircase = told == experiment.nominal.end() || told->second != 0;
+    const bool staircase = experiment.nominal_or(kAgenda, 1.0) != 0;
     std::vector<std::string> all(std::begin(kWheels), std::end(kWheels));
     for (const std::string& name : effects)
         if (std::find(all.begin(), all.end(), name) == all.end()) all.push_back(name);

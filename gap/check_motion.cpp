@@ -58,11 +58,6 @@ Path measure(const Run& run) {
     return path;
 }
 
-double nominal(const Experiment& experiment, const std::string& name, double fallback) {
-    const auto place = experiment.nominal.find(name);
-    return place == experiment.nominal.end() ? fallback : place->second;
-}
-
 /// A counter that wrapped, was reset, or has another unit.
 void check_counter(const Experiment& experiment, const Run& run, const char* name, double metre_per_step) {
     constexpr double kWrap = 65536, kNearWrap = 0.2;
@@ -200,10 +195,10 @@ void check_motion(Experiment& experiment) {
     double agree = 0.0, turned = 0.0;
     double driven = 0.0, tracked = 0.0, duration = 0.0;
     bool steps = false, heading_fixed = true;
-    const double axle = nominal(experiment, "robot.axle_length", 0.053);
+    const double axle = experiment.nominal_or("robot.axle_length", 0.053);
     const double metre_per_step = 2 * std::numbers::pi *
-                                  nominal(experiment, "robot.wheel_radius_left", 0.0205) /
-                                  nominal(experiment, "robot.steps_per_turn", 1000);
+                                  experiment.nominal_or("robot.wheel_radius_left", 0.0205) /
+                                  experiment.nominal_or("robot.steps_per_turn", 1000);
     for (const Run& run : experiment.runs) {
         const Path path = measure(run);
         tracked += path.length;

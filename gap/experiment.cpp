@@ -241,6 +241,11 @@ std::size_t Experiment::rows() const {
     return sum;
 }
 
+double Experiment::nominal_or(const std::string& name, double otherwise) const {
+    const auto told = nominal.find(name);
+    return told == nominal.end() ? otherwise : told->second;
+}
+
 bool Experiment::has(std::string_view column) const {
     return std::any_of(runs.begin(), runs.end(), [&](const Run& run) { return run.has(column); });
 }

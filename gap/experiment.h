@@ -48,6 +48,8 @@ struct Experiment {
     std::vector<std::string> cautions;  ///< what the reader noticed, in plain words; part of the verdict
 
     std::size_t rows() const;  ///< over all runs
+    /// What [nominal] says of a number, or `otherwise`.
+    double nominal_or(const std::string& name, double otherwise) const;
     /// Does at least one run have this column?
     bool has(std::string_view column) const;
 };

@@ -65,8 +65,7 @@ void sessions(const Experiment& experiment, Values& fitted, Values& simulator) {
         for (const double zero : zeros[axis])
             squares += (zero - mean) * (zero - mean);
         const std::string bias = fmt::format("accelerometer.bias{}", axis);
-        const auto stated = experiment.nominal.find(bias);
-        const double first = take(fitted, bias, stated == experiment.nominal.end() ? 0.0 : stated->second);
+        const double first = take(fitted, bias, experiment.nominal_or(bias, 0.0));
         simulator[bias] = first + mean;
         simulator[fmt::format("accelerometer.session_spread{}", axis)] = std::sqrt(squares / (n - 1));
     }

@@ -80,9 +80,8 @@ Rerun rerun(const Experiment& experiment, const Verdict& verdict, const RerunOpt
         result.not_done = "no cause was named, so there is nothing to add to the simulation";
         return result;
     }
-    const auto agenda = experiment.nominal.find("firmware.agenda");
     if (experiment.kind == Kind::Motion && options.firmware.empty() &&
-        (agenda == experiment.nominal.end() || agenda->second != 0)) {
+        experiment.nominal_or("firmware.agenda", 1.0) != 0) {
         result.not_done = "the robot ran another firmware than the project's own; name its image";
         return result;
     }

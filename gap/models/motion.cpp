@@ -170,14 +170,10 @@ class MotionModel final : public Model {
         const auto load = taken(rows.column("load_kg", 0), used),
                    incline = taken(rows.column("incline_rad", 0), used);
         counted_ = experiment.has("steps_left") && experiment.has("cmd_left");
-        const auto told = [&](const char* name, double otherwise) {
-            const auto known = experiment.nominal.find(name);
-            return known == experiment.nominal.end() ? otherwise : known->second;
-        };
-        exact_ = told("firmware.agenda", 1.0) == 0;
+        exact_ = experiment.nominal_or("firmware.agenda", 1.0) == 0;
         // A counter has counted what a start made.
         const Motor motor{exact_ ? MotorDriver::Timer : MotorDriver::Agenda,
-                          counted_ ? 0.0 : told("firmware.start_loss", 0.0)};
+                          counted_ ? 0.0 : experiment.nominal_or("firmware.start_loss", 0.0)};
         std::array<std::vector<double>, 3> sums;
         double along = 0, across = 0, heading = 0;
         std::size_t from = 0;

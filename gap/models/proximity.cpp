@@ -81,9 +81,8 @@ class ProximityModel final : public Model {
             stepping_.push_back(speed != 0.0 ? 1.0 : 0.0);
             speed = std::abs(speed) / kSpeedUnit;
         }
-        const auto curve = experiment.nominal.find("proximity.curve");
         others_ = exposed();
-        declare(objects_of(experiment, column), curve == experiment.nominal.end() || curve->second == 0);
+        declare(objects_of(experiment, column), experiment.nominal_or("proximity.curve", 0.0) == 0);
         apply_nominal(experiment);
         angle0_ = physics_.direction;
         for (std::size_t s = 0; s < angle0_.size(); ++s)

@@ -47,8 +47,7 @@ class RabModel final : public Model {
   public:
     explicit RabModel(const Experiment& experiment) {
         const Rows rows(experiment, "", {"distance_m"});
-        const auto ring = experiment.nominal.find("rab.ring");
-        if (ring != experiment.nominal.end() && ring->second != 0 && experiment.has("true_bearing_rad"))
+        if (experiment.nominal_or("rab.ring", 0.0) != 0 && experiment.has("true_bearing_rad"))
             make_ring(rows, experiment);
         if (experiment.has("strength")) gather_strength(rows, experiment);
         if (experiment.has("bearing_rad")) gather_bearing(rows, experiment);
@@ -100,9 +99,7 @@ class RabModel final : public Model {
         std::vector<RabLook> looks;
         for (std::size_t i = 0; i < rows.size(); ++i)
             looks.push_back({distance[i], bearing[i], facing[i], static_cast<int>(std::lround(emitter[i]))});
-        const auto carrier = experiment.nominal.find("rab.carrier");
-        ring_.emplace(std::move(looks), parameters.ir,
-                      carrier == experiment.nominal.end() ? 0.0 : carrier->second);
+        ring_.emplace(std::move(looks), parameters.ir, experiment.nominal_or("rab.carrier", 0.0));
     }
 
     void gather_strength(const Rows& rows, const Experiment& experiment) {
