@@ -2,7 +2,7 @@
 // A real image on the bench, for tests: bytes in and out with their times, signal changes, registers.
 
 #include "tools/exec/bench.h"
-#include "tools/exec/script_end.h"
+#include "tools/exec/ends/script_end.h"
 
 #include <optional>
 #include <string>

@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "emu/pic/signals.h"
-#include "tools/exec/uart_spec.h"
+#include "tools/exec/ends/uart_spec.h"
 
 #include <catch2/catch.hpp>
 

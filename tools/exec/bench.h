@@ -5,7 +5,7 @@
 #include "tools/exec/i2c_script_master.h"
 #include "tools/exec/logs.h"
 #include "tools/exec/scripts.h"
-#include "tools/exec/target.h"
+#include "tools/exec/targets/target.h"
 #include "tools/exec/uart_line.h"
 
 #include <array>

@@ -10,7 +10,7 @@
 
 #include "tools/exec/logs.h"
 #include "tools/exec/scripts.h"
-#include "tools/exec/target.h"
+#include "tools/exec/targets/target.h"
 
 #include <optional>
 #include <string>

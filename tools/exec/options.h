@@ -2,7 +2,7 @@
 // The options of `puckloop exec`, checked and resolved.
 
 #include "tools/exec/bench.h"
-#include "tools/exec/uart_spec.h"
+#include "tools/exec/ends/uart_spec.h"
 
 #include <array>
 #include <cstdint>

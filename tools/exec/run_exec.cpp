@@ -2,9 +2,9 @@
 
 #include "base/error.h"
 #include "emu/image/device.h"
+#include "tools/exec/ends/script_end.h"
 #include "tools/exec/exec_report.h"
 #include "tools/exec/options.h"
-#include "tools/exec/script_end.h"
 #include "tools/exec/text_input.h"
 
 #include <fmt/format.h>

@@ -2,9 +2,9 @@
 // The wire between one of the target's UARTs and the bench's end: 8N1 at the bench's own baud rate.
 
 #include "cosim/message.h"
+#include "tools/exec/ends/uart_end.h"
 #include "tools/exec/logs.h"
-#include "tools/exec/target.h"
-#include "tools/exec/uart_end.h"
+#include "tools/exec/targets/target.h"
 
 #include <memory>
 

@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "protocols/uart_sampling.h"
-#include "tools/exec/script_end.h"
+#include "tools/exec/ends/script_end.h"
 #include "tools/exec/scripts.h"
 #include "tools/exec/text_input.h"
 

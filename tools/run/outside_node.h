@@ -5,8 +5,8 @@
 // simulated millisecond, the run is paced by the wall clock, and it cannot be repeated.
 
 #include "cosim/node.h"
-#include "tools/exec/uart_end.h"
-#include "tools/exec/uart_spec.h"
+#include "tools/exec/ends/uart_end.h"
+#include "tools/exec/ends/uart_spec.h"
 
 #include <cstdio>
 #include <memory>

@@ -1,7 +1,7 @@
 // `--uartN pty`: a pseudo terminal that any terminal program can open.
 
 #include "base/error.h"
-#include "tools/exec/queued_end.h"
+#include "tools/exec/ends/queued_end.h"
 
 #include <fmt/format.h>
 

@@ -4,7 +4,7 @@
 #include "base/suggest.h"
 #include "emu/pic/pic_node.h"
 #include "emu/rab_board/pin_table.h"
-#include "tools/exec/target.h"
+#include "tools/exec/targets/target.h"
 
 #include <fmt/format.h>
 

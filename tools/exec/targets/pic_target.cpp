@@ -2,7 +2,7 @@
 
 #include "emu/pic/board.h"
 #include "emu/pic/pin_table.h"
-#include "tools/exec/dspic_target.h"
+#include "tools/exec/targets/dspic_target.h"
 
 namespace puckloop::exec {
 

@@ -1,4 +1,4 @@
-#include "tools/exec/dspic_target.h"
+#include "tools/exec/targets/dspic_target.h"
 
 #include <algorithm>
 

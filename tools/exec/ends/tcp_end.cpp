@@ -1,7 +1,7 @@
 // `--uartN tcp:PORT`: one client at a time, on 127.0.0.1 only.
 
 #include "base/error.h"
-#include "tools/exec/queued_end.h"
+#include "tools/exec/ends/queued_end.h"
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>

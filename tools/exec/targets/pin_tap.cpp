@@ -1,4 +1,4 @@
-#include "tools/exec/pin_tap.h"
+#include "tools/exec/targets/pin_tap.h"
 
 #include <fmt/format.h>
 

@@ -5,7 +5,7 @@
 #include "emu/rab_board/rab_json.h"
 #include "emu/rab_board/rab_log.h"
 #include "protocols/uart_sampling.h"
-#include "tools/exec/dspic_target.h"
+#include "tools/exec/targets/dspic_target.h"
 
 #include <nlohmann/json.hpp>
 

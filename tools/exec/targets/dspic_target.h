@@ -2,8 +2,8 @@
 // A dsPIC on the bench: the chip, what stands at its pins, and an I2C bus with nobody else on it.
 
 #include "emu/pic/empty_bus.h"
-#include "tools/exec/pin_tap.h"
-#include "tools/exec/target.h"
+#include "tools/exec/targets/pin_tap.h"
+#include "tools/exec/targets/target.h"
 
 #include <array>
 

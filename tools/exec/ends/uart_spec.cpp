@@ -1,4 +1,4 @@
-#include "tools/exec/uart_spec.h"
+#include "tools/exec/ends/uart_spec.h"
 
 #include "base/error.h"
 #include "tools/exec/text_input.h"

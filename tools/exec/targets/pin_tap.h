@@ -2,7 +2,7 @@
 // Stands between a chip and what is around it, and tells the bench of every pin that changes.
 
 #include "emu/dspic/pins.h"
-#include "tools/exec/target.h"
+#include "tools/exec/targets/target.h"
 
 #include <array>
 #include <functional>

@@ -2,7 +2,7 @@
 // pull-up), every analog input stands at 3800 counts of 4095 (near the rail, like a light sensor in a dim
 // room), UART and I2C lines are at rest. The stimulus may change any of it: `adc8 1200`, `RF1 0`.
 
-#include "tools/exec/dspic_target.h"
+#include "tools/exec/targets/dspic_target.h"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 #pragma once
 // A UART end that plays a script and keeps what it hears.
 
+#include "tools/exec/ends/uart_end.h"
 #include "tools/exec/scripts.h"
-#include "tools/exec/uart_end.h"
 
 #include <vector>
 

@@ -1,7 +1,7 @@
 // `--uartN -`: standard input to the chip, the chip to standard output.
 
 #include "base/error.h"
-#include "tools/exec/queued_end.h"
+#include "tools/exec/ends/queued_end.h"
 
 #include <fmt/format.h>
 #include <poll.h>

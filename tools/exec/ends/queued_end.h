@@ -2,7 +2,7 @@
 // What the ends of a UART that speak to the outside share: bytes that wait for the chip, text that waits for
 // the outside.
 
-#include "tools/exec/uart_end.h"
+#include "tools/exec/ends/uart_end.h"
 
 #include <deque>
 #include <string>
