@@ -15,9 +15,13 @@ void declare_asm(CLI::App& app, int& status);
 void declare_disasm(CLI::App& app, int& status);
 void declare_trace(CLI::App& app, int& status);
 void declare_frames(CLI::App& app, int& status);
-void declare_gap(CLI::App& app, int& status);
+void declare_gap(CLI::App& app, int& status);  ///< its line of the help
 void declare_bench(CLI::App& app, int& status);
 void declare_node(CLI::App& app, int& status);
+
+/// Replaces this process by puckloop-gap with the same words; returns, with status 2, only where it is not
+/// built.
+int become_gap(char** words);
 
 // clang-format off
 inline constexpr std::array kCommands{

@@ -1,75 +1,13 @@
-// The command line: a table of subcommands and one place where failures become exit statuses.
+// puckloop: a table of subcommands. `gap` is a program of its own (tools/gap).
 
-#include "base/error.h"
-#include "tools/command.h"
 #include "tools/commands.h"
+#include "tools/program.h"
 #include "tools/run/linux_arguments.h"
-#include "tools/usage_error.h"
 
-#include <CLI/CLI.hpp>
-
-#include <fcntl.h>
-#include <unistd.h>
-
-#include <algorithm>
-#include <csignal>
-#include <cstdio>
-#include <exception>
-#include <filesystem>
-#include <string>
-#include <system_error>
-#include <vector>
-
-namespace {
-
-/// Whoever started us may have closed the standard descriptors, which then would become sockets and logs, or
-/// ignored the end of child processes, which is how failures of nodes are told.
-void restore_surroundings() {
-    int descriptor = 0;
-    do
-        descriptor = ::open("/dev/null", O_RDWR);
-    while (descriptor >= 0 && descriptor <= STDERR_FILENO);
-    if (descriptor >= 0) ::close(descriptor);
-    std::signal(SIGCHLD, SIG_DFL);
-}
-
-}  // namespace
+#include <string_view>
 
 int main(int argc, char** argv) {
-    using namespace puckloop;
-    restore_surroundings();
-    CLI::App app{"puckloop: real robot firmware, without the robot"};
-    app.name("puckloop");
-    app.require_subcommand(1);
-    app.set_version_flag("--version", "puckloop 0.1.0");
-    int status = 0;
-    for (const tools::DeclareCommand declare : tools::kCommands)
-        declare(app, status);
-    try {
-        std::vector<std::string> words = tools::pack_linux_arguments({argv + 1, argv + argc});
-        std::reverse(words.begin(), words.end());  // CLI11 takes them last first
-        app.parse(words);
-        if (std::fflush(stdout) != 0 || std::ferror(stdout))
-            throw RunError("standard output: cannot be written");
-        return status;
-    } catch (const CLI::ParseError& error) {
-        if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-        std::fprintf(stderr, "puckloop: %s\n", tools::usage_error(app, error).c_str());
-        return 2;
-    } catch (const InputError& error) {
-        std::fprintf(stderr, "puckloop: %s\n", error.what());
-        return 2;
-    } catch (const RunError& error) {
-        std::fprintf(stderr, "puckloop: %s\n", error.what());
-        return 1;
-    } catch (const std::filesystem::filesystem_error& error) {
-        std::fprintf(stderr, "puckloop: %s: %s\n", error.path1().c_str(), error.code().message().c_str());
-        return 1;
-    } catch (const std::system_error& error) {  // fmt::print on a full disk
-        std::fprintf(stderr, "puckloop: standard output: %s\n", error.what());
-        return 1;
-    } catch (const std::exception& error) {
-        std::fprintf(stderr, "puckloop: internal error: %s\n", error.what());
-        return 1;
-    }
+    using namespace puckloop::tools;
+    if (argc > 1 && std::string_view(argv[1]) == "gap") return become_gap(argv);
+    return run_program(kCommands, pack_linux_arguments({argv + 1, argv + argc}));
 }

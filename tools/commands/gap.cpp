@@ -1,182 +1,31 @@
-// puckloop gap: simulation against measured data.
+// `puckloop gap` is a program of its own, puckloop-gap beside this one: it takes as long to build as all the
+// rest, and a run needs none of it.
 
-#include "tools/commands/gap.h"
-#include "base/error.h"
-#include "emu/image/image.h"
-#include "gap/analyse.h"
-#include "gap/emulate/rerun.h"
-#include "gap/experiment.h"
-#include "gap/report/report.h"
-#include "tools/command.h"
-#include "tools/commands/gap_folders.h"
-#include "tools/commands/number_checks.h"
+#include "tools/commands.h"
 
 #include <CLI/CLI.hpp>
-#include <fmt/format.h>
 
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <functional>
-#include <memory>
-#include <string>
-#include <thread>
-#include <vector>
 
 namespace puckloop::tools {
 
-namespace {
-
-constexpr double kBriefRerun = 40.0;  // s of simulated time
-
-struct Request {
-    std::filesystem::path folder, out, firmware;
-    std::uint64_t seed = 1;
-    bool rerun = false, no_rerun = false;
-};
-
-void tell_experiment(const gap::Experiment& experiment) {
-    fmt::print("{}: kind {}, {} runs, {} rows\n", experiment.title, gap::kind_name(experiment.kind),
-               experiment.runs.size(), experiment.rows());
-    for (const auto& caution : experiment.cautions)
-        fmt::print("caution: {}\n", caution);
+int become_gap(char** words) {
+    std::error_code failed;
+    const auto self = std::filesystem::read_symlink("/proc/self/exe", failed);
+    const auto program = self.parent_path() / "puckloop-gap";
+    ::execv(program.c_str(), words);
+    std::fprintf(stderr, "puckloop: gap: %s: %s (expected the program that ./puckloop gap builds)\n",
+                 program.c_str(), std::strerror(errno));
+    return 2;
 }
 
-/// One line that is written over, on a terminal only.
-std::function<void(const std::string&, double)> progress_line() {
-    if (::isatty(STDERR_FILENO) == 0) return {};
-    return [](const std::string& what, double share) {
-        fmt::print(stderr, "\r\033[K{:3.0f} %  {}", 100 * share, what);
-        std::fflush(stderr);
-    };
-}
-
-void tell_verdict(const gap::Experiment& experiment, const gap::Verdict& verdict) {
-    const auto& known = experiment.cautions;
-    for (const auto& caution : verdict.cautions)
-        if (std::find(known.begin(), known.end(), caution) == known.end())
-            fmt::print("caution: {}\n", caution);
-    fmt::print("verdict: {}\n{}\n", gap::decision_name(verdict.decision), verdict.summary);
-    for (const auto& cause : verdict.causes)
-        fmt::print("  {} ({}): {}\n", cause.name, cause.number, cause.sentence);
-    for (const auto& rival : verdict.rivals)
-        fmt::print("  rival of {}: {} ({}), delta BIC {:.1f}\n", rival.instead_of, rival.cause.name,
-                   rival.cause.number, rival.delta_bic);
-    constexpr std::size_t kLines = 6;  // the clearest come first; all are in gap.json and the report
-    std::vector<std::string> told;
-    for (const auto& left : verdict.leftovers) {
-        auto line = fmt::format("{} against {}: {}", left.observable, left.covariate, left.shape);
-        if (std::find(told.begin(), told.end(), line) != told.end()) continue;
-        if (told.size() < kLines) fmt::print("  left: {} (p {:.2g})\n", line, left.p_value);
-        told.push_back(std::move(line));
-    }
-    if (told.size() > kLines) fmt::print("  left: and {} more\n", told.size() - kLines);
-}
-
-/// With the overlay as written, which is what anybody's run would load. Unasked: some seconds of it.
-void run_again(const Request& request, const gap::Experiment& experiment, gap::Verdict& verdict) {
-    gap::emulate::RerunOptions options;
-    options.tools = emulation_tools();
-    options.overlay = std::filesystem::absolute(beside(request.out / "overlay.toml"));
-    if (!request.firmware.empty()) options.firmware = std::filesystem::absolute(request.firmware);
-    options.scratch = std::filesystem::absolute(request.out / fmt::format("rerun.{}", ::getpid()));
-    options.seed = request.seed;
-    if (!request.rerun) options.longest = kBriefRerun;
-    if (::isatty(STDERR_FILENO) != 0)
-        options.done = [](std::size_t done, std::size_t all) {
-            fmt::print(stderr, "\r\033[K{} of {} runs again ", done, all);
-        };
-    verdict.rerun = gap::emulate::rerun(experiment, verdict, options);
-    if (options.done) fmt::print(stderr, "\r\033[K");
-    if (!verdict.rerun.not_done.empty()) fmt::print("not run again: {}\n", verdict.rerun.not_done);
-    for (const auto& one : verdict.rerun.observables)
-        fmt::print("run again with the overlay ({} of {} runs or placements): {}, error {:.4g}{} before, "
-                   "{:.4g} after\n",
-                   verdict.rerun.runs, verdict.rerun.of_runs, one.name, one.before,
-                   one.unit == "1" ? "" : " " + one.unit, one.after);
-    if (const auto caution = verdict.rerun.caution(); !caution.empty()) fmt::print("  {}\n", caution);
-}
-
-void analyse_folder(const Request& request) {
-    if (request.rerun && request.out.empty())
-        throw InputError("", "--rerun", "needs the overlay that --out writes", "--out OUT");
-    if (request.rerun && request.no_rerun)
-        throw InputError("", "--no-rerun", "says the contrary of --rerun", "one of the two");
-    if (request.no_rerun && !request.firmware.empty())
-        throw InputError("", "--firmware", "is for running again only", "no --no-rerun");
-    if (!request.firmware.empty()) {  // said now, not after the analysis
-        if (request.out.empty())
-            throw InputError("", "--firmware", "needs the overlay that --out writes", "--out OUT");
-        image::load_image(request.firmware.string());
-    }
-    const gap::Experiment experiment = gap::read_experiment(request.folder);
-    const auto overlay = request.out / "overlay.toml", json = request.out / "gap.json",
-               page = request.out / "report.html";
-    if (!request.out.empty()) {
-        prepare_folder(request.out);
-        for (const auto& file : {overlay, json, page})
-            if (std::filesystem::is_directory(file))
-                throw InputError(file.string(), "", "is a folder", "a file, or nothing yet");
-    }
-    gap::Options options{request.seed, std::max(1U, std::thread::hardware_concurrency()), progress_line()};
-    const auto begun = std::chrono::steady_clock::now();
-    gap::Verdict verdict = gap::analyse(experiment, options);
-    verdict.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-    if (options.progress) fmt::print(stderr, "\r\033[K");
-    tell_experiment(experiment);
-    tell_verdict(experiment, verdict);
-    if (request.out.empty()) return;
-    write_beside(overlay, gap::overlay_toml(experiment, verdict));
-    if (request.rerun || (!request.no_rerun && !verdict.causes.empty()))
-        run_again(request, experiment, verdict);
-    write_beside(json, gap::to_json(verdict));
-    write_beside(page, gap::report::report_html(experiment, verdict));
-    for (const auto& file : {overlay, json, page})
-        put_in_place(file);
-    fmt::print("report in {}\n", page.string());
-}
-
-}  // namespace
-
-void declare_gap(CLI::App& app, int& status) {
-    auto* command =
-        app.add_subcommand("gap", "simulation against measured data: what is wrong, why, and what is gained");
-    auto request = std::make_shared<Request>();
-    command
-        ->add_option("folder", request->folder,
-                     "measured experiment: a folder with experiment.toml (docs/gap.md)")
-        ->type_name("DIR");
-    command->add_option("--out", request->out, "folder for report.html, gap.json and overlay.toml")
-        ->type_name("OUT")
-        ->check(not_empty());
-    command->add_option("--seed", request->seed, "of everything random in the analysis")
-        ->check(count_up_to(kLargestSeed))
-        ->type_name("N");
-    command->add_flag("--rerun", request->rerun,
-                      "perform the whole experiment again on the emulator, without and with the overlay; "
-                      "unasked some 40 s of it");
-    command->add_flag("--no-rerun", request->no_rerun, "do not perform any of it again");
-    command
-        ->add_option("--firmware", request->firmware,
-                     "of the main board, for what is performed again (the project's own)")
-        ->type_name("IMAGE");
-    command->require_subcommand(0, 1);
-    declare_gap_import(*command, status);
-    declare_gap_record(*command, status);
-    declare_gap_selftest(*command, status);
-    command->callback([command, request, &status] {
-        if (!command->get_subcommands().empty()) return;
-        if (request->folder.empty())
-            throw InputError("", "", "gap: no folder", "DIR, a folder with experiment.toml");
-        analyse_folder(*request);
-        status = 0;
-    });
+void declare_gap(CLI::App& app, int&) {
+    app.add_subcommand("gap", "simulation against measured data: what is wrong, why, and what is gained");
 }
 
 }  // namespace puckloop::tools

@@ -1,10 +1,10 @@
 // puckloop gap record: an experiment performed on the emulator, firmware in the loop.
 
-#include "base/error.h"
 #include "gap/emulate/record.h"
-#include "tools/commands/gap.h"
-#include "tools/commands/gap_folders.h"
+#include "base/error.h"
 #include "tools/commands/number_checks.h"
+#include "tools/gap/folders.h"
+#include "tools/gap/subcommands.h"
 #include "tools/run/program_path.h"
 
 #include <CLI/CLI.hpp>

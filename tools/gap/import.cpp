@@ -2,8 +2,8 @@
 
 #include "base/error.h"
 #include "gap/importers/importers.h"
-#include "tools/commands/gap.h"
 #include "tools/commands/number_checks.h"
+#include "tools/gap/subcommands.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

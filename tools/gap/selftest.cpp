@@ -3,9 +3,9 @@
 #include "base/error.h"
 #include "gap/emulate/secret_cases.h"
 #include "gap/selftest/run_cases.h"
-#include "tools/commands/gap.h"
-#include "tools/commands/gap_folders.h"
 #include "tools/commands/number_checks.h"
+#include "tools/gap/folders.h"
+#include "tools/gap/subcommands.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-#include "tools/commands/gap_folders.h"
+#include "tools/gap/folders.h"
 
 #include "base/error.h"
 

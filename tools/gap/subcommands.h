@@ -1,5 +1,5 @@
 #pragma once
-// The subcommands of `puckloop gap`, one file each.
+// `puckloop gap` and its subcommands, each in a file of its own.
 
 #include "gap/emulate/stage.h"
 
@@ -9,9 +9,12 @@ class App;
 
 namespace puckloop::tools {
 
+void declare_gap(CLI::App& app, int& status);
 void declare_gap_import(CLI::App& gap, int& status);
 void declare_gap_record(CLI::App& gap, int& status);
 void declare_gap_selftest(CLI::App& gap, int& status);
+
+void declare_node(CLI::App& app, int& status);
 
 /// The project's own firmware and recording program, as built.
 gap::emulate::Tools emulation_tools();

@@ -1,0 +1,16 @@
+#pragma once
+// A command line: its subcommands, and one place where failures become exit statuses.
+
+#include "tools/command.h"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace puckloop::tools {
+
+/// Runs the subcommand that `words` (without the program's name) ask for. Returns the exit status: 0 success,
+/// 1 a run or check failed, 2 wrong use or bad input, with one line on standard error.
+int run_program(std::span<const DeclareCommand> commands, std::vector<std::string> words);
+
+}  // namespace puckloop::tools
