@@ -2,22 +2,22 @@
 // The list of subcommands. Add a declaration and a line here; keep both in the order of the design's command
 // line.
 
-#include "tools/command.h"
+#include "tools/cli/command.h"
 
 #include <array>
 
 namespace puckloop::tools {
 
-void declare_run(CLI::App& app, int& status);
-void declare_exec(CLI::App& app, int& status);
-void declare_step(CLI::App& app, int& status);
-void declare_asm(CLI::App& app, int& status);
-void declare_disasm(CLI::App& app, int& status);
-void declare_trace(CLI::App& app, int& status);
-void declare_frames(CLI::App& app, int& status);
-void declare_gap(CLI::App& app, int& status);  ///< its line of the help
-void declare_bench(CLI::App& app, int& status);
-void declare_node(CLI::App& app, int& status);
+void declare_run(Command& app, int& status);
+void declare_exec(Command& app, int& status);
+void declare_step(Command& app, int& status);
+void declare_asm(Command& app, int& status);
+void declare_disasm(Command& app, int& status);
+void declare_trace(Command& app, int& status);
+void declare_frames(Command& app, int& status);
+void declare_gap(Command& app, int& status);  ///< its line of the help
+void declare_bench(Command& app, int& status);
+void declare_node(Command& app, int& status);
 
 /// Replaces this process by puckloop-gap with the same words; returns, with status 2, only where it is not
 /// built.

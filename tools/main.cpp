@@ -1,7 +1,7 @@
 // puckloop: a table of subcommands. `gap` is a program of its own (tools/gap).
 
+#include "tools/cli/program.h"
 #include "tools/commands.h"
-#include "tools/program.h"
 #include "tools/run/linux_arguments.h"
 
 #include <string_view>

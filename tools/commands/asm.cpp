@@ -4,10 +4,10 @@
 #include "emu/dspic/assembler/assembler.h"
 #include "emu/dspic/device.h"
 #include "emu/image/intel_hex.h"
+#include "tools/cli/command.h"
 #include "tools/commands.h"
 #include "tools/commands/text_files.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <iterator>
@@ -55,16 +55,16 @@ void run(const Arguments& arguments) {
 
 }  // namespace
 
-void declare_asm(CLI::App& app, int& status) {
+void declare_asm(Command& app, int& status) {
     auto arguments = std::make_shared<Arguments>();
-    CLI::App* command =
+    Command* command =
         app.add_subcommand("asm", "Assemble dsPIC source; register names of the chip are known");
     command->add_option("FILE", arguments->file, "source file, - for standard input")->required();
     command->add_option("-o,--output", arguments->output, "output file; standard output without it");
     command
         ->add_option("--format", arguments->format,
                      "hex: Intel HEX; list: addresses and words beside the source")
-        ->check(CLI::IsMember({"hex", "list"}))
+        ->check(one_of({"hex", "list"}))
         ->capture_default_str();
     command->add_option("--mcu", arguments->mcu, "chip whose register names are known")
         ->capture_default_str();

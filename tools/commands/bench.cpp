@@ -6,12 +6,12 @@
 #include "tools/bench/rab_scenario.h"
 #include "tools/bench/rab_speed.h"
 #include "tools/bench/reference.h"
+#include "tools/cli/check.h"
+#include "tools/cli/command.h"
 #include "tools/commands.h"
 #include "tools/commands/bench_rab.h"
-#include "tools/commands/number_checks.h"
 #include "tools/run/run_scenario.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <unistd.h>
@@ -197,8 +197,8 @@ void print(const std::vector<Figure>& figures, bool as_json) {
 
 }  // namespace
 
-void declare_bench(CLI::App& app, int& status) {
-    CLI::App* command =
+void declare_bench(Command& app, int& status) {
+    Command* command =
         app.add_subcommand("bench", "measure the core and a scenario against a reference of this machine");
     auto options = std::make_shared<Options>();
     command->add_option("--scenario", options->scenario, "scenario to time (default scenarios/hello.toml)")
@@ -211,7 +211,7 @@ void declare_bench(CLI::App& app, int& status) {
             "what to measure: core, board = one range-and-bearing board alone, scenario, rab1, rab2, rab8 = "
             "so many robots with such boards in one process (repeatable; default core and scenario)")
         ->allow_extra_args(false)
-        ->check(CLI::IsMember({"core", "board", "scenario", "rab1", "rab2", "rab8"}));
+        ->check(one_of({"core", "board", "scenario", "rab1", "rab2", "rab8"}));
     command
         ->add_option("--rab-image", options->rab_image, "firmware of these boards (default: the project's)")
         ->type_name("IMAGE");
@@ -219,12 +219,12 @@ void declare_bench(CLI::App& app, int& status) {
         ->check(positive_number())
         ->type_name("S");
     command->add_option("--rounds", options->rounds, "measurements of each figure")
-        ->check(CLI::Range(1, 100))
+        ->check(whole_number_between(1, 100))
         ->type_name("N");
     command->add_flag("--json", options->json, "print JSON");
     declare_bench_rab(*command, status);
     command->callback([options, command, &status] {
-        if (!command->get_subcommands().empty()) return;
+        if (command->subcommand_given()) return;
         print(measure_all(*options), options->json);
         status = 0;
     });

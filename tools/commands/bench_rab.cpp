@@ -3,11 +3,11 @@
 #include "tools/commands/bench_rab.h"
 #include "base/error.h"
 #include "cosim/interrupt.h"
-#include "tools/commands/number_checks.h"
+#include "tools/cli/check.h"
+#include "tools/cli/command.h"
 #include "tools/rab/measure.h"
 #include "tools/rab/picture.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -93,8 +93,8 @@ void run(Options& options, int& status) {
 
 }  // namespace
 
-void declare_bench_rab(CLI::App& bench, int& status) {
-    CLI::App* command = bench.add_subcommand(
+void declare_bench_rab(Command& bench, int& status) {
+    Command* command = bench.add_subcommand(
         "rab", "range and bearing of two emulated boards against distance, as picture and table");
     auto options = std::make_shared<Options>();
     RabMeasurement& what = options->measurement;
@@ -107,13 +107,13 @@ void declare_bench_rab(CLI::App& bench, int& status) {
         ->check(number_between(0, 250))
         ->type_name("CM");
     command->add_option("--pairs", what.pairs, "pairs of boards, each with parts of its own")
-        ->check(CLI::Range(1, 1000))
+        ->check(whole_number_between(1, 1000))
         ->type_name("N");
     command->add_option("--repeats", what.repeats, "poses of each pair at each distance, two frames each")
-        ->check(CLI::Range(1, 10000))
+        ->check(whole_number_between(1, 10000))
         ->type_name("N");
     command->add_option("--power", what.power, "potentiometer byte, 0 = strongest")
-        ->check(CLI::Range(0, 255))
+        ->check(whole_number_between(0, 255))
         ->type_name("BYTE");
     command->add_option("--seed", what.seed, "of headings and parts")
         ->check(count_up_to(1'000'000'000))

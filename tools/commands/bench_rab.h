@@ -1,10 +1,10 @@
 #pragma once
 // The part of `puckloop bench` that measures range and bearing.
 
-#include "tools/command.h"
+#include "tools/cli/command.h"
 
 namespace puckloop::tools {
 
-void declare_bench_rab(CLI::App& bench, int& status);
+void declare_bench_rab(Command& bench, int& status);
 
 }  // namespace puckloop::tools

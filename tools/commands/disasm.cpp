@@ -4,10 +4,10 @@
 #include "emu/dspic/assembler/disassembler.h"
 #include "emu/dspic/assembler/listing.h"
 #include "emu/image/image.h"
+#include "tools/cli/command.h"
 #include "tools/commands.h"
 #include "tools/commands/text_files.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <charconv>
@@ -100,11 +100,11 @@ std::string list_image(const Arguments& arguments) {
 
 }  // namespace
 
-void declare_disasm(CLI::App& app, int& status) {
+void declare_disasm(Command& app, int& status) {
     auto arguments = std::make_shared<Arguments>();
-    CLI::App* command =
+    Command* command =
         app.add_subcommand("disasm", "Disassemble a dsPIC image or a few words; `asm` takes the result back");
-    CLI::Option* image = command->add_option("IMAGE", arguments->image, "HEX, ELF or COFF image");
+    Option* image = command->add_option("IMAGE", arguments->image, "HEX, ELF or COFF image");
     command->add_option("--start", arguments->start, "first program address, hexadecimal or a symbol");
     command->add_option("--end", arguments->end, "last program address, hexadecimal or a symbol");
     command->add_option("--words", arguments->words, "24-bit words in hexadecimal instead of an image")

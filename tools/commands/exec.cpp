@@ -1,11 +1,11 @@
 // `puckloop exec`: one chip or board alone on the bench.
 
 #include "base/error.h"
+#include "tools/cli/check.h"
+#include "tools/cli/command.h"
 #include "tools/commands.h"
-#include "tools/commands/number_checks.h"
 #include "tools/exec/options.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <charconv>
@@ -45,7 +45,7 @@ struct Arguments {
     bool unpaced = false;
 };
 
-void describe(CLI::App& app, Arguments& a) {
+void describe(Command& app, Arguments& a) {
     exec::ExecOptions& o = a.options;
     exec::TargetOptions& t = o.bench.target;
     auto* mcu = app.add_option("--mcu", o.bench.mcu,
@@ -92,7 +92,7 @@ void describe(CLI::App& app, Arguments& a) {
         ->check(number_between(0.0, 1000.0))
         ->capture_default_str();
     app.add_option("--selector", t.selector, "initial position of the selector (pic)")
-        ->check(CLI::Range(0, 15))
+        ->check(whole_number_between(0, 15))
         ->capture_default_str();
     app.add_option("--crystal", a.crystal_hertz, "in Hz (7372800; of the dsPIC33F 4000000)")
         ->check(number_between(kSlowestCrystal, kFastestCrystal));
@@ -113,8 +113,8 @@ void describe(CLI::App& app, Arguments& a) {
 
 }  // namespace
 
-void declare_exec(CLI::App& app, int& status) {
-    CLI::App* command = app.add_subcommand("exec", "run one chip or board alone on the bench");
+void declare_exec(Command& app, int& status) {
+    Command* command = app.add_subcommand("exec", "run one chip or board alone on the bench");
     const auto arguments = std::make_shared<Arguments>();
     describe(*command, *arguments);
     command->callback([command, arguments, &status] {

@@ -2,14 +2,13 @@
 
 #include "tools/commands/frames.h"
 
+#include "tools/cli/command.h"
 #include "tools/commands.h"
-
-#include <CLI/CLI.hpp>
 
 namespace puckloop::tools {
 
-void declare_frames(CLI::App& app, int& status) {
-    CLI::App* frames = app.add_subcommand("frames", "Encode, decode and check wire formats");
+void declare_frames(Command& app, int& status) {
+    Command* frames = app.add_subcommand("frames", "Encode, decode and check wire formats");
     frames->require_subcommand(1);
     declare_rab_frames(*frames, status);
     declare_epuck_frames(*frames, status);

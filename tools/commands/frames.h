@@ -7,14 +7,12 @@
 #include <string_view>
 #include <vector>
 
-namespace CLI {
-class App;
-}
-
 namespace puckloop::tools {
 
-void declare_rab_frames(CLI::App& frames, int& status);
-void declare_epuck_frames(CLI::App& frames, int& status);
+class Command;
+
+void declare_rab_frames(Command& frames, int& status);
+void declare_epuck_frames(Command& frames, int& status);
 
 /// Hands over each argument, or without arguments each line of standard input as it comes, white space around
 /// it removed. `origin` is empty for arguments, else "standard input, line 3". Throws InputError if there is

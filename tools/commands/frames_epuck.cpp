@@ -3,9 +3,9 @@
 
 #include "base/error.h"
 #include "protocols/epuck_serial.h"
+#include "tools/cli/command.h"
 #include "tools/commands/frames.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -178,9 +178,9 @@ void flush_output() {
     if (!std::cout) throw RunError("standard output: cannot write");
 }
 
-void declare_encode(CLI::App& epuck, int& status) {
+void declare_encode(Command& epuck, int& status) {
     auto arguments = std::make_shared<ActuatorArguments>();
-    CLI::App* command =
+    Command* command =
         epuck.add_subcommand("encode", "Print an actuator record, 12 bytes (numbers decimal, or 0x...)");
     command->add_option("--left", arguments->left, "left wheel, steps/s");
     command->add_option("--right", arguments->right, "right wheel, steps/s");
@@ -199,13 +199,13 @@ void declare_encode(CLI::App& epuck, int& status) {
 
 }  // namespace
 
-void declare_epuck_frames(CLI::App& frames, int& status) {
-    CLI::App* epuck = frames.add_subcommand("epuck", "Serial records between Linux board and main board");
+void declare_epuck_frames(Command& frames, int& status) {
+    Command* epuck = frames.add_subcommand("epuck", "Serial records between Linux board and main board");
     epuck->require_subcommand(1);
     declare_encode(*epuck, status);
     auto words = std::make_shared<std::vector<std::string>>();
     auto json = std::make_shared<bool>(false);
-    CLI::App* command = epuck->add_subcommand("decode", "Name the fields of a record of 12, 72 or 4 bytes");
+    Command* command = epuck->add_subcommand("decode", "Name the fields of a record of 12, 72 or 4 bytes");
     command->add_option("BYTES", *words, "hexadecimal; without it, one record a line on standard input");
     command->add_flag("--json", *json, "one JSON object a line");
     command->callback([words, json, &status] {

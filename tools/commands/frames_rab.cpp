@@ -3,9 +3,9 @@
 #include "base/error.h"
 #include "protocols/rab_errors.h"
 #include "protocols/rab_frame.h"
+#include "tools/cli/command.h"
 #include "tools/commands/frames.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -139,9 +139,9 @@ void classify(const Arguments& arguments) {
 
 /// A subcommand with --size, --json and its input; `act` runs in its callback.
 template <typename Act>
-void declare(CLI::App& rab, const char* name, const char* help, bool takes_chips, Act act) {
+void declare(Command& rab, const char* name, const char* help, bool takes_chips, Act act) {
     auto arguments = std::make_shared<Arguments>();
-    CLI::App* command = rab.add_subcommand(name, help);
+    Command* command = rab.add_subcommand(name, help);
     command->add_option("--size", arguments->size,
                         takes_chips ? "payload bits: 8, 16, 24 or 32 (default: by the length)"
                                     : "payload bits: 8, 16, 24 or 32 (default 16)");
@@ -158,8 +158,8 @@ void declare(CLI::App& rab, const char* name, const char* help, bool takes_chips
 
 }  // namespace
 
-void declare_rab_frames(CLI::App& frames, int& status) {
-    CLI::App* rab = frames.add_subcommand("rab", "Infra-red frames of the range-and-bearing board, as chips");
+void declare_rab_frames(Command& frames, int& status) {
+    Command* rab = frames.add_subcommand("rab", "Infra-red frames of the range-and-bearing board, as chips");
     rab->require_subcommand(1);
     declare(*rab, "encode", "Print the chips of a payload, 1 = carrier on", false, encode);
     declare(*rab, "decode",

@@ -1,9 +1,8 @@
 // `puckloop gap` is a program of its own, puckloop-gap beside this one: it takes as long to build as all the
 // rest, and a run needs none of it.
 
+#include "tools/cli/command.h"
 #include "tools/commands.h"
-
-#include <CLI/CLI.hpp>
 
 #include <unistd.h>
 
@@ -24,7 +23,7 @@ int become_gap(char** words) {
     return 2;
 }
 
-void declare_gap(CLI::App& app, int&) {
+void declare_gap(Command& app, int&) {
     app.add_subcommand("gap", "simulation against measured data: what is wrong, why, and what is gained");
 }
 

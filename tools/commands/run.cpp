@@ -2,15 +2,15 @@
 
 #include "base/error.h"
 #include "cosim/interrupt.h"
+#include "tools/cli/check.h"
+#include "tools/cli/command.h"
 #include "tools/commands.h"
-#include "tools/commands/number_checks.h"
 #include "tools/run/parameter_list.h"
 #include "tools/run/report.h"
 #include "tools/run/run_scenario.h"
 #include "tools/run/setup.h"
 #include "tools/run/status_line.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <memory>
@@ -67,8 +67,8 @@ int run(Options& options) {
 
 }  // namespace
 
-void declare_run(CLI::App& app, int& status) {
-    CLI::App* command =
+void declare_run(Command& app, int& status) {
+    Command* command =
         app.add_subcommand("run", "run a scenario: boards, Linux programs and the world together");
     auto options = std::make_shared<Options>();
     RunRequest& request = options->request;
@@ -91,7 +91,7 @@ void declare_run(CLI::App& app, int& status) {
         ->add_option(
             "--threads", request.threads,
             "with --in-process: threads for the boards (default: by the number of range-and-bearing boards)")
-        ->check(CLI::Range(1, 16))
+        ->check(whole_number_between(1, 16))
         ->type_name("N");
     command->add_flag("--realtime", request.realtime, "pace simulated time by the wall clock");
     command->add_option("--duration", request.duration, "simulated seconds")

@@ -2,18 +2,17 @@
 
 #include "base/error.h"
 #include "emu/dspic/step_vector.h"
+#include "tools/cli/command.h"
 #include "tools/commands.h"
-
-#include <CLI/CLI.hpp>
 
 #include <iostream>
 #include <string>
 
 namespace puckloop::tools {
 
-void declare_step(CLI::App& app, int& status) {
+void declare_step(Command& app, int& status) {
     static std::string mcu;
-    CLI::App* command = app.add_subcommand("step", "Run single-instruction vectors from stdin");
+    Command* command = app.add_subcommand("step", "Run single-instruction vectors from stdin");
     command->add_option("--mcu", mcu, "The chip, e.g. dspic30f6014a")->required();
     command->callback([&status] {
         const dspic::DeviceInfo* device = dspic::find_device(mcu);

@@ -4,11 +4,10 @@
 #include "cosim/trace_csv.h"
 #include "cosim/trace_stats.h"
 #include "cosim/trace_vcd.h"
-#include "tools/command.h"
-#include "tools/commands/number_checks.h"
+#include "tools/cli/check.h"
+#include "tools/cli/command.h"
 #include "tools/commands/trace_rab.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -108,9 +107,9 @@ void run(const Options& options) {
 
 }  // namespace
 
-void declare_trace(CLI::App& app, int&) {
+void declare_trace(Command& app, int&) {
     auto options = std::make_shared<Options>();
-    CLI::App* command = app.add_subcommand(
+    Command* command = app.add_subcommand(
         "trace", "read a recorded trace: count, filter, convert; without --csv or --vcd, counts");
     command->add_option("file", options->file, "trace.csv of a run");
     command->add_option("--link", options->links, "only these links (repeatable)")->allow_extra_args(false);
@@ -118,7 +117,7 @@ void declare_trace(CLI::App& app, int&) {
         ->allow_extra_args(false);
     command->add_option("--kind", options->kinds, "only uart, i2c or signal (repeatable)")
         ->allow_extra_args(false)
-        ->check(CLI::IsMember({"uart", "i2c", "signal"}));
+        ->check(one_of({"uart", "i2c", "signal"}));
     command->add_option("--from", options->from_s, "first time, s")->check(number_between(0.0, 9e6));
     command->add_option("--to", options->until_s, "end time, s; not included")
         ->check(number_between(0.0, 9e6));
@@ -128,7 +127,7 @@ void declare_trace(CLI::App& app, int&) {
     command->add_flag("--json", options->json, "counts as JSON");
     declare_trace_rab(*command);
     command->callback([command, options] {
-        if (command->get_subcommands().empty()) run(*options);
+        if (!command->subcommand_given()) run(*options);
     });
 }
 

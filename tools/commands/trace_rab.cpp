@@ -4,10 +4,10 @@
 #include "tools/commands/trace_rab.h"
 
 #include "base/error.h"
-#include "tools/commands/number_checks.h"
+#include "tools/cli/check.h"
+#include "tools/cli/command.h"
 #include "tools/rab_losses/results.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <memory>
@@ -27,9 +27,9 @@ struct Options {
 
 }  // namespace
 
-void declare_trace_rab(CLI::App& trace) {
+void declare_trace_rab(Command& trace) {
     auto options = std::make_shared<Options>();
-    CLI::App* command =
+    Command* command =
         trace.add_subcommand("rab", "range-and-bearing frames of a run: delivered, lost, and why");
     command->add_option("folder", options->folder, "results folder of a run")->required()->type_name("DIR");
     command->add_option("--from", options->from_s, "first time, s")->check(number_between(0.0, kLongest));

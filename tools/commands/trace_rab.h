@@ -1,10 +1,10 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 namespace puckloop::tools {
 
+class Command;
+
 /// Adds `rab` to the command `trace`.
-void declare_trace_rab(CLI::App& trace);
+void declare_trace_rab(Command& trace);
 
 }  // namespace puckloop::tools

@@ -6,12 +6,11 @@
 #include "gap/emulate/rerun.h"
 #include "gap/experiment.h"
 #include "gap/report/report.h"
-#include "tools/command.h"
-#include "tools/commands/number_checks.h"
+#include "tools/cli/check.h"
+#include "tools/cli/command.h"
 #include "tools/gap/folders.h"
 #include "tools/gap/subcommands.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <unistd.h>
@@ -144,7 +143,7 @@ void analyse_folder(const Request& request) {
 
 }  // namespace
 
-void declare_gap(CLI::App& app, int& status) {
+void declare_gap(Command& app, int& status) {
     auto* command =
         app.add_subcommand("gap", "simulation against measured data: what is wrong, why, and what is gained");
     auto request = std::make_shared<Request>();
@@ -171,7 +170,7 @@ void declare_gap(CLI::App& app, int& status) {
     declare_gap_record(*command, status);
     declare_gap_selftest(*command, status);
     command->callback([command, request, &status] {
-        if (!command->get_subcommands().empty()) return;
+        if (command->subcommand_given()) return;
         if (request->folder.empty())
             throw InputError("", "", "gap: no folder", "DIR, a folder with experiment.toml");
         analyse_folder(*request);

@@ -2,10 +2,10 @@
 
 #include "base/error.h"
 #include "gap/importers/importers.h"
-#include "tools/commands/number_checks.h"
+#include "tools/cli/check.h"
+#include "tools/cli/command.h"
 #include "tools/gap/subcommands.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <memory>
@@ -27,8 +27,8 @@ void tell_sets() {
 
 }  // namespace
 
-void declare_gap_import(CLI::App& gap, int& status) {
-    CLI::App* command = gap.add_subcommand("import", "Turn a published data set into experiment folders");
+void declare_gap_import(Command& gap, int& status) {
+    Command* command = gap.add_subcommand("import", "Turn a published data set into experiment folders");
     auto request = std::make_shared<Request>();
     command->add_option("set_folder", request->folder, "folder of the data set")->type_name("SET_FOLDER");
     command->add_option("--out", request->out, "where the experiment folders go")

@@ -1,7 +1,7 @@
 // puckloop-gap: what `puckloop gap` becomes. It serves nodes too: experiments on the emulator are runs.
 
+#include "tools/cli/program.h"
 #include "tools/gap/subcommands.h"
-#include "tools/program.h"
 
 #include <array>
 

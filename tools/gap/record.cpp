@@ -2,12 +2,12 @@
 
 #include "gap/emulate/record.h"
 #include "base/error.h"
-#include "tools/commands/number_checks.h"
+#include "tools/cli/check.h"
+#include "tools/cli/command.h"
 #include "tools/gap/folders.h"
 #include "tools/gap/subcommands.h"
 #include "tools/run/program_path.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -75,8 +75,8 @@ gap::emulate::Tools emulation_tools() {
     return {find_program("puckloop-record", "."), PUCKLOOP_FIRMWARE, PUCKLOOP_RAB_FIRMWARE};
 }
 
-void declare_gap_record(CLI::App& gap, int& status) {
-    CLI::App* command = gap.add_subcommand(
+void declare_gap_record(Command& gap, int& status) {
+    Command* command = gap.add_subcommand(
         "record", "Perform an experiment on the emulator, firmware in the loop, and write its folder");
     auto request = std::make_shared<Request>();
     command

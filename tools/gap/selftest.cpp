@@ -3,11 +3,11 @@
 #include "base/error.h"
 #include "gap/emulate/secret_cases.h"
 #include "gap/selftest/run_cases.h"
-#include "tools/commands/number_checks.h"
+#include "tools/cli/check.h"
+#include "tools/cli/command.h"
 #include "tools/gap/folders.h"
 #include "tools/gap/subcommands.h"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -118,9 +118,9 @@ int self_test(const Request& request) {
 
 }  // namespace
 
-void declare_gap_selftest(CLI::App& gap, int& status) {
-    CLI::App* command = gap.add_subcommand("selftest", "Hide effects in made experiments and see what the "
-                                                       "analysis says; status 1 when it misses its targets");
+void declare_gap_selftest(Command& gap, int& status) {
+    Command* command = gap.add_subcommand("selftest", "Hide effects in made experiments and see what the "
+                                                      "analysis says; status 1 when it misses its targets");
     auto request = std::make_shared<Request>();
     command->add_option("--cases", request->cases, "how many (default: all, over 300)")
         ->check(count_up_to(kMostCases))

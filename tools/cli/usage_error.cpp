@@ -1,4 +1,4 @@
-#include "tools/usage_error.h"
+#include "tools/cli/usage_error.h"
 
 #include "base/suggest.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 // A command line: its subcommands, and one place where failures become exit statuses.
 
-#include "tools/command.h"
+#include "tools/cli/command.h"
 
 #include <span>
 #include <string>

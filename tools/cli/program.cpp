@@ -1,7 +1,7 @@
-#include "tools/program.h"
+#include "tools/cli/program.h"
 
 #include "base/error.h"
-#include "tools/usage_error.h"
+#include "tools/cli/usage_error.h"
 
 #include <CLI/CLI.hpp>
 
@@ -40,8 +40,9 @@ int run_program(std::span<const DeclareCommand> commands, std::vector<std::strin
     app.require_subcommand(1);
     app.set_version_flag("--version", "puckloop 0.1.0");
     int status = 0;
+    Command root(app);
     for (const DeclareCommand declare : commands)
-        declare(app, status);
+        declare(root, status);
     try {
         std::reverse(words.begin(), words.end());  // CLI11 takes them last first
         app.parse(words);
