@@ -110,8 +110,9 @@ void LinuxNode::listen() {
         return;
     case Heard::Silent: {
         const Time now = process_->page().now.load();
-        const std::string reason = fmt::format("{} has not let time pass for {:g} s of wall clock: {}",
-                                               spec_.program, spec_.watchdog_s, process_->describe_silence());
+        const std::string reason =
+            fmt::format("{} has not let time pass for {:g} s of wall clock (half of --stall): {}",
+                        spec_.program, spec_.watchdog_s, process_->describe_silence());
         process_->kill();
         state_ = State::Off;
         kernel_.reset();

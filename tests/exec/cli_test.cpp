@@ -132,6 +132,33 @@ TEST_CASE("a framing error is heard by the chip and by the bench, and logged") {
     CHECK_THAT(text_of(bench.folder + "/log/uart1.csv"), Contains(",rx,,framing\n"));
 }
 
+TEST_CASE("each UART's end has a baud rate of its own, and --baud is that of both") {
+    const Workbench bench;
+    const std::string image = echo_image(bench);
+    const std::string script = bench.file("u.txt", "0.001 41 42\n");
+    const std::string both = "--board pic " + image + " --uart1 script:" + script +
+                             " --uart2 script:" + script + " --log " + bench.folder +
+                             "/log --seconds 0.01 --json";
+    // The second byte follows ten bits after the first: 1.041 667 ms at 9600, 86.806 us at 115 200.
+    const auto second = [&](int unit) {
+        return text_of(bench.folder + "/log/uart" + std::to_string(unit) + ".csv");
+    };
+    Outcome run = bench.run(both + " --uart2-baud 9600");
+    CHECK(run.status == 0);
+    CHECK_THAT(second(1), Contains("0.001086806,rx,42,"));
+    CHECK_THAT(second(2), Contains("0.002041667,rx,42,"));
+    run = bench.run(both + " --baud 9600 --uart1-baud 115200");
+    CHECK(nlohmann::json::parse(run.out)["uart1"]["framing_errors"] == 0);
+    CHECK_THAT(second(1), Contains("0.001086806,rx,42,"));
+    CHECK_THAT(second(2), Contains("0.002041667,rx,42,"));
+    run = bench.run(both + " --uart1-baud 76800");
+    CHECK_THAT(second(1), Contains("0.001130208,rx,42,"));
+    CHECK_THAT(second(2), Contains("0.001086806,rx,42,"));
+    run = bench.run(both + " --uart1-baud 3");
+    CHECK(run.status == 2);
+    CHECK_THAT(run.err, Contains("--uart1-baud"));
+}
+
 TEST_CASE("exec refuses what it cannot use with one line and status 2") {
     const Workbench bench;
     const std::string image = echo_image(bench);

@@ -27,7 +27,8 @@ Rig::Rig(const std::string& where, const std::string& image_file) {
     const TargetDefaults defaults = defaults_of(options.mcu, options.board);
     options.target.chip.crystal_hertz = defaults.crystal_hertz;
     options.target.chip.fosc = defaults.fosc;
-    options.baud = baud_ = defaults.baud;
+    baud_ = defaults.baud;
+    options.baud = {baud_, baud_};
     bench_ = std::make_unique<Bench>(options);
     bench_->on_change = [this](std::string_view pin, std::string_view signal, double value,
                                cosim::Time time) {

@@ -61,7 +61,7 @@ TEST_CASE("a UART script's mistakes name file, line and what was expected") {
 }
 
 TEST_CASE("an I2C master's script: writes and reads") {
-    const auto script = parse_i2c_script("i.txt", "0.1 w 0x20 0E 55\n0.2 r 32 0 1\n0.3 r 0x20 0x15 256\n");
+    const auto script = parse_i2c_script("i.txt", "0.1 w 0x20 0E 55\n0.2 r 0X20 0 1\n0.3 r 0x20 0x15 256\n");
     REQUIRE(script.size() == 3);
     CHECK_FALSE(script[0].read);
     CHECK(script[0].address == 0x20);
@@ -78,7 +78,12 @@ TEST_CASE("an I2C script's mistakes") {
     CHECK_THAT(i2c_error("0 x 0x20 00"), Contains("neither a write nor a read"));
     CHECK_THAT(i2c_error("0 w 0x80 00"),
                Contains("7-bit address 0x80 is out of range (expected 0 to 127 (0x7f))"));
-    CHECK_THAT(i2c_error("0 w 99999999999 00"), Contains("out of range"));
+    CHECK_THAT(i2c_error("0 w 0x99999999999 00"), Contains("out of range"));
+    // A bare 20 was read as decimal, 0x14.
+    CHECK(i2c_error("0 w 0x20 00\n0 r 20 0 1") ==
+          "i.txt: line 2: '20' is not a 7-bit address (expected hexadecimal after 0x, such as 0x20)");
+    CHECK_THAT(i2c_error("0 w 3c 00"), Contains("line 1: '3c' is not a 7-bit address"));
+    CHECK_THAT(i2c_error("0 w \x01 00"), Contains("'?' is not a 7-bit address"));
     CHECK_THAT(i2c_error("0 w 0xzz 00"), Contains("is not a 7-bit address"));
     CHECK_THAT(i2c_error("0 r 0x20 0"), Contains("wrong number of words") || Contains("too short"));
     CHECK_THAT(i2c_error("0 r 0x20 0 0"), Contains("count 0"));

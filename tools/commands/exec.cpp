@@ -41,6 +41,7 @@ struct Arguments {
     exec::ExecOptions options;
     std::string fosc = "robot";
     std::optional<double> crystal_hertz, baud;
+    std::array<std::optional<double>, 2> uart_baud;
     bool realtime = false;
     bool unpaced = false;
 };
@@ -67,6 +68,10 @@ void describe(Command& app, Arguments& a) {
     app.add_option("--uart2", o.uart[1], "the same for the second UART");
     app.add_option("--baud", a.baud, "rate of the bench's ends, 8N1 (115200; on the rab board 57600)")
         ->check(number_between(kSlowestBaud, kFastestBaud));
+    app.add_option("--uart1-baud", a.uart_baud[0], "rate of the end of the first UART alone")
+        ->check(number_between(kSlowestBaud, kFastestBaud));
+    app.add_option("--uart2-baud", a.uart_baud[1], "the same for the second UART")
+        ->check(number_between(kSlowestBaud, kFastestBaud));
     app.add_option(
            "--uart-start", o.uart_start,
            "when standard input is offered, in simulated seconds; without it: once the chip's receiver has "
@@ -74,7 +79,7 @@ void describe(Command& app, Arguments& a) {
         ->check(number_between(0.0, kLongestRun));
     app.add_option("--i2c", o.i2c,
                    "script:FILE, a bus master for I2C module 1 of targets that are slaves: lines `<time_s> w "
-                   "<addr> <hex bytes>` or `<time_s> r <addr> <register or -> <count>`");
+                   "<0xADDR> <hex bytes>` or `<time_s> r <0xADDR> <register or -> <count>`");
     app.add_option("--i2c-clock", o.i2c_master.clock_hertz, "its SCL in Hz")
         ->check(number_between(kSlowestI2c, kFastestI2c))
         ->capture_default_str();
@@ -129,7 +134,8 @@ void declare_exec(Command& app, int& status) {
         const exec::TargetDefaults defaults = exec::defaults_of(bench.mcu, bench.board);
         bench.target.chip.crystal_hertz = a.crystal_hertz.value_or(defaults.crystal_hertz);
         bench.target.chip.fosc = fosc_word(a.fosc, defaults.fosc);
-        bench.baud = a.baud.value_or(defaults.baud);
+        for (std::size_t unit = 0; unit < bench.baud.size(); ++unit)
+            bench.baud[unit] = a.uart_baud[unit].value_or(a.baud.value_or(defaults.baud));
         if (!bench.log_folder.empty()) bench.target.log = bench.log_folder + "/board.log";
         if (a.realtime || a.unpaced) a.options.realtime = a.realtime;
         status = exec::run_exec(a.options);

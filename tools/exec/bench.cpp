@@ -22,8 +22,8 @@ Bench::Bench(const BenchOptions& options)
     : logs_(options.log_folder.empty() ? nullptr : std::make_unique<Logs>(options.log_folder)),
       target_(options.mcu.empty() ? make_board(options.board, options.target, *this)
                                   : make_bare_chip(options.mcu, options.target, *this)),
-      lines_{UartLine{1, options.baud, *target_, logs_.get()},
-             UartLine{2, options.baud, *target_, logs_.get()}} {}
+      lines_{UartLine{1, options.baud[0], *target_, logs_.get()},
+             UartLine{2, options.baud[1], *target_, logs_.get()}} {}
 
 void Bench::pace_by_wall_clock() {
     paced_ = true;

@@ -21,8 +21,8 @@ struct BenchOptions {
     std::string mcu;  ///< one of these two
     std::string board;
     TargetOptions target;
-    double baud = 115200;    ///< of the bench's ends of both UARTs
-    std::string log_folder;  ///< empty: no recordings
+    std::array<double, 2> baud{115200, 115200};  ///< of the bench's ends
+    std::string log_folder;                      ///< empty: no recordings
 };
 
 class Bench : private TargetListener {

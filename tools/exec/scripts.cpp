@@ -27,6 +27,13 @@ void sort_by_time(std::vector<Line>& lines) {
     throw InputError(file, fmt::format("line {}", line.number), problem, expected);
 }
 
+std::string readable(std::string_view word) {
+    std::string text;
+    for (const char c : word.substr(0, kShownOfName))
+        text += c >= ' ' && c <= '~' ? c : '?';
+    return text;
+}
+
 std::uint16_t signal_named(std::string_view file, const TextLine& line,
                            std::span<const cosim::SignalInfo> signals) {
     const std::string_view name = line.words[1];
@@ -41,10 +48,17 @@ std::uint16_t signal_named(std::string_view file, const TextLine& line,
         if (info.direction == cosim::SignalDirection::Input) known.push_back(info.name);
     const std::string near = nearest_name(name.substr(0, kShownOfName), known);
     if (!near.empty()) expected += fmt::format("; did you mean {}?", near);
-    std::string readable;
-    for (const char c : name.substr(0, kShownOfName))
-        readable += c >= ' ' && c <= '~' ? c : '?';
-    wrong_shape(file, line, fmt::format("no signal '{}'", readable), expected);
+    wrong_shape(file, line, fmt::format("no signal '{}'", readable(name)), expected);
+}
+
+/// Hexadecimal after 0x only: data sheets write addresses so, and a bare 20 would be taken for one or the
+/// other.
+std::uint8_t bus_address(std::string_view file, const TextLine& line, std::string_view word) {
+    if (!word.starts_with("0x") && !word.starts_with("0X"))
+        wrong_shape(file, line, fmt::format("'{}' is not a 7-bit address", readable(word)),
+                    "hexadecimal after 0x, such as 0x20");
+    return static_cast<std::uint8_t>(
+        parse_integer(file, line.number, word, "7-bit address", kHighestAddress));
 }
 
 }  // namespace
@@ -68,8 +82,7 @@ std::vector<I2cScriptLine> parse_i2c_script(std::string_view file, std::string_v
         I2cScriptLine entry;
         entry.line = line.number;
         entry.time = parse_time(file, line.number, line.words[0]);
-        entry.address = static_cast<std::uint8_t>(
-            parse_integer(file, line.number, line.words[2], "7-bit address", kHighestAddress));
+        entry.address = bus_address(file, line, line.words[2]);
         if (line.words[1] == "w") {
             entry.bytes = parse_hex_bytes(file, line, 3);
         } else if (line.words[1] == "r") {

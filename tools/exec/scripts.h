@@ -20,8 +20,9 @@ struct UartScriptLine {
 };
 std::vector<UartScriptLine> parse_uart_script(std::string_view file, std::string_view text);
 
-/// `<time_s> w <addr> <hex bytes>` or `<time_s> r <addr> <register> <count>`, addresses of 7 bits; `-` for
-/// the register: none is written, the device goes on from where it stands.
+/// `<time_s> w <addr> <hex bytes>` or `<time_s> r <addr> <register> <count>`, addresses of 7 bits written
+/// 0x20 (without 0x they are an error); `-` for the register: none is written, the device goes on from where
+/// it stands.
 struct I2cScriptLine {
     int line = 0;  ///< in the file, from 1
     cosim::Time time = 0;
