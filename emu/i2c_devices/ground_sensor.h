@@ -20,7 +20,7 @@ class GroundSensor final : public RegisterDevice {
     static constexpr std::uint8_t kRevisionRegister = 12;
     static constexpr std::uint8_t kRevision = 1;
 
-    GroundSensor() : RegisterDevice(kGroundSensorAddress) {}
+    explicit GroundSensor(std::uint8_t address = kGroundSensorAddress) : RegisterDevice(address) {}
 
     std::string_view name() const override { return "ground_sensor"; }
     void signal(std::uint16_t id, double value) override;

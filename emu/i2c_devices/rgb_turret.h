@@ -18,8 +18,10 @@ class RgbTurret final : public cosim::I2cSlave {
   public:
     static constexpr std::size_t kBytes = 9;
 
+    explicit RgbTurret(std::uint8_t address = kRgbTurretAddress) : address_(address) {}
+
     std::string_view name() const override { return "rgb_turret"; }
-    bool listens_to(std::uint8_t address) const override { return address == kRgbTurretAddress; }
+    bool listens_to(std::uint8_t address) const override { return address == address_; }
     cosim::I2cAnswer start(bool read, cosim::Time now) override;
     cosim::I2cAnswer write(std::uint8_t byte, cosim::Time now) override;
     cosim::I2cAnswer read(cosim::Time now) override;
@@ -27,6 +29,7 @@ class RgbTurret final : public cosim::I2cSlave {
     std::string report() const override;
 
   private:
+    std::uint8_t address_;
     std::vector<std::uint8_t> received_;
     std::array<std::uint8_t, kBytes> colours_{};  // LED 0 red, green, blue, LED 1 ...
     std::uint64_t frames_ = 0, wrong_frames_ = 0;

@@ -63,7 +63,8 @@ void describe(Command& app, Arguments& a) {
         ->check(count_up_to(kMostCycles))
         ->excludes(seconds);
     app.add_option("--stop-at", o.stop_at,
-                   "symbol or 0xPC; status 0 when reached, 1 when the budget ends first");
+                   "symbol or 0xPC; status 0 when reached, 1 when the budget ends first")
+        ->allow_extra_args(false);
     app.add_option("--uart1", o.uart[0], "- (stdin and stdout), pty, tcp:PORT (on 127.0.0.1) or script:FILE");
     app.add_option("--uart2", o.uart[1], "the same for the second UART");
     app.add_option("--baud", a.baud, "rate of the bench's ends, 8N1 (115200; on the rab board 57600)")
@@ -80,6 +81,11 @@ void describe(Command& app, Arguments& a) {
     app.add_option("--i2c", o.i2c,
                    "script:FILE, a bus master for I2C module 1 of targets that are slaves: lines `<time_s> w "
                    "<0xADDR> <hex bytes>` or `<time_s> r <0xADDR> <register or -> <count>`");
+    app.add_option("--i2c-device", o.i2c_devices,
+                   "on the bus of a target that is its master, repeatable: ground (0x60), turret (0x61) or "
+                   "rab=IMAGE (a range-and-bearing board with its firmware); @0xADDR behind it for another "
+                   "address")
+        ->allow_extra_args(false);
     app.add_option("--i2c-clock", o.i2c_master.clock_hertz, "its SCL in Hz")
         ->check(number_between(kSlowestI2c, kFastestI2c))
         ->capture_default_str();
@@ -136,7 +142,10 @@ void declare_exec(Command& app, int& status) {
         bench.target.chip.fosc = fosc_word(a.fosc, defaults.fosc);
         for (std::size_t unit = 0; unit < bench.baud.size(); ++unit)
             bench.baud[unit] = a.uart_baud[unit].value_or(a.baud.value_or(defaults.baud));
-        if (!bench.log_folder.empty()) bench.target.log = bench.log_folder + "/board.log";
+        if (!bench.log_folder.empty()) {
+            bench.target.log = bench.log_folder + "/board.log";
+            bench.target.rab_log = bench.log_folder + "/rab.log";
+        }
         if (a.realtime || a.unpaced) a.options.realtime = a.realtime;
         status = exec::run_exec(a.options);
     });

@@ -71,6 +71,16 @@ std::string script_text(const I2cScriptReport& script) {
     return text;
 }
 
+std::string bus_text(const nlohmann::json& bus) {
+    const auto count = [&](const char* name) { return bus.at(name).get<std::uint64_t>(); };
+    std::string text =
+        fmt::format("i2c: {} transfers, {} bytes written, {} read, {} not acknowledged\n", count("transfers"),
+                    count("bytes_written"), count("bytes_read"), count("not_acknowledged"));
+    for (const auto& line : bus.at("warnings"))
+        text += fmt::format("i2c: {}\n", line.get<std::string>());
+    return text;
+}
+
 }  // namespace
 
 std::string json_report(Bench& bench, const image::Image& image, const ExecOutcome& outcome) {
@@ -93,6 +103,8 @@ std::string json_report(Bench& bench, const image::Image& image, const ExecOutco
     }
     if (bench.master() != nullptr) json["i2c_script"] = script_json(bench.master()->report());
     if (const std::string board = bench.target().report(); !board.empty()) json["board"] = Json::parse(board);
+    if (const std::string bus = bench.target().i2c_devices_report(); !bus.empty())
+        json["i2c_bus"] = Json::parse(bus);
     // Symbols of a damaged image may hold any byte: what is not UTF-8 is replaced.
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -122,6 +134,8 @@ std::string text_report(Bench& bench, const ExecOutcome& outcome) {
                             touch.name.empty() ? at(touch.address) : touch.name, at(touch.pc),
                             seconds(touch.cycle));
     if (bench.master() != nullptr) text += script_text(bench.master()->report());
+    if (const std::string bus = bench.target().i2c_devices_report(); !bus.empty())
+        text += bus_text(nlohmann::json::parse(bus));
     for (int unit = 1; unit <= 2; ++unit) {
         const dspic::UartCounters counters = bench.chip().uart_counters(unit);
         if (counters.sent + counters.received == 0) continue;

@@ -21,6 +21,7 @@ struct ExecOptions {
     std::vector<std::string> stop_at;                ///< symbols or 0xPC
     std::array<std::optional<std::string>, 2> uart;  ///< --uart1, --uart2
     std::string i2c;                                 ///< script:FILE, or empty
+    std::vector<std::string> i2c_devices;            ///< --i2c-device
     I2cMasterOptions i2c_master;
     std::string stimulus;              ///< file
     std::optional<double> uart_start;  ///< seconds

@@ -65,6 +65,20 @@ std::vector<I2cScriptLine> i2c_script(const std::string& text, const Target& tar
     return script;
 }
 
+/// With the devices on the bus of the target, which must be its master.
+BenchOptions bench_options(const ExecOptions& options) {
+    BenchOptions bench = options.bench;
+    bench.target.i2c_devices = parse_i2c_devices(options.i2c_devices);
+    if (bench.target.i2c_devices.empty()) return bench;
+    if (bench.board == "rab")
+        throw InputError("", "--i2c-device", "the rab board is a slave of its bus, not its master",
+                         "a board that is an I2C master, or --i2c script:FILE");
+    if (!options.i2c.empty())
+        throw InputError("", "--i2c-device", "an --i2c script speaks to the target on the same bus",
+                         "one of the two");
+    return bench;
+}
+
 cosim::Time budget_of(const ExecOptions& options, Bench& bench, bool live) {
     if (options.cycles) return bench.chip().clock().time_of(*options.cycles);
     if (options.seconds) return cosim::from_seconds(*options.seconds);
@@ -80,7 +94,7 @@ std::string symbol_at(const image::Image& image, std::uint32_t pc) {
 }  // namespace
 
 int run_exec(const ExecOptions& options) {
-    Bench bench(options.bench);
+    Bench bench(bench_options(options));
     if (options.list_signals) {
         const auto signals = bench.target().signals();
         std::fputs((options.json ? signals_json(signals) : signals_text(signals)).c_str(), stdout);

@@ -26,7 +26,7 @@ std::string_view no_function(dspic::PortLetter, int) {
 class BareChip : public DspicTarget, private dspic::Pins {
   public:
     BareChip(const dspic::DeviceInfo& device, const TargetOptions& options, TargetListener& listener)
-        : DspicTarget(device, options),
+        : DspicTarget(device, options, listener),
           channels_(device.family_33f ? kChannels33F : kChannels30F),
           tap_(*this, listener, no_function) {
         for (int channel = 0; channel < channels_; ++channel)
@@ -47,9 +47,10 @@ class BareChip : public DspicTarget, private dspic::Pins {
         build(tap_);
     }
 
-    std::span<const cosim::SignalInfo> signals() const override { return signals_; }
-    double signal(std::uint16_t id) const override { return values_[id]; }
-    void set_signal(std::uint16_t id, double value) override {
+  private:
+    std::span<const cosim::SignalInfo> own_signals() const override { return signals_; }
+    double own_signal(std::uint16_t id) const override { return values_[id]; }
+    void set_own_signal(std::uint16_t id, double value) override {
         const cosim::SignalInfo& info = signals_[id];
         values_[id] = value > info.min ? (value < info.max ? value : info.max) : info.min;
         if (id < channels_) return;
@@ -59,8 +60,6 @@ class BareChip : public DspicTarget, private dspic::Pins {
             static_cast<std::uint16_t>(values_[id] >= 0.5 ? levels_[port] | mask : levels_[port] & ~mask);
         chip().pins_changed(static_cast<dspic::PortLetter>(port));
     }
-
-  private:
     void add(cosim::SignalInfo info, std::size_t port, int bit) {
         values_.push_back(info.initial);
         places_.emplace_back(port, bit);

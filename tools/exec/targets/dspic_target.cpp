@@ -8,6 +8,31 @@ void DspicTarget::build(PinTap& tap) {
     chip_ = std::make_unique<dspic::Chip>(device_, tap, options_.chip);
     chip_->set_skipping(options_.skip_idle);
     tap.use_clock(chip_->clock());
+    const auto own = own_signals();
+    signals_.assign(own.begin(), own.end());
+    if (!options_.i2c_devices.empty()) make_devices();
+}
+
+void DspicTarget::make_devices() {
+    const DeviceBus::Options options{options_.seed, options_.adc_noise_counts, options_.rab_log};
+    devices_ = std::make_unique<DeviceBus>(options_.i2c_devices, options,
+                                           [this](std::string_view name, double value, cosim::Time time) {
+                                               listener_.signal_changed(name, value, time);
+                                           });
+    signals_.insert(signals_.end(), devices_->signals().begin(), devices_->signals().end());
+}
+
+double DspicTarget::signal(std::uint16_t id) const {
+    const std::size_t own = own_signals().size();
+    return id < own ? own_signal(id) : devices_->signal(id - own);
+}
+
+void DspicTarget::set_signal(std::uint16_t id, double value) {
+    const std::size_t own = own_signals().size();
+    if (id < own)
+        set_own_signal(id, value);
+    else
+        devices_->set_signal(id - own, value, chip_->now());
 }
 
 void DspicTarget::load(const image::Image& image) {
@@ -17,18 +42,60 @@ void DspicTarget::load(const image::Image& image) {
 
 void DspicTarget::run_until(cosim::Time until) {
     while (chip_->now() < until) {
-        // A phase that begins in this step is answered in a later one: no answer can be due within it.
-        cosim::Time step = std::min(until, chip_->now() + pic::EmptyBus::kStep);
-        for (const pic::EmptyBus& bus : buses_)
-            step = std::min(step, std::max(bus.due(), chip_->now()));
+        const cosim::Time step = next_step(until);
         if (step > chip_->now()) chip_->run_until(step);
         if (chip_->stopped_at()) break;
         for (int unit = 1; unit <= 2; ++unit) {
-            pic::EmptyBus& bus = buses_[static_cast<std::size_t>(unit - 1)];
-            if (bus.due() <= step) chip_->i2c_answer(unit, bus.take());
+            pic::EmptyBus& nobody = bus(unit).nobody;
+            if (nobody.due() <= step) answer(unit, nobody.take());
         }
+        if (devices_ && devices_->due() <= step) answer(kI2cDeviceUnit, devices_->take());
     }
     passed(chip_->cycle());
+}
+
+/// How far the chip may run before an answer may be due.
+cosim::Time DspicTarget::next_step(cosim::Time until) {
+    const cosim::Time now = chip_->now();
+    cosim::Time step = until;
+    // On an empty bus a phase that begins in this step is answered in a later one.
+    const bool empty = !devices_ || device_.family_33f;  // the dsPIC30F has one module only
+    if (empty) step = std::min(step, now + pic::EmptyBus::kStep);
+    for (const Bus& bus : buses_)
+        step = std::min(step, std::max(bus.nobody.due(), now));
+    if (devices_) step = devices_->advance(now, chip_->earliest_i2c(kI2cDeviceUnit), step);
+    return step;
+}
+
+void DspicTarget::on_bus(int unit, const cosim::I2cPhase& phase) {
+    std::optional<cosim::I2cPhase>& open = bus(unit).open;
+    if (open) listener_.i2c_phase(unit, *open);
+    open.reset();
+    if (phase.kind == cosim::I2cPhaseKind::Stop)
+        listener_.i2c_phase(unit, phase);
+    else
+        open = phase;
+    if (devices_ && unit == kI2cDeviceUnit)
+        devices_->phase(phase);
+    else
+        bus(unit).nobody.phase(phase);
+}
+
+void DspicTarget::answer(int unit, const cosim::I2cPhase& phase) {
+    if (std::optional<cosim::I2cPhase>& open = bus(unit).open) {
+        cosim::I2cPhase over = *open;
+        open.reset();
+        over.stretch = phase.stretch;
+        if (phase.kind == cosim::I2cPhaseKind::Acknowledge) over.ack = phase.ack;
+        if (phase.kind == cosim::I2cPhaseKind::Data) over.byte = phase.byte;
+        if (phase.kind == cosim::I2cPhaseKind::BusLost) over.kind = phase.kind;
+        listener_.i2c_phase(unit, over);
+    }
+    chip_->i2c_answer(unit, phase);
+}
+
+void DspicTarget::finish() {
+    if (devices_ && devices_report_.empty()) devices_report_ = devices_->finish();
 }
 
 }  // namespace puckloop::exec

@@ -1,7 +1,9 @@
 #pragma once
-// A dsPIC on the bench: the chip, what stands at its pins, and an I2C bus with nobody else on it.
+// A dsPIC on the bench: the chip, what stands at its pins, and its I2C buses: with the devices that the user
+// put on module 1's, with nobody else otherwise.
 
 #include "emu/pic/empty_bus.h"
+#include "tools/exec/bus/device_bus.h"
 #include "tools/exec/targets/pin_tap.h"
 #include "tools/exec/targets/target.h"
 
@@ -22,26 +24,47 @@ class DspicTarget : public Target {
     cosim::Time earliest_i2c_answer() const override {
         return chip_->earliest_i2c_slave_answer(kI2cScriptUnit);
     }
+    /// Those of the surroundings, then those of the devices on the bus.
+    std::span<const cosim::SignalInfo> signals() const final { return signals_; }
+    double signal(std::uint16_t id) const final;
+    void set_signal(std::uint16_t id, double value) final;
+    std::string i2c_devices_report() const override { return devices_report_; }
+    void finish() override;
     dspic::Chip& chip() override { return *chip_; }
 
   protected:
-    DspicTarget(const dspic::DeviceInfo& device, const TargetOptions& options)
-        : device_(device), options_(options) {}
-    /// To be called once `tap` exists.
+    DspicTarget(const dspic::DeviceInfo& device, const TargetOptions& options, TargetListener& listener)
+        : device_(device), options_(options), listener_(listener) {}
+    /// To be called once `tap` and the surroundings' signals exist. Throws InputError for devices that cannot
+    /// be.
     void build(PinTap& tap);
     /// What the surroundings do about an I2C phase of the chip.
-    void on_bus(int unit, const cosim::I2cPhase& phase) {
-        buses_[static_cast<std::size_t>(unit - 1)].phase(phase);
-    }
+    void on_bus(int unit, const cosim::I2cPhase& phase);
     /// Called when every instruction before cycle `now` has run.
     virtual void passed(dspic::Cycle /*now*/) {}
 
+    virtual std::span<const cosim::SignalInfo> own_signals() const = 0;
+    virtual double own_signal(std::uint16_t id) const = 0;
+    virtual void set_own_signal(std::uint16_t id, double value) = 0;
+
   private:
+    struct Bus {
+        pic::EmptyBus nobody;
+        std::optional<cosim::I2cPhase> open;  ///< still to be answered
+    };
+    Bus& bus(int unit) { return buses_[static_cast<std::size_t>(unit - 1)]; }
+    void make_devices();
+    cosim::Time next_step(cosim::Time until);
+    void answer(int unit, const cosim::I2cPhase& phase);
+
     const dspic::DeviceInfo& device_;
     TargetOptions options_;
+    TargetListener& listener_;
     std::unique_ptr<dspic::Chip> chip_;
-    std::array<pic::EmptyBus, 2> buses_;
-    bool powered_ = false;
+    std::array<Bus, 2> buses_;
+    std::unique_ptr<DeviceBus> devices_;  ///< on the bus of module kI2cDeviceUnit
+    std::vector<cosim::SignalInfo> signals_;
+    std::string devices_report_;
 };
 
 }  // namespace puckloop::exec

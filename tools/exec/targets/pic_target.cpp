@@ -11,20 +11,19 @@ namespace {
 class PicTarget : public DspicTarget, private pic::BoardListener {
   public:
     PicTarget(const pic::BoardParameters& parameters, const TargetOptions& options, TargetListener& listener)
-        : DspicTarget(dspic::dspic30f6014a(), options),
+        : DspicTarget(dspic::dspic30f6014a(), options, listener),
           listener_(listener),
           board_(parameters, *this),
           tap_(board_, listener, pic::pin_function) {
         build(tap_);
     }
 
-    std::span<const cosim::SignalInfo> signals() const override { return pic::signals(); }
-    double signal(std::uint16_t id) const override { return board_.signal(id); }
-    void set_signal(std::uint16_t id, double value) override {
+  private:
+    std::span<const cosim::SignalInfo> own_signals() const override { return pic::signals(); }
+    double own_signal(std::uint16_t id) const override { return board_.signal(id); }
+    void set_own_signal(std::uint16_t id, double value) override {
         if (const auto port = board_.set_signal(id, value, chip().cycle())) chip().pins_changed(*port);
     }
-
-  private:
     void passed(dspic::Cycle now) override { board_.settle(now); }
     void signal_changed(pic::SignalId id, double value, dspic::Cycle now) override {
         if (id == pic::kWheelLeft || id == pic::kWheelRight)

@@ -18,7 +18,7 @@ namespace {
 class RabTarget : public DspicTarget, private rab::BoardListener {
   public:
     RabTarget(const rab::BoardParameters& parameters, const TargetOptions& options, TargetListener& listener)
-        : DspicTarget(dspic::dspic33fj256gp710(), options),
+        : DspicTarget(dspic::dspic33fj256gp710(), options, listener),
           listener_(listener),
           log_file_(options.log),
           board_(parameters, *this),
@@ -27,11 +27,6 @@ class RabTarget : public DspicTarget, private rab::BoardListener {
         board_.connect(chip());
     }
 
-    std::span<const cosim::SignalInfo> signals() const override { return rab::signals(); }
-    double signal(std::uint16_t id) const override { return board_.signal(id); }
-    void set_signal(std::uint16_t id, double value) override {
-        if (const auto port = board_.set_signal(id, value, chip().now())) chip().pins_changed(*port);
-    }
     void load(const image::Image& image) override {
         log_.emplace(log_file_, image);
         DspicTarget::load(image);
@@ -54,9 +49,17 @@ class RabTarget : public DspicTarget, private rab::BoardListener {
         DspicTarget::i2c_slave_phase(phase);
     }
     std::string report() const override { return rab::activity_json(board_, *log_).dump(); }
-    void finish() override { log_->end(chip().now(), chip()); }
+    void finish() override {
+        log_->end(chip().now(), chip());
+        DspicTarget::finish();
+    }
 
   private:
+    std::span<const cosim::SignalInfo> own_signals() const override { return rab::signals(); }
+    double own_signal(std::uint16_t id) const override { return board_.signal(id); }
+    void set_own_signal(std::uint16_t id, double value) override {
+        if (const auto port = board_.set_signal(id, value, chip().now())) chip().pins_changed(*port);
+    }
     void passed(dspic::Cycle) override { board_.settle(chip().now()); }
     void signal_changed(rab::SignalId id, double value, cosim::Time now) override {
         log_->signal_changed(id, value, now);

@@ -7,6 +7,7 @@
 #include "cosim/time.h"
 #include "emu/dspic/chip.h"
 #include "emu/image/image.h"
+#include "tools/exec/bus/i2c_device_spec.h"
 
 #include <cstdint>
 #include <memory>
@@ -14,17 +15,23 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace puckloop::exec {
 
 /// The I2C module that an `--i2c` script speaks to.
 inline constexpr int kI2cScriptUnit = 1;
+/// The I2C module that devices of `--i2c-device` are connected to.
+inline constexpr int kI2cDeviceUnit = 1;
 
 /// What the target does that the bench records or passes on.
 class TargetListener {
   public:
     virtual ~TargetListener() = default;
     virtual void uart_sent(int unit, const cosim::UartFrame& frame) = 0;
+    /// A phase of which the target was the master is over: `ack`, `stretch` and the byte of a Read are what
+    /// was on the wires. Of one that nobody answered (the chip was reset) they are what the master began
+    /// with.
     virtual void i2c_phase(int unit, const cosim::I2cPhase& phase) = 0;
     /// The target, as slave of I2C module kI2cScriptUnit, answered the script's last phase.
     virtual void i2c_answered(const cosim::I2cPhase& answer, cosim::Time time) = 0;
@@ -40,8 +47,10 @@ struct TargetOptions {
     std::uint64_t seed = 1;
     double adc_noise_counts = 0.0;
     int selector = 0;
-    bool skip_idle = true;  ///< busy-wait loops are skipped forward
-    std::string log{};      ///< file for the board's log, where it keeps one; empty: none
+    bool skip_idle = true;                     ///< busy-wait loops are skipped forward
+    std::string log{};                         ///< file for the board's log, where it keeps one; empty: none
+    std::vector<I2cDeviceSpec> i2c_devices{};  ///< on the bus of a target that is a master
+    std::string rab_log{};  ///< file for the log of a range-and-bearing board among them; empty: none
 };
 
 class Target {
@@ -65,6 +74,8 @@ class Target {
     virtual cosim::Time earliest_i2c_answer() const = 0;
     /// What the board adds to the report, as JSON text; empty: nothing.
     virtual std::string report() const { return {}; }
+    /// What the bus with the devices on it adds once the run is over, as JSON text; empty: nothing.
+    virtual std::string i2c_devices_report() const { return {}; }
     /// The run is over: logs are closed.
     virtual void finish() {}
     virtual dspic::Chip& chip() = 0;
