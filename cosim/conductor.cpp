@@ -74,10 +74,15 @@ Outcome Conductor::State::run() {
         network_->preset(deliveries_);
         take_deliveries(kNobody);
         loop();
+        wind_up();
         current_ = kNobody;
         release_trace(end_);
         outcome.text = "the asked duration is over";
-        if (stop_) {
+        if (interrupted_at_) {
+            outcome.reason = EndReason::Interrupted;
+            outcome.text = "interrupted";
+            outcome.stop_time = interrupted_at_;
+        } else if (stop_) {
             outcome.reason = EndReason::NodeStopped;
             outcome.node = handles_[stopper_]->name();
             outcome.stop_time = stop_->time;
@@ -88,10 +93,12 @@ Outcome Conductor::State::run() {
     } catch (const Interrupted&) {
         outcome.reason = EndReason::Interrupted;
         outcome.text = "interrupted";
+        outcome.stop_time = interrupted_at_;
         current_ = kNobody;
     } catch (const std::exception& error) {
         fail(outcome, error.what());
     }
+    outcome.wind_up = wind_up_at_;
     outcome.simulated = end_;
     for (const NodeTimes& node : times_)
         outcome.simulated = std::min(outcome.simulated, node.granted);
@@ -102,7 +109,7 @@ Outcome Conductor::State::run() {
 
 void Conductor::State::loop() {
     while (true) {
-        if (options_.interrupted && *options_.interrupted) throw Interrupted{};
+        take_interrupt();
         plan();
         if (schedule_.complete()) return;
         for (const std::size_t n : schedule_.chosen()) {
@@ -117,6 +124,16 @@ void Conductor::State::loop() {
         if (merger_.waiting() >= kTraceBatch) release_trace(std::min(schedule_.bounds().floor(), end_));
         keep_house();
     }
+}
+
+void Conductor::State::take_interrupt() {
+    if (options_.hurried && *options_.hurried) throw Interrupted{};
+    if (interrupted_at_ || !options_.interrupted || !*options_.interrupted) return;
+    // The first instant that is in nobody's past.
+    interrupted_at_ = 0;
+    for (const Slot& slot : slots_)
+        interrupted_at_ = std::max(*interrupted_at_, slot.asked);
+    if (!wind_up_at_) end_ = std::min(end_, std::max<Time>(*interrupted_at_, 1));
 }
 
 void Conductor::State::plan() {
@@ -214,6 +231,7 @@ void Conductor::State::take_reply(std::size_t n) {
     network_->update(n, handles_[n]->state(), slot.asked, first_in);
     take_deliveries(n);
     take_stop(n, before);
+    take_wound_up(n, before);
 }
 
 void Conductor::State::take_deliveries(std::size_t sender) {

@@ -47,8 +47,11 @@ struct RunOptions {
     std::optional<std::uint64_t> chop_seed{};
     /// Called about five times a wall second.
     std::function<void(const Progress&)> progress{};
-    /// Set by a signal handler: ends the run (cosim/interrupt.h).
+    /// Set by a signal handler to the signal's number: ends the run after the nodes wound up
+    /// (cosim/interrupt.h).
     const volatile std::sig_atomic_t* interrupted = nullptr;
+    /// Set by a second signal: ends the run at once.
+    const volatile std::sig_atomic_t* hurried = nullptr;
 };
 
 enum class EndReason : std::uint8_t { Duration, NodeStopped, Interrupted, Failed };
@@ -58,7 +61,8 @@ struct Outcome {
     bool success = true;            ///< false for Failed and for a node that stopped without success
     std::string text;               ///< one line: why the run ended; for Failed the error to report
     std::string node;               ///< the node that stopped or failed, if one did
-    std::optional<Time> stop_time;  ///< when the node asked
+    std::optional<Time> stop_time;  ///< when the node asked, or where in simulated time the user interrupted
+    std::optional<Time> wind_up;    ///< when the nodes were asked to end, if any took time for it
     Time simulated = 0;             ///< reached by every node
     double wall_s = 0;
     std::uint64_t grants = 0;  ///< to all nodes together (differs with placement and load)

@@ -33,6 +33,33 @@ void Conductor::State::end_with(const Stop& stop, std::size_t n) {
     end_ = std::min(end_, later(stop.time, options_.stop_latency));
 }
 
+/// Every node has reached the end: those that run programs let them end, for which simulated time goes on.
+void Conductor::State::wind_up() {
+    const Time now = end_;
+    const int signal = interrupted_at_ ? *options_.interrupted : 0;
+    for (std::size_t n = 0; n < handles_.size(); ++n) {
+        current_ = n;
+        handles_[n]->wind_up(signal);
+        if (handles_[n]->state().wound_up == kNever) ++winding_;
+    }
+    if (winding_ == 0) return;
+    wind_up_at_ = last_wound_up_ = now;
+    end_ = kNever;
+    for (std::size_t n = 0; n < handles_.size(); ++n) {
+        network_->renew(n, handles_[n]->state(), now);
+        slots_[n].wound_up = handles_[n]->state().wound_up != kNever;
+    }
+    loop();
+}
+
+void Conductor::State::take_wound_up(std::size_t n, Time before) {
+    const Time done = handles_[n]->state().wound_up;
+    if (!wind_up_at_ || slots_[n].wound_up || done == kNever) return;
+    slots_[n].wound_up = true;
+    last_wound_up_ = std::max({last_wound_up_, done, before});
+    if (--winding_ == 0) end_ = std::min(end_, later(last_wound_up_, options_.stop_latency));
+}
+
 bool Conductor::State::stuck() const {
     const Time ceiling = std::min(end_, later(schedule_.reached(), options_.stop_latency));
     for (std::size_t n = 0; n < times_.size(); ++n)

@@ -47,9 +47,13 @@ class Conductor::State {
         std::vector<Message> inbox;      ///< the same, as the node gets it
         std::vector<PortEcho> echoes;
         bool stop_seen = false;
+        bool wound_up = false;
     };
 
     void loop();
+    void take_interrupt();
+    void wind_up();
+    void take_wound_up(std::size_t n, Time before);
     void plan();
     void grant(std::size_t n, Time until);
     void collect();
@@ -91,6 +95,10 @@ class Conductor::State {
     std::vector<std::pair<Stop, std::size_t>> wishes_;  ///< to stop together, and whose
     std::optional<Stop> stop_;
     std::size_t stopper_ = kNobody;
+    std::optional<Time> interrupted_at_;
+    std::optional<Time> wind_up_at_;  ///< the nodes are winding up since
+    std::size_t winding_ = 0;         ///< so many still do
+    Time last_wound_up_ = 0;
     std::size_t current_ = kNobody;  ///< whose call is under way: names the one that failed
     std::uint64_t grants_ = 0;
     WallClock::time_point start_{};

@@ -5,7 +5,8 @@
 
 namespace puckloop::cosim {
 
-/// While one lives, the signals set its flag in place of killing; a second one of the same kind kills.
+/// While one lives, the first signal sets flag() and a second one again(), in place of killing; a third
+/// kills.
 class InterruptGuard {
   public:
     InterruptGuard();
@@ -13,8 +14,10 @@ class InterruptGuard {
     InterruptGuard(const InterruptGuard&) = delete;
     InterruptGuard& operator=(const InterruptGuard&) = delete;
 
-    /// For RunOptions::interrupted.
+    /// For RunOptions::interrupted: the number of the first signal, 0 before.
     const volatile std::sig_atomic_t* flag() const;
+    /// For RunOptions::hurried.
+    const volatile std::sig_atomic_t* again() const;
 
   private:
     struct sigaction before_[3];

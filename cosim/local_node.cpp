@@ -15,6 +15,7 @@ void read_state(const Node& node, NodeState& state) {
         state.ports[i] = {node.promise(port), node.reaction(port), node.begun(port)};
     }
     state.stop = node.stop();
+    state.wound_up = node.wound_up();
 }
 
 namespace {
@@ -43,6 +44,11 @@ class LocalNode : public NodeHandle {
                 [&] { reached_ = advance_in_strides(*node_, reached_, reach_, *inbox_, *echoes_, outbox_); });
         read_state(*node_, state_);
         return true;
+    }
+
+    void wind_up(int signal) override {
+        guarded("could not wind up", [&] { node_->wind_up(reached_, signal); });
+        read_state(*node_, state_);
     }
 
     std::string finish() override {

@@ -107,6 +107,12 @@ void Network::update(std::size_t n, const NodeState& state, Time reached, Time f
     }
 }
 
+void Network::renew(std::size_t n, const NodeState& state, Time now) {
+    for (const std::size_t wire : port_wire_[n])
+        if (wire != kNobody) channels_[wire].base = 0;
+    update(n, state, now, kNever);
+}
+
 /// Ways back to node `n`; they change only when somebody's reaction does.
 const std::vector<Time>& Network::distances_to_node(std::size_t n) {
     WaysBack& ways = ways_back_[n];

@@ -37,6 +37,9 @@ class Network {
     /// Takes over what node `n`, whose last reply covers everything before `reached`, says of its future.
     /// What it said before still holds, as far as `first_in`, the first message it took since, lets it.
     void update(std::size_t n, const NodeState& state, Time reached, Time first_in);
+    /// Takes over what node `n` says of its future after it was asked to wind up at `now`, which all nodes
+    /// have reached: what it said before holds no more.
+    void renew(std::size_t n, const NodeState& state, Time now);
     const std::vector<Channel>& channels() const { return channels_; }
     /// What comes back of what node `n` says on each port, as the others stand now.
     void echoes(std::size_t n, std::vector<PortEcho>& echoes);

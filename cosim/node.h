@@ -70,6 +70,13 @@ class Node {
     /// still runs on for the run's stop latency (10 ms), so that the end is the same in every placement.
     virtual std::optional<Stop> stop() const { return std::nullopt; }
 
+    /// The run is to end and every node has reached exactly `now`: what the node runs is asked to end, a
+    /// Linux program by a signal. `signal` is the one that the user sent to the run, 0 if the end has another
+    /// cause.
+    virtual void wind_up(Time /*now*/, int /*signal*/) {}
+    /// After wind_up(): when the node was done with it, kNever while it still needs simulated time.
+    virtual Time wound_up() const { return 0; }
+
     /// Called once after the last advance: flush logs and return the node's part of report.json as JSON text.
     virtual std::string finish() { return "{}"; }
 };

@@ -30,6 +30,7 @@ struct PortState {
 struct NodeState {
     std::vector<PortState> ports;
     std::optional<Stop> stop;
+    Time wound_up = 0;  ///< Node::wound_up
 };
 
 /// Fills `state` from a node in this process.
@@ -61,6 +62,9 @@ class NodeHandle {
     virtual bool poll(bool wait) = 0;
     /// What to wait on for the reply, or -1 where poll() does the work itself.
     virtual int descriptor() const { return -1; }
+    /// Asks the node, which is under no grant, to bring what it runs to an end (Node::wind_up); state() is
+    /// then as of after that.
+    virtual void wind_up(int signal) = 0;
     /// Ends the node and returns its part of the report as JSON text; empty if it was lost before.
     virtual std::string finish() = 0;
     /// The process it lives in, 0 for this one.

@@ -43,6 +43,9 @@ class Server {
         case protocol::Kind::Grant:
             grant(body);
             return true;
+        case protocol::Kind::WindUp:
+            wind_up(body);
+            return true;
         case protocol::Kind::Finish:
             finish();
             return false;
@@ -70,6 +73,14 @@ class Server {
         protocol::read_grant(body, grant_);
         outbox_.clear();
         reached_ = advance_in_strides(*node_, reached_, grant_.reach, grant_.inbox, grant_.echoes, outbox_);
+        read_state(*node_, state_);
+        protocol::write_done(bytes_, reached_, state_, outbox_);
+    }
+
+    void wind_up(std::span<const std::uint8_t> body) {
+        if (!node_) throw RunError("is to end before it was made");
+        node_->wind_up(reached_, protocol::read_wind_up(body));
+        outbox_.clear();
         read_state(*node_, state_);
         protocol::write_done(bytes_, reached_, state_, outbox_);
     }

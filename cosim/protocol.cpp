@@ -55,6 +55,7 @@ void write_state(ByteWriter& writer, const NodeState& state) {
         writer.text(state.stop->reason);
         writer.u32(state.stop->together);
     }
+    writer.time(state.wound_up);
 }
 
 void read_state(ByteReader& reader, NodeState& state) {
@@ -74,6 +75,7 @@ void read_state(ByteReader& reader, NodeState& state) {
         stop.together = reader.u32();
         state.stop = stop;
     }
+    state.wound_up = reader.time();
 }
 
 void write_messages(ByteWriter& writer, const std::vector<Message>& messages) {
@@ -129,6 +131,11 @@ void write_done(Bytes& bytes, Time reached, const NodeState& state, const std::v
     frame.writer.time(reached);
     write_state(frame.writer, state);
     write_messages(frame.writer, outbox);
+}
+
+void write_wind_up(Bytes& bytes, int signal) {
+    Frame frame(bytes, Kind::WindUp);
+    frame.writer.u8(static_cast<std::uint8_t>(signal));
 }
 
 void write_finish(Bytes& bytes) {
@@ -189,6 +196,13 @@ void read_grant(std::span<const std::uint8_t> body, Grant& grant) {
         echo.is_uart = reader.boolean();
     }
     reader.end();
+}
+
+int read_wind_up(std::span<const std::uint8_t> body) {
+    ByteReader reader = open(body, Kind::WindUp);
+    const int signal = reader.u8();
+    reader.end();
+    return signal;
 }
 
 Time read_done(std::span<const std::uint8_t> body, std::size_t ports, NodeState& state,

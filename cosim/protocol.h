@@ -12,7 +12,7 @@
 
 namespace puckloop::cosim::protocol {
 
-inline constexpr std::uint32_t kVersion = 1;
+inline constexpr std::uint32_t kVersion = 2;
 inline constexpr std::size_t kLengthBytes = 4;
 /// Longer messages are damage, not work: a millisecond of the busiest link is some kilobytes.
 inline constexpr std::uint32_t kLongest = 64u << 20;
@@ -24,6 +24,7 @@ enum class Kind : std::uint8_t {
     Ready,   ///< from the node: ports, state
     Grant,   ///< to the node: until, inbox, echoes
     Done,    ///< from the node: reached, state, outbox
+    WindUp,  ///< to the node: signal
     Finish,  ///< to the node: nothing
     Report,  ///< from the node: JSON text
     Error,   ///< from the node: whether the user's input is to blame, text
@@ -53,6 +54,7 @@ void write_ready(Bytes& bytes, const Ready& ready);
 void write_grant(Bytes& bytes, Reach reach, const std::vector<Message>& inbox,
                  const std::vector<PortEcho>& echoes);
 void write_done(Bytes& bytes, Time reached, const NodeState& state, const std::vector<Message>& outbox);
+void write_wind_up(Bytes& bytes, int signal);
 void write_finish(Bytes& bytes);
 void write_report(Bytes& bytes, const std::string& json);
 void write_error(Bytes& bytes, const Error& error);
@@ -63,6 +65,7 @@ Hello read_hello(std::span<const std::uint8_t> body);
 Ready read_ready(std::span<const std::uint8_t> body);
 /// Into `grant`, whose memory is reused.
 void read_grant(std::span<const std::uint8_t> body, Grant& grant);
+int read_wind_up(std::span<const std::uint8_t> body);
 /// Into `state` and `outbox` (reused) of a node with `ports` ports; returns the time reached.
 Time read_done(std::span<const std::uint8_t> body, std::size_t ports, NodeState& state,
                std::vector<Message>& outbox);

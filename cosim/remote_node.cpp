@@ -72,6 +72,17 @@ class RemoteNode : public NodeHandle {
     int descriptor() const override { return stream_->descriptor(); }
     int process() const override { return static_cast<int>(child_->id()); }
 
+    void wind_up(int signal) override {
+        protocol::write_wind_up(bytes_, signal);
+        send();
+        while (!receive(true)) {
+        }
+        decode(protocol::Kind::Done, [&](auto body) {
+            if (protocol::read_done(body, ports_.size(), state_, outbox_) != reached_ || !outbox_.empty())
+                throw CodecError("more than it was asked for");
+        });
+    }
+
     std::string finish() override {
         if (lost_) return {};
         const auto patience = std::min<Clock::duration>(stall_, kFinishPatience);
