@@ -6,10 +6,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
+#include <cstring>
 
 namespace puckloop::scenarios {
 
 namespace {
+
+constexpr double kLongestGrace = 3600.0;  // s
 
 /// A list of times, each later than the one before, all after `start`.
 std::vector<double> read_times(Reader& reader, std::string_view key, double start) {
@@ -67,6 +71,31 @@ RabBoard read_rab(const std::string& file, const std::string& where, const TomlV
     return rab;
 }
 
+/// A signal's name without its SIG; one that ends a program or tells it something.
+std::string read_signal(Reader& reader, std::string_view key, const std::string& fallback) {
+    std::string name = fallback.empty() ? reader.text(key) : reader.text(key, fallback);
+    if (name.starts_with("SIG")) name.erase(0, 3);
+    for (int number = 1; number < NSIG; ++number)
+        if (const char* known = sigabbrev_np(number); known != nullptr && name == known) return name;
+    reader.fail(key, fmt::format("there is no signal '{}'", name),
+                "a name such as \"INT\", \"TERM\" or \"USR1\"");
+}
+
+std::vector<LinuxSignal> read_signals(Reader& reader) {
+    std::vector<LinuxSignal> signals;
+    for (const TomlValue* table : reader.tables("signals")) {
+        Reader entry(reader.file(), "signals", *table);
+        LinuxSignal signal;
+        signal.at = entry.quantity("at", Dimension::Time);
+        if (signal.at < 0 || (!signals.empty() && signal.at < signals.back().at))
+            entry.fail("at", "the times of signals do not rise from 0 s on", "times in order");
+        signal.send = read_signal(entry, "send", "");
+        entry.finish();
+        signals.push_back(signal);
+    }
+    return signals;
+}
+
 LinuxBoard read_linux(const std::string& file, const std::string& where, const TomlValue& table,
                       const std::string& robot_name) {
     Reader reader(file, where, table);
@@ -78,6 +107,11 @@ LinuxBoard read_linux(const std::string& file, const std::string& where, const T
     board.start = reader.quantity("start", Dimension::Time, 0.0);
     if (board.start < 0) reader.fail("start", "start is before the run begins", "0 s or later");
     board.restarts = read_times(reader, "restart", board.start);
+    board.signals = read_signals(reader);
+    board.end_signal = read_signal(reader, "end_signal", board.end_signal);
+    board.grace = reader.quantity("grace", Dimension::Time, board.grace);
+    if (board.grace < 0 || board.grace > kLongestGrace)
+        reader.fail("grace", "grace is out of range", "0 s to 1 h");
     read_lateness(reader, board.late);
     board.place_line = table.line;
     reader.finish();

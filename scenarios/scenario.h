@@ -38,12 +38,21 @@ struct LinuxLateness {
     double oversleep_jitter = 0.0;  ///< standard deviation; no sleep ends early
 };
 
+/// A signal that a program gets.
+struct LinuxSignal {
+    double at = 0.0;   ///< s
+    std::string send;  ///< without SIG: "INT"
+};
+
 /// The Linux board of a robot: one program under the shim.
 struct LinuxBoard {
     std::vector<std::string> command;  ///< program and arguments; the program's path is resolved
     std::string hostname;              ///< what gethostname() says
     double start = 0.0;                ///< s: when the program is started
     std::vector<double> restarts;      ///< s: killed and started again
+    std::vector<LinuxSignal> signals;
+    std::string end_signal = "TERM";  ///< when the run is to end
+    double grace = 2.0;               ///< s from the end signal to SIGKILL
     LinuxLateness late{};
     int place_line = 0;
 };

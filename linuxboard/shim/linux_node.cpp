@@ -3,7 +3,6 @@
 #include "base/error.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -18,7 +17,6 @@ using wire::Op;
 
 namespace {
 constexpr double kStartPatience = 10.0;  // wall-clock seconds until the library must have reported
-constexpr std::size_t kMostWarnings = 100;
 
 std::int64_t wall_nanoseconds() {
     return std::chrono::duration_cast<std::chrono::nanoseconds>(
@@ -47,9 +45,7 @@ void LinuxNode::start_program() {
     process_->start();
     switch (process_->hear(kStartPatience, request_, request_data_)) {
     case Heard::Ended:
-        throw InputError(spec_.program, "",
-                         process_->describe_end() + " before it began" +
-                             (spec_.log.empty() ? "" : ": " + process_->last_line()));
+        throw InputError(spec_.program, "", process_->describe_end() + " before it began: " + last_words());
     case Heard::Silent:
         throw InputError(spec_.program, "", "does not load the preloaded library",
                          "a dynamically linked program");
@@ -61,40 +57,6 @@ void LinuxNode::start_program() {
                          "one build of both");
     request_.now = now;
     state_ = State::Asking;
-}
-
-void LinuxNode::warn(std::string line) {
-    if (warnings_.size() < kMostWarnings) warnings_.push_back(std::move(line));
-}
-
-void LinuxNode::end_run(Time now, bool success, std::string reason, std::uint32_t programs) {
-    if (!stop_) stop_ = cosim::Stop{now, success, std::move(reason), programs};
-}
-
-void LinuxNode::program_ended(Time now) {
-    state_ = State::Off;
-    kernel_.reset();
-    end_ = process_->describe_end();
-    const bool comes_back = next_restart_ < spec_.restarts.size();
-    std::string reason = fmt::format("{} {}", spec_.program, end_);
-    const bool opened = kernel_.tty_was_opened() || kernel_.i2c_was_opened();
-    if (!opened) {
-        reason += spec_.tty.empty() ? " without opening its I2C bus"
-                                    : fmt::format(" without ever opening {}", spec_.tty);
-    }
-    if (!process_->ended_well() || !opened) {
-        if (const std::string last = process_->last_line(); !last.empty())
-            reason += "; its last line: " + last;
-    }
-    const std::string at = fmt::format(" (at {:.6f} s)", cosim::to_seconds(now));
-    if (comes_back) {
-        warn(reason + at);
-    } else if (spec_.exit_ends_run || !process_->ended_well()) {
-        const bool well = process_->ended_well() && opened;
-        end_run(now, well, reason, well ? spec_.programs : 1);
-    } else {
-        warn(reason + at);
-    }
 }
 
 void LinuxNode::listen() {
@@ -162,7 +124,7 @@ Time LinuxNode::next_scheduled() const {
     if (next_restart_ < spec_.restarts.size()) next = std::min(next, spec_.restarts[next_restart_].time);
     if (next_signal_ < spec_.signals.size()) next = std::min(next, spec_.signals[next_signal_].time);
     if (next_hangup_ < spec_.hangups.size()) next = std::min(next, spec_.hangups[next_hangup_]);
-    return next;
+    return std::min({next, end_signal_at_, kill_at_});
 }
 
 void LinuxNode::run_scheduled(Time now) {
@@ -179,6 +141,11 @@ void LinuxNode::run_scheduled(Time now) {
         state_ = State::Off;
         start_at_ = restart.time + restart.down;
     }
+    if (end_signal_at_ <= now) {
+        end_signal_at_ = kNever;
+        pending_signals_ |= std::uint64_t{1} << end_signal_;
+    }
+    if (kill_at_ <= now) return out_of_grace(now);
     if (start_at_ <= now) start_program();
 }
 
@@ -280,37 +247,6 @@ Time LinuxNode::reaction(cosim::PortIndex port) const {
     if (state_ == State::Waiting && kernel_.has_waiting()) return 0;
     if (port == kUartPort) return kernel_.tty().echoes() ? 0 : kNever;
     return kernel_.adapter().next_event() == kNever ? kNever : 0;
-}
-
-std::string LinuxNode::finish() {
-    bool never_opened = false;
-    if (starts_ == 0) end_ = "was not started: the run ended before its time";
-    if (process_->running()) {
-        never_opened = !kernel_.tty_was_opened() && !kernel_.i2c_was_opened();
-        if (!kernel_.tty_was_opened() && !spec_.tty.empty())
-            warn(fmt::format("{} never opened {}", spec_.program, spec_.tty));
-        end_ = "was ended with the run";
-        process_->kill();
-    }
-    const wire::TtyCounters tty = kernel_.tty().counters();
-    nlohmann::ordered_json report = {
-        {"program", spec_.program},
-        {"end", end_},
-        {"never_opened_a_device", never_opened},
-        {"starts", starts_},
-        {"requests", requests_},
-        {"log", spec_.log},
-        {"uart",
-         {{"received", tty.received},
-          {"sent", tty.sent},
-          {"framing_errors", tty.framing},
-          {"parity_errors", tty.parity},
-          {"breaks", tty.breaks},
-          {"buffer_overruns", tty.buffer_overrun}}},
-        {"i2c", {{"transfers", kernel_.adapter().transfers()}, {"failed", kernel_.adapter().failures()}}},
-        {"warnings", warnings_},
-    };
-    return report.dump();
 }
 
 }  // namespace puckloop::linuxboard

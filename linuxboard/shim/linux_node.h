@@ -37,6 +37,10 @@ class LinuxNode : public cosim::Node {
     cosim::Time promise(cosim::PortIndex port) const override;
     cosim::Time reaction(cosim::PortIndex port) const override;
     std::optional<cosim::Stop> stop() const override { return stop_; }
+    /// The program gets `signal`, or the scenario's, and SIGKILL once the grace period is over. One that
+    /// would die of the signal without a word does so now.
+    void wind_up(cosim::Time now, int signal) override;
+    cosim::Time wound_up() const override { return wound_up_; }
     std::string finish() override;
 
     /// A node from its JSON description (spec.h).
@@ -58,6 +62,9 @@ class LinuxNode : public cosim::Node {
 
     void start_program();
     void program_ended(cosim::Time now);
+    void ended_winding_up(cosim::Time now);
+    void out_of_grace(cosim::Time now);
+    void note_devices();
     void handle_request();
     void answer(cosim::Time now);
     void listen();
@@ -70,6 +77,7 @@ class LinuxNode : public cosim::Node {
     void collect(std::vector<cosim::Message>& outbox);
     void warn(std::string line);
     void pace(cosim::Time time);
+    std::string last_words() const;
     void end_run(cosim::Time now, bool success, std::string reason, std::uint32_t programs);
 
     LinuxSpec spec_;
@@ -85,6 +93,11 @@ class LinuxNode : public cosim::Node {
     std::size_t next_signal_ = 0;
     std::size_t next_hangup_ = 0;
     std::uint64_t pending_signals_ = 0;  ///< bit n: signal n
+    int end_signal_ = 0;                 ///< the run ends: this one was or will be sent
+    cosim::Time end_signal_at_ = cosim::kNever;
+    cosim::Time kill_at_ = cosim::kNever;
+    cosim::Time wound_up_ = 0;
+    bool never_opened_ = false;
     std::vector<cosim::Message> inbox_;
     std::size_t inbox_next_ = 0;
     std::vector<cosim::Message>* outbox_ = nullptr;

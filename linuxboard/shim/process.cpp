@@ -11,6 +11,7 @@
 #include <sys/mman.h>
 #include <sys/personality.h>
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -31,7 +32,8 @@ extern char** environ;
 namespace puckloop::linuxboard {
 
 namespace {
-constexpr int kFirstPrivateFd = 500;   // well above what a program counts on
+constexpr int kFirstPrivateFd = 500;  // well above what a program counts on
+constexpr rlim_t kUsualDescriptors = 1024;
 constexpr double kLookInterval = 0.5;  // s of wall clock between looks at a program that keeps silent
 constexpr double kLoadedHostFactor = 10.0;
 constexpr int kEndAttempts = 2000;
@@ -193,7 +195,18 @@ void Process::start() {
         const int out = log_fd_ >= 0 ? log_fd_ : open("/dev/null", O_WRONLY);
         dup2(out, STDOUT_FILENO);
         dup2(out, STDERR_FILENO);
-        if (dup2(sockets[1], kFirstPrivateFd) < 0 || dup2(page_fd_, kFirstPrivateFd + 1) < 0) give_up(2);
+        rlimit limit{};  // puckloop may have raised its own
+        if (getrlimit(RLIMIT_NOFILE, &limit) == 0) {
+            limit.rlim_cur = std::min<rlim_t>(limit.rlim_max, kUsualDescriptors);
+            setrlimit(RLIMIT_NOFILE, &limit);
+        }
+        // Either may be where the other one goes, in a process with many descriptors.
+        const int page = fcntl(page_fd_, F_DUPFD, kFirstPrivateFd + 2);
+        const int link = fcntl(sockets[1], F_DUPFD, kFirstPrivateFd + 2);
+        if (page < 0 || link < 0 || dup2(link, kFirstPrivateFd) < 0 || dup2(page, kFirstPrivateFd + 1) < 0)
+            give_up(2);
+        close(page);
+        close(link);
         if (!spec_.cwd.empty() && chdir(spec_.cwd.c_str()) != 0) give_up(3);
         execve(file_.c_str(), arguments.data(), variables.data());
         give_up(0);
@@ -206,6 +219,9 @@ void Process::start() {
     close(report[0]);
     if (failed) {
         reap(true);
+        if (status[0] == 2)
+            throw RunError(
+                fmt::format("{}: no descriptors for the program: {}", file_, std::strerror(status[1])));
         const std::string file = status[0] == 1 ? stdin_file : status[0] == 3 ? spec_.cwd : file_;
         throw InputError(file, "", std::strerror(status[1]), "a program that can be started");
     }
@@ -293,6 +309,36 @@ std::string Process::describe_end() const {
         return fmt::format("was killed by SIG{} ({})", sigabbrev_np(signal), sigdescr_np(signal));
     }
     return fmt::format("exited with status {}", WEXITSTATUS(wait_status_));
+}
+
+bool Process::crashed() const {
+    if (!WIFSIGNALED(wait_status_)) return false;
+    switch (WTERMSIG(wait_status_)) {
+    case SIGSEGV:
+    case SIGABRT:
+    case SIGBUS:
+    case SIGFPE:
+    case SIGILL:
+    case SIGSYS:
+    case SIGTRAP:
+        return true;
+    default:
+        return false;
+    }
+}
+
+bool Process::dies_of(int signal) const {
+    std::error_code none;
+    for (const auto& task : std::filesystem::directory_iterator(fmt::format("/proc/{}/task", pid_), none)) {
+        std::ifstream file(task.path() / "status");
+        for (std::string line; std::getline(file, line);) {
+            if (!line.starts_with("SigCgt:") && !line.starts_with("SigIgn:") && !line.starts_with("SigBlk:"))
+                continue;
+            const auto mask = std::strtoull(line.c_str() + sizeof "SigCgt:" - 1, nullptr, 16);
+            if ((mask >> (signal - 1) & 1) != 0) return false;
+        }
+    }
+    return true;
 }
 
 std::string Process::describe_silence() const {

@@ -40,6 +40,10 @@ class Process {
     /// "exited with status 3", "was killed by SIGSEGV (Segmentation fault)"; after its end.
     std::string describe_end() const;
     bool ended_well() const { return exit_status_ == 0; }
+    /// By a fault of its own: SIGSEGV, SIGABRT and the like.
+    bool crashed() const;
+    /// No thread catches, ignores, blocks or waits for `signal`, whose default action ends the program.
+    bool dies_of(int signal) const;
     /// What the kernel says of the program that keeps silent: computing, or in which call.
     std::string describe_silence() const;
     const wire::Page& page() const { return *page_; }

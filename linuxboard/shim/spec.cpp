@@ -168,6 +168,9 @@ LinuxSpec parse_linux_spec(std::string_view text) {
             spec.signals.push_back(timed);
         }
     }
+    if (const json* signal = object.find("end_signal"))
+        spec.end_signal = signal_number(*signal, object.where("end_signal"));
+    object.read_seconds("grace_s", spec.grace);
     std::vector<double> hangups;
     object.read("hangup_at", hangups);
     for (const double seconds : hangups)

@@ -5,6 +5,7 @@
 #include "linuxboard/shim/tty_port.h"
 #include "linuxboard/shim/wire.h"
 
+#include <csignal>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -52,6 +53,8 @@ struct LinuxSpec {
     cosim::Time start = 0;
     std::vector<Restart> restarts;
     std::vector<TimedSignal> signals;
+    int end_signal = SIGTERM;                ///< what the program gets when the run is to end
+    cosim::Time grace = 2 * cosim::kSecond;  ///< SIGKILL so much later
     std::vector<cosim::Time> hangups;
     bool exit_ends_run = true;
     std::uint32_t programs = 1;  ///< of the run: the last of so many to end well ends it
@@ -60,7 +63,8 @@ struct LinuxSpec {
 };
 
 /// Throws InputError naming the key. Keys are the members above; times in seconds (`start_s`, `down_s`,
-/// `hangup_at`, `tty_batch_s`, `i2c_hold_s`, `oversleep_s`, `oversleep_jitter_s`), charges in microseconds.
+/// `hangup_at`, `grace_s`, `tty_batch_s`, `i2c_hold_s`, `oversleep_s`, `oversleep_jitter_s`), charges in
+/// microseconds.
 LinuxSpec parse_linux_spec(std::string_view json);
 
 }  // namespace puckloop::linuxboard

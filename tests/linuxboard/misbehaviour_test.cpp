@@ -5,7 +5,10 @@
 
 #include <catch2/catch.hpp>
 
+#include <unistd.h>
+
 #include <csignal>
+#include <vector>
 
 using namespace puckloop;
 using namespace puckloop::cosim;
@@ -89,4 +92,29 @@ TEST_CASE("what cannot be run is refused before the run") {
     spec.program = program("echo");
     spec.cwd = "/nowhere/at/all";
     CHECK_THROWS_WITH(linuxboard::LinuxNode(spec), Contains("/nowhere/at/all"));
+}
+
+TEST_CASE("a program that dies before it begins leaves its reason, or that it gave none") {
+    linuxboard::LinuxSpec spec = spec_for("echo");
+    spec.shim = std::string(PUCKLOOP_TEST_PROGRAMS) + "/libtest_quitter.so";
+    CHECK_THROWS_WITH(linuxboard::LinuxNode(spec),
+                      Contains("exited with status 125 before it began: it printed nothing"));
+    spec.env = {{"QUITTER_SAYS", "no memory for the page"}};
+    CHECK_THROWS_WITH(linuxboard::LinuxNode(spec),
+                      Contains("exited with status 125 before it began: no memory for the page"));
+    spec.log.clear();
+    CHECK_THROWS_WITH(linuxboard::LinuxNode(spec), Contains("before it began: its output is not kept"));
+}
+
+TEST_CASE("a program starts wherever its descriptors lie in the process that runs it") {
+    constexpr int kAroundPrivate = 490, kTries = 16;
+    std::vector<int> held;
+    while (held.empty() || held.back() < kAroundPrivate)
+        held.push_back(dup(STDIN_FILENO));
+    for (int i = 0; i < kTries; ++i) {
+        CHECK_NOTHROW(linuxboard::LinuxNode(spec_for("echo")));
+        held.push_back(dup(STDIN_FILENO));
+    }
+    for (const int fd : held)
+        close(fd);
 }

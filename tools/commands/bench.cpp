@@ -73,7 +73,7 @@ double real_time_factor(const std::filesystem::path& scenario, double seconds, b
     request.duration = seconds;
     request.in_process = in_process;
     const cosim::InterruptGuard interrupt;
-    const cosim::Outcome outcome = run_scenario(set_up(request), request, {}, interrupt.flag());
+    const cosim::Outcome outcome = run_scenario(set_up(request), request, {}, &interrupt);
     if (!outcome.success || outcome.reason == cosim::EndReason::Interrupted) throw RunError(outcome.text);
     return cosim::to_seconds(outcome.simulated) / outcome.wall_s;
 }

@@ -53,8 +53,7 @@ int run(Options& options) {
     const cosim::InterruptGuard interrupt;
     StatusLine status_line(setup.scenario.duration);
     const cosim::Outcome outcome = run_scenario(
-        setup, request, [&](const cosim::Progress& progress) { status_line.show(progress); },
-        interrupt.flag());
+        setup, request, [&](const cosim::Progress& progress) { status_line.show(progress); }, &interrupt);
     status_line.clear();
     if (options.json)
         fmt::print("{}\n", (setup.out / "report.json").string());

@@ -30,6 +30,10 @@ ordered_json node_json(const cosim::Outcome::NodeReport& node) {
     return ordered_json::parse(node.json);
 }
 
+ordered_json seconds_or_null(const std::optional<cosim::Time>& time) {
+    return time ? ordered_json(cosim::to_seconds(*time)) : ordered_json(nullptr);
+}
+
 double real_time_factor(const cosim::Outcome& outcome) {
     return outcome.wall_s > 0 ? cosim::to_seconds(outcome.simulated) / outcome.wall_s : 0.0;
 }
@@ -114,6 +118,7 @@ void write_report(const RunSetup& setup, const cosim::Outcome& outcome, Reserved
                               {"success", outcome.success},
                               {"ended_by", reason_name(outcome.reason)},
                               {"ended_why", outcome.text},
+                              {"programs_asked_to_end_s", seconds_or_null(outcome.wind_up)},
                               {"simulated_s", cosim::to_seconds(outcome.simulated)},
                               {"wall_s", outcome.wall_s},
                               {"real_time_factor", real_time_factor(outcome)},

@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <cstring>
 #include <thread>
@@ -37,6 +39,14 @@ void write_results(const RunSetup& setup, cosim::Outcome& outcome, ReservedFile&
     guarded([&] { write_report(setup, outcome, report); });
 }
 
+/// Robots in one process take some six descriptors each; the usual soft limit of 1024 is not meant for them.
+void raise_descriptor_limit() {
+    rlimit limit{};
+    if (getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+    limit.rlim_cur = limit.rlim_max;
+    setrlimit(RLIMIT_NOFILE, &limit);
+}
+
 /// Range-and-bearing boards go in steps of 20 us, each with enough to do to share them out; others hardly.
 unsigned threads_for(const RunSetup& setup, const RunRequest& request) {
     constexpr unsigned kBoardsOfThread = 3, kMost = 4;
@@ -53,13 +63,14 @@ unsigned threads_for(const RunSetup& setup, const RunRequest& request) {
 
 cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
                             const std::function<void(const cosim::Progress&)>& progress,
-                            const volatile std::sig_atomic_t* interrupted) {
+                            const cosim::InterruptGuard* interrupt) {
     check_files(setup);
     std::error_code error;
     std::filesystem::create_directories(setup.out, error);
     if (error) throw InputError(setup.out.string(), "", "cannot be made a folder: " + error.message());
     ReservedFile report(setup.out / "report.json", kReportBytes);
 
+    raise_descriptor_limit();
     cosim::RunOptions options;
     if (setup.scenario.duration) options.duration = cosim::from_seconds(*setup.scenario.duration);
     options.in_process = request.in_process;
@@ -67,7 +78,10 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
     options.threads = threads_for(setup, request);
     options.seed = setup.scenario.seed;
     options.stall_seconds = request.stall_seconds;
-    options.interrupted = interrupted;
+    if (interrupt != nullptr) {
+        options.interrupted = interrupt->flag();
+        options.hurried = interrupt->again();
+    }
     options.progress = progress;
     cosim::Conductor conductor(setup.nodes, setup.links, setup.scenario.faults, options, make_node);
     cosim::TraceCsvSink trace((setup.out / "trace.csv").string());
@@ -75,8 +89,9 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
     cosim::Outcome outcome = conductor.run();
     if (outcome.reason == cosim::EndReason::Interrupted) {
         outcome.success = false;
-        outcome.text = fmt::format("interrupted (SIG{}) at {:.3f} s of simulated time",
-                                   sigabbrev_np(*interrupted), cosim::to_seconds(outcome.simulated));
+        outcome.text =
+            fmt::format("interrupted (SIG{}) at {:.3f} s of simulated time", sigabbrev_np(*interrupt->flag()),
+                        cosim::to_seconds(outcome.stop_time.value_or(outcome.simulated)));
     }
     judge(outcome);
     write_results(setup, outcome, report);

@@ -2,17 +2,17 @@
 // One run from its setup to its outcome, without output: what `run` and `bench` share.
 
 #include "cosim/conductor.h"
+#include "cosim/interrupt.h"
 #include "tools/run/setup.h"
 
-#include <csignal>
 #include <functional>
 
 namespace puckloop::tools {
 
 /// Runs, records trace.csv in the run's folder (made if absent), writes report.json and draws trajectory.svg.
-/// Throws InputError before the run; what happens during it is told in the outcome.
+/// Throws InputError before the run; what happens during it is told in the outcome. `interrupt` may be null.
 cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
                             const std::function<void(const cosim::Progress&)>& progress,
-                            const volatile std::sig_atomic_t* interrupted);
+                            const cosim::InterruptGuard* interrupt);
 
 }  // namespace puckloop::tools

@@ -90,6 +90,9 @@ json linux_spec(const RunSetup& setup, const RobotBoards& robot, std::int64_t pr
                 const RunRequest& request) {
     const scenarios::LinuxBoard& board = *robot.linux_board;
     const std::filesystem::path folder = setup.scenario.file.parent_path();
+    json signals = json::array();
+    for (const scenarios::LinuxSignal& signal : board.signals)
+        signals.push_back({{"time_s", signal.at}, {"signal", signal.send}});
     json spec{{"kind", "linux"},
               {"name", robot.name + ".linux"},
               {"program", find_program(board.command[0], folder).string()},
@@ -99,6 +102,9 @@ json linux_spec(const RunSetup& setup, const RobotBoards& robot, std::int64_t pr
               {"seed", setup.scenario.seed},
               {"start_s", board.start},
               {"restart_at", board.restarts},
+              {"signals", std::move(signals)},
+              {"end_signal", board.end_signal},
+              {"grace_s", board.grace},
               {"tty_batch_s", board.late.tty_batch},
               {"i2c_hold_s", board.late.i2c_hold},
               {"oversleep_s", board.late.oversleep},

@@ -24,12 +24,21 @@ char reply_buffer[kReplySize];
 char request_buffer[sizeof(wire::Request) + wire::kMaximumData];
 constexpr int kNodeGoneStatus = 125;
 
+[[noreturn]] void give_up(const char* what, int error) {
+    char text[160];
+    std::snprintf(text, sizeof text, "puckloop shim: %s%s%s\n", what, error != 0 ? ": " : "",
+                  error != 0 ? std::strerror(error) : "");
+    host_complain(text);
+    host_call(SYS_exit_group, kNodeGoneStatus);
+    __builtin_unreachable();
+}
+
 void send_request(const wire::Request& request, const void* data, std::size_t size) {
     std::memcpy(request_buffer, &request, sizeof request);
     if (size > 0) std::memcpy(request_buffer + sizeof request, data, size);
     const long sent = host_call(SYS_sendto, socket_fd, reinterpret_cast<long>(request_buffer),
                                 static_cast<long>(sizeof request + size), MSG_NOSIGNAL);
-    if (sent < 0) host_call(SYS_exit_group, kNodeGoneStatus);
+    if (sent < 0) give_up("cannot ask the run", errno);
 }
 }  // namespace
 
@@ -72,7 +81,8 @@ void exchange(const wire::Request& request, const void* data, std::size_t size, 
     do {
         count = host_call(SYS_recvfrom, socket_fd, reinterpret_cast<long>(reply_buffer), sizeof reply_buffer);
     } while (count < 0 && errno == EINTR);
-    if (count < static_cast<long>(sizeof reply)) host_call(SYS_exit_group, kNodeGoneStatus);
+    if (count < static_cast<long>(sizeof reply))
+        give_up(count == 0 ? "the run is gone" : "no answer from the run", count < 0 ? errno : 0);
     const char* cursor = reply_buffer;
     std::memcpy(&reply, cursor, sizeof reply);
     cursor += sizeof reply;

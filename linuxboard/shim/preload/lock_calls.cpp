@@ -27,6 +27,7 @@ int lock_by(const void* key, Time deadline, Attempt attempt) {
         if (deadline <= now()) return ETIMEDOUT;
         WaitOptions options;
         options.deadline = deadline;
+        options.interruptible = true;  // a handler runs, then the wait goes on
         if (park(key, options) == Wake::Timeout) return attempt() == 0 ? 0 : ETIMEDOUT;
     }
 }

@@ -41,6 +41,7 @@ int await_thread(Thread* thread, Time deadline) {
     while (thread->state != Thread::State::Finished) {
         WaitOptions options;
         options.deadline = deadline;
+        options.interruptible = true;  // a handler runs, then the wait goes on
         options.cancellable = true;
         if (park(thread, options) == Wake::Timeout) return ETIMEDOUT;
     }
