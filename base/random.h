@@ -2,6 +2,7 @@
 // Seeded random streams, one for each use. The algorithm is fixed here, so that a seed means the same
 // numbers on every machine and with every standard library.
 
+#include <array>
 #include <cstdint>
 #include <string_view>
 
@@ -18,8 +19,14 @@ class RandomStream {
     double normal();                       ///< mean 0, standard deviation 1 (polar method, both values used)
     std::uint64_t below(std::uint64_t n);  ///< uniform in [0, n), n > 0, without modulo bias
 
+    /// The position in the stream (base/archive.h).
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(state_, spare_, has_spare_);
+    }
+
   private:
-    std::uint64_t state_[4];
+    std::array<std::uint64_t, 4> state_;
     double spare_ = 0.0;
     bool has_spare_ = false;
 };

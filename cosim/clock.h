@@ -25,6 +25,21 @@ class ClockDomain {
     double hertz() const { return hertz_; }
     double ppm() const { return ppm_; }
 
+    template <class Archive>
+    void state(Archive& archive) {
+        archive.bounded(hertz_, 1.0, 1e10);
+        archive.bounded(ppm_, -1e5, 1e5);
+        archive(present_, past_);
+        std::uint64_t before = 0;
+        for (const Stretch& stretch : past_) {
+            archive.check(stretch.cycle >= before, "stretches of the clock do not rise");
+            before = stretch.cycle;
+        }
+        archive.check(present_.cycle >= before, "stretches of the clock do not rise");
+        archive.check((past_.empty() ? present_ : past_.front()).cycle == 0,
+                      "the clock does not begin with cycle 0");
+    }
+
   private:
     /// A stretch of constant rate, from its first cycle to the next stretch.
     struct Stretch {
@@ -32,6 +47,12 @@ class ClockDomain {
         Time time = 0;
         std::uint64_t microhertz = 0;
         Time time_of(std::uint64_t later_cycle) const;
+        template <class Archive>
+        void state(Archive& archive) {
+            archive(cycle);
+            archive.bounded(time, 0, kNever);
+            archive.bounded(microhertz, 1'000'000, 10'000'000'000'000'000);
+        }
     };
     std::uint64_t effective_microhertz(double hertz) const;
 

@@ -114,11 +114,25 @@ void ChipLog::read_errors(Time now, const dspic::Chip& chip) {
     }
 }
 
+void ChipLog::write(Time time, const std::string& text) {
+    log_.line(cosim::to_seconds(time), text);
+    history_.emplace_back(time, text);
+}
+
+void ChipLog::loaded(Time now) {
+    if (!is_open()) return;
+    for (const auto& [time, text] : history_)
+        log_.line(cosim::to_seconds(time), text);
+    // The saved board may have had no log, which never looks.
+    next_look_ = std::max(next_look_, (now / kLook + 1) * kLook);
+    written_ = std::min(written_, now);
+}
+
 void ChipLog::write_until(Time now) {
     std::sort(lines_.begin(), lines_.end());
     auto next = lines_.begin();
     for (; next != lines_.end() && next->first <= now; ++next)
-        log_.line(cosim::to_seconds(next->first), next->second);
+        write(next->first, next->second);
     lines_.erase(lines_.begin(), next);
     written_ = now;
 }

@@ -36,20 +36,36 @@ class ChipLog {
     void sent(int unit, const cosim::UartFrame& frame, cosim::Time now);
     void arrived(int unit, const cosim::UartFrame& frame, cosim::Time now, bool listening);
 
+    /// What was written so far is part of it; a log that loads it writes it again.
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(lines_, history_, resets_, traps_, unmodelled_, warnings_, uarts_);
+        archive.bounded(next_look_, 0, cosim::kNever);
+        archive.bounded(written_, 0, cosim::kNever);
+    }
+    /// After a state was loaded that was saved at `now`.
+    void loaded(cosim::Time now);
+
   private:
     static constexpr std::size_t kUarts = 2;
     struct UartSeen {
         bool sent = false, arrived = false;
         dspic::UartCounters counters;  // errors told so far
+        template <class Archive>
+        void state(Archive& archive) {
+            archive(sent, arrived, counters);
+        }
     };
     void read_report(cosim::Time now, const dspic::Chip& chip);
     void read_errors(cosim::Time now, const dspic::Chip& chip);
     void write_until(cosim::Time now);
     std::string place(std::uint32_t pc) const;
+    void write(cosim::Time time, const std::string& text);
 
     NodeLog log_;
     image::CodeSymbols symbols_;
-    std::vector<std::pair<cosim::Time, std::string>> lines_;  // not yet written
+    std::vector<std::pair<cosim::Time, std::string>> lines_;    // not yet written
+    std::vector<std::pair<cosim::Time, std::string>> history_;  // written, the firmware's line left out
     cosim::Time next_look_;
     cosim::Time written_ = 0;  // all before this is in the file
     std::size_t resets_ = 0, traps_ = 0, unmodelled_ = 0, warnings_ = 0;

@@ -36,6 +36,10 @@ double start_hertz(const DeviceInfo& device, const ChipOptions& options) {
     return decode_fosc(options.fosc.value_or(0xFFFF), options.crystal_hertz).hertz / device.clocks_per_cycle;
 }
 
+constexpr Cycle later_cycle(Cycle cycle, Cycle by) {
+    return cycle > kNoCycle - by ? kNoCycle : cycle + by;
+}
+
 std::string_view reset_name(ResetCause cause) {
     switch (cause) {
     case ResetCause::PowerOn:
@@ -254,6 +258,44 @@ struct Chip::Parts {
     /// The cycle that messages handed in now belong to: the first that starts at or after the last `until`.
     Cycle message_cycle() const { return clock.first_cycle_at(now); }
 
+    /// What the part remembers, once for saving and loading. Registers come first: modules look at them.
+    template <class Archive>
+    void state(Archive& archive) {
+        std::string part(device.name);
+        archive(part);
+        archive.check(part == device.name, "a state of another chip");
+        archive.part("clock", clock);
+        archive.part("registers", sfr);
+        archive.part("core", core);
+        if (device.family_33f)
+            archive.part("oscillator", static_cast<Oscillator33F&>(*oscillator));
+        else
+            archive.part("oscillator", static_cast<Oscillator&>(*oscillator));
+        archive.part("ports", ports);
+        const auto parts_of = [&](const char* name, auto& modules) {
+            for (std::size_t i = 0; i < modules.size(); ++i)
+                archive.part(name + std::to_string(i + 1), modules[i]);
+        };
+        parts_of("timer", timers);
+        parts_of("uart", uarts);
+        if (adc12) archive.part("adc", *adc12);
+        parts_of("i2c", masters);
+        parts_of("i2c slave", slaves);
+        parts_of("adc", adcs);
+        parts_of("spi", spis);
+        if (output_compare) archive.part("output compare", *output_compare);
+        if (dma) archive.part("dma", *dma);
+        archive.part("report", report);
+        archive.part("events", events);
+        archive.bounded(now, 0, cosim::kNever);
+        // An instruction is never cut in two, so the core may be somewhat ahead.
+        constexpr Cycle kMostAhead = 1000;
+        constexpr Time kAhead = 10 * cosim::kMillisecond;
+        const Time reached = clock.time_of(core.cycle());
+        archive.check(reached >= now && reached - now <= kAhead, "core and clock at different times");
+        archive.check(later_cycle(events.next(), kMostAhead) >= core.cycle(), "an event long overdue");
+    }
+
     /// Run up to `time`: the outside may change from there on.
     void arrive(Time time) {
         now = std::max(now, time);
@@ -361,7 +403,7 @@ Time Chip::earliest_i2c_slave_answer(int unit) const {
 }
 
 OutputCompareState Chip::output_compare(int unit) const {
-    return parts_->output_compare ? parts_->output_compare->state(unit) : OutputCompareState{};
+    return parts_->output_compare ? parts_->output_compare->present(unit) : OutputCompareState{};
 }
 
 const cosim::ClockDomain& Chip::clock() const {
@@ -401,6 +443,16 @@ ChipReport Chip::report() const {
     report.instructions = parts_->core.instructions();
     report.cycles = parts_->core.cycle();
     return report;
+}
+
+void Chip::state(StateWriter& archive) const {
+    parts_->state(archive);
+}
+
+void Chip::state(StateReader& archive) {
+    parts_->state(archive);
+    parts_->interrupts.registers_loaded();
+    parts_->stopped_at.reset();
 }
 
 void Chip::set_skipping(bool on) {

@@ -2,6 +2,7 @@
 // A whole microcontroller: core, memories, clock, interrupt controller and peripherals, wired as in
 // silicon. It knows no board: the board implements Pins, and tells the chip what arrives from outside.
 
+#include "base/archive.h"
 #include "cosim/clock.h"
 #include "cosim/message.h"
 #include "cosim/time.h"
@@ -35,11 +36,21 @@ struct ResetRecord {
     Cycle cycle = 0;
     std::string cause;     ///< "POR", "EXTR", "SWR", "WDTO", "IOPUWR", "TRAPR"
     std::uint32_t pc = 0;  ///< address of the instruction that was about to run or that caused it
+
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(cycle, cause, pc);
+    }
 };
 struct TrapRecord {
     Cycle cycle = 0;
     std::string name;  ///< "AddressError", "StackError", "MathError", "OscillatorFail"
     std::uint32_t pc = 0;
+
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(cycle, name, pc);
+    }
 };
 struct UnmodelledTouch {
     Cycle cycle = 0;
@@ -47,12 +58,22 @@ struct UnmodelledTouch {
     std::uint16_t address = 0;
     std::uint32_t pc = 0;
     bool write = false;
+
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(cycle, name, address, pc, write);
+    }
 };
 /// Something the program did that the model takes differently from silicon, told once each.
 struct ChipWarning {
     Cycle cycle = 0;
     std::string text;
     std::uint32_t pc = 0;
+
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(cycle, text, pc);
+    }
 };
 
 /// What an output compare module does with its pin. No call per edge: see Pins::output_compare_changed().
@@ -64,6 +85,11 @@ struct OutputCompareState {
     bool level = false;    ///< of the pin where nothing repeats
 
     friend bool operator==(const OutputCompareState&, const OutputCompareState&) = default;
+
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(mode, running, period, high, level);
+    }
 };
 
 struct ChipReport {
@@ -73,6 +99,11 @@ struct ChipReport {
     std::vector<ChipWarning> warnings;
     std::uint64_t instructions = 0;
     Cycle cycles = 0;
+
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(resets, traps, unmodelled, warnings);
+    }
 };
 
 /// Use: construct, load, power_on(), then run_until() in rising steps, handing in what arrives in between.
@@ -145,6 +176,12 @@ class Chip {
     /// A word of RAM at an even data address. Throws std::out_of_range elsewhere.
     std::uint16_t peek_data(std::uint16_t address) const;
     ChipReport report() const;
+
+    /// Everything the chip remembers, between two run_until(): registers, memories (flash and EEPROM too),
+    /// modules, events, report. Stop addresses are the bench's and are left out. A chip of the same device
+    /// that loads it goes on as this one does; StateError: it does not fit, and the chip is of no use.
+    void state(StateWriter& archive) const;
+    void state(StateReader& archive);
 
     /// Busy-wait loops are skipped forward (default); off, every cycle of them is executed.
     void set_skipping(bool on);

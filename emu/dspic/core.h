@@ -4,6 +4,7 @@
 // Sources: programmer's reference (DS70157), family reference manual (DS70049..DS70055).
 // Deviations are numbered in docs/fidelity.md under "dsPIC core".
 
+#include "base/archive.h"
 #include "emu/dspic/core_state.h"
 #include "emu/dspic/device.h"
 #include "emu/dspic/event_queue.h"
@@ -108,6 +109,11 @@ class Core {
     void write_data(std::uint16_t address, std::uint16_t value);
     /// RAM words from device().ram_start on.
     std::span<std::uint16_t> ram();
+
+    /// Everything the core remembers, program space and RAM included, stop addresses not. Decoded operations
+    /// and what is known of loops and service routines are found anew. SFRs are loaded before.
+    void state(StateWriter& archive) const;
+    void state(StateReader& archive);
 
     // Hooks.
     /// Called at each reset before the core's own: sets every other SFR and module to its reset state.

@@ -37,7 +37,15 @@ struct DoLoop {
     std::uint16_t dcount = 0;
     std::uint32_t dostart = 0;
     std::uint32_t doend = 0;
+
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(dcount, dostart, doend);
+    }
 };
+
+/// More than any run has: twenty years at 30 MHz.
+inline constexpr Cycle kLastCycle = Cycle{1} << 54;
 
 struct CoreState {
     std::array<std::uint16_t, 16> w{};
@@ -60,6 +68,13 @@ struct CoreState {
     Cycle disi_end = 0;  ///< first cycle in which DISICNT is 0 again
     std::uint32_t pc = 0;
     Cycle cycle = 0;  ///< the next (or present) instruction starts here
+
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(w, sr, corcon, acc, rcount, loop, loop_shadow, shadow_w, shadow_sr, tblpag, psvpag, splim,
+                splim_armed, modcon, xmodsrt, xmodend, ymodsrt, ymodend, xbrev, disi_end, pc);
+        archive.bounded(cycle, 0, kLastCycle);
+    }
 };
 
 }  // namespace puckloop::dspic

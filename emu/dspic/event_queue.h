@@ -69,6 +69,16 @@ class EventQueue {
         }
     }
 
+    /// Due times by slot; who owns the slots and what is steady about them follows from the chip.
+    template <class Archive>
+    void state(Archive& archive) {
+        for (unsigned slot = 0; slot < size_; ++slot) {
+            Cycle due = due_[slot];
+            archive(due);
+            if constexpr (Archive::kLoads) schedule(static_cast<Slot>(slot), due);
+        }
+    }
+
   private:
     static constexpr unsigned kCapacity = 64;
     struct Entry {

@@ -1,6 +1,7 @@
 #include "emu/dspic/interrupts.h"
 
 #include <bit>
+#include <utility>
 
 namespace puckloop::dspic {
 
@@ -165,6 +166,12 @@ void InterruptController::find_first(Cycle now) {
     }
     first_ = best;
     if (changed_) changed_(listener_, now);
+}
+
+void InterruptController::registers_loaded() {
+    const auto listener = std::exchange(changed_, nullptr);
+    find_first(0);
+    changed_ = listener;
 }
 
 std::uint16_t InterruptController::read_register(void* owner, std::uint16_t address) {

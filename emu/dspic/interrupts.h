@@ -92,6 +92,9 @@ class InterruptController {
     }
     void reset();
 
+    /// After the registers were loaded: who is first in line, without calling the listener.
+    void registers_loaded();
+
     static constexpr std::uint16_t kIntcon1 = 0x080;
     static constexpr std::uint16_t kIntcon2 = 0x082;
 

@@ -81,6 +81,11 @@ class SfrSpace {
     /// By data-sheet name; null if the device has no such register.
     const RegisterInfo* find(std::string_view name) const;
 
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(value_, reported_);
+    }
+
   private:
     struct Word {
         ReadHook read = nullptr;

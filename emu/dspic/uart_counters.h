@@ -11,6 +11,11 @@ struct UartCounters {
     std::uint64_t framing_errors = 0;
     std::uint64_t parity_errors = 0;
     std::uint64_t overruns = 0;  ///< characters lost because the FIFO was full or OERR stood
+
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(sent, received, framing_errors, parity_errors, overruns);
+    }
 };
 
 }  // namespace puckloop::dspic

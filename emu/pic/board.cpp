@@ -114,6 +114,22 @@ void Board::drive(SignalId id, bool level, dspic::Cycle now) {
     listener_.signal_changed(id, values_[id].value, now);
 }
 
+/// Inputs stay within their ranges, whatever a state holds.
+void Board::check_loaded() {
+    for (SignalId id = 0; id < kSignalCount; ++id) {
+        if (signals()[id].direction != cosim::SignalDirection::Input) continue;
+        values_[id].value = clipped(id, values_[id].value);
+        values_[id].before = clipped(id, values_[id].before);
+    }
+    place_levels();
+}
+
+void Board::renew_random_streams() {
+    noise_ = RandomStream(parameters_.seed, parameters_.name + "/adc");
+    for (std::size_t i = 0; i < microphones_.size(); ++i)
+        microphones_[i].renew(parameters_.seed, parameters_.name + "/mic" + std::to_string(i));
+}
+
 void Board::settle(dspic::Cycle now) {
     for (;;) {
         const std::size_t first = motors_[1].due() < motors_[0].due() ? 1 : 0;

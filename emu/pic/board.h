@@ -61,6 +61,15 @@ class Board : public dspic::Pins {
     /// passed `now`.
     void settle(dspic::Cycle now);
 
+    /// Positions of all signals, lights, motors and noise; the parameters are each board's own.
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(noise_, values_, emitters_, microphones_, motors_, outputs_);
+        if constexpr (Archive::kLoads) check_loaded();
+    }
+    /// Noise begins anew, by this board's own name and seed.
+    void renew_random_streams();
+
     const StepperDecoder& left_motor() const { return motors_[0]; }
     const StepperDecoder& right_motor() const { return motors_[1]; }
 
@@ -81,7 +90,14 @@ class Board : public dspic::Pins {
         double before = 0.0;
         dspic::Cycle since = 0;
         double at(dspic::Cycle now) const { return now < since ? before : value; }
+        template <class Archive>
+        void state(Archive& archive) {
+            archive.bounded(value, -1e15, 1e15);
+            archive.bounded(before, -1e15, 1e15);
+            archive(since);
+        }
     };
+    void check_loaded();
     void place_levels();
     void drive(SignalId id, bool level, dspic::Cycle now);
 

@@ -19,6 +19,12 @@ class Emitter {
     /// Share of the reflected light that the receiver shows at `now`, 0..1.
     double intensity(dspic::Cycle now) const;
 
+    template <class Archive>
+    void state(Archive& archive) {
+        archive.bounded(at_edge_, 0.0, 1.0);
+        archive(edge_, on_);
+    }
+
   private:
     double time_constant_;
     double at_edge_ = 0.0;

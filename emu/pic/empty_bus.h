@@ -2,6 +2,7 @@
 // An I2C bus with nobody on it but the master: no address is acknowledged, every byte reads 0xFF.
 
 #include "cosim/message.h"
+#include "cosim/message_state.h"
 #include "cosim/time.h"
 
 #include <optional>
@@ -29,6 +30,11 @@ class EmptyBus {
         const cosim::I2cPhase answer = *pending_;
         pending_.reset();
         return answer;
+    }
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(pending_);
+        archive.bounded(due_, 0, cosim::kNever);
     }
 
   private:

@@ -25,6 +25,14 @@ class Microphone {
         if (lost > 0.0 && noise_.uniform() < lost) return held_;
         return held_ = level / kRangeOfWindow * noise_.normal();
     }
+    /// The stream begins anew.
+    void renew(std::uint64_t seed, const std::string& stream) { noise_ = RandomStream(seed, stream); }
+
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(noise_);
+        archive.bounded(held_, -1e6, 1e6);
+    }
 
   private:
     RandomStream noise_;

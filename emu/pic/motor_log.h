@@ -25,6 +25,13 @@ class MotorLog {
     /// Longer than the interval of the slowest steps that a program of use makes.
     static constexpr cosim::Time kStill = cosim::kSecond / 4;
 
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(steps_);
+        archive.bounded(last_, 0, cosim::kNever);
+        archive.bounded(direction_, -1, 1);
+    }
+
   private:
     std::string_view side_;
     std::int64_t steps_ = 0;

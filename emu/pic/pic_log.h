@@ -26,6 +26,12 @@ class PicLog {
         chip_.arrived(unit, frame, now, listening);
     }
 
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(chip_, motors_, changes_);
+    }
+    void loaded(cosim::Time now) { chip_.loaded(now); }
+
   private:
     board::ChipLog chip_;
     std::array<MotorLog, 2> motors_{MotorLog("left"), MotorLog("right")};

@@ -134,6 +134,26 @@ void PicNode::i2c_phase(int unit, const cosim::I2cPhase& phase) {
         bus_.phase(phase);
 }
 
+void PicNode::state(StateWriter& archive) const {
+    archive(granted_, bus_);
+    archive.part("board", board_);
+    archive.part("chip", *chip_);
+    archive.part("log", log_);
+}
+
+void PicNode::state(StateReader& archive) {
+    archive.bounded(granted_, 0, cosim::kNever);
+    archive(bus_);
+    archive.part("board", board_);
+    archive.part("chip", *chip_);
+    archive.part("log", log_);
+    archive.check(chip_->now() == granted_, "node and chip at different times");
+    log_.loaded(granted_);
+    // A press at the very time of the state is still to come.
+    const auto next = std::lower_bound(options_.resets.begin(), options_.resets.end(), granted_);
+    next_reset_ = static_cast<std::size_t>(next - options_.resets.begin());
+}
+
 std::string PicNode::finish() {
     log_.end(granted_, *chip_, board_);
     nlohmann::ordered_json json = board::chip_json(*chip_);

@@ -1,7 +1,7 @@
 #pragma once
 // The e-puck main board as a node of a run: chip, board, and the ports where links attach.
 
-#include "cosim/node.h"
+#include "cosim/stateful_node.h"
 #include "emu/dspic/chip.h"
 #include "emu/image/image.h"
 #include "emu/pic/board.h"
@@ -27,7 +27,7 @@ struct PicNodeOptions {
     std::string log{};  ///< file for the board's log; empty: none
 };
 
-class PicNode : public cosim::Node, private BoardListener {
+class PicNode : public cosim::StatefulNode, private BoardListener {
   public:
     static constexpr cosim::PortIndex kUart1 = 0;
     static constexpr cosim::PortIndex kUart2 = 1;
@@ -46,6 +46,10 @@ class PicNode : public cosim::Node, private BoardListener {
     std::optional<cosim::Time> begun(cosim::PortIndex port) const override;
     /// JSON: cycles, instructions, resets, traps, unmodelled registers, motor and UART counters.
     std::string finish() override;
+
+    void state(StateWriter& archive) const override;
+    void state(StateReader& archive) override;
+    void renew_random_streams() override { board_.renew_random_streams(); }
 
     dspic::Chip& chip() { return *chip_; }
     Board& board() { return board_; }

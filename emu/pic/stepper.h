@@ -36,6 +36,13 @@ class StepperDecoder {
     std::uint64_t illegal_patterns() const { return illegal_; }  ///< stable, but neither off nor in the table
     std::uint64_t phase_jumps() const { return jumps_; }         ///< stable patterns two phases away
 
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(due_, steps_, illegal_, jumps_);
+        archive.bounded(pattern_, 0, 15);
+        archive.bounded(phase_, 0, 3);
+    }
+
   private:
     StepSense sense_;
     dspic::Cycle settle_;

@@ -68,6 +68,16 @@ class Board : public dspic::Pins {
     /// passed `now`.
     void settle(cosim::Time now);
 
+    /// Signals, detectors, potentiometer, pins and noise; the parameters are each board's own.
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(noise_, potentiometer_, peaks_, low_, outputs_, levels_, gates_, emitters_, supply_);
+        for (double& value : values_)
+            archive.bounded(value, -1e15, 1e15);
+    }
+    /// Noise begins anew, by this board's own name and seed.
+    void renew_random_streams() { noise_ = RandomStream(parameters_.seed, parameters_.name + "/adc"); }
+
     // dspic::Pins
     void driven(dspic::PortLetter port, std::uint16_t levels, std::uint16_t driven,
                 dspic::Cycle now) override;

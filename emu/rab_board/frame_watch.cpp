@@ -14,8 +14,6 @@ using cosim::Time;
 constexpr Time kChip = 98'085 * cosim::kNanosecond;
 /// Within a frame at most two chips in a row are off, between queued frames one more: three end a burst.
 constexpr Time kSilence = 7 * kChip / 2;
-/// Ten frames wait at most behind the one on air, of at most 78 chips: longer bursts are none of frames.
-constexpr std::size_t kLongestBurst = 1000;
 
 }  // namespace
 

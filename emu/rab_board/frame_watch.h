@@ -35,6 +35,17 @@ class FrameWatch {
     std::uint64_t frames() const { return frames_; }
     std::uint64_t irregular() const { return irregular_; }
 
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(emitters_, chips_, overlong_, frames_, irregular_);
+        archive.bounded(since_, 0, cosim::kNever);
+        archive.bounded(began_, 0, cosim::kNever);
+        archive.check(chips_.size() <= kLongestBurst, "a burst too long");
+    }
+
+    /// Ten frames wait at most behind the one on air, of at most 78 chips: longer bursts are none of frames.
+    static constexpr std::size_t kLongestBurst = 1000;
+
   private:
     void append(cosim::Time until);
     void close(cosim::Time seen);

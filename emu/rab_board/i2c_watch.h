@@ -4,6 +4,7 @@
 // ignore without a word (a payload size of 7, a register that does not exist) is told here.
 
 #include "cosim/message.h"
+#include "cosim/message_state.h"
 #include "cosim/time.h"
 
 #include <array>
@@ -24,6 +25,13 @@ struct I2cCounters {
     std::uint64_t messages = 0;     ///< reads of register 0 that said 1
     std::uint64_t empty_polls = 0;  ///< reads of register 0 that said 0
     std::uint64_t bad_sizes = 0, read_only_writes = 0, unknown_writes = 0, unknown_reads = 0;
+
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(transfers, bytes_written, bytes_read, not_acknowledged, long_stretches, stretched,
+                longest_stretch, sends, messages, empty_polls, bad_sizes, read_only_writes, unknown_writes,
+                unknown_reads);
+    }
 };
 
 class I2cWatch {
@@ -42,6 +50,13 @@ class I2cWatch {
     const I2cCounters& counters() const { return counters_; }
 
     static constexpr cosim::Time kLongStretch = 300 * cosim::kMicrosecond;
+
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(counters_, open_, register_, awaiting_register_, sizes_, unknown_writes_, read_only_writes_,
+                unknown_reads_);
+        archive.bounded(read_index_, 0, 1 << 30);
+    }
 
   private:
     void stretched(cosim::Time by, cosim::Time now);

@@ -32,6 +32,11 @@ class PeakDetector {
     bool resetting() const { return present_.reset; }
     double input() const { return present_.input; }
 
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(present_, before_);
+    }
+
   private:
     /// From one change to the next.
     struct Stretch {
@@ -39,6 +44,13 @@ class PeakDetector {
         double level = 0.0;  ///< at `since`
         double input = 0.0;
         bool reset = false;
+        template <class Archive>
+        void state(Archive& archive) {
+            archive.bounded(since, 0, cosim::kNever);
+            archive.bounded(level, -1e6, 1e6);
+            archive.bounded(input, -1e6, 1e6);
+            archive(reset);
+        }
     };
     double level(const Stretch& stretch, cosim::Time now) const;
     void change(double input, bool reset, cosim::Time now);

@@ -33,6 +33,12 @@ class Potentiometer {
     std::uint8_t wiper() const { return wiper_; }
     std::uint64_t bytes() const { return bytes_; }  ///< latched so far
 
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(high_, shifted_, wiper_, latched_, bytes_);
+        archive.bounded(due_, 0, cosim::kNever);
+    }
+
   private:
     cosim::Time settling_;
     bool high_ = true;

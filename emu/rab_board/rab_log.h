@@ -36,6 +36,13 @@ class RabLog {
     const FrameWatch& frames() const { return frames_; }
     const I2cWatch& i2c() const { return i2c_; }
 
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(chip_, frames_, i2c_, line_, codes_, carrier_);
+        archive.bounded(lines_, 0, 1000);
+    }
+    void loaded(cosim::Time now) { chip_.loaded(now); }
+
   private:
     void frame(const EmittedFrame& frame);
     void text(char character, cosim::Time now);

@@ -133,6 +133,23 @@ void RabNode::i2c_phase(int /*unit*/, const cosim::I2cPhase& /*phase*/) {
     ++master_phases_;
 }
 
+void RabNode::state(StateWriter& archive) const {
+    archive(granted_, master_phases_);
+    archive.part("board", board_);
+    archive.part("chip", *chip_);
+    archive.part("log", log_);
+}
+
+void RabNode::state(StateReader& archive) {
+    archive.bounded(granted_, 0, cosim::kNever);
+    archive(master_phases_);
+    archive.part("board", board_);
+    archive.part("chip", *chip_);
+    archive.part("log", log_);
+    archive.check(chip_->now() == granted_, "node and chip at different times");
+    log_.loaded(granted_);
+}
+
 std::string RabNode::finish() {
     log_.end(granted_, *chip_);
     nlohmann::ordered_json json = rab_json(*chip_, board_, log_);

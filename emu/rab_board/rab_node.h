@@ -1,7 +1,7 @@
 #pragma once
 // The range-and-bearing board as a node of a run: chip, board, and the ports where links attach.
 
-#include "cosim/node.h"
+#include "cosim/stateful_node.h"
 #include "emu/dspic/chip.h"
 #include "emu/image/image.h"
 #include "emu/rab_board/board.h"
@@ -23,7 +23,7 @@ struct RabNodeOptions {
     std::string log{};  ///< file for the board's log; empty: none
 };
 
-class RabNode : public cosim::Node, private BoardListener {
+class RabNode : public cosim::StatefulNode, private BoardListener {
   public:
     static constexpr cosim::PortIndex kUart1 = 0;
     static constexpr cosim::PortIndex kUart2 = 1;
@@ -42,6 +42,10 @@ class RabNode : public cosim::Node, private BoardListener {
     std::optional<cosim::Time> begun(cosim::PortIndex port) const override;
     /// JSON: cycles, instructions, resets, traps, unmodelled registers, emission, I2C and UART counters.
     std::string finish() override;
+
+    void state(StateWriter& archive) const override;
+    void state(StateReader& archive) override;
+    void renew_random_streams() override { board_.renew_random_streams(); }
 
     dspic::Chip& chip() { return *chip_; }
     Board& board() { return board_; }

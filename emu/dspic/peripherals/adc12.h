@@ -39,6 +39,15 @@ class Adc12 {
     /// Takes all samples and finishes all conversions due by cycle `now`.
     void catch_up(Cycle now);
 
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(state_);
+        constexpr HalfCycle kMostBehind = 4000;
+        archive.check(!state_.timed || state_.phase_end >= 2 * around_.now ||
+                          2 * around_.now - state_.phase_end <= kMostBehind,
+                      "a conversion long overdue");
+    }
+
   private:
     enum class Phase : std::uint8_t { Off, Idle, Sampling, Converting };
     /// Times are in half instruction cycles, the unit of TAD.
@@ -54,6 +63,16 @@ class Adc12 {
         std::uint8_t next = 0;     ///< ADCBUFn that the next result goes to
         std::uint8_t done = 0;     ///< conversions since the last interrupt
         std::uint16_t result = 0;  ///< of the conversion in progress
+
+        template <class Archive>
+        void state(Archive& archive) {
+            archive.bounded(phase, Phase::Off, Phase::Converting);
+            archive(phase_end, held, timed, mux_b);
+            archive.bounded(channel, 0, 15);
+            archive.bounded(scanned, 0, 16);
+            archive.bounded(next, 0, 15);
+            archive(done, result);
+        }
     };
 
     static std::uint16_t read_register(void* owner, std::uint16_t address);

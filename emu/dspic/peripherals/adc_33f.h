@@ -47,6 +47,11 @@ class Adc33F {
     void hold(bool on);
     bool runs_in_sleep() const;
 
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(state_);
+    }
+
   private:
     static constexpr int kChannels = 4;
     enum class Phase : std::uint8_t { Off, Idle, Sampling, Converting };
@@ -59,6 +64,17 @@ class Adc33F {
         std::uint8_t groups = 0;   ///< since the last interrupt
         std::uint8_t channel = 0;  ///< being converted
         std::array<std::uint16_t, kChannels> results{};
+
+        template <class Archive>
+        void state(Archive& archive) {
+            archive.bounded(phase, Phase::Off, Phase::Converting);
+            archive(held, mux_b);
+            archive.bounded(input, 0, 31);
+            archive.bounded(scanned, 0, 32);
+            archive(groups);
+            archive.bounded(channel, 0, kChannels - 1);
+            archive(results);
+        }
     };
 
     static void write_con1(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask);

@@ -15,6 +15,11 @@ struct OscconKeys {
     int seen = 0;
     Cycle last = 0;
 
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(seen, last);
+    }
+
     /// A byte is written to the half at cycle `now`: true if it is the value that the keys let through.
     bool opens(std::uint8_t value, Cycle now) {
         constexpr Cycle kDistance = 2;  // the writes come from successive instructions
@@ -38,6 +43,11 @@ inline constexpr OscconKeys kLowKeys{0x46, 0x57};
 struct ClockConfiguration {
     std::uint16_t fosc = 0xFFFF;
     std::uint16_t foscsel = 0xFFFF;
+
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(fosc, foscsel);
+    }
 };
 
 class ClockControl {

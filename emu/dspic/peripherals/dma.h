@@ -32,11 +32,23 @@ class Dma {
 
     void reset();
 
+    /// After the registers.
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(channels_, pending_);
+        if constexpr (Archive::kLoads) listen();
+    }
+
   private:
     struct Channel {
         bool second = false;       ///< ping-pong: STB in use
         std::uint16_t done = 0;    ///< transfers of the block
         std::uint16_t offset = 0;  ///< bytes from STA or STB
+
+        template <class Archive>
+        void state(Archive& archive) {
+            archive(second, done, offset);
+        }
     };
 
     static void write_con(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask);

@@ -53,6 +53,11 @@ class I2cMaster {
     /// the next instruction starts there.
     Cycle earliest(Cycle now) const;
 
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(state_);
+    }
+
   private:
     enum class Activity : std::uint8_t { Idle, Start, Restart, Stop, Transmit, Receive, Acknowledge };
     struct State {
@@ -63,6 +68,12 @@ class I2cMaster {
         bool stop_when_answered = false;  ///< switched off meanwhile
         Cycle buffer_empty = kNoCycle;
         Cycle ends = kNoCycle;  ///< of an activity that needs no answer
+
+        template <class Archive>
+        void state(Archive& archive) {
+            archive.bounded(activity, Activity::Idle, Activity::Acknowledge);
+            archive(owns_bus, address_next, awaits_answer, stop_when_answered, buffer_empty, ends);
+        }
     };
 
     static std::uint16_t read_rcv(void* owner, std::uint16_t address);

@@ -20,6 +20,7 @@
 //  5. The slave goes on in Sleep and Idle.
 
 #include "cosim/clock.h"
+#include "cosim/message_state.h"
 #include "emu/dspic/peripherals/i2c_master.h"
 #include "emu/dspic/peripherals/surroundings.h"
 #include "emu/dspic/pins.h"
@@ -47,6 +48,11 @@ class I2cSlave {
     /// I2CxCON was written; `old` was its value.
     void control_written(std::uint16_t old);
 
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(state_);
+    }
+
   private:
     enum class Step : std::uint8_t {
         None,
@@ -67,6 +73,13 @@ class I2cSlave {
         Cycle shown_due = kNoCycle;  ///< the 9th clock: status and interrupt
         bool shows_address = false;
         std::uint8_t shown = 0;  ///< the byte to show then
+
+        template <class Archive>
+        void state(Archive& archive) {
+            archive(addressed, sends, byte_sent, acknowledge);
+            archive.bounded(step, Step::None, Step::Shift);
+            archive(open, released, step_due, shown_due, shows_address, shown);
+        }
     };
 
     static void due(void* owner, Cycle due);

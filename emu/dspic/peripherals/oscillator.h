@@ -30,10 +30,20 @@ class Oscillator : public ClockControl {
     void configure(const ClockConfiguration& words) override { fosc_ = words.fosc; }
     void reset(bool power_on) override;
 
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(fosc_, state_);
+    }
+
   private:
     struct State {
         OscconKeys high = kHighKeys;
         OscconKeys low = kLowKeys;
+
+        template <class Archive>
+        void state(Archive& archive) {
+            archive(high, low);
+        }
     };
 
     static void write_osccon(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask);

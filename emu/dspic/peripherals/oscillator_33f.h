@@ -27,10 +27,20 @@ class Oscillator33F : public ClockControl {
     /// Instruction rate before any configuration word is known: the internal RC oscillator.
     static double start_hertz();
 
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(words_, running_, state_);
+    }
+
   private:
     struct State {
         OscconKeys high = kHighKeys;
         OscconKeys low = kLowKeys;
+
+        template <class Archive>
+        void state(Archive& archive) {
+            archive(high, low);
+        }
     };
 
     static void write_osccon(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask);

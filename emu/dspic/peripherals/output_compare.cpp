@@ -56,7 +56,7 @@ Timer& OutputCompare::timer(std::size_t index) const {
     return *bases_[con(index) & kOctsel ? 1 : 0].timer;
 }
 
-OutputCompareState OutputCompare::state(int unit) const {
+OutputCompareState OutputCompare::present(int unit) const {
     const auto index = static_cast<std::size_t>(unit - 1);
     OutputCompareState state;
     if (unit < 1 || index >= units_.size()) return state;
@@ -81,7 +81,7 @@ OutputCompareState OutputCompare::state(int unit) const {
 
 // Tells the board if what it knows has changed. A level that moves by itself, edge by edge, is at the pin.
 void OutputCompare::tell(std::size_t index, Cycle at) {
-    OutputCompareState now = state(static_cast<int>(index) + 1);
+    OutputCompareState now = present(static_cast<int>(index) + 1);
     if (now.period) now.level = false;
     if (now == states_[index].told) return;
     states_[index].told = now;

@@ -36,7 +36,12 @@ class OutputCompare {
 
     void reset();
     /// Of OC`unit`, counted from 1.
-    OutputCompareState state(int unit) const;
+    OutputCompareState present(int unit) const;
+
+    template <class Archive>
+    void state(Archive& archive) {
+        archive.fixed(states_);
+    }
 
   private:
     enum class Step : std::uint8_t { Idle, First, Second };  ///< the edge to come: at OCxR, at OCxRS
@@ -45,6 +50,12 @@ class OutputCompare {
         bool level = false;
         Cycle due = kNoCycle;
         OutputCompareState told;
+
+        template <class Archive>
+        void state(Archive& archive) {
+            archive.bounded(step, Step::Idle, Step::Second);
+            archive(level, due, told);
+        }
     };
 
     /// Timer2 or Timer3, as it calls back.

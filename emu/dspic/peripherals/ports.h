@@ -70,6 +70,11 @@ class Ports {
     /// Puts the pin levels into PORTx's storage.
     void refresh();
 
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(ports_);
+    }
+
     static constexpr int kPorts = 7;
 
   private:
@@ -87,6 +92,11 @@ class Ports {
         std::uint16_t watched = 0;  ///< pins with a watcher or CN input
         std::uint16_t seen = 0;     ///< levels of the watched pins when last looked at
         std::uint16_t noticed = 0;  ///< pin levels at the last PORT read, what CN compares with
+
+        template <class Archive>
+        void state(Archive& archive) {
+            archive(lent, lent_output, lent_levels, driven, levels, watched, seen, noticed);
+        }
     };
     struct Watcher {
         PortLetter port{};

@@ -32,6 +32,11 @@ class Spi {
     /// Sleep, or Idle with SPISIDL set: the word in progress is lost.
     void hold(bool on);
 
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(state_);
+    }
+
   private:
     struct State {
         bool shifting = false;
@@ -39,6 +44,11 @@ class Spi {
         std::uint16_t shift = 0;     ///< being sent
         std::uint16_t waiting = 0;   ///< SPITBF
         std::uint16_t received = 0;  ///< SPIRBF
+
+        template <class Archive>
+        void state(Archive& archive) {
+            archive(shifting, held, shift, waiting, received);
+        }
     };
 
     static std::uint16_t read_buf(void* owner, std::uint16_t address);

@@ -61,6 +61,13 @@ class Timer {
         tell_steady();
     }
 
+    /// After the registers.
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(state_, period_wanted_);
+        if constexpr (Archive::kLoads) tell_steady();
+    }
+
   private:
     struct State {
         std::uint32_t count = 0;     ///< at cycle `base`
@@ -69,6 +76,11 @@ class Timer {
         bool pin = false;  ///< level of TxCK
         bool held = false;
         Cycle reload = 0;  ///< cycles to the match after the next one, while nothing but time decides; else 0
+
+        template <class Archive>
+        void state(Archive& archive) {
+            archive(count, fraction, base, pin, held, reload);
+        }
     };
 
     static std::uint16_t read_tmr(void* owner, std::uint16_t address);

@@ -14,6 +14,7 @@
 
 #include "cosim/clock.h"
 #include "cosim/message.h"
+#include "cosim/message_state.h"
 #include "emu/dspic/peripherals/ports.h"
 #include "emu/dspic/peripherals/surroundings.h"
 #include "emu/dspic/peripherals/uart_receiver.h"
@@ -52,12 +53,23 @@ class Uart {
     bool enabled() const;
     const UartCounters& counters() const { return counters_; }
 
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(state_, counters_, receiver_);
+        archive.check(!state_.shifting || state_.frame.bit_period > 0, "a frame without a bit period");
+    }
+
   private:
     static constexpr int kDepth = 4;
     struct Received {
         std::uint16_t data = 0;
         bool framing_error = false;
         bool parity_error = false;
+
+        template <class Archive>
+        void state(Archive& archive) {
+            archive(data, framing_error, parity_error);
+        }
     };
     template <typename Word>
     struct Fifo {
@@ -72,6 +84,12 @@ class Uart {
             first = (first + 1) % kDepth;
             --count;
         }
+        template <class Archive>
+        void state(Archive& archive) {
+            archive(words);
+            archive.bounded(first, 0, kDepth - 1);
+            archive.bounded(count, 0, kDepth);
+        }
     };
     struct State {
         Fifo<std::uint16_t> transmit;
@@ -83,6 +101,11 @@ class Uart {
         std::optional<UartReceiver::Character> sampled;  ///< complete at its `done`
         bool held = false;
         Cycle phase = 0;  ///< the baud rate generator started here
+
+        template <class Archive>
+        void state(Archive& archive) {
+            archive(transmit, shifting, stop_begun, frame_end, frame, receive, sampled, held, phase);
+        }
     };
 
     static std::uint16_t read_rxreg(void* owner, std::uint16_t address);

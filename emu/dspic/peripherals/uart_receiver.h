@@ -14,6 +14,7 @@
 
 #include "cosim/clock.h"
 #include "cosim/message.h"
+#include "cosim/message_state.h"
 #include "emu/dspic/event_queue.h"
 
 #include <cstdint>
@@ -36,6 +37,11 @@ class UartReceiver {
         std::uint16_t data = 0;
         bool framing_error = false;
         bool parity_error = false;
+
+        template <class Archive>
+        void state(Archive& archive) {
+            archive(done, data, framing_error, parity_error);
+        }
     };
 
     explicit UartReceiver(const cosim::ClockDomain& clock) : clock_(clock) {}
@@ -50,6 +56,14 @@ class UartReceiver {
     std::optional<Character> next(const Format& format, Cycle now);
     /// When next() is worth asking again although no frame came; kNoCycle if only a frame can help.
     Cycle ask_again() const { return ask_again_; }
+
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(frames_, ask_again_);
+        archive.bounded(listening_from_, 0, cosim::kNever);
+        for (const cosim::UartFrame& frame : frames_)
+            archive.check(frame.bit_period > 0, "a frame without a bit period");
+    }
 
   private:
     bool level(cosim::Time time) const;

@@ -1,0 +1,116 @@
+#include "tests/state/board_runs.h"
+
+#include "emu/dspic/device.h"
+#include "emu/dspic/isa.h"
+#include "emu/pic/pic_node.h"
+#include "emu/rab_board/rab_node.h"
+#include "tests/node_under_test.h"
+
+#include <cstdlib>
+
+namespace puckloop::tests {
+
+using cosim::Message;
+using cosim::Time;
+
+MakeBoard pic_board(const image::Image& image) {
+    return [image] {
+        pic::PicNodeOptions options;
+        options.board.name = "robot0.pic";
+        options.board.crystal_ppm = 17;
+        return std::make_unique<pic::PicNode>(image, options);
+    };
+}
+
+MakeBoard rab_board(const image::Image& image, bool skip_idle) {
+    return [image, skip_idle] {
+        rab::RabNodeOptions options;
+        options.skip_idle = skip_idle;
+        options.board.name = "robot0.rab";
+        return std::make_unique<rab::RabNode>(image, options);
+    };
+}
+
+image::Image own_pic_image() {
+    return image::load_image(PUCKLOOP_SOURCE "/firmware/epuck/epuck.hex");
+}
+
+image::Image own_rab_image() {
+    return image::load_image(PUCKLOOP_SOURCE "/firmware/rab/rab.hex");
+}
+
+std::optional<image::Image> real_image(const std::string& name) {
+    const char* folder = std::getenv("PUCKLOOP_IMAGES");
+    if (folder == nullptr) return std::nullopt;
+    const auto path = std::filesystem::path(folder) / name;
+    if (!std::filesystem::exists(path)) return std::nullopt;
+    return image::load_image(path.string());
+}
+
+image::Image random_program(RandomStream& random, bool family_33f) {
+    const dspic::DeviceInfo& device = family_33f ? dspic::dspic33fj256gp710() : dspic::dspic30f6014a();
+    std::string source = "        .org 0x200\nmain:\n";
+    for (int i = 0; i < 15; ++i)
+        source += "        mov #" + std::to_string(random.below(0x2000)) + ", w" + std::to_string(i) + "\n";
+    source += "        mov #0x1000, w15\n        mov #0x2700, w0\n        mov w0, SPLIM\n";
+    for (const char* number : {"1", "2", "3"}) {
+        const std::string period = std::to_string(200 + random.below(20000));
+        source += "        mov #" + period + ", w0\n        mov w0, PR" + number + "\n        bset T" +
+                  number + "CON, #15\n";
+    }
+    source += "        mov #0xFFFF, w0\n        mov w0, IEC0\n";
+    image::Image image = assembled(device, source);
+    constexpr std::uint32_t kCode = 0x300, kWords = 1500;
+    const auto place = [&] { return kCode + 2 * static_cast<std::uint32_t>(random.below(kWords)); };
+    constexpr std::uint32_t kVectors = 61;
+    for (std::uint32_t vector = 1; vector <= kVectors; ++vector)
+        image.program[device.ivt + 2 * vector] = place();
+    for (std::uint32_t i = 0; i < kWords;) {
+        const auto word = static_cast<std::uint32_t>(random.below(1u << 24));
+        if (dspic::find_form(word) == nullptr) continue;
+        image.program[kCode + 2 * i++] = word;
+    }
+    image.program[kCode + 2 * kWords] = 0x040200;  // goto main
+    image.program[kCode + 2 * kWords + 2] = 0;
+    return image;
+}
+
+std::vector<Message> random_inputs(RandomStream& random, Time from, Time until, double busy,
+                                   std::size_t signals) {
+    std::vector<Message> messages;
+    const double mean = 1.0 / busy;
+    for (Time at = from;;) {
+        at += 1 + cosim::from_seconds(2 * mean * random.uniform());
+        if (at >= until) return messages;
+        if (random.below(2) == 0) {
+            const cosim::Signal change{static_cast<std::uint16_t>(random.below(signals)),
+                                       random.uniform() * static_cast<double>(random.below(2) ? 1 : 4000)};
+            messages.push_back({at, 3, change});
+        } else {
+            cosim::UartFrame frame;
+            constexpr Time kBit115200 = 8'680'556, kBit38400 = 26'041'667;
+            frame.bit_period = random.below(4) == 0 ? kBit38400 : kBit115200;
+            frame.start = at - 9 * frame.bit_period;
+            if (frame.start < from) continue;
+            frame.data = static_cast<std::uint16_t>(random.below(256));
+            messages.push_back({at, static_cast<cosim::PortIndex>(random.below(2)), frame});
+        }
+    }
+}
+
+std::vector<std::uint8_t> saved(const cosim::StatefulNode& node) {
+    std::vector<std::uint8_t> bytes;
+    StateWriter writer(bytes);
+    node.state(writer);
+    return bytes;
+}
+
+std::unique_ptr<cosim::StatefulNode> loaded(const MakeBoard& make, const std::vector<std::uint8_t>& bytes) {
+    auto node = make();
+    StateReader reader(bytes);
+    node->state(reader);
+    reader.end();
+    return node;
+}
+
+}  // namespace puckloop::tests

@@ -1,0 +1,44 @@
+#pragma once
+// Board nodes for the tests of saved states: made from images or from random programs, fed with random
+// inputs.
+
+#include "base/random.h"
+#include "cosim/stateful_node.h"
+#include "emu/image/image.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace puckloop::tests {
+
+/// Makes a fresh board; each is the same.
+using MakeBoard = std::function<std::unique_ptr<cosim::StatefulNode>()>;
+
+MakeBoard pic_board(const image::Image& image);
+/// `skip_idle` off: every cycle of waiting loops is executed.
+MakeBoard rab_board(const image::Image& image, bool skip_idle = true);
+
+/// The own firmware of the two boards.
+image::Image own_pic_image();
+image::Image own_rab_image();
+/// A file of PUCKLOOP_IMAGES, if it is there.
+std::optional<image::Image> real_image(const std::string& name);
+/// Initialised registers, a random vector table, then random defined instruction words: they write registers
+/// of every module, trap, reset, sleep, program flash.
+image::Image random_program(RandomStream& random, bool family_33f);
+
+/// Characters at wrong and right rates on both UARTs and changes of every signal, over from..until, by time.
+/// `busy`: mean number of messages a second.
+std::vector<cosim::Message> random_inputs(RandomStream& random, cosim::Time from, cosim::Time until,
+                                          double busy, std::size_t signals);
+inline constexpr std::size_t kPicSignals = 60, kRabSignals = 40;
+
+std::vector<std::uint8_t> saved(const cosim::StatefulNode& node);
+std::unique_ptr<cosim::StatefulNode> loaded(const MakeBoard& make, const std::vector<std::uint8_t>& bytes);
+
+}  // namespace puckloop::tests
