@@ -1,12 +1,12 @@
 #include "emu/dspic/step_vector.h"
 
+#include "emu/chip/vector_text.h"
 #include "emu/dspic/core.h"
 #include "emu/dspic/isa.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -15,60 +15,14 @@ namespace puckloop::dspic {
 
 namespace {
 
-/// What is wrong with a line; becomes its `error` answer.
-struct Malformed {
-    std::string what;
-};
-
-std::uint64_t parse_number(std::string_view key, std::string_view text, std::uint64_t highest,
-                           int base = 16) {
-    std::uint64_t value = 0;
-    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value, base);
-    if (text.empty() || failure != std::errc{} || end != text.data() + text.size())
-        throw Malformed{
-            fmt::format("{}: '{}' is not a {} number", key, text, base == 16 ? "hex" : "decimal")};
-    if (value > highest) throw Malformed{fmt::format("{}: {} is more than {:x}", key, text, highest)};
-    return value;
-}
-
-std::vector<std::string_view> split(std::string_view text, char separator) {
-    std::vector<std::string_view> pieces;
-    while (true) {
-        const auto at = text.find(separator);
-        pieces.push_back(text.substr(0, at));
-        if (at == std::string_view::npos) return pieces;
-        text.remove_prefix(at + 1);
-    }
-}
-
-std::vector<std::uint16_t> parse_words(std::string_view key, std::string_view text, std::size_t count) {
-    std::vector<std::uint16_t> words;
-    for (const auto piece : split(text, ','))
-        words.push_back(static_cast<std::uint16_t>(parse_number(key, piece, 0xFFFF)));
-    if (words.size() != count)
-        throw Malformed{fmt::format("{}: {} values, expected {}", key, words.size(), count)};
-    return words;
-}
-
-struct Cell {
-    std::uint32_t address = 0;
-    std::uint32_t word = 0;
-};
-std::vector<Cell> parse_cells(std::string_view key, std::string_view text, std::uint32_t highest_word) {
-    std::vector<Cell> cells;
-    if (text.empty()) return cells;
-    for (const auto piece : split(text, ',')) {
-        const auto colon = piece.find(':');
-        if (colon == std::string_view::npos)
-            throw Malformed{fmt::format("{}: '{}' is not address:word", key, piece)};
-        Cell cell;
-        cell.address = static_cast<std::uint32_t>(parse_number(key, piece.substr(0, colon), 0xFFFFFF));
-        cell.word = static_cast<std::uint32_t>(parse_number(key, piece.substr(colon + 1), highest_word));
-        if (cell.address & 1) throw Malformed{fmt::format("{}: odd address {:x}", key, cell.address)};
-        cells.push_back(cell);
-    }
-    return cells;
-}
+using chip::Cell;
+using chip::for_each_key;
+using chip::Malformed;
+using chip::parse_cells;
+using chip::parse_number;
+using chip::parse_numbers;
+using chip::put_hex;
+using chip::split;
 
 std::int64_t sign_extend_40(std::uint64_t value) {
     return static_cast<std::int64_t>(value << 24) >> 24;
@@ -99,7 +53,7 @@ void parse_key(Case& c, std::string_view key, std::string_view value) {
     };
     constexpr std::uint64_t k40 = (std::uint64_t{1} << 40) - 1;
     if (key == "w") {
-        const auto words = parse_words(key, value, 16);
+        const auto words = parse_numbers(key, value, 16);
         std::copy(words.begin(), words.end(), st.w.begin());
         c.has_w = true;
     } else if (key == "sr") {
@@ -126,7 +80,7 @@ void parse_key(Case& c, std::string_view key, std::string_view value) {
     } else if (key == "di") {
         c.disicnt = word(0x3FFF);
     } else if (key == "sh") {
-        const auto words = parse_words(key, value, 5);
+        const auto words = parse_numbers(key, value, 5);
         std::copy_n(words.begin(), 4, st.shadow_w.begin());
         st.shadow_sr = words[4];
     } else if (key == "run") {
@@ -147,26 +101,11 @@ void parse_key(Case& c, std::string_view key, std::string_view value) {
 
 Case parse_case(std::string_view text) {
     Case c;
-    std::vector<std::string_view> seen;
-    for (const auto token : split(text, ' ')) {
-        if (token.empty()) continue;
-        const auto equals = token.find('=');
-        if (equals == std::string_view::npos) throw Malformed{fmt::format("'{}' is not key=value", token)};
-        const auto key = token.substr(0, equals);
-        if (std::find(seen.begin(), seen.end(), key) != seen.end())
-            throw Malformed{fmt::format("{} given twice", key)};
-        seen.push_back(key);
-        parse_key(c, key, token.substr(equals + 1));
-    }
+    for_each_key(text, [&c](std::string_view key, std::string_view value) { parse_key(c, key, value); });
     if (!c.has_w) throw Malformed{"w is missing"};
     if (!c.has_pc) throw Malformed{"pc is missing"};
     if (c.words.empty()) throw Malformed{"op is missing"};
     return c;
-}
-
-void put_hex(std::string& out, std::uint64_t value, int digits) {
-    for (int i = digits - 1; i >= 0; --i)
-        out += "0123456789abcdef"[value >> (4 * i) & 15];
 }
 
 }  // namespace
@@ -307,14 +246,11 @@ StepMachine::StepMachine(const DeviceInfo& device) : parts_(std::make_unique<Par
 StepMachine::~StepMachine() = default;
 
 std::string StepMachine::answer(std::string_view line) {
-    while (!line.empty() && (line.back() == '\r' || line.back() == '\n' || line.back() == ' '))
-        line.remove_suffix(1);
-    const auto space = line.find(' ');
-    std::string id(line.substr(0, space));
-    if (id.empty()) id = "-";
+    const chip::Line parts = chip::split_line(line);
+    const std::string& id = parts.id;
     try {
-        if (space == std::string_view::npos) throw Malformed{"no state after the id"};
-        const Case c = parse_case(line.substr(space + 1));
+        if (!parts.has_rest) throw Malformed{"no state after the id"};
+        const Case c = parse_case(parts.rest);
         parts_->set_up(c);
         if (!find_form(c.words[0]))
             return id + fmt::format(" unsupported {:06x} is no instruction", c.words[0]);

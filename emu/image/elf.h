@@ -11,7 +11,6 @@
 
 namespace puckloop::image {
 
-bool is_elf(std::string_view bytes);
 /// Adds words, symbols and the chip. Throws InputError naming the offset.
 void read_elf(std::string_view bytes, Image& image);
 

@@ -2,12 +2,11 @@
 
 #include "base/error.h"
 #include "base/suggest.h"
+#include "emu/assembly/source_lines.h"
 #include "emu/dspic/assembler/encoder.h"
-#include "emu/dspic/assembler/source_lines.h"
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <optional>
 #include <set>
 
@@ -15,30 +14,14 @@ namespace puckloop::dspic {
 
 namespace {
 
+using assembly::is_name;
+using assembly::read_source;
+using assembly::SourceLine;
+using assembly::split_arguments;
+
 constexpr std::uint32_t kAddressEnd = 0x1000000;
 constexpr std::int64_t kLargestWord = 0xFFFFFF;
 constexpr std::size_t kMostWords = 1u << 20;  // five times the largest dsPIC
-
-bool is_name(std::string_view text) {
-    return !text.empty() && is_name_start(text[0]) &&
-           std::all_of(text.begin(), text.end(), [](char c) { return is_name_char(c); });
-}
-
-/// "a, b(c, d), 'x'" at its outer commas.
-std::vector<std::string_view> split_arguments(std::string_view text) {
-    std::vector<std::string_view> parts;
-    int depth = 0;
-    std::size_t start = 0;
-    for (std::size_t i = 0; i <= text.size(); ++i) {
-        if (i < text.size() && text[i] == '\'' && i + 2 < text.size() && text[i + 2] == '\'') i += 2;
-        if (i < text.size()) depth += (text[i] == '(') - (text[i] == ')');
-        if (i == text.size() || (text[i] == ',' && depth == 0)) {
-            parts.push_back(trim(text.substr(start, i - start)));
-            start = i + 1;
-        }
-    }
-    return parts;
-}
 
 class Assembler {
   public:

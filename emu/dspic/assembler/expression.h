@@ -1,30 +1,18 @@
 #pragma once
-// Assembler expressions: 64-bit integers, C's operators and precedence (| ^ & << >> + - * / % ~ -,
-// parentheses), decimal, 0x, 0b and 'c' numbers, names, "." for the current program address, and the
-// functions tbloffset(), tblpage(), psvoffset(), psvpage() of a program address.
+// The shared assembler expressions with the dsPIC's dialect: register names, and the functions tbloffset(),
+// tblpage(), psvoffset(), psvpage() of a program address.
 
-#include <cstdint>
-#include <functional>
-#include <optional>
-#include <stdexcept>
-#include <string>
-#include <string_view>
+#include "emu/assembly/expression.h"
+#include "emu/assembly/text.h"
 
 namespace puckloop::dspic {
 
-/// What is wrong with an expression; the assembler adds file and line.
-class ExpressionError : public std::runtime_error {
-  public:
-    using std::runtime_error::runtime_error;
-};
-
-/// Value of a name, or nothing if it is unknown.
-using SymbolValue = std::function<std::optional<std::int64_t>(std::string_view name)>;
+using assembly::ExpressionError;
+using assembly::is_name_char;
+using assembly::is_name_start;
+using assembly::SymbolValue;
 
 /// Throws ExpressionError: syntax, unknown name, division by zero, a number beyond 32 bits.
 std::int64_t evaluate(std::string_view text, std::uint32_t here, const SymbolValue& value_of);
-
-bool is_name_start(char c);
-bool is_name_char(char c);
 
 }  // namespace puckloop::dspic

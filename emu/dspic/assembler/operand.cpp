@@ -82,13 +82,6 @@ bool parse_bracketed(std::string_view text, Operand& operand) {
 
 }  // namespace
 
-bool equal_ignoring_case(std::string_view left, std::string_view right) {
-    if (left.size() != right.size()) return false;
-    for (std::size_t i = 0; i < left.size(); ++i)
-        if (lower(left[i]) != lower(right[i])) return false;
-    return true;
-}
-
 int register_number(std::string_view name) {
     if (name.size() < 2 || name.size() > 3 || lower(name[0]) != 'w') return -1;
     int number = 0;

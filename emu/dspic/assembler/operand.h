@@ -2,6 +2,8 @@
 // One operand as it is written, before any form is chosen: its shape and registers are known, its numbers are
 // expressions still to be evaluated (labels may come later in the file).
 
+#include "emu/assembly/text.h"
+
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -39,15 +41,7 @@ int register_number(std::string_view name);
 /// Names that cannot be labels: registers, accumulators.
 bool is_reserved_name(std::string_view name);
 
-/// Without blanks at both ends.
-inline std::string_view trim(std::string_view text) {
-    while (!text.empty() && (text.front() == ' ' || text.front() == '\t'))
-        text.remove_prefix(1);
-    while (!text.empty() && (text.back() == ' ' || text.back() == '\t' || text.back() == '\r'))
-        text.remove_suffix(1);
-    return text;
-}
-
-bool equal_ignoring_case(std::string_view left, std::string_view right);
+using assembly::equal_ignoring_case;
+using assembly::trim;
 
 }  // namespace puckloop::dspic

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace puckloop::dspic {
+namespace puckloop::assembly {
 
 struct SourceLine {
     std::string file;
@@ -17,4 +17,4 @@ struct SourceLine {
 /// them. Throws InputError: a file that cannot be read, includes nested more than 8 deep.
 std::vector<SourceLine> read_source(std::string_view source, const std::string& file);
 
-}  // namespace puckloop::dspic
+}  // namespace puckloop::assembly

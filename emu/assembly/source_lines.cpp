@@ -1,13 +1,13 @@
-#include "emu/dspic/assembler/source_lines.h"
+#include "emu/assembly/source_lines.h"
 
 #include "base/error.h"
-#include "emu/dspic/assembler/operand.h"
+#include "emu/assembly/text.h"
 
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 
-namespace puckloop::dspic {
+namespace puckloop::assembly {
 
 namespace {
 
@@ -68,4 +68,4 @@ std::vector<SourceLine> read_source(std::string_view source, const std::string& 
     return lines;
 }
 
-}  // namespace puckloop::dspic
+}  // namespace puckloop::assembly
