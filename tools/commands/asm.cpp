@@ -1,6 +1,7 @@
-// puckloop asm: dsPIC assembler source to Intel HEX or to a listing.
+// puckloop asm: dsPIC or AVR assembler source to Intel HEX or to a listing.
 
 #include "base/error.h"
+#include "emu/avr/assembler/assembler.h"
 #include "emu/dspic/assembler/assembler.h"
 #include "emu/dspic/device.h"
 #include "emu/image/intel_hex.h"
@@ -37,20 +38,50 @@ std::string listing(const dspic::Program& program) {
     return text;
 }
 
-void run(const Arguments& arguments) {
+std::string listing(const avr::Program& program) {
+    std::string text;
+    for (const avr::AssembledLine& line : program.lines) {
+        std::string bytes;
+        for (int i = 0; i < line.bytes && i < 4; ++i)
+            bytes += fmt::format(" {:02x}", program.bytes.at(line.address + static_cast<std::uint32_t>(i)));
+        fmt::format_to(std::back_inserter(text), "{:05x}:{:<13} {:>5}  {}\n", line.address, bytes, line.line,
+                       line.text);
+    }
+    return text;
+}
+
+std::string assemble_dspic(const Arguments& arguments, const std::string& file,
+                           const dspic::DeviceInfo& device) {
     dspic::AssembleOptions options;
-    options.file = arguments.file == "-" ? "stdin" : arguments.file;
+    options.file = file;
     options.keep_lines = arguments.format == "list";
-    const dspic::DeviceInfo* device = dspic::find_device(arguments.mcu);
-    if (!device)
-        throw InputError("", "--mcu", fmt::format("unknown chip \"{}\"", arguments.mcu),
-                         dspic::device_names());
-    for (const dspic::RegisterInfo& info : device->registers)
+    for (const dspic::RegisterInfo& info : device.registers)
         options.predefined[std::string(info.name)] = info.address;
     const dspic::Program program = dspic::assemble(read_text(arguments.file), options);
-    if (program.words.empty()) throw InputError(options.file, "", "yields no program words", "instructions");
-    write_text(arguments.output,
-               arguments.format == "hex" ? image::write_dspic_hex(program.words) : listing(program));
+    if (program.words.empty()) throw InputError(file, "", "yields no program words", "instructions");
+    return options.keep_lines ? listing(program) : image::write_dspic_hex(program.words);
+}
+
+std::string assemble_avr(const Arguments& arguments, const std::string& file, const avr::DeviceInfo& device) {
+    const bool list = arguments.format == "list";
+    const avr::Program program = avr::assemble(read_text(arguments.file), {file, &device, list});
+    if (program.bytes.empty()) throw InputError(file, "", "yields no program words", "instructions");
+    if (list) return listing(program);
+    image::ByteSegments segments(file);
+    for (const auto& [address, byte] : program.bytes)
+        segments.add(address, {byte}, "");
+    return image::write_intel_hex(segments.joined());
+}
+
+void run(const Arguments& arguments) {
+    const std::string file = arguments.file == "-" ? "stdin" : arguments.file;
+    if (const dspic::DeviceInfo* device = dspic::find_device(arguments.mcu))
+        write_text(arguments.output, assemble_dspic(arguments, file, *device));
+    else if (const avr::DeviceInfo* part = avr::find_device(arguments.mcu))
+        write_text(arguments.output, assemble_avr(arguments, file, *part));
+    else
+        throw InputError("", "--mcu", fmt::format("unknown chip \"{}\"", arguments.mcu),
+                         dspic::device_names() + ", " + avr::device_names());
 }
 
 }  // namespace
@@ -58,7 +89,7 @@ void run(const Arguments& arguments) {
 void declare_asm(Command& app, int& status) {
     auto arguments = std::make_shared<Arguments>();
     Command* command =
-        app.add_subcommand("asm", "Assemble dsPIC source; register names of the chip are known");
+        app.add_subcommand("asm", "Assemble dsPIC or AVR source; register names of the chip are known");
     command->add_option("FILE", arguments->file, "source file, - for standard input")->required();
     command->add_option("-o,--output", arguments->output, "output file; standard output without it");
     command
@@ -66,7 +97,7 @@ void declare_asm(Command& app, int& status) {
                      "hex: Intel HEX; list: addresses and words beside the source")
         ->check(one_of({"hex", "list"}))
         ->capture_default_str();
-    command->add_option("--mcu", arguments->mcu, "chip whose register names are known")
+    command->add_option("--mcu", arguments->mcu, "chip to assemble for; its register names are known")
         ->capture_default_str();
     command->callback([arguments, &status] {
         run(*arguments);

@@ -1,16 +1,17 @@
-// puckloop disasm: a firmware image, or a few words, as dsPIC assembler source.
+// puckloop disasm: a firmware image, or a few words, as dsPIC or AVR assembler source.
 
 #include "base/error.h"
 #include "emu/dspic/assembler/disassembler.h"
 #include "emu/dspic/assembler/listing.h"
+#include "emu/dspic/device.h"
 #include "emu/image/image.h"
 #include "tools/cli/command.h"
 #include "tools/commands.h"
+#include "tools/commands/disasm_avr.h"
 #include "tools/commands/text_files.h"
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <iterator>
 #include <memory>
 
@@ -26,17 +27,10 @@ constexpr std::uint32_t kVectorsEnd33F = 0x200;
 struct Arguments {
     std::string image;
     std::string start = "0";
-    std::string end = "0xffffff";
+    std::string end;  ///< empty: the last program address
     std::vector<std::string> words;
+    std::string mcu = "dspic30f6014a";
 };
-
-std::optional<std::uint32_t> hexadecimal(std::string_view text, std::uint32_t largest) {
-    if (text.starts_with("0x") || text.starts_with("0X")) text.remove_prefix(2);
-    std::uint32_t value = 0;
-    const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value, 16);
-    if (error != std::errc{} || stop != text.data() + text.size() || value > largest) return std::nullopt;
-    return value;
-}
 
 /// A hexadecimal program address, or a symbol of the image.
 std::uint32_t address(const std::string& text, const char* option, const image::Image* image) {
@@ -79,7 +73,7 @@ std::string list_image(const Arguments& arguments) {
     const image::Image image = image::load_image(arguments.image);
     dspic::ListingOptions options;
     options.start = address(arguments.start, "--start", &image);
-    options.end = address(arguments.end, "--end", &image);
+    options.end = arguments.end.empty() ? kLargestAddress : address(arguments.end, "--end", &image);
     if (options.end < options.start)
         throw InputError("", "--end",
                          fmt::format("{:#x} lies before --start {:#x}", options.end, options.start));
@@ -98,22 +92,32 @@ std::string list_image(const Arguments& arguments) {
            dspic::list_program(words, options);
 }
 
+std::string list(const Arguments& arguments) {
+    if (const avr::DeviceInfo* part = avr::find_device(arguments.mcu))
+        return disassemble_avr({arguments.image, arguments.start, arguments.end, arguments.words}, *part);
+    if (!dspic::find_device(arguments.mcu))
+        throw InputError("", "--mcu", fmt::format("unknown chip \"{}\"", arguments.mcu),
+                         dspic::device_names() + ", " + avr::device_names());
+    return arguments.words.empty() ? list_image(arguments) : list_words(arguments);
+}
+
 }  // namespace
 
 void declare_disasm(Command& app, int& status) {
     auto arguments = std::make_shared<Arguments>();
-    Command* command =
-        app.add_subcommand("disasm", "Disassemble a dsPIC image or a few words; `asm` takes the result back");
+    Command* command = app.add_subcommand(
+        "disasm", "Disassemble a dsPIC or AVR image or a few words; `asm` takes the result back");
     Option* image = command->add_option("IMAGE", arguments->image, "HEX, ELF or COFF image");
     command->add_option("--start", arguments->start, "first program address, hexadecimal or a symbol");
     command->add_option("--end", arguments->end, "last program address, hexadecimal or a symbol");
-    command->add_option("--words", arguments->words, "24-bit words in hexadecimal instead of an image")
+    command->add_option("--words", arguments->words, "words in hexadecimal instead of an image")
         ->delimiter(',')
         ->excludes(image);
+    command->add_option("--mcu", arguments->mcu, "the chip; the dsPICs read alike")->capture_default_str();
     command->callback([arguments, &status] {
         if (arguments->image.empty() && arguments->words.empty())
             throw InputError("", "disasm", "nothing to disassemble", "an image or --words 0x...");
-        write_text("-", arguments->words.empty() ? list_image(*arguments) : list_words(*arguments));
+        write_text("-", list(*arguments));
         status = 0;
     });
 }

@@ -1,0 +1,104 @@
+#pragma once
+// The AVR CPU: instructions, their cycles, interrupts, sleep and resets. Abstract over everything around it:
+// registers of other modules through IoSpace, time through EventQueue.
+// Sources: AVR Instruction Set Manual (DS40002198), ATmega1284P data sheet (8272), chapters "AVR CPU Core"
+// and "AVR Memories". Deviations are numbered in docs/fidelity.md under "AVR core".
+
+#include "emu/avr/core/interrupts.h"
+#include "emu/avr/core/state.h"
+#include "emu/avr/device.h"
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string_view>
+
+namespace puckloop::avr {
+
+enum class ResetCause : std::uint8_t { PowerOn, External, BrownOut, Watchdog };
+std::string_view to_string(ResetCause cause);
+
+/// What happened inside, for logs and reports. All optional. `pc` counts words.
+struct CoreObserver {
+    std::function<void(ResetCause cause, std::uint16_t pc, Cycle now)> on_reset;
+    std::function<void(int vector, std::uint16_t pc, Cycle now)> on_interrupt;
+    /// One line, at most once each: "undefined word 0x9419 executed as NOP", ...
+    std::function<void(std::string_view text, std::uint16_t pc)> on_warning;
+};
+
+/// What the core leaves to others. All optional.
+struct CoreHooks {
+    std::function<void(ResetCause)> reset;       ///< before the core resets: everything else resets
+    std::function<std::uint16_t()> reset_pc;     ///< word address of the reset vector; 0 without it
+    std::function<std::uint16_t()> vector_base;  ///< word address of vector 0; 0 without it
+    std::function<void()> sleep;                 ///< SLEEP: may call Core::sleep()
+    std::function<void()> watchdog_reset;        ///< WDR
+    /// SPM with Z and R1:R0 as they are; the answer is how many cycles the CPU is halted.
+    std::function<void(std::uint32_t address, std::uint16_t word)> spm;
+    /// LPM or ELPM of this byte address; true and a value if not the flash answers (fuses, lock bits, a busy
+    /// section).
+    std::function<bool(std::uint32_t address, std::uint8_t& value)> load_program;
+};
+
+struct Machine;
+
+class Core {
+  public:
+    Core(const DeviceInfo& device, IoSpace& io, EventQueue& events, InterruptController& interrupts);
+    ~Core();
+    Core(const Core&) = delete;
+    Core& operator=(const Core&) = delete;
+
+    // Program memory, by word address.
+    std::uint16_t program(std::uint32_t address) const;
+    /// What was decoded from the old word is forgotten. Addresses past the flash are ignored.
+    void set_program(std::uint32_t address, std::uint16_t word);
+
+    // Running.
+    /// Resets the core; calls the reset hook first.
+    void reset(ResetCause cause);
+    /// The same before the next instruction: what a peripheral calls.
+    void request_reset(ResetCause cause);
+    enum class Outcome : std::uint8_t { Until, Stopped };
+    /// Executes every instruction that starts before `until` and services every event due before it.
+    /// `Stopped`: the PC is at a stop address, the instruction there has not been executed; the next run()
+    /// executes it. cycle() may end a few cycles past `until`.
+    Outcome run(Cycle until);
+    /// From inside a hook or event handler: the run() in progress returns before its next instruction.
+    void end_run();
+    /// Exactly one instruction or one interrupt entry; events due up to its start are serviced first.
+    void step();
+    /// Stop addresses (words); an empty list means none. They cost nothing elsewhere.
+    void set_stops(std::span<const std::uint16_t> addresses);
+    /// Keeps the CPU from executing until `cycle`; events go on.
+    void stall_until(Cycle cycle);
+    /// The CPU executes nothing until an interrupt that is enabled requests.
+    void sleep();
+    bool sleeping() const;
+
+    // Seen from outside.
+    Cycle cycle() const;  ///< where the next instruction starts
+    /// When the register access in progress happens, or the event in progress is due: what peripherals call
+    /// now.
+    const Cycle& now() const;
+    std::uint16_t pc() const;            ///< of the next instruction; inside hooks: of the present one
+    std::uint64_t instructions() const;  ///< executed since power-up
+    const DeviceInfo& device() const;
+
+    CoreState state() const;
+    void set_state(const CoreState& state);
+    /// The whole data space as the CPU would read and write it: registers have their side effects.
+    std::uint8_t read_data(std::uint16_t address);
+    void write_data(std::uint16_t address, std::uint8_t value);
+    /// RAM from device().ram_start on.
+    std::span<std::uint8_t> ram();
+
+    CoreObserver& observer();
+    CoreHooks& hooks();
+
+  private:
+    std::unique_ptr<Machine> machine_;
+};
+
+}  // namespace puckloop::avr

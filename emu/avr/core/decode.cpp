@@ -1,0 +1,102 @@
+// From program words to operations: decoded when first reached, thrown away when the word changes.
+
+#include "emu/avr/core/execute/handlers.h"
+#include "emu/avr/isa/operands.h"
+
+#include <algorithm>
+
+namespace puckloop::avr {
+
+namespace {
+
+constexpr Handler kHandlers[] = {
+#define FORM(id, ...) &execute::id,
+#define ALIAS(...)
+#define SYNONYM(...)
+#include "emu/avr/isa/forms.inc"
+#undef FORM
+#undef ALIAS
+#undef SYNONYM
+};
+
+constexpr std::uint16_t kIoOffset = 0x20;
+
+/// A stop address: nothing happens here, the run loop takes over.
+const Op* stop_here(Machine& m, const Op* op) {
+    m.stopped = true;
+    m.limit = 0;
+    m.cycle -= op->cycles;
+    --m.instructions;
+    return op;
+}
+
+/// Puts one operand's number where the handlers look for it.
+void bind(Op& op, const OperandSpec& operand, std::uint32_t field, std::uint32_t here, int width) {
+    switch (operand.kind) {
+    case OperandKind::Register:
+        (operand.letter == 'd' ? op.d : op.r) = operand.register_of(field);
+        break;
+    case OperandKind::Bit:
+        op.b = static_cast<std::uint8_t>(1u << field);
+        break;
+    case OperandKind::Io:
+        op.k = static_cast<std::uint16_t>(kIoOffset + field);
+        break;
+    case OperandKind::Relative:
+        op.k = static_cast<std::uint16_t>(relative_target(here, field, width));
+        break;
+    case OperandKind::Constant:
+    case OperandKind::Program:
+    case OperandKind::Data:
+    case OperandKind::Displacement:
+        op.k = static_cast<std::uint16_t>(field);
+        break;
+    case OperandKind::Pointer:
+    case OperandKind::SameRegister:  // only in spellings
+    case OperandKind::Complement:
+        break;
+    }
+}
+
+}  // namespace
+
+void decode(Machine& m, Op& op) {
+    const auto index = static_cast<std::uint32_t>(&op - m.code);
+    const std::uint16_t word = m.program[index];
+    op = Op{};
+    op.cycles = 1;
+    op.run = &execute::undefined;
+    if (const Form* form = find_form(word)) {
+        op.form = form->id;
+        op.run = kHandlers[static_cast<std::size_t>(form->id)];
+        op.cycles = form->cycles;
+        if (form->extra == Extra::Skip)
+            op.skip = static_cast<std::uint8_t>(1 + length_of(m.program[index + 1]));
+        for (const OperandSpec& operand : operands_of(form->id).list()) {
+            const char letter = operand.kind == OperandKind::Displacement ? 'q' : operand.letter;
+            bind(op, operand, form->field(letter, word, m.program[index + 1]), index, form->width(letter));
+        }
+    }
+    if (std::find(m.stops.begin(), m.stops.end(), index) != m.stops.end()) op.run = &stop_here;
+}
+
+/// First visit: decode, then leave and come back to the finished operation. What the run loop adds for it
+/// afterwards is taken off here.
+const Op* decode_now(Machine& m, const Op* op) {
+    decode(m, m.code_store[static_cast<std::size_t>(op - m.code)]);
+    m.cycle -= op->cycles;
+    --m.instructions;
+    return op;
+}
+
+void forget(Machine& m, std::uint32_t address) {
+    const auto forget_one = [&m](std::uint32_t index) {
+        Op& op = m.code_store[index];
+        op = Op{};
+        op.run = &decode_now;
+    };
+    forget_one(address);
+    if (address > 0) forget_one(address - 1);  // a pair's first word, or a skip over this one
+}
+
+}  // namespace puckloop::avr

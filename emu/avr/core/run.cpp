@@ -1,0 +1,110 @@
+// The run loop: instructions, interrupt entry, resets, stops, and waiting.
+//
+// Everything that has to interrupt the flow (an event, the end of the grant, an interrupt, a stop) is folded
+// into Machine::limit; the inner loop compares the cycle with it and nothing else.
+
+#include "emu/avr/core/machine.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace puckloop::avr {
+
+namespace {
+
+/// Clocks from the end of the instruction in progress to the first one of the vector, and what waking up adds
+/// (data sheet, "Interrupt Response Time").
+constexpr Cycle kInterruptResponse = 4;
+constexpr Cycle kWakeUp = 4;
+constexpr std::uint16_t kWordsPerVector = 2;
+
+void execute(Machine& m) {
+    const Op* op = m.current;
+    do {
+        const Op* next = op->run(m, op);
+        m.cycle += op->cycles;
+        ++m.instructions;
+        op = next;
+    } while (m.cycle < m.limit);
+    m.current = op;
+}
+
+/// Executes the instruction under a stop address that was reported before.
+void pass_stop(Machine& m, std::uint16_t pc) {
+    const auto stops = std::exchange(m.stops, {});
+    forget(m, pc);
+    m.limit = m.cycle + 1;
+    execute(m);
+    m.stops = stops;
+    forget(m, pc);
+}
+
+void enter_interrupt(Machine& m) {
+    const int vector = m.irq.first();
+    const std::uint16_t pc = m.pc_of(m.current);
+    if (m.observer.on_interrupt) m.observer.on_interrupt(vector, pc, m.cycle);
+    m.now = m.cycle;
+    m.irq.acknowledge(vector);
+    push_pc(m, m.current, pc);
+    m.sreg &= static_cast<std::uint8_t>(~sreg::I);
+    m.cycle += kInterruptResponse + (std::exchange(m.asleep, false) ? kWakeUp : 0);
+    const std::uint16_t base = m.hooks.vector_base ? m.hooks.vector_base() : std::uint16_t{0};
+    m.current = m.code + static_cast<std::uint16_t>(base + kWordsPerVector * vector);
+}
+
+}  // namespace
+
+void perform_reset(Machine& m, ResetCause cause) {
+    m.reset_request.reset();
+    m.now = m.cycle;
+    if (m.observer.on_reset) m.observer.on_reset(cause, m.pc_of(m.current), m.cycle);
+    if (m.hooks.reset) m.hooks.reset(cause);
+    m.irq.reset();
+    m.sreg = 0;
+    m.rampz = 0;
+    m.sp = static_cast<std::uint16_t>(m.device.ram_end() - 1);
+    m.asleep = m.stopped = false;
+    m.stall_end = 0;
+    m.hold_at = kNoCycle;
+    m.limit = 0;
+    m.pass_pc.reset();
+    m.current = m.code + (m.hooks.reset_pc ? m.hooks.reset_pc() : 0);
+}
+
+Core::Outcome run_until(Machine& m, Cycle until) {
+    m.end_requested = false;
+    while (true) {
+        if (m.reset_request) perform_reset(m, *m.reset_request);
+        if (m.events.next() <= m.cycle && m.events.next() < until) {
+            m.events.service(std::min(m.cycle, until - 1));
+            if (m.reset_request) continue;
+        }
+        if (m.end_requested || m.cycle >= until) return Core::Outcome::Until;
+        const Cycle quiet = std::min(until, m.events.next());
+        if (m.stall_end > m.cycle) {
+            m.cycle = std::min(quiet, m.stall_end);
+            continue;
+        }
+        if (m.may_interrupt() && m.cycle != m.hold_at) {
+            enter_interrupt(m);
+            continue;
+        }
+        if (m.asleep) {
+            m.cycle = quiet;
+            continue;
+        }
+        m.limit = m.may_interrupt() ? m.cycle + 1 : quiet;
+        if (m.pass_pc && *m.pass_pc == m.pc_of(m.current)) {
+            m.pass_pc.reset();
+            pass_stop(m, m.pc_of(m.current));
+            continue;
+        }
+        execute(m);
+        if (std::exchange(m.stopped, false)) {
+            m.pass_pc = m.pc_of(m.current);
+            return Core::Outcome::Stopped;
+        }
+    }
+}
+
+}  // namespace puckloop::avr
