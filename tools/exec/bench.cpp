@@ -11,6 +11,8 @@ namespace puckloop::exec {
 namespace {
 
 constexpr cosim::Time kPollPeriod = cosim::kMillisecond;
+/// A paced run that is late by no more than this catches up, as fast as it can.
+constexpr cosim::Time kMostBehind = 50 * cosim::kMillisecond;
 
 std::int64_t wall_nanoseconds() {
     return std::chrono::steady_clock::now().time_since_epoch() / std::chrono::nanoseconds(1);
@@ -72,9 +74,14 @@ void Bench::poll() {
     if (paced_ && logs_) logs_->flush();
 }
 
-void Bench::wait_for_wall_clock() const {
+void Bench::wait_for_wall_clock() {
     const std::int64_t ahead = now_ / cosim::kNanosecond - (wall_nanoseconds() - wall_origin_ns_);
     if (ahead > 0) std::this_thread::sleep_for(std::chrono::nanoseconds(ahead));
+    // What is lost beyond this stays lost: a partner outside would see a robot that hurries.
+    const std::int64_t lost = -ahead - kMostBehind / cosim::kNanosecond;
+    if (lost <= 0) return;
+    wall_origin_ns_ += lost;
+    fallen_behind_ += lost * cosim::kNanosecond;
 }
 
 void Bench::apply_stimulus() {

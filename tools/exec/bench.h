@@ -38,8 +38,10 @@ class Bench : private TargetListener {
     const I2cScriptMaster* master() const { return master_ ? &*master_ : nullptr; }
     /// Adds to what is still to come; values take effect at the first instruction at or after their time.
     void stimulate(const std::vector<StimulusLine>& stimulus);
-    /// From now on simulated time does not run ahead of the wall clock.
+    /// From now on simulated time does not run ahead of the wall clock. Where it falls behind by more than 50
+    /// ms (the machine is busy, or was suspended) the rest is given up: fallen_behind().
     void pace_by_wall_clock();
+    cosim::Time fallen_behind() const { return fallen_behind_; }
     /// Called once a simulated millisecond; true ends run_until().
     std::function<bool()> interrupted;
     /// Called for every pin and signal change that is also logged.
@@ -62,7 +64,7 @@ class Bench : private TargetListener {
     void signal_changed(std::string_view name, double value, cosim::Time time) override;
     void apply_stimulus();
     void poll();
-    void wait_for_wall_clock() const;
+    void wait_for_wall_clock();
 
     std::unique_ptr<Logs> logs_;
     std::unique_ptr<Target> target_;
@@ -74,6 +76,7 @@ class Bench : private TargetListener {
     cosim::Time next_poll_ = 0;
     bool paced_ = false;
     std::int64_t wall_origin_ns_ = 0;
+    cosim::Time fallen_behind_ = 0;
 };
 
 }  // namespace puckloop::exec

@@ -95,6 +95,7 @@ std::string json_report(Bench& bench, const image::Image& image, const ExecOutco
     json.update(board::chip_json(bench.chip()));
     json["simulated_s"] = seconds_of(bench.now());
     json["wall_s"] = outcome.wall_s;
+    if (bench.fallen_behind() > 0) json["fallen_behind_s"] = seconds_of(bench.fallen_behind());
     for (int unit = 1; unit <= 2; ++unit) {
         Json uart = board::uart_json(bench.chip().uart_counters(unit));
         uart["offered_by_bench"] = bench.uart(unit).bytes_to_chip();
@@ -120,6 +121,9 @@ std::string text_report(Bench& bench, const ExecOutcome& outcome) {
                     outcome.symbol.empty() ? std::string() : fmt::format(" ({})", outcome.symbol));
     text += fmt::format("time: {:.6f} s simulated in {:.3f} s ({:.1f} x real time)\n", simulated,
                         outcome.wall_s, outcome.wall_s > 0 ? simulated / outcome.wall_s : 0.0);
+    if (bench.fallen_behind() > 0)
+        text += fmt::format("time: fell behind the wall clock by {:.3f} s in all\n",
+                            seconds_of(bench.fallen_behind()));
     text += fmt::format("work: {} cycles, {} instructions\n", report.cycles, report.instructions);
     for (std::size_t i = 0; i < report.resets.size() && i < kShownInText; ++i)
         text += fmt::format("reset: {} at {:.6f} s, pc {}\n", report.resets[i].cause,

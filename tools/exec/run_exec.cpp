@@ -11,6 +11,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 
@@ -28,7 +29,10 @@ void on_interrupt(int) {
     g_interrupted = true;
 }
 
-std::unique_ptr<UartEnd> make_end(const UartSpec& spec, const ExecOptions& options) {
+std::unique_ptr<UartEnd> make_end(const UartSpec& spec, int unit, const ExecOptions& options) {
+    const double baud = options.bench.baud[static_cast<std::size_t>(unit - 1)];
+    const LiveOptions live{fmt::format("uart{}", unit), static_cast<cosim::Time>(std::llround(1e12 / baud)),
+                           options.realtime.value_or(true)};
     switch (spec.kind) {
     case UartSpec::Kind::Nothing:
         return nullptr;
@@ -39,9 +43,9 @@ std::unique_ptr<UartEnd> make_end(const UartSpec& spec, const ExecOptions& optio
         return make_stdio_end(stdio);
     }
     case UartSpec::Kind::Pty:
-        return make_pty_end();
+        return make_pty_end(live);
     case UartSpec::Kind::Tcp:
-        return make_tcp_end(spec.port);
+        return make_tcp_end(spec.port, live);
     case UartSpec::Kind::Script:
         return std::make_unique<ScriptEnd>(parse_uart_script(spec.file, read_text_file(spec.file)));
     }
@@ -118,7 +122,7 @@ int run_exec(const ExecOptions& options) {
     bool live = false, stdio = false;
     for (int unit = 1; unit <= 2; ++unit) {
         const UartSpec& spec = specs[unit - 1];
-        std::unique_ptr<UartEnd> end = make_end(spec, options);
+        std::unique_ptr<UartEnd> end = make_end(spec, unit, options);
         if (!end) continue;
         live |= end->live();
         stdio |= spec.kind == UartSpec::Kind::Stdio;

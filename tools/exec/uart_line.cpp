@@ -24,16 +24,22 @@ cosim::Time UartLine::start_of_next() const {
 }
 
 cosim::Time UartLine::due() const {
-    return cosim::later(start_of_next(), kBitsToStop * bit_period_);
+    const cosim::Time start = start_of_next();
+    return start == cosim::kNever ? cosim::kNever : start + kBitsToStop * period_of_next();
+}
+
+cosim::Time UartLine::period_of_next() const {
+    const cosim::Time own = end_->next_bit_period();
+    return own != 0 ? own : bit_period_;
 }
 
 void UartLine::deliver() {
     const cosim::Time start = start_of_next();
     cosim::UartFrame frame;
     frame.start = start;
-    frame.bit_period = bit_period_;
+    frame.bit_period = period_of_next();
     frame.data = end_->take();
-    free_ = start + kBitsOfFrame * bit_period_;
+    free_ = start + kBitsOfFrame * frame.bit_period;
     ++to_chip_;
     const bool heard = target_.chip().uart_enabled(unit_);
     log(start, "rx", frame.data, heard ? "" : "receiver off");
@@ -42,7 +48,9 @@ void UartLine::deliver() {
 
 void UartLine::sent(const cosim::UartFrame& frame) {
     ++from_chip_;
-    for (const auto& character : protocols::sample_frame(frame, {.bit_period = bit_period_}, heard_until_)) {
+    const cosim::Time partner = end_ ? end_->bit_period() : 0;
+    const protocols::UartReceiver receiver{.bit_period = partner != 0 ? partner : bit_period_};
+    for (const auto& character : protocols::sample_frame(frame, receiver, heard_until_)) {
         heard_until_ = character.time;
         const auto byte = static_cast<std::uint8_t>(character.data);
         if (character.framing_error) ++bad_frames_;

@@ -1,5 +1,6 @@
 #pragma once
-// The wire between one of the target's UARTs and the bench's end: 8N1 at the bench's own baud rate.
+// The wire between one of the target's UARTs and the bench's end: 8N1 at the bench's own baud rate, or
+// at the one that the end's partner has set (a pty).
 
 #include "cosim/message.h"
 #include "tools/exec/ends/uart_end.h"
@@ -34,6 +35,7 @@ class UartLine {
 
   private:
     cosim::Time start_of_next() const;
+    cosim::Time period_of_next() const;
     void watch_receiver(cosim::Time now);
     void log(cosim::Time time, const char* direction, int byte, const char* error);
 

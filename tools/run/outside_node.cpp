@@ -19,15 +19,22 @@ constexpr cosim::Time kLookEvery = cosim::kMillisecond;
 constexpr int kBitsToStop = 9;    // start and eight data bits
 constexpr int kBitsOfFrame = 10;  // with the stop bit
 
-std::unique_ptr<exec::UartEnd> make_end(const exec::UartSpec& spec) {
+cosim::Time period_of(double baud) {
+    return static_cast<cosim::Time>(std::llround(1e12 / baud));
+}
+
+std::unique_ptr<exec::UartEnd> make_end(const OutsideSpec& outside) {
+    const exec::UartSpec& spec = outside.end;
+    // A run with such an end is paced by the wall clock, always.
+    const exec::LiveOptions live{outside.name, period_of(outside.baud), true};
     switch (spec.kind) {
     case exec::UartSpec::Kind::Script:
         return std::make_unique<exec::ScriptEnd>(
             exec::parse_uart_script(spec.file, exec::read_text_file(spec.file)));
     case exec::UartSpec::Kind::Pty:
-        return exec::make_pty_end();
+        return exec::make_pty_end(live);
     case exec::UartSpec::Kind::Tcp:
-        return exec::make_tcp_end(spec.port);
+        return exec::make_tcp_end(spec.port, live);
     default:
         break;
     }
@@ -46,10 +53,7 @@ exec::UartSpec parse_outside(const std::string& place, const std::string& text, 
 }
 
 OutsideNode::OutsideNode(const OutsideSpec& spec)
-    : name_(spec.name),
-      end_(make_end(spec.end)),
-      record_name_(spec.record),
-      bit_period_(static_cast<cosim::Time>(std::llround(1e12 / spec.baud))) {
+    : name_(spec.name), end_(make_end(spec)), record_name_(spec.record), bit_period_(period_of(spec.baud)) {
     if (!record_name_.empty()) {
         record_ = std::fopen(record_name_.c_str(), "wb");
         if (record_ == nullptr) throw RunError(fmt::format("{}: cannot be written", record_name_));
@@ -88,18 +92,21 @@ void OutsideNode::look_outside(cosim::Time until) {
 void OutsideNode::send_before(cosim::Time until, std::vector<cosim::Message>& outbox) {
     for (cosim::Time start = next_start(); start < until; start = next_start()) {
         cosim::UartFrame frame;
+        frame.bit_period = bit_period_;
         // A byte that came from outside while its time passed begins now.
         frame.start = std::max(start, granted_);
-        frame.bit_period = bit_period_;
+        if (const cosim::Time own = end_->next_bit_period(); own != 0) frame.bit_period = own;
         frame.data = end_->take();
-        free_ = frame.start + kBitsOfFrame * bit_period_;
+        free_ = frame.start + kBitsOfFrame * frame.bit_period;
         ++sent_;
         outbox.push_back({protocols::stop_bit_start(frame), 0, frame});
     }
 }
 
 void OutsideNode::receive(const cosim::UartFrame& frame) {
-    for (const auto& character : protocols::sample_frame(frame, {.bit_period = bit_period_}, heard_until_)) {
+    const cosim::Time partner = end_->bit_period();
+    const protocols::UartReceiver receiver{.bit_period = partner != 0 ? partner : bit_period_};
+    for (const auto& character : protocols::sample_frame(frame, receiver, heard_until_)) {
         heard_until_ = character.time;
         const auto byte = static_cast<std::uint8_t>(character.data);
         ++received_;

@@ -1,15 +1,20 @@
-// `--uartN pty`: a pseudo terminal that any terminal program can open.
+// `--uartN pty`: a pseudo terminal that any terminal program can open, with the rate that the program sets.
 
 #include "base/error.h"
-#include "tools/exec/ends/queued_end.h"
+#include "tools/exec/ends/live_end.h"
+#include "tools/exec/ends/pty_speed.h"
 
+#include <boost/asio/posix/stream_descriptor.hpp>
 #include <fmt/format.h>
 
 #include <fcntl.h>
+#include <poll.h>
 #include <stdlib.h>
+#include <sys/ioctl.h>
 #include <termios.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <cstring>
 
@@ -17,65 +22,78 @@ namespace puckloop::exec {
 
 namespace {
 
-class PtyEnd : public QueuedEnd {
+/// How often a terminal that everybody has closed is looked at.
+constexpr auto kReopenedEvery = std::chrono::milliseconds(5);
+
+/// Before the first program opens it the kernel keeps the first 4 kB for it; once the last one has closed it,
+/// or has set B0, what comes is lost, as at a serial port.
+class Pty final : public HostStream {
   public:
-    PtyEnd() {
-        master_ = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+    Pty(boost::asio::io_context& io, double baud) : master_(io), timer_(io) {
+        const int master = posix_openpt(O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+        if (master < 0) fail();
+        master_.assign(master);
         char name[128];
-        if (master_ < 0 || grantpt(master_) != 0 || unlockpt(master_) != 0 ||
-            ptsname_r(master_, name, sizeof name) != 0)
+        if (grantpt(master) != 0 || unlockpt(master) != 0 || ptsname_r(master, name, sizeof name) != 0 ||
+            !set_raw_terminal(master, baud))
             fail();
         name_ = name;
-        // Kept open here, so that the terminal outlives the programs that come and go.
-        slave_ = open(name, O_RDWR | O_NOCTTY | O_CLOEXEC);
-        termios settings{};
-        if (slave_ < 0 || tcgetattr(slave_, &settings) != 0) fail();
-        cfmakeraw(&settings);
-        if (tcsetattr(slave_, TCSANOW, &settings) != 0) fail();
     }
-    ~PtyEnd() override { close_both(); }
-    PtyEnd(const PtyEnd&) = delete;
-    PtyEnd& operator=(const PtyEnd&) = delete;
 
-    bool live() const override { return true; }
     std::string announcement() const override { return "pty " + name_; }
-    void finish() override { write_out(); }
+    bool there() const override { return !closed_; }
+    std::optional<double> baud() const override { return terminal_baud(descriptor()); }
 
-    void poll(cosim::Time now, cosim::Time /*listening_since*/) override {
-        write_out();
-        if (waiting()) return;
-        std::uint8_t block[512];
-        const ssize_t got = ::read(master_, block, sizeof block);
-        if (got > 0) offer(block, static_cast<std::size_t>(got), now);
+    void await_readable(std::function<void()> then) override {
+        if (closed()) {
+            timer_.expires_after(kReopenedEvery);
+            timer_.async_wait([this, then](const boost::system::error_code& error) {
+                if (!error) await_readable(then);
+            });
+            return;
+        }
+        master_.async_wait(boost::asio::posix::descriptor_base::wait_read,
+                           [then](const boost::system::error_code& error) {
+                               if (!error) then();
+                           });
+    }
+    std::size_t read(std::span<std::uint8_t> block) override {
+        const ssize_t got = ::read(descriptor(), block.data(), block.size());
+        return got > 0 ? static_cast<std::size_t>(got) : 0;
+    }
+    std::size_t write(std::span<const std::uint8_t> bytes) override {
+        // What does not fit is lost: a serial line has nobody to wait for.
+        if (::write(descriptor(), bytes.data(), bytes.size()) < 0 && errno != EAGAIN && errno != EIO) fail();
+        return bytes.size();
     }
 
   private:
-    void write_out() {
-        // What does not fit is dropped: a serial line has nobody to wait for.
-        if (!outgoing_.empty() && ::write(master_, outgoing_.data(), outgoing_.size()) < 0 && errno != EAGAIN)
-            fail();
-        outgoing_.clear();
+    int descriptor() const {
+        return const_cast<boost::asio::posix::stream_descriptor&>(master_).native_handle();
     }
-    void close_both() {
-        if (slave_ >= 0) close(slave_);
-        if (master_ >= 0) close(master_);
+    /// Nobody has it open any more, and all that was written to it has been read.
+    bool closed() {
+        pollfd look{descriptor(), POLLIN, 0};
+        const bool now =
+            ::poll(&look, 1, 0) == 1 && (look.revents & POLLHUP) != 0 && (look.revents & POLLIN) == 0;
+        if (now && !closed_) tcflush(descriptor(), TCOFLUSH);
+        closed_ = now;
+        return now;
     }
-    [[noreturn]] void fail() {
-        const std::string reason = std::strerror(errno);
-        close_both();
-        slave_ = master_ = -1;
-        throw RunError(fmt::format("pty: {}", reason));
-    }
+    [[noreturn]] static void fail() { throw RunError(fmt::format("pty: {}", std::strerror(errno))); }
 
-    int master_ = -1;
-    int slave_ = -1;
+    boost::asio::posix::stream_descriptor master_;
+    boost::asio::steady_timer timer_;
     std::string name_;
+    std::atomic<bool> closed_{false};
 };
 
 }  // namespace
 
-std::unique_ptr<UartEnd> make_pty_end() {
-    return std::make_unique<PtyEnd>();
+std::unique_ptr<UartEnd> make_pty_end(const LiveOptions& options) {
+    return std::make_unique<LiveEnd>(options, [&](boost::asio::io_context& io) {
+        return std::make_unique<Pty>(io, 1e12 / static_cast<double>(options.bit_period));
+    });
 }
 
 }  // namespace puckloop::exec

@@ -1,91 +1,110 @@
 // `--uartN tcp:PORT`: one client at a time, on 127.0.0.1 only.
 
 #include "base/error.h"
-#include "tools/exec/ends/queued_end.h"
+#include "tools/exec/ends/live_end.h"
 
-#include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <fmt/format.h>
+
+#include <atomic>
+#include <utility>
 
 namespace puckloop::exec {
 
 namespace {
 
 using boost::asio::ip::tcp;
+using boost::system::error_code;
 
-/// What a client that does not read may leave waiting.
-constexpr std::size_t kLongestBacklog = 1 << 20;
-
-class TcpEnd : public QueuedEnd {
+class TcpClient final : public HostStream {
   public:
-    explicit TcpEnd(std::uint16_t port) : acceptor_(io_), client_(io_) {
+    TcpClient(boost::asio::io_context& io, std::uint16_t port) : acceptor_(io), client_(io) {
         try {
             const tcp::endpoint here(boost::asio::ip::address_v4::loopback(), port);
             acceptor_.open(here.protocol());
             acceptor_.set_option(tcp::acceptor::reuse_address(true));
             acceptor_.bind(here);
             acceptor_.listen();
-            acceptor_.non_blocking(true);
         } catch (const boost::system::system_error& error) {
             throw InputError("", fmt::format("tcp:{}", port), error.code().message(), "a free port");
         }
-    }
-
-    void receive(std::uint8_t byte, bool clean, cosim::Time start) override {
-        if (client_.is_open() && outgoing_.size() < kLongestBacklog) QueuedEnd::receive(byte, clean, start);
-    }
-    bool live() const override { return true; }
-    std::string announcement() const override {
-        return fmt::format("tcp 127.0.0.1:{}", acceptor_.local_endpoint().port());
-    }
-    void finish() override {
-        write_out();
-        drop_client();
-    }
-
-    void poll(cosim::Time now, cosim::Time /*listening_since*/) override {
+        port_ = acceptor_.local_endpoint().port();
         accept();
-        write_out();
-        if (!client_.is_open() || waiting()) return;
-        std::uint8_t block[512];
-        boost::system::error_code error;
-        const std::size_t got = client_.read_some(boost::asio::buffer(block), error);
-        offer(block, got, now);
-        if (error && error != boost::asio::error::would_block) drop_client();
+    }
+    ~TcpClient() override { drop(); }
+
+    std::string announcement() const override { return fmt::format("tcp 127.0.0.1:{}", port_); }
+    bool there() const override { return there_; }
+
+    void await_readable(std::function<void()> then) override {
+        then_ = std::move(then);
+        await();
+    }
+    std::size_t read(std::span<std::uint8_t> block) override {
+        if (!client_.is_open()) return 0;
+        error_code error;
+        const std::size_t got = client_.read_some(boost::asio::buffer(block.data(), block.size()), error);
+        if (error && error != boost::asio::error::would_block) drop();
+        return got;
+    }
+    std::size_t write(std::span<const std::uint8_t> bytes) override {
+        if (!client_.is_open()) return bytes.size();
+        error_code error;
+        const std::size_t taken = client_.write_some(boost::asio::buffer(bytes.data(), bytes.size()), error);
+        if (!error || error == boost::asio::error::would_block) return taken;
+        drop();
+        return bytes.size();
     }
 
   private:
     void accept() {
-        tcp::socket caller(io_);
-        boost::system::error_code error;
-        acceptor_.accept(caller, error);
-        if (error || client_.is_open()) return;  // a second caller is hung up on
-        client_ = std::move(caller);
-        client_.non_blocking(true, error);
-        client_.set_option(tcp::no_delay(true), error);
+        acceptor_.async_accept([this](const error_code& error, tcp::socket caller) {
+            if (error == boost::asio::error::operation_aborted) return;
+            if (!error && !somebody_there()) {  // a second caller is hung up on
+                client_ = std::move(caller);
+                error_code ignored;
+                client_.non_blocking(true, ignored);
+                client_.set_option(tcp::no_delay(true), ignored);
+                there_ = true;
+                await();
+            }
+            accept();
+        });
     }
-    void write_out() {
-        if (!client_.is_open() || outgoing_.empty()) return;
-        boost::system::error_code error;
-        outgoing_.erase(0, client_.write_some(boost::asio::buffer(outgoing_), error));
-        if (error && error != boost::asio::error::would_block) drop_client();
+    void await() {
+        if (!then_ || !client_.is_open()) return;
+        client_.async_wait(tcp::socket::wait_read, [this](const error_code& error) {
+            if (!error && then_) std::exchange(then_, {})();
+        });
     }
-    void drop_client() {
-        boost::system::error_code ignored;
+    /// A client that has left makes room for the next, even if nobody has read so far that it has.
+    bool somebody_there() {
+        if (!client_.is_open()) return false;
+        char byte;
+        error_code error;
+        client_.receive(boost::asio::buffer(&byte, 1), tcp::socket::message_peek, error);
+        if (error && error != boost::asio::error::would_block) drop();
+        return client_.is_open();
+    }
+    void drop() {
+        there_ = false;
+        error_code ignored;
         client_.shutdown(tcp::socket::shutdown_both, ignored);
         client_.close(ignored);
-        outgoing_.clear();
     }
 
-    boost::asio::io_context io_;
     tcp::acceptor acceptor_;
     tcp::socket client_;
+    std::uint16_t port_ = 0;
+    std::function<void()> then_;
+    std::atomic<bool> there_{false};
 };
 
 }  // namespace
 
-std::unique_ptr<UartEnd> make_tcp_end(std::uint16_t port) {
-    return std::make_unique<TcpEnd>(port);
+std::unique_ptr<UartEnd> make_tcp_end(std::uint16_t port, const LiveOptions& options) {
+    return std::make_unique<LiveEnd>(
+        options, [&](boost::asio::io_context& io) { return std::make_unique<TcpClient>(io, port); });
 }
 
 }  // namespace puckloop::exec

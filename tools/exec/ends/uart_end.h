@@ -18,8 +18,12 @@ class UartEnd {
 
     /// When the end's next byte may be begun; kNever while it has none.
     virtual cosim::Time next() const = 0;
+    /// Bit period that the partner has set for that byte; 0: the line's own.
+    virtual cosim::Time next_bit_period() const { return 0; }
     /// Takes that byte.
     virtual std::uint8_t take() = 0;
+    /// Bit period at which the partner samples the line; 0: the line's own.
+    virtual cosim::Time bit_period() const { return 0; }
     /// A byte came from the chip, its start bit at `start`. `clean` is false after a framing error.
     virtual void receive(std::uint8_t byte, bool clean, cosim::Time start) = 0;
     /// Once a simulated millisecond: look at the outside. `listening_since`: since when the chip's receiver
@@ -45,10 +49,19 @@ struct StdioOptions {
     bool live = false;
 };
 
+/// Of an end whose partner has a clock of its own.
+struct LiveOptions {
+    std::string name = "uart";         ///< for messages on standard error
+    cosim::Time bit_period = 8680556;  ///< of the line, in picoseconds
+    bool paced = true;                 ///< by the wall clock: no byte sooner than the wire would bring it
+};
+
 std::unique_ptr<UartEnd> make_stdio_end(const StdioOptions& options);
-/// A pseudo terminal in raw mode. Bytes that nobody reads are dropped once its buffer is full.
-std::unique_ptr<UartEnd> make_pty_end();
+/// A pseudo terminal in raw mode, at the line's rate until a program sets another one: bytes are then sampled
+/// as at that rate, in both directions. Bytes that nobody reads are dropped once its buffer is full, and
+/// while nobody has it open after somebody had.
+std::unique_ptr<UartEnd> make_pty_end(const LiveOptions& options = {});
 /// Listens on 127.0.0.1; one client at a time. Bytes sent while there is none are dropped.
-std::unique_ptr<UartEnd> make_tcp_end(std::uint16_t port);
+std::unique_ptr<UartEnd> make_tcp_end(std::uint16_t port, const LiveOptions& options = {});
 
 }  // namespace puckloop::exec

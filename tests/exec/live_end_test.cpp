@@ -1,0 +1,254 @@
+// Ends with a clock of their own: the pace of the wire in both directions, a pty's rate, hanging up.
+
+#include "tools/exec/bench.h"
+#include "tools/exec/ends/pty_speed.h"
+
+#include "emu/image/image.h"
+#include "protocols/uart_sampling.h"
+#include "tools/run/outside_node.h"
+
+#include <catch2/catch.hpp>
+
+#include <fcntl.h>
+#include <poll.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <string>
+#include <thread>
+#include <vector>
+
+using namespace puckloop;
+using exec::LiveOptions;
+using exec::UartEnd;
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+namespace {
+
+constexpr cosim::Time kSlowBit = 1'000'000'000'000 / 2400;
+constexpr auto kSlowByte = std::chrono::nanoseconds(10 * kSlowBit / 1000);  // 4.17 ms
+constexpr int kBytes = 30;
+
+bool no_ptys() {
+    if (access("/dev/pts", R_OK) == 0 && !std::filesystem::is_empty("/dev/pts")) return false;
+    WARN("no devpts at /dev/pts (a bare chroot?): skipped");
+    return true;
+}
+
+/// A program on the host that has the terminal open.
+class Terminal {
+  public:
+    explicit Terminal(const std::string& announcement)
+        : file_(open(announcement.substr(announcement.find("/dev/")).c_str(), O_RDWR | O_NOCTTY)) {
+        REQUIRE(file_ >= 0);
+    }
+    ~Terminal() { close(file_); }
+    void set(speed_t speed) const {
+        termios settings{};
+        REQUIRE(tcgetattr(file_, &settings) == 0);
+        cfsetspeed(&settings, speed);
+        REQUIRE(tcsetattr(file_, TCSANOW, &settings) == 0);
+    }
+    void send(const std::string& bytes) const {
+        REQUIRE(write(file_, bytes.data(), bytes.size()) == static_cast<ssize_t>(bytes.size()));
+    }
+    /// One byte within `patience`, or -1.
+    int receive(milliseconds patience = milliseconds(2000)) const {
+        pollfd waiting{file_, POLLIN, 0};
+        std::uint8_t byte = 0;
+        if (poll(&waiting, 1, static_cast<int>(patience.count())) != 1 || read(file_, &byte, 1) != 1)
+            return -1;
+        return byte;
+    }
+    int file() const { return file_; }
+
+  private:
+    int file_;
+};
+
+/// Each byte as early as the wire could have brought it after the first, or later.
+void check_pace(const std::vector<Clock::time_point>& times, Clock::time_point first) {
+    REQUIRE(times.size() == kBytes);
+    for (std::size_t i = 0; i < times.size(); ++i) {
+        INFO("byte " << i);
+        CHECK(times[i] - first >= static_cast<int>(i) * kSlowByte);
+    }
+    CHECK(times.back() - first < 4 * kBytes * kSlowByte);
+}
+
+/// Simulated time that rushes past, as after a pause of the process: the chip sends without pause.
+std::vector<Clock::time_point> rush(UartEnd& end, const Terminal& terminal) {
+    for (int i = 0; i < kBytes; ++i) {
+        const cosim::Time start = 10 * i * kSlowBit;
+        end.poll(start, cosim::kNever);
+        end.receive(static_cast<std::uint8_t>(i), true, start);
+    }
+    std::vector<Clock::time_point> times;
+    for (int i = 0; i < kBytes; ++i) {
+        CHECK(terminal.receive() == i);
+        times.push_back(Clock::now());
+    }
+    return times;
+}
+
+}  // namespace
+
+TEST_CASE("a pty gives bytes to the host no faster than the wire, however fast simulated time catches up") {
+    if (no_ptys()) return;
+    const auto end = exec::make_pty_end(LiveOptions{"uart1", kSlowBit, true});
+    const Terminal terminal(end->announcement());
+    const auto begun = Clock::now();
+    const auto times = rush(*end, terminal);
+    check_pace(times, begun);
+}
+
+TEST_CASE("bytes that the host writes at once reach the chip no faster than the wire") {
+    if (no_ptys()) return;
+    const auto end = exec::make_pty_end(LiveOptions{"uart1", kSlowBit, true});
+    const Terminal terminal(end->announcement());
+    const auto begun = Clock::now();
+    terminal.send(std::string(kBytes, 'x'));
+    std::vector<Clock::time_point> times;
+    for (int now = 0; times.size() < kBytes && Clock::now() - begun < std::chrono::seconds(3); ++now) {
+        end->poll(now * cosim::kMillisecond, cosim::kNever);
+        for (; end->next() != cosim::kNever; end->take())
+            times.push_back(Clock::now());
+        std::this_thread::sleep_for(milliseconds(1));
+    }
+    check_pace(times, begun);
+}
+
+TEST_CASE("an end of a run that is not paced does not wait") {
+    if (no_ptys()) return;
+    const auto end = exec::make_pty_end(LiveOptions{"uart1", cosim::kSecond / 50, false});
+    const Terminal terminal(end->announcement());
+    for (int i = 0; i < kBytes; ++i)
+        end->receive(static_cast<std::uint8_t>(i), true, 0);
+    const auto begun = Clock::now();
+    for (int i = 0; i < kBytes; ++i)
+        CHECK(terminal.receive() == i);
+    CHECK(Clock::now() - begun < std::chrono::seconds(3));  // 6 s at 50 baud
+}
+
+TEST_CASE("a pty has the line's rate until a program sets another one") {
+    if (no_ptys()) return;
+    const auto end = exec::make_pty_end(LiveOptions{"uart1", 1'000'000'000'000 / 115200, true});
+    const Terminal terminal(end->announcement());
+    CHECK(exec::terminal_baud(terminal.file()) == 115200.0);
+    termios settings{};
+    REQUIRE(tcgetattr(terminal.file(), &settings) == 0);
+    CHECK(cfgetospeed(&settings) == B115200);
+    end->poll(0, cosim::kNever);
+    CHECK(end->bit_period() == 8'680'556);
+    terminal.set(B9600);
+    end->poll(1, cosim::kNever);
+    CHECK(end->bit_period() == 104'166'667);
+    terminal.send("x");
+    for (int i = 2; i < 500 && end->next() == cosim::kNever; ++i) {
+        std::this_thread::sleep_for(milliseconds(5));
+        end->poll(i, cosim::kNever);
+    }
+    REQUIRE(end->next() != cosim::kNever);
+    CHECK(end->next_bit_period() == 104'166'667);
+    // A rate that no B constant names.
+    const auto odd = exec::make_pty_end(LiveOptions{"uart1", 1'000'000'000'000 / 76800, true});
+    CHECK(exec::terminal_baud(Terminal(odd->announcement()).file()) == 76800.0);
+}
+
+TEST_CASE("a program at another rate reads and sends what sampling at that rate gives") {
+    if (no_ptys()) return;
+    tools::OutsideSpec spec;
+    spec.name = "robot0.uart1";
+    spec.end.kind = exec::UartSpec::Kind::Pty;
+    // The node prints where its terminal is; tests find it by asking for the next free one.
+    std::string last;
+    const auto names = [] {
+        std::vector<std::string> list;
+        for (const auto& entry : std::filesystem::directory_iterator("/dev/pts"))
+            list.push_back(entry.path());
+        return list;
+    };
+    const auto before = names();
+    tools::OutsideNode node(spec);
+    for (const std::string& name : names())
+        if (std::find(before.begin(), before.end(), name) == before.end()) last = name;
+    REQUIRE(!last.empty());
+    const Terminal terminal(last);
+    terminal.set(B57600);
+    const cosim::Time fast = 8'680'556, slow = 17'361'111;
+    std::vector<cosim::Message> outbox;
+    cosim::Time now = 2 * cosim::kMillisecond;
+    node.advance(now, {}, outbox);
+    // From the robot: 0x55 at twice the rate.
+    cosim::UartFrame frame{.start = now, .bit_period = fast, .data = 0x55};
+    const auto expected = protocols::sample_frame(frame, {.bit_period = slow}, 0);
+    REQUIRE(expected.size() == 1);
+    REQUIRE(expected[0].data != 0x55);
+    now += cosim::kMillisecond;
+    node.advance(now, std::vector{cosim::Message{now - 1, 0, frame}}, outbox);
+    CHECK(terminal.receive() == expected[0].data);
+    // To the robot: frames with the program's own bit time.
+    terminal.send("A");
+    for (int i = 0; i < 500 && outbox.empty(); ++i) {
+        std::this_thread::sleep_for(milliseconds(5));
+        now += 5 * cosim::kMillisecond;
+        node.advance(now, {}, outbox);
+    }
+    REQUIRE(outbox.size() == 1);
+    const auto sent = std::get<cosim::UartFrame>(outbox[0].payload);
+    CHECK(sent.data == 'A');
+    CHECK(sent.bit_period == slow);
+}
+
+TEST_CASE("a pty that everybody closed, or that was set to B0, is unplugged") {
+    if (no_ptys()) return;
+    const auto end = exec::make_pty_end(LiveOptions{"uart1", 8'680'556, false});
+    const auto settle = [&] {
+        for (int i = 0; i < 6; ++i) {
+            std::this_thread::sleep_for(milliseconds(10));
+            end->poll(i, cosim::kNever);
+        }
+    };
+    end->receive('1', true, 0);  // kept for the first program
+    {
+        const Terminal first(end->announcement());
+        CHECK(first.receive() == '1');
+    }
+    settle();
+    end->receive('2', true, 0);
+    settle();
+    const Terminal second(end->announcement());
+    settle();
+    end->receive('3', true, 0);
+    CHECK(second.receive() == '3');
+    second.set(B0);
+    settle();
+    end->receive('4', true, 0);
+    second.send("lost");
+    settle();
+    CHECK(end->next() == cosim::kNever);
+    second.set(B115200);
+    settle();
+    end->receive('5', true, 0);
+    CHECK(second.receive() == '5');
+}
+
+TEST_CASE("a paced bench that falls behind does not hurry after the wall clock") {
+    exec::BenchOptions options;
+    options.mcu = "dspic30f6014a";
+    exec::Bench bench(options);
+    image::Image image;
+    bench.target().load(image);
+    bench.run_until(10 * cosim::kMillisecond);
+    bench.pace_by_wall_clock();
+    std::this_thread::sleep_for(milliseconds(500));
+    const auto begun = Clock::now();
+    bench.run_until(410 * cosim::kMillisecond);
+    // It may catch up 50 ms of the 500.
+    CHECK(Clock::now() - begun >= milliseconds(345));
+    CHECK(bench.fallen_behind() >= 440 * cosim::kMillisecond);
+}
