@@ -8,6 +8,8 @@
 #include "emu/dspic/peripherals/i2c_slave.h"
 #include "emu/dspic/peripherals/oscillator.h"
 #include "emu/dspic/peripherals/oscillator_33f.h"
+#include "emu/dspic/waits/judge.h"
+#include "emu/dspic/waits/status_bits.h"
 #include "emu/image/device.h"
 #include "emu/image/image.h"
 #include "protocols/uart_sampling.h"
@@ -28,6 +30,7 @@ constexpr std::uint32_t kFosc33F = 0xF80008;
 constexpr std::uint16_t kRcon = 0x740;
 constexpr std::size_t kRecords = 1000;
 constexpr int kUartLookaheadBits = 9;
+constexpr double kShortestWait = 0.1;           // s
 constexpr std::uint16_t kStopInIdle = bit(13);  // xSIDL
 
 /// Instruction rate before the first configuration word is known.
@@ -91,6 +94,7 @@ struct Chip::Parts {
     std::vector<std::uint32_t> stops;
     std::optional<std::uint32_t> stopped_at;
     Time now = 0;  ///< the last `until`
+    std::optional<Cycle> asleep_since;
 
     Parts(const DeviceInfo& device_info, Pins& board, const ChipOptions& chip_options)
         : device(device_info),
@@ -238,6 +242,8 @@ struct Chip::Parts {
 
     // Sleep stops every module that needs the instruction clock, Idle those whose xSIDL bit says so.
     void set_power(PowerMode mode) {
+        asleep_since.reset();
+        if (mode != PowerMode::Run) asleep_since = core.cycle();
         const auto stops = [&](std::uint16_t control) {
             return mode == PowerMode::Sleep || (mode == PowerMode::Idle && (sfr.raw(control) & kStopInIdle));
         };
@@ -438,8 +444,36 @@ std::uint16_t Chip::peek_data(std::uint16_t address) const {
     return parts_->core.ram()[(address - device.ram_start) / 2u];
 }
 
+std::optional<WaitReport> Chip::waiting() const {
+    const Parts& parts = *parts_;
+    const WaitContext context{parts.device, parts.layout, parts.sfr, parts.interrupts,
+                              parts.core,   parts.ports,  parts.pins};
+    WaitReport report;
+    if (parts.asleep_since) {
+        report.asleep = true;
+        report.hung = sleeps_for_ever(context);
+        report.since = *parts.asleep_since;
+        report.text = report.hung ? "and no interrupt can wake it" : "until an interrupt comes";
+    } else if (const std::optional<Core::BusyLoop> loop = parts.core.busy_loop()) {
+        report = judge(context, loop->finding, loop->level);
+        report.since = loop->since;
+    } else {
+        return std::nullopt;
+    }
+    if (static_cast<double>(parts.core.cycle() - report.since) < kShortestWait * parts.clock.hertz())
+        return std::nullopt;
+    return report;
+}
+
 ChipReport Chip::report() const {
     ChipReport report = parts_->report;
+    for (const MissingPoll& poll : parts_->core.missing_polls())
+        report.missing_bits.push_back(
+            {poll.cycle, poll.first, poll.last,
+             register_text(*parts_->sfr.info(poll.condition.address), poll.condition.mask)});
+    for (const I2cMaster& master : parts_->masters)
+        for (const auto& [address, times] : master.refused())
+            report.refused_addresses.push_back({master.unit(), address, times});
     report.instructions = parts_->core.instructions();
     report.cycles = parts_->core.cycle();
     return report;

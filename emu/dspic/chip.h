@@ -10,6 +10,7 @@
 #include "emu/dspic/event_queue.h"
 #include "emu/dspic/pins.h"
 #include "emu/dspic/uart_counters.h"
+#include "emu/dspic/waits/wait_report.h"
 
 #include <cstdint>
 #include <memory>
@@ -92,11 +93,20 @@ struct OutputCompareState {
     }
 };
 
+/// An I2C address to which the chip spoke as master, and nobody answered.
+struct RefusedAddress {
+    int unit = 1;
+    std::uint8_t address = 0;  ///< 7 bits
+    std::uint64_t times = 0;
+};
+
 struct ChipReport {
     std::vector<ResetRecord> resets;          ///< the first 1000, power-on included
     std::vector<TrapRecord> traps;            ///< the first 1000
     std::vector<UnmodelledTouch> unmodelled;  ///< first touch of each register
     std::vector<ChipWarning> warnings;
+    std::vector<MissingBitReport> missing_bits;     ///< at most 100
+    std::vector<RefusedAddress> refused_addresses;  ///< by unit and address
     std::uint64_t instructions = 0;
     Cycle cycles = 0;
 
@@ -176,6 +186,9 @@ class Chip {
     /// A word of RAM at an even data address. Throws std::out_of_range elsewhere.
     std::uint16_t peek_data(std::uint16_t address) const;
     ChipReport report() const;
+    /// What the program has been waiting for, if it has gone round in one loop, or slept, for a tenth of a
+    /// second or more. Costs some milliseconds.
+    std::optional<WaitReport> waiting() const;
 
     /// Everything the chip remembers, between two run_until(): registers, memories (flash and EEPROM too),
     /// modules, events, report. Stop addresses are the bench's and are left out. A chip of the same device

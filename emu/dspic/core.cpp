@@ -147,6 +147,15 @@ int Core::cpu_level() const {
 const DeviceInfo& Core::device() const {
     return machine_->device;
 }
+std::optional<Core::BusyLoop> Core::busy_loop() const {
+    int level = 0;
+    const WaitWatch::Stay* stay = present_stay(*machine_, level);
+    if (stay == nullptr || !stay->finding) return std::nullopt;
+    return BusyLoop{stay->since, level, *stay->finding};
+}
+std::span<const MissingPoll> Core::missing_polls() const {
+    return machine_->waits.polls;
+}
 
 CoreState Core::state() const {
     CoreState copy = machine_->st;

@@ -10,6 +10,7 @@
 #include "emu/dspic/event_queue.h"
 #include "emu/dspic/interrupts.h"
 #include "emu/dspic/sfr_space.h"
+#include "emu/dspic/waits/wait_watch.h"
 
 #include <cstdint>
 #include <functional>
@@ -96,6 +97,15 @@ class Core {
     PowerMode power_mode() const;
     int cpu_level() const;  ///< IPL3:IPL2:0, 0..15
     const DeviceInfo& device() const;
+    /// The loop that the program is in, if it has been there for a while (waits/wait_watch.h).
+    struct BusyLoop {
+        Cycle since = 0;
+        int level = 0;  ///< CPU priority
+        LoopFinding finding;
+    };
+    std::optional<BusyLoop> busy_loop() const;
+    /// Loops that waited for what no model drives, in the order of their times.
+    std::span<const MissingPoll> missing_polls() const;
 
     /// A consistent copy; DISICNT is state().disi_end - cycle().
     CoreState state() const;

@@ -196,6 +196,7 @@ void request_reset(Machine& m, ResetCause cause) {
 
 void perform_reset(Machine& m, ResetCause cause) {
     m.reset_request.reset();
+    m.waits.forget();
     if (m.observer.on_reset) m.observer.on_reset(cause, m.fault_pc, m.st.cycle);
     const std::uint16_t old_rcon = rcon_register(m);
     if (m.reset_hook) m.reset_hook(cause);

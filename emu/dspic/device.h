@@ -23,6 +23,13 @@ struct IrqName {
     std::string_view priority;  ///< "T1IP"
 };
 
+/// What hardware does to bits while a program runs: one line of devices/*_status_bits.inc.
+struct StatusBits {
+    std::string_view registers;  ///< name; ? is any one character
+    std::string_view bits;       ///< names of the register table, or "*"
+    bool modelled = false;       ///< a model changes them; false: silicon alone does
+};
+
 struct DeviceInfo {
     std::string_view name;     ///< lower case, as on the command line: "dspic30f6014a"
     bool family_33f = false;   ///< 33FJ rules where they differ from the 30F's
@@ -51,6 +58,7 @@ struct DeviceInfo {
     std::uint16_t y_start = 0;  ///< Y prefetches reach [y_start, ram_end)
 
     std::span<const RegisterInfo> registers;  ///< of the SFR space, by address
+    std::span<const StatusBits> status_bits;  ///< what hardware changes (waits/status_bits.h)
 
     // Interrupt registers: IFS0, IEC0, IPC0 and how many of each follow at successive words.
     std::uint16_t ifs = 0;

@@ -9,7 +9,6 @@ namespace puckloop::dspic {
 
 namespace {
 
-constexpr int kMostSteps = 200;
 constexpr std::uint64_t kForever = std::numeric_limits<std::int64_t>::max();
 
 }  // namespace
@@ -24,7 +23,7 @@ void LoopWalk::walk(const Op* branch, const Op* head) {
     w_ = {};
     c_ = z_ = n_ = ov_ = {};
     const Op* op = head;
-    for (int i = 0; i < kMostSteps; ++i) {
+    for (int i = 0; i < probe_.most_steps; ++i) {
         record(op);
         hazards(op);
         const Op* next = execute(op);
@@ -62,6 +61,16 @@ void LoopWalk::settle_flags() {
         const auto missing = static_cast<std::uint8_t>(end.known & ~boundary.known);
         boundary.flags |= static_cast<std::uint8_t>(end.flags & missing);
         boundary.known |= missing;
+    }
+}
+
+bool LoopWalk::comes_round(const Op* branch, const Op* head) {
+    try {
+        first_count_ = 0;
+        walk(branch, head);
+        return true;
+    } catch (const Stop&) {
+        return false;
     }
 }
 

@@ -13,10 +13,23 @@ class LoopWalk {
     /// Unknown: an instruction that the walk will never follow. NotNow: this state does not allow it.
     enum class Verdict : std::uint8_t { Pure, NotNow, Unknown };
 
+    /// A walk that only looks on (waits/): it may read registers whose reads have side effects, goes on for
+    /// longer, and may be told that one word holds something else than it does.
+    struct Probe {
+        bool on = false;
+        int most_steps = 200;
+        std::int32_t address = -1;  ///< of a register or RAM word; -1: none
+        std::uint16_t flip = 0;     ///< bits of it to invert
+    };
+
     LoopWalk(const Machine& m, SkipLoops::Plan& plan, LoopTrace& trace) : m_(m), plan_(plan), trace_(trace) {}
+    LoopWalk(const Machine& m, SkipLoops::Plan& plan, LoopTrace& trace, const Probe& probe)
+        : m_(m), plan_(plan), trace_(trace), probe_(probe) {}
     /// Walks from `head` until `branch` is taken again, twice: to find the steps, then to prove them.
     Verdict analyse(const Op* branch, const Op* head);
-    /// The walk came by a conditional branch.
+    /// One walk from `head` until `branch` is taken again; false if it does not come round.
+    bool comes_round(const Op* branch, const Op* head);
+    /// The walk came by a conditional branch or skip.
     bool chose() const { return chose_; }
 
   private:
@@ -54,6 +67,9 @@ class LoopWalk {
     std::uint16_t step_pointer(int reg, int pre, int post);
     Value load(std::uint16_t address, bool byte);
     std::uint16_t poll(std::uint16_t address);
+    std::uint16_t probed(std::uint16_t address, std::uint16_t value) const {
+        return address == probe_.address ? value ^ probe_.flip : value;
+    }
     void store(std::uint16_t address, Value value, bool byte);
     Value half(Value word, bool high);
     Value joined(Value word, Value byte, bool high);
@@ -77,6 +93,7 @@ class LoopWalk {
     const Machine& m_;
     SkipLoops::Plan& plan_;
     LoopTrace& trace_;
+    Probe probe_;
     std::array<SkipLoops::Cell*, 16> w_{};                              ///< the W registers among the cells
     std::array<SkipLoops::Cell, SkipLoops::Plan::kMostCells> first_{};  ///< what the first walk found
     std::size_t first_count_ = 0;                                       ///< 0: this is the first walk

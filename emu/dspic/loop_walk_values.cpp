@@ -26,7 +26,7 @@ SkipLoops::Cell& LoopWalk::cell(std::uint16_t key) {
     SkipLoops::Cell& fresh = plan_.cells[plan_.count++];
     fresh = {};
     fresh.key = key;
-    fresh.start = key < 16 ? m_.st.w[key] : m_.ram[(key - kFirstRam) / 2];
+    fresh.start = key < 16 ? m_.st.w[key] : probed(key, m_.ram[(key - kFirstRam) / 2]);
     fresh.now = fresh.start;
     if (key < 16) w_[key] = &fresh;
     for (std::size_t i = 0; i < first_count_; ++i)
@@ -105,7 +105,8 @@ LoopWalk::Value LoopWalk::load(std::uint16_t address, bool byte) {
         word = read_cell(even);
     } else if (even < kFirstRam) {
         // A register: constant until the next event if nothing happens at a read.
-        if (even < 0x0020 || !m_.sfr.plain_read(even)) fail(Verdict::NotNow);
+        const bool known = probe_.on ? m_.sfr.quiet(even) : m_.sfr.plain_read(even);
+        if (even < 0x0020 || !known) fail(Verdict::NotNow);
         word = {poll(even), 0};
     } else {
         fail(Verdict::NotNow);
@@ -115,7 +116,7 @@ LoopWalk::Value LoopWalk::load(std::uint16_t address, bool byte) {
 
 /// A register's value, noted as one of the plan's conditions.
 std::uint16_t LoopWalk::poll(std::uint16_t address) {
-    const std::uint16_t value = m_.sfr.raw(address);
+    const std::uint16_t value = probe_.on ? probed(address, m_.sfr.quiet_read(address)) : m_.sfr.raw(address);
     for (std::size_t i = 0; i < plan_.polled_count; ++i)
         if (plan_.polled[i].address == address) return value;
     if (plan_.polled_count == plan_.polled.size()) fail(Verdict::NotNow);

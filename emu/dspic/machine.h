@@ -5,6 +5,7 @@
 #include "emu/dspic/core.h"
 #include "emu/dspic/isa.h"
 #include "emu/dspic/service_shortcut.h"
+#include "emu/dspic/waits/wait_watch.h"
 
 #include <bit>
 #include <cstring>
@@ -124,6 +125,7 @@ struct Machine {
     bool skip_idle = true;
     std::unique_ptr<SkipLoops> skip;
     ServiceShortcuts shortcuts;
+    WaitWatch waits;
 
     std::uint32_t pc_of(const Op* op) const {
         const auto index = static_cast<std::uint32_t>(op - code);

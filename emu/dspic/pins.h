@@ -5,8 +5,15 @@
 #include "emu/dspic/event_queue.h"
 
 #include <cstdint>
+#include <string_view>
 
 namespace puckloop::dspic {
+
+/// What is outside a pin, for reports.
+struct OutsidePin {
+    bool changes = true;          ///< false: its level stays what it is for the whole run
+    std::string_view function{};  ///< the board's name for it, or empty
+};
 
 /// Ports A..G as on the package; H and above do not exist on these parts.
 enum class PortLetter : std::uint8_t { A, B, C, D, E, F, G };
@@ -38,6 +45,8 @@ class Pins {
     /// Master of SPI module `unit` shifted out `bits` (8 or 16) bits, the last clock edge being now: what
     /// came in meanwhile. The chip select is an ordinary port pin. Without a board the line rests high.
     virtual std::uint16_t spi_exchange(int unit, std::uint16_t sent, int bits, Cycle now);
+    /// Bit 0..15 of a port. Unless a board knows better, anything may change.
+    virtual OutsidePin outside(PortLetter port, int bit) const;
     /// Chip::output_compare(unit) changed at cycle `now`.
     virtual void output_compare_changed(int unit, Cycle now);
 };
@@ -51,6 +60,9 @@ constexpr cosim::Time i2c_answer_time(const cosim::I2cPhase& answer) {
 inline void Pins::i2c_slave_answer(int, const cosim::I2cPhase&) {}
 inline std::uint16_t Pins::spi_exchange(int, std::uint16_t, int bits, Cycle) {
     return static_cast<std::uint16_t>((1u << bits) - 1u);
+}
+inline OutsidePin Pins::outside(PortLetter, int) const {
+    return {};
 }
 inline void Pins::output_compare_changed(int, Cycle) {}
 

@@ -36,6 +36,26 @@ class SfrSpace {
     /// Claims the word and routes its accesses; either hook may be null (plain storage on that side).
     void hook(std::uint16_t address, void* owner, ReadHook read, WriteHook write);
 
+    /// What a read would return, without its side effects, of a word whose read hook has some. For whoever
+    /// looks on; the program's reads do not come here.
+    void hook_quiet(std::uint16_t address, void* owner, ReadHook read) {
+        words_[address >> 1].quiet = read;
+        words_[address >> 1].owner = owner;
+    }
+    /// True where quiet_read() knows the word's value.
+    bool quiet(std::uint16_t address) const {
+        const Word& word = words_[address >> 1];
+        return !word.read || word.quiet;
+    }
+    std::uint16_t quiet_read(std::uint16_t address) const {
+        const Word& word = words_[address >> 1];
+        return word.quiet ? word.quiet(word.owner, address) : value_[address >> 1];
+    }
+    /// A model acts on the word or keeps it.
+    bool modelled(std::uint16_t address) const {
+        return words_[address >> 1].behaviour == Behaviour::Modelled;
+    }
+
     /// Writing the word the value that it holds does nothing, although a hook stands behind it.
     void mark_idempotent(std::uint16_t address) { words_[address >> 1].idempotent = true; }
     bool idempotent(std::uint16_t address) const {
@@ -90,6 +110,7 @@ class SfrSpace {
     struct Word {
         ReadHook read = nullptr;
         WriteHook write = nullptr;
+        ReadHook quiet = nullptr;
         void* owner = nullptr;
         const RegisterInfo* info = nullptr;
         std::uint16_t implemented = 0;

@@ -5,6 +5,7 @@
 #include "emu/dspic/steady_leap.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace puckloop::dspic {
 
@@ -121,12 +122,14 @@ Cycle clean_arrival(Machine& m, SkipLoops::Branch& known, Cycle arrival) {
 }  // namespace
 
 void forget_loops(Machine& m) {
+    m.waits.forget();
     m.skip->index.clear();
     m.skip->branches.clear();
     m.shortcuts.known.clear();
 }
 
 void try_skip(Machine& m, const Op* branch, const Op* head) {
+    note_arrival(m, branch, head);
     if (!m.skip_idle) return;
     SkipLoops::Branch& known = branch_at(m, static_cast<std::size_t>(branch - m.code));
     if (known.wait > 0) {
@@ -139,7 +142,9 @@ void try_skip(Machine& m, const Op* branch, const Op* head) {
         if (plan.iterations >= 2 && as_predicted(m, plan, arrival)) {
             const bool clean = !plan.proven || plan.clean_due == arrival;
             plan.proven = true;
+            if (!std::exchange(known.polls_noted, true) && plan.polled_count > 0) note_polls(m, branch, head);
             if (!clean || !steady_leap(m, known, arrival)) leap(m, plan, arrival);
+            note_leap(m, branch);
             plan.clean_due = clean_arrival(m, known, m.st.cycle + branch->cycles);
             advance(plan, 1);  // the real iteration that follows
             return;

@@ -98,6 +98,7 @@ struct SkipLoops {
     struct Branch {
         std::uint16_t wait = 0;     ///< arrivals until the next try
         std::uint8_t patience = 0;  ///< failures in a row
+        bool polls_noted = false;   ///< note_polls() was called for it
         bool walked = false;        ///< a walk came round once: no way out of the loop decides for all of it
         Plan plan;
         LoopTrace trace;

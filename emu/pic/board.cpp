@@ -146,6 +146,13 @@ std::uint16_t Board::levels(dspic::PortLetter port, dspic::Cycle /*now*/) {
     return levels_[static_cast<std::size_t>(port)];
 }
 
+dspic::OutsidePin Board::outside(dspic::PortLetter port, int bit) const {
+    for (const PinUse& pin : wiring::kPins)
+        if (pin.port == port && pin.bit == bit)
+            return {pin.role == Role::Input || pin.role == Role::InputLow, pin.function};
+    return {.changes = false};
+}
+
 double Board::analog(int channel, dspic::Cycle now) {
     double counts = values_[kAnalogWiring[static_cast<std::size_t>(channel)]].at(now);
     if (channel >= kFirstProximityChannel) {

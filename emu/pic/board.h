@@ -81,6 +81,8 @@ class Board : public dspic::Pins {
     void uart_sent(int unit, const cosim::UartFrame& frame) override { listener_.uart_sent(unit, frame); }
     void i2c_phase(int unit, const cosim::I2cPhase& phase) override { listener_.i2c_phase(unit, phase); }
 
+    dspic::OutsidePin outside(dspic::PortLetter port, int bit) const override;
+
     static constexpr int kPorts = 7;
 
   private:

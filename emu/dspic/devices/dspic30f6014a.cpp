@@ -13,6 +13,14 @@ constexpr RegisterInfo kRegisters[] = {
 #undef REGISTER
 };
 
+constexpr StatusBits kStatusBits[] = {
+#define DRIVEN(registers, bits) {registers, bits, true},
+#define MISSING(registers, bits) {registers, bits, false},
+#include "emu/dspic/devices/dspic30f6014a_status_bits.inc"
+#undef DRIVEN
+#undef MISSING
+};
+
 constexpr IrqName kInterrupts[] = {
 #define INTERRUPT(number, name, flag, enable, priority) {number, #name, flag, enable, priority},
 #include "emu/dspic/devices/dspic30f6014a_interrupts.inc"
@@ -41,6 +49,7 @@ constexpr DeviceInfo kDevice = {
     .ram_end = 0x2800,
     .y_start = 0x1800,
     .registers = kRegisters,
+    .status_bits = kStatusBits,
     .ifs = sfr::IFS0,
     .iec = sfr::IEC0,
     .ipc = sfr::IPC0,

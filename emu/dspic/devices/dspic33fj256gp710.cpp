@@ -14,6 +14,14 @@ constexpr RegisterInfo kRegisters[] = {
 #undef REGISTER
 };
 
+constexpr StatusBits kStatusBits[] = {
+#define DRIVEN(registers, bits) {registers, bits, true},
+#define MISSING(registers, bits) {registers, bits, false},
+#include "emu/dspic/devices/dspic33fj256gp710_status_bits.inc"
+#undef DRIVEN
+#undef MISSING
+};
+
 constexpr IrqName kInterrupts[] = {
 #define INTERRUPT(number, name, flag, enable, priority) {number, #name, flag, enable, priority},
 #include "emu/dspic/devices/dspic33fj256gp710_interrupts.inc"
@@ -37,6 +45,7 @@ constexpr DeviceInfo kDevice = {
     .ram_end = 0x8000,
     .y_start = 0x4800,
     .registers = kRegisters,
+    .status_bits = kStatusBits,
     .ifs = sfr33::IFS0,
     .iec = sfr33::IEC0,
     .ipc = sfr33::IPC0,

@@ -139,6 +139,7 @@ void I2cMaster::answer(const cosim::I2cPhase& phase, Cycle at) {
         state_.owns_bus = false;
     } else if (state_.activity == Activity::Transmit) {
         assign(stat, kAckstat, !phase.ack);
+        if (!phase.ack && address_sent_) ++refused_[sent_address_];
     } else if (stat & kRbf) {
         stat |= kI2cov;
     } else {
@@ -187,6 +188,8 @@ void I2cMaster::write_trn(void* owner, std::uint16_t address, std::uint16_t valu
     self.around_.events.schedule(self.slot_, state.buffer_empty);
     const bool address_byte = state.address_next;
     state.address_next = false;
+    self.address_sent_ = address_byte;
+    self.sent_address_ = static_cast<std::uint8_t>(value >> 1 & 0x7F);
     self.send(address_byte ? I2cPhaseKind::Start : I2cPhaseKind::Write, static_cast<std::uint8_t>(value), 0,
               self.clock_.time_of(self.around_.now + 1));
 }

@@ -23,6 +23,7 @@
 #include "emu/dspic/pins.h"
 
 #include <cstdint>
+#include <map>
 
 namespace puckloop::dspic {
 
@@ -52,6 +53,9 @@ class I2cMaster {
     /// No phase goes out before this cycle, unless an answer comes; kNoCycle while one is awaited. `now`:
     /// the next instruction starts there.
     Cycle earliest(Cycle now) const;
+    int unit() const { return setup_.unit; }
+    /// How often each 7-bit address was sent and not acknowledged.
+    const std::map<std::uint8_t, std::uint64_t>& refused() const { return refused_; }
 
     template <class Archive>
     void state(Archive& archive) {
@@ -94,6 +98,9 @@ class I2cMaster {
         return around_.sfr.raw(static_cast<std::uint16_t>(setup_.rcv + offset));
     }
 
+    std::map<std::uint8_t, std::uint64_t> refused_;
+    std::uint8_t sent_address_ = 0;  ///< 7 bits, of the address byte on the bus ...
+    bool address_sent_ = false;      ///< ... if it is one
     Surroundings around_;
     Setup setup_;
     const cosim::ClockDomain& clock_;

@@ -24,6 +24,7 @@ Ports::Ports(const Surroundings& around, const Setup& setup, Pins& pins)
         port.implemented = around_.sfr.info(place.tris)->implemented;
         around_.sfr.hook(place.tris, this, nullptr, write_tris);
         around_.sfr.hook(place.port, this, read_port, write_port);
+        around_.sfr.hook_quiet(place.port, this, look_at_port);
         around_.sfr.hook(place.lat, this, nullptr, write_port);
         if (place.odc) around_.sfr.hook(place.odc, this, nullptr, write_tris);
     }
@@ -172,6 +173,21 @@ void Ports::refresh() {
         if (!port.tris) continue;
         around_.sfr.raw(port.port) = pin_levels(i, around_.now) & digital_pins(i);
     }
+}
+
+std::uint16_t Ports::changeable(PortLetter letter) const {
+    const Port& port = at(letter);
+    std::uint16_t mask = 0;
+    for (int pin = 0; pin < 16; ++pin)
+        if ((port.implemented & ~port.driven) >> pin & 1 && pins_.outside(letter, pin).changes)
+            mask |= bit(pin);
+    return mask;
+}
+
+std::uint16_t Ports::look_at_port(void* owner, std::uint16_t address) {
+    const Ports& self = *static_cast<const Ports*>(owner);
+    const int index = self.index_of(address);
+    return self.pin_levels(index, self.around_.now) & self.digital_pins(index);
 }
 
 std::uint16_t Ports::read_port(void* owner, std::uint16_t address) {

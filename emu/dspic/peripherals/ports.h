@@ -67,6 +67,8 @@ class Ports {
     std::optional<bool> driven_level(int channel) const;
     /// The pin of AN`channel` is a digital one: cut off from the converters.
     bool digital(int channel) const;
+    /// Pins of the port that are inputs and whose level something outside may change.
+    std::uint16_t changeable(PortLetter port) const;
     /// Puts the pin levels into PORTx's storage.
     void refresh();
 
@@ -105,6 +107,7 @@ class Ports {
         void (*changed)(void*, bool, Cycle) = nullptr;
     };
 
+    static std::uint16_t look_at_port(void* owner, std::uint16_t address);
     static std::uint16_t read_port(void* owner, std::uint16_t address);
     static void write_port(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask);
     static void write_tris(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask);

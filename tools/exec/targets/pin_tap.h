@@ -32,6 +32,9 @@ class PinTap : public dspic::Pins {
     std::uint16_t spi_exchange(int unit, std::uint16_t sent, int bits, dspic::Cycle now) override {
         return inner_.spi_exchange(unit, sent, bits, now);
     }
+    dspic::OutsidePin outside(dspic::PortLetter port, int bit) const override {
+        return inner_.outside(port, bit);
+    }
     void output_compare_changed(int unit, dspic::Cycle now) override {
         inner_.output_compare_changed(unit, now);
     }

@@ -1,0 +1,88 @@
+#include "emu/dspic/waits/wait_watch.h"
+
+#include "emu/dspic/machine.h"
+#include "emu/dspic/skip_loops.h"
+#include "emu/dspic/waits/loop_conditions.h"
+#include "emu/dspic/waits/status_bits.h"
+
+#include <algorithm>
+
+namespace puckloop::dspic {
+
+namespace {
+
+constexpr double kUnknownRate = 14'745'600.0;  ///< the e-puck's
+constexpr double kFirstLook = 0.1;  ///< s in a loop, before it is looked at; then at three times that, ...
+constexpr double kStale = 0.5;      ///< s without an arrival end a stay
+constexpr Cycle kNextLook = 3;
+constexpr std::size_t kMostPolls = 100;
+
+Cycle seconds(const Machine& m, double length) {
+    return static_cast<Cycle>(length * (m.cycle_rate > 0 ? m.cycle_rate : kUnknownRate));
+}
+
+/// The program is at the stay's branch.
+void look(const Machine& m, WaitWatch::Stay& stay) {
+    stay.next_look = stay.last + kNextLook * (stay.last - stay.since);
+    stay.finding = find_conditions(m, stay.branch, stay.head);
+}
+
+}  // namespace
+
+void note_arrival(Machine& m, const Op* branch, const Op* head) {
+    WaitWatch& watch = m.waits;
+    const int level = cpu_level(m);
+    for (; watch.level > level; --watch.level)
+        watch.stays[static_cast<std::size_t>(watch.level)].branch = nullptr;
+    watch.level = level;
+    WaitWatch::Stay& stay = watch.stays[static_cast<std::size_t>(level)];
+    const Cycle now = m.st.cycle;
+    if (stay.branch == branch) [[likely]] {
+        if (now < stay.next_look) {
+            stay.last = now;
+            return;
+        }
+        if (now < stay.last + seconds(m, kStale)) {
+            stay.last = now;
+            return look(m, stay);
+        }
+    } else if (stay.branch != nullptr) {
+        // A loop within this one, or in what it calls, is part of it.
+        const bool inside = (branch >= stay.head && branch <= stay.branch) || m.st.w[15] > stay.stack;
+        if (inside && now < stay.last + seconds(m, kStale)) return;
+    }
+    stay = {branch, head, m.st.w[15], now, now, now + seconds(m, kFirstLook), {}};
+}
+
+void note_leap(Machine& m, const Op* branch) {
+    WaitWatch::Stay& stay = m.waits.stays[static_cast<std::size_t>(m.waits.level)];
+    if (stay.branch != branch) return;
+    stay.last = m.st.cycle;
+    if (stay.last >= stay.next_look) look(m, stay);
+}
+
+void note_polls(Machine& m, const Op* branch, const Op* head) {
+    if (m.waits.polls.size() >= kMostPolls) return;
+    const std::optional<LoopFinding> finding = find_conditions(m, branch, head);
+    if (!finding) return;
+    for (const LoopCondition& condition : finding->conditions) {
+        const RegisterInfo* info = m.sfr.info(condition.address);
+        if (condition.address >= SfrSpace::kWords * 2 || !condition.exact || !info) continue;
+        const std::uint16_t missing =
+            m.sfr.modelled(condition.address) ? missing_bits(m.device, *info) : 0xFFFF;
+        const auto bits = static_cast<std::uint16_t>(condition.mask & missing);
+        if (bits)
+            m.waits.polls.push_back({m.st.cycle, finding->first, finding->last, {condition.address, bits}});
+    }
+}
+
+const WaitWatch::Stay* present_stay(const Machine& m, int& level) {
+    for (level = m.waits.level; level >= 0; --level) {
+        const WaitWatch::Stay& stay = m.waits.stays[static_cast<std::size_t>(level)];
+        if (stay.branch != nullptr && stay.finding && m.st.cycle < stay.last + seconds(m, kStale))
+            return &stay;
+    }
+    return nullptr;
+}
+
+}  // namespace puckloop::dspic

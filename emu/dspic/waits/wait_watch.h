@@ -1,0 +1,71 @@
+#pragma once
+// Where a program waits: the loop that it has been going round in, at each CPU level, and since when.
+//
+// Every taken short backward branch is an arrival. A stay in a loop ends when another loop at the same depth
+// of the stack comes round, when nothing came round for half a second (of the loops behind it: its arrivals
+// are counted through calls and interrupts), at a reset, and, for a routine, when the program below it goes
+// on. A program that leaves a loop and is back in it within half a second without passing another loop counts
+// as having stayed: whoever says that a stay is a hang shows that it cannot have left (judge.h).
+
+#include "emu/dspic/event_queue.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace puckloop::dspic {
+
+struct Machine;
+struct Op;
+
+/// A word whose value decides whether a loop goes on: register below 0x0800, else RAM.
+struct LoopCondition {
+    std::uint16_t address = 0;
+    std::uint16_t mask = 0;  ///< bits that matter
+    bool exact = true;       ///< false: bits that may matter, no single one was found
+};
+
+/// What was found out about a loop while the program was in it.
+struct LoopFinding {
+    std::uint32_t first = 0, last = 0;      ///< its head and its branch, program addresses
+    std::vector<LoopCondition> conditions;  ///< none: nothing that the loop reads makes it end
+    bool ends = false;                      ///< it counts something that ends it
+};
+
+/// A loop that waited, at least once, for bits that silicon changes and no model does.
+struct MissingPoll {
+    Cycle cycle = 0;
+    std::uint32_t first = 0, last = 0;
+    LoopCondition condition;
+};
+
+struct WaitWatch {
+    struct Stay {
+        const Op* branch = nullptr;  ///< null: none
+        const Op* head = nullptr;
+        std::uint16_t stack = 0;  ///< W15 at the branch
+        Cycle since = 0, last = 0;
+        Cycle next_look = 0;
+        std::optional<LoopFinding> finding;
+    };
+    std::array<Stay, 16> stays;  ///< by CPU level
+    int level = 0;               ///< of the last arrival
+    std::vector<MissingPoll> polls;
+
+    void forget() {
+        stays = {};
+        level = 0;
+    }
+};
+
+/// At a taken backward branch, before anything is leapt over.
+void note_arrival(Machine& m, const Op* branch, const Op* head);
+/// After a leap at `branch`: the loop came round all the time.
+void note_leap(Machine& m, const Op* branch);
+/// At the first leap over iterations of a loop: whether it polls what no model drives.
+void note_polls(Machine& m, const Op* branch, const Op* head);
+/// The stay at the highest level that still lasts and was looked at; null if there is none.
+const WaitWatch::Stay* present_stay(const Machine& m, int& level);
+
+}  // namespace puckloop::dspic
