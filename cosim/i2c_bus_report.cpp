@@ -26,7 +26,7 @@ std::string I2cBusNode::device_list() const {
 
 std::vector<std::string> I2cBusNode::warnings() const {
     std::vector<std::string> lines;
-    // Firmware may well look for boards that are not there; a program on the Linux board wants its board.
+    // A main board says so itself.
     for (const auto& [who, times] : counters_.absent)
         if (options_.masters[who.first].waits)
             lines.push_back(fmt::format("{} addressed 0x{:02x} {} times and nobody acknowledged",

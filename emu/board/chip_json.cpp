@@ -1,5 +1,7 @@
 #include "emu/board/chip_json.h"
 
+#include "emu/board/chip_warnings.h"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -35,6 +37,17 @@ nlohmann::ordered_json chip_json(const dspic::Chip& chip) {
                                       {"pc", hexadecimal(touch.pc)},
                                       {"access", touch.write ? "write" : "read"},
                                       {"time_s", seconds(touch.cycle)}});
+    if (const std::optional<dspic::WaitReport> wait = chip.waiting()) {
+        json["waiting"] = {{"since_s", seconds(wait->since)}, {"hung", wait->hung}};
+        if (!wait->asleep) json["waiting"]["loop"] = {hexadecimal(wait->first), hexadecimal(wait->last)};
+        json["waiting"]["text"] = *waiting_text(chip, wait);
+    }
+    json["refused_addresses"] = Json::array();
+    for (const dspic::RefusedAddress& refused : report.refused_addresses)
+        json["refused_addresses"].push_back({{"module", refused.unit},
+                                             {"address", fmt::format("0x{:02x}", refused.address)},
+                                             {"times", refused.times}});
+    json["warnings"] = chip_warnings(chip);
     return json;
 }
 

@@ -96,6 +96,9 @@ void describe(Command& app, Arguments& a) {
     app.add_option("--log", o.bench.log_folder,
                    "folder for uart1.csv, uart2.csv, i2c.csv, pins.csv and board.log (rab)");
     app.add_flag("--json", o.json, "one JSON object on one line instead of text");
+    app.add_flag("--strict", o.strict,
+                 "status 1 if there is anything to warn of: a program that hangs, registers without a model, "
+                 "I2C addresses that nobody acknowledges");
     app.add_option("--seed", t.seed, "of the random streams")
         ->check(count_up_to(kMostSeeds))
         ->capture_default_str();

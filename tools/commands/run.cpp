@@ -107,6 +107,9 @@ void declare_run(Command& app, int& status) {
                      "wall-clock seconds after which a silent node ends the run")
         ->check(positive_number())
         ->type_name("S");
+    command->add_flag("--strict", request.strict,
+                      "status 1 if there is anything to warn of: firmware that hangs, registers without a "
+                      "model, I2C addresses that nobody acknowledges, faults that never fired, ...");
     command->add_flag("--list-parameters", options->list_parameters,
                       "print every physical parameter and where its value comes from");
     command->add_flag("--json", options->json, "print only the path of report.json");

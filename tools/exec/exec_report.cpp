@@ -1,6 +1,7 @@
 #include "tools/exec/exec_report.h"
 
 #include "emu/board/chip_json.h"
+#include "emu/board/chip_warnings.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -88,6 +89,7 @@ std::string json_report(Bench& bench, const image::Image& image, const ExecOutco
     Json json;
     json["stopped"] = outcome.stopped;
     json["success"] = outcome.success;
+    if (!outcome.failure.empty()) json["failure"] = outcome.failure;
     json["pc"] = at(outcome.pc);
     if (!outcome.symbol.empty()) json["symbol"] = outcome.symbol;
     json["image"] = {
@@ -133,10 +135,12 @@ std::string text_report(Bench& bench, const ExecOutcome& outcome) {
         text += fmt::format("trap: {} at {:.6f} s, pc {}\n", report.traps[i].name,
                             seconds(report.traps[i].cycle), at(report.traps[i].pc));
     if (report.traps.size() > kShownInText) text += fmt::format("traps: {} in all\n", report.traps.size());
-    for (const dspic::UnmodelledTouch& touch : report.unmodelled)
-        text += fmt::format("not modelled: {} {} at pc {}, {:.6f} s\n", touch.write ? "write to" : "read of",
-                            touch.name.empty() ? at(touch.address) : touch.name, at(touch.pc),
-                            seconds(touch.cycle));
+    const std::vector<std::string> warnings = board::chip_warnings(bench.chip());
+    for (std::size_t i = 0; i < warnings.size() && i < kShownInText; ++i)
+        text += fmt::format("warning: {}\n", warnings[i]);
+    if (warnings.size() > kShownInText)
+        text += fmt::format("warning: and {} more (--json has them all)\n", warnings.size() - kShownInText);
+    if (!outcome.failure.empty()) text += fmt::format("failed: {}\n", outcome.failure);
     if (bench.master() != nullptr) text += script_text(bench.master()->report());
     if (const std::string bus = bench.target().i2c_devices_report(); !bus.empty())
         text += bus_text(nlohmann::json::parse(bus));

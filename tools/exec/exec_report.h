@@ -16,6 +16,7 @@ struct ExecOutcome {
     std::string symbol;    ///< of `pc`, if the image has one
     double wall_s = 0.0;
     bool success = false;
+    std::string failure{};  ///< why not, where the rest of the report does not say it
 };
 
 /// One JSON object on one line.

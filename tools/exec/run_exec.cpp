@@ -1,6 +1,7 @@
 // `puckloop exec`: from options to a bench, through the run, to the report.
 
 #include "base/error.h"
+#include "emu/board/chip_warnings.h"
 #include "emu/image/device.h"
 #include "tools/exec/ends/script_end.h"
 #include "tools/exec/exec_report.h"
@@ -154,6 +155,11 @@ int run_exec(const ExecOptions& options) {
             if (stop.pc == outcome.pc) outcome.stopped = stop.name;
     outcome.success = !stuck && (outcome.end == Bench::End::Address ||
                                  (outcome.end == Bench::End::Time && options.stop_at.empty()));
+    if (options.strict && outcome.success) {
+        const std::vector<std::string> warnings = board::chip_warnings(bench.chip());
+        outcome.success = warnings.empty();
+        if (!warnings.empty()) outcome.failure = "with --strict a warning is a failure: " + warnings.front();
+    }
 
     // Standard output belongs to the UART when `-` stands there; JSON is then its last line.
     if (options.json)

@@ -21,6 +21,7 @@ struct RunRequest {
     bool realtime = false;
     unsigned threads = 0;  ///< of this process with in_process; 0: as many as serve
     double stall_seconds = 10.0;
+    bool strict = false;  ///< a run with warnings has failed
 };
 
 }  // namespace puckloop::tools

@@ -11,6 +11,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
+constexpr std::size_t kShown = 10;  ///< warnings on the terminal
+
 std::string_view reason_name(cosim::EndReason reason) {
     switch (reason) {
     case cosim::EndReason::Duration:
@@ -100,6 +102,14 @@ void judge(cosim::Outcome& outcome) {
     }
 }
 
+void judge_strictly(const RunSetup& setup, cosim::Outcome& outcome) {
+    if (!outcome.success) return;
+    const std::vector<std::string> warnings = warnings_of(setup, outcome);
+    if (warnings.empty()) return;
+    outcome.success = false;
+    outcome.text = "with --strict a warning is a failure: " + warnings.front();
+}
+
 void write_report(const RunSetup& setup, const cosim::Outcome& outcome, ReservedFile& file) {
     ordered_json nodes = ordered_json::object();
     for (const auto& node : outcome.nodes)
@@ -137,8 +147,11 @@ std::string summary(const RunSetup& setup, const cosim::Outcome& outcome) {
         fmt::format("{:.3f} s simulated in {:.1f} s ({:.1f}x real time)",
                     cosim::to_seconds(outcome.simulated), outcome.wall_s, real_time_factor(outcome));
     if (outcome.success && !outcome.text.empty()) text += fmt::format("\nended: {}", outcome.text);
-    for (const std::string& warning : warnings_of(setup, outcome))
-        text += fmt::format("\nwarning: {}", warning);
+    const std::vector<std::string> warnings = warnings_of(setup, outcome);
+    for (std::size_t i = 0; i < warnings.size() && i < kShown; ++i)
+        text += fmt::format("\nwarning: {}", warnings[i]);
+    if (warnings.size() > kShown)
+        text += fmt::format("\nwarning: and {} more in report.json", warnings.size() - kShown);
     text += fmt::format("\ntrace {}\nresults in {}", outcome.trace_sha256, setup.out.string());
     return text;
 }

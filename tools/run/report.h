@@ -21,6 +21,9 @@ std::vector<std::string> warnings_of(const RunSetup& setup, const cosim::Outcome
 /// A run that lasted as long as it should has failed nevertheless if a program never touched its robot.
 void judge(cosim::Outcome& outcome);
 
+/// A run with warnings has failed, where the user asked for it.
+void judge_strictly(const RunSetup& setup, cosim::Outcome& outcome);
+
 /// A few lines for the terminal: how it ended, how fast, what to look at.
 std::string summary(const RunSetup& setup, const cosim::Outcome& outcome);
 

@@ -94,6 +94,7 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
                         cosim::to_seconds(outcome.stop_time.value_or(outcome.simulated)));
     }
     judge(outcome);
+    if (request.strict) judge_strictly(setup, outcome);
     write_results(setup, outcome, report);
     return outcome;
 }
