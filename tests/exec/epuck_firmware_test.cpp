@@ -250,11 +250,11 @@ void check_ircom(Rig& rig) {
     rig.clear_changes();
     const Answer answer = exchange(rig, {0, 0, 0, 0, 0, 0, 0, 0, 1, 0xA5, 'N', 0}, 0.15);
     REQUIRE(answer.bytes.size() == kSensorState);
-    // 31.3 ms of word and a loop of 50 000 x 15 cycles make 82 ms; the fact sheet expects 82 to 90. Here the
-    // listening interrupts (T1, and an ADC handler that looks at eight channels each scan) take 39 % of the
-    // loop's time: 114 ms.
-    CHECK(answer.delay_s > 0.082);
-    CHECK(answer.delay_s < 0.118);
+    // 31.3 ms of word and a loop of 50 000 x 15 cycles make 82 ms, which the fact sheet gives; the listening
+    // interrupts take 39 % of the loop's time: 114 ms, or 109 where a proximity pass comes in between
+    // (docs/ircom.md, ircom_timing_test.cpp).
+    CHECK(answer.delay_s > 0.108);
+    CHECK(answer.delay_s < 0.116);
     CHECK(word(answer.bytes, 58) == 0);  // nobody answered
     // Twelve bits: two MARK, 1 0 1 0 0 1 0 1, check 00. MARK has ten edges, SPACE five.
     std::vector<double> edges;
