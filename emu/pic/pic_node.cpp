@@ -100,6 +100,7 @@ void PicNode::receive(const cosim::Message& message) {
         chip_->i2c_answer(kI2cUnit, *phase);
     } else if (const auto* signal = std::get_if<cosim::Signal>(&message.payload)) {
         const dspic::Cycle now = chip_->clock().first_cycle_at(message.time);
+        if (signal->id == kResetButton && signal->value > board_.signal(kResetButton)) chip_->mclr();
         if (const auto port = board_.set_signal(signal->id, signal->value, now)) chip_->pins_changed(*port);
     }
 }

@@ -84,6 +84,7 @@ std::vector<SignalInfo> build() {
         b.counts(fmt::format("mic_level{}", i), 0,
                  fmt::format("sound about mic{}: largest minus smallest of 100 samples", i));
     b.input("mic_lost", "1", 0, 1, 0, "share of microphone samples that hold the one before");
+    b.input("reset", "level", 0, 1, 0, "reset button; a change to 1 resets the chip (MCLR)");
     return b.list;
 }
 

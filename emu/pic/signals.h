@@ -34,7 +34,8 @@ inline constexpr SignalId kCameraReset = 59;
 // Inputs that came later; ids of the others stay what they are in recorded runs.
 inline constexpr SignalId kMicrophoneLevel = 60;  ///< 3: volume of the sound at microphone i, counts
 inline constexpr SignalId kMicrophoneLost = 63;   ///< share of microphone samples that hold the one before
-inline constexpr SignalId kSignalCount = 64;
+inline constexpr SignalId kResetButton = 64;  ///< 1 = the reset button is pressed (MCLR), which resets once
+inline constexpr SignalId kSignalCount = 65;
 
 inline constexpr int kProximityCount = 8;
 inline constexpr int kMicrophoneCount = 3;

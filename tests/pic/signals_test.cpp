@@ -29,6 +29,7 @@ TEST_CASE("the board's signal list stands where its ids say") {
     CHECK(list[pic::kCameraReset].name == "camera_reset");
     CHECK(list[pic::kMicrophoneLevel + 2].name == "mic_level2");
     CHECK(list[pic::kMicrophoneLost].name == "mic_lost");
+    CHECK(list[pic::kResetButton].name == "reset");
 }
 
 TEST_CASE("signal names are unique, found by name, and inputs come before outputs but for later ones") {

@@ -22,6 +22,7 @@ class PicTarget : public DspicTarget, private pic::BoardListener {
     std::span<const cosim::SignalInfo> own_signals() const override { return pic::signals(); }
     double own_signal(std::uint16_t id) const override { return board_.signal(id); }
     void set_own_signal(std::uint16_t id, double value) override {
+        if (id == pic::kResetButton && value > board_.signal(id)) chip().mclr();
         if (const auto port = board_.set_signal(id, value, chip().cycle())) chip().pins_changed(*port);
     }
     void passed(dspic::Cycle now) override { board_.settle(now); }
