@@ -58,17 +58,19 @@ Dynamics::Impl::Impl(const Parameters& parameters, const std::vector<Shape>& fix
     dWorldSetContactMaxCorrectingVel(world, contact.max_velocity);
     dWorldSetContactSurfaceLayer(world, contact.surface_layer);
     floor = dCreatePlane(nullptr, 0, 0, 1, 0);
-    for (const auto& shape : fixed_shapes) {
-        dGeomID geom = nullptr;
-        if (shape.kind == Shape::Kind::Box) {
-            geom = dCreateBox(nullptr, 2 * shape.half_length, 2 * shape.half_width, shape.height);
-            dGeomSetPosition(geom, shape.x, shape.y, shape.height / 2);
-            dMatrix3 rotation;
-            dRFromAxisAndAngle(rotation, 0, 0, 1, std::atan2(shape.sine, shape.cosine));
-            dGeomSetRotation(geom, rotation);
-        }
-        fixed.push_back({shape, geom});
-    }
+    for (const auto& shape : fixed_shapes)
+        set_fixed(fixed.emplace_back(), shape);
+}
+
+void Dynamics::Impl::set_fixed(FixedBody& body, const Shape& shape) {
+    body.shape = shape;
+    if (shape.kind != Shape::Kind::Box) return;
+    if (body.geom == nullptr)
+        body.geom = dCreateBox(nullptr, 2 * shape.half_length, 2 * shape.half_width, shape.height);
+    dGeomSetPosition(body.geom, shape.x, shape.y, shape.height / 2);
+    dMatrix3 rotation;
+    dRFromAxisAndAngle(rotation, 0, 0, 1, std::atan2(shape.sine, shape.cosine));
+    dGeomSetRotation(body.geom, rotation);
 }
 
 Dynamics::Impl::~Impl() {
@@ -132,7 +134,7 @@ void Dynamics::Impl::take_along(std::size_t index) {
     const double x = now.x - robot.floor_before.x, y = now.y - robot.floor_before.y,
                  turn = now.turn - robot.floor_before.turn;
     robot.floor_before = now;
-    if (x == 0.0 && y == 0.0 && turn == 0.0) return;
+    if (robot.hand != nullptr || (x == 0.0 && y == 0.0 && turn == 0.0)) return;
     const auto held = [&](const RobotContact& c) {
         return c.robot == index || (c.kind == RobotContact::Kind::Robot && c.other == index);
     };

@@ -62,6 +62,20 @@ class Dynamics {
     void drive(std::size_t robot, double left, double right);
     /// How the floor moves under the robot from the next step on; without this it stands still.
     void move_floor(std::size_t robot, const FloorVelocity& velocity);
+    // Hands that reach in between two steps (physics/events/dynamics_hands.cpp).
+    std::size_t add_fixed(const Shape& shape);
+    /// Of the same kind and size as before.
+    void place_fixed(std::size_t index, const Shape& shape);
+    void remove_fixed(std::size_t index);
+    /// Standing on the floor, moving at (vx, vy) m/s.
+    void place_object(std::size_t index, double x, double y, double heading, double vx, double vy);
+    void remove_object(std::size_t index);
+    /// Held fast in the air: nothing touches it, its wheels turn freely.
+    void hold_robot(std::size_t index);
+    void release_robot(std::size_t index);
+    /// Upright and at rest; held or not as before.
+    void place_robot(std::size_t index, double x, double y, double heading);
+
     /// One kStepSeconds. Throws RunError when a body has left the numbers.
     void step();
 

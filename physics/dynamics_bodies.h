@@ -21,6 +21,7 @@ struct RobotBody {
     std::array<double, 2> last_angle{};
     std::optional<FloorVelocity> floor;  // if it moves
     FloorVelocity floor_before;          // in the step before
+    dJointID hand = nullptr;             // holds it in the air
     Shape shape;
     RobotState state;
 };
@@ -29,6 +30,7 @@ struct ObjectBody {
     dBodyID body = nullptr;
     dGeomID geom = nullptr;
     double standing_height = 0.0;  // of the centre of mass
+    bool present = true;
     Shape shape;
     ObjectState state;
 };
@@ -36,6 +38,7 @@ struct ObjectBody {
 struct FixedBody {
     Shape shape;
     dGeomID geom = nullptr;  // boxes only: what movable boxes meet
+    bool present = true;
 };
 
 struct Dynamics::Impl {
@@ -44,6 +47,7 @@ struct Dynamics::Impl {
 
     void read_robot(RobotBody& robot) const;
     static void read_object(ObjectBody& object);
+    void set_fixed(FixedBody& body, const Shape& shape);
     void damp_pitch(const RobotBody& robot) const;
     void take_along(std::size_t index);
 

@@ -145,23 +145,25 @@ void Dynamics::Impl::robot_meets_others(std::size_t index) {
             robot_contacts.push_back({index, kind, other});
     };
     for (std::size_t i = 0; i < fixed.size(); ++i)
-        meet(RobotContact::Kind::Fixed, i, nullptr, fixed[i].shape);
+        if (fixed[i].present) meet(RobotContact::Kind::Fixed, i, nullptr, fixed[i].shape);
     for (std::size_t i = 0; i < index; ++i)
-        meet(RobotContact::Kind::Robot, i, robots[i].chassis, robots[i].shape);
+        if (robots[i].hand == nullptr) meet(RobotContact::Kind::Robot, i, robots[i].chassis, robots[i].shape);
     for (std::size_t i = 0; i < objects.size(); ++i)
-        meet(RobotContact::Kind::Object, i, objects[i].body, objects[i].shape);
+        if (objects[i].present) meet(RobotContact::Kind::Object, i, objects[i].body, objects[i].shape);
 }
 
 void Dynamics::Impl::find_contacts() {
     robot_contacts.clear();
     for (std::size_t i = 0; i < robots.size(); ++i) {
         const auto& robot = robots[i];
+        if (robot.hand != nullptr) continue;
         wheels_on_floor(robot);
         skids_on_floor(robot);
         robot_meets_others(i);
     }
     for (std::size_t i = 0; i < objects.size(); ++i) {
         const auto& object = objects[i];
+        if (!object.present) continue;
         const bool is_box = object.shape.kind == Shape::Kind::Box;
         object_on_floor(object);
         const auto meet = [&](dBodyID body, const Shape& shape, dGeomID geom) {
@@ -174,9 +176,9 @@ void Dynamics::Impl::find_contacts() {
                 in_plan(body, shape, object.body, object.shape, contact.mu_object);
         };
         for (const auto& thing : fixed)
-            meet(nullptr, thing.shape, thing.geom);
+            if (thing.present) meet(nullptr, thing.shape, thing.geom);
         for (std::size_t j = 0; j < i; ++j)
-            meet(objects[j].body, objects[j].shape, objects[j].geom);
+            if (objects[j].present) meet(objects[j].body, objects[j].shape, objects[j].geom);
     }
 }
 

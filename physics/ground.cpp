@@ -58,7 +58,8 @@ std::array<double, kGroundSensors> GroundRow::counts(const std::array<double, kG
     std::array<double, kGroundSensors> counts{};
     for (std::size_t i = 0; i < kGroundSensors; ++i) {
         const double lift = p.height - kDrawnHeight - p.x * std::sin(pitch) + p.y[i] * std::sin(robot.roll);
-        const double signal = std::clamp(1.0 - p.height_slope * lift, kLeastSignal, kMostSignal);
+        const double signal =
+            now.no_floor ? 0.0 : std::clamp(1.0 - p.height_slope * lift, kLeastSignal, kMostSignal);
         const double level = (p.black + (p.white - p.black) * greys[i]) * signal * warm;
         counts[i] = std::clamp(p.gain[i] * level + p.offset[i], 0.0, p.saturation);
     }

@@ -17,12 +17,18 @@ double floor_grey(double base, std::span<const Patch> patches, double x, double 
 struct GroundMoment {
     double seconds = 0.0;
     double acceleration = 0.0;  ///< m/s2 forward, over the last 0.1 s
+    bool no_floor = false;      ///< the robot is held in the air: nothing comes back
 };
 
 class GroundRow {
   public:
     GroundRow(const GroundParameters& parameters, double base_grey, std::span<const Patch> patches);
 
+    /// The floor changed; `patches` must outlive it.
+    void set_floor(double base_grey, std::span<const Patch> patches) {
+        base_grey_ = base_grey;
+        patches_ = patches;
+    }
     /// Mean grey under each sensor: left, centre, right.
     std::array<double, kGroundSensors> greys(const RobotState& robot) const;
     /// Noise-free counts over such greys, 0..saturation; of `robot` pitch and roll count.

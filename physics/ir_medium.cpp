@@ -18,7 +18,7 @@ Parameters parameters_of(const World& world, const Robot& robot) {
 
 }  // namespace
 
-IrMedium::IrMedium(const World& world) : fixed_(fixed_shapes(world)) {
+IrMedium::IrMedium(const World& world, bool changes) : fixed_(fixed_shapes(world)), changes_world_(changes) {
     for (const Robot& robot : world.robots) {
         const Parameters parameters = parameters_of(world, robot);
         const auto& body = parameters.robot;
@@ -62,17 +62,37 @@ IrMedium::IrMedium(const World& world) : fixed_(fixed_shapes(world)) {
                               IrFate(receiver.model.parameters(), world.seed, pair)});
             spells_.emplace_back(sender.model.parameters(), world.seed, sender.name + "," + receiver.name);
         }
-    const auto mirror = [this](const std::vector<Shape>& shapes) {
-        for (const Shape& shape : shapes)
-            if (shape.kind == Shape::Kind::Box) mirrors_.push_back(&shape);
-    };
-    mirror(fixed_);
-    mirror(moving_);
+    for (const Shape& shape : moving_)
+        heights_.push_back(shape.height);
+    find_mirrors();
+}
+
+void IrMedium::find_mirrors() {
+    mirrors_.clear();
+    for (const auto* shapes : {&fixed_, &moving_, &added_})
+        for (const Shape& shape : *shapes)
+            if (shape.kind == Shape::Kind::Box && shape.height > 0.0) mirrors_.push_back(&shape);
+}
+
+void IrMedium::set_out(std::size_t index, bool out) {
+    moving_[index].height = out ? 0.0 : heights_[index];
+    if (board_of_[index] < boards_.size()) boards_[board_of_[index]].out = out;
+    find_mirrors();
+    ++changes_;
+}
+
+void IrMedium::set_shape(bool fixed, std::size_t index, const Shape& shape) {
+    auto& shapes = fixed ? fixed_ : added_;
+    if (shapes.size() <= index) shapes.resize(index + 1);
+    shapes[index] = shape;
+    find_mirrors();
+    ++changes_;
 }
 
 bool IrMedium::can_hear(std::size_t board) const {
     const auto& p = boards_[board].model.parameters();
-    return boards_.size() > 1 || p.self_coupling > 0.0 || (p.reflection > 0.0 && !mirrors_.empty());
+    return boards_.size() > 1 || p.self_coupling > 0.0 ||
+           (p.reflection > 0.0 && (changes_world_ || !mirrors_.empty()));
 }
 
 void IrMedium::move(std::size_t index, double x, double y, double heading) {
@@ -117,6 +137,8 @@ std::vector<const Shape*> IrMedium::between(const Board& a, const Board& b) cons
     };
     for (const Shape& shape : fixed_)
         see(shape);
+    for (const Shape& shape : added_)
+        see(shape);
     for (std::size_t i = 0; i < moving_.size(); ++i)
         if (i != a.robot && i != b.robot) see(moving_[i]);
     return shapes;
@@ -126,6 +148,10 @@ void IrMedium::couple_row(std::size_t sender) {
     Board& from = boards_[sender];
     const IrDrive drive{from.model.power(from.potentiometer), from.carrier_hz};
     for (std::size_t r = 0; r < boards_.size(); ++r) {
+        if (from.out || boards_[r].out) {
+            path(sender, r).coupling = {};
+            continue;
+        }
         const bool reflects = parameters(r).reflection > 0.0;
         const auto mirrors =
             reflects ? std::span<const Shape* const>(mirrors_) : std::span<const Shape* const>();

@@ -30,7 +30,8 @@ class IrMedium {
   public:
     /// Boards are the robots with `rab`, in the description's order. The description must have passed
     /// check().
-    explicit IrMedium(const World& world);
+    /// `changes`: events may alter what is in the world, so that even a lone board may come to hear itself.
+    explicit IrMedium(const World& world, bool changes = false);
     IrMedium(const IrMedium&) = delete;
     IrMedium& operator=(const IrMedium&) = delete;
 
@@ -42,6 +43,11 @@ class IrMedium {
 
     /// Pose of a robot or movable thing; `index` as in moving_names().
     void move(std::size_t index, double x, double y, double heading);
+    /// A robot or movable thing is lifted or taken away, or is back: nothing passes between a board that is
+    /// out and any other, and what is out shades nothing.
+    void set_out(std::size_t index, bool out);
+    /// One of the world's fixed things, or one that was added while it ran; height 0: it is gone.
+    void set_shape(bool fixed, std::size_t index, const Shape& shape);
     /// Takes effect with the next begin_burst() or relight().
     void set_power(std::size_t board, double potentiometer);
     void set_carrier(std::size_t board, double hertz);
@@ -78,6 +84,7 @@ class IrMedium {
         double potentiometer = kPotentiometerAtPowerOn;
         double carrier_hz = 0.0;
         std::uint64_t coupled_at = 0;  ///< `changes_` when its row was worked out
+        bool out = false;              ///< its robot is held in the air
     };
     struct Path {
         IrCoupling coupling;
@@ -102,7 +109,11 @@ class IrMedium {
     std::vector<Path> paths_;  // [sender][receiver]
     std::vector<IrSpell> spells_;
     std::vector<IrArray<float>> dark_level_;
-    std::vector<Shape> fixed_, moving_;
+    void find_mirrors();
+
+    std::vector<Shape> fixed_, moving_, added_;
+    std::vector<double> heights_;  // of what moves, when it is not out
+    bool changes_world_;
     std::vector<const Shape*> mirrors_;
     std::vector<std::size_t> board_of_;  // of each moving body; board_count() for none
     std::uint64_t changes_ = 1;

@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 
 namespace puckloop::physics {
 
@@ -65,6 +67,7 @@ struct IrNode::Impl {
 
     PortIndex world_port() const { return static_cast<PortIndex>(receivers.size()); }
     void take(const Message& message);
+    void take_scene(std::size_t id, double value);
     /// Everything stamped `now` has been taken.
     void apply(Time now);
     /// The sender's light has changed; `everywhere`: at boards that it no longer reaches, too.
@@ -85,10 +88,15 @@ struct IrNode::Impl {
     std::vector<std::uint16_t> masks;
     std::vector<IrOutput> released;
     bool any_moved = false;
+    std::map<std::size_t, ShapeValues> shapes;  ///< by number of the first signal
+    std::set<std::size_t> altered;              ///< of those, by the messages of one instant
 };
 
 IrNode::Impl::Impl(const World& description, const IrNodeOptions& options)
-    : world(checked(description)), name(options.name), medium(world), frames(medium, options.frames_csv) {
+    : world(checked(description)),
+      name(options.name),
+      medium(world, options.changes),
+      frames(medium, options.frames_csv) {
     for (const Robot& robot : world.robots) {
         poses.push_back({robot.x, robot.y, robot.heading});
         if (!robot.rab) continue;
@@ -116,7 +124,10 @@ void IrNode::Impl::take(const Message& message) {
     if (signal == nullptr) return;
     if (message.port == world_port()) {
         const std::size_t body = signal->id / kPoseSignals;
-        if (body >= poses.size()) return;
+        if (body >= poses.size()) {
+            take_scene(signal->id, signal->value);
+            return;
+        }
         poses[body][signal->id % kPoseSignals] = signal->value;
         moved[body] = any_moved = true;
         return;
@@ -136,6 +147,19 @@ void IrNode::Impl::take(const Message& message) {
         masks[board] = static_cast<std::uint16_t>(masks[board] & ~(1U << what));
 }
 
+/// A body lifted or taken away, a shape changed: once all of the instant is here, for a shape.
+void IrNode::Impl::take_scene(std::size_t id, double value) {
+    const SceneSignals ids{poses.size()};
+    any_moved = true;
+    if (id < ids.out(poses.size())) {
+        medium.set_out(id - ids.out(0), value != 0.0);
+        return;
+    }
+    const std::size_t offset = id - ids.shape(true, 0);
+    shapes[offset / kShapeSignals][offset % kShapeSignals] = value;
+    altered.insert(offset / kShapeSignals);
+}
+
 void IrNode::Impl::mark(std::size_t sender, bool everywhere) {
     for (std::size_t r = 0; r < receivers.size(); ++r)
         if (everywhere || medium.coupled(sender, r)) reached[r] = true;
@@ -149,6 +173,9 @@ void IrNode::Impl::apply(Time now) {
         for (std::size_t i = 0; i < poses.size(); ++i)
             if (moved[i]) medium.move(i, poses[i][0], poses[i][1], poses[i][2]);
         std::fill(moved.begin(), moved.end(), false);
+        for (const std::size_t number : altered)
+            medium.set_shape(number % 2 == 0, number / 2, shape_from(shapes[number]));
+        altered.clear();
         any_moved = false;
         for (std::size_t s = 0; s < receivers.size(); ++s) {
             if (medium.emitters(s) == 0 || touched[s] || now - looked[s] < refresh[s]) continue;
@@ -232,8 +259,9 @@ std::string IrNode::finish() {
 std::unique_ptr<cosim::Node> make_ir_node(std::string_view json) {
     try {
         const auto spec = nlohmann::json::parse(json);
-        return std::make_unique<IrNode>(from_json(spec.at("world").dump()),
-                                        IrNodeOptions{spec.value("name", "ir"), spec.value("csv", "")});
+        return std::make_unique<IrNode>(
+            from_json(spec.at("world").dump()),
+            IrNodeOptions{spec.value("name", "ir"), spec.value("csv", ""), spec.value("changes", false)});
     } catch (const nlohmann::json::exception& error) {
         throw InputError("", "infra-red medium", error.what());
     }

@@ -19,6 +19,7 @@ namespace puckloop::physics {
 struct IrNodeOptions {
     std::string name = "ir";
     std::string frames_csv{};  ///< file for what was on the air (physics/ir_frames.h); empty: none
+    bool changes = false;      ///< events change the world: the port "world" has more than poses
 };
 
 class IrNode final : public cosim::Node {
@@ -42,7 +43,7 @@ class IrNode final : public cosim::Node {
     std::unique_ptr<Impl> impl_;
 };
 
-/// {"kind": "ir", "name", "world": as to_json(World) writes it, "csv": file or ""}.
+/// {"kind": "ir", "name", "world": as to_json(World) writes it, "csv": file or "", "changes": bool}.
 std::unique_ptr<cosim::Node> make_ir_node(std::string_view json);
 
 }  // namespace puckloop::physics

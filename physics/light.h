@@ -20,6 +20,11 @@ class LightRing {
 
     /// Noise-free ambient counts, 0..4095.
     std::array<double, kProximitySensors> sense(const SensorView& view) const;
+    /// The room changed; `lamps` must outlive it.
+    void set_room(double ambient_level, std::span<const Lamp> lamps) {
+        ambient_level_ = ambient_level;
+        lamps_ = lamps;
+    }
     bool varies_with_time() const { return parameters_.flicker > 0.0; }
 
   private:

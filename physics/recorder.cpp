@@ -54,9 +54,7 @@ Recorder::Recorder(const WorldModel& world)
           static_cast<std::uint64_t>(std::llround(world.description().recording.period / kStepSeconds))),
       trajectory_(in_directory(world, "trajectory.csv"), "t_s,robot,x_m,y_m,theta_rad"),
       sensors_(in_directory(world, "sensors.csv"), sensors_header()) {
-    if (!world.object_names().empty())
-        objects_ =
-            std::make_unique<CsvFile>(in_directory(world, "objects.csv"), "t_s,object,x_m,y_m,theta_rad");
+    std::remove(in_directory(world, "objects.csv").c_str());  // of an earlier run
     write(world);
 }
 
@@ -78,14 +76,32 @@ void Recorder::write(const WorldModel& world) {
             line += fmt::format(",{:.0f}", world.robot(i).drive(side).steps());
         sensors_.row(line);
     }
-    for (std::size_t i = 0; i < world.object_names().size(); ++i) {
-        const auto& s = world.object(i);
-        objects_->row(fmt::format("{:.3f},{},{:.6f},{:.6f},{:.6f}", t, world.object_names()[i], tidy(s.x),
-                                  tidy(s.y), tidy(s.heading)));
-    }
+    write_objects(world);
     trajectory_.flush();
     sensors_.flush();
     if (objects_) objects_->flush();
+}
+
+/// Movable things, and fixed ones that have been moved or added by hand; none that was taken away.
+void Recorder::write_objects(const WorldModel& world) {
+    for (std::size_t i = 0; i < world.object_names().size(); ++i)
+        if (world.object_shape(i).height > 0.0)
+            object_row(world, world.object_names()[i], world.object(i).x, world.object(i).y,
+                       world.object(i).heading);
+    for (const std::size_t i : world.fixed_by_hand()) {
+        const Shape& shape = world.fixed(i);
+        if (shape.height > 0.0)
+            object_row(world, world.fixed_names()[i], shape.x, shape.y, std::atan2(shape.sine, shape.cosine));
+    }
+}
+
+void Recorder::object_row(const WorldModel& world, const std::string& name, double x, double y,
+                          double heading) {
+    if (!objects_)
+        objects_ =
+            std::make_unique<CsvFile>(in_directory(world, "objects.csv"), "t_s,object,x_m,y_m,theta_rad");
+    objects_->row(fmt::format("{:.3f},{},{:.6f},{:.6f},{:.6f}", world.seconds(), name, tidy(x), tidy(y),
+                              tidy(heading)));
 }
 
 }  // namespace puckloop::physics

@@ -1,5 +1,5 @@
 #pragma once
-// What a run leaves on disk about the world: trajectory.csv, sensors.csv and, where things can move,
+// What a run leaves on disk about the world: trajectory.csv, sensors.csv and, where things move or are moved,
 // objects.csv. Every row is flushed as it is written, so that a run that dies keeps its data.
 
 #include "physics/world_model.h"
@@ -36,11 +36,13 @@ class Recorder {
 
   private:
     void write(const WorldModel& world);
+    void write_objects(const WorldModel& world);
+    void object_row(const WorldModel& world, const std::string& name, double x, double y, double heading);
 
     std::uint64_t period_steps_;
     CsvFile trajectory_;
     CsvFile sensors_;
-    std::unique_ptr<CsvFile> objects_;
+    std::unique_ptr<CsvFile> objects_;  // from the first one on
 };
 
 }  // namespace puckloop::physics

@@ -10,6 +10,11 @@ constexpr double kGroundFullScale = 1023;
 constexpr double kAccelerationWindow = 0.1;  // s: what a log at the control period calls acceleration
 }  // namespace
 
+template <std::size_t N>
+void RobotModel::store(std::size_t channel, const std::array<double, N>& values) {
+    std::copy(values.begin(), values.end(), channels_.begin() + static_cast<std::ptrdiff_t>(channel));
+}
+
 RobotModel::RobotModel(const World& world, const Robot& robot, const Parameters& parameters)
     : parameters_(parameters),
       ambient_light_(world.ambient_light),
@@ -29,13 +34,21 @@ RobotModel::RobotModel(const World& world, const Robot& robot, const Parameters&
       ears_(parameters.microphone, world.speakers),
       battery_(parameters.battery) {
     channels_[kMicrophoneLostChannel] = parameters.microphone.window_lost;
-    const double ambient = std::min(parameters.ground.ambient * world.ambient_light, kGroundFullScale);
+    light_the_floor();
+}
+
+void RobotModel::light_the_floor() {
+    const double ambient = std::min(parameters_.ground.ambient * ambient_light_, kGroundFullScale);
     store(kGroundAmbientChannel, std::array<double, kGroundSensors>{ambient, ambient, ambient});
 }
 
-template <std::size_t N>
-void RobotModel::store(std::size_t channel, const std::array<double, N>& values) {
-    std::copy(values.begin(), values.end(), channels_.begin() + static_cast<std::ptrdiff_t>(channel));
+void RobotModel::scene_changed(const World& world) {
+    ambient_light_ = world.ambient_light;
+    light_.set_room(world.ambient_light, world.lamps);
+    ground_.set_floor(world.arena.floor_grey, world.patches);
+    ears_.set_speakers(world.speakers);
+    if (!ears_.any()) store(kMicrophoneChannel, std::array<double, kMicrophones>{});
+    light_the_floor();
 }
 
 double RobotModel::wheel_speed(Side side, double seconds, double wheel_angle) {
@@ -93,7 +106,7 @@ void RobotModel::sense_proximity(const Surroundings& now) {
 }
 
 void RobotModel::sample_ground(double seconds) {
-    auto counts = ground_.counts(greys_to_sample_, over_ground_, {seconds, acceleration_});
+    auto counts = ground_.counts(greys_to_sample_, over_ground_, {seconds, acceleration_, lifted_});
     if (parameters_.ground.noise > 0.0)
         for (double& value : counts)
             value = std::clamp(value + parameters_.ground.noise * ground_noise_.normal(), 0.0,

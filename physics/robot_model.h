@@ -42,6 +42,13 @@ class RobotModel {
     /// What the sensors say of it, and what changes by itself; once a step, after the others.
     void sense_each_step(const RobotState& state, double seconds);
 
+    /// The world's lamps, floor, loudspeakers or room light changed.
+    void scene_changed(const World& world);
+    /// Held in the air: nothing is under it or around it.
+    void set_lifted(bool lifted) { lifted_ = lifted; }
+    bool lifted() const { return lifted_; }
+    void set_charge(double charge) { battery_.set_charge(charge); }
+
     const ProximityRing& proximity() const { return proximity_; }
     const LightRing& light() const { return light_; }
     double sensor_height() const { return parameters_.proximity.height; }
@@ -52,6 +59,7 @@ class RobotModel {
     int motors_running(double seconds) const;
     Surroundings surroundings(double seconds) const;
     void sense_proximity(const Surroundings& now);
+    void light_the_floor();
     void sample_ground(double seconds);
     template <std::size_t N>
     void store(std::size_t channel, const std::array<double, N>& values);
@@ -67,6 +75,7 @@ class RobotModel {
     std::array<double, kProximitySensors> reflected_{};
     DelayLine<kProximitySensors> late_reflected_;
     bool looked_around_ = false;  // since the last reading
+    bool lifted_ = false;
     LightRing light_;
     GroundRow ground_;
     RobotState over_ground_;  // when it last looked

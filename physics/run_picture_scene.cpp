@@ -114,11 +114,14 @@ void Picture::things() {
     for (const auto& wall : world_.walls)
         canvas_.shape(shape_of(wall), "fill=\"#5b616b\"");
     const auto draw = [&](const auto& thing) {
-        if (thing.movable)
+        const bool by_hand = std::any_of(objects_.begin(), objects_.end(),
+                                         [&](const auto& path) { return path.first == thing.name; });
+        if (thing.movable || by_hand) {
             moved(thing.name, shape_of(thing));
-        else
-            canvas_.shape(shape_of(thing), kFixed);
-        if (!thing.movable) centred(shape_of(thing), thing.name);
+            return;
+        }
+        canvas_.shape(shape_of(thing), kFixed);
+        centred(shape_of(thing), thing.name);
     };
     for (const auto& box : world_.boxes)
         draw(box);

@@ -20,6 +20,8 @@ class Ears {
     /// `speakers` must outlive it.
     Ears(const MicrophoneParameters& parameters, std::span<const Speaker> speakers);
 
+    /// Others stand there now; `speakers` must outlive it.
+    void set_speakers(std::span<const Speaker> speakers) { speakers_ = speakers; }
     /// Is there anything to hear?
     bool any() const;
     /// Levels at `seconds`, counts, 0..4095: loudspeakers by distance and direction, their powers added, then

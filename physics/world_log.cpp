@@ -37,10 +37,7 @@ std::string pose(const RobotState& s) {
 }  // namespace
 
 WorldLog::WorldLog(const WorldModel& world)
-    : log_(world.description().recording.log),
-      fixed_(fixed_names(world.description())),
-      objects_(world.object_names().begin(), world.object_names().end()),
-      told_(world.robot_count()) {
+    : log_(world.description().recording.log), told_(world.robot_count()) {
     for (const Robot& robot : world.description().robots)
         robots_.push_back(robot.name);
     if (log_.is_open()) elements(world.description());
@@ -72,16 +69,21 @@ void WorldLog::elements(const World& world) {
                           degrees(robot.heading)));
 }
 
-std::string WorldLog::name_of(const RobotContact& contact) const {
+std::string WorldLog::name_of(const WorldModel& world, const RobotContact& contact) const {
     switch (contact.kind) {
     case RobotContact::Kind::Fixed:
-        return fixed_[contact.other];
+        return world.fixed_names()[contact.other];
     case RobotContact::Kind::Object:
-        return objects_[contact.other];
+        return world.object_names()[contact.other];
     case RobotContact::Kind::Robot:
         return robots_[contact.other];
     }
     return {};
+}
+
+void WorldLog::note(double seconds, const std::string& text) {
+    seconds_ = seconds;
+    write(text);
 }
 
 void WorldLog::after_step(const WorldModel& world) {
@@ -99,7 +101,7 @@ void WorldLog::contacts(const WorldModel& world) {
     for (const RobotContact& contact : world.dynamics().robot_contacts()) {
         const auto [episode, begins] = touching_.try_emplace(contact, Episode{now, now});
         episode->second.last = now;
-        if (begins) write(fmt::format("{} touches {}", robots_[contact.robot], name_of(contact)));
+        if (begins) write(fmt::format("{} touches {}", robots_[contact.robot], name_of(world, contact)));
     }
     for (auto it = touching_.begin(); it != touching_.end();) {
         const auto& [contact, episode] = *it;
@@ -108,7 +110,7 @@ void WorldLog::contacts(const WorldModel& world) {
             continue;
         }
         write(fmt::format("{} has left {}: touched it for {:.3f} s, until {:.3f} s", robots_[contact.robot],
-                          name_of(contact),
+                          name_of(world, contact),
                           static_cast<double>(episode.last + 1 - episode.begun) * kStepSeconds,
                           static_cast<double>(episode.last) * kStepSeconds));
         it = touching_.erase(it);
@@ -139,7 +141,7 @@ void WorldLog::end(const WorldModel& world) {
     seconds_ = world.seconds();
     for (const auto& [contact, episode] : touching_)
         write(fmt::format("{} touched {} for {:.3f} s, until {:.3f} s", robots_[contact.robot],
-                          name_of(contact),
+                          name_of(world, contact),
                           static_cast<double>(episode.last + 1 - episode.begun) * kStepSeconds,
                           static_cast<double>(episode.last) * kStepSeconds));
     for (std::size_t i = 0; i < robots_.size(); ++i) {
@@ -148,8 +150,8 @@ void WorldLog::end(const WorldModel& world) {
                           robots_[i], pose(world.state(i)), tidy(robot.drive(Side::Left).lost()),
                           tidy(robot.drive(Side::Right).lost()), robot.channels()[kBatteryVoltageChannel]));
     }
-    for (std::size_t i = 0; i < objects_.size(); ++i)
-        write(fmt::format("{} ends at {}, heading {:.2f} deg", objects_[i],
+    for (std::size_t i = 0; i < world.object_names().size(); ++i)
+        write(fmt::format("{} ends at {}, heading {:.2f} deg", world.object_names()[i],
                           at(world.object(i).x, world.object(i).y), degrees(world.object(i).heading)));
     write(fmt::format("end: {} steps of 1 ms, {} messages of ODE", world.steps_done(),
                       world.dynamics().complaints()));

@@ -18,6 +18,8 @@ class WorldLog {
     explicit WorldLog(const WorldModel& world);
 
     void after_step(const WorldModel& world);
+    /// A line about something else, at `seconds`.
+    void note(double seconds, const std::string& text);
     /// Contacts that still last, poses, counts.
     void end(const WorldModel& world);
 
@@ -35,12 +37,12 @@ class WorldLog {
     void elements(const World& world);
     void contacts(const WorldModel& world);
     void drives(const WorldModel& world);
-    std::string name_of(const RobotContact& contact) const;
+    std::string name_of(const WorldModel& world, const RobotContact& contact) const;
     void write(const std::string& text) { log_.line(seconds_, text); }
 
     NodeLog log_;
     double seconds_ = 0.0;
-    std::vector<std::string> robots_, fixed_, objects_;
+    std::vector<std::string> robots_;
     std::map<RobotContact, Episode> touching_;
     std::vector<Told> told_;
     std::uint64_t complaints_ = 0;

@@ -38,6 +38,7 @@ WorldModel::WorldModel(World description)
     : description_(checked(std::move(description))),
       parameters_(with({}, description_.parameters)),
       fixed_(fixed_shapes(description_)),
+      fixed_names_(physics::fixed_names(description_)),
       dynamics_(parameters_, fixed_) {
     add_bodies();
     look();
@@ -52,17 +53,16 @@ void WorldModel::add_bodies() {
                            robot.x, robot.y, robot.heading});
         looked_tilt_.push_back({0.0, 0.0});
     }
-    const auto add_object = [this](const auto& thing, double heading) {
-        if (!thing.movable) return;
-        const Shape shape = shape_of(thing);
-        dynamics_.add_object(shape, heading, thing.mass);
-        moving_.push_back({shape, thing.x, thing.y, heading});
-        object_names_.push_back(thing.name);
-    };
     for (const auto& box : description_.boxes)
-        add_object(box, box.heading);
+        if (box.movable) add_object(shape_of(box), box.name, box.heading, box.mass);
     for (const auto& cylinder : description_.cylinders)
-        add_object(cylinder, 0.0);
+        if (cylinder.movable) add_object(shape_of(cylinder), cylinder.name, 0.0, cylinder.mass);
+}
+
+void WorldModel::add_object(const Shape& shape, const std::string& name, double heading, double mass) {
+    dynamics_.add_object(shape, heading, mass);
+    moving_.push_back({shape, shape.x, shape.y, heading});
+    object_names_.push_back(name);
 }
 
 void WorldModel::wheel(std::size_t robot, Side side, double steps, double seconds) {
@@ -70,6 +70,11 @@ void WorldModel::wheel(std::size_t robot, Side side, double steps, double second
 }
 
 void WorldModel::step() {
+    move_bodies();
+    sense();
+}
+
+void WorldModel::move_bodies() {
     ++steps_done_;
     for (std::size_t i = 0; i < robots_.size(); ++i) {
         const auto& wheel = dynamics_.robot(i).wheel;
@@ -80,6 +85,9 @@ void WorldModel::step() {
             dynamics_.move_floor(i, robots_[i].floor_velocity(dynamics_.robot(i), seconds()));
     }
     dynamics_.step();
+}
+
+void WorldModel::sense() {
     for (std::size_t i = 0; i < robots_.size(); ++i) {
         const auto& s = dynamics_.robot(i);
         moving_[i].update(s.x, s.y, s.heading);
@@ -92,13 +100,14 @@ void WorldModel::step() {
 }
 
 void WorldModel::look() {
-    const bool any_moved =
-        std::any_of(moving_.begin(), moving_.end(), [](const Moving& body) { return body.moved; });
+    const bool any_moved = scene_changed_ || std::any_of(moving_.begin(), moving_.end(),
+                                                         [](const Moving& body) { return body.moved; });
     for (std::size_t i = 0; i < robots_.size(); ++i) {
         look_around(i, any_moved);
         look_down(i);
         robots_[i].sense_each_step(dynamics_.robot(i), seconds());
     }
+    scene_changed_ = false;
 }
 
 bool WorldModel::neighbour_moved(std::size_t robot) const {
@@ -114,6 +123,7 @@ void WorldModel::look_around(std::size_t index, bool any_moved) {
     const auto& own = moving_[index];
     const auto gather = [&](double horizon) {
         view_.clear();
+        if (robot.lifted()) return;
         const auto see = [&](const Shape& shape) {
             if (shape.height <= 0.0) return;
             const double reach = horizon + shape.radius;
@@ -128,14 +138,14 @@ void WorldModel::look_around(std::size_t index, bool any_moved) {
     };
     const RobotState seen{.x = own.x, .y = own.y, .heading = own.heading};
     if (any_moved || robot.light().varies_with_time()) {
-        if (own.moved || !description_.lamps.empty() || robot.light().varies_with_time()) {
+        if (own.moved || scene_changed_ || !description_.lamps.empty() || robot.light().varies_with_time()) {
             constexpr double kEverything = 1e4;
             view_.clear();
             if (!description_.lamps.empty()) gather(kEverything);
             robot.sense_light({seen, view_, seconds()});
         }
     }
-    if (neighbour_moved(index)) {
+    if (scene_changed_ || neighbour_moved(index)) {
         gather(robot.proximity().horizon());
         std::erase_if(view_, [&](const Shape* s) { return s->height < robot.sensor_height(); });
         robot.look_around({seen, view_, seconds()});
@@ -147,7 +157,7 @@ void WorldModel::look_down(std::size_t index) {
     auto& tilt = looked_tilt_[index];
     const bool tilted =
         std::abs(state.pitch - tilt[0]) > kSeenTurn || std::abs(state.roll - tilt[1]) > kSeenTurn;
-    if (!moving_[index].moved && !tilted) return;
+    if (!scene_changed_ && !moving_[index].moved && !tilted) return;
     tilt = {state.pitch, state.roll};
     robots_[index].look_down(state);
 }

@@ -1,5 +1,6 @@
 #include "physics/world_node.h"
 
+#include "physics/events/timeline.h"
 #include "physics/pose_signals.h"
 #include "physics/recorder.h"
 #include "physics/world_log.h"
@@ -7,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <map>
 #include <optional>
 
 namespace puckloop::physics {
@@ -16,11 +18,13 @@ namespace {
 constexpr cosim::Time kStep = cosim::kMillisecond;
 constexpr std::uint16_t kUnused = 0xFFFF;
 constexpr std::size_t kPortsOfRobot = 2;
+constexpr std::size_t kBoardInputs = 3;
 constexpr std::array<double, kPoseSignals> kPoseQuantum{1e-5, 1e-5, 1e-4};  // m, m, rad
 
 /// One robot's ends of its two links: signal ids, and what was last published.
 struct RobotLinks {
     std::array<std::uint16_t, 2> wheel{kUnused, kUnused};
+    std::array<std::uint16_t, kBoardInputs> input{kUnused, kUnused, kUnused};  // by BoardInput
     struct Output {
         std::size_t channel = 0;
         cosim::PortIndex port = 0;
@@ -37,6 +41,8 @@ RobotLinks links_of(const Robot& robot, cosim::PortIndex board) {
         return found == ids.end() ? kUnused : found->second;
     };
     links.wheel = {id_of(robot.board_signals, "wheel_left"), id_of(robot.board_signals, "wheel_right")};
+    links.input = {id_of(robot.board_signals, "selector"), id_of(robot.board_signals, "reset"),
+                   id_of(robot.board_signals, "remote")};
     const bool has_voltage = robot.board_signals.contains("battery_v");
     for (std::size_t channel = 0; channel < kChannelCount; ++channel) {
         if (channel == kBatteryLowChannel && has_voltage) continue;  // the board derives it
@@ -49,25 +55,53 @@ RobotLinks links_of(const Robot& robot, cosim::PortIndex board) {
     return links;
 }
 
+/// What was done, and what never happened.
+void add_events(const Journal& journal, nlohmann::ordered_json& report) {
+    report["events"] = nlohmann::ordered_json::array();
+    for (const auto& entry : journal.entries()) {
+        nlohmann::ordered_json line{{"event", entry.event},
+                                    {"at_s", cosim::to_seconds(entry.time)},
+                                    {"action", entry.command},
+                                    {"done", entry.refused.empty()}};
+        if (!entry.refused.empty()) line["why"] = entry.refused;
+        report["events"].push_back(std::move(line));
+    }
+    if (const auto warnings = journal.warnings(); !warnings.empty()) report["warnings"] = warnings;
+}
+
 }  // namespace
 
 struct WorldNode::Impl {
-    explicit Impl(World description);
+    Impl(World description, EventPlan plan, std::unique_ptr<CommandSource> commands);
     void take(const cosim::Message& message);
+    void step();
+    void publish_events(std::vector<cosim::Message>& outbox);
     void publish(std::vector<cosim::Message>& outbox);
     void publish_poses(std::vector<cosim::Message>& outbox);
+    void publish_scene(std::vector<cosim::Message>& outbox);
+    void publish_body(std::size_t id, double value, std::vector<cosim::Message>& outbox);
 
     WorldModel model;
     std::vector<cosim::Port> ports;
     std::vector<RobotLinks> links;
     std::vector<double> poses;            // as last published; empty without the port "ir"
+    std::map<std::size_t, double> scene;  // likewise, by id: what events change
     std::vector<cosim::Message> waiting;  // stamped at or after the next step
     std::optional<Recorder> recorder;
     WorldLog log;
-    cosim::Time next_step = 0;  // its sensor values leave one step later
+    std::unique_ptr<CommandSource> commands;
+    Timeline timeline;
+    std::vector<std::string> happened;       // scratch
+    std::vector<BoardSignal> board_signals;  // scratch
+    cosim::Time next_step = 0;               // its sensor values leave one step later
 };
 
-WorldNode::Impl::Impl(World description) : model(std::move(description)), log(model) {
+WorldNode::Impl::Impl(World description, EventPlan plan, std::unique_ptr<CommandSource> source)
+    : model(std::move(description)),
+      log(model),
+      commands(std::move(source)),
+      timeline(model, std::move(plan), commands.get()) {
+    check_events(timeline.plan(), model.description());
     for (const auto& robot : model.description().robots) {
         links.push_back(links_of(robot, static_cast<cosim::PortIndex>(ports.size())));
         ports.push_back({robot.name + ".board", cosim::PortKind::Signals});
@@ -87,6 +121,33 @@ void WorldNode::Impl::take(const cosim::Message& message) {
     for (const Side side : {Side::Left, Side::Right})
         if (links[robot].wheel[static_cast<std::size_t>(side)] == signal->id)
             model.wheel(robot, side, signal->value, cosim::to_seconds(message.time));
+    if (timeline.active()) timeline.board_signal(robot, signal->id, signal->value);
+}
+
+/// To the state at next_step, and what happens to it there.
+void WorldNode::Impl::step() {
+    if (next_step > 0) model.move_bodies();
+    if (timeline.active()) {
+        happened.clear();
+        timeline.at_step(happened);
+        for (const std::string& text : happened)
+            log.note(model.seconds(), text);
+    }
+    if (next_step > 0 || !happened.empty()) model.sense();
+    if (next_step == 0) return;
+    if (recorder) recorder->after_step(model);
+    log.after_step(model);
+}
+
+void WorldNode::Impl::publish_events(std::vector<cosim::Message>& outbox) {
+    if (!timeline.active()) return;
+    board_signals.clear();
+    timeline.take_signals(board_signals);
+    for (const BoardSignal& signal : board_signals) {
+        const auto id = links[signal.robot].input[static_cast<std::size_t>(signal.input)];
+        const auto port = static_cast<cosim::PortIndex>(signal.robot * kPortsOfRobot);
+        if (id != kUnused) outbox.push_back({signal.time, port, cosim::Signal{id, signal.value}});
+    }
 }
 
 void WorldNode::Impl::publish(std::vector<cosim::Message>& outbox) {
@@ -120,7 +181,41 @@ void WorldNode::Impl::publish_poses(std::vector<cosim::Message>& outbox) {
     }
 }
 
-WorldNode::WorldNode(World description) : impl_(std::make_unique<Impl>(std::move(description))) {}
+void WorldNode::Impl::publish_body(std::size_t id, double value, std::vector<cosim::Message>& outbox) {
+    double& last = scene[id];
+    if (value == last) return;
+    last = value;
+    const auto port = static_cast<cosim::PortIndex>(links.size() * kPortsOfRobot);
+    outbox.push_back({next_step + kStep, port, cosim::Signal{static_cast<std::uint16_t>(id), value}});
+}
+
+/// What events change, for the infra-red medium.
+void WorldNode::Impl::publish_scene(std::vector<cosim::Message>& outbox) {
+    if (poses.empty() || !timeline.active()) return;
+    const std::size_t moving = poses.size() / kPoseSignals;
+    const SceneSignals ids{moving};
+    const auto body = [&](bool fixed, std::size_t index, const Shape& shape) {
+        const std::size_t first = ids.shape(fixed, index);
+        if (first + kShapeSignals > kUnused) return;  // more than eight thousand things
+        const ShapeValues values = values_of(shape);
+        for (std::size_t k = 0; k < kShapeSignals; ++k)
+            publish_body(first + k, values[k], outbox);
+    };
+    for (std::size_t i = 0; i < links.size(); ++i)
+        publish_body(ids.out(i), model.robot(i).lifted() ? 1.0 : 0.0, outbox);
+    for (std::size_t i = 0; i < model.object_names().size(); ++i) {
+        const Shape& shape = model.object_shape(i);
+        if (links.size() + i < moving)
+            publish_body(ids.out(links.size() + i), shape.height > 0.0 ? 0.0 : 1.0, outbox);
+        else
+            body(false, i - (moving - links.size()), shape);
+    }
+    for (std::size_t i = 0; i < model.fixed_count(); ++i)
+        body(true, i, model.fixed(i));
+}
+
+WorldNode::WorldNode(World description, EventPlan plan, std::unique_ptr<CommandSource> commands)
+    : impl_(std::make_unique<Impl>(std::move(description), std::move(plan), std::move(commands))) {}
 
 WorldNode::~WorldNode() = default;
 
@@ -139,21 +234,19 @@ void WorldNode::advance(cosim::Time until, std::span<const cosim::Message> inbox
     auto next = w.waiting.begin();
     // Everything stamped before `until` is here, so a step at `until` itself can be taken as well.
     for (; w.next_step <= until; w.next_step += kStep) {
-        if (w.next_step > 0) {
-            for (; next != w.waiting.end() && next->time < w.next_step; ++next)
-                w.take(*next);
-            w.model.step();
-            if (w.recorder) w.recorder->after_step(w.model);
-            w.log.after_step(w.model);
-        }
+        for (; next != w.waiting.end() && next->time < w.next_step; ++next)
+            w.take(*next);
+        w.step();
+        w.publish_events(outbox);
         w.publish(outbox);
         w.publish_poses(outbox);
+        w.publish_scene(outbox);
     }
     w.waiting.erase(w.waiting.begin(), next);
 }
 
 cosim::Time WorldNode::promise(cosim::PortIndex) const {
-    return impl_->next_step + kStep;
+    return std::min(impl_->next_step + kStep, impl_->timeline.next_signal());
 }
 
 cosim::Time WorldNode::reaction(cosim::PortIndex) const {
@@ -162,6 +255,7 @@ cosim::Time WorldNode::reaction(cosim::PortIndex) const {
 
 std::string WorldNode::finish() {
     const auto& model = impl_->model;
+    impl_->timeline.end();
     impl_->log.end(model);
     nlohmann::ordered_json report;
     report["steps"] = model.steps_done();
@@ -188,11 +282,13 @@ std::string WorldNode::finish() {
     }
     report["ode_messages"] = model.dynamics().complaints();
     if (model.dynamics().complaints() > 0) report["ode_first_message"] = model.dynamics().first_complaint();
+    if (impl_->timeline.active()) add_events(impl_->timeline.journal(), report);
     return report.dump();
 }
 
-std::unique_ptr<cosim::Node> make_world_node(std::string_view json) {
-    return std::make_unique<WorldNode>(from_json(json));
+std::unique_ptr<cosim::Node> make_world_node(std::string_view world, std::string_view plan,
+                                             std::unique_ptr<CommandSource> commands) {
+    return std::make_unique<WorldNode>(from_json(world), plan_from_json(plan), std::move(commands));
 }
 
 }  // namespace puckloop::physics

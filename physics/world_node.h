@@ -5,10 +5,12 @@
 // come from each robot's board_signals and ground_signals. Then, if any robot has a range-and-bearing board,
 // "ir": poses for the infra-red medium (physics/pose_signals.h). Step k (state at k ms) uses what was stamped
 // before k ms; its sensor values and poses leave stamped (k+1) ms, only those that changed, rounded to
-// world.publish_quantum, or for poses to 10 um and 0.1 mrad.
+// world.publish_quantum, or for poses to 10 um and 0.1 mrad. What happens to the world meanwhile:
+// physics/events.
 
 #include "cosim/node.h"
 #include "physics/description.h"
+#include "physics/events/command_source.h"
 
 #include <memory>
 
@@ -17,7 +19,10 @@ namespace puckloop::physics {
 class WorldNode final : public cosim::Node {
   public:
     /// Throws InputError on an impossible world, RunError when recordings cannot be written.
-    explicit WorldNode(World description);
+    explicit WorldNode(World description) : WorldNode(std::move(description), {}, nullptr) {}
+    /// With what happens to it, and where commands come from if the plan has any. Throws as check_events()
+    /// too.
+    WorldNode(World description, EventPlan plan, std::unique_ptr<CommandSource> commands);
     ~WorldNode() override;
 
     std::string_view name() const override;
@@ -33,7 +38,8 @@ class WorldNode final : public cosim::Node {
     std::unique_ptr<Impl> impl_;
 };
 
-/// From the JSON text that to_json(World) writes.
-std::unique_ptr<cosim::Node> make_world_node(std::string_view json);
+/// From the JSON texts that to_json() of World and EventPlan write.
+std::unique_ptr<cosim::Node> make_world_node(std::string_view world, std::string_view plan,
+                                             std::unique_ptr<CommandSource> commands);
 
 }  // namespace puckloop::physics

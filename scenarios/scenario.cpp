@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "physics/parameters.h"
+#include "scenarios/events/event_tables.h"
 #include "scenarios/robot_tables.h"
 #include "scenarios/world_tables.h"
 
@@ -121,6 +122,7 @@ Scenario read_scenario(const std::filesystem::path& file) {
     std::size_t index = 0;
     for (const TomlValue* table : top.tables("fault"))
         scenario.faults.push_back(read_fault(name, index++, *table, scenario));
+    scenario.events.events = read_events(top);
     top.finish();
     const bool any_program =
         std::any_of(scenario.robots.begin(), scenario.robots.end(),
@@ -129,6 +131,7 @@ Scenario read_scenario(const std::filesystem::path& file) {
         top.fail("run", "nothing ends this run",
                  "[run] with a duration, or a robot with a [robot.linux] program");
     physics::check(scenario.world);
+    physics::check_events(scenario.events, scenario.world);
     return scenario;
 }
 

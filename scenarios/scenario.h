@@ -2,7 +2,7 @@
 // A scenario: the world, the robots with their firmware and Linux programs, the faults. See docs/scenario.md.
 
 #include "cosim/faults.h"
-#include "physics/description.h"
+#include "physics/events/event.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -75,6 +75,7 @@ struct Scenario {
     double i2c_clock = 100e3;     ///< Hz, of Linux as bus master
     bool record_ir = false;       ///< light of range-and-bearing boards, chip by chip, in trace.csv
     physics::World world;         ///< robots in the same order as `robots`
+    physics::EventPlan events;    ///< what happens to the world while it runs
     std::vector<RobotBoards> robots;
     std::vector<cosim::FaultSpec> faults;
     std::vector<std::string>

@@ -9,6 +9,7 @@
 namespace puckloop::tools {
 
 void declare_run(Command& app, int& status);
+void declare_act(Command& app, int& status);
 void declare_exec(Command& app, int& status);
 void declare_step(Command& app, int& status);
 void declare_asm(Command& app, int& status);
@@ -26,6 +27,7 @@ int become_gap(char** words);
 // clang-format off
 inline constexpr std::array kCommands{
     declare_run,
+    declare_act,
     declare_exec,
     declare_step,
     declare_asm,

@@ -93,6 +93,12 @@ void declare_run(Command& app, int& status) {
         ->check(whole_number_between(1, 16))
         ->type_name("N");
     command->add_flag("--realtime", request.realtime, "pace simulated time by the wall clock");
+    command->add_flag("--paced", request.paced,
+                      "the same, but Linux programs stay in simulated time: the run can be repeated");
+    command
+        ->add_option("--events", request.events,
+                     "[[event]] tables in place of the scenario's, such as events.toml of an earlier run")
+        ->type_name("FILE");
     command->add_option("--duration", request.duration, "simulated seconds")
         ->check(number_between(kShortestRun, kLongestRun))
         ->type_name("S");

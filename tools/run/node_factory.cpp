@@ -8,6 +8,7 @@
 #include "linuxboard/shim/linux_node.h"
 #include "physics/ir_node.h"
 #include "physics/world_node.h"
+#include "tools/run/control/control_socket.h"
 #include "tools/run/outside_node.h"
 
 #include <fmt/format.h>
@@ -57,6 +58,12 @@ std::unique_ptr<cosim::Node> make_outside(const json& spec) {
     return std::make_unique<OutsideNode>(outside);
 }
 
+std::unique_ptr<cosim::Node> make_world(const json& spec) {
+    const std::string control = spec.at("control");
+    return physics::make_world_node(spec.at("world").dump(), spec.at("events").dump(),
+                                    control.empty() ? nullptr : make_control_socket(control));
+}
+
 }  // namespace
 
 std::unique_ptr<cosim::Node> make_node(const std::string& text) {
@@ -66,7 +73,7 @@ std::unique_ptr<cosim::Node> make_node(const std::string& text) {
         if (kind == "pic") return make_pic(spec);
         if (kind == "rab") return make_rab(spec);
         if (kind == "linux") return make_linux(spec);
-        if (kind == "world") return physics::make_world_node(spec.at("world").dump());
+        if (kind == "world") return make_world(spec);
         if (kind == "ir") return physics::make_ir_node(text);
         if (kind == "i2c_bus") return i2c_devices::make_bus_node(text);
         if (kind == "outside") return make_outside(spec);

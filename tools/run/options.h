@@ -19,7 +19,9 @@ struct RunRequest {
     std::optional<std::uint64_t> seed;
     bool in_process = false;
     bool realtime = false;
-    unsigned threads = 0;  ///< of this process with in_process; 0: as many as serve
+    bool paced = false;            ///< by the wall clock, with Linux programs in simulated time
+    std::filesystem::path events;  ///< [[event]] tables in place of the scenario's; empty: none
+    unsigned threads = 0;          ///< of this process with in_process; 0: as many as serve
     double stall_seconds = 10.0;
     bool strict = false;  ///< a run with warnings has failed
 };

@@ -1,6 +1,7 @@
 #include "tools/run/overrides.h"
 
 #include "base/error.h"
+#include "scenarios/events/event_tables.h"
 #include "tools/run/program_path.h"
 
 #include <fmt/format.h>
@@ -62,6 +63,10 @@ void apply(const RunRequest& request, Scenario& scenario) {
     if (request.duration) scenario.duration = request.duration;
     if (request.seed) scenario.seed = scenario.world.seed = *request.seed;
     if (!request.overlay.empty()) apply_overlay(scenario, request.overlay);
+    if (!request.events.empty()) {
+        scenario.events.events = scenarios::read_event_file(request.events);
+        physics::check_events(scenario.events, scenario.world);
+    }
 }
 
 }  // namespace puckloop::tools

@@ -53,6 +53,12 @@ ordered_json unmodelled_of(const ordered_json& nodes) {
     return all;
 }
 
+/// What happened to the world.
+ordered_json events_of(const ordered_json& nodes) {
+    const auto world = nodes.find("world");
+    return world == nodes.end() ? ordered_json::array() : world->value("events", ordered_json::array());
+}
+
 /// What a Linux program's counters say that its user should hear.
 void add_linux_warnings(const std::string& name, const ordered_json& node,
                         std::vector<std::string>& warnings) {
@@ -137,6 +143,7 @@ void write_report(const RunSetup& setup, const cosim::Outcome& outcome, Reserved
                               {"nodes", nodes},
                               {"links", links},
                               {"faults", faults},
+                              {"events", events_of(nodes)},
                               {"warnings", warnings_of(setup, outcome)},
                               {"unmodelled_registers", unmodelled_of(nodes)}};
     file.write(report.dump(2) + "\n");

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "cosim/trace_csv.h"
 #include "physics/trajectory_svg.h"
+#include "tools/run/control/control_place.h"
 #include "tools/run/node_factory.h"
 #include "tools/run/preflight.h"
 #include "tools/run/report.h"
@@ -19,6 +20,17 @@ namespace puckloop::tools {
 
 namespace {
 
+/// The world with what its events added, for the picture.
+physics::World with_added_things(const scenarios::Scenario& scenario) {
+    physics::World world = scenario.world;
+    const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+    for (const physics::Event& event : scenario.events.events) {
+        append(world.boxes, event.action.thing.boxes);
+        append(world.cylinders, event.action.thing.cylinders);
+    }
+    return world;
+}
+
 /// Report and picture are made even if the run failed; what goes wrong with them then is not the news.
 void write_results(const RunSetup& setup, cosim::Outcome& outcome, ReservedFile& report) {
     const auto guarded = [&](auto work) {
@@ -31,7 +43,7 @@ void write_results(const RunSetup& setup, cosim::Outcome& outcome, ReservedFile&
     };
     bool drawn = false;
     guarded([&] {
-        physics::write_trajectory_svg(setup.scenario.world, setup.out);
+        physics::write_trajectory_svg(with_added_things(setup.scenario), setup.out);
         drawn = true;
     });
     std::error_code ignored;
@@ -70,11 +82,13 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
     if (error) throw InputError(setup.out.string(), "", "cannot be made a folder: " + error.message());
     ReservedFile report(setup.out / "report.json", kReportBytes);
 
+    if (!setup.scenario.events.any()) std::filesystem::remove(setup.out / "events.toml", error);
+    const ControlPlace control(setup.control, setup.out);
     raise_descriptor_limit();
     cosim::RunOptions options;
     if (setup.scenario.duration) options.duration = cosim::from_seconds(*setup.scenario.duration);
     options.in_process = request.in_process;
-    options.realtime = request.realtime;
+    options.realtime = request.realtime || request.paced;
     options.threads = threads_for(setup, request);
     options.seed = setup.scenario.seed;
     options.stall_seconds = request.stall_seconds;

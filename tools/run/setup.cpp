@@ -4,6 +4,7 @@
 #include "emu/i2c_devices/signals.h"
 #include "emu/pic/signals.h"
 #include "emu/rab_board/signals.h"
+#include "tools/run/control/control_place.h"
 #include "tools/run/outside_node.h"
 #include "tools/run/overrides.h"
 #include "tools/run/program_path.h"
@@ -122,7 +123,7 @@ void add_uart1(RunSetup& setup, const RobotBoards& robot, const RunRequest& requ
     const std::string name = robot.name + ".uart1";
     const std::filesystem::path folder = std::filesystem::absolute(setup.scenario.file).parent_path();
     const exec::UartSpec end = parse_outside(name, robot.pic.uart1, folder.string());
-    if (end.kind != exec::UartSpec::Kind::Script && !request.realtime)
+    if (end.kind != exec::UartSpec::Kind::Script && !request.realtime && !request.paced)
         throw InputError(setup.scenario.file.string(), name,
                          fmt::format("'{}' has a clock of its own", robot.pic.uart1),
                          "--realtime, or script:FILE");
@@ -186,13 +187,29 @@ void add_robot(RunSetup& setup, const RobotBoards& robot, std::int64_t programs,
     add_linux(setup, robot, programs, request);
 }
 
+/// The world, and what happens to it.
+void add_world(RunSetup& setup, const json& world, const RunRequest& request) {
+    physics::EventPlan& events = setup.scenario.events;
+    events.live = request.realtime || request.paced;
+    if (events.any()) events.journal = (setup.out / "events.toml").string();
+    if (events.live) setup.control = new_control_path();
+    const json spec{{"kind", "world"},
+                    {"world", world},
+                    {"events", json::parse(physics::to_json(events))},
+                    {"control", setup.control}};
+    setup.nodes.push_back({"world", spec.dump()});
+}
+
 /// The infra-red medium, where any robot has a board that uses it.
 void add_ir(RunSetup& setup, const json& world) {
     const auto& robots = setup.scenario.robots;
     if (std::none_of(robots.begin(), robots.end(), [](const RobotBoards& robot) { return robot.rab; }))
         return;
-    const json spec{
-        {"kind", "ir"}, {"name", "ir"}, {"world", world}, {"csv", (setup.out / "ir.csv").string()}};
+    const json spec{{"kind", "ir"},
+                    {"name", "ir"},
+                    {"world", world},
+                    {"csv", (setup.out / "ir.csv").string()},
+                    {"changes", setup.scenario.events.any()}};
     setup.nodes.push_back({"ir", spec.dump()});
     cosim::LinkSpec poses{"ir.world", {"ir", "world"}, {"world", "ir"}};
     poses.record_from_b = false;
@@ -226,7 +243,7 @@ RunSetup set_up(const RunRequest& request) {
     scenario.world.recording.directory = setup.out.string();
     scenario.world.recording.log = log_of(setup, "world");
     const json world = json::parse(physics::to_json(scenario.world));
-    setup.nodes.push_back({"world", json{{"kind", "world"}, {"world", world}}.dump()});
+    add_world(setup, world, request);
     add_ir(setup, world);
 
     const auto programs =

@@ -16,6 +16,7 @@ struct RunSetup {
     std::filesystem::path out;
     std::vector<cosim::NodeSpec> nodes;
     std::vector<cosim::LinkSpec> links;
+    std::string control{};                ///< socket at which the world takes commands; empty: none
     std::vector<std::string> warnings{};  ///< what looks like a mistake
 };
 

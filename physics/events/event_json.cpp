@@ -1,0 +1,57 @@
+// Actions and plans as JSON text: how they reach the world's process.
+
+#include "base/error.h"
+#include "physics/description_fields.h"
+#include "physics/events/event.h"
+
+namespace nlohmann {
+
+template <class T>
+struct adl_serializer<std::optional<T>> {
+    static void to_json(json& j, const std::optional<T>& value) { j = value ? json(*value) : json(nullptr); }
+    static void from_json(const json& j, std::optional<T>& value) {
+        value = j.is_null() ? std::nullopt : std::optional<T>(j.get<T>());
+    }
+};
+
+}  // namespace nlohmann
+
+namespace puckloop::physics {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(NewThing, walls, boxes, cylinders, lamps, speakers, patches)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Action, verb, object, to, relative, heading, over, thing, property, value,
+                                   number, address, hold, command, toml)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Condition, kind, robot, other, at, radius, length, width, distance, on)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Event, name, file, place, at, when, delay, every, count, action)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EventPlan, events, live, journal)
+
+namespace {
+
+template <class T>
+T parsed(std::string_view text, const char* what) {
+    try {
+        return nlohmann::json::parse(text).get<T>();
+    } catch (const nlohmann::json::exception& error) {
+        throw InputError("", what, error.what(), "JSON as to_json writes it");
+    }
+}
+
+}  // namespace
+
+std::string to_json(const Action& action) {
+    return nlohmann::json(action).dump();
+}
+
+std::string to_json(const EventPlan& plan) {
+    return nlohmann::json(plan).dump();
+}
+
+Action action_from_json(std::string_view text) {
+    return parsed<Action>(text, "action");
+}
+
+EventPlan plan_from_json(std::string_view text) {
+    return parsed<EventPlan>(text, "events");
+}
+
+}  // namespace puckloop::physics

@@ -1,0 +1,34 @@
+#pragma once
+// Where a running world takes commands: a socket in a folder that only its user may enter, named in the
+// results folder's control.json.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace puckloop::tools {
+
+/// A path for the socket that nobody has yet; nothing is made.
+std::string new_control_path();
+
+/// While it lives: the private folder (mode 0700) of the socket, and control.json, which says where it is.
+/// Afterwards control.json says that the run has ended.
+class ControlPlace {
+  public:
+    /// `socket` empty: the run takes no commands, and control.json of an earlier one is removed. Throws
+    /// RunError.
+    ControlPlace(std::string socket, const std::filesystem::path& results);
+    ~ControlPlace();
+    ControlPlace(const ControlPlace&) = delete;
+    ControlPlace& operator=(const ControlPlace&) = delete;
+
+  private:
+    std::string socket_;
+    std::filesystem::path note_;
+};
+
+/// The socket of a run, by its results folder or, in out/, by its name. Throws InputError: no such run, one
+/// that takes no commands, one that has ended.
+std::string control_path_of(const std::string& run);
+
+}  // namespace puckloop::tools
