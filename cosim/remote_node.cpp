@@ -125,7 +125,7 @@ class RemoteNode : public NodeHandle {
         if (status == SocketStream::Status::Whole) return true;
         const auto waited = Clock::now() - asked_at_;
         if (waited > stall_)
-            lose(fmt::format("has not answered for {:.1f} s of wall time",
+            lose(fmt::format("has not answered for {:.1f} s of wall time (--stall)",
                              std::chrono::duration<double>(waited).count()));
         return false;
     }
