@@ -95,6 +95,12 @@ void BoardKernel::call(const Request& request, std::string_view data) {
     case Op::Sync:
     case Op::Note:
     case Op::Exit:
+    case Op::Fork:
+    case Op::Forked:
+    case Op::Exec:
+    case Op::Changed:
+    case Op::Kill:
+    case Op::Reap:
         return;
     default: {
         const auto handle = static_cast<std::size_t>(request.handle);
@@ -127,12 +133,9 @@ bool BoardKernel::attempt(std::uint32_t thread, Waiting& waiting, Time now) {
         return true;
     };
     switch (request.op) {
-    case Op::Close: {
-        File& file = files_[static_cast<std::size_t>(request.handle)];
-        if (file.kind == DeviceKind::Tty) tty_.close();
-        file.open = false;
+    case Op::Close:
+        release(request.handle);
         return done(0);
-    }
     case Op::Read:
         return attempt_read(thread, waiting, now);
     case Op::Write:
@@ -324,6 +327,30 @@ void BoardKernel::deliver_i2c(const cosim::I2cPhase& phase, Time now) {
 void BoardKernel::hang_up(Time now) {
     tty_.hang_up();
     attempt_all(now);
+}
+
+void BoardKernel::forget(std::uint32_t slot) {
+    for (auto it = waiting_.begin(); it != waiting_.end();) {
+        if (slot_of(it->first) != slot) {
+            ++it;
+            continue;
+        }
+        adapter_.abandon(it->first);
+        it = waiting_.erase(it);
+    }
+    std::erase_if(finished_,
+                  [slot](const FinishedCall& call) { return slot_of(call.header.thread) == slot; });
+}
+
+void BoardKernel::share(int handle) {
+    ++files_[static_cast<std::size_t>(handle)].references;
+}
+
+void BoardKernel::release(int handle) {
+    File& file = files_[static_cast<std::size_t>(handle)];
+    if (!file.open || --file.references > 0) return;
+    if (file.kind == DeviceKind::Tty) tty_.close();
+    file.open = false;
 }
 
 void BoardKernel::reset() {

@@ -17,11 +17,20 @@
 
 namespace puckloop::linuxboard {
 
-/// A call that has ended.
+/// A call that has ended, of the thread thread_of(slot, number).
 struct FinishedCall {
+
     wire::Completion header;
     std::string data;
 };
+
+/// A thread of a process, for BoardKernel.
+constexpr std::uint32_t thread_of(std::uint32_t slot, std::uint32_t thread) {
+    return slot << 16 | thread;
+}
+constexpr std::uint32_t slot_of(std::uint32_t thread) {
+    return thread >> 16;
+}
 
 class BoardKernel {
   public:
@@ -37,7 +46,13 @@ class BoardKernel {
     void advance(cosim::Time now);
     /// When advance() next has something to do.
     cosim::Time next_event() const;
-    /// The program is gone: its calls are forgotten, its files closed. What it wrote still goes out.
+    /// A process is gone, or became another program: the calls of its threads are forgotten.
+    void forget(std::uint32_t slot);
+    /// One more process has the open file `handle`.
+    void share(int handle);
+    /// One process less has it; the last one closes the device.
+    void release(int handle);
+    /// All processes are gone: calls are forgotten, files closed. What was written still goes out.
     void reset();
 
     std::vector<FinishedCall> take_finished();
@@ -57,6 +72,7 @@ class BoardKernel {
     struct File {
         wire::DeviceKind kind = wire::DeviceKind::None;
         bool open = false;
+        int references = 1;
     };
     struct Waiting {
         wire::Request request;

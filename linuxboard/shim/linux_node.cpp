@@ -4,9 +4,12 @@
 
 #include <fmt/format.h>
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
 #include <thread>
+#include <utility>
 
 namespace puckloop::linuxboard {
 
@@ -28,7 +31,7 @@ std::int64_t wall_nanoseconds() {
 LinuxNode::LinuxNode(LinuxSpec spec)
     : spec_(std::move(spec)),
       ports_{{"uart", cosim::PortKind::Uart}, {"i2c", cosim::PortKind::I2c}},
-      process_(std::make_unique<Process>(spec_)),
+      launcher_(std::make_unique<Launcher>(spec_)),
       kernel_(spec_) {
     if (spec_.start == 0) {
         start_program();
@@ -40,44 +43,49 @@ LinuxNode::LinuxNode(LinuxSpec spec)
 void LinuxNode::start_program() {
     const Time now = start_at_ == kNever ? 0 : start_at_;
     start_at_ = kNever;
-    announced_exit_ = false;
     ++starts_;
-    process_->start();
-    switch (process_->hear(kStartPatience, request_, request_data_)) {
+    ++processes_;
+    last_number_ = wire::kFirstProcess;
+    clients_.clear();
+    clients_.push_back(std::make_unique<Client>());
+    Client& client = *clients_.back();
+    client.process = launcher_->start();
+    switch (client.process->hear(kStartPatience, client.request, client.data)) {
     case Heard::Ended:
-        throw InputError(spec_.program, "", process_->describe_end() + " before it began: " + last_words());
+        throw InputError(spec_.program, "",
+                         client.process->describe_end() + " before it began: " + last_words());
     case Heard::Silent:
         throw InputError(spec_.program, "", "does not load the preloaded library",
                          "a dynamically linked program");
     case Heard::Request:
         break;
     }
-    if (request_.op != Op::Hello || request_.a != wire::kVersion)
+    if (client.request.op != Op::Hello || client.request.a != wire::kVersion)
         throw InputError(spec_.program, "", "the preloaded library is of another version",
                          "one build of both");
-    request_.now = now;
-    state_ = State::Asking;
+    client.request.now = now;
+    client.state = Client::State::Asking;
 }
 
-void LinuxNode::listen() {
-    const Heard heard = process_->hear(spec_.watchdog_s, request_, request_data_);
-    process_->echo_output();
+void LinuxNode::listen(Client& client) {
+    const Heard heard = client.process->hear(spec_.watchdog_s, client.request, client.data);
+    launcher_->echo_output();
     switch (heard) {
     case Heard::Request:
         ++requests_;
-        state_ = State::Asking;
+        // A program that has just taken another one's place does not know the time.
+        if (client.request.op == Op::Hello) client.request.now = client.answered;
+        client.state = Client::State::Asking;
         return;
     case Heard::Ended:
-        program_ended(announced_exit_ ? exit_time_ : process_->page().now.load());
+        client_ended(client, client.announced_exit ? client.exit_time : entry(client.slot).now.load());
         return;
     case Heard::Silent: {
-        const Time now = process_->page().now.load();
+        const Time now = entry(client.slot).now.load();
         const std::string reason =
-            fmt::format("{} has not let time pass for {:g} s of wall clock (half of --stall): {}",
-                        spec_.program, spec_.watchdog_s, process_->describe_silence());
-        process_->kill();
-        state_ = State::Off;
-        kernel_.reset();
+            fmt::format("{} has not let time pass for {:g} s of wall clock: {}", spec_.program,
+                        spec_.watchdog_s, client.process->describe_silence());
+        kill_all();
         end_ = "hung";
         end_run(now, false, reason, 1);
         return;
@@ -133,58 +141,66 @@ void LinuxNode::run_scheduled(Time now) {
         kernel_.hang_up(now);
     }
     if (next_signal_ < spec_.signals.size() && spec_.signals[next_signal_].time <= now)
-        pending_signals_ |= std::uint64_t{1} << spec_.signals[next_signal_++].signal;
+        signal_all(spec_.signals[next_signal_++].signal, now);
     if (next_restart_ < spec_.restarts.size() && spec_.restarts[next_restart_].time <= now) {
         const Restart& restart = spec_.restarts[next_restart_++];
-        process_->kill();
-        kernel_.reset();
-        state_ = State::Off;
+        kill_all();
         start_at_ = restart.time + restart.down;
     }
-    if (end_signal_at_ <= now) {
-        end_signal_at_ = kNever;
-        pending_signals_ |= std::uint64_t{1} << end_signal_;
-    }
+    if (end_signal_at_ <= now) send_end_signal(now);
     if (kill_at_ <= now) return out_of_grace(now);
     if (start_at_ <= now) start_program();
 }
 
-void LinuxNode::answer(Time now) {
+void LinuxNode::answer(Client& client, Time now) {
     wire::Reply reply;
     reply.now = now;
-    reply.limit = std::max(now, std::min({until_, next_device_event(), next_scheduled()}));
-    reply.signals = std::exchange(pending_signals_, 0);
-    const std::vector<FinishedCall> calls = kernel_.take_finished();
+    reply.limit = std::min({until_, next_device_event(), next_scheduled()});
+    for (const auto& other : clients_)
+        if (other.get() != &client) reply.limit = std::min(reply.limit, due(*other));
+    reply.limit = std::max(now, reply.limit);
+    if (client.signals_at <= now) {
+        reply.signals = std::exchange(client.signals, 0);
+        client.signals_at = kNever;
+    }
+    if (client.woken_at <= now) {
+        reply.changed = 1;
+        client.woken_at = kNever;
+    }
+    const std::vector<FinishedCall> calls = std::exchange(client.finished, {});
     reply.count = static_cast<std::uint32_t>(calls.size());
-    process_->reply(reply, calls);
-    listen();
+    client.answered = now;
+    client.process->reply(reply, calls, client.passed);
+    if (client.passed >= 0) close(std::exchange(client.passed, -1));
+    listen(client);
 }
 
-void LinuxNode::handle_request() {
-    const Time now = request_.now;
+void LinuxNode::handle_request(Client& client) {
+    const Time now = client.request.now;
     run_devices(now);
-    switch (request_.op) {
-    case Op::Hello:
-        // A program that became another one by exec() starts with no files of ours.
-        kernel_.reset();
-        break;
+    switch (client.request.op) {
     case Op::Note:
-        warn(request_data_);
+        warn(client.data);
         break;
     case Op::Exit:
-        announced_exit_ = true;
-        exit_time_ = now;
-        listen();
+        client.announced_exit = true;
+        client.exit_time = now;
+        listen(client);
         return;
     default:
-        kernel_.call(request_, request_data_);
+        if (handle_family(client)) break;
+        if (client.request.op == Op::Close) client.handles.erase(client.request.handle);
+        client.request.thread = thread_of(client.slot, client.request.thread);
+        kernel_.call(client.request, client.data);
         break;
     }
-    if (request_.wait != 0 && !kernel_.has_finished() && request_.wait_until > now && pending_signals_ == 0) {
-        state_ = State::Waiting;
+    deal_out();
+    const bool happened = !client.finished.empty() || client.signals_at <= now;
+    if (client.request.wait != 0 && !happened && client.request.wait_until > now) {
+        client.state = Client::State::Waiting;
         return;
     }
-    answer(now);
+    answer(client, now);
 }
 
 void LinuxNode::advance(Time until, std::span<const Message> inbox, std::vector<Message>& outbox) {
@@ -195,22 +211,24 @@ void LinuxNode::advance(Time until, std::span<const Message> inbox, std::vector<
     outbox_ = &outbox;
     while (true) {
         const Time scheduled = next_scheduled();
-        Time next = std::min(scheduled, next_device_event());
-        if (state_ == State::Asking) next = std::min(scheduled, request_.now);
-        if (state_ == State::Waiting) next = std::min(next, request_.wait_until);
+        Client* const asking = first(Client::State::Asking);
+        Client* const waiting = first(Client::State::Waiting);
+        Time next = scheduled;
+        if (asking != nullptr) next = std::min(next, asking->request.now);
+        // A process that asks takes in what happened at the devices when it is handled.
+        if (asking == nullptr || waiting != nullptr) next = std::min(next, next_device_event());
+        if (waiting != nullptr) next = std::min(next, due(*waiting));
         if (next >= until) break;
         pace(next);
         if (scheduled <= next) {
             run_devices(next);
             run_scheduled(next);
-            if (state_ == State::Waiting && (pending_signals_ != 0 || kernel_.has_finished())) answer(next);
-        } else if (state_ == State::Asking) {
-            handle_request();
+        } else if (asking != nullptr && asking->request.now <= next) {
+            handle_request(*asking);
         } else {
             run_devices(next);
-            if (state_ == State::Waiting && (kernel_.has_finished() || next >= request_.wait_until))
-                answer(next);
         }
+        wake_ready(next);
     }
     run_devices(until - 1);
     outbox_ = nullptr;
@@ -218,7 +236,7 @@ void LinuxNode::advance(Time until, std::span<const Message> inbox, std::vector<
 
 void LinuxNode::pace(Time time) {
     if (!spec_.real_time) return;
-    auto& origin = process_->wall_origin();
+    auto& origin = launcher_->page().wall_origin;
     if (origin == 0) origin = wall_nanoseconds() - time / cosim::kNanosecond;
     const std::int64_t ahead = origin + time / cosim::kNanosecond - wall_nanoseconds();
     if (ahead > 0) std::this_thread::sleep_for(std::chrono::nanoseconds(ahead));
@@ -226,8 +244,10 @@ void LinuxNode::pace(Time time) {
 
 Time LinuxNode::next_action() const {
     Time next = next_scheduled();
-    if (state_ == State::Asking) next = std::min(next, request_.now);
-    if (state_ == State::Waiting) next = std::min({next, request_.wait_until, kernel_.next_event()});
+    for (const auto& client : clients_) {
+        next = std::min(next, due(*client));
+        if (client->state == Client::State::Waiting) next = std::min(next, kernel_.next_event());
+    }
     return next;
 }
 
@@ -244,7 +264,10 @@ Time LinuxNode::promise(cosim::PortIndex port) const {
 Time LinuxNode::reaction(cosim::PortIndex port) const {
     // Only a thread that waits on a device can be woken by a message, and not before the promised time while
     // the program stands at a request.
-    if (state_ == State::Waiting && kernel_.has_waiting()) return 0;
+    const bool waits = std::any_of(clients_.begin(), clients_.end(), [](const auto& client) {
+        return client->state == Client::State::Waiting;
+    });
+    if (waits && kernel_.has_waiting()) return 0;
     if (port == kUartPort) return kernel_.tty().echoes() ? 0 : kNever;
     return kernel_.adapter().next_event() == kNever ? kNever : 0;
 }

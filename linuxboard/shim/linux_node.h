@@ -2,7 +2,9 @@
 // A Linux program as a node: port `uart` is its serial port, port `i2c` its I2C adapter.
 //
 // The program runs on its own only between two requests; what it may see is fixed by the simulated time of
-// each request, so its behaviour does not depend on how grants are cut.
+// each request, so its behaviour does not depend on how grants are cut. Of several processes the one that is
+// earliest runs (of those at the same time the oldest), and only until another one or a device is due: so
+// they meet in pipes, files and signals in the order of simulated time.
 //
 // Deviations: 1. Computing takes no simulated time; each call taken over costs the charge of its class
 // (wire::Charges). 2. One thread runs at a time, as on a board with one processor.
@@ -10,12 +12,14 @@
 
 #include "cosim/node.h"
 #include "linuxboard/shim/board_kernel.h"
+#include "linuxboard/shim/launcher.h"
 #include "linuxboard/shim/process.h"
 #include "linuxboard/shim/spec.h"
 
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -54,20 +58,37 @@ class LinuxNode : public cosim::Node {
     std::uint64_t requests() const { return requests_; }
 
   private:
-    enum class State {
-        Off,      ///< not started, down between a kill and a restart, or ended
-        Asking,   ///< `request_` stands at its time and is not yet handled
-        Waiting,  ///< all threads wait; a device, `request_.wait_until` or a signal goes on
+    /// One process of the program.
+    struct Client {
+        enum class State {
+            Starting,  ///< asked for by its parent, has not said Hello
+            Asking,    ///< `request` has its time and is not yet handled
+            Waiting,   ///< all threads wait; a device, `request.wait_until`, a signal or a process goes on
+        };
+        std::uint32_t slot = 0;
+        std::unique_ptr<Process> process;
+        State state = State::Starting;
+        wire::Request request;
+        std::string data;
+        std::string inherited;  ///< for its next Hello
+        std::vector<FinishedCall> finished;
+        std::set<int> handles;      ///< open files of the kernel
+        std::uint64_t signals = 0;  ///< to be delivered; bit n: signal n
+        cosim::Time signals_at = cosim::kNever;
+        /// When another process did what this one may wait for.
+        cosim::Time woken_at = cosim::kNever;
+        int passed = -1;  ///< descriptor that goes with the next reply
+        cosim::Time answered = 0;  ///< when it was last
+        bool end_signalled = false;
+        bool announced_exit = false;
+        cosim::Time exit_time = 0;
     };
 
+    // linux_node.cpp: time and devices
     void start_program();
-    void program_ended(cosim::Time now);
-    void ended_winding_up(cosim::Time now);
-    void out_of_grace(cosim::Time now);
-    void note_devices();
-    void handle_request();
-    void answer(cosim::Time now);
-    void listen();
+    void handle_request(Client& client);
+    void answer(Client& client, cosim::Time now);
+    void listen(Client& client);
     /// Lets devices and deliveries happen up to and including `now`, in order.
     void run_devices(cosim::Time now);
     cosim::Time next_scheduled() const;
@@ -75,26 +96,55 @@ class LinuxNode : public cosim::Node {
     cosim::Time next_device_event() const;
     cosim::Time next_action() const;
     void collect(std::vector<cosim::Message>& outbox);
-    void warn(std::string line);
     void pace(cosim::Time time);
+
+    // linux_node_family.cpp: the processes among themselves
+    wire::ProcessEntry& entry(std::uint32_t slot) { return launcher_->page().processes[slot]; }
+    Client* client_at(std::uint32_t slot);
+    /// The earliest process in `state`, or nullptr.
+    Client* first(Client::State state);
+    /// When `client` has something to do, as far as is known.
+    static cosim::Time due(const Client& client);
+    /// Answers every waiting process for which something has happened.
+    void wake_ready(cosim::Time now);
+    void deal_out();
+    void finish(Client& client, std::int64_t result, int error = 0, std::string data = {});
+    /// True if the request was one about processes.
+    bool handle_family(Client& client);
+    void fork(Client& client);
+    void hear_child(Client& parent);
+    void hello(Client& client);
+    void send_signal(std::uint32_t slot, int signal, cosim::Time now);
+    void signal_all(int signal, cosim::Time now);
+    void changed(const Client* by, cosim::Time now);
+    void client_ended(Client& client, cosim::Time now);
+    void kill_all();
+
+    // linux_node_end.cpp: how it ends
+    void program_ended(cosim::Time now);
+    void ended_winding_up(cosim::Time now);
+    void out_of_grace(cosim::Time now);
+    void send_end_signal(cosim::Time now);
+    void signalled_ended(cosim::Time now);
+    void note_devices();
+    void warn(std::string line);
     std::string last_words() const;
     void end_run(cosim::Time now, bool success, std::string reason, std::uint32_t programs);
 
     LinuxSpec spec_;
     std::vector<cosim::Port> ports_;
-    std::unique_ptr<Process> process_;
+    std::unique_ptr<Launcher> launcher_;
     BoardKernel kernel_;
-    State state_ = State::Off;
-    wire::Request request_;
-    std::string request_data_;
+    std::vector<std::unique_ptr<Client>> clients_;  ///< by age
+    std::int32_t last_number_ = 0;
     cosim::Time until_ = 0;
     cosim::Time start_at_ = cosim::kNever;
     std::size_t next_restart_ = 0;
     std::size_t next_signal_ = 0;
     std::size_t next_hangup_ = 0;
-    std::uint64_t pending_signals_ = 0;  ///< bit n: signal n
-    int end_signal_ = 0;                 ///< the run ends: this one was or will be sent
+    int end_signal_ = 0;  ///< the run ends: this one was or will be sent
     cosim::Time end_signal_at_ = cosim::kNever;
+    bool end_signal_sent_ = false;  ///< to the processes that handle it
     cosim::Time kill_at_ = cosim::kNever;
     cosim::Time wound_up_ = 0;
     bool never_opened_ = false;
@@ -105,10 +155,12 @@ class LinuxNode : public cosim::Node {
     std::vector<std::string> warnings_;
     std::uint64_t requests_ = 0;
     std::uint64_t starts_ = 0;
+    std::uint64_t processes_ = 0;  ///< made in all
     std::uint64_t messages_in_ = 0;
+    // Of the program's first process, which is what counts as the program's end.
     std::string end_;
-    bool announced_exit_ = false;
-    cosim::Time exit_time_ = 0;
+    bool ended_well_ = false;
+    bool crashed_ = false;
 };
 
 }  // namespace puckloop::linuxboard

@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <csignal>
+#include <utility>
 
 namespace puckloop::linuxboard {
 
@@ -14,6 +16,8 @@ using cosim::Time;
 
 namespace {
 constexpr std::size_t kMostWarnings = 100;
+/// For what is left of a program once those of its processes that handle the end signal have ended.
+constexpr Time kRestPause = 100 * cosim::kMillisecond;
 
 std::string signal_name(int signal) {
     const char* name = sigabbrev_np(signal);
@@ -30,9 +34,7 @@ void LinuxNode::end_run(Time now, bool success, std::string reason, std::uint32_
 }
 
 void LinuxNode::program_ended(Time now) {
-    state_ = State::Off;
     kernel_.reset();
-    end_ = process_->describe_end();
     if (end_signal_ != 0) return ended_winding_up(now);
     const bool comes_back = next_restart_ < spec_.restarts.size();
     std::string reason = fmt::format("{} {}", spec_.program, end_);
@@ -41,15 +43,15 @@ void LinuxNode::program_ended(Time now) {
         reason += spec_.tty.empty() ? " without opening its I2C bus"
                                     : fmt::format(" without ever opening {}", spec_.tty);
     }
-    if (!process_->ended_well() || !opened) {
-        if (const std::string last = process_->last_line(); !last.empty())
+    if (!ended_well_ || !opened) {
+        if (const std::string last = launcher_->last_line(); !last.empty())
             reason += "; its last line: " + last;
     }
     const std::string at = fmt::format(" (at {:.6f} s)", cosim::to_seconds(now));
     if (comes_back) {
         warn(reason + at);
-    } else if (spec_.exit_ends_run || !process_->ended_well()) {
-        const bool well = process_->ended_well() && opened;
+    } else if (spec_.exit_ends_run || !ended_well_) {
+        const bool well = ended_well_ && opened;
         end_run(now, well, reason, well ? spec_.programs : 1);
     } else {
         warn(reason + at);
@@ -58,7 +60,7 @@ void LinuxNode::program_ended(Time now) {
 
 std::string LinuxNode::last_words() const {
     if (spec_.log.empty()) return "its output is not kept";
-    const std::string line = process_->last_line();
+    const std::string line = launcher_->last_line();
     return line.empty() ? "it printed nothing" : line;
 }
 
@@ -72,12 +74,13 @@ void LinuxNode::wind_up(Time now, int signal) {
     start_at_ = kNever;
     next_restart_ = spec_.restarts.size();
     end_signal_ = signal != 0 ? signal : spec_.end_signal;
-    if (!process_->running()) return;
+    if (clients_.empty()) return;
     note_devices();
-    if (process_->dies_of(end_signal_)) {
-        process_->kill();
-        state_ = State::Off;
-        kernel_.reset();
+    const bool die = std::all_of(clients_.begin(), clients_.end(), [this](const auto& client) {
+        return client->process->dies_of(end_signal_);
+    });
+    if (die) {
+        kill_all();
         end_ = "was ended with the run";
         return;
     }
@@ -86,22 +89,37 @@ void LinuxNode::wind_up(Time now, int signal) {
     wound_up_ = kNever;
 }
 
+/// First to the processes that handle it. A shell or a `tee` that would only die of it has the rest of the
+/// program's output to take, and gets it once those have ended.
+void LinuxNode::send_end_signal(Time now) {
+    end_signal_at_ = kNever;
+    if (std::exchange(end_signal_sent_, true)) return signal_all(end_signal_, now);
+    for (const auto& client : clients_) {
+        if (client->process->dies_of(end_signal_)) continue;
+        client->end_signalled = true;
+        send_signal(client->slot, end_signal_, now);
+    }
+}
+
+void LinuxNode::signalled_ended(Time now) {
+    const bool more = std::any_of(clients_.begin(), clients_.end(),
+                                  [](const auto& client) { return client->end_signalled; });
+    if (!more && !clients_.empty()) end_signal_at_ = std::min(kill_at_, now + kRestPause);
+}
+
 void LinuxNode::ended_winding_up(Time now) {
     kill_at_ = end_signal_at_ = kNever;
     wound_up_ = now;
     const std::string how = fmt::format("{} after {} at the end of the run", end_, signal_name(end_signal_));
-    if (process_->crashed()) return end_run(now, false, fmt::format("{} {}", spec_.program, how), 1);
-    if (!process_->ended_well())
-        warn(fmt::format("{} {} (at {:.6f} s)", spec_.program, how, cosim::to_seconds(now)));
+    if (crashed_) return end_run(now, false, fmt::format("{} {}", spec_.program, how), 1);
+    if (!ended_well_) warn(fmt::format("{} {} (at {:.6f} s)", spec_.program, how, cosim::to_seconds(now)));
     end_ = how;
 }
 
 void LinuxNode::out_of_grace(Time now) {
     kill_at_ = end_signal_at_ = kNever;
     wound_up_ = now;
-    process_->kill();
-    state_ = State::Off;
-    kernel_.reset();
+    kill_all();
     end_ = fmt::format("was killed: it had not ended {:g} s after {}", cosim::to_seconds(spec_.grace),
                        signal_name(end_signal_));
     warn(fmt::format("{} {}", spec_.program, end_));
@@ -109,10 +127,10 @@ void LinuxNode::out_of_grace(Time now) {
 
 std::string LinuxNode::finish() {
     if (starts_ == 0) end_ = "was not started: the run ended before its time";
-    if (process_->running()) {
+    if (!clients_.empty()) {
         note_devices();
         end_ = "was ended with the run";
-        process_->kill();
+        kill_all();
     }
     const wire::TtyCounters tty = kernel_.tty().counters();
     nlohmann::ordered_json report = {
@@ -120,6 +138,7 @@ std::string LinuxNode::finish() {
         {"end", end_},
         {"never_opened_a_device", never_opened_},
         {"starts", starts_},
+        {"processes", processes_},
         {"requests", requests_},
         {"log", spec_.log},
         {"uart",

@@ -1,23 +1,23 @@
 #pragma once
-// What the preloaded library and the Linux node say to each other, over one SOCK_SEQPACKET pair and one page
-// of shared memory. The node is the program's kernel: it owns the devices and the clock. The library runs one
-// thread of the program at a time and asks the node whenever a device is touched or time must pass.
-//
-// Deviation: one conversation a process. A forked child is outside of simulated time (the library says so).
+// What the preloaded library and the Linux node say to each other, over one SOCK_SEQPACKET pair for each
+// process of the program and one shared memory for all. The node is the program's kernel: it owns the
+// devices, the clock and the processes. Of all processes the one that is earliest in simulated time runs, and
+// of its threads one; it asks the node whenever a device is touched, time must pass or another process may be
+// concerned.
 
 #include <atomic>
 #include <cstdint>
 
 namespace puckloop::linuxboard::wire {
 
-inline constexpr std::uint32_t kVersion = 1;
-inline constexpr const char* kLinkVariable = "PUCKLOOP_SHIM_LINK";  ///< "<socket>,<page>,<pid>"
+inline constexpr std::uint32_t kVersion = 2;
+inline constexpr const char* kLinkVariable = "PUCKLOOP_SHIM_LINK";  ///< "<socket>,<page>,<slot>"
 inline constexpr std::int64_t kNever = INT64_MAX;
 /// Most bytes that one request or reply carries after its header.
 inline constexpr std::uint32_t kMaximumData = 16'384;
 
 enum class Op : std::uint32_t {
-    Hello,        ///< a = kVersion; the reply starts the program
+    Hello,        ///< a = kVersion, b = 1: forked, same image; data of the answer: what Exec or Fork kept
     Sync,         ///< nothing asked: let time reach `now`, or wait
     Open,         ///< a = device index; result: handle
     Close,        ///< handle
@@ -38,6 +38,12 @@ enum class Op : std::uint32_t {
     Cancel,       ///< the thread's pending request is withdrawn
     Note,         ///< data: a line for the node's log and report
     Exit,         ///< a = exit status; no reply
+    Fork,         ///< a process more, data: for its Hello; result: its slot, and its socket as SCM_RIGHTS
+    Forked,       ///< a = slot, b = 1: the host made it, 0: it did not
+    Exec,         ///< this process is about to become another program; data: for its Hello
+    Changed,      ///< something was written or closed that other processes may wait for
+    Kill,         ///< a = slot, b = signal for that process
+    Reap,         ///< a = slot: its parent has taken its status
 };
 
 enum class DeviceKind : std::uint32_t { None, Tty, I2c };
@@ -52,8 +58,8 @@ struct Request {
     std::uint32_t a = 0;
     std::uint32_t b = 0;
     std::uint8_t nonblocking = 0;
-    std::uint8_t wait = 0;  ///< no thread can run: reply only once one can
-    std::uint16_t length = 0;
+    std::uint8_t wait = 0;     ///< no thread can run: reply only once one can
+    std::uint8_t watches = 0;  ///< with `wait`: Changed and the end of a process may let one run
 };
 
 /// Followed by `count` Completions, each followed by its `length` bytes.
@@ -62,7 +68,7 @@ struct Reply {
     std::int64_t limit = 0;     ///< the program may run on to this time before it must ask again
     std::uint64_t signals = 0;  ///< bit n: signal n for the program
     std::uint32_t count = 0;
-    std::uint32_t padding = 0;
+    std::uint32_t changed = 0;  ///< 1: what another process did may let a thread run that watches
 };
 
 struct Completion {
@@ -113,9 +119,32 @@ struct Oversleep {
 
 inline constexpr std::uint32_t kMaximumDevices = 8;
 inline constexpr std::uint32_t kNameLength = 64;
+/// Processes of a program that live at the same time, ended ones that nobody waited for included.
+inline constexpr std::uint32_t kMaximumProcesses = 64;
+/// Process number of the program's first process; the next ones follow.
+inline constexpr std::int32_t kFirstProcess = 1000;
+/// A process without a parent in the program.
+inline constexpr std::int32_t kNoParent = -1;
+/// Exit status of a program that cannot be conducted, as a shell's for one that cannot be executed.
+inline constexpr int kRefusedStatus = 126;
 
-/// Shared memory. The upper part is written by the node before the program starts, the lower part by the
-/// library, so that the node can tell where a program hangs or died.
+/// One process of the program, by its slot. Everything is written by whoever runs: the process itself or the
+/// node.
+struct ProcessEntry {
+    enum State : std::uint32_t { Free, Alive, Ended };
+    std::uint32_t state = Free;
+    std::int32_t number = 0;          ///< process number, as the program sees it
+    std::int32_t parent = kNoParent;  ///< slot
+    std::int32_t group = 0;           ///< process group
+    std::int32_t host = 0;            ///< the host's process number
+    std::int32_t status = 0;          ///< of one that ended, as waitpid() gives it
+    std::atomic<std::int64_t> now{0};
+    std::atomic<std::uint32_t> thread{0};
+    char call_name[kNameLength] = {};  ///< the last call taken over
+};
+
+/// Shared memory: what the node sets before the program starts, and the processes, so that the node can tell
+/// where one hangs or died.
 struct Page {
     std::uint32_t version = kVersion;
     std::uint32_t real_time = 0;
@@ -127,11 +156,8 @@ struct Page {
     Oversleep oversleep;
     DeviceName devices[kMaximumDevices];
     char host_name[kNameLength] = {};
-
-    std::atomic<std::int64_t> now{0};
-    std::atomic<std::uint32_t> thread{0};
-    std::atomic<const char*> call{nullptr};  ///< only meaningful in the program; its name is in call_name
-    char call_name[kNameLength] = {};
+    std::uint32_t alive = 0;  ///< processes
+    ProcessEntry processes[kMaximumProcesses];
 };
 
 }  // namespace puckloop::linuxboard::wire

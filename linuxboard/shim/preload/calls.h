@@ -3,6 +3,7 @@
 
 #include "linuxboard/shim/preload/scheduler.h"
 
+#include <stdio.h>
 #include <sys/select.h>
 #include <time.h>
 
@@ -25,6 +26,14 @@ bool sleep_until(Time deadline);
 // file_calls.cpp: descriptors that stand for devices
 struct OpenFile;
 OpenFile* open_file(int fd);
+
+// stdio_calls.cpp
+/// Standard streams that are pipes wait in simulated time.
+void adopt_standard_streams();
+/// A stream whose calls come back here.
+FILE* open_stream(int fd, const char* mode);
+/// A pipe or a socket: what waits for it waits for another process.
+bool is_channel(int fd);
 
 // process_calls.cpp
 void begin_process(Thread* main_thread);

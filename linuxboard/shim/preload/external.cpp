@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 
 #include <bitset>
+#include <cerrno>
 #include <climits>
 
 namespace puckloop::shim {
@@ -39,6 +40,15 @@ void external_changed() {
     wake(&the_external_key, INT_MAX);
 }
 
+void tell_others() {
+    if (page().alive < 2) return;
+    const int error = errno;
+    wire::Request request;
+    request.op = wire::Op::Changed;
+    device_call(request);
+    errno = error;
+}
+
 bool await_external(int fd, short events) {
     pollfd entry{fd, events, 0};
     while (REAL(poll)(&entry, 1, 0) == 0) {
@@ -50,7 +60,7 @@ bool await_external(int fd, short events) {
         options.deadline = time_after(kExternalPeriod);
         options.interruptible = true;
         options.cancellable = true;
-        if (park(&the_external_key, options) == Wake::Signal) return false;
+        if (park(&the_external_key, options) == Wake::Signal && !self()->restarts) return false;
     }
     return true;
 }

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <climits>
 #include <cstdarg>
 #include <cstdio>
 #include <cstring>
@@ -28,6 +29,20 @@ ssize_t __read_chk(int, void*, size_t, size_t);
 }
 
 namespace {
+/// `copy` is now what `fd` is.
+void copied(int fd, int copy) {
+    if (fd == copy) return;
+    share_file(fd, copy);
+    const bool closed = is_internal(copy);
+    drop_timer(copy);
+    if (is_internal(fd)) {
+        mark_internal(copy);
+    } else {
+        forget_internal(copy);
+    }
+    if (closed) tell_others();
+}
+
 mode_t mode_argument(int flags, std::va_list arguments) {
     return (flags & (O_CREAT | O_TMPFILE)) != 0 ? va_arg(arguments, mode_t) : 0;
 }
@@ -96,11 +111,13 @@ SHIM_EXPORT int close(int fd) {
         return -1;
     }
     if (open_file(fd) != nullptr) release_file(fd);
-    if (active()) {
-        drop_timer(fd);
-        forget_internal(fd);
-    }
-    return REAL(close)(fd);
+    if (!active()) return REAL(close)(fd);
+    const bool was_internal = is_internal(fd);
+    drop_timer(fd);
+    forget_internal(fd);
+    const int result = REAL(close)(fd);
+    if (was_internal) tell_others();  // the last writer's close is the reader's end
+    return result;
 }
 
 SHIM_EXPORT void closefrom(int first) noexcept {
@@ -111,7 +128,12 @@ SHIM_EXPORT void closefrom(int first) noexcept {
 }
 
 SHIM_EXPORT int close_range(unsigned first, unsigned last, int flags) noexcept {
-    if (!active() || flags != 0) return REAL(close_range)(first, last, flags);
+    if (active() && flags != 0) {  // close-on-exec: the link's descriptors are to stay
+        for (unsigned fd = first; fd <= std::min(last, 4095u); ++fd)
+            if (!is_link_descriptor(static_cast<int>(fd))) REAL(close_range)(fd, fd, flags);
+        return 0;
+    }
+    if (!active()) return REAL(close_range)(first, last, flags);
     for (unsigned fd = first; fd <= std::min(last, 4095u); ++fd)
         close(static_cast<int>(fd));
     return 0;
@@ -119,7 +141,7 @@ SHIM_EXPORT int close_range(unsigned first, unsigned last, int flags) noexcept {
 
 SHIM_EXPORT int dup(int fd) noexcept {
     const int copy = REAL(dup)(fd);
-    if (copy >= 0 && open_file(fd) != nullptr) share_file(fd, copy);
+    if (copy >= 0 && active()) copied(fd, copy);
     return copy;
 }
 
@@ -129,7 +151,7 @@ SHIM_EXPORT int dup3(int fd, int copy, int flags) noexcept {
         return -1;
     }
     const int result = REAL(dup3)(fd, copy, flags);
-    if (result >= 0 && active()) share_file(fd, copy);
+    if (result >= 0 && active()) copied(fd, copy);
     return result;
 }
 
@@ -139,12 +161,13 @@ SHIM_EXPORT int dup2(int fd, int copy) noexcept {
         return -1;
     }
     const int result = REAL(dup2)(fd, copy);
-    if (result >= 0 && active()) share_file(fd, copy);
+    if (result >= 0 && active()) copied(fd, copy);
     return result;
 }
 
 namespace {
 int control(int fd, int command, long argument, decltype(&::fcntl) real) {
+    if (command == F_SETFD && active() && is_link_descriptor(fd)) return 0;
     OpenFile* file = open_file(fd);
     if (file != nullptr && command == F_GETFL) return file->flags | O_LARGEFILE;
     if (file != nullptr && command == F_SETFL) {
@@ -154,8 +177,7 @@ int control(int fd, int command, long argument, decltype(&::fcntl) real) {
         return 0;
     }
     const int result = real(fd, command, argument);
-    if (file != nullptr && result >= 0 && (command == F_DUPFD || command == F_DUPFD_CLOEXEC))
-        share_file(fd, result);
+    if (active() && result >= 0 && (command == F_DUPFD || command == F_DUPFD_CLOEXEC)) copied(fd, result);
     return result;
 }
 }  // namespace
@@ -192,7 +214,18 @@ SHIM_EXPORT ssize_t __read_chk(int fd, void* buffer, size_t size, size_t room) {
 
 SHIM_EXPORT ssize_t write(int fd, const void* data, size_t size) {
     if (OpenFile* file = open_file(fd)) return write_device(*file, data, size);
-    return outside(fd, POLLOUT, [&] { return REAL(write)(fd, data, size); });
+    if (size <= PIPE_BUF || goes_straight(fd))
+        return outside(fd, POLLOUT, [&] { return REAL(write)(fd, data, size); });
+    // A pipe with room for something takes no more than that without blocking in the host.
+    ssize_t written = 0;
+    while (static_cast<size_t>(written) < size) {
+        const size_t part = std::min<size_t>(size - static_cast<size_t>(written), PIPE_BUF);
+        const char* from = static_cast<const char*>(data) + written;
+        const ssize_t result = outside(fd, POLLOUT, [&] { return REAL(write)(fd, from, part); });
+        if (result < 0) return written > 0 ? written : result;
+        written += result;
+    }
+    return written;
 }
 
 SHIM_EXPORT ssize_t readv(int fd, const iovec* parts, int count) {

@@ -17,6 +17,8 @@ namespace puckloop::shim {
 namespace {
 int socket_fd = -1;
 int page_fd = -1;
+std::uint32_t slot_index = 0;
+int passed_fd = -1;
 wire::Page* shared_page = nullptr;
 // Replies can complete the calls of several threads at once.
 constexpr std::size_t kReplySize = 256 * 1024;
@@ -54,19 +56,71 @@ bool is_link_descriptor(int fd) {
     return fd >= 0 && (fd == socket_fd || fd == page_fd);
 }
 
+std::uint32_t own_slot() {
+    return slot_index;
+}
+
+int take_passed() {
+    const int fd = passed_fd;
+    passed_fd = -1;
+    return fd;
+}
+
+void print_link(char* text, std::size_t size, std::uint32_t slot) {
+    std::snprintf(text, size, "%d,%d,%u", socket_fd, page_fd, slot);
+}
+
+void place_link(int socket) {
+    host_call(SYS_dup3, socket, socket_fd, 0);
+    host_call(SYS_close, socket);
+}
+
+void change_link(int socket, std::uint32_t slot) {
+    place_link(socket);
+    slot_index = slot;
+    own().host = static_cast<std::int32_t>(host_call(SYS_getpid));
+}
+
+[[noreturn]] void refuse(const char* text) {
+    char line[400];
+    std::snprintf(line, sizeof line, "puckloop shim: %s\n", text);
+    host_complain(line);
+    host_call(SYS_exit_group, wire::kRefusedStatus);
+    __builtin_unreachable();
+}
+
 bool connect_link() {
     const char* text = std::getenv(wire::kLinkVariable);
-    int socket = -1;
-    int memory = -1;
-    int pid = 0;
-    if (text == nullptr || std::sscanf(text, "%d,%d,%d", &socket, &memory, &pid) != 3) return false;
-    void* mapped = mmap(nullptr, sizeof(wire::Page), PROT_READ | PROT_WRITE, MAP_SHARED, memory, 0);
-    if (mapped == MAP_FAILED) return false;
+    if (text == nullptr) return false;
+    unsigned slot = 0;
+    if (std::sscanf(text, "%d,%d,%u", &socket_fd, &page_fd, &slot) != 3 || slot >= wire::kMaximumProcesses)
+        return false;
+    void* mapped = mmap(nullptr, sizeof(wire::Page), PROT_READ | PROT_WRITE, MAP_SHARED, page_fd, 0);
+    if (mapped == MAP_FAILED) refuse("the descriptors of the link to the run were closed: not run");
     shared_page = static_cast<wire::Page*>(mapped);
-    if (pid != static_cast<int>(host_call(SYS_getpid))) return false;
-    socket_fd = socket;
-    page_fd = memory;
-    return shared_page->version == wire::kVersion;
+    if (shared_page->version != wire::kVersion) return false;
+    slot_index = slot;
+    const auto process = static_cast<std::int32_t>(host_call(SYS_getpid));
+    if (own().host == 0) own().host = process;
+    if (own().host != process)
+        refuse("a child process that was not made by fork(), posix_spawn(), system() or popen(): not run");
+    return true;
+}
+
+/// Like recv(), and keeps the descriptor that may come along.
+long receive_reply() {
+    iovec part{reply_buffer, sizeof reply_buffer};
+    alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))];
+    msghdr message{};
+    message.msg_iov = &part;
+    message.msg_iovlen = 1;
+    message.msg_control = control;
+    message.msg_controllen = sizeof control;
+    const long count = host_call(SYS_recvmsg, socket_fd, reinterpret_cast<long>(&message));
+    const cmsghdr* header = count > 0 ? CMSG_FIRSTHDR(&message) : nullptr;
+    if (header != nullptr && header->cmsg_type == SCM_RIGHTS)
+        std::memcpy(&passed_fd, CMSG_DATA(header), sizeof passed_fd);
+    return count;
 }
 
 void send_only(const wire::Request& request) {
@@ -79,7 +133,10 @@ void exchange(const wire::Request& request, const void* data, std::size_t size, 
     send_request(request, data, size);
     long count = -1;
     do {
-        count = host_call(SYS_recvfrom, socket_fd, reinterpret_cast<long>(reply_buffer), sizeof reply_buffer);
+        count = request.op == wire::Op::Fork
+                    ? receive_reply()
+                    : host_call(SYS_recvfrom, socket_fd, reinterpret_cast<long>(reply_buffer),
+                                sizeof reply_buffer);
     } while (count < 0 && errno == EINTR);
     if (count < static_cast<long>(sizeof reply))
         give_up(count == 0 ? "the run is gone" : "no answer from the run", count < 0 ? errno : 0);

@@ -1,5 +1,6 @@
 #pragma once
-// The way to the node: a socket that the node passed on, and the page of memory they share.
+// The way to the node: a socket that the node passed on, and the memory that the program's processes share
+// with it.
 
 #include "linuxboard/shim/wire.h"
 
@@ -9,7 +10,8 @@ namespace puckloop::shim {
 
 namespace wire = linuxboard::wire;
 
-/// True if a node started this very process and waits for it.
+/// True if this process is one of a program that a node started. Ends it if it is one that the node does not
+/// know.
 bool connect_link();
 using Completed = void (*)(const wire::Completion& completion, const char* data);
 /// Sends `request` and waits for the reply; ends the process if the node is gone.
@@ -20,6 +22,20 @@ void send_only(const wire::Request& request);
 bool is_linked();
 /// The descriptor belongs to this library: the program may not close it.
 bool is_link_descriptor(int fd);
+/// The descriptor that came with the last reply, or -1; once.
+int take_passed();
 wire::Page& page();
+std::uint32_t own_slot();
+inline wire::ProcessEntry& own() {
+    return page().processes[own_slot()];
+}
+/// In a forked child: from now on this process is the one at `slot`, linked by `socket`, which is taken.
+void change_link(int socket, std::uint32_t slot);
+/// "<socket>,<page>,<slot>", the value of the variable that leads a program to its link.
+void print_link(char* text, std::size_t size, std::uint32_t slot);
+/// In a process that only makes another one: puts `socket` where that one will look for its link.
+void place_link(int socket);
+/// Ends the process with one line on standard error.
+[[noreturn]] void refuse(const char* text);
 
 }  // namespace puckloop::shim

@@ -32,7 +32,7 @@ const NothingThere* still_nothing(const wire::Request& request, const void* data
     if (!has_last || last.transaction != transaction) return nullptr;
     const bool same = request.op == last.request.op && request.handle == last.request.handle &&
                       request.nonblocking == last.request.nonblocking &&
-                      (request.op != wire::Op::Poll || request.deadline <= page().now.load());
+                      (request.op != wire::Op::Poll || request.deadline <= own().now.load());
     return same && hash_of(data, size) == last.data_hash ? &last : nullptr;
 }
 

@@ -24,6 +24,14 @@ constexpr const char* kRandomPaths[] = {"/dev/urandom", "/dev/random"};
 constexpr std::size_t kMostTransferData = wire::kMaximumData - 1024;
 }  // namespace
 
+/// The device's name in this program's own view of the page.
+static const char* path_of(const OpenFile& file) {
+    const auto kind = file.kind == OpenFile::Kind::Tty ? wire::DeviceKind::Tty : wire::DeviceKind::I2c;
+    for (const wire::DeviceName& device : page().devices)
+        if (device.kind == kind) return device.path;
+    return "";
+}
+
 OpenFile* open_file(int fd) {
     if (fd < 0 || fd >= kMostDescriptors || table[fd] == nullptr || !active()) return nullptr;
     return table[fd];
@@ -44,7 +52,7 @@ int device_of(const char* path) {
 
 int open_device(int device, int flags) {
     if (device == kForbiddenDevice) {
-        host_complain("puckloop shim: a child process or a foreign thread has no devices\n");
+        host_complain("puckloop shim: a thread that was not made by pthread_create() has no devices\n");
         errno = ENXIO;
         return -1;
     }
@@ -81,6 +89,34 @@ int open_device(int device, int flags) {
     file->references = 1;
     table[fd] = file;
     return fd;
+}
+
+std::size_t open_files(FileEntry* list, std::size_t most) {
+    std::size_t count = 0;
+    for (int fd = 0; fd < kMostDescriptors && count < most; ++fd) {
+        if (table[fd] == nullptr) continue;
+        int first = fd;
+        for (int other = 0; other < fd && first == fd; ++other)
+            if (table[other] == table[fd]) first = other;
+        list[count++] = {fd, first, *table[fd]};
+    }
+    return count;
+}
+
+void take_over_files(FileEntry* list, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+        OpenFile*& file = table[list[i].fd];
+        if (list[i].same_as == list[i].fd) {
+            file = new OpenFile(list[i].file);
+            file->references = 0;
+            file->path = file->kind == OpenFile::Kind::Random ? kRandomPaths[0] : path_of(*file);
+        } else {
+            file = table[list[i].same_as];
+        }
+        ++file->references;
+    }
+    for (std::size_t i = 0; i < count; ++i)
+        if (REAL(fcntl)(list[i].fd, F_GETFD) < 0) release_file(list[i].fd);
 }
 
 void share_file(int from, int to) {
@@ -232,7 +268,15 @@ const char* place_of(const void* address) {
 }
 
 void random_bytes(void* buffer, std::size_t size) {
+    // Each process of the program has a stream of its own; a forked child does not go on with its parent's.
     static RandomStream stream(page().seed, "linux program");
+    static std::int32_t number = wire::kFirstProcess;
+    if (own().number != number) {
+        number = own().number;
+        char name[40];
+        std::snprintf(name, sizeof name, "linux program %d", number);
+        stream = RandomStream(page().seed, name);
+    }
     auto* out = static_cast<unsigned char*>(buffer);
     for (std::size_t i = 0; i < size; ++i)
         out[i] = static_cast<unsigned char>(stream.next() >> 56);

@@ -33,6 +33,17 @@ int device_of(const char* path);
 
 /// Opens a device; a descriptor, or -1 and errno.
 int open_device(int device, int flags);
+/// One descriptor as a program leaves it to its successor in the same process.
+struct FileEntry {
+    int fd = -1;
+    int same_as = -1;  ///< first descriptor of the same open file
+    OpenFile file;
+};
+/// Number of descriptors written to `list`.
+std::size_t open_files(FileEntry* list, std::size_t most);
+/// Takes over what open_files() gave, except what the host has closed since (FD_CLOEXEC).
+void take_over_files(FileEntry* list, std::size_t count);
+
 /// Another descriptor for the same open file.
 void share_file(int from, int to);
 /// Forgets the descriptor; the last one closes the device. False if it is none of ours.
@@ -55,6 +66,8 @@ void random_bytes(void* buffer, std::size_t size);
 bool await_external(int fd, short events);
 /// Something was written or closed: those who wait outside look again.
 void external_changed();
+/// The same for the program's other processes, where it has some.
+void tell_others();
 void mark_internal(int fd);
 void forget_internal(int fd);
 bool is_internal(int fd);

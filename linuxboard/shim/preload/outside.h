@@ -14,6 +14,11 @@
 
 namespace puckloop::shim {
 
+inline bool is_file(int fd) {
+    struct stat status {};
+    return REAL(fstat)(fd, &status) == 0 && (S_ISREG(status.st_mode) || S_ISDIR(status.st_mode));
+}
+
 /// A file that never blocks, or that nobody conducts.
 inline bool goes_straight(int fd) {
     if (!active() || thread_count() == 0) return true;
@@ -35,6 +40,7 @@ ssize_t outside(int fd, short events, Call call) {
     const ssize_t result = call();
     const int error = errno;
     external_changed();
+    if (!is_file(fd)) tell_others();
     errno = error;
     return result;
 }

@@ -1,13 +1,14 @@
-// The process as a whole: begin, end, children, random numbers; and futexes, which reach the
+// The process as a whole: begin, end, random numbers; and futexes, which reach the
 // kernel through syscall().
 
 #include "linuxboard/shim/preload/calls.h"
 #include "linuxboard/shim/preload/host.h"
 #include "linuxboard/shim/preload/open_file.h"
+#include "linuxboard/shim/preload/processes/inheritance.h"
+#include "linuxboard/shim/preload/processes/make_process.h"
 #include "linuxboard/shim/preload/real.h"
 
 #include <linux/futex.h>
-#include <spawn.h>
 #include <sys/random.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -29,11 +30,14 @@ void prepare_threads(Thread* main_thread);
 
 namespace {
 void leave_by_exit(int status, void*) {
+    if (active()) std::fflush(nullptr);  // a pipe may be full: that is waited for in simulated time
     announce_exit(status);
 }
 
-void note_child(const char* how) {
-    if (active()) note("%s: child processes run outside of simulated time and have no devices", how);
+void left_by_unknown_fork() {
+    if (!is_making_process())
+        refuse("a child process that was not made by fork(), posix_spawn(), system() or popen(): ended");
+    go_passive();
 }
 }  // namespace
 
@@ -41,9 +45,11 @@ void begin_process(Thread* main_thread) {
     prepare_threads(main_thread);
     // Registered first, so it runs after everything the program registers.
     on_exit(leave_by_exit, nullptr);
-    pthread_atfork([] { note_child("fork"); }, nullptr, [] { go_passive(); });
+    pthread_atfork(nullptr, nullptr, left_by_unknown_fork);
     // What a program has said is in the log even if it is killed.
-    std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
+    if (std::getenv("_STDBUF_O") == nullptr) std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
+    take_over(say_hello(false));
+    adopt_standard_streams();
 }
 
 }  // namespace puckloop::shim
@@ -56,28 +62,6 @@ SHIM_EXPORT void _exit(int status) {
 
 SHIM_EXPORT void _Exit(int status) noexcept {
     _exit(status);
-}
-
-SHIM_EXPORT int system(const char* command) {
-    note_child("system");
-    return REAL(system)(command);
-}
-
-SHIM_EXPORT FILE* popen(const char* command, const char* mode) {
-    note_child("popen");
-    return REAL(popen)(command, mode);
-}
-
-SHIM_EXPORT int posix_spawn(pid_t* pid, const char* path, const posix_spawn_file_actions_t* actions,
-                            const posix_spawnattr_t* attributes, char* const* arguments, char* const* env) {
-    note_child("posix_spawn");
-    return REAL(posix_spawn)(pid, path, actions, attributes, arguments, env);
-}
-
-SHIM_EXPORT int posix_spawnp(pid_t* pid, const char* path, const posix_spawn_file_actions_t* actions,
-                             const posix_spawnattr_t* attributes, char* const* arguments, char* const* env) {
-    note_child("posix_spawnp");
-    return REAL(posix_spawnp)(pid, path, actions, attributes, arguments, env);
 }
 
 SHIM_EXPORT ssize_t getrandom(void* buffer, size_t size, unsigned flags) {

@@ -4,9 +4,11 @@
 #include "linuxboard/shim/preload/host.h"
 #include "linuxboard/shim/preload/link.h"
 #include "linuxboard/shim/preload/nothing_there.h"
+#include "linuxboard/shim/preload/open_file.h"
 #include "linuxboard/shim/preload/timers.h"
 
 #include <signal.h>
+#include <sys/prctl.h>
 #include <sys/syscall.h>
 
 #include <algorithm>
@@ -15,6 +17,7 @@
 #include <cstdarg>
 #include <cstdio>
 #include <cstring>
+#include <iterator>
 #include <utility>
 
 namespace puckloop::shim {
@@ -45,8 +48,8 @@ void follow_wall_clock() {
 }
 
 void publish() {
-    page().now.store(clock_now, std::memory_order_relaxed);
-    page().thread.store(current != nullptr ? current->index : 0, std::memory_order_relaxed);
+    own().now.store(clock_now, std::memory_order_relaxed);
+    own().thread.store(current != nullptr ? current->index : 0, std::memory_order_relaxed);
 }
 
 void make_ready(Thread& thread, Time since, Wake reason) {
@@ -96,6 +99,42 @@ void complete(const wire::Completion& completion, const char* data) {
     make_ready(*thread, completion.time, Wake::Device);
 }
 
+bool is_awaited(int signal) {
+    for (std::size_t i = 0; i < thread_total; ++i) {
+        const Thread* thread = threads[i];
+        if (thread != nullptr && thread->awaited_signals != nullptr &&
+            sigismember(thread->awaited_signals, signal) == 1)
+            return true;
+    }
+    return false;
+}
+
+/// A thread waits for what another process may do.
+bool watches() {
+    for (std::size_t i = 0; i < thread_total; ++i) {
+        const Thread* thread = threads[i];
+        if (thread != nullptr && thread->state == Thread::State::Parked && thread->key == external_key())
+            return true;
+    }
+    return false;
+}
+
+/// Those of `signals` that come to nothing: they interrupt no call.
+std::uint64_t ignored_signals(std::uint64_t signals) {
+    constexpr std::uint64_t kIgnoredByDefault = std::uint64_t{1} << SIGCHLD | std::uint64_t{1} << SIGCONT |
+                                                std::uint64_t{1} << SIGURG | std::uint64_t{1} << SIGWINCH;
+    std::uint64_t ignored = 0;
+    for (int number = 1; number < NSIG; ++number) {
+        const std::uint64_t bit = std::uint64_t{1} << number;
+        if ((signals & bit) == 0 || is_awaited(number)) continue;
+        struct sigaction action {};
+        sigaction(number, nullptr, &action);
+        const bool by_default = action.sa_handler == SIG_DFL && (kIgnoredByDefault & bit) != 0;
+        if (action.sa_handler == SIG_IGN || by_default) ignored |= bit;
+    }
+    return ignored;
+}
+
 /// Sends a request and takes in the reply: time, completions, a signal.
 void transact(wire::Request& request, const void* data, std::size_t size) {
     follow_wall_clock();
@@ -103,7 +142,7 @@ void transact(wire::Request& request, const void* data, std::size_t size) {
     request.wait =
         first_ready() == nullptr && (current == nullptr || current->state != Thread::State::Running);
     request.wait_until = first_deadline();
-    request.length = static_cast<std::uint16_t>(size);
+    request.watches = request.wait != 0 && watches() ? 1 : 0;
     publish();
     wire::Reply reply;
     ++transactions;
@@ -113,7 +152,8 @@ void transact(wire::Request& request, const void* data, std::size_t size) {
     clock_now = reply.now;
     clock_limit = reply.limit;
     follow_wall_clock();
-    pending_signals |= reply.signals;
+    if (reply.signals != 0) pending_signals |= reply.signals & ~ignored_signals(reply.signals);
+    if (reply.changed != 0) wake(external_key(), INT32_MAX);
     expire_deadlines();
 }
 
@@ -245,7 +285,7 @@ Thread* thread_at(std::size_t index) {
 }
 
 void mark_call(const char* name) {
-    std::strncpy(page().call_name, name, sizeof page().call_name - 1);
+    std::strncpy(own().call_name, name, sizeof own().call_name - 1);
 }
 
 void yield_token() {
@@ -290,7 +330,7 @@ Wake park(const void* key, const WaitOptions& options) {
     schedule(me);
     const Wake reason = me->wake;
     after_wait(me);
-    if (reason == Wake::Signal) take_signals();
+    if (reason == Wake::Signal) me->restarts = take_signals();
     return reason;
 }
 
@@ -446,6 +486,34 @@ void go_passive() {
     conducted = false;
 }
 
+void only_this_thread() {
+    Thread* me = current;
+    std::fill(std::begin(threads), std::end(threads), nullptr);
+    threads[0] = me;
+    thread_total = 1;
+    me->index = 0;
+    me->state = Thread::State::Running;
+    me->awaited_signals = nullptr;
+    pending_signals = 0;
+    ++transactions;
+    in_node_call = false;
+    conducted = true;
+}
+
+std::string say_hello(bool forked) {
+    std::string inherited(wire::kMaximumData, '\0');
+    wire::Request request;
+    request.op = wire::Op::Hello;
+    request.a = wire::kVersion;
+    request.b = forked ? 1 : 0;
+    std::size_t received = 0;
+    device_call(request, nullptr, 0, inherited.data(), inherited.size(), false, &received);
+    inherited.resize(received);
+    // The node, which by now is the parent of every process here, takes them along when it ends.
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    return inherited;
+}
+
 /// Runs before the program's own initialisers, on its main thread.
 __attribute__((constructor)) static void begin() {
     if (!connect_link()) return;
@@ -456,10 +524,6 @@ __attribute__((constructor)) static void begin() {
     current = main_thread;
     conducted = true;
     begin_process(main_thread);
-    wire::Request request;
-    request.op = wire::Op::Hello;
-    request.a = wire::kVersion;
-    transact(request, nullptr, 0);
 }
 
 }  // namespace puckloop::shim

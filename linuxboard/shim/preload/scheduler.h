@@ -17,6 +17,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 
 namespace puckloop::shim {
 
@@ -58,12 +59,13 @@ struct Thread {
     void* (*start)(void*) = nullptr;
     void* argument = nullptr;
     int exit_rounds = 0;
+    bool restarts = true;  ///< after Wake::Signal: no handler that ran interrupts calls
 
     const sigset_t* awaited_signals = nullptr;  ///< sigwait
     int taken_signal = 0;
 };
 
-/// The library conducts this process and the calling thread. False before the start, in forked children, in
+/// The library conducts this process and the calling thread. False before the start, in
 /// processes the node does not know, and once the program has announced its end.
 bool active();
 Thread* self();
@@ -110,5 +112,9 @@ void cancel_thread(Thread* thread);
 void announce_exit(int status);
 /// In a forked child: nothing is conducted any more.
 void go_passive();
+/// In a forked child of which the node knows: the calling thread is its only one, and it is conducted.
+void only_this_thread();
+/// First request of a process or a program; returns what its predecessor left for it.
+std::string say_hello(bool forked);
 
 }  // namespace puckloop::shim

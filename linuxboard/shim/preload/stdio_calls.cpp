@@ -1,11 +1,13 @@
 // Devices opened as streams. The C library's streams make their own system calls, so a device gets a stream
-// whose reading and writing come back here.
+// whose reading and writing come back here; so does a pipe, in which a process may wait for another one.
 
+#include "linuxboard/shim/preload/calls.h"
 #include "linuxboard/shim/preload/open_file.h"
 #include "linuxboard/shim/preload/real.h"
 
 #include <fcntl.h>
 #include <stdio.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -39,6 +41,16 @@ int flags_of(const char* mode) {
     return flags;
 }
 
+}  // namespace
+
+namespace puckloop::shim {
+
+bool is_channel(int fd) {
+    struct stat status {};
+    if (!active() || REAL(fstat)(fd, &status) != 0) return false;
+    return S_ISFIFO(status.st_mode) || S_ISSOCK(status.st_mode);
+}
+
 FILE* open_stream(int fd, const char* mode) {
     if (fd < 0) return nullptr;
     cookie_io_functions_t calls{};
@@ -68,6 +80,24 @@ FILE* open_stream(int fd, const char* mode) {
     return file;
 }
 
+void adopt_standard_streams() {
+    if (is_channel(STDIN_FILENO)) stdin = open_stream(STDIN_FILENO, "r");
+    if (is_channel(STDOUT_FILENO)) {
+        stdout = open_stream(STDOUT_FILENO, "w");
+        const char* asked = getenv("_STDBUF_O");  // stdbuf's own library has set up the stream before
+        const bool unbuffered = asked != nullptr && strcmp(asked, "0") == 0;
+        setvbuf(stdout, nullptr, unbuffered ? _IONBF : _IOLBF, BUFSIZ);
+    }
+    if (is_channel(STDERR_FILENO)) {
+        stderr = open_stream(STDERR_FILENO, "w");
+        setvbuf(stderr, nullptr, _IONBF, 0);
+    }
+}
+
+}  // namespace puckloop::shim
+
+namespace {
+
 int print(int fd, const char* format, std::va_list arguments) {
     char* text = nullptr;
     const int length = vasprintf(&text, format, arguments);
@@ -91,7 +121,7 @@ SHIM_EXPORT FILE* fopen64(const char* path, const char* mode) {
 }
 
 SHIM_EXPORT FILE* fdopen(int fd, const char* mode) noexcept {
-    return open_file(fd) == nullptr ? REAL(fdopen)(fd, mode) : open_stream(fd, mode);
+    return open_file(fd) == nullptr && !is_channel(fd) ? REAL(fdopen)(fd, mode) : open_stream(fd, mode);
 }
 
 SHIM_EXPORT int fileno(FILE* file) noexcept {
@@ -101,8 +131,13 @@ SHIM_EXPORT int fileno(FILE* file) noexcept {
     return REAL(fileno)(file);
 }
 
+SHIM_EXPORT int fileno_unlocked(FILE* file) noexcept {
+    return fileno(file);
+}
+
 SHIM_EXPORT int vdprintf(int fd, const char* format, std::va_list arguments) {
-    return open_file(fd) == nullptr ? REAL(vdprintf)(fd, format, arguments) : print(fd, format, arguments);
+    return open_file(fd) == nullptr && !is_channel(fd) ? REAL(vdprintf)(fd, format, arguments)
+                                                       : print(fd, format, arguments);
 }
 
 SHIM_EXPORT int dprintf(int fd, const char* format, ...) {

@@ -27,6 +27,18 @@ Time left_of(const Timer& timer) {
     return timer.deadline == kNever ? 0 : std::max<Time>(timer.deadline - now(), 1);
 }
 
+itimerspec read_timer(const Timer& timer) {
+    return {to_timespec(timer.interval), to_timespec(left_of(timer))};
+}
+void set_timer(Timer& timer, bool absolute, const itimerspec& value, itimerspec* old) {
+    if (old != nullptr) *old = read_timer(timer);
+    const Time first = from_timespec(value.it_value);
+    timer.interval = from_timespec(value.it_interval);
+    timer.deadline = first == 0 ? kNever
+                     : absolute ? absolute_deadline(timer.clock, value.it_value)
+                                : time_after(first);
+}
+
 /// Waits for one of `set`; the signal's number, or 0 at the deadline.
 int await_signal(const sigset_t* set, Time deadline) {
     mark_call("sigwait");
@@ -90,11 +102,47 @@ SHIM_EXPORT int setitimer(__itimer_which_t which, const itimerval* value, itimer
     return 0;
 }
 
-SHIM_EXPORT int timer_create(clockid_t clock, sigevent* event, timer_t* timer) noexcept {
-    if (!active()) return REAL(timer_create)(clock, event, timer);
-    note("timer_create is not supported (setitimer and timerfd are)");
-    errno = ENOTSUP;
-    return -1;
+SHIM_EXPORT int timer_create(clockid_t clock, sigevent* event, timer_t* id) noexcept {
+    if (!active()) return REAL(timer_create)(clock, event, id);
+    charge(page().charges.clock);
+    if (event != nullptr && event->sigev_notify != SIGEV_SIGNAL && event->sigev_notify != SIGEV_NONE) {
+        note(
+            "timer_create: timers that start threads are not supported (signals, setitimer and timerfd are)");
+        errno = ENOTSUP;
+        return -1;
+    }
+    Timer* timer = new_timer(-1);
+    if (timer == nullptr) {
+        errno = EAGAIN;
+        return -1;
+    }
+    timer->clock = clock;
+    timer->signal = event == nullptr ? SIGALRM : event->sigev_notify == SIGEV_SIGNAL ? event->sigev_signo : 0;
+    *id = timer;
+    return 0;
+}
+
+SHIM_EXPORT int timer_settime(timer_t id, int flags, const itimerspec* value, itimerspec* old) noexcept {
+    if (!active()) return REAL(timer_settime)(id, flags, value, old);
+    charge(page().charges.clock);
+    set_timer(*static_cast<Timer*>(id), (flags & TIMER_ABSTIME) != 0, *value, old);
+    return 0;
+}
+
+SHIM_EXPORT int timer_gettime(timer_t id, itimerspec* value) noexcept {
+    if (!active()) return REAL(timer_gettime)(id, value);
+    *value = read_timer(*static_cast<const Timer*>(id));
+    return 0;
+}
+
+SHIM_EXPORT int timer_getoverrun(timer_t id) noexcept {
+    return active() ? 0 : REAL(timer_getoverrun)(id);
+}
+
+SHIM_EXPORT int timer_delete(timer_t id) noexcept {
+    if (!active()) return REAL(timer_delete)(id);
+    *static_cast<Timer*>(id) = {};
+    return 0;
 }
 
 SHIM_EXPORT int timerfd_create(clockid_t clock, int flags) noexcept {
@@ -117,7 +165,7 @@ SHIM_EXPORT int timerfd_create(clockid_t clock, int flags) noexcept {
 SHIM_EXPORT int timerfd_gettime(int fd, itimerspec* value) noexcept {
     const Timer* timer = active() ? timer_of(fd) : nullptr;
     if (timer == nullptr) return REAL(timerfd_gettime)(fd, value);
-    *value = {to_timespec(timer->interval), to_timespec(left_of(*timer))};
+    *value = read_timer(*timer);
     return 0;
 }
 
@@ -125,15 +173,7 @@ SHIM_EXPORT int timerfd_settime(int fd, int flags, const itimerspec* value, itim
     Timer* timer = active() ? timer_of(fd) : nullptr;
     if (timer == nullptr) return REAL(timerfd_settime)(fd, flags, value, old);
     charge(page().charges.device);
-    if (old != nullptr) timerfd_gettime(fd, old);
-    const Time first = from_timespec(value->it_value);
-    timer->interval = from_timespec(value->it_interval);
-    if (first == 0) {
-        timer->deadline = kNever;
-    } else {
-        timer->deadline = (flags & TFD_TIMER_ABSTIME) != 0 ? absolute_deadline(timer->clock, value->it_value)
-                                                           : time_after(first);
-    }
+    set_timer(*timer, (flags & TFD_TIMER_ABSTIME) != 0, *value, old);
     return 0;
 }
 
@@ -152,9 +192,15 @@ SHIM_EXPORT int pause() {
 
 SHIM_EXPORT int sigsuspend(const sigset_t* mask) {
     if (!active()) return REAL(sigsuspend)(mask);
+    // One that came while it was blocked ends the wait at once.
+    sigset_t waiting;
+    sigpending(&waiting);
+    bool due = false;
+    for (int number = 1; number < NSIG; ++number)
+        due = due || (sigismember(&waiting, number) == 1 && sigismember(mask, number) == 0);
     sigset_t before;
     pthread_sigmask(SIG_SETMASK, mask, &before);
-    pause();
+    if (!due) pause();
     pthread_sigmask(SIG_SETMASK, &before, nullptr);
     errno = EINTR;
     return -1;

@@ -40,6 +40,16 @@ void drop_timer(int fd) {
     if (Timer* timer = timer_of(fd)) *timer = {};
 }
 
+void drop_all_timers() {
+    for (Timer& timer : timers)
+        timer = {};
+}
+
+void each_lasting_timer(void (*use)(const Timer&, void*), void* context) {
+    for (const Timer& timer : timers)
+        if (&timer == timers || timer.fd >= 0) use(timer, context);
+}
+
 Time next_timer() {
     Time next = kNever;
     for (const Timer& timer : timers)

@@ -20,6 +20,10 @@ Timer& real_timer();
 Timer* new_timer(int fd);
 Timer* timer_of(int fd);
 void drop_timer(int fd);
+/// In a forked child: it has none.
+void drop_all_timers();
+/// Calls `use` for every timer that outlives an exec: ITIMER_REAL and those with a descriptor.
+void each_lasting_timer(void (*use)(const Timer&, void*), void* context);
 
 /// Earliest deadline of all timers.
 Time next_timer();

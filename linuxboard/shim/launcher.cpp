@@ -1,0 +1,212 @@
+#include "linuxboard/shim/launcher.h"
+
+#include "base/error.h"
+#include "base/random.h"
+#include "linuxboard/shim/program_file.h"
+
+#include <fmt/format.h>
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/personality.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <new>
+
+extern char** environ;
+
+namespace puckloop::linuxboard {
+
+namespace {
+constexpr int kFirstPrivateFd = 500;  // well above what a program counts on
+constexpr rlim_t kUsualDescriptors = 1024;
+constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
+
+[[noreturn]] void fail(const std::string& what) {
+    throw RunError(what + ": " + std::strerror(errno));
+}
+
+std::string shim_file(const LinuxSpec& spec) {
+    std::string file = spec.shim;
+    if (file.empty()) {
+        const char* set = std::getenv("PUCKLOOP_SHIM");
+        file = set != nullptr ? set : PUCKLOOP_SHIM_FILE;
+    }
+    if (access(file.c_str(), R_OK) != 0)
+        throw InputError(file, "", "the library to preload is not there", "build the target puckloop_shim");
+    return file;
+}
+
+std::vector<char*> pointers(std::vector<std::string>& strings) {
+    std::vector<char*> list;
+    for (std::string& text : strings)
+        list.push_back(text.data());
+    list.push_back(nullptr);
+    return list;
+}
+}  // namespace
+
+Launcher::Launcher(const LinuxSpec& spec)
+    : spec_(spec), file_(find_program(spec.program)), shim_(shim_file(spec)) {
+    if (!spec.log.empty()) {
+        log_fd_ = open(spec.log.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0644);
+        if (log_fd_ < 0)
+            throw InputError(spec.log, "", std::strerror(errno), "a log file that can be written");
+    }
+    prepare_page();
+}
+
+Launcher::~Launcher() {
+    if (page_ != nullptr) munmap(page_, sizeof *page_);
+    if (page_fd_ >= 0) close(page_fd_);
+    if (log_fd_ >= 0) close(log_fd_);
+}
+
+void Launcher::prepare_page() {
+    page_fd_ = memfd_create("puckloop-shim", MFD_CLOEXEC);
+    if (page_fd_ < 0 || ftruncate(page_fd_, sizeof(wire::Page)) != 0) fail("shared memory");
+    void* memory = mmap(nullptr, sizeof(wire::Page), PROT_READ | PROT_WRITE, MAP_SHARED, page_fd_, 0);
+    if (memory == MAP_FAILED) fail("shared memory");
+    page_ = new (memory) wire::Page;
+    page_->real_time = spec_.real_time ? 1 : 0;
+    page_->epoch = spec_.epoch_s * kNanosecondsPerSecond;
+    page_->uptime = cosim::from_seconds(spec_.uptime_s) / cosim::kNanosecond;
+    page_->seed = RandomStream(spec_.seed, "linux." + spec_.name).next();
+    page_->charges = spec_.charges;
+    page_->oversleep = spec_.oversleep;
+    std::strncpy(page_->host_name, spec_.host_name.c_str(), sizeof page_->host_name - 1);
+    std::size_t index = 0;
+    const auto add = [&](wire::DeviceKind kind, const std::string& path) {
+        wire::DeviceName& device = page_->devices[index++];
+        device.kind = kind;
+        if (path.size() >= sizeof device.path) throw InputError("", path, "the device's name is too long");
+        std::strncpy(device.path, path.c_str(), sizeof device.path - 1);
+    };
+    if (!spec_.tty.empty()) add(wire::DeviceKind::Tty, spec_.tty);
+    for (const std::string& path : spec_.i2c)
+        add(wire::DeviceKind::I2c, path);
+}
+
+std::unique_ptr<Process> Launcher::start() {
+    for (wire::ProcessEntry& other : page_->processes)
+        other.state = wire::ProcessEntry::Free;
+    wire::ProcessEntry& entry = page_->processes[0];
+    entry.state = wire::ProcessEntry::Alive;
+    entry.number = entry.group = wire::kFirstProcess;
+    entry.parent = wire::kNoParent;
+    page_->alive = 1;
+    int sockets[2] = {-1, -1};
+    int report[2] = {-1, -1};
+    if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, sockets) != 0) fail("socket pair");
+    if (pipe2(report, O_CLOEXEC) != 0) fail("pipe");
+
+    // Everything is prepared before fork(): the child may only make system calls.
+    std::vector<std::string> args{spec_.program};
+    args.insert(args.end(), spec_.args.begin(), spec_.args.end());
+    std::vector<std::string> env;
+    std::string preload = shim_;
+    for (char** variable = environ; *variable != nullptr; ++variable) {
+        const std::string_view text = *variable;
+        if (text.starts_with("LD_PRELOAD=")) {
+            preload += ":" + std::string(text.substr(text.find('=') + 1));
+        } else if (!text.starts_with(wire::kLinkVariable)) {
+            env.emplace_back(text);
+        }
+    }
+    for (const auto& [key, value] : spec_.env) {
+        std::erase_if(env, [&](const std::string& text) { return text.starts_with(key + "="); });
+        env.push_back(key + "=" + value);
+    }
+    env.push_back("LD_PRELOAD=" + preload);
+    env.push_back(fmt::format("{}={},{},0", wire::kLinkVariable, kFirstPrivateFd, kFirstPrivateFd + 1));
+    const std::vector<char*> arguments = pointers(args);
+    const std::vector<char*> variables = pointers(env);
+    const char* stdin_file = spec_.stdin_file.empty() ? "/dev/null" : spec_.stdin_file.c_str();
+
+    const pid_t pid = fork();
+    if (pid < 0) fail("fork");
+    if (pid == 0) {
+        const auto give_up = [&](int where) {
+            const int status[2] = {where, errno};
+            [[maybe_unused]] const auto written = write(report[1], status, sizeof status);
+            _exit(127);
+        };
+        setpgid(0, 0);  // Ctrl-C ends the run; the run ends the program
+        prctl(PR_SET_PDEATHSIG, SIGKILL);
+        personality(ADDR_NO_RANDOMIZE);
+        entry.host = getpid();
+        const int in = open(stdin_file, O_RDONLY);
+        if (in < 0) give_up(1);
+        if (in != STDIN_FILENO) {
+            dup2(in, STDIN_FILENO);
+            close(in);
+        }
+        const int out = log_fd_ >= 0 ? log_fd_ : open("/dev/null", O_WRONLY);
+        dup2(out, STDOUT_FILENO);
+        dup2(out, STDERR_FILENO);
+        rlimit limit{};  // puckloop may have raised its own
+        if (getrlimit(RLIMIT_NOFILE, &limit) == 0) {
+            limit.rlim_cur = std::min<rlim_t>(limit.rlim_max, kUsualDescriptors);
+            setrlimit(RLIMIT_NOFILE, &limit);
+        }
+        // Either may be where the other one goes, in a process with many descriptors.
+        const int page = fcntl(page_fd_, F_DUPFD, kFirstPrivateFd + 2);
+        const int link = fcntl(sockets[1], F_DUPFD, kFirstPrivateFd + 2);
+        if (page < 0 || link < 0 || dup2(link, kFirstPrivateFd) < 0 || dup2(page, kFirstPrivateFd + 1) < 0)
+            give_up(2);
+        close(page);
+        close(link);
+        if (!spec_.cwd.empty() && chdir(spec_.cwd.c_str()) != 0) give_up(3);
+        execve(file_.c_str(), arguments.data(), variables.data());
+        give_up(0);
+    }
+    close(sockets[1]);
+    close(report[1]);
+    entry.host = pid;
+    auto process = std::make_unique<Process>(sockets[0], entry);
+    int status[2] = {0, 0};
+    const bool failed = read(report[0], status, sizeof status) == sizeof status;
+    close(report[0]);
+    if (failed) {
+        if (status[0] == 2)
+            throw RunError(
+                fmt::format("{}: no descriptors for the program: {}", file_, std::strerror(status[1])));
+        const std::string file = status[0] == 1 ? stdin_file : status[0] == 3 ? spec_.cwd : file_;
+        throw InputError(file, "", std::strerror(status[1]), "a program that can be started");
+    }
+    return process;
+}
+
+void Launcher::echo_output() {
+    if (!spec_.echo_output || log_fd_ < 0) return;
+    char text[4096];
+    for (ssize_t count; (count = pread(log_fd_, text, sizeof text, echoed_)) > 0; echoed_ += count) {
+        [[maybe_unused]] const auto written = write(STDOUT_FILENO, text, static_cast<std::size_t>(count));
+    }
+}
+
+std::string Launcher::last_line() const {
+    if (spec_.log.empty()) return {};
+    std::ifstream log(spec_.log);
+    constexpr std::streamoff kTail = 400;
+    log.seekg(0, std::ios::end);
+    const auto size = static_cast<std::streamoff>(log.tellg());
+    log.seekg(std::max<std::streamoff>(0, size - kTail));
+    std::string last;
+    for (std::string line; std::getline(log, line);) {
+        if (!line.empty()) last = line;
+    }
+    return last;
+}
+
+}  // namespace puckloop::linuxboard

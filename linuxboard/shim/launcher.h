@@ -1,0 +1,45 @@
+#pragma once
+// How the program's first process is started under the preloaded library, with the memory that all its
+// processes share, its log and its descriptors.
+
+#include "linuxboard/shim/process.h"
+#include "linuxboard/shim/spec.h"
+#include "linuxboard/shim/wire.h"
+
+#include <memory>
+#include <string>
+
+namespace puckloop::linuxboard {
+
+class Launcher {
+  public:
+    /// Checks the program; starts nothing yet. Throws InputError.
+    explicit Launcher(const LinuxSpec& spec);
+    ~Launcher();
+    Launcher(const Launcher&) = delete;
+    Launcher& operator=(const Launcher&) = delete;
+
+    /// Starts the program, which waits in the library until the first reply; its entry is slot 0. Throws
+    /// InputError if it cannot be executed, RunError if the host refuses.
+    std::unique_ptr<Process> start();
+
+    wire::Page& page() { return *page_; }
+    const wire::Page& page() const { return *page_; }
+    /// What the program wrote to its log since the last call goes to this terminal too.
+    void echo_output();
+    /// Last line the program wrote to its log, if there is a log file.
+    std::string last_line() const;
+
+  private:
+    void prepare_page();
+
+    const LinuxSpec& spec_;
+    std::string file_;
+    std::string shim_;
+    wire::Page* page_ = nullptr;
+    int page_fd_ = -1;
+    int log_fd_ = -1;
+    off_t echoed_ = 0;
+};
+
+}  // namespace puckloop::linuxboard

@@ -1,0 +1,212 @@
+// fork() and what is made of it. The children run in simulated time like the process that made them.
+//
+// Deviations: 1. vfork() copies, as fork() does. 2. Timers with a descriptor stay with the parent. 3. Flags
+// of a device's descriptor (O_NONBLOCK, the I2C address) are each process's own after fork().
+
+#include "linuxboard/shim/preload/calls.h"
+#include "linuxboard/shim/preload/host.h"
+#include "linuxboard/shim/preload/link.h"
+#include "linuxboard/shim/preload/processes/inheritance.h"
+#include "linuxboard/shim/preload/processes/make_process.h"
+#include "linuxboard/shim/preload/real.h"
+#include "linuxboard/shim/preload/timers.h"
+
+#include <fcntl.h>
+#include <limits.h>
+#include <spawn.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+extern "C" pid_t _Fork(void) noexcept;
+
+using namespace puckloop::shim;
+
+namespace {
+constexpr int kBorn = -2;  ///< of in_between(): this is the new process
+constexpr int kNoProcess = 255;
+
+int bear(void*) {
+    const pid_t born = _Fork();
+    if (born == 0) return kBorn;
+    return born < 0 ? kNoProcess : 0;
+}
+
+void begin_child(const Birth& birth) {
+    change_link(birth.link, birth.slot);
+    drop_all_timers();
+    only_this_thread();
+    say_hello(true);
+}
+
+struct Spawn {
+    const char* file;
+    const posix_spawn_file_actions_t* actions;
+    const posix_spawnattr_t* attributes;
+    char* const* arguments;
+    char* const* environment;
+    int link;
+};
+
+int spawn_there(void* context) {
+    const Spawn& spawn = *static_cast<const Spawn*>(context);
+    place_link(spawn.link);
+    pid_t ignored = 0;
+    return REAL(posix_spawn)(&ignored, spawn.file, spawn.actions, spawn.attributes, spawn.arguments,
+                             spawn.environment);
+}
+
+int run_shell(const char* command) {
+    execl("/bin/sh", "sh", "-c", command, nullptr);
+    _exit(127);
+}
+
+struct Opened {
+    FILE* file = nullptr;
+    pid_t process = 0;
+};
+constexpr int kMostOpened = 64;
+Opened opened[kMostOpened];
+}  // namespace
+
+SHIM_EXPORT pid_t fork() noexcept {
+    if (!active()) return REAL(fork)();
+    mark_call("fork");
+    Birth birth;
+    if (!ask_for_process(birth, {})) return -1;
+    const int status = in_between(bear, nullptr, true);
+    if (status == kBorn) {
+        begin_child(birth);
+        return 0;
+    }
+    const pid_t child = report_birth(birth, status == 0);
+    if (child < 0) errno = EAGAIN;
+    return child;
+}
+
+SHIM_EXPORT pid_t vfork() noexcept {
+    return fork();
+}
+
+SHIM_EXPORT int daemon(int stay, int keep_output) noexcept {
+    if (!active()) return REAL(daemon)(stay, keep_output);
+    const pid_t child = fork();
+    if (child < 0) return -1;
+    if (child > 0) _exit(0);
+    setsid();
+    if (stay == 0 && chdir("/") != 0) return -1;
+    if (keep_output == 0) {
+        const int nothing = open("/dev/null", O_RDWR);
+        for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+            dup2(nothing, fd);
+        if (nothing > STDERR_FILENO) close(nothing);
+    }
+    return 0;
+}
+
+SHIM_EXPORT int posix_spawn(pid_t* pid, const char* path, const posix_spawn_file_actions_t* actions,
+                            const posix_spawnattr_t* attributes, char* const* arguments,
+                            char* const* environment) {
+    if (!active()) return REAL(posix_spawn)(pid, path, actions, attributes, arguments, environment);
+    mark_call("posix_spawn");
+    if (!can_be_conducted(path, true)) return EACCES;
+    Birth birth;
+    if (!ask_for_process(birth, leave(false))) return errno;
+    char** linked = linked_environment(environment, birth.slot);
+    Spawn spawn{path, actions, attributes, arguments, linked, birth.link};
+    const int error = in_between(spawn_there, &spawn, false);
+    free(linked);
+    const pid_t child = report_birth(birth, error == 0);
+    if (error != 0) return error < 0 ? EAGAIN : error;
+    if (pid != nullptr) *pid = child;
+    return 0;
+}
+
+SHIM_EXPORT int posix_spawnp(pid_t* pid, const char* file, const posix_spawn_file_actions_t* actions,
+                             const posix_spawnattr_t* attributes, char* const* arguments,
+                             char* const* environment) {
+    if (!active()) return REAL(posix_spawnp)(pid, file, actions, attributes, arguments, environment);
+    char room[PATH_MAX];
+    return posix_spawn(pid, search_path(file, room), actions, attributes, arguments, environment);
+}
+
+SHIM_EXPORT int system(const char* command) {
+    if (!active()) return REAL(system)(command);
+    mark_call("system");
+    if (command == nullptr) return 1;
+    struct sigaction ignore {
+    }, interrupt{}, quit{};
+    ignore.sa_handler = SIG_IGN;
+    sigaction(SIGINT, &ignore, &interrupt);
+    sigaction(SIGQUIT, &ignore, &quit);
+    sigset_t children, before;
+    sigemptyset(&children);
+    sigaddset(&children, SIGCHLD);
+    pthread_sigmask(SIG_BLOCK, &children, &before);
+    const auto restore = [&] {
+        sigaction(SIGINT, &interrupt, nullptr);
+        sigaction(SIGQUIT, &quit, nullptr);
+        pthread_sigmask(SIG_SETMASK, &before, nullptr);
+    };
+    const pid_t child = fork();
+    if (child == 0) {
+        restore();
+        run_shell(command);
+    }
+    int status = -1;
+    while (child > 0 && waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
+    restore();
+    return status;
+}
+
+SHIM_EXPORT FILE* popen(const char* command, const char* mode) {
+    if (!active()) return REAL(popen)(command, mode);
+    mark_call("popen");
+    const bool reads = std::strchr(mode, 'r') != nullptr;
+    Opened* entry = nullptr;
+    for (Opened& candidate : opened)
+        if (candidate.file == nullptr) entry = &candidate;
+    int ends[2];
+    if (entry == nullptr || pipe2(ends, O_CLOEXEC) != 0) return nullptr;
+    const int mine = ends[reads ? 0 : 1], other = ends[reads ? 1 : 0];
+    const pid_t child = fork();
+    if (child == 0) {
+        const int standard = reads ? STDOUT_FILENO : STDIN_FILENO;
+        if (other == standard) {
+            fcntl(other, F_SETFD, 0);
+        } else {
+            dup2(other, standard);
+        }
+        for (const Opened& earlier : opened)
+            if (earlier.file != nullptr) close(fileno(earlier.file));
+        run_shell(command);
+    }
+    close(other);
+    if (child < 0) {
+        close(mine);
+        return nullptr;
+    }
+    if (std::strchr(mode, 'e') == nullptr) fcntl(mine, F_SETFD, 0);
+    *entry = {open_stream(mine, reads ? "r" : "w"), child};
+    return entry->file;
+}
+
+SHIM_EXPORT int pclose(FILE* file) {
+    for (Opened& entry : opened) {
+        if (file == nullptr || entry.file != file) continue;
+        const pid_t child = entry.process;
+        entry = {};
+        fclose(file);
+        int status = -1;
+        while (waitpid(child, &status, 0) < 0)
+            if (errno != EINTR) return -1;
+        return status;
+    }
+    return REAL(pclose)(file);
+}

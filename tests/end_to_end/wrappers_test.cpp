@@ -1,0 +1,46 @@
+// A control program as people start it: from a script, behind env and timeout, into tee, from Python.
+
+#include "tests/end_to_end/one_line.h"
+#include "tests/end_to_end/same_run.h"
+
+#include <catch2/catch.hpp>
+
+using namespace puckloop::tests;
+using Catch::Contains;
+
+TEST_CASE("wrappers and children drive the robot, the same in both placements and again") {
+    const std::string control = PUCKLOOP_CONTROL;
+    const std::string drive = control + " --behaviour wander --duration 2";
+    const auto [text, needs] = GENERATE_COPY(table<std::string, std::string>({
+        {"#!/bin/sh\nexec \"$@\"\n", ""},
+        {"#!/bin/sh\nexec /usr/bin/env -i FOO=1 stdbuf -oL nice timeout 30 " + drive + "\n",
+         "/usr/bin/stdbuf"},
+        {"#!/bin/sh\n" + drive + " | tee /dev/null\necho done\n", ""},
+        {"#!/usr/bin/python3\nimport subprocess\nsubprocess.run(\"" + drive + "\".split())\n",
+         "/usr/bin/python3"},
+    }));
+    if (!needs.empty() && !std::filesystem::exists(needs)) {
+        WARN(needs << " is not there: skipped");
+        return;
+    }
+    const Workbench bench;
+    const std::string wrapper = bench.file("wrapper", text);
+    std::filesystem::permissions(wrapper, std::filesystem::perms::owner_all);
+    CAPTURE(text);
+    for (const char* name : {"a", "b", "c"}) {
+        Words words{bench.hello(), "--duration", "10"};
+        if (*name == 'b') words.push_back("--in-process");
+        words.insert(words.end(),
+                     {"--linux", wrapper, control, "--behaviour", "wander", "--", "--duration", "2"});
+        const Ended ended = bench.run(name, words);
+        CHECK(ended.err.empty());
+        CHECK(ended.status == 0);
+        const auto report = bench.report(name);
+        CHECK(report["ended_by"] == "node stopped");
+        CHECK(report["simulated_s"].get<double>() == Approx(2.93).margin(0.05));
+        CHECK(report["nodes"]["robot0.linux"]["uart"]["received"] > 1000);
+        CHECK_THAT(text_of(bench.out(name) / "robot0.linux.log"), Contains("not answered 0"));
+    }
+    check_same_run(bench, "a", "b");
+    check_same_run(bench, "a", "c");
+}

@@ -1,0 +1,172 @@
+// Programs behind wrappers, and programs of several processes, in simulated time.
+
+#include "tests/linuxboard/bench.h"
+
+#include <catch2/catch.hpp>
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+
+using namespace puckloop;
+using namespace puckloop::cosim;
+using namespace puckloop::tests;
+using Catch::Contains;
+
+namespace {
+
+struct Ran {
+    std::string log, sent, trace;
+    std::optional<Stop> stop;
+    std::vector<std::string> warnings;
+};
+
+Ran run(linuxboard::LinuxSpec spec, Time slice = 70 * kMicrosecond) {
+    spec.exit_ends_run = true;
+    Bench bench(std::move(spec), slice);
+    bench.run(10 * kSecond);
+    return {bench.log(), bench.sent(), bench.trace(), bench.node().stop(), bench.node().warnings()};
+}
+
+linuxboard::LinuxSpec shell(const std::string& script) {
+    linuxboard::LinuxSpec spec = spec_for("beat");
+    spec.program = "/bin/sh";
+    spec.args = {"-c", script};
+    return spec;
+}
+
+linuxboard::LinuxSpec family(const std::string& what) {
+    return spec_for("family", {what});
+}
+
+/// The same with other grants, and with other process numbers and timing of the host.
+void check_same(const linuxboard::LinuxSpec& spec, const Ran& first) {
+    for (const Time slice : {70 * kMicrosecond, 13 * kMicrosecond}) {
+        const Ran again = run(spec, slice);
+        CHECK(again.trace == first.trace);
+        CHECK(again.log == first.log);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("a program reached through a wrapper keeps clock, time and port") {
+    const std::string clocks = program("clocks");
+    const std::string python = "/usr/bin/python3";
+    const auto [wrapper, needs] = GENERATE_COPY(table<std::string, std::string>({
+        {"exec " + clocks, ""},
+        {"set -- " + clocks + "; exec \"$@\"", ""},
+        {"exec /usr/bin/env FOO=1 " + clocks, "/usr/bin/env"},
+        {"exec env -i " + clocks, "/usr/bin/env"},
+        {"exec stdbuf -oL " + clocks, "/usr/bin/stdbuf"},
+        {"exec nice " + clocks, "/usr/bin/nice"},
+        {"exec nohup " + clocks, "/usr/bin/nohup"},
+        {"exec timeout 20 " + clocks, "/usr/bin/timeout"},
+        {clocks + "; echo done", ""},
+        {clocks + " | tee /dev/null", "/usr/bin/tee"},
+        {clocks + " 2>&1 | sed s/x/x/ | cat", "/bin/sed"},
+        {"(" + clocks + " & wait)", ""},
+        {"exec " + python + " -c 'import os; os.execv(\"" + clocks + "\", [\"clocks\"])'", python},
+        {"exec " + python + " -c 'import subprocess; subprocess.run([\"" + clocks + "\"])'", python},
+        {"exec " + python + " -c 'import subprocess; print(subprocess.check_output(\"" + clocks +
+             "\", text=True))'",
+         python},
+    }));
+    if (!needs.empty() && !std::filesystem::exists(needs)) {
+        WARN(needs << " is not there: skipped");
+        return;
+    }
+    CAPTURE(wrapper);
+    linuxboard::LinuxSpec spec = shell(wrapper);
+    spec.start = 2 * kSecond;
+    const Ran ran = run(spec);
+    REQUIRE(ran.stop);
+    CHECK(ran.stop->success);
+    CHECK(ran.sent == std::string("\0\1\2\3\4", 5));
+    CHECK(to_seconds(ran.stop->time) == Approx(2.3).margin(0.01));
+    CHECK_THAT(ran.log, Contains("10001 20001 30001 0\n") && Contains("mono 62"));
+    CHECK(ran.warnings.empty());
+    check_same(spec, ran);
+}
+
+TEST_CASE("two processes share the port, each in its own rhythm") {
+    const Ran ran = run(family("share"));
+    // At 20, 30, 40, 60, 60 (the child has made fewer calls, each of which costs something), 80, 90, 120 ms.
+    CHECK(ran.sent == "AaBbCDcd");
+    CHECK(ran.log == "child 1001 of 1000, its parent 1, status 3 at 120\n");
+    check_same(family("share"), ran);
+}
+
+TEST_CASE("pipes hold what they hold, and stdio waits for them in simulated time") {
+    const Ran ran = run(family("pipes"));
+    CHECK(ran.log == "300000 bytes came back, statuses 2, no child is left: 1\n");
+    check_same(family("pipes"), ran);
+}
+
+TEST_CASE("signals among processes come at simulated times") {
+    const Ran ran = run(family("signals"));
+    CHECK(ran.log == "SIGCHLD 1 at 25, status 1\nkilled by 9, kill again -1\n");
+    check_same(family("signals"), ran);
+}
+
+TEST_CASE("system and popen run their shells in simulated time") {
+    const Ran ran = run(family("shells"));
+    CHECK_THAT(ran.log, Contains("system 4\n") && Contains(": one\n") && Contains(": two\npclose 0\n") &&
+                            Contains("to the child\npclose 6 at 10"));
+    check_same(family("shells"), ran);
+}
+
+TEST_CASE("spawned processes run in simulated time, those that are nowhere do not") {
+    const Ran ran = run(family("spawns"));
+    CHECK_THAT(ran.log, Contains("spawned 1001, status 5 at 3") && Contains("nowhere: No such file") &&
+                            Contains("vfork 7\n"));
+    check_same(family("spawns"), ran);
+}
+
+TEST_CASE("exec keeps the port and the alarm, and closes what is to be closed") {
+    const Ran ran = run(family("replace"));
+    CHECK(ran.log == "pid 1000 at 20, kept 0, closed -1\nalarm at 1020\n");
+    CHECK(ran.sent == "k");
+}
+
+TEST_CASE("timeout ends a program that takes too long") {
+    const Ran ran = run(shell("timeout 0.5 " + program("polite") + " handler; echo status $?"));
+    CHECK_THAT(ran.log, Contains("asked by 15 at 50") && Contains("status 124"));
+    CHECK(ran.sent == "R");
+}
+
+TEST_CASE("a program that cannot be conducted is refused where it is called, with one line") {
+    const Ran replaced = run(shell("exec " + program("static")));
+    REQUIRE(replaced.stop);
+    CHECK(!replaced.stop->success);
+    CHECK_THAT(replaced.stop->reason, Contains("exited with status 126") && Contains("is statically linked"));
+    const Ran child = run(shell(program("static") + "; echo status $?; exec " + program("clocks")));
+    CHECK_THAT(child.log, Contains("is statically linked") && Contains("status 126\n"));
+    CHECK(child.sent == std::string("\0\1\2\3\4", 5));
+    CHECK(std::count(child.log.begin(), child.log.end(), 'k') > 0);
+}
+
+TEST_CASE("the signal at the end goes to the process that handles it, and the rest takes its last words") {
+    const auto [script, end_ms] = GENERATE(table<std::string, int>(
+        {{program("polite") + " handler | cat", 10}, {program("polite") + " handler; sleep 100", 110}}));
+    linuxboard::LinuxSpec spec = shell(script);
+    Bench bench(spec);
+    bench.run(200 * kMillisecond);
+    bench.node().wind_up(200 * kMillisecond, 0);
+    bench.run(3 * kSecond);
+    CHECK(bench.node().wound_up() < (200 + end_ms) * kMillisecond);
+    CHECK(bench.sent() == "R");
+    CHECK_THAT(bench.log(), Contains("saved at 20"));
+}
+
+TEST_CASE("no process of a program outlives its run") {
+    const std::string mark = "3141.5" + std::to_string(getpid());
+    {
+        Bench bench(shell("sleep " + mark + " & sleep " + mark));
+        bench.run(100 * kMillisecond);
+        CHECK(std::system(("pgrep -f 'sleep " + mark + "' > /dev/null").c_str()) == 0);
+    }
+    CHECK(std::system(("pgrep -f '[s]leep " + mark + "' > /dev/null").c_str()) != 0);
+}
