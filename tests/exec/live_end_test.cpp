@@ -77,7 +77,7 @@ void check_pace(const std::vector<Clock::time_point>& times, Clock::time_point f
         INFO("byte " << i);
         CHECK(times[i] - first >= static_cast<int>(i) * kSlowByte);
     }
-    CHECK(times.back() - first < 4 * kBytes * kSlowByte);
+    CHECK(times.back() - first < std::chrono::seconds(2));  // 125 ms at its rate
 }
 
 /// Simulated time that rushes past, as after a pause of the process: the chip sends without pause.
@@ -208,7 +208,7 @@ TEST_CASE("a pty that everybody closed, or that was set to B0, is unplugged") {
     if (no_ptys()) return;
     const auto end = exec::make_pty_end(LiveOptions{"uart1", 8'680'556, false});
     const auto settle = [&] {
-        for (int i = 0; i < 6; ++i) {
+        for (int i = 0; i < 15; ++i) {
             std::this_thread::sleep_for(milliseconds(10));
             end->poll(i, cosim::kNever);
         }
