@@ -1,0 +1,133 @@
+// `puckloop exec --uart1 pty` as a terminal program meets it: the pace and the rate of a wire.
+
+#include "tests/end_to_end/workbench.h"
+
+#include <catch2/catch.hpp>
+
+#include <fcntl.h>
+#include <poll.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+using namespace puckloop::tests;
+
+namespace {
+
+constexpr double kByte = 10.0 / 115200;  // seconds
+
+/// Sends without pause; a byte received ends it for good and comes back plus one.
+constexpr const char* kSource = R"(
+        goto    main
+        .org    0x100
+main:   mov     #0x1000, w15
+        mov     #0x27f0, w0
+        mov     w0, SPLIM
+        mov     #7, w0
+        mov     w0, U1BRG
+        bset    U1MODE, #15
+        bset    U1STA, #10
+send:   btsc    U1STA, #9
+        bra     send
+        inc     w1, w1
+        mov     w1, U1TXREG
+        btss    U1STA, #0
+        bra     send
+echo:   btss    U1STA, #0
+        bra     echo
+        mov     U1RXREG, w0
+        inc     w0, w0
+        mov     w0, U1TXREG
+        bra     echo
+)";
+
+struct Bench {
+    Workbench work;
+    std::unique_ptr<Process> process;
+    int terminal = -1;
+
+    Bench() {
+        const std::string source = work.file("send.s", kSource), image = work.folder() / "send.hex";
+        REQUIRE(work.puckloop({"asm", source, "-o", image}).status == 0);
+        process = work.start({"exec", "--board", "pic", image, "--uart1", "pty"});
+        std::string said;
+        for (int i = 0; i < 1000 && said.find('\n') == std::string::npos; ++i) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+            said = text_of(work.folder() / "stderr");
+        }
+        const std::size_t name = said.find("/dev/");
+        REQUIRE(name != std::string::npos);
+        terminal = open(said.substr(name, said.find('\n') - name).c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK);
+        REQUIRE(terminal >= 0);
+    }
+    ~Bench() { close(terminal); }
+    /// Bytes that come until the wall clock shows `until`.
+    std::string read_until(double until) const {
+        std::string got;
+        char block[4096];
+        while (wall_seconds() < until) {
+            pollfd waiting{terminal, POLLIN, 0};
+            if (poll(&waiting, 1, 5) != 1) continue;
+            const ssize_t count = read(terminal, block, sizeof block);
+            if (count > 0) got.append(block, static_cast<std::size_t>(count));
+        }
+        return got;
+    }
+};
+
+bool no_ptys() {
+    if (access("/dev/pts", R_OK) == 0 && !std::filesystem::is_empty("/dev/pts")) return false;
+    WARN("no devpts at /dev/pts (a bare chroot?): skipped");
+    return true;
+}
+
+}  // namespace
+
+TEST_CASE("after a pause of the process a pty brings no more bytes than the wire would") {
+    if (no_ptys()) return;
+    const Bench bench;
+    CHECK(bench.read_until(wall_seconds() + 0.3).size() > 500);
+    bench.process->signal(SIGSTOP);
+    std::this_thread::sleep_for(std::chrono::milliseconds(600));
+    tcflush(bench.terminal, TCIFLUSH);
+    const double went_on = wall_seconds();
+    bench.process->signal(SIGCONT);
+    const std::size_t got = bench.read_until(went_on + 0.2).size();
+    const double elapsed = wall_seconds() - went_on;
+    // What was on its way, and what a UART's FIFO holds, may come at once; the 600 ms are 6900 bytes.
+    CHECK(static_cast<double>(got) <= elapsed / kByte + 64);
+    CHECK(got > 200);
+    bench.process->signal(SIGINT);
+    const Ended ended = bench.process->wait();
+    CHECK(ended.out.find("fell behind the wall clock by 0.") != std::string::npos);
+}
+
+TEST_CASE("a program that sets another rate on a pty reads garbage until it sets the line's") {
+    if (no_ptys()) return;
+    const Bench bench;
+    termios settings{};
+    REQUIRE(tcgetattr(bench.terminal, &settings) == 0);
+    CHECK(cfgetospeed(&settings) == B115200);
+    const auto set = [&](speed_t speed) {
+        cfsetspeed(&settings, speed);
+        REQUIRE(tcsetattr(bench.terminal, TCSANOW, &settings) == 0);
+    };
+    REQUIRE(write(bench.terminal, "x", 1) == 1);  // the board is quiet from now on
+    bench.read_until(wall_seconds() + 0.3);
+    const auto ask = [&](char byte) {
+        REQUIRE(write(bench.terminal, &byte, 1) == 1);
+        return bench.read_until(wall_seconds() + 0.3);
+    };
+    CHECK(ask('A') == "B");
+    set(B38400);
+    CHECK(ask('A').find('B') == std::string::npos);
+    set(B115200);
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    CHECK(ask('A') == "B");
+    bench.process->signal(SIGINT);
+    const Ended ended = bench.process->wait();
+    CHECK(ended.err.find("to 38400 baud, the line is meant to have 115200") != std::string::npos);
+}
