@@ -161,6 +161,7 @@ class LinuxNode : public cosim::Node {
     std::string end_;
     bool ended_well_ = false;
     bool crashed_ = false;
+    int killed_by_ = 0;
 };
 
 }  // namespace puckloop::linuxboard

@@ -112,7 +112,8 @@ void LinuxNode::ended_winding_up(Time now) {
     wound_up_ = now;
     const std::string how = fmt::format("{} after {} at the end of the run", end_, signal_name(end_signal_));
     if (crashed_) return end_run(now, false, fmt::format("{} {}", spec_.program, how), 1);
-    if (!ended_well_) warn(fmt::format("{} {} (at {:.6f} s)", spec_.program, how, cosim::to_seconds(now)));
+    if (!ended_well_ && killed_by_ != end_signal_)
+        warn(fmt::format("{} {} (at {:.6f} s)", spec_.program, how, cosim::to_seconds(now)));
     end_ = how;
 }
 

@@ -228,6 +228,7 @@ void LinuxNode::client_ended(Client& client, Time now) {
         end_ = client.process->describe_end();
         ended_well_ = client.process->ended_well();
         crashed_ = client.process->crashed();
+        killed_by_ = client.process->killed_by();
     }
     std::erase_if(clients_, [slot](const auto& other) { return other->slot == slot; });
     launcher_->page().alive = static_cast<std::uint32_t>(clients_.size());

@@ -155,6 +155,10 @@ std::string Process::describe_end() const {
     return fmt::format("exited with status {}", WEXITSTATUS(wait_status_));
 }
 
+int Process::killed_by() const {
+    return WIFSIGNALED(wait_status_) ? WTERMSIG(wait_status_) : 0;
+}
+
 bool Process::crashed() const {
     if (!WIFSIGNALED(wait_status_)) return false;
     switch (WTERMSIG(wait_status_)) {

@@ -37,6 +37,8 @@ class Process {
     bool ended_well() const { return exit_status_ == 0; }
     /// By a fault of its own: SIGSEGV, SIGABRT and the like.
     bool crashed() const;
+    /// The signal that ended it, or 0.
+    int killed_by() const;
     /// As waitpid() gives it.
     int wait_status() const { return wait_status_; }
     /// No thread catches, ignores, blocks or waits for `signal`, whose default action ends the program.

@@ -170,3 +170,30 @@ TEST_CASE("no process of a program outlives its run") {
     }
     CHECK(std::system(("pgrep -f '[s]leep " + mark + "' > /dev/null").c_str()) != 0);
 }
+
+TEST_CASE("a wrapper that dies of the end signal is no cause for a warning") {
+    Bench bench(shell("while true; do " + program("polite") + " handler; done"));
+    bench.run(200 * kMillisecond);
+    bench.node().wind_up(200 * kMillisecond, 0);
+    bench.run(3 * kSecond);
+    CHECK(bench.node().wound_up() < 320 * kMillisecond);
+    CHECK(bench.sent() == "RR");
+    CHECK(bench.node().warnings().empty());
+}
+
+TEST_CASE("semaphores shared between processes wait in simulated time") {
+    const std::string python = "/usr/bin/python3";
+    if (!std::filesystem::exists(python)) {
+        WARN("python3 is not there: skipped");
+        return;
+    }
+    const auto spec =
+        shell("exec " + python +
+              " -c 'import multiprocessing as m, time\ndef f(x):\n    time.sleep(x / 10)\n    return x * x\n"
+              "with m.get_context(\"fork\").Pool(3) as p: print(p.map(f, [1, 2, 3]))\n"
+              "open(\"/dev/ttyS0\")'");
+    const Ran ran = run(spec);
+    REQUIRE(ran.stop);
+    CHECK(ran.log == "[1, 4, 9]\n");
+    CHECK(ran.stop->success);
+}

@@ -35,6 +35,11 @@ FILE* open_stream(int fd, const char* mode);
 /// A pipe or a socket: what waits for it waits for another process.
 bool is_channel(int fd);
 
+// external.cpp
+/// park() on an object that may be `shared` with other processes: theirs do not wake, so it is looked at
+/// every millisecond as long as there are some.
+Wake park_shared(const void* key, WaitOptions options, bool shared);
+
 // process_calls.cpp
 void begin_process(Thread* main_thread);
 

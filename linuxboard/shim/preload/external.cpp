@@ -8,6 +8,7 @@
 #include <poll.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <bitset>
 #include <cerrno>
 #include <climits>
@@ -47,6 +48,14 @@ void tell_others() {
     request.op = wire::Op::Changed;
     device_call(request);
     errno = error;
+}
+
+Wake park_shared(const void* key, WaitOptions options, bool shared) {
+    if (!shared || page().alive < 2) return park(key, options);
+    const Time asked = options.deadline;
+    options.deadline = std::min(asked, time_after(kExternalPeriod));
+    const Wake reason = park(key, options);
+    return reason == Wake::Timeout && now() < asked ? Wake::Key : reason;
 }
 
 bool await_external(int fd, short events) {

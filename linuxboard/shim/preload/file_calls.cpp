@@ -47,6 +47,16 @@ mode_t mode_argument(int flags, std::va_list arguments) {
     return (flags & (O_CREAT | O_TMPFILE)) != 0 ? va_arg(arguments, mode_t) : 0;
 }
 
+/// A pipe opened anew by the name of its descriptor is still one of the program's own.
+int opened(const char* path, int fd) {
+    int named = -1;
+    if (fd < 0 || !active() || path == nullptr) return fd;
+    if (std::sscanf(path, "/dev/fd/%d", &named) != 1 && std::sscanf(path, "/proc/self/fd/%d", &named) != 1)
+        return fd;
+    if (is_internal(named)) mark_internal(fd);
+    return fd;
+}
+
 }  // namespace
 
 SHIM_EXPORT int open(const char* path, int flags, ...) {
@@ -55,7 +65,7 @@ SHIM_EXPORT int open(const char* path, int flags, ...) {
     const mode_t mode = mode_argument(flags, arguments);
     va_end(arguments);
     const int device = device_of(path);
-    return device == kNoDevice ? REAL(open)(path, flags, mode) : open_device(device, flags);
+    return device == kNoDevice ? opened(path, REAL(open)(path, flags, mode)) : open_device(device, flags);
 }
 
 SHIM_EXPORT int open64(const char* path, int flags, ...) {
@@ -64,7 +74,7 @@ SHIM_EXPORT int open64(const char* path, int flags, ...) {
     const mode_t mode = mode_argument(flags, arguments);
     va_end(arguments);
     const int device = device_of(path);
-    return device == kNoDevice ? REAL(open64)(path, flags, mode) : open_device(device, flags);
+    return device == kNoDevice ? opened(path, REAL(open64)(path, flags, mode)) : open_device(device, flags);
 }
 
 SHIM_EXPORT int openat(int folder, const char* path, int flags, ...) {
@@ -73,7 +83,8 @@ SHIM_EXPORT int openat(int folder, const char* path, int flags, ...) {
     const mode_t mode = mode_argument(flags, arguments);
     va_end(arguments);
     const int device = device_of(path);
-    return device == kNoDevice ? REAL(openat)(folder, path, flags, mode) : open_device(device, flags);
+    return device == kNoDevice ? opened(path, REAL(openat)(folder, path, flags, mode))
+                               : open_device(device, flags);
 }
 
 SHIM_EXPORT int openat64(int folder, const char* path, int flags, ...) {
@@ -82,7 +93,8 @@ SHIM_EXPORT int openat64(int folder, const char* path, int flags, ...) {
     const mode_t mode = mode_argument(flags, arguments);
     va_end(arguments);
     const int device = device_of(path);
-    return device == kNoDevice ? REAL(openat64)(folder, path, flags, mode) : open_device(device, flags);
+    return device == kNoDevice ? opened(path, REAL(openat64)(folder, path, flags, mode))
+                               : open_device(device, flags);
 }
 
 SHIM_EXPORT int __open_2(const char* path, int flags) {

@@ -1,7 +1,7 @@
 // Mutexes, condition variables, read-write locks, spin locks.
 //
 // The C library's own objects keep the state, through their try functions; only the waiting is ours.
-// Deviation: objects shared between processes work within this one only.
+// Objects shared between processes are looked at every millisecond.
 
 #include "linuxboard/shim/preload/calls.h"
 #include "linuxboard/shim/preload/host.h"
@@ -19,7 +19,7 @@ using namespace puckloop::shim;
 namespace {
 /// Takes a lock by `attempt` (0 or EBUSY), waiting on `key` in between.
 template <typename Attempt>
-int lock_by(const void* key, Time deadline, Attempt attempt) {
+int lock_by(const void* key, Time deadline, Attempt attempt, bool shared = false) {
     charge(page().charges.sync);
     while (true) {
         const int error = attempt();
@@ -28,7 +28,7 @@ int lock_by(const void* key, Time deadline, Attempt attempt) {
         WaitOptions options;
         options.deadline = deadline;
         options.interruptible = true;  // a handler runs, then the wait goes on
-        if (park(key, options) == Wake::Timeout) return attempt() == 0 ? 0 : ETIMEDOUT;
+        if (park_shared(key, options, shared) == Wake::Timeout) return attempt() == 0 ? 0 : ETIMEDOUT;
     }
 }
 
@@ -39,7 +39,10 @@ int lock_mutex(pthread_mutex_t* mutex, Time deadline) {
     if ((mutex->__data.__kind & kKindMask) == PTHREAD_MUTEX_ERRORCHECK_NP &&
         mutex->__data.__owner == static_cast<int>(host_call(SYS_gettid)))
         return EDEADLK;
-    return lock_by(mutex, deadline, [mutex] { return REAL(pthread_mutex_trylock)(mutex); });
+    constexpr int kSharedBit = 128;
+    return lock_by(
+        mutex, deadline, [mutex] { return REAL(pthread_mutex_trylock)(mutex); },
+        (mutex->__data.__kind & kSharedBit) != 0);
 }
 
 int unlock_mutex(pthread_mutex_t* mutex) {
@@ -71,7 +74,8 @@ int wait_condition(pthread_cond_t* condition, pthread_mutex_t* mutex, Time deadl
     Relock again{mutex};
     Wake reason = Wake::Timeout;
     pthread_cleanup_push(relock, &again);  // a cancelled wait ends with the mutex held
-    reason = park(condition, options);
+    constexpr unsigned kSharedBit = 1;
+    reason = park_shared(condition, options, (condition->__data.__wrefs & kSharedBit) != 0);
     pthread_cleanup_pop(0);
     lock_mutex(mutex, kNever);
     return reason == Wake::Timeout ? ETIMEDOUT : 0;
@@ -142,26 +146,30 @@ SHIM_EXPORT int pthread_cond_broadcast(pthread_cond_t* condition) noexcept {
 
 SHIM_EXPORT int pthread_rwlock_rdlock(pthread_rwlock_t* lock) noexcept {
     if (!active()) return REAL(pthread_rwlock_rdlock)(lock);
-    return lock_by(lock, kNever, [lock] { return REAL(pthread_rwlock_tryrdlock)(lock); });
+    return lock_by(
+        lock, kNever, [lock] { return REAL(pthread_rwlock_tryrdlock)(lock); }, lock->__data.__shared != 0);
 }
 
 SHIM_EXPORT int pthread_rwlock_wrlock(pthread_rwlock_t* lock) noexcept {
     if (!active()) return REAL(pthread_rwlock_wrlock)(lock);
-    return lock_by(lock, kNever, [lock] { return REAL(pthread_rwlock_trywrlock)(lock); });
+    return lock_by(
+        lock, kNever, [lock] { return REAL(pthread_rwlock_trywrlock)(lock); }, lock->__data.__shared != 0);
 }
 
 SHIM_EXPORT int pthread_rwlock_clockrdlock(pthread_rwlock_t* lock, clockid_t clock,
                                            const timespec* limit) noexcept {
     if (!active()) return REAL(pthread_rwlock_clockrdlock)(lock, clock, limit);
-    return lock_by(lock, absolute_deadline(clock, *limit),
-                   [lock] { return REAL(pthread_rwlock_tryrdlock)(lock); });
+    return lock_by(
+        lock, absolute_deadline(clock, *limit), [lock] { return REAL(pthread_rwlock_tryrdlock)(lock); },
+        lock->__data.__shared != 0);
 }
 
 SHIM_EXPORT int pthread_rwlock_clockwrlock(pthread_rwlock_t* lock, clockid_t clock,
                                            const timespec* limit) noexcept {
     if (!active()) return REAL(pthread_rwlock_clockwrlock)(lock, clock, limit);
-    return lock_by(lock, absolute_deadline(clock, *limit),
-                   [lock] { return REAL(pthread_rwlock_trywrlock)(lock); });
+    return lock_by(
+        lock, absolute_deadline(clock, *limit), [lock] { return REAL(pthread_rwlock_trywrlock)(lock); },
+        lock->__data.__shared != 0);
 }
 
 SHIM_EXPORT int pthread_rwlock_timedrdlock(pthread_rwlock_t* lock, const timespec* limit) noexcept {

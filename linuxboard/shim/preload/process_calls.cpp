@@ -115,7 +115,7 @@ bool futex(long* result, std::uint32_t* word, int operation, std::uint32_t value
         options.deadline =
             command == FUTEX_WAIT ? time_after(from_timespec(*timeout)) : absolute_deadline(clock, *timeout);
     }
-    switch (park(word, options)) {
+    switch (park_shared(word, options, (operation & FUTEX_PRIVATE_FLAG) == 0)) {
     case Wake::Timeout:
         errno = ETIMEDOUT;
         break;

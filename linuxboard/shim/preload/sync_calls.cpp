@@ -9,10 +9,19 @@
 
 #include <cerrno>
 #include <climits>
+#include <cstdint>
+#include <cstring>
 
 using namespace puckloop::shim;
 
 namespace {
+/// The C library keeps this beside the count (struct new_sem).
+bool is_shared(const sem_t* semaphore) {
+    int shared = 0;
+    std::memcpy(&shared, semaphore->__size + sizeof(std::uint64_t), sizeof shared);
+    return shared != 0;
+}
+
 int wait_semaphore(sem_t* semaphore, Time deadline) {
     mark_call("sem_wait");
     pthread_testcancel();
@@ -27,7 +36,7 @@ int wait_semaphore(sem_t* semaphore, Time deadline) {
         options.deadline = deadline;
         options.interruptible = true;
         options.cancellable = true;
-        const Wake reason = park(semaphore, options);
+        const Wake reason = park_shared(semaphore, options, is_shared(semaphore));
         if (reason == Wake::Signal) {
             errno = EINTR;
             return -1;
