@@ -46,8 +46,23 @@ double read_adc_noise(Reader& reader, double fallback) {
     return counts;
 }
 
+/// The file that keeps a board's memory: nobody else's.
+std::filesystem::path read_nvm(Reader& reader, const std::filesystem::path& folder,
+                               const std::vector<std::filesystem::path>& others) {
+    const std::string name = reader.text("nvm", "");
+    if (name.empty()) return {};
+    std::error_code ignored;
+    const std::filesystem::path file = folder / name;
+    for (const std::filesystem::path& other : others)
+        if (std::filesystem::weakly_canonical(other, ignored) ==
+            std::filesystem::weakly_canonical(file, ignored))
+            reader.fail("nvm", fmt::format("'{}' keeps another board's memory already", name),
+                        "a file of its own for each board");
+    return file;
+}
+
 PicBoard read_pic(const std::string& file, const std::string& where, const TomlValue& table,
-                  const std::filesystem::path& folder) {
+                  const std::filesystem::path& folder, const std::vector<std::filesystem::path>& others) {
     Reader reader(file, where, table);
     PicBoard pic;
     pic.firmware = folder / reader.text("firmware");
@@ -56,17 +71,19 @@ PicBoard read_pic(const std::string& file, const std::string& where, const TomlV
     pic.selector = static_cast<int>(reader.integer("selector", 0, 0, 15));
     pic.uart1 = reader.text("uart1", "");
     pic.resets = read_times(reader, "reset", 0.0);
+    pic.nvm = read_nvm(reader, folder, others);
     reader.finish();
     return pic;
 }
 
 RabBoard read_rab(const std::string& file, const std::string& where, const TomlValue& table,
-                  const std::filesystem::path& folder) {
+                  const std::filesystem::path& folder, const std::vector<std::filesystem::path>& others) {
     Reader reader(file, where, table);
     RabBoard rab;
     rab.firmware = folder / reader.text("firmware");
     rab.crystal_ppm = read_crystal(reader);
     rab.adc_noise = read_adc_noise(reader, rab.adc_noise);
+    rab.nvm = read_nvm(reader, folder, others);
     reader.finish();
     return rab;
 }
@@ -164,11 +181,17 @@ void read_robot(const std::string& file, const TomlValue& table, const std::file
     body.place = fmt::format("line {}", table.line);
     if (const TomlValue* parameters = reader.table("parameters"))
         body.parameters = read_parameters(file, boards.name, *parameters);
+    std::vector<std::filesystem::path> memories;
+    for (const RobotBoards& other : scenario.robots) {
+        if (!other.pic.nvm.empty()) memories.push_back(other.pic.nvm);
+        if (other.rab && !other.rab->nvm.empty()) memories.push_back(other.rab->nvm);
+    }
     const TomlValue* pic = reader.table("pic");
     if (!pic) reader.fail("pic", "[robot.pic] is missing", "[robot.pic] with firmware = \"image.hex\"");
-    boards.pic = read_pic(file, boards.name + ".pic", *pic, folder);
+    boards.pic = read_pic(file, boards.name + ".pic", *pic, folder, memories);
+    if (!boards.pic.nvm.empty()) memories.push_back(boards.pic.nvm);
     if (const TomlValue* rab = reader.table("rab"))
-        boards.rab = read_rab(file, boards.name + ".rab", *rab, folder);
+        boards.rab = read_rab(file, boards.name + ".rab", *rab, folder, memories);
     if (const TomlValue* linux_table = reader.table("linux"))
         boards.linux_board = read_linux(file, boards.name + ".linux", *linux_table, boards.name);
     boards.ground_sensor = reader.flag("ground_sensor", true);

@@ -326,6 +326,22 @@ void Chip::load_word(std::uint32_t address, std::uint32_t word) {
     parts_->core.load(one);
 }
 
+std::map<std::uint32_t, std::uint32_t> Chip::memory() const {
+    const DeviceInfo& device = parts_->device;
+    std::map<std::uint32_t, std::uint32_t> words;
+    const auto add = [&](std::uint32_t start, std::uint32_t count, std::uint32_t erased) {
+        for (std::uint32_t address = start; address < start + 2 * count; address += 2)
+            if (const std::uint32_t word = parts_->core.program(address); word != erased)
+                words.emplace(address, word);
+    };
+    constexpr std::uint32_t kErasedFlash = 0xFFFFFF, kErasedEeprom = 0xFFFF, kEveryWord = 0x1000000;
+    add(0, device.flash_end / 2, kErasedFlash);
+    add(device.unit_id_start, device.unit_id_words, kErasedFlash);
+    add(device.eeprom_start, device.eeprom_words, kErasedEeprom);
+    add(device.config_start, device.config_words, kEveryWord);
+    return words;
+}
+
 void Chip::power_on() {
     constexpr std::uint32_t kErased = 0xFFFFFF;
     if (parts_->core.program(0) == kErased)

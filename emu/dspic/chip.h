@@ -13,6 +13,7 @@
 #include "emu/dspic/waits/wait_report.h"
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -129,6 +130,10 @@ class Chip {
     void load(const image::Image& image);
     /// One program, configuration or EEPROM word at a program address (even).
     void load_word(std::uint32_t address, std::uint32_t word);
+
+    /// What would be left without supply, by program address: flash and EEPROM words that are not erased, and
+    /// every configuration word. load_word() of all of them into a new chip makes the same memory.
+    std::map<std::uint32_t, std::uint32_t> memory() const;
 
     /// Power-up at time 0: all registers at power-on values, RCON.POR and BOR set. Once, before
     /// run_until().

@@ -157,6 +157,7 @@ void PicNode::state(StateReader& archive) {
 
 std::string PicNode::finish() {
     log_.end(granted_, *chip_, board_);
+    if (options_.nvm) options_.nvm->save(chip_->memory());
     nlohmann::ordered_json json = board::chip_json(*chip_);
     json["kind"] = "epuck board, dsPIC30F6014A";
     json["wheel_steps"] = {{"left", board_.left_motor().steps()}, {"right", board_.right_motor().steps()}};

@@ -2,6 +2,7 @@
 // The e-puck main board as a node of a run: chip, board, and the ports where links attach.
 
 #include "cosim/stateful_node.h"
+#include "emu/board/nvm_file.h"
 #include "emu/dspic/chip.h"
 #include "emu/image/image.h"
 #include "emu/pic/board.h"
@@ -24,7 +25,8 @@ struct PicNodeOptions {
     /// Configuration word in force on the robot, as its bootloader left it: XT with PLL x8.
     std::uint16_t fosc = kFoscXtPll8;
     static constexpr std::uint16_t kFoscXtPll8 = 0xC706;
-    std::string log{};  ///< file for the board's log; empty: none
+    std::string log{};                      ///< file for the board's log; empty: none
+    std::shared_ptr<board::NvmFile> nvm{};  ///< keeps flash and EEPROM at the end; null: nothing does
 };
 
 class PicNode : public cosim::StatefulNode, private BoardListener {

@@ -152,6 +152,7 @@ void RabNode::state(StateReader& archive) {
 
 std::string RabNode::finish() {
     log_.end(granted_, *chip_);
+    if (options_.nvm) options_.nvm->save(chip_->memory());
     nlohmann::ordered_json json = rab_json(*chip_, board_, log_);
     json["i2c"]["master_phases"] = master_phases_;
     return json.dump();

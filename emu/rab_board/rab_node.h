@@ -2,6 +2,7 @@
 // The range-and-bearing board as a node of a run: chip, board, and the ports where links attach.
 
 #include "cosim/stateful_node.h"
+#include "emu/board/nvm_file.h"
 #include "emu/dspic/chip.h"
 #include "emu/image/image.h"
 #include "emu/rab_board/board.h"
@@ -20,7 +21,8 @@ struct RabNodeOptions {
     /// No master on the bus is faster; one that is gets its answers as if it were not. The slower this is,
     /// the further ahead the bus may run.
     double fastest_i2c_hertz = 400e3;
-    std::string log{};  ///< file for the board's log; empty: none
+    std::string log{};                      ///< file for the board's log; empty: none
+    std::shared_ptr<board::NvmFile> nvm{};  ///< keeps flash and EEPROM at the end; null: nothing does
 };
 
 class RabNode : public cosim::StatefulNode, private BoardListener {

@@ -91,7 +91,20 @@ void describe(Command& app, Arguments& a) {
         ->capture_default_str();
     app.add_flag("!--i2c-no-restart", o.i2c_master.repeated_start,
                  "its reads name the register and begin again after a STOP, without repeated START");
-    app.add_option("--stimulus", o.stimulus, "FILE of `<time_s> <signal> <value>`");
+    app.add_option("--stimulus", o.stimulus,
+                   "FILE of `<time_s> <signal> <value>`; `<time_s> reset 1` presses the reset button");
+    app.add_option(
+           "--reset-at", o.resets,
+           "simulated seconds at which the reset button is pressed (a pulse on MCLR); may be given more "
+           "than once. `kill -USR1` on this process presses it at once")
+        ->check(number_between(0.0, kLongestRun))
+        ->allow_extra_args(false)
+        ->type_name("S");
+    app.add_option(
+           "--nvm", o.nvm,
+           "FILE that keeps flash, EEPROM and configuration: read at the start, if it is there, in place "
+           "of what IMAGE holds, and replaced at the end")
+        ->type_name("FILE");
     app.add_flag("--list-signals", o.list_signals, "name the signals with units and ranges, and end");
     app.add_option("--log", o.bench.log_folder,
                    "folder for uart1.csv, uart2.csv, i2c.csv, pins.csv and board.log (rab)");

@@ -87,9 +87,18 @@ void Bench::wait_for_wall_clock() {
 void Bench::apply_stimulus() {
     for (; next_stimulus_ < stimulus_.size() && stimulus_[next_stimulus_].time <= now_; ++next_stimulus_) {
         const StimulusLine& line = stimulus_[next_stimulus_];
+        if (line.signal == StimulusLine::kReset) {
+            press_reset();
+            continue;
+        }
         target_->set_signal(line.signal, line.value);
         signal_changed(target_->signals()[line.signal].name, line.value, now_);
     }
+}
+
+void Bench::press_reset() {
+    chip().mclr();
+    signal_changed("reset", 1.0, now_);
 }
 
 void Bench::finish() {

@@ -38,6 +38,8 @@ class Bench : private TargetListener {
     const I2cScriptMaster* master() const { return master_ ? &*master_ : nullptr; }
     /// Adds to what is still to come; values take effect at the first instruction at or after their time.
     void stimulate(const std::vector<StimulusLine>& stimulus);
+    /// A pulse on the chip's MCLR now.
+    void press_reset();
     /// From now on simulated time does not run ahead of the wall clock. Where it falls behind by more than 50
     /// ms (the machine is busy, or was suspended) the rest is given up: fallen_behind().
     void pace_by_wall_clock();

@@ -28,7 +28,9 @@ struct ExecOptions {
     std::optional<bool> realtime;      ///< nothing: paced if an end is live
     bool list_signals = false;
     bool json = false;
-    bool strict = false;  ///< what is worth a warning makes the run a failed one
+    std::string nvm;             ///< file that keeps flash and EEPROM, or empty
+    std::vector<double> resets;  ///< seconds: the reset button is pressed
+    bool strict = false;         ///< what is worth a warning makes the run a failed one
 };
 
 /// Address to stop at, and what the user called it.

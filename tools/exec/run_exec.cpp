@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "emu/board/chip_warnings.h"
+#include "emu/board/nvm_file.h"
 #include "emu/image/device.h"
 #include "tools/exec/ends/script_end.h"
 #include "tools/exec/exec_report.h"
@@ -28,6 +29,12 @@ std::atomic<bool> g_interrupted{false};
 
 void on_interrupt(int) {
     g_interrupted = true;
+}
+
+std::atomic<bool> g_reset{false};
+
+void on_reset(int) {
+    g_reset = true;
 }
 
 std::unique_ptr<UartEnd> make_end(const UartSpec& spec, int unit, const ExecOptions& options) {
@@ -133,12 +140,26 @@ int run_exec(const ExecOptions& options) {
         }
         bench.uart(unit).attach(std::move(end));
     }
-    bench.target().load(image);
+    std::vector<StimulusLine> resets;
+    for (const double seconds : options.resets)
+        resets.push_back({cosim::from_seconds(seconds), StimulusLine::kReset, 1.0});
+    bench.stimulate(resets);
+    std::optional<board::NvmFile> nvm;
+    if (!options.nvm.empty())
+        nvm.emplace(options.nvm, defaults_of(options.bench.mcu, options.bench.board).mcu, image);
+    bench.target().load(nvm ? nvm->over(image) : image);
 
     std::signal(SIGINT, on_interrupt);
     std::signal(SIGTERM, on_interrupt);
     std::signal(SIGPIPE, SIG_IGN);
-    bench.interrupted = [] { return g_interrupted.load(); };
+    std::signal(SIGUSR1, on_reset);
+    bench.interrupted = [&bench] {
+        if (g_reset.exchange(false)) {
+            bench.press_reset();
+            std::fprintf(stderr, "reset button pressed at %.3f s\n", cosim::to_seconds(bench.now()));
+        }
+        return g_interrupted.load();
+    };
     const cosim::Time budget = budget_of(options, bench, live);
     const auto began = std::chrono::steady_clock::now();
     if (options.realtime.value_or(live)) bench.pace_by_wall_clock();
@@ -146,6 +167,7 @@ int run_exec(const ExecOptions& options) {
     outcome.end = bench.run_until(budget);
     const bool stuck = bench.master() != nullptr && bench.master()->report().stuck_since;
     bench.finish();
+    if (nvm) nvm->save(bench.chip().memory());
     outcome.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     outcome.pc = bench.chip().pc();
     outcome.symbol = symbol_at(image, outcome.pc);

@@ -111,6 +111,14 @@ std::vector<StimulusLine> parse_stimulus(std::string_view file, std::string_view
             wrong_shape(file, line, "wrong number of words", "<time_s> <signal> <value>");
         StimulusLine entry;
         entry.time = parse_time(file, line.number, line.words[0]);
+        if (line.words[1] == "reset" && !cosim::find_signal(signals, "reset")) {
+            if (line.words[2] != "1")
+                wrong_shape(file, line, "the reset button is pressed, not held", "reset 1");
+            entry.signal = StimulusLine::kReset;
+            entry.value = 1.0;
+            script.push_back(entry);
+            continue;
+        }
         entry.signal = signal_named(file, line, signals);
         const cosim::SignalInfo& info = signals[entry.signal];
         entry.value = parse_number(file, line.number, line.words[2], info.name, info.min, info.max);

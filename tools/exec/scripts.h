@@ -35,7 +35,9 @@ struct I2cScriptLine {
 std::vector<I2cScriptLine> parse_i2c_script(std::string_view file, std::string_view text);
 
 /// `<time_s> <signal> <value>`: one of the board's named inputs takes a value within its range.
+/// `<time_s> reset 1` presses the reset button of a target that has no signal of that name.
 struct StimulusLine {
+    static constexpr std::uint16_t kReset = 0xFFFF;  ///< in place of a signal
     cosim::Time time = 0;
     std::uint16_t signal = 0;
     double value = 0.0;

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "emu/i2c_devices/bus_node.h"
+#include "emu/image/device.h"
 #include "emu/image/image.h"
 #include "emu/pic/pic_node.h"
 #include "emu/rab_board/rab_node.h"
@@ -20,6 +21,17 @@ namespace {
 
 using nlohmann::json;
 
+/// The board's image, and over it what its non-volatile memory kept, if the board has a file for it.
+image::Image board_image(const json& spec, std::string_view chip, std::shared_ptr<board::NvmFile>& nvm) {
+    image::Image image = image::load_image(spec.at("firmware").get<std::string>());
+    if (const std::string path = spec.value("nvm", ""); !path.empty()) {
+        image::check_fits(image, image::find_device(chip));
+        nvm = std::make_shared<board::NvmFile>(path, chip, image);
+        image = nvm->over(std::move(image));
+    }
+    return image;
+}
+
 std::unique_ptr<cosim::Node> make_pic(const json& spec) {
     pic::PicNodeOptions options;
     options.board.name = spec.at("name");
@@ -30,7 +42,8 @@ std::unique_ptr<cosim::Node> make_pic(const json& spec) {
     options.log = spec.value("log", "");
     for (const double seconds : spec.at("resets").get<std::vector<double>>())
         options.resets.push_back(cosim::from_seconds(seconds));
-    return std::make_unique<pic::PicNode>(image::load_image(spec.at("firmware").get<std::string>()), options);
+    const image::Image image = board_image(spec, dspic::dspic30f6014a().name, options.nvm);
+    return std::make_unique<pic::PicNode>(image, options);
 }
 
 std::unique_ptr<cosim::Node> make_rab(const json& spec) {
@@ -41,7 +54,8 @@ std::unique_ptr<cosim::Node> make_rab(const json& spec) {
     options.board.adc_noise_counts = spec.at("adc_noise");
     options.fastest_i2c_hertz = spec.at("i2c_hertz");
     options.log = spec.value("log", "");
-    return std::make_unique<rab::RabNode>(image::load_image(spec.at("firmware").get<std::string>()), options);
+    const image::Image image = board_image(spec, dspic::dspic33fj256gp710().name, options.nvm);
+    return std::make_unique<rab::RabNode>(image, options);
 }
 
 std::unique_ptr<cosim::Node> make_linux(json spec) {

@@ -59,6 +59,7 @@ json pic_spec(const RunSetup& setup, const RobotBoards& robot) {
             {"adc_noise", robot.pic.adc_noise},
             {"selector", robot.pic.selector},
             {"resets", robot.pic.resets},
+            {"nvm", robot.pic.nvm.empty() ? "" : absolute_path(robot.pic.nvm)},
             {"log", log_of(setup, robot.name + ".pic")}};
 }
 
@@ -71,6 +72,7 @@ json rab_spec(const RunSetup& setup, const RobotBoards& robot) {
             {"crystal_ppm", robot.rab->crystal_ppm},
             {"adc_noise", robot.rab->adc_noise},
             {"i2c_hertz", scenario.i2c_clock},
+            {"nvm", robot.rab->nvm.empty() ? "" : absolute_path(robot.rab->nvm)},
             {"log", log_of(setup, robot.name + ".rab")}};
 }
 
