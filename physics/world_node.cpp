@@ -60,7 +60,7 @@ void add_events(const Journal& journal, nlohmann::ordered_json& report) {
     report["events"] = nlohmann::ordered_json::array();
     for (const auto& entry : journal.entries()) {
         nlohmann::ordered_json line{{"event", entry.event},
-                                    {"at_s", cosim::to_seconds(entry.time)},
+                                    {"at_s", in_seconds(entry.time)},
                                     {"action", entry.command},
                                     {"done", entry.refused.empty()}};
         if (!entry.refused.empty()) line["why"] = entry.refused;

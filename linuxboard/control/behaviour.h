@@ -55,8 +55,8 @@ class Behaviour {
     virtual Actuators step(const Sensors& sensors, double t) = 0;
 };
 
-/// "wander", "light", "aggregate", "follow" or "still"; null for any other name. `own_id` is the robot's among its
-/// neighbours.
+/// "wander", "light", "aggregate", "follow", "still" or "spin"; null for any other name. `own_id` is the
+/// robot's among its neighbours.
 std::unique_ptr<Behaviour> make_behaviour(std::string_view name, int own_id = 0);
 /// True for the behaviours that make no sense without a range-and-bearing board.
 bool needs_neighbours(std::string_view name);

@@ -2,6 +2,8 @@
 #include "linuxboard/control/drive_to_light.h"
 #include "linuxboard/control/follow.h"
 
+#include <cmath>
+
 namespace puckloop::control {
 
 namespace {
@@ -15,6 +17,20 @@ class Still : public Behaviour {
     }
 };
 
+/// Turns on the spot and stops for a moment between two turns, when somebody may change what is around.
+class Spin : public Behaviour {
+    Actuators step(const Sensors& sensors, double t) override {
+        constexpr double kTurn = 10.3, kStop = 0.2;  // s
+        constexpr double kSpeed = 40;                // mm/s
+        Actuators out;
+        out.body_led = !sensors.battery_ok;
+        if (std::fmod(t, kTurn + kStop) >= kTurn) return out;
+        out.left_mm_s = -kSpeed;
+        out.right_mm_s = kSpeed;
+        return out;
+    }
+};
+
 }  // namespace
 
 std::unique_ptr<Behaviour> make_behaviour(std::string_view name, int own_id) {
@@ -23,6 +39,7 @@ std::unique_ptr<Behaviour> make_behaviour(std::string_view name, int own_id) {
     if (name == "aggregate") return std::make_unique<Aggregate>(own_id);
     if (name == "follow") return std::make_unique<Follow>(own_id);
     if (name == "still") return std::make_unique<Still>();
+    if (name == "spin") return std::make_unique<Spin>();
     return nullptr;
 }
 

@@ -8,6 +8,10 @@
 
 namespace puckloop::physics {
 
+/// To the microsecond, as people write it.
+inline double in_seconds(cosim::Time time) {
+    return static_cast<double>(time / cosim::kMicrosecond) / 1e6;
+}
 /// "12.5 s": exact, to the microsecond.
 std::string seconds_text(cosim::Time time);
 

@@ -107,7 +107,7 @@ void Timeline::finish(const Due& due, Time earliest, const std::string& refused,
     if (due.event == Journal::kLive) {
         nlohmann::ordered_json reply;
         reply[refused.empty() ? "done" : "refused"] = refused.empty() ? action.command : refused;
-        reply["at_s"] = cosim::to_seconds(due.time);
+        reply["at_s"] = in_seconds(due.time);
         commands_->reply(live_.at(due.serial).id, reply.dump());
         live_.erase(due.serial);
         return;

@@ -97,6 +97,11 @@ Command* Command::group(const std::string& heading) {
     return this;
 }
 
+Command* Command::footer(const std::string& text) {
+    app_.footer(text);
+    return this;
+}
+
 bool Command::subcommand_given() const {
     return !app_.get_subcommands().empty();
 }

@@ -55,6 +55,7 @@ class Command {
     Command* require_subcommand(std::size_t least = 1);
     Command* require_subcommand(std::size_t least, std::size_t most);
     Command* group(const std::string& heading);  ///< "" hides it from the help
+    Command* footer(const std::string& text);    ///< behind the options in its own help
 
     bool subcommand_given() const;
     std::size_t count(const std::string& option) const;  ///< how often it was given

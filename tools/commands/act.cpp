@@ -77,10 +77,9 @@ void act(const Options& options) {
 void declare_act(Command& app, int& status) {
     auto options = std::make_shared<Options>();
     Command* command = app.add_subcommand(
-        "act",
-        "do something to the world of a run that is on (run --realtime or --paced), as an [[event]] of its "
-        "scenario would. `list` shows what is in it. Commands:\n" +
-            verbs());
+        "act", "do something to the world of a run that is on (run --realtime or --paced)");
+    command->footer("Commands, as [[event]] tables of a scenario have them (docs/scenario.md):\n" + verbs() +
+                    "  list\n      what is in the world now, and this list\n");
     command->add_option("run", options->run, "results folder, or its name in out/")
         ->required()
         ->type_name("RUN");
