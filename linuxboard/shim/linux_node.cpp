@@ -83,8 +83,8 @@ void LinuxNode::listen(Client& client) {
     case Heard::Silent: {
         const Time now = entry(client.slot).now.load();
         const std::string reason =
-            fmt::format("{} has not let time pass for {:g} s of wall clock: {}", spec_.program,
-                        spec_.watchdog_s, client.process->describe_silence());
+            fmt::format("{} has not let time pass for {:g} s of wall clock (half of --stall): {}",
+                        spec_.program, spec_.watchdog_s, client.process->describe_silence());
         kill_all();
         end_ = "hung";
         end_run(now, false, reason, 1);
