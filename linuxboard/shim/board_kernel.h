@@ -4,9 +4,9 @@
 
 #include "cosim/message.h"
 #include "cosim/time.h"
-#include "linuxboard/shim/i2c_adapter.h"
+#include "linuxboard/shim/devices/i2c_adapter.h"
+#include "linuxboard/shim/devices/tty_port.h"
 #include "linuxboard/shim/spec.h"
-#include "linuxboard/shim/tty_port.h"
 #include "linuxboard/shim/wire.h"
 
 #include <map>

@@ -2,7 +2,7 @@
 // What a scenario says of one Linux program: the JSON text from which its node is made.
 
 #include "cosim/time.h"
-#include "linuxboard/shim/tty_port.h"
+#include "linuxboard/shim/devices/tty_port.h"
 #include "linuxboard/shim/wire.h"
 
 #include <csignal>

@@ -3,7 +3,7 @@
 
 #include "cosim/conductor.h"
 #include "emu/i2c_devices/bus_node.h"
-#include "linuxboard/shim/i2c_adapter.h"
+#include "linuxboard/shim/devices/i2c_adapter.h"
 
 #include <map>
 #include <memory>

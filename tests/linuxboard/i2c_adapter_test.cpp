@@ -1,6 +1,6 @@
 // The Linux board as I2C master: phases, failures, time-outs.
 
-#include "linuxboard/shim/i2c_adapter.h"
+#include "linuxboard/shim/devices/i2c_adapter.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,7 +1,7 @@
 // termios(3) between the wire and read().
 
-#include "linuxboard/shim/line_discipline.h"
-#include "linuxboard/shim/tty_settings.h"
+#include "linuxboard/shim/devices/line_discipline.h"
+#include "linuxboard/shim/devices/tty_settings.h"
 
 #include <catch2/catch.hpp>
 

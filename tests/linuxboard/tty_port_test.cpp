@@ -1,6 +1,6 @@
 // The serial port's pacing and formats.
 
-#include "linuxboard/shim/tty_port.h"
+#include "linuxboard/shim/devices/tty_port.h"
 
 #include <catch2/catch.hpp>
 

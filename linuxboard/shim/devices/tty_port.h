@@ -14,8 +14,8 @@
 
 #include "cosim/message.h"
 #include "cosim/time.h"
-#include "linuxboard/shim/line_discipline.h"
-#include "linuxboard/shim/tty_settings.h"
+#include "linuxboard/shim/devices/line_discipline.h"
+#include "linuxboard/shim/devices/tty_settings.h"
 #include "linuxboard/shim/wire.h"
 
 #include <deque>

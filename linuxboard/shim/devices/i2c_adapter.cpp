@@ -1,4 +1,4 @@
-#include "linuxboard/shim/i2c_adapter.h"
+#include "linuxboard/shim/devices/i2c_adapter.h"
 
 #include <algorithm>
 #include <cerrno>

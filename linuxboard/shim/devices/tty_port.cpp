@@ -1,4 +1,4 @@
-#include "linuxboard/shim/tty_port.h"
+#include "linuxboard/shim/devices/tty_port.h"
 
 #include <algorithm>
 #include <bit>

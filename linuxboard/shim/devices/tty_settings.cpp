@@ -1,4 +1,4 @@
-#include "linuxboard/shim/tty_settings.h"
+#include "linuxboard/shim/devices/tty_settings.h"
 
 #include <array>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "linuxboard/shim/line_discipline.h"
+#include "linuxboard/shim/devices/line_discipline.h"
 
 #include <unistd.h>
 
