@@ -110,6 +110,9 @@ IrNode::Impl::Impl(const World& description, const IrNodeOptions& options)
         if (box.movable) poses.push_back({box.x, box.y, box.heading});
     for (const Cylinder& cylinder : world.cylinders)
         if (cylinder.movable) poses.push_back({cylinder.x, cylinder.y, 0.0});
+    const auto fixed = fixed_shapes(world);
+    for (std::size_t i = 0; i < fixed.size(); ++i)
+        shapes[2 * i] = values_of(fixed[i]);  // numbered as SceneSignals::shape() does
     moved.resize(poses.size());
     touched.resize(receivers.size());
     reached.resize(receivers.size());

@@ -110,6 +110,11 @@ WorldNode::Impl::Impl(World description, EventPlan plan, std::unique_ptr<Command
     if (has_rab(model.description())) {
         ports.push_back({"ir", cosim::PortKind::Signals});
         poses.assign(pose_signal_names(model.description()).size(), std::nan(""));
+        // The medium knows what is there from the start.
+        const SceneSignals ids{poses.size() / kPoseSignals};
+        for (std::size_t i = 0; i < model.fixed_count(); ++i)
+            for (std::size_t k = 0; k < kShapeSignals; ++k)
+                scene[ids.shape(true, i) + k] = values_of(model.fixed(i))[k];
     }
     if (!model.description().recording.directory.empty()) recorder.emplace(model);
 }

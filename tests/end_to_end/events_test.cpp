@@ -6,10 +6,14 @@
 
 #include <catch2/catch.hpp>
 
+#include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <csignal>
+#include <cstring>
 #include <thread>
 
 using namespace puckloop::tests;
@@ -124,6 +128,16 @@ int mode_of(const std::filesystem::path& file) {
     return ::stat(file.c_str(), &info) == 0 ? static_cast<int>(info.st_mode & 0777) : -1;
 }
 
+void send_and_leave(const std::filesystem::path& socket, const std::string& text) {
+    const int descriptor = ::socket(AF_UNIX, SOCK_STREAM, 0);
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    std::strncpy(address.sun_path, socket.c_str(), sizeof address.sun_path - 1);
+    CHECK(::connect(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0);
+    ::send(descriptor, text.data(), text.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+    ::close(descriptor);
+}
+
 /// Lets a paced run go on until `commands` were carried out, then stops it; its fingerprint must be that of
 /// its record.
 void check_replay(const Workbench& bench, const std::filesystem::path& scenario, const std::string& pace,
@@ -204,6 +218,15 @@ TEST_CASE("a screen between two boards silences them, in every placement alike")
     CHECK(after > 0);
 }
 
+TEST_CASE("a run that could take commands and gets none is as any other") {
+    const Workbench bench;
+    const std::string quiet = kPair.substr(0, kPair.find("[[event]]"));
+    const std::string scenario = bench.file("quiet.toml", quiet).string();
+    REQUIRE(bench.run("plain", {scenario, "--in-process"}).status == 0);
+    REQUIRE(bench.run("paced", {scenario, "--in-process", "--paced"}).status == 0);
+    CHECK(bench.report("plain").at("trace_sha256") == bench.report("paced").at("trace_sha256"));
+}
+
 TEST_CASE("commands from a second terminal are carried out, and their record repeats the run") {
     const Words commands{"move can to 30 cm, 20 cm over 1 s",
                          "add box name crate centre 6 cm, 0 cm size 4 cm, 4 cm, 9 cm",
@@ -233,7 +256,7 @@ TEST_CASE("a command that cannot be carried out is one line, and so is a run tha
     const std::string scenario = bench.file("alone.toml", kAlone).string();
     const std::string out = bench.out("live").string();
     const auto live = bench.start({"run", scenario, "--paced", "--out", out});
-    socket_of(bench, "live");
+    const auto socket = socket_of(bench, "live");
     const auto act = [&](const std::string& command) { return bench.puckloop({"act", out, command}); };
     check_one_line(act("move cann to 1 cm, 1 cm"), 2, {"there is no 'cann' in this world", "perhaps 'can'"});
     check_one_line(act("move can to 3 m, 1 cm"), 2, {"outside the arena"});
@@ -243,6 +266,12 @@ TEST_CASE("a command that cannot be carried out is one line, and so is a run tha
     check_one_line(act(""), 2, {"it is empty"});
     const Ended list = act("list");
     CHECK(list.status == 0);
+    // Whoever sends rubbish is told so, or is let go; the run minds neither.
+    for (const std::string& rubbish :
+         {std::string("{}\n"), std::string("\xff\xfe\n"), std::string(200'000, 'x'),
+          std::string("{\"action\":{\"verb\":99}}\n"), std::string()})
+        send_and_leave(socket, rubbish);
+    CHECK(act("list").status == 0);
     CHECK_THAT(list.out, Contains("cylinder     can") && Contains("robot        robot0") &&
                              Contains("move OBJECT [to X, Y"));
     live->signal(SIGINT);
