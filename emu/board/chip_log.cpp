@@ -1,5 +1,7 @@
 #include "emu/board/chip_log.h"
 
+#include "emu/board/chip_warnings.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -151,6 +153,8 @@ void ChipLog::end(Time now, const dspic::Chip& chip, const std::string& board) {
                         unit, counters.sent, counters.received, counters.framing_errors,
                         counters.parity_errors, counters.overruns));
     }
+    if (const std::optional<dspic::WaitReport> wait = chip.waiting(); wait && wait->hung)
+        log_.line(seconds, "warning: the program " + *waiting_text(chip, wait));
     const dspic::ChipReport report = chip.report();
     log_.line(seconds,
               fmt::format("end: {} cycles, {} instructions, at {}; {} resets, {} traps, {} unmodelled "

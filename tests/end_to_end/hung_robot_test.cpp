@@ -83,6 +83,10 @@ TEST_CASE("exec names the bit that hangs the program, and --strict makes it stat
     CHECK(strict.status == 1);
     CHECK_THAT(strict.out,
                Contains("failed: with --strict a warning is a failure: has run 3.0 s in the loop"));
+    // Somebody at a live end is not kept waiting for the summary.
+    const Ended live = bench.puckloop({"exec", "--board", "pic", hex, "--seconds", "2.2", "--realtime"});
+    CHECK_THAT(live.err,
+               Contains("warning: has run 2.0 s in the loop 0x0108..0x010a reading RCON, bit BGST"));
     const Ended json = bench.puckloop({"exec", "--board", "pic", hex, "--seconds", "3", "--json"});
     const auto report = nlohmann::json::parse(json.out);
     CHECK(report["waiting"]["hung"] == true);

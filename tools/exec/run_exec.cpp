@@ -97,6 +97,26 @@ cosim::Time budget_of(const ExecOptions& options, Bench& bench, bool live) {
     return live ? cosim::kNever : cosim::from_seconds(kDefaultSeconds);
 }
 
+/// Somebody who sits at a live end does not wait for the summary: a hang is reported when it is found.
+class HangNotice {
+  public:
+    explicit HangNotice(Bench& bench) : bench_(bench) {}
+    void look() {
+        if (reported_ || bench_.now() < next_) return;
+        next_ = bench_.now() + kPeriod;
+        const std::optional<dspic::WaitReport> wait = bench_.chip().waiting();
+        if (!wait || !wait->hung) return;
+        reported_ = true;
+        std::fprintf(stderr, "warning: %s\n", board::waiting_text(bench_.chip(), wait)->c_str());
+    }
+
+  private:
+    static constexpr cosim::Time kPeriod = 2 * cosim::kSecond;
+    Bench& bench_;
+    cosim::Time next_ = kPeriod;
+    bool reported_ = false;
+};
+
 std::string symbol_at(const image::Image& image, std::uint32_t pc) {
     for (const auto& [name, symbol] : image.symbols)
         if (symbol.space == image::Space::Program && symbol.address == pc) return name;
@@ -153,7 +173,10 @@ int run_exec(const ExecOptions& options) {
     std::signal(SIGTERM, on_interrupt);
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGUSR1, on_reset);
-    bench.interrupted = [&bench] {
+    HangNotice notice(bench);
+    const bool paced = options.realtime.value_or(live);
+    bench.interrupted = [&] {
+        if (paced) notice.look();
         if (g_reset.exchange(false)) {
             bench.press_reset();
             std::fprintf(stderr, "reset button pressed at %.3f s\n", cosim::to_seconds(bench.now()));
@@ -162,7 +185,7 @@ int run_exec(const ExecOptions& options) {
     };
     const cosim::Time budget = budget_of(options, bench, live);
     const auto began = std::chrono::steady_clock::now();
-    if (options.realtime.value_or(live)) bench.pace_by_wall_clock();
+    if (paced) bench.pace_by_wall_clock();
     ExecOutcome outcome;
     outcome.end = bench.run_until(budget);
     const bool stuck = bench.master() != nullptr && bench.master()->report().stuck_since;
