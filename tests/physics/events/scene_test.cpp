@@ -1,6 +1,7 @@
 // What hands do to a world, as bodies feel and sensors see it.
 
 #include "base/error.h"
+#include "base/random.h"
 #include "physics/events/scene.h"
 #include "tests/physics/events/plans.h"
 
@@ -226,4 +227,73 @@ TEST_CASE("a loudspeaker that is added is heard until it is switched off or take
     REQUIRE(stage.act(action(Verb::Remove, "horn")).empty());
     stage.wait(0.002);
     CHECK(stage.channel(kMicrophoneChannel) == 0.0);
+}
+
+TEST_CASE("whatever hands do, in whatever order, the world goes on (seeded)") {
+    World world = room();
+    world.robots.push_back(robot_at("e2", -0.2, 0.2, 1.0));
+    world.speakers.push_back({.name = "horn", .x = 0.1, .level = 100.0});
+    world.patches.push_back({.name = "sheet", .length = 0.2, .width = 0.2, .grey = 0.2});
+    Stage stage(world);
+    RandomStream random(20, "hands");
+    const std::vector<std::string> names{"e1",    "e2", "crate", "parcel", "sun", "horn",
+                                         "sheet", "n0", "n1",    "n2",     "n3"};
+    const auto metres = [&] { return random.uniform() - 0.5; };
+    const auto added = [&](const std::string& name) {
+        Action add = action(Verb::Add, name);
+        const double x = metres(), y = metres();
+        const bool movable = random.below(2) == 0;
+        switch (random.below(6)) {
+        case 0:
+            add.thing.boxes.push_back({.name = name,
+                                       .x = x,
+                                       .y = y,
+                                       .heading = x * 6,
+                                       .length = 0.05,
+                                       .width = 0.08,
+                                       .movable = movable,
+                                       .mass = 0.05});
+            break;
+        case 1:
+            add.thing.cylinders.push_back({.name = name, .x = x, .y = y, .radius = 0.03, .movable = movable});
+            break;
+        case 2:
+            add.thing.walls.push_back({.name = name, .from = {x, y}, .to = {y, 0.1}});
+            break;
+        case 3:
+            add.thing.lamps.push_back({.name = name, .x = x, .y = y});
+            break;
+        case 4:
+            add.thing.speakers.push_back({.name = name, .x = x, .y = y, .level = 50.0});
+            break;
+        default:
+            add.thing.patches.push_back({.name = name, .x = x, .y = y, .grey = 0.5});
+        }
+        return add;
+    };
+    int done = 0;
+    for (int i = 0; i < 10'000; ++i) {
+        const auto verb = static_cast<Verb>(random.below(8));
+        Action what = verb == Verb::Add ? added(names[7 + random.below(4)])
+                                        : action(verb, names[random.below(names.size())]);
+        if (verb == Verb::Move || (verb == Verb::Put && random.below(2) == 0)) {
+            what.to = Point{metres(), metres()};
+            if (random.below(2) == 0) what.heading = metres() * 20;
+            if (verb == Verb::Move && random.below(3) == 0)
+                what.over = 0.005 * static_cast<double>(random.below(20));
+        }
+        if (verb == Verb::Set)
+            what = set(what.object, random.below(2) == 0 ? "reflectivity" : "grey", random.uniform());
+        done += stage.act(what).empty() ? 1 : 0;
+        stage.driver.feed(random.below(2) == 0 ? 600 : -900, 500);
+        stage.wait(0.004);
+        for (std::size_t robot = 0; robot < 2; ++robot) {
+            for (const double value : stage.model.robot(robot).channels())
+                REQUIRE(std::isfinite(value));
+            REQUIRE(std::abs(stage.model.state(robot).x) < 0.6);
+            REQUIRE(std::abs(stage.model.state(robot).pitch) < 0.5);
+        }
+    }
+    CHECK(done > 1000);
+    CHECK(stage.model.dynamics().complaints() == 0);
 }
