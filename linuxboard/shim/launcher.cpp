@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "linuxboard/shim/last_line.h"
 #include "linuxboard/shim/program_file.h"
 
 #include <fmt/format.h>
@@ -21,6 +22,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <iterator>
 #include <new>
 
 extern char** environ;
@@ -198,15 +200,12 @@ void Launcher::echo_output() {
 std::string Launcher::last_line() const {
     if (spec_.log.empty()) return {};
     std::ifstream log(spec_.log);
-    constexpr std::streamoff kTail = 400;
+    constexpr std::streamoff kTail = 4096;
     log.seekg(0, std::ios::end);
     const auto size = static_cast<std::streamoff>(log.tellg());
     log.seekg(std::max<std::streamoff>(0, size - kTail));
-    std::string last;
-    for (std::string line; std::getline(log, line);) {
-        if (!line.empty()) last = line;
-    }
-    return last;
+    return last_line_with_text(
+        std::string(std::istreambuf_iterator<char>(log), std::istreambuf_iterator<char>()));
 }
 
 }  // namespace puckloop::linuxboard

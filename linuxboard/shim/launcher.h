@@ -27,7 +27,7 @@ class Launcher {
     const wire::Page& page() const { return *page_; }
     /// What the program wrote to its log since the last call goes to this terminal too.
     void echo_output();
-    /// Last line the program wrote to its log, if there is a log file.
+    /// Last line with text that the program wrote to its log, if there is a log file (last_line.h).
     std::string last_line() const;
 
   private:

@@ -48,6 +48,13 @@ TEST_CASE("a program that cannot run is refused before the run") {
     refused(plain, {"neither a program nor a script"});
 }
 
+TEST_CASE("a program's last words are shown as text") {
+    const Workbench bench;
+    const Ended ended = with_program(bench, {}, {PUCKLOOP_MISBEHAVE, "colours"});
+    check_one_line(ended, 1, {"status 3", "motor 3 is hot"});
+    CHECK_THAT(ended.err, !Contains("\x1b") && !Contains("[0m"));
+}
+
 TEST_CASE("a program that crashes is named with its signal, time and last words") {
     const Workbench bench;
     for (const Words& placement : {Words{}, Words{"--in-process"}}) {

@@ -22,6 +22,10 @@ int main(int count, char** words) {
         volatile int* nowhere = 0;
         *nowhere = 1;
     }
+    if (strcmp(what, "colours") == 0) {
+        printf("\033[31;1mmotor \033[4m3\033[0m is hot\033[K\r\n\033]0;title\007\n\033[0m\033[0m\n");
+        return 3;
+    }
     if (strcmp(what, "done") == 0) talk();
     if (strcmp(what, "exit") == 0) return count > 2 ? atoi(words[2]) : 0;
     if (strcmp(what, "sleep") == 0)
