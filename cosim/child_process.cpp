@@ -6,10 +6,13 @@
 #include <fmt/format.h>
 
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/prctl.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -20,10 +23,10 @@ namespace puckloop::cosim {
 namespace {
 
 constexpr int kExecFailed = 127;
-constexpr std::chrono::milliseconds kReapPoll{5};
+constexpr std::chrono::milliseconds kReapPoll{5};  // where the kernel has no descriptors of processes
 
 /// In the child, between fork and exec: nothing here may allocate or lock.
-[[noreturn]] void become(char* const* arguments, int socket, pid_t parent) {
+[[noreturn]] void become(const char* program, char* const* arguments, int socket, pid_t parent) {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (getppid() != parent) _exit(kExecFailed);
     setpgid(0, 0);
@@ -39,14 +42,27 @@ constexpr std::chrono::milliseconds kReapPoll{5};
     const int nothing = open("/dev/null", O_RDONLY);
     dup2(nothing, STDIN_FILENO);
     close_range(protocol::kDescriptor + 1, ~0u, 0);
-    execv(arguments[0], arguments);
+    execv(program, arguments);
     _exit(kExecFailed);
+}
+
+/// Until the process has ended, `patience` is over or a signal came.
+void await_end(pid_t id, std::chrono::milliseconds patience) {
+    const int process = static_cast<int>(syscall(SYS_pidfd_open, id, 0));
+    if (process < 0) {
+        std::this_thread::sleep_for(std::min(patience, kReapPoll));
+        return;
+    }
+    pollfd wait{process, POLLIN, 0};
+    poll(&wait, 1, static_cast<int>(patience.count()));
+    close(process);
 }
 
 }  // namespace
 
-ChildProcess::ChildProcess(const std::vector<std::string>& command, int socket) {
+ChildProcess::ChildProcess(const std::vector<std::string>& command, const std::string& title, int socket) {
     std::vector<std::string> words = command;
+    words.front() = title;
     std::vector<char*> arguments;
     for (std::string& word : words)
         arguments.push_back(word.data());
@@ -54,7 +70,7 @@ ChildProcess::ChildProcess(const std::vector<std::string>& command, int socket) 
     const pid_t parent = getpid();
     id_ = fork();
     if (id_ < 0) throw RunError(fmt::format("cannot start a process: {}", std::strerror(errno)));
-    if (id_ == 0) become(arguments.data(), socket, parent);
+    if (id_ == 0) become(command.front().c_str(), arguments.data(), socket, parent);
     setpgid(id_, id_);  // whoever of the two comes first
 }
 
@@ -77,13 +93,13 @@ bool ChildProcess::ended(std::chrono::milliseconds patience) {
     while (!status_) {
         siginfo_t info{};
         const int failed = waitid(P_PID, static_cast<id_t>(id_), &info, WEXITED | WNOHANG | WNOWAIT);
-        if (failed == 0 && info.si_pid == id_) {
+        const auto left = deadline - std::chrono::steady_clock::now();
+        if (failed == 0 && info.si_pid == id_)
             reap();
-        } else if (std::chrono::steady_clock::now() >= deadline) {
+        else if (left <= left.zero())
             return false;
-        } else {
-            std::this_thread::sleep_for(kReapPoll);
-        }
+        else
+            await_end(id_, std::chrono::ceil<std::chrono::milliseconds>(left));
     }
     return true;
 }

@@ -12,17 +12,18 @@ namespace puckloop::cosim {
 
 class ChildProcess {
   public:
-    /// Starts `command` (program and arguments) with `socket` as descriptor 3, in a process group of its own,
-    /// so that a Ctrl-C at the terminal reaches the parent alone, and with an empty standard input. The
-    /// kernel kills it when the parent dies. Throws RunError.
-    ChildProcess(const std::vector<std::string>& command, int socket);
+    /// Starts `command` (program and arguments) with `socket` as descriptor 3, in a process group of its own;
+    /// ps shows it as `title` and its arguments. The group is its own so that a Ctrl-C at the terminal
+    /// reaches the parent alone, and with an empty standard input. The kernel kills it when the parent dies.
+    /// Throws RunError.
+    ChildProcess(const std::vector<std::string>& command, const std::string& title, int socket);
     /// Kills the whole group and reaps the child.
     ~ChildProcess();
     ChildProcess(const ChildProcess&) = delete;
     ChildProcess& operator=(const ChildProcess&) = delete;
 
     pid_t id() const { return id_; }
-    /// True once it has ended; waits at most `patience`.
+    /// True once it has ended; waits at most `patience` of wall time.
     bool ended(std::chrono::milliseconds patience);
     /// "was killed by signal 9 (Killed)", "exited with status 3", "still runs".
     std::string ending() const;

@@ -41,8 +41,9 @@ struct RunOptions {
     double stall_seconds = 10.0;  ///< a node process that does not answer for so long ends the run
     /// A node's wish to end the run (Node::stop) takes effect so much later; no node runs further ahead.
     Time stop_latency = 10 * kMillisecond;
-    /// Starts a process that serves one node (cosim/node_server.h) on file descriptor 3.
-    std::vector<std::string> node_command{"/proc/self/exe", "node"};
+    /// Starts a process that serves one node (cosim/node_server.h) on file descriptor 3; in place of the
+    /// program's name it gets "puckloop: " and the node's, which is what ps shows.
+    std::vector<std::string> node_command{"/proc/self/exe"};
     /// Cuts grants at random places; the trace must not change (for tests).
     std::optional<std::uint64_t> chop_seed{};
     /// Called about five times a wall second.

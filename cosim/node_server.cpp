@@ -1,6 +1,7 @@
 #include "cosim/node_server.h"
 
 #include "base/error.h"
+#include "cosim/process_name.h"
 #include "cosim/protocol.h"
 #include "cosim/socket_stream.h"
 
@@ -60,6 +61,7 @@ class Server {
 
     void hello(std::span<const std::uint8_t> body) {
         const protocol::Hello hello = protocol::read_hello(body);
+        name_thread(hello.name);  // before the node makes threads, which inherit it
         node_ = factory_(hello.json);
         if (!node_) throw RunError("nothing can make this node");
         protocol::Ready ready;

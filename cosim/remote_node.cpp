@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "cosim/child_process.h"
+#include "cosim/process_name.h"
 #include "cosim/protocol.h"
 #include "cosim/socket_stream.h"
 
@@ -36,7 +37,7 @@ class RemoteNode : public NodeHandle {
         stream_ = std::make_unique<SocketStream>(ends[0]);
         SocketStream other(ends[1]);  // closed here once the child has it
         stream_->set_timeout(kWaitSlice);
-        child_ = std::make_unique<ChildProcess>(command, ends[1]);
+        child_ = std::make_unique<ChildProcess>(command, std::string(kNodeTitle) + name_, ends[1]);
         protocol::write_hello(bytes_, {name, json});
         send();
     }

@@ -1,6 +1,9 @@
 #include "cosim/workers.h"
 
+#include "cosim/process_name.h"
+
 #include <chrono>
+#include <string>
 
 namespace puckloop::cosim {
 
@@ -32,7 +35,10 @@ void relax_core() {
 
 Workers::Workers(unsigned helpers) {
     for (unsigned i = 0; i < helpers; ++i)
-        threads_.emplace_back([this] { help(); });
+        threads_.emplace_back([this, i] {
+            name_thread("worker " + std::to_string(i + 1));
+            help();
+        });
 }
 
 Workers::~Workers() {

@@ -18,7 +18,6 @@ void declare_trace(Command& app, int& status);
 void declare_frames(Command& app, int& status);
 void declare_gap(Command& app, int& status);  ///< its line of the help
 void declare_bench(Command& app, int& status);
-void declare_node(Command& app, int& status);
 
 /// Replaces this process by puckloop-gap with the same words; returns, with status 2, only where it is not
 /// built.
@@ -36,7 +35,6 @@ inline constexpr std::array kCommands{
     declare_frames,
     declare_gap,
     declare_bench,
-    declare_node,
 };
 // clang-format on
 

@@ -3,11 +3,13 @@
 #include "tools/cli/program.h"
 #include "tools/commands.h"
 #include "tools/run/linux_arguments.h"
+#include "tools/run/node_process.h"
 
 #include <string_view>
 
 int main(int argc, char** argv) {
     using namespace puckloop::tools;
+    if (const auto status = serve_as_node(argc, argv)) return *status;
     if (argc > 1 && std::string_view(argv[1]) == "gap") return become_gap(argv);
     return run_program(kCommands, pack_linux_arguments({argv + 1, argv + argc}));
 }

@@ -1,6 +1,7 @@
 // Reading a file, recognising its format by content, and looking symbols up.
 
 #include "base/error.h"
+#include "base/log.h"
 #include "emu/image/coff.h"
 #include "emu/image/dspic_view.h"
 #include "emu/image/elf.h"
@@ -61,7 +62,10 @@ Image parse_image(std::string_view bytes, const std::string& file) {
 }
 
 Image load_image(const std::string& path) {
-    return parse_image(read_image_file(path), path);
+    Image image = parse_image(read_image_file(path), path);
+    log::info("read {}: {}, {} program words, {} symbols, sha256 {}", path, name_of(image.format),
+              image.program.size(), image.symbols.size(), image.sha256);
+    return image;
 }
 
 }  // namespace puckloop::image

@@ -4,6 +4,9 @@
 
 #include <catch2/catch.hpp>
 
+#include <cstdio>
+#include <string>
+
 using puckloop::tools::pack_linux_arguments;
 using Words = std::vector<std::string>;
 
@@ -40,4 +43,24 @@ TEST_CASE("a last --linux is left for the parser to refuse") {
 TEST_CASE("empty arguments and arguments with spaces or = arrive whole") {
     CHECK(pack_linux_arguments({"--linux", "p", "", "a b", "k=v"}) ==
           Words{"--linux=p", "--linux-arg=", "--linux-arg=a b", "--linux-arg=k=v"});
+}
+
+TEST_CASE("every option of run's help is known to end the program's arguments") {
+    std::FILE* help = popen(PUCKLOOP_PROGRAM " run --help", "r");
+    REQUIRE(help != nullptr);
+    int seen = 0;
+    char line[4096];
+    while (std::fgets(line, sizeof line, help)) {
+        const std::string text = line;
+        const auto at = text.find("--");
+        // An option's own line begins with it, perhaps behind a short name.
+        if (at == std::string::npos || text.find_first_not_of(' ') + 3 < at) continue;
+        const std::string option = text.substr(at, text.find_first_of(" =:\n", at) - at);
+        if (option == "--help") continue;
+        INFO(option);
+        CHECK(pack_linux_arguments({"--linux", "p", option}).back().starts_with(option));
+        ++seen;
+    }
+    pclose(help);
+    CHECK(seen > 10);
 }

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
+#include "tools/cli/log_options.h"
 #include "tools/commands.h"
 #include "tools/exec/options.h"
 
@@ -42,6 +43,7 @@ struct Arguments {
     std::string fosc = "robot";
     std::optional<double> crystal_hertz, baud;
     std::array<std::optional<double>, 2> uart_baud;
+    LogOptions log;
     bool realtime = false;
     bool unpaced = false;
 };
@@ -135,6 +137,7 @@ void describe(Command& app, Arguments& a) {
         app.add_flag("--realtime", a.realtime,
                      "pace by the wall clock (default if a pty, TCP or a terminal is at an end)");
     app.add_flag("--no-realtime", a.unpaced, "never pace")->excludes(realtime);
+    declare_log_options(app, a.log);
     app.add_flag("!--no-skip", t.skip_idle, "execute every turn of busy-wait loops");
 }
 
@@ -148,6 +151,7 @@ void declare_exec(Command& app, int& status) {
         Arguments& a = *arguments;
         if (a.options.bench.mcu.empty() && a.options.bench.board.empty())
             throw InputError("", "exec", "nothing lies on the bench", "--mcu CHIP or --board BOARD");
+        start_log("exec", a.log);
         exec::BenchOptions& bench = a.options.bench;
         if (command->count("--selector") > 0 && bench.board != "pic")
             throw InputError("", "--selector",

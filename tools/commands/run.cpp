@@ -1,9 +1,11 @@
 // `puckloop run SCENARIO`: the main job.
 
 #include "base/error.h"
+#include "base/log.h"
 #include "cosim/interrupt.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
+#include "tools/cli/log_options.h"
 #include "tools/commands.h"
 #include "tools/run/parameter_list.h"
 #include "tools/run/report.h"
@@ -25,6 +27,7 @@ struct Options {
     RunRequest request;
     std::string linux_program;
     std::vector<std::string> linux_args;
+    LogOptions log;
     bool json = false;
     bool list_parameters = false;
 };
@@ -49,6 +52,8 @@ int run(Options& options) {
         request.linux_command.insert(request.linux_command.end(), options.linux_args.begin(),
                                      options.linux_args.end());
     }
+    start_log("puckloop", options.log);
+    if (!request.in_process) log::share_with_children();
     const RunSetup setup = set_up(request);
     const cosim::InterruptGuard interrupt;
     StatusLine status_line(setup.scenario.duration);
@@ -119,6 +124,7 @@ void declare_run(Command& app, int& status) {
     command->add_flag("--list-parameters", options->list_parameters,
                       "print every physical parameter and where its value comes from");
     command->add_flag("--json", options->json, "print only the path of report.json");
+    declare_log_options(*command, options->log);
     command->callback([options, &status] { status = run(*options); });
 }
 

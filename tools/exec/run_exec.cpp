@@ -1,6 +1,7 @@
 // `puckloop exec`: from options to a bench, through the run, to the report.
 
 #include "base/error.h"
+#include "base/log.h"
 #include "emu/board/chip_warnings.h"
 #include "emu/board/nvm_file.h"
 #include "emu/image/device.h"
@@ -153,6 +154,8 @@ int run_exec(const ExecOptions& options) {
         std::unique_ptr<UartEnd> end = make_end(spec, unit, options);
         if (!end) continue;
         live |= end->live();
+        log::info("uart{}: {}{}", unit, *options.uart[static_cast<std::size_t>(unit - 1)],
+                  end->live() ? ", live: paced by the wall clock" : "");
         stdio |= spec.kind == UartSpec::Kind::Stdio;
         if (!end->announcement().empty()) {
             std::fprintf(stderr, "uart%d: %s\n", unit, end->announcement().c_str());
@@ -184,6 +187,8 @@ int run_exec(const ExecOptions& options) {
         return g_interrupted.load();
     };
     const cosim::Time budget = budget_of(options, bench, live);
+    log::info("target {}{}, budget {}", options.bench.board, options.bench.mcu,
+              budget == cosim::kNever ? "none" : fmt::format("{:.6f} s", cosim::to_seconds(budget)));
     const auto began = std::chrono::steady_clock::now();
     if (paced) bench.pace_by_wall_clock();
     ExecOutcome outcome;
@@ -198,6 +203,7 @@ int run_exec(const ExecOptions& options) {
     if (outcome.end == Bench::End::Address)
         for (const StopAddress& stop : stops)
             if (stop.pc == outcome.pc) outcome.stopped = stop.name;
+    log::info("ended after {:.2f} s at pc {:#x}: {}", outcome.wall_s, outcome.pc, outcome.stopped);
     outcome.success = !stuck && (outcome.end == Bench::End::Address ||
                                  (outcome.end == Bench::End::Time && options.stop_at.empty()));
     if (options.strict && outcome.success) {

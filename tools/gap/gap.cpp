@@ -1,6 +1,7 @@
 // puckloop gap: simulation against measured data.
 
 #include "base/error.h"
+#include "base/log.h"
 #include "emu/image/image.h"
 #include "gap/analyse.h"
 #include "gap/emulate/rerun.h"
@@ -8,6 +9,7 @@
 #include "gap/report/report.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
+#include "tools/cli/log_options.h"
 #include "tools/gap/folders.h"
 #include "tools/gap/subcommands.h"
 
@@ -38,6 +40,7 @@ struct Request {
     std::filesystem::path folder, out, firmware;
     std::uint64_t seed = 1;
     bool rerun = false, no_rerun = false;
+    LogOptions log;
 };
 
 void tell_experiment(const gap::Experiment& experiment) {
@@ -47,8 +50,13 @@ void tell_experiment(const gap::Experiment& experiment) {
         fmt::print("caution: {}\n", caution);
 }
 
-/// One line that is written over, on a terminal only.
+/// The steps in the log if there is one; else one line that is written over, on a terminal only.
 std::function<void(const std::string&, double)> progress_line() {
+    if (log::wants(log::Level::Info))
+        return [said = std::string()](const std::string& what, double share) mutable {
+            if (what != said) log::info("{:.0f} %: {}", 100 * share, what);
+            said = what;
+        };
     if (::isatty(STDERR_FILENO) == 0) return {};
     return [](const std::string& what, double share) {
         fmt::print(stderr, "\r\033[K{:3.0f} %  {}", 100 * share, what);
@@ -115,6 +123,8 @@ void analyse_folder(const Request& request) {
         image::load_image(request.firmware.string());
     }
     const gap::Experiment experiment = gap::read_experiment(request.folder);
+    log::info("read {}: kind {}, {} runs, {} rows", request.folder.string(), gap::kind_name(experiment.kind),
+              experiment.runs.size(), experiment.rows());
     const auto overlay = request.out / "overlay.toml", json = request.out / "gap.json",
                page = request.out / "report.html";
     if (!request.out.empty()) {
@@ -127,7 +137,8 @@ void analyse_folder(const Request& request) {
     const auto begun = std::chrono::steady_clock::now();
     gap::Verdict verdict = gap::analyse(experiment, options);
     verdict.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
-    if (options.progress) fmt::print(stderr, "\r\033[K");
+    log::info("analysed in {:.2f} s: {}", verdict.wall_s, gap::decision_name(verdict.decision));
+    if (::isatty(STDERR_FILENO) != 0) fmt::print(stderr, "\r\033[K");
     tell_experiment(experiment);
     tell_verdict(experiment, verdict);
     if (request.out.empty()) return;
@@ -165,6 +176,7 @@ void declare_gap(Command& app, int& status) {
         ->add_option("--firmware", request->firmware,
                      "of the main board, for what is performed again (the project's own)")
         ->type_name("IMAGE");
+    declare_log_options(*command, request->log);
     command->require_subcommand(0, 1);
     declare_gap_import(*command, status);
     declare_gap_record(*command, status);
@@ -173,6 +185,7 @@ void declare_gap(Command& app, int& status) {
         if (command->subcommand_given()) return;
         if (request->folder.empty())
             throw InputError("", "", "gap: no folder", "DIR, a folder with experiment.toml");
+        start_log("gap", request->log);
         analyse_folder(*request);
         status = 0;
     });

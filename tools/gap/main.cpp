@@ -2,11 +2,13 @@
 
 #include "tools/cli/program.h"
 #include "tools/gap/subcommands.h"
+#include "tools/run/node_process.h"
 
 #include <array>
 
 int main(int argc, char** argv) {
     using namespace puckloop::tools;
-    constexpr std::array<DeclareCommand, 2> kCommands{declare_gap, declare_node};
+    if (const auto status = serve_as_node(argc, argv)) return *status;
+    constexpr std::array<DeclareCommand, 1> kCommands{declare_gap};
     return run_program(kCommands, {argv + 1, argv + argc});
 }

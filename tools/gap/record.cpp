@@ -2,8 +2,10 @@
 
 #include "gap/emulate/record.h"
 #include "base/error.h"
+#include "base/log.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
+#include "tools/cli/log_options.h"
 #include "tools/gap/folders.h"
 #include "tools/gap/subcommands.h"
 #include "tools/run/program_path.h"
@@ -26,6 +28,7 @@ struct Request {
     std::vector<std::string> changes;
     std::uint64_t seed = 1;
     bool brief = false;
+    LogOptions log;
 };
 
 void record_kind(const std::string& kind, const fs::path& out, const gap::emulate::RecordOptions& options) {
@@ -47,10 +50,10 @@ void record(const Request& request) {
     for (const std::string& change : request.changes)
         gap::emulate::set_parameter(options.robot, change);
     const bool terminal = ::isatty(STDERR_FILENO) != 0;
-    if (terminal)
-        options.done = [](std::size_t done, std::size_t all) {
-            fmt::print(stderr, "\r{} of {} runs ", done, all);
-        };
+    options.done = [terminal](std::size_t done, std::size_t all) {
+        log::info("{} of {} runs recorded", done, all);
+        if (terminal && !log::wants(log::Level::Info)) fmt::print(stderr, "\r{} of {} runs ", done, all);
+    };
     const bool all = request.kind == "all";
     const auto& kinds = gap::emulate::recordable_kinds();
     if (!all && std::find(kinds.begin(), kinds.end(), request.kind) == kinds.end())
@@ -105,8 +108,10 @@ void declare_gap_record(Command& gap, int& status) {
         ->check(count_up_to(kLargestSeed))
         ->type_name("N");
     command->add_flag("--brief", request->brief, "few and short runs: to look at, too few for a verdict");
+    declare_log_options(*command, request->log);
     command->callback([request, &status] {
         status = 0;
+        start_log("gap", request->log);
         record(*request);
     });
 }

@@ -12,8 +12,6 @@ void declare_gap_import(Command& gap, int& status);
 void declare_gap_record(Command& gap, int& status);
 void declare_gap_selftest(Command& gap, int& status);
 
-void declare_node(Command& app, int& status);
-
 /// The project's own firmware and recording program, as built.
 gap::emulate::Tools emulation_tools();
 

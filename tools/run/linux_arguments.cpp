@@ -8,9 +8,10 @@ namespace puckloop::tools {
 
 namespace {
 
-constexpr std::array<std::string_view, 11> kRunOptions{"--firmware", "--linux", "--in-process", "--realtime",
-                                                       "--duration", "--seed",  "--model",      "--out",
-                                                       "--json",     "--stall", "--threads"};
+constexpr auto kRunOptions = std::to_array<std::string_view>(
+    {"--firmware", "--linux", "--in-process", "--realtime", "--duration", "--seed", "--model", "--out",
+     "--json", "--stall", "--threads", "--paced", "--events", "--strict", "--list-parameters", "--log-level",
+     "--log-file", "--verbose"});
 
 bool is_run_option(std::string_view word) {
     return std::any_of(kRunOptions.begin(), kRunOptions.end(), [&](std::string_view option) {

@@ -7,6 +7,8 @@
 #include "tools/run/node_factory.h"
 #include "tools/run/preflight.h"
 #include "tools/run/report.h"
+#include "tools/run/results_folder.h"
+#include "tools/run/run_diary.h"
 
 #include <fmt/format.h>
 
@@ -59,6 +61,16 @@ void raise_descriptor_limit() {
     setrlimit(RLIMIT_NOFILE, &limit);
 }
 
+/// Every name that nodes and the run itself may give a file in the results folder.
+std::vector<std::string> result_files(const RunSetup& setup) {
+    std::vector<std::string> names{"report.json",    "report.json.part", "trace.csv",   "trajectory.csv",
+                                   "trajectory.svg", "sensors.csv",      "objects.csv", "ir.csv"};
+    for (const cosim::NodeSpec& node : setup.nodes)
+        for (const char* kind : {".log", ".received"})
+            names.push_back(node.name + kind);
+    return names;
+}
+
 /// Range-and-bearing boards go in steps of 20 us, each with enough to do to share them out; others hardly.
 unsigned threads_for(const RunSetup& setup, const RunRequest& request) {
     constexpr unsigned kBoardsOfThread = 3, kMost = 4;
@@ -77,12 +89,11 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
                             const std::function<void(const cosim::Progress&)>& progress,
                             const cosim::InterruptGuard* interrupt) {
     check_files(setup);
-    std::error_code error;
-    std::filesystem::create_directories(setup.out, error);
-    if (error) throw InputError(setup.out.string(), "", "cannot be made a folder: " + error.message());
+    const ResultsFolder folder(setup.out, result_files(setup));
     ReservedFile report(setup.out / "report.json", kReportBytes);
 
-    if (!setup.scenario.events.any()) std::filesystem::remove(setup.out / "events.toml", error);
+    std::error_code ignored;
+    if (!setup.scenario.events.any()) std::filesystem::remove(setup.out / "events.toml", ignored);
     const ControlPlace control(setup.control, setup.out);
     raise_descriptor_limit();
     cosim::RunOptions options;
@@ -96,10 +107,15 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
         options.interrupted = interrupt->flag();
         options.hurried = interrupt->again();
     }
-    options.progress = progress;
+    RunDiary diary(setup, request);
+    options.progress = [&](const cosim::Progress& now) {
+        diary.progress(now);
+        if (progress) progress(now);
+    };
     cosim::Conductor conductor(setup.nodes, setup.links, setup.scenario.faults, options, make_node);
     cosim::TraceCsvSink trace((setup.out / "trace.csv").string());
     conductor.add_sink(trace);
+    diary.started(conductor);
     cosim::Outcome outcome = conductor.run();
     if (outcome.reason == cosim::EndReason::Interrupted) {
         outcome.success = false;
@@ -109,7 +125,9 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
     }
     judge(outcome);
     if (request.strict) judge_strictly(setup, outcome);
+    diary.ended(outcome);
     write_results(setup, outcome, report);
+    diary.written();
     return outcome;
 }
 

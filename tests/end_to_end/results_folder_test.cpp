@@ -1,0 +1,88 @@
+// The results folder: one run at a time, and nothing left of the run before.
+
+#include "tests/end_to_end/one_line.h"
+
+#include <catch2/catch.hpp>
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <thread>
+
+using namespace puckloop::tests;
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::string kHello = PUCKLOOP_SOURCE "/scenarios/hello.toml";
+const std::string kPair = PUCKLOOP_SOURCE "/scenarios/rab_pair.toml";
+
+}  // namespace
+
+TEST_CASE("a second run into the same folder is refused and names the first") {
+    const Workbench bench;
+    const auto first =
+        bench.start({"run", kHello, "--realtime", "--duration", "600", "--out", bench.out("o")});
+    const double begun = wall_seconds();
+    while (text_of(bench.out("o") / "trajectory.csv").size() < 200 && wall_seconds() - begun < 60)
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    const Ended second = bench.run("o", {kHello, "--duration", "1"});
+    check_one_line(second, 2, {"o: process " + std::to_string(first->id()), "--out"});
+    first->signal(SIGINT);
+    CHECK(first->wait().status == 128 + SIGINT);
+    CHECK(bench.report("o")["duration_s"] != 1);  // the first run's
+    CHECK(bench.csv("o", "trajectory.csv").size() > 1);
+
+    SECTION("the folder is free when the first has ended") {
+        CHECK(bench.run("o", {kHello, "--duration", "1"}).status == 0);
+    }
+    SECTION("or was killed") {
+        const auto third =
+            bench.start({"run", kHello, "--realtime", "--duration", "600", "--out", bench.out("o")});
+        while (!fs::exists(bench.out("o") / "trajectory.csv") && wall_seconds() - begun < 120)
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        third->signal(SIGKILL);
+        third->wait();
+        CHECK(bench.run("o", {kHello, "--duration", "1"}).status == 0);
+    }
+}
+
+TEST_CASE("files of an earlier, larger run go; a user's own stay") {
+    const Workbench bench;
+    REQUIRE(bench.run("o", {kPair, "--duration", "0.2"}).status == 0);
+    const fs::path out = bench.out("o");
+    REQUIRE(fs::exists(out / "follower.rab.log"));
+    REQUIRE(fs::exists(out / "ir.csv"));
+    for (const char* own : {"o/notes.txt", "o/leader.mine.log", "o/robot7.pic.log"})
+        bench.file(own, "mine\n");
+    fs::create_directories(out / "world.received");  // a folder under the name of a file
+    REQUIRE(bench.run("o", {kHello, "--duration", "0.2"}).status == 0);
+    CHECK_FALSE(fs::exists(out / "follower.rab.log"));
+    CHECK_FALSE(fs::exists(out / "leader.linux.log"));
+    CHECK_FALSE(fs::exists(out / "ir.csv"));
+    CHECK(fs::exists(out / "robot0.pic.log"));
+    for (const char* own : {"notes.txt", "leader.mine.log", "robot7.pic.log"})
+        CHECK(text_of(out / own) == "mine\n");
+    CHECK(fs::is_directory(out / "world.received"));
+}
+
+TEST_CASE("a damaged list of files removes nothing outside of the folder") {
+    const Workbench bench;
+    REQUIRE(bench.run("o", {kHello, "--duration", "0.1"}).status == 0);
+    bench.file("beside.txt", "mine\n");
+    bench.file("o/.puckloop", "../beside.txt\n/etc/hostname\n.\n..\n\n" + std::string(5000, 'x'));
+    CHECK(bench.run("o", {kHello, "--duration", "0.1"}).status == 0);
+    CHECK(text_of(bench.folder() / "beside.txt") == "mine\n");
+}
+
+TEST_CASE("a lock that cannot be made is one line and leaves the results") {
+    const Workbench bench;
+    REQUIRE(bench.run("o", {kHello, "--duration", "0.1"}).status == 0);
+    const std::string before = text_of(bench.out("o") / "report.json");
+    fs::remove(bench.out("o") / ".puckloop");
+    fs::create_directories(bench.out("o") / ".puckloop");
+    check_one_line(bench.run("o", {kHello, "--duration", "0.1"}), 2, {".puckloop", "cannot be opened"});
+    CHECK(text_of(bench.out("o") / "report.json") == before);
+}
