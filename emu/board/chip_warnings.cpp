@@ -21,6 +21,25 @@ double seconds(const dspic::Chip& chip, dspic::Cycle cycle) {
     return cosim::to_seconds(chip.clock().time_of(cycle));
 }
 
+/// Traps, and resets that no program asks for: the first of each with its place.
+void add_crashes(const dspic::Chip& chip, const dspic::ChipReport& report, std::vector<std::string>& lines) {
+    if (!report.traps.empty()) {
+        const dspic::TrapRecord& first = report.traps.front();
+        lines.push_back(fmt::format("took the {} trap {}, first at pc 0x{:04x} ({:.6f} s)", first.name,
+                                    times_text(report.traps.size()), first.pc, seconds(chip, first.cycle)));
+    }
+    const dspic::ResetRecord* first = nullptr;
+    std::uint64_t times = 0;
+    for (const dspic::ResetRecord& reset : report.resets) {
+        if (reset.cause != "WDTO" && reset.cause != "IOPUWR" && reset.cause != "TRAPR") continue;
+        if (first == nullptr) first = &reset;
+        ++times;
+    }
+    if (first != nullptr)
+        lines.push_back(fmt::format("crashed into a reset ({}) {}, first at pc 0x{:04x} ({:.6f} s)",
+                                    first->cause, times_text(times), first->pc, seconds(chip, first->cycle)));
+}
+
 }  // namespace
 
 std::optional<std::string> waiting_text(const dspic::Chip& chip,
@@ -37,6 +56,7 @@ std::vector<std::string> chip_warnings(const dspic::Chip& chip) {
     const std::optional<dspic::WaitReport> wait = chip.waiting();
     if (wait && wait->hung) lines.push_back(*waiting_text(chip, wait));
     const dspic::ChipReport report = chip.report();
+    add_crashes(chip, report, lines);
     for (const dspic::MissingBitReport& poll : report.missing_bits) {
         if (wait && wait->hung && wait->first == poll.first && wait->last == poll.last) continue;
         lines.push_back(fmt::format("waited in the loop {} for {}, which no model drives ({:.6f} s)",

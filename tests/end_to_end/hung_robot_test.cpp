@@ -170,3 +170,29 @@ TEST_CASE("the demo that waits for a camera names the routines that would end it
         CHECK_THAT(ended.out, !Contains("has run"));
     }
 }
+
+TEST_CASE("a robot that crashes into resets, or traps, is in the warnings", "[hung]") {
+    const Workbench bench;
+    // An undefined instruction resets; a word at an odd address is a trap, whose routine returns.
+    const std::string illegal =
+        image(bench, "illegal", std::string(kMain) + "        .pword 0x3fffff, 0xff0000\n");
+    const Ended crashed = bench.puckloop({"exec", "--board", "pic", illegal, "--seconds", "0.1"});
+    CHECK_THAT(crashed.out,
+               Contains("warning: crashed into a reset (IOPUWR) ") && Contains(", first at pc 0x0"));
+    const std::string odd =
+        image(bench, "odd",
+              "        goto main\n        .org 0x0008\n        .pword trap\n" + std::string(kMain) + R"(
+        mov     #0x0901, w1
+        mov     [w1], w0
+        mov     #0x8000, w0
+        mov     w0, U2MODE
+wait:   btss    U2STA, #0
+        bra     wait
+        bra     wait
+trap:   bclr    INTCON1, #3
+        retfie
+)");
+    const Ended trapped = bench.puckloop({"exec", "--board", "pic", odd, "--seconds", "0.1", "--strict"});
+    CHECK(trapped.status == 1);
+    CHECK_THAT(trapped.out, Contains("warning: took the AddressError trap once, first at pc 0x0"));
+}
