@@ -29,4 +29,23 @@ void state(Archive& archive, I2cPhase& phase) {
     archive.bounded(phase.stretch, 0, kNever);
 }
 
+template <class Archive>
+void state(Archive& archive, Signal& signal) {
+    archive(signal.id, signal.value);
+}
+
+template <class Archive>
+void state(Archive& archive, Message& message) {
+    archive.bounded(message.time, 0, kNever);
+    archive(message.port);
+    auto kind = static_cast<std::uint8_t>(message.payload.index());
+    archive.bounded(kind, 0, 2);
+    if constexpr (Archive::kLoads) {
+        if (kind == 0) message.payload = UartFrame{};
+        if (kind == 1) message.payload = I2cPhase{};
+        if (kind == 2) message.payload = Signal{};
+    }
+    std::visit([&](auto& payload) { archive(payload); }, message.payload);
+}
+
 }  // namespace puckloop::cosim
