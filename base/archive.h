@@ -11,6 +11,7 @@
 #include <concepts>
 #include <cstdint>
 #include <deque>
+#include <map>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -43,6 +44,10 @@ template <class T>
 struct IsOptional : std::false_type {};
 template <class T>
 struct IsOptional<std::optional<T>> : std::true_type {};
+template <class T>
+struct IsMap : std::false_type {};
+template <class Key, class Value>
+struct IsMap<std::map<Key, Value>> : std::true_type {};
 template <class T>
 struct IsPair : std::false_type {};
 template <class A, class B>
@@ -107,7 +112,7 @@ class StateWriter {
         if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>) {
             const auto bits = bits_of(value);
             number(bits, sizeof bits);
-        } else if constexpr (std::same_as<T, std::string> || IsContainer<T>::value) {
+        } else if constexpr (std::same_as<T, std::string> || IsContainer<T>::value || IsMap<T>::value) {
             number(value.size(), 4);
             for (const auto& item : value)
                 put(item);
@@ -201,6 +206,13 @@ class StateReader {
                 typename T::value_type item{};
                 get(item);
                 value.push_back(std::move(item));
+            }
+        } else if constexpr (IsMap<T>::value) {
+            value.clear();
+            for (std::size_t items = count(); items > 0; --items) {
+                std::pair<typename T::key_type, typename T::mapped_type> item{};
+                get(item);
+                value.insert(std::move(item));
             }
         } else if constexpr (IsArray<T>::value) {
             for (auto& item : value)

@@ -143,7 +143,11 @@ void Conductor::State::plan() {
         pending_[n] = std::min(slot.first_in, slot.queue.empty() ? kNever : slot.queue.front().time);
     }
     ScheduleLimits limits{end_, kNever, options_.stop_latency};
-    if (options_.realtime) limits.pace = from_seconds(seconds_since(start_)) + kPaceSlack;
+    if (options_.realtime) {
+        if (!paced_since_ && schedule_.reached() >= options_.pace_from) paced_since_ = WallClock::now();
+        const double paced = paced_since_ ? seconds_since(*paced_since_) : 0.0;
+        limits.pace = options_.pace_from + from_seconds(paced) + (paced_since_ ? kPaceSlack : 0);
+    }
     schedule_.plan(network_->channels(), pending_, times_, limits);
 }
 

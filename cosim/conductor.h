@@ -36,6 +36,7 @@ struct RunOptions {
     Time duration = kNever;
     bool in_process = false;
     bool realtime = false;        ///< simulated time never runs ahead of the wall clock
+    Time pace_from = 0;           ///< with realtime: what lies before runs as fast as it can
     std::uint64_t seed = 1;       ///< for the faults' random streams
     unsigned threads = 1;         ///< of this process, for nodes that any thread may advance
     double stall_seconds = 10.0;  ///< a node process that does not answer for so long ends the run

@@ -102,6 +102,7 @@ class Conductor::State {
     std::size_t current_ = kNobody;  ///< whose call is under way: names the one that failed
     std::uint64_t grants_ = 0;
     WallClock::time_point start_{};
+    std::optional<WallClock::time_point> paced_since_;  ///< RunOptions::pace_from was reached
     double told_wall_ = 0.0;
     double flushed_wall_ = 0.0;
     Time told_time_ = 0;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstring>
+#include <limits>
 
 namespace puckloop::scenarios {
 
@@ -72,6 +73,11 @@ PicBoard read_pic(const std::string& file, const std::string& where, const TomlV
     pic.uart1 = reader.text("uart1", "");
     pic.resets = read_times(reader, "reset", 0.0);
     pic.nvm = read_nvm(reader, folder, others);
+    constexpr double kNotGiven = std::numeric_limits<double>::quiet_NaN();
+    if (const double boot = reader.quantity("boot", Dimension::Time, kNotGiven); !std::isnan(boot)) {
+        if (boot < 0) reader.fail("boot", "boot is before the run begins", "0 s or later, such as \"40 s\"");
+        pic.boot = boot;
+    }
     reader.finish();
     return pic;
 }

@@ -16,12 +16,13 @@ namespace puckloop::scenarios {
 /// The e-puck main board of a robot.
 struct PicBoard {
     std::filesystem::path firmware;
-    double crystal_ppm = 0.0;     ///< error of the 7.3728 MHz crystal, + is fast
-    double adc_noise = 2.0;       ///< counts, standard deviation
-    int selector = 0;             ///< position of the rotary selector, 0..15
-    std::string uart1;            ///< plugged in: "pty", "tcp:PORT", "script:FILE"; empty: nothing
-    std::vector<double> resets;   ///< s: the reset button (MCLR) is pressed, rising
-    std::filesystem::path nvm{};  ///< file that keeps flash and EEPROM; empty: none
+    double crystal_ppm = 0.0;      ///< error of the 7.3728 MHz crystal, + is fast
+    double adc_noise = 2.0;        ///< counts, standard deviation
+    int selector = 0;              ///< position of the rotary selector, 0..15
+    std::string uart1;             ///< plugged in: "pty", "tcp:PORT", "script:FILE"; empty: nothing
+    std::vector<double> resets;    ///< s: the reset button (MCLR) is pressed, rising
+    std::filesystem::path nvm{};   ///< file that keeps flash and EEPROM; empty: none
+    std::optional<double> boot{};  ///< s: how long the firmware needs until it listens; none: not said
 };
 
 /// The range-and-bearing board of a robot (e-RandB), on its I2C bus.

@@ -26,7 +26,7 @@ struct ResumeOptions {
     std::optional<BoardState> from;   ///< start from this
     std::string source;               ///< for the report: "cache", "file"
     bool fall_back = true;            ///< if what comes in differs
-    bool new_random_streams = false;  ///< the state is another board's
+    bool new_random_streams = false;  ///< not the saved board's
     Time save_at = 0;                 ///< 0: nothing is saved
     /// Called once, when `save_at` is reached, but not if that is where the state of a cache was taken over.
     /// Returns a warning for the report, or nothing; it may throw RunError.

@@ -292,6 +292,16 @@ struct Chip::Parts {
         if (output_compare) archive.part("output compare", *output_compare);
         if (dma) archive.part("dma", *dma);
         archive.part("report", report);
+        archive(asleep_since);
+        const auto check_text = [&](const auto& records, auto text) {
+            for (const auto& record : records)
+                for (const char c : record.*text)
+                    archive.check(c >= ' ' && c <= '~', "a record that is no text");
+        };
+        check_text(report.resets, &ResetRecord::cause);
+        check_text(report.traps, &TrapRecord::name);
+        check_text(report.unmodelled, &UnmodelledTouch::name);
+        check_text(report.warnings, &ChipWarning::text);
         archive.part("events", events);
         archive.bounded(now, 0, cosim::kNever);
         // An instruction is never cut in two, so the core may be somewhat ahead.

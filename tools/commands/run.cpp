@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "cosim/interrupt.h"
+#include "scenarios/quantity.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
 #include "tools/cli/log_options.h"
@@ -28,6 +29,8 @@ struct Options {
     std::string linux_program;
     std::vector<std::string> linux_args;
     LogOptions log;
+    std::string save_at;
+    bool no_cache = false;
     bool json = false;
     bool list_parameters = false;
 };
@@ -37,6 +40,18 @@ int status_of(const cosim::Outcome& outcome, int signal) {
     constexpr int kShellSignal = 128;
     if (outcome.reason == cosim::EndReason::Interrupted) return kShellSignal + signal;
     return outcome.success ? 0 : 1;
+}
+
+/// "40", "40s", "40 s" or "1500 ms", in seconds.
+double time_of(const std::string& text) {
+    const bool bare = text.find_first_not_of("0123456789.") == std::string::npos;
+    try {
+        const double seconds =
+            scenarios::parse_quantity(bare ? text + " s" : text, scenarios::Dimension::Time);
+        if (seconds > 0 && seconds <= kLongestRun) return seconds;
+    } catch (const scenarios::QuantityError&) {
+    }
+    throw InputError("", "--at", fmt::format("'{}' is no time within a run", text), "such as 40s");
 }
 
 int run(Options& options) {
@@ -54,8 +69,13 @@ int run(Options& options) {
     }
     start_log("puckloop", options.log);
     if (!request.in_process) log::share_with_children();
+    if (!options.save_at.empty()) request.save_at = time_of(options.save_at);
+    request.cache = !options.no_cache;
     const RunSetup setup = set_up(request);
     const cosim::InterruptGuard interrupt;
+    if (setup.ready > 0)
+        fmt::print(stderr, "the first {:g} s are not paced: the boards boot\n",
+                   cosim::to_seconds(setup.ready));
     StatusLine status_line(setup.scenario.duration);
     const cosim::Outcome outcome = run_scenario(
         setup, request, [&](const cosim::Progress& progress) { status_line.show(progress); }, &interrupt);
@@ -121,6 +141,22 @@ void declare_run(Command& app, int& status) {
     command->add_flag("--strict", request.strict,
                       "status 1 if there is anything to warn of: firmware that hangs, registers without a "
                       "model, I2C addresses that nobody acknowledges, faults that never fired, ...");
+    command
+        ->add_option("--save-state", request.save_state,
+                     "file for the states of all boards at --at; the run goes on")
+        ->check(not_empty())
+        ->type_name("FILE");
+    command->add_option("--at", options->save_at, "simulated time of --save-state, such as 40s")
+        ->check(not_empty())
+        ->type_name("TIME");
+    command
+        ->add_option("--from-state", request.from_state,
+                     "start the boards from a file of --save-state: until its time they send what was "
+                     "recorded, without being executed")
+        ->check(not_empty())
+        ->type_name("FILE");
+    command->add_flag("--no-cache", options->no_cache,
+                      "execute every board's boot, and keep none in the cache (docs/scenario.md)");
     command->add_flag("--list-parameters", options->list_parameters,
                       "print every physical parameter and where its value comes from");
     command->add_flag("--json", options->json, "print only the path of report.json");

@@ -11,6 +11,7 @@
 #include "physics/world_node.h"
 #include "tools/run/control/control_socket.h"
 #include "tools/run/outside_node.h"
+#include "tools/run/states/make_resumed.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -32,7 +33,7 @@ image::Image board_image(const json& spec, std::string_view chip, std::shared_pt
     return image;
 }
 
-std::unique_ptr<cosim::Node> make_pic(const json& spec) {
+std::unique_ptr<cosim::StatefulNode> make_pic(const json& spec) {
     pic::PicNodeOptions options;
     options.board.name = spec.at("name");
     options.board.seed = spec.at("seed");
@@ -46,7 +47,7 @@ std::unique_ptr<cosim::Node> make_pic(const json& spec) {
     return std::make_unique<pic::PicNode>(image, options);
 }
 
-std::unique_ptr<cosim::Node> make_rab(const json& spec) {
+std::unique_ptr<cosim::StatefulNode> make_rab(const json& spec) {
     rab::RabNodeOptions options;
     options.board.name = spec.at("name");
     options.board.seed = spec.at("seed");
@@ -69,6 +70,7 @@ std::unique_ptr<cosim::Node> make_outside(const json& spec) {
     outside.end = parse_outside(outside.name, spec.at("end"), spec.at("folder"));
     outside.baud = spec.at("baud");
     outside.record = spec.at("record");
+    outside.quiet = spec.value("quiet_ps", cosim::Time{0});
     return std::make_unique<OutsideNode>(outside);
 }
 
@@ -80,12 +82,15 @@ std::unique_ptr<cosim::Node> make_world(const json& spec) {
 
 }  // namespace
 
+std::unique_ptr<cosim::StatefulNode> make_board(const json& spec) {
+    return spec.at("kind") == "pic" ? make_pic(spec) : make_rab(spec);
+}
+
 std::unique_ptr<cosim::Node> make_node(const std::string& text) {
     try {
         const json spec = json::parse(text);
         const std::string kind = spec.at("kind");
-        if (kind == "pic") return make_pic(spec);
-        if (kind == "rab") return make_rab(spec);
+        if (kind == "pic" || kind == "rab") return with_state(spec, [spec] { return make_board(spec); });
         if (kind == "linux") return make_linux(spec);
         if (kind == "world") return make_world(spec);
         if (kind == "ir") return physics::make_ir_node(text);

@@ -1,12 +1,17 @@
 #pragma once
 // Makes nodes from their JSON descriptions: the one place that knows every kind.
 
-#include "cosim/node.h"
+#include "cosim/stateful_node.h"
+
+#include <nlohmann/json_fwd.hpp>
 
 #include <memory>
 #include <string>
 
 namespace puckloop::tools {
+
+/// A "pic" or "rab" at power-up, whatever the description says of states.
+std::unique_ptr<cosim::StatefulNode> make_board(const nlohmann::json& spec);
 
 /// `json` has "kind": "pic", "rab", "linux", "world", "ir", "i2c_bus" or "outside", and what that kind needs.
 /// Throws InputError.

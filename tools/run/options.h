@@ -17,6 +17,10 @@ struct RunRequest {
     std::filesystem::path out;               ///< empty: out/<scenario name>
     std::optional<double> duration;          ///< s
     std::optional<std::uint64_t> seed;
+    std::filesystem::path save_state;  ///< where the boards' states at `save_at` go; empty: nowhere
+    std::optional<double> save_at;     ///< s
+    std::filesystem::path from_state;  ///< what the boards start from; empty: power-up
+    bool cache = false;                ///< boots are taken from the user's cache and kept there
     bool in_process = false;
     bool realtime = false;
     bool paced = false;            ///< by the wall clock, with Linux programs in simulated time

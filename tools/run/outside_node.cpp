@@ -53,7 +53,12 @@ exec::UartSpec parse_outside(const std::string& place, const std::string& text, 
 }
 
 OutsideNode::OutsideNode(const OutsideSpec& spec)
-    : name_(spec.name), end_(make_end(spec)), record_name_(spec.record), bit_period_(period_of(spec.baud)) {
+    : name_(spec.name),
+      end_(make_end(spec)),
+      record_name_(spec.record),
+      bit_period_(period_of(spec.baud)),
+      quiet_(spec.quiet),
+      next_look_(spec.quiet) {
     if (!record_name_.empty()) {
         record_ = std::fopen(record_name_.c_str(), "wb");
         if (record_ == nullptr) throw RunError(fmt::format("{}: cannot be written", record_name_));
@@ -111,14 +116,16 @@ void OutsideNode::receive(const cosim::UartFrame& frame) {
         const auto byte = static_cast<std::uint8_t>(character.data);
         ++received_;
         if (character.framing_error) ++framing_errors_;
-        end_->receive(byte, !character.framing_error, character.start);
+        // What a live end hears is paced by the wall clock, which does not count yet.
+        if (!end_->live() || character.start >= quiet_)
+            end_->receive(byte, !character.framing_error, character.start);
         if (record_ != nullptr && std::fputc(byte, record_) == EOF)
             throw RunError(fmt::format("{}: cannot be written", record_name_));
     }
 }
 
 cosim::Time OutsideNode::promise(cosim::PortIndex /*port*/) const {
-    if (end_->live()) return granted_;
+    if (end_->live()) return next_start() == cosim::kNever ? std::max(granted_, next_look_) : granted_;
     return std::max(cosim::later(next_start(), kBitsToStop * bit_period_), granted_);
 }
 

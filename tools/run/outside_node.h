@@ -23,6 +23,7 @@ struct OutsideSpec {
     exec::UartSpec end;      ///< script, pty or TCP
     double baud = 115200.0;  ///< of the outside's own UART
     std::string record;      ///< file for the bytes that came from the robot; empty: none
+    cosim::Time quiet = 0;   ///< a live end is not listened to, and hears nothing, before
 };
 
 class OutsideNode : public cosim::Node {
@@ -55,6 +56,7 @@ class OutsideNode : public cosim::Node {
     cosim::Time bit_period_;
     cosim::Time free_ = 0;         // when the line to the robot is idle again
     cosim::Time heard_until_ = 0;  // when the receiver was done with the last character
+    cosim::Time quiet_;
     cosim::Time next_look_ = 0;
     cosim::Time granted_ = 0;
     std::uint64_t sent_ = 0, received_ = 0, framing_errors_ = 0;

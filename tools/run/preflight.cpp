@@ -11,7 +11,7 @@ void check_files(const RunSetup& setup) {
     for (const cosim::NodeSpec& node : setup.nodes) {
         auto spec = nlohmann::json::parse(node.json);
         spec.erase("log");  // this one leaves nothing on disk
-        if (spec.at("kind") == "pic" || spec.at("kind") == "rab") make_node(spec.dump());
+        if (spec.at("kind") == "pic" || spec.at("kind") == "rab") make_board(spec);
         if (spec.at("kind") == "linux") linuxboard::find_program(spec.at("program"));
     }
 }

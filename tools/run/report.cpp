@@ -1,6 +1,7 @@
 #include "tools/run/report.h"
 
 #include "base/error.h"
+#include "tools/run/states/state_plan.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -154,6 +155,7 @@ std::string summary(const RunSetup& setup, const cosim::Outcome& outcome) {
         fmt::format("{:.3f} s simulated in {:.1f} s ({:.1f}x real time)",
                     cosim::to_seconds(outcome.simulated), outcome.wall_s, real_time_factor(outcome));
     if (outcome.success && !outcome.text.empty()) text += fmt::format("\nended: {}", outcome.text);
+    text += states_summary(setup, outcome);
     const std::vector<std::string> warnings = warnings_of(setup, outcome);
     for (std::size_t i = 0; i < warnings.size() && i < kShown; ++i)
         text += fmt::format("\nwarning: {}", warnings[i]);

@@ -9,6 +9,7 @@
 #include "tools/run/report.h"
 #include "tools/run/results_folder.h"
 #include "tools/run/run_diary.h"
+#include "tools/run/states/state_plan.h"
 
 #include <fmt/format.h>
 
@@ -100,6 +101,7 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
     if (setup.scenario.duration) options.duration = cosim::from_seconds(*setup.scenario.duration);
     options.in_process = request.in_process;
     options.realtime = request.realtime || request.paced;
+    options.pace_from = setup.ready;
     options.threads = threads_for(setup, request);
     options.seed = setup.scenario.seed;
     options.stall_seconds = request.stall_seconds;
@@ -124,6 +126,7 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
                         cosim::to_seconds(outcome.stop_time.value_or(outcome.simulated)));
     }
     judge(outcome);
+    collect_states(setup, outcome);
     if (request.strict) judge_strictly(setup, outcome);
     diary.ended(outcome);
     write_results(setup, outcome, report);

@@ -8,6 +8,7 @@
 #include "tools/run/outside_node.h"
 #include "tools/run/overrides.h"
 #include "tools/run/program_path.h"
+#include "tools/run/states/state_plan.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -253,6 +254,7 @@ RunSetup set_up(const RunRequest& request) {
                       [](const RobotBoards& robot) { return robot.linux_board.has_value(); });
     for (const RobotBoards& robot : scenario.robots)
         add_robot(setup, robot, programs, request);
+    plan_states(setup, request);
     return setup;
 }
 

@@ -18,6 +18,9 @@ struct RunSetup {
     std::vector<cosim::LinkSpec> links;
     std::string control{};                ///< socket at which the world takes commands; empty: none
     std::vector<std::string> warnings{};  ///< what looks like a mistake
+    std::filesystem::path save_state{};   ///< where the boards' states at `save_at` go; empty: nowhere
+    cosim::Time save_at = 0;
+    cosim::Time ready = 0;  ///< in real time: the boards are ready, the wall clock counts from here
 };
 
 /// Reads the scenario, applies the request's changes and plans nodes and links. Throws InputError for

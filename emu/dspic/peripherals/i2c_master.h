@@ -59,7 +59,8 @@ class I2cMaster {
 
     template <class Archive>
     void state(Archive& archive) {
-        archive(state_);
+        archive(state_, refused_, address_sent_);
+        archive.bounded(sent_address_, 0, 127);
     }
 
   private:

@@ -34,12 +34,42 @@ void list(Archive& archive, Machine& m) {
     archive(m.warned);
 }
 
+/// Where the program waits: operations by their addresses.
+template <class Archive>
+void list_waits(Archive& archive, Machine& m) {
+    const std::uint32_t last_word = m.code_words - 1;
+    const auto operation = [&](const Op*& op) {
+        std::uint32_t index = op ? static_cast<std::uint32_t>(op - m.code) : 0;
+        archive.bounded(index, 0, last_word);
+        if constexpr (Archive::kLoads) op = m.code + index;
+    };
+    WaitWatch& waits = m.waits;
+    archive.bounded(waits.level, 0, static_cast<int>(waits.stays.size()) - 1);
+    for (WaitWatch::Stay& stay : waits.stays) {
+        bool there = stay.branch != nullptr;
+        archive(there);
+        if (!there) continue;
+        operation(stay.branch);
+        operation(stay.head);
+        archive(stay.stack, stay.since, stay.last, stay.next_look, stay.finding);
+        if (stay.finding)
+            for (const LoopCondition& condition : stay.finding->conditions)
+                archive.check(condition.address % 2 == 0, "a word at an odd address");
+    }
+    archive(waits.polls);
+    for (const MissingPoll& poll : waits.polls)
+        archive.check(m.sfr.info(poll.condition.address & 0x7FE) != nullptr &&
+                          poll.condition.address < 2 * SfrSpace::kWords,
+                      "a poll of no register");
+}
+
 }  // namespace
 
 void Core::state(StateWriter& archive) const {
     std::uint32_t pc = machine_->pc_of(machine_->current);
     archive(pc);
     list(archive, *machine_);
+    list_waits(archive, *machine_);
 }
 
 void Core::state(StateReader& archive) {
@@ -59,6 +89,7 @@ void Core::state(StateReader& archive) {
     mark(m, m.st.loop.doend, kLoopEnd);
     mark(m, m.st.loop_shadow.doend, kLoopEnd);
     update_pointer_rules(m);
+    list_waits(archive, m);  // whatever changes code forgets them
 }
 
 }  // namespace puckloop::dspic

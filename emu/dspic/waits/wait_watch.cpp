@@ -71,7 +71,14 @@ void note_polls(Machine& m, const Op* branch, const Op* head) {
         const std::uint16_t missing =
             m.sfr.modelled(condition.address) ? missing_bits(m.device, *info) : 0xFFFF;
         const auto bits = static_cast<std::uint16_t>(condition.mask & missing);
-        if (bits)
+        // Known already, should the loop have been forgotten meanwhile (its code changed, a state was
+        // loaded).
+        const bool known =
+            std::any_of(m.waits.polls.begin(), m.waits.polls.end(), [&](const MissingPoll& poll) {
+                return poll.first == finding->first && poll.last == finding->last &&
+                       poll.condition.address == condition.address && poll.condition.mask == bits;
+            });
+        if (bits && !known)
             m.waits.polls.push_back({m.st.cycle, finding->first, finding->last, {condition.address, bits}});
     }
 }

@@ -24,6 +24,11 @@ struct LoopCondition {
     std::uint16_t address = 0;
     std::uint16_t mask = 0;  ///< bits that matter
     bool exact = true;       ///< false: bits that may matter, no single one was found
+
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(address, mask, exact);
+    }
 };
 
 /// What was found out about a loop while the program was in it.
@@ -31,6 +36,11 @@ struct LoopFinding {
     std::uint32_t first = 0, last = 0;      ///< its head and its branch, program addresses
     std::vector<LoopCondition> conditions;  ///< none: nothing that the loop reads makes it end
     bool ends = false;                      ///< it counts something that ends it
+
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(first, last, conditions, ends);
+    }
 };
 
 /// A loop that waited, at least once, for bits that silicon changes and no model does.
@@ -38,6 +48,11 @@ struct MissingPoll {
     Cycle cycle = 0;
     std::uint32_t first = 0, last = 0;
     LoopCondition condition;
+
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(cycle, first, last, condition);
+    }
 };
 
 struct WaitWatch {

@@ -1,0 +1,31 @@
+#pragma once
+// Where boards' boots are kept from one run to the next: $PUCKLOOP_CACHE, $XDG_CACHE_HOME/puckloop or
+// ~/.cache/puckloop, for its owner alone. One state file per boot, written whole or not at all, so that runs
+// at the same time do not disturb each other; when they take too much room the ones not used for longest go.
+
+#include "cosim/resume/board_state.h"
+#include "cosim/time.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace puckloop::tools {
+
+inline constexpr std::uintmax_t kCacheBytes = std::uintmax_t{256} << 20;
+
+/// The folder that the environment names; none if PUCKLOOP_CACHE is "off" or empty, or no home is known.
+std::optional<std::filesystem::path> cache_folder();
+
+/// Makes it if absent. Returns why it cannot be used, or nothing.
+std::string prepare_cache(const std::filesystem::path& folder);
+
+/// The file for a board's boot of `length` in a world described by `world`, written by this build.
+std::filesystem::path cached_boot(const std::filesystem::path& folder, const cosim::BoardIdentity& board,
+                                  cosim::Time length, const std::string& world);
+
+/// Removes the files used longest ago until the rest take at most `most` bytes.
+void prune_cache(const std::filesystem::path& folder, std::uintmax_t most = kCacheBytes);
+
+}  // namespace puckloop::tools
