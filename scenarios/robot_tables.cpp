@@ -130,6 +130,10 @@ LinuxBoard read_linux(const std::string& file, const std::string& where, const T
     board.start = reader.quantity("start", Dimension::Time, 0.0);
     if (board.start < 0) reader.fail("start", "start is before the run begins", "0 s or later");
     board.restarts = read_times(reader, "restart", board.start);
+    board.folder = reader.text("folder", "");
+    if (const std::filesystem::path path(board.folder);
+        path.is_absolute() || board.folder.find("..") != std::string::npos)
+        reader.fail("folder", "folder is not below the results", "a relative path such as \"robot0\"");
     board.signals = read_signals(reader);
     board.end_signal = read_signal(reader, "end_signal", board.end_signal);
     board.grace = reader.quantity("grace", Dimension::Time, board.grace);

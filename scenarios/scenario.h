@@ -54,6 +54,7 @@ struct LinuxBoard {
     double start = 0.0;                ///< s: when the program is started
     std::vector<double> restarts;      ///< s: killed and started again
     std::vector<LinuxSignal> signals;
+    std::string folder;               ///< to work in, below the results; empty: puckloop's own
     std::string end_signal = "TERM";  ///< when the run is to end
     double grace = 2.0;               ///< s from the end signal to SIGKILL
     LinuxLateness late{};

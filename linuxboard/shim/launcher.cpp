@@ -35,7 +35,10 @@ constexpr rlim_t kUsualDescriptors = 1024;
 constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
 
 [[noreturn]] void fail(const std::string& what) {
-    throw RunError(what + ": " + std::strerror(errno));
+    const int error = errno;
+    throw RunError(
+        fmt::format("{}: {}{}", what, std::strerror(error),
+                    error == EMFILE ? " (a program takes 3 here; ulimit -n 4096 raises the limit)" : ""));
 }
 
 std::string shim_file(const LinuxSpec& spec) {

@@ -99,6 +99,16 @@ TEST_CASE("a scenario sends signals at simulated times") {
     CHECK(bench.report("o")["programs_asked_to_end_s"].is_null());
 }
 
+TEST_CASE("programs save their files in a folder of their own where the scenario says so") {
+    const Workbench bench;
+    const Ended ended = bench.run("o", {bench.hello("folder = \"robot0/files\"\n"), "--duration", "2",
+                                        "--linux", PUCKLOOP_POLITE, "handler", "saved.xml"});
+    CHECK(ended.status == 0);
+    CHECK(text_of(bench.out("o") / "robot0" / "files" / "saved.xml") == "calibration\n");
+    check_one_line(bench.run("p", {bench.hello("folder = \"../files\"\n")}), 2,
+                   {"folder", "below the results"});
+}
+
 TEST_CASE("signals that cannot be are refused") {
     const Workbench bench;
     const auto refused = [&](const std::string& keys, const Words& words) {

@@ -14,6 +14,7 @@ using namespace puckloop;
 using namespace puckloop::cosim;
 using namespace puckloop::tests;
 using Catch::Contains;
+using Catch::StartsWith;
 
 namespace {
 
@@ -196,4 +197,22 @@ TEST_CASE("semaphores shared between processes wait in simulated time") {
     REQUIRE(ran.stop);
     CHECK(ran.log == "[1, 4, 9]\n");
     CHECK(ran.stop->success);
+}
+
+TEST_CASE("named pipes wait in simulated time") {
+    const std::string pipe = "/tmp/puckloop_pipe_" + std::to_string(getpid());
+    const auto spec = shell("rm -f " + pipe + "; mkfifo " + pipe + "; tr a-z A-Z < " + pipe + " & " +
+                            program("clocks") + " > " + pipe + "; wait; rm " + pipe);
+    const Ran ran = run(spec);
+    REQUIRE(ran.stop);
+    CHECK(ran.stop->success);
+    CHECK_THAT(ran.log, Contains("HOST EPUCK12") && Contains("MONO 60"));
+    check_same(spec, ran);
+}
+
+TEST_CASE("start scripts see the devices that their programs get") {
+    linuxboard::LinuxSpec spec = shell("ls /dev/i2c-77 && test -w /dev/i2c-77 && exec " + program("clocks"));
+    spec.i2c = {"/dev/i2c-77"};
+    const Ran ran = run(spec);
+    CHECK_THAT(ran.log, StartsWith("/dev/i2c-77\nhost epuck12\n"));
 }

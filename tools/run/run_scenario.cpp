@@ -91,6 +91,9 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
                             const cosim::InterruptGuard* interrupt) {
     check_files(setup);
     const ResultsFolder folder(setup.out, result_files(setup));
+    for (const auto& robot : setup.scenario.robots)
+        if (robot.linux_board && !robot.linux_board->folder.empty())
+            std::filesystem::create_directories(setup.out / robot.linux_board->folder);
     ReservedFile report(setup.out / "report.json", kReportBytes);
 
     std::error_code ignored;

@@ -97,26 +97,28 @@ json linux_spec(const RunSetup& setup, const RobotBoards& robot, std::int64_t pr
     json signals = json::array();
     for (const scenarios::LinuxSignal& signal : board.signals)
         signals.push_back({{"time_s", signal.at}, {"signal", signal.send}});
-    json spec{{"kind", "linux"},
-              {"name", robot.name + ".linux"},
-              {"program", find_program(board.command[0], folder).string()},
-              {"args", std::vector<std::string>(board.command.begin() + 1, board.command.end())},
-              {"host_name", board.hostname},
-              {"i2c_hertz", setup.scenario.i2c_clock},
-              {"seed", setup.scenario.seed},
-              {"start_s", board.start},
-              {"restart_at", board.restarts},
-              {"signals", std::move(signals)},
-              {"end_signal", board.end_signal},
-              {"grace_s", board.grace},
-              {"tty_batch_s", board.late.tty_batch},
-              {"i2c_hold_s", board.late.i2c_hold},
-              {"oversleep_s", board.late.oversleep},
-              {"oversleep_jitter_s", board.late.oversleep_jitter},
-              {"programs", programs},
-              {"watchdog_s", request.stall_seconds * kWatchdogShare},
-              {"real_time", request.realtime},
-              {"log", log_of(setup, robot.name + ".linux")}};
+    json spec{
+        {"kind", "linux"},
+        {"name", robot.name + ".linux"},
+        {"program", find_program(board.command[0], folder).string()},
+        {"args", std::vector<std::string>(board.command.begin() + 1, board.command.end())},
+        {"host_name", board.hostname},
+        {"i2c_hertz", setup.scenario.i2c_clock},
+        {"seed", setup.scenario.seed},
+        {"start_s", board.start},
+        {"restart_at", board.restarts},
+        {"signals", std::move(signals)},
+        {"cwd", board.folder.empty() ? "" : (std::filesystem::absolute(setup.out) / board.folder).string()},
+        {"end_signal", board.end_signal},
+        {"grace_s", board.grace},
+        {"tty_batch_s", board.late.tty_batch},
+        {"i2c_hold_s", board.late.i2c_hold},
+        {"oversleep_s", board.late.oversleep},
+        {"oversleep_jitter_s", board.late.oversleep_jitter},
+        {"programs", programs},
+        {"watchdog_s", request.stall_seconds * kWatchdogShare},
+        {"real_time", request.realtime},
+        {"log", log_of(setup, robot.name + ".linux")}};
     return spec;
 }
 

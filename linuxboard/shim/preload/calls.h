@@ -36,6 +36,7 @@ FILE* open_stream(int fd, const char* mode);
 bool is_channel(int fd);
 
 // external.cpp
+bool is_named_pipe(const char* path);
 /// park() on an object that may be `shared` with other processes: theirs do not wake, so it is looked at
 /// every millisecond as long as there are some.
 Wake park_shared(const void* key, WaitOptions options, bool shared);

@@ -50,6 +50,11 @@ void tell_others() {
     errno = error;
 }
 
+bool is_named_pipe(const char* path) {
+    struct stat status {};
+    return active() && path != nullptr && REAL(stat)(path, &status) == 0 && S_ISFIFO(status.st_mode);
+}
+
 Wake park_shared(const void* key, WaitOptions options, bool shared) {
     if (!shared || page().alive < 2) return park(key, options);
     const Time asked = options.deadline;

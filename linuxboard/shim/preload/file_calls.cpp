@@ -1,5 +1,6 @@
 // open, close, read, write and their kin.
 
+#include "linuxboard/shim/preload/calls.h"
 #include "linuxboard/shim/preload/link.h"
 #include "linuxboard/shim/preload/open_file.h"
 #include "linuxboard/shim/preload/outside.h"
@@ -47,6 +48,31 @@ mode_t mode_argument(int flags, std::va_list arguments) {
     return (flags & (O_CREAT | O_TMPFILE)) != 0 ? va_arg(arguments, mode_t) : 0;
 }
 
+/// open() of a named pipe waits in simulated time until somebody reads it. Deviation: for reading it does not
+/// wait for a writer, the first read() does.
+int open_named_pipe(const char* path, int flags) {
+    mark_call("open");
+    charge(page().charges.device);
+    while (true) {
+        const int fd = REAL(open)(path, flags | O_NONBLOCK);
+        if (fd >= 0) {
+            if ((flags & O_NONBLOCK) == 0) REAL(fcntl)(fd, F_SETFL, flags & O_ACCMODE);
+            mark_internal(fd);
+            tell_others();
+            return fd;
+        }
+        if (errno != ENXIO || (flags & O_NONBLOCK) != 0) return fd;
+        WaitOptions options;
+        options.deadline = time_after(kExternalPeriod);
+        options.interruptible = true;
+        options.cancellable = true;
+        if (park(external_key(), options) == Wake::Signal && !self()->restarts) {
+            errno = EINTR;
+            return -1;
+        }
+    }
+}
+
 /// A pipe opened anew by the name of its descriptor is still one of the program's own.
 int opened(const char* path, int fd) {
     int named = -1;
@@ -65,6 +91,7 @@ SHIM_EXPORT int open(const char* path, int flags, ...) {
     const mode_t mode = mode_argument(flags, arguments);
     va_end(arguments);
     const int device = device_of(path);
+    if (device == kNoDevice && is_named_pipe(path)) return opened(path, open_named_pipe(path, flags));
     return device == kNoDevice ? opened(path, REAL(open)(path, flags, mode)) : open_device(device, flags);
 }
 
@@ -74,6 +101,7 @@ SHIM_EXPORT int open64(const char* path, int flags, ...) {
     const mode_t mode = mode_argument(flags, arguments);
     va_end(arguments);
     const int device = device_of(path);
+    if (device == kNoDevice && is_named_pipe(path)) return opened(path, open_named_pipe(path, flags));
     return device == kNoDevice ? opened(path, REAL(open64)(path, flags, mode)) : open_device(device, flags);
 }
 
@@ -83,6 +111,8 @@ SHIM_EXPORT int openat(int folder, const char* path, int flags, ...) {
     const mode_t mode = mode_argument(flags, arguments);
     va_end(arguments);
     const int device = device_of(path);
+    if (device == kNoDevice && (folder == AT_FDCWD || path[0] == '/') && is_named_pipe(path))
+        return opened(path, open_named_pipe(path, flags));
     return device == kNoDevice ? opened(path, REAL(openat)(folder, path, flags, mode))
                                : open_device(device, flags);
 }
@@ -93,6 +123,8 @@ SHIM_EXPORT int openat64(int folder, const char* path, int flags, ...) {
     const mode_t mode = mode_argument(flags, arguments);
     va_end(arguments);
     const int device = device_of(path);
+    if (device == kNoDevice && (folder == AT_FDCWD || path[0] == '/') && is_named_pipe(path))
+        return opened(path, open_named_pipe(path, flags));
     return device == kNoDevice ? opened(path, REAL(openat64)(folder, path, flags, mode))
                                : open_device(device, flags);
 }

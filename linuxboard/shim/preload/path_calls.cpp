@@ -38,3 +38,6 @@ SHIM_EXPORT int fstatat(int folder, const char* path, struct stat* status, int f
 SHIM_EXPORT int fstatat64(int folder, const char* path, struct stat64* status, int flags) noexcept {
     return REAL(fstatat64)(folder, stand_in(path), status, flags);
 }
+SHIM_EXPORT int statx(int folder, const char* path, int flags, unsigned mask, struct statx* status) noexcept {
+    return REAL(statx)(folder, stand_in(path), flags, mask, status);
+}

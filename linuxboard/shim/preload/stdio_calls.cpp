@@ -110,12 +110,14 @@ int print(int fd, const char* format, std::va_list arguments) {
 
 SHIM_EXPORT FILE* fopen(const char* path, const char* mode) {
     const int device = device_of(path);
+    if (device == kNoDevice && is_named_pipe(path)) return open_stream(open(path, flags_of(mode)), mode);
     return device == kNoDevice ? REAL(fopen)(path, mode)
                                : open_stream(open_device(device, flags_of(mode)), mode);
 }
 
 SHIM_EXPORT FILE* fopen64(const char* path, const char* mode) {
     const int device = device_of(path);
+    if (device == kNoDevice && is_named_pipe(path)) return open_stream(open(path, flags_of(mode)), mode);
     return device == kNoDevice ? REAL(fopen64)(path, mode)
                                : open_stream(open_device(device, flags_of(mode)), mode);
 }
