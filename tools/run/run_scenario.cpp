@@ -54,6 +54,16 @@ void write_results(const RunSetup& setup, cosim::Outcome& outcome, ReservedFile&
     guarded([&] { write_report(setup, outcome, report); });
 }
 
+void make_work_folders(const RunSetup& setup) {
+    for (const auto& robot : setup.scenario.robots) {
+        if (!robot.linux_board || robot.linux_board->folder.empty()) continue;
+        const auto folder = setup.out / robot.linux_board->folder;
+        std::error_code error;
+        std::filesystem::create_directories(folder, error);
+        if (error) throw InputError(folder.string(), "", "cannot be made a folder: " + error.message());
+    }
+}
+
 /// Robots in one process take some six descriptors each; the usual soft limit of 1024 is not meant for them.
 void raise_descriptor_limit() {
     rlimit limit{};
@@ -91,9 +101,7 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
                             const cosim::InterruptGuard* interrupt) {
     check_files(setup);
     const ResultsFolder folder(setup.out, result_files(setup));
-    for (const auto& robot : setup.scenario.robots)
-        if (robot.linux_board && !robot.linux_board->folder.empty())
-            std::filesystem::create_directories(setup.out / robot.linux_board->folder);
+    make_work_folders(setup);
     ReservedFile report(setup.out / "report.json", kReportBytes);
 
     std::error_code ignored;
