@@ -85,6 +85,18 @@ TEST_CASE("gap: options and folders that cannot be used end in one line and stat
     CHECK(!fs::exists(desk.path / "out"));
 }
 
+TEST_CASE("gap: -v says each step in the host's log, a bad level is refused") {
+    const Desk desk;
+    const std::string floor = "gap " + desk.at("floor");
+    const Result result = run_puckloop(floor + " -v");
+    CHECK(result.status == 0);
+    CHECK_THAT(result.output, Contains(" info    [gap ") && Contains("] read " + desk.at("floor")) &&
+                                  Contains("] analysed in "));
+    CHECK_THAT(run_puckloop(floor).output, !Contains("[gap "));
+    check_refused(floor + " --log-level loud", "--log-level");
+    check_refused(floor + " --log-file " + desk.at("nowhere/log"), "nowhere/log");
+}
+
 TEST_CASE("gap: what cannot be written leaves the old verdict whole") {
     const Desk desk;
     const fs::path out = desk.path / "out";
