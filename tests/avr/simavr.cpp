@@ -14,6 +14,7 @@ Simavr::Simavr() : chip_(avr_make_mcu_by_name("atmega1284p")) {
     avr_init(chip_.get());
     chip_->log = LOG_NONE;
     chip_->frequency = 16'000'000;
+    chip_->run_cycle_limit = 1;
     chip_->codeend = chip_->flashend;
 }
 Simavr::~Simavr() = default;
@@ -61,6 +62,15 @@ CoreState Simavr::state() const {
 
 void Simavr::step() {
     chip_->pc = avr_run_one(chip_.get());
+}
+
+void Simavr::run_to(std::uint32_t address) {
+    constexpr avr_cycle_count_t kMost = 400'000'000;
+    chip_->pc = 0;
+    chip_->cycle = 0;
+    chip_->state = cpu_Running;
+    while (chip_->pc != address && chip_->cycle < kMost)
+        chip_->run(chip_.get());
 }
 
 }  // namespace puckloop::avr::test

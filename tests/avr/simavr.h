@@ -23,6 +23,8 @@ class Simavr {
     CoreState state() const;
     /// One instruction.
     void step();
+    /// With timers and interrupts, until the PC is at a byte address; gives up after 400 million cycles.
+    void run_to(std::uint32_t address);
 
   private:
     struct Free {

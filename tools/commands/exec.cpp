@@ -52,12 +52,13 @@ void describe(Command& app, Arguments& a) {
     exec::ExecOptions& o = a.options;
     exec::TargetOptions& t = o.bench.target;
     auto* mcu = app.add_option("--mcu", o.bench.mcu,
-                               "the chip alone, nothing connected: dspic30f6014a or dspic33fj256gp710");
+                               "the chip alone, nothing connected: dspic30f6014a, dspic33fj256gp710 or "
+                               "atmega1284p (its USART0 and 1 are uart1 and 2)");
     auto* board =
         app.add_option("--board", o.bench.board,
                        "the chip on its board: pic (the e-puck main board) or rab (range and bearing)");
     mcu->excludes(board);
-    app.add_option("IMAGE", o.image, "firmware: Intel HEX, ELF (XC16) or COFF (C30)");
+    app.add_option("IMAGE", o.image, "firmware: Intel HEX, ELF (XC16, avr-gcc) or COFF (C30)");
     auto* seconds =
         app.add_option("--seconds", o.seconds, "budget in simulated seconds (60 if nobody live is at an end)")
             ->check(number_between(0.0, kLongestRun));
@@ -123,7 +124,7 @@ void describe(Command& app, Arguments& a) {
     app.add_option("--selector", t.selector, "initial position of the selector (pic)")
         ->check(whole_number_between(0, 15))
         ->capture_default_str();
-    app.add_option("--crystal", a.crystal_hertz, "in Hz (7372800; of the dsPIC33F 4000000)")
+    app.add_option("--crystal", a.crystal_hertz, "in Hz (7372800; of the dsPIC33F 4000000, of the AVR 16000000)")
         ->check(number_between(kSlowestCrystal, kFastestCrystal));
     app.add_option("--ppm", t.chip.ppm, "error of the crystal")
         ->check(number_between(-kWorstCrystal, kWorstCrystal))

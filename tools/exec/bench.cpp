@@ -53,8 +53,8 @@ Bench::End Bench::run_until(cosim::Time until) {
         if (master_) next = std::min(next, master_->limit());
         next = std::max(next, now_);
         if (next > now_) target_->run_until(next);
-        if (chip().stopped_at()) {
-            now_ = chip().now();
+        if (target_->stopped()) {
+            now_ = target_->now();
             return End::Address;
         }
         now_ = next;
@@ -97,7 +97,7 @@ void Bench::apply_stimulus() {
 }
 
 void Bench::press_reset() {
-    chip().mclr();
+    target_->reset_button();
     signal_changed("reset", 1.0, now_);
 }
 

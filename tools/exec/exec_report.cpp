@@ -1,7 +1,6 @@
 #include "tools/exec/exec_report.h"
 
 #include "emu/board/chip_json.h"
-#include "emu/board/chip_warnings.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -94,12 +93,12 @@ std::string json_report(Bench& bench, const image::Image& image, const ExecOutco
     if (!outcome.symbol.empty()) json["symbol"] = outcome.symbol;
     json["image"] = {
         {"file", image.file}, {"format", image::name_of(image.format)}, {"sha256", image.sha256}};
-    json.update(board::chip_json(bench.chip()));
+    json.update(Json::parse(bench.target().chip_json()));
     json["simulated_s"] = seconds_of(bench.now());
     json["wall_s"] = outcome.wall_s;
     if (bench.fallen_behind() > 0) json["fallen_behind_s"] = seconds_of(bench.fallen_behind());
     for (int unit = 1; unit <= 2; ++unit) {
-        Json uart = board::uart_json(bench.chip().uart_counters(unit));
+        Json uart = board::uart_json(bench.target().uart_counters(unit));
         uart["offered_by_bench"] = bench.uart(unit).bytes_to_chip();
         uart["framing_errors_at_bench"] = bench.uart(unit).framing_errors_seen();
         json[fmt::format("uart{}", unit)] = std::move(uart);
@@ -113,11 +112,7 @@ std::string json_report(Bench& bench, const image::Image& image, const ExecOutco
 }
 
 std::string text_report(Bench& bench, const ExecOutcome& outcome) {
-    const dspic::ChipReport report = bench.chip().report();
     const double simulated = seconds_of(bench.now());
-    const auto seconds = [&](dspic::Cycle cycle) {
-        return cosim::to_seconds(bench.chip().clock().time_of(cycle));
-    };
     std::string text =
         fmt::format("stopped: {} at pc {}{}\n", outcome.stopped, at(outcome.pc),
                     outcome.symbol.empty() ? std::string() : fmt::format(" ({})", outcome.symbol));
@@ -126,16 +121,8 @@ std::string text_report(Bench& bench, const ExecOutcome& outcome) {
     if (bench.fallen_behind() > 0)
         text += fmt::format("time: fell behind the wall clock by {:.3f} s in all\n",
                             seconds_of(bench.fallen_behind()));
-    text += fmt::format("work: {} cycles, {} instructions\n", report.cycles, report.instructions);
-    for (std::size_t i = 0; i < report.resets.size() && i < kShownInText; ++i)
-        text += fmt::format("reset: {} at {:.6f} s, pc {}\n", report.resets[i].cause,
-                            seconds(report.resets[i].cycle), at(report.resets[i].pc));
-    if (report.resets.size() > kShownInText) text += fmt::format("resets: {} in all\n", report.resets.size());
-    for (std::size_t i = 0; i < report.traps.size() && i < kShownInText; ++i)
-        text += fmt::format("trap: {} at {:.6f} s, pc {}\n", report.traps[i].name,
-                            seconds(report.traps[i].cycle), at(report.traps[i].pc));
-    if (report.traps.size() > kShownInText) text += fmt::format("traps: {} in all\n", report.traps.size());
-    const std::vector<std::string> warnings = board::chip_warnings(bench.chip());
+    text += bench.target().chip_text();
+    const std::vector<std::string> warnings = bench.target().warnings();
     for (std::size_t i = 0; i < warnings.size() && i < kShownInText; ++i)
         text += fmt::format("warning: {}\n", warnings[i]);
     if (warnings.size() > kShownInText)
@@ -145,7 +132,7 @@ std::string text_report(Bench& bench, const ExecOutcome& outcome) {
     if (const std::string bus = bench.target().i2c_devices_report(); !bus.empty())
         text += bus_text(nlohmann::json::parse(bus));
     for (int unit = 1; unit <= 2; ++unit) {
-        const dspic::UartCounters counters = bench.chip().uart_counters(unit);
+        const dspic::UartCounters counters = bench.target().uart_counters(unit);
         if (counters.sent + counters.received == 0) continue;
         text += fmt::format("uart{}: {} sent, {} received, {} framing errors, {} overruns\n", unit,
                             counters.sent, counters.received, counters.framing_errors, counters.overruns);

@@ -2,9 +2,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
-#include "emu/board/chip_warnings.h"
 #include "emu/board/nvm_file.h"
-#include "emu/image/device.h"
 #include "tools/exec/ends/script_end.h"
 #include "tools/exec/exec_report.h"
 #include "tools/exec/options.h"
@@ -93,7 +91,7 @@ BenchOptions bench_options(const ExecOptions& options) {
 }
 
 cosim::Time budget_of(const ExecOptions& options, Bench& bench, bool live) {
-    if (options.cycles) return bench.chip().clock().time_of(*options.cycles);
+    if (options.cycles) return bench.target().clock().time_of(*options.cycles);
     if (options.seconds) return cosim::from_seconds(*options.seconds);
     return live ? cosim::kNever : cosim::from_seconds(kDefaultSeconds);
 }
@@ -105,10 +103,10 @@ class HangNotice {
     void look() {
         if (reported_ || bench_.now() < next_) return;
         next_ = bench_.now() + kPeriod;
-        const std::optional<dspic::WaitReport> wait = bench_.chip().waiting();
-        if (!wait || !wait->hung) return;
+        const std::optional<std::string> hang = bench_.target().hang();
+        if (!hang) return;
         reported_ = true;
-        std::fprintf(stderr, "warning: %s\n", board::waiting_text(bench_.chip(), wait)->c_str());
+        std::fprintf(stderr, "warning: %s\n", hang->c_str());
     }
 
   private:
@@ -134,12 +132,12 @@ int run_exec(const ExecOptions& options) {
         return 0;
     }
     if (options.image.empty()) throw InputError("", "IMAGE", "missing", "a HEX, ELF or COFF file");
-    const image::Image image = image::load_image(options.image);
-    image::check_fits(image, image::find_device(defaults_of(options.bench.mcu, options.bench.board).mcu));
+    const image::Image image =
+        bench.target().read_image(options.image, defaults_of(options.bench.mcu, options.bench.board).mcu);
     std::vector<StopAddress> stops;
     for (const std::string& text : options.stop_at) {
         stops.push_back(resolve_stop(text, image));
-        bench.chip().stop_at(stops.back().pc);
+        bench.target().stop_at(stops.back().pc);
     }
     if (!options.stimulus.empty())
         bench.stimulate(
@@ -168,6 +166,8 @@ int run_exec(const ExecOptions& options) {
         resets.push_back({cosim::from_seconds(seconds), StimulusLine::kReset, 1.0});
     bench.stimulate(resets);
     std::optional<board::NvmFile> nvm;
+    if (!options.nvm.empty() && !bench.target().keeps_memory())
+        throw InputError("", "--nvm", "this chip's memory cannot be kept in a file", "a dsPIC");
     if (!options.nvm.empty())
         nvm.emplace(options.nvm, defaults_of(options.bench.mcu, options.bench.board).mcu, image);
     bench.target().load(nvm ? nvm->over(image) : image);
@@ -197,7 +197,7 @@ int run_exec(const ExecOptions& options) {
     bench.finish();
     if (nvm) nvm->save(bench.chip().memory());
     outcome.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-    outcome.pc = bench.chip().pc();
+    outcome.pc = bench.target().pc();
     outcome.symbol = symbol_at(image, outcome.pc);
     outcome.stopped = outcome.end == Bench::End::Interrupted ? "interrupted" : "budget";
     if (outcome.end == Bench::End::Address)
@@ -207,7 +207,7 @@ int run_exec(const ExecOptions& options) {
     outcome.success = !stuck && (outcome.end == Bench::End::Address ||
                                  (outcome.end == Bench::End::Time && options.stop_at.empty()));
     if (options.strict && outcome.success) {
-        const std::vector<std::string> warnings = board::chip_warnings(bench.chip());
+        const std::vector<std::string> warnings = bench.target().warnings();
         outcome.success = warnings.empty();
         if (!warnings.empty()) outcome.failure = "with --strict a warning is a failure: " + warnings.front();
     }

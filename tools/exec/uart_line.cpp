@@ -41,7 +41,7 @@ void UartLine::deliver() {
     frame.data = end_->take();
     free_ = start + kBitsOfFrame * frame.bit_period;
     ++to_chip_;
-    const bool heard = target_.chip().uart_enabled(unit_);
+    const bool heard = target_.uart_enabled(unit_);
     log(start, "rx", frame.data, heard ? "" : "receiver off");
     target_.uart_receive(unit_, frame);
 }
@@ -68,14 +68,13 @@ void UartLine::poll(cosim::Time now) {
 }
 
 void UartLine::watch_receiver(cosim::Time now) {
-    const dspic::Chip& chip = target_.chip();
-    const std::size_t resets = chip.report().resets.size();
-    if (!chip.uart_enabled(unit_))
+    const std::size_t resets = target_.resets();
+    if (!target_.uart_enabled(unit_))
         listening_since_ = cosim::kNever;
     else if (listening_since_ == cosim::kNever || resets != resets_)
         listening_since_ = now;
     resets_ = resets;
-    const dspic::UartCounters counters = chip.uart_counters(unit_);
+    const dspic::UartCounters counters = target_.uart_counters(unit_);
     for (auto n = counters_.framing_errors; n < counters.framing_errors; ++n)
         log(now, "rx", -1, "framing");
     for (auto n = counters_.parity_errors; n < counters.parity_errors; ++n)

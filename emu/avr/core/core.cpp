@@ -122,6 +122,9 @@ Cycle Core::cycle() const {
 const Cycle& Core::now() const {
     return machine_->now;
 }
+void Core::set_now(Cycle now) {
+    machine_->now = now;
+}
 std::uint16_t Core::pc() const {
     return machine_->pc_of(machine_->current);
 }

@@ -82,6 +82,8 @@ class Core {
     /// When the register access in progress happens, or the event in progress is due: what peripherals call
     /// now.
     const Cycle& now() const;
+    /// What is handed in from outside a run happens at this cycle.
+    void set_now(Cycle now);
     std::uint16_t pc() const;            ///< of the next instruction; inside hooks: of the present one
     std::uint64_t instructions() const;  ///< executed since power-up
     const DeviceInfo& device() const;

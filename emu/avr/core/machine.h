@@ -72,6 +72,14 @@ struct Machine {
     bool may_interrupt() const { return (sreg & sreg::I) && irq.any(); }
 };
 
+/// Every event due by `horizon`, each at its own `now`.
+inline void serve_events(Machine& m, Cycle horizon) {
+    while (m.events.next() <= horizon) {
+        m.now = m.events.next();
+        m.events.service(m.now);
+    }
+}
+
 // decode.cpp
 const Op* decode_now(Machine& m, const Op* op);
 void decode(Machine& m, Op& op);

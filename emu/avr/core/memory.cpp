@@ -16,7 +16,7 @@ constexpr std::uint16_t kGeneralPurposeIo[] = {0x3E, 0x4A, 0x4B};
 void begin_access(Machine& m, const Op* op) {
     m.current = op;
     const Cycle access = m.cycle + op->cycles - 1;
-    if (m.events.next() <= access) m.events.service(access);
+    serve_events(m, access);
     m.now = access;
 }
 void end_access(Machine& m) {

@@ -76,7 +76,7 @@ Core::Outcome run_until(Machine& m, Cycle until) {
     while (true) {
         if (m.reset_request) perform_reset(m, *m.reset_request);
         if (m.events.next() <= m.cycle && m.events.next() < until) {
-            m.events.service(std::min(m.cycle, until - 1));
+            serve_events(m, std::min(m.cycle, until - 1));
             if (m.reset_request) continue;
         }
         if (m.end_requested || m.cycle >= until) return Core::Outcome::Until;

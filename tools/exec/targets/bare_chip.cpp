@@ -89,7 +89,9 @@ class BareChip : public DspicTarget, private dspic::Pins {
 
 std::unique_ptr<Target> make_bare_chip(std::string_view mcu, const TargetOptions& options,
                                        TargetListener& listener) {
-    const dspic::DeviceInfo* device = dspic::find_device(defaults_of(mcu, {}).mcu);
+    const std::string_view known = defaults_of(mcu, {}).mcu;  // throws for an unknown name
+    const dspic::DeviceInfo* device = dspic::find_device(known);
+    if (!device) return make_avr_chip(known, options, listener);
     return std::make_unique<BareChip>(*device, options, listener);
 }
 

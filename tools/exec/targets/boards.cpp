@@ -22,11 +22,13 @@ struct Row {
 };
 
 constexpr double kEpuckCrystal = 7'372'800.0, kNominalBaud = 115200, kRabBaud = 57600;
-constexpr std::string_view k30F = "dspic30f6014a", k33F = "dspic33fj256gp710";
+constexpr double kAvrCrystal = 16e6;
+constexpr std::string_view k30F = "dspic30f6014a", k33F = "dspic33fj256gp710", kAvr = "atmega1284p";
 
 constexpr std::array kRows{
     Row{k30F, nullptr, {k30F, kEpuckCrystal, kNominalBaud, pic::PicNodeOptions::kFoscXtPll8}},
     Row{k33F, nullptr, {k33F, rab::kCrystalHertz, kNominalBaud, std::nullopt}},
+    Row{kAvr, nullptr, {kAvr, kAvrCrystal, kNominalBaud, std::nullopt}},
     Row{"pic", make_pic_target, {k30F, kEpuckCrystal, kNominalBaud, pic::PicNodeOptions::kFoscXtPll8}},
     Row{"rab", make_rab_target, {k33F, rab::kCrystalHertz, kRabBaud, std::nullopt}},
 };

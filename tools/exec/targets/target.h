@@ -78,7 +78,35 @@ class Target {
     virtual std::string i2c_devices_report() const { return {}; }
     /// The run is over: logs are closed.
     virtual void finish() {}
-    virtual dspic::Chip& chip() = 0;
+    /// Of a target with a dsPIC. Throws std::logic_error elsewhere.
+    virtual dspic::Chip& chip();
+
+    // What the bench asks of any chip; without an override it is chip() that answers.
+    virtual const cosim::ClockDomain& clock() { return chip().clock(); }
+    /// How far the chip has been run.
+    virtual cosim::Time now() { return chip().now(); }
+    virtual std::uint32_t pc() { return chip().pc(); }
+    virtual void stop_at(std::uint32_t pc) { chip().stop_at(pc); }
+    /// run_until() returned early.
+    virtual bool stopped() { return chip().stopped_at().has_value(); }
+    virtual bool uart_enabled(int unit) { return chip().uart_enabled(unit); }
+    virtual dspic::UartCounters uart_counters(int unit) { return chip().uart_counters(unit); }
+    /// Resets so far, power-on included.
+    virtual std::size_t resets() { return chip().report().resets.size(); }
+    /// Reads a firmware file and checks that it fits `mcu`. Throws InputError.
+    virtual image::Image read_image(const std::string& file, std::string_view mcu);
+    /// cycles, instructions, resets and whatever else this kind of chip reports, as JSON text.
+    virtual std::string chip_json();
+    /// The same in lines for a person, warnings left out.
+    virtual std::string chip_text();
+    virtual std::vector<std::string> warnings();
+    /// What the program waits for, once it has hung in one loop; nothing for a program that runs, or a chip whose
+    /// loops nobody watches.
+    virtual std::optional<std::string> hang();
+    /// A pulse on the reset pin now.
+    virtual void reset_button() { chip().mclr(); }
+    /// `--nvm` can keep what this chip's memories hold.
+    virtual bool keeps_memory() const { return true; }
 };
 
 /// `mcu` as --mcu takes it; the chip alone, nothing connected. Throws InputError for an unknown name.
@@ -88,6 +116,8 @@ std::unique_ptr<Target> make_bare_chip(std::string_view mcu, const TargetOptions
 std::unique_ptr<Target> make_board(std::string_view board, const TargetOptions& options,
                                    TargetListener& listener);
 
+std::unique_ptr<Target> make_avr_chip(std::string_view mcu, const TargetOptions& options,
+                                      TargetListener& listener);
 std::unique_ptr<Target> make_pic_target(const TargetOptions& options, TargetListener& listener);
 std::unique_ptr<Target> make_rab_target(const TargetOptions& options, TargetListener& listener);
 

@@ -1,0 +1,363 @@
+#include "emu/avr/chip.h"
+
+#include "emu/avr/peripherals/adc.h"
+#include "emu/avr/peripherals/comparator.h"
+#include "emu/avr/peripherals/eeprom.h"
+#include "emu/avr/peripherals/external_interrupts.h"
+#include "emu/avr/peripherals/ports.h"
+#include "emu/avr/peripherals/self_programming.h"
+#include "emu/avr/peripherals/spi.h"
+#include "emu/avr/peripherals/system_control.h"
+#include "emu/avr/peripherals/timer.h"
+#include "emu/avr/peripherals/twi.h"
+#include "emu/avr/peripherals/usart.h"
+#include "emu/avr/peripherals/watchdog.h"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+namespace puckloop::avr {
+
+namespace {
+
+constexpr std::size_t kMostRecords = 1000;
+constexpr std::uint16_t kGtccr = 0x43, kPrr0 = 0x64, kPrr1 = 0x65;
+
+using P = PortLetter;
+constexpr std::array<std::uint16_t, 8> kSynchronousDividers = {0, 1, 8, 64, 256, 1024, 0, 0};
+constexpr std::array<std::uint16_t, 8> kTimer2Dividers = {0, 1, 8, 32, 64, 128, 256, 1024};
+
+const Timer::Setup kTimer0{false,
+                           0x44,
+                           0x46,
+                           0,
+                           0x47,
+                           0x48,
+                           0,
+                           {0x35, 0x6E, {18, 16, 17, -1, -1, -1, -1, -1}},
+                           kSynchronousDividers,
+                           {Pin{P::B, 3}, Pin{P::B, 4}},
+                           Pin{P::B, 0},
+                           std::nullopt,
+                           kPrr0,
+                           bit(5)};
+const Timer::Setup kTimer1{true,
+                           0x80,
+                           0x84,
+                           0x86,
+                           0x88,
+                           0x8A,
+                           0x82,
+                           {0x36, 0x6F, {15, 13, 14, -1, -1, 12, -1, -1}},
+                           kSynchronousDividers,
+                           {Pin{P::D, 5}, Pin{P::D, 4}},
+                           Pin{P::B, 1},
+                           Pin{P::D, 6},
+                           kPrr0,
+                           bit(3)};
+const Timer::Setup kTimer2{false,
+                           0xB0,
+                           0xB2,
+                           0,
+                           0xB3,
+                           0xB4,
+                           0,
+                           {0x37, 0x70, {11, 9, 10, -1, -1, -1, -1, -1}},
+                           kTimer2Dividers,
+                           {Pin{P::D, 7}, Pin{P::D, 6}},
+                           std::nullopt,
+                           std::nullopt,
+                           kPrr0,
+                           bit(6)};
+const Timer::Setup kTimer3{true,
+                           0x90,
+                           0x94,
+                           0x96,
+                           0x98,
+                           0x9A,
+                           0x92,
+                           {0x38, 0x71, {34, 32, 33, -1, -1, 31, -1, -1}},
+                           kSynchronousDividers,
+                           {Pin{P::B, 6}, Pin{P::B, 7}},
+                           Pin{P::D, 0},
+                           Pin{P::B, 5},
+                           kPrr1,
+                           bit(0)};
+constexpr Usart::Setup kUsart0{0, 0xC0, 20, Pin{P::D, 0}, Pin{P::D, 1}, bit(1)};
+constexpr Usart::Setup kUsart1{1, 0xC8, 28, Pin{P::D, 2}, Pin{P::D, 3}, bit(4)};
+
+template <class Record>
+void keep(std::vector<Record>& records, Record record) {
+    if (records.size() < kMostRecords) records.push_back(std::move(record));
+}
+
+}  // namespace
+
+struct Chip::Parts {
+    const DeviceInfo& device;
+    ChipOptions options;
+    Fuses fuses;
+    cosim::ClockDomain clock;
+    IoSpace io;
+    EventQueue events;
+    InterruptController interrupts;
+    Core core;
+    Surroundings around;
+    Prescaler synchronous, asynchronous;
+    SystemControl system;
+    Ports ports;
+    ExternalInterrupts external;
+    Timer timer0, timer1, timer2, timer3;
+    Usart usart0, usart1;
+    Twi twi;
+    Spi spi;
+    Adc adc;
+    Comparator comparator;
+    Eeprom eeprom;
+    Watchdog watchdog;
+    SelfProgramming programming;
+    std::vector<std::uint16_t> stops;
+    bool stopped = false;
+    cosim::Time now = 0;
+    ChipReport report;
+
+    Parts(const DeviceInfo& info, Pins& pins, const ChipOptions& chosen)
+        : device(info),
+          options(chosen),
+          fuses(chosen.fuses),
+          clock(chosen.oscillator_hertz, chosen.ppm),
+          core(info, described(io, info), events, interrupts),
+          around{io, events, interrupts, core.now()},
+          system(around, core, clock, fuses, chosen.oscillator_hertz),
+          ports(around, pins),
+          external(around, ports),
+          timer0(around, kTimer0, synchronous, ports),
+          timer1(around, kTimer1, synchronous, ports),
+          timer2(around, kTimer2, asynchronous, ports),
+          timer3(around, kTimer3, synchronous, ports),
+          usart0(around, kUsart0, clock, ports, pins),
+          usart1(around, kUsart1, clock, ports, pins),
+          twi(around, clock, ports, pins),
+          spi(around, pins),
+          adc(around, pins, {chosen.avcc, chosen.aref}),
+          comparator(around, pins, timer1, adc),
+          eeprom(around, core, clock, info.eeprom_bytes),
+          watchdog(around, core, clock),
+          programming(around, core, clock, fuses, system) {
+        io.hook(kGtccr, this, nullptr, &write_gtccr);
+        io.claim(0xB6);  // ASSR
+        connect_hooks();
+        connect_reports();
+    }
+    static IoSpace& described(IoSpace& space, const DeviceInfo& info) {
+        space.describe(info.registers);
+        return space;
+    }
+
+    void synchronise_timers() {
+        for (Timer* timer : {&timer0, &timer1, &timer2, &timer3})
+            timer->synchronise();
+    }
+    void connect_hooks() {
+        CoreHooks& hooks = core.hooks();
+        hooks.reset = [this](ResetCause cause) { reset(cause); };
+        hooks.reset_pc = [this] { return system.reset_pc(); };
+        hooks.vector_base = [this] { return system.vector_base(); };
+        hooks.sleep = [this] { system.sleep(); };
+        hooks.watchdog_reset = [this] { watchdog.restart(); };
+        hooks.spm = [this](std::uint32_t address, std::uint16_t word) { programming.spm(address, word); };
+        hooks.load_program = [this](std::uint32_t address, std::uint8_t& value) {
+            return programming.load(address, value);
+        };
+        system.synchronise = [this] { synchronise_timers(); };
+        ports.listen(this, [](void* owner, PortLetter, std::uint8_t, std::uint8_t, Cycle) {
+            static_cast<Parts*>(owner)->comparator.update();
+        });
+    }
+    void connect_reports() {
+        io.on_first_touch = [this](std::string_view name, std::uint16_t address, bool write) {
+            keep(report.unmodelled, {std::string(name), address, write, 2u * core.pc()});
+        };
+        core.observer().on_warning = [this](std::string_view text, std::uint16_t pc) {
+            keep(report.warnings, {std::string(text), 2u * pc});
+        };
+        core.observer().on_reset = [this](ResetCause cause, std::uint16_t pc, Cycle cycle) {
+            keep(report.resets, {cause, 2u * pc, cycle});
+        };
+    }
+
+    void reset(ResetCause cause) {
+        const std::uint8_t flags = io.raw(0x54);  // MCUSR outlives a reset
+        io.reset_values();
+        io.raw(0x54) = flags;
+        system.reset(cause);
+        ports.reset();
+        for (Timer* timer : {&timer0, &timer1, &timer2, &timer3})
+            timer->reset();
+        for (Prescaler* prescaler : {&synchronous, &asynchronous})
+            prescaler->reset(core.now(), false);
+        usart0.reset();
+        usart1.reset();
+        twi.reset();
+        spi.reset();
+        adc.reset();
+        comparator.reset();
+        eeprom.reset();
+        watchdog.reset(fuses.watchdog_always(), cause == ResetCause::Watchdog);
+        programming.reset();
+    }
+
+    // PSRSYNC, PSRASY: the prescaler starts again; with TSM it stays at 0.
+    static void write_gtccr(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t) {
+        auto& self = *static_cast<Parts*>(owner);
+        constexpr std::uint8_t kTsm = bit(7), kPsrasy = bit(1), kPsrsync = bit(0);
+        const std::uint8_t old = self.io.raw(address);
+        const bool held = value & kTsm;
+        self.synchronise_timers();
+        if ((value | old) & kPsrsync) self.synchronous.reset(self.core.now(), held && (value & kPsrsync));
+        if ((value | old) & kPsrasy) self.asynchronous.reset(self.core.now(), held && (value & kPsrasy));
+        self.io.raw(address) = held ? value & (kTsm | kPsrasy | kPsrsync) : 0;
+        self.synchronise_timers();
+    }
+
+    Usart& usart(int unit) { return unit == 0 ? usart0 : usart1; }
+    /// What is handed in from outside happens now.
+    void at_present() { core.set_now(std::max(core.now(), clock.first_cycle_at(now))); }
+};
+
+Chip::Chip(const DeviceInfo& device, Pins& pins, const ChipOptions& options)
+    : parts_(std::make_unique<Parts>(device, pins, options)) {}
+Chip::~Chip() = default;
+
+void Chip::load(const image::AvrImage& image) {
+    for (const image::ByteSegment& segment : image.flash)
+        for (std::size_t i = 0; i < segment.bytes.size(); ++i) {
+            const auto address = static_cast<std::uint32_t>(segment.address + i);
+            const std::uint16_t old = parts_->core.program(address / 2);
+            const std::uint16_t byte = segment.bytes[i];
+            parts_->core.set_program(
+                address / 2,
+                static_cast<std::uint16_t>(address & 1 ? (old & 0x00FF) | byte << 8 : (old & 0xFF00) | byte));
+        }
+    for (const image::ByteSegment& segment : image.eeprom)
+        std::copy(segment.bytes.begin(), segment.bytes.end(),
+                  parts_->eeprom.bytes().begin() + static_cast<std::ptrdiff_t>(segment.address));
+    Fuses& fuses = parts_->fuses;
+    std::uint8_t* const places[] = {&fuses.low, &fuses.high, &fuses.extended};
+    for (std::size_t i = 0; i < std::min<std::size_t>(image.fuses.size(), std::size(places)); ++i)
+        *places[i] = image.fuses[i];
+    if (image.lock_bits) fuses.lock = *image.lock_bits;
+}
+
+std::vector<std::uint8_t>& Chip::eeprom() {
+    return parts_->eeprom.bytes();
+}
+const Fuses& Chip::fuses() const {
+    return parts_->fuses;
+}
+
+void Chip::power_on() {
+    parts_->core.reset(ResetCause::PowerOn);
+}
+void Chip::external_reset() {
+    parts_->at_present();
+    parts_->core.request_reset(ResetCause::External);
+}
+
+void Chip::run_until(cosim::Time until) {
+    Parts& p = *parts_;
+    p.stopped = false;
+    while (true) {  // a change of the clock's rate ends a run early: its end is another cycle now
+        const Cycle end = p.clock.first_cycle_at(until);
+        const Core::Outcome outcome = p.core.run(end);
+        if (outcome == Core::Outcome::Stopped) {
+            p.stopped = true;
+            p.now = std::min(until, p.clock.time_of(p.core.cycle()));
+            return;
+        }
+        if (p.core.cycle() >= p.clock.first_cycle_at(until)) break;
+    }
+    p.now = until;
+}
+
+void Chip::stop_at(std::uint32_t pc) {
+    parts_->stops.push_back(static_cast<std::uint16_t>(pc / 2));
+    parts_->core.set_stops(parts_->stops);
+}
+std::optional<std::uint32_t> Chip::stopped_at() const {
+    if (!parts_->stopped) return std::nullopt;
+    return pc();
+}
+
+void Chip::uart_receive(int unit, const cosim::UartFrame& frame) {
+    parts_->at_present();
+    parts_->usart(unit).receive(frame, parts_->core.now());
+}
+void Chip::twi_answer(const cosim::I2cPhase& phase) {
+    parts_->at_present();
+    parts_->twi.answer(phase);
+}
+void Chip::twi_slave_phase(const cosim::I2cPhase& phase) {
+    parts_->at_present();
+    parts_->twi.slave_phase(phase);
+}
+void Chip::pins_changed(PortLetter port) {
+    parts_->at_present();
+    parts_->ports.pins_changed(port);
+    parts_->comparator.update();
+}
+std::uint8_t Chip::spi_slave_exchange(std::uint8_t received) {
+    parts_->at_present();
+    return parts_->spi.slave_exchange(received);
+}
+
+std::optional<cosim::Time> Chip::uart_begun(int unit) const {
+    const auto frame = parts_->usart(unit).begun();
+    if (!frame) return std::nullopt;
+    return frame->start;
+}
+const dspic::UartCounters& Chip::uart_counters(int unit) const {
+    return parts_->usart(unit).counters();
+}
+bool Chip::uart_listens(int unit) const {
+    return parts_->usart(unit).receiving();
+}
+bool Chip::pin_level(Pin pin) const {
+    return parts_->ports.level(pin);
+}
+
+const cosim::ClockDomain& Chip::clock() const {
+    return parts_->clock;
+}
+cosim::Time Chip::now() const {
+    return parts_->now;
+}
+Cycle Chip::cycle() const {
+    return parts_->core.cycle();
+}
+std::uint32_t Chip::pc() const {
+    return 2u * parts_->core.pc();
+}
+bool Chip::sleeping() const {
+    return parts_->core.sleeping();
+}
+std::uint8_t Chip::peek(std::string_view register_name) const {
+    const RegisterInfo* info = parts_->io.find(register_name);
+    if (!info) throw std::out_of_range("no register " + std::string(register_name));
+    return parts_->io.raw(info->address);
+}
+std::uint8_t Chip::peek_data(std::uint16_t address) const {
+    const DeviceInfo& device = parts_->device;
+    if (address < device.ram_start || address >= device.ram_end()) throw std::out_of_range("no RAM there");
+    return parts_->core.ram()[address - device.ram_start];
+}
+
+ChipReport Chip::report() const {
+    ChipReport report = parts_->report;
+    report.instructions = parts_->core.instructions();
+    report.cycles = parts_->core.cycle();
+    return report;
+}
+
+}  // namespace puckloop::avr

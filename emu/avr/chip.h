@@ -1,0 +1,113 @@
+#pragma once
+// The ATmega1284P as a board sees it: core, registers, timetable and peripherals, wired up.
+
+#include "cosim/clock.h"
+#include "cosim/message.h"
+#include "cosim/time.h"
+#include "emu/avr/core/core.h"
+#include "emu/avr/fuses.h"
+#include "emu/avr/pins.h"
+#include "emu/dspic/uart_counters.h"
+#include "emu/image/avr_image.h"
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace puckloop::avr {
+
+struct ChipOptions {
+    double oscillator_hertz = 16e6;  ///< of the crystal or resonator
+    double ppm = 0.0;                ///< its error, + is fast
+    /// In force where the image brings none: full-swing crystal, no division, reset at 0.
+    Fuses fuses{0xFF, 0x99, 0xFD, 0xFF};
+    double avcc = 5.0, aref = 5.0;  ///< volts
+};
+
+struct ResetRecord {
+    ResetCause cause{};
+    std::uint32_t pc = 0;  ///< byte address
+    Cycle cycle = 0;
+};
+struct UnmodelledTouch {
+    std::string name;  ///< data-sheet name; empty for an address without a register
+    std::uint16_t address = 0;
+    bool write = false;
+    std::uint32_t pc = 0;
+};
+struct ChipWarning {
+    std::string text;
+    std::uint32_t pc = 0;
+};
+struct ChipReport {
+    std::vector<ResetRecord> resets;          ///< the first 1000, power-on included
+    std::vector<UnmodelledTouch> unmodelled;  ///< first touch of each register
+    std::vector<ChipWarning> warnings;
+    std::uint64_t instructions = 0;
+    Cycle cycles = 0;
+};
+
+/// Use: construct, load, power_on(), then run_until() in rising steps, handing in what arrives in between.
+class Chip {
+  public:
+    Chip(const DeviceInfo& device, Pins& pins, const ChipOptions& options = {});
+    ~Chip();
+    Chip(const Chip&) = delete;
+    Chip& operator=(const Chip&) = delete;
+
+    /// Flash, EEPROM, fuses and lock bits of an image. The image was checked against the device.
+    void load(const image::AvrImage& image);
+    std::vector<std::uint8_t>& eeprom();
+    const Fuses& fuses() const;
+
+    void power_on();
+    /// A pulse on the reset pin now.
+    void external_reset();
+
+    /// Runs everything that starts strictly before `until`. Returns early only at a stop address.
+    void run_until(cosim::Time until);
+    /// Ends run_until() before the instruction at byte address `pc` runs.
+    void stop_at(std::uint32_t pc);
+    /// The stop address at which run_until() returned early, until it is called again.
+    std::optional<std::uint32_t> stopped_at() const;
+
+    /// A character whose stop bit begins now arrives at USART `unit` (0 or 1).
+    void uart_receive(int unit, const cosim::UartFrame& frame);
+    /// The bus's answer (Acknowledge, Data or BusLost) to the last phase of the two-wire interface; its ninth
+    /// clock ends now.
+    void twi_answer(const cosim::I2cPhase& phase);
+    /// A phase that a bus master begins now; see Pins::twi_slave_answer().
+    void twi_slave_phase(const cosim::I2cPhase& phase);
+    /// Levels that Pins::levels() reports for this port, or analog inputs of the comparator, changed now.
+    void pins_changed(PortLetter port);
+    /// A master elsewhere clocked a byte into the SPI slave; returns what came out.
+    std::uint8_t spi_slave_exchange(std::uint8_t received);
+
+    /// Start of the frame that USART `unit` is shifting out and has not yet handed to Pins::uart_sent().
+    std::optional<cosim::Time> uart_begun(int unit) const;
+    const dspic::UartCounters& uart_counters(int unit) const;
+    /// RXENn: the receiver of `unit` listens.
+    bool uart_listens(int unit) const;
+    bool pin_level(Pin pin) const;
+
+    const cosim::ClockDomain& clock() const;
+    /// How far the chip has been run: the last `until`, or the start of the instruction at a stop address.
+    cosim::Time now() const;
+    Cycle cycle() const;
+    std::uint32_t pc() const;  ///< byte address
+    bool sleeping() const;
+    /// A register's stored value by data-sheet name. Throws std::out_of_range if there is none.
+    std::uint8_t peek(std::string_view register_name) const;
+    /// A byte of RAM. Throws std::out_of_range elsewhere.
+    std::uint8_t peek_data(std::uint16_t address) const;
+    ChipReport report() const;
+
+  private:
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace puckloop::avr

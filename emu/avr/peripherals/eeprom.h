@@ -1,0 +1,55 @@
+#pragma once
+// The data EEPROM behind EEAR, EEDR and EECR. Source: data sheet 8272, "EEPROM Data Memory".
+//
+// Deviations
+//  1. Programming takes the data sheet's typical times, whatever the oscillator and the temperature.
+
+#include "cosim/clock.h"
+#include "emu/avr/core/core.h"
+#include "emu/avr/peripherals/surroundings.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace puckloop::avr {
+
+class Eeprom {
+  public:
+    Eeprom(const Surroundings& around, Core& core, const cosim::ClockDomain& clock, std::size_t bytes);
+
+    void reset();
+    std::vector<std::uint8_t>& bytes() { return bytes_; }
+    bool busy() const { return around_.now < state_.busy_until; }
+
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(state_);
+        archive.fixed(bytes_);
+    }
+
+  private:
+    struct State {
+        Cycle armed_until = 0;  ///< EEMPE is set up to here
+        Cycle busy_until = 0;   ///< EEPE
+
+        template <class Archive>
+        void state(Archive& archive) {
+            archive(armed_until, busy_until);
+        }
+    };
+    std::size_t address() const;
+    void program();
+    void update_request(Cycle now);
+    static std::uint8_t read_control(void* owner, std::uint16_t address);
+    static void write_control(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);
+    static void due(void* owner, Cycle cycle);
+
+    Surroundings around_;
+    Core& core_;
+    const cosim::ClockDomain& clock_;
+    std::vector<std::uint8_t> bytes_;
+    State state_;
+    EventQueue::Slot slot_;
+};
+
+}  // namespace puckloop::avr

@@ -1,0 +1,101 @@
+#include "emu/avr/peripherals/ports.h"
+
+namespace puckloop::avr {
+
+namespace {
+constexpr std::uint16_t kMcucr = 0x55, kDidr0 = 0x7E, kDidr1 = 0x7F;
+constexpr std::uint8_t kPud = bit(4);
+constexpr PortLetter kAll[] = {PortLetter::A, PortLetter::B, PortLetter::C, PortLetter::D};
+}  // namespace
+
+Ports::Ports(const Surroundings& around, Pins& pins) : around_(around), pins_(pins) {
+    for (std::uint16_t i = 0; i < kPorts; ++i) {
+        const auto base = static_cast<std::uint16_t>(kFirst + 3 * i);
+        around_.io.hook(base, this, &read_pin, &write_pin);
+        around_.io.hook(static_cast<std::uint16_t>(base + kDdr), this, nullptr, &write_output);
+        around_.io.hook(static_cast<std::uint16_t>(base + kOutput), this, nullptr, &write_output);
+    }
+    around_.io.claim(kDidr0);
+    around_.io.claim(kDidr1);
+}
+
+void Ports::reset() {
+    for (const PortLetter port : kAll) {
+        Port& p = state_[index(port)];
+        p.value_mask = p.direction_mask = 0;
+        drive(port);
+    }
+}
+
+// The drivers follow the registers and the overrides; then the levels follow the drivers.
+void Ports::drive(PortLetter port) {
+    Port& p = state_[index(port)];
+    const std::uint8_t driven = merged(pin_register(port, kDdr), p.directions, p.direction_mask);
+    const auto levels =
+        static_cast<std::uint8_t>(merged(pin_register(port, kOutput), p.values, p.value_mask) & driven);
+    if (driven != p.shown_driven || levels != p.shown_levels) {
+        p.shown_driven = driven;
+        p.shown_levels = levels;
+        pins_.driven(port, levels, driven, around_.now);
+    }
+    pins_changed(port);
+}
+
+void Ports::pins_changed(PortLetter port) {
+    Port& p = state_[index(port)];
+    const bool disabled = around_.io.raw(kMcucr) & kPud;
+    const auto pull_ups =
+        static_cast<std::uint8_t>(disabled ? 0 : pin_register(port, kOutput) & ~p.shown_driven);
+    const std::uint8_t now =
+        merged(pins_.levels(port, pull_ups, around_.now), p.shown_levels, p.shown_driven);
+    if (now == p.levels) return;
+    p.before = p.levels;
+    p.changed = around_.now;
+    p.levels = now;
+    for (const Heard& heard : listeners_)
+        heard.call(heard.owner, port, p.before, now, around_.now);
+}
+
+void Ports::override_value(Pin pin, bool level) {
+    Port& p = state_[index(pin.port)];
+    p.value_mask |= pin.mask();
+    assign(p.values, pin.mask(), level);
+    drive(pin.port);
+}
+void Ports::override_direction(Pin pin, bool output) {
+    Port& p = state_[index(pin.port)];
+    p.direction_mask |= pin.mask();
+    assign(p.directions, pin.mask(), output);
+    drive(pin.port);
+}
+void Ports::release_value(Pin pin) {
+    assign(state_[index(pin.port)].value_mask, pin.mask(), false);
+    drive(pin.port);
+}
+void Ports::release_direction(Pin pin) {
+    assign(state_[index(pin.port)].direction_mask, pin.mask(), false);
+    drive(pin.port);
+}
+
+// The synchroniser: an IN right behind the OUT still reads the old level.
+std::uint8_t Ports::read_pin(void* owner, std::uint16_t address) {
+    const auto& self = *static_cast<Ports*>(owner);
+    const Port& p = self.state_[(address - kFirst) / 3u];
+    return p.changed != 0 && self.around_.now <= p.changed + 1 ? p.before : p.levels;
+}
+
+// Writing a one to PINxn toggles PORTxn.
+void Ports::write_pin(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask) {
+    auto& self = *static_cast<Ports*>(owner);
+    const auto port = static_cast<PortLetter>((address - kFirst) / 3);
+    self.pin_register(port, kOutput) ^= value & mask;
+    self.drive(port);
+}
+
+void Ports::write_output(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask) {
+    auto& self = *static_cast<Ports*>(owner);
+    self.around_.io.store(address, value, mask);
+    self.drive(static_cast<PortLetter>((address - kFirst) / 3));
+}
+
+}  // namespace puckloop::avr

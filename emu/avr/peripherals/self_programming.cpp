@@ -1,0 +1,139 @@
+#include "emu/avr/peripherals/self_programming.h"
+
+#include <algorithm>
+
+namespace puckloop::avr {
+
+namespace {
+constexpr int kVector = 27;
+constexpr std::uint16_t kSpmcsr = 0x57, kOsccal = 0x66;
+constexpr std::uint8_t kSpmie = bit(7), kRwwsb = bit(6), kSigrd = bit(5), kRwwsre = bit(4), kBlbset = bit(3),
+                       kPgwrt = bit(2), kPgers = bit(1), kSpmen = bit(0);
+constexpr std::uint8_t kCommand = kSigrd | kRwwsre | kBlbset | kPgwrt | kPgers | kSpmen;
+constexpr std::uint16_t kErased = 0xFFFF;
+constexpr Cycle kArmed = 4;
+constexpr double kPageSeconds = 3.7e-3;
+constexpr std::uint32_t kNoReadWhileWriteWords = 4096;  ///< at the end of the flash
+}  // namespace
+
+SelfProgramming::SelfProgramming(const Surroundings& around, Core& core, const cosim::ClockDomain& clock,
+                                 Fuses& fuses, const SystemControl& system)
+    : around_(around),
+      core_(core),
+      clock_(clock),
+      fuses_(fuses),
+      system_(system),
+      buffer_(core.device().page_words, kErased),
+      slot_(around.events.add(this, &due)) {
+    around_.io.hook(kSpmcsr, this, &read_control, &write_control);
+    around_.interrupts.connect(kVector, this, nullptr);
+}
+
+void SelfProgramming::reset() {
+    std::fill(buffer_.begin(), buffer_.end(), kErased);
+    armed_until_ = 0;
+    busy_ = false;
+    around_.events.cancel(slot_);
+}
+
+bool SelfProgramming::in_rww(std::uint32_t word) const {
+    return word < core_.device().flash_words - kNoReadWhileWriteWords;
+}
+
+// SPM_READY requests while no operation is under way.
+void SelfProgramming::update_request() {
+    around_.interrupts.request(kVector, (control() & kSpmie) && !busy_ && around_.now >= armed_until_);
+}
+
+// The command bits read back until the SPM, four clocks at most, or until the operation is over.
+std::uint8_t SelfProgramming::read_control(void* owner, std::uint16_t) {
+    const auto& self = *static_cast<SelfProgramming*>(owner);
+    std::uint8_t value = self.control();
+    if (!self.busy_ && self.around_.now >= self.armed_until_) value &= static_cast<std::uint8_t>(~kCommand);
+    return value;
+}
+
+void SelfProgramming::write_control(void* owner, std::uint16_t, std::uint8_t value, std::uint8_t) {
+    auto& self = *static_cast<SelfProgramming*>(owner);
+    if (self.busy_) {
+        self.control() = merged(self.control(), value, kSpmie);
+    } else {
+        self.control() = static_cast<std::uint8_t>((self.control() & kRwwsb) | (value & (kCommand | kSpmie)));
+        if (value & kSpmen) self.armed_until_ = self.around_.now + 1 + kArmed;
+    }
+    self.update_request();
+}
+
+void SelfProgramming::begin(std::uint32_t word) {
+    busy_ = true;
+    const Cycle end = around_.now + static_cast<Cycle>(kPageSeconds * clock_.hertz());
+    around_.events.schedule(slot_, end);
+    if (in_rww(word))
+        control() |= kRwwsb;
+    else
+        core_.stall_until(end);
+}
+
+// Only the boot section's SPM does anything.
+void SelfProgramming::spm(std::uint32_t address, std::uint16_t word) {
+    const bool armed = around_.now < armed_until_;
+    armed_until_ = 0;
+    if (!armed || busy_ || core_.pc() < system_.boot_start()) return;
+    const std::uint32_t place = address / 2 % core_.device().flash_words;
+    const auto size = static_cast<std::uint32_t>(buffer_.size());
+    const std::uint32_t page = place - place % size;
+    const std::uint8_t command = control() & (kCommand & static_cast<std::uint8_t>(~kSpmen));
+    switch (command) {
+    case 0:  // a word of the buffer can be written once
+        buffer_[place % size] &= word;
+        break;
+    case kPgers:
+        for (std::uint32_t i = 0; i < size; ++i)
+            core_.set_program(page + i, kErased);
+        begin(page);
+        break;
+    case kPgwrt:
+        for (std::uint32_t i = 0; i < size; ++i)
+            core_.set_program(page + i, core_.program(page + i) & buffer_[i]);
+        std::fill(buffer_.begin(), buffer_.end(), kErased);
+        begin(page);
+        break;
+    case kRwwsre:
+        control() &= static_cast<std::uint8_t>(~kRwwsb);
+        std::fill(buffer_.begin(), buffer_.end(), kErased);
+        break;
+    case kBlbset:
+        fuses_.lock &= static_cast<std::uint8_t>(word | 0xC3);  // BLB bits only, and only downward
+        break;
+    default:
+        break;
+    }
+    update_request();
+}
+
+void SelfProgramming::due(void* owner, Cycle) {
+    auto& self = *static_cast<SelfProgramming*>(owner);
+    self.busy_ = false;
+    self.control() &= static_cast<std::uint8_t>(~kCommand);
+    self.update_request();
+}
+
+bool SelfProgramming::load(std::uint32_t address, std::uint8_t& value) const {
+    if (around_.now < armed_until_ + 1 && (control() & kSpmen)) {
+        const std::uint8_t fuses[] = {fuses_.low, fuses_.lock, fuses_.extended, fuses_.high};
+        const auto& signature = core_.device().signature;
+        if ((control() & kBlbset) && address < 4) {
+            value = fuses[address];
+            return true;
+        }
+        if ((control() & kSigrd) && address < 6) {
+            value = address % 2 ? around_.io.raw(kOsccal) : signature[address / 2];
+            return true;
+        }
+    }
+    if (!(control() & kRwwsb) || !in_rww(address / 2)) return false;
+    value = 0xFF;  // the section is busy
+    return true;
+}
+
+}  // namespace puckloop::avr

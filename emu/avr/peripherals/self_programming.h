@@ -1,0 +1,56 @@
+#pragma once
+// SPM from the boot section: page buffer, page erase and write, the busy read-while-write section, lock bits,
+// and fuses and signature read through LPM. Source: data sheet 8272, "Boot Loader Support".
+//
+// Deviations
+//  1. Erasing and writing a page take 3.7 ms, the data sheet's minimum.
+//  2. Boot lock bits do not protect anything.
+
+#include "cosim/clock.h"
+#include "emu/avr/core/core.h"
+#include "emu/avr/fuses.h"
+#include "emu/avr/peripherals/system_control.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace puckloop::avr {
+
+class SelfProgramming {
+  public:
+    SelfProgramming(const Surroundings& around, Core& core, const cosim::ClockDomain& clock, Fuses& fuses,
+                    const SystemControl& system);
+
+    void reset();
+    /// SPM with Z (RAMPZ in front) and R1:R0.
+    void spm(std::uint32_t address, std::uint16_t word);
+    /// LPM: true and a value where the flash does not answer.
+    bool load(std::uint32_t address, std::uint8_t& value) const;
+
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(armed_until_, busy_);
+        archive.fixed(buffer_);
+    }
+
+  private:
+    std::uint8_t& control() const { return around_.io.raw(0x57); }
+    bool in_rww(std::uint32_t word) const;
+    void begin(std::uint32_t word);
+    void update_request();
+    static std::uint8_t read_control(void* owner, std::uint16_t address);
+    static void write_control(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);
+    static void due(void* owner, Cycle cycle);
+
+    Surroundings around_;
+    Core& core_;
+    const cosim::ClockDomain& clock_;
+    Fuses& fuses_;
+    const SystemControl& system_;
+    std::vector<std::uint16_t> buffer_;
+    Cycle armed_until_ = 0;
+    bool busy_ = false;
+    EventQueue::Slot slot_;
+};
+
+}  // namespace puckloop::avr

@@ -1,0 +1,104 @@
+#include "emu/avr/peripherals/system_control.h"
+
+#include <algorithm>
+
+namespace puckloop::avr {
+
+namespace {
+constexpr std::uint16_t kOcdr = 0x51, kSmcr = 0x53, kMcusr = 0x54, kMcucr = 0x55, kClkpr = 0x61, kPrr0 = 0x64,
+                        kPrr1 = 0x65, kOsccal = 0x66;
+constexpr std::uint8_t kSe = bit(0);                                                     // SMCR
+constexpr std::uint8_t kPorf = bit(0), kExtrf = bit(1), kBorf = bit(2), kWdrf = bit(3);  // MCUSR
+constexpr std::uint8_t kIvsel = bit(1), kIvce = bit(0);                                  // MCUCR
+constexpr std::uint8_t kClkpce = bit(7);                                                 // CLKPR
+constexpr Cycle kChangeable = 4;
+constexpr unsigned kSlowest = 8, kByEight = 3;  // CLKPS
+}  // namespace
+
+SystemControl::SystemControl(const Surroundings& around, Core& core, cosim::ClockDomain& clock,
+                             const Fuses& fuses, double oscillator_hertz)
+    : around_(around), core_(core), clock_(clock), fuses_(fuses), oscillator_hertz_(oscillator_hertz) {
+    around_.io.hook(kMcusr, this, nullptr, &write_flags);
+    around_.io.hook(kMcucr, this, nullptr, &write_mcucr);
+    around_.io.hook(kClkpr, this, nullptr, &write_prescaler);
+    around_.io.hook(kPrr0, this, nullptr, &write_power);
+    around_.io.hook(kPrr1, this, nullptr, &write_power);
+    for (const std::uint16_t address : {kSmcr, kOsccal, kOcdr})
+        around_.io.claim(address);
+}
+
+void SystemControl::reset(ResetCause cause) {
+    std::uint8_t& flags = around_.io.raw(kMcusr);
+    switch (cause) {
+    case ResetCause::PowerOn:
+        flags = kPorf;
+        break;
+    case ResetCause::External:
+        flags |= kExtrf;
+        break;
+    case ResetCause::BrownOut:
+        flags |= kBorf;
+        break;
+    case ResetCause::Watchdog:
+        flags |= kWdrf;
+        break;
+    }
+    changeable_until_ = vectors_changeable_until_ = 0;
+    set_divider(fuses_.divide_clock() ? kByEight : 0);
+}
+
+std::uint32_t SystemControl::boot_start() const {
+    return core_.device().flash_words - fuses_.boot_words();
+}
+std::uint16_t SystemControl::vector_base() const {
+    return around_.io.raw(kMcucr) & kIvsel ? static_cast<std::uint16_t>(boot_start()) : std::uint16_t{0};
+}
+std::uint16_t SystemControl::reset_pc() const {
+    return fuses_.boot_reset() ? static_cast<std::uint16_t>(boot_start()) : std::uint16_t{0};
+}
+
+void SystemControl::sleep() {
+    if (around_.io.raw(kSmcr) & kSe) core_.sleep();
+}
+
+// A zero written clears a flag, a one leaves it.
+void SystemControl::write_flags(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask) {
+    auto& self = *static_cast<SystemControl*>(owner);
+    self.around_.io.raw(address) &= static_cast<std::uint8_t>(value | ~mask);
+}
+
+// IVSEL changes within four clocks after IVCE was set.
+void SystemControl::write_mcucr(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask) {
+    auto& self = *static_cast<SystemControl*>(owner);
+    const Cycle now = self.around_.now;
+    const bool changeable = now < self.vectors_changeable_until_;
+    constexpr std::uint8_t kPlain = static_cast<std::uint8_t>(~(kIvsel | kIvce));
+    self.around_.io.store(address, value, mask & (changeable ? kPlain | kIvsel : kPlain));
+    self.vectors_changeable_until_ = value & mask & kIvce ? now + 1 + kChangeable : 0;
+}
+
+void SystemControl::set_divider(unsigned select) {
+    around_.io.raw(kClkpr) = static_cast<std::uint8_t>(select);
+    const double hertz = oscillator_hertz_ / (1u << std::min(select, kSlowest));
+    if (hertz == clock_.hertz()) return;
+    clock_.change_rate(around_.now + 1, hertz);
+    core_.end_run();
+}
+
+// CLKPS changes within four clocks after CLKPCE was written alone.
+void SystemControl::write_prescaler(void* owner, std::uint16_t, std::uint8_t value, std::uint8_t) {
+    auto& self = *static_cast<SystemControl*>(owner);
+    if (value == kClkpce)
+        self.changeable_until_ = self.around_.now + 1 + kChangeable;
+    else if (!(value & kClkpce) && self.around_.now < self.changeable_until_)
+        self.set_divider(field(value, 3, 0));
+}
+
+void SystemControl::write_power(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask) {
+    auto& self = *static_cast<SystemControl*>(owner);
+    if (self.synchronise) self.synchronise();
+    self.around_.io.store(address, value, mask);
+    if (self.synchronise) self.synchronise();
+}
+
+}  // namespace puckloop::avr

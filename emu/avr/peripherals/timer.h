@@ -1,0 +1,121 @@
+#pragma once
+// Timers 0 to 3: 8 and 16 bits, every waveform mode, double-buffered compare registers, TEMP, input capture
+// and compare outputs. Nothing ticks: the counter is computed when it is looked at, and an event is planned
+// only where a flag would interrupt, a pin would change or a buffered value takes effect. Source: data sheet
+// 8272, chapters "8-bit Timer/Counter0", "16-bit Timer/Counter1 and 3", "Timer/Counter2".
+//
+// Deviations
+//  1. Timer 2's asynchronous clock (ASSR.AS2) is not modelled: the register is stored, the timer runs from
+//  the CPU clock.
+//  2. A counter above the top of a dual-slope mode turns at once.
+//  3. An external clock edge counts in the clock in which the pin changes, not up to 3.5 clocks later.
+
+#include "emu/avr/peripherals/interrupt_flags.h"
+#include "emu/avr/peripherals/ports.h"
+#include "emu/avr/peripherals/prescaler.h"
+#include "emu/avr/peripherals/waveform.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+namespace puckloop::avr {
+
+class Timer {
+  public:
+    struct Setup {
+        bool wide = false;            ///< 16 bits
+        std::uint16_t control_a = 0;  ///< TCCRnA; TCCRnB follows
+        std::uint16_t count = 0;      ///< TCNTn(L)
+        std::uint16_t capture = 0;    ///< ICRnL; 0: none
+        std::uint16_t compare_a = 0;  ///< OCRnA(L)
+        std::uint16_t compare_b = 0;
+        std::uint16_t control_c = 0;  ///< TCCRnC of 16-bit timers, else 0: FOC bits are in TCCRnB
+        InterruptFlags::Setup interrupts;
+        std::array<std::uint16_t, 8> dividers{};  ///< by CS bits; 0: stopped or external clock
+        std::array<Pin, 2> outputs{};             ///< OCnA, OCnB
+        std::optional<Pin> clock_pin{};           ///< Tn
+        std::optional<Pin> capture_pin{};         ///< ICPn
+        std::uint16_t power = 0;                  ///< PRRn
+        std::uint8_t power_bit = 0;               ///< stops the clock
+    };
+    Timer(const Surroundings& around, const Setup& setup, Prescaler& prescaler, Ports& ports);
+
+    void reset();
+    /// Brings counter and flags up to the present clock and plans the next event: before the prescaler or the
+    /// clock changes, and behind it.
+    void synchronise();
+    /// The comparator takes the capture pin's place (ACIC).
+    void capture_edge(bool rising);
+    void use_comparator(bool on) { state_.capture_by_comparator = on; }
+
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(state_);
+    }
+
+  private:
+    struct State {
+        Counter counter;
+        Cycle at = 0;                             ///< the clock that `counter` belongs to
+        bool blocked = false;                     ///< TCNT was written: the next tick compares nothing
+        std::array<std::uint16_t, 2> compare{};   ///< in force
+        std::array<std::uint16_t, 2> buffered{};  ///< as written
+        std::uint16_t capture = 0;
+        std::uint8_t temp = 0;
+        std::array<bool, 2> output{};
+        bool capture_by_comparator = false;
+        bool capture_rising = false;  ///< the edge that waits for the noise canceler
+
+        template <class Archive>
+        void state(Archive& archive) {
+            archive(counter.count, counter.down, at, blocked, compare, buffered, capture, temp, output,
+                    capture_by_comparator, capture_rising);
+        }
+    };
+
+    std::uint8_t& reg(std::uint16_t address) const { return around_.io.raw(address); }
+    std::uint8_t control_a() const { return reg(setup_.control_a); }
+    std::uint8_t control_b() const { return reg(static_cast<std::uint16_t>(setup_.control_a + 1)); }
+    Waveform waveform() const;
+    std::uint32_t max() const { return setup_.wide ? 0xFFFF : 0xFF; }
+    std::uint32_t top() const;
+    std::uint32_t divider() const;
+    unsigned output_mode(int channel) const { return field(control_a(), 7 - 2 * channel, 6 - 2 * channel); }
+
+    void settle(Cycle now);
+    void pass(std::uint64_t ticks);
+    void plan();
+    std::uint64_t next_tick() const;
+    bool buffers_wait() const;
+    std::uint64_t until_update() const;
+    void match(int channel);
+    void bottom();
+    void set_output(int channel, bool level);
+    void connect_outputs();
+    void do_capture(Cycle now);
+    void set_compare(int channel, std::uint16_t value);
+
+    static void due(void* owner, Cycle cycle);
+    static void noise_over(void* owner, Cycle cycle);
+    static void touched(void* owner);
+    static void pins_changed(void* owner, PortLetter port, std::uint8_t before, std::uint8_t after,
+                             Cycle now);
+    static void write_control(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);
+    static void write_force(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);
+    static std::uint8_t read_value(void* owner, std::uint16_t address);
+    static void write_value(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);
+    std::uint16_t read_wide(std::uint16_t low_address);
+    void write_wide(std::uint16_t low_address, std::uint16_t value);
+
+    Surroundings around_;
+    Setup setup_;
+    Prescaler& prescaler_;
+    Ports& ports_;
+    InterruptFlags flags_;
+    State state_;
+    EventQueue::Slot slot_;
+    EventQueue::Slot noise_slot_;
+};
+
+}  // namespace puckloop::avr

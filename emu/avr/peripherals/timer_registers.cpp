@@ -1,0 +1,104 @@
+// The timers' registers: 8 bits wide on the bus, 16 bits through TEMP.
+
+#include "emu/avr/peripherals/timer.h"
+
+namespace puckloop::avr {
+
+Timer::Timer(const Surroundings& around, const Setup& setup, Prescaler& prescaler, Ports& ports)
+    : around_(around),
+      setup_(setup),
+      prescaler_(prescaler),
+      ports_(ports),
+      flags_(around, setup.interrupts, this, &touched),
+      slot_(around.events.add(this, &due)),
+      noise_slot_(around.events.add(this, &noise_over)) {
+    IoSpace& io = around_.io;
+    io.hook(setup.control_a, this, nullptr, &write_control);
+    io.hook(static_cast<std::uint16_t>(setup.control_a + 1), this, nullptr, &write_control);
+    if (setup.control_c) io.hook(setup.control_c, this, nullptr, &write_force);
+    for (const std::uint16_t low : {setup.count, setup.compare_a, setup.compare_b, setup.capture}) {
+        if (!low) continue;
+        io.hook(low, this, &read_value, &write_value);
+        if (setup.wide) io.hook(static_cast<std::uint16_t>(low + 1), this, &read_value, &write_value);
+    }
+    ports_.listen(this, &pins_changed);
+}
+
+void Timer::reset() {
+    state_ = {};
+    state_.at = around_.now;
+    around_.events.cancel(slot_);
+    around_.events.cancel(noise_slot_);
+}
+
+void Timer::write_control(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask) {
+    auto& self = *static_cast<Timer*>(owner);
+    self.settle(self.around_.now);
+    constexpr std::uint8_t kForceBits = 0xC0;  // FOCnA, FOCnB of the 8-bit timers' TCCRnB
+    const bool force = !self.setup_.wide && address != self.setup_.control_a;
+    self.around_.io.store(address, value, force ? mask & static_cast<std::uint8_t>(~kForceBits) : mask);
+    if (!self.waveform().buffered()) self.state_.compare = self.state_.buffered;
+    if (!self.waveform().dual_slope()) self.state_.counter.down = false;
+    if (force) write_force(owner, 0, value, mask);
+    self.connect_outputs();
+    self.plan();
+}
+
+// FOCnx: an immediate compare match at the pin, without a flag; reads as 0.
+void Timer::write_force(void* owner, std::uint16_t, std::uint8_t value, std::uint8_t mask) {
+    auto& self = *static_cast<Timer*>(owner);
+    if (self.waveform().buffered()) return;
+    self.settle(self.around_.now);
+    for (int channel = 0; channel < 2; ++channel)
+        if (value & mask & bit(7 - channel)) self.match(channel);
+}
+
+void Timer::set_compare(int channel, std::uint16_t value) {
+    state_.buffered[static_cast<std::size_t>(channel)] = value;
+    if (!waveform().buffered()) state_.compare = state_.buffered;
+}
+
+std::uint16_t Timer::read_wide(std::uint16_t low_address) {
+    if (low_address == setup_.count) return static_cast<std::uint16_t>(state_.counter.count);
+    if (low_address == setup_.capture) return state_.capture;
+    return state_.buffered[low_address == setup_.compare_b];
+}
+
+void Timer::write_wide(std::uint16_t low_address, std::uint16_t value) {
+    if (low_address == setup_.count) {
+        state_.counter = {value, false};
+        state_.blocked = true;
+    } else if (low_address == setup_.capture) {  // only where it is the top
+        if (waveform().top == Waveform::Top::Capture) state_.capture = value;
+    } else {
+        set_compare(low_address == setup_.compare_b, value);
+    }
+}
+
+// The low byte moves all 16 bits: reading it leaves the high byte in TEMP, writing it takes the high byte
+// from there. OCRnx is read without TEMP.
+std::uint8_t Timer::read_value(void* owner, std::uint16_t address) {
+    auto& self = *static_cast<Timer*>(owner);
+    self.synchronise();
+    if (!self.setup_.wide) return static_cast<std::uint8_t>(self.read_wide(address));
+    const auto low = static_cast<std::uint16_t>(address & ~1u);
+    const std::uint16_t value = self.read_wide(low);
+    const bool compare = low == self.setup_.compare_a || low == self.setup_.compare_b;
+    if (address != low) return compare ? static_cast<std::uint8_t>(value >> 8) : self.state_.temp;
+    if (!compare) self.state_.temp = static_cast<std::uint8_t>(value >> 8);
+    return static_cast<std::uint8_t>(value);
+}
+
+void Timer::write_value(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t) {
+    auto& self = *static_cast<Timer*>(owner);
+    self.settle(self.around_.now);
+    if (!self.setup_.wide)
+        self.write_wide(address, value);
+    else if (address & 1)
+        self.state_.temp = value;
+    else
+        self.write_wide(address, static_cast<std::uint16_t>(self.state_.temp << 8 | value));
+    self.plan();
+}
+
+}  // namespace puckloop::avr

@@ -1,0 +1,279 @@
+#include "emu/avr/peripherals/twi.h"
+
+namespace puckloop::avr {
+
+namespace {
+
+using Kind = cosim::I2cPhaseKind;
+
+constexpr int kVector = 26;
+constexpr std::uint16_t kTwbr = 0xB8, kTwsr = 0xB9, kTwar = 0xBA, kTwdr = 0xBB, kTwcr = 0xBC, kTwamr = 0xBD;
+constexpr std::uint8_t kTwint = bit(7), kTwea = bit(6), kTwsta = bit(5), kTwsto = bit(4), kTwwc = bit(3),
+                       kTwen = bit(2), kTwie = bit(0);
+constexpr std::uint8_t kTwps = 0x03, kTwgce = bit(0), kRead = bit(0);
+constexpr Pin kScl{PortLetter::C, 0}, kSda{PortLetter::C, 1};
+
+// TWSR7:3
+constexpr std::uint8_t kStarted = 0x08, kRepeated = 0x10, kIdle = 0xF8, kLost = 0x38;
+constexpr std::uint8_t kMtAddressAck = 0x18, kMtAddressNack = 0x20, kMtDataAck = 0x28, kMtDataNack = 0x30;
+constexpr std::uint8_t kMrAddressAck = 0x40, kMrAddressNack = 0x48, kMrDataAck = 0x50, kMrDataNack = 0x58;
+constexpr std::uint8_t kSrAddress = 0x60, kSrGeneral = 0x70, kSrDataAck = 0x80, kSrDataNack = 0x88,
+                       kSrGeneralAck = 0x90, kSrGeneralNack = 0x98, kSrStop = 0xA0;
+constexpr std::uint8_t kStAddress = 0xA8, kStDataAck = 0xB8, kStDataNack = 0xC0, kStLastAck = 0xC8;
+constexpr int kAnswerClocks = 8;
+
+}  // namespace
+
+Twi::Twi(const Surroundings& around, const cosim::ClockDomain& clock, Ports& ports, Pins& pins)
+    : around_(around), clock_(clock), ports_(ports), pins_(pins), slot_(around.events.add(this, &due)) {
+    around_.io.claim(kTwbr);
+    around_.io.claim(kTwar);
+    around_.io.claim(kTwamr);
+    around_.io.hook(kTwsr, this, nullptr, &write_status);
+    around_.io.hook(kTwdr, this, nullptr, &write_data);
+    around_.io.hook(kTwcr, this, nullptr, &write_control);
+    around_.interrupts.connect(kVector, this, nullptr);
+}
+
+void Twi::reset() {
+    state_ = {};
+    around_.events.cancel(slot_);
+}
+
+Cycle Twi::period() const {
+    return 16 + 2 * Cycle{around_.io.raw(kTwbr)} * (Cycle{1} << (2 * (status() & kTwps)));
+}
+
+void Twi::plan(Step step, Cycle at) {
+    state_.step = step;
+    around_.events.schedule(slot_, at);
+}
+
+void Twi::update_request() {
+    around_.interrupts.request(kVector, (control() & kTwint) && (control() & kTwie));
+}
+
+void Twi::interrupt(std::uint8_t code) {
+    status() = static_cast<std::uint8_t>((status() & kTwps) | code);
+    control() |= kTwint;
+    update_request();
+}
+
+// ---- registers
+
+void Twi::write_status(void* owner, std::uint16_t, std::uint8_t value, std::uint8_t mask) {
+    auto& self = *static_cast<Twi*>(owner);
+    self.status() = merged(self.status(), value, mask & kTwps);
+}
+
+// TWDR can only be written while TWINT is set.
+void Twi::write_data(void* owner, std::uint16_t, std::uint8_t value, std::uint8_t) {
+    auto& self = *static_cast<Twi*>(owner);
+    const bool writable = self.control() & kTwint;
+    if (writable) self.data() = value;
+    assign(self.control(), kTwwc, !writable);
+}
+
+void Twi::write_control(void* owner, std::uint16_t, std::uint8_t value, std::uint8_t) {
+    auto& self = *static_cast<Twi*>(owner);
+    const std::uint8_t old = self.control();
+    constexpr std::uint8_t kKept = kTwwc;
+    const bool cleared = value & kTwint;
+    self.control() = static_cast<std::uint8_t>((value & (kTwea | kTwsta | kTwsto | kTwen | kTwie)) |
+                                               (old & kKept) | (cleared ? 0 : old & kTwint));
+    if (cleared) assign(self.control(), kTwwc, false);
+    if ((old ^ value) & kTwen) {
+        if (value & kTwen) {
+            self.ports_.override_value(kScl, true);
+            self.ports_.override_value(kSda, true);
+        } else {  // whatever was going on is given up
+            self.ports_.release_value(kScl);
+            self.ports_.release_value(kSda);
+            if (self.state_.owner) self.begin_phase(Kind::Stop, 0, false);
+            self.reset();
+            self.status() = static_cast<std::uint8_t>((self.status() & kTwps) | kIdle);
+        }
+    }
+    self.update_request();
+    if (!(value & kTwen)) return;
+    // Clearing TWINT starts the next operation; START and STOP may also be asked for while the bus is idle.
+    if (cleared || ((value & (kTwsta | kTwsto)) && !(self.control() & kTwint))) self.go_on();
+}
+
+// ---- master
+
+void Twi::begin_phase(Kind kind, std::uint8_t byte, bool acknowledge) {
+    cosim::I2cPhase& phase = state_.phase;
+    phase = {};
+    phase.kind = kind;
+    phase.byte = byte;
+    phase.ack = acknowledge;
+    phase.start = clock_.time_of(around_.now + 1);
+    phase.clock_period = clock_.time_of(around_.now + 1 + period()) - phase.start;
+    state_.awaiting = kind != Kind::Stop;
+    pins_.twi_phase(phase);
+}
+
+void Twi::go_on() {
+    if (state_.stop_waits) {
+        state_.stop_waits = false;
+        return interrupt(kSrStop);
+    }
+    if (state_.slave) {
+        if (state_.slave_waits) begin_slave_phase();
+        return;
+    }
+    if (state_.awaiting || state_.step != Step::None) return;  // an operation is under way
+    const Cycle next = around_.now + 1;
+    if (control() & kTwsto) {
+        if (state_.owner) begin_phase(Kind::Stop, 0, false);
+        return plan(Step::StopSent, next + period());
+    }
+    if (control() & kTwsta) {
+        state_.next_status = state_.owner ? kRepeated : kStarted;
+        return plan(Step::StartSent, next + period());
+    }
+    if (!state_.owner) return;
+    switch (state_code()) {
+    case kStarted:
+    case kRepeated:
+        return begin_phase(Kind::Start, data(), false);
+    case kMtAddressAck:
+    case kMtAddressNack:
+    case kMtDataAck:
+    case kMtDataNack:
+        return begin_phase(Kind::Write, data(), false);
+    case kMrAddressAck:
+    case kMrDataAck:
+        return begin_phase(Kind::Read, 0, control() & kTwea);
+    default:
+        return;
+    }
+}
+
+void Twi::answer(const cosim::I2cPhase& phase) {
+    if (!state_.awaiting) return;
+    state_.awaiting = false;
+    const bool reads = state_.phase.byte & kRead;
+    switch (state_.phase.kind) {
+    case Kind::Start:
+        state_.next_status = reads ? (phase.ack ? kMrAddressAck : kMrAddressNack)
+                                   : (phase.ack ? kMtAddressAck : kMtAddressNack);
+        break;
+    case Kind::Write:
+        state_.next_status = phase.ack ? kMtDataAck : kMtDataNack;
+        break;
+    default:
+        state_.next_status = state_.phase.ack ? kMrDataAck : kMrDataNack;
+        data() = phase.byte;
+        break;
+    }
+    if (phase.kind == Kind::BusLost) state_.next_status = kLost;
+    if (state_.next_status == kLost) state_.owner = false;
+    interrupt(state_.next_status);
+}
+
+void Twi::due(void* owner, Cycle cycle) {
+    auto& self = *static_cast<Twi*>(owner);
+    State& st = self.state_;
+    const Step step = st.step;
+    st.step = Step::None;
+    switch (step) {
+    case Step::StartSent:
+        st.owner = true;
+        self.interrupt(st.next_status);
+        break;
+    case Step::StopSent:
+        st.owner = false;
+        assign(self.control(), kTwsto, false);
+        self.status() = static_cast<std::uint8_t>((self.status() & kTwps) | kIdle);
+        if (self.control() & kTwsta) {
+            st.next_status = kStarted;
+            self.plan(Step::StartSent, cycle + self.period());
+        }
+        break;
+    case Step::SlaveAnswer:
+        self.finish_slave_phase(cycle);
+        break;
+    case Step::SlavePhaseOver:
+        self.interrupt(st.next_status);
+        break;
+    case Step::None:
+        break;
+    }
+}
+
+// ---- slave
+
+bool Twi::addressed(std::uint8_t address_byte, bool& general_call) const {
+    if (!(control() & kTwen) || !(control() & kTwea)) return false;
+    const std::uint8_t own = around_.io.raw(kTwar), ignored = around_.io.raw(kTwamr);
+    general_call = address_byte == 0 && (own & kTwgce);
+    return general_call || (((address_byte ^ own) & 0xFE & ~ignored) == 0);
+}
+
+Cycle Twi::slave_clocks(int clocks) const {
+    const cosim::Time span = static_cast<cosim::Time>(clocks) * state_.phase.clock_period;
+    return clock_.first_cycle_at(clock_.time_of(around_.now) + span) - around_.now;
+}
+
+void Twi::slave_phase(const cosim::I2cPhase& phase) {
+    const bool was_slave = state_.slave;
+    if (phase.kind == Kind::Stop || phase.kind == Kind::Start) {
+        state_.slave = state_.slave_waits = false;
+        const bool hears_stop =
+            was_slave && state_code() < kStAddress;  // a receiver does, repeated START too
+        state_.stop_waits = hears_stop && (control() & kTwint);
+        if (hears_stop && !state_.stop_waits) interrupt(kSrStop);
+        if (phase.kind == Kind::Stop) return;
+        state_.slave = addressed(phase.byte, state_.general_call);
+    }
+    state_.phase = phase;
+    if (!state_.slave) {
+        cosim::I2cPhase nobody = phase;
+        nobody.kind = phase.kind == Kind::Read ? Kind::Data : Kind::Acknowledge;
+        nobody.byte = 0xFF;
+        nobody.ack = 0;
+        pins_.twi_slave_answer(nobody);
+        return;
+    }
+    // SCL is held low as long as TWINT is set.
+    state_.slave_waits = control() & kTwint;
+    if (!state_.slave_waits) begin_slave_phase();
+}
+
+void Twi::begin_slave_phase() {
+    state_.slave_waits = false;
+    const cosim::Time late = clock_.time_of(around_.now) - state_.phase.start;
+    state_.phase.stretch = late > 0 ? late : 0;
+    plan(Step::SlaveAnswer, around_.now + slave_clocks(kAnswerClocks));
+}
+
+void Twi::finish_slave_phase(Cycle now) {
+    cosim::I2cPhase answer = state_.phase;
+    answer.kind = Kind::Acknowledge;
+    switch (state_.phase.kind) {
+    case Kind::Start:
+        answer.ack = 1;
+        data() = state_.phase.byte;
+        state_.next_status = state_.general_call           ? kSrGeneral
+                             : (state_.phase.byte & kRead) ? kStAddress
+                                                           : kSrAddress;
+        break;
+    case Kind::Write:
+        answer.ack = control() & kTwea ? 1 : 0;
+        data() = state_.phase.byte;
+        state_.next_status = state_.general_call ? (answer.ack ? kSrGeneralAck : kSrGeneralNack)
+                                                 : (answer.ack ? kSrDataAck : kSrDataNack);
+        break;
+    default:
+        answer.kind = Kind::Data;
+        answer.byte = data();
+        state_.next_status = !state_.phase.ack ? kStDataNack : (control() & kTwea) ? kStDataAck : kStLastAck;
+        break;
+    }
+    pins_.twi_slave_answer(answer);
+    plan(Step::SlavePhaseOver, now + slave_clocks(1));
+}
+
+}  // namespace puckloop::avr

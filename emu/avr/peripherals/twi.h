@@ -1,0 +1,84 @@
+#pragma once
+// The two-wire interface as master and slave, phase by phase. Source: data sheet 8272, "2-wire Serial
+// Interface".
+//
+// Deviations
+//  1. START and STOP take one SCL period each; a repeated START too.
+//  2. Arbitration is the bus's: a lost one comes back as BusLost (status 0x38).
+//  3. A slave that loses its address match by TWEA = 0 in the middle of a transfer goes on with the transfer.
+
+#include "cosim/clock.h"
+#include "cosim/message.h"
+#include "cosim/message_state.h"
+#include "emu/avr/peripherals/ports.h"
+#include "emu/avr/peripherals/surroundings.h"
+
+#include <cstdint>
+#include <optional>
+
+namespace puckloop::avr {
+
+class Twi {
+  public:
+    Twi(const Surroundings& around, const cosim::ClockDomain& clock, Ports& ports, Pins& pins);
+
+    void reset();
+    /// The bus's answer (Acknowledge, Data or BusLost) to the last phase; its ninth clock ends now.
+    void answer(const cosim::I2cPhase& phase);
+    /// A phase that a bus master begins now: Start, Write, Read or Stop; each but Stop is answered through
+    /// Pins::twi_slave_answer(), with ack = 0 where this slave is not addressed.
+    void slave_phase(const cosim::I2cPhase& phase);
+
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(state_);
+    }
+
+  private:
+    /// What the event that is planned does.
+    enum class Step : std::uint8_t { None, StartSent, StopSent, SlaveAnswer, SlavePhaseOver };
+    struct State {
+        bool owner = false;     ///< START was sent: the bus is ours
+        bool awaiting = false;  ///< a phase of ours is to be answered
+        Step step = Step::None;
+        std::uint8_t next_status = 0xF8;
+        cosim::I2cPhase phase;  ///< ours, or the master's that addresses us
+        bool slave = false;     ///< addressed
+        bool general_call = false;
+        bool slave_waits = false;  ///< the master's phase waits for TWINT to be cleared
+        bool stop_waits = false;   ///< so does its STOP or repeated START
+
+        template <class Archive>
+        void state(Archive& archive) {
+            archive(owner, awaiting, step, next_status, phase, slave, general_call, slave_waits, stop_waits);
+        }
+    };
+    std::uint8_t& control() const { return around_.io.raw(0xBC); }
+    std::uint8_t& status() const { return around_.io.raw(0xB9); }
+    std::uint8_t& data() const { return around_.io.raw(0xBB); }
+    unsigned state_code() const { return status() & 0xF8u; }
+    Cycle period() const;
+    void plan(Step step, Cycle at);
+    void interrupt(std::uint8_t code);
+    void update_request();
+    void go_on();
+    void begin_phase(cosim::I2cPhaseKind kind, std::uint8_t byte, bool acknowledge);
+    bool addressed(std::uint8_t address_byte, bool& general_call) const;
+    void begin_slave_phase();
+    void finish_slave_phase(Cycle now);
+    Cycle slave_clocks(int clocks) const;
+
+    static void write_control(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);
+    static void write_status(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);
+    static void write_data(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);
+    static void due(void* owner, Cycle cycle);
+
+    Surroundings around_;
+    const cosim::ClockDomain& clock_;
+    Ports& ports_;
+    Pins& pins_;
+    State state_;
+    EventQueue::Slot slot_;
+};
+
+}  // namespace puckloop::avr

@@ -1,0 +1,83 @@
+#include "emu/avr/peripherals/watchdog.h"
+
+#include <algorithm>
+
+namespace puckloop::avr {
+
+namespace {
+constexpr int kVector = 8;
+constexpr std::uint16_t kWdtcsr = 0x60, kMcusr = 0x54;
+constexpr std::uint8_t kWdif = bit(7), kWdie = bit(6), kWdce = bit(4), kWde = bit(3), kWdp = 0x27;
+constexpr std::uint8_t kWdrf = bit(3);  // MCUSR
+constexpr Cycle kChangeable = 4;
+constexpr double kOscillator = 128e3;
+constexpr unsigned kShortest = 2048, kLongestSelect = 9;
+}  // namespace
+
+Watchdog::Watchdog(const Surroundings& around, Core& core, const cosim::ClockDomain& clock)
+    : around_(around), core_(core), clock_(clock), slot_(around.events.add(this, &due)) {
+    around_.io.hook(kWdtcsr, this, nullptr, &write_control);
+    around_.interrupts.connect(kVector, this, &acknowledge);
+}
+
+void Watchdog::reset(bool always_on, bool caused) {
+    always_on_ = always_on;
+    changeable_until_ = 0;
+    control() = always_on || caused ? kWde : 0;
+    plan(around_.now);
+}
+
+void Watchdog::restart() {
+    plan(around_.now + 1);
+}
+
+void Watchdog::plan(Cycle from) {
+    if (!(control() & (kWde | kWdie))) return around_.events.cancel(slot_);
+    const unsigned select = std::min(field(control(), 2, 0) | field(control(), 5, 5) << 3, kLongestSelect);
+    const double seconds = static_cast<double>(kShortest << select) / kOscillator;
+    around_.events.schedule(slot_, from + static_cast<Cycle>(seconds * clock_.hertz()));
+}
+
+void Watchdog::update_request() {
+    around_.interrupts.request(kVector, (control() & kWdif) && (control() & kWdie));
+}
+
+// With both modes on, the routine's entry leaves the reset mode: the next time-out resets.
+void Watchdog::acknowledge(void* owner, int) {
+    auto& self = *static_cast<Watchdog*>(owner);
+    assign(self.control(), kWdif, false);
+    if (self.control() & kWde) assign(self.control(), kWdie, false);
+    self.update_request();
+}
+
+void Watchdog::due(void* owner, Cycle cycle) {
+    auto& self = *static_cast<Watchdog*>(owner);
+    if (self.control() & kWdie) {
+        self.control() |= kWdif;
+        self.update_request();
+        self.plan(cycle);
+    } else {
+        self.core_.request_reset(ResetCause::Watchdog);
+    }
+}
+
+// WDE and the prescaler only change within four clocks after WDCE and WDE were written together. WDE cannot
+// be cleared while MCUSR.WDRF is set, nor with the fuse WDTON.
+void Watchdog::write_control(void* owner, std::uint16_t, std::uint8_t value, std::uint8_t mask) {
+    auto& self = *static_cast<Watchdog*>(owner);
+    const std::uint8_t old = self.control();
+    const Cycle now = self.around_.now;
+    std::uint8_t next = merged(old, value, mask & kWdie);
+    if (value & mask & kWdif) assign(next, kWdif, false);
+    if (now < self.changeable_until_)
+        next = merged(next, value, mask & (kWdp | kWde));
+    else
+        next |= value & mask & kWde;  // setting it needs no sequence
+    if (self.always_on_ || (self.around_.io.raw(kMcusr) & kWdrf)) next |= kWde;
+    if ((value & mask & kWdce) && (value & mask & kWde)) self.changeable_until_ = now + 1 + kChangeable;
+    self.control() = static_cast<std::uint8_t>(next & ~kWdce);
+    if ((old ^ self.control()) & (kWde | kWdie | kWdp)) self.plan(now + 1);
+    self.update_request();
+}
+
+}  // namespace puckloop::avr

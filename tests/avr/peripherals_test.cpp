@@ -1,0 +1,405 @@
+// Interrupts, sleep, pins, ADC, EEPROM, watchdog, SPI, two-wire interface, self-programming, fuses.
+
+#include "tests/avr/rig.h"
+
+#include <catch2/catch.hpp>
+
+using namespace puckloop;
+using namespace puckloop::avr;
+using test::Rig;
+using Kind = cosim::I2cPhaseKind;
+
+TEST_CASE("the instruction behind SEI comes before any interrupt, and one of the main program behind RETI") {
+    Rig rig(R"(
+        jmp start
+        jmp int0            ; INT0
+        .org 0x80
+int0:   in  r20, PORTA      ; what the main program reached
+        st  X+, r20
+        reti
+start:  ldi r26, 0
+        ldi r27, 1
+        ldi r16, 3          ; level-triggered by default; PD2 is low
+        ldi r16, 1
+        out EIMSK, r16
+        nop
+        sei
+        sbi PORTA, 0
+        sbi PORTA, 1
+        sbi PORTA, 2
+loop:   rjmp loop
+)");
+    rig.outside[3] = 0xFB;
+    rig.chip.pins_changed(PortLetter::D);
+    rig.run(120);
+    CHECK(rig.ram(0x100) == 0x01);
+    CHECK(rig.ram(0x101) == 0x03);
+    CHECK(rig.ram(0x102) == 0x07);
+}
+
+TEST_CASE("edges, levels and pin changes interrupt; a flag waits for its mask and is cleared by a one") {
+    Rig rig(R"(
+        ldi r16, 0x02       ; INT0 falling
+        sts EICRA, r16
+        ldi r16, 0x40
+        sts PCMSK1, r16
+loop:   rjmp loop
+)");
+    rig.run(20);
+    rig.set_pin({PortLetter::D, 2}, false);
+    CHECK(rig.chip.peek("EIFR") == 1);
+    rig.set_pin({PortLetter::D, 2}, true);
+    CHECK(rig.chip.peek("EIFR") == 1);
+    rig.set_pin({PortLetter::B, 5}, false);
+    CHECK(rig.chip.peek("PCIFR") == 0);
+    rig.set_pin({PortLetter::B, 6}, false);
+    CHECK(rig.chip.peek("PCIFR") == 2);
+}
+
+TEST_CASE("PIN reads one clock late, writing it toggles PORT") {
+    Rig rig(R"(
+        ldi r16, 0xFF
+        out DDRC, r16
+        out PORTC, r16
+        in  r17, PINC
+        in  r18, PINC
+        ldi r16, 0x0F
+        out PINC, r16
+        in  r19, PORTC
+        sts 0x100, r17
+        sts 0x101, r18
+        sts 0x102, r19
+loop:   rjmp loop
+)");
+    rig.outside[2] = 0;
+    rig.run(50);
+    CHECK(rig.ram(0x100) == 0x00);
+    CHECK(rig.ram(0x101) == 0xFF);
+    CHECK(rig.ram(0x102) == 0xF0);
+}
+
+TEST_CASE("sleep ends with an interrupt, four clocks later than an awake CPU's") {
+    Rig rig(R"(
+        jmp start
+        .org 0x20           ; WDT
+        sbi PORTA, 0
+        reti
+start:  sbi DDRA, 0
+        sbi DDRA, 1
+        ldi r16, 0x18
+        ldi r17, 0x40       ; interrupt mode, 16 ms
+        sts WDTCSR, r16
+        sts WDTCSR, r17
+        ldi r16, 1
+        out SMCR, r16
+        sei
+        sleep
+        sbi PORTA, 1
+loop:   rjmp loop
+)");
+    rig.run(1000);
+    CHECK(rig.chip.sleeping());
+    rig.run(16 * 16000 + 1000);
+    const auto woke = rig.changes({PortLetter::A, 0});
+    REQUIRE(woke.size() == 1);
+    CHECK_FALSE(rig.chip.sleeping());
+    CHECK(rig.changes({PortLetter::A, 1}).size() == 1);
+    CHECK(woke[0] >= 256000 + 8);
+    CHECK(woke[0] <= 256000 + 40);
+}
+
+TEST_CASE("the watchdog resets, says so, and stays on until its flag is cleared") {
+    Rig rig(R"(
+        in  r16, MCUSR
+        sts 0x100, r16
+        lds r17, WDTCSR
+        sts 0x101, r17
+        sbrc r16, 3
+        rjmp end
+        ldi r16, 0x18
+        ldi r17, 0x08       ; reset mode, 16 ms
+        sts WDTCSR, r16
+        sts WDTCSR, r17
+end:    rjmp end
+)");
+    rig.run(17 * 16000);
+    CHECK(rig.ram(0x100) == 0x09);  // WDRF beside PORF
+    CHECK(rig.ram(0x101) == 0x08);
+    const auto report = rig.chip.report();
+    REQUIRE(report.resets.size() == 2);
+    CHECK(report.resets[1].cause == ResetCause::Watchdog);
+    CHECK(report.resets[1].cycle == Approx(256000).margin(20));
+}
+
+TEST_CASE("the first conversion takes 25 ADC clocks, the next ones 13") {
+    Rig rig(R"(
+        sbi DDRA, 7
+        ldi r16, 0x41       ; AVCC, channel 1
+        sts ADMUX, r16
+        ldi r16, 0xC7       ; on, start, /128
+        sts ADCSRA, r16
+        sbi PINA, 7
+first:  lds r17, ADCSRA
+        sbrc r17, 6
+        rjmp first
+        sbi PINA, 7
+        lds r20, ADCL
+        lds r21, ADCH
+        sts 0x100, r20
+        sts 0x101, r21
+        sts ADCSRA, r16
+        sbi PINA, 7
+second: lds r17, ADCSRA
+        sbrc r17, 6
+        rjmp second
+        sbi PINA, 7
+loop:   rjmp loop
+)");
+    rig.volts[1] = 1.25;
+    rig.run(10000);
+    const auto edges = rig.changes({PortLetter::A, 7});
+    REQUIRE(edges.size() == 4);
+    CHECK(edges[1] - edges[0] >= 25 * 128 - 3);
+    CHECK(edges[1] - edges[0] <= 26 * 128 + 8);
+    CHECK(edges[3] - edges[2] >= 13 * 128 - 3);
+    CHECK(edges[3] - edges[2] <= 14 * 128 + 8);
+    CHECK((rig.ram(0x100) | rig.ram(0x101) << 8) == 256);
+}
+
+TEST_CASE("the EEPROM programs behind its timed sequence only, in 3.4 ms, and is read back") {
+    Rig rig(R"(
+        ldi r16, 0x23
+        out EEARL, r16
+        ldi r17, 0x5A
+        out EEDR, r17
+        sbi EECR, 1         ; not armed: nothing
+        sbi EECR, 2
+        sbi EECR, 1
+        sbi PORTA, 0
+        sbi DDRA, 0
+wait:   sbic EECR, 1
+        rjmp wait
+        cbi PORTA, 0
+        ldi r17, 0
+        out EEDR, r17
+        sbi EECR, 0
+        in  r18, EEDR
+        sts 0x100, r18
+loop:   rjmp loop
+)");
+    rig.run(100000);
+    CHECK(rig.chip.eeprom()[0x23] == 0x5A);
+    CHECK(rig.ram(0x100) == 0x5A);
+    const auto edges = rig.changes({PortLetter::A, 0});
+    REQUIRE(edges.size() == 2);
+    CHECK(edges[1] - edges[0] == Approx(3.4e-3 * 16e6).margin(20));
+}
+
+TEST_CASE("the SPI master exchanges a byte in eight of its clocks; SPIF clears by reading") {
+    Rig rig(R"(
+        ldi r16, 0x51       ; on, master, /16
+        out SPCR, r16
+        ldi r16, 0x3C
+        out SPDR, r16
+wait:   in  r17, SPSR
+        sbrs r17, 7
+        rjmp wait
+        in  r18, SPDR
+        in  r19, SPSR
+        sts 0x100, r18
+        sts 0x101, r19
+loop:   rjmp loop
+)");
+    rig.run(400);
+    REQUIRE(rig.exchanges.size() == 1);
+    CHECK(rig.exchanges[0].first == 0x3C);
+    CHECK(rig.exchanges[0].second == Approx(3 + 8 * 16).margin(2));
+    CHECK(rig.ram(0x100) == 0xC3);
+    CHECK(rig.ram(0x101) == 0);
+}
+
+TEST_CASE("the two-wire master: START, address, data, STOP with the data sheet's status codes and times") {
+    Rig rig(R"(
+        ldi r26, 0
+        ldi r27, 1
+        ldi r16, 72         ; 100 kHz
+        sts TWBR, r16
+        ldi r16, 0xA4
+        rcall go            ; START
+        ldi r17, 0xC0
+        sts TWDR, r17
+        ldi r16, 0x84
+        rcall go            ; address
+        ldi r17, 0x17
+        sts TWDR, r17
+        rcall go            ; data
+        ldi r16, 0x94
+        sts TWCR, r16       ; STOP
+stop:   lds r17, TWCR
+        sbrc r17, 4
+        rjmp stop
+        lds r17, TWSR
+        st  X+, r17
+loop:   rjmp loop
+go:     sts TWCR, r16
+wait:   lds r17, TWCR
+        sbrs r17, 7
+        rjmp wait
+        lds r17, TWSR
+        st  X+, r17
+        ret
+)");
+    const cosim::Time limit = 2 * cosim::kMillisecond;
+    std::size_t answered = 0;
+    while (rig.chip.now() < limit) {
+        rig.chip.run_until(rig.chip.now() + 10 * cosim::kMicrosecond);
+        if (rig.phases.size() == answered) continue;
+        const cosim::I2cPhase phase = rig.phases[answered++];
+        if (phase.kind == Kind::Stop) continue;
+        rig.chip.run_until(phase.start + 9 * phase.clock_period);
+        cosim::I2cPhase answer = phase;
+        answer.kind = Kind::Acknowledge;
+        answer.ack = phase.kind == Kind::Start;  // the address is acknowledged, the data byte not
+        rig.chip.twi_answer(answer);
+    }
+    REQUIRE(rig.phases.size() == 3);
+    CHECK(rig.phases[0].kind == Kind::Start);
+    CHECK(rig.phases[0].byte == 0xC0);
+    CHECK(rig.phases[0].clock_period == 10 * cosim::kMicrosecond);
+    CHECK(rig.phases[1].kind == Kind::Write);
+    CHECK(rig.phases[1].byte == 0x17);
+    CHECK(rig.phases[2].kind == Kind::Stop);
+    CHECK(rig.ram(0x100) == 0x08);
+    CHECK(rig.ram(0x101) == 0x18);
+    CHECK(rig.ram(0x102) == 0x30);
+    CHECK(rig.ram(0x103) == 0xF8);
+}
+
+TEST_CASE("the two-wire slave acknowledges its address and stretches SCL until TWINT is cleared") {
+    Rig rig(R"(
+        ldi r26, 0
+        ldi r27, 1
+        ldi r16, 0x42       ; address 0x21
+        sts TWAR, r16
+        ldi r16, 0xC4
+        sts TWCR, r16
+wait:   lds r17, TWCR
+        sbrs r17, 7
+        rjmp wait
+        lds r17, TWSR
+        st  X+, r17
+        lds r17, TWDR
+        st  X+, r17
+        ldi r18, 200
+slow:   dec r18
+        brne slow
+        sts TWCR, r16
+        rjmp wait
+)");
+    rig.run(100);
+    const auto phase = [&](Kind kind, std::uint8_t byte) {
+        cosim::I2cPhase p;
+        p.kind = kind;
+        p.byte = byte;
+        p.start = rig.chip.now();
+        p.clock_period = 10 * cosim::kMicrosecond;
+        const std::size_t before = rig.answers.size();
+        rig.chip.twi_slave_phase(p);
+        for (int i = 0; i < 1000 && kind != Kind::Stop && rig.answers.size() == before; ++i)
+            rig.chip.run_until(rig.chip.now() + cosim::kMicrosecond);
+        rig.chip.run_until(rig.chip.now() + 10 * cosim::kMicrosecond);
+    };
+    phase(Kind::Start, 0x44);  // another address
+    phase(Kind::Start, 0x42);
+    phase(Kind::Write, 0x99);
+    phase(Kind::Stop, 0);
+    rig.chip.run_until(rig.chip.now() + cosim::kMillisecond);
+    REQUIRE(rig.answers.size() == 3);
+    CHECK(rig.answers[0].ack == 0);
+    CHECK(rig.answers[1].ack == 1);
+    CHECK(rig.answers[2].ack == 1);
+    CHECK(rig.answers[2].stretch > 20 * cosim::kMicrosecond);
+    CHECK(rig.ram(0x100) == 0x60);
+    CHECK(rig.ram(0x102) == 0x80);
+    CHECK(rig.ram(0x103) == 0x99);
+    CHECK(rig.ram(0x104) == 0xA0);
+}
+
+TEST_CASE("the boot section writes a page, and reads fuses and signature") {
+    ChipOptions options;
+    options.fuses = {0xFF, 0xDE, 0xFD, 0xEF};
+    Rig rig(R"(
+        .org 0x1FC00        ; BOOTRST, 512 words
+        ldi r30, 0x00
+        ldi r31, 0x02       ; page at 0x200
+        ldi r16, 0x11
+        mov r0, r16
+        ldi r16, 0x22
+        mov r1, r16
+        ldi r16, 0x01
+        out SPMCSR, r16
+        spm                 ; a word into the buffer
+        ldi r16, 0x03
+        out SPMCSR, r16
+        spm                 ; erase
+busy:   in  r17, SPMCSR
+        sbrc r17, 0
+        rjmp busy
+        ldi r16, 0x05
+        out SPMCSR, r16
+        spm                 ; write
+more:   in  r17, SPMCSR
+        sbrc r17, 0
+        rjmp more
+        lpm r20, Z          ; the section is busy until it is enabled again
+        ldi r16, 0x11
+        out SPMCSR, r16
+        spm
+        lpm r21, Z+
+        lpm r22, Z
+        ldi r30, 3
+        ldi r31, 0
+        ldi r16, 0x09
+        out SPMCSR, r16
+        lpm r23, Z          ; high fuse
+        ldi r30, 2
+        ldi r16, 0x21
+        out SPMCSR, r16
+        lpm r24, Z          ; signature
+        sts 0x100, r20
+        sts 0x101, r21
+        sts 0x102, r22
+        sts 0x103, r23
+        sts 0x104, r24
+loop:   rjmp loop
+)",
+            options);
+    rig.run(200000);
+    CHECK(rig.ram(0x100) == 0xFF);
+    CHECK(rig.ram(0x101) == 0x11);
+    CHECK(rig.ram(0x102) == 0x22);
+    CHECK(rig.ram(0x103) == 0xDE);
+    CHECK(rig.ram(0x104) == 0x97);
+}
+
+TEST_CASE("CLKPR changes the clock behind its timed sequence") {
+    Rig rig(R"(
+        ldi r16, 0x80
+        ldi r17, 3
+        sts CLKPR, r16
+        sts CLKPR, r17
+loop:   rjmp loop
+)");
+    rig.chip.run_until(cosim::kMillisecond);
+    CHECK(rig.chip.cycle() == Approx(2000).margin(10));
+}
+
+TEST_CASE("an address without a register is reported once") {
+    Rig rig("        lds r0, 0x2C\n        lds r0, 0x2C\n        sts 0xD0, r0\nloop:   rjmp loop\n");
+    rig.run(20);
+    const auto touches = rig.chip.report().unmodelled;
+    REQUIRE(touches.size() == 2);
+    CHECK(touches[0].address == 0x2C);
+    CHECK(touches[1].write);
+    CHECK(touches[1].pc == 8);
+}
