@@ -353,6 +353,10 @@ std::uint8_t Chip::peek_data(std::uint16_t address) const {
     return parts_->core.ram()[address - device.ram_start];
 }
 
+void Chip::set_skipping(bool on) {
+    parts_->core.set_skip_idle(on);
+}
+
 ChipReport Chip::report() const {
     ChipReport report = parts_->report;
     report.instructions = parts_->core.instructions();

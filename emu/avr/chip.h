@@ -105,6 +105,9 @@ class Chip {
     std::uint8_t peek_data(std::uint16_t address) const;
     ChipReport report() const;
 
+    /// Busy-wait loops are skipped forward (default); off, every turn of them is executed.
+    void set_skipping(bool on);
+
   private:
     struct Parts;
     std::unique_ptr<Parts> parts_;

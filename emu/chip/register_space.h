@@ -79,8 +79,13 @@ class RegisterSpace {
         Word& slot = raw(address);
         slot = static_cast<Word>((slot & ~bits) | (value & bits));
     }
-    /// True where a read has no side effect: a loop that polls it may be skipped until the next event.
-    bool plain_read(std::uint16_t address) const { return at(address).read == nullptr; }
+    /// The read hook has no side effect, and its value only changes with an event or an access.
+    void mark_steady(std::uint16_t address) { at(address).steady = true; }
+    /// A loop that polls the register may be skipped until the next event.
+    bool steady_read(std::uint16_t address) const {
+        const Cell& cell = at(address);
+        return cell.behaviour == Behaviour::Modelled && (cell.read == nullptr || cell.steady);
+    }
 
     /// All registers to their power-on values, without hooks (the models reset themselves).
     void reset_values() {
@@ -104,6 +109,7 @@ class RegisterSpace {
         const Info* info = nullptr;
         Behaviour behaviour = Behaviour::Absent;
         bool reported = false;
+        bool steady = false;
     };
     Cell& at(std::uint16_t address) { return cells_[address / sizeof(Word)]; }
     const Cell& at(std::uint16_t address) const { return cells_[address / sizeof(Word)]; }

@@ -42,7 +42,8 @@ Machine::Machine(const DeviceInfo& info, IoSpace& registers, EventQueue& queue,
       events(queue),
       irq(controller),
       program(info.flash_words + kGuards, kErased),
-      code_store(info.flash_words + kGuards) {
+      code_store(info.flash_words + kGuards),
+      loops(info.flash_words) {
     for (Op& op : code_store)
         op.run = &decode_now;
     for (std::uint32_t i = info.flash_words; i < code_store.size(); ++i)
@@ -102,6 +103,10 @@ void Core::set_stops(std::span<const std::uint16_t> addresses) {
     for (const auto& list : {old, m.stops})
         for (const std::uint16_t address : list)
             forget(m, address);
+}
+
+void Core::set_skip_idle(bool on) {
+    machine_->skip_idle = on;
 }
 
 void Core::stall_until(Cycle cycle) {

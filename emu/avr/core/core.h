@@ -71,6 +71,8 @@ class Core {
     void step();
     /// Stop addresses (words); an empty list means none. They cost nothing elsewhere.
     void set_stops(std::span<const std::uint16_t> addresses);
+    /// Busy-wait loops are skipped without changing anything observable. On from the start.
+    void set_skip_idle(bool on);
     /// Keeps the CPU from executing until `cycle`; events go on.
     void stall_until(Cycle cycle);
     /// The CPU executes nothing until an interrupt that is enabled requests.

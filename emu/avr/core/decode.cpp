@@ -30,6 +30,20 @@ const Op* stop_here(Machine& m, const Op* op) {
     return op;
 }
 
+/// A backward branch: the instruction, then perhaps a leap.
+const Op* loop_back(Machine& m, const Op* op) {
+    const Op* next = kHandlers[static_cast<std::size_t>(op->form)](m, op);
+    return next <= op && m.skip_idle ? leap(m, op, next) : next;
+}
+
+/// Longer loops are no busy waits.
+constexpr std::uint32_t kLongestLoop = 64;
+
+bool leads_back(const Op& op, std::uint32_t index) {
+    const bool branch = op.form == FormId::RJMP || op.form == FormId::BRBS || op.form == FormId::BRBC;
+    return branch && op.k <= index && index - op.k < kLongestLoop;
+}
+
 /// Puts one operand's number where the handlers look for it.
 void bind(Op& op, const OperandSpec& operand, std::uint32_t field, std::uint32_t here, int width) {
     switch (operand.kind) {
@@ -77,6 +91,7 @@ void decode(Machine& m, Op& op) {
             bind(op, operand, form->field(letter, word, m.program[index + 1]), index, form->width(letter));
         }
     }
+    if (leads_back(op, index)) op.run = &loop_back;
     if (std::find(m.stops.begin(), m.stops.end(), index) != m.stops.end()) op.run = &stop_here;
 }
 
@@ -89,7 +104,14 @@ const Op* decode_now(Machine& m, const Op* op) {
     return op;
 }
 
+Handler loop_handler(FormId form) {
+    return kHandlers[static_cast<std::size_t>(form)];
+}
+
 void forget(Machine& m, std::uint32_t address) {
+    // Every loop that may hold this word.
+    const std::uint32_t last = std::min(address + kLongestLoop, m.device.flash_words);
+    std::fill(m.loops.begin() + address, m.loops.begin() + last, LoopInfo{});
     const auto forget_one = [&m](std::uint32_t index) {
         Op& op = m.code_store[index];
         op = Op{};

@@ -60,6 +60,8 @@ void write_core(void* owner, std::uint16_t address, std::uint8_t value, std::uin
 void hook_core_registers(Machine& m) {
     for (const std::uint16_t address : {kRampz, kSpl, kSph, kSreg})
         m.io.hook(address, &m, &read_core, &write_core);
+    for (const std::uint16_t address : {kRampz, kSpl, kSph, kSreg})
+        m.io.mark_steady(address);
     for (const std::uint16_t address : kGeneralPurposeIo)
         m.io.claim(address);
 }
@@ -80,6 +82,7 @@ std::uint8_t load_outside_ram(Machine& m, const Op* op, std::uint16_t address) {
         return 0;
     }
     begin_access(m, op);
+    if (!m.io.steady_read(address)) m.unsteady_read = true;
     const std::uint8_t value = m.io.read(address);
     end_access(m);
     return value;

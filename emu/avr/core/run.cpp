@@ -19,6 +19,7 @@ constexpr Cycle kWakeUp = 4;
 constexpr std::uint16_t kWordsPerVector = 2;
 
 void execute(Machine& m) {
+    m.quiet_since = m.cycle;
     const Op* op = m.current;
     do {
         const Op* next = op->run(m, op);

@@ -97,6 +97,7 @@ struct StepMachine::Parts {
             refused = fmt::format("{} {}: a peripheral's register", write ? "writes" : "reads",
                                   name.empty() ? fmt::format("0x{:02x}", address) : std::string(name));
         };
+        core.set_skip_idle(false);
         core.observer().on_warning = [this](std::string_view text, std::uint16_t) { refused = text; };
     }
     static IoSpace& described(IoSpace& space, const DeviceInfo& info) {

@@ -12,6 +12,7 @@ Ports::Ports(const Surroundings& around, Pins& pins) : around_(around), pins_(pi
     for (std::uint16_t i = 0; i < kPorts; ++i) {
         const auto base = static_cast<std::uint16_t>(kFirst + 3 * i);
         around_.io.hook(base, this, &read_pin, &write_pin);
+        around_.io.mark_steady(base);
         around_.io.hook(static_cast<std::uint16_t>(base + kDdr), this, nullptr, &write_output);
         around_.io.hook(static_cast<std::uint16_t>(base + kOutput), this, nullptr, &write_output);
     }

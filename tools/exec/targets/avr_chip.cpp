@@ -43,6 +43,7 @@ class AvrChip : public Target, private avr::Pins {
                 add({fmt::format("P{}{}", static_cast<char>('A' + port), pin), cosim::SignalDirection::Input,
                      "level", 0, 1, "level at the pin while it is an input", 1});
         levels_.fill(0xFF);
+        chip_.set_skipping(options.skip_idle);
     }
 
     std::span<const cosim::SignalInfo> signals() const override { return signals_; }
