@@ -19,13 +19,12 @@ namespace {
 constexpr const char* kEpuck = PUCKLOOP_SOURCE "/firmware/epuck/epuck.hex";
 constexpr const char* kRab = PUCKLOOP_SOURCE "/firmware/rab/rab.hex";
 
-/// The experiment file of the program: one controller, which saves to `file`. It turns on the spot, so that
-/// every sensor meets what stands beside the robot.
+/// The experiment file of the program: one controller, which saves to `saves_to`. It turns on the spot, so
+/// that every sensor meets what stands beside the robot.
 std::filesystem::path experiment(const Workbench& bench, const std::string& controller,
-                                 const std::string& file, const std::string& devices,
+                                 const std::string& saves_to, const std::string& devices,
                                  const std::string& speed) {
-    return bench.file(file + ".argos",
-                      fmt::format(R"(<?xml version="1.0" ?>
+    return bench.file(controller + ".argos", fmt::format(R"(<?xml version="1.0" ?>
 <argos-configuration>
   <framework>
     <system threads="0" />
@@ -40,7 +39,7 @@ std::filesystem::path experiment(const Workbench& bench, const std::string& cont
   </controllers>
 </argos-configuration>
 )",
-                                  controller, devices, speed, (bench.folder() / file).string()));
+                                                         controller, devices, speed, saves_to));
 }
 
 std::string one_sensor(const std::string& sensor) {
@@ -77,7 +76,8 @@ std::vector<double> saved(const std::string& xml, const std::string& element) {
 std::string calibrate(const Workbench& bench, const std::filesystem::path& calibration,
                       const std::string& controller, const std::string& world) {
     const std::string file = controller + "_sensor.xml";
-    const auto xml = experiment(bench, controller, file, one_sensor("epuck_" + controller), "4.0");
+    const auto xml = experiment(bench, controller, (bench.folder() / file).string(),
+                                one_sensor("epuck_" + controller), "4.0");
     const auto scenario =
         bench.file("calibrate.toml",
                    "[run]\nduration = \"60 s\"\n[arena]\nsize = [\"1.2 m\", \"90 cm\"]\n" + world +
@@ -169,15 +169,16 @@ TEST_CASE("ARGoS's range-and-bearing calibration ends at Ctrl-C with its gain", 
     const std::string boards =
         "<actuators><epuck_wheels/><epuck_range_and_bearing data_size=\"1\"/></actuators>"
         "<sensors><epuck_range_and_bearing data_size=\"1\" calibrated=\"false\"/></sensors>";
+    // One experiment file for both, as on robots; each works in a folder of its own.
+    const auto xml = experiment(bench, "range_and_bearing", "gain.xml", boards, "0.8");
     std::string text = "[arena]\nsize = [\"1.2 m\", \"90 cm\"]\n";
     // 20 cm from each other, as its instructions say; both have their hundred samples after some 4 s.
     for (const auto& [name, x, host, start] : {std::array{"robot0", "-10 cm", "epuck12", "200 ms"},
                                                std::array{"robot1", "10 cm", "epuck13", "213.7 ms"}}) {
-        const std::string file = std::string(name) + ".xml";
-        text += robot(name, x,
-                      program(*calibration, experiment(bench, "range_and_bearing", file, boards, "0.8"),
-                              "range_and_bearing", host, start) +
-                          "signals = [{ at = \"8 s\", send = \"INT\" }]\n");
+        text +=
+            robot(name, x,
+                  program(*calibration, xml, "range_and_bearing", host, start) +
+                      fmt::format("folder = \"{}\"\nsignals = [{{ at = \"8 s\", send = \"INT\" }}]\n", name));
         text += fmt::format("[robot.rab]\nfirmware = \"{}\"\n", kRab);
     }
     const Ended ended =
@@ -188,7 +189,7 @@ TEST_CASE("ARGoS's range-and-bearing calibration ends at Ctrl-C with its gain", 
         CHECK(bench.report("o")["nodes"][std::string(name) + ".linux"]["end"] == "exited with status 0");
         CHECK_THAT(text_of(bench.out("o") / (std::string(name) + ".linux.log")),
                    Contains("Data for range and bearing sensor acquired"));
-        const auto gain = saved(text_of(bench.folder() / (std::string(name) + ".xml")), "k_value");
+        const auto gain = saved(text_of(bench.out("o") / name / "gain.xml"), "k_value");
         REQUIRE(gain.size() == 1);
         // 20 cm over the curve's value at strengths of 1000 to 1200 counts, those of IRIDIA's table at 20 cm
         CHECK(gain[0] > 0.3);
