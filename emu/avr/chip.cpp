@@ -1,5 +1,7 @@
 #include "emu/avr/chip.h"
 
+#include "base/archive.h"
+
 #include "emu/avr/peripherals/adc.h"
 #include "emu/avr/peripherals/comparator.h"
 #include "emu/avr/peripherals/eeprom.h"
@@ -221,6 +223,37 @@ struct Chip::Parts {
         self.synchronise_timers();
     }
 
+    template <class Archive>
+    void state(Archive& archive) {
+        std::string part(device.name);
+        archive(part);
+        archive.check(part == device.name, "a state of another chip");
+        archive.part("clock", clock);
+        archive.part("registers", io);
+        archive.part("timetable", events);
+        archive.part("core", core);
+        archive.part("interrupts", interrupts);
+        archive.part("fuses", fuses);
+        archive.part("system", system);
+        archive.part("prescaler", synchronous);
+        archive.part("prescaler2", asynchronous);
+        archive.part("ports", ports);
+        archive.part("timer0", timer0);
+        archive.part("timer1", timer1);
+        archive.part("timer2", timer2);
+        archive.part("timer3", timer3);
+        archive.part("usart0", usart0);
+        archive.part("usart1", usart1);
+        archive.part("twi", twi);
+        archive.part("spi", spi);
+        archive.part("adc", adc);
+        archive.part("eeprom", eeprom);
+        archive.part("watchdog", watchdog);
+        archive.part("programming", programming);
+        archive.bounded(now, 0, cosim::kNever);
+        archive(report.resets, report.unmodelled, report.warnings);
+    }
+
     Usart& usart(int unit) { return unit == 0 ? usart0 : usart1; }
     /// What is handed in from outside happens now.
     void at_present() { core.set_now(std::max(core.now(), clock.first_cycle_at(now))); }
@@ -351,6 +384,14 @@ std::uint8_t Chip::peek_data(std::uint16_t address) const {
     const DeviceInfo& device = parts_->device;
     if (address < device.ram_start || address >= device.ram_end()) throw std::out_of_range("no RAM there");
     return parts_->core.ram()[address - device.ram_start];
+}
+
+void Chip::state(StateWriter& archive) const {
+    parts_->state(archive);
+}
+void Chip::state(StateReader& archive) {
+    parts_->state(archive);
+    parts_->stopped = false;
 }
 
 void Chip::set_skipping(bool on) {

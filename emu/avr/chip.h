@@ -17,6 +17,11 @@
 #include <string_view>
 #include <vector>
 
+namespace puckloop {
+class StateReader;
+class StateWriter;
+}  // namespace puckloop
+
 namespace puckloop::avr {
 
 struct ChipOptions {
@@ -31,16 +36,32 @@ struct ResetRecord {
     ResetCause cause{};
     std::uint32_t pc = 0;  ///< byte address
     Cycle cycle = 0;
+
+    template <class Archive>
+    void state(Archive& archive) {
+        archive.bounded(cause, ResetCause::PowerOn, ResetCause::Watchdog);
+        archive(pc, cycle);
+    }
 };
 struct UnmodelledTouch {
     std::string name;  ///< data-sheet name; empty for an address without a register
     std::uint16_t address = 0;
     bool write = false;
     std::uint32_t pc = 0;
+
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(name, address, write, pc);
+    }
 };
 struct ChipWarning {
     std::string text;
     std::uint32_t pc = 0;
+
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(text, pc);
+    }
 };
 struct ChipReport {
     std::vector<ResetRecord> resets;          ///< the first 1000, power-on included
@@ -104,6 +125,11 @@ class Chip {
     /// A byte of RAM. Throws std::out_of_range elsewhere.
     std::uint8_t peek_data(std::uint16_t address) const;
     ChipReport report() const;
+
+    /// Everything that time changes, of a chip of the same device and options (base/archive.h). Throws
+    /// StateError.
+    void state(StateWriter& archive) const;
+    void state(StateReader& archive);
 
     /// Busy-wait loops are skipped forward (default); off, every turn of them is executed.
     void set_skipping(bool on);

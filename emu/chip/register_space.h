@@ -92,6 +92,13 @@ class RegisterSpace {
         for (std::size_t i = 0; i < kWords; ++i)
             values_[i] = cells_[i].info ? cells_[i].info->reset : Word{0};
     }
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(values_);
+        for (Cell& cell : cells_)
+            archive(cell.reported);
+    }
+
     const Info* info(std::uint16_t address) const { return at(address).info; }
     /// By data-sheet name; null if the device has no such register.
     const Info* find(std::string_view name) const {

@@ -14,6 +14,11 @@
 #include <span>
 #include <string_view>
 
+namespace puckloop {
+class StateReader;
+class StateWriter;
+}  // namespace puckloop
+
 namespace puckloop::avr {
 
 enum class ResetCause : std::uint8_t { PowerOn, External, BrownOut, Watchdog };
@@ -97,6 +102,10 @@ class Core {
     void write_data(std::uint16_t address, std::uint8_t value);
     /// RAM from device().ram_start on.
     std::span<std::uint8_t> ram();
+
+    /// Everything but stop addresses, hooks and observers.
+    void state(StateWriter& archive) const;
+    void state(StateReader& archive);
 
     CoreObserver& observer();
     CoreHooks& hooks();

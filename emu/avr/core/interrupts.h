@@ -41,6 +41,11 @@ class InterruptController {
     }
     void reset() { requests_ = 0; }
 
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(requests_);
+    }
+
   private:
     struct Source {
         void* owner = nullptr;

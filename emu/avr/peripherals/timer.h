@@ -69,7 +69,8 @@ class Timer {
 
         template <class Archive>
         void state(Archive& archive) {
-            archive(counter.count, counter.down, at, blocked, compare, buffered, capture, temp, output,
+            archive.bounded(counter.count, 0, 0xFFFF);
+            archive(counter.down, at, blocked, compare, buffered, capture, temp, output,
                     capture_by_comparator, capture_rising);
         }
     };

@@ -50,7 +50,8 @@ class Twi {
 
         template <class Archive>
         void state(Archive& archive) {
-            archive(owner, awaiting, step, next_status, phase, slave, general_call, slave_waits, stop_waits);
+            archive.bounded(step, Step::None, Step::SlavePhaseOver);
+            archive(owner, awaiting, next_status, phase, slave, general_call, slave_waits, stop_waits);
         }
     };
     std::uint8_t& control() const { return around_.io.raw(0xBC); }

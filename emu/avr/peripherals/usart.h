@@ -45,6 +45,8 @@ class Usart {
     template <class Archive>
     void state(Archive& archive) {
         archive(state_, counters_, receiver_);
+        archive.check(!state_.shifting || state_.frame.bit_period > 0, "a frame without a bit period");
+        archive.check(state_.fifo.size() <= 3, "more characters than a USART holds");
     }
 
   private:
