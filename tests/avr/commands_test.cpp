@@ -1,0 +1,138 @@
+// asm, disasm, step and exec with --mcu atmega1284p, from the outside.
+
+#include "tests/tools/shell.h"
+
+#include <catch2/catch.hpp>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+using Catch::Contains;
+using puckloop::tests::Result;
+using puckloop::tests::run_puckloop;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+class Folder {
+  public:
+    Folder() { fs::create_directories(path_); }
+    ~Folder() { fs::remove_all(path_); }
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
+    std::string file(const std::string& name, const std::string& content = "") const {
+        if (!content.empty()) std::ofstream(path_ / name, std::ios::binary) << content;
+        return (path_ / name).string();
+    }
+
+  private:
+    fs::path path_ = fs::temp_directory_path() / ("puckloop_avr_commands." + std::to_string(::getpid()));
+};
+
+std::string content_of(const std::string& path) {
+    std::ifstream stream(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+/// Echoes what arrives on USART0, plus one.
+const std::string kEcho = R"(
+        ldi  r16, 8         ; 115200 baud, nearly
+        sts  UBRR0L, r16
+        ldi  r16, 0x18
+        sts  UCSR0B, r16
+loop:   lds  r17, UCSR0A
+        sbrs r17, 7
+        rjmp loop
+        lds  r18, UDR0
+        inc  r18
+        sts  UDR0, r18
+        cpi  r18, 'Z'
+        brne loop
+end:    rjmp end
+)";
+const std::string kMcu = " --mcu atmega1284p ";
+
+}  // namespace
+
+TEST_CASE("AVR source, listing and image go in a circle") {
+    const Folder folder;
+    const std::string source = folder.file("a.s", kEcho), first = folder.file("first.hex");
+    REQUIRE(run_puckloop("asm" + kMcu + source + " -o " + first).status == 0);
+    const std::string text = folder.file("b.s"), second = folder.file("second.hex");
+    REQUIRE(run_puckloop("disasm" + kMcu + first + " > " + text).status == 0);
+    REQUIRE(run_puckloop("asm" + kMcu + text + " -o " + second).status == 0);
+    CHECK(content_of(first) == content_of(second));
+    CHECK_THAT(content_of(text), Contains("lds r17, 0x00c0"));
+    const Result list = run_puckloop("asm" + kMcu + source + " --format list");
+    CHECK_THAT(list.output, Contains("00000: 08 e0"));
+}
+
+TEST_CASE("words, single steps and mistakes") {
+    CHECK_THAT(run_puckloop("disasm" + kMcu + "--words 940e,0046,9519").output,
+               Contains("call 0x8c") && Contains(".word 0x9519"));
+    CHECK(run_puckloop("disasm" + kMcu + "--words 12345").status == 2);
+    const Result chip = run_puckloop("asm --mcu atmega328p /dev/null");
+    CHECK(chip.status == 2);
+    CHECK_THAT(chip.output, Contains("unknown chip \"atmega328p\"") && Contains("atmega1284p"));
+    CHECK_THAT(run_puckloop("step --mcu atmega328p < /dev/null").output, Contains("atmega1284p"));
+}
+
+TEST_CASE("exec runs a program with its USART at a script's end, and stops where it is asked") {
+    const Folder folder;
+    const std::string hex = folder.file("echo.hex");
+    REQUIRE(run_puckloop("asm" + kMcu + folder.file("echo.s", kEcho) + " -o " + hex).status == 0);
+    const std::string script = folder.file("in.txt", "0.001 41 42 59\n");
+    const std::string logs = folder.file("logs");
+    const Result run = run_puckloop("exec" + kMcu + hex + " --uart1 script:" + script +
+                                    " --stop-at 0x22 --seconds 1 --json --log " + logs);
+    CHECK(run.status == 0);
+    CHECK_THAT(run.output, Contains("\"stopped\":\"0x22\"") && Contains("\"sent\":2") &&
+                               Contains("\"received\":3") && Contains("\"cause\":\"power-on\"") &&
+                               Contains("\"unmodelled\":[]"));
+    const std::string log = content_of(logs + "/uart1.csv");
+    CHECK_THAT(log, Contains(",rx,"));
+    const Result budget = run_puckloop("exec" + kMcu + hex + " --stop-at 0x22 --seconds 0.1");
+    CHECK(budget.status == 1);
+    CHECK_THAT(budget.output, Contains("work: 1600"));
+    CHECK(run_puckloop("exec" + kMcu + hex + " --nvm x.nvm --seconds 0.1").status == 2);
+    CHECK(
+        run_puckloop("exec" + kMcu + hex + " --reset-at 0.05 --seconds 0.1 --json").output.find("external") !=
+        std::string::npos);
+}
+
+TEST_CASE("an image for another chip, cut short or past the flash is refused in one line") {
+    const Folder folder;
+    const auto refused = [&](const std::string& file, const std::string& why) {
+        const Result result = run_puckloop("exec" + kMcu + file + " --seconds 0.01");
+        INFO(result.output);
+        CHECK(result.status == 2);
+        CHECK_THAT(result.output, Contains(why));
+        CHECK(std::count(result.output.begin(), result.output.end(), '\n') == 1);
+    };
+    refused(folder.file("none.hex"), "no such file");
+    refused(folder.file("far.hex", ":020000040002F8\n:0100000000FF\n:00000001FF\n"), "lies past the flash");
+    refused(folder.file("text.txt", "hello"), "in no known image format");
+#ifdef AVR_PROGRAMS
+    const std::string elf = content_of(AVR_PROGRAMS "/compute-Os.elf");
+    REQUIRE(elf.size() > 1000);
+    std::string other = elf;
+    other[0x24] = 5;  // e_flags: avr5
+    refused(folder.file("avr5.elf", other), "is for another AVR, architecture avr5 (expected avr51");
+    std::string named = elf;
+    const auto name = named.find(std::string("\0atmega1284p", 12));
+    if (name != std::string::npos) {
+        named.replace(name + 1, 11, "atmega1281x");
+        refused(folder.file("1281.elf", named), "is for the atmega1281x (expected atmega1284p)");
+    }
+    refused(folder.file("cut.elf", elf.substr(0, 700)), "puckloop:");
+    const Result main = run_puckloop("exec" + kMcu + AVR_PROGRAMS "/compute-Os.elf --stop-at main --json");
+    CHECK(main.status == 0);
+    CHECK_THAT(main.output, Contains("\"symbol\":\"main\""));
+    CHECK_THAT(run_puckloop("disasm" + kMcu + AVR_PROGRAMS "/compute-Os.elf --start main").output,
+               Contains("main:\n"));
+#endif
+}
