@@ -350,7 +350,7 @@ std::optional<cosim::Time> Chip::uart_begun(int unit) const {
     if (!frame) return std::nullopt;
     return frame->start;
 }
-const dspic::UartCounters& Chip::uart_counters(int unit) const {
+const chip::UartCounters& Chip::uart_counters(int unit) const {
     return parts_->usart(unit).counters();
 }
 bool Chip::uart_listens(int unit) const {

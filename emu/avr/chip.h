@@ -7,7 +7,7 @@
 #include "emu/avr/core/core.h"
 #include "emu/avr/fuses.h"
 #include "emu/avr/pins.h"
-#include "emu/dspic/uart_counters.h"
+#include "emu/chip/uart_counters.h"
 #include "emu/image/avr_image.h"
 
 #include <cstdint>
@@ -109,7 +109,7 @@ class Chip {
 
     /// Start of the frame that USART `unit` is shifting out and has not yet handed to Pins::uart_sent().
     std::optional<cosim::Time> uart_begun(int unit) const;
-    const dspic::UartCounters& uart_counters(int unit) const;
+    const chip::UartCounters& uart_counters(int unit) const;
     /// RXENn: the receiver of `unit` listens.
     bool uart_listens(int unit) const;
     bool pin_level(Pin pin) const;

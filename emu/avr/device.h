@@ -2,8 +2,8 @@
 // What a part of the family is: sizes, places, registers and vectors. The core and the peripherals read them
 // here and nowhere else.
 
+#include "emu/chip/event_queue.h"
 #include "emu/chip/register_space.h"
-#include "emu/dspic/event_queue.h"
 #include "emu/image/avr_image.h"
 
 #include <array>
@@ -15,9 +15,9 @@
 namespace puckloop::avr {
 
 /// CPU clocks since power-up. Never goes back, not even at a reset.
-using Cycle = dspic::Cycle;
-using dspic::EventQueue;
-using dspic::kNoCycle;
+using Cycle = chip::Cycle;
+using chip::EventQueue;
+using chip::kNoCycle;
 
 /// Registers have their data addresses: I/O address + 0x20. The working registers lie below.
 using RegisterInfo = chip::RegisterInfo<std::uint8_t>;

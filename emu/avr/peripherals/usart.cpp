@@ -167,7 +167,7 @@ void Usart::receive(const cosim::UartFrame& frame, Cycle at) {
 
 // Takes characters off the line as far as they are complete at `now`, and plans the next one.
 void Usart::sample(Cycle now) {
-    const dspic::UartReceiver::Format format{divisor(), data_bits(), parity(), state_.phase, ticks_per_bit()};
+    const chip::UartReceiver::Format format{divisor(), data_bits(), parity(), state_.phase, ticks_per_bit()};
     while (!state_.sampled || state_.sampled->done <= now) {
         if (state_.sampled) {
             const auto character = *state_.sampled;
@@ -186,7 +186,7 @@ void Usart::receive_due(void* owner, Cycle due) {
 
 // The FIFO holds two characters, the shift register a third; a fourth takes the third's place, and says so
 // (DOR).
-void Usart::deliver(const dspic::UartReceiver::Character& character) {
+void Usart::deliver(const chip::UartReceiver::Character& character) {
     ++counters_.received;
     counters_.framing_errors += character.framing_error;
     counters_.parity_errors += character.parity_error;

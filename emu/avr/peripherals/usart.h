@@ -13,8 +13,8 @@
 #include "cosim/message_state.h"
 #include "emu/avr/peripherals/ports.h"
 #include "emu/avr/peripherals/surroundings.h"
-#include "emu/dspic/peripherals/uart_receiver.h"
-#include "emu/dspic/uart_counters.h"
+#include "emu/chip/uart_counters.h"
+#include "emu/chip/uart_receiver.h"
 
 #include <cstdint>
 #include <deque>
@@ -40,7 +40,7 @@ class Usart {
     /// The frame in the shift register, if its stop bit has not begun.
     std::optional<cosim::UartFrame> begun() const;
     bool receiving() const;  ///< RXENn
-    const dspic::UartCounters& counters() const { return counters_; }
+    const chip::UartCounters& counters() const { return counters_; }
 
     template <class Archive>
     void state(Archive& archive) {
@@ -67,8 +67,8 @@ class Usart {
         bool transmitter_on = false;
         Cycle frame_end = 0;
         cosim::UartFrame frame;
-        std::optional<dspic::UartReceiver::Character> sampled;  ///< complete at its `done`
-        Cycle phase = 0;                                        ///< the baud rate generator started here
+        std::optional<chip::UartReceiver::Character> sampled;  ///< complete at its `done`
+        Cycle phase = 0;                                       ///< the baud rate generator started here
 
         template <class Archive>
         void state(Archive& archive) {
@@ -91,7 +91,7 @@ class Usart {
     void show_receiver();
     void begin_frame(Cycle from);
     void sample(Cycle now);
-    void deliver(const dspic::UartReceiver::Character& character);
+    void deliver(const chip::UartReceiver::Character& character);
     void enable_receiver(bool on);
     void enable_transmitter(bool on);
 
@@ -109,9 +109,9 @@ class Usart {
     const cosim::ClockDomain& clock_;
     Ports& ports_;
     Pins& pins_;
-    dspic::UartReceiver receiver_;
+    chip::UartReceiver receiver_;
     State state_;
-    dspic::UartCounters counters_;
+    chip::UartCounters counters_;
     EventQueue::Slot transmit_slot_;
     EventQueue::Slot receive_slot_;
 };

@@ -1,8 +1,8 @@
-#include "emu/dspic/event_queue.h"
+#include "emu/chip/event_queue.h"
 
 #include <stdexcept>
 
-namespace puckloop::dspic {
+namespace puckloop::chip {
 
 EventQueue::Slot EventQueue::add(void* owner, Handler handler) {
     if (size_ == kCapacity) throw std::logic_error("event queue: more slots than planned for");
@@ -10,4 +10,4 @@ EventQueue::Slot EventQueue::add(void* owner, Handler handler) {
     return static_cast<Slot>(size_++);
 }
 
-}  // namespace puckloop::dspic
+}  // namespace puckloop::chip

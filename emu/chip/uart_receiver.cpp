@@ -1,8 +1,8 @@
-#include "emu/dspic/peripherals/uart_receiver.h"
+#include "emu/chip/uart_receiver.h"
 
 #include "protocols/uart_sampling.h"
 
-namespace puckloop::dspic {
+namespace puckloop::chip {
 
 using cosim::Time;
 using cosim::UartFrame;
@@ -124,4 +124,4 @@ std::optional<UartReceiver::Character> UartReceiver::next(const Format& format, 
     return character;
 }
 
-}  // namespace puckloop::dspic
+}  // namespace puckloop::chip
