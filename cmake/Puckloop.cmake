@@ -26,8 +26,11 @@ function(puckloop_test name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE puckloop_test_main ${ARG_LINK})
-  # A test that lacks what it needs (real images, a tool) says "skipped" with the reason, and CTest counts it so.
-  set(properties PROPERTIES SKIP_REGULAR_EXPRESSION "skipped")
+  # Tests spend their time in the libraries; compiled with less effort they are built a fifth faster.
+  target_compile_options(${name} PRIVATE $<$<CONFIG:RelWithDebInfo>:-O1>)
+  # A test that lacks what it needs (real images, a tool) says "skipped: reason" or "reason: skipped", and CTest counts it
+  # so. The bare word is not enough: it occurs in names of tests and in results, and would hide their failures.
+  set(properties PROPERTIES SKIP_REGULAR_EXPRESSION "skipped: |: +skipped|:. +skipped")
   if(ARG_LABELS)
     list(JOIN ARG_LABELS "-" labels)  # one word: ctest -L takes a pattern, so each label still selects
     list(APPEND properties LABELS "${labels}")
