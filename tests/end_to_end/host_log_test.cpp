@@ -73,7 +73,7 @@ TEST_CASE("run -v says what was read, where each node lives, how fast it went an
           (bench.run("p", {kHello, "--duration", "0.5"}), bench.report("p")["trace_sha256"]));
 }
 
-TEST_CASE("--log-file takes the lines of all processes, appended, and none goes to the terminal") {
+TEST_CASE("run --log-file takes the lines of all processes, appended, and none goes to the terminal") {
     const Workbench bench;
     const std::string file = bench.folder() / "host.log";
     for (const Words& more : {Words{}, Words{"--in-process"}, Words{"--log-level", "debug"}}) {

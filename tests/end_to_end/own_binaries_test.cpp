@@ -73,9 +73,11 @@ TEST_CASE("the original firmware works with the project's own control program") 
     check_same_run(bench, "one", "many");
     const auto trace = bench.csv("one", "trace.csv");
     const Frames frames = frames_of(bytes_sent(trace, "robot0.uart", "robot0.linux"));
-    // A frame each 100 ms from just after 42 s to 52 s.
-    CHECK(frames.normal >= 97);
-    CHECK(frames.normal <= 100);
+    // A frame each 100 ms from just after 42 s to 52 s; then, asked to end, one that stops the wheels, and 'R'.
+    CHECK(frames.normal >= 98);
+    CHECK(frames.normal <= 101);
+    CHECK(frames.reset == 1);
+    CHECK(frames.rest == 0);
     CHECK(frames.others == 0);
     const Journey path = journey(bench.csv("one", "trajectory.csv"));
     CHECK(path.length > 0.1);
