@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <fcntl.h>
+#include <linux/close_range.h>
 #include <sys/mman.h>
 #include <sys/personality.h>
 #include <sys/prctl.h>
@@ -32,6 +33,8 @@ namespace puckloop::linuxboard {
 namespace {
 constexpr int kFirstPrivateFd = 500;  // well above what a program counts on
 constexpr rlim_t kUsualDescriptors = 1024;
+constexpr rlim_t kFewestDescriptors = 32;  // of a program; with fewer it is not started
+constexpr rlim_t kPrivateDescriptors = 4;  // two to keep, two on the way there
 constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
 
 [[noreturn]] void fail(const std::string& what) {
@@ -50,6 +53,13 @@ std::string shim_file(const LinuxSpec& spec) {
     if (access(file.c_str(), R_OK) != 0)
         throw InputError(file, "", "the library to preload is not there", "build the target puckloop_shim");
     return file;
+}
+
+/// Most files that the program may have open.
+rlim_t descriptor_limit() {
+    rlimit limit{};
+    return getrlimit(RLIMIT_NOFILE, &limit) == 0 ? std::min(limit.rlim_max, kUsualDescriptors)
+                                                 : kUsualDescriptors;
 }
 
 std::vector<char*> pointers(std::vector<std::string>& strings) {
@@ -110,6 +120,11 @@ std::unique_ptr<Process> Launcher::start() {
     entry.number = entry.group = wire::kFirstProcess;
     entry.parent = wire::kNoParent;
     page_->alive = 1;
+    const rlim_t most = descriptor_limit();
+    if (most < kFewestDescriptors)
+        throw RunError(fmt::format("{}: the limit of open files is {} (ulimit -n), a program needs {}", file_,
+                                   most, kFewestDescriptors));
+    const int first = static_cast<int>(std::min<rlim_t>(kFirstPrivateFd, most - kPrivateDescriptors));
     int sockets[2] = {-1, -1};
     int report[2] = {-1, -1};
     if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, sockets) != 0) fail("socket pair");
@@ -133,7 +148,7 @@ std::unique_ptr<Process> Launcher::start() {
         env.push_back(key + "=" + value);
     }
     env.push_back("LD_PRELOAD=" + preload);
-    env.push_back(fmt::format("{}={},{},0", wire::kLinkVariable, kFirstPrivateFd, kFirstPrivateFd + 1));
+    env.push_back(fmt::format("{}={},{},0", wire::kLinkVariable, first, first + 1));
     const std::vector<char*> arguments = pointers(args);
     const std::vector<char*> variables = pointers(env);
     const char* stdin_file = spec_.stdin_file.empty() ? "/dev/null" : spec_.stdin_file.c_str();
@@ -159,18 +174,20 @@ std::unique_ptr<Process> Launcher::start() {
         const int out = log_fd_ >= 0 ? log_fd_ : open("/dev/null", O_WRONLY);
         dup2(out, STDOUT_FILENO);
         dup2(out, STDERR_FILENO);
-        rlimit limit{};  // puckloop may have raised its own
-        if (getrlimit(RLIMIT_NOFILE, &limit) == 0) {
-            limit.rlim_cur = std::min<rlim_t>(limit.rlim_max, kUsualDescriptors);
-            setrlimit(RLIMIT_NOFILE, &limit);
-        }
+        // Neither puckloop's files nor their numbers are the program's business: it differs with the
+        // placement.
+        close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);
         // Either may be where the other one goes, in a process with many descriptors.
-        const int page = fcntl(page_fd_, F_DUPFD, kFirstPrivateFd + 2);
-        const int link = fcntl(sockets[1], F_DUPFD, kFirstPrivateFd + 2);
-        if (page < 0 || link < 0 || dup2(link, kFirstPrivateFd) < 0 || dup2(page, kFirstPrivateFd + 1) < 0)
-            give_up(2);
+        const int page = fcntl(page_fd_, F_DUPFD, first + 2);
+        const int link = fcntl(sockets[1], F_DUPFD, first + 2);
+        if (page < 0 || link < 0 || dup2(link, first) < 0 || dup2(page, first + 1) < 0) give_up(2);
         close(page);
         close(link);
+        rlimit limit{};  // puckloop may have raised its own
+        if (getrlimit(RLIMIT_NOFILE, &limit) == 0) {
+            limit.rlim_cur = most;
+            setrlimit(RLIMIT_NOFILE, &limit);
+        }
         if (!spec_.cwd.empty() && chdir(spec_.cwd.c_str()) != 0) give_up(3);
         execve(file_.c_str(), arguments.data(), variables.data());
         give_up(0);
@@ -184,8 +201,8 @@ std::unique_ptr<Process> Launcher::start() {
     close(report[0]);
     if (failed) {
         if (status[0] == 2)
-            throw RunError(
-                fmt::format("{}: no descriptors for the program: {}", file_, std::strerror(status[1])));
+            throw RunError(fmt::format("{}: no descriptors for the program (ulimit -n): {}", file_,
+                                       std::strerror(status[1])));
         const std::string file = status[0] == 1 ? stdin_file : status[0] == 3 ? spec_.cwd : file_;
         throw InputError(file, "", std::strerror(status[1]), "a program that can be started");
     }

@@ -47,9 +47,10 @@ void LinuxNode::start_program() {
     ++processes_;
     last_number_ = wire::kFirstProcess;
     clients_.clear();
+    auto process = launcher_->start();  // may throw: there is no client without a process
     clients_.push_back(std::make_unique<Client>());
     Client& client = *clients_.back();
-    client.process = launcher_->start();
+    client.process = std::move(process);
     switch (client.process->hear(kStartPatience, client.request, client.data)) {
     case Heard::Ended:
         throw InputError(spec_.program, "",

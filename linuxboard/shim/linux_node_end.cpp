@@ -26,6 +26,7 @@ std::string signal_name(int signal) {
 }  // namespace
 
 void LinuxNode::warn(std::string line) {
+    if (std::find(warnings_.begin(), warnings_.end(), line) != warnings_.end()) return;
     if (warnings_.size() < kMostWarnings) warnings_.push_back(std::move(line));
 }
 

@@ -83,6 +83,20 @@ TEST_CASE("a program that has done its work ends the run well") {
     CHECK(bench.report("o")["simulated_s"].get<double>() == Approx(1.51).margin(0.01));
 }
 
+TEST_CASE("a low limit of open files is enough, or named") {
+    const Workbench bench;
+    const auto limited = [&](const std::string& limit, const char* placement) {
+        return Process({"/bin/sh", "-c", "ulimit -n " + limit + "; exec \"$0\" \"$@\"", PUCKLOOP_PROGRAM,
+                        "run", bench.hello(), placement, "--duration", "2", "--out", bench.out("o")},
+                       bench.folder())
+            .wait();
+    };
+    for (const char* placement : {"--in-process", "--threads=1"}) {
+        CHECK(limited("100", placement).status == 0);
+        check_one_line(limited("30", placement), 1, {"limit of open files is 30", "needs 32"});
+    }
+}
+
 TEST_CASE("a program that never opens its port fails the run at its end") {
     const Workbench bench;
     check_one_line(with_program(bench, {"--duration", "3"}, {PUCKLOOP_MISBEHAVE, "sleep"}), 1,

@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -69,6 +70,8 @@ TEST_CASE("a program reached through a wrapper keeps clock, time and port") {
         {clocks + " | tee /dev/null", "/usr/bin/tee"},
         {clocks + " 2>&1 | sed s/x/x/ | cat", "/bin/sed"},
         {"(" + clocks + " & wait)", ""},
+        {"(ulimit -n 256; " + clocks + "; echo done)", ""},
+        {"ulimit -n 16; exec nice " + clocks, "/usr/bin/nice"},
         {"exec " + python + " -c 'import os; os.execv(\"" + clocks + "\", [\"clocks\"])'", python},
         {"exec " + python + " -c 'import subprocess; subprocess.run([\"" + clocks + "\"])'", python},
         {"exec " + python + " -c 'import subprocess; print(subprocess.check_output(\"" + clocks +
@@ -215,4 +218,29 @@ TEST_CASE("start scripts see the devices that their programs get") {
     spec.i2c = {"/dev/i2c-77"};
     const Ran ran = run(spec);
     CHECK_THAT(ran.log, StartsWith("/dev/i2c-77\nhost epuck12\n"));
+}
+
+TEST_CASE("a program has none of the files that puckloop has open, however many") {
+    rlimit before{};
+    REQUIRE(::getrlimit(RLIMIT_NOFILE, &before) == 0);
+    rlimit raised = before;
+    raised.rlim_cur = raised.rlim_max;
+    REQUIRE(::setrlimit(RLIMIT_NOFILE, &raised) == 0);
+    std::vector<int> open_here;  // as with some hundred robots in one process, if the host lets it
+    constexpr int kMany = 1100;
+    for (int fd = 0; fd >= 0 && open_here.size() < kMany;)
+        if (fd = ::dup(STDERR_FILENO); fd >= 0) open_here.push_back(fd);
+    REQUIRE(open_here.size() > 10);
+    for (int i = 0; i < 10; ++i) {  // room for the bench itself
+        ::close(open_here.back());
+        open_here.pop_back();
+    }
+    const Ran ran = run(shell("exec 9<>/dev/ttyS0; for f in 3 4 5 6 7 8 10 11 77 1000; do "
+                              "[ -e /proc/self/fd/$f ] && echo has $f; done; echo end; ulimit -n"));
+    for (const int fd : open_here)
+        ::close(fd);
+    ::setrlimit(RLIMIT_NOFILE, &before);
+    CHECK_THAT(ran.log, StartsWith("end\n"));
+    REQUIRE(ran.stop);
+    CHECK(ran.stop->success);
 }

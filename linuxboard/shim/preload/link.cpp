@@ -7,6 +7,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -54,6 +55,10 @@ bool is_linked() {
 
 bool is_link_descriptor(int fd) {
     return fd >= 0 && (fd == socket_fd || fd == page_fd);
+}
+
+int link_descriptors() {
+    return std::max(socket_fd, page_fd) + 1;
 }
 
 std::uint32_t own_slot() {

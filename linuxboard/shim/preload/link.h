@@ -22,6 +22,8 @@ void send_only(const wire::Request& request);
 bool is_linked();
 /// The descriptor belongs to this library: the program may not close it.
 bool is_link_descriptor(int fd);
+/// How many descriptors a process must be allowed to have for the link to be among them.
+int link_descriptors();
 /// The descriptor that came with the last reply, or -1; once.
 int take_passed();
 wire::Page& page();
