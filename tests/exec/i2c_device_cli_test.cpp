@@ -198,5 +198,7 @@ TEST_CASE("devices that cannot be are refused with one line") {
     refused("--board pic --i2c-device rab=" + bench.folder + "/none.hex", "no such file");
     refused("--board pic --i2c-device rab=" + image, "another chip");
     refused("--board pic --i2c-device ground --i2c-device ground@0x61", "second of its kind");
+    refused("--board pic --i2c-device ground --i2c-device turret@0x60", "second device at 0x60");
+    refused("--board pic --i2c-device ground@0x61 --i2c-device turret", "second device at 0x61");
     refused("--board rab --i2c-device ground", "slave of its bus");
 }

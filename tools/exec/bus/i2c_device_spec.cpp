@@ -2,6 +2,8 @@
 
 #include "base/error.h"
 #include "base/suggest.h"
+#include "emu/i2c_devices/ground_sensor.h"
+#include "emu/i2c_devices/rgb_turret.h"
 
 #include <fmt/format.h>
 
@@ -63,15 +65,25 @@ I2cDeviceSpec parse(const std::string& text) {
     return spec;
 }
 
+/// The address it answers to, if it is known before its firmware has run.
+std::optional<std::uint8_t> address_of(const I2cDeviceSpec& spec) {
+    if (spec.address || spec.kind == Kind::Rab) return spec.address;
+    return spec.kind == Kind::Ground ? i2c_devices::kGroundSensorAddress : i2c_devices::kRgbTurretAddress;
+}
+
 }  // namespace
 
 std::vector<I2cDeviceSpec> parse_i2c_devices(const std::vector<std::string>& texts) {
     std::vector<I2cDeviceSpec> devices;
     for (const std::string& text : texts) {
         const I2cDeviceSpec spec = parse(text);
-        for (const I2cDeviceSpec& other : devices)
+        for (const I2cDeviceSpec& other : devices) {
             if (other.kind == spec.kind)
                 fail(fmt::format("'{}' is the second of its kind", text), "one of each, as on a robot");
+            if (const auto address = address_of(spec); address && address == address_of(other))
+                fail(fmt::format("'{}' is the second device at 0x{:02x}", text, *address),
+                     "an address of its own");
+        }
         devices.push_back(spec);
     }
     return devices;

@@ -18,7 +18,8 @@ struct I2cDeviceSpec {
     std::string image;  ///< of Rab: its firmware's file
 };
 
-/// `texts` as the command line gave them. Throws InputError for anything else, and for a device named twice.
+/// `texts` as the command line gave them. Throws InputError for anything else, for a device named
+/// twice and for two at one address.
 std::vector<I2cDeviceSpec> parse_i2c_devices(const std::vector<std::string>& texts);
 
 }  // namespace puckloop::exec
