@@ -31,17 +31,30 @@ const Op* stop_here(Machine& m, const Op* op) {
 }
 
 /// A backward branch: the instruction, then perhaps a leap.
+template <Handler kInstruction>
 const Op* loop_back(Machine& m, const Op* op) {
-    const Op* next = kHandlers[static_cast<std::size_t>(op->form)](m, op);
-    return next <= op && m.skip_idle ? leap(m, op, next) : next;
+    const Op* next = kInstruction(m, op);
+    if (next > op || !m.skip_idle) return next;
+    LoopInfo& loop = m.loops[m.pc_of(op)];
+    return (++loop.visits & loop.backoff) == 0 ? leap(m, op, next) : next;
 }
 
 /// Longer loops are no busy waits.
 constexpr std::uint32_t kLongestLoop = 64;
 
-bool leads_back(const Op& op, std::uint32_t index) {
-    const bool branch = op.form == FormId::RJMP || op.form == FormId::BRBS || op.form == FormId::BRBC;
-    return branch && op.k <= index && index - op.k < kLongestLoop;
+/// The handler of a short backward branch; null for any other operation.
+Handler loop_handler_of(const Op& op, std::uint32_t index) {
+    if (op.k > index || index - op.k >= kLongestLoop) return nullptr;
+    switch (op.form) {
+    case FormId::RJMP:
+        return &loop_back<&execute::RJMP>;
+    case FormId::BRBS:
+        return &loop_back<&execute::BRBS>;
+    case FormId::BRBC:
+        return &loop_back<&execute::BRBC>;
+    default:
+        return nullptr;
+    }
 }
 
 /// Puts one operand's number where the handlers look for it.
@@ -91,7 +104,7 @@ void decode(Machine& m, Op& op) {
             bind(op, operand, form->field(letter, word, m.program[index + 1]), index, form->width(letter));
         }
     }
-    if (leads_back(op, index)) op.run = &loop_back;
+    if (const Handler loop = loop_handler_of(op, index)) op.run = loop;
     if (std::find(m.stops.begin(), m.stops.end(), index) != m.stops.end()) op.run = &stop_here;
 }
 

@@ -99,7 +99,10 @@ const Op* leap(Machine& m, const Op* branch, const Op* head) {
     if (loop.purity == LoopInfo::Purity::Unknown)
         loop.purity = body_is_pure(m, m.pc_of(head), m.pc_of(branch)) ? LoopInfo::Purity::Pure
                                                                       : LoopInfo::Purity::Impure;
-    if (loop.purity == LoopInfo::Purity::Impure || (++loop.visits & loop.backoff) != 0) return head;
+    if (loop.purity == LoopInfo::Purity::Impure) {  // never asked again
+        m.code_store[m.pc_of(branch)].run = loop_handler(branch->form);
+        return head;
+    }
     const Cycle now = m.cycle + branch->cycles;  // the branch itself is over then
     if (m.limit <= now + kWorthwhile || now < m.quiet_since + kSettled) return head;
 
