@@ -1,5 +1,6 @@
 // What the I2C bus says of itself: its devices, counters and warnings.
 
+#include "base/times_text.h"
 #include "cosim/i2c_bus.h"
 
 #include <fmt/format.h>
@@ -29,17 +30,18 @@ std::vector<std::string> I2cBusNode::warnings() const {
     // A main board says so itself.
     for (const auto& [who, times] : counters_.absent)
         if (options_.masters[who.first].waits)
-            lines.push_back(fmt::format("{} addressed 0x{:02x} {} times and nobody acknowledged",
-                                        options_.masters[who.first].name, who.second, times));
+            lines.push_back(fmt::format("{} addressed 0x{:02x} {} and nobody acknowledged",
+                                        options_.masters[who.first].name, who.second, times_text(times)));
     for (const auto& [address, crowd] : crowds_)
-        lines.push_back(fmt::format("0x{:02x} was acknowledged by {} together, {} times: bytes read are "
+        lines.push_back(fmt::format("0x{:02x} was acknowledged by {} together, {}: bytes read are "
                                     "the and of what each sends",
-                                    address, crowd.names, crowd.times));
+                                    address, crowd.names, times_text(crowd.times)));
     if (counters_.stuck > 0)
-        lines.push_back(fmt::format(
-            "the bus was stuck {} times, {:.3f} ms in all{}: {} held SCL low until the master gave up",
-            counters_.stuck, to_seconds(stuck_for_ + (holders_.empty() ? 0 : now_ - stuck_since_)) * 1e3,
-            holders_.empty() ? "" : " and still is", stuck_names_));
+        lines.push_back(
+            fmt::format("the bus was stuck {}, {:.3f} ms in all{}: {} held SCL low until the master gave up",
+                        times_text(counters_.stuck),
+                        to_seconds(stuck_for_ + (holders_.empty() ? 0 : now_ - stuck_since_)) * 1e3,
+                        holders_.empty() ? "" : " and still is", stuck_names_));
     if (pending_ && now_ - pending_->phase.start > kHangs) {
         std::string names;
         for (const PortIndex device : pending_->open)
@@ -51,10 +53,9 @@ std::vector<std::string> I2cBusNode::warnings() const {
 }
 
 std::string I2cBusNode::finish() {
-    log_.end(now_,
-             fmt::format("{} transfers, {} bytes written, {} read, {} not acknowledged, bus lost {} times",
-                         counters_.transfers, counters_.bytes_written, counters_.bytes_read,
-                         counters_.not_acknowledged, counters_.lost));
+    log_.end(now_, fmt::format("{} transfers, {} bytes written, {} read, {} not acknowledged, bus lost {}",
+                               counters_.transfers, counters_.bytes_written, counters_.bytes_read,
+                               counters_.not_acknowledged, times_text(counters_.lost)));
     std::string devices;
     for (const auto& slave : slaves_)
         devices += fmt::format("{}\"{}\":{}", devices.empty() ? "" : ",", slave->name(), slave->report());

@@ -1,5 +1,7 @@
 #include "emu/board/chip_warnings.h"
 
+#include "base/times_text.h"
+
 #include <fmt/format.h>
 
 namespace puckloop::board {
@@ -10,10 +12,6 @@ constexpr std::size_t kFewAddresses = 4;
 
 std::string loop_text(std::uint32_t first, std::uint32_t last) {
     return first == last ? fmt::format("0x{:04x}", first) : fmt::format("0x{:04x}..0x{:04x}", first, last);
-}
-
-std::string times_text(std::uint64_t times) {
-    return times == 1 ? "once" : fmt::format("{} times", times);
 }
 
 /// Cycles before a change of clock cannot be turned into times any more: a chip that was switched says later.

@@ -103,8 +103,8 @@ TEST_CASE("a board that is not there or not yet on") {
     CHECK(bus.linux_results[0].time == kMillisecond + kByte + kStop);
     CHECK(bus.linux_results[1].error == 0);
     CHECK(bus.linux_results[2].error == EREMOTEIO);
-    CHECK_THAT(bus.report, Catch::Contains("linux addressed 0x20 1 times and nobody acknowledged"));
-    CHECK_THAT(bus.report, Catch::Contains("linux addressed 0x21 1 times and nobody acknowledged"));
+    CHECK_THAT(bus.report, Catch::Contains("linux addressed 0x20 once and nobody acknowledged"));
+    CHECK_THAT(bus.report, Catch::Contains("linux addressed 0x21 once and nobody acknowledged"));
 }
 
 TEST_CASE("two boards at one address answer together") {
@@ -155,7 +155,7 @@ TEST_CASE("a board that keeps SCL low: the driver gives up after a second and fr
     CHECK(bus.pic_results[0].error == EAGAIN);
     CHECK(bus.pic_results[1].error == 0);
     CHECK_THAT(bus.report, Catch::Contains("\"stuck\":1"));
-    CHECK_THAT(bus.report, Catch::Contains("the bus was stuck 1 times, 500.") &&
+    CHECK_THAT(bus.report, Catch::Contains("the bus was stuck once, 500.") &&
                                Catch::Contains("board0 held SCL low until the master gave up"));
 }
 
