@@ -91,7 +91,9 @@ struct Event {
 /// All that may happen to one world.
 struct EventPlan {
     std::vector<Event> events{};
-    bool live = false;      ///< commands may come in while it runs
+    bool live = false;  ///< commands may come in while it runs
+    bool repeats =
+        true;  ///< a run with the same events is the same run; false: programs have a clock of their own
     std::string journal{};  ///< file for what was done, as [[event]] tables with times; empty: none
 
     /// Can anything happen? A world without is as if there were no events at all.
@@ -104,10 +106,8 @@ std::string problem_of(const Action& action);
 /// a wall or in something that no event moves. `world` must have passed check().
 void check_events(const EventPlan& plan, const World& world);
 
-std::string to_json(const Action& action);
 std::string to_json(const EventPlan& plan);
-/// Both throw InputError on anything that to_json would not have written.
-Action action_from_json(std::string_view text);
+/// Throws InputError on anything that to_json would not have written.
 EventPlan plan_from_json(std::string_view text);
 
 }  // namespace puckloop::physics

@@ -1,4 +1,4 @@
-// Actions and plans as JSON text: how they reach the world's process.
+// Plans as JSON text: how they reach the world's process.
 
 #include "base/error.h"
 #include "physics/description_fields.h"
@@ -23,35 +23,18 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Action, verb, object, to, relative, heading, 
                                    number, address, hold, command, toml)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Condition, kind, robot, other, at, radius, length, width, distance, on)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Event, name, file, place, at, when, delay, every, count, action)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EventPlan, events, live, journal)
-
-namespace {
-
-template <class T>
-T parsed(std::string_view text, const char* what) {
-    try {
-        return nlohmann::json::parse(text).get<T>();
-    } catch (const nlohmann::json::exception& error) {
-        throw InputError("", what, error.what(), "JSON as to_json writes it");
-    }
-}
-
-}  // namespace
-
-std::string to_json(const Action& action) {
-    return nlohmann::json(action).dump();
-}
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(EventPlan, events, live, repeats, journal)
 
 std::string to_json(const EventPlan& plan) {
     return nlohmann::json(plan).dump();
 }
 
-Action action_from_json(std::string_view text) {
-    return parsed<Action>(text, "action");
-}
-
 EventPlan plan_from_json(std::string_view text) {
-    return parsed<EventPlan>(text, "events");
+    try {
+        return nlohmann::json::parse(text).get<EventPlan>();
+    } catch (const nlohmann::json::exception& error) {
+        throw InputError("", "events", error.what(), "JSON as to_json writes it");
+    }
 }
 
 }  // namespace puckloop::physics

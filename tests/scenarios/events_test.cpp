@@ -18,6 +18,12 @@ using physics::Verb;
 
 namespace {
 
+std::string json_of(const physics::Action& action) {
+    physics::EventPlan plan;
+    plan.events.emplace_back().action = action;
+    return physics::to_json(plan);
+}
+
 const std::string kWorld = "[run]\nduration = \"5 s\"\n[arena]\nsize = [\"1 m\", \"80 cm\"]\n"
                            "[[robot]]\nposition = [\"0 m\", \"0 m\"]\n[robot.pic]\nfirmware = \"x.hex\"\n"
                            "[[cylinder]]\nname = \"can\"\ncentre = [\"30 cm\", \"0 cm\"]\nradius = \"5 cm\"\n"
@@ -193,7 +199,7 @@ TEST_CASE("no line of words brings the grammar down, and what it takes it gives 
             const auto again = parse_command(action.command);
             CHECK(again.command == action.command);
             CHECK(again.toml == action.toml);
-            CHECK(physics::to_json(again) == physics::to_json(action));
+            CHECK(json_of(again) == json_of(action));
         } catch (const InputError& error) {
             const std::string what = error.what();
             CHECK(what.find('\n') == std::string::npos);

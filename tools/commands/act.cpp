@@ -54,11 +54,8 @@ void act(const Options& options) {
     for (const std::string& word : options.words)
         text += (text.empty() ? "" : " ") + word;
     const bool list = text == kList;
-    nlohmann::json request;
-    if (list)
-        request["list"] = true;
-    else
-        request["action"] = nlohmann::json::parse(physics::to_json(scenarios::parse_command(text)));
+    if (!list) scenarios::parse_command(text);  // refused before anybody is asked
+    const nlohmann::json request = list ? nlohmann::json{{"list", true}} : nlohmann::json{{"act", text}};
     const std::string socket = control_path_of(options.run);
     const std::string answer = ask(options.run, socket, request.dump() + "\n", kPatience);
     const auto reply = nlohmann::json::parse(answer, nullptr, false);

@@ -15,8 +15,8 @@ std::string new_control_path();
 /// Afterwards control.json says that the run has ended.
 class ControlPlace {
   public:
-    /// `socket` empty: the run takes no commands, and control.json of an earlier one is removed. Throws
-    /// RunError.
+    /// `socket` empty: the run takes no commands. control.json of an earlier run is removed, and if that run
+    /// was killed, its socket as well. Throws RunError.
     ControlPlace(std::string socket, const std::filesystem::path& results);
     ~ControlPlace();
     ControlPlace(const ControlPlace&) = delete;

@@ -1,6 +1,7 @@
 #include "tools/run/control/control_socket.h"
 
 #include "base/error.h"
+#include "scenarios/events/event_tables.h"
 
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/local/stream_protocol.hpp>
@@ -12,6 +13,7 @@
 #include <sys/stat.h>
 
 #include <chrono>
+#include <filesystem>
 #include <map>
 
 namespace puckloop::tools {
@@ -74,14 +76,18 @@ class ControlSocket final : public physics::CommandSource {
                                       });
     }
 
+    /// Whoever sends it, only what a user could have typed gets any further: what is done is recorded as
+    /// text.
     void hear(std::uint64_t id, const std::string& text) {
         try {
             const auto request = nlohmann::json::parse(text);
             physics::Command command{id};
             if (!request.value("list", false))
-                command.action = physics::action_from_json(request.at("action").dump());
+                command.action = scenarios::parse_command(request.at("act").get<std::string>());
             heard_.push_back(std::move(command));
-        } catch (const std::exception&) {  // not what `puckloop act` sends
+        } catch (const InputError& error) {
+            reply(id, nlohmann::json{{"refused", error.what()}}.dump());
+        } catch (const nlohmann::json::exception&) {  // not what `puckloop act` sends
             reply(id, R"({"refused":"this is no command"})");
         }
     }
@@ -99,11 +105,23 @@ std::unique_ptr<physics::CommandSource> make_control_socket(const std::string& p
     return std::make_unique<ControlSocket>(path);
 }
 
+bool is_left_over(const std::string& path) {
+    std::error_code ignored;  // any file refuses connections
+    if (!std::filesystem::is_socket(std::filesystem::symlink_status(path, ignored))) return false;
+    boost::asio::io_context io;
+    stream_protocol::socket socket(io);
+    error_code error;
+    socket.connect(stream_protocol::endpoint(path), error);
+    return error == boost::asio::error::connection_refused;
+}
+
 std::string ask(const std::string& run, const std::string& path, const std::string& request, double seconds) {
     boost::asio::io_context io;
     stream_protocol::socket socket(io);
     error_code error;
     socket.connect(stream_protocol::endpoint(path), error);
+    if (error == boost::asio::error::access_denied)
+        throw InputError("", run, "belongs to another user", "a run of your own");
     if (error) throw InputError("", run, "the run has ended");
     std::string reply;
     bool over = false;
