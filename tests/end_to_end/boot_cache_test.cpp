@@ -150,6 +150,29 @@ TEST_CASE("a damaged or unusable cache costs time only") {
     }
 }
 
+TEST_CASE("without a home that can be written to, boots are executed and nothing is wrong") {
+    const Workbench bench;
+    const fs::path file = scenario(bench, "1 s");
+    const Cache cache(bench.folder() / "cache");
+    ::unsetenv("PUCKLOOP_CACHE");
+    const char* old = std::getenv("HOME");
+    const std::string home = old ? old : "/";
+    ::setenv("HOME", "/proc/nobody", 1);
+    const char* xdg = std::getenv("XDG_CACHE_HOME");
+    const std::string xdg_home = xdg ? xdg : "";
+    ::unsetenv("XDG_CACHE_HOME");
+    const Ended quiet = run(bench, "quiet", file, {"--strict"});
+    const Ended wordy = run(bench, "wordy", file, {"-v"});
+    ::setenv("HOME", home.c_str(), 1);
+    if (xdg) ::setenv("XDG_CACHE_HOME", xdg_home.c_str(), 1);
+    CHECK(quiet.out.find("cache") == std::string::npos);
+    CHECK(quiet.err.empty());
+    CHECK_THAT(wordy.err, Catch::Contains("boot cache /proc/nobody/.cache/puckloop: No such file"));
+    const auto report = bench.report("quiet");
+    CHECK(report["warnings"].empty());
+    CHECK_THAT(report["cache_unused"].get<std::string>(), Catch::StartsWith("boot cache /proc/nobody"));
+}
+
 TEST_CASE("runs at the same time share a cache") {
     const Workbench bench;
     const Cache cache(bench.folder() / "cache");

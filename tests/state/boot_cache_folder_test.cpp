@@ -38,19 +38,20 @@ class Variable {
 TEST_CASE("where the cache is") {
     const Variable home("HOME", "/home/somebody"), xdg("XDG_CACHE_HOME", nullptr),
         own("PUCKLOOP_CACHE", nullptr);
-    CHECK(cache_folder() == fs::path("/home/somebody/.cache/puckloop"));
+    const CacheFolder at_home{"/home/somebody/.cache/puckloop"};
+    CHECK(cache_folder() == at_home);
     {
         const Variable there("XDG_CACHE_HOME", "/var/cache/me");
-        CHECK(cache_folder() == fs::path("/var/cache/me/puckloop"));
+        CHECK(cache_folder() == CacheFolder{"/var/cache/me/puckloop"});
         const Variable named("PUCKLOOP_CACHE", "/tmp/x");
-        CHECK(cache_folder() == fs::path("/tmp/x"));
+        CHECK(cache_folder() == CacheFolder{"/tmp/x", true});
         const Variable off("PUCKLOOP_CACHE", "off");
         CHECK(!cache_folder());
         const Variable empty("PUCKLOOP_CACHE", "");
         CHECK(!cache_folder());
     }
     const Variable relative("XDG_CACHE_HOME", "cache");
-    CHECK(cache_folder() == fs::path("/home/somebody/.cache/puckloop"));
+    CHECK(cache_folder() == at_home);
     const Variable nowhere("HOME", nullptr);
     CHECK(!cache_folder());
 }

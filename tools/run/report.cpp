@@ -130,23 +130,24 @@ void write_report(const RunSetup& setup, const cosim::Outcome& outcome, Reserved
     ordered_json faults = ordered_json::array();
     for (const auto& fault : outcome.faults)
         faults.push_back({{"fault", fault.text}, {"fired", fault.fired}});
-    const ordered_json report{{"scenario", setup.scenario.file.string()},
-                              {"seed", setup.scenario.seed},
-                              {"success", outcome.success},
-                              {"ended_by", reason_name(outcome.reason)},
-                              {"ended_why", outcome.text},
-                              {"programs_asked_to_end_s", seconds_or_null(outcome.wind_up)},
-                              {"simulated_s", cosim::to_seconds(outcome.simulated)},
-                              {"wall_s", outcome.wall_s},
-                              {"real_time_factor", real_time_factor(outcome)},
-                              {"trace_sha256", outcome.trace_sha256},
-                              {"grants", outcome.grants},
-                              {"nodes", nodes},
-                              {"links", links},
-                              {"faults", faults},
-                              {"events", events_of(nodes)},
-                              {"warnings", warnings_of(setup, outcome)},
-                              {"unmodelled_registers", unmodelled_of(nodes)}};
+    ordered_json report{{"scenario", setup.scenario.file.string()},
+                        {"seed", setup.scenario.seed},
+                        {"success", outcome.success},
+                        {"ended_by", reason_name(outcome.reason)},
+                        {"ended_why", outcome.text},
+                        {"programs_asked_to_end_s", seconds_or_null(outcome.wind_up)},
+                        {"simulated_s", cosim::to_seconds(outcome.simulated)},
+                        {"wall_s", outcome.wall_s},
+                        {"real_time_factor", real_time_factor(outcome)},
+                        {"trace_sha256", outcome.trace_sha256},
+                        {"grants", outcome.grants},
+                        {"nodes", nodes},
+                        {"links", links},
+                        {"faults", faults},
+                        {"events", events_of(nodes)},
+                        {"warnings", warnings_of(setup, outcome)},
+                        {"unmodelled_registers", unmodelled_of(nodes)}};
+    if (!setup.cache_unused.empty()) report["cache_unused"] = setup.cache_unused;
     file.write(report.dump(2) + "\n");
 }
 

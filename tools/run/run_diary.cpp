@@ -11,6 +11,7 @@ RunDiary::RunDiary(const RunSetup& setup, const RunRequest& request) : setup_(se
               setup.nodes.size(), setup.links.size(), setup.scenario.faults.size(), setup.scenario.seed,
               setup.scenario.duration ? fmt::format("{} s", *setup.scenario.duration) : "without end");
     log::info("results in {}", setup.out.string());
+    if (!setup.cache_unused.empty()) log::info("{}", setup.cache_unused);
     for (const auto& link : setup.links)
         log::info("link {}: {}.{} - {}.{}{}", link.name, link.a.node, link.a.port, link.b.node, link.b.port,
                   link.nominal_baud > 0.0 ? fmt::format(", {} baud", link.nominal_baud) : std::string());

@@ -18,6 +18,7 @@ struct RunSetup {
     std::vector<cosim::LinkSpec> links;
     std::string control{};                ///< socket at which the world takes commands; empty: none
     std::vector<std::string> warnings{};  ///< what looks like a mistake
+    std::string cache_unused{};           ///< why no boot is taken from the cache; empty: no such reason
     std::filesystem::path save_state{};   ///< where the boards' states at `save_at` go; empty: nowhere
     cosim::Time save_at = 0;
     cosim::Time ready = 0;  ///< in real time: the boards are ready, the wall clock counts from here

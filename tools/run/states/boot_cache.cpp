@@ -22,17 +22,17 @@ namespace {
 constexpr std::string_view kEnding = ".state";
 }
 
-std::optional<std::filesystem::path> cache_folder() {
+std::optional<CacheFolder> cache_folder() {
     if (const char* named = std::getenv("PUCKLOOP_CACHE")) {
         const std::string folder = named;
         if (folder.empty() || folder == "off") return std::nullopt;
-        return std::filesystem::absolute(folder);
+        return CacheFolder{std::filesystem::absolute(folder), true};
     }
     // The XDG rules: a relative path counts as not set.
     if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && cache[0] == '/')
-        return std::filesystem::path(cache) / "puckloop";
+        return CacheFolder{std::filesystem::path(cache) / "puckloop"};
     if (const char* home = std::getenv("HOME"); home && home[0] == '/')
-        return std::filesystem::path(home) / ".cache" / "puckloop";
+        return CacheFolder{std::filesystem::path(home) / ".cache" / "puckloop"};
     return std::nullopt;
 }
 

@@ -163,14 +163,14 @@ void save_to_file(RunSetup& setup, const RunRequest& request) {
 }
 
 void use_cache(RunSetup& setup, const RunRequest& request) {
-    const std::optional<fs::path> folder = cache_folder();
+    const std::optional<CacheFolder> folder = cache_folder();
     // What the boards sense is of this world; where it is recorded does not matter.
     std::string world;
     for (const cosim::NodeSpec& node : setup.nodes) {
         json spec = json::parse(node.json);
         if (spec.at("kind") != "world") continue;
         spec["world"].erase("recording");
-        for (const char* key : {"live", "journal"})
+        for (const char* key : {"live", "repeats", "journal"})
             spec["events"].erase(key);
         world = json{spec["world"], spec["events"]}.dump();
     }
@@ -188,14 +188,16 @@ void use_cache(RunSetup& setup, const RunRequest& request) {
             // Memory that lasts comes from its own file.
             if (!spec.value("nvm", "").empty()) continue;
             if (!prepared) {
-                if (const std::string problem = prepare_cache(*folder); !problem.empty()) {
-                    setup.warnings.push_back(
-                        fmt::format("boot cache {}: {}: boots are executed", folder->string(), problem));
+                if (const std::string problem = prepare_cache(folder->path); !problem.empty()) {
+                    setup.cache_unused =
+                        fmt::format("boot cache {}: {}: boots are executed", folder->path.string(), problem);
+                    // Homes that cannot be written to are usual on build servers, and no fault of the robots.
+                    if (folder->asked_for) setup.warnings.push_back(setup.cache_unused);
                     return;
                 }
                 prepared = true;
             }
-            const std::string file = cached_boot(*folder, identity_of(spec), boot, world).string();
+            const std::string file = cached_boot(folder->path, identity_of(spec), boot, world).string();
             spec["from_state"] = {{"path", file}, {"source", "cache"}};
             spec["save_state"] = {{"path", file}, {"at_ps", boot}};
             node.json = spec.dump();
