@@ -124,15 +124,18 @@ Scenario read_scenario(const std::filesystem::path& file) {
         scenario.faults.push_back(read_fault(name, index++, *table, scenario));
     scenario.events.events = read_events(top);
     top.finish();
+    physics::check(scenario.world);
+    physics::check_events(scenario.events, scenario.world);
+    return scenario;
+}
+
+void check_ending(const Scenario& scenario) {
     const bool any_program =
         std::any_of(scenario.robots.begin(), scenario.robots.end(),
                     [](const RobotBoards& robot) { return robot.linux_board.has_value(); });
     if (!scenario.duration && !any_program)
-        top.fail("run", "nothing ends this run",
-                 "[run] with a duration, or a robot with a [robot.linux] program");
-    physics::check(scenario.world);
-    physics::check_events(scenario.events, scenario.world);
-    return scenario;
+        throw InputError(scenario.file.string(), "[run]", "nothing ends this run",
+                         "duration here, a robot with a [robot.linux] program, or --duration");
 }
 
 }  // namespace puckloop::scenarios

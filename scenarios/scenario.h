@@ -90,6 +90,10 @@ struct Scenario {
 /// line.
 Scenario read_scenario(const std::filesystem::path& file);
 
+/// Throws InputError if neither a duration nor a program ends the run: looked at when the command line's
+/// changes have been made.
+void check_ending(const Scenario& scenario);
+
 /// Applies an overlay file (`--model`): parameters for all robots, or for one in [[robot]] tables; [uart],
 /// [linux] and [clock] for all robots.
 void apply_overlay(Scenario& scenario, const std::filesystem::path& file);

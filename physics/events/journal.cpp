@@ -23,6 +23,10 @@ Journal::Journal(const EventPlan& plan)
     file_.reset(std::fopen(plan.journal.c_str(), "w"));
     if (!file_) throw RunError(fmt::format("cannot write {}: {}", plan.journal, std::strerror(errno)));
     write("# What was done to the world. The same again: puckloop run SCENARIO --events THIS_FILE\n");
+    if (!plan.repeats)
+        write("# Linux programs ran by the wall clock (--realtime): they will not do the same again. With "
+              "--paced "
+              "a run can be repeated.\n");
 }
 
 void Journal::write(const std::string& text) {

@@ -114,6 +114,36 @@ TEST_CASE("the programs of all robots end a run together") {
     CHECK(both.warnings.empty());
 }
 
+TEST_CASE("a duration or a program, in the file or on the command line, ends a run") {
+    const std::string text = kTwoRobots;
+    std::string endless = text.substr(text.find("[arena]"));
+    endless.erase(endless.find("[robot.linux]"),
+                  std::string("[robot.linux]\nprogram = [\"./program\"]\n").size());
+    Scene scene(endless);
+    CHECK_THROWS_WITH(set_up(scene.request),
+                      Catch::Contains("[run]: nothing ends this run") && Catch::Contains("--duration"));
+    scene.request.duration = 9.0;
+    CHECK(set_up(scene.request).scenario.duration == 9.0);
+    scene.request.duration.reset();
+    scene.request.linux_command = {"./other"};
+    CHECK(node(set_up(scene.request), "left.linux").at("programs") == 2);
+}
+
+TEST_CASE("a record says whether it repeats the run: programs by the wall clock do not") {
+    Scene scene(kTwoRobots);
+    const auto repeats = [&] { return node(set_up(scene.request), "world").at("events").at("repeats"); };
+    CHECK(repeats() == true);
+    scene.request.paced = true;
+    CHECK(repeats() == true);
+    scene.request.paced = false;
+    scene.request.realtime = true;
+    CHECK(repeats() == false);
+    const std::string text = kTwoRobots;
+    Scene alone(text.substr(0, text.find("[robot.linux]")));
+    alone.request.realtime = true;
+    CHECK(node(set_up(alone.request), "world").at("events").at("repeats") == true);
+}
+
 TEST_CASE("a range-and-bearing board needs its firmware, and says what it does not know") {
     const std::string text = kTwoRobots;
     const auto with = [&](const std::string& line) {

@@ -196,6 +196,10 @@ void add_robot(RunSetup& setup, const RobotBoards& robot, std::int64_t programs,
 void add_world(RunSetup& setup, const json& world, const RunRequest& request) {
     physics::EventPlan& events = setup.scenario.events;
     events.live = request.realtime || request.paced;
+    const auto& robots = setup.scenario.robots;
+    events.repeats = !request.realtime ||
+                     std::none_of(robots.begin(), robots.end(),
+                                  [](const RobotBoards& robot) { return robot.linux_board.has_value(); });
     if (events.any()) events.journal = (setup.out / "events.toml").string();
     if (events.live) setup.control = new_control_path();
     const json spec{{"kind", "world"},
@@ -228,6 +232,7 @@ RunSetup set_up(const RunRequest& request) {
     setup.scenario = scenarios::read_scenario(request.scenario);
     Scenario& scenario = setup.scenario;
     apply(request, scenario);
+    scenarios::check_ending(scenario);
     if (!scenario.passed_over.empty())
         setup.warnings.push_back(
             fmt::format("{}: [measurement] is of the measuring chain and not of this run: {}",
