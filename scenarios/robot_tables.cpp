@@ -94,7 +94,7 @@ RabBoard read_rab(const std::string& file, const std::string& where, const TomlV
     return rab;
 }
 
-/// A signal's name without its SIG; one that ends a program or tells it something.
+/// A signal's name without its SIG; one that ends a program or that programs handle.
 std::string read_signal(Reader& reader, std::string_view key, const std::string& fallback) {
     std::string name = fallback.empty() ? reader.text(key) : reader.text(key, fallback);
     if (name.starts_with("SIG")) name.erase(0, 3);

@@ -14,7 +14,7 @@ class LoopWalk {
     enum class Verdict : std::uint8_t { Pure, NotNow, Unknown };
 
     /// A walk that only looks on (waits/): it may read registers whose reads have side effects, goes on for
-    /// longer, and may be told that one word holds something else than it does.
+    /// longer, and may take one word to hold something else than it does.
     struct Probe {
         bool on = false;
         int most_steps = 200;

@@ -266,7 +266,7 @@ TEST_CASE("a command that cannot be carried out is one line, and so is a run tha
     check_one_line(act(""), 2, {"it is empty"});
     const Ended list = act("list");
     CHECK(list.status == 0);
-    // Whoever sends rubbish is told so, or is let go; the run minds neither.
+    // Rubbish is refused or its sender disconnected; the run goes on either way.
     for (const std::string& rubbish :
          {std::string("{}\n"), std::string("\xff\xfe\n"), std::string(200'000, 'x'),
           std::string("{\"action\":{\"verb\":99}}\n"), std::string()})

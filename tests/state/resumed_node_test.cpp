@@ -179,7 +179,7 @@ TEST_CASE("a resumed board that receives something else executes it") {
     }
 }
 
-TEST_CASE("a state that the user gave stands, and where it differs is told") {
+TEST_CASE("a state that the user gave is kept, and where it differs is reported") {
     const MakeBoard make = pic_board(own_pic_image());
     const auto inbox = inputs(1, true);
     const BoardState state = state_after(make, inbox);

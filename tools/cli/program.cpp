@@ -21,7 +21,7 @@ namespace puckloop::tools {
 namespace {
 
 /// Whoever started us may have closed the standard descriptors, which then would become sockets and logs, or
-/// ignored the end of child processes, which is how failures of nodes are told.
+/// ignored the end of child processes, which is how failures of nodes are noticed.
 void restore_surroundings() {
     int descriptor = 0;
     do

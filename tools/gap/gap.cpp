@@ -76,14 +76,14 @@ void tell_verdict(const gap::Experiment& experiment, const gap::Verdict& verdict
         fmt::print("  rival of {}: {} ({}), delta BIC {:.1f}\n", rival.instead_of, rival.cause.name,
                    rival.cause.number, rival.delta_bic);
     constexpr std::size_t kLines = 6;  // the clearest come first; all are in gap.json and the report
-    std::vector<std::string> told;
+    std::vector<std::string> printed;
     for (const auto& left : verdict.leftovers) {
         auto line = fmt::format("{} against {}: {}", left.observable, left.covariate, left.shape);
-        if (std::find(told.begin(), told.end(), line) != told.end()) continue;
-        if (told.size() < kLines) fmt::print("  left: {} (p {:.2g})\n", line, left.p_value);
-        told.push_back(std::move(line));
+        if (std::find(printed.begin(), printed.end(), line) != printed.end()) continue;
+        if (printed.size() < kLines) fmt::print("  left: {} (p {:.2g})\n", line, left.p_value);
+        printed.push_back(std::move(line));
     }
-    if (told.size() > kLines) fmt::print("  left: and {} more\n", told.size() - kLines);
+    if (printed.size() > kLines) fmt::print("  left: and {} more\n", printed.size() - kLines);
 }
 
 /// With the overlay as written, which is what anybody's run would load. Unasked: some seconds of it.

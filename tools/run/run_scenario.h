@@ -10,7 +10,7 @@
 namespace puckloop::tools {
 
 /// Runs, records trace.csv in the run's folder (made if absent), writes report.json and draws trajectory.svg.
-/// Throws InputError before the run; what happens during it is told in the outcome. `interrupt` may be null.
+/// Throws InputError before the run; what happens during it is in the outcome. `interrupt` may be null.
 cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
                             const std::function<void(const cosim::Progress&)>& progress,
                             const cosim::InterruptGuard* interrupt);

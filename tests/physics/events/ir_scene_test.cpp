@@ -49,7 +49,7 @@ TEST_CASE("a wall put between two boards shades, moved away it does not") {
     CHECK(heard(medium));
 }
 
-TEST_CASE("the world tells the medium of shapes and of robots in the air") {
+TEST_CASE("the world reports shapes to the medium and of robots in the air") {
     World world = pair();
     link_up(world);
     Action add = action(Verb::Add, "new");
