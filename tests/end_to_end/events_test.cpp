@@ -282,6 +282,11 @@ TEST_CASE("a command that cannot be carried out is one line, and so is a run tha
     check_one_line(bench.puckloop({"act", bench.out("fast").string(), "list"}), 2,
                    {"takes no commands", "--paced"});
     check_one_line(bench.puckloop({"act", bench.out("never").string(), "list"}), 2, {"there is no such run"});
+    for (const char* damaged : {R"({"ended":3})", R"({"socket":"/etc/passwd"})", "{", ""}) {
+        bench.file("fast/control.json", damaged);
+        check_one_line(bench.puckloop({"act", bench.out("fast").string(), "list"}), 2,
+                       {"control.json", "is damaged"});
+    }
 }
 
 TEST_CASE("an impossible event stops the run before it begins") {

@@ -100,7 +100,8 @@ std::string control_path_of(const std::string& run) {
     std::ifstream file(folder / kNote);
     if (!file) throw InputError("", run, "takes no commands", "a run started with --realtime or --paced");
     const auto note = nlohmann::json::parse(file, nullptr, false);
-    if (note.is_object() && note.value("ended", false)) throw InputError("", run, "the run has ended");
+    if (note.is_object() && note.contains("ended") && note["ended"] == true)
+        throw InputError("", run, "the run has ended");
     const std::string socket = socket_in(note);
     if (socket.empty())
         throw InputError((folder / kNote).string(), "", "is damaged", "{\"socket\": \"...\"}");
