@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/suggest.h"
-#include "physics/events/event.h"
+#include "physics/events/new_thing.h"
 #include "physics/parameters.h"
 #include "physics/plan.h"
 #include "protocols/rc5.h"
@@ -40,20 +40,6 @@ std::string first_of(std::initializer_list<std::string> problems) {
     return {};
 }
 
-template <class Function>
-void for_each_new(const NewThing& thing, Function function) {
-    const auto each = [&](const auto& things, const char* kind) {
-        for (const auto& one : things)
-            function(one, kind);
-    };
-    each(thing.walls, "wall");
-    each(thing.boxes, "box");
-    each(thing.cylinders, "cylinder");
-    each(thing.lamps, "lamp");
-    each(thing.speakers, "speaker");
-    each(thing.patches, "floor_patch");
-}
-
 /// What is known before the run: names with their kinds, and what will not move away.
 class Checker {
   public:
@@ -70,23 +56,15 @@ class Checker {
     }
 
     void gather() {
-        const auto add = [this](const auto& things, const char* kind) {
-            for (const auto& thing : things)
-                kinds_[thing.name] = kind;
-        };
-        add(world_.walls, "wall");
-        add(world_.boxes, "box");
-        add(world_.cylinders, "cylinder");
-        add(world_.lamps, "lamp");
-        add(world_.speakers, "speaker");
-        add(world_.patches, "floor_patch");
-        add(world_.robots, "robot");
+        const auto add = [this](const auto& thing, const char* kind) { kinds_[thing.name] = kind; };
+        for_each_thing(world_, add);
+        for (const Robot& robot : world_.robots)
+            add(robot, "robot");
         for (const Event& event : plan_.events) {
             events_.insert(event.name);
             const Action& action = event.action;
             if (action.verb == Verb::Add)
-                for_each_new(action.thing,
-                             [this](const auto& thing, const char* kind) { kinds_[thing.name] = kind; });
+                for_each_thing(action.thing, add);
             else
                 touched_.insert(action.object);
         }
@@ -180,15 +158,8 @@ class Checker {
     /// Sizes and values of a new thing: as of one that is there from the start.
     void check_new(const Event& event) const {
         const NewThing& thing = event.action.thing;
-        World world;
+        World world = world_of(thing, world_.arena);
         world.file = event.file;
-        world.arena = world_.arena;
-        world.walls = thing.walls;
-        world.boxes = thing.boxes;
-        world.cylinders = thing.cylinders;
-        world.lamps = thing.lamps;
-        world.speakers = thing.speakers;
-        world.patches = thing.patches;
         physics::check(world);
         for (const Box& box : thing.boxes)
             check_free(event, shape_of(box));
@@ -278,7 +249,7 @@ std::string problem_of(const Action& action) {
     case Verb::Add: {
         int things = 0;
         bool named = true;
-        for_each_new(action.thing, [&](const auto& thing, const char*) {
+        for_each_thing(action.thing, [&](const auto& thing, const char*) {
             ++things;
             named = named && thing.name == action.object;
         });

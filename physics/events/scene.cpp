@@ -1,6 +1,7 @@
 #include "physics/events/scene.h"
 
 #include "base/error.h"
+#include "physics/events/new_thing.h"
 
 #include <fmt/format.h>
 
@@ -15,25 +16,9 @@ using Kind = Found::Kind;
 
 /// A world with the new thing and nothing else: check() judges sizes and values.
 std::string problem_of_thing(const NewThing& thing, const World& like) {
-    World world;
-    world.arena = like.arena;
+    World world = world_of(thing, like.arena);
     world.arena.place = {};
-    world.walls = thing.walls;
-    world.boxes = thing.boxes;
-    world.cylinders = thing.cylinders;
-    world.lamps = thing.lamps;
-    world.speakers = thing.speakers;
-    world.patches = thing.patches;
-    const auto anonymous = [](auto& things) {
-        for (auto& one : things)
-            one.place.clear();
-    };
-    anonymous(world.walls);
-    anonymous(world.boxes);
-    anonymous(world.cylinders);
-    anonymous(world.lamps);
-    anonymous(world.speakers);
-    anonymous(world.patches);
+    for_each_thing(world, [](auto& one, const char*) { one.place.clear(); });
     try {
         check(world);
     } catch (const InputError& error) {
