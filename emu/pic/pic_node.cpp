@@ -1,6 +1,7 @@
 #include "emu/pic/pic_node.h"
 
 #include "emu/board/chip_json.h"
+#include "emu/board/node_state.h"
 #include "protocols/uart_sampling.h"
 
 #include <nlohmann/json.hpp>
@@ -136,20 +137,11 @@ void PicNode::i2c_phase(int unit, const cosim::I2cPhase& phase) {
 }
 
 void PicNode::state(StateWriter& archive) const {
-    archive(granted_, bus_);
-    archive.part("board", board_);
-    archive.part("chip", *chip_);
-    archive.part("log", log_);
+    board::save_node(archive, granted_, bus_, board_, *chip_, log_);
 }
 
 void PicNode::state(StateReader& archive) {
-    archive.bounded(granted_, 0, cosim::kNever);
-    archive(bus_);
-    archive.part("board", board_);
-    archive.part("chip", *chip_);
-    archive.part("log", log_);
-    archive.check(chip_->now() == granted_, "node and chip at different times");
-    log_.loaded(granted_);
+    board::load_node(archive, granted_, bus_, board_, *chip_, log_);
     // A press at the very time of the state is still to come.
     const auto next = std::lower_bound(options_.resets.begin(), options_.resets.end(), granted_);
     next_reset_ = static_cast<std::size_t>(next - options_.resets.begin());

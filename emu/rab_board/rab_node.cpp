@@ -1,5 +1,6 @@
 #include "emu/rab_board/rab_node.h"
 
+#include "emu/board/node_state.h"
 #include "emu/rab_board/rab_json.h"
 #include "protocols/uart_sampling.h"
 
@@ -134,20 +135,11 @@ void RabNode::i2c_phase(int /*unit*/, const cosim::I2cPhase& /*phase*/) {
 }
 
 void RabNode::state(StateWriter& archive) const {
-    archive(granted_, master_phases_);
-    archive.part("board", board_);
-    archive.part("chip", *chip_);
-    archive.part("log", log_);
+    board::save_node(archive, granted_, master_phases_, board_, *chip_, log_);
 }
 
 void RabNode::state(StateReader& archive) {
-    archive.bounded(granted_, 0, cosim::kNever);
-    archive(master_phases_);
-    archive.part("board", board_);
-    archive.part("chip", *chip_);
-    archive.part("log", log_);
-    archive.check(chip_->now() == granted_, "node and chip at different times");
-    log_.loaded(granted_);
+    board::load_node(archive, granted_, master_phases_, board_, *chip_, log_);
 }
 
 std::string RabNode::finish() {

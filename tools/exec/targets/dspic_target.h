@@ -67,4 +67,15 @@ class DspicTarget : public Target {
     std::string devices_report_;
 };
 
+/// What the parameters of all boards have in common.
+template <class Parameters>
+Parameters board_parameters(const TargetOptions& options) {
+    Parameters parameters;
+    parameters.seed = options.seed;
+    parameters.crystal_hertz = options.chip.crystal_hertz;
+    parameters.crystal_ppm = options.chip.ppm;
+    parameters.adc_noise_counts = options.adc_noise_counts;
+    return parameters;
+}
+
 }  // namespace puckloop::exec

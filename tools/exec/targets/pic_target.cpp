@@ -41,11 +41,7 @@ class PicTarget : public DspicTarget, private pic::BoardListener {
 }  // namespace
 
 std::unique_ptr<Target> make_pic_target(const TargetOptions& options, TargetListener& listener) {
-    pic::BoardParameters parameters;
-    parameters.seed = options.seed;
-    parameters.crystal_hertz = options.chip.crystal_hertz;
-    parameters.crystal_ppm = options.chip.ppm;
-    parameters.adc_noise_counts = options.adc_noise_counts;
+    auto parameters = board_parameters<pic::BoardParameters>(options);
     parameters.selector = options.selector;
     return std::make_unique<PicTarget>(parameters, options, listener);
 }

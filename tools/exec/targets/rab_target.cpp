@@ -85,12 +85,7 @@ class RabTarget : public DspicTarget, private rab::BoardListener {
 }  // namespace
 
 std::unique_ptr<Target> make_rab_target(const TargetOptions& options, TargetListener& listener) {
-    rab::BoardParameters parameters;
-    parameters.seed = options.seed;
-    parameters.crystal_hertz = options.chip.crystal_hertz;
-    parameters.crystal_ppm = options.chip.ppm;
-    parameters.adc_noise_counts = options.adc_noise_counts;
-    return std::make_unique<RabTarget>(parameters, options, listener);
+    return std::make_unique<RabTarget>(board_parameters<rab::BoardParameters>(options), options, listener);
 }
 
 }  // namespace puckloop::exec
