@@ -1,5 +1,6 @@
 // `puckloop exec --uart1 pty` as a terminal program meets it: the pace and the rate of a wire.
 
+#include "tests/dspic_pieces.h"
 #include "tests/end_to_end/workbench.h"
 
 #include <catch2/catch.hpp>
@@ -20,16 +21,7 @@ namespace {
 constexpr double kByte = 10.0 / 115200;  // seconds
 
 /// Sends without pause; a byte received ends it for good and comes back plus one.
-constexpr const char* kSource = R"(
-        goto    main
-        .org    0x100
-main:   mov     #0x1000, w15
-        mov     #0x27f0, w0
-        mov     w0, SPLIM
-        mov     #7, w0
-        mov     w0, U1BRG
-        bset    U1MODE, #15
-        bset    U1STA, #10
+const std::string kSource = kMain + kUart1 + R"(
 send:   btsc    U1STA, #9
         bra     send
         inc     w1, w1

@@ -1,5 +1,6 @@
 // A robot that hangs looks hung: on the terminal, in report.json, and with --strict in the exit status.
 
+#include "tests/dspic_pieces.h"
 #include "tests/end_to_end/workbench.h"
 
 #include <catch2/catch.hpp>
@@ -11,31 +12,19 @@ using Catch::Contains;
 
 namespace {
 
-constexpr const char* kMain = R"(
-        goto    main
-        .org    0x100
-main:   mov     #0x0900, w15
-        mov     #0x17f0, w0
-        mov     w0, SPLIM
-)";
 /// Switches the low-voltage detector on and waits for its reference, as boots of some firmware do.
-const std::string kWaitsForReference = std::string(kMain) + R"(
+const std::string kWaitsForReference = kMain + R"(
         bset    RCON, #12
 wait:   btss    RCON, #13
         bra     wait
         bra     wait
 )";
 /// Uses SPI1, which no model stands behind, and then waits for a character.
-const std::string kWaitsForCharacter = std::string(kMain) + R"(
+const std::string kWaitsForCharacter = kMain + R"(
         mov     w0, SPI1CON
-        mov     #0x8000, w0
-        mov     w0, U2MODE
-wait:   btss    U2STA, #0
-        bra     wait
-        bra     wait
-)";
+)" + kWaitForCharacter;
 /// Asks address 0x33 on I2C once, and waits for a character.
-const std::string kAsksNobody = std::string(kMain) + R"(
+const std::string kAsksNobody = kMain + R"(
         mov     #72, w0
         mov     w0, I2CBRG
         bset    I2CCON, #15
@@ -47,12 +36,7 @@ s:      btsc    I2CCON, #0
 t:      btsc    I2CSTAT, #14
         bra     t
         bset    I2CCON, #2
-        mov     #0x8000, w0
-        mov     w0, U2MODE
-wait:   btss    U2STA, #0
-        bra     wait
-        bra     wait
-)";
+)" + kWaitForCharacter;
 
 std::string image(const Workbench& bench, const std::string& name, const std::string& source) {
     const std::string hex = (bench.folder() / (name + ".hex")).string();

@@ -1,5 +1,6 @@
 // Boards whose flash and EEPROM last from run to run: [robot.pic] nvm, [robot.rab] nvm.
 
+#include "tests/dspic_pieces.h"
 #include "tests/end_to_end/one_line.h"
 
 #include <catch2/catch.hpp>
@@ -14,47 +15,11 @@ using Catch::Contains;
 namespace {
 
 /// Counts its boots in EEPROM and sends the count as a digit on UART1.
-constexpr const char* kCounter = R"(
-        goto    main
-        .org    0x100
-main:   mov     #0x0900, w15
-        mov     #0x27f0, w0
-        mov     w0, SPLIM
-        mov     #7, w0
-        mov     w0, U1BRG
-        bset    U1MODE, #15
-        bset    U1STA, #10
-        mov     #0x7f, w0
-        mov     w0, TBLPAG
-        mov     #0xf000, w1
-        tblrdl  [w1], w5
-        inc     w5, w5
-        mov     w1, NVMADR
-        mov     w0, NVMADRU
-        mov     #0x4044, w2
-        rcall   go
-        tblwtl  w5, [w1]
-        mov     #0x4004, w2
-        rcall   go
+const std::string kCounter = kMain + kUart1 + kCountBoots + R"(
         mov     #0x30, w0
         add     w5, w0, w5
         mov     w5, U1TXREG
-        mov     #0x8000, w0
-        mov     w0, U2MODE
-wait:   btss    U2STA, #0
-        bra     wait
-        bra     wait
-go:     mov     w2, NVMCON
-        mov     #0x55, w4
-        mov     w4, NVMKEY
-        mov     #0xaa, w4
-        mov     w4, NVMKEY
-        bset    NVMCON, #15
-        nop
-busy:   btsc    NVMCON, #15
-        bra     busy
-        return
-)";
+)" + kWaitForCharacter + kWriteMemory;
 
 std::string robot(const std::string& hex, const std::string& more) {
     return "[[robot]]\nposition = [\"" + std::string(more.empty() ? "0" : "30") +

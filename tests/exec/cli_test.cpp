@@ -3,9 +3,6 @@
 #include "tests/exec/command.h"
 #include "tests/exec/rig.h"
 
-#include "emu/dspic/assembler/assembler.h"
-#include "emu/image/intel_hex.h"
-
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
@@ -28,15 +25,6 @@ namespace {
 /// Echoes UART1 at 115200, each byte plus one; drives RD0 with what stands at RF1.
 std::string echo_image(const Workbench& bench) {
     constexpr std::string_view kSource = R"(
-        .equ SPLIM, 0x20
-        .equ TRISD, 0x2D2
-        .equ LATD, 0x2D6
-        .equ PORTF, 0x2E0
-        .equ U1MODE, 0x20C
-        .equ U1STA, 0x20E
-        .equ U1TXREG, 0x210
-        .equ U1RXREG, 0x212
-        .equ U1BRG, 0x214
         goto main
         .org 0x100
 main:   mov #0x1000, w15
@@ -59,7 +47,7 @@ echo:   mov U1RXREG, w0
         mov w0, U1TXREG
         bra wait
 )";
-    return bench.file("echo.hex", image::write_dspic_hex(dspic::assemble(kSource).words));
+    return bench.image("echo.hex", exec::assembled(kSource));
 }
 
 }  // namespace

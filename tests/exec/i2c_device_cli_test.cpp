@@ -2,9 +2,6 @@
 
 #include "tests/exec/command.h"
 
-#include "emu/dspic/assembler/assembler.h"
-#include "emu/image/intel_hex.h"
-
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
@@ -21,17 +18,6 @@ namespace {
 /// an address to which the nine bytes 1 to 9 are written.
 std::string probe_image(const Workbench& bench) {
     constexpr std::string_view kSource = R"(
-        .equ SPLIM, 0x20
-        .equ I2CRCV, 0x200
-        .equ I2CTRN, 0x202
-        .equ I2CBRG, 0x204
-        .equ I2CCON, 0x206
-        .equ I2CSTAT, 0x208
-        .equ U1MODE, 0x20C
-        .equ U1STA, 0x20E
-        .equ U1TXREG, 0x210
-        .equ U1RXREG, 0x212
-        .equ U1BRG, 0x214
         goto main
         .org 0x100
 main:   mov #0x1000, w15
@@ -89,7 +75,7 @@ busy:   btsc I2CSTAT, #14
         bra busy
         return
 )";
-    return bench.file("probe.hex", image::write_dspic_hex(dspic::assemble(kSource).words));
+    return bench.image("probe.hex", exec::assembled(kSource));
 }
 
 /// Bytes that the board sent, hexadecimal.

@@ -1,11 +1,10 @@
 // `exec --nvm`: what flash and EEPROM hold lasts from one run to the next. And the reset button.
 
+#include "tests/dspic_pieces.h"
 #include "tests/exec/command.h"
 #include "tests/exec/rig.h"
 
-#include "emu/dspic/assembler/assembler.h"
 #include "emu/dspic/device.h"
-#include "emu/image/intel_hex.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
@@ -14,6 +13,7 @@
 
 using namespace puckloop;
 using Catch::Contains;
+using exec::assembled;
 using exec::one_line;
 using exec::Outcome;
 using exec::text_of;
@@ -23,28 +23,7 @@ namespace {
 
 /// Counts its boots in EEPROM and writes itself a routine into flash the first time; sends on UART1 what the
 /// routine returns ('?' while there is none, then 'U') and the count.
-constexpr std::string_view kBootCounter = R"(
-        goto    main
-        .org    0x100
-main:   mov     #0x0900, w15
-        mov     #0x27f0, w0
-        mov     w0, SPLIM
-        mov     #7, w0
-        mov     w0, U1BRG
-        bset    U1MODE, #15
-        bset    U1STA, #10
-        mov     #0x7f, w0
-        mov     w0, TBLPAG
-        mov     #0xf000, w1
-        tblrdl  [w1], w5
-        inc     w5, w5
-        mov     w1, NVMADR
-        mov     w0, NVMADRU
-        mov     #0x4044, w2             ; erase the EEPROM word
-        rcall   go
-        tblwtl  w5, [w1]
-        mov     #0x4004, w2             ; write it
-        rcall   go
+const std::string kBootCounter = tests::kMain + tests::kUart1 + tests::kCountBoots + R"(
         clr     w0
         mov     w0, TBLPAG
         mov     #0x2000, w1
@@ -74,28 +53,11 @@ send:   mov     #0x30, w0
         mov     w7, U1TXREG
         mov     w5, U1TXREG
 stop:   bra     stop
-go:     mov     w2, NVMCON
-        mov     #0x55, w4
-        mov     w4, NVMKEY
-        mov     #0xaa, w4
-        mov     w4, NVMKEY
-        bset    NVMCON, #15
-        nop
-busy:   btsc    NVMCON, #15
-        bra     busy
-        return
-)";
-
-dspic::Program assembled(std::string_view source) {
-    dspic::AssembleOptions options;
-    for (const dspic::RegisterInfo& info : dspic::dspic30f6014a().registers)
-        options.predefined[std::string(info.name)] = info.address;
-    return dspic::assemble(source, options);
-}
+)" + tests::kWriteMemory;
 
 std::string counter(const Workbench& bench, const std::string& name = "counter.hex",
                     const std::string& more = {}) {
-    return bench.file(name, image::write_dspic_hex(assembled(std::string(kBootCounter) + more).words));
+    return bench.image(name, assembled(kBootCounter + more));
 }
 
 /// What it sends in one run with the arguments.

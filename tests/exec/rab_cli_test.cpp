@@ -1,8 +1,6 @@
 // `puckloop exec --board rab` and scripted bus masters, as a user runs them.
 
-#include "emu/dspic/assembler/assembler.h"
 #include "emu/dspic/device.h"
-#include "emu/image/intel_hex.h"
 #include "tests/exec/command.h"
 #include "tests/exec/rig.h"
 
@@ -74,10 +72,7 @@ send:   mov #0x5A, w2
         bset I2C1CON, #12
         retfie
 )";
-    dspic::AssembleOptions options;
-    for (const dspic::RegisterInfo& info : dspic::dspic33fj256gp710().registers)
-        options.predefined[std::string(info.name)] = info.address;
-    return bench.file("slave.hex", image::write_dspic_hex(dspic::assemble(kSource, options).words));
+    return bench.image("slave.hex", exec::assembled(kSource, dspic::dspic33fj256gp710()));
 }
 
 }  // namespace
