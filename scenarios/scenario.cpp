@@ -135,7 +135,7 @@ void check_ending(const Scenario& scenario) {
                     [](const RobotBoards& robot) { return robot.linux_board.has_value(); });
     if (!scenario.duration && !any_program)
         throw InputError(scenario.file.string(), "[run]", "nothing ends this run",
-                         "duration here, a robot with a [robot.linux] program, or --duration");
+                         "duration = \"60 s\", a robot with a [robot.linux] program, or --duration");
 }
 
 }  // namespace puckloop::scenarios

@@ -53,7 +53,8 @@ TEST_CASE("where the cache is") {
     const Variable relative("XDG_CACHE_HOME", "cache");
     CHECK(cache_folder() == at_home);
     const Variable nowhere("HOME", nullptr);
-    CHECK(!cache_folder());
+    CHECK(cache_folder() == CacheFolder{});
+    CHECK_THAT(prepare_cache({}), Catch::Contains("HOME"));
 }
 
 TEST_CASE("a cache that others may write to is not used") {

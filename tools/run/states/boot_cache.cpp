@@ -33,10 +33,11 @@ std::optional<CacheFolder> cache_folder() {
         return CacheFolder{std::filesystem::path(cache) / "puckloop"};
     if (const char* home = std::getenv("HOME"); home && home[0] == '/')
         return CacheFolder{std::filesystem::path(home) / ".cache" / "puckloop"};
-    return std::nullopt;
+    return CacheFolder{};
 }
 
 std::string prepare_cache(const std::filesystem::path& folder) {
+    if (folder.empty()) return "neither XDG_CACHE_HOME nor HOME is an absolute path";
     std::error_code error;
     std::filesystem::create_directories(folder.parent_path(), error);
     if (::mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST) return std::strerror(errno);

@@ -16,12 +16,12 @@ namespace puckloop::tools {
 inline constexpr std::uintmax_t kCacheBytes = std::uintmax_t{256} << 20;
 
 struct CacheFolder {
-    std::filesystem::path path;
-    bool asked_for = false;  ///< PUCKLOOP_CACHE names it: the user counts on it
+    std::filesystem::path path;  ///< empty: no home is known
+    bool asked_for = false;      ///< PUCKLOOP_CACHE names it: the user counts on it
     friend bool operator==(const CacheFolder&, const CacheFolder&) = default;
 };
 
-/// The folder that the environment names; none if PUCKLOOP_CACHE is "off" or empty, or no home is known.
+/// The folder that the environment names; none if PUCKLOOP_CACHE is "off" or empty.
 std::optional<CacheFolder> cache_folder();
 
 /// Makes it if absent. Returns why it cannot be used, or nothing.

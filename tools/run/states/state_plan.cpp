@@ -190,7 +190,8 @@ void use_cache(RunSetup& setup, const RunRequest& request) {
             if (!prepared) {
                 if (const std::string problem = prepare_cache(folder->path); !problem.empty()) {
                     setup.cache_unused =
-                        fmt::format("boot cache {}: {}: boots are executed", folder->path.string(), problem);
+                        fmt::format("boot cache {}{}: boots are executed",
+                                    folder->path.empty() ? "" : folder->path.string() + ": ", problem);
                     // Homes that cannot be written to are usual on build servers, and no fault of the robots.
                     if (folder->asked_for) setup.warnings.push_back(setup.cache_unused);
                     return;
