@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "physics/parameters.h"
 #include "physics/plan.h"
+#include "physics/robot_parameters.h"
 
 #include <fmt/format.h>
 
@@ -186,11 +187,7 @@ class Checker {
             const auto what = named("robot", r.name, r.place);
             position(what, r.place, r.x, r.y, r.heading);
             check_parameters(what, r.place, r.parameters, true);
-            Parameters parameters;
-            for (const auto& [name, value] : world_.parameters)
-                parameters.set(name, value);
-            for (const auto& [name, value] : r.parameters)
-                parameters.set(name, value);
+            const Parameters parameters = parameters_of(world_, r);
             const auto& b = parameters.robot;
             moving_.push_back({what, r.place, circle_shape(r.x, r.y, b.radius, b.height, b.reflectivity)});
             if (b.com_z >= b.height) fail(what, r.place, "robot.com_z is above robot.height");

@@ -1,22 +1,11 @@
 #include "physics/ir_medium.h"
 
+#include "physics/robot_parameters.h"
+
 #include <algorithm>
 #include <cmath>
 
 namespace puckloop::physics {
-
-namespace {
-
-Parameters parameters_of(const World& world, const Robot& robot) {
-    Parameters parameters;
-    for (const auto& [name, value] : world.parameters)
-        parameters.set(name, value);
-    for (const auto& [name, value] : robot.parameters)
-        parameters.set(name, value);
-    return parameters;
-}
-
-}  // namespace
 
 IrMedium::IrMedium(const World& world, bool changes) : fixed_(fixed_shapes(world)), changes_world_(changes) {
     for (const Robot& robot : world.robots) {

@@ -1,5 +1,7 @@
 #include "physics/world_model.h"
 
+#include "physics/robot_parameters.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -14,12 +16,6 @@ constexpr double kSeenTurn = 5e-5;   // rad
 World checked(World description) {
     check(description);
     return description;
-}
-
-Parameters with(Parameters parameters, const std::map<std::string, double>& values) {
-    for (const auto& [name, value] : values)
-        parameters.set(name, value);
-    return parameters;
 }
 
 }  // namespace

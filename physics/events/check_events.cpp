@@ -3,8 +3,8 @@
 #include "base/error.h"
 #include "base/suggest.h"
 #include "physics/events/new_thing.h"
-#include "physics/parameters.h"
 #include "physics/plan.h"
+#include "physics/robot_parameters.h"
 #include "protocols/rc5.h"
 
 #include <fmt/format.h>
@@ -188,12 +188,7 @@ class Checker {
             if (cylinder.name == action.object) move(shape_of(cylinder), 0.0);
         for (const Robot& robot : world_.robots) {
             if (robot.name != action.object) continue;
-            Parameters parameters;
-            for (const auto& [name, value] : world_.parameters)
-                parameters.set(name, value);
-            for (const auto& [name, value] : robot.parameters)
-                parameters.set(name, value);
-            const auto& body = parameters.robot;
+            const BodyParameters body = parameters_of(world_, robot).robot;
             move(circle_shape(0, 0, body.radius, body.height, body.reflectivity), 0.0);
         }
     }
