@@ -54,30 +54,23 @@ when = { robot = "robot0", enters = ["59 cm", "44 cm"], radius = "1 mm" }
 remove = "can"
 )";
 
+/// With a range-and-bearing board and a program that follows others; `start` in milliseconds.
+std::string follower(const std::string& name, const std::string& x_y, int id, int start) {
+    return "[[robot]]\nname = \"" + name + "\"\nposition = [" + x_y + "]\n" + R"([robot.pic]
+firmware = ")" PUCKLOOP_SOURCE R"(/firmware/epuck/epuck.hex"
+[robot.rab]
+firmware = ")" PUCKLOOP_SOURCE R"(/firmware/rab/rab.hex"
+[robot.linux]
+program = ["puckloop-control", "--behaviour", "follow", "--duration", "30", "--rab-id", ")" +
+           std::to_string(id) + "\"]\nstart = \"" + std::to_string(start) + " ms\"\n";
+}
+
 const std::string kPair = R"([run]
 duration = "1200 ms"
 [arena]
 size = ["1.6 m", "1.2 m"]
-[[robot]]
-name = "a"
-position = ["10 cm", "0 cm"]
-[robot.pic]
-firmware = ")" PUCKLOOP_SOURCE R"(/firmware/epuck/epuck.hex"
-[robot.rab]
-firmware = ")" PUCKLOOP_SOURCE R"(/firmware/rab/rab.hex"
-[robot.linux]
-program = ["puckloop-control", "--behaviour", "follow", "--rab-id", "1", "--duration", "30"]
-start = "200 ms"
-[[robot]]
-name = "b"
-position = ["-20 cm", "5 cm"]
-[robot.pic]
-firmware = ")" PUCKLOOP_SOURCE R"(/firmware/epuck/epuck.hex"
-[robot.rab]
-firmware = ")" PUCKLOOP_SOURCE R"(/firmware/rab/rab.hex"
-[robot.linux]
-program = ["puckloop-control", "--behaviour", "follow", "--rab-id", "2", "--duration", "30"]
-start = "207 ms"
+)" + follower("a", R"("10 cm", "0 cm")", 1, 200) +
+                          follower("b", R"("-20 cm", "5 cm")", 2, 207) + R"(
 [[event]]
 at = "600 ms"
 add = "wall"
