@@ -75,7 +75,9 @@ PicBoard read_pic(const std::string& file, const std::string& where, const TomlV
     pic.nvm = read_nvm(reader, folder, others);
     constexpr double kNotGiven = std::numeric_limits<double>::quiet_NaN();
     if (const double boot = reader.quantity("boot", Dimension::Time, kNotGiven); !std::isnan(boot)) {
-        if (boot < 0) reader.fail("boot", "boot is before the run begins", "0 s or later, such as \"40 s\"");
+        constexpr double kLongest = 86'400.0 * 30;  // s, as a run
+        if (!(boot >= 0 && boot <= kLongest))
+            reader.fail("boot", "boot is out of range", "0 s to 720 h, such as \"40 s\"");
         pic.boot = boot;
     }
     reader.finish();
@@ -98,6 +100,10 @@ RabBoard read_rab(const std::string& file, const std::string& where, const TomlV
 std::string read_signal(Reader& reader, std::string_view key, const std::string& fallback) {
     std::string name = fallback.empty() ? reader.text(key) : reader.text(key, fallback);
     if (name.starts_with("SIG")) name.erase(0, 3);
+    for (const char* stops : {"STOP", "TSTP", "TTIN", "TTOU"})
+        if (name == stops)
+            reader.fail(key, fmt::format("'{}' stops a program, which simulated time does not know", name),
+                        "a signal that ends it or that it handles, such as \"INT\"");
     for (int number = 1; number < NSIG; ++number)
         if (const char* known = sigabbrev_np(number); known != nullptr && name == known) return name;
     reader.fail(key, fmt::format("there is no signal '{}'", name),

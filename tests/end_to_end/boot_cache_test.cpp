@@ -207,7 +207,8 @@ TEST_CASE("in real time the boot is not waited for") {
     check_same_run(bench, "first", "second");
 }
 
-TEST_CASE("a boot before the run begins is refused") {
+TEST_CASE("a boot before the run begins, or beyond every run, is refused") {
     const Workbench bench;
-    check_one_line(bench.run("x", {scenario(bench, "-1 s")}), 2, {"boot.toml", "line ", "boot"});
+    for (const char* time : {"-1 s", "1e30 s"})
+        check_one_line(bench.run("x", {scenario(bench, time)}), 2, {"boot.toml", "line ", "boot", "720 h"});
 }

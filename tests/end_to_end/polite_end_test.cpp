@@ -120,6 +120,8 @@ TEST_CASE("signals that cannot be are refused") {
             {"do not rise"});
     refused("signals = [{ at = \"2 s\", say = \"INT\" }]\n", {"send"});
     refused("signals = [{ at = \"2 s\" }]\n", {"send"});
+    refused("signals = [{ at = \"2 s\", send = \"STOP\" }]\n", {"'STOP' stops a program"});
+    refused("end_signal = \"SIGTSTP\"\n", {"'TSTP' stops a program"});
     refused("end_signal = \"KILLER\"\n", {"KILLER"});
     refused("grace = \"-1 s\"\n", {"grace", "0 s to 1 h"});
 }

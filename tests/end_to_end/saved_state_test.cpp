@@ -99,6 +99,19 @@ TEST_CASE("a state stands in another world, and the report says so") {
     CHECK(bench.report("moved")["nodes"]["robot0.pic"]["uart2"]["sent"] > 1000);
 }
 
+TEST_CASE("a run of other noise may end before its state's time") {
+    const Workbench bench;
+    const fs::path state = bench.folder() / "late.state";
+    REQUIRE(
+        bench.run("late", {bench.hello(), "--save-state", state, "--at", "2s", "--duration", "2"}).status ==
+        0);
+    const Ended ended =
+        bench.run("early", {bench.hello(), "--from-state", state, "--seed", "77", "--duration", "1.5"});
+    INFO(ended.err);
+    CHECK(ended.status == 0);
+    CHECK_THAT(ended.out, Catch::Contains("robot0.pic: from its state at 2 s"));
+}
+
 TEST_CASE("one saved board serves all robots with its firmware") {
     const Workbench bench;
     const fs::path state = saved(bench);
