@@ -1,5 +1,6 @@
 // The built `puckloop exec`, as a user runs it: statuses, one-line errors, ends, JSON.
 
+#include "tests/dspic_pieces.h"
 #include "tests/exec/command.h"
 #include "tests/exec/rig.h"
 
@@ -24,18 +25,9 @@ namespace {
 
 /// Echoes UART1 at 115200, each byte plus one; drives RD0 with what stands at RF1.
 std::string echo_image(const Workbench& bench) {
-    constexpr std::string_view kSource = R"(
-        goto main
-        .org 0x100
-main:   mov #0x1000, w15
-        mov #0x27f0, w0
-        mov w0, SPLIM
+    const std::string source = tests::kMain + tests::kUart1 + R"(
         clr LATD
         clr TRISD
-        mov #7, w0
-        mov w0, U1BRG
-        bset U1MODE, #15
-        bset U1STA, #10
 wait:   btsc PORTF, #1
         bset LATD, #0
         btss PORTF, #1
@@ -47,7 +39,7 @@ echo:   mov U1RXREG, w0
         mov w0, U1TXREG
         bra wait
 )";
-    return bench.image("echo.hex", exec::assembled(kSource));
+    return bench.image("echo.hex", exec::assembled(source));
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // Devices on the bus of a target that is its master, and what is recorded of a bus with nobody on it.
 
+#include "tests/dspic_pieces.h"
 #include "tests/exec/command.h"
 
 #include <catch2/catch.hpp>
@@ -17,20 +18,11 @@ namespace {
 /// UART1 asks: a byte below 0x80 is an address of which register 1 is read and sent back; one above is 0x80 +
 /// an address to which the nine bytes 1 to 9 are written.
 std::string probe_image(const Workbench& bench) {
-    constexpr std::string_view kSource = R"(
-        goto main
-        .org 0x100
-main:   mov #0x1000, w15
-        mov #0x27f0, w0
-        mov w0, SPLIM
+    const std::string source = tests::kMain + tests::kUart1 + R"(
         mov #150, w0
         mov w0, I2CBRG
         mov #0x8000, w0
         mov w0, I2CCON
-        mov #7, w0
-        mov w0, U1BRG
-        bset U1MODE, #15
-        bset U1STA, #10
 wait:   btss U1STA, #0
         bra wait
         mov U1RXREG, w1
@@ -75,7 +67,7 @@ busy:   btsc I2CSTAT, #14
         bra busy
         return
 )";
-    return bench.image("probe.hex", exec::assembled(kSource));
+    return bench.image("probe.hex", exec::assembled(source));
 }
 
 /// Bytes that the board sent, hexadecimal.
