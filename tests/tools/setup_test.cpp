@@ -144,6 +144,25 @@ TEST_CASE("a record says whether it repeats the run: programs by the wall clock 
     CHECK(node(set_up(alone.request), "world").at("events").at("repeats") == true);
 }
 
+TEST_CASE("files beside a linked folder's target are found") {
+    namespace fs = std::filesystem;
+    const fs::path place =
+        fs::canonical(fs::temp_directory_path()) / tests::scratch_path("linked").filename();
+    fs::create_directories(place / "checkout/scenarios");
+    fs::create_directory_symlink(place / "checkout/scenarios", place / "scenarios");
+    std::string text = kTwoRobots;
+    text.replace(text.find("pic.hex"), 7, "../firmware/pic.hex");
+    text.replace(text.find("./program"), 9, "../bin/program");
+    std::ofstream(place / "scenarios/x.toml") << text;
+    RunRequest request;
+    request.scenario = place / "scenarios/x.toml";
+    const RunSetup setup = set_up(request);
+    CHECK(node(setup, "left.pic").at("firmware") == (place / "checkout/firmware/pic.hex").string());
+    CHECK(node(setup, "right.pic").at("firmware") == (place / "checkout/scenarios/pic.hex").string());
+    CHECK(node(setup, "left.linux").at("program") == (place / "checkout/bin/program").string());
+    fs::remove_all(place);
+}
+
 TEST_CASE("a range-and-bearing board needs its firmware, and says what it does not know") {
     const std::string text = kTwoRobots;
     const auto with = [&](const std::string& line) {

@@ -5,6 +5,7 @@
 #include "tools/exec/ends/script_end.h"
 #include "tools/exec/scripts.h"
 #include "tools/exec/text_input.h"
+#include "tools/run/program_path.h"
 
 #include <fmt/format.h>
 
@@ -47,8 +48,7 @@ exec::UartSpec parse_outside(const std::string& place, const std::string& text, 
     exec::UartSpec spec = exec::parse_uart_spec(place, text);
     if (spec.kind == exec::UartSpec::Kind::Stdio)
         throw InputError("", place, "a run has no standard input to give", "pty, tcp:PORT or script:FILE");
-    if (!spec.file.empty())
-        spec.file = (std::filesystem::path(folder) / spec.file).lexically_normal().string();
+    if (!spec.file.empty()) spec.file = full_path(std::filesystem::path(folder) / spec.file).string();
     return spec;
 }
 

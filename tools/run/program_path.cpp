@@ -6,9 +6,16 @@
 
 namespace puckloop::tools {
 
+std::filesystem::path full_path(const std::filesystem::path& path) {
+    const std::filesystem::path whole = std::filesystem::absolute(path);
+    std::error_code error;
+    const std::filesystem::path folder = std::filesystem::weakly_canonical(whole.parent_path(), error);
+    return error ? whole.lexically_normal() : (folder / whole.filename()).lexically_normal();
+}
+
 std::filesystem::path find_program(const std::string& name, const std::filesystem::path& folder) {
     namespace fs = std::filesystem;
-    if (name.find('/') != std::string::npos) return fs::absolute(folder / name).lexically_normal();
+    if (name.find('/') != std::string::npos) return full_path(folder / name);
     std::error_code error;
     const fs::path self = fs::read_symlink("/proc/self/exe", error);
     // The project's own programs are built next to this one's folder, and installed beside it.

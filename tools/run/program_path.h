@@ -1,10 +1,14 @@
 #pragma once
-// Where a scenario's Linux program is.
+// Where a scenario's files and its Linux programs are.
 
 #include <filesystem>
 #include <string>
 
 namespace puckloop::tools {
+
+/// Absolute, its folders as the system finds them: ".." after a linked folder is the parent of the folder
+/// itself. Whether the file is there does not matter.
+std::filesystem::path full_path(const std::filesystem::path& path);
 
 /// A path with a slash counts from `folder`; a bare name is looked for beside the running puckloop, then in
 /// PATH. Returns the path unresolved when nothing is found, for the error that starting it will give.

@@ -41,10 +41,6 @@ std::map<std::string, std::uint16_t> ids_of(std::span<const cosim::SignalInfo> s
     return ids;
 }
 
-std::string absolute_path(const std::filesystem::path& path) {
-    return std::filesystem::absolute(path).lexically_normal().string();
-}
-
 /// "robot0.pic.log" in the results folder.
 std::string log_of(const RunSetup& setup, const std::string& node) {
     return (setup.out / (node + ".log")).string();
@@ -54,13 +50,13 @@ json pic_spec(const RunSetup& setup, const RobotBoards& robot) {
     const Scenario& scenario = setup.scenario;
     return {{"kind", "pic"},
             {"name", robot.name + ".pic"},
-            {"firmware", absolute_path(robot.pic.firmware)},
+            {"firmware", full_path(robot.pic.firmware).string()},
             {"seed", scenario.seed},
             {"crystal_ppm", robot.pic.crystal_ppm},
             {"adc_noise", robot.pic.adc_noise},
             {"selector", robot.pic.selector},
             {"resets", robot.pic.resets},
-            {"nvm", robot.pic.nvm.empty() ? "" : absolute_path(robot.pic.nvm)},
+            {"nvm", robot.pic.nvm.empty() ? "" : full_path(robot.pic.nvm).string()},
             {"log", log_of(setup, robot.name + ".pic")}};
 }
 
@@ -68,12 +64,12 @@ json rab_spec(const RunSetup& setup, const RobotBoards& robot) {
     const Scenario& scenario = setup.scenario;
     return {{"kind", "rab"},
             {"name", robot.name + ".rab"},
-            {"firmware", absolute_path(robot.rab->firmware)},
+            {"firmware", full_path(robot.rab->firmware).string()},
             {"seed", scenario.seed},
             {"crystal_ppm", robot.rab->crystal_ppm},
             {"adc_noise", robot.rab->adc_noise},
             {"i2c_hertz", scenario.i2c_clock},
-            {"nvm", robot.rab->nvm.empty() ? "" : absolute_path(robot.rab->nvm)},
+            {"nvm", robot.rab->nvm.empty() ? "" : full_path(robot.rab->nvm).string()},
             {"log", log_of(setup, robot.name + ".rab")}};
 }
 
