@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -63,6 +64,9 @@ void check_file(const std::string& file, int depth) {
     if ((status.st_mode & (S_ISUID | S_ISGID)) != 0 && geteuid() != status.st_uid)
         throw InputError(file, "", "is setuid or setgid, so nothing can be preloaded into it");
     std::ifstream in(file, std::ios::binary);
+    if (!in)
+        throw InputError(file, "", std::string("cannot be opened: ") + std::strerror(errno),
+                         errno == EMFILE ? "a higher limit of open files (ulimit -n)" : "a file to read");
     char magic[4] = {};
     in.read(magic, sizeof magic);
     if (std::memcmp(magic, ELFMAG, SELFMAG) == 0) {

@@ -97,6 +97,31 @@ TEST_CASE("a low limit of open files is enough, or named") {
     }
 }
 
+TEST_CASE("a limit of open files that many robots exceed is named") {
+    constexpr int kRobots = 30;
+    const Workbench bench;
+    std::string text = "[arena]\nsize = [\"4 m\", \"4 m\"]\n";
+    for (int i = 0; i < kRobots; ++i)
+        text += "[[robot]]\nposition = [\"" + std::to_string(-170 + 35 * (i % 10)) + " cm\", \"" +
+                std::to_string(-170 + 35 * (i / 10)) +
+                " cm\"]\n[robot.pic]\nfirmware = \"" PUCKLOOP_SOURCE
+                "/firmware/epuck/epuck.hex\"\n[robot.linux]\nprogram = [\"" PUCKLOOP_MISBEHAVE
+                "\", \"sleep\"]\nstart = \"50 ms\"\n";
+    const std::string many = bench.file("many.toml", text);
+    for (const int limit : {60, 61, 62, 63, 64, 65}) {  // each runs out at another place
+        const Ended ended =
+            Process({"/bin/sh", "-c", "ulimit -n " + std::to_string(limit) + "; exec \"$0\" \"$@\"",
+                     PUCKLOOP_PROGRAM, "run", "--in-process", many, "--duration", "0.1", "--out",
+                     bench.out("o")},
+                    bench.folder())
+                .wait();
+        CAPTURE(limit);
+        CHECK((ended.status == 1 || ended.status == 2));
+        CHECK(ended.error_lines() == 1);
+        CHECK_THAT(ended.err, Contains("Too many open files"));
+    }
+}
+
 TEST_CASE("a program that never opens its port fails the run at its end") {
     const Workbench bench;
     check_one_line(with_program(bench, {"--duration", "3"}, {PUCKLOOP_MISBEHAVE, "sleep"}), 1,
