@@ -66,8 +66,9 @@ void note_polls(Machine& m, const Op* branch, const Op* head) {
     const std::optional<LoopFinding> finding = find_conditions(m, branch, head);
     if (!finding) return;
     for (const LoopCondition& condition : finding->conditions) {
+        if (condition.address >= SfrSpace::kWords * 2 || !condition.exact) continue;  // RAM
         const RegisterInfo* info = m.sfr.info(condition.address);
-        if (condition.address >= SfrSpace::kWords * 2 || !condition.exact || !info) continue;
+        if (!info) continue;
         const std::uint16_t missing =
             m.sfr.modelled(condition.address) ? missing_bits(m.device, *info) : 0xFFFF;
         const auto bits = static_cast<std::uint16_t>(condition.mask & missing);
