@@ -507,6 +507,8 @@ std::string say_hello(bool forked) {
     request.a = wire::kVersion;
     request.b = forked ? 1 : 0;
     std::size_t received = 0;
+    // From here on and not before: a sanitizer's allocator makes calls of its own, and Hello comes first.
+    conducted = true;
     device_call(request, nullptr, 0, inherited.data(), inherited.size(), false, &received);
     inherited.resize(received);
     // The node, which by now is the parent of every process here, takes them along when it ends.
@@ -522,7 +524,6 @@ __attribute__((constructor)) static void begin() {
     main_thread->has_handle = true;
     main_thread->state = Thread::State::Running;
     current = main_thread;
-    conducted = true;
     begin_process(main_thread);
 }
 
