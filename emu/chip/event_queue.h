@@ -22,7 +22,7 @@ class EventQueue {
     using Handler = void (*)(void* owner, Cycle due);
     using Slot = std::uint8_t;
 
-    /// An event that comes every `period` cycles and does nothing but raise `irq`, until told otherwise.
+    /// An event that comes every `period` cycles and does nothing but raise `irq`, until changed.
     struct Steady {
         int irq = -1;  ///< -1: the slot's event is not of this kind
         Cycle period = 0;
