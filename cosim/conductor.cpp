@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "cosim/conductor_state.h"
-#include "cosim/remote_node.h"
+#include "cosim/remote/remote_node.h"
 
 #include <fmt/format.h>
 

@@ -1,12 +1,12 @@
 #pragma once
 // The conductor: owns simulated time for every node of a run. See docs/architecture.md, "The conductor".
 
-#include "cosim/faults.h"
-#include "cosim/link.h"
-#include "cosim/link_stats.h"
-#include "cosim/node_handle.h"
-#include "cosim/time.h"
-#include "cosim/trace.h"
+#include "cosim/core/link.h"
+#include "cosim/core/time.h"
+#include "cosim/faults/faults.h"
+#include "cosim/schedule/node_handle.h"
+#include "cosim/trace/link_stats.h"
+#include "cosim/trace/trace.h"
 
 #include <csignal>
 #include <cstdint>
@@ -42,8 +42,8 @@ struct RunOptions {
     double stall_seconds = 10.0;  ///< a node process that does not answer for so long ends the run
     /// A node's wish to end the run (Node::stop) takes effect so much later; no node runs further ahead.
     Time stop_latency = 10 * kMillisecond;
-    /// Starts a process that serves one node (cosim/node_server.h) on file descriptor 3; in place of the
-    /// program's name it gets "puckloop: " and the node's, which is what ps shows.
+    /// Starts a process that serves one node (cosim/remote/node_server.h) on file descriptor 3; in place of
+    /// the program's name it gets "puckloop: " and the node's, which is what ps shows.
     std::vector<std::string> node_command{"/proc/self/exe"};
     /// Cuts grants at random places; the trace must not change (for tests).
     std::optional<std::uint64_t> chop_seed{};

@@ -4,11 +4,11 @@
 
 #include "base/random.h"
 #include "cosim/conductor.h"
-#include "cosim/network.h"
-#include "cosim/schedule.h"
-#include "cosim/trace_hash.h"
-#include "cosim/trace_merger.h"
-#include "cosim/workers.h"
+#include "cosim/schedule/network.h"
+#include "cosim/schedule/schedule.h"
+#include "cosim/schedule/workers.h"
+#include "cosim/trace/trace_hash.h"
+#include "cosim/trace/trace_merger.h"
 
 #include <chrono>
 #include <exception>

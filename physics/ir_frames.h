@@ -11,7 +11,7 @@
 // 1 if any was; overlap: other boards, joined by '+', whose frames overlapped it and could be heard there;
 // receiver_sending: 1 if the receiver itself was on the air meanwhile.
 
-#include "cosim/time.h"
+#include "cosim/core/time.h"
 #include "physics/ir_medium.h"
 #include "physics/recorder.h"
 

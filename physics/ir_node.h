@@ -9,7 +9,7 @@
 // ir.level_delay. The shortest of them is what the boards can run ahead of each other. Poses take effect when
 // a burst begins.
 
-#include "cosim/node.h"
+#include "cosim/core/node.h"
 #include "physics/description.h"
 
 #include <memory>

@@ -9,7 +9,7 @@
 //
 // Deviation: threshold without hysteresis and without gain control.
 
-#include "cosim/time.h"
+#include "cosim/core/time.h"
 #include "physics/ir_medium.h"
 
 #include <deque>

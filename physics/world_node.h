@@ -8,7 +8,7 @@
 // world.publish_quantum, or for poses to 10 um and 0.1 mrad. What happens to the world meanwhile:
 // physics/events.
 
-#include "cosim/node.h"
+#include "cosim/core/node.h"
 #include "physics/description.h"
 #include "physics/events/command_source.h"
 

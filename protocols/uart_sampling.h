@@ -1,8 +1,8 @@
 #pragma once
 // What a UART receiver makes of a frame on its line: it samples the line in the middle of its own bits.
 
-#include "cosim/message.h"
-#include "cosim/time.h"
+#include "cosim/core/message.h"
+#include "cosim/core/time.h"
 
 #include <cstdint>
 #include <vector>

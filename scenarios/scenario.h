@@ -1,7 +1,7 @@
 #pragma once
 // A scenario: the world, the robots with their firmware and Linux programs, the faults. See docs/scenario.md.
 
-#include "cosim/faults.h"
+#include "cosim/faults/faults.h"
 #include "physics/events/event.h"
 
 #include <cstdint>

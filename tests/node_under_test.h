@@ -2,9 +2,9 @@
 // What the tests of board nodes share: a small program as an image, grants cut at random, a log read once.
 
 #include "base/random.h"
-#include "cosim/time.h"
+#include "cosim/core/time.h"
 #include "emu/dspic/assembler/assembler.h"
-#include "emu/dspic/device.h"
+#include "emu/dspic/devices/device.h"
 #include "emu/image/image.h"
 
 #include <algorithm>

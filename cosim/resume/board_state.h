@@ -1,8 +1,8 @@
 #pragma once
 // A board as it was at one instant of a run, with all that it received and sent until then.
 
-#include "cosim/message_state.h"
-#include "cosim/time.h"
+#include "cosim/core/message_state.h"
+#include "cosim/core/time.h"
 
 #include <cstdint>
 #include <string>
@@ -30,7 +30,7 @@ struct BoardState {
     Time time = 0;                     ///< nothing of this instant has happened yet
     std::vector<Message> received;     ///< before `time`, in order
     std::vector<Message> sent;         ///< by then, by time
-    std::vector<std::uint8_t> memory;  ///< the node's own state (cosim/stateful_node.h)
+    std::vector<std::uint8_t> memory;  ///< the node's own state (cosim/core/stateful_node.h)
 
     template <class Archive>
     void state(Archive& archive) {

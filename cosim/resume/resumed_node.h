@@ -11,8 +11,8 @@
 //
 // It can also be the one that saves: at `save_at` it hands out its state with all that it received and sent.
 
+#include "cosim/core/stateful_node.h"
 #include "cosim/resume/board_state.h"
-#include "cosim/stateful_node.h"
 
 #include <functional>
 #include <memory>

@@ -1,9 +1,9 @@
 #pragma once
 // The ATmega1284P as a board sees it: core, registers, timetable and peripherals, wired up.
 
-#include "cosim/clock.h"
-#include "cosim/message.h"
-#include "cosim/time.h"
+#include "cosim/core/clock.h"
+#include "cosim/core/message.h"
+#include "cosim/core/time.h"
 #include "emu/avr/core/core.h"
 #include "emu/avr/fuses.h"
 #include "emu/avr/pins.h"

@@ -1,7 +1,7 @@
 #pragma once
 // What is around the chip, seen from its pins. The chip knows no board: a board implements this.
 
-#include "cosim/message.h"
+#include "cosim/core/message.h"
 #include "emu/avr/device.h"
 
 #include <cstdint>

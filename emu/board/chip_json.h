@@ -1,7 +1,7 @@
 #pragma once
 // What a chip went through, as JSON: the part that the bench and the run's report share.
 
-#include "emu/dspic/chip.h"
+#include "emu/dspic/chip/chip.h"
 
 #include <nlohmann/json_fwd.hpp>
 

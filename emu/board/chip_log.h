@@ -6,9 +6,9 @@
 // time and text: the log does not depend on how grants were cut.
 
 #include "base/node_log.h"
-#include "cosim/message.h"
-#include "cosim/time.h"
-#include "emu/dspic/chip.h"
+#include "cosim/core/message.h"
+#include "cosim/core/time.h"
+#include "emu/dspic/chip/chip.h"
 #include "emu/image/symbol_table.h"
 
 #include <array>

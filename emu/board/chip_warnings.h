@@ -2,7 +2,7 @@
 // What somebody who looks at a robot would want to be warned of: a program that hangs, registers without a
 // model, addresses where nobody answers. The same lines for the bench and for a run.
 
-#include "emu/dspic/chip.h"
+#include "emu/dspic/chip/chip.h"
 
 #include <optional>
 #include <string>

@@ -2,7 +2,7 @@
 // What the nodes of a main board and of a range-and-bearing board save alike.
 
 #include "base/archive.h"
-#include "cosim/time.h"
+#include "cosim/core/time.h"
 
 namespace puckloop::board {
 

@@ -12,9 +12,9 @@
 //     longer have begun unseen: a mismatched receiver's last character may come up to one frame of the
 //     sender late.
 
-#include "cosim/clock.h"
-#include "cosim/message.h"
-#include "cosim/message_state.h"
+#include "cosim/core/clock.h"
+#include "cosim/core/message.h"
+#include "cosim/core/message_state.h"
 #include "emu/chip/event_queue.h"
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 #include "emu/i2c_devices/bus_node.h"
 
 #include "base/error.h"
-#include "cosim/i2c_bus.h"
+#include "cosim/i2c/i2c_bus.h"
 #include "emu/i2c_devices/ground_sensor.h"
 #include "emu/i2c_devices/rgb_turret.h"
 

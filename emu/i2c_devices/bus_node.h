@@ -1,7 +1,7 @@
 #pragma once
 // A robot's I2C bus with its usual devices, from a description.
 
-#include "cosim/node.h"
+#include "cosim/core/node.h"
 
 #include <cstdint>
 #include <memory>

@@ -2,7 +2,7 @@
 // A device that is a row of 8-bit registers: the first byte written is the register number, more bytes go to
 // registers from there on, reads come from the current register on; both count it up.
 
-#include "cosim/i2c_slave.h"
+#include "cosim/i2c/i2c_slave.h"
 
 namespace puckloop::i2c_devices {
 

@@ -5,7 +5,7 @@
 // Deviations: 1. a message of another length changes nothing (the board's answer to it is not known).
 // 2. Reads give 0xFF.
 
-#include "cosim/i2c_slave.h"
+#include "cosim/i2c/i2c_slave.h"
 
 #include <array>
 #include <vector>

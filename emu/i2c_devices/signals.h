@@ -2,7 +2,7 @@
 // The named signals of the devices on a robot's I2C bus: what the world tells the ground sensor, and what the
 // RGB turret shows. Ids on the bus node's `world` port are indexes into signals().
 
-#include "cosim/signal_info.h"
+#include "cosim/core/signal_info.h"
 
 #include <cstdint>
 #include <span>

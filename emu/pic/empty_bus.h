@@ -1,9 +1,9 @@
 #pragma once
 // An I2C bus with nobody on it but the master: no address is acknowledged, every byte reads 0xFF.
 
-#include "cosim/message.h"
-#include "cosim/message_state.h"
-#include "cosim/time.h"
+#include "cosim/core/message.h"
+#include "cosim/core/message_state.h"
+#include "cosim/core/time.h"
 
 #include <optional>
 

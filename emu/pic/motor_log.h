@@ -1,7 +1,7 @@
 #pragma once
 // From the steps of one motor to what a log says of it: when it started, turned round and stopped.
 
-#include "cosim/time.h"
+#include "cosim/core/time.h"
 
 #include <cstdint>
 #include <optional>

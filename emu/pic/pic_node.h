@@ -1,9 +1,9 @@
 #pragma once
 // The e-puck main board as a node of a run: chip, board, and the ports where links attach.
 
-#include "cosim/stateful_node.h"
+#include "cosim/core/stateful_node.h"
 #include "emu/board/nvm_file.h"
-#include "emu/dspic/chip.h"
+#include "emu/dspic/chip/chip.h"
 #include "emu/image/image.h"
 #include "emu/pic/board.h"
 #include "emu/pic/empty_bus.h"

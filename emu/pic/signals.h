@@ -3,7 +3,7 @@
 // bench's
 // --stimulus and --list-signals, and the `world` port of the board's node.
 
-#include "cosim/signal_info.h"
+#include "cosim/core/signal_info.h"
 
 #include <cstdint>
 #include <span>

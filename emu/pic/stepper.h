@@ -10,7 +10,7 @@
 // 2. At power-up the rotor stands at phase 0, where every known firmware's own phase counter starts.
 // 3. A jump of two phases moves nothing (on a robot either direction may win).
 
-#include "emu/dspic/event_queue.h"
+#include "emu/dspic/core/event_queue.h"
 
 #include <cstdint>
 

@@ -9,8 +9,8 @@
 // 3. The emitters' supply needs no time to rise when RF12 switches it on.
 
 #include "base/random.h"
-#include "emu/dspic/chip.h"
-#include "emu/dspic/pins.h"
+#include "emu/dspic/chip/chip.h"
+#include "emu/dspic/chip/pins.h"
 #include "emu/rab_board/peak_detector.h"
 #include "emu/rab_board/pin_table.h"
 #include "emu/rab_board/potentiometer.h"

@@ -3,7 +3,7 @@
 // nothing. Chips are counted at their nominal length, so a frame that was stretched on its way (a transfer on
 // I2C holds the firmware up) counts as irregular, as it would for most receivers.
 
-#include "cosim/time.h"
+#include "cosim/core/time.h"
 
 #include <cstdint>
 #include <functional>

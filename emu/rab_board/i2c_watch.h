@@ -3,9 +3,9 @@
 // nothing. The register map is the e-RandB's (range-and-bearing fact sheet 2.1); what silicon and firmware
 // ignore without a word (a payload size of 7, a register that does not exist) is told here.
 
-#include "cosim/message.h"
-#include "cosim/message_state.h"
-#include "cosim/time.h"
+#include "cosim/core/message.h"
+#include "cosim/core/message_state.h"
+#include "cosim/core/time.h"
 
 #include <array>
 #include <cstdint>

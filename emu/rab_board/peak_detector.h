@@ -6,7 +6,7 @@
 // Deviations: 1. it charges without delay and without a diode's drop. 2. While reset is on, the level goes to
 // zero whatever the input, and the input is back at once when it ends.
 
-#include "cosim/time.h"
+#include "cosim/core/time.h"
 
 namespace puckloop::rab {
 

@@ -6,7 +6,7 @@
 // Deviations: 1. the wiper stands still and then jumps; silicon moves within the settling time. 2. Nothing is
 // shifted out; the line to the chip reads 0.
 
-#include "cosim/time.h"
+#include "cosim/core/time.h"
 
 #include <cstdint>
 #include <optional>

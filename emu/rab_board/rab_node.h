@@ -1,9 +1,9 @@
 #pragma once
 // The range-and-bearing board as a node of a run: chip, board, and the ports where links attach.
 
-#include "cosim/stateful_node.h"
+#include "cosim/core/stateful_node.h"
 #include "emu/board/nvm_file.h"
-#include "emu/dspic/chip.h"
+#include "emu/dspic/chip/chip.h"
 #include "emu/image/image.h"
 #include "emu/rab_board/board.h"
 #include "emu/rab_board/rab_log.h"
@@ -29,7 +29,7 @@ class RabNode : public cosim::StatefulNode, private BoardListener {
   public:
     static constexpr cosim::PortIndex kUart1 = 0;
     static constexpr cosim::PortIndex kUart2 = 1;
-    static constexpr cosim::PortIndex kI2c = 2;  ///< a device port of cosim/i2c_bus.h
+    static constexpr cosim::PortIndex kI2c = 2;  ///< a device port of cosim/i2c/i2c_bus.h
     static constexpr cosim::PortIndex kIr = 3;   ///< signals
 
     /// Throws InputError if the image does not fit the chip.

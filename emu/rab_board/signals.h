@@ -3,7 +3,7 @@
 // bench's --stimulus and --list-signals, and the `ir` port of the board's node. Emitters, demodulators and
 // peak detectors carry hardware numbers 1..12; id + 0 is number 1 (index 0 in the firmware).
 
-#include "cosim/signal_info.h"
+#include "cosim/core/signal_info.h"
 
 #include <cstdint>
 #include <span>

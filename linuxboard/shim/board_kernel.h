@@ -2,8 +2,8 @@
 // The kernel of the emulated Linux board as far as the program's devices need one: open files, and the calls
 // of the program's threads that wait on a device, in simulated time.
 
-#include "cosim/message.h"
-#include "cosim/time.h"
+#include "cosim/core/message.h"
+#include "cosim/core/time.h"
 #include "linuxboard/shim/devices/i2c_adapter.h"
 #include "linuxboard/shim/devices/tty_port.h"
 #include "linuxboard/shim/spec.h"

@@ -10,7 +10,7 @@
 // (wire::Charges). 2. One thread runs at a time, as on a board with one processor.
 // 3. Real-time mode adds the wall clock to the program's time and holds grants back to it.
 
-#include "cosim/node.h"
+#include "cosim/core/node.h"
 #include "linuxboard/shim/board_kernel.h"
 #include "linuxboard/shim/launcher.h"
 #include "linuxboard/shim/process.h"
@@ -77,7 +77,7 @@ class LinuxNode : public cosim::Node {
         cosim::Time signals_at = cosim::kNever;
         /// When another process did what this one may wait for.
         cosim::Time woken_at = cosim::kNever;
-        int passed = -1;  ///< descriptor that goes with the next reply
+        int passed = -1;           ///< descriptor that goes with the next reply
         cosim::Time answered = 0;  ///< when it was last
         bool end_signalled = false;
         bool announced_exit = false;

@@ -1,7 +1,7 @@
 #pragma once
 // What a scenario says of one Linux program: the JSON text from which its node is made.
 
-#include "cosim/time.h"
+#include "cosim/core/time.h"
 #include "linuxboard/shim/devices/tty_port.h"
 #include "linuxboard/shim/wire.h"
 

@@ -3,7 +3,7 @@
 // running world, checked by check_events(), carried between processes as JSON text. SI units as in
 // physics/description.h; times are whole microseconds.
 
-#include "cosim/time.h"
+#include "cosim/core/time.h"
 #include "physics/description.h"
 
 #include <optional>

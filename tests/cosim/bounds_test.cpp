@@ -1,4 +1,4 @@
-#include "cosim/bounds.h"
+#include "cosim/schedule/bounds.h"
 
 #include "base/random.h"
 

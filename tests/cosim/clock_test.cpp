@@ -1,4 +1,4 @@
-#include "cosim/clock.h"
+#include "cosim/core/clock.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,6 +1,6 @@
 #include "base/random.h"
-#include "cosim/protocol.h"
-#include "cosim/socket_stream.h"
+#include "cosim/remote/protocol.h"
+#include "cosim/remote/socket_stream.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,7 +1,7 @@
 // A node process for tests: serves toy nodes, or misbehaves on the socket as its argument says.
 
-#include "cosim/node_server.h"
-#include "cosim/protocol.h"
+#include "cosim/remote/node_server.h"
+#include "cosim/remote/protocol.h"
 #include "toy_nodes.h"
 
 #include <cstdio>

@@ -1,7 +1,7 @@
 #pragma once
 // Small nodes for tests, made from lines like "chatter seed=3 uarts=1 signals=2".
 
-#include "cosim/node.h"
+#include "cosim/core/node.h"
 
 #include <memory>
 #include <string>

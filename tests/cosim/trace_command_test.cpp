@@ -2,7 +2,7 @@
 
 #include "toy_run.h"
 
-#include "cosim/trace_csv.h"
+#include "cosim/trace/trace_csv.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>

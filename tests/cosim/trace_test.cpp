@@ -2,10 +2,10 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "cosim/trace_csv.h"
-#include "cosim/trace_merger.h"
-#include "cosim/trace_stats.h"
-#include "cosim/trace_vcd.h"
+#include "cosim/trace/trace_csv.h"
+#include "cosim/trace/trace_merger.h"
+#include "cosim/trace/trace_stats.h"
+#include "cosim/trace/trace_vcd.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>

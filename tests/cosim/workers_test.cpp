@@ -1,4 +1,4 @@
-#include "cosim/workers.h"
+#include "cosim/schedule/workers.h"
 
 #include <catch2/catch.hpp>
 

@@ -3,7 +3,7 @@
 // range-and-bearing board's: RC oscillator at first, XT crystal, clock switching on.
 
 #include "emu/dspic/assembler/assembler.h"
-#include "emu/dspic/chip.h"
+#include "emu/dspic/chip/chip.h"
 
 #include <array>
 #include <map>

@@ -1,6 +1,6 @@
 // The composed chip, with small programs of its own: times at the pins, lookahead, reports, clock switching.
 
-#include "emu/dspic/chip.h"
+#include "emu/dspic/chip/chip.h"
 
 #include "base/random.h"
 #include "emu/dspic/assembler/assembler.h"

@@ -1,6 +1,6 @@
 // The register and interrupt tables hold together: order, uniqueness, fields inside the implemented bits.
 
-#include "emu/dspic/device.h"
+#include "emu/dspic/devices/device.h"
 #include "emu/dspic/devices/dspic30f6014a_irq.h"
 #include "emu/dspic/devices/dspic33fj256gp710_irq.h"
 

@@ -1,7 +1,7 @@
 // The e-puck's real firmware on the bare chip: boot sequence, infra-red pulses, serial session.
 // Expected times: fact sheet epuck.md, sections 3 and 6.1. Needs the image in $PUCKLOOP_IMAGES.
 
-#include "emu/dspic/chip.h"
+#include "emu/dspic/chip/chip.h"
 #include "emu/image/image.h"
 
 #include <catch2/catch.hpp>

@@ -1,7 +1,7 @@
 // A loop that counts to 50 000 under the interrupts of a listening e-puck (docs/ircom.md), as a program of
 // our own: the converter's scans, two timers and their handlers of known length.
 
-#include "emu/dspic/chip.h"
+#include "emu/dspic/chip/chip.h"
 
 #include "emu/dspic/assembler/assembler.h"
 

@@ -2,15 +2,15 @@
 // A chip without a CPU: registers, timetable and interrupt flags for a peripheral under test, driven cycle
 // by cycle.
 
-#include "cosim/clock.h"
-#include "emu/dspic/device.h"
+#include "cosim/core/clock.h"
+#include "emu/dspic/chip/layout.h"
+#include "emu/dspic/chip/pins.h"
+#include "emu/dspic/core/interrupts.h"
+#include "emu/dspic/devices/device.h"
 #include "emu/dspic/devices/dspic30f6014a_irq.h"
 #include "emu/dspic/devices/dspic30f6014a_sfr.h"
-#include "emu/dspic/interrupts.h"
-#include "emu/dspic/layout.h"
 #include "emu/dspic/peripherals/ports.h"
 #include "emu/dspic/peripherals/surroundings.h"
-#include "emu/dspic/pins.h"
 
 #include <array>
 #include <map>

@@ -2,7 +2,7 @@
 // the initialisation, UART text, interrupt rates, the I2C slave, the potentiometer's byte, a frame's chips.
 // Figures: fact sheet rab.md, sections 1.3 to 1.7, 2.4 and 3.1 (measured there on another model; 2 %).
 
-#include "emu/dspic/chip.h"
+#include "emu/dspic/chip/chip.h"
 #include "emu/image/image.h"
 
 #include <catch2/catch.hpp>

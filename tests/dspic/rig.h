@@ -2,7 +2,7 @@
 // A bare core for tests: program in assembly, no peripherals but what a test schedules itself.
 
 #include "emu/dspic/assembler/assembler.h"
-#include "emu/dspic/core.h"
+#include "emu/dspic/core/core.h"
 
 #include <string>
 #include <vector>

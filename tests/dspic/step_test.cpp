@@ -1,7 +1,7 @@
 // puckloop step: the vectors of two independent sources (when given), and what the parser makes of bad lines.
 
 #include "base/random.h"
-#include "emu/dspic/step_vector.h"
+#include "emu/dspic/core/step_vector.h"
 
 #include <catch2/catch.hpp>
 

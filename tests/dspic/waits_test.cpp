@@ -1,7 +1,7 @@
 // What a program waits for, and whether it hangs: each kind of wait as a small program.
 
 #include "emu/dspic/assembler/assembler.h"
-#include "emu/dspic/chip.h"
+#include "emu/dspic/chip/chip.h"
 #include "emu/dspic/waits/status_bits.h"
 
 #include <catch2/catch.hpp>

@@ -2,7 +2,7 @@
 // The built `puckloop exec` as a user runs it, in a folder of its own.
 
 #include "emu/dspic/assembler/assembler.h"
-#include "emu/dspic/device.h"
+#include "emu/dspic/devices/device.h"
 
 #include <string>
 #include <string_view>

@@ -4,7 +4,7 @@
 #include "tests/exec/command.h"
 #include "tests/exec/rig.h"
 
-#include "emu/dspic/device.h"
+#include "emu/dspic/devices/device.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>

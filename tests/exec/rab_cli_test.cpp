@@ -1,6 +1,6 @@
 // `puckloop exec --board rab` and scripted bus masters, as a user runs them.
 
-#include "emu/dspic/device.h"
+#include "emu/dspic/devices/device.h"
 #include "tests/exec/command.h"
 #include "tests/exec/rig.h"
 

@@ -3,7 +3,7 @@
 // inputs.
 
 #include "base/random.h"
-#include "cosim/stateful_node.h"
+#include "cosim/core/stateful_node.h"
 #include "emu/image/image.h"
 
 #include <cstdint>

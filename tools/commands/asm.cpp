@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "emu/avr/assembler/assembler.h"
 #include "emu/dspic/assembler/assembler.h"
-#include "emu/dspic/device.h"
+#include "emu/dspic/devices/device.h"
 #include "emu/image/intel_hex.h"
 #include "tools/cli/command.h"
 #include "tools/commands.h"

@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "cosim/interrupt.h"
-#include "emu/dspic/core_bench.h"
+#include "emu/dspic/core/core_bench.h"
 #include "tools/bench/rab_scenario.h"
 #include "tools/bench/rab_speed.h"
 #include "tools/bench/reference.h"

@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "emu/dspic/assembler/disassembler.h"
 #include "emu/dspic/assembler/listing.h"
-#include "emu/dspic/device.h"
+#include "emu/dspic/devices/device.h"
 #include "emu/image/image.h"
 #include "tools/cli/command.h"
 #include "tools/commands.h"

@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "emu/avr/core/step_vector.h"
-#include "emu/dspic/step_vector.h"
+#include "emu/dspic/core/step_vector.h"
 #include "tools/cli/command.h"
 #include "tools/commands.h"
 

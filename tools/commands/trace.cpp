@@ -1,9 +1,9 @@
 // puckloop trace: reads a recorded trace.csv; filters it, counts it, or writes it in another form.
 
 #include "base/error.h"
-#include "cosim/trace_csv.h"
-#include "cosim/trace_stats.h"
-#include "cosim/trace_vcd.h"
+#include "cosim/trace/trace_csv.h"
+#include "cosim/trace/trace_stats.h"
+#include "cosim/trace/trace_vcd.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
 #include "tools/commands/trace_rab.h"

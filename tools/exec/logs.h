@@ -2,8 +2,8 @@
 // The bench's recordings: uart1.csv, uart2.csv, i2c.csv and pins.csv in one folder. Times are seconds of
 // simulated time with nine decimals.
 
-#include "cosim/message.h"
-#include "cosim/time.h"
+#include "cosim/core/message.h"
+#include "cosim/core/time.h"
 
 #include <array>
 #include <cstdio>

@@ -2,8 +2,8 @@
 // The bench's script files: bytes for a UART, a bus master on I2C, values for named inputs.
 // Lines may stand in any order; those of one time keep the order of the file.
 
-#include "cosim/signal_info.h"
-#include "cosim/time.h"
+#include "cosim/core/signal_info.h"
+#include "cosim/core/time.h"
 
 #include <cstdint>
 #include <optional>

@@ -1,7 +1,7 @@
 #pragma once
 // Line-oriented input files of the bench: words on lines, # starts a comment, empty lines are skipped.
 
-#include "cosim/time.h"
+#include "cosim/core/time.h"
 
 #include <cstdint>
 #include <string>

@@ -2,7 +2,7 @@
 // The wire between one of the target's UARTs and the bench's end: 8N1 at the bench's own baud rate, or
 // at the one that the end's partner has set (a pty).
 
-#include "cosim/message.h"
+#include "cosim/core/message.h"
 #include "tools/exec/ends/uart_end.h"
 #include "tools/exec/logs.h"
 #include "tools/exec/targets/target.h"

@@ -1,11 +1,11 @@
 #pragma once
 // An I2C master that plays short transfers to one range-and-bearing board, straight at the board's device
-// port (cosim/i2c_bus.h). A byte takes nine clocks and what the board stretches them; each transfer ends with
-// STOP.
+// port (cosim/i2c/i2c_bus.h). A byte takes nine clocks and what the board stretches them; each transfer ends
+// with STOP.
 //
 // Deviation: nobody else is on the bus; a byte that is not acknowledged ends the transfer.
 
-#include "cosim/message.h"
+#include "cosim/core/message.h"
 
 #include <cstdint>
 #include <deque>

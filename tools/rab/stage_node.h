@@ -6,7 +6,7 @@
 // Ports: "poses" (to the infra-red medium's port "world"), "i2c0" and "i2c1" (to the boards' "i2c").
 
 #include "base/random.h"
-#include "cosim/node.h"
+#include "cosim/core/node.h"
 #include "tools/rab/i2c_host.h"
 
 #include <array>

@@ -2,8 +2,8 @@
 // What a trace says of one range-and-bearing board's I2C traffic: registers read and written, and when the
 // board's firmware served the bus and did nothing else. Registers: the e-RandB's (docs/rab.md).
 
-#include "cosim/time.h"
-#include "cosim/trace_row.h"
+#include "cosim/core/time.h"
+#include "cosim/trace/trace_row.h"
 
 #include <cstdint>
 #include <vector>

@@ -1,7 +1,7 @@
 #include "tools/rab_losses/results.h"
 
 #include "base/error.h"
-#include "cosim/trace_csv.h"
+#include "cosim/trace/trace_csv.h"
 
 #include <fmt/format.h>
 

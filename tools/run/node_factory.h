@@ -1,7 +1,7 @@
 #pragma once
 // Makes nodes from their JSON descriptions: the one place that knows every kind.
 
-#include "cosim/stateful_node.h"
+#include "cosim/core/stateful_node.h"
 
 #include <nlohmann/json_fwd.hpp>
 

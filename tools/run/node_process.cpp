@@ -1,9 +1,9 @@
 #include "tools/run/node_process.h"
 
 #include "base/log.h"
-#include "cosim/node_server.h"
-#include "cosim/process_name.h"
-#include "cosim/protocol.h"
+#include "cosim/core/process_name.h"
+#include "cosim/remote/node_server.h"
+#include "cosim/remote/protocol.h"
 #include "tools/run/node_factory.h"
 
 #include <string_view>

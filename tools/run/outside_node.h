@@ -4,7 +4,7 @@
 // A script is part of the simulation. The others have a clock of their own: they are looked at once a
 // simulated millisecond, the run is paced by the wall clock, and it cannot be repeated.
 
-#include "cosim/node.h"
+#include "cosim/core/node.h"
 #include "tools/exec/ends/uart_end.h"
 #include "tools/exec/ends/uart_spec.h"
 

@@ -1,7 +1,7 @@
 #include "tools/run/run_scenario.h"
 
 #include "base/error.h"
-#include "cosim/trace_csv.h"
+#include "cosim/trace/trace_csv.h"
 #include "physics/trajectory_svg.h"
 #include "tools/run/control/control_place.h"
 #include "tools/run/node_factory.h"

@@ -4,7 +4,7 @@
 // Deviations
 //  1. Programming takes the data sheet's typical times, whatever the oscillator and the temperature.
 
-#include "cosim/clock.h"
+#include "cosim/core/clock.h"
 #include "emu/avr/core/core.h"
 #include "emu/avr/peripherals/surroundings.h"
 

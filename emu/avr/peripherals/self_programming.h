@@ -6,7 +6,7 @@
 //  1. Erasing and writing a page take 3.7 ms, the data sheet's minimum.
 //  2. Boot lock bits do not protect anything.
 
-#include "cosim/clock.h"
+#include "cosim/core/clock.h"
 #include "emu/avr/core/core.h"
 #include "emu/avr/fuses.h"
 #include "emu/avr/peripherals/system_control.h"

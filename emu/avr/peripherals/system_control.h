@@ -9,7 +9,7 @@
 //     time.
 //  2. OSCCAL is stored; JTAG (MCUCR.JTD, OCDR) and the brown-out switch (BODS) have no effect.
 
-#include "cosim/clock.h"
+#include "cosim/core/clock.h"
 #include "emu/avr/core/core.h"
 #include "emu/avr/fuses.h"
 #include "emu/avr/peripherals/surroundings.h"

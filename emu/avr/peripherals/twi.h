@@ -7,9 +7,9 @@
 //  2. Arbitration is the bus's: a lost one comes back as BusLost (status 0x38).
 //  3. A slave that loses its address match by TWEA = 0 in the middle of a transfer goes on with the transfer.
 
-#include "cosim/clock.h"
-#include "cosim/message.h"
-#include "cosim/message_state.h"
+#include "cosim/core/clock.h"
+#include "cosim/core/message.h"
+#include "cosim/core/message_state.h"
 #include "emu/avr/peripherals/ports.h"
 #include "emu/avr/peripherals/surroundings.h"
 

@@ -8,9 +8,9 @@
 //  3. A frame begins at the next tick of the baud rate generator's 16x (8x) clock.
 //  4. The majority of three samples is taken as the middle one.
 
-#include "cosim/clock.h"
-#include "cosim/message.h"
-#include "cosim/message_state.h"
+#include "cosim/core/clock.h"
+#include "cosim/core/message.h"
+#include "cosim/core/message_state.h"
 #include "emu/avr/peripherals/ports.h"
 #include "emu/avr/peripherals/surroundings.h"
 #include "emu/chip/uart_counters.h"

@@ -5,7 +5,7 @@
 // Deviations
 //  1. The oscillator runs at exactly 128 kHz, whatever the supply and the temperature.
 
-#include "cosim/clock.h"
+#include "cosim/core/clock.h"
 #include "emu/avr/core/core.h"
 #include "emu/avr/peripherals/surroundings.h"
 

@@ -2,7 +2,7 @@
 // How a form's operands stand in its word: the operand column of the instruction table, parsed once, with
 // every field's place worked out. Assembler and disassembler are two walks over the same items.
 
-#include "emu/dspic/isa.h"
+#include "emu/dspic/core/isa.h"
 
 #include <array>
 #include <cstdint>

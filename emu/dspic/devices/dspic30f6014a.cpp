@@ -1,6 +1,6 @@
 // The tables of the dsPIC30F6014A. Memory map: DS70143 and linker script v1_21.A.
 
-#include "emu/dspic/device.h"
+#include "emu/dspic/devices/device.h"
 #include "emu/dspic/devices/dspic30f6014a_sfr.h"
 
 namespace puckloop::dspic {

@@ -1,8 +1,8 @@
 // The modules of the dsPIC30F6014A and their pins. Source: DS70143 and its family reference manual.
 
+#include "emu/dspic/chip/layout.h"
 #include "emu/dspic/devices/dspic30f6014a_irq.h"
 #include "emu/dspic/devices/dspic30f6014a_sfr.h"
-#include "emu/dspic/layout.h"
 
 namespace puckloop::dspic {
 

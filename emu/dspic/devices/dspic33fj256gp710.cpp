@@ -1,7 +1,7 @@
 // The tables of the dsPIC33FJ256GP710. Memory map: DS70286 and its linker script. DEVID and DEVREV are not
 // known to us and read 0.
 
-#include "emu/dspic/device.h"
+#include "emu/dspic/devices/device.h"
 #include "emu/dspic/devices/dspic33fj256gp710_sfr.h"
 
 namespace puckloop::dspic {

@@ -1,9 +1,9 @@
 // The modules of the dsPIC33FJ256GP710 (100 pins) and their pins. Source: DS70286, pin diagram and tables.
 // Not modelled: input capture, DCI, CAN1, CAN2, CRC; their registers are reported when touched.
 
+#include "emu/dspic/chip/layout.h"
 #include "emu/dspic/devices/dspic33fj256gp710_irq.h"
 #include "emu/dspic/devices/dspic33fj256gp710_sfr.h"
-#include "emu/dspic/layout.h"
 
 namespace puckloop::dspic {
 

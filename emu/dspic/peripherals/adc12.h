@@ -9,9 +9,9 @@
 //  3. Selections of the input (ADCHS, ADCSSL) count at the start of sampling.
 //  4. Reserved SSRC codes never end sampling.
 
-#include "cosim/clock.h"
+#include "cosim/core/clock.h"
+#include "emu/dspic/chip/pins.h"
 #include "emu/dspic/peripherals/surroundings.h"
-#include "emu/dspic/pins.h"
 
 #include <cstdint>
 

@@ -13,10 +13,10 @@
 //  5. ADxIF comes after SMPI + 1 groups, a DMA request with every conversion. DMABL, ADDMABM and BUFM are
 //     stored: the DMA channel stores in conversion order.
 
-#include "cosim/clock.h"
+#include "cosim/core/clock.h"
+#include "emu/dspic/chip/pins.h"
 #include "emu/dspic/peripherals/ports.h"
 #include "emu/dspic/peripherals/surroundings.h"
-#include "emu/dspic/pins.h"
 
 #include <array>
 #include <cstdint>

@@ -1,7 +1,7 @@
 #pragma once
 // What the clock models of both families share: the keys in front of OSCCON, and how a new rate is told.
 
-#include "cosim/clock.h"
+#include "cosim/core/clock.h"
 #include "emu/dspic/peripherals/surroundings.h"
 
 #include <cstdint>

@@ -16,11 +16,11 @@
 //  4. I2CEN = 0 while an answer is awaited frees the bus when the answer comes. The bus sees a stop then.
 //  5. Transmitting without a start condition reaches nobody: not acknowledged.
 
-#include "cosim/clock.h"
-#include "cosim/message.h"
+#include "cosim/core/clock.h"
+#include "cosim/core/message.h"
+#include "emu/dspic/chip/pins.h"
 #include "emu/dspic/peripherals/ports.h"
 #include "emu/dspic/peripherals/surroundings.h"
-#include "emu/dspic/pins.h"
 
 #include <cstdint>
 #include <map>

@@ -19,11 +19,11 @@
 //  4. S and P follow what reaches the module: transfers to other devices do not.
 //  5. The slave goes on in Sleep and Idle.
 
-#include "cosim/clock.h"
-#include "cosim/message_state.h"
+#include "cosim/core/clock.h"
+#include "cosim/core/message_state.h"
+#include "emu/dspic/chip/pins.h"
 #include "emu/dspic/peripherals/i2c_master.h"
 #include "emu/dspic/peripherals/surroundings.h"
-#include "emu/dspic/pins.h"
 
 #include <cstdint>
 #include <optional>

@@ -9,11 +9,11 @@
 //  3. In 32-bit mode of the timers the compare looks at the low word only.
 //  4. An edge takes place in the cycle in which the count is reached.
 
-#include "emu/dspic/chip.h"
+#include "emu/dspic/chip/chip.h"
+#include "emu/dspic/chip/pins.h"
 #include "emu/dspic/peripherals/ports.h"
 #include "emu/dspic/peripherals/surroundings.h"
 #include "emu/dspic/peripherals/timer.h"
-#include "emu/dspic/pins.h"
 
 #include <array>
 #include <cstdint>

@@ -8,9 +8,9 @@
 //  3. A write while SPITBF is set is dropped.
 //  4. Prescalers of 1:1 both, which the sheet forbids, run as such.
 
+#include "emu/dspic/chip/pins.h"
 #include "emu/dspic/peripherals/ports.h"
 #include "emu/dspic/peripherals/surroundings.h"
-#include "emu/dspic/pins.h"
 
 #include <cstdint>
 

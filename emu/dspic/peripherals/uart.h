@@ -12,14 +12,14 @@
 //     on. 33FJ: the next word written goes out as one such frame, and UTXBRK clears itself.
 //  5. 33FJ: UTXINV, URXINV, IREN, UEN and RTSMD are stored: polarity, IrDA and flow control pins do nothing.
 
-#include "cosim/clock.h"
-#include "cosim/message.h"
-#include "cosim/message_state.h"
+#include "cosim/core/clock.h"
+#include "cosim/core/message.h"
+#include "cosim/core/message_state.h"
+#include "emu/dspic/chip/pins.h"
+#include "emu/dspic/chip/uart_counters.h"
 #include "emu/dspic/peripherals/ports.h"
 #include "emu/dspic/peripherals/surroundings.h"
 #include "emu/dspic/peripherals/uart_receiver.h"
-#include "emu/dspic/pins.h"
-#include "emu/dspic/uart_counters.h"
 
 #include <array>
 #include <cstdint>

@@ -9,8 +9,8 @@
 // RAM is judged by the routines that name it (routines.h). Where none does, and any interrupt can come, the
 // loop counts as waiting: a routine may write through a pointer.
 
-#include "emu/dspic/core.h"
-#include "emu/dspic/layout.h"
+#include "emu/dspic/chip/layout.h"
+#include "emu/dspic/core/core.h"
 #include "emu/dspic/waits/wait_report.h"
 #include "emu/dspic/waits/wait_watch.h"
 

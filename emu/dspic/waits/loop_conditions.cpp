@@ -1,7 +1,7 @@
 #include "emu/dspic/waits/loop_conditions.h"
 
-#include "emu/dspic/loop_walk.h"
-#include "emu/dspic/machine.h"
+#include "emu/dspic/core/machine.h"
+#include "emu/dspic/fast/loop_walk.h"
 
 #include <algorithm>
 

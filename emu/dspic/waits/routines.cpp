@@ -1,6 +1,6 @@
 #include "emu/dspic/waits/routines.h"
 
-#include "emu/dspic/isa.h"
+#include "emu/dspic/core/isa.h"
 
 #include <set>
 #include <vector>

@@ -2,7 +2,7 @@
 // What hardware can do to a register's bits while a program waits for them. The tables are
 // devices/*_status_bits.inc, one line per register.
 
-#include "emu/dspic/device.h"
+#include "emu/dspic/devices/device.h"
 
 #include <cstdint>
 #include <string>

@@ -1,7 +1,7 @@
 #pragma once
 // What a chip says of its program's waiting, for reports.
 
-#include "emu/dspic/event_queue.h"
+#include "emu/dspic/core/event_queue.h"
 
 #include <cstdint>
 #include <string>

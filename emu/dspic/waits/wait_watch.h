@@ -7,7 +7,7 @@
 // on. A program that leaves a loop and is back in it within half a second without passing another loop counts
 // as having stayed: whoever says that a stay is a hang shows that it cannot have left (judge.h).
 
-#include "emu/dspic/event_queue.h"
+#include "emu/dspic/core/event_queue.h"
 
 #include <array>
 #include <cstdint>

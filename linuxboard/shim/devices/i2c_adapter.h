@@ -9,8 +9,8 @@
 // 2. After BusLost the transfer fails with EAGAIN at once; the driver's own retries are not modelled.
 // 3. No ten-bit addresses, no SMBus PEC, no alert.
 
-#include "cosim/message.h"
-#include "cosim/time.h"
+#include "cosim/core/message.h"
+#include "cosim/core/time.h"
 
 #include <cstdint>
 #include <deque>

@@ -12,8 +12,8 @@
 // 2. No modem lines: DCD, DSR and CTS read as set, RTS and DTR are stored. 3. CRTSCTS does not stop output.
 // 4. Input speed equals output speed.
 
-#include "cosim/message.h"
-#include "cosim/time.h"
+#include "cosim/core/message.h"
+#include "cosim/core/time.h"
 #include "linuxboard/shim/devices/line_discipline.h"
 #include "linuxboard/shim/devices/tty_settings.h"
 #include "linuxboard/shim/wire.h"

@@ -1,7 +1,7 @@
 #pragma once
 // termios as numbers: what a UART needs to know of it.
 
-#include "cosim/time.h"
+#include "cosim/core/time.h"
 #include "protocols/uart_sampling.h"
 
 #include <termios.h>

@@ -1,6 +1,6 @@
 #include "tools/exec/bus/device_bus.h"
 
-#include "cosim/i2c_bus.h"
+#include "cosim/i2c/i2c_bus.h"
 #include "emu/i2c_devices/ground_sensor.h"
 #include "emu/i2c_devices/rgb_turret.h"
 #include "emu/i2c_devices/signals.h"

@@ -1,10 +1,10 @@
 #pragma once
 // The I2C bus of a target that is its master, with devices on it: the bus and the devices of a run
-// (cosim/i2c_bus.h), advanced beside the target with the conductor's own bounds.
+// (cosim/i2c/i2c_bus.h), advanced beside the target with the conductor's own bounds.
 
-#include "cosim/bounds.h"
-#include "cosim/node.h"
-#include "cosim/signal_info.h"
+#include "cosim/core/node.h"
+#include "cosim/core/signal_info.h"
+#include "cosim/schedule/bounds.h"
 #include "tools/exec/bus/i2c_device_spec.h"
 
 #include <deque>

@@ -1,7 +1,7 @@
 #pragma once
 // What stands at the far end of one of the bench's UARTs: a script, the terminal, a pty, a TCP client.
 
-#include "cosim/time.h"
+#include "cosim/core/time.h"
 
 #include <cstdint>
 #include <memory>

@@ -1,11 +1,11 @@
 #pragma once
 // What lies on the bench: one chip or one board, whatever its kind.
 
-#include "cosim/clock.h"
-#include "cosim/message.h"
-#include "cosim/signal_info.h"
-#include "cosim/time.h"
-#include "emu/dspic/chip.h"
+#include "cosim/core/clock.h"
+#include "cosim/core/message.h"
+#include "cosim/core/signal_info.h"
+#include "cosim/core/time.h"
+#include "emu/dspic/chip/chip.h"
 #include "emu/image/image.h"
 #include "tools/exec/bus/i2c_device_spec.h"
 
@@ -100,8 +100,8 @@ class Target {
     /// The same in lines for a person, warnings left out.
     virtual std::string chip_text();
     virtual std::vector<std::string> warnings();
-    /// What the program waits for, once it has hung in one loop; nothing for a program that runs, or a chip whose
-    /// loops nobody watches.
+    /// What the program waits for, once it has hung in one loop; nothing for a program that runs, or a chip
+    /// whose loops nobody watches.
     virtual std::optional<std::string> hang();
     /// A pulse on the reset pin now.
     virtual void reset_button() { chip().mclr(); }

@@ -3,8 +3,8 @@
 // ~/.cache/puckloop, for its owner alone. One state file per boot, written whole or not at all, so that runs
 // at the same time do not disturb each other; when they take too much room the ones not used for longest go.
 
+#include "cosim/core/time.h"
 #include "cosim/resume/board_state.h"
-#include "cosim/time.h"
 
 #include <cstdint>
 #include <filesystem>

@@ -1,0 +1,71 @@
+#pragma once
+// What travels on links: time-stamped frames and signal changes, plain values that any process can carry.
+
+#include "cosim/core/time.h"
+
+#include <cstdint>
+#include <variant>
+
+namespace puckloop::cosim {
+
+using PortIndex = std::uint16_t;
+
+/// One asynchronous character as it stood on the wire, in the sender's own bit time. The receiver samples it
+/// with its own baud-rate generator. Sent when its stop bit begins (see docs/architecture.md, "UART on a
+/// link").
+struct UartFrame {
+    Time start = 0;               ///< falling edge of the start bit
+    Time bit_period = 0;          ///< of the sender, in picoseconds
+    std::uint16_t data = 0;       ///< 5 to 9 data bits, first on the wire = bit 0
+    std::uint8_t data_bits = 8;   ///< 5..9
+    std::uint8_t parity = 0;      ///< 0 none, 1 odd, 2 even
+    std::uint8_t stop_bits = 1;   ///< 1 or 2
+    std::uint8_t parity_bit = 0;  ///< level of the parity bit on the wire, if any
+    std::uint8_t is_break = 0;    ///< 1: the line was low for the whole frame, stop bits included
+
+    friend bool operator==(const UartFrame&, const UartFrame&) = default;
+};
+
+/// One phase of an I2C transfer on the shared bus.
+enum class I2cPhaseKind : std::uint8_t {
+    Start,        ///< master: START or repeated START, then `byte` = address<<1 | read
+    Write,        ///< master: one data byte to the slave
+    Read,         ///< master: clocks one byte out of the slave and answers with `ack`
+    Stop,         ///< master: STOP
+    Acknowledge,  ///< to the master: the slave's (or nobody's) ACK of the last Start or Write
+    Data,         ///< to the master: the byte that a Read returned
+    BusLost,      ///< to the master: arbitration lost or bus stuck
+};
+
+struct I2cPhase {
+    I2cPhaseKind kind = I2cPhaseKind::Stop;
+    std::uint8_t byte = 0;  ///< address byte or data
+    std::uint8_t ack = 0;   ///< 1: acknowledged (SDA low in the ninth clock)
+    Time start = 0;         ///< when the phase began on the bus
+    Time clock_period = 0;  ///< of the master's SCL, in picoseconds
+    Time stretch = 0;       ///< how long the slave held SCL beyond the master's clock
+
+    friend bool operator==(const I2cPhase&, const I2cPhase&) = default;
+};
+
+/// A change of one of a board's named signals. `id` indexes the signal list that both ends of the link share;
+/// the value is in that signal's unit.
+struct Signal {
+    std::uint16_t id = 0;
+    double value = 0.0;
+
+    friend bool operator==(const Signal&, const Signal&) = default;
+};
+
+using Payload = std::variant<UartFrame, I2cPhase, Signal>;
+
+/// `port` is the sender's port in an outbox and the receiver's port in an inbox.
+struct Message {
+    Time time = 0;
+    PortIndex port = 0;
+    Payload payload;
+
+    friend bool operator==(const Message&, const Message&) = default;
+};
+
+}  // namespace puckloop::cosim

@@ -1,0 +1,51 @@
+#pragma once
+// What messages carry, as part of a saved state (base/archive.h).
+
+#include "base/archive.h"
+#include "cosim/core/message.h"
+
+namespace puckloop::cosim {
+
+/// An empty frame (bit_period 0) is a legal state; who samples frames checks for it.
+template <class Archive>
+void state(Archive& archive, UartFrame& frame) {
+    archive(frame.start);
+    archive.bounded(frame.bit_period, 0, kSecond);
+    archive(frame.data);
+    archive.bounded(frame.data_bits, 5, 9);
+    archive.bounded(frame.parity, 0, 2);
+    archive.bounded(frame.stop_bits, 1, 2);
+    archive.bounded(frame.parity_bit, 0, 1);
+    archive.bounded(frame.is_break, 0, 1);
+}
+
+template <class Archive>
+void state(Archive& archive, I2cPhase& phase) {
+    archive.bounded(phase.kind, I2cPhaseKind::Start, I2cPhaseKind::BusLost);
+    archive(phase.byte);
+    archive.bounded(phase.ack, 0, 1);
+    archive(phase.start);
+    archive.bounded(phase.clock_period, 0, kSecond);
+    archive.bounded(phase.stretch, 0, kNever);
+}
+
+template <class Archive>
+void state(Archive& archive, Signal& signal) {
+    archive(signal.id, signal.value);
+}
+
+template <class Archive>
+void state(Archive& archive, Message& message) {
+    archive.bounded(message.time, 0, kNever);
+    archive(message.port);
+    auto kind = static_cast<std::uint8_t>(message.payload.index());
+    archive.bounded(kind, 0, 2);
+    if constexpr (Archive::kLoads) {
+        if (kind == 0) message.payload = UartFrame{};
+        if (kind == 1) message.payload = I2cPhase{};
+        if (kind == 2) message.payload = Signal{};
+    }
+    std::visit([&](auto& payload) { archive(payload); }, message.payload);
+}
+
+}  // namespace puckloop::cosim

@@ -1,0 +1,173 @@
+#pragma once
+// The two wires of one robot's I2C bus, its masters and its devices. Source: I2C-bus specification UM10204;
+// phases as in cosim/core/message.h.
+//
+// A master sends Start (with the address byte), Write, Read and Stop, each stamped with `start` = the first
+// clock of its byte, and waits for the answer to all but Stop: Acknowledge or Data, stamped when the ninth
+// clock ends, stretch included; nobody at the address: ack = 0. BusLost: somebody else has the bus.
+//
+// Like a UART link the bus has a nominal clock: no answer comes earlier than nine nominal clocks after the
+// phase began, so a master faster than nominal is answered late by the difference. This is the bus's
+// lookahead.
+//
+// A Start while another master owns the bus waits for its end where the master's driver does so (`waits`,
+// Linux), and is lost where the master only sees a collision (the dsPIC). Starts within half a nominal clock
+// of each other collide: the lower address byte wins, as its first 0 against a 1 does on the wires.
+//
+// Devices that are nodes of their own have a port each. As on the wires, each of them sees every Start (or
+// those for `addresses`, if it has any) and says itself whether it is meant; a device must answer: one that
+// is switched off says ack = 0. Those that acknowledged get what follows: Write, Read and Stop. All this is
+// told half a nominal clock after it began (`start` says when); by then masters have been told apart. Each
+// Start and Write is answered with Acknowledge and each Read with Data, in the device's own time: at
+// `start` + 8 clocks when it does not stretch, later when it does. The bus hands the answer on one clock
+// later. With such devices the bus's lookahead is one nominal clock. The `ack` of a Read is what the master
+// has decided when it begins; a dsPIC decides later and says 1. So a device knows that its byte was the last
+// one wanted when a Stop or Start follows it, not before.
+//
+// Several devices at one address answer together: SDA is low when any pulls it low, so their acknowledges are
+// or-ed and their bytes and-ed, and the slowest sets the pace.
+//
+// A master that loses patience sends its Stop while a device still holds SCL low: nobody can use the bus
+// until the device lets go. If it then holds SDA low, being in the middle of a byte, the bus is free once a
+// Linux driver has given it nine clocks and a STOP (i2c_generic_scl_recovery()); a dsPIC only sees a
+// collision.
+//
+// Deviations: 1. a lost arbitration is told when the ninth clock ends, not at the bit. 2. Two masters that
+// send the same address byte do not go on together into the data: the first port wins. 3. SCL of colliding
+// masters is the winner's. 4. Pins driven low by a master's ports do not disturb the bus.
+
+#include "cosim/core/node.h"
+#include "cosim/i2c/i2c_log.h"
+#include "cosim/i2c/i2c_slave.h"
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace puckloop::cosim {
+
+struct I2cMasterPort {
+    std::string name;    ///< port name: "pic", "linux"
+    bool waits = false;  ///< a Start waits for the end of another master's transfer
+};
+
+/// A device in another node.
+struct I2cDevicePort {
+    std::string name;                       ///< port name: "rab"
+    std::vector<std::uint8_t> addresses{};  ///< 7 bits; it is told of Starts for these only, empty: of all
+};
+
+struct I2cBusOptions {
+    std::string name = "i2c";
+    double nominal_hertz = 100e3;
+    std::vector<I2cMasterPort> masters;
+    std::vector<I2cDevicePort> devices{};
+    std::string log{};  ///< file for the bus's log; empty: none
+};
+
+/// Ports: the masters in their order, the devices in theirs, then "world" (signals to and from the devices in
+/// this node).
+class I2cBusNode final : public Node {
+  public:
+    I2cBusNode(I2cBusOptions options, std::vector<std::unique_ptr<I2cSlave>> slaves);
+
+    std::string_view name() const override { return options_.name; }
+    std::span<const Port> ports() const override { return ports_; }
+    void advance(Time until, std::span<const Message> inbox, std::vector<Message>& outbox) override;
+    Time promise(PortIndex port) const override;
+    Time reaction(PortIndex port) const override;
+    std::string finish() override;
+
+  private:
+    struct Contender {
+        PortIndex port = 0;
+        I2cPhase phase;
+    };
+    struct Counters {
+        std::uint64_t transfers = 0, not_acknowledged = 0, lost = 0, bytes_written = 0, bytes_read = 0;
+        std::uint64_t stretched = 0, stuck = 0;
+        Time longest_stretch = 0;
+        /// Starts that nobody acknowledged, by master and address.
+        std::map<std::pair<PortIndex, std::uint8_t>, std::uint64_t> absent;
+    };
+    /// Devices that acknowledged one Start together.
+    struct Crowd {
+        std::uint64_t times = 0;
+        std::string names;
+    };
+
+    /// What a master waits for while devices in other nodes think.
+    struct Pending {
+        PortIndex master = 0;
+        I2cPhase phase;
+        Time earliest = 0;
+        std::vector<PortIndex> open;  ///< devices that have not answered yet
+        I2cAnswer answer;             ///< of the others, together
+        std::string who;              ///< acknowledged a Start
+        int count = 0;
+    };
+
+    bool is_master(PortIndex port) const { return port < options_.masters.size(); }
+    bool is_world(PortIndex port) const { return port + 1u == ports_.size(); }
+    void run_events(Time until);
+    void receive(const Message& message);
+    void phase_from(PortIndex port, const I2cPhase& phase);
+    void start_from(PortIndex port, const I2cPhase& phase);
+    void open_contest(PortIndex port, const I2cPhase& phase);
+    void resolve_contest();
+    void address(PortIndex port, const I2cPhase& phase, Time earliest);
+    void device_answered(PortIndex port, const I2cPhase& phase, Time now);
+    void byte_from(PortIndex port, const I2cPhase& phase);
+    void take_answer(const I2cAnswer& reply, const std::string& name);
+    void settle();
+    void release_devices(Time now);
+    void hang();
+    void let_go(const I2cPhase& phase);
+    void recover(Time from);
+    const std::string& device_name(PortIndex port) const;
+    std::string device_list() const;
+    std::vector<std::string> warnings() const;
+    void stop_from(PortIndex port, const I2cPhase& phase);
+    void bus_freed();
+    void lose(PortIndex port, const I2cPhase& phase);
+    void answer(PortIndex port, const I2cPhase& phase, I2cPhaseKind kind, const I2cAnswer& answer,
+                Time earliest);
+    Time ninth_clock(const I2cPhase& phase) const;
+    Time half_clock() const { return nominal_period_ / 2; }
+
+    I2cBusOptions options_;
+    std::vector<Port> ports_;
+    std::vector<std::unique_ptr<I2cSlave>> slaves_;
+    Time nominal_period_;
+    I2cSlave::Emit emit_;
+
+    enum class Bus : std::uint8_t {
+        Free,
+        Contest,
+        Owned,
+        Stopping,
+        Stuck,       ///< a device holds SCL low and nobody waits for it
+        HeldLow,     ///< a device holds SDA low
+        Recovering,  ///< nine clocks and a STOP are being given
+    } bus_ = Bus::Free;
+    PortIndex owner_ = 0;
+    std::vector<I2cSlave*> addressed_;          // devices here
+    std::vector<PortIndex> addressed_devices_;  // devices in other nodes
+    std::optional<Pending> pending_;
+    std::vector<PortIndex> holders_;  // of SCL, while the bus is stuck
+    std::map<std::uint8_t, Crowd> crowds_;
+    Time stuck_since_ = 0, stuck_for_ = 0;
+    std::string stuck_names_;
+    Time changes_ = kNever;              // a contest is decided, a stop or recovery is over
+    std::vector<Contender> contenders_;  // for the bus, now
+    std::vector<Contender> waiting_;     // for its end
+    std::vector<Message> answers_;       // known, to leave with this advance
+    Time emitted_at_ = 0;
+    Counters counters_;
+    I2cLog log_;
+    Time now_ = 0;  // of the event that is being handled
+};
+
+}  // namespace puckloop::cosim

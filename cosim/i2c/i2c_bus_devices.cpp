@@ -1,0 +1,145 @@
+// The devices' side of the I2C bus: who is addressed, what several answers become on the wires, a stuck bus.
+
+#include "cosim/i2c/i2c_bus.h"
+
+#include <algorithm>
+
+namespace puckloop::cosim {
+
+namespace {
+constexpr std::uint8_t kReadBit = 1;
+constexpr Time kRecoveryClocks = 10;  // nine for the device, one for the STOP
+constexpr std::uint8_t kFirstBit = 0x80;
+
+bool contains(const std::vector<std::uint8_t>& list, std::uint8_t value) {
+    return std::find(list.begin(), list.end(), value) != list.end();
+}
+}  // namespace
+
+const std::string& I2cBusNode::device_name(PortIndex port) const {
+    return options_.devices[port - options_.masters.size()].name;
+}
+
+void I2cBusNode::address(PortIndex port, const I2cPhase& phase, Time earliest) {
+    ++counters_.transfers;
+    log_.addressed(now_, port, phase.byte);
+    const auto wanted = static_cast<std::uint8_t>(phase.byte >> 1);
+    pending_ = Pending{port, phase, earliest, {}, {}, {}, 0};
+    for (const auto& slave : slaves_)
+        if (slave->listens_to(wanted)) {
+            const I2cAnswer reply = slave->start((phase.byte & kReadBit) != 0, phase.start);
+            if (reply.acknowledge) addressed_.push_back(slave.get());
+            take_answer(reply, std::string(slave->name()));
+        }
+    for (std::size_t i = 0; i < options_.devices.size(); ++i) {
+        const auto& addresses = options_.devices[i].addresses;
+        if (!addresses.empty() && !contains(addresses, wanted)) continue;
+        const auto device = static_cast<PortIndex>(options_.masters.size() + i);
+        answers_.push_back({std::max(phase.start + half_clock(), earliest), device, phase});
+        pending_->open.push_back(device);
+    }
+    settle();
+}
+
+void I2cBusNode::byte_from(PortIndex port, const I2cPhase& phase) {
+    const bool write = phase.kind == I2cPhaseKind::Write;
+    ++(write ? counters_.bytes_written : counters_.bytes_read);
+    pending_ = Pending{port, phase, 0, addressed_devices_, {}, {}, 0};
+    for (const PortIndex device : addressed_devices_)
+        answers_.push_back({phase.start + half_clock(), device, phase});
+    for (I2cSlave* slave : addressed_)
+        take_answer(write ? slave->write(phase.byte, phase.start) : slave->read(phase.start), {});
+    settle();
+}
+
+/// One more device has answered what is pending: both lines are low if any device pulls them low.
+void I2cBusNode::take_answer(const I2cAnswer& reply, const std::string& name) {
+    I2cAnswer& together = pending_->answer;
+    together.acknowledge = together.acknowledge || reply.acknowledge;
+    together.byte &= reply.byte;
+    together.stretch = std::max(together.stretch, reply.stretch);
+    if (!reply.acknowledge || name.empty()) return;
+    pending_->who += (pending_->count++ == 0 ? "" : ", ") + name;
+}
+
+void I2cBusNode::device_answered(PortIndex port, const I2cPhase& phase, Time now) {
+    if (std::erase(holders_, port) != 0) return let_go(phase);
+    if (!pending_ || std::erase(pending_->open, port) == 0) return;
+    const bool start = pending_->phase.kind == I2cPhaseKind::Start;
+    const bool read = pending_->phase.kind == I2cPhaseKind::Read;
+    I2cAnswer reply{phase.ack != 0, read ? phase.byte : std::uint8_t{0xFF}, 0};
+    const Time ninth = std::max(pending_->phase.clock_period, nominal_period_);
+    reply.stretch = std::max<Time>(0, now + ninth - ninth_clock(pending_->phase));
+    if (start && reply.acknowledge) addressed_devices_.push_back(port);
+    take_answer(reply, start ? device_name(port) : std::string());
+    settle();
+}
+
+/// Tells the master once everybody has answered.
+void I2cBusNode::settle() {
+    if (!pending_->open.empty()) return;
+    const Pending done = *pending_;
+    pending_.reset();
+    if (done.count > 1) {
+        Crowd& crowd = crowds_[static_cast<std::uint8_t>(done.phase.byte >> 1)];
+        ++crowd.times;
+        crowd.names = done.who;
+        log_.crowded(now_, done.phase.byte, done.who, crowd.times);
+    }
+    const bool read = done.phase.kind == I2cPhaseKind::Read;
+    answer(done.master, done.phase, read ? I2cPhaseKind::Data : I2cPhaseKind::Acknowledge, done.answer,
+           done.earliest);
+}
+
+void I2cBusNode::release_devices(Time now) {
+    I2cPhase stop;
+    stop.start = now;
+    for (const PortIndex device : addressed_devices_)
+        answers_.push_back({now + half_clock(), device, stop});
+    addressed_devices_.clear();
+    emitted_at_ = now + nominal_period_;
+    for (I2cSlave* slave : addressed_)
+        slave->stop(now, emit_);
+    addressed_.clear();
+}
+
+/// The owner gives up while devices hold SCL low.
+void I2cBusNode::hang() {
+    bus_ = Bus::Stuck;
+    holders_ = pending_->open;
+    for (const PortIndex device : holders_)  // those of a Start are not addressed yet, but will want a STOP
+        if (std::find(addressed_devices_.begin(), addressed_devices_.end(), device) ==
+            addressed_devices_.end())
+            addressed_devices_.push_back(device);
+    stuck_names_.clear();
+    for (const PortIndex device : holders_)
+        stuck_names_ += (stuck_names_.empty() ? "" : ", ") + device_name(device);
+    pending_.reset();
+    stuck_since_ = now_;
+    ++counters_.stuck;
+    log_.stuck(now_, stuck_names_, counters_.stuck);
+}
+
+/// A device of a stuck bus has released SCL.
+void I2cBusNode::let_go(const I2cPhase& phase) {
+    if (!holders_.empty()) return;
+    stuck_for_ += now_ - stuck_since_;
+    log_.released(now_, stuck_names_);
+    const bool pulls_sda = phase.kind == I2cPhaseKind::Data ? (phase.byte & kFirstBit) == 0 : phase.ack != 0;
+    bus_ = Bus::HeldLow;
+    if (!pulls_sda) {
+        bus_ = Bus::Recovering;  // nothing to wait for but the STOP
+        changes_ = now_ + nominal_period_;
+    } else if (std::any_of(waiting_.begin(), waiting_.end(), [this](const Contender& contender) {
+                   return options_.masters[contender.port].waits;
+               })) {
+        recover(now_);
+    }
+}
+
+void I2cBusNode::recover(Time from) {
+    bus_ = Bus::Recovering;
+    changes_ = from + kRecoveryClocks * nominal_period_;
+}
+
+}  // namespace puckloop::cosim

@@ -1,0 +1,111 @@
+#include "cosim/schedule/bounds.h"
+
+#include <algorithm>
+
+namespace puckloop::cosim {
+
+namespace {
+Time bound(const Channel& channel, const std::vector<Time>& earliest) {
+    return std::min(channel.base, later(earliest[channel.from], channel.reaction));
+}
+}  // namespace
+
+/// Lists of the channels that leave each node; they hardly ever change.
+void Bounds::sort_channels(std::size_t nodes) {
+    const auto same = [this](const Channel& channel) {
+        const std::size_t index = static_cast<std::size_t>(&channel - channels_->data());
+        return ends_[index] == std::pair(channel.from, channel.to);
+    };
+    if (leaving_.size() == nodes && ends_.size() == channels_->size() &&
+        std::all_of(channels_->begin(), channels_->end(), same))
+        return;
+    ends_.clear();
+    leaving_.assign(nodes, {});
+    for (std::size_t c = 0; c < channels_->size(); ++c) {
+        const Channel& channel = (*channels_)[c];
+        ends_.emplace_back(channel.from, channel.to);
+        leaving_[channel.from].push_back(c);
+    }
+}
+
+void Bounds::compute(const std::vector<Channel>& channels, const std::vector<Time>& pending,
+                     std::size_t silent) {
+    channels_ = &channels;
+    pending_ = &pending;
+    silent_ = silent;
+    sort_channels(pending.size());
+    earliest_ = pending;
+    for (const Channel& channel : channels)
+        if (channel.from != silent && channel.base < earliest_[channel.to])
+            earliest_[channel.to] = channel.base;
+    relax();
+    limit_.assign(pending.size(), kNever);
+    critical_.assign(pending.size(), kNobody);
+    floor_ = kNever;
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+        if (channels[c].from == silent) continue;
+        const Time time = bound(channels[c], earliest_);
+        floor_ = std::min(floor_, time);
+        if (time < limit_[channels[c].to]) {
+            limit_[channels[c].to] = time;
+            critical_[channels[c].to] = c;
+        }
+    }
+}
+
+/// Shortest paths from what is promised and pending: a node whose earliest time fell tells those behind it.
+void Bounds::relax() {
+    told_.assign(earliest_.size(), kNever);
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (std::size_t n = 0; n < earliest_.size(); ++n) {
+            const Time time = earliest_[n];
+            if (time >= told_[n] || n == silent_) continue;
+            told_[n] = time;
+            for (const std::size_t c : leaving_[n]) {
+                const Channel& channel = (*channels_)[c];
+                const Time there = later(time, channel.reaction);
+                if (there >= earliest_[channel.to]) continue;
+                earliest_[channel.to] = there;
+                changed = true;
+            }
+        }
+    }
+}
+
+std::size_t Bounds::root(std::size_t n) const {
+    // Walk the critical channels back to the promise or the pending message that starts the path. A path
+    // of equal bounds may close on itself (zero reactions); its length is bounded by the number of nodes.
+    for (std::size_t steps = 0; steps <= limit_.size(); ++steps) {
+        if (critical_[n] == kNobody) return kNobody;
+        const Channel& channel = (*channels_)[critical_[n]];
+        const std::size_t from = channel.from;
+        if (channel.base <= later(earliest_[from], channel.reaction)) return from;
+        if ((*pending_)[from] <= limit_[from]) return from;
+        n = from;
+    }
+    return kNobody;
+}
+
+std::size_t Bounds::limiter(std::size_t n) const {
+    return critical_[n] == kNobody ? kNobody : (*channels_)[critical_[n]].from;
+}
+
+std::vector<Time> distances_to(std::size_t target, const std::vector<Channel>& channels, std::size_t nodes) {
+    std::vector<Time> distance(nodes, kNever);
+    distance[target] = 0;
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (const Channel& channel : channels) {
+            if (channel.from == target || distance[channel.to] == kNever) continue;
+            const Time way = later(distance[channel.to], channel.reaction);
+            if (way < distance[channel.from]) {
+                distance[channel.from] = way;
+                changed = true;
+            }
+        }
+    }
+    return distance;
+}
+
+}  // namespace puckloop::cosim

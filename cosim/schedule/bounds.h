@@ -1,0 +1,68 @@
+#pragma once
+// How far each node may be granted: conservative look-ahead by relaxation over the graph of links.
+//
+// For every directed channel c (one direction of a link) from node f to node t
+//     bound(c)   = min(base(c), earliest(f) + reaction(c))
+//     limit(t)   = min of bound(c) over the channels into t
+//     earliest(t)= min(pending(t), limit(t))
+// where base is the sender's promise and reaction its shortest answer, both with the link's own flight time
+// added, and pending(t) is the first message already known that t has not handled. The answer is the greatest
+// solution, which is a shortest path from the promises and pending messages: chains of zero reactions of any
+// length come out right.
+
+#include "cosim/core/time.h"
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+namespace puckloop::cosim {
+
+inline constexpr std::size_t kNobody = static_cast<std::size_t>(-1);
+
+struct Channel {
+    std::size_t from = 0;
+    std::size_t to = 0;
+    Time base = 0;
+    Time reaction = 0;
+};
+
+/// Bounds of one instant of the run; kept between calls only to save allocations.
+class Bounds {
+  public:
+    /// `pending[n]` is kNever where nothing is known. What node `silent` sends, if one is given, is left out.
+    /// Both lists must stay as they are while this object is asked.
+    void compute(const std::vector<Channel>& channels, const std::vector<Time>& pending,
+                 std::size_t silent = kNobody);
+
+    /// Nothing not yet known can reach node `n` before this.
+    Time limit(std::size_t n) const { return limit_[n]; }
+    /// No message still to come on any channel is delivered before this.
+    Time floor() const { return floor_; }
+    /// The node that must go on for limit(n) to grow: the one whose promise, or whose message not yet
+    /// handled, sets it; kNobody when nothing limits n.
+    std::size_t root(std::size_t n) const;
+    /// The sender of the channel that sets limit(n), or kNobody.
+    std::size_t limiter(std::size_t n) const;
+
+  private:
+    void sort_channels(std::size_t nodes);
+    void relax();
+
+    const std::vector<Channel>* channels_ = nullptr;
+    const std::vector<Time>* pending_ = nullptr;
+    std::size_t silent_ = kNobody;
+    std::vector<Time> earliest_;
+    std::vector<Time> limit_;
+    std::vector<std::size_t> critical_;  ///< index of the channel that sets limit_
+    Time floor_ = kNever;
+    std::vector<std::vector<std::size_t>> leaving_;          ///< channels, by their sender
+    std::vector<std::pair<std::size_t, std::size_t>> ends_;  ///< of the channels that leaving_ was made for
+    std::vector<Time> told_;  ///< what the channels that leave a node were relaxed with
+};
+
+/// For each node the shortest time from a message that reaches it to one, caused by it, that reaches
+/// `target`; 0 for the target itself, kNever where there is no way.
+std::vector<Time> distances_to(std::size_t target, const std::vector<Channel>& channels, std::size_t nodes);
+
+}  // namespace puckloop::cosim

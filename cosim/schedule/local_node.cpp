@@ -1,0 +1,87 @@
+// A node in the conductor's own process: grants are plain calls.
+
+#include "base/error.h"
+#include "cosim/schedule/node_handle.h"
+
+#include <fmt/format.h>
+
+namespace puckloop::cosim {
+
+void read_state(const Node& node, NodeState& state) {
+    const std::size_t count = node.ports().size();
+    state.ports.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto port = static_cast<PortIndex>(i);
+        state.ports[i] = {node.promise(port), node.reaction(port), node.begun(port)};
+    }
+    state.stop = node.stop();
+    state.wound_up = node.wound_up();
+}
+
+namespace {
+
+class LocalNode : public NodeHandle {
+  public:
+    LocalNode(const std::string& name, const std::string& json, const NodeFactory& factory)
+        : node_(factory(json)) {
+        name_ = name;
+        if (!node_) throw RunError(fmt::format("node {}: nothing can make it", name_));
+        ports_.assign(node_->ports().begin(), node_->ports().end());
+        read_state(*node_, state_);
+    }
+
+    void await_ready() override {}
+
+    void grant(Reach reach, const std::vector<Message>& inbox, const std::vector<PortEcho>& echoes) override {
+        reach_ = reach;
+        inbox_ = &inbox;
+        echoes_ = &echoes;
+    }
+
+    bool poll(bool) override {
+        outbox_.clear();
+        guarded("stopped",
+                [&] { reached_ = advance_in_strides(*node_, reached_, reach_, *inbox_, *echoes_, outbox_); });
+        read_state(*node_, state_);
+        return true;
+    }
+
+    void wind_up(int signal) override {
+        guarded("could not wind up", [&] { node_->wind_up(reached_, signal); });
+        read_state(*node_, state_);
+    }
+
+    std::string finish() override {
+        std::string report;
+        guarded("could not finish", [&] { report = node_->finish(); });
+        node_.reset();
+        return report;
+    }
+
+  private:
+    template <typename Work>
+    void guarded(const char* what, Work work) {
+        try {
+            work();
+        } catch (const InputError&) {
+            throw;
+        } catch (const std::exception& error) {
+            throw RunError(fmt::format("node {} {} at simulated time {:.9f} s: {}", name_, what,
+                                       to_seconds(reached_), error.what()));
+        }
+    }
+
+    std::unique_ptr<Node> node_;
+    const std::vector<Message>* inbox_ = nullptr;
+    const std::vector<PortEcho>* echoes_ = nullptr;
+    Reach reach_;
+};
+
+}  // namespace
+
+std::unique_ptr<NodeHandle> make_local_node(const std::string& name, const std::string& json,
+                                            const NodeFactory& factory) {
+    return std::make_unique<LocalNode>(name, json, factory);
+}
+
+}  // namespace puckloop::cosim

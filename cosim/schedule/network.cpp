@@ -1,0 +1,187 @@
+#include "cosim/schedule/network.h"
+
+#include "base/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace puckloop::cosim {
+
+namespace {
+
+std::size_t find_node(const std::vector<std::unique_ptr<NodeHandle>>& nodes, const LinkSpec& link,
+                      const std::string& name) {
+    for (std::size_t n = 0; n < nodes.size(); ++n)
+        if (nodes[n]->name() == name) return n;
+    throw InputError("", fmt::format("link {}", link.name), fmt::format("there is no node \"{}\"", name));
+}
+
+PortIndex find_port(const NodeHandle& node, const LinkSpec& link, const std::string& name) {
+    std::string known;
+    for (std::size_t p = 0; p < node.ports().size(); ++p) {
+        if (node.ports()[p].name == name) return static_cast<PortIndex>(p);
+        known += (p == 0 ? "" : ", ") + node.ports()[p].name;
+    }
+    throw InputError("", fmt::format("link {}", link.name),
+                     fmt::format("node {} has no port \"{}\"", node.name(), name), known);
+}
+
+}  // namespace
+
+Network::Network(const std::vector<std::unique_ptr<NodeHandle>>& nodes, const std::vector<LinkSpec>& links,
+                 const std::vector<FaultSpec>& faults, std::uint64_t seed)
+    : nodes_(nodes), links_(links) {
+    for (const auto& node : nodes)
+        port_wire_.emplace_back(node->ports().size(), kNobody);
+    if (links.size() > std::numeric_limits<std::uint16_t>::max())
+        throw InputError("", "", "too many links", "at most 65535");
+    for (std::size_t l = 0; l < links.size(); ++l)
+        attach(links[l], static_cast<std::uint16_t>(l));
+    ways_back_.resize(nodes.size());
+    for (std::size_t f = 0; f < faults.size(); ++f)
+        attach_fault(faults[f], f, seed);
+}
+
+void Network::attach(const LinkSpec& spec, std::uint16_t link) {
+    const auto place = fmt::format("link {}", spec.name);
+    const std::size_t a = find_node(nodes_, spec, spec.a.node);
+    const std::size_t b = find_node(nodes_, spec, spec.b.node);
+    const PortIndex port_a = find_port(*nodes_[a], spec, spec.a.port);
+    const PortIndex port_b = find_port(*nodes_[b], spec, spec.b.port);
+    const PortKind kind = nodes_[a]->ports()[port_a].kind;
+    if (kind != nodes_[b]->ports()[port_b].kind)
+        throw InputError("", place,
+                         fmt::format("{}.{} and {}.{} are ports of different kinds", spec.a.node, spec.a.port,
+                                     spec.b.node, spec.b.port));
+    const bool is_uart = kind == PortKind::Uart;
+    if (is_uart != (spec.nominal_baud > 0.0))
+        throw InputError("", place, is_uart ? "no nominal baud" : "a nominal baud on a link that is no UART",
+                         "one for UART links, and for no others");
+    if (spec.latency < 0) throw InputError("", place, "negative latency");
+    const Time flight = flight_time(spec);
+    wires_.push_back({link, Direction::FromA, a, port_a, b, port_b, is_uart, flight, spec.latency, 0, {}});
+    wires_.push_back({link, Direction::FromB, b, port_b, a, port_a, is_uart, flight, spec.latency, 0, {}});
+    for (const std::size_t w : {wires_.size() - 2, wires_.size() - 1}) {
+        std::size_t& slot = port_wire_[wires_[w].from][wires_[w].from_port];
+        if (slot != kNobody)
+            throw InputError("", place,
+                             fmt::format("port {}.{} is linked already", nodes_[wires_[w].from]->name(),
+                                         w % 2 == 0 ? spec.a.port : spec.b.port));
+        slot = w;
+        channels_.push_back({wires_[w].from, wires_[w].to, 0, 0});
+    }
+}
+
+void Network::attach_fault(const FaultSpec& spec, std::size_t index, std::uint64_t seed) {
+    const auto place = fmt::format("fault on link {}", spec.link);
+    bool found_link = false, found_wire = false;
+    for (Wire& wire : wires_) {
+        if (links_[wire.link].name != spec.link) continue;
+        found_link = true;
+        if (!wire.is_uart) throw InputError("", place, "the link is no UART", "a UART link");
+        if (!spec.from.empty() && nodes_[wire.from]->name() != spec.from) continue;
+        found_wire = true;
+        faults_.push_back(make_fault(spec, wire.direction, wire.flight, seed, index));
+        fault_specs_.push_back(index);
+        wire.faults.push_back(faults_.back().get());
+    }
+    if (!found_link) throw InputError("", place, "there is no such link");
+    if (!found_wire) throw InputError("", place, fmt::format("no node {} at either end", spec.from));
+}
+
+void Network::update(std::size_t n, const NodeState& state, Time reached, Time first_in) {
+    for (std::size_t p = 0; p < port_wire_[n].size(); ++p) {
+        if (port_wire_[n][p] == kNobody) continue;
+        const Wire& wire = wires_[port_wire_[n][p]];
+        const PortState& port = state.ports[p];
+        Channel& channel = channels_[port_wire_[n][p]];
+        // A frame begins when the node promised or later; what an incoming message causes begins after it.
+        const Time begun = wire.is_uart ? later(port.begun.value_or(reached), wire.flight) : 0;
+        const Time said_before = std::min(channel.base, later(first_in, channel.reaction));
+        channel.base = std::max(said_before, later(std::max(port.promise, begun), wire.latency));
+        const Time reaction = later(std::max(port.reaction, wire.flight), wire.latency);
+        if (reaction != channel.reaction) ++reactions_;
+        channel.reaction = reaction;
+    }
+}
+
+void Network::renew(std::size_t n, const NodeState& state, Time now) {
+    for (const std::size_t wire : port_wire_[n])
+        if (wire != kNobody) channels_[wire].base = 0;
+    update(n, state, now, kNever);
+}
+
+/// Ways back to node `n`; they change only when somebody's reaction does.
+const std::vector<Time>& Network::distances_to_node(std::size_t n) {
+    WaysBack& ways = ways_back_[n];
+    if (ways.reactions != reactions_) {
+        ways.distances = distances_to(n, channels_, nodes_.size());
+        ways.reactions = reactions_;
+    }
+    return ways.distances;
+}
+
+void Network::echoes(std::size_t n, std::vector<PortEcho>& echoes) {
+    const std::vector<Time>& back = distances_to_node(n);
+    echoes.assign(port_wire_[n].size(), {});
+    for (std::size_t p = 0; p < echoes.size(); ++p) {
+        if (port_wire_[n][p] == kNobody) continue;
+        const Wire& wire = wires_[port_wire_[n][p]];
+        echoes[p] = {wire.flight, wire.latency, back[wire.to], wire.is_uart};
+    }
+}
+
+void Network::check_promise(const Wire& wire, const Message& message, Time delivery, Time first_in) const {
+    const Channel& channel = channels_[wire.link * 2u + static_cast<unsigned>(wire.direction)];
+    const Time earliest = std::min(channel.base, later(first_in, channel.reaction));
+    if (delivery >= earliest) return;
+    const NodeHandle& node = *nodes_[wire.from];
+    const PortState& port = node.state().ports[wire.from_port];
+    const auto seconds = [](Time time) {
+        return time == kNever ? std::string("never") : fmt::format("{:.12f} s", to_seconds(time));
+    };
+    throw RunError(fmt::format(
+        "node {} broke its promise on port {}: a message stamped {}, to be delivered at {}, after it had "
+        "said: "
+        "not before {} (first message in since: {}; promise now {}, reaction now {}, frame on the line {})",
+        node.name(), node.ports()[wire.from_port].name, seconds(message.time), seconds(delivery),
+        seconds(earliest), seconds(first_in), seconds(port.promise), seconds(port.reaction),
+        port.begun ? "begun at " + seconds(*port.begun) : "none"));
+}
+
+void Network::send(std::size_t n, const Message& message, Time first_in,
+                   std::vector<TraceRecord>& deliveries) {
+    if (message.port >= port_wire_[n].size())
+        throw RunError(fmt::format("node {} sent a message by port {}, which it does not have",
+                                   nodes_[n]->name(), message.port));
+    const std::size_t w = port_wire_[n][message.port];
+    if (w == kNobody) {  // an open serial line is no mistake
+        if (nodes_[n]->ports()[message.port].kind != PortKind::Uart) ++unlinked_;
+        return;
+    }
+    Wire& wire = wires_[w];
+    const Time time = delivery_time(message, wire.flight, wire.latency);
+    check_promise(wire, message, time, first_in);
+    batch_.assign(1, {Message{time, wire.to_port, message.payload}, FaultKind::None});
+    for (LinkFault* fault : wire.faults)
+        fault->apply(batch_);
+    deliver(wire, deliveries);
+}
+
+void Network::preset(std::vector<TraceRecord>& deliveries) {
+    for (Wire& wire : wires_)
+        for (const LinkFault* fault : wire.faults) {
+            batch_ = fault->preset();
+            deliver(wire, deliveries);
+        }
+}
+
+void Network::deliver(Wire& wire, std::vector<TraceRecord>& deliveries) {
+    for (const Delivery& delivery : batch_)
+        deliveries.push_back({delivery.message.time, wire.link, wire.direction, wire.sequence++,
+                              delivery.fault, delivery.message.payload});
+}
+
+}  // namespace puckloop::cosim

@@ -1,0 +1,89 @@
+#pragma once
+// Who is connected to whom: links resolved to nodes and ports, with what waits on them and what harms them.
+
+#include "cosim/core/link.h"
+#include "cosim/faults/faults.h"
+#include "cosim/schedule/bounds.h"
+#include "cosim/schedule/node_handle.h"
+#include "cosim/trace/trace.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace puckloop::cosim {
+
+/// One direction of one link.
+struct Wire {
+    std::uint16_t link = 0;
+    Direction direction = Direction::FromA;
+    std::size_t from = 0;
+    PortIndex from_port = 0;
+    std::size_t to = 0;
+    PortIndex to_port = 0;
+    bool is_uart = false;
+    Time flight = 0;
+    Time latency = 0;
+    std::uint64_t sequence = 0;
+    std::vector<LinkFault*> faults;
+};
+
+class Network {
+  public:
+    /// Throws InputError for links and faults that name what is not there, or do not fit.
+    Network(const std::vector<std::unique_ptr<NodeHandle>>& nodes, const std::vector<LinkSpec>& links,
+            const std::vector<FaultSpec>& faults, std::uint64_t seed);
+
+    /// Takes over what node `n`, whose last reply covers everything before `reached`, says of its future.
+    /// What it said before still holds, as far as `first_in`, the first message it took since, lets it.
+    void update(std::size_t n, const NodeState& state, Time reached, Time first_in);
+    /// Takes over what node `n` says of its future after it was asked to wind up at `now`, which all nodes
+    /// have reached: what it said before holds no more.
+    void renew(std::size_t n, const NodeState& state, Time now);
+    const std::vector<Channel>& channels() const { return channels_; }
+    /// What comes back of what node `n` says on each port, as the others stand now.
+    void echoes(std::size_t n, std::vector<PortEcho>& echoes);
+
+    /// Sends one message of node `n` on its way. Appends what it becomes to `deliveries` (lost ones too).
+    /// `first_in` is the first message that the node had to answer when it sent this one, or kNever.
+    /// Throws RunError when the message is earlier than the node promised.
+    void send(std::size_t n, const Message& message, Time first_in, std::vector<TraceRecord>& deliveries);
+    /// What faults put on the lines by themselves.
+    void preset(std::vector<TraceRecord>& deliveries);
+
+    const Wire& wire(const TraceRecord& record) const {
+        return wires_[record.link * 2u + static_cast<unsigned>(record.direction)];
+    }
+    const std::vector<std::unique_ptr<LinkFault>>& faults() const { return faults_; }
+    /// For each fault, the index of its specification.
+    const std::vector<std::size_t>& fault_specs() const { return fault_specs_; }
+    /// Messages sent by ports without a link.
+    std::uint64_t unlinked() const { return unlinked_; }
+
+  private:
+    /// Shortest ways from each node to one, and as of which state of the reactions.
+    struct WaysBack {
+        std::uint64_t reactions = 0;
+        std::vector<Time> distances;
+    };
+
+    void attach(const LinkSpec& spec, std::uint16_t link);
+    void attach_fault(const FaultSpec& spec, std::size_t index, std::uint64_t seed);
+    void check_promise(const Wire& wire, const Message& message, Time delivery, Time first_in) const;
+    const std::vector<Time>& distances_to_node(std::size_t n);
+    void deliver(Wire& wire, std::vector<TraceRecord>& deliveries);
+
+    const std::vector<std::unique_ptr<NodeHandle>>& nodes_;
+    const std::vector<LinkSpec>& links_;
+    std::vector<Wire> wires_;
+    std::vector<Channel> channels_;  ///< one a wire, same index
+    std::uint64_t reactions_ = 1;    ///< how often one changed
+    std::vector<WaysBack> ways_back_;
+    std::vector<std::vector<std::size_t>> port_wire_;  ///< node, port -> wire or kNobody
+    std::vector<std::unique_ptr<LinkFault>> faults_;
+    std::vector<std::size_t> fault_specs_;
+    std::vector<Delivery> batch_;
+    std::uint64_t unlinked_ = 0;
+};
+
+}  // namespace puckloop::cosim

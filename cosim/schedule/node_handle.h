@@ -1,0 +1,86 @@
+#pragma once
+// A node as the conductor sees it, wherever it lives: in this process or in one of its own.
+
+#include "cosim/core/message.h"
+#include "cosim/core/node.h"
+#include "cosim/core/time.h"
+#include "cosim/schedule/stride.h"
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace puckloop::cosim {
+
+/// Makes a node from its description; throws InputError when it cannot be made.
+using NodeFactory = std::function<std::unique_ptr<Node>(const std::string& json)>;
+
+struct PortState {
+    Time promise = 0;
+    Time reaction = 0;
+    std::optional<Time> begun;
+
+    friend bool operator==(const PortState&, const PortState&) = default;
+};
+
+/// What a node says of its future after each advance.
+struct NodeState {
+    std::vector<PortState> ports;
+    std::optional<Stop> stop;
+    Time wound_up = 0;  ///< Node::wound_up
+};
+
+/// Fills `state` from a node in this process.
+void read_state(const Node& node, NodeState& state);
+
+/// Every call may throw RunError that names the node, the time it had reached and the cause.
+class NodeHandle {
+  public:
+    using Clock = std::chrono::steady_clock;
+
+    virtual ~NodeHandle() = default;
+
+    const std::string& name() const { return name_; }
+    const std::vector<Port>& ports() const { return ports_; }
+    /// As of the last reply.
+    const NodeState& state() const { return state_; }
+    /// How far the last reply says it came; messages of its inbox from then on were not taken.
+    Time reached() const { return reached_; }
+    /// Messages of the last reply, by the sender's port.
+    std::vector<Message>& outbox() { return outbox_; }
+
+    /// Waits until the node is made and has told its ports and first state.
+    virtual void await_ready() = 0;
+    /// Asks the node to advance, in strides if `echoes` says so (cosim/schedule/stride.h); one grant at a
+    /// time.
+    virtual void grant(Reach reach, const std::vector<Message>& inbox,
+                       const std::vector<PortEcho>& echoes) = 0;
+    /// True once the reply to the last grant is complete. A node in this process does its work here; `wait`
+    /// lets one elsewhere wait for some tenths of a second.
+    virtual bool poll(bool wait) = 0;
+    /// What to wait on for the reply, or -1 where poll() does the work itself.
+    virtual int descriptor() const { return -1; }
+    /// Asks the node, which is under no grant, to bring what it runs to an end (Node::wind_up); state() is
+    /// then as of after that.
+    virtual void wind_up(int signal) = 0;
+    /// Ends the node and returns its part of the report as JSON text; empty if it was lost before.
+    virtual std::string finish() = 0;
+    /// The process it lives in, 0 for this one.
+    virtual int process() const { return 0; }
+
+  protected:
+    std::string name_;
+    std::vector<Port> ports_;
+    NodeState state_;
+    std::vector<Message> outbox_;
+    Time reached_ = 0;
+};
+
+/// A node in this process.
+std::unique_ptr<NodeHandle> make_local_node(const std::string& name, const std::string& json,
+                                            const NodeFactory& factory);
+
+}  // namespace puckloop::cosim

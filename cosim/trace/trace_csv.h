@@ -1,0 +1,45 @@
+#pragma once
+// trace.csv: written during a run, read by `puckloop trace`, any spreadsheet or script.
+
+#include "cosim/trace/trace.h"
+#include "cosim/trace/trace_row.h"
+
+#include <cstdio>
+#include <functional>
+#include <istream>
+#include <string>
+
+namespace puckloop::cosim {
+
+/// Writes the messages that their links ask to be recorded. A failed write (full disk) throws RunError once;
+/// what was written stays, and nothing more is tried.
+class TraceCsvSink : public TraceSink {
+  public:
+    /// Creates or replaces the file; throws RunError.
+    explicit TraceCsvSink(const std::string& path);
+    ~TraceCsvSink() override;
+    TraceCsvSink(const TraceCsvSink&) = delete;
+    TraceCsvSink& operator=(const TraceCsvSink&) = delete;
+
+    void begin(const std::vector<LinkSpec>& links) override;
+    void record(const TraceRecord& record) override;
+    void flush() override;
+
+  private:
+    void put(const std::string& line);
+    [[noreturn]] void fail();
+
+    std::string path_;
+    std::FILE* file_ = nullptr;
+    bool failed_ = false;
+    std::vector<LinkSpec> links_;
+};
+
+/// What a record says, with names for numbers.
+TraceRow to_row(const TraceRecord& record, const std::vector<LinkSpec>& links);
+
+/// Calls `take` for each row, in the order of the file. Throws InputError naming `name` and the line. A last
+/// line without its end (the writer was killed) is left out; then the result is false.
+bool read_trace(std::istream& in, const std::string& name, const std::function<void(const TraceRow&)>& take);
+
+}  // namespace puckloop::cosim

@@ -1,0 +1,211 @@
+#include "cosim/trace/trace_row.h"
+
+#include "base/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <vector>
+
+namespace puckloop::cosim {
+
+namespace {
+
+constexpr std::size_t kFields = 10;
+constexpr std::string_view kParityLetters = "NOE";
+// In the order of I2cPhaseKind; Read and Acknowledge tell the ninth bit as well.
+constexpr std::array<std::string_view, 7> kPhases{"start", "write", "read", "stop", "", "data", "lost"};
+
+std::string quoted(const std::string& text) {
+    if (text.find_first_of(",\"\n") == std::string::npos) return text;
+    std::string result = "\"";
+    for (const char c : text) {
+        if (c == '"') result += '"';
+        result += c == '\n' ? ' ' : c;
+    }
+    return result + "\"";
+}
+
+std::string phase_text(const I2cPhase& phase) {
+    if (phase.kind == I2cPhaseKind::Acknowledge) return phase.ack ? "ack" : "nack";
+    std::string text(kPhases.at(static_cast<std::size_t>(phase.kind)));
+    if (phase.kind == I2cPhaseKind::Read) text += phase.ack ? "+ack" : "+nack";
+    return text;
+}
+
+std::string payload_text(const TraceRow& row) {
+    if (const auto* frame = std::get_if<UartFrame>(&row.payload)) {
+        const std::string format =
+            fmt::format("{}{}{}{}", frame->data_bits, kParityLetters[frame->parity % kParityLetters.size()],
+                        frame->stop_bits, frame->parity == 0 ? "" : (frame->parity_bit ? " p1" : " p0"));
+        const std::string times =
+            fmt::format("{},{},", format_seconds(frame->start), format_seconds(frame->bit_period));
+        if (frame->is_break) return fmt::format("break,,{},{}", format, times);
+        return fmt::format("uart,{:02x},{},{}", frame->data, format, times);
+    }
+    if (const auto* phase = std::get_if<I2cPhase>(&row.payload))
+        return fmt::format("i2c,{:02x},{},{},{},{}", phase->byte, phase_text(*phase),
+                           format_seconds(phase->start), format_seconds(phase->clock_period),
+                           format_seconds(phase->stretch));
+    const auto& signal = std::get<Signal>(row.payload);
+    const std::string name = row.signal.empty() ? fmt::format("#{}", signal.id) : row.signal;
+    return fmt::format("signal,{},{},,,", signal.value, quoted(name));
+}
+
+/// Reads fields, and says where and what when one cannot be.
+class Parser {
+  public:
+    Parser(std::string_view text, std::string_view file, std::size_t line) : file_(file), line_(line) {
+        fields_.emplace_back();
+        bool in_quotes = false;
+        for (std::size_t i = 0; i < text.size(); ++i) {
+            if (text[i] == '"' && in_quotes && i + 1 < text.size() && text[i + 1] == '"') {
+                fields_.back() += text[++i];
+            } else if (text[i] == '"') {
+                in_quotes = !in_quotes;
+            } else if (text[i] == ',' && !in_quotes) {
+                fields_.emplace_back();
+            } else {
+                fields_.back() += text[i];
+            }
+        }
+        if (fields_.size() != kFields)
+            fail(fmt::format("{} fields", fields_.size()), fmt::format("{}: {}", kFields, kTraceColumns));
+    }
+
+    const std::string& operator[](std::size_t field) const { return fields_[field]; }
+
+    [[noreturn]] void fail(const std::string& problem, const std::string& expected) const {
+        throw InputError(file_, fmt::format("line {}", line_), problem, expected);
+    }
+
+    Time time(std::size_t field) const {
+        const std::string& text = fields_[field];
+        const std::size_t dot = text.find('.');
+        const bool negative = !text.empty() && text[0] == '-';
+        long long whole = 0;
+        unsigned long long fraction = 0;
+        constexpr std::size_t kDigits = 12;
+        constexpr long long kMostSeconds = 9'000'000;
+        const char* begin = text.data() + (negative ? 1 : 0);
+        const bool shaped = dot != std::string::npos && text.size() - dot - 1 == kDigits &&
+                            std::from_chars(begin, text.data() + dot, whole).ptr == text.data() + dot &&
+                            std::from_chars(text.data() + dot + 1, text.data() + text.size(), fraction).ptr ==
+                                text.data() + text.size();
+        if (!shaped || whole < 0 || whole > kMostSeconds)
+            fail(fmt::format("\"{}\" is no time", text), "seconds with twelve decimals");
+        const Time value = whole * kSecond + static_cast<Time>(fraction);
+        return negative ? -value : value;
+    }
+
+    unsigned hex(std::size_t field, unsigned most) const {
+        const std::string& text = fields_[field];
+        unsigned value = 0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, 16);
+        if (error != std::errc() || end != text.data() + text.size() || value > most)
+            fail(fmt::format("\"{}\" is no data", text), "hex digits");
+        return value;
+    }
+
+  private:
+    std::string file_;
+    std::size_t line_;
+    std::vector<std::string> fields_;
+};
+
+UartFrame parse_frame(const Parser& in) {
+    UartFrame frame;
+    const std::string& format = in[5];
+    const std::size_t parity = format.size() < 3 ? std::string::npos : kParityLetters.find(format[1]);
+    const bool has_parity_bit =
+        format.size() == 6 && format.substr(3, 2) == " p" && (format[5] == '0' || format[5] == '1');
+    if (parity == std::string::npos || format[0] < '5' || format[0] > '9' || format[2] < '1' ||
+        format[2] > '2' || has_parity_bit != (parity != 0) || (format.size() != 3 && !has_parity_bit))
+        in.fail(fmt::format("\"{}\" is no frame format", format), "8N1, 9E2 p1, ...");
+    frame.data_bits = static_cast<std::uint8_t>(format[0] - '0');
+    frame.parity = static_cast<std::uint8_t>(parity);
+    frame.stop_bits = static_cast<std::uint8_t>(format[2] - '0');
+    frame.parity_bit = has_parity_bit && format[5] == '1';
+    frame.start = in.time(6);
+    frame.bit_period = in.time(7);
+    frame.is_break = in[3] == "break";
+    if (!frame.is_break) frame.data = static_cast<std::uint16_t>(in.hex(4, 0x1ff));
+    return frame;
+}
+
+I2cPhase parse_phase(const Parser& in) {
+    I2cPhase phase;
+    phase.byte = static_cast<std::uint8_t>(in.hex(4, 0xff));
+    phase.start = in.time(6);
+    phase.clock_period = in.time(7);
+    phase.stretch = in.time(8);
+    const std::string& text = in[5];
+    const auto* named = std::find(kPhases.begin(), kPhases.end(), text);
+    if (text == "ack" || text == "nack") {
+        phase.kind = I2cPhaseKind::Acknowledge;
+        phase.ack = text == "ack";
+    } else if (text == "read+ack" || text == "read+nack") {
+        phase.kind = I2cPhaseKind::Read;
+        phase.ack = text == "read+ack";
+    } else if (named != kPhases.end() && !text.empty() && text != "read") {
+        phase.kind = static_cast<I2cPhaseKind>(named - kPhases.begin());
+    } else {
+        in.fail(fmt::format("\"{}\" is no I2C phase", text), "start, write, read+ack, stop, ...");
+    }
+    return phase;
+}
+
+Signal parse_signal(const Parser& in, std::string& name) {
+    Signal signal;
+    char* end = nullptr;
+    signal.value = std::strtod(in[4].c_str(), &end);
+    if (in[4].empty() || *end != '\0') in.fail(fmt::format("\"{}\" is no value", in[4]), "a number");
+    name = in[5];
+    if (name.size() > 1 && name[0] == '#') {
+        const auto [stop, error] = std::from_chars(name.data() + 1, name.data() + name.size(), signal.id);
+        if (error != std::errc() || stop != name.data() + name.size())
+            in.fail(fmt::format("\"{}\" is no signal", name), "a name or #id");
+        name.clear();
+    }
+    return signal;
+}
+
+}  // namespace
+
+std::string format_seconds(Time time) {
+    const std::uint64_t size =
+        time < 0 ? 0 - static_cast<std::uint64_t>(time) : static_cast<std::uint64_t>(time);
+    constexpr std::uint64_t kPerSecond = kSecond;
+    return fmt::format("{}{}.{:012}", time < 0 ? "-" : "", size / kPerSecond, size % kPerSecond);
+}
+
+std::string to_csv(const TraceRow& row) {
+    return fmt::format("{},{},{},{},{}", format_seconds(row.time), quoted(row.link), quoted(row.from),
+                       payload_text(row), fault_name(row.fault));
+}
+
+TraceRow parse_trace_row(std::string_view text, std::string_view file, std::size_t line) {
+    const Parser in(text, file, line);
+    TraceRow row;
+    row.time = in.time(0);
+    row.link = in[1];
+    row.from = in[2];
+    if (!in[9].empty()) {
+        const auto fault = fault_of_name(in[9]);
+        if (!fault) in.fail(fmt::format("\"{}\" is no fault", in[9]), "drop, flip, delay, ...");
+        row.fault = *fault;
+    }
+    if (in[3] == "uart" || in[3] == "break")
+        row.payload = parse_frame(in);
+    else if (in[3] == "i2c")
+        row.payload = parse_phase(in);
+    else if (in[3] == "signal")
+        row.payload = parse_signal(in, row.signal);
+    else
+        in.fail(fmt::format("\"{}\" is no kind of message", in[3]), "uart, break, i2c, signal");
+    return row;
+}
+
+}  // namespace puckloop::cosim

@@ -1,0 +1,212 @@
+#pragma once
+// A whole microcontroller: core, memories, clock, interrupt controller and peripherals, wired as in
+// silicon. It knows no board: the board implements Pins, and tells the chip what arrives from outside.
+
+#include "base/archive.h"
+#include "cosim/core/clock.h"
+#include "cosim/core/message.h"
+#include "cosim/core/time.h"
+#include "emu/dspic/chip/pins.h"
+#include "emu/dspic/chip/uart_counters.h"
+#include "emu/dspic/core/event_queue.h"
+#include "emu/dspic/devices/device.h"
+#include "emu/dspic/waits/wait_report.h"
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace puckloop::image {
+struct Image;
+}
+
+namespace puckloop::dspic {
+
+struct ChipOptions {
+    double crystal_hertz = 7'372'800.0;  ///< what the board solders to OSC1/OSC2
+    double ppm = 0.0;                    ///< the crystal's error, + is fast
+    /// 30F: configuration word FOSC that is in force whatever the image says (a bootloader's words stay on
+    /// the part).
+    std::optional<std::uint16_t> fosc{};
+};
+
+/// One entry each; times are the chip's cycles.
+struct ResetRecord {
+    Cycle cycle = 0;
+    std::string cause;     ///< "POR", "EXTR", "SWR", "WDTO", "IOPUWR", "TRAPR"
+    std::uint32_t pc = 0;  ///< address of the instruction that was about to run or that caused it
+
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(cycle, cause, pc);
+    }
+};
+struct TrapRecord {
+    Cycle cycle = 0;
+    std::string name;  ///< "AddressError", "StackError", "MathError", "OscillatorFail"
+    std::uint32_t pc = 0;
+
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(cycle, name, pc);
+    }
+};
+struct UnmodelledTouch {
+    Cycle cycle = 0;
+    std::string name;  ///< empty where the device has no register
+    std::uint16_t address = 0;
+    std::uint32_t pc = 0;
+    bool write = false;
+
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(cycle, name, address, pc, write);
+    }
+};
+/// Something the program did that the model takes differently from silicon, told once each.
+struct ChipWarning {
+    Cycle cycle = 0;
+    std::string text;
+    std::uint32_t pc = 0;
+
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(cycle, text, pc);
+    }
+};
+
+/// What an output compare module does with its pin. No call per edge: see Pins::output_compare_changed().
+struct OutputCompareState {
+    int mode = 0;          ///< OCxCON<OCM>: 0 off, 3 toggle, 4 single pulse, 5 pulses, 6 and 7 PWM, ...
+    bool running = false;  ///< its timer counts: edges come by themselves
+    Cycle period = 0;      ///< between rising edges, instruction cycles; 0 while nothing repeats
+    Cycle high = 0;        ///< of each period, 0..period
+    bool level = false;    ///< of the pin where nothing repeats
+
+    friend bool operator==(const OutputCompareState&, const OutputCompareState&) = default;
+
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(mode, running, period, high, level);
+    }
+};
+
+/// An I2C address to which the chip spoke as master, and nobody answered.
+struct RefusedAddress {
+    int unit = 1;
+    std::uint8_t address = 0;  ///< 7 bits
+    std::uint64_t times = 0;
+};
+
+struct ChipReport {
+    std::vector<ResetRecord> resets;          ///< the first 1000, power-on included
+    std::vector<TrapRecord> traps;            ///< the first 1000
+    std::vector<UnmodelledTouch> unmodelled;  ///< first touch of each register
+    std::vector<ChipWarning> warnings;
+    std::vector<MissingBitReport> missing_bits;     ///< at most 100
+    std::vector<RefusedAddress> refused_addresses;  ///< by unit and address
+    std::uint64_t instructions = 0;
+    Cycle cycles = 0;
+
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(resets, traps, unmodelled, warnings);
+    }
+};
+
+/// Use: construct, load, power_on(), then run_until() in rising steps, handing in what arrives in between.
+class Chip {
+  public:
+    Chip(const DeviceInfo& device, Pins& pins, const ChipOptions& options = {});
+    ~Chip();
+    Chip(const Chip&) = delete;
+    Chip& operator=(const Chip&) = delete;
+
+    /// Program, configuration and EEPROM words of an image; throws InputError if they do not fit the
+    /// device.
+    void load(const image::Image& image);
+    /// One program, configuration or EEPROM word at a program address (even).
+    void load_word(std::uint32_t address, std::uint32_t word);
+
+    /// What would be left without supply, by program address: flash and EEPROM words that are not erased, and
+    /// every configuration word. load_word() of all of them into a new chip makes the same memory.
+    std::map<std::uint32_t, std::uint32_t> memory() const;
+
+    /// Power-up at time 0: all registers at power-on values, RCON.POR and BOR set. Once, before
+    /// run_until().
+    void power_on();
+    /// A pulse on MCLR now.
+    void mclr();
+
+    /// Runs everything that starts strictly before `until`. Returns early only at a stop address. An
+    /// instruction that starts at time s has seen everything handed in after run_until(t), t <= s.
+    void run_until(cosim::Time until);
+    /// Ends run_until() before the instruction at program address `pc` runs.
+    void stop_at(std::uint32_t pc);
+    /// The stop address at which run_until() returned early, until it is called again.
+    std::optional<std::uint32_t> stopped_at() const;
+
+    /// A character whose stop bit begins now arrives at UART `unit` (1 or 2).
+    void uart_receive(int unit, const cosim::UartFrame& frame);
+    /// The bus's answer (Acknowledge, Data or BusLost) to the last phase of I2C module `unit`, now.
+    void i2c_answer(int unit, const cosim::I2cPhase& phase);
+    /// A phase that a bus master begins now reaches module `unit` as slave: Start, Write, Read or Stop.
+    /// Each but Stop is answered through Pins::i2c_slave_answer(), with ack = 0 where the slave does not feel
+    /// addressed.
+    void i2c_slave_phase(int unit, const cosim::I2cPhase& phase);
+    /// Levels that Pins::levels() reports for this port changed now: edges for INTx, CN, timer clocks and
+    /// gates.
+    void pins_changed(PortLetter port);
+
+    /// Lookahead for the conductor: no uart_sent() call for `unit` carries a stop bit that begins before
+    /// this. `nominal_bit` is the link's nominal bit period; faster senders must be stamped as on that
+    /// link.
+    cosim::Time earliest_uart_send(int unit, cosim::Time nominal_bit) const;
+    /// Start of the frame that UART `unit` is shifting out and has not yet handed to Pins::uart_sent().
+    std::optional<cosim::Time> uart_begun(int unit) const;
+    UartCounters uart_counters(int unit) const;
+    /// UARTEN of `unit`: its receiver listens.
+    bool uart_enabled(int unit) const;
+    /// No i2c_phase() call of module `unit` begins before this, unless an answer comes in; kNever while one
+    /// is awaited.
+    cosim::Time earliest_i2c(int unit) const;
+
+    /// No i2c_slave_answer() call of module `unit` comes before this; kNever while no phase is open.
+    cosim::Time earliest_i2c_slave_answer(int unit) const;
+    /// Module OC`unit`; all zero if the device has none.
+    OutputCompareState output_compare(int unit) const;
+
+    const cosim::ClockDomain& clock() const;
+    /// How far the chip has been run: the last `until`, or the start of the instruction at a stop address.
+    /// What is handed in belongs to this time.
+    cosim::Time now() const;
+    Cycle cycle() const;
+    std::uint32_t pc() const;
+    /// A register's present value by data-sheet name, as the program would read it but without side
+    /// effects. Throws std::out_of_range if the device has no such register.
+    std::uint16_t peek(std::string_view register_name) const;
+    /// A word of RAM at an even data address. Throws std::out_of_range elsewhere.
+    std::uint16_t peek_data(std::uint16_t address) const;
+    ChipReport report() const;
+    /// What the program has been waiting for, if it has gone round in one loop, or slept, for a tenth of a
+    /// second or more. Costs some milliseconds.
+    std::optional<WaitReport> waiting() const;
+
+    /// Everything the chip remembers, between two run_until(): registers, memories (flash and EEPROM too),
+    /// modules, events, report. Stop addresses are the bench's and are left out. A chip of the same device
+    /// that loads it goes on as this one does; StateError: it does not fit, and the chip is of no use.
+    void state(StateWriter& archive) const;
+    void state(StateReader& archive);
+
+    /// Busy-wait loops are skipped forward (default); off, every cycle of them is executed.
+    void set_skipping(bool on);
+
+  private:
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace puckloop::dspic

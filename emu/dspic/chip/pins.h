@@ -1,0 +1,69 @@
+#pragma once
+// What stands around the chip, seen from its pins. The chip knows no board: a board implements this.
+
+#include "cosim/core/message.h"
+#include "emu/dspic/core/event_queue.h"
+
+#include <cstdint>
+#include <string_view>
+
+namespace puckloop::dspic {
+
+/// What is outside a pin, for reports.
+struct OutsidePin {
+    bool changes = true;          ///< false: its level stays what it is for the whole run
+    std::string_view function{};  ///< the board's name for it, or empty
+};
+
+/// Ports A..G as on the package; H and above do not exist on these parts.
+enum class PortLetter : std::uint8_t { A, B, C, D, E, F, G };
+
+/// Everything is stamped in cycles of the chip. Calls come in time order.
+class Pins {
+  public:
+    virtual ~Pins() = default;
+
+    /// The chip's output drivers of one port changed: `driven` = pins that are outputs, `levels` = their
+    /// levels.
+    virtual void driven(PortLetter port, std::uint16_t levels, std::uint16_t driven, Cycle now) = 0;
+    /// Levels that the outside puts on the port's pins now (bits of driven pins are ignored). Pull-ups are
+    /// the board's.
+    virtual std::uint16_t levels(PortLetter port, Cycle now) = 0;
+    /// Voltage on analog input AN`channel` at this instant, as a fraction of the ADC's reference span; the
+    /// ADC clips. May be asked somewhat after that cycle, but always before anything that the chip drives
+    /// changes and before its run_until() returns; calls come in time order among themselves.
+    virtual double analog(int channel, Cycle now) = 0;
+    /// A character left UART `unit` (1 or 2); called when its stop bit begins.
+    virtual void uart_sent(int unit, const cosim::UartFrame& frame) = 0;
+    /// The chip, as master, began an I2C phase of module `unit`; the board answers through
+    /// Chip::i2c_answer().
+    virtual void i2c_phase(int unit, const cosim::I2cPhase& phase) = 0;
+    /// The chip, as slave of I2C module `unit`, answers the phase handed to Chip::i2c_slave_phase():
+    /// Acknowledge to a Start or Write, Data to a Read. `start` and `clock_period` are the phase's, `stretch`
+    /// tells how long SCL was held: the answer belongs to start + 8 clocks + stretch, and is called then.
+    virtual void i2c_slave_answer(int unit, const cosim::I2cPhase& answer);
+    /// Master of SPI module `unit` shifted out `bits` (8 or 16) bits, the last clock edge being now: what
+    /// came in meanwhile. The chip select is an ordinary port pin. Without a board the line rests high.
+    virtual std::uint16_t spi_exchange(int unit, std::uint16_t sent, int bits, Cycle now);
+    /// Bit 0..15 of a port. Unless a board knows better, anything may change.
+    virtual OutsidePin outside(PortLetter port, int bit) const;
+    /// Chip::output_compare(unit) changed at cycle `now`.
+    virtual void output_compare_changed(int unit, Cycle now);
+};
+
+/// When a slave's answer stands on the wire.
+constexpr cosim::Time i2c_answer_time(const cosim::I2cPhase& answer) {
+    constexpr cosim::Time kClocksToAnswer = 8;
+    return answer.start + kClocksToAnswer * answer.clock_period + answer.stretch;
+}
+
+inline void Pins::i2c_slave_answer(int, const cosim::I2cPhase&) {}
+inline std::uint16_t Pins::spi_exchange(int, std::uint16_t, int bits, Cycle) {
+    return static_cast<std::uint16_t>((1u << bits) - 1u);
+}
+inline OutsidePin Pins::outside(PortLetter, int) const {
+    return {};
+}
+inline void Pins::output_compare_changed(int, Cycle) {}
+
+}  // namespace puckloop::dspic

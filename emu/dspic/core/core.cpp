@@ -1,0 +1,212 @@
+#include "emu/dspic/core/core.h"
+
+#include "base/error.h"
+#include "emu/dspic/core/machine.h"
+#include "emu/dspic/fast/skip_loops.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace puckloop::dspic {
+
+std::string_view to_string(ResetCause cause) {
+    switch (cause) {
+    case ResetCause::PowerOn:
+        return "power-on";
+    case ResetCause::BrownOut:
+        return "brown-out";
+    case ResetCause::Mclr:
+        return "MCLR";
+    case ResetCause::Software:
+        return "RESET instruction";
+    case ResetCause::Watchdog:
+        return "watchdog";
+    case ResetCause::TrapConflict:
+        return "trap conflict";
+    case ResetCause::IllegalOpcode:
+        return "illegal opcode or uninitialised W register";
+    }
+    return "";
+}
+
+Machine::Machine(const DeviceInfo& info, SfrSpace& registers, EventQueue& queue,
+                 InterruptController& controller)
+    : events(queue), sfr(registers), irq(controller), device(info), skip(std::make_unique<SkipLoops>()) {
+    code_words = info.flash_end / 2;
+    program.assign(code_words + kGuards + 1, 0xFFFFFF);
+    code_store.resize(code_words + kGuards);
+    code = code_store.data();
+    for (std::uint32_t i = 0; i < code_words + kGuards; ++i)
+        invalidate(*this, 2 * i);
+    current = code;
+    ram_store.assign((info.ram_end - info.ram_start) / 2u, 0);
+    ram = ram_store.data();
+    ram_words = static_cast<std::uint16_t>(ram_store.size());
+    eeprom.assign(info.eeprom_words, 0xFFFF);
+    config.assign(info.config_words, 0xFFFF);
+    constexpr std::size_t kFwdt30F = 1;
+    constexpr std::size_t kFwdt33F = 5;
+    if (!info.family_33f && config.size() > kFwdt30F) config[kFwdt30F] = 0x7FFF;
+    if (info.family_33f && config.size() > kFwdt33F) config[kFwdt33F] = 0xFF7F;
+    unit_id.assign(info.unit_id_words, 0xFFFFFF);
+    hook_registers(*this);
+    hook_power(*this);
+    hook_nvm(*this);
+    irq.set_clock(&st.cycle, &st.disi_end);
+    irq.set_listener(this, [](void* owner, Cycle now) { reconsider(*static_cast<Machine*>(owner), now); });
+    reset_registers(*this);
+}
+
+Machine::~Machine() = default;
+
+void warn_once(Machine& m, std::uint32_t key, std::string_view text) {
+    if (std::find(m.warned.begin(), m.warned.end(), key) != m.warned.end()) return;
+    m.warned.push_back(key);
+    if (m.observer.on_warning) m.observer.on_warning(text, m.pc_of(m.current));
+}
+
+Core::Core(const DeviceInfo& device, SfrSpace& sfr, EventQueue& events, InterruptController& interrupts)
+    : machine_(std::make_unique<Machine>(device, sfr, events, interrupts)) {}
+
+Core::~Core() = default;
+
+void Core::load(std::span<const ProgramWord> words) {
+    for (const ProgramWord& word : words)
+        if (!poke_program(word.address, word.word))
+            throw InputError("", fmt::format("address 0x{:06X}", word.address),
+                             fmt::format("{} has no memory there", machine_->device.name),
+                             fmt::format("flash below 0x{:06X}, EEPROM or configuration words",
+                                         machine_->device.flash_end));
+}
+std::uint32_t Core::program(std::uint32_t address) const {
+    return read_program(*machine_, address);
+}
+bool Core::poke_program(std::uint32_t address, std::uint32_t word) {
+    return write_program(*machine_, address & ~1u, word);
+}
+std::uint16_t Core::config(std::uint32_t address) const {
+    return static_cast<std::uint16_t>(read_program(*machine_, address));
+}
+
+void Core::reset(ResetCause cause) {
+    machine_->fault_pc = pc();
+    perform_reset(*machine_, cause);
+}
+Core::Outcome Core::run(Cycle until) {
+    return run_until(*machine_, until);
+}
+void Core::end_run() {
+    machine_->end_requested = true;
+    machine_->limit = 0;
+}
+void Core::step() {
+    run_until(*machine_, machine_->st.cycle + 1);
+}
+void Core::set_stops(std::span<const std::uint32_t> addresses) {
+    Machine& m = *machine_;
+    for (const std::uint32_t pc : m.stops) {
+        m.code[pc >> 1].marks &= static_cast<std::uint8_t>(~kStop);
+        invalidate(m, pc);
+    }
+    m.stops.clear();
+    for (const std::uint32_t pc : addresses) {
+        if (pc >= m.device.flash_end) continue;
+        m.stops.push_back(pc & ~1u);
+        mark(m, pc, kStop);
+    }
+    if (m.pass_pc && std::find(m.stops.begin(), m.stops.end(), *m.pass_pc) == m.stops.end())
+        m.pass_pc.reset();
+}
+void Core::set_skip_idle(bool on) {
+    machine_->skip_idle = on;
+}
+void Core::stall_until(Cycle cycle) {
+    machine_->stall_end = std::max(machine_->stall_end, cycle);
+    machine_->limit = 0;
+}
+
+Cycle Core::cycle() const {
+    return machine_->st.cycle;
+}
+const Cycle& Core::cycle_counter() const {
+    return machine_->st.cycle;
+}
+std::uint32_t Core::pc() const {
+    return machine_->pc_of(machine_->current);
+}
+std::uint64_t Core::instructions() const {
+    return machine_->instructions;
+}
+PowerMode Core::power_mode() const {
+    return machine_->mode;
+}
+int Core::cpu_level() const {
+    return dspic::cpu_level(*machine_);
+}
+const DeviceInfo& Core::device() const {
+    return machine_->device;
+}
+std::optional<Core::BusyLoop> Core::busy_loop() const {
+    int level = 0;
+    const WaitWatch::Stay* stay = present_stay(*machine_, level);
+    if (stay == nullptr || !stay->finding) return std::nullopt;
+    return BusyLoop{stay->since, level, *stay->finding};
+}
+std::span<const MissingPoll> Core::missing_polls() const {
+    return machine_->waits.polls;
+}
+
+CoreState Core::state() const {
+    CoreState copy = machine_->st;
+    copy.pc = pc();
+    return copy;
+}
+void Core::set_state(const CoreState& state) {
+    Machine& m = *machine_;
+    m.st = state;
+    m.current = at(m, state.pc);
+    m.watch = 0;  // every register counts as written
+    m.limit = 0;
+    m.stall_end = 0;
+    if (m.mode != PowerMode::Run) leave_power_save(m);
+    if (m.st.sr & sr::DA) mark(m, m.st.loop.doend, kLoopEnd);
+    update_pointer_rules(m);
+    m.eligible = false;
+    reconsider(m, m.st.cycle);
+}
+std::uint16_t Core::w(int index) const {
+    return get_w(*machine_, index);
+}
+void Core::set_w(int index, std::uint16_t value) {
+    dspic::set_w(*machine_, index, value);
+    machine_->watch &= ~(0x10000u << index);
+}
+void Core::set_pc(std::uint32_t pc) {
+    machine_->current = at(*machine_, pc & 0x7FFFFE);
+}
+std::uint16_t Core::read_data(std::uint16_t address) {
+    return read16(*machine_, address & 0xFFFE);
+}
+void Core::write_data(std::uint16_t address, std::uint16_t value) {
+    write16(*machine_, address & 0xFFFE, value);
+}
+std::span<std::uint16_t> Core::ram() {
+    return machine_->ram_store;
+}
+
+void Core::set_reset_hook(std::function<void(ResetCause)> hook) {
+    machine_->reset_hook = std::move(hook);
+}
+void Core::set_power_hook(std::function<void(PowerMode)> hook) {
+    machine_->power_hook = std::move(hook);
+}
+void Core::set_cycle_rate(double hertz) {
+    machine_->cycle_rate = hertz;
+    schedule_watchdog(*machine_);
+}
+CoreObserver& Core::observer() {
+    return machine_->observer;
+}
+
+}  // namespace puckloop::dspic

@@ -1,0 +1,95 @@
+// What a core remembers, listed once for saving and loading (base/archive.h).
+
+#include "emu/dspic/core/machine.h"
+
+namespace puckloop::dspic {
+
+namespace {
+
+constexpr std::uint32_t kWordMask = 0xFFFFFF;
+constexpr Cycle kLongestExtra = 100;  ///< cycles that PSV reads of one instruction add, generously
+
+template <class Archive>
+void list(Archive& archive, Machine& m) {
+    archive(m.st, m.watch, m.instructions);
+    archive(m.eligible, m.since, m.disi_waits, m.fault_pc);
+    bool resets = m.reset_request.has_value();
+    ResetCause cause = m.reset_request.value_or(ResetCause::PowerOn);
+    archive(resets);
+    archive.bounded(cause, ResetCause::PowerOn, ResetCause::IllegalOpcode);
+    if constexpr (Archive::kLoads) m.reset_request = resets ? std::optional(cause) : std::nullopt;
+    archive(m.repeat_first, m.repeat_edge);
+    archive.bounded(m.late, 0, kLongestExtra);
+    archive.bounded(m.mode, PowerMode::Run, PowerMode::Sleep);
+    archive(m.stall_end);
+    archive.bounded(m.cycle_rate, 0.0, 1e10);
+    archive(m.watchdog_cleared);
+    archive(m.nvm.address, m.nvm.key_step);
+    archive.fixed(m.nvm.latch);
+    archive.fixed(m.program);
+    archive.fixed(m.eeprom);
+    archive.fixed(m.config);
+    archive.fixed(m.unit_id);
+    archive.fixed(m.ram_store);
+    archive(m.warned);
+}
+
+/// Where the program waits: operations by their addresses.
+template <class Archive>
+void list_waits(Archive& archive, Machine& m) {
+    const std::uint32_t last_word = m.code_words - 1;
+    const auto operation = [&](const Op*& op) {
+        std::uint32_t index = op ? static_cast<std::uint32_t>(op - m.code) : 0;
+        archive.bounded(index, 0, last_word);
+        if constexpr (Archive::kLoads) op = m.code + index;
+    };
+    WaitWatch& waits = m.waits;
+    archive.bounded(waits.level, 0, static_cast<int>(waits.stays.size()) - 1);
+    for (WaitWatch::Stay& stay : waits.stays) {
+        bool there = stay.branch != nullptr;
+        archive(there);
+        if (!there) continue;
+        operation(stay.branch);
+        operation(stay.head);
+        archive(stay.stack, stay.since, stay.last, stay.next_look, stay.finding);
+        if (stay.finding)
+            for (const LoopCondition& condition : stay.finding->conditions)
+                archive.check(condition.address % 2 == 0, "a word at an odd address");
+    }
+    archive(waits.polls);
+    for (const MissingPoll& poll : waits.polls)
+        archive.check(m.sfr.info(poll.condition.address & 0x7FE) != nullptr &&
+                          poll.condition.address < 2 * SfrSpace::kWords,
+                      "a poll of no register");
+}
+
+}  // namespace
+
+void Core::state(StateWriter& archive) const {
+    std::uint32_t pc = machine_->pc_of(machine_->current);
+    archive(pc);
+    list(archive, *machine_);
+    list_waits(archive, *machine_);
+}
+
+void Core::state(StateReader& archive) {
+    Machine& m = *machine_;
+    std::uint32_t pc = 0;
+    archive(pc);
+    list(archive, m);
+    for (std::uint32_t& word : m.program)
+        word &= kWordMask;
+    for (std::uint32_t i = 0; i < m.code_words + kGuards; ++i)
+        invalidate(m, 2 * i);
+    m.current = at(m, pc & 0x7FFFFE);
+    m.limit = 0;
+    m.stopped = m.end_requested = false;
+    m.pass_pc.reset();
+    // Where a loop ends the operation carries a mark: the present loop and the one in the shadow.
+    mark(m, m.st.loop.doend, kLoopEnd);
+    mark(m, m.st.loop_shadow.doend, kLoopEnd);
+    update_pointer_rules(m);
+    list_waits(archive, m);  // whatever changes code forgets them
+}
+
+}  // namespace puckloop::dspic

@@ -1,0 +1,291 @@
+// The run loop: instructions, repeated instructions, interrupt entry, resets, stops, and waiting.
+//
+// Everything that has to interrupt the flow (an event, the end of the grant, an interrupt, a stop) is folded
+// into Machine::limit; the inner loop compares the cycle with it and nothing else.
+
+#include "emu/dspic/core/machine.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace puckloop::dspic {
+
+namespace {
+
+/// A pointer was just written (one cycle of stall) or never written (reset). The instruction has not started.
+const Op* execute_with_hazard(Machine& m, const Op* op) {
+    if (op->uses & m.watch & 0xFFFF0000) {
+        request_reset(m, ResetCause::IllegalOpcode);
+        return op;
+    }
+    m.watch = (m.watch & op->keep) | op->writes;
+    const Op* next = op->run(m, op);
+    m.st.cycle += op->cycles + 1u;
+    ++m.instructions;
+    return next;
+}
+
+void run_straight(Machine& m) {
+    const Op* op = m.current;
+    do {
+        m.current = op;
+        if (op->uses & m.watch) [[unlikely]] {
+            op = execute_with_hazard(m, op);
+            continue;
+        }
+        m.watch = (m.watch & op->keep) | op->writes;
+        const Op* next = op->run(m, op);
+        m.st.cycle += op->cycles;
+        ++m.instructions;
+        op = next;
+    } while (m.st.cycle < m.limit);
+    m.current = op;
+    m.st.cycle += std::exchange(m.late, 0);
+}
+
+/// RA is set: the instruction at PC runs RCOUNT + 1 times.
+void run_repeated(Machine& m) {
+    const Op* op = m.current;
+    if (op->run == &decode_now) decode(m, m.code[op - m.code]);
+    if (op->base != op->run && op->marks & kStop) {
+        op->run(m, op);
+        ++m.instructions;
+        return;
+    }
+    if (op->form == FormId::NOP || op->form == FormId::NOPR) {
+        const Cycle skipped = std::min<Cycle>(m.st.rcount, m.limit - m.st.cycle);
+        m.st.rcount = static_cast<std::uint16_t>(m.st.rcount - skipped);
+        m.st.cycle += skipped;
+        m.instructions += skipped;
+        if (m.st.cycle >= m.limit) return;
+    }
+    do {
+        const bool last = m.st.rcount == 0;
+        m.repeat_edge = m.repeat_first || last || m.eligible;
+        m.repeat_first = false;
+        const bool stall = op->uses & m.watch;
+        if (op->uses & m.watch & 0xFFFF0000) return request_reset(m, ResetCause::IllegalOpcode);
+        m.watch = (m.watch & op->keep) | op->writes;
+        const Op* next = op->run(m, op);
+        m.st.cycle += op->cycles + std::exchange(m.late, 0) + (stall ? 1 : 0);
+        ++m.instructions;
+        if (last) {
+            m.st.sr &= static_cast<std::uint16_t>(~sr::RA);
+            m.current = next;
+            return;
+        }
+        --m.st.rcount;
+    } while (m.st.cycle < m.limit);
+}
+
+void execute(Machine& m) {
+    if (m.st.sr & sr::RA)
+        run_repeated(m);
+    else
+        run_straight(m);
+}
+
+void enter_interrupt(Machine& m) {
+    const InterruptController::Request taken = m.irq.first();
+    const bool trap = taken.level > 7;
+    const std::uint32_t pc = m.pc_of(m.current);
+    if (trap && m.observer.on_trap) m.observer.on_trap(static_cast<Trap>(taken.vector), pc, m.st.cycle);
+    if (!trap && m.observer.on_interrupt) m.observer.on_interrupt(taken.vector, pc, m.st.cycle);
+    m.irq.acknowledge(taken, cpu_level(m));
+
+    constexpr std::uint32_t kIpl3OnStack = 0x80;
+    const std::uint32_t status = m.st.sr & 0xFFu;
+    const std::uint32_t ipl3 = m.st.corcon & corcon::IPL3 ? kIpl3OnStack : 0;
+    push(m, static_cast<std::uint16_t>(pc));
+    push(m, static_cast<std::uint16_t>(status << 8 | ipl3 | (pc >> 16 & 0x7F)));
+
+    const int level = trap ? taken.level & 7 : m.irq.nesting_disabled() ? 7 : taken.level;
+    m.st.sr = static_cast<std::uint16_t>((m.st.sr & ~(sr::IPL | sr::RA)) | level << sr::kIplShift);
+    if (trap) m.st.corcon |= corcon::IPL3;
+    m.watch &= 0xFFFF0000;
+
+    const std::uint32_t table = m.irq.alternate_table() ? m.device.aivt : m.device.ivt;
+    const std::uint32_t handler = read_program(m, table + 2u * static_cast<std::uint32_t>(taken.vector));
+    const Cycle start = service_start(m.since, m.st.cycle);
+    m.eligible = false;
+    reconsider(m, m.st.cycle);
+    m.st.cycle = start;
+    m.current = at(m, handler & 0x7FFFFE);
+}
+
+/// The interrupt first in line, its routine included, in one step, if that is exact and over by `horizon`.
+bool pass_service(Machine& m, Cycle horizon) {
+    if (!m.skip_idle || m.st.sr & sr::RA || m.st.disi_end > m.st.cycle || m.observer.on_interrupt)
+        return false;
+    const ServiceShortcut* shortcut = service_shortcut(m, m.irq.first().vector);
+    if (!shortcut || shortcut->uses & m.watch & 0xFFFF0000) return false;
+    const Cycle end = service_start(m.since, m.st.cycle) + shortcut->cycles;
+    if (end > horizon || !stack_holds(m, *shortcut, m.st.w[15]) || !refreshes_hold(m, *shortcut) ||
+        !m.irq.waits_alone())
+        return false;
+    m.irq.acknowledge(m.irq.first(), cpu_level(m));
+    push_trace(m, *shortcut, {m.st.w.data(), m.st.sr, m.pc_of(m.current)});
+    m.irq.serve_alone();
+    m.eligible = m.disi_waits = false;
+    m.watch = (m.watch & shortcut->keep) | shortcut->writes;
+    m.repeat_first = true;
+    m.instructions += shortcut->instructions;
+    m.st.cycle = end;
+    return true;
+}
+
+/// While the CPU sleeps nobody clears flags: events that only set one that is set already can be passed.
+void pass_idle_events(Machine& m, Cycle until) {
+    const EventQueue::Slot slot = m.events.next_slot();
+    const EventQueue::Steady& steady = m.events.steady(slot);
+    if (!m.skip_idle || steady.irq < 0 || !m.irq.flag(steady.irq) || m.irq.tapped(steady.irq)) return;
+    const Cycle horizon = std::min(until, m.events.next_except(slot));
+    const Cycle due = m.events.next();
+    if (horizon != kNoCycle && due < horizon)
+        m.events.pass(slot, (horizon - due + steady.period - 1) / steady.period);
+}
+
+/// Executes the instruction under a stop address that was reported before.
+void pass_stop(Machine& m) {
+    const std::uint32_t pc = *m.pass_pc;
+    m.pass_pc.reset();
+    Op& op = m.code[pc >> 1];
+    op.marks &= static_cast<std::uint8_t>(~kStop);
+    forget_loops(m);
+    decode(m, op);
+    m.limit = std::min(m.limit, m.st.cycle + 1);
+    execute(m);
+    op.marks |= kStop;
+    forget_loops(m);
+    decode(m, op);
+}
+
+}  // namespace
+
+void reconsider(Machine& m, Cycle now) {
+    const int level = m.irq.first().level;
+    bool may = level > cpu_level(m);
+    m.disi_waits = false;
+    if (may && level < 7 && now < m.st.disi_end) {
+        may = false;
+        m.disi_waits = true;
+        m.limit = 0;
+    }
+    if (may && !m.eligible) m.since = now;
+    if (may) m.limit = 0;
+    m.eligible = may;
+}
+
+void raise_trap(Machine& m, Trap trap) {
+    // A hard trap under a higher one cannot be held: the part resets.
+    const int level = trap_level(trap);
+    constexpr int kLowestHard = trap_level(Trap::AddressError);
+    const bool higher_waits = m.irq.first().level > level;
+    if (level >= kLowestHard && (cpu_level(m) > level || higher_waits))
+        return request_reset(m, ResetCause::TrapConflict);
+    m.irq.raise_trap(trap, m.st.cycle);
+}
+
+void request_reset(Machine& m, ResetCause cause) {
+    if (!m.reset_request) {
+        m.reset_request = cause;
+        m.fault_pc = m.pc_of(m.current);
+    }
+    m.limit = 0;
+}
+
+void perform_reset(Machine& m, ResetCause cause) {
+    m.reset_request.reset();
+    m.waits.forget();
+    if (m.observer.on_reset) m.observer.on_reset(cause, m.fault_pc, m.st.cycle);
+    const std::uint16_t old_rcon = rcon_register(m);
+    if (m.reset_hook) m.reset_hook(cause);
+    m.irq.reset();
+    reset_registers(m);
+    reset_nvm(m);
+
+    std::uint32_t value = old_rcon & ~std::uint32_t{m.device.family_33f ? rcon::SWDTEN : 0u};
+    switch (cause) {
+    case ResetCause::PowerOn:
+        value = rcon::POR | rcon::BOR;
+        if (!m.device.family_33f) value |= 0x0500;  // LVDL = 0101
+        break;
+    case ResetCause::BrownOut:
+        value |= rcon::BOR;
+        break;
+    case ResetCause::Mclr:
+        value |= rcon::EXTR;
+        break;
+    case ResetCause::Software:
+        value |= rcon::SWR;
+        break;
+    case ResetCause::Watchdog:
+        value |= rcon::WDTO;
+        break;
+    case ResetCause::TrapConflict:
+        value |= rcon::TRAPR;
+        break;
+    case ResetCause::IllegalOpcode:
+        value |= rcon::IOPUWR;
+        break;
+    }
+    rcon_register(m) = static_cast<std::uint16_t>(value);
+    if (m.mode != PowerMode::Run) leave_power_save(m);
+    clear_watchdog(m);
+    m.eligible = m.disi_waits = m.stopped = false;
+    m.late = 0;
+    m.stall_end = 0;
+    m.limit = 0;
+    m.pass_pc.reset();
+    m.current = at(m, 0);
+}
+
+Core::Outcome run_until(Machine& m, Cycle until) {
+    m.end_requested = false;
+    m.until = until;
+    while (true) {
+        if (m.reset_request) perform_reset(m, *m.reset_request);
+        const Cycle horizon = std::min(m.st.cycle, until == 0 ? 0 : until - 1);
+        if (m.events.next() <= horizon && until != 0) {
+            m.events.service(horizon);
+            if (m.reset_request) continue;
+        }
+        if (m.end_requested || m.st.cycle >= until) return Core::Outcome::Until;
+        const Cycle quiet = std::min(until, m.events.next());
+        if (m.mode != PowerMode::Run) {
+            if (!m.irq.any_enabled_flag()) {
+                pass_idle_events(m, until);
+                m.st.cycle = std::min(until, m.events.next());
+                continue;
+            }
+            leave_power_save(m);
+            if (m.eligible && m.since >= m.st.cycle) m.since = m.st.cycle == 0 ? 0 : m.st.cycle - 1;
+        }
+        if (m.stall_end > m.st.cycle) {
+            m.st.cycle = std::min(quiet, m.stall_end);
+            continue;
+        }
+        if (m.disi_waits && m.st.cycle >= m.st.disi_end) reconsider(m, m.st.disi_end);
+        if (m.eligible && m.since < m.st.cycle) {
+            if (!pass_service(m, quiet)) enter_interrupt(m);
+            continue;
+        }
+        m.limit = quiet;
+        if (m.eligible)
+            m.limit = m.st.cycle + 1;
+        else if (m.disi_waits)
+            m.limit = std::min(m.limit, m.st.disi_end);
+        if (m.pass_pc && *m.pass_pc == m.pc_of(m.current)) {
+            pass_stop(m);
+            continue;
+        }
+        execute(m);
+        if (m.stopped) {
+            m.stopped = false;
+            m.pass_pc = m.pc_of(m.current);
+            return Core::Outcome::Stopped;
+        }
+    }
+}
+
+}  // namespace puckloop::dspic

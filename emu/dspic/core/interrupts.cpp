@@ -1,0 +1,210 @@
+#include "emu/dspic/core/interrupts.h"
+
+#include <bit>
+#include <utility>
+
+namespace puckloop::dspic {
+
+namespace {
+
+constexpr std::uint16_t kNstdis = 1u << 15;
+constexpr std::uint16_t kAltivt = 1u << 15;
+constexpr std::uint16_t kDisi = 1u << 14;
+constexpr std::uint16_t kTrapFlags30F = 0x001E;  ///< MATHERR ADDRERR STKERR OSCFAIL
+constexpr std::uint16_t kTrapFlags33F = 0x003E;  ///< and DMACERR
+constexpr std::uint16_t kIntcon1Bits30F = 0x871E;
+constexpr std::uint16_t kIntcon1Bits33F = 0xFFFE;
+constexpr std::uint16_t kIntcon2Bits = 0x801F;
+
+constexpr std::uint16_t word_of(std::uint16_t base, int irq) {
+    return static_cast<std::uint16_t>(base + 2 * (irq / 16));
+}
+constexpr std::uint16_t bit_of(int irq) {
+    return static_cast<std::uint16_t>(1u << (irq % 16));
+}
+
+}  // namespace
+
+InterruptController::InterruptController(const DeviceInfo& device, SfrSpace& sfr)
+    : device_(device), sfr_(sfr) {
+    for (const IrqName& entry : device.irqs)
+        implemented_[entry.irq / 16u] |= bit_of(entry.irq);
+    sfr.hook(kIntcon1, this, nullptr, &write_register);
+    sfr.hook(kIntcon2, this, &read_register, &write_register);
+    for (int i = 0; i < device.ifs_words; ++i) {
+        sfr.hook(static_cast<std::uint16_t>(device.ifs + 2 * i), this, nullptr, &write_register);
+        sfr.hook(static_cast<std::uint16_t>(device.iec + 2 * i), this, nullptr, &write_register);
+    }
+    for (const IrqName& entry : device.irqs)
+        sfr.hook(static_cast<std::uint16_t>(device.ipc + 2 * (entry.irq / 4)), this, nullptr,
+                 &write_register);
+    if (device.inttreg) sfr.claim(device.inttreg);
+    reset();
+}
+
+void InterruptController::reset() {
+    sfr_.raw(kIntcon1) = 0;
+    sfr_.raw(kIntcon2) = 0;
+    for (int i = 0; i < device_.ifs_words; ++i) {
+        sfr_.raw(static_cast<std::uint16_t>(device_.ifs + 2 * i)) = 0;
+        sfr_.raw(static_cast<std::uint16_t>(device_.iec + 2 * i)) = 0;
+    }
+    for (const IrqName& entry : device_.irqs)
+        sfr_.raw(static_cast<std::uint16_t>(device_.ipc + 2 * (entry.irq / 4))) = 0;
+    constexpr unsigned kResetPriority = 4;
+    for (const IrqName& entry : device_.irqs)
+        sfr_.raw(static_cast<std::uint16_t>(device_.ipc + 2 * (entry.irq / 4))) |=
+            static_cast<std::uint16_t>(kResetPriority << (4 * (entry.irq % 4)));
+    if (device_.inttreg) sfr_.raw(device_.inttreg) = 0;
+    first_ = {};
+}
+
+void InterruptController::raise(int irq, Cycle now) {
+    request(irq, now);
+    std::uint16_t& flags = sfr_.raw(word_of(device_.ifs, irq));
+    if (flags & bit_of(irq)) return;
+    flags |= bit_of(irq);
+    if (!enabled(irq)) return;
+    // Whoever is first in line stays so unless this one ranks higher.
+    const int level = priority(irq);
+    const int vector = kTrapVectors + irq;
+    if (level > first_.level || (level == first_.level && level > 0 && vector < first_.vector))
+        first_ = {level, vector};
+    if (changed_) changed_(listener_, now);
+}
+
+void InterruptController::clear(int irq) {
+    sfr_.raw(word_of(device_.ifs, irq)) &= static_cast<std::uint16_t>(~bit_of(irq));
+    if (enabled(irq)) find_first(now_ ? *now_ : 0);
+}
+
+bool InterruptController::flag(int irq) const {
+    return sfr_.raw(word_of(device_.ifs, irq)) & bit_of(irq);
+}
+
+bool InterruptController::enabled(int irq) const {
+    return sfr_.raw(word_of(device_.iec, irq)) & bit_of(irq);
+}
+
+int InterruptController::priority(int irq) const {
+    const std::uint16_t word = sfr_.raw(static_cast<std::uint16_t>(device_.ipc + 2 * (irq / 4)));
+    return word >> (4 * (irq % 4)) & 7;
+}
+
+void InterruptController::raise_trap(Trap trap, Cycle now) {
+    sfr_.raw(kIntcon1) |= trap_flag(trap);
+    find_first(now);
+}
+
+bool InterruptController::falling_edge(int external) const {
+    return sfr_.raw(kIntcon2) >> external & 1;
+}
+bool InterruptController::nesting_disabled() const {
+    return sfr_.raw(kIntcon1) & kNstdis;
+}
+bool InterruptController::alternate_table() const {
+    return sfr_.raw(kIntcon2) & kAltivt;
+}
+
+bool InterruptController::any_enabled_flag() const {
+    for (int i = 0; i < device_.ifs_words; ++i)
+        if (sfr_.raw(static_cast<std::uint16_t>(device_.ifs + 2 * i)) &
+            sfr_.raw(static_cast<std::uint16_t>(device_.iec + 2 * i)))
+            return true;
+    return first_.level > 7;
+}
+
+bool InterruptController::waits_alone() const {
+    if (first_.level < 1 || first_.level > 7) return false;
+    const int irq = first_.vector - kTrapVectors;
+    for (int i = 0; i < device_.ifs_words; ++i) {
+        const unsigned waiting = sfr_.raw(static_cast<std::uint16_t>(device_.ifs + 2 * i)) &
+                                 sfr_.raw(static_cast<std::uint16_t>(device_.iec + 2 * i));
+        if (waiting != (i == irq / 16 ? bit_of(irq) : 0u)) return false;
+    }
+    return true;
+}
+
+void InterruptController::serve_alone() {
+    const int irq = first_.vector - kTrapVectors;
+    sfr_.raw(word_of(device_.ifs, irq)) &= static_cast<std::uint16_t>(~bit_of(irq));
+    first_ = {};
+}
+
+void InterruptController::set_listener(void* owner, void (*changed)(void*, Cycle)) {
+    listener_ = owner;
+    changed_ = changed;
+}
+
+void InterruptController::acknowledge(const Request& taken, int cpu_level_before) {
+    (void)cpu_level_before;
+    if (!device_.inttreg) return;
+    // ILR<11:8> is the new CPU level, VECNUM<6:0> counts from INT0 as the part's register page does.
+    const int number = taken.vector >= kTrapVectors ? taken.vector - kTrapVectors : 0;
+    sfr_.raw(device_.inttreg) = static_cast<std::uint16_t>(taken.level << 8 | number);
+}
+
+/// Traps by their levels, which fall with the vector number; user sources by priority, then by number.
+void InterruptController::find_first(Cycle now) {
+    Request best;
+    const std::uint16_t traps = sfr_.raw(kIntcon1) & (device_.family_33f ? kTrapFlags33F : kTrapFlags30F);
+    if (traps) {
+        auto trap = Trap::OscillatorFail;
+        while (!(traps & trap_flag(trap)))
+            trap = static_cast<Trap>(static_cast<int>(trap) + 1);
+        best = {trap_level(trap), static_cast<int>(trap)};
+    } else {
+        for (int i = 0; i < device_.ifs_words; ++i) {
+            std::uint32_t pending = sfr_.raw(static_cast<std::uint16_t>(device_.ifs + 2 * i)) &
+                                    sfr_.raw(static_cast<std::uint16_t>(device_.iec + 2 * i));
+            for (; pending; pending &= pending - 1) {
+                const int irq = 16 * i + std::countr_zero(pending);
+                const int level = priority(irq);
+                if (level > best.level) best = {level, kTrapVectors + irq};
+            }
+        }
+    }
+    first_ = best;
+    if (changed_) changed_(listener_, now);
+}
+
+void InterruptController::registers_loaded() {
+    const auto listener = std::exchange(changed_, nullptr);
+    find_first(0);
+    changed_ = listener;
+}
+
+std::uint16_t InterruptController::read_register(void* owner, std::uint16_t address) {
+    const auto& self = *static_cast<const InterruptController*>(owner);
+    std::uint16_t value = self.sfr_.raw(address);
+    if (self.disi_end_ && *self.disi_end_ > *self.now_) value |= kDisi;
+    return value;
+}
+
+void InterruptController::write_register(void* owner, std::uint16_t address, std::uint16_t value,
+                                         std::uint16_t mask) {
+    auto& self = *static_cast<InterruptController*>(owner);
+    const DeviceInfo& d = self.device_;
+    const auto in = [&](std::uint16_t base) { return address >= base && address < base + 2 * d.ifs_words; };
+    std::uint16_t exists = 0;
+    if (in(d.ifs)) {
+        exists = self.implemented_[static_cast<std::size_t>(address - d.ifs) / 2];
+    } else if (in(d.iec)) {
+        exists = self.implemented_[static_cast<std::size_t>(address - d.iec) / 2];
+    } else if (address == kIntcon1) {
+        exists = d.family_33f ? kIntcon1Bits33F : kIntcon1Bits30F;
+    } else if (address == kIntcon2) {
+        exists = kIntcon2Bits;
+    } else {
+        const int first = 4 * ((address - d.ipc) / 2);
+        for (int i = 0; i < 4; ++i)
+            if (self.implemented_[static_cast<std::size_t>(first + i) / 16] & bit_of(first + i))
+                exists |= static_cast<std::uint16_t>(7u << (4 * i));
+    }
+    const auto bits = static_cast<std::uint16_t>(exists & mask);
+    std::uint16_t& stored = self.sfr_.raw(address);
+    stored = static_cast<std::uint16_t>((stored & ~bits) | (value & bits));
+    self.find_first(self.now_ ? *self.now_ : 0);
+}
+
+}  // namespace puckloop::dspic

@@ -1,0 +1,119 @@
+#pragma once
+// The interrupt controller: IFS, IEC, IPC, INTCON1/2 and the trap flags. It says which source is first in
+// line; the core decides when to take it (emu/dspic/core/core.h). Source: dsPIC30F family reference manual,
+// "Interrupts" (DS70053), and the vector tables of the parts. Deviations:
+//   1. soft traps are sampled like hard ones, at the next instruction boundary.
+
+#include "emu/dspic/core/event_queue.h"
+#include "emu/dspic/core/sfr_space.h"
+#include "emu/dspic/devices/device.h"
+
+#include <cstdint>
+#include <optional>
+
+namespace puckloop::dspic {
+
+/// Trap sources. The number is the vector; trap_flag() tells the bit of INTCON1.
+enum class Trap : std::uint8_t {
+    OscillatorFail = 1,
+    AddressError = 2,
+    StackError = 3,
+    MathError = 4,
+    DmacError = 5
+};
+
+/// CPU priority of a trap: 14 oscillator, 13 address, 12 stack, 11 math, 10 DMA controller.
+constexpr int trap_level(Trap trap) {
+    return 15 - static_cast<int>(trap);
+}
+/// The bit of INTCON1 that flags it. Stack and address error stand there the other way round than in the
+/// vector table: OSCFAIL 1, STKERR 2, ADDRERR 3, MATHERR 4, DMACERR 5.
+constexpr std::uint16_t trap_flag(Trap trap) {
+    const int bit = trap == Trap::AddressError ? 3 : trap == Trap::StackError ? 2 : static_cast<int>(trap);
+    return static_cast<std::uint16_t>(1u << bit);
+}
+
+class InterruptController {
+  public:
+    InterruptController(const DeviceInfo& device, SfrSpace& sfr);
+
+    // For peripherals. `now` is the cycle in which the flag is set: the event's due cycle, or the core's
+    // cycle when a register access causes it. Entry latency counts from there.
+    void raise(int irq, Cycle now);
+    /// The source asks for service without an interrupt of its own: what a DMA channel may serve, too.
+    void request(int irq, Cycle now) {
+        if (tapped(irq)) [[unlikely]]
+            tap_(tap_owner_, irq, now);
+    }
+    bool tapped(int irq) const { return tapped_[static_cast<std::size_t>(irq) / 64] >> (irq % 64) & 1; }
+    /// Calls `served` at every raise() and request() of the sources in `irqs` (bit n % 64 of word n / 64).
+    void set_tap(void* owner, void (*served)(void* owner, int irq, Cycle now),
+                 const std::array<std::uint64_t, 2>& irqs) {
+        tap_owner_ = owner;
+        tap_ = served;
+        tapped_ = irqs;
+    }
+    void clear(int irq);
+    bool flag(int irq) const;
+    bool enabled(int irq) const;
+    /// The IPC field of the source, 0..7.
+    int priority(int irq) const;
+    /// Sets the trap's flag in INTCON1.
+    void raise_trap(Trap trap, Cycle now);
+    /// Edge polarity of INTn, n = 0..4: true if INTCON2<INTnEP> selects the falling edge.
+    bool falling_edge(int external) const;
+
+    // For the core.
+    struct Request {
+        int level = 0;  ///< CPU priority it would run at: 1..7 user, 10..14 traps; 0 = nothing pending
+        int vector = 0;
+    };
+    /// The first in line of everything flagged and enabled, whatever the CPU's priority is.
+    const Request& first() const { return first_; }
+    /// first() is a user interrupt, and no other source is flagged and enabled.
+    bool waits_alone() const;
+    /// Clears the flag of first(), which waits alone; the listener need not be told.
+    void serve_alone();
+    bool nesting_disabled() const;
+    bool alternate_table() const;
+    /// True when some source is flagged and enabled, priority 0 included: what ends Sleep and Idle.
+    bool any_enabled_flag() const;
+    /// Called after every change of first(), with the cycle of the change.
+    void set_listener(void* owner, void (*changed)(void* owner, Cycle now));
+    /// INTCON1's trap flags and enables, for the core's math rules.
+    std::uint16_t intcon1() const { return sfr_.raw(kIntcon1); }
+    /// Latches vector and level into INTTREG where the part has it.
+    void acknowledge(const Request& taken, int cpu_level_before);
+    /// The core's present cycle, which stamps software's writes, and the cycle at which DISICNT reaches 0,
+    /// which INTCON2<DISI> shows.
+    void set_clock(const Cycle* now, const Cycle* disi_end) {
+        now_ = now;
+        disi_end_ = disi_end;
+    }
+    void reset();
+
+    /// After the registers were loaded: who is first in line, without calling the listener.
+    void registers_loaded();
+
+    static constexpr std::uint16_t kIntcon1 = 0x080;
+    static constexpr std::uint16_t kIntcon2 = 0x082;
+
+  private:
+    void find_first(Cycle now);
+    static std::uint16_t read_register(void* owner, std::uint16_t address);
+    static void write_register(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask);
+
+    const DeviceInfo& device_;
+    SfrSpace& sfr_;
+    std::array<std::uint16_t, 8> implemented_{};  ///< IFS/IEC bits that exist
+    std::array<std::uint64_t, 2> tapped_{};
+    void* tap_owner_ = nullptr;
+    void (*tap_)(void*, int, Cycle) = nullptr;
+    Request first_;
+    void* listener_ = nullptr;
+    void (*changed_)(void*, Cycle) = nullptr;
+    const Cycle* now_ = nullptr;
+    const Cycle* disi_end_ = nullptr;
+};
+
+}  // namespace puckloop::dspic

@@ -1,0 +1,95 @@
+// RCON, Sleep and Idle, and the watchdog timer.
+// Source: family reference manual, "Watchdog timer and power saving modes"; fact sheet peripherals
+// section 10. Deviations:
+//   1. cycles go on counting in Sleep, as the chip's measure of time; modules see the mode through the hook.
+//   2. a device without a programmed FWDT word runs with FWDTEN = 0 (erased silicon: 1).
+
+#include "emu/dspic/core/machine.h"
+
+namespace puckloop::dspic {
+
+namespace {
+
+constexpr std::uint16_t kRcon = 0x740;
+constexpr std::uint32_t kFwdt30F = 0xF80002;
+constexpr std::uint32_t kFwdt33F = 0xF8000A;
+
+bool watchdog_on(const Machine& m) {
+    if (m.sfr.raw(kRcon) & rcon::SWDTEN) return true;
+    const std::uint32_t fwdt = read_program(m, m.device.family_33f ? kFwdt33F : kFwdt30F);
+    return fwdt & (m.device.family_33f ? 1u << 7 : 1u << 15);
+}
+
+/// Nominal period in seconds from the configuration word.
+double watchdog_period(const Machine& m) {
+    if (m.device.family_33f) {
+        constexpr double kLprc = 32768.0;
+        const std::uint32_t fwdt = read_program(m, kFwdt33F);
+        const double prescale = fwdt & 1u << 4 ? 128.0 : 32.0;
+        return prescale * static_cast<double>(1u << (fwdt & 15)) / kLprc;
+    }
+    constexpr double kShortest = 2e-3;
+    static constexpr double kPrescaleA[4] = {1, 8, 64, 512};
+    const std::uint32_t fwdt = read_program(m, kFwdt30F);
+    return kShortest * kPrescaleA[fwdt >> 4 & 3] * static_cast<double>((fwdt & 15) + 1);
+}
+
+void expired(void* owner, Cycle due) {
+    auto& m = *static_cast<Machine*>(owner);
+    if (m.mode == PowerMode::Run) return request_reset(m, ResetCause::Watchdog);
+    (void)due;
+    m.sfr.raw(kRcon) |= rcon::WDTO;
+    leave_power_save(m);
+}
+
+void write_rcon(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask) {
+    auto& m = *static_cast<Machine*>(owner);
+    std::uint16_t& stored = m.sfr.raw(address);
+    const std::uint16_t before = stored;
+    stored = static_cast<std::uint16_t>((stored & ~mask) | (value & mask));
+    if ((before ^ stored) & rcon::SWDTEN) clear_watchdog(m);
+}
+
+void set_mode(Machine& m, PowerMode mode) {
+    m.mode = mode;
+    m.limit = 0;
+    if (m.power_hook) m.power_hook(mode);
+}
+
+}  // namespace
+
+std::uint16_t& rcon_register(Machine& m) {
+    return m.sfr.raw(kRcon);
+}
+
+void hook_power(Machine& m) {
+    m.sfr.hook(kRcon, &m, nullptr, &write_rcon);
+    m.watchdog_slot = m.events.add(&m, &expired);
+}
+
+void schedule_watchdog(Machine& m) {
+    if (m.cycle_rate <= 0.0 || !watchdog_on(m)) return m.events.cancel(m.watchdog_slot);
+    m.events.schedule(m.watchdog_slot,
+                      m.watchdog_cleared + static_cast<Cycle>(watchdog_period(m) * m.cycle_rate));
+}
+
+void clear_watchdog(Machine& m) {
+    m.watchdog_cleared = m.st.cycle;
+    schedule_watchdog(m);
+    m.bound_limit();
+}
+
+void enter_power_save(Machine& m, PowerMode mode) {
+    std::uint16_t& flags = m.sfr.raw(kRcon);
+    flags = static_cast<std::uint16_t>((flags & ~rcon::WDTO) |
+                                       (mode == PowerMode::Idle ? rcon::IDLE : rcon::SLEEP));
+    clear_watchdog(m);
+    set_mode(m, mode);
+}
+
+void leave_power_save(Machine& m) {
+    clear_watchdog(m);
+    set_mode(m, PowerMode::Run);
+}
+
+}  // namespace puckloop::dspic

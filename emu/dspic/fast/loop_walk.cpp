@@ -1,0 +1,109 @@
+// One iteration, walked twice: the frame around loop_walk_values.cpp and loop_walk_execute.cpp.
+
+#include "emu/dspic/fast/loop_walk.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace puckloop::dspic {
+
+namespace {
+
+constexpr std::uint64_t kForever = std::numeric_limits<std::int64_t>::max();
+
+}  // namespace
+
+void LoopWalk::walk(const Op* branch, const Op* head) {
+    plan_.count = plan_.polled_count = 0;
+    plan_.cycles = plan_.instructions = 0;
+    plan_.clears_watchdog = false;
+    trace_.clear();
+    bound_ = kForever;
+    watch_ = 0;
+    w_ = {};
+    c_ = z_ = n_ = ov_ = {};
+    const Op* op = head;
+    for (int i = 0; i < probe_.most_steps; ++i) {
+        record(op);
+        hazards(op);
+        const Op* next = execute(op);
+        plan_.cycles += op->cycles;
+        ++plan_.instructions;
+        if (op == branch && next == head) return;
+        op = next;
+    }
+    fail(Verdict::NotNow);
+}
+
+void LoopWalk::record(const Op* op) {
+    LoopTrace::Boundary& boundary = trace_.boundaries.emplace_back();
+    boundary.op = op;
+    boundary.offset = static_cast<std::uint32_t>(plan_.cycles);
+    boundary.stall = op->uses & watch_;
+    const auto note = [&](const Flag& flag, std::uint16_t bit) {
+        if (flag.known) boundary.known |= static_cast<std::uint8_t>(bit);
+        if (flag.known && flag.value) boundary.flags |= static_cast<std::uint8_t>(bit);
+    };
+    note(c_, sr::C);
+    note(z_, sr::Z);
+    note(n_, sr::N);
+    note(ov_, sr::OV);
+    for (std::size_t reg = 0; reg < 16; ++reg)
+        boundary.w[reg] = w_[reg] ? static_cast<std::uint16_t>(w_[reg]->now) : m_.st.w[reg];
+}
+
+/// A flag that an iteration sets late still has at its head what the iteration before left.
+void LoopWalk::settle_flags() {
+    record(trace_.boundaries.front().op);
+    const LoopTrace::Boundary end = trace_.boundaries.back();
+    trace_.boundaries.pop_back();
+    for (LoopTrace::Boundary& boundary : trace_.boundaries) {
+        const auto missing = static_cast<std::uint8_t>(end.known & ~boundary.known);
+        boundary.flags |= static_cast<std::uint8_t>(end.flags & missing);
+        boundary.known |= missing;
+    }
+}
+
+bool LoopWalk::comes_round(const Op* branch, const Op* head) {
+    try {
+        first_count_ = 0;
+        walk(branch, head);
+        return true;
+    } catch (const Stop&) {
+        return false;
+    }
+}
+
+LoopWalk::Verdict LoopWalk::analyse(const Op* branch, const Op* head) {
+    try {
+        first_count_ = 0;
+        walk(branch, head);
+        bool moves = false;
+        for (std::size_t i = 0; i < plan_.count; ++i) {
+            SkipLoops::Cell& c = plan_.cells[i];
+            if (!c.carried) continue;
+            c.step = static_cast<std::int16_t>(static_cast<std::uint16_t>(c.now - c.start));
+            moves = moves || c.step != 0;
+        }
+        if (moves) {
+            first_ = plan_.cells;
+            first_count_ = plan_.count;
+            for (std::size_t i = 0; i < first_count_; ++i)
+                if (!first_[i].carried) first_[i].step = 0;
+            walk(branch, head);
+        }
+        for (std::size_t i = 0; i < plan_.count; ++i) {
+            const SkipLoops::Cell& c = plan_.cells[i];
+            if (c.carried && (c.now != c.start + c.step || c.now_step != c.step)) return Verdict::NotNow;
+            if (c.carried) hold(c.start, c.step, 0, 0xFFFF);
+        }
+        plan_.iterations = bound_;
+        trace_.steady = !moves && !plan_.clears_watchdog;
+        if (trace_.steady) settle_flags();
+        return Verdict::Pure;
+    } catch (const Stop& stop) {
+        return stop.verdict;
+    }
+}
+
+}  // namespace puckloop::dspic

@@ -1,0 +1,160 @@
+#include "emu/dspic/fast/skip_loops.h"
+
+#include "emu/dspic/core/machine.h"
+#include "emu/dspic/fast/loop_walk.h"
+#include "emu/dspic/fast/steady_leap.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace puckloop::dspic {
+
+namespace {
+
+/// With less than this to the next event a walk is not begun.
+constexpr Cycle kWorthwhile = 64;
+constexpr std::uint8_t kMostPatience = 7;
+/// For loops that do something unknown on one of their ways round.
+constexpr std::uint8_t kMostPatienceUnknown = 12;
+constexpr std::uint64_t kFewestIterations = 4;
+
+std::uint16_t& word_of(Machine& m, std::uint16_t key) {
+    return key < 16 ? m.st.w[key] : m.ram[(key - 0x0800) / 2];
+}
+
+SkipLoops::Branch& branch_at(Machine& m, std::size_t word) {
+    SkipLoops& skip = *m.skip;
+    if (skip.index.empty()) skip.index.assign(m.code_words + kGuards, 0);
+    if (skip.index[word] == 0) {
+        skip.branches.emplace_back();
+        skip.index[word] = static_cast<std::uint16_t>(skip.branches.size());
+    }
+    return skip.branches[skip.index[word] - 1u];
+}
+
+/// The machine stands where the plan expects it, at the branch.
+bool as_predicted(Machine& m, const SkipLoops::Plan& plan, Cycle arrival) {
+    for (std::size_t i = 0; i < plan.polled_count; ++i)
+        if (m.sfr.raw(plan.polled[i].address) != plan.polled[i].value) return false;
+    if (!plan.proven && plan.proof_due != arrival) return false;
+    for (std::size_t i = 0; i < plan.count; ++i) {
+        const SkipLoops::Cell& cell = plan.cells[i];
+        // Scratch, an interrupt may have used it.
+        if (!cell.carried && (plan.proven || (plan.proof_interrupted && cell.key >= 16))) continue;
+        if (word_of(m, cell.key) != static_cast<std::uint16_t>(cell.now)) return false;
+    }
+    return true;
+}
+
+void advance(SkipLoops::Plan& plan, std::uint64_t iterations) {
+    for (std::size_t i = 0; i < plan.count; ++i)
+        plan.cells[i].now +=
+            static_cast<std::int32_t>(static_cast<std::int64_t>(iterations) * plan.cells[i].step);
+    plan.iterations -= iterations;
+}
+
+/// Leaps over as many iterations as the plan and the limit allow, less one.
+void leap(Machine& m, SkipLoops::Plan& plan, Cycle arrival) {
+    if (m.limit < arrival) return;
+    const std::uint64_t room = (m.limit - arrival) / plan.cycles;
+    if (room < 2 || plan.iterations < 2) return;
+    const std::uint64_t count = std::min(plan.iterations - 1, room - 1);
+    advance(plan, count);
+    for (std::size_t i = 0; i < plan.count; ++i)
+        if (plan.cells[i].carried)
+            word_of(m, plan.cells[i].key) = static_cast<std::uint16_t>(plan.cells[i].now);
+    const Cycle cycles = count * plan.cycles;
+    m.st.cycle += cycles;
+    m.instructions += count * plan.instructions;
+    if (plan.clears_watchdog) {
+        m.watchdog_cleared += cycles;
+        schedule_watchdog(m);
+    }
+    plan.used = true;
+    ++m.skip->leaps;
+    m.skip->skipped_cycles += cycles;
+}
+
+void give_up_for_now(SkipLoops::Branch& known, std::uint8_t most = kMostPatience) {
+    if (known.patience < most) ++known.patience;
+    known.wait = static_cast<std::uint16_t>((1u << known.patience) - 1);
+}
+
+void make_plan(Machine& m, SkipLoops::Branch& known, const Op* branch, const Op* head, Cycle arrival) {
+    SkipLoops::Plan& plan = known.plan;
+    LoopWalk walk(m, plan, known.trace);
+    switch (walk.analyse(branch, head)) {
+    case LoopWalk::Verdict::Pure:
+        known.walked = true;
+        if (plan.iterations < kFewestIterations) return give_up_for_now(known);
+        plan.alive = true;
+        plan.proven = plan.used = false;
+        plan.proof_due = arrival + plan.cycles;
+        plan.proof_interrupted = false;
+        if (m.limit < plan.proof_due) {
+            plan.proof_due = steady_arrival(m, known, arrival, 1, plan.proof_interrupted);
+            plan.alive = plan.proof_due != kNoCycle;
+            if (!plan.alive && !known.trace.steady) return give_up_for_now(known);
+        }
+        --plan.iterations;  // the one that runs now
+        break;
+    case LoopWalk::Verdict::NotNow:
+        give_up_for_now(known);
+        break;
+    case LoopWalk::Verdict::Unknown:
+        // On its last round a loop leaves by instructions that the walk need not know.
+        if (known.walked) return give_up_for_now(known);
+        if (walk.chose()) return give_up_for_now(known, kMostPatienceUnknown);  // another way round may do
+        m.code[branch - m.code].may_skip = false;
+        break;
+    }
+}
+
+/// When the iteration that begins at `arrival` is over, if nothing but routines without a trace can come
+/// between.
+Cycle clean_arrival(Machine& m, SkipLoops::Branch& known, Cycle arrival) {
+    if (!known.trace.steady) return kNoCycle;
+    if (arrival + known.plan.cycles < m.limit) return arrival + known.plan.cycles;
+    bool interrupted = false;
+    return steady_arrival(m, known, arrival, 1, interrupted);
+}
+
+}  // namespace
+
+void forget_loops(Machine& m) {
+    m.waits.forget();
+    m.skip->index.clear();
+    m.skip->branches.clear();
+    m.shortcuts.known.clear();
+}
+
+void try_skip(Machine& m, const Op* branch, const Op* head) {
+    note_arrival(m, branch, head);
+    if (!m.skip_idle) return;
+    SkipLoops::Branch& known = branch_at(m, static_cast<std::size_t>(branch - m.code));
+    if (known.wait > 0) {
+        --known.wait;
+        return;
+    }
+    const Cycle arrival = m.st.cycle + branch->cycles;  // the run loop adds them after this
+    SkipLoops::Plan& plan = known.plan;
+    if (plan.alive) {
+        if (plan.iterations >= 2 && as_predicted(m, plan, arrival)) {
+            const bool clean = !plan.proven || plan.clean_due == arrival;
+            plan.proven = true;
+            if (!std::exchange(known.polls_noted, true) && plan.polled_count > 0) note_polls(m, branch, head);
+            if (!clean || !steady_leap(m, known, arrival)) leap(m, plan, arrival);
+            note_leap(m, branch);
+            plan.clean_due = clean_arrival(m, known, m.st.cycle + branch->cycles);
+            advance(plan, 1);  // the real iteration that follows
+            return;
+        }
+        plan.alive = false;
+        if (!plan.used) return give_up_for_now(known);
+        known.patience = 0;
+    }
+    if (m.limit < arrival + kWorthwhile && !steady_event_next(m)) return;
+    make_plan(m, known, branch, head, arrival);
+}
+
+}  // namespace puckloop::dspic

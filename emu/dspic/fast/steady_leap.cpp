@@ -1,0 +1,208 @@
+#include "emu/dspic/fast/steady_leap.h"
+
+#include "emu/dspic/core/machine.h"
+
+#include <algorithm>
+
+namespace puckloop::dspic {
+
+namespace {
+
+constexpr std::uint64_t kFewestIterations = 2;
+constexpr std::size_t kMostServices = 4096;
+
+/// An interrupt that comes in during the leap.
+struct Service {
+    std::uint32_t boundary = 0;
+    std::uint64_t iteration = 0;  ///< counted from the leap's start
+};
+
+struct Leap {
+    EventQueue::Slot slot = 0;
+    EventQueue::Steady steady;
+    const ServiceShortcut* shortcut = nullptr;
+    Cycle due = kNoCycle;  ///< of the steady event
+    Cycle horizon = 0;     ///< no arrival at or after this
+
+    // The landing.
+    Cycle arrival = 0;
+    std::uint64_t iterations = 0;
+    std::size_t services = 0;
+};
+
+/// The loop does not look at what the interrupts change on their way.
+bool polls_interrupts(const Machine& m, const SkipLoops::Plan& plan) {
+    for (std::size_t i = 0; i < plan.polled_count; ++i) {
+        const std::uint16_t address = plan.polled[i].address;
+        if (address >= m.device.ifs && address < m.device.ifs + 2 * m.device.ifs_words) return true;
+        if (m.device.inttreg && address == m.device.inttreg) return true;
+    }
+    return false;
+}
+
+/// True if the loop reads, before it writes it again, a word up to `depth` bytes above the stack pointer of
+/// some boundary.
+bool live_above_stack(const LoopTrace& trace, std::uint16_t depth) {
+    for (std::size_t i = 0; i < trace.boundaries.size(); ++i) {
+        const std::uint16_t stack = trace.boundaries[i].w[15];
+        std::array<std::uint16_t, 64> written{};
+        std::size_t count = 0;
+        // Once around from here.
+        const auto first =
+            std::find_if(trace.accesses.begin(), trace.accesses.end(),
+                         [&](const LoopTrace::Access& access) { return access.boundary >= i; });
+        const auto start = static_cast<std::size_t>(first - trace.accesses.begin());
+        for (std::size_t k = 0; k < trace.accesses.size(); ++k) {
+            const LoopTrace::Access& access = trace.accesses[(start + k) % trace.accesses.size()];
+            if (static_cast<std::uint16_t>(access.address - stack) >= depth) continue;
+            const auto end = written.begin() + static_cast<std::ptrdiff_t>(count);
+            if (std::find(written.begin(), end, access.address) != end) continue;
+            if (!access.write || count == written.size()) return true;
+            written[count++] = access.address;
+        }
+    }
+    return false;
+}
+
+/// What the leap may pass; false if it may not begin.
+bool prepare(Machine& m, SkipLoops::Branch& known, Leap& leap) {
+    LoopTrace& trace = known.trace;
+    if (!trace.steady || m.limit == 0 || m.mode != PowerMode::Run || m.eligible || m.disi_waits ||
+        m.st.disi_end > m.st.cycle || m.st.sr & sr::RA || m.observer.on_interrupt)
+        return false;
+    leap.slot = m.events.next_slot();
+    leap.due = m.events.next();
+    leap.steady = m.events.steady(leap.slot);
+    const int irq = leap.steady.irq;
+    if (leap.due == kNoCycle || irq < 0 || m.irq.tapped(irq) || !m.irq.enabled(irq) ||
+        m.irq.priority(irq) <= cpu_level(m))
+        return false;
+    if (m.irq.first().level != 0 || m.irq.any_enabled_flag()) return false;
+    leap.shortcut = service_shortcut(m, irq + kTrapVectors);
+    if (!leap.shortcut || leap.shortcut->uses & m.watch & 0xFFFF0000 || !refreshes_hold(m, *leap.shortcut))
+        return false;
+    leap.horizon = std::min(m.until, m.events.next_except(leap.slot));
+    if (trace.depth < leap.shortcut->depth) {
+        trace.depth = leap.shortcut->depth;
+        trace.live = polls_interrupts(m, known.plan) || live_above_stack(trace, trace.depth);
+    }
+    if (trace.live) return false;
+    for (const LoopTrace::Boundary& boundary : trace.boundaries)
+        if (!stack_holds(m, *leap.shortcut, boundary.w[15])) return false;
+    return true;
+}
+
+/// Follows loop and interrupts up to the last arrival before the horizon, at most `most` iterations on.
+void fly(const SkipLoops::Plan& plan, const LoopTrace& trace, Leap& leap, Cycle arrival, std::uint64_t most,
+         std::vector<Service>& services) {
+    const Cycle length = plan.cycles;
+    Cycle base = arrival;  // when the iteration under way began, had it not been interrupted
+    Cycle due = leap.due;
+    std::uint64_t iteration = 0;
+    leap.arrival = arrival;
+    while (services.size() < kMostServices) {
+        const Cycle room = leap.horizon > base ? (leap.horizon - 1 - base) / length : 0;
+        const auto land_after = [&](std::uint64_t whole) {
+            whole = std::min({whole, room, most - iteration});
+            if (whole == 0) return;
+            leap.arrival = base + whole * length;
+            leap.iterations = iteration + whole;
+            leap.services = services.size();
+        };
+        if (due >= leap.horizon) return land_after(room);
+        // The first boundary after the flag is set.
+        std::uint64_t whole = 0;
+        std::size_t boundary = 0;
+        if (due >= base) {
+            whole = (due - base) / length;
+            const Cycle within = (due - base) % length;
+            const auto after = std::upper_bound(
+                trace.boundaries.begin(), trace.boundaries.end(), within,
+                [](Cycle offset, const LoopTrace::Boundary& b) { return offset < b.offset; });
+            boundary = static_cast<std::size_t>(after - trace.boundaries.begin());
+            if (after == trace.boundaries.end()) {
+                ++whole;
+                boundary = 0;
+            }
+        }
+        land_after(whole);
+        iteration += whole;
+        if (iteration >= most) return;
+        base += whole * length;
+        const LoopTrace::Boundary& at = trace.boundaries[boundary];
+        const Cycle end = service_start(due, base + at.offset) + leap.shortcut->cycles;
+        if (end > leap.horizon || end > due + leap.steady.period) return;
+        services.push_back({static_cast<std::uint32_t>(boundary), iteration});
+        base = end - at.offset - (at.stall ? 1 : 0);
+        due += leap.steady.period;
+    }
+}
+
+std::uint16_t& word(Machine& m, std::uint16_t address) {
+    return m.ram[(address - 0x0800) / 2];
+}
+
+void repeat_writes(Machine& m, const LoopTrace& trace, std::uint32_t from) {
+    for (const LoopTrace::Access& access : trace.accesses)
+        if (access.write && access.boundary >= from) word(m, access.address) = access.value;
+}
+
+void push_at(Machine& m, const LoopTrace& trace, const ServiceShortcut& shortcut, const Service& service) {
+    const LoopTrace::Boundary& at = trace.boundaries[service.boundary];
+    const auto sr = static_cast<std::uint16_t>((m.st.sr & ~unsigned{at.known}) | at.flags);
+    push_trace(m, shortcut, {at.w.data(), sr, m.pc_of(at.op)});
+}
+
+}  // namespace
+
+bool steady_event_next(Machine& m) {
+    const int irq = m.events.steady(m.events.next_slot()).irq;
+    return irq >= 0 && m.irq.enabled(irq) && service_shortcut(m, irq + kTrapVectors);
+}
+
+std::uint64_t steady_arrival(Machine& m, SkipLoops::Branch& known, std::uint64_t arrival,
+                             std::uint64_t iterations, bool& interrupted) {
+    Leap leap;
+    std::vector<Service> services;
+    if (!prepare(m, known, leap)) return kNoCycle;
+    fly(known.plan, known.trace, leap, arrival, iterations, services);
+    interrupted = leap.services > 0;
+    return leap.iterations == iterations ? leap.arrival : kNoCycle;
+}
+
+bool steady_leap(Machine& m, SkipLoops::Branch& known, std::uint64_t arrival) {
+    Leap leap;
+    if (!prepare(m, known, leap)) return false;
+    static thread_local std::vector<Service> services;
+    services.clear();
+    const LoopTrace& trace = known.trace;
+    fly(known.plan, trace, leap, arrival, known.plan.iterations - 1, services);
+    if (leap.iterations < kFewestIterations || leap.services == 0) return false;
+
+    services.resize(leap.services);
+    for (const Service& service : services)
+        push_at(m, trace, *leap.shortcut, service);
+    // The last iteration in its order: what the loop writes, and what interrupts put over it afterwards.
+    repeat_writes(m, trace, 0);
+    for (const Service& service : services) {
+        if (service.iteration + 1 != leap.iterations) continue;
+        push_at(m, trace, *leap.shortcut, service);
+        repeat_writes(m, trace, service.boundary);
+    }
+    const int irq = leap.steady.irq;
+    m.irq.acknowledge({m.irq.priority(irq), irq + kTrapVectors}, cpu_level(m));
+    m.events.pass(leap.slot, leap.services);
+    m.watch &= leap.shortcut->keep | 0xFFFFu;
+    m.repeat_first = true;
+    m.st.cycle += leap.arrival - arrival;
+    m.instructions += leap.iterations * known.plan.instructions + leap.services * leap.shortcut->instructions;
+    m.limit = std::min(m.until, m.events.next());
+    known.plan.iterations -= leap.iterations;
+    known.plan.used = true;
+    ++m.skip->leaps;
+    m.skip->skipped_cycles += leap.arrival - arrival;
+    m.skip->passed_services += leap.services;
+    return true;
+}
+
+}  // namespace puckloop::dspic
