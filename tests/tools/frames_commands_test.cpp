@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <string>
 
 using puckloop::tests::Result;
@@ -154,4 +155,33 @@ TEST_CASE("frames epuck refuses what is no record") {
     refused(frames("epuck encode --left 40000"), "--left: \"40000\" is too large (expected -32768 to 32767)");
     refused(frames("epuck encode --rab-data -1"), "--rab-data: \"-1\" is too small (expected 0 to 65535)");
     refused(frames("epuck encode --reset Q"), "--reset: \"Q\" is neither (expected N (go on) or R (end))");
+}
+
+TEST_CASE("frames xbee encodes, decodes and checks") {
+    expect(frames("xbee encode 'at command NT'"), 0, "7E 00 04 08 01 4E 54 54\n");
+    expect(frames("xbee encode", "modem-status status 00\\nat id 1 command ID value 01B5"), 0,
+           "7E 00 02 8A 00 75\n7E 00 06 08 01 49 44 01 B5 B3\n");
+    const std::string bytes = "7E 00 0F 10 01 00 7D 33 A2 00 40 8C 04 A4 FF FE 00 00 0C BC";
+    const std::string text = "tx id 01 to 0013A200408C04A4 net FFFE radius 00 options 00 data 0C\n";
+    expect(frames("xbee encode '" + text.substr(0, text.size() - 1) + "'"), 0, bytes + "\n");
+    expect(frames("xbee decode '" + bytes + "'"), 0, text);
+    expect(frames("xbee decode --json '7E 00 02 8A 00 75'"), 0,
+           R"({"ok":true,"message":"modem-status","status":"00"})"
+           "\n");
+    expect(frames("xbee check '7E 00 02 8A 00 75 7E 00 02 8A 00 74'"), 1,
+           "ok\nbad check: 74 up to byte 11, and the data needs 75\n");
+    expect(frames("xbee decode --mode 1 '7E 00 02 8A 7E F7'"), 0, "modem-status status 7E\n");
+}
+
+TEST_CASE("frames xbee refuses what is no frame in one line") {
+    for (const char* arguments :
+         {"xbee decode 7", "xbee decode ''", "xbee encode 'nonsense'", "xbee encode 'at idd 1'",
+          "xbee encode 'at id'", "xbee encode 'at id 100'", "xbee encode 'at command ABC'",
+          "xbee encode 'tx to 00000000000000001'", "xbee check --mode 3 7E"}) {
+        const Result result = frames(arguments);
+        CAPTURE(arguments, result.output);
+        CHECK(result.status == 2);
+        CHECK(result.output.starts_with("puckloop: "));
+        CHECK(std::count(result.output.begin(), result.output.end(), '\n') == 1);
+    }
 }

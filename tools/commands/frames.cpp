@@ -12,6 +12,7 @@ void declare_frames(Command& app, int& status) {
     frames->require_subcommand(1);
     declare_rab_frames(*frames, status);
     declare_epuck_frames(*frames, status);
+    declare_xbee_frames(*frames, status);
 }
 
 }  // namespace puckloop::tools

@@ -13,6 +13,7 @@ class Command;
 
 void declare_rab_frames(Command& frames, int& status);
 void declare_epuck_frames(Command& frames, int& status);
+void declare_xbee_frames(Command& frames, int& status);
 
 /// Hands over each argument, or without arguments each line of standard input as it comes, white space around
 /// it removed. `origin` is empty for arguments, else "standard input, line 3". Throws InputError if there is
@@ -24,6 +25,10 @@ void for_each_input(const std::vector<std::string>& arguments,
 /// and `what`: empty, no number, outside low..high.
 std::int64_t parse_number(std::string_view text, int base, std::int64_t low, std::int64_t high,
                           std::string_view origin, std::string_view what);
+
+/// Pairs of hexadecimal digits; white space between bytes is skipped. Throws InputError, naming origin and
+/// byte.
+std::vector<std::uint8_t> bytes_of(const std::string& text, const std::string& origin);
 
 /// Text for an error message, quoted, on one line: control characters and all past 40 characters replaced.
 std::string shown(std::string_view text);

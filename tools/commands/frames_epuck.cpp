@@ -9,8 +9,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <iostream>
 #include <limits>
@@ -98,25 +96,6 @@ ordered_json fields_of(const EpuckSensors& s) {
     fields["plausible"] = why.empty();
     if (!why.empty()) fields["problem"] = why;
     return fields;
-}
-
-/// Pairs of hexadecimal digits; white space between bytes is skipped.
-std::vector<std::uint8_t> bytes_of(const std::string& text, const std::string& origin) {
-    std::vector<std::uint8_t> bytes;
-    for (std::size_t at = 0; at < text.size();) {
-        if (text[at] == ' ' || text[at] == '\t') {
-            ++at;
-            continue;
-        }
-        const std::string pair = text.substr(at, 2);
-        if (!std::all_of(pair.begin(), pair.end(), [](unsigned char c) { return std::isxdigit(c) != 0; }) ||
-            pair.size() != 2)
-            throw InputError(origin, fmt::format("byte {}", bytes.size()),
-                             fmt::format("{} is no byte", shown(pair)), "two hexadecimal digits");
-        bytes.push_back(static_cast<std::uint8_t>(std::stoul(pair, nullptr, 16)));
-        at += 2;
-    }
-    return bytes;
 }
 
 ordered_json read(const std::string& text, const std::string& origin) {

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <iostream>
 
@@ -51,6 +53,24 @@ std::int64_t parse_number(std::string_view text, int base, std::int64_t low, std
             fmt::format("{} is too {}", shown(text), value < low && error == std::errc{} ? "small" : "large"),
             bounds());
     return value;
+}
+
+std::vector<std::uint8_t> bytes_of(const std::string& text, const std::string& origin) {
+    std::vector<std::uint8_t> bytes;
+    for (std::size_t at = 0; at < text.size();) {
+        if (text[at] == ' ' || text[at] == '\t') {
+            ++at;
+            continue;
+        }
+        const std::string pair = text.substr(at, 2);
+        if (!std::all_of(pair.begin(), pair.end(), [](unsigned char c) { return std::isxdigit(c) != 0; }) ||
+            pair.size() != 2)
+            throw InputError(origin, fmt::format("byte {}", bytes.size()),
+                             fmt::format("{} is no byte", shown(pair)), "two hexadecimal digits");
+        bytes.push_back(static_cast<std::uint8_t>(std::stoul(pair, nullptr, 16)));
+        at += 2;
+    }
+    return bytes;
 }
 
 std::string shown(std::string_view text) {
