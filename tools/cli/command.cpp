@@ -122,6 +122,7 @@ template Option* Command::add_option(const std::string&, std::optional<std::stri
 template Option* Command::add_option(const std::string&, std::optional<std::uint64_t>&, const std::string&);
 template Option* Command::add_option(const std::string&, std::vector<std::string>&, const std::string&);
 template Option* Command::add_option(const std::string&, std::vector<double>&, const std::string&);
+template Option* Command::add_option(const std::string&, std::vector<int>&, const std::string&);
 template Option* Command::add_option(const std::string&, std::vector<std::uint64_t>&, const std::string&);
 
 }  // namespace puckloop::tools

@@ -1,0 +1,93 @@
+#include "tools/bench/cases.h"
+
+#include "base/error.h"
+#include "tools/bench/case_kit.h"
+#include "tools/bench/rab_scenario.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <functional>
+#include <utility>
+
+namespace puckloop::tools {
+
+namespace {
+
+// Shares of the scenario's duration that dearer runs take.
+constexpr double kSwarmShare = 0.2, kWanderShare = 0.25, kMemoryShare = 0.15;
+
+void hello(Kit& kit) {
+    const BenchOptions& options = kit.options();
+    const auto scenario = options.scenario.empty() ? kit.shipped("hello.toml") : options.scenario;
+    const std::string name = scenario.filename().string();
+    kit.time_runs(name + ", one process", {scenario, options.simulated_s, true, options.threads});
+    kit.time_runs(name + ", a process a node", {scenario, options.simulated_s, false});
+}
+
+void swarm(Kit& kit) {
+    const BenchOptions& options = kit.options();
+    kit.time_runs("swarm.toml, one process",
+                  {kit.shipped("swarm.toml"), kSwarmShare * options.simulated_s, true, options.threads});
+}
+
+void overhead(Kit& kit) {
+    kit.time_overhead("hello.toml", kit.shipped("hello.toml"), kit.options().simulated_s);
+    kit.time_overhead("swarm.toml", kit.shipped("swarm.toml"), kSwarmShare * kit.options().simulated_s);
+}
+
+void wander(Kit& kit) {
+    kit.time_growth(kWanderShare * kit.options().simulated_s);
+}
+
+void memory(Kit& kit) {
+    kit.weigh(kMemoryShare * kit.options().simulated_s);
+}
+
+void rab(Kit& kit, int robots) {
+    const BenchOptions& options = kit.options();
+    const auto scenario =
+        write_rab_scenario(kit.folder() / "scenario", robots, kit.main_image(), kit.rab_image());
+    kit.time_runs(fmt::format("rab{}, one process", robots),
+                  {scenario, kSwarmShare * options.simulated_s, true, options.threads});
+}
+
+using Case = std::pair<std::string, std::function<void(Kit&)>>;
+
+const std::vector<Case>& table() {
+    static const std::vector<Case> cases{{"core", [](Kit& kit) { kit.time_core(); }},
+                                         {"board", [](Kit& kit) { kit.time_boards(); }},
+                                         {"scenario", hello},
+                                         {"swarm", swarm},
+                                         {"overhead", overhead},
+                                         {"wander", wander},
+                                         {"memory", memory},
+                                         {"rab1", [](Kit& kit) { rab(kit, 1); }},
+                                         {"rab2", [](Kit& kit) { rab(kit, 2); }},
+                                         {"rab8", [](Kit& kit) { rab(kit, 8); }}};
+    return cases;
+}
+
+}  // namespace
+
+const std::vector<std::string>& bench_cases() {
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> list;
+        for (const Case& one : table())
+            list.push_back(one.first);
+        return list;
+    }();
+    return names;
+}
+
+std::vector<Figure> measure_cases(const BenchOptions& options) {
+    if (!options.peer.empty() && ::access(options.peer.c_str(), X_OK) != 0)
+        throw InputError(options.peer.string(), "--peer", "cannot be run", "a build of puckloop");
+    Kit kit(options);
+    for (const std::string& name : options.cases)
+        for (const Case& one : table())
+            if (one.first == name) one.second(kit);
+    return kit.take_figures();
+}
+
+}  // namespace puckloop::tools
