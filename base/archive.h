@@ -70,6 +70,7 @@ auto bits_of(T value) {
 class StateWriter {
   public:
     static constexpr bool kLoads = false;
+    static constexpr bool kRaw = false;  ///< true of the archives of base/checkpoint.h
 
     explicit StateWriter(std::vector<std::uint8_t>& bytes) : bytes_(bytes) {}
 
@@ -87,8 +88,23 @@ class StateWriter {
     void fixed(const T& container) {
         put(container);
     }
+    /// Containers that are only ever appended to: a checkpoint keeps no more than their sizes.
+    template <class... T>
+    void grows(const T&... containers) {
+        (put(containers), ...);
+    }
+    /// What a checkpoint leaves out, because its owner takes changes back by other means.
+    template <class... T>
+    void apart(const T&... values) {
+        (put(values), ...);
+    }
     /// Reading only: throws StateError unless `holds`.
     void check(bool, std::string_view) {}
+    /// Part `number` of several with one name.
+    template <class T>
+    void part(std::string_view name, std::size_t number, const T& value) {
+        part(std::string(name) + std::to_string(number), value);
+    }
     /// Named, with its length.
     template <class T>
     void part(std::string_view name, const T& value) {
@@ -138,6 +154,7 @@ class StateWriter {
 class StateReader {
   public:
     static constexpr bool kLoads = true;
+    static constexpr bool kRaw = false;
 
     explicit StateReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
 
@@ -157,8 +174,20 @@ class StateReader {
         for (auto& item : container)
             get(item);
     }
+    template <class... T>
+    void grows(T&... containers) {
+        (get(containers), ...);
+    }
+    template <class... T>
+    void apart(T&... values) {
+        (get(values), ...);
+    }
     void check(bool holds, std::string_view problem) {
         if (!holds) fail(problem);
+    }
+    template <class T>
+    void part(std::string_view name, std::size_t number, T& value) {
+        part(std::string(name) + std::to_string(number), value);
     }
     template <class T>
     void part(std::string_view name, T& value) {

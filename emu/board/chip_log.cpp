@@ -116,31 +116,56 @@ void ChipLog::read_errors(Time now, const dspic::Chip& chip) {
     }
 }
 
-void ChipLog::write(Time time, const std::string& text) {
-    log_.line(cosim::to_seconds(time), text);
-    history_.emplace_back(time, text);
+void ChipLog::file_history() {
+    for (; filed_ < history_.size(); ++filed_)
+        log_.line(cosim::to_seconds(history_[filed_].first), history_[filed_].second);
+}
+
+void ChipLog::mark() {
+    settle();
+    marked_ = true;
+    lines_at_mark_ = lines_.size();
+}
+
+void ChipLog::rewind() {
+    if (kept_) {
+        lines_ = std::move(*kept_);
+        kept_.reset();
+    } else {
+        lines_.resize(lines_at_mark_);
+    }
+}
+
+void ChipLog::settle() {
+    marked_ = false;
+    kept_.reset();
+    if (is_open()) file_history();
 }
 
 void ChipLog::loaded(Time now) {
     if (!is_open()) return;
-    for (const auto& [time, text] : history_)
-        log_.line(cosim::to_seconds(time), text);
+    filed_ = 0;
+    file_history();
     // The saved board may have had no log, which never looks.
     next_look_ = std::max(next_look_, (now / kLook + 1) * kLook);
     written_ = std::min(written_, now);
 }
 
 void ChipLog::write_until(Time now) {
+    if (marked_ && !kept_)
+        kept_.emplace(lines_.begin(), lines_.begin() + static_cast<std::ptrdiff_t>(lines_at_mark_));
     std::sort(lines_.begin(), lines_.end());
     auto next = lines_.begin();
     for (; next != lines_.end() && next->first <= now; ++next)
-        write(next->first, next->second);
+        history_.push_back(std::move(*next));
     lines_.erase(lines_.begin(), next);
     written_ = now;
+    if (!marked_) file_history();
 }
 
 void ChipLog::end(Time now, const dspic::Chip& chip, const std::string& board) {
     if (!is_open()) return;
+    settle();
     read_report(now, chip);
     read_errors(now, chip);
     write_until(cosim::kNever);

@@ -12,6 +12,7 @@
 #include "emu/image/symbol_table.h"
 
 #include <array>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -39,12 +40,20 @@ class ChipLog {
     /// What was written so far is part of it; a log that loads it writes it again.
     template <class Archive>
     void state(Archive& archive) {
-        archive(lines_, history_, resets_, traps_, unmodelled_, warnings_, uarts_);
+        archive.apart(lines_);
+        archive.grows(history_);
+        archive(resets_, traps_, unmodelled_, warnings_, uarts_);
         archive.bounded(next_look_, 0, cosim::kNever);
         archive.bounded(written_, 0, cosim::kNever);
     }
     /// After a state was loaded that was saved at `now`.
     void loaded(cosim::Time now);
+
+    /// From here on lines are kept back, until settle() puts them into the file, or rewind(), called before a
+    /// checkpoint is read, takes back what was noted since the mark, which stays. settle() throws as line().
+    void mark();
+    void rewind();
+    void settle();
 
   private:
     static constexpr std::size_t kUarts = 2;
@@ -59,13 +68,18 @@ class ChipLog {
     void read_report(cosim::Time now, const dspic::Chip& chip);
     void read_errors(cosim::Time now, const dspic::Chip& chip);
     void write_until(cosim::Time now);
+    void file_history();
     std::string place(std::uint32_t pc) const;
-    void write(cosim::Time time, const std::string& text);
 
+    using Line = std::pair<cosim::Time, std::string>;
     NodeLog log_;
     image::CodeSymbols symbols_;
-    std::vector<std::pair<cosim::Time, std::string>> lines_;    // not yet written
-    std::vector<std::pair<cosim::Time, std::string>> history_;  // written, the firmware's line left out
+    std::vector<Line> lines_;    // not yet written
+    std::vector<Line> history_;  // written, the firmware's line left out
+    std::size_t filed_ = 0;      // of history_, in the file already
+    bool marked_ = false;
+    std::size_t lines_at_mark_ = 0;
+    std::optional<std::vector<Line>> kept_;  // lines_ at the mark, once a look has taken some of them
     cosim::Time next_look_;
     cosim::Time written_ = 0;  // all before this is in the file
     std::size_t resets_ = 0, traps_ = 0, unmodelled_ = 0, warnings_ = 0;

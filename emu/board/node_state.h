@@ -1,14 +1,18 @@
 #pragma once
-// What the nodes of a main board and of a range-and-bearing board save alike.
+// What the nodes of a main board and of a range-and-bearing board save alike, and how they go back.
 
 #include "base/archive.h"
+#include "base/checkpoint.h"
+#include "cosim/core/node.h"
 #include "cosim/core/time.h"
+
+#include <memory>
 
 namespace puckloop::board {
 
 /// `own` is the node's own part.
-template <class Own, class Board, class Chip, class Log>
-void save_node(StateWriter& archive, const cosim::Time& granted, const Own& own, const Board& board,
+template <class Archive, class Own, class Board, class Chip, class Log>
+void save_node(Archive& archive, const cosim::Time& granted, const Own& own, const Board& board,
                const Chip& chip, const Log& log) {
     archive(granted, own);
     archive.part("board", board);
@@ -26,5 +30,34 @@ void load_node(StateReader& archive, cosim::Time& granted, Own& own, Board& boar
     archive.check(chip.now() == granted, "node and chip at different times");
     log.loaded(granted);
 }
+
+/// Goes back by a checkpoint of all that `Node` lists for a CheckpointWriter and a CheckpointReader.
+template <class Node, class Chip, class Log>
+class NodeMark : public cosim::Rewindable {
+  public:
+    /// `chip` is made later, and stays.
+    NodeMark(Node& node, const std::unique_ptr<Chip>& chip, Log& log) : node_(node), chip_(chip), log_(log) {}
+
+    void mark() override {
+        log_.mark();
+        chip_->mark();
+        checkpoint_.take(node_);
+    }
+    void rewind() override {
+        log_.rewind();
+        chip_->rewind();
+        checkpoint_.restore(node_);
+    }
+    void settle() override {
+        chip_->settle();
+        log_.settle();
+    }
+
+  private:
+    Node& node_;
+    const std::unique_ptr<Chip>& chip_;
+    Log& log_;
+    Checkpoint checkpoint_;
+};
 
 }  // namespace puckloop::board

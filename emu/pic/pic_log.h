@@ -31,6 +31,10 @@ class PicLog {
         archive(chip_, motors_, changes_);
     }
     void loaded(cosim::Time now) { chip_.loaded(now); }
+    /// As ChipLog.
+    void mark() { chip_.mark(); }
+    void rewind() { chip_.rewind(); }
+    void settle() { chip_.settle(); }
 
   private:
     board::ChipLog chip_;

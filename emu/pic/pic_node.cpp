@@ -1,7 +1,6 @@
 #include "emu/pic/pic_node.h"
 
 #include "emu/board/chip_json.h"
-#include "emu/board/node_state.h"
 #include "protocols/uart_sampling.h"
 
 #include <nlohmann/json.hpp>
@@ -145,6 +144,15 @@ void PicNode::state(StateReader& archive) {
     // A press at the very time of the state is still to come.
     const auto next = std::lower_bound(options_.resets.begin(), options_.resets.end(), granted_);
     next_reset_ = static_cast<std::size_t>(next - options_.resets.begin());
+}
+
+void PicNode::state(CheckpointWriter& archive) const {
+    board::save_node(archive, granted_, bus_, board_, *chip_, log_);
+    archive(next_reset_);
+}
+
+void PicNode::state(CheckpointReader& archive) {
+    archive(granted_, bus_, board_, *chip_, log_, next_reset_);
 }
 
 std::string PicNode::finish() {

@@ -2,6 +2,7 @@
 // The e-puck main board as a node of a run: chip, board, and the ports where links attach.
 
 #include "cosim/core/stateful_node.h"
+#include "emu/board/node_state.h"
 #include "emu/board/nvm_file.h"
 #include "emu/dspic/chip/chip.h"
 #include "emu/image/image.h"
@@ -51,6 +52,9 @@ class PicNode : public cosim::StatefulNode, private BoardListener {
 
     void state(StateWriter& archive) const override;
     void state(StateReader& archive) override;
+    void state(CheckpointWriter& archive) const;
+    void state(CheckpointReader& archive);
+    cosim::Rewindable* rewindable() override { return &mark_; }
     void renew_random_streams() override { board_.renew_random_streams(); }
 
     dspic::Chip& chip() { return *chip_; }
@@ -74,6 +78,7 @@ class PicNode : public cosim::StatefulNode, private BoardListener {
     std::unique_ptr<dspic::Chip> chip_;
     EmptyBus bus_;
     PicLog log_;
+    board::NodeMark<PicNode, dspic::Chip, PicLog> mark_{*this, chip_, log_};
     std::vector<cosim::Message>* outbox_ = nullptr;
     cosim::Time granted_ = 0;
     std::size_t next_reset_ = 0;

@@ -42,6 +42,10 @@ class RabLog {
         archive.bounded(lines_, 0, 1000);
     }
     void loaded(cosim::Time now) { chip_.loaded(now); }
+    /// As ChipLog.
+    void mark() { chip_.mark(); }
+    void rewind() { chip_.rewind(); }
+    void settle() { chip_.settle(); }
 
   private:
     void frame(const EmittedFrame& frame);

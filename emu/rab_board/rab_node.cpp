@@ -1,6 +1,5 @@
 #include "emu/rab_board/rab_node.h"
 
-#include "emu/board/node_state.h"
 #include "emu/rab_board/rab_json.h"
 #include "protocols/uart_sampling.h"
 
@@ -140,6 +139,14 @@ void RabNode::state(StateWriter& archive) const {
 
 void RabNode::state(StateReader& archive) {
     board::load_node(archive, granted_, master_phases_, board_, *chip_, log_);
+}
+
+void RabNode::state(CheckpointWriter& archive) const {
+    board::save_node(archive, granted_, master_phases_, board_, *chip_, log_);
+}
+
+void RabNode::state(CheckpointReader& archive) {
+    archive(granted_, master_phases_, board_, *chip_, log_);
 }
 
 std::string RabNode::finish() {

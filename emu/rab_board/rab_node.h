@@ -2,6 +2,7 @@
 // The range-and-bearing board as a node of a run: chip, board, and the ports where links attach.
 
 #include "cosim/core/stateful_node.h"
+#include "emu/board/node_state.h"
 #include "emu/board/nvm_file.h"
 #include "emu/dspic/chip/chip.h"
 #include "emu/image/image.h"
@@ -47,6 +48,9 @@ class RabNode : public cosim::StatefulNode, private BoardListener {
 
     void state(StateWriter& archive) const override;
     void state(StateReader& archive) override;
+    void state(CheckpointWriter& archive) const;
+    void state(CheckpointReader& archive);
+    cosim::Rewindable* rewindable() override { return &mark_; }
     void renew_random_streams() override { board_.renew_random_streams(); }
 
     dspic::Chip& chip() { return *chip_; }
@@ -72,6 +76,7 @@ class RabNode : public cosim::StatefulNode, private BoardListener {
     Board board_;
     std::unique_ptr<dspic::Chip> chip_;
     RabLog log_;
+    board::NodeMark<RabNode, dspic::Chip, RabLog> mark_{*this, chip_, log_};
     std::vector<cosim::Message>* outbox_ = nullptr;
     cosim::Time granted_ = 0;
     std::uint64_t master_phases_ = 0;

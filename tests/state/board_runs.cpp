@@ -6,6 +6,7 @@
 #include "emu/rab_board/rab_node.h"
 #include "tests/node_under_test.h"
 
+#include <algorithm>
 #include <cstdlib>
 
 namespace puckloop::tests {
@@ -96,6 +97,37 @@ std::vector<Message> random_inputs(RandomStream& random, Time from, Time until, 
             messages.push_back({at, static_cast<cosim::PortIndex>(random.below(2)), frame});
         }
     }
+}
+
+Stretch random_stretch(RandomStream& random, Time from, Time until, double busy, std::size_t signals) {
+    Stretch result{until, random_inputs(random, from, until, busy, signals), {}};
+    const std::uint64_t cuts = 1 + random.below(4);
+    for (std::uint64_t i = 0; i < cuts; ++i)
+        result.cuts.push_back(from + 1 +
+                              static_cast<Time>(random.below(static_cast<std::uint64_t>(until - from))));
+    result.cuts.push_back(until);
+    std::sort(result.cuts.begin(), result.cuts.end());
+    return result;
+}
+
+std::vector<Message> run(cosim::Node& node, const Stretch& outside) {
+    std::vector<Message> outbox;
+    auto next = outside.inbox.begin();
+    for (const Time cut : outside.cuts) {
+        const auto end =
+            std::find_if(next, outside.inbox.end(), [&](const Message& m) { return m.time >= cut; });
+        node.advance(cut, {next, end}, outbox);
+        next = end;
+    }
+    return outbox;
+}
+
+bool same_future(const cosim::Node& a, const cosim::Node& b) {
+    for (cosim::PortIndex port = 0; port < a.ports().size(); ++port)
+        if (a.promise(port) != b.promise(port) || a.reaction(port) != b.reaction(port) ||
+            a.begun(port) != b.begun(port))
+            return false;
+    return true;
 }
 
 std::vector<std::uint8_t> saved(const cosim::StatefulNode& node) {

@@ -38,6 +38,20 @@ std::vector<cosim::Message> random_inputs(RandomStream& random, cosim::Time from
                                           double busy, std::size_t signals);
 inline constexpr std::size_t kPicSignals = 60, kRabSignals = 40;
 
+/// What comes in from outside over a stretch of time, and where the grants are cut.
+struct Stretch {
+    cosim::Time until = 0;
+    std::vector<cosim::Message> inbox;
+    std::vector<cosim::Time> cuts;
+};
+/// Two grants to five.
+Stretch random_stretch(RandomStream& random, cosim::Time from, cosim::Time until, double busy,
+                       std::size_t signals);
+/// What the node sends meanwhile.
+std::vector<cosim::Message> run(cosim::Node& node, const Stretch& outside);
+/// They promise the same on every port.
+bool same_future(const cosim::Node& a, const cosim::Node& b);
+
 std::vector<std::uint8_t> saved(const cosim::StatefulNode& node);
 std::unique_ptr<cosim::StatefulNode> loaded(const MakeBoard& make, const std::vector<std::uint8_t>& bytes);
 

@@ -5,11 +5,8 @@
 
 #include <catch2/catch.hpp>
 
-#include <algorithm>
-
 using namespace puckloop;
 using namespace puckloop::tests;
-using cosim::Message;
 using cosim::Time;
 
 namespace {
@@ -25,44 +22,6 @@ struct Plan {
     bool same_bytes_later = true;
 };
 
-/// The part of the outside that both boards see.
-struct Stretch {
-    Time until = 0;
-    std::vector<Message> inbox;
-    std::vector<Time> cuts;
-};
-
-Stretch stretch(RandomStream& random, const Plan& plan, Time from, Time until) {
-    Stretch result{until, random_inputs(random, from, until, plan.busy, plan.signals), {}};
-    const std::uint64_t cuts = 1 + random.below(4);
-    for (std::uint64_t i = 0; i < cuts; ++i)
-        result.cuts.push_back(from + 1 +
-                              static_cast<Time>(random.below(static_cast<std::uint64_t>(until - from))));
-    result.cuts.push_back(until);
-    std::sort(result.cuts.begin(), result.cuts.end());
-    return result;
-}
-
-std::vector<Message> run(cosim::StatefulNode& node, const Stretch& outside) {
-    std::vector<Message> outbox;
-    auto next = outside.inbox.begin();
-    for (const Time cut : outside.cuts) {
-        const auto end =
-            std::find_if(next, outside.inbox.end(), [&](const Message& m) { return m.time >= cut; });
-        node.advance(cut, {next, end}, outbox);
-        next = end;
-    }
-    return outbox;
-}
-
-bool same_future(const cosim::Node& a, const cosim::Node& b) {
-    for (cosim::PortIndex port = 0; port < a.ports().size(); ++port)
-        if (a.promise(port) != b.promise(port) || a.reaction(port) != b.reaction(port) ||
-            a.begun(port) != b.begun(port))
-            return false;
-    return true;
-}
-
 void check(const MakeBoard& make, const Plan& plan, const std::string& name) {
     INFO(name);
     RandomStream random(7, name);
@@ -70,7 +29,7 @@ void check(const MakeBoard& make, const Plan& plan, const std::string& name) {
     Time now = 0;
     for (int i = 0; i < plan.states; ++i) {
         const Time at = now + 1 + static_cast<Time>(random.below(static_cast<std::uint64_t>(plan.between)));
-        run(*original, stretch(random, plan, now, at));
+        run(*original, random_stretch(random, now, at, plan.busy, plan.signals));
         now = at;
         INFO("state " << i << " at " << cosim::to_seconds(at) << " s");
         const auto bytes = saved(*original);
@@ -78,7 +37,7 @@ void check(const MakeBoard& make, const Plan& plan, const std::string& name) {
         const bool same_bytes = saved(*copy) == bytes;
         REQUIRE(same_bytes);
         REQUIRE(same_future(*copy, *original));
-        const Stretch outside = stretch(random, plan, now, now + plan.on);
+        const Stretch outside = random_stretch(random, now, now + plan.on, plan.busy, plan.signals);
         now += plan.on;
         const auto sent = run(*original, outside);
         const bool same_messages = sent == run(*copy, outside);

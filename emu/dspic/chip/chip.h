@@ -3,6 +3,7 @@
 // silicon. It knows no board: the board implements Pins, and tells the chip what arrives from outside.
 
 #include "base/archive.h"
+#include "base/checkpoint.h"
 #include "cosim/core/clock.h"
 #include "cosim/core/message.h"
 #include "cosim/core/time.h"
@@ -113,7 +114,7 @@ struct ChipReport {
 
     template <class Archive>
     void state(Archive& archive) {
-        archive(resets, traps, unmodelled, warnings);
+        archive.grows(resets, traps, unmodelled, warnings);
     }
 };
 
@@ -200,6 +201,14 @@ class Chip {
     /// that loads it goes on as this one does; StateError: it does not fit, and the chip is of no use.
     void state(StateWriter& archive) const;
     void state(StateReader& archive);
+    /// The same for a checkpoint, taken after mark(): program memory and what is known of code stay out of
+    /// it, their changes since the mark are taken back by rewind(), before the checkpoint is read. The mark
+    /// stays until settle(). No stop address may be met or set between.
+    void state(CheckpointWriter& archive) const;
+    void state(CheckpointReader& archive);
+    void mark();
+    void rewind();
+    void settle();
 
     /// Busy-wait loops are skipped forward (default); off, every cycle of them is executed.
     void set_skipping(bool on);

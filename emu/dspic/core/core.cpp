@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "emu/dspic/core/machine.h"
+#include "emu/dspic/fast/loop_undo.h"
 #include "emu/dspic/fast/skip_loops.h"
 
 #include <fmt/format.h>
@@ -32,7 +33,12 @@ std::string_view to_string(ResetCause cause) {
 
 Machine::Machine(const DeviceInfo& info, SfrSpace& registers, EventQueue& queue,
                  InterruptController& controller)
-    : events(queue), sfr(registers), irq(controller), device(info), skip(std::make_unique<SkipLoops>()) {
+    : events(queue),
+      sfr(registers),
+      irq(controller),
+      device(info),
+      skip(std::make_unique<SkipLoops>()),
+      loop_undo(std::make_unique<LoopUndo>()) {
     code_words = info.flash_end / 2;
     program.assign(code_words + kGuards + 1, 0xFFFFFF);
     code_store.resize(code_words + kGuards);
@@ -113,7 +119,7 @@ void Core::set_stops(std::span<const std::uint32_t> addresses) {
     for (const std::uint32_t pc : addresses) {
         if (pc >= m.device.flash_end) continue;
         m.stops.push_back(pc & ~1u);
-        mark(m, pc, kStop);
+        dspic::mark(m, pc, kStop);
     }
     if (m.pass_pc && std::find(m.stops.begin(), m.stops.end(), *m.pass_pc) == m.stops.end())
         m.pass_pc.reset();
@@ -170,7 +176,7 @@ void Core::set_state(const CoreState& state) {
     m.limit = 0;
     m.stall_end = 0;
     if (m.mode != PowerMode::Run) leave_power_save(m);
-    if (m.st.sr & sr::DA) mark(m, m.st.loop.doend, kLoopEnd);
+    if (m.st.sr & sr::DA) dspic::mark(m, m.st.loop.doend, kLoopEnd);
     update_pointer_rules(m);
     m.eligible = false;
     reconsider(m, m.st.cycle);

@@ -5,6 +5,7 @@
 // Deviations are numbered in docs/fidelity.md under "dsPIC core".
 
 #include "base/archive.h"
+#include "base/checkpoint.h"
 #include "emu/dspic/core/core_state.h"
 #include "emu/dspic/core/event_queue.h"
 #include "emu/dspic/core/interrupts.h"
@@ -124,6 +125,14 @@ class Core {
     /// and what is known of loops and service routines are found anew. SFRs are loaded before.
     void state(StateWriter& archive) const;
     void state(StateReader& archive);
+    /// The same but for program space, decoded operations and what is known of loops and service routines:
+    /// from mark() on their changes are noted, and rewind() takes them back, before the checkpoint is read;
+    /// the mark stays. settle() gives it up. Stop addresses stay as they are between the three.
+    void state(CheckpointWriter& archive) const;
+    void state(CheckpointReader& archive);
+    void mark();
+    void rewind();
+    void settle();
 
     // Hooks.
     /// Called at each reset before the core's own: sets every other SFR and module to its reset state.

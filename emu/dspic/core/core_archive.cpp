@@ -1,6 +1,7 @@
 // What a core remembers, listed once for saving and loading (base/archive.h).
 
 #include "emu/dspic/core/machine.h"
+#include "emu/dspic/fast/loop_undo.h"
 
 namespace puckloop::dspic {
 
@@ -26,12 +27,14 @@ void list(Archive& archive, Machine& m) {
     archive(m.watchdog_cleared);
     archive(m.nvm.address, m.nvm.key_step);
     archive.fixed(m.nvm.latch);
-    archive.fixed(m.program);
-    archive.fixed(m.eeprom);
-    archive.fixed(m.config);
-    archive.fixed(m.unit_id);
+    if constexpr (!Archive::kRaw) {  // see ProgramUndo
+        archive.fixed(m.program);
+        archive.fixed(m.eeprom);
+        archive.fixed(m.config);
+        archive.fixed(m.unit_id);
+    }
     archive.fixed(m.ram_store);
-    archive(m.warned);
+    archive.grows(m.warned);
 }
 
 /// Where the program waits: operations by their addresses.
@@ -39,6 +42,7 @@ template <class Archive>
 void list_waits(Archive& archive, Machine& m) {
     const std::uint32_t last_word = m.code_words - 1;
     const auto operation = [&](const Op*& op) {
+        if constexpr (Archive::kRaw) return archive(op);
         std::uint32_t index = op ? static_cast<std::uint32_t>(op - m.code) : 0;
         archive.bounded(index, 0, last_word);
         if constexpr (Archive::kLoads) op = m.code + index;
@@ -48,6 +52,8 @@ void list_waits(Archive& archive, Machine& m) {
     for (WaitWatch::Stay& stay : waits.stays) {
         bool there = stay.branch != nullptr;
         archive(there);
+        if constexpr (Archive::kLoads)
+            if (!there) stay.branch = nullptr;
         if (!there) continue;
         operation(stay.branch);
         operation(stay.head);
@@ -56,11 +62,20 @@ void list_waits(Archive& archive, Machine& m) {
             for (const LoopCondition& condition : stay.finding->conditions)
                 archive.check(condition.address % 2 == 0, "a word at an odd address");
     }
-    archive(waits.polls);
+    archive.grows(waits.polls);
+    if constexpr (Archive::kRaw) return;
     for (const MissingPoll& poll : waits.polls)
         archive.check(m.sfr.info(poll.condition.address & 0x7FE) != nullptr &&
                           poll.condition.address < 2 * SfrSpace::kWords,
                       "a poll of no register");
+}
+
+/// For a checkpoint: with what follows from the rest, instead of finding it anew.
+template <class Archive>
+void list_raw(Archive& archive, Machine& m) {
+    list(archive, m);
+    archive(m.current, m.outside_pc, m.special, m.stack_span, m.pass_pc);
+    list_waits(archive, m);
 }
 
 }  // namespace
@@ -86,10 +101,36 @@ void Core::state(StateReader& archive) {
     m.stopped = m.end_requested = false;
     m.pass_pc.reset();
     // Where a loop ends the operation carries a mark: the present loop and the one in the shadow.
-    mark(m, m.st.loop.doend, kLoopEnd);
-    mark(m, m.st.loop_shadow.doend, kLoopEnd);
+    dspic::mark(m, m.st.loop.doend, kLoopEnd);
+    dspic::mark(m, m.st.loop_shadow.doend, kLoopEnd);
     update_pointer_rules(m);
     list_waits(archive, m);  // whatever changes code forgets them
+}
+
+void Core::state(CheckpointWriter& archive) const {
+    list_raw(archive, *machine_);
+}
+
+void Core::state(CheckpointReader& archive) {
+    Machine& m = *machine_;
+    list_raw(archive, m);
+    m.limit = 0;
+    m.stopped = m.end_requested = false;
+}
+
+void Core::mark() {
+    machine_->program_undo.begin();
+    machine_->loop_undo->begin();
+}
+
+void Core::rewind() {
+    machine_->program_undo.rewind(*machine_);
+    machine_->loop_undo->rewind(*machine_);
+}
+
+void Core::settle() {
+    machine_->program_undo.end();
+    machine_->loop_undo->end();
 }
 
 }  // namespace puckloop::dspic

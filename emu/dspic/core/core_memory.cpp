@@ -186,8 +186,7 @@ std::uint32_t read_program(const Machine& m, std::uint32_t address, bool* implem
     return word.value_or(0);
 }
 
-bool write_program(Machine& m, std::uint32_t address, std::uint32_t word) {
-    word &= 0xFFFFFF;
+bool store_program(Machine& m, std::uint32_t address, std::uint32_t word) {
     const DeviceInfo& d = m.device;
     const auto into = [&](std::uint32_t start, auto& words) {
         const std::uint32_t index = (address - start) >> 1;
@@ -197,11 +196,17 @@ bool write_program(Machine& m, std::uint32_t address, std::uint32_t word) {
     };
     if (address < d.flash_end) {
         m.program[address >> 1] = word;
-        invalidate(m, address);
         return true;
     }
     return into(d.eeprom_start, m.eeprom) || into(d.config_start, m.config) ||
            into(d.unit_id_start, m.unit_id);
+}
+
+bool write_program(Machine& m, std::uint32_t address, std::uint32_t word) {
+    if (m.program_undo.on()) m.program_undo.note_word(address, read_program(m, address));
+    if (!store_program(m, address, word & 0xFFFFFF)) return false;
+    if (address < m.device.flash_end) invalidate(m, address);
+    return true;
 }
 
 }  // namespace puckloop::dspic

@@ -94,6 +94,7 @@ Ea bind_destination(Op& op, const Form& form, std::uint32_t word, char mode, int
 void decode(Machine& m, Op& op) {
     const auto index = static_cast<std::uint32_t>(&op - m.code);
     const std::uint32_t pc = index * 2;
+    if (m.program_undo.on() && op.run == &decode_now) m.program_undo.note_operation(m, index);
     const std::uint8_t marks = op.marks;
     op = Op{};
     op.marks = marks;
@@ -132,16 +133,21 @@ const Op* decode_now(Machine& m, const Op* op) {
     return op;
 }
 
+void blank(Machine& m, std::uint32_t index) {
+    Op& op = m.code[index];
+    const std::uint8_t marks = op.marks;
+    op = Op{};
+    op.marks = marks;
+    op.run = &decode_now;
+    op.keep = 0xFFFFFFFF;
+    op.cycles = 0;
+    op.word = m.program[index];
+}
+
 void invalidate(Machine& m, std::uint32_t address) {
     const auto forget = [&m](std::uint32_t index) {
-        Op& op = m.code[index];
-        const std::uint8_t marks = op.marks;
-        op = Op{};
-        op.marks = marks;
-        op.run = &decode_now;
-        op.keep = 0xFFFFFFFF;
-        op.cycles = 0;
-        op.word = m.program[index];
+        if (m.program_undo.on()) m.program_undo.note_operation(m, index);
+        blank(m, index);
     };
     const std::uint32_t index = address >> 1;
     forget_loops(m);
@@ -154,6 +160,7 @@ void mark(Machine& m, std::uint32_t pc, std::uint8_t what) {
     if (index >= m.code_words) return;
     Op& op = m.code[index];
     if (op.marks & what) return;
+    if (m.program_undo.on()) m.program_undo.note_operation(m, index);
     op.marks |= what;
     forget_loops(m);
     if (op.run != &decode_now) decode(m, op);

@@ -4,6 +4,7 @@
 
 #include "emu/dspic/core/core.h"
 #include "emu/dspic/core/isa.h"
+#include "emu/dspic/core/program_undo.h"
 #include "emu/dspic/fast/service_shortcut.h"
 #include "emu/dspic/waits/wait_watch.h"
 
@@ -52,6 +53,7 @@ inline constexpr std::uint8_t kStop = 1, kLoopEnd = 2;
 inline constexpr std::uint32_t kGuards = 4;
 
 struct SkipLoops;
+class LoopUndo;
 
 struct Machine {
     Machine(const DeviceInfo& info, SfrSpace& registers, EventQueue& queue, InterruptController& controller);
@@ -124,6 +126,8 @@ struct Machine {
     std::vector<std::uint32_t> warned;
     bool skip_idle = true;
     std::unique_ptr<SkipLoops> skip;
+    ProgramUndo program_undo;
+    std::unique_ptr<LoopUndo> loop_undo;
     ServiceShortcuts shortcuts;
     WaitWatch waits;
 
@@ -162,7 +166,11 @@ void mark(Machine& m, std::uint32_t pc, std::uint8_t what);
 void warn_once(Machine& m, std::uint32_t key, std::string_view text);
 std::uint32_t read_program(const Machine& m, std::uint32_t address, bool* implemented = nullptr);
 bool write_program(Machine& m, std::uint32_t address, std::uint32_t word);
+/// As write_program(), with no word to what was decoded from it.
+bool store_program(Machine& m, std::uint32_t address, std::uint32_t word);
 void invalidate(Machine& m, std::uint32_t address);
+/// The operation is to be decoded again when it is next reached.
+void blank(Machine& m, std::uint32_t index);
 const Op* decode_now(Machine& m, const Op* op);
 void decode(Machine& m, Op& op);
 void hook_registers(Machine& m);

@@ -1,6 +1,7 @@
 #include "emu/dspic/fast/service_shortcut.h"
 
 #include "emu/dspic/core/machine.h"
+#include "emu/dspic/fast/loop_undo.h"
 
 #include <bit>
 
@@ -183,6 +184,7 @@ const ServiceShortcut* service_shortcut(Machine& m, int vector) {
     case Walk::End::Never:
         break;
     }
+    m.loop_undo->note_shortcut(index, known[index]);
     known[index] = fresh;
     return fresh.possible ? &*known[index] : nullptr;
 }

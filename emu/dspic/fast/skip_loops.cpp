@@ -1,6 +1,7 @@
 #include "emu/dspic/fast/skip_loops.h"
 
 #include "emu/dspic/core/machine.h"
+#include "emu/dspic/fast/loop_undo.h"
 #include "emu/dspic/fast/loop_walk.h"
 #include "emu/dspic/fast/steady_leap.h"
 
@@ -82,6 +83,7 @@ void give_up_for_now(SkipLoops::Branch& known, std::uint8_t most = kMostPatience
 
 void make_plan(Machine& m, SkipLoops::Branch& known, const Op* branch, const Op* head, Cycle arrival) {
     SkipLoops::Plan& plan = known.plan;
+    m.loop_undo->note_walk(known);
     LoopWalk walk(m, plan, known.trace);
     switch (walk.analyse(branch, head)) {
     case LoopWalk::Verdict::Pure:
@@ -105,6 +107,8 @@ void make_plan(Machine& m, SkipLoops::Branch& known, const Op* branch, const Op*
         // On its last round a loop leaves by instructions that the walk need not know.
         if (known.walked) return give_up_for_now(known);
         if (walk.chose()) return give_up_for_now(known, kMostPatienceUnknown);  // another way round may do
+        if (m.program_undo.on())
+            m.program_undo.note_operation(m, static_cast<std::uint32_t>(branch - m.code));
         m.code[branch - m.code].may_skip = false;
         break;
     }
@@ -122,6 +126,7 @@ Cycle clean_arrival(Machine& m, SkipLoops::Branch& known, Cycle arrival) {
 }  // namespace
 
 void forget_loops(Machine& m) {
+    m.loop_undo->note_forgetting(m);
     m.waits.forget();
     m.skip->index.clear();
     m.skip->branches.clear();
@@ -132,6 +137,7 @@ void try_skip(Machine& m, const Op* branch, const Op* head) {
     note_arrival(m, branch, head);
     if (!m.skip_idle) return;
     SkipLoops::Branch& known = branch_at(m, static_cast<std::size_t>(branch - m.code));
+    m.loop_undo->note(known);
     if (known.wait > 0) {
         --known.wait;
         return;

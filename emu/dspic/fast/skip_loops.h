@@ -102,6 +102,8 @@ struct SkipLoops {
         bool walked = false;        ///< a walk came round once: no way out of the loop decides for all of it
         Plan plan;
         LoopTrace trace;
+        std::uint32_t noted = 0;  ///< by the LoopUndo with this stamp ...
+        std::size_t note = 0;     ///< ... at this place
     };
     std::vector<std::uint16_t> index;  ///< by program word: place in `branches` plus 1, 0 = not seen yet
     std::deque<Branch> branches;

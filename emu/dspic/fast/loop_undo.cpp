@@ -1,0 +1,82 @@
+#include "emu/dspic/fast/loop_undo.h"
+
+#include "emu/dspic/core/machine.h"
+
+#include <utility>
+
+namespace puckloop::dspic {
+
+void LoopUndo::end() {
+    on_ = false;
+    count_ = 0;
+    shortcuts_.clear();
+    forgotten_.reset();
+}
+
+void LoopUndo::note_first(SkipLoops::Branch& branch) {
+    branch.noted = stamp_;
+    if (forgotten_) return;  // learned after everything was thrown away: it will be thrown away itself
+    branch.note = count_;
+    if (count_ == notes_.size()) notes_.emplace_back();
+    Note& note = notes_[count_++];
+    note.branch = &branch;
+    note.wait = branch.wait;
+    note.patience = branch.patience;
+    note.polls_noted = branch.polls_noted;
+    note.walked = branch.walked;
+    note.plan = branch.plan;
+    note.swapped = false;
+    note.trace.steady = branch.trace.steady;
+    note.trace.depth = branch.trace.depth;
+    note.trace.live = branch.trace.live;
+}
+
+void LoopUndo::note_walk(SkipLoops::Branch& branch) {
+    if (!on_ || forgotten_) return;
+    Note& note = notes_[branch.note];
+    if (std::exchange(note.swapped, true)) return;
+    note.trace.boundaries.swap(branch.trace.boundaries);
+    note.trace.accesses.swap(branch.trace.accesses);
+}
+
+void LoopUndo::take_back(Machine& m) {
+    for (std::size_t i = 0; i < count_; ++i) {
+        Note& note = notes_[i];
+        SkipLoops::Branch& branch = *note.branch;
+        branch.wait = note.wait;
+        branch.patience = note.patience;
+        branch.polls_noted = note.polls_noted;
+        branch.walked = note.walked;
+        branch.plan = note.plan;
+        branch.trace.steady = note.trace.steady;
+        branch.trace.depth = note.trace.depth;
+        branch.trace.live = note.trace.live;
+        if (!note.swapped) continue;
+        branch.trace.boundaries.swap(note.trace.boundaries);
+        branch.trace.accesses.swap(note.trace.accesses);
+    }
+    count_ = 0;
+    for (auto note = shortcuts_.rbegin(); note != shortcuts_.rend(); ++note)
+        m.shortcuts.known[note->first] = note->second;
+    shortcuts_.clear();
+}
+
+void LoopUndo::note_forgetting(Machine& m) {
+    if (!on_ || forgotten_) return;
+    take_back(m);
+    forgotten_.emplace(
+        Forgotten{std::move(m.skip->index), std::move(m.skip->branches), std::move(m.shortcuts.known)});
+}
+
+void LoopUndo::rewind(Machine& m) {
+    if (forgotten_) {
+        m.skip->index = std::move(forgotten_->index);
+        m.skip->branches = std::move(forgotten_->branches);
+        m.shortcuts.known = std::move(forgotten_->shortcuts);
+    } else {
+        take_back(m);
+    }
+    begin();
+}
+
+}  // namespace puckloop::dspic

@@ -1,0 +1,73 @@
+#pragma once
+// What becomes known of loops and service routines while a mark is set (Core::mark()), and what is forgotten:
+// noted at its first change, taken back at a rewind. A machine that went back so leaps where one would that
+// never ran ahead; leaps differ from executing in nothing but dead words above the stack and arrivals noted.
+
+#include "emu/dspic/fast/service_shortcut.h"
+#include "emu/dspic/fast/skip_loops.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <vector>
+
+namespace puckloop::dspic {
+
+struct Machine;
+
+class LoopUndo {
+  public:
+    bool on() const { return on_; }
+    /// Notes from here on; forgets earlier notes.
+    void begin() {
+        end();
+        on_ = true;
+        ++stamp_;
+    }
+    void end();
+    /// Takes back everything noted; notes go on.
+    void rewind(Machine& m);
+
+    /// Before anything known of a branch changes.
+    void note(SkipLoops::Branch& branch) {
+        if (on_ && branch.noted != stamp_) note_first(branch);
+    }
+    /// Before a noted branch is walked anew.
+    void note_walk(SkipLoops::Branch& branch);
+    /// Before what is known of an interrupt vector changes.
+    void note_shortcut(std::size_t vector, const std::optional<ServiceShortcut>& before) {
+        if (on_ && !forgotten_) shortcuts_.emplace_back(vector, before);
+    }
+    /// Before all of it is thrown away.
+    void note_forgetting(Machine& m);
+
+  private:
+    struct Note {
+        SkipLoops::Branch* branch = nullptr;
+        std::uint16_t wait = 0;
+        std::uint8_t patience = 0;
+        bool polls_noted = false;
+        bool walked = false;
+        bool swapped = false;  ///< `trace` holds the old one whole, else no more than its numbers
+        SkipLoops::Plan plan;
+        LoopTrace trace;
+    };
+    /// Everything that was known when it was first thrown away.
+    struct Forgotten {
+        std::vector<std::uint16_t> index;
+        std::deque<SkipLoops::Branch> branches;
+        std::vector<std::optional<ServiceShortcut>> shortcuts;
+    };
+    void note_first(SkipLoops::Branch& branch);
+    void take_back(Machine& m);
+
+    bool on_ = false;
+    std::uint32_t stamp_ = 0;
+    std::deque<Note> notes_;  ///< the first count_ are in use
+    std::size_t count_ = 0;
+    std::vector<std::pair<std::size_t, std::optional<ServiceShortcut>>> shortcuts_;
+    std::optional<Forgotten> forgotten_;
+};
+
+}  // namespace puckloop::dspic
