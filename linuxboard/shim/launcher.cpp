@@ -82,15 +82,15 @@ Launcher::Launcher(const LinuxSpec& spec)
 }
 
 Launcher::~Launcher() {
-    if (page_ != nullptr) munmap(page_, sizeof *page_);
+    if (page_ != nullptr) munmap(page_, wire::kSharedSize);
     if (page_fd_ >= 0) close(page_fd_);
     if (log_fd_ >= 0) close(log_fd_);
 }
 
 void Launcher::prepare_page() {
     page_fd_ = memfd_create("puckloop-shim", MFD_CLOEXEC);
-    if (page_fd_ < 0 || ftruncate(page_fd_, sizeof(wire::Page)) != 0) fail("shared memory");
-    void* memory = mmap(nullptr, sizeof(wire::Page), PROT_READ | PROT_WRITE, MAP_SHARED, page_fd_, 0);
+    if (page_fd_ < 0 || ftruncate(page_fd_, wire::kSharedSize) != 0) fail("shared memory");
+    void* memory = mmap(nullptr, wire::kSharedSize, PROT_READ | PROT_WRITE, MAP_SHARED, page_fd_, 0);
     if (memory == MAP_FAILED) fail("shared memory");
     page_ = new (memory) wire::Page;
     page_->real_time = spec_.real_time ? 1 : 0;
@@ -120,6 +120,7 @@ std::unique_ptr<Process> Launcher::start() {
     entry.number = entry.group = wire::kFirstProcess;
     entry.parent = wire::kNoParent;
     page_->alive = 1;
+    wire::Channel& channel = *new (wire::channel_of(*page_, 0)) wire::Channel;
     const rlim_t most = descriptor_limit();
     if (most < kFewestDescriptors)
         throw RunError(fmt::format("{}: the limit of open files is {} (ulimit -n), a program needs {}", file_,
@@ -195,7 +196,7 @@ std::unique_ptr<Process> Launcher::start() {
     close(sockets[1]);
     close(report[1]);
     entry.host = pid;
-    auto process = std::make_unique<Process>(sockets[0], entry);
+    auto process = std::make_unique<Process>(sockets[0], entry, channel);
     int status[2] = {0, 0};
     const bool failed = read(report[0], status, sizeof status) == sizeof status;
     close(report[0]);

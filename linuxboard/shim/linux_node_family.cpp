@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
+#include <new>
 #include <utility>
 
 namespace puckloop::linuxboard {
@@ -149,9 +150,10 @@ void LinuxNode::fork(Client& client) {
     made.host = 0;
     made.now = client.request.now;
     made.call_name[0] = '\0';
+    wire::Channel& channel = *new (wire::channel_of(launcher_->page(), slot)) wire::Channel;
     auto child = std::make_unique<Client>();
     child->slot = slot;
-    child->process = std::make_unique<Process>(sockets[0], made);
+    child->process = std::make_unique<Process>(sockets[0], made, channel);
     child->inherited = client.data;
     child->handles = client.handles;
     for (const int handle : child->handles)

@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
@@ -22,9 +22,25 @@ namespace puckloop::linuxboard {
 namespace {
 constexpr double kLookInterval = 0.5;  // s of wall clock between looks at a program that keeps silent
 constexpr double kLoadedHostFactor = 10.0;
+constexpr double kNanosecondsPerSecond = 1e9;
+constexpr int kNanosecondsPerMillisecond = 1'000'000;
+/// So soon at the latest it is noticed that a program has died.
+constexpr std::int64_t kMoment = 5'000'000;  // ns
 constexpr int kEndAttempts = 2000;
 constexpr useconds_t kEndPause = 1000;  // together 2 s
-constexpr double kMillisecondsPerSecond = 1000.0;
+
+/// For Turn.
+struct Host {
+    template <typename... Arguments>
+    static long call(long number, Arguments... arguments) {
+        return syscall(number, arguments...);
+    }
+    static std::int64_t nanoseconds() {
+        return std::chrono::duration_cast<std::chrono::nanoseconds>(
+                   std::chrono::steady_clock::now().time_since_epoch())
+            .count();
+    }
+};
 
 struct HostState {
     char code = '?';          ///< as in proc(5): R running, S sleeping, Z ended
@@ -58,61 +74,97 @@ HostState host_state(pid_t pid) {
 
 }  // namespace
 
-Process::Process(int socket, wire::ProcessEntry& entry)
-    : socket_(socket), entry_(entry), buffer_(sizeof(wire::Request) + wire::kMaximumData) {}
+Process::Process(int socket, wire::ProcessEntry& entry, wire::Channel& channel)
+    : socket_(socket), entry_(entry), channel_(channel) {}
 
-void Process::reply(const wire::Reply& reply, const std::vector<FinishedCall>& calls, int passed) {
-    out_.assign(reinterpret_cast<const char*>(&reply), sizeof reply);
-    for (const FinishedCall& call : calls) {
-        wire::Completion header = call.header;
-        header.thread &= 0xffff;  // the number in its process
-        out_.append(reinterpret_cast<const char*>(&header), sizeof header);
-        out_ += call.data;
-    }
-    // A program that has just died is noticed when it is listened to.
-    iovec part{out_.data(), out_.size()};
+void Process::pass_descriptor(int descriptor) {
+    char byte = 0;
+    iovec part{&byte, sizeof byte};
     msghdr message{};
     message.msg_iov = &part;
     message.msg_iovlen = 1;
-    alignas(cmsghdr) char control[CMSG_SPACE(sizeof passed)] = {};
-    if (passed >= 0) {
-        message.msg_control = control;
-        message.msg_controllen = sizeof control;
-        cmsghdr* header = CMSG_FIRSTHDR(&message);
-        header->cmsg_level = SOL_SOCKET;
-        header->cmsg_type = SCM_RIGHTS;
-        header->cmsg_len = CMSG_LEN(sizeof passed);
-        std::memcpy(CMSG_DATA(header), &passed, sizeof passed);
-    }
+    alignas(cmsghdr) char control[CMSG_SPACE(sizeof descriptor)] = {};
+    message.msg_control = control;
+    message.msg_controllen = sizeof control;
+    cmsghdr* header = CMSG_FIRSTHDR(&message);
+    header->cmsg_level = SOL_SOCKET;
+    header->cmsg_type = SCM_RIGHTS;
+    header->cmsg_len = CMSG_LEN(sizeof descriptor);
+    std::memcpy(CMSG_DATA(header), &descriptor, sizeof descriptor);
     [[maybe_unused]] const auto sent = sendmsg(socket_, &message, MSG_NOSIGNAL);
 }
 
+void Process::reply(wire::Reply reply, const std::vector<FinishedCall>& calls, int passed) {
+    // A program that has just died is noticed when it is listened to.
+    if (passed >= 0) pass_descriptor(passed);
+    std::size_t used = 0;
+    reply.count = 0;
+    for (const FinishedCall& call : calls) {
+        wire::Completion header = call.header;
+        header.thread &= 0xffff;  // the number in its process
+        if (used + sizeof header + call.data.size() > wire::Channel::kReplyRoom) {
+            reply.more = 1;
+            channel_.reply = reply;
+            channel_.turn.pass<Host>(Turn::Program);
+            while (!await_request())
+                if (is_gone()) return;
+            used = reply.count = reply.more = 0;
+        }
+        std::memcpy(channel_.reply_data + used, &header, sizeof header);
+        used += sizeof header;
+        std::memcpy(channel_.reply_data + used, call.data.data(), call.data.size());
+        used += call.data.size();
+        ++reply.count;
+    }
+    channel_.reply = reply;
+    channel_.turn.pass<Host>(Turn::Program);
+}
+
+/// False if it is still the program's turn after a moment.
+bool Process::await_request() {
+    if (!leaving_) return channel_.turn.await<Host>(Turn::Node, patience_, kMoment);
+    // No more requests: what comes next is its end, with which its socket closes.
+    pollfd entry{socket_, 0, 0};
+    poll(&entry, 1, kMoment / kNanosecondsPerMillisecond);
+    return channel_.turn.is(Turn::Node);
+}
+
+bool Process::is_gone() const {
+    siginfo_t ended{};
+    const bool is_child = entry_.host > 0 && waitid(P_PID, static_cast<id_t>(entry_.host), &ended,
+                                                    WEXITED | WNOHANG | WNOWAIT) == 0;
+    if (is_child && ended.si_pid != 0) return true;
+    if (is_child && !leaving_) return false;
+    pollfd entry{socket_, 0, 0};
+    return poll(&entry, 1, 0) == 1;
+}
+
 Heard Process::hear(double watchdog, wire::Request& request, std::string& data) {
-    pollfd entry{socket_, POLLIN, 0};
-    ssize_t count = recv(socket_, buffer_.data(), buffer_.size(), MSG_DONTWAIT);
-    const double slice = std::min(watchdog, kLookInterval);
-    double waited = 0.0;
+    double waited = 0.0, looked = 0.0;
     double computed_before = -1.0;
-    while (count < 0 && (errno == EAGAIN || errno == EINTR)) {
-        const int ready = poll(&entry, 1, static_cast<int>(slice * kMillisecondsPerSecond));
-        count = recv(socket_, buffer_.data(), buffer_.size(), MSG_DONTWAIT);
-        if (ready != 0 || count >= 0) continue;
+    while (!await_request()) {
+        if (is_gone()) {
+            if (channel_.turn.is(Turn::Node)) break;
+            await_end();
+            return Heard::Ended;
+        }
+        waited += kMoment / kNanosecondsPerSecond;
+        const double slice = std::min(watchdog, kLookInterval);
+        if (waited < looked + slice) continue;
+        looked = waited;
         // On a loaded host a program that computes may just not get the processor: its own time counts.
         const HostState state = host_state(entry_.host);
         if (computed_before < 0) computed_before = state.computed_s;
-        if (state.code == 'Z' || state.code == 'X') break;
-        waited += slice;
         const bool computed_long = state.computed_s - computed_before + slice >= watchdog;
         const bool slept_long = state.code != 'R' && waited >= watchdog;
         if (computed_long || slept_long || waited >= watchdog * kLoadedHostFactor) return Heard::Silent;
-        errno = EAGAIN;
     }
-    if (count < static_cast<ssize_t>(sizeof request)) {
-        await_end();
-        return Heard::Ended;
+    request = channel_.request;
+    data.assign(channel_.request_data, std::min(channel_.request_size, wire::kMaximumData));
+    if (request.op == wire::Op::Exit) {
+        leaving_ = true;
+        channel_.turn.give(Turn::Program);
     }
-    std::memcpy(&request, buffer_.data(), sizeof request);
-    data.assign(buffer_.data() + sizeof request, static_cast<std::size_t>(count) - sizeof request);
     return Heard::Request;
 }
 

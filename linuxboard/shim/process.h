@@ -17,15 +17,15 @@ enum class Heard { Request, Ended, Silent };
 
 class Process {
   public:
-    /// `socket`: this end of its link, closed with the object. `entry` must outlive it; its `host` is set
-    /// before the process's first request.
-    Process(int socket, wire::ProcessEntry& entry);
+    /// `socket`: this end of its link, closed with the object. `entry` and `channel`, which was new when the
+    /// process began, must outlive it; the entry's `host` is set before the process's first request.
+    Process(int socket, wire::ProcessEntry& entry, wire::Channel& channel);
     ~Process() { kill(); }
     Process(const Process&) = delete;
     Process& operator=(const Process&) = delete;
 
-    /// `passed`: a descriptor that goes along, or -1.
-    void reply(const wire::Reply& reply, const std::vector<FinishedCall>& calls, int passed = -1);
+    /// `passed`: a descriptor that goes along, or -1. The channel's TtyView is set before.
+    void reply(wire::Reply reply, const std::vector<FinishedCall>& calls, int passed = -1);
     /// Waits for the next request; Silent after `watchdog` seconds of computing, or of waiting in the host.
     /// After Ended the exit state is known.
     Heard hear(double watchdog, wire::Request& request, std::string& data);
@@ -46,7 +46,12 @@ class Process {
     /// What the kernel says of the process that keeps silent: computing, or in which call.
     std::string describe_silence() const;
 
+    wire::Channel& channel() { return channel_; }
+
   private:
+    bool await_request();
+    bool is_gone() const;
+    void pass_descriptor(int descriptor);
     void reap(bool wait);
     void await_end();
 
@@ -56,8 +61,9 @@ class Process {
     int wait_status_ = 0;
     std::optional<int> exit_status_;
     bool lost_ = false;
-    std::vector<char> buffer_;
-    std::string out_;
+    wire::Channel& channel_;
+    Patience patience_;
+    bool leaving_ = false;  ///< it has announced its exit
 };
 
 }  // namespace puckloop::linuxboard

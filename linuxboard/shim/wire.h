@@ -1,16 +1,21 @@
 #pragma once
-// What the preloaded library and the Linux node say to each other, over one SOCK_SEQPACKET pair for each
-// process of the program and one shared memory for all. The node is the program's kernel: it owns the
-// devices, the clock and the processes. Of all processes the one that is earliest in simulated time runs, and
-// of its threads one; it asks the node whenever a device is touched, time must pass or another process may be
-// concerned.
+// What the preloaded library and the Linux node exchange, through one shared memory (Page) in which each
+// process of the program has a Channel. The node is the program's kernel: it owns the devices, the clock and
+// the processes. Of all processes the one that is earliest in simulated time runs, and of its threads one; it
+// asks the node whenever time must pass, another process may be concerned, or a device is touched and what
+// the node's last reply contained (TtyView) is not enough to answer.
+//
+// A socket pair for each process carries what memory cannot: the descriptor of a new process's own socket.
+// Its other end is closed when the node is gone.
+
+#include "linuxboard/shim/turn.h"
 
 #include <atomic>
 #include <cstdint>
 
 namespace puckloop::linuxboard::wire {
 
-inline constexpr std::uint32_t kVersion = 2;
+inline constexpr std::uint32_t kVersion = 3;
 inline constexpr const char* kLinkVariable = "PUCKLOOP_SHIM_LINK";  ///< "<socket>,<page>,<slot>"
 inline constexpr std::int64_t kNever = INT64_MAX;
 /// Most bytes that one request or reply carries after its header.
@@ -32,7 +37,7 @@ enum class Op : std::uint32_t {
     InputQueue,   ///< handle; result: bytes that a read would return
     OutputQueue,  ///< handle; result: bytes not yet sent
     Counters,     ///< handle; data: TtyCounters
-    Poll,         ///< data: PollEntry[]; deadline; the same back with `returned` filled
+    Poll,         ///< data: PollEntry[], a = 1: all of serial ports; deadline; the same back with `returned`
     Transfer,     ///< handle (I2C), a = timeout in ms, b = segments, data: I2cSegment headers each followed
                   ///< by the bytes to write; result: segments done; data: all bytes read
     Cancel,       ///< the thread's pending request is withdrawn
@@ -62,13 +67,15 @@ struct Request {
     std::uint8_t watches = 0;  ///< with `wait`: Changed and the end of a process may let one run
 };
 
-/// Followed by `count` Completions, each followed by its `length` bytes.
+/// With it `count` Completions, each followed by its `length` bytes.
 struct Reply {
     std::int64_t now = 0;
-    std::int64_t limit = 0;     ///< the program may run on to this time before it must ask again
+    /// Before this time nothing happens to the program: it may run on, and sleep, before it must ask again.
+    std::int64_t limit = 0;
     std::uint64_t signals = 0;  ///< bit n: signal n for the program
     std::uint32_t count = 0;
-    std::uint32_t changed = 0;  ///< 1: what another process did may let a thread run that watches
+    std::uint8_t changed = 0;  ///< 1: what another process did may let a thread run that watches
+    std::uint8_t more = 0;     ///< 1: give the turn back for the Completions for which there was no room
 };
 
 struct Completion {
@@ -117,6 +124,52 @@ struct Oversleep {
     std::int64_t jitter = 0;  ///< standard deviation; no sleep ends early
 };
 
+/// The serial port as it is after a reply. With it the library answers by itself, until `valid_until` and
+/// the reply's limit, what the node would answer at the same simulated time.
+struct TtyView {
+    static constexpr std::uint32_t kShown = 256;
+    std::int64_t valid_until = 0;  ///< no character comes in before
+    std::uint32_t readable = 0;    ///< bytes that a read may return, or that FIONREAD counts
+    std::uint32_t room = 0;        ///< bytes that a write takes at once, or more
+    std::uint32_t first = 0;       ///< of `input`, not yet read
+    std::uint32_t shown = 0;       ///< bytes in `input`: not in canonical mode, and the first ones of many
+    std::uint8_t usable = 0;       ///< 0: not open, or hung up: ask the node
+    std::uint8_t canonical = 0;
+    std::uint8_t has_line = 0;
+    std::uint8_t raw_output = 0;  ///< what is written goes out as it is
+    std::uint8_t minimum = 0;     ///< VMIN
+    std::uint8_t pause = 0;       ///< VTIME
+    char input[kShown] = {};
+};
+
+/// What the library did by itself: the node catches up with it, at its time, before the next request.
+struct Done {
+    std::int64_t time = 0;
+    std::uint32_t read = 0;     ///< bytes taken from the serial port's input, or
+    std::uint32_t written = 0;  ///< bytes, next in Channel::written
+};
+
+/// One process's exchange with the node. Only the side whose turn it is touches it.
+struct alignas(4096) Channel {
+    static constexpr std::uint32_t kMostDone = 16;
+    static constexpr std::uint32_t kMostWritten = 512;
+    /// At least one completion with the most data.
+    static constexpr std::uint32_t kReplyRoom = 2 * kMaximumData;
+
+    Turn turn;
+    std::uint32_t request_size = 0;  ///< bytes in `request_data`
+    Request request;
+    Reply reply;
+    std::uint64_t answered = 0;  ///< requests that the library answered by itself since the node last looked
+    TtyView tty;
+    std::uint32_t done_count = 0;
+    std::uint32_t written_size = 0;
+    Done done[kMostDone];
+    char written[kMostWritten];
+    char request_data[kMaximumData];
+    char reply_data[kReplyRoom];
+};
+
 inline constexpr std::uint32_t kMaximumDevices = 8;
 inline constexpr std::uint32_t kNameLength = 64;
 /// Processes of a program that live at the same time, ended ones that nobody waited for included.
@@ -143,8 +196,8 @@ struct ProcessEntry {
     char call_name[kNameLength] = {};  ///< the last call taken over
 };
 
-/// Shared memory: what the node sets before the program starts, and the processes, so that the node can tell
-/// where one hangs or died.
+/// What the node sets before the program starts, and the processes, so that the node can tell where one hangs
+/// or died.
 struct Page {
     std::uint32_t version = kVersion;
     std::uint32_t real_time = 0;
@@ -159,5 +212,14 @@ struct Page {
     std::uint32_t alive = 0;  ///< processes
     ProcessEntry processes[kMaximumProcesses];
 };
+
+/// The shared memory: the page, and behind it the channels by slot, made when a process gets the slot.
+inline constexpr std::uint64_t kFirstChannel =
+    (sizeof(Page) + alignof(Channel) - 1) / alignof(Channel) * alignof(Channel);
+inline constexpr std::uint64_t kSharedSize = kFirstChannel + kMaximumProcesses * sizeof(Channel);
+
+inline Channel* channel_of(Page& page, std::uint32_t slot) {
+    return reinterpret_cast<Channel*>(reinterpret_cast<char*>(&page) + kFirstChannel) + slot;
+}
 
 }  // namespace puckloop::linuxboard::wire

@@ -21,11 +21,18 @@ int page_fd = -1;
 std::uint32_t slot_index = 0;
 int passed_fd = -1;
 wire::Page* shared_page = nullptr;
-// Replies can complete the calls of several threads at once.
-constexpr std::size_t kReplySize = 256 * 1024;
-char reply_buffer[kReplySize];
-char request_buffer[sizeof(wire::Request) + wire::kMaximumData];
+wire::Channel* own_channel = nullptr;
+linuxboard::Patience patience;
 constexpr int kNodeGoneStatus = 125;
+/// The kernel ends this process with the node (PR_SET_PDEATHSIG); should that have failed, this finds out.
+constexpr std::int64_t kLookForNode = 1'000'000'000;  // ns
+
+struct Host {
+    static long call(long number, long a, long b, long c, long d, long e, long f) {
+        return host_call(number, a, b, c, d, e, f);
+    }
+    static std::int64_t nanoseconds() { return host_nanoseconds(); }
+};
 
 [[noreturn]] void give_up(const char* what, int error) {
     char text[160];
@@ -36,17 +43,55 @@ constexpr int kNodeGoneStatus = 125;
     __builtin_unreachable();
 }
 
-void send_request(const wire::Request& request, const void* data, std::size_t size) {
-    std::memcpy(request_buffer, &request, sizeof request);
-    if (size > 0) std::memcpy(request_buffer + sizeof request, data, size);
-    const long sent = host_call(SYS_sendto, socket_fd, reinterpret_cast<long>(request_buffer),
-                                static_cast<long>(sizeof request + size), MSG_NOSIGNAL);
-    if (sent < 0) give_up("cannot ask the run", errno);
+bool node_is_gone() {
+    char byte = 0;
+    return host_call(SYS_recvfrom, socket_fd, reinterpret_cast<long>(&byte), sizeof byte,
+                     MSG_PEEK | MSG_DONTWAIT) == 0;
+}
+
+/// Hands the turn to the node and waits until it comes back.
+void ask_node() {
+    using linuxboard::Turn;
+    Turn& turn = channel().turn;
+    turn.pass<Host>(Turn::Node);
+    while (!turn.await<Host>(Turn::Program, patience, kLookForNode))
+        if (node_is_gone()) give_up("the run is gone", 0);
+}
+
+void put_request(const wire::Request& request, const void* data, std::size_t size) {
+    wire::Channel& link = channel();
+    link.request = request;
+    link.request_size = static_cast<std::uint32_t>(std::min<std::size_t>(size, wire::kMaximumData));
+    if (size > 0) std::memcpy(link.request_data, data, link.request_size);
+}
+
+/// The descriptor that goes with the reply to Fork.
+void receive_descriptor() {
+    char byte = 0;
+    iovec part{&byte, sizeof byte};
+    alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))];
+    msghdr message{};
+    message.msg_iov = &part;
+    message.msg_iovlen = 1;
+    message.msg_control = control;
+    message.msg_controllen = sizeof control;
+    long count = -1;
+    do {
+        count = host_call(SYS_recvmsg, socket_fd, reinterpret_cast<long>(&message));
+    } while (count < 0 && errno == EINTR);
+    const cmsghdr* header = count > 0 ? CMSG_FIRSTHDR(&message) : nullptr;
+    if (header == nullptr || header->cmsg_type != SCM_RIGHTS)
+        give_up("no link for a new process", count < 0 ? errno : 0);
+    std::memcpy(&passed_fd, CMSG_DATA(header), sizeof passed_fd);
 }
 }  // namespace
 
 wire::Page& page() {
     return *shared_page;
+}
+
+wire::Channel& channel() {
+    return *own_channel;
 }
 
 bool is_linked() {
@@ -80,9 +125,14 @@ void place_link(int socket) {
     host_call(SYS_close, socket);
 }
 
+static void use_slot(std::uint32_t slot) {
+    slot_index = slot;
+    own_channel = wire::channel_of(page(), slot);
+}
+
 void change_link(int socket, std::uint32_t slot) {
     place_link(socket);
-    slot_index = slot;
+    use_slot(slot);
     own().host = static_cast<std::int32_t>(host_call(SYS_getpid));
 }
 
@@ -100,11 +150,11 @@ bool connect_link() {
     unsigned slot = 0;
     if (std::sscanf(text, "%d,%d,%u", &socket_fd, &page_fd, &slot) != 3 || slot >= wire::kMaximumProcesses)
         return false;
-    void* mapped = mmap(nullptr, sizeof(wire::Page), PROT_READ | PROT_WRITE, MAP_SHARED, page_fd, 0);
+    void* mapped = mmap(nullptr, wire::kSharedSize, PROT_READ | PROT_WRITE, MAP_SHARED, page_fd, 0);
     if (mapped == MAP_FAILED) refuse("the descriptors of the link to the run were closed: not run");
     shared_page = static_cast<wire::Page*>(mapped);
     if (shared_page->version != wire::kVersion) return false;
-    slot_index = slot;
+    use_slot(slot);
     const auto process = static_cast<std::int32_t>(host_call(SYS_getpid));
     if (own().host == 0) own().host = process;
     if (own().host != process)
@@ -112,49 +162,29 @@ bool connect_link() {
     return true;
 }
 
-/// Like recv(), and keeps the descriptor that may come along.
-long receive_reply() {
-    iovec part{reply_buffer, sizeof reply_buffer};
-    alignas(cmsghdr) char control[CMSG_SPACE(sizeof(int))];
-    msghdr message{};
-    message.msg_iov = &part;
-    message.msg_iovlen = 1;
-    message.msg_control = control;
-    message.msg_controllen = sizeof control;
-    const long count = host_call(SYS_recvmsg, socket_fd, reinterpret_cast<long>(&message));
-    const cmsghdr* header = count > 0 ? CMSG_FIRSTHDR(&message) : nullptr;
-    if (header != nullptr && header->cmsg_type == SCM_RIGHTS)
-        std::memcpy(&passed_fd, CMSG_DATA(header), sizeof passed_fd);
-    return count;
-}
-
 void send_only(const wire::Request& request) {
-    send_request(request, nullptr, 0);
+    put_request(request, nullptr, 0);
+    channel().turn.pass<Host>(linuxboard::Turn::Node);
 }
 
 void exchange(const wire::Request& request, const void* data, std::size_t size, wire::Reply& reply,
               Completed completed) {
     const int saved_errno = errno;
-    send_request(request, data, size);
-    long count = -1;
+    put_request(request, data, size);
     do {
-        count = request.op == wire::Op::Fork
-                    ? receive_reply()
-                    : host_call(SYS_recvfrom, socket_fd, reinterpret_cast<long>(reply_buffer),
-                                sizeof reply_buffer);
-    } while (count < 0 && errno == EINTR);
-    if (count < static_cast<long>(sizeof reply))
-        give_up(count == 0 ? "the run is gone" : "no answer from the run", count < 0 ? errno : 0);
-    const char* cursor = reply_buffer;
-    std::memcpy(&reply, cursor, sizeof reply);
-    cursor += sizeof reply;
-    for (std::uint32_t i = 0; i < reply.count; ++i) {
-        wire::Completion completion;
-        std::memcpy(&completion, cursor, sizeof completion);
-        cursor += sizeof completion;
-        completed(completion, cursor);
-        cursor += completion.length;
-    }
+        ask_node();
+        reply = channel().reply;
+        const char* cursor = channel().reply_data;
+        for (std::uint32_t i = 0; i < reply.count; ++i) {
+            wire::Completion completion;
+            std::memcpy(&completion, cursor, sizeof completion);
+            cursor += sizeof completion;
+            const bool has_descriptor = request.op == wire::Op::Fork && completion.error == 0;
+            if (has_descriptor && completion.thread == request.thread) receive_descriptor();
+            completed(completion, cursor);
+            cursor += completion.length;
+        }
+    } while (reply.more != 0);
     errno = saved_errno;
 }
 

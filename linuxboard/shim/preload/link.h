@@ -1,6 +1,6 @@
 #pragma once
-// The way to the node: a socket that the node passed on, and the memory that the program's processes share
-// with it.
+// The way to the node: memory that the program's processes share with it, and a socket that the node passed
+// on.
 
 #include "linuxboard/shim/wire.h"
 
@@ -14,7 +14,8 @@ namespace wire = linuxboard::wire;
 /// know.
 bool connect_link();
 using Completed = void (*)(const wire::Completion& completion, const char* data);
-/// Sends `request` and waits for the reply; ends the process if the node is gone.
+/// Gives `request` with `size` bytes of data, at most kMaximumData, to the node and waits for the reply; ends
+/// the process if the node is gone.
 void exchange(const wire::Request& request, const void* data, std::size_t size, wire::Reply& reply,
               Completed completed);
 void send_only(const wire::Request& request);
@@ -27,6 +28,8 @@ int link_descriptors();
 /// The descriptor that came with the last reply, or -1; once.
 int take_passed();
 wire::Page& page();
+/// This process's own.
+wire::Channel& channel();
 std::uint32_t own_slot();
 inline wire::ProcessEntry& own() {
     return page().processes[own_slot()];
