@@ -331,6 +331,9 @@ void Chip::twi_answer(const cosim::I2cPhase& phase) {
     parts_->at_present();
     parts_->twi.answer(phase);
 }
+void Chip::twi_answer_at(const cosim::I2cPhase& phase, cosim::Time time) {
+    parts_->twi.answer_at(phase, parts_->clock.first_cycle_at(time));
+}
 void Chip::twi_slave_phase(const cosim::I2cPhase& phase) {
     parts_->at_present();
     parts_->twi.slave_phase(phase);

@@ -100,6 +100,9 @@ class Chip {
     /// The bus's answer (Acknowledge, Data or BusLost) to the last phase of the two-wire interface; its ninth
     /// clock ends now.
     void twi_answer(const cosim::I2cPhase& phase);
+    /// The same for a bus that knows its answer at once, from inside Pins::twi_phase(): the ninth clock ends
+    /// at `time`.
+    void twi_answer_at(const cosim::I2cPhase& phase, cosim::Time time);
     /// A phase that a bus master begins now; see Pins::twi_slave_answer().
     void twi_slave_phase(const cosim::I2cPhase& phase);
     /// Levels that Pins::levels() reports for this port, or analog inputs of the comparator, changed now.

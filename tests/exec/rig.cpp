@@ -23,12 +23,13 @@ std::optional<std::string> real_image(const std::string& name) {
 
 Rig::Rig(const std::string& where, const std::string& image_file) {
     BenchOptions options;
-    (where == "pic" || where == "rab" ? options.board : options.mcu) = where;
+    const bool board = where == "pic" || where == "rab" || where == "tam";
+    (board ? options.board : options.mcu) = where;
     const TargetDefaults defaults = defaults_of(options.mcu, options.board);
     options.target.chip.crystal_hertz = defaults.crystal_hertz;
     options.target.chip.fosc = defaults.fosc;
-    baud_ = defaults.baud;
-    options.baud = {baud_, baud_};
+    baud_ = defaults.baud[0];
+    options.baud = defaults.baud;
     bench_ = std::make_unique<Bench>(options);
     bench_->on_change = [this](std::string_view pin, std::string_view signal, double value,
                                cosim::Time time) {

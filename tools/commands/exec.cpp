@@ -70,7 +70,8 @@ void describe(Command& app, Arguments& a) {
         ->allow_extra_args(false);
     app.add_option("--uart1", o.uart[0], "- (stdin and stdout), pty, tcp:PORT (on 127.0.0.1) or script:FILE");
     app.add_option("--uart2", o.uart[1], "the same for the second UART");
-    app.add_option("--baud", a.baud, "rate of the bench's ends, 8N1 (115200; on the rab board 57600)")
+    app.add_option("--baud", a.baud,
+                   "rate of the bench's ends, 8N1 (115200; rab board 57600; tam board 57600 and 9600)")
         ->check(number_between(kSlowestBaud, kFastestBaud));
     app.add_option("--uart1-baud", a.uart_baud[0], "rate of the end of the first UART alone")
         ->check(number_between(kSlowestBaud, kFastestBaud));
@@ -124,7 +125,8 @@ void describe(Command& app, Arguments& a) {
     app.add_option("--selector", t.selector, "initial position of the selector (pic)")
         ->check(whole_number_between(0, 15))
         ->capture_default_str();
-    app.add_option("--crystal", a.crystal_hertz, "in Hz (7372800; of the dsPIC33F 4000000, of the AVR 16000000)")
+    app.add_option("--crystal", a.crystal_hertz,
+                   "in Hz (7372800; of the dsPIC33F 4000000, of the AVR 16000000)")
         ->check(number_between(kSlowestCrystal, kFastestCrystal));
     app.add_option("--ppm", t.chip.ppm, "error of the crystal")
         ->check(number_between(-kWorstCrystal, kWorstCrystal))
@@ -162,7 +164,7 @@ void declare_exec(Command& app, int& status) {
         bench.target.chip.crystal_hertz = a.crystal_hertz.value_or(defaults.crystal_hertz);
         bench.target.chip.fosc = fosc_word(a.fosc, defaults.fosc);
         for (std::size_t unit = 0; unit < bench.baud.size(); ++unit)
-            bench.baud[unit] = a.uart_baud[unit].value_or(a.baud.value_or(defaults.baud));
+            bench.baud[unit] = a.uart_baud[unit].value_or(a.baud.value_or(defaults.baud[unit]));
         if (!bench.log_folder.empty()) {
             bench.target.log = bench.log_folder + "/board.log";
             bench.target.rab_log = bench.log_folder + "/rab.log";

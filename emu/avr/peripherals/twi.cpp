@@ -173,6 +173,12 @@ void Twi::answer(const cosim::I2cPhase& phase) {
     interrupt(state_.next_status);
 }
 
+void Twi::answer_at(const cosim::I2cPhase& phase, Cycle at) {
+    if (!state_.awaiting) return;
+    state_.answer = phase;
+    plan(Step::Answer, at);
+}
+
 void Twi::due(void* owner, Cycle cycle) {
     auto& self = *static_cast<Twi*>(owner);
     State& st = self.state_;
@@ -197,6 +203,9 @@ void Twi::due(void* owner, Cycle cycle) {
         break;
     case Step::SlavePhaseOver:
         self.interrupt(st.next_status);
+        break;
+    case Step::Answer:
+        self.answer(st.answer);
         break;
     case Step::None:
         break;

@@ -25,6 +25,8 @@ class Twi {
     void reset();
     /// The bus's answer (Acknowledge, Data or BusLost) to the last phase; its ninth clock ends now.
     void answer(const cosim::I2cPhase& phase);
+    /// The same for an answer that is known before: the ninth clock ends at `at`.
+    void answer_at(const cosim::I2cPhase& phase, Cycle at);
     /// A phase that a bus master begins now: Start, Write, Read or Stop; each but Stop is answered through
     /// Pins::twi_slave_answer(), with ack = 0 where this slave is not addressed.
     void slave_phase(const cosim::I2cPhase& phase);
@@ -36,22 +38,24 @@ class Twi {
 
   private:
     /// What the event that is planned does.
-    enum class Step : std::uint8_t { None, StartSent, StopSent, SlaveAnswer, SlavePhaseOver };
+    enum class Step : std::uint8_t { None, StartSent, StopSent, SlaveAnswer, SlavePhaseOver, Answer };
     struct State {
         bool owner = false;     ///< START was sent: the bus is ours
         bool awaiting = false;  ///< a phase of ours is to be answered
         Step step = Step::None;
         std::uint8_t next_status = 0xF8;
-        cosim::I2cPhase phase;  ///< ours, or the master's that addresses us
-        bool slave = false;     ///< addressed
+        cosim::I2cPhase phase;   ///< ours, or the master's that addresses us
+        cosim::I2cPhase answer;  ///< to ours, for Step::Answer
+        bool slave = false;      ///< addressed
         bool general_call = false;
         bool slave_waits = false;  ///< the master's phase waits for TWINT to be cleared
         bool stop_waits = false;   ///< so does its STOP or repeated START
 
         template <class Archive>
         void state(Archive& archive) {
-            archive.bounded(step, Step::None, Step::SlavePhaseOver);
-            archive(owner, awaiting, next_status, phase, slave, general_call, slave_waits, stop_waits);
+            archive.bounded(step, Step::None, Step::Answer);
+            archive(owner, awaiting, next_status, phase, answer, slave, general_call, slave_waits,
+                    stop_waits);
         }
     };
     std::uint8_t& control() const { return around_.io.raw(0xBC); }

@@ -4,6 +4,7 @@
 #include "base/suggest.h"
 #include "emu/pic/pic_node.h"
 #include "emu/rab_board/pin_table.h"
+#include "emu/tam_avr/pin_table.h"
 #include "tools/exec/targets/target.h"
 
 #include <fmt/format.h>
@@ -21,7 +22,9 @@ struct Row {
     TargetDefaults defaults;
 };
 
-constexpr double kEpuckCrystal = 7'372'800.0, kNominalBaud = 115200, kRabBaud = 57600;
+constexpr double kEpuckCrystal = 7'372'800.0;
+using Baud = std::array<double, 2>;
+constexpr Baud kNominalBaud{115200, 115200}, kRabBaud{57600, 57600}, kTamBaud{57600, 9600};
 constexpr double kAvrCrystal = 16e6;
 constexpr std::string_view k30F = "dspic30f6014a", k33F = "dspic33fj256gp710", kAvr = "atmega1284p";
 
@@ -31,6 +34,7 @@ constexpr std::array kRows{
     Row{kAvr, nullptr, {kAvr, kAvrCrystal, kNominalBaud, std::nullopt}},
     Row{"pic", make_pic_target, {k30F, kEpuckCrystal, kNominalBaud, pic::PicNodeOptions::kFoscXtPll8}},
     Row{"rab", make_rab_target, {k33F, rab::kCrystalHertz, kRabBaud, std::nullopt}},
+    Row{"tam", make_tam_target, {kAvr, tam::kResonatorHertz, kTamBaud, std::nullopt}},
 };
 
 const Row& row_of(std::string_view name, bool board) {

@@ -9,6 +9,7 @@
 #include "emu/image/image.h"
 #include "tools/exec/bus/i2c_device_spec.h"
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -112,7 +113,7 @@ class Target {
 /// `mcu` as --mcu takes it; the chip alone, nothing connected. Throws InputError for an unknown name.
 std::unique_ptr<Target> make_bare_chip(std::string_view mcu, const TargetOptions& options,
                                        TargetListener& listener);
-/// `board` as --board takes it ("pic", "rab"). Throws InputError for an unknown name.
+/// `board` as --board takes it ("pic", "rab", "tam"). Throws InputError for an unknown name.
 std::unique_ptr<Target> make_board(std::string_view board, const TargetOptions& options,
                                    TargetListener& listener);
 
@@ -120,12 +121,13 @@ std::unique_ptr<Target> make_avr_chip(std::string_view mcu, const TargetOptions&
                                       TargetListener& listener);
 std::unique_ptr<Target> make_pic_target(const TargetOptions& options, TargetListener& listener);
 std::unique_ptr<Target> make_rab_target(const TargetOptions& options, TargetListener& listener);
+std::unique_ptr<Target> make_tam_target(const TargetOptions& options, TargetListener& listener);
 
 /// What goes without saying for a chip or board.
 struct TargetDefaults {
     std::string_view mcu;
     double crystal_hertz = 0;
-    double baud = 115200;               ///< of the bench's ends
+    std::array<double, 2> baud{115200, 115200};  ///< of the bench's ends
     std::optional<std::uint16_t> fosc;  ///< configuration word in force on the robot; none: the image's
 };
 /// One of the two is empty, as on the command line. Throws InputError for an unknown name.

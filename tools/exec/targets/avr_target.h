@@ -1,0 +1,61 @@
+#pragma once
+// An AVR on the bench: what the bare chip and the boards around one share. USART0 and USART1 are the bench's
+// uart1 and uart2.
+
+#include "emu/avr/chip.h"
+#include "tools/exec/targets/target.h"
+
+#include <array>
+#include <utility>
+
+namespace puckloop::exec {
+
+class AvrTarget : public Target {
+  public:
+    AvrTarget(const avr::DeviceInfo& device, TargetListener& listener)
+        : device_(device), listener_(listener) {}
+
+    image::Image read_image(const std::string& file, std::string_view mcu) override;
+    void uart_receive(int unit, const cosim::UartFrame& frame) override {
+        avr().uart_receive(unit - 1, frame);
+    }
+    bool is_i2c_slave() const override { return false; }
+    void i2c_slave_phase(const cosim::I2cPhase&) override {}
+    cosim::Time earliest_i2c_answer() const override { return cosim::kNever; }
+
+    const cosim::ClockDomain& clock() override { return avr().clock(); }
+    cosim::Time now() override { return avr().now(); }
+    std::uint32_t pc() override { return avr().pc(); }
+    void stop_at(std::uint32_t pc) override { avr().stop_at(pc); }
+    bool stopped() override { return avr().stopped_at().has_value(); }
+    bool uart_enabled(int unit) override { return avr().uart_listens(unit - 1); }
+    dspic::UartCounters uart_counters(int unit) override { return avr().uart_counters(unit - 1); }
+    std::size_t resets() override { return avr().report().resets.size(); }
+    std::string chip_json() override;
+    std::string chip_text() override;
+    std::vector<std::string> warnings() override;
+    std::optional<std::string> hang() override { return std::nullopt; }
+    void reset_button() override { avr().external_reset(); }
+    bool keeps_memory() const override { return false; }
+
+  protected:
+    virtual avr::Chip& avr() = 0;
+    /// The image that read_image() read.
+    const image::AvrImage& firmware() const { return firmware_; }
+    TargetListener& listener() { return listener_; }
+    /// The listener gets a line for each pin that changed; `function_of` names what it is for, or "".
+    void show_pins(avr::PortLetter port, std::uint8_t levels, std::uint8_t driven, cosim::Time now,
+                   std::string_view (*function_of)(avr::PortLetter port, int bit));
+
+    static constexpr int kPorts = 4;
+
+  private:
+    double seconds(avr::Cycle cycle);
+
+    const avr::DeviceInfo& device_;
+    TargetListener& listener_;
+    std::array<std::pair<std::uint8_t, std::uint8_t>, kPorts> shown_{};  ///< levels, driven
+    image::AvrImage firmware_;
+};
+
+}  // namespace puckloop::exec
