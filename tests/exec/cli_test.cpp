@@ -148,7 +148,7 @@ TEST_CASE("exec refuses what it cannot use with one line and status 2") {
     const std::pair<std::string, const char*> cases[] = {
         {image, "nothing lies on the bench"},
         {"--board pic", "IMAGE: missing"},
-        {"--board nic " + image, "no board 'nic' (expected pic or rab; did you mean pic?)"},
+        {"--board nic " + image, "no board 'nic' (expected pic or rab or tam; did you mean pic?)"},
         {"--mcu dspic30f " + image, "no chip 'dspic30f'"},
         {"--board pic " + bench.folder + "/none.hex", "no such file"},
         {"--board pic " + bad, "expected"},
