@@ -6,6 +6,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 namespace puckloop {
 
@@ -24,7 +25,27 @@ NodeLog::NodeLog(std::string path) : path_(std::move(path)) {
 void NodeLog::line(double seconds, std::string_view text) {
     if (!file_) return;
     const std::string whole = fmt::format("[{:12.6f} s] {}\n", seconds, text);
-    if (std::fwrite(whole.data(), 1, whole.size(), file_.get()) == whole.size() &&
+    if (marked_)
+        kept_back_ += whole;
+    else
+        write(whole);
+}
+
+void NodeLog::mark() {
+    settle();
+    marked_ = true;
+}
+
+void NodeLog::settle() {
+    marked_ = false;
+    if (kept_back_.empty()) return;
+    const std::string lines = std::exchange(kept_back_, {});
+    write(lines);
+}
+
+void NodeLog::write(std::string_view lines) {
+    if (!file_) return;
+    if (std::fwrite(lines.data(), 1, lines.size(), file_.get()) == lines.size() &&
         std::fflush(file_.get()) == 0)
         return;
     const int cause = errno;

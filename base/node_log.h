@@ -21,12 +21,22 @@ class NodeLog {
     /// Throws RunError naming the file when it cannot be written, a full disk say; later lines are dropped.
     void line(double seconds, std::string_view text);
 
+    /// From here on lines are kept back, until settle() writes them or rewind() drops them. A mark set before
+    /// is settled. mark() and settle() throw as line() does.
+    void mark();
+    void rewind() { kept_back_.clear(); }
+    void settle();
+
   private:
+    void write(std::string_view lines);
+
     struct Closer {
         void operator()(std::FILE* file) const { std::fclose(file); }
     };
     std::string path_;
     std::unique_ptr<std::FILE, Closer> file_;
+    bool marked_ = false;
+    std::string kept_back_;
 };
 
 /// Is the `count`th event of its kind told? 1, 2, 4, 8, ...: what goes on for ever stays readable.

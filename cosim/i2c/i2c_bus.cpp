@@ -35,6 +35,28 @@ I2cBusNode::I2cBusNode(I2cBusOptions options, std::vector<std::unique_ptr<I2cSla
     emit_ = [this, world](std::uint16_t id, double value) {
         answers_.push_back({emitted_at_, world, Signal{id, value}});
     };
+    if (std::all_of(slaves_.begin(), slaves_.end(), [](const auto& slave) { return slave->rewindable(); }))
+        going_back_.emplace(*this);
+}
+
+void I2cBusNode::GoingBack::mark() {
+    bus_.log_.mark();
+    for (const auto& slave : bus_.slaves_)
+        slave->rewindable()->mark();
+    checkpoint_.take(bus_);
+}
+
+void I2cBusNode::GoingBack::rewind() {
+    bus_.log_.rewind();
+    for (const auto& slave : bus_.slaves_)
+        slave->rewindable()->rewind();
+    checkpoint_.restore(bus_);
+}
+
+void I2cBusNode::GoingBack::settle() {
+    for (const auto& slave : bus_.slaves_)
+        slave->rewindable()->settle();
+    bus_.log_.settle();
 }
 
 Time I2cBusNode::ninth_clock(const I2cPhase& phase) const {

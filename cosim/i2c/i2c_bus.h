@@ -36,6 +36,7 @@
 // send the same address byte do not go on together into the data: the first port wins. 3. SCL of colliding
 // masters is the winner's. 4. Pins driven low by a master's ports do not disturb the bus.
 
+#include "base/checkpoint.h"
 #include "cosim/core/node.h"
 #include "cosim/i2c/i2c_log.h"
 #include "cosim/i2c/i2c_slave.h"
@@ -78,9 +79,31 @@ class I2cBusNode final : public Node {
     void advance(Time until, std::span<const Message> inbox, std::vector<Message>& outbox) override;
     Time promise(PortIndex port) const override;
     Time reaction(PortIndex port) const override;
+    Rewindable* rewindable() override { return going_back_ ? &*going_back_ : nullptr; }
     std::string finish() override;
 
   private:
+    /// Bus, log and devices together.
+    class GoingBack : public Rewindable {
+      public:
+        explicit GoingBack(I2cBusNode& bus) : bus_(bus) {}
+        void mark() override;
+        void rewind() override;
+        void settle() override;
+
+      private:
+        I2cBusNode& bus_;
+        Checkpoint checkpoint_;
+    };
+    friend class puckloop::CheckpointWriter;
+    friend class puckloop::CheckpointReader;
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(bus_, owner_, addressed_, addressed_devices_, pending_, holders_, crowds_);
+        archive(stuck_since_, stuck_for_, stuck_names_, changes_, contenders_, waiting_, answers_);
+        archive(emitted_at_, counters_, log_, now_);
+    }
+
     struct Contender {
         PortIndex port = 0;
         I2cPhase phase;
@@ -91,11 +114,22 @@ class I2cBusNode final : public Node {
         Time longest_stretch = 0;
         /// Starts that nobody acknowledged, by master and address.
         std::map<std::pair<PortIndex, std::uint8_t>, std::uint64_t> absent;
+
+        template <class Archive>
+        void state(Archive& archive) {
+            archive(transfers, not_acknowledged, lost, bytes_written, bytes_read, stretched, stuck);
+            archive(longest_stretch, absent);
+        }
     };
     /// Devices that acknowledged one Start together.
     struct Crowd {
         std::uint64_t times = 0;
         std::string names;
+
+        template <class Archive>
+        void state(Archive& archive) {
+            archive(times, names);
+        }
     };
 
     /// What a master waits for while devices in other nodes think.
@@ -107,6 +141,11 @@ class I2cBusNode final : public Node {
         I2cAnswer answer;             ///< of the others, together
         std::string who;              ///< acknowledged a Start
         int count = 0;
+
+        template <class Archive>
+        void state(Archive& archive) {
+            archive(master, phase, earliest, open, answer, who, count);
+        }
     };
 
     bool is_master(PortIndex port) const { return port < options_.masters.size(); }
@@ -168,6 +207,7 @@ class I2cBusNode final : public Node {
     Counters counters_;
     I2cLog log_;
     Time now_ = 0;  // of the event that is being handled
+    std::optional<GoingBack> going_back_;
 };
 
 }  // namespace puckloop::cosim

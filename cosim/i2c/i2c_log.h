@@ -35,6 +35,15 @@ class I2cLog {
     void released(Time now, const std::string& names);
     void end(Time now, const std::string& summary);
 
+    /// What was counted, without the lines: they are kept back from mark() on, as NodeLog does.
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(pairs_, losses_, address_);
+    }
+    void mark() { log_.mark(); }
+    void rewind() { log_.rewind(); }
+    void settle() { log_.settle(); }
+
   private:
     struct Pair {  // of a master and an address
         std::uint64_t transfers = 0, absent = 0, refused_bytes = 0, stretches = 0;

@@ -5,6 +5,7 @@
 // (a board with a microcontroller), which the bus speaks to through a port: see I2cBusNode.
 
 #include "cosim/core/message.h"
+#include "cosim/core/node.h"
 #include "cosim/core/time.h"
 
 #include <cstdint>
@@ -42,6 +43,8 @@ class I2cSlave {
     virtual void stop(Time /*now*/, const Emit& /*emit*/) {}
     /// A signal came in by the bus node's `world` port.
     virtual void signal(std::uint16_t /*id*/, double /*value*/) {}
+    /// As Node::rewindable(): with a device that cannot go back the bus cannot.
+    virtual Rewindable* rewindable() { return nullptr; }
     /// The device's part of the bus's report, as JSON text.
     virtual std::string report() const { return "{}"; }
 };

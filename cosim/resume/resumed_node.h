@@ -47,6 +47,8 @@ class ResumedNode : public Node {
     Time reaction(PortIndex port) const override;
     std::optional<Time> begun(PortIndex port) const override;
     std::optional<Stop> stop() const override;
+    /// None while it replays or records.
+    Rewindable* rewindable() override { return replaying_ || recording_ ? nullptr : inner_->rewindable(); }
     /// The board's report, with "resumed" (from, at_s, skipped, what differed) added.
     std::string finish() override;
 

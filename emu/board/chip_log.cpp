@@ -116,18 +116,15 @@ void ChipLog::read_errors(Time now, const dspic::Chip& chip) {
     }
 }
 
-void ChipLog::file_history() {
-    for (; filed_ < history_.size(); ++filed_)
-        log_.line(cosim::to_seconds(history_[filed_].first), history_[filed_].second);
-}
-
 void ChipLog::mark() {
-    settle();
+    log_.mark();
+    kept_.reset();
     marked_ = true;
     lines_at_mark_ = lines_.size();
 }
 
 void ChipLog::rewind() {
+    log_.rewind();
     if (kept_) {
         lines_ = std::move(*kept_);
         kept_.reset();
@@ -139,13 +136,13 @@ void ChipLog::rewind() {
 void ChipLog::settle() {
     marked_ = false;
     kept_.reset();
-    if (is_open()) file_history();
+    log_.settle();
 }
 
 void ChipLog::loaded(Time now) {
     if (!is_open()) return;
-    filed_ = 0;
-    file_history();
+    for (const auto& [time, text] : history_)
+        log_.line(cosim::to_seconds(time), text);
     // The saved board may have had no log, which never looks.
     next_look_ = std::max(next_look_, (now / kLook + 1) * kLook);
     written_ = std::min(written_, now);
@@ -156,11 +153,12 @@ void ChipLog::write_until(Time now) {
         kept_.emplace(lines_.begin(), lines_.begin() + static_cast<std::ptrdiff_t>(lines_at_mark_));
     std::sort(lines_.begin(), lines_.end());
     auto next = lines_.begin();
-    for (; next != lines_.end() && next->first <= now; ++next)
+    for (; next != lines_.end() && next->first <= now; ++next) {
+        log_.line(cosim::to_seconds(next->first), next->second);
         history_.push_back(std::move(*next));
+    }
     lines_.erase(lines_.begin(), next);
     written_ = now;
-    if (!marked_) file_history();
 }
 
 void ChipLog::end(Time now, const dspic::Chip& chip, const std::string& board) {

@@ -68,7 +68,6 @@ class ChipLog {
     void read_report(cosim::Time now, const dspic::Chip& chip);
     void read_errors(cosim::Time now, const dspic::Chip& chip);
     void write_until(cosim::Time now);
-    void file_history();
     std::string place(std::uint32_t pc) const;
 
     using Line = std::pair<cosim::Time, std::string>;
@@ -76,7 +75,6 @@ class ChipLog {
     image::CodeSymbols symbols_;
     std::vector<Line> lines_;    // not yet written
     std::vector<Line> history_;  // written, the firmware's line left out
-    std::size_t filed_ = 0;      // of history_, in the file already
     bool marked_ = false;
     std::size_t lines_at_mark_ = 0;
     std::optional<std::vector<Line>> kept_;  // lines_ at the mark, once a look has taken some of them

@@ -5,6 +5,7 @@
 // Deviations: 1. a register shows the newest value (the board samples faster than anybody asks). 2. The older
 // board: cliff registers 13..16 read 0. 3. Revision 12 reads kRevision: no published figure.
 
+#include "cosim/core/marked.h"
 #include "emu/i2c_devices/register_device.h"
 
 #include <array>
@@ -25,6 +26,12 @@ class GroundSensor final : public RegisterDevice {
     std::string_view name() const override { return "ground_sensor"; }
     void signal(std::uint16_t id, double value) override;
     std::string report() const override;
+    cosim::Rewindable* rewindable() override { return &mark_; }
+    template <class Archive>
+    void state(Archive& archive) {
+        RegisterDevice::state(archive);
+        archive(counts_, reads_);
+    }
 
   private:
     std::uint8_t read_register(std::uint8_t number) override;
@@ -32,6 +39,7 @@ class GroundSensor final : public RegisterDevice {
 
     std::array<std::uint16_t, 6> counts_{};  // reflected, ambient
     std::uint64_t reads_ = 0;
+    cosim::Marked<GroundSensor> mark_{*this};
 };
 
 }  // namespace puckloop::i2c_devices

@@ -15,6 +15,11 @@ class RegisterDevice : public cosim::I2cSlave {
     cosim::I2cAnswer write(std::uint8_t byte, cosim::Time now) override;
     cosim::I2cAnswer read(cosim::Time now) override;
 
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(register_, number_next_);
+    }
+
   protected:
     virtual std::uint8_t read_register(std::uint8_t number) = 0;
     /// False: not acknowledged.

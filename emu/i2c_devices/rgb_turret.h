@@ -5,6 +5,7 @@
 // Deviations: 1. a message of another length changes nothing (the board's answer to it is not known).
 // 2. Reads give 0xFF.
 
+#include "cosim/core/marked.h"
 #include "cosim/i2c/i2c_slave.h"
 
 #include <array>
@@ -27,12 +28,18 @@ class RgbTurret final : public cosim::I2cSlave {
     cosim::I2cAnswer read(cosim::Time now) override;
     void stop(cosim::Time now, const Emit& emit) override;
     std::string report() const override;
+    cosim::Rewindable* rewindable() override { return &mark_; }
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(received_, colours_, frames_, wrong_frames_);
+    }
 
   private:
     std::uint8_t address_;
     std::vector<std::uint8_t> received_;
     std::array<std::uint8_t, kBytes> colours_{};  // LED 0 red, green, blue, LED 1 ...
     std::uint64_t frames_ = 0, wrong_frames_ = 0;
+    cosim::Marked<RgbTurret> mark_{*this};
 };
 
 }  // namespace puckloop::i2c_devices

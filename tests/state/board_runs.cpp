@@ -76,6 +76,112 @@ image::Image random_program(RandomStream& random, bool family_33f) {
     return image;
 }
 
+image::Image self_programming(bool family_33f) {
+    // At 0x1000 a loop of as many turns as rounds were made: mov #n, w4; dec w4, w4; bra nz, .-2; return
+    const std::string erase = family_33f
+                                  ? "        tblwtl w6, [w6]\n        mov #0x4042, w2\n"
+                                  : "        mov w6, NVMADR\n        clr NVMADRU\n        mov #0x4041, w2\n";
+    const std::string carrier = family_33f ? "7" : "6";  // Timer2, whose routine leaves no trace
+    const std::string source = R"(
+        .org 0x1A
+        .pword tick
+        .org )" + std::string(family_33f ? "0x22" : "0x20") +
+                               R"(
+        .pword trace
+        .org 0x200
+main:   mov #0x1000, w15
+        mov #0x2700, w0
+        mov w0, SPLIM
+        mov #1500, w0
+        mov w0, PR1
+        bset T1CON, #15
+        bset IEC0, #3
+        mov #97, w0
+        mov w0, PR2
+        bset T2CON, #15
+        bset IEC0, #)" + carrier +
+                               R"(
+        clr TBLPAG
+round:  inc 0x904
+        mov #300, w1
+delay:  dec w1, w1
+        bra nz, delay
+        mov 0x900, w2
+wait:   mov 0x900, w3
+        cp w2, w3
+        bra z, wait
+        mov #0xA00, w0
+        mov w0, XMODSRT
+        mov #0xA0F, w0
+        mov w0, XMODEND
+        mov #0x8FF8, w0
+        mov w0, MODCON
+        mov #0xA00, w8
+        mov 0x904, w2
+        do #20, last
+        add w2, [w8], [w8++]
+last:   nop
+        clr MODCON
+        pwrsav #1
+        mov #0x1000, w6
+)" + erase + R"(        rcall go
+        mov #0x1000, w6
+        mov 0x904, w3
+        and #0xFF, w3
+        inc w3, w3
+        sl w3, #4, w3
+        ior #4, w3
+        tblwtl w3, [w6]
+        mov #0x20, w3
+        tblwth w3, [w6++]
+        mov #0x0204, w3
+        tblwtl w3, [w6]
+        mov #0xE9, w3
+        tblwth w3, [w6++]
+        mov #0xFFFE, w3
+        tblwtl w3, [w6]
+        mov #0x3A, w3
+        tblwth w3, [w6++]
+        clr w3
+        tblwtl w3, [w6]
+        mov #0x06, w3
+        tblwth w3, [w6]
+        mov #0x4001, w2
+        rcall go
+        call 0x1000
+        call 0x1000
+        inc 0x906
+        mov 0x904, w0
+        and #7, w0
+        bra nz, round
+        reset
+
+go:     mov w2, NVMCON
+        mov #0x55, w4
+        mov w4, NVMKEY
+        mov #0xaa, w4
+        mov w4, NVMKEY
+        bset NVMCON, #15
+        nop
+busy:   btsc NVMCON, #15
+        bra busy
+        return
+
+tick:   push w0
+        inc 0x900
+        bclr IFS0, #3
+        pop w0
+        retfie
+trace:  push w0
+        mov #7, w0
+        bclr IFS0, #)" + carrier +
+                               R"(
+        pop w0
+        retfie
+)";
+    return assembled(family_33f ? dspic::dspic33fj256gp710() : dspic::dspic30f6014a(), source);
+}
+
 std::vector<Message> random_inputs(RandomStream& random, Time from, Time until, double busy,
                                    std::size_t signals) {
     std::vector<Message> messages;

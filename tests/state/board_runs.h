@@ -32,6 +32,10 @@ std::optional<image::Image> real_image(const std::string& name);
 /// of every module, trap, reset, sleep, program flash.
 image::Image random_program(RandomStream& random, bool family_33f);
 
+/// It waits in loops and idle, computes with hardware loops and modulo addressing, erases and writes flash,
+/// runs what it wrote there, and resets itself every eighth round.
+image::Image self_programming(bool family_33f);
+
 /// Characters at wrong and right rates on both UARTs and changes of every signal, over from..until, by time.
 /// `busy`: mean number of messages a second.
 std::vector<cosim::Message> random_inputs(RandomStream& random, cosim::Time from, cosim::Time until,

@@ -126,6 +126,30 @@ TEST_CASE("a resumed board sends what it would have sent") {
     }
 }
 
+TEST_CASE("a resumed board goes back once it lives by itself") {
+    const auto make = rab_board(own_rab_image());
+    const BoardState state = state_after(make, {});
+    ResumeOptions options;
+    options.from = state;
+    options.save_at = kBoot + cosim::kMillisecond;
+    options.save = [](const BoardState&) { return std::string(); };
+    ResumedNode node(make, options);
+    std::vector<Message> outbox;
+    node.advance(kBoot / 2, {}, outbox);
+    CHECK(node.rewindable() == nullptr);
+    node.advance(kBoot, {}, outbox);
+    CHECK(node.rewindable() == nullptr);  // its own state is still to be saved
+    node.advance(options.save_at, {}, outbox);
+    REQUIRE(node.rewindable() != nullptr);
+    outbox.clear();
+    std::vector<Message> again;
+    node.rewindable()->mark();
+    node.advance(kEnd, {}, outbox);
+    node.rewindable()->rewind();
+    node.advance(kEnd, {}, again);
+    CHECK(again == outbox);
+}
+
 TEST_CASE("a resumed board that receives something else executes it") {
     const auto list = boards();
     for (int i = 0; i < 60; ++i) {

@@ -167,6 +167,26 @@ TEST_CASE("random programs go back") {
     }
 }
 
+TEST_CASE("a program that writes itself goes back") {
+    for (const bool family_33f : {false, true}) {
+        const image::Image image = self_programming(family_33f);
+        check(family_33f ? logged_rab(image) : logged_pic(image),
+              {.marks = 300,
+               .between = cosim::kMillisecond,
+               .ahead = 4 * cosim::kMillisecond,
+               .busy = 30,
+               .rab = family_33f},
+              family_33f ? "itself, 33F" : "itself, 30F");
+        // It does what it is there for.
+        const auto board = (family_33f ? rab_board(image) : pic_board(image))();
+        std::vector<Message> outbox;
+        board->advance(400 * cosim::kMillisecond, {}, outbox);
+        const std::string report = board->finish();
+        CHECK(report.find("SWR") != std::string::npos);
+        CHECK(report.find("IOPUWR") == std::string::npos);
+    }
+}
+
 TEST_CASE("real images go back", "[images]") {
     int found = 0;
     for (const char* name : {"epuck_firmware.hex", "BTcom_default.hex", "Demo.hex",
