@@ -1,26 +1,17 @@
 // The TAM's real firmware on the board, with a radio module that answers promptly: TAM fact sheet, sections 4
 // to 8. Needs tam_firmware.elf in $PUCKLOOP_IMAGES, built from its public sources.
-#include "protocols/uart_sampling.h"
-#include "protocols/xbee_frame.h"
-#include "protocols/xbee_message.h"
-#include "tests/tam_board/rig.h"
+#include "tests/tam_board/booth.h"
 
 #include <catch2/catch.hpp>
 
-#include <bit>
 #include <cstdlib>
 #include <filesystem>
 
 using namespace puckloop;
 using namespace puckloop::tam;
-using namespace puckloop::protocols;
-using cosim::Time;
+using namespace puckloop::tam::test;
 
 namespace {
-
-constexpr Time kMs = cosim::kMillisecond;
-constexpr Time kBit = cosim::kSecond / 9600, kByteTime = 10 * kBit;
-constexpr Time kStep = kMs / 10;
 
 std::string image_path() {
     const char* folder = std::getenv("PUCKLOOP_IMAGES");
@@ -35,116 +26,11 @@ std::string image_path() {
         return;                                                                                              \
     }
 
-/// A booth whose radio module answers every AT command after a millisecond, and acknowledges what is sent.
-struct Booth {
-    test::Rig rig;
-    XBeeReader reader{XBeeApiMode::Escaped};
-    std::size_t frames_seen = 0, changes_seen = 0;
-    std::vector<std::pair<Time, XBeeMessage>> sent;  ///< by the booth
-    XBeeBytes sent_bytes;
-    std::vector<std::pair<Time, std::uint8_t>> to_booth;  ///< bytes, by the start of their stop bit
-    Time line_free = 0;
-    bool answers = true, acknowledges = true;
-    std::string console;
-
-    Booth() { rig.board.load(image::load_avr_image(image_path(), avr::atmega1284p().image_part())); }
-
-    void send(const XBeeMessage& message, Time at) {
-        for (const std::uint8_t byte : encode_xbee(encode(message), XBeeApiMode::Escaped)) {
-            line_free = std::max(line_free, at) + kByteTime;
-            to_booth.emplace_back(line_free - kBit, byte);
-        }
-    }
-    void answer(const XBeeMessage& message, Time at) {
-        if (const auto* command = std::get_if<XBeeAt>(&message); command && answers) {
-            XBeeAtResponse response{.command = command->command, .value = {}};
-            const std::string name(command->command.begin(), command->command.end());
-            if (name == "DN") {
-                response.status = 0x40;
-                response.value = {0xFF, 0xFE, 0x00, 0x13, 0xA2, 0x00, 0x40, 0x8A, 0x31, 0x07};
-            } else if (name == "NI") {
-                response.value = {'T', 'A', 'M', '0', '1'};
-            } else if (name != "NT") {
-                response.value = {0, 0, 0, 1};
-            }
-            send(response, at + kMs);
-        }
-        if (const auto* data = std::get_if<XBeeTx>(&message); data && acknowledges)
-            send(XBeeTxStatus{.id = data->id}, at + 5 * kMs);
-    }
-    void run_until(Time until) {
-        for (Time now = rig.board.now(); now < until;) {
-            Time next = std::min(until, now + kStep);
-            if (!to_booth.empty()) next = std::min(next, std::max(now, to_booth.front().first));
-            rig.board.run_until(next);
-            now = next;
-            while (!to_booth.empty() && to_booth.front().first <= now) {
-                const auto [stop_bit, byte] = to_booth.front();
-                to_booth.erase(to_booth.begin());
-                cosim::UartFrame frame;
-                frame.bit_period = kBit;
-                frame.start = stop_bit - 9 * kBit;
-                frame.data = byte;
-                rig.board.uart_receive(kXBeeUnit, frame);
-            }
-            listen();
-        }
-    }
-    void listen() {
-        for (; changes_seen < rig.changes.size(); ++changes_seen) {
-            const auto& change = rig.changes[changes_seen];
-            if (change.id == kXBeeReset && change.value == 0.0 && answers)
-                send(XBeeModemStatus{}, change.at + 50 * kMs);
-        }
-        for (; frames_seen < rig.frames.size(); ++frames_seen) {
-            const auto& [unit, frame] = rig.frames[frames_seen];
-            if (unit == kConsoleUnit) console += static_cast<char>(frame.data);
-            if (unit != kXBeeUnit) continue;
-            sent_bytes.push_back(static_cast<std::uint8_t>(frame.data));
-            const auto reading = reader.take(static_cast<std::uint8_t>(frame.data));
-            if (!reading) continue;
-            REQUIRE(reading->ok());
-            const Time at = frame.start + kByteTime;
-            sent.emplace_back(at, decode_xbee(reading->data));
-            answer(sent.back().second, at);
-        }
-    }
-    /// Payloads of the reports to the coordinator, with their times.
-    std::vector<std::pair<Time, XBeeBytes>> reports() const {
-        std::vector<std::pair<Time, XBeeBytes>> found;
-        for (const auto& [at, message] : sent)
-            if (const auto* data = std::get_if<XBeeTx>(&message)) found.emplace_back(at, data->data);
-        return found;
-    }
-    void command(XBeeBytes payload) {
-        send(XBeeRx{.from = 0x0013A200408A3107, .options = 1, .data = std::move(payload)}, rig.board.now());
-    }
-};
-
-/// Edges of an IRcom word after its begin, the first one rising: 12 symbols, MARK (0) ten half periods of
-/// 260 us, SPACE (1) five of 520 us; two MARKs, eight bits, two check bits.
-std::vector<Time> ircom_edges(std::uint8_t word) {
-    const unsigned check = (4 - static_cast<unsigned>(std::popcount(word)) % 4) % 4;
-    const unsigned symbols = static_cast<unsigned>(word) << 2 | check;
-    std::vector<Time> edges{0};
-    for (int symbol = 11; symbol >= 0; --symbol) {
-        const bool space = symbols >> symbol & 1u;
-        for (int half = 0; half < (space ? 5 : 10); ++half)
-            edges.push_back(edges.back() + (space ? 520 : 260) * cosim::kMicrosecond);
-    }
-    edges.pop_back();  // the line is low again behind the last half period
-    return edges;
-}
-
-double ms(Time time) {
-    return static_cast<double>(time) / static_cast<double>(kMs);
-}
-
 }  // namespace
 
 TEST_CASE("without a radio module the TAM waits for ever and sends nothing", "[slow]") {
     NEEDS_IMAGE();
-    Booth booth;
+    Booth booth(image_path());
     booth.answers = false;
     booth.run_until(5 * cosim::kSecond);
     CHECK(booth.sent_bytes.empty());
@@ -157,7 +43,7 @@ TEST_CASE("without a radio module the TAM waits for ever and sends nothing", "[s
 
 TEST_CASE("the TAM starts up, reports and obeys as its fact sheet says", "[slow]") {
     NEEDS_IMAGE();
-    Booth booth;
+    Booth booth(image_path());
     booth.run_until(11 * cosim::kSecond);
     // Section 6: what is sent before the first report, byte for byte.
     const XBeeBytes start_up{0x7E, 0x00, 0x05, 0x08, 0x01, 0x4E, 0x54, 0x82, 0xD2,        // NT
@@ -206,17 +92,9 @@ TEST_CASE("the TAM starts up, reports and obeys as its fact sheet says", "[slow]
         booth.run_until(booth.rig.board.now() + cosim::kSecond);
         for (const int word : {5, 79, 116, 153, 190}) {
             // Half duplex: the booth listens between its own words, which come every 208 ms.
-            const std::size_t edges = booth.rig.of(kProximityEmit).size();
-            while (booth.rig.of(kProximityEmit).size() == edges)
-                booth.run_until(booth.rig.board.now() + kMs);
+            booth.run_until_word();
             const Time begin = booth.rig.board.now() + 60 * kMs;
-            bool level = false;
-            for (const Time edge : ircom_edges(static_cast<std::uint8_t>(word))) {
-                booth.run_until(begin + edge);
-                booth.rig.board.set_signal(kProximitySense, level ? 0.0 : 1.0);
-                level = !level;
-            }
-            booth.rig.board.set_signal(kProximitySense, 0.0);
+            booth.hear(static_cast<std::uint8_t>(word), begin);
             booth.run_until(begin + 300 * kMs);
             CHECK(static_cast<int>(booth.reports().back().second[7]) == word);
         }
