@@ -44,11 +44,13 @@ Conductor::State::State(std::vector<NodeSpec> nodes, std::vector<LinkSpec> links
             throw InputError("", fmt::format("node {}", spec.name), "two nodes have this name");
     // Processes start side by side; each makes its node while the others do.
     for (const NodeSpec& spec : specs_) {
-        if (spec.in_process.value_or(options_.in_process))
+        if (spec.in_process.value_or(options_.in_process)) {
             handles_.push_back(make_local_node(spec.name, spec.json, factory));
-        else
-            handles_.push_back(
-                make_remote_node(spec.name, spec.json, options_.node_command, options_.stall_seconds));
+            continue;
+        }
+        if (!processes_) processes_ = std::make_unique<NodeProcesses>();
+        handles_.push_back(make_remote_node(*processes_, spec.name, spec.json, options_.node_command,
+                                            options_.stall_seconds));
     }
     for (const auto& handle : handles_)
         handle->await_ready();
@@ -196,25 +198,36 @@ void Conductor::State::work_here() {
 }
 
 void Conductor::State::collect() {
-    std::vector<std::size_t> elsewhere;
+    elsewhere_.clear();
     here_.clear();
     for (std::size_t n = 0; n < handles_.size(); ++n) {
         if (!times_[n].busy) continue;
-        (handles_[n]->descriptor() >= 0 ? elsewhere : here_).push_back(n);
+        (handles_[n]->elsewhere() ? elsewhere_ : here_).push_back(n);
     }
     const bool any = !here_.empty();
     if (any) work_here();
-    if (elsewhere.empty()) {
-        if (any) return;
+    if (!elsewhere_.empty()) {
+        collect_elsewhere(!any);
+    } else if (!any) {
         // Nobody works and nobody may be granted: ahead of the wall clock, or locked for good.
         if (!options_.realtime || stuck()) deadlock();
         std::this_thread::sleep_for(kPaceSleep);
-        return;
     }
-    if (!any && elsewhere.size() > 1) await_any(handles_, elsewhere);
-    for (const std::size_t n : elsewhere) {
-        current_ = n;
-        if (handles_[n]->poll(!any && elsewhere.size() == 1)) take_reply(n);
+}
+
+/// Takes what nodes of other processes have answered; with `wait` until there is something.
+void Conductor::State::collect_elsewhere(bool wait) {
+    for (int looks = wait ? 2 : 1; looks > 0; --looks) {
+        const std::uint32_t seen = processes_->rings();
+        bool any = false;
+        for (const std::size_t n : elsewhere_) {
+            current_ = n;
+            if (!handles_[n]->poll(false)) continue;
+            take_reply(n);
+            any = true;
+        }
+        if (any) return;
+        if (looks == 2) processes_->await_answers(seen, elsewhere_.size());
     }
 }
 

@@ -42,7 +42,7 @@ struct RunOptions {
     double stall_seconds = 10.0;  ///< a node process that does not answer for so long ends the run
     /// A node's wish to end the run (Node::stop) takes effect so much later; no node runs further ahead.
     Time stop_latency = 10 * kMillisecond;
-    /// Starts a process that serves one node (cosim/remote/node_server.h) on file descriptor 3; in place of
+    /// Starts a process that serves one node (cosim/remote/node_server.h) on descriptors 3 and 4; in place of
     /// the program's name it gets "puckloop: " and the node's, which is what ps shows.
     std::vector<std::string> node_command{"/proc/self/exe"};
     /// Cuts grants at random places; the trace must not change (for tests).

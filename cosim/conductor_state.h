@@ -4,6 +4,7 @@
 
 #include "base/random.h"
 #include "cosim/conductor.h"
+#include "cosim/remote/node_processes.h"
 #include "cosim/schedule/network.h"
 #include "cosim/schedule/schedule.h"
 #include "cosim/schedule/workers.h"
@@ -58,6 +59,7 @@ class Conductor::State {
     void grant(std::size_t n, Time until);
     void collect();
     void work_here();
+    void collect_elsewhere(bool wait);
     void take_reply(std::size_t n);
     void take_stop(std::size_t n, Time before);
     void end_with(const Stop& stop, std::size_t n);
@@ -74,6 +76,7 @@ class Conductor::State {
     std::vector<LinkSpec> links_;
     std::vector<FaultSpec> fault_specs_;
     RunOptions options_;
+    std::unique_ptr<NodeProcesses> processes_;  ///< once there is a node in a process of its own
     std::vector<std::unique_ptr<NodeHandle>> handles_;
     std::unique_ptr<Network> network_;
 
@@ -88,6 +91,7 @@ class Conductor::State {
     std::optional<RandomStream> chop_;
     std::unique_ptr<Workers> workers_;
     std::vector<std::size_t> here_;             ///< nodes of this process that are granted
+    std::vector<std::size_t> elsewhere_;        ///< nodes of other processes that are granted
     std::vector<std::size_t> shared_;           ///< those of them that any thread may advance
     std::vector<std::exception_ptr> failures_;  ///< of nodes, by index
 

@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -12,11 +13,12 @@ namespace puckloop::cosim {
 
 class ChildProcess {
   public:
-    /// Starts `command` (program and arguments) with `socket` as descriptor 3, in a process group of its own;
-    /// ps shows it as `title` and its arguments. The group is its own so that a Ctrl-C at the terminal
+    /// Starts `command` (program and arguments) with `descriptors` as 3, 4, ..., in a process group of its
+    /// own; ps shows it as `title` and its arguments. The group is its own so that a Ctrl-C at the terminal
     /// reaches the parent alone, and with an empty standard input. The kernel kills it when the parent dies.
     /// Throws RunError.
-    ChildProcess(const std::vector<std::string>& command, const std::string& title, int socket);
+    ChildProcess(const std::vector<std::string>& command, const std::string& title,
+                 std::span<const int> descriptors);
     /// Kills the whole group and reaps the child.
     ~ChildProcess();
     ChildProcess(const ChildProcess&) = delete;

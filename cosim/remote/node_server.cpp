@@ -2,29 +2,36 @@
 
 #include "base/error.h"
 #include "cosim/core/process_name.h"
+#include "cosim/remote/node_processes.h"
 #include "cosim/remote/protocol.h"
-#include "cosim/remote/socket_stream.h"
+#include "cosim/remote/ring_stream.h"
 
 #include <exception>
 
-#include <fcntl.h>
+#include <unistd.h>
 
 namespace puckloop::cosim {
 
 namespace {
 
+// How often a wait looks whether the conductor is still there; the kernel should have said so long before.
+constexpr std::chrono::seconds kWaitSlice{1};
+
 class Server {
   public:
-    Server(int descriptor, const NodeFactory& factory) : stream_(descriptor), factory_(factory) {}
+    Server(SharedByRun& run, SharedWithNode& mine, const NodeFactory& factory)
+        : bell_(mine.node, run.busy),
+          conductor_bell_(run.conductor, run.busy),
+          stream_(mine.to_node, mine.from_node, bell_, conductor_bell_),
+          factory_(factory) {}
 
     int serve() {
         try {
             while (true) {
-                const SocketStream::Status status = stream_.receive(true);
-                if (status == SocketStream::Status::Closed) return 1;   // the conductor is gone
-                if (status == SocketStream::Status::Partial) continue;  // a signal came between
+                while (!stream_.receive(kWaitSlice))
+                    if (abandoned()) return 1;
                 if (!answer()) return 0;
-                if (!stream_.send(bytes_)) return 1;
+                send();
             }
         } catch (const InputError& error) {
             return tell({true, error.what()});
@@ -91,16 +98,30 @@ class Server {
         const std::string report = node_ ? node_->finish() : "{}";
         node_.reset();
         protocol::write_report(bytes_, report);
-        stream_.send(bytes_);
+        send();
     }
+
+    void send() {
+        while (!stream_.send(bytes_, kWaitSlice) && !abandoned()) {
+        }
+    }
+
+    bool abandoned() const { return getppid() != conductor_; }
 
     int tell(const protocol::Error& error) {
         protocol::write_error(bytes_, error);
-        stream_.send(bytes_);
+        try {
+            send();
+        } catch (const CodecError&) {
+            // The ring itself is damaged: the exit status has to do.
+        }
         return 1;
     }
 
-    SocketStream stream_;
+    const pid_t conductor_ = getppid();
+    Bell bell_;
+    Bell conductor_bell_;
+    RingStream stream_;
     const NodeFactory& factory_;
     std::unique_ptr<Node> node_;
     protocol::Grant grant_;
@@ -113,9 +134,15 @@ class Server {
 }  // namespace
 
 int serve_node(int descriptor, const NodeFactory& factory) {
-    // Programs that the node starts have no business with the conductor.
-    fcntl(descriptor, F_SETFD, FD_CLOEXEC);
-    return Server(descriptor, factory).serve();
+    try {
+        const SharedMemory mine(descriptor, sizeof(SharedWithNode));
+        const SharedMemory run(descriptor + 1, sizeof(SharedByRun));
+        return Server(*reinterpret_cast<SharedByRun*>(run.data()),
+                      *reinterpret_cast<SharedWithNode*>(mine.data()), factory)
+            .serve();
+    } catch (const RunError&) {
+        return 1;  // no conductor started this process
+    }
 }
 
 }  // namespace puckloop::cosim

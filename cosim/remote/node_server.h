@@ -5,9 +5,9 @@
 
 namespace puckloop::cosim {
 
-/// Serves one node over `descriptor` (protocol::kDescriptor in a process that the conductor started): makes
-/// it with `factory`, advances it as granted, finishes it. Errors of the node go to the conductor, which
-/// reports them. Returns the process's exit status: 0 after a finish, 1 otherwise.
+/// Serves one node over the memory at `descriptor` and the next one (protocol::kDescriptor in a process that
+/// the conductor started): makes it with `factory`, advances it as granted, finishes it. Errors of the node
+/// go to the conductor, which reports them. Returns the process's exit status: 0 after a finish, 1 otherwise.
 int serve_node(int descriptor, const NodeFactory& factory);
 
 }  // namespace puckloop::cosim

@@ -1,6 +1,6 @@
 #pragma once
 // What the conductor and a node process say to each other: messages of a 32-bit length and a body, all
-// little-endian. One grant is one write and one read on each side.
+// little-endian, in rings of shared memory (ring_stream.h).
 
 #include "cosim/core/codec.h"
 #include "cosim/schedule/node_handle.h"
@@ -12,11 +12,12 @@
 
 namespace puckloop::cosim::protocol {
 
-inline constexpr std::uint32_t kVersion = 2;
+inline constexpr std::uint32_t kVersion = 3;
 inline constexpr std::size_t kLengthBytes = 4;
 /// Longer messages are damage, not work: a millisecond of the busiest link is some kilobytes.
 inline constexpr std::uint32_t kLongest = 64u << 20;
-/// Where a node process finds its socket.
+/// Where a node process finds the memory that it shares with the conductor (node_processes.h); the next
+/// descriptor is the memory that all processes of the run share.
 inline constexpr int kDescriptor = 3;
 
 enum class Kind : std::uint8_t {

@@ -4,40 +4,36 @@
 #include "cosim/core/process_name.h"
 #include "cosim/remote/child_process.h"
 #include "cosim/remote/protocol.h"
-#include "cosim/remote/socket_stream.h"
+#include "cosim/remote/ring_stream.h"
 
 #include <fmt/format.h>
 
-#include <poll.h>
-#include <sys/socket.h>
-
-#include <cerrno>
-#include <cstring>
+#include <array>
 
 namespace puckloop::cosim {
 
 namespace {
 
-// How often a wait looks at the clock and at Ctrl-C.
-constexpr std::chrono::milliseconds kWaitSlice{100};
-// A process whose socket closed is about to end; after that it is killed.
+// To reap a process that has ended, or is about to.
 constexpr std::chrono::milliseconds kEndPatience{2000};
 // A node under grant when the run ends gets so long to come back.
 constexpr std::chrono::seconds kFinishPatience{2};
 
 class RemoteNode : public NodeHandle {
   public:
-    RemoteNode(const std::string& name, const std::string& json, const std::vector<std::string>& command,
-               double stall_seconds)
-        : stall_(std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(stall_seconds))) {
+    RemoteNode(NodeProcesses& processes, const std::string& name, const std::string& json,
+               const std::vector<std::string>& command, double stall_seconds)
+        : memory_(SharedWithNode::kName, sizeof(SharedWithNode)),
+          shared_(*reinterpret_cast<SharedWithNode*>(memory_.data())),
+          bell_(shared_.node, processes.busy()),
+          stream_(shared_.from_node, shared_.to_node, processes.bell(), bell_),
+          stall_(std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(stall_seconds))) {
         name_ = name;
-        int ends[2];
-        if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
-            throw RunError(fmt::format("node {}: no socket: {}", name_, std::strerror(errno)));
-        stream_ = std::make_unique<SocketStream>(ends[0]);
-        SocketStream other(ends[1]);  // closed here once the child has it
-        stream_->set_timeout(kWaitSlice);
-        child_ = std::make_unique<ChildProcess>(command, std::string(kNodeTitle) + name_, ends[1]);
+        child_ = std::make_unique<ChildProcess>(command, std::string(kNodeTitle) + name_,
+                                                std::array{memory_.descriptor(), processes.descriptor()});
+        memory_.close_descriptor();
+        processes.busy().processes.fetch_add(1);
+        ended_ = processes.deaths().watch(child_->id());
         protocol::write_hello(bytes_, {name, json});
         send();
     }
@@ -70,7 +66,7 @@ class RemoteNode : public NodeHandle {
         return true;
     }
 
-    int descriptor() const override { return stream_->descriptor(); }
+    bool elsewhere() const override { return true; }
     int process() const override { return static_cast<int>(child_->id()); }
 
     void wind_up(int signal) override {
@@ -108,22 +104,24 @@ class RemoteNode : public NodeHandle {
     void send() {
         asked_at_ = Clock::now();
         try {
-            if (!stream_->send(bytes_, asked_at_ + stall_)) ended();
+            for (bool dead = has_ended(); !stream_.send(bytes_, kWaitSlice); dead = has_ended()) {
+                if (dead) ended();
+                if (Clock::now() - asked_at_ > stall_) lose("does not take what is sent to it");
+            }
         } catch (const CodecError& error) {
-            lose(error.what());
+            lose(fmt::format("sent {}", error.what()));
         }
     }
 
     /// True when a whole message has come; throws when the node will not answer any more.
     bool receive(bool wait) {
-        SocketStream::Status status{};
+        const bool dead = has_ended();
         try {
-            status = stream_->receive(wait);
+            if (stream_.receive(wait && !dead ? kWaitSlice : kWaitSlice.zero())) return true;
         } catch (const CodecError& error) {
             lose(fmt::format("sent {}", error.what()));
         }
-        if (status == SocketStream::Status::Closed) ended();
-        if (status == SocketStream::Status::Whole) return true;
+        if (dead) ended();
         const auto waited = Clock::now() - asked_at_;
         if (waited > stall_)
             lose(fmt::format("has not answered for {:.1f} s of wall time (--stall)",
@@ -133,7 +131,7 @@ class RemoteNode : public NodeHandle {
 
     template <typename Read>
     void decode(protocol::Kind expected, Read read) {
-        const auto body = stream_->body();
+        const auto body = stream_.body();
         protocol::Error error;
         try {
             if (protocol::kind_of(body) != protocol::Kind::Error) {
@@ -151,6 +149,12 @@ class RemoteNode : public NodeHandle {
                                    to_seconds(reached_), error.text));
     }
 
+    /// Asked before looking for what it said: a node that dies has said it before.
+    bool has_ended() const {
+        return ended_ ? ended_->load(std::memory_order_acquire)
+                      : child_->ended(std::chrono::milliseconds::zero());
+    }
+
     [[noreturn]] void ended() {
         child_->ended(kEndPatience);
         lose(child_->ending());
@@ -164,8 +168,12 @@ class RemoteNode : public NodeHandle {
                                    child_->id(), cause, to_seconds(reached_), granted));
     }
 
-    std::unique_ptr<SocketStream> stream_;
+    SharedMemory memory_;
+    SharedWithNode& shared_;
+    Bell bell_;
+    RingStream stream_;
     std::unique_ptr<ChildProcess> child_;
+    const std::atomic<bool>* ended_ = nullptr;  ///< DeathWatch
     Bytes bytes_;
     Clock::duration stall_;
     Clock::time_point asked_at_{};
@@ -176,16 +184,10 @@ class RemoteNode : public NodeHandle {
 
 }  // namespace
 
-std::unique_ptr<NodeHandle> make_remote_node(const std::string& name, const std::string& json,
-                                             const std::vector<std::string>& command, double stall_seconds) {
-    return std::make_unique<RemoteNode>(name, json, command, stall_seconds);
-}
-
-void await_any(const std::vector<std::unique_ptr<NodeHandle>>& nodes, const std::vector<std::size_t>& which) {
-    std::vector<pollfd> waits;
-    for (const std::size_t n : which)
-        waits.push_back({nodes[n]->descriptor(), POLLIN, 0});
-    ::poll(waits.data(), waits.size(), static_cast<int>(kWaitSlice.count()));
+std::unique_ptr<NodeHandle> make_remote_node(NodeProcesses& processes, const std::string& name,
+                                             const std::string& json, const std::vector<std::string>& command,
+                                             double stall_seconds) {
+    return std::make_unique<RemoteNode>(processes, name, json, command, stall_seconds);
 }
 
 }  // namespace puckloop::cosim

@@ -61,8 +61,8 @@ class NodeHandle {
     /// True once the reply to the last grant is complete. A node in this process does its work here; `wait`
     /// lets one elsewhere wait for some tenths of a second.
     virtual bool poll(bool wait) = 0;
-    /// What to wait on for the reply, or -1 where poll() does the work itself.
-    virtual int descriptor() const { return -1; }
+    /// False where poll() does the work itself.
+    virtual bool elsewhere() const { return false; }
     /// Asks the node, which is under no grant, to bring what it runs to an end (Node::wind_up); state() is
     /// then as of after that.
     virtual void wind_up(int signal) = 0;

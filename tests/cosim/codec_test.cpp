@@ -1,11 +1,7 @@
 #include "base/random.h"
 #include "cosim/remote/protocol.h"
-#include "cosim/remote/socket_stream.h"
 
 #include <catch2/catch.hpp>
-
-#include <sys/socket.h>
-#include <unistd.h>
 
 using namespace puckloop;
 using namespace puckloop::cosim;
@@ -139,50 +135,4 @@ TEST_CASE("huge counts and lengths are refused before memory is taken for them")
                       Catch::Contains("more items than the message can hold"));
     bytes[0] = static_cast<std::uint8_t>(protocol::Kind::Report);
     CHECK_THROWS_AS(protocol::read_report(bytes), CodecError);
-}
-
-TEST_CASE("a stream puts messages together from any pieces, and refuses impossible lengths") {
-    int ends[2];
-    REQUIRE(socketpair(AF_UNIX, SOCK_STREAM, 0, ends) == 0);
-    SocketStream reader(ends[0]);
-    Bytes all;
-    const std::vector<Bytes> messages = whole_messages();
-    for (const Bytes& bytes : messages)
-        all.insert(all.end(), bytes.begin(), bytes.end());
-    RandomStream random(3, "pieces");
-    std::size_t sent = 0, got = 0;
-    while (got < messages.size()) {
-        if (sent < all.size()) {
-            const std::size_t piece = std::min<std::size_t>(all.size() - sent, 1 + random.below(90));
-            REQUIRE(write(ends[1], all.data() + sent, piece) == static_cast<ssize_t>(piece));
-            sent += piece;
-        }
-        while (reader.receive(false) == SocketStream::Status::Whole) {
-            const auto body = reader.body();
-            REQUIRE(Bytes(body.begin(), body.end()) ==
-                    Bytes(messages[got].begin() + protocol::kLengthBytes, messages[got].end()));
-            ++got;
-        }
-    }
-    const std::uint8_t length[] = {0xff, 0xff, 0xff, 0xff, 0};
-    REQUIRE(write(ends[1], length, sizeof length) == sizeof length);
-    CHECK_THROWS_AS(reader.receive(false), CodecError);
-    close(ends[1]);
-}
-
-TEST_CASE("messages far larger than the buffer pass") {
-    int ends[2];
-    REQUIRE(socketpair(AF_UNIX, SOCK_STREAM, 0, ends) == 0);
-    SocketStream reader(ends[0]);
-    Bytes big;
-    protocol::write_report(big, std::string(3'000'000, 'x'));
-    std::size_t sent = 0;
-    bool whole = false;
-    while (!whole) {
-        const ssize_t put = send(ends[1], big.data() + sent, big.size() - sent, MSG_DONTWAIT);
-        if (put > 0) sent += static_cast<std::size_t>(put);
-        whole = reader.receive(false) == SocketStream::Status::Whole;
-    }
-    CHECK(protocol::read_report(reader.body()).size() == 3'000'000);
-    close(ends[1]);
 }

@@ -6,7 +6,8 @@
 namespace puckloop::tools {
 
 /// The exit status, if the conductor started this process for a node ("puckloop: robot0.pic" is all there is
-/// of its command line, and its end of a socket pair is open); nothing in a process that a user started.
+/// of its command line, and the memory to share is on its descriptors); nothing in a process that a user
+/// started.
 std::optional<int> serve_as_node(int count, char** words);
 
 }  // namespace puckloop::tools
