@@ -279,6 +279,7 @@ void Conductor::State::release_trace(Time floor) {
 
 void Conductor::State::keep_house() {
     const double wall = seconds_since(start_);
+    if (processes_) processes_->cores().step(wall, schedule_.reached(), grants_);
     if (wall - told_wall_ >= kProgressSeconds) {
         const Time time = schedule_.reached();
         if (options_.progress)

@@ -69,7 +69,8 @@ bool Bell::look(std::uint32_t wake_at) {
     }
     const auto end = std::chrono::steady_clock::now() + kLook;
     do {
-        if (busy_.processes.load(std::memory_order_relaxed) > cores_) return false;
+        const bool one_core = busy_.core.load(std::memory_order_relaxed) != kAnyCore;
+        if (busy_.processes.load(std::memory_order_relaxed) > (one_core ? 1 : cores_)) return false;
         for (int looks = 0; looks < kLooksBetweenClocks; ++looks) {
             if (rung(wake_at)) {
                 in_vain_ = 0;

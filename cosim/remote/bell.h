@@ -19,9 +19,13 @@ struct alignas(64) BellState {
     std::atomic<std::uint32_t> asleep;   ///< 1: to be woken by whoever takes this to 0
 };
 
-/// In shared memory, one a run: how many of its processes work or look.
+inline constexpr std::uint32_t kAnyCore = 0;
+
+/// In shared memory, one a run: how many of its processes work or look, and on which core; kAnyCore or its
+/// number plus 1 (core_choice.h).
 struct alignas(64) Busy {
     std::atomic<std::uint32_t> processes;
+    std::atomic<std::uint32_t> core;
 };
 
 /// One process's view of a bell. Any number of processes ring it; one waits at it.
@@ -43,7 +47,7 @@ class Bell {
 
     BellState& state_;
     Busy& busy_;
-    std::uint32_t cores_;
+    const std::uint32_t cores_;  ///< of the machine
     std::uint32_t in_vain_ = 0;  ///< looks in a row that did not help
     std::uint32_t skip_ = 0;     ///< waits to come without looking
 };

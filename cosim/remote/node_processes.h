@@ -2,6 +2,7 @@
 // What a run's node processes share with the conductor, and how it waits for them all.
 
 #include "cosim/remote/bell.h"
+#include "cosim/remote/core_choice.h"
 #include "cosim/remote/death_watch.h"
 #include "cosim/remote/ring.h"
 #include "cosim/remote/shared_memory.h"
@@ -45,6 +46,8 @@ class NodeProcesses {
     Bell& bell() { return bell_; }
     DeathWatch& deaths() { return deaths_; }
 
+    CoreChoice& cores() { return choice_; }
+
     std::uint32_t rings() const { return bell_.rings(); }
     /// After `out` granted nodes were looked at, none of which had answered since `seen` was read from
     /// rings(): waits until so many have answered that a core is free, until one has died, or some tenths of
@@ -55,6 +58,7 @@ class NodeProcesses {
     SharedMemory memory_;
     SharedByRun& shared_;
     Bell bell_;
+    CoreChoice choice_;
     DeathWatch deaths_;
     const std::size_t cores_ = std::max(1u, std::thread::hardware_concurrency());
 };

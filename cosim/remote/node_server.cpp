@@ -20,7 +20,8 @@ constexpr std::chrono::seconds kWaitSlice{1};
 class Server {
   public:
     Server(SharedByRun& run, SharedWithNode& mine, const NodeFactory& factory)
-        : bell_(mine.node, run.busy),
+        : cores_(run.busy),
+          bell_(mine.node, run.busy),
           conductor_bell_(run.conductor, run.busy),
           stream_(mine.to_node, mine.from_node, bell_, conductor_bell_),
           factory_(factory) {}
@@ -30,6 +31,7 @@ class Server {
             while (true) {
                 while (!stream_.receive(kWaitSlice))
                     if (abandoned()) return 1;
+                cores_.follow();
                 if (!answer()) return 0;
                 send();
             }
@@ -119,6 +121,7 @@ class Server {
     }
 
     const pid_t conductor_ = getppid();
+    CoreFollower cores_;
     Bell bell_;
     Bell conductor_bell_;
     RingStream stream_;

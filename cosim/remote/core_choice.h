@@ -1,0 +1,71 @@
+#pragma once
+// On which cores the processes of a run work.
+//
+// Where they take turns, as a board, its bus and its Linux program do byte for byte, waking a process on
+// another core costs more than it wins: an interrupt there, and here the way out of idleness, together some
+// times a plain switch on one core. Where they have work to do side by side, all cores win. Which of the two
+// a stretch of a run is shows only in how fast it goes, so both are tried now and then; simulated results
+// do not depend on it.
+
+#include "cosim/core/time.h"
+#include "cosim/remote/bell.h"
+
+#include <chrono>
+#include <cstdint>
+
+namespace puckloop::cosim {
+
+/// The calling thread's share: follows what the run's conductor has chosen. Processes that this one makes by
+/// fork() may use all cores again.
+class CoreFollower {
+  public:
+    explicit CoreFollower(const Busy& busy) : busy_(busy) {}
+    /// The thread may use all cores again.
+    ~CoreFollower();
+    CoreFollower(const CoreFollower&) = delete;
+    CoreFollower& operator=(const CoreFollower&) = delete;
+
+    /// Costs next to nothing when nothing has changed.
+    void follow() {
+        if (const std::uint32_t core = busy_.core.load(std::memory_order_relaxed); core != core_) move(core);
+    }
+
+  private:
+    void move(std::uint32_t core);
+
+    const Busy& busy_;
+    std::uint32_t core_ = kAnyCore;
+};
+
+/// The conductor's share: measures and chooses.
+class CoreChoice {
+  public:
+    explicit CoreChoice(Busy& busy);
+
+    /// To be called often: `wall` seconds after the run began it had reached `time` with so many grants.
+    void step(double wall, Time time, std::uint64_t grants);
+
+  private:
+    struct Progress {
+        double wall = 0;
+        double time = 0;
+        double grants = 0;
+        double rate() const;
+    };
+
+    void use(bool one_core);
+    void choose();
+
+    Busy& busy_;
+    CoreFollower follower_;
+    const bool worth_it_;
+    Progress before_;    ///< when the slice under way began
+    Progress tried_[2];  ///< on all cores, on one
+    int slice_;          ///< of a trial; the number of slices: none is under way
+    double until_ = 0;   ///< end of the slice, or of what was chosen
+    bool one_core_ = false;
+    bool chosen_ = false;  ///< by the last trial: one core
+    double hold_ = 0;
+};
+
+}  // namespace puckloop::cosim
