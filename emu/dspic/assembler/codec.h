@@ -3,6 +3,7 @@
 // every field's place worked out. Assembler and disassembler are two walks over the same items.
 
 #include "emu/dspic/core/isa.h"
+#include "emu/dspic/core/memory_map.h"
 
 #include <array>
 #include <cstdint>
@@ -105,8 +106,5 @@ inline constexpr std::array<int, 8> kPrefetchStep{0, 2, 4, 6, 0, -6, -4, -2};
 /// The two multiplicands of code m: W(4+first)*W(4+second).
 inline constexpr std::array<std::array<int, 2>, 8> kProductPairs{
     {{4, 5}, {4, 6}, {4, 7}, {0, 0}, {5, 6}, {5, 7}, {6, 7}, {0, 0}}};
-
-/// Program addresses wrap at 23 bits, the width of the program counter.
-inline constexpr std::uint32_t kProgramMask = 0x7FFFFE;
 
 }  // namespace puckloop::dspic

@@ -188,12 +188,12 @@ class Writer {
             return put_with_literal(get('d'));
         case Relative:
             return put_target((address_ + 2 + 2 * get('n') - (get('n') & 0x8000 ? 0x20000u : 0u)) &
-                              kProgramMask);
+                              kProgramSpace);
         case Absolute:
             return put_target(get('n') << 1 | (next_ & 0x7F) << 16);
         case LoopEnd: {
             const std::uint32_t n = next_ & 0xFFFF;
-            return put_target((address_ + 4 + 2 * n - (n & 0x8000 ? 0x20000u : 0u)) & kProgramMask);
+            return put_target((address_ + 4 + 2 * n - (n & 0x8000 ? 0x20000u : 0u)) & kProgramSpace);
         }
         case Accumulator:
             return text_.put(get('A') ? 'b' : 'a');

@@ -214,7 +214,7 @@ class FormEncoder {
         const Operand* operand = next(Shape::Expression);
         if (!operand) return false;
         const std::int64_t value = number(operand->expression);
-        const std::uint32_t target = in_range(value, 0, kProgramMask, "the target");
+        const std::uint32_t target = in_range(value, 0, kProgramSpace, "the target");
         if (target & 1) complain(fmt::format("the target {:#x} is odd", target));
         if (kind == OperandKind::Absolute) {
             set('n', target >> 1);

@@ -189,7 +189,7 @@ void Core::set_w(int index, std::uint16_t value) {
     machine_->watch &= ~(0x10000u << index);
 }
 void Core::set_pc(std::uint32_t pc) {
-    machine_->current = at(*machine_, pc & 0x7FFFFE);
+    machine_->current = at(*machine_, pc & kProgramSpace);
 }
 std::uint16_t Core::read_data(std::uint16_t address) {
     return read16(*machine_, address & 0xFFFE);

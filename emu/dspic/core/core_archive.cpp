@@ -96,7 +96,7 @@ void Core::state(StateReader& archive) {
         word &= kWordMask;
     for (std::uint32_t i = 0; i < m.code_words + kGuards; ++i)
         invalidate(m, 2 * i);
-    m.current = at(m, pc & 0x7FFFFE);
+    m.current = at(m, pc & kProgramSpace);
     m.limit = 0;
     m.stopped = m.end_requested = false;
     m.pass_pc.reset();

@@ -7,10 +7,6 @@ namespace puckloop::dspic {
 
 namespace {
 
-constexpr std::uint16_t kWEnd = 0x0020;  ///< W0..W15 are data addresses 0 to 0x1F
-constexpr std::uint16_t kSfrEnd = 0x0800;
-constexpr std::uint16_t kPsvStart = 0x8000;
-
 std::uint16_t read_sfr(Machine& m, std::uint16_t address) {
     const std::uint16_t value = m.sfr.read(address);
     m.bound_limit();
@@ -34,8 +30,8 @@ std::uint16_t read_psv(Machine& m, std::uint16_t address) {
 
 std::uint16_t read_aligned(Machine& m, std::uint16_t address) {
     if (address < kWEnd) return m.st.w[address >> 1];
-    if (address < kSfrEnd) return read_sfr(m, address);
-    const auto index = static_cast<std::uint16_t>((address - 0x0800) >> 1);
+    if (address < kRamStart) return read_sfr(m, address);
+    const auto index = static_cast<std::uint16_t>((address - kRamStart) >> 1);
     if (index < m.ram_words) return m.ram[index];
     if (address >= kPsvStart && m.st.corcon & corcon::PSV) return read_psv(m, address);
     raise_trap(m, Trap::AddressError);
@@ -47,7 +43,7 @@ void write_masked(Machine& m, std::uint16_t address, std::uint16_t value, std::u
         const int reg = address >> 1;
         set_w(m, reg, (get_w(m, reg) & ~std::uint32_t{mask}) | (value & mask));
         m.watch = (m.watch | 1u << reg) & ~(0x10000u << reg);
-    } else if (address < kSfrEnd) {
+    } else if (address < kRamStart) {
         m.sfr.write(address, value, mask);
         m.bound_limit();
     } else {
@@ -99,7 +95,7 @@ std::uint16_t read16_slow(Machine& m, std::uint16_t address) {
     if (address & 1) {
         // The read completes with undefined data (here: the aligned word of RAM or W, else 0).
         raise_trap(m, Trap::AddressError);
-        if (address >= kWEnd && address < kSfrEnd) return 0;
+        if (address >= kWEnd && address < kRamStart) return 0;
         if (address >= m.device.ram_end) return 0;
     }
     return read_aligned(m, address & 0xFFFE);
@@ -158,7 +154,7 @@ void update_pointer_rules(Machine& m) {
     if (m.st.modcon & kXmoden) special |= 1u << xwm(m);
     if (bit_reversed(m)) special |= 1u << bwm(m);
     m.special = static_cast<std::uint16_t>(special);
-    m.stack_span = (m.st.splim_armed ? m.st.splim : 0xFFFF) - 0x0800;
+    m.stack_span = (m.st.splim_armed ? m.st.splim : 0xFFFF) - kRamStart;
 }
 
 std::uint32_t read_program(const Machine& m, std::uint32_t address, bool* implemented) {

@@ -233,7 +233,7 @@ void hook_registers(Machine& m) {
 void reset_registers(Machine& m) {
     CoreState& st = m.st;
     CoreState fresh;
-    fresh.w[15] = 0x0800;
+    fresh.w[15] = kRamStart;
     fresh.corcon = corcon::SATDW;
     fresh.cycle = st.cycle;
     fresh.rcount = st.rcount;

@@ -93,11 +93,8 @@ void enter_interrupt(Machine& m) {
     if (!trap && m.observer.on_interrupt) m.observer.on_interrupt(taken.vector, pc, m.st.cycle);
     m.irq.acknowledge(taken, cpu_level(m));
 
-    constexpr std::uint32_t kIpl3OnStack = 0x80;
-    const std::uint32_t status = m.st.sr & 0xFFu;
-    const std::uint32_t ipl3 = m.st.corcon & corcon::IPL3 ? kIpl3OnStack : 0;
-    push(m, static_cast<std::uint16_t>(pc));
-    push(m, static_cast<std::uint16_t>(status << 8 | ipl3 | (pc >> 16 & 0x7F)));
+    push(m, stacked_pc_low(pc));
+    push(m, stacked_status(m.st.sr, m.st.corcon, pc));
 
     const int level = trap ? taken.level & 7 : m.irq.nesting_disabled() ? 7 : taken.level;
     m.st.sr = static_cast<std::uint16_t>((m.st.sr & ~(sr::IPL | sr::RA)) | level << sr::kIplShift);
@@ -110,7 +107,7 @@ void enter_interrupt(Machine& m) {
     m.eligible = false;
     reconsider(m, m.st.cycle);
     m.st.cycle = start;
-    m.current = at(m, handler & 0x7FFFFE);
+    m.current = at(m, handler & kProgramSpace);
 }
 
 /// The interrupt first in line, its routine included, in one step, if that is exact and over by `horizon`.

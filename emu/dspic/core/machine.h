@@ -3,7 +3,9 @@
 // instruction uses (RAM, pointers, the W registers). Only the core's own files include this.
 
 #include "emu/dspic/core/core.h"
+#include "emu/dspic/core/exception_frame.h"
 #include "emu/dspic/core/isa.h"
+#include "emu/dspic/core/memory_map.h"
 #include "emu/dspic/core/program_undo.h"
 #include "emu/dspic/fast/service_shortcut.h"
 #include "emu/dspic/waits/wait_watch.h"
@@ -66,7 +68,7 @@ struct Machine {
     Cycle limit = 0;              ///< the inner loop leaves when st.cycle reaches this; 0 = leave now
     std::uint32_t watch = 0;      ///< low half: just written; high half: not written since reset
     std::uint16_t special = 0x8000;  ///< pointer registers that need special_ea(): W15, modulo, bit-reversed
-    std::int32_t stack_span = 0xFFFF;  ///< highest legal stack address less 0x0800; below 0: none is
+    std::int32_t stack_span = 0xFFFF;  ///< highest legal stack address less kRamStart; below 0: none is
     std::uint16_t ram_words = 0;
     std::uint16_t* ram = nullptr;
     Op* code = nullptr;
@@ -145,7 +147,7 @@ inline const Op* at(Machine& m, std::uint32_t pc) {
     const std::uint32_t index = pc >> 1;
     if (index < m.code_words) [[likely]]
         return m.code + index;
-    m.outside_pc = pc & 0x7FFFFE;
+    m.outside_pc = pc & kProgramSpace;
     return m.code + m.code_words + kGuards - 1;
 }
 
@@ -201,14 +203,14 @@ inline int cpu_level(const Machine& m) {
 
 inline std::uint16_t read16(Machine& m, std::uint16_t address) {
     // Rotating the offset right by one turns an odd address into an index that is out of range.
-    const auto index = std::rotr(static_cast<std::uint16_t>(address - 0x0800), 1);
+    const auto index = std::rotr(static_cast<std::uint16_t>(address - kRamStart), 1);
     if (index < m.ram_words) [[likely]]
         return m.ram[index];
     return read16_slow(m, address);
 }
 
 inline void write16(Machine& m, std::uint16_t address, std::uint16_t value) {
-    const auto index = std::rotr(static_cast<std::uint16_t>(address - 0x0800), 1);
+    const auto index = std::rotr(static_cast<std::uint16_t>(address - kRamStart), 1);
     if (index < m.ram_words) [[likely]]
         m.ram[index] = value;
     else
@@ -216,14 +218,14 @@ inline void write16(Machine& m, std::uint16_t address, std::uint16_t value) {
 }
 
 inline std::uint16_t read8(Machine& m, std::uint16_t address) {
-    const auto offset = static_cast<std::uint16_t>(address - 0x0800);
+    const auto offset = static_cast<std::uint16_t>(address - kRamStart);
     if (offset >> 1 < m.ram_words) [[likely]]
         return static_cast<std::uint16_t>(m.ram[offset >> 1] >> (8 * (offset & 1)) & 0xFF);
     return read8_slow(m, address);
 }
 
 inline void write8(Machine& m, std::uint16_t address, std::uint16_t value) {
-    const auto offset = static_cast<std::uint16_t>(address - 0x0800);
+    const auto offset = static_cast<std::uint16_t>(address - kRamStart);
     if (offset >> 1 < m.ram_words) [[likely]] {
         const int shift = 8 * (offset & 1);
         std::uint16_t& word = m.ram[offset >> 1];
@@ -259,7 +261,7 @@ void put_w(Machine& m, int reg, std::uint32_t value) {
 }
 
 inline void check_stack(Machine& m, std::uint16_t address) {
-    if (static_cast<std::uint16_t>(address - 0x0800) > m.stack_span) [[unlikely]]
+    if (static_cast<std::uint16_t>(address - kRamStart) > m.stack_span) [[unlikely]]
         raise_trap(m, Trap::StackError);
 }
 inline void push(Machine& m, std::uint16_t value) {

@@ -8,8 +8,6 @@ namespace puckloop::dspic {
 
 namespace {
 
-constexpr std::uint16_t kFirstRam = 0x0800;
-
 constexpr std::int32_t ones(bool byte) {
     return byte ? 0xFF : 0xFFFF;
 }
@@ -26,7 +24,7 @@ SkipLoops::Cell& LoopWalk::cell(std::uint16_t key) {
     SkipLoops::Cell& fresh = plan_.cells[plan_.count++];
     fresh = {};
     fresh.key = key;
-    fresh.start = key < 16 ? m_.st.w[key] : probed(key, m_.ram[(key - kFirstRam) / 2]);
+    fresh.start = key < 16 ? m_.st.w[key] : probed(key, m_.ram[(key - kRamStart) / 2]);
     fresh.now = fresh.start;
     if (key < 16) w_[key] = &fresh;
     for (std::size_t i = 0; i < first_count_; ++i)
@@ -69,7 +67,7 @@ std::uint16_t LoopWalk::constant_w(int reg) {
 }
 
 void LoopWalk::check_stack(std::uint16_t address) const {
-    if (static_cast<std::uint16_t>(address - kFirstRam) > m_.stack_span) fail(Verdict::NotNow);
+    if (static_cast<std::uint16_t>(address - kRamStart) > m_.stack_span) fail(Verdict::NotNow);
 }
 
 /// [Wn] with its modification; the pointer may not move from one iteration to the next.
@@ -101,12 +99,12 @@ LoopWalk::Value LoopWalk::load(std::uint16_t address, bool byte) {
     const auto even = static_cast<std::uint16_t>(address & 0xFFFE);
     if (!byte && even != address) fail(Verdict::NotNow);
     Value word;
-    if (even >= kFirstRam && (even - kFirstRam) / 2 < m_.ram_words) {
+    if (even >= kRamStart && (even - kRamStart) / 2 < m_.ram_words) {
         word = read_cell(even);
-    } else if (even < kFirstRam) {
+    } else if (even < kRamStart) {
         // A register: constant until the next event if nothing happens at a read.
         const bool known = probe_.on ? m_.sfr.quiet(even) : m_.sfr.plain_read(even);
-        if (even < 0x0020 || !known) fail(Verdict::NotNow);
+        if (even < kWEnd || !known) fail(Verdict::NotNow);
         word = {poll(even), 0};
     } else {
         fail(Verdict::NotNow);
@@ -126,7 +124,7 @@ std::uint16_t LoopWalk::poll(std::uint16_t address) {
 
 void LoopWalk::store(std::uint16_t address, Value value, bool byte) {
     const auto even = static_cast<std::uint16_t>(address & 0xFFFE);
-    if ((!byte && even != address) || even < kFirstRam || (even - kFirstRam) / 2 >= m_.ram_words)
+    if ((!byte && even != address) || even < kRamStart || (even - kRamStart) / 2 >= m_.ram_words)
         fail(Verdict::NotNow);
     write_cell(even, byte ? joined(read_cell(even), value, address & 1) : value);
 }

@@ -11,14 +11,7 @@ namespace {
 
 using Word = ServiceShortcut::Word;
 
-/// From the cycle in which the flag is set to the first cycle of the service routine (DS70053, latency).
-constexpr Cycle kLatency = 5;
-/// Overhead of an entry after an instruction that ran longer than the latency.
-constexpr Cycle kEntryOverhead = 4;
-constexpr Cycle kShortestEntry = 2;
-
 constexpr int kMostInstructions = 32;
-constexpr std::uint16_t kEntryBytes = 4;
 
 /// The routine, executed with names for what it finds: registers by their numbers, the stack by offsets.
 class Walk {
@@ -26,7 +19,7 @@ class Walk {
     Walk(const Machine& m, ServiceShortcut& result, int irq) : m_(m), shortcut_(result), irq_(irq) {
         for (std::uint16_t reg = 0; reg < 16; ++reg)
             w_[reg] = {Word::Register, reg};
-        w_[15] = {Word::StackOffset, kEntryBytes};
+        w_[15] = {Word::StackOffset, kExceptionFrame};
         slots_.push_back({0, Word::ReturnLow, 0});
         slots_.push_back({2, Word::ReturnHigh, 0});
     }
@@ -78,7 +71,7 @@ class Walk {
         return slots_.size() <= ServiceShortcut::kMost;
     }
     std::optional<Value> pop() {
-        if (w_[15].kind != Word::StackOffset || w_[15].value <= kEntryBytes) return std::nullopt;
+        if (w_[15].kind != Word::StackOffset || w_[15].value <= kExceptionFrame) return std::nullopt;
         w_[15].value = static_cast<std::uint16_t>(w_[15].value - 2);
         for (const ServiceShortcut::Push& slot : slots_)
             if (slot.offset == w_[15].value) return Value{slot.kind, slot.value};
@@ -145,7 +138,7 @@ class Walk {
     }
 
     bool finish() {
-        if (w_[15] != Value{Word::StackOffset, kEntryBytes} || !flag_cleared_) return false;
+        if (w_[15] != Value{Word::StackOffset, kExceptionFrame} || !flag_cleared_) return false;
         for (std::uint16_t reg = 0; reg < 15; ++reg)
             if (w_[reg] != Value{Word::Register, reg}) return false;
         for (const ServiceShortcut::Push& slot : slots_)
@@ -169,7 +162,7 @@ const ServiceShortcut* service_shortcut(Machine& m, int vector) {
     const auto index = static_cast<std::size_t>(vector);
     if (known.size() <= index) known.resize(index + 1);
     const std::uint32_t table = m.irq.alternate_table() ? m.device.aivt : m.device.ivt;
-    const std::uint32_t handler = m.program[table / 2 + index] & 0x7FFFFE;
+    const std::uint32_t handler = m.program[table / 2 + index] & kProgramSpace;
     if (known[index] && known[index]->handler == handler)
         return known[index]->possible ? &*known[index] : nullptr;
     if (handler / 2 + kMostInstructions >= m.code_words) return nullptr;
@@ -189,13 +182,8 @@ const ServiceShortcut* service_shortcut(Machine& m, int vector) {
     return fresh.possible ? &*known[index] : nullptr;
 }
 
-Cycle service_start(Cycle since, Cycle now) {
-    const Cycle start = since + kLatency;
-    return start < now + kShortestEntry ? now + kEntryOverhead : start;
-}
-
 bool stack_holds(const Machine& m, const ServiceShortcut& shortcut, std::uint16_t stack) {
-    const auto lowest = static_cast<std::uint16_t>(stack - 0x0800);
+    const auto lowest = static_cast<std::uint16_t>(stack - kRamStart);
     return lowest + shortcut.depth <= m.stack_span && lowest / 2 + shortcut.depth / 2 <= m.ram_words;
 }
 
@@ -206,9 +194,8 @@ bool refreshes_hold(const Machine& m, const ServiceShortcut& shortcut) {
 }
 
 void push_trace(Machine& m, const ServiceShortcut& shortcut, const Interrupted& interrupted) {
-    constexpr std::uint32_t kIpl3OnStack = 0x80;
     const std::uint16_t stack = interrupted.w[15];
-    std::uint16_t* const words = m.ram + (stack - 0x0800) / 2;
+    std::uint16_t* const words = m.ram + (stack - kRamStart) / 2;
     for (std::size_t i = 0; i < shortcut.push_count; ++i) {
         const ServiceShortcut::Push& push = shortcut.pushes[i];
         std::uint32_t value = push.value;
@@ -222,11 +209,10 @@ void push_trace(Machine& m, const ServiceShortcut& shortcut, const Interrupted& 
             value = stack + push.value;
             break;
         case Word::ReturnLow:
-            value = interrupted.pc;
+            value = stacked_pc_low(interrupted.pc);
             break;
         case Word::ReturnHigh:
-            value = (interrupted.sr & 0xFFu) << 8 | (m.st.corcon & corcon::IPL3 ? kIpl3OnStack : 0u) |
-                    (interrupted.pc >> 16 & 0x7F);
+            value = stacked_status(interrupted.sr, m.st.corcon, interrupted.pc);
             break;
         }
         words[push.offset / 2] = static_cast<std::uint16_t>(value);

@@ -67,9 +67,6 @@ const ServiceShortcut* service_shortcut(Machine& m, int vector);
 bool refreshes_hold(const Machine& m, const ServiceShortcut& shortcut);
 /// True if it finds room with the stack pointer at `stack`.
 bool stack_holds(const Machine& m, const ServiceShortcut& shortcut, std::uint16_t stack);
-/// Cycle in which the routine's first instruction starts, entered between instructions at cycle `now` for a
-/// flag set at cycle `since`.
-Cycle service_start(Cycle since, Cycle now);
 /// Does what the routine leaves behind.
 void push_trace(Machine& m, const ServiceShortcut& shortcut, const Interrupted& interrupted);
 

@@ -20,7 +20,7 @@ constexpr std::uint8_t kMostPatienceUnknown = 12;
 constexpr std::uint64_t kFewestIterations = 4;
 
 std::uint16_t& word_of(Machine& m, std::uint16_t key) {
-    return key < 16 ? m.st.w[key] : m.ram[(key - 0x0800) / 2];
+    return key < 16 ? m.st.w[key] : m.ram[(key - kRamStart) / 2];
 }
 
 SkipLoops::Branch& branch_at(Machine& m, std::size_t word) {

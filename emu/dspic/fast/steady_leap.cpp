@@ -139,7 +139,7 @@ void fly(const SkipLoops::Plan& plan, const LoopTrace& trace, Leap& leap, Cycle 
 }
 
 std::uint16_t& word(Machine& m, std::uint16_t address) {
-    return m.ram[(address - 0x0800) / 2];
+    return m.ram[(address - kRamStart) / 2];
 }
 
 void repeat_writes(Machine& m, const LoopTrace& trace, std::uint32_t from) {

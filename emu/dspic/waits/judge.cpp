@@ -1,5 +1,6 @@
 #include "emu/dspic/waits/judge.h"
 
+#include "emu/dspic/core/memory_map.h"
 #include "emu/dspic/waits/routines.h"
 #include "emu/dspic/waits/status_bits.h"
 
@@ -9,7 +10,6 @@ namespace puckloop::dspic {
 
 namespace {
 
-constexpr std::uint16_t kFirstRam = 0x0800;
 constexpr int kHighestUser = 7;
 constexpr std::uint16_t kChannelOn = 1u << 15;
 constexpr std::uint16_t kDmaStep = 12;
@@ -26,12 +26,12 @@ class Judge {
 
     /// Why the condition cannot change; nothing if it can.
     std::optional<std::string> stuck(const LoopCondition& condition) const {
-        return condition.address < kFirstRam ? register_stuck(condition) : ram_stuck(condition.address);
+        return condition.address < kRamStart ? register_stuck(condition) : ram_stuck(condition.address);
     }
 
     std::string text(const LoopCondition& condition) const {
         const RegisterInfo* info =
-            condition.address < kFirstRam ? chip_.sfr.info(condition.address) : nullptr;
+            condition.address < kRamStart ? chip_.sfr.info(condition.address) : nullptr;
         if (info == nullptr) return fmt::format("RAM 0x{:04x}", condition.address);
         return register_text(*info, condition.exact ? condition.mask : std::uint16_t{0xFFFF});
     }

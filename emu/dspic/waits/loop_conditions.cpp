@@ -9,8 +9,7 @@ namespace puckloop::dspic {
 
 namespace {
 
-constexpr int kMostSteps = 20'000;  ///< delays between two looks are walked through as well
-constexpr std::uint16_t kFirstRam = 0x0800;
+constexpr int kMostSteps = 20'000;        ///< delays between two looks are walked through as well
 constexpr int kLargestFrame = 256;        ///< bytes; beyond it W14 is no frame pointer
 constexpr std::uint16_t kFewValues = 32;  ///< a compared word is tried with these
 constexpr std::uint64_t kForever = std::numeric_limits<std::int64_t>::max();
@@ -44,7 +43,7 @@ class Finder {
             try_word(plan.polled[i].address, plan.polled[i].value, finding);
         for (std::size_t i = 0; i < plan.count; ++i) {
             const SkipLoops::Cell& cell = plan.cells[i];
-            if (cell.key < kFirstRam || !cell.carried || cell.step != 0 || is_local(cell.key)) continue;
+            if (cell.key < kRamStart || !cell.carried || cell.step != 0 || is_local(cell.key)) continue;
             try_word(cell.key, static_cast<std::uint16_t>(cell.start), finding);
         }
         return finding;

@@ -1,6 +1,7 @@
 #include "emu/dspic/waits/routines.h"
 
 #include "emu/dspic/core/isa.h"
+#include "emu/dspic/core/memory_map.h"
 
 #include <set>
 #include <vector>
@@ -10,7 +11,6 @@ namespace puckloop::dspic {
 namespace {
 
 constexpr std::size_t kMostWords = 20'000;
-constexpr std::uint32_t kProgramSpace = 0x7FFFFE;
 
 bool reads_only(const Form& form) {
     return form.mnemonic.starts_with("CP") || form.mnemonic.starts_with("MUL") ||

@@ -74,7 +74,7 @@ const Op* branch_back(Machine& m, const Op* op) {
 template <If Condition>
 void bind_branch(Op& op, const Form& form, std::uint32_t word, std::uint32_t pc) {
     const int offset = static_cast<std::int16_t>(form.field('n', word));
-    op.target = static_cast<std::uint32_t>(static_cast<int>(pc) + 2 + 2 * offset) & 0x7FFFFE;
+    op.target = static_cast<std::uint32_t>(static_cast<int>(pc) + 2 + 2 * offset) & kProgramSpace;
     constexpr int kFarthest = -64;
     op.may_skip = offset < 0 && offset >= kFarthest;
     op.base = op.may_skip ? &branch_back<Condition> : &branch<Condition>;
@@ -86,13 +86,13 @@ void push_return(Machine& m, std::uint32_t address) {
     push(m, static_cast<std::uint16_t>(address >> 16));
 }
 std::uint32_t pop_return(Machine& m) {
-    const std::uint32_t high = pop(m) & 0x7F;
-    return high << 16 | (pop(m) & 0xFFFE);
+    const std::uint16_t high = pop(m);
+    return stacked_pc(pop(m), high);
 }
 
 const Op* branch_w(Machine& m, const Op* op) {
     const int offset = static_cast<std::int16_t>(m.st.w[op->s]);
-    return at(m, static_cast<std::uint32_t>(static_cast<int>(op->target) + 2 * offset) & 0x7FFFFE);
+    return at(m, static_cast<std::uint32_t>(static_cast<int>(op->target) + 2 * offset) & kProgramSpace);
 }
 const Op* goto_w(Machine& m, const Op* op) {
     return at(m, m.st.w[op->s] & 0xFFFEu);
@@ -110,7 +110,7 @@ const Op* call_w(Machine& m, const Op* op) {
 const Op* rcall_w(Machine& m, const Op* op) {
     const int offset = static_cast<std::int16_t>(m.st.w[op->s]);
     push_return(m, op->target);
-    return at(m, static_cast<std::uint32_t>(static_cast<int>(op->target) + 2 * offset) & 0x7FFFFE);
+    return at(m, static_cast<std::uint32_t>(static_cast<int>(op->target) + 2 * offset) & kProgramSpace);
 }
 const Op* return_to(Machine& m, std::uint32_t address) {
     if (m.eligible) --m.st.cycle;
@@ -129,15 +129,14 @@ const Op* return_literal(Machine& m, const Op* op) {
 const Op* return_from_interrupt(Machine& m, const Op*) {
     const std::uint16_t high = pop(m);
     const std::uint16_t low = pop(m);
-    constexpr std::uint16_t kIpl3OnStack = 0x80;
     m.st.sr = static_cast<std::uint16_t>((m.st.sr & 0xFF00) | high >> 8);
     m.st.corcon =
-        static_cast<std::uint16_t>((m.st.corcon & ~corcon::IPL3) | (high & kIpl3OnStack ? corcon::IPL3 : 0));
+        static_cast<std::uint16_t>((m.st.corcon & ~corcon::IPL3) | (high & kStackedIpl3 ? corcon::IPL3 : 0));
     m.eligible = false;
     reconsider(m, m.st.cycle + 1);
     m.repeat_first = true;  // RA may have come back
     m.limit = 0;
-    return return_to(m, std::uint32_t{high & 0x7Fu} << 16 | (low & 0xFFFEu));
+    return return_to(m, stacked_pc(low, high));
 }
 
 constexpr std::uint16_t kCountMask = 0x3FFF;
@@ -204,7 +203,7 @@ const Op* software_reset(Machine& m, const Op* op) {
 bool bind_flow(Op& op, const Form& form, std::uint32_t word, std::uint32_t word2, std::uint32_t pc) {
     const auto relative = [&](std::uint32_t field, std::uint32_t from) {
         const int offset = static_cast<std::int16_t>(field);
-        return static_cast<std::uint32_t>(static_cast<int>(from) + 2 * offset) & 0x7FFFFE;
+        return static_cast<std::uint32_t>(static_cast<int>(from) + 2 * offset) & kProgramSpace;
     };
     const auto far_target = [&] { return form.field2('n', word2) << 16 | form.field('n', word) << 1; };
     if (form.has_field('s')) op.s = static_cast<std::uint8_t>(form.field('s', word));

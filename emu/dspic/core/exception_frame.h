@@ -1,0 +1,41 @@
+#pragma once
+// Exception entry as far as others need its figures: what the processor stacks, and when the service routine
+// begins. Source: dsPIC30F Family Reference Manual, sections 6 (interrupt latency) and 2 (stack).
+
+#include "emu/dspic/core/core_state.h"
+
+#include <cstdint>
+
+namespace puckloop::dspic {
+
+/// Bytes that an exception pushes: PC<15:0>, then SR<7:0>, IPL3 and PC<22:16>.
+inline constexpr std::uint16_t kExceptionFrame = 4;
+/// CORCON<IPL3> in the second word.
+inline constexpr std::uint16_t kStackedIpl3 = 0x80;
+/// PC<22:16> in the second word, of exceptions and calls alike.
+inline constexpr std::uint16_t kStackedPcHigh = 0x7F;
+
+inline constexpr std::uint16_t stacked_pc_low(std::uint32_t pc) {
+    return static_cast<std::uint16_t>(pc);
+}
+inline constexpr std::uint16_t stacked_status(std::uint16_t sr, std::uint16_t corcon, std::uint32_t pc) {
+    return static_cast<std::uint16_t>((sr & 0xFFu) << 8 | (corcon & corcon::IPL3 ? kStackedIpl3 : 0u) |
+                                      (pc >> 16 & kStackedPcHigh));
+}
+/// The program address in a stacked pair of words; bit 0 does not exist.
+inline constexpr std::uint32_t stacked_pc(std::uint16_t low, std::uint16_t high) {
+    return (high & std::uint32_t{kStackedPcHigh}) << 16 | (low & 0xFFFEu);
+}
+
+/// First cycle of the service routine of an exception entered between instructions at cycle `now`, its flag
+/// set at cycle `since`: five cycles after the flag; at least four after an instruction that ran on for
+/// longer than three of them.
+inline constexpr Cycle service_start(Cycle since, Cycle now) {
+    constexpr Cycle kLatency = 5;
+    constexpr Cycle kEntryOverhead = 4;
+    constexpr Cycle kShortestEntry = 2;
+    const Cycle start = since + kLatency;
+    return start < now + kShortestEntry ? now + kEntryOverhead : start;
+}
+
+}  // namespace puckloop::dspic
