@@ -421,6 +421,53 @@ TEST_CASE("loops that only wait are leapt over together with service routines wi
     }
 }
 
+TEST_CASE("service routines of any instructions are taken in one step only where that is exact") {
+    RandomStream random(4, "service routines");
+    const auto pick = [&](std::initializer_list<const char*> choice) -> std::string {
+        return choice.begin()[random.below(choice.size())];
+    };
+    for (int round = 0; round < 200; ++round) {
+        std::string isr = "isr:    push.d w0\n        push.d w2\n        lnk #" +
+                          std::to_string(2 * random.below(4)) + "\n";
+        const auto lines = 1 + random.below(5);
+        for (std::uint64_t line = 0; line < lines; ++line)
+            isr += "        " +
+                   pick({"mov #2, w0\n        mov w0, 0x0da",
+                         "mov #0x0DA, w1\n        mov #2, w2\n        mov w2, [w1]",
+                         "mov #6, w0\n        and w0, #3, w0\n        mov w0, 0x0da",
+                         "mov w4, [w15++]\n        mov [--w15], w3",
+                         "mov #5, w0\n        bset w0, #4\n        btss w0, #4\n        inc w13, w13",
+                         "rcall leaf",
+                         "mov #1, w2\n        sl w2, #1, w2\n        mov w2, 0x0da",
+                         "mov w15, w2\n        mov w3, [w2]",
+                         "mov w5, [w14]\n        mov [w14], w2",
+                         "mov [w14-2], w3",
+                         "mov [w15-14], w3",
+                         "mov #3, w0\n        mov.b wreg, 0x0da",
+                         "add w0, #1, w0",
+                         "mov #7, w1\n        exch w1, w2",
+                         "mov #0x1234, w0\n        swap w0",
+                         "clr w0\n        mov w0, [w15]",
+                         "clrwdt",
+                         "mov 0x0da, w0",
+                         "bset 0x0da, #1",
+                         "mov #4, w1\n        mul.uu w1, #3, w2",
+                         "bra skip",
+                         "setm w1\n        nop"}) +
+                   "\n";
+        if (isr.find("bra skip") != std::string::npos) isr += "        mov #9, w0\nskip:\n";
+        if (isr.find("bra skip") != isr.rfind("bra skip")) continue;
+        isr += "        bclr 0x84, #3\n        ulnk\n        pop.d w2\n        pop.d w0\n        retfie\n"
+               "leaf:   lnk #2\n        mov w1, [w14]\n        ulnk\n        return\n";
+        const std::string loop =
+            "again:  mov #0x0C00, w1\nwait:   mov [w1], w0\n        cp0 w0\n        bra nz, done\n"
+            "        bra wait\ndone:   inc w12, w12\n        bra again\n";
+        const Cycle periods[] = {61, 113, 331, 1474};
+        compare_steady(kHead + "        mov #2, w0\n        mov w0, 0x0da\n        clr 0x0C00\n" + loop + isr,
+                       40'000, periods[random.below(4)], static_cast<std::uint64_t>(round));
+    }
+}
+
 TEST_CASE("waiting under a steady beat really is skipped") {
     Rig rig(kHead + "again:  rcall look\n        cp0.b w0\n        bra z, again\n        bra done\n" +
             "look:   lnk #2\n        mov.b 0x0d8, wreg\n        ulnk\n        return\n" + kTracelessTail);

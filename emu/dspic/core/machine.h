@@ -27,6 +27,9 @@ using Handler = const Op* (*)(Machine& m, const Op* op);
 /// How an operand is reached, fixed when the word is decoded.
 enum class Ea : std::uint8_t { Direct, Literal, Indirect, Offset };
 
+/// The form of words that are no instruction.
+inline constexpr FormId kNoForm{0xFF};
+
 /// One program word, ready to run. `run` is decode_now() until the word is first reached.
 struct Op {
     Handler run = nullptr;     ///< what the loop calls
@@ -42,7 +45,7 @@ struct Op {
     std::uint8_t cycles = 1;
     std::uint8_t psv_extra = 0;
     std::uint8_t marks = 0;  ///< kStop, kLoopEnd
-    FormId form = FormId::NOP;
+    FormId form = kNoForm;
     Ea source = Ea::Literal;  ///< how the source operand is reached (for skip_loops.cpp)
     Ea destination = Ea::Literal;
     bool byte = false;

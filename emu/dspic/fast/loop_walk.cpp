@@ -1,6 +1,8 @@
-// One iteration, walked twice: the frame around loop_walk_values.cpp and loop_walk_execute.cpp.
+// One iteration, walked twice.
 
 #include "emu/dspic/fast/loop_walk.h"
+
+#include "emu/dspic/core/execute/semantics.h"
 
 #include <algorithm>
 #include <limits>
@@ -33,6 +35,20 @@ void LoopWalk::walk(const Op* branch, const Op* head) {
         op = next;
     }
     fail(Verdict::NotNow);
+}
+
+/// Only what the interpreter could execute next, with the pointers' hazards.
+void LoopWalk::hazards(const Op* op) {
+    if (op->run == &decode_now || op->marks != 0) fail(Verdict::NotNow);
+    if (op->uses & m_.watch & 0xFFFF0000) fail(Verdict::NotNow);
+    if (op->uses & watch_) ++plan_.cycles;
+    watch_ = op->writes;
+}
+
+const Op* LoopWalk::execute(const Op* op) {
+    const Op* next = execute_in<AffineDomain>(*this, op);
+    if (!next) fail(Verdict::Unknown);
+    return next;
 }
 
 void LoopWalk::record(const Op* op) {

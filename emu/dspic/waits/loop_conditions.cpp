@@ -14,12 +14,6 @@ constexpr int kLargestFrame = 256;        ///< bytes; beyond it W14 is no frame 
 constexpr std::uint16_t kFewValues = 32;  ///< a compared word is tried with these
 constexpr std::uint64_t kForever = std::numeric_limits<std::int64_t>::max();
 
-bool chooses(const Op* op) {
-    const bool branches = op->form >= FormId::BRA_OV_Expr && op->form <= FormId::BRA_GTU_Expr;
-    return branches || op->form == FormId::BTSS_f_bit4 || op->form == FormId::BTSC_f_bit4 ||
-           op->form == FormId::BTSS_Ws_bit4 || op->form == FormId::BTSC_Ws_bit4;
-}
-
 class Finder {
   public:
     Finder(const Machine& m, const Op* branch, const Op* head) : m_(m), branch_(branch), head_(head) {}
@@ -32,12 +26,9 @@ class Finder {
         finding.first = m_.pc_of(head_);
         finding.last = m_.pc_of(branch_);
         finding.ends = plan_.iterations < kForever;
-        bool chooses_any = false;
-        for (const LoopTrace::Boundary& boundary : trace.boundaries) {
+        for (const LoopTrace::Boundary& boundary : trace.boundaries)
             path_.push_back(boundary.op);
-            chooses_any |= chooses(boundary.op);
-        }
-        if (!chooses_any) return finding;
+        if (!walk.chose()) return finding;
         const SkipLoops::Plan plan = plan_;  // the walks to come overwrite it
         for (std::size_t i = 0; i < plan.polled_count; ++i)
             try_word(plan.polled[i].address, plan.polled[i].value, finding);

@@ -3,33 +3,11 @@
 // the first step latches the dividend there and the last computes the result, so an interrupt between two
 // steps is safe under the same rules as on silicon (W0, W1, divisor and RCOUNT preserved).
 
-#include "emu/dspic/core/machine.h"
+#include "emu/dspic/core/execute/products.h"
 
 namespace puckloop::dspic {
 
 namespace {
-
-template <bool SignedB, bool SignedS, Ea Source>
-const Op* multiply(Machine& m, const Op* op) {
-    const std::uint16_t b = m.st.w[op->b];
-    const std::uint16_t s = source<false, Source>(m, op);
-    const std::int64_t left = SignedB ? static_cast<std::int16_t>(b) : static_cast<std::int64_t>(b);
-    const std::int64_t right = SignedS ? static_cast<std::int16_t>(s) : static_cast<std::int64_t>(s);
-    const auto product = static_cast<std::uint32_t>(left * right);
-    set_w(m, op->d, product & 0xFFFF);
-    set_w(m, op->d + 1, product >> 16);
-    return op + 1;
-}
-const Op* multiply_file_word(Machine& m, const Op* op) {
-    const std::uint32_t product = std::uint32_t{read16(m, op->k)} * m.st.w[0];
-    set_w(m, 2, product & 0xFFFF);
-    set_w(m, 3, product >> 16);
-    return op + 1;
-}
-const Op* multiply_file_byte(Machine& m, const Op* op) {
-    set_w(m, 2, std::uint32_t{read8(m, op->k)} * (m.st.w[0] & 0xFFu));
-    return op + 1;
-}
 
 /// REPEAT #17 gives eighteen steps; RCOUNT counts 17 down to 0.
 constexpr std::uint16_t kFirstStep = 17;
@@ -102,13 +80,6 @@ Handler division(FormId id) {
     }
 }
 
-template <bool SignedB, bool SignedS>
-Handler pick(Ea from) {
-    if (from == Ea::Literal) return &multiply<SignedB, SignedS, Ea::Literal>;
-    if (from == Ea::Direct) return &multiply<SignedB, SignedS, Ea::Direct>;
-    return &multiply<SignedB, SignedS, Ea::Indirect>;
-}
-
 }  // namespace
 
 bool bind_multiply(Op& op, const Form& form, std::uint32_t word) {
@@ -121,45 +92,7 @@ bool bind_multiply(Op& op, const Form& form, std::uint32_t word) {
         op.base = step;
         return true;
     }
-    if (form.id == FormId::MUL_f) {
-        const bool byte = form.field('B', word) != 0;
-        op.k = static_cast<std::uint16_t>(form.field('f', word));
-        sets(op, 2);
-        if (!byte) sets(op, 3);
-        op.base = byte ? &multiply_file_byte : &multiply_file_word;
-        return true;
-    }
-    bool signed_b = false;
-    bool signed_s = false;
-    switch (form.id) {
-    case FormId::MUL_SS_Wb_Ws_Wnd:
-        signed_b = signed_s = true;
-        break;
-    case FormId::MUL_SU_Wb_lit5_Wnd:
-    case FormId::MUL_SU_Wb_Ws_Wnd:
-        signed_b = true;
-        break;
-    case FormId::MUL_US_Wb_Ws_Wnd:
-        signed_s = true;
-        break;
-    case FormId::MUL_UU_Wb_lit5_Wnd:
-    case FormId::MUL_UU_Wb_Ws_Wnd:
-        break;
-    default:
-        return false;
-    }
-    op.b = static_cast<std::uint8_t>(form.field('w', word));
-    op.d = static_cast<std::uint8_t>(form.field('d', word));
-    Ea from = Ea::Literal;
-    if (form.has_field('p'))
-        from = bind_source(op, form, word, 'p', 2);
-    else
-        op.k = static_cast<std::uint16_t>(form.field('k', word));
-    sets(op, op.d);
-    sets(op, op.d + 1);
-    op.base = signed_b ? (signed_s ? pick<true, true>(from) : pick<true, false>(from))
-                       : (signed_s ? pick<false, true>(from) : pick<false, false>(from));
-    return true;
+    return with_product(form.id, [&](auto semantics) { semantics.bind(op, form, word); });
 }
 
 }  // namespace puckloop::dspic

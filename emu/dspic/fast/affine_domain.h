@@ -1,0 +1,151 @@
+#pragma once
+// The domain of the loop walk (core/execute/words.h says what a domain is): a value is v + step * n after n
+// iterations of the loop, and holds for every n up to a bound that each use may lower. Memory and registers
+// are cells; a register of a module is a constant that the plan polls. What cannot be followed ends the walk.
+
+#include "emu/dspic/core/execute/shape.h"
+#include "emu/dspic/fast/skip_loops.h"
+
+#include <array>
+
+namespace puckloop::dspic {
+
+class AffineDomain {
+  public:
+    /// Unknown: an instruction that no walk will ever follow. NotNow: this state does not allow it.
+    enum class Verdict : std::uint8_t { Pure, NotNow, Unknown };
+    /// Thrown where the walk ends.
+    struct Stop {
+        Verdict verdict;
+    };
+    [[noreturn]] static void fail(Verdict verdict) { throw Stop{verdict}; }
+
+    /// A walk that only looks on (waits/): it may read registers whose reads have side effects, goes on for
+    /// longer, and may take one word to hold something else than it does.
+    struct Probe {
+        bool on = false;
+        int most_steps = 200;
+        std::int32_t address = -1;  ///< of a register or RAM word; -1: none
+        std::uint16_t flip = 0;     ///< bits of it to invert
+    };
+
+    /// Within its width for every n up to the bound found so far.
+    struct Value {
+        std::int32_t v = 0;
+        std::int32_t step = 0;
+    };
+    using Address = std::uint16_t;
+
+    static Value value(std::uint32_t number) { return {static_cast<std::int32_t>(number), 0}; }
+    static std::uint32_t word(Value value);
+    static Address address(std::uint16_t number) { return number; }
+    static Value complement(bool byte, Value value) {
+        return {static_cast<std::int32_t>(ones(byte)) - value.v, -value.step};
+    }
+
+    // Registers.
+    Value whole(int reg) { return read_cell(static_cast<std::uint16_t>(reg)); }
+    void set_whole(int reg, Value value);
+    Value part(int reg, bool byte) { return byte ? half(whole(reg), false) : whole(reg); }
+    void put(int reg, bool byte, Value value) {
+        set_whole(reg, byte ? joined(whole(reg), value, false) : value);
+    }
+
+    // Memory: addresses may not change from one iteration to the next.
+    Value load(Address at, bool byte);
+    void store(Address at, bool byte, Value value);
+    template <class Change>
+    void change(Address at, bool byte, Change change) {
+        store(at, byte, change(load(at, byte)));
+    }
+    static Address next_word(Address at) { return static_cast<Address>(at + 2); }
+    Address source_ea(const Op* op, bool) { return step_pointer(op->s, op->s_pre, op->s_post); }
+    Address destination_ea(const Op* op, bool) { return step_pointer(op->d, op->d_pre, op->d_post); }
+    Address displaced(int reg, std::uint16_t literal, bool perhaps_stack);
+    void push(Value value) { store(step_pointer(15, 0, 2), false, value); }
+    Value pop() { return load(step_pointer(15, -2, 0), false); }
+    static Value plus(Value value, std::uint16_t offset) {
+        return {static_cast<std::uint16_t>(word(value) + offset), 0};
+    }
+
+    template <class Shape>
+    Value source(const Op* op, Shape shape) {
+        if (shape.source == Ea::Literal) return value(op->k & ones(shape.byte));
+        if (shape.source == Ea::Direct) return part(op->s, shape.byte);
+        return load(shape.source == Ea::Indirect ? source_ea(op, shape.byte) : indexed(op->s, op->b),
+                    shape.byte);
+    }
+    template <class Shape>
+    void destination(const Op* op, Shape shape, Value value) {
+        if (shape.destination == Ea::Direct) return put(op->d, shape.byte, value);
+        const bool plain = shape.destination == Ea::Indirect;
+        store(plain ? destination_ea(op, shape.byte) : indexed(op->d, op->b), shape.byte, value);
+    }
+
+    // Flags. One that the loop has not set yet is not known.
+    bool c() const { return known(c_); }
+    bool z() const { return known(z_); }
+    bool n() const { return known(n_); }
+    bool ov() const { return known(ov_); }
+    bool dc() const { fail(Verdict::Unknown); }
+    bool accumulator(std::uint16_t) const { fail(Verdict::Unknown); }
+    void set_c(bool on) { c_ = {true, on}; }
+    void set_z(bool on) { z_ = {true, on}; }
+    Value add(bool byte, bool sticky, Value a, Value b, bool carry);
+    Value logic(bool byte, std::uint32_t result) { return moved(byte, value(result & ones(byte))); }
+    Value shifted(bool byte, std::uint32_t result, bool out) {
+        set_c(out);
+        return logic(byte, result);
+    }
+    Value moved(bool byte, Value value);
+
+    // Flow.
+    std::uint32_t pc_of(const Op* op) const { return m_.pc_of(op); }
+    const Op* go(std::uint32_t pc) const;
+    const Op* branch(const Op* op, bool conditional);
+    void decides() { chose_ = true; }
+    const Op* skip_if(const Op* op, bool condition);
+    const Op* return_to(std::uint32_t pc) const { return go(pc); }
+    void clear_watchdog() { plan_.clears_watchdog = true; }
+
+  protected:
+    AffineDomain(const Machine& m, SkipLoops::Plan& plan, LoopTrace& trace, const Probe& probe)
+        : m_(m), plan_(plan), trace_(trace), probe_(probe) {}
+
+    struct Flag {
+        bool known = false;
+        bool value = false;
+    };
+    static bool known(const Flag& flag);
+    /// Lowers the bound so that value + step * n stays within [low, high]; it is there for n = 0.
+    void hold(std::int64_t value, std::int64_t step, std::int64_t low, std::int64_t high);
+
+    const Machine& m_;
+    SkipLoops::Plan& plan_;
+    LoopTrace& trace_;
+    Probe probe_;
+    std::array<SkipLoops::Cell*, 16> w_{};                              ///< the W registers among the cells
+    std::array<SkipLoops::Cell, SkipLoops::Plan::kMostCells> first_{};  ///< what the first walk found
+    std::size_t first_count_ = 0;                                       ///< 0: this is the first walk
+    std::uint64_t bound_ = 0;
+    bool chose_ = false;
+    Flag c_, z_, n_, ov_;
+
+  private:
+    SkipLoops::Cell& cell(std::uint16_t key);
+    Value read_cell(std::uint16_t key);
+    void write_cell(std::uint16_t key, Value value);
+    void note_access(std::uint16_t address, std::int32_t value, bool write);
+    bool is_ram(Address even) const { return even >= kRamStart && (even - kRamStart) / 2 < m_.ram_words; }
+    Address step_pointer(int reg, int pre, int post);
+    Address indexed(int reg, int index);
+    void check_stack(Address at) const;
+    std::uint16_t poll(Address at);
+    std::uint16_t probed(Address at, std::uint16_t value) const {
+        return at == probe_.address ? value ^ probe_.flip : value;
+    }
+    Value half(Value word, bool high);
+    Value joined(Value word, Value byte, bool high);
+};
+
+}  // namespace puckloop::dspic

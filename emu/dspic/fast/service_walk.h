@@ -1,0 +1,116 @@
+#pragma once
+// The walk through a service routine (service_shortcut.h). Its domain (core/execute/words.h says what that
+// is) has names for what the routine finds: registers by their numbers, the stack by offsets from the
+// interrupted stack pointer, constants. It leaves by an exception where the routine does more than a shortcut
+// can say.
+
+#include "emu/dspic/core/execute/shape.h"
+#include "emu/dspic/fast/service_shortcut.h"
+
+#include <array>
+#include <vector>
+
+namespace puckloop::dspic {
+
+class ServiceWalk {
+  public:
+    using Word = ServiceShortcut::Word;
+    struct Value {
+        Word kind{};
+        std::uint16_t value = 0;
+        bool operator==(const Value&) const = default;
+    };
+    using Address = Value;
+    /// Thrown: the routine has no shortcut.
+    struct Stop {};
+    enum class End : std::uint8_t { Done, NotYet, Never };
+
+    ServiceWalk(const Machine& m, ServiceShortcut& result, int irq);
+    /// Walks from the routine's first instruction to RETFIE. NotYet: parts of it were never executed.
+    End run(const Op* op);
+
+    static Value value(std::uint32_t number) { return {Word::Constant, static_cast<std::uint16_t>(number)}; }
+    static std::uint32_t word(Value value);
+    static Address address(std::uint16_t number) { return value(number); }
+    static Value complement(bool byte, Value operand) { return value(word(operand) ^ ones(byte)); }
+
+    Value whole(int reg) const { return w_[static_cast<std::size_t>(reg)]; }
+    void set_whole(int reg, Value value);
+    Value part(int reg, bool byte) const { return byte ? value(word(whole(reg)) & 0xFF) : whole(reg); }
+    void put(int reg, bool byte, Value operand) {
+        set_whole(reg, byte ? value((word(whole(reg)) & 0xFF00) | (word(operand) & 0xFF)) : operand);
+    }
+
+    Value load(Address at, bool byte) const;
+    void store(Address at, bool byte, Value value);
+    /// Only the routine's own interrupt flag may be changed, and only cleared.
+    template <class Change>
+    void change(Address at, bool byte, Change change) {
+        // Every bit of the result hangs on the same bit of the operand alone.
+        const std::uint32_t set = word(change(value(0))) & ones(byte);
+        const std::uint32_t cleared = ~word(change(value(ones(byte)))) & ones(byte);
+        clear_flag(at, byte, set, cleared);
+    }
+    static Address next_word(Address at) { return plus(at, 2); }
+    Address source_ea(const Op* op, bool) { return step_pointer(op->s, op->s_pre, op->s_post); }
+    Address destination_ea(const Op* op, bool) { return step_pointer(op->d, op->d_pre, op->d_post); }
+    Address displaced(int reg, std::uint16_t literal, bool) const { return plus(whole(reg), literal); }
+    void push(Value value) { store(step_pointer(15, 0, 2), false, value); }
+    Value pop() { return load(step_pointer(15, -2, 0), false); }
+    static Value plus(Value value, std::uint16_t offset);
+
+    template <class Shape>
+    Value source(const Op* op, Shape shape) {
+        if (shape.source == Ea::Literal) return value(op->k & ones(shape.byte));
+        if (shape.source == Ea::Direct) return part(op->s, shape.byte);
+        return load(shape.source == Ea::Indirect ? source_ea(op, shape.byte) : indexed(op->s, op->b),
+                    shape.byte);
+    }
+    template <class Shape>
+    void destination(const Op* op, Shape shape, Value value) {
+        if (shape.destination == Ea::Direct) return put(op->d, shape.byte, value);
+        const bool plain = shape.destination == Ea::Indirect;
+        store(plain ? destination_ea(op, shape.byte) : indexed(op->d, op->b), shape.byte, value);
+    }
+
+    // Flags are not followed: RETFIE brings back SR<7:0>, so setting them leaves nothing behind, except DC,
+    // which the adder sets and which is not stacked.
+    bool c() const { throw Stop{}; }
+    bool z() const { throw Stop{}; }
+    bool n() const { throw Stop{}; }
+    bool ov() const { throw Stop{}; }
+    bool dc() const { throw Stop{}; }
+    bool accumulator(std::uint16_t) const { throw Stop{}; }
+    void set_c(bool) {}
+    void set_z(bool) {}
+    Value add(bool, bool, Value, Value, bool) { throw Stop{}; }
+    Value logic(bool byte, std::uint32_t result) { return value(result & ones(byte)); }
+    Value shifted(bool byte, std::uint32_t result, bool) { return value(result & ones(byte)); }
+    Value moved(bool, Value value) { return value; }
+
+    std::uint32_t pc_of(const Op* op) const { return m_.pc_of(op); }
+    const Op* go(std::uint32_t pc) const;
+    const Op* branch(const Op* op, bool conditional);
+    void decides() {}
+    const Op* skip_if(const Op* op, bool condition);
+    const Op* return_to(std::uint32_t pc) const { return go(pc); }
+    void clear_watchdog() { throw Stop{}; }
+
+  private:
+    Address step_pointer(int reg, int pre, int post);
+    Address indexed(int reg, int index) const;
+    void clear_flag(Address at, bool byte, std::uint32_t set, std::uint32_t cleared);
+    void refresh(std::uint16_t address, std::uint16_t value);
+    void reach(std::uint32_t depth);
+    bool restored() const;
+    End walk(const Op* op);
+
+    const Machine& m_;
+    ServiceShortcut& shortcut_;
+    int irq_;
+    std::array<Value, 16> w_{};
+    std::vector<ServiceShortcut::Push> slots_;
+    bool flag_cleared_ = false;
+};
+
+}  // namespace puckloop::dspic
