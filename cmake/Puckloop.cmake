@@ -13,6 +13,12 @@ if(PUCKLOOP_ASAN)
   target_link_options(puckloop_options INTERFACE -fsanitize=address,undefined)
 endif()
 
+option(PUCKLOOP_TSAN "Build with the thread sanitizer" OFF)
+if(PUCKLOOP_TSAN)
+  target_compile_options(puckloop_options INTERFACE -fsanitize=thread -fno-omit-frame-pointer -Wno-tsan)
+  target_link_options(puckloop_options INTERFACE -fsanitize=thread)
+endif()
+
 # puckloop_library(NAME SOURCES a.cpp b.cpp [LINK libraries...])
 function(puckloop_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
