@@ -161,6 +161,7 @@ void IrFrames::write(const Frame& frame, std::size_t receiver) {
 }
 
 std::string IrFrames::finish() {
+    settle();
     for (std::size_t i = 0; i < senders_.size(); ++i)
         if (senders_[i].lit) edge(senders_[i].run_start, i, false);  // cut off: ends where it was last seen
     close_until(cosim::kNever);

@@ -36,6 +36,21 @@ class IrFrames {
     /// Ends all frames; returns the report: an array, one object a receiver.
     std::string finish();
 
+    /// What was counted, without the rows: they are kept back from mark() on, as CsvFile does.
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(senders_, counts_, past_);
+    }
+    void mark() {
+        if (csv_) csv_->mark();
+    }
+    void rewind() {
+        if (csv_) csv_->rewind();
+    }
+    void settle() {
+        if (csv_) csv_->settle();
+    }
+
   private:
     struct Heard {
         float level = 0.0F, carrier = 0.0F;
@@ -46,12 +61,22 @@ class IrFrames {
         std::size_t sender = 0;
         cosim::Time start = 0, end = cosim::kNever;  // first and last light
         std::vector<Heard> at;
+
+        template <class Archive>
+        void state(Archive& archive) {
+            archive(sender, start, end, at);
+        }
     };
     struct Sender {
         std::optional<Frame> frame;
         cosim::Time run_start = 0;   // of the present or last stretch of light
         cosim::Time run_before = 0;  // end of the one before
         bool lit = false;
+
+        template <class Archive>
+        void state(Archive& archive) {
+            archive(frame, run_start, run_before, lit);
+        }
     };
     struct Count {
         std::uint64_t frames = 0, heard = 0, overlapped = 0, own_heard = 0;

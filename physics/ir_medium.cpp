@@ -64,6 +64,8 @@ void IrMedium::find_mirrors() {
 }
 
 void IrMedium::set_out(std::size_t index, bool out) {
+    note_body(index);
+    undo_.mirrors = true;
     moving_[index].height = out ? 0.0 : heights_[index];
     if (board_of_[index] < boards_.size()) boards_[board_of_[index]].out = out;
     find_mirrors();
@@ -71,6 +73,7 @@ void IrMedium::set_out(std::size_t index, bool out) {
 }
 
 void IrMedium::set_shape(bool fixed, std::size_t index, const Shape& shape) {
+    note_shapes();
     auto& shapes = fixed ? fixed_ : added_;
     if (shapes.size() <= index) shapes.resize(index + 1);
     shapes[index] = shape;
@@ -85,6 +88,7 @@ bool IrMedium::can_hear(std::size_t board) const {
 }
 
 void IrMedium::move(std::size_t index, double x, double y, double heading) {
+    note_body(index);
     moving_[index].place(x, y, heading);
     if (board_of_[index] < boards_.size()) boards_[board_of_[index]].model.place(x, y, heading);
     ++changes_;
@@ -171,6 +175,7 @@ void IrMedium::draw_noise(std::size_t sender, double seconds) {
 }
 
 void IrMedium::begin_burst(std::size_t board, double seconds) {
+    note_row(board);
     draw_noise(board, seconds);
     boards_[board].lit_mask = 0;
     if (boards_[board].coupled_at != changes_) boards_[board].coupled_at = 0;
@@ -188,8 +193,12 @@ bool IrMedium::relight(std::size_t board) {
     Board& from = boards_[board];
     if (from.mask == 0) return false;
     const bool anew = from.coupled_at == 0;
-    if (anew) couple_row(board);
+    if (anew) {
+        note_row(board);
+        couple_row(board);
+    }
     if (from.mask == from.lit_mask) return false;
+    note_light(board);
     from.lit_mask = from.mask;
     for (std::size_t r = 0; r < boards_.size(); ++r) {
         Path& to = path(board, r);

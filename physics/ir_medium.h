@@ -13,6 +13,8 @@
 #include "physics/ir_fate.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -74,6 +76,20 @@ class IrMedium {
     /// Between the robots' bodies, m.
     double distance(std::size_t a, std::size_t b) const;
 
+    /// What boards are set to, for a checkpoint. Paths, places and shapes, which are many and of which few
+    /// change in a short time, stay out of it: from mark() on they are noted before they change, rewind(),
+    /// called before the checkpoint is read, takes them back; the mark stays until settle().
+    template <class Archive>
+    void state(Archive& archive) {
+        for (Board& board : boards_)
+            archive(board.mask, board.lit_mask, board.potentiometer, board.carrier_hz, board.coupled_at,
+                    board.out);
+        archive(changes_);
+    }
+    void mark();
+    void rewind();
+    void settle() { undo_.on = false; }
+
   private:
     struct Board {
         std::string name;
@@ -93,6 +109,40 @@ class IrMedium {
         IrFate fate;
         std::size_t turn = 0;  ///< of the present burst
     };
+    /// As it was at the mark (ir_medium_undo.cpp).
+    struct Undo {
+        enum : std::uint8_t { kLight = 1, kRow = 2 };
+        struct Light {
+            std::size_t sender = 0;
+            std::vector<IrLight> light;
+        };
+        struct Row {
+            std::size_t sender = 0;
+            std::vector<Path> paths;
+            std::vector<IrSpell> spells;
+        };
+        struct Body {
+            std::size_t index = 0;
+            Shape shape;
+            std::optional<IrBoard> model;
+        };
+        struct Shapes {
+            std::vector<Shape> fixed, added;
+        };
+        bool on = false;
+        std::vector<std::uint8_t> rows_noted;  ///< of each sender: kLight, kRow
+        std::vector<bool> bodies_noted;
+        std::vector<Light> lights;  ///< the first light_count are in use; the others' room is kept
+        std::vector<Row> rows;
+        std::vector<Body> bodies;
+        std::size_t light_count = 0, row_count = 0;
+        std::optional<Shapes> shapes;
+        bool mirrors = false;  ///< were found anew
+    };
+    void note_light(std::size_t sender);
+    void note_row(std::size_t sender);
+    void note_body(std::size_t index);
+    void note_shapes();
 
     Path& path(std::size_t s, std::size_t r) { return paths_[s * boards_.size() + r]; }
     const Path& path(std::size_t s, std::size_t r) const { return paths_[s * boards_.size() + r]; }
@@ -117,6 +167,7 @@ class IrMedium {
     std::vector<const Shape*> mirrors_;
     std::vector<std::size_t> board_of_;  // of each moving body; board_count() for none
     std::uint64_t changes_ = 1;
+    Undo undo_;
 };
 
 }  // namespace puckloop::physics

@@ -1,5 +1,6 @@
 #include "physics/ir_node.h"
 
+#include "base/checkpoint.h"
 #include "base/error.h"
 #include "physics/ir_frames.h"
 #include "physics/ir_receiver.h"
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 
 namespace puckloop::physics {
@@ -62,7 +64,7 @@ World checked(const World& world) {
 
 }  // namespace
 
-struct IrNode::Impl {
+struct IrNode::Impl : cosim::Rewindable {
     Impl(const World& world, const IrNodeOptions& options);
 
     PortIndex world_port() const { return static_cast<PortIndex>(receivers.size()); }
@@ -71,8 +73,20 @@ struct IrNode::Impl {
     /// Everything stamped `now` has been taken.
     void apply(Time now);
     /// The sender's light has changed; `everywhere`: at boards that it no longer reaches, too.
-    void mark(std::size_t sender, bool everywhere);
+    void reach(std::size_t sender, bool everywhere);
     void release(Time until, std::vector<Message>& outbox);
+
+    void mark() override;
+    void rewind() override;
+    void settle() override;
+    /// Between two advances nothing is marked as moved, touched or reached.
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(medium, frames);
+        for (IrReceiver& receiver : receivers)
+            archive(receiver);
+        archive(looked, poses, masks);
+    }
 
     World world;
     std::string name;
@@ -90,6 +104,10 @@ struct IrNode::Impl {
     bool any_moved = false;
     std::map<std::size_t, ShapeValues> shapes;  ///< by number of the first signal
     std::set<std::size_t> altered;              ///< of those, by the messages of one instant
+
+    Checkpoint checkpoint;
+    bool marked = false;
+    std::optional<std::map<std::size_t, ShapeValues>> shapes_at_mark;  ///< set once they have changed
 };
 
 IrNode::Impl::Impl(const World& description, const IrNodeOptions& options)
@@ -158,12 +176,13 @@ void IrNode::Impl::take_scene(std::size_t id, double value) {
         medium.set_out(id - ids.out(0), value != 0.0);
         return;
     }
+    if (marked && !shapes_at_mark) shapes_at_mark = shapes;
     const std::size_t offset = id - ids.shape(true, 0);
     shapes[offset / kShapeSignals][offset % kShapeSignals] = value;
     altered.insert(offset / kShapeSignals);
 }
 
-void IrNode::Impl::mark(std::size_t sender, bool everywhere) {
+void IrNode::Impl::reach(std::size_t sender, bool everywhere) {
     for (std::size_t r = 0; r < receivers.size(); ++r)
         if (everywhere || medium.coupled(sender, r)) reached[r] = true;
 }
@@ -183,7 +202,7 @@ void IrNode::Impl::apply(Time now) {
         for (std::size_t s = 0; s < receivers.size(); ++s) {
             if (medium.emitters(s) == 0 || touched[s] || now - looked[s] < refresh[s]) continue;
             looked[s] = now;
-            if (medium.refresh(s)) mark(s, true);
+            if (medium.refresh(s)) reach(s, true);
         }
     }
     // All boards change at once: only then do receivers look.
@@ -199,13 +218,42 @@ void IrNode::Impl::apply(Time now) {
             everywhere = medium.relight(s);
         }
         if (masks[s] != 0) frames.seen(s);
-        mark(s, everywhere);
+        reach(s, everywhere);
     }
     for (std::size_t r = 0; r < receivers.size(); ++r) {
         if (!reached[r]) continue;
         reached[r] = false;
         receivers[r].see(now, medium.at(r));
     }
+}
+
+void IrNode::Impl::mark() {
+    settle();
+    marked = true;
+    frames.mark();
+    medium.mark();
+    checkpoint.take(*this);
+}
+
+void IrNode::Impl::rewind() {
+    frames.rewind();
+    medium.rewind();
+    checkpoint.restore(*this);
+    if (shapes_at_mark) shapes = std::move(*shapes_at_mark);
+    shapes_at_mark.reset();
+    // An advance that threw may have left some.
+    moved.assign(moved.size(), false);
+    touched.assign(touched.size(), false);
+    reached.assign(reached.size(), false);
+    any_moved = false;
+    altered.clear();
+}
+
+void IrNode::Impl::settle() {
+    marked = false;
+    shapes_at_mark.reset();
+    medium.settle();
+    frames.settle();
 }
 
 void IrNode::Impl::release(Time until, std::vector<Message>& outbox) {
@@ -253,6 +301,10 @@ Time IrNode::promise(PortIndex port) const {
 Time IrNode::reaction(PortIndex port) const {
     if (port >= impl_->receivers.size() || !impl_->medium.can_hear(port)) return kNever;
     return impl_->receivers[port].reaction();
+}
+
+cosim::Rewindable* IrNode::rewindable() {
+    return impl_.get();
 }
 
 std::string IrNode::finish() {

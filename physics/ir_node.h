@@ -35,6 +35,7 @@ class IrNode final : public cosim::Node {
                  std::vector<cosim::Message>& outbox) override;
     cosim::Time promise(cosim::PortIndex port) const override;
     cosim::Time reaction(cosim::PortIndex port) const override;
+    cosim::Rewindable* rewindable() override;
     /// {"boards": [...]}: frames on the air as each board could hear them.
     std::string finish() override;
 

@@ -41,6 +41,11 @@ class IrReceiver {
     /// Shortest time from a change of light to an output.
     cosim::Time reaction() const { return reaction_; }
 
+    template <class Archive>
+    void state(Archive& archive) {
+        archive(above_, rising_, falling_, lower_, level_, shown_, last_, outputs_);
+    }
+
   private:
     /// Receivers that changed together and may still change their mind.
     struct Change {

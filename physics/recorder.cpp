@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 namespace puckloop::physics {
 
@@ -41,7 +42,24 @@ void CsvFile::fail() const {
     throw RunError(fmt::format("cannot write {}: {}", path_, std::strerror(errno)));
 }
 
+void CsvFile::mark() {
+    settle();
+    marked_ = true;
+}
+
+void CsvFile::settle() {
+    marked_ = false;
+    if (kept_back_.empty()) return;
+    const std::string rows = std::exchange(kept_back_, {});
+    if (std::fwrite(rows.data(), 1, rows.size(), file_.get()) != rows.size()) fail();
+    flush();
+}
+
 void CsvFile::row(const std::string& text) {
+    if (marked_) {
+        kept_back_ += text + '\n';
+        return;
+    }
     if (std::fputs(text.c_str(), file_.get()) < 0 || std::fputc('\n', file_.get()) == EOF) fail();
 }
 

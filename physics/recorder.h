@@ -17,6 +17,12 @@ class CsvFile {
     void row(const std::string& text);
     void flush();
 
+    /// From here on rows are kept back, until settle() writes them or rewind() drops them. A mark set before
+    /// is settled.
+    void mark();
+    void rewind() { kept_back_.clear(); }
+    void settle();
+
   private:
     struct Closer {
         void operator()(std::FILE* file) const { std::fclose(file); }
@@ -25,6 +31,8 @@ class CsvFile {
 
     std::string path_;
     std::unique_ptr<std::FILE, Closer> file_;
+    bool marked_ = false;
+    std::string kept_back_;
 };
 
 class Recorder {

@@ -75,6 +75,7 @@ void I2cLog::released(Time now, const std::string& names) {
 }
 
 void I2cLog::end(Time now, const std::string& summary) {
+    log_.settle();
     if (!log_.is_open()) return;
     for (const auto& [key, pair] : pairs_) {
         const auto& [master, address] = key;

@@ -134,8 +134,10 @@ void check(const MakeLogged& make, const Plan& plan, const std::string& name) {
         const bool same_bytes = saved(*board) == saved(*twin);
         REQUIRE(same_bytes);
     }
-    back.settle();
-    CHECK(text_of(board_log) == text_of(twin_log));
+    if (random.below(2) == 0) {
+        back.settle();
+        CHECK(text_of(board_log) == text_of(twin_log));
+    }
     CHECK(board->finish() == twin->finish());
     CHECK(contents(board_log) == contents(twin_log));
 }
