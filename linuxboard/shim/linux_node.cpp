@@ -53,7 +53,7 @@ void LinuxNode::start_program() {
     client.process = std::move(process);
     switch (client.process->hear(kStartPatience, client.request, client.data)) {
     case Heard::Ended:
-        throw InputError(spec_.program, "",
+        throw InputError(spec_.program, "node " + spec_.name,
                          client.process->describe_end() + " before it began: " + last_words());
     case Heard::Silent:
         throw InputError(spec_.program, "", "does not load the preloaded library",
