@@ -300,6 +300,31 @@ Time BoardKernel::next_event() const {
     return next;
 }
 
+Time BoardKernel::next_completion(Time message) const {
+    Time next = waiting_.empty() ? kNever : message;
+    for (const auto& [thread, waiting] : waiting_) {
+        next = std::min(next, wake_time(waiting));
+        switch (waiting.request.op) {
+        case Op::Read:
+            next = std::min(next, tty_.next_input());
+            break;
+        case Op::Transfer:
+            next = std::min(next, adapter_.next_event());
+            break;
+        default:  // what goes out may end it as well
+            next = std::min(next, asks_for_input_only(waiting) ? tty_.next_input() : tty_.next_event());
+        }
+    }
+    return next;
+}
+
+bool BoardKernel::asks_for_input_only(const Waiting& waiting) {
+    if (waiting.request.op != Op::Poll) return false;
+    for (std::string_view data = waiting.data; !data.empty();)
+        if ((read_object<wire::PollEntry>(data).events & (POLLOUT | POLLWRNORM)) != 0) return false;
+    return true;
+}
+
 void BoardKernel::attempt_all(Time now) {
     for (auto it = waiting_.begin(); it != waiting_.end();) {
         it = attempt(it->first, it->second, now) ? waiting_.erase(it) : std::next(it);

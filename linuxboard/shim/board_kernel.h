@@ -46,6 +46,11 @@ class BoardKernel {
     void advance(cosim::Time now);
     /// When advance() next has something to do.
     cosim::Time next_event() const;
+    /// When a call that waits may end at the earliest, if nothing comes in before `message`.
+    cosim::Time next_completion(cosim::Time message) const;
+    /// A read and a write that ended at once at `now`, to which the kernel has been advanced.
+    void was_read(std::size_t bytes) { tty_.read(bytes); }
+    void was_written(std::string_view data, cosim::Time now) { tty_.write(data, now); }
     /// A process is gone, or became another program: the calls of its threads are forgotten.
     void forget(std::uint32_t slot);
     /// One more process has the open file `handle`.
@@ -94,6 +99,7 @@ class BoardKernel {
                 std::string data = {});
     cosim::Time wake_time(const Waiting& waiting) const;
     std::int16_t tty_events() const;
+    static bool asks_for_input_only(const Waiting& waiting);
 
     TtyPort tty_;
     I2cAdapter adapter_;

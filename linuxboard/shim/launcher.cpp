@@ -94,6 +94,7 @@ void Launcher::prepare_page() {
     if (memory == MAP_FAILED) fail("shared memory");
     page_ = new (memory) wire::Page;
     page_->real_time = spec_.real_time ? 1 : 0;
+    page_->ask_always = spec_.ask_always ? 1 : 0;
     page_->epoch = spec_.epoch_s * kNanosecondsPerSecond;
     page_->uptime = cosim::from_seconds(spec_.uptime_s) / cosim::kNanosecond;
     page_->seed = RandomStream(spec_.seed, "linux." + spec_.name).next();

@@ -54,7 +54,7 @@ class LinuxNode : public cosim::Node {
 
     /// Lines about what the program did that is not supported, each once.
     const std::vector<std::string>& warnings() const { return warnings_; }
-    /// Requests the program made so far.
+    /// Requests the program made so far; without those that the library answered by itself.
     std::uint64_t requests() const { return requests_; }
 
   private:
@@ -89,6 +89,9 @@ class LinuxNode : public cosim::Node {
     void handle_request(Client& client);
     void answer(Client& client, cosim::Time now);
     void listen(Client& client);
+    /// Does at the devices what the library did by itself since the last reply.
+    void catch_up(Client& client);
+    void show_ahead(const Client& client, wire::Reply& reply) const;
     /// Lets devices and deliveries happen up to and including `now`, in order.
     void run_devices(cosim::Time now);
     cosim::Time next_scheduled() const;
@@ -154,6 +157,7 @@ class LinuxNode : public cosim::Node {
     std::optional<cosim::Stop> stop_;
     std::vector<std::string> warnings_;
     std::uint64_t requests_ = 0;
+    std::uint64_t answered_by_library_ = 0;
     std::uint64_t starts_ = 0;
     std::uint64_t processes_ = 0;  ///< made in all
     std::uint64_t messages_in_ = 0;

@@ -142,6 +142,7 @@ std::string LinuxNode::finish() {
         {"starts", starts_},
         {"processes", processes_},
         {"requests", requests_},
+        {"answered_by_library", answered_by_library_},
         {"log", spec_.log},
         {"uart",
          {{"received", tty.received},

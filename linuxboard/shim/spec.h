@@ -59,6 +59,7 @@ struct LinuxSpec {
     bool exit_ends_run = true;
     std::uint32_t programs = 1;  ///< of the run: the last of so many to end well ends it
     double watchdog_s = 5.0;     ///< wall-clock seconds a program may compute without letting time pass
+    bool ask_always = false;     ///< no key; for tests: the library answers nothing by itself
     std::string shim;            ///< the preloaded library; empty: the one built with this program
 };
 

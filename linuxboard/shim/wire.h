@@ -133,7 +133,8 @@ struct TtyView {
     std::uint32_t room = 0;        ///< bytes that a write takes at once, or more
     std::uint32_t first = 0;       ///< of `input`, not yet read
     std::uint32_t shown = 0;       ///< bytes in `input`: not in canonical mode, and the first ones of many
-    std::uint8_t usable = 0;       ///< 0: not open, or hung up: ask the node
+    std::uint8_t usable = 0;       ///< 0: not open
+    std::uint8_t hung_up = 0;
     std::uint8_t canonical = 0;
     std::uint8_t has_line = 0;
     std::uint8_t raw_output = 0;  ///< what is written goes out as it is
@@ -201,6 +202,7 @@ struct ProcessEntry {
 struct Page {
     std::uint32_t version = kVersion;
     std::uint32_t real_time = 0;
+    std::uint32_t ask_always = 0;  ///< 1: the library answers nothing by itself
     std::int64_t epoch = 0;        ///< CLOCK_REALTIME at simulated time 0, nanoseconds since 1970
     std::int64_t uptime = 0;       ///< CLOCK_MONOTONIC at simulated time 0, nanoseconds
     std::int64_t wall_origin = 0;  ///< real-time mode: host CLOCK_MONOTONIC at simulated time 0, ns

@@ -89,8 +89,8 @@ void Bench::answer_i2c(const I2cPhase& phase) {
     queue({phase.start + 9 * phase.clock_period, linuxboard::kI2cPort, answer});
 }
 
-void Bench::run(Time end) {
-    while (now_ < end && !node_.stop()) {
+void Bench::run(Time end, bool past_stop) {
+    while (now_ < end && (past_stop || !node_.stop())) {
         const Time until = std::min(end, now_ + slice_);
         const auto split = std::find_if(pending_.begin(), pending_.end(),
                                         [until](const Message& message) { return message.time >= until; });

@@ -32,8 +32,8 @@ class Bench {
     /// Called for every byte that the program sends.
     std::function<void(cosim::Time, std::uint8_t)> on_byte;
 
-    /// Runs until `end` or until the node wants the run to end.
-    void run(cosim::Time end);
+    /// Runs until `end` or until the node wants the run to end; with `past_stop` even then.
+    void run(cosim::Time end, bool past_stop = false);
 
     linuxboard::LinuxNode& node() { return node_; }
     /// All messages that left the node, as text.

@@ -152,6 +152,11 @@ std::string LineDiscipline::take(std::size_t most, const termios& settings) {
     return data;
 }
 
+void LineDiscipline::copy(std::size_t most, char* out) const {
+    for (std::size_t i = 0; i < std::min(most, buffer_.size()); ++i)
+        out[i] = buffer_[i].byte;
+}
+
 void LineDiscipline::discard() {
     buffer_.clear();
     lines_ = 0;

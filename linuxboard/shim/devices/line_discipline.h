@@ -40,6 +40,8 @@ class LineDiscipline {
     /// Bytes received and not read, for FIONREAD.
     std::size_t queued(const termios& settings) const;
     std::string take(std::size_t most, const termios& settings);
+    /// What take() would return, outside of canonical mode.
+    void copy(std::size_t most, char* out) const;
     void discard();
 
     std::uint64_t dropped() const { return dropped_; }

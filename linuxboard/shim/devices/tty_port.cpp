@@ -143,6 +143,22 @@ bool TtyPort::input_ready() const {
     return discipline_.readable(settings_) >= needed;
 }
 
+void TtyPort::show(wire::TtyView& view) const {
+    view.usable = is_open() ? 1 : 0;
+    if (view.usable == 0) return;
+    view.hung_up = hung_up_ ? 1 : 0;
+    view.canonical = canonical() ? 1 : 0;
+    view.has_line = discipline_.has_line() ? 1 : 0;
+    view.raw_output = (settings_.c_oflag & OPOST) == 0 ? 1 : 0;
+    view.minimum = settings_.c_cc[VMIN];
+    view.pause = settings_.c_cc[VTIME];
+    view.readable = static_cast<std::uint32_t>(input_queue());
+    view.room = static_cast<std::uint32_t>(output_room());
+    view.first = 0;
+    view.shown = view.canonical != 0 ? 0 : std::min(view.readable, wire::TtyView::kShown);
+    discipline_.copy(view.shown, view.input);
+}
+
 std::size_t TtyPort::write(std::string_view data, Time now) {
     std::size_t taken = 0;
     for (const char byte : data) {

@@ -52,6 +52,10 @@ class TtyPort {
     void advance(cosim::Time now, std::vector<cosim::UartFrame>& sent);
     /// When advance() next has something to do.
     cosim::Time next_event() const;
+    /// When a program next sees something come in, as far as the characters known so far tell.
+    cosim::Time next_input() const { return fifo_due(); }
+    /// What a program sees of the port, but for `valid_until`.
+    void show(wire::TtyView& view) const;
     /// Start of the next frame if nothing changes: at or after `now`; kNever if none is queued.
     cosim::Time next_frame(cosim::Time now) const;
     /// A received character may cause output without the program (echo, flow control).

@@ -29,6 +29,7 @@ int poll_devices(pollfd* entries, nfds_t count, Time deadline) {
     wire::PollEntry list[kMostEntries];
     nfds_t indices[kMostEntries];
     std::size_t total = 0;
+    bool only_ttys = true;
     for (nfds_t i = 0; i < count && total < kMostEntries; ++i) {
         const OpenFile* file = open_file(entries[i].fd);
         if (file == nullptr) continue;
@@ -36,12 +37,14 @@ int poll_devices(pollfd* entries, nfds_t count, Time deadline) {
             entries[i].revents = static_cast<short>(entries[i].events & (POLLIN | POLLOUT));
             continue;
         }
+        only_ttys = only_ttys && file->kind == OpenFile::Kind::Tty;
         list[total] = {file->handle, entries[i].events, 0};
         indices[total++] = i;
     }
     wire::Request request;
     request.op = wire::Op::Poll;
     request.deadline = deadline;
+    request.a = only_ttys ? 1 : 0;
     const std::size_t size = total * sizeof list[0];
     const auto ready = device_call(request, list, size, list, size, true);
     if (ready < 0) return -1;

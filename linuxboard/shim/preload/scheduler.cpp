@@ -1,9 +1,9 @@
 #include "linuxboard/shim/preload/scheduler.h"
 
+#include "linuxboard/shim/preload/ahead.h"
 #include "linuxboard/shim/preload/calls.h"
 #include "linuxboard/shim/preload/host.h"
 #include "linuxboard/shim/preload/link.h"
-#include "linuxboard/shim/preload/nothing_there.h"
 #include "linuxboard/shim/preload/open_file.h"
 #include "linuxboard/shim/preload/timers.h"
 
@@ -37,7 +37,13 @@ std::uint64_t park_order = 0;
 std::uint64_t pending_signals = 0;  // bit n: signal n
 bool conducted = false;
 bool in_node_call = false;
-std::uint64_t transactions = 0;
+
+std::uint64_t hash_of(const char* text, std::size_t size) {
+    std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a
+    for (std::size_t i = 0; i < size; ++i)
+        hash = (hash ^ static_cast<unsigned char>(text[i])) * 0x100000001b3u;
+    return hash;
+}
 
 __thread Thread* current __attribute__((tls_model("initial-exec"))) = nullptr;
 
@@ -145,7 +151,6 @@ void transact(wire::Request& request, const void* data, std::size_t size) {
     request.watches = request.wait != 0 && watches() ? 1 : 0;
     publish();
     wire::Reply reply;
-    ++transactions;
     in_node_call = true;
     exchange(request, data, size, reply, complete);
     in_node_call = false;
@@ -163,6 +168,37 @@ Thread* signal_taker() {
         if (threads[i] != nullptr && threads[i]->state != Thread::State::Finished) return threads[i];
     }
     return nullptr;
+}
+
+/// Time passes until `time`, at which a thread goes on, if the node has said that nothing happens before. In
+/// real time the node paces it.
+bool sleep_here(Time time) {
+    if (time >= clock_limit || page().real_time != 0 || page().ask_always != 0) return false;
+    clock_now = time;
+    publish();
+    ++channel().answered;
+    return true;
+}
+
+/// The calling thread's request is answered without the node.
+bool answer_here(const wire::Request& request, const void* data, std::size_t size) {
+    Thread* me = current;
+    Answer answer;
+    if (clock_now >= clock_limit ||
+        !answer_ahead(request, data, size, me->out, me->capacity, clock_now, answer))
+        return false;
+    if (answer.time > clock_now) {
+        // Nobody else may run meanwhile, and change what the answer depends on.
+        if (first_ready() != nullptr || first_deadline() <= answer.time) return false;
+        if (!sleep_here(answer.time)) return false;
+    } else {
+        ++channel().answered;
+    }
+    me->result = answer.result;
+    me->error = answer.error;
+    me->received = answer.received;
+    make_ready(*me, clock_now, Wake::Device);
+    return true;
 }
 
 void withdraw(Thread& thread) {
@@ -226,6 +262,7 @@ void schedule(Thread* me) {
             publish();
             return;
         }
+        if (sleep_here(first_deadline())) continue;
         wire::Request request;
         request.thread = me->index;
         transact(request, nullptr, 0);
@@ -354,14 +391,6 @@ int wake(const void* key, int count, std::uint64_t bits) {
 std::int64_t device_call(wire::Request request, const void* data, std::size_t size, void* out,
                          std::size_t capacity, bool interruptible, std::size_t* received) {
     Thread* me = current;
-    if (clock_now < clock_limit) {
-        if (const NothingThere* known = still_nothing(request, data, size, transactions)) {
-            if (known->result < 0) errno = known->error;
-            return known->result;
-        }
-    }
-    const bool can_be_nothing = is_look(request, clock_now);
-    const std::uint64_t data_hash = can_be_nothing ? hash_of(data, size) : 0;
     while (true) {
         if (interruptible && me->cancel_asked) pthread_testcancel();
         if (pending_signals != 0 && signal_taker() == me && !take_signals() && interruptible) {
@@ -376,7 +405,7 @@ std::int64_t device_call(wire::Request request, const void* data, std::size_t si
         me->cancellable = interruptible;
         request.thread = me->index;
         const Time before = clock_now;
-        transact(request, data, size);
+        if (!answer_here(request, data, size)) transact(request, data, size);
         const Thread* other = first_ready();
         const bool at_once = me->state == Thread::State::Ready && me->ready_since == before;
         if (at_once && (other == me || before - other->ready_since < kQuantum)) {
@@ -396,9 +425,6 @@ std::int64_t device_call(wire::Request request, const void* data, std::size_t si
         }
         while (pending_signals != 0 && signal_taker() == me)
             take_signals();
-        const bool is_nothing = result == 0 || (result < 0 && error == EAGAIN);
-        if (can_be_nothing && at_once && is_nothing)
-            remember_nothing({request, data_hash, transactions, result, error});
         if (result < 0) errno = error;
         return result;
     }
@@ -495,7 +521,6 @@ void only_this_thread() {
     me->state = Thread::State::Running;
     me->awaited_signals = nullptr;
     pending_signals = 0;
-    ++transactions;
     in_node_call = false;
     conducted = true;
 }
