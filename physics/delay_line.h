@@ -28,10 +28,10 @@ class DelayLine {
         if (!delays()) return now;
         if (!begun_) kept_.assign(kept_.size(), now);
         begun_ = true;
-        newest_ = (newest_ + 1) % kept_.size();
+        newest_ = after(newest_);
         kept_[newest_] = now;
-        const Values& younger = kept_[(newest_ + kept_.size() - whole_) % kept_.size()];
-        const Values& older = kept_[(newest_ + 1) % kept_.size()];
+        const Values& younger = kept_[newest_ >= whole_ ? newest_ - whole_ : newest_ + kept_.size() - whole_];
+        const Values& older = kept_[after(newest_)];
         Values then{};
         for (std::size_t i = 0; i < N; ++i)
             then[i] = younger[i] + rest_ * (older[i] - younger[i]);
@@ -39,6 +39,8 @@ class DelayLine {
     }
 
   private:
+    std::size_t after(std::size_t index) const { return index + 1 == kept_.size() ? 0 : index + 1; }
+
     std::size_t whole_;  // steps
     double rest_;        // of a step
     std::vector<Values> kept_;

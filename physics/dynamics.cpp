@@ -39,7 +39,9 @@ dBodyID make_body(dWorldID world, const dMass& mass, double x, double y, double 
 
 /// The change from `from` to `to`, both angles within +-pi, the short way.
 double turn(double from, double to) {
-    return std::remainder(to - from, 2 * std::numbers::pi);
+    const double change = to - from;
+    // Within half a turn the remainder is the change itself.
+    return std::abs(change) < 3.0 ? change : std::remainder(change, 2 * std::numbers::pi);
 }
 
 }  // namespace
@@ -183,6 +185,7 @@ std::size_t Dynamics::add_robot(const BodyParameters& p, double x, double y, dou
     robot.state.heading = heading;
     impl_->read_robot(robot);
     impl_->robots.push_back(robot);
+    impl_->near.forget();
     return impl_->robots.size() - 1;
 }
 
@@ -209,6 +212,7 @@ std::size_t Dynamics::add_object(const Shape& shape, double heading, double kilo
     object.state.heading = heading;
     Impl::read_object(object);
     impl_->objects.push_back(object);
+    impl_->near.forget();
     return impl_->objects.size() - 1;
 }
 
@@ -229,12 +233,18 @@ void Dynamics::step() {
     for (std::size_t i = 0; i < impl_->robots.size(); ++i)
         impl_->take_along(i);
     impl_->find_contacts();
+    impl_->done(StepPart::Contacts);
     dWorldStep(impl_->world, kStepSeconds);
+    impl_->done(StepPart::Solve);
     dJointGroupEmpty(impl_->contacts);
     for (auto& robot : impl_->robots)
         impl_->read_robot(robot);
     for (auto& object : impl_->objects)
         Impl::read_object(object);
+}
+
+void Dynamics::observe(StepObserver* observer) {
+    impl_->observer = observer;
 }
 
 const RobotState& Dynamics::robot(std::size_t index) const {

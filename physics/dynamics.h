@@ -21,6 +21,7 @@ namespace puckloop::physics {
 struct Parameters;
 struct BodyParameters;
 struct FloorVelocity;
+class StepObserver;
 
 inline constexpr double kStepSeconds = 1e-3;
 
@@ -78,6 +79,8 @@ class Dynamics {
 
     /// One kStepSeconds. Throws RunError when a body has left the numbers.
     void step();
+    /// Hears of every part of the steps to come; nullptr: nobody does.
+    void observe(StepObserver* observer);
 
     const RobotState& robot(std::size_t index) const;
     const ObjectState& object(std::size_t index) const;

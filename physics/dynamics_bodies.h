@@ -3,8 +3,10 @@
 
 #include "physics/dynamics.h"
 #include "physics/floor_motion.h"
+#include "physics/neighbours.h"
 #include "physics/ode_library.h"
 #include "physics/parameters.h"
+#include "physics/step_observer.h"
 
 #include <ode/ode.h>
 
@@ -57,12 +59,18 @@ struct Dynamics::Impl {
     void skids_on_floor(const RobotBody& robot);
     void object_on_floor(const ObjectBody& object);
     void robot_meets_others(std::size_t index);
+    void refresh_neighbours();
     bool in_plan(dBodyID body, const Shape& circle, dBodyID other_body, const Shape& other, double mu);
     void boxes_meet(const ObjectBody& object, dBodyID other_body, dGeomID other);
     void add_contact(const dSurfaceParameters& surface, const dContactGeom& geom, dBodyID first,
                      dBodyID second, const dReal* direction = nullptr);
     dSurfaceParameters surface(double mu) const;
 
+    void done(StepPart part) const {
+        if (observer != nullptr) observer->done(part);
+    }
+
+    StepObserver* observer = nullptr;
     Complaints complaints;
     ContactParameters contact{};
     dWorldID world = nullptr;
@@ -72,6 +80,7 @@ struct Dynamics::Impl {
     std::vector<ObjectBody> objects;
     std::vector<FixedBody> fixed;
     std::vector<RobotContact> robot_contacts;  // of the last step
+    Neighbours near{0.02};                     // of robots: what they may touch
 };
 
 }  // namespace puckloop::physics

@@ -138,22 +138,47 @@ void Dynamics::Impl::boxes_meet(const ObjectBody& object, dBodyID other_body, dG
         add_contact(surface(contact.mu_object), geoms[i], object.body, other_body);
 }
 
+void Dynamics::Impl::refresh_neighbours() {
+    const std::size_t count = robots.size() + objects.size();
+    const auto shape = [&](std::size_t i) -> const Shape& {
+        return i < robots.size() ? robots[i].shape : objects[i - robots.size()].shape;
+    };
+    if (near.hold(count, shape)) return;
+    std::vector<Disc> moving;
+    std::vector<double> reach;
+    std::vector<const Shape*> still;
+    for (std::size_t i = 0; i < count; ++i)
+        moving.push_back({shape(i).x, shape(i).y, shape(i).radius});
+    for (const RobotBody& robot : robots)
+        reach.push_back(robot.shape.radius);
+    for (const FixedBody& body : fixed)
+        still.push_back(&body.shape);
+    near.make(std::move(moving), reach, still);
+}
+
+/// Fixed things, then robots with a lower index, then objects.
 void Dynamics::Impl::robot_meets_others(std::size_t index) {
     const auto& robot = robots[index];
     const auto meet = [&](RobotContact::Kind kind, std::size_t other, dBodyID body, const Shape& shape) {
         if (!apart(robot.shape, shape) && in_plan(robot.chassis, robot.shape, body, shape, contact.mu_body))
             robot_contacts.push_back({index, kind, other});
     };
-    for (std::size_t i = 0; i < fixed.size(); ++i)
+    for (const std::uint32_t i : near.fixed(index))
         if (fixed[i].present) meet(RobotContact::Kind::Fixed, i, nullptr, fixed[i].shape);
-    for (std::size_t i = 0; i < index; ++i)
-        if (robots[i].hand == nullptr) meet(RobotContact::Kind::Robot, i, robots[i].chassis, robots[i].shape);
-    for (std::size_t i = 0; i < objects.size(); ++i)
-        if (objects[i].present) meet(RobotContact::Kind::Object, i, objects[i].body, objects[i].shape);
+    for (const std::uint32_t i : near.moving(index)) {
+        if (i < index) {
+            if (robots[i].hand == nullptr)
+                meet(RobotContact::Kind::Robot, i, robots[i].chassis, robots[i].shape);
+        } else if (i >= robots.size()) {
+            const std::size_t k = i - robots.size();
+            if (objects[k].present) meet(RobotContact::Kind::Object, k, objects[k].body, objects[k].shape);
+        }
+    }
 }
 
 void Dynamics::Impl::find_contacts() {
     robot_contacts.clear();
+    refresh_neighbours();
     for (std::size_t i = 0; i < robots.size(); ++i) {
         const auto& robot = robots[i];
         if (robot.hand != nullptr) continue;

@@ -11,40 +11,71 @@ constexpr double kDrawnHeight = 0.0015;  // m over the floor: where black and wh
 constexpr double kLeastSignal = 0.05;    // of the nominal signal, however high the sensor is
 constexpr double kMostSignal = 1.2;
 
-bool covers(const Patch& patch, double x, double y) {
-    const double dx = x - patch.x;
-    const double dy = y - patch.y;
-    if (patch.shape == Patch::Shape::Disc) return dx * dx + dy * dy <= patch.radius * patch.radius;
-    const double cosine = std::cos(patch.heading);
-    const double sine = std::sin(patch.heading);
-    return std::abs(cosine * dx + sine * dy) <= patch.length / 2 &&
-           std::abs(cosine * dy - sine * dx) <= patch.width / 2;
+constexpr std::size_t kSpots = 5;  // of a footprint
+
+double mean_of(const std::array<double, kSpots>& greys) {
+    double sum = 0.0;
+    for (const double grey : greys)
+        sum += grey;
+    return sum / static_cast<double>(kSpots);
 }
 
 }  // namespace
 
-double floor_grey(double base, std::span<const Patch> patches, double x, double y) {
-    for (auto i = patches.size(); i-- > 0;)
-        if (covers(patches[i], x, y)) return patches[i].grey;
-    return base;
+GroundRow::GroundRow(const GroundParameters& parameters, double base_grey, std::span<const Patch> patches)
+    : parameters_(parameters), reach_(0.0) {
+    for (const double y : parameters.y)
+        reach_ = std::max(reach_, std::hypot(parameters.x, y) + parameters.footprint / 2);
+    set_floor(base_grey, patches);
 }
 
-GroundRow::GroundRow(const GroundParameters& parameters, double base_grey, std::span<const Patch> patches)
-    : parameters_(parameters), base_grey_(base_grey), patches_(patches) {}
+void GroundRow::set_floor(double base_grey, std::span<const Patch> patches) {
+    base_grey_ = base_grey;
+    base_mean_ = mean_of({base_grey, base_grey, base_grey, base_grey, base_grey});
+    covers_.clear();
+    for (const Patch& patch : patches)
+        covers_.push_back(
+            {patch, std::cos(patch.heading), std::sin(patch.heading),
+             patch.shape == Patch::Shape::Disc ? patch.radius : std::hypot(patch.length, patch.width) / 2});
+}
+
+bool GroundRow::Cover::at(double x, double y) const {
+    const double dx = x - patch.x;
+    const double dy = y - patch.y;
+    if (patch.shape == Patch::Shape::Disc) return dx * dx + dy * dy <= patch.radius * patch.radius;
+    return std::abs(cosine * dx + sine * dy) <= patch.length / 2 &&
+           std::abs(cosine * dy - sine * dx) <= patch.width / 2;
+}
+
+/// May any spot of a robot there lie on a patch?
+bool GroundRow::near_a_patch(double x, double y) const {
+    constexpr double kRounding = 1e-6;
+    return std::any_of(covers_.begin(), covers_.end(), [&](const Cover& cover) {
+        const double dx = x - cover.patch.x, dy = y - cover.patch.y;
+        const double far = reach_ + cover.radius + kRounding;
+        return dx * dx + dy * dy <= far * far;
+    });
+}
+
+/// 0 black .. 1 white; later patches lie on top.
+double GroundRow::grey_at(double x, double y) const {
+    for (auto i = covers_.size(); i-- > 0;)
+        if (covers_[i].at(x, y)) return covers_[i].patch.grey;
+    return base_grey_;
+}
 
 std::array<double, kGroundSensors> GroundRow::greys(const RobotState& robot) const {
     const auto& p = parameters_;
+    if (!near_a_patch(robot.x, robot.y)) return {base_mean_, base_mean_, base_mean_};
     const double cosine = std::cos(robot.heading);
     const double sine = std::sin(robot.heading);
     const double reach = p.footprint / 2;
-    const std::array<Point, 5> spots{{{0, 0}, {reach, 0}, {-reach, 0}, {0, reach}, {0, -reach}}};
     std::array<double, kGroundSensors> greys{};
     for (std::size_t i = 0; i < kGroundSensors; ++i) {
         const double x = robot.x + cosine * p.x - sine * p.y[i];
         const double y = robot.y + sine * p.x + cosine * p.y[i];
-        for (const Point& spot : spots)
-            greys[i] += floor_grey(base_grey_, patches_, x + spot.x, y + spot.y);
-        greys[i] /= static_cast<double>(spots.size());
+        greys[i] = mean_of({grey_at(x, y), grey_at(x + reach, y), grey_at(x - reach, y),
+                            grey_at(x, y + reach), grey_at(x, y - reach)});
     }
     return greys;
 }

@@ -7,11 +7,10 @@
 #include "physics/sensor_view.h"
 
 #include <array>
+#include <span>
+#include <vector>
 
 namespace puckloop::physics {
-
-/// Grey (0 black .. 1 white) of the floor at a point; later patches lie on top.
-double floor_grey(double base, std::span<const Patch> patches, double x, double y);
 
 /// What else a reading depends on.
 struct GroundMoment {
@@ -24,11 +23,8 @@ class GroundRow {
   public:
     GroundRow(const GroundParameters& parameters, double base_grey, std::span<const Patch> patches);
 
-    /// The floor changed; `patches` must outlive it.
-    void set_floor(double base_grey, std::span<const Patch> patches) {
-        base_grey_ = base_grey;
-        patches_ = patches;
-    }
+    /// The floor changed.
+    void set_floor(double base_grey, std::span<const Patch> patches);
     /// Mean grey under each sensor: left, centre, right.
     std::array<double, kGroundSensors> greys(const RobotState& robot) const;
     /// Noise-free counts over such greys, 0..saturation; of `robot` pitch and roll count.
@@ -36,9 +32,21 @@ class GroundRow {
                                               const RobotState& robot, const GroundMoment& now) const;
 
   private:
+    /// A patch with what is asked for at each of its points.
+    struct Cover {
+        Patch patch;
+        double cosine = 1.0, sine = 0.0;
+        double radius = 0.0;  // of a circle around it
+        bool at(double x, double y) const;
+    };
+    bool near_a_patch(double x, double y) const;
+    double grey_at(double x, double y) const;
+
     GroundParameters parameters_;
-    double base_grey_;
-    std::span<const Patch> patches_;
+    double reach_;  // from the axle's middle to the furthest spot
+    double base_grey_ = 1.0;
+    double base_mean_ = 1.0;  // what averaging base_grey_ gives
+    std::vector<Cover> covers_;
 };
 
 }  // namespace puckloop::physics

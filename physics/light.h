@@ -9,6 +9,7 @@
 #include "physics/sensor_view.h"
 
 #include <array>
+#include <vector>
 
 namespace puckloop::physics {
 
@@ -19,7 +20,7 @@ class LightRing {
               std::span<const Lamp> lamps);
 
     /// Noise-free ambient counts, 0..4095.
-    std::array<double, kProximitySensors> sense(const SensorView& view) const;
+    std::array<double, kProximitySensors> sense(const SensorView& view);
     /// The room changed; `lamps` must outlive it.
     void set_room(double ambient_level, std::span<const Lamp> lamps) {
         ambient_level_ = ambient_level;
@@ -28,13 +29,17 @@ class LightRing {
     bool varies_with_time() const { return parameters_.flicker > 0.0; }
 
   private:
-    double from_lamp(const SensorView& view, const Lamp& lamp, const Ray& sensor) const;
+    double from_lamp(const Lamp& lamp, const Ray& sensor, std::span<const Shape* const> between) const;
+    bool reaches(const Lamp& lamp, const RobotState& robot) const;
+    void look_between(const SensorView& view, const Lamp& lamp);
 
     LightParameters parameters_;
     double height_;
     double ambient_level_;
     std::span<const Lamp> lamps_;
     std::array<Ray, kProximitySensors> sensors_;  // in the robot's frame
+    double ring_ = 0.0;                           // the furthest of them from the axle's middle
+    std::vector<const Shape*> between_;           // scratch: what may stand between a lamp and the sensors
 };
 
 }  // namespace puckloop::physics

@@ -29,6 +29,11 @@ bool clip(double start, double direction, double half, Chord& c) {
     return c.in <= c.out;
 }
 
+/// Is the line outside on this axis and goes on outwards, so that all of it that is inside lies behind?
+bool leaves(double start, double direction, double half) {
+    return (start > half && direction >= 0.0) || (start < -half && direction <= 0.0);
+}
+
 Touch touch_circle(const Shape& s, double x, double y, double radius) {
     const double dx = x - s.x;
     const double dy = y - s.y;
@@ -123,6 +128,29 @@ std::optional<Chord> chord(const Shape& s, double x, double y, double dx, double
     if (!clip(start.x, direction.x, s.half_length, c) || !clip(start.y, direction.y, s.half_width, c))
         return std::nullopt;
     return c;
+}
+
+std::optional<Chord> chord_before(const Shape& s, double x, double y, double dx, double dy, double limit) {
+    if (s.kind == Shape::Kind::Box) {
+        const Local start = to_local(s, x, y);
+        const Local direction{s.cosine * dx + s.sine * dy, -s.sine * dx + s.cosine * dy};
+        if (leaves(start.x, direction.x, s.half_length) || leaves(start.y, direction.y, s.half_width))
+            return std::nullopt;
+    }
+    const auto hit = chord(s, x, y, dx, dy);
+    if (!hit || hit->out < 0.0 || hit->in >= limit) return std::nullopt;
+    return hit;
+}
+
+bool within(const Shape& s, double x, double y, double reach) {
+    const double dx = s.x - x, dy = s.y - y;
+    const double far = reach + s.radius;
+    if (dx * dx + dy * dy >= far * far) return false;
+    if (s.kind == Shape::Kind::Circle) return true;
+    const Local p = to_local(s, x, y);
+    const double beyond_x = std::max(std::abs(p.x) - s.half_length, 0.0);
+    const double beyond_y = std::max(std::abs(p.y) - s.half_width, 0.0);
+    return beyond_x * beyond_x + beyond_y * beyond_y < reach * reach;
 }
 
 Touch touch(const Shape& s, double x, double y, double radius) {

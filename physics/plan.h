@@ -32,6 +32,12 @@ struct Chord {
     double in = 0.0, out = 0.0, cosine = 1.0;
 };
 std::optional<Chord> chord(const Shape& shape, double x, double y, double dx, double dy);
+/// The same chord, but nothing where it lies behind (`out` < 0) or begins at `limit` or later: what a
+/// ray that ends there needs, without the work for shapes that it leaves.
+std::optional<Chord> chord_before(const Shape& shape, double x, double y, double dx, double dy, double limit);
+
+/// Is the shape's nearest edge, or its inside, nearer than `reach` to the point?
+bool within(const Shape& shape, double x, double y, double reach);
 
 /// Nearest approach of a circle to a shape. `normal` points from the shape to the circle; `depth` > 0 means
 /// overlap.

@@ -34,9 +34,11 @@ double compressed(double counts, double saturation) {
     return counts <= 0.0 ? 0.0 : 1.0 / (1.0 / saturation + 1.0 / counts);
 }
 
-}  // namespace
+/// std::pow() without the work where it changes nothing.
+double power(double base, double exponent) {
+    return exponent == 1.0 ? base : std::pow(base, exponent);
+}
 
-namespace {
 double curve_at(const ProximityParameters& p, double distance) {
     switch (std::lround(p.curve)) {
     case 1:
@@ -78,13 +80,17 @@ double ProximityRing::seen_by(const SensorView& view, std::size_t sensor, double
     for (const Ray& own : rays_[sensor]) {
         const Ray ray = in_world(view.robot, cosine, sine, own);
         double nearest = parameters_.reach;
-        double brightness = 0.0;
+        double incidence = 0.0;
+        const Shape* seen = nullptr;
         for (const Shape* shape : view.shapes) {
-            const auto hit = chord(*shape, ray.x, ray.y, ray.dx, ray.dy);
-            if (!hit || hit->out < 0.0 || hit->in >= nearest) continue;
+            const auto hit = chord_before(*shape, ray.x, ray.y, ray.dx, ray.dy, nearest);
+            if (!hit) continue;
             nearest = std::max(hit->in, 0.0);
-            brightness = shape->reflectivity * std::pow(hit->cosine, parameters_.incidence_exponent);
+            incidence = hit->cosine;
+            seen = shape;
         }
+        if (seen == nullptr) continue;
+        const double brightness = seen->reflectivity * power(incidence, parameters_.incidence_exponent);
         if (brightness > 0.0)
             sum += brightness * proximity_response(parameters_, nearest + parameters_.distance_shift);
     }

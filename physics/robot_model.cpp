@@ -47,6 +47,7 @@ void RobotModel::scene_changed(const World& world) {
     light_.set_room(world.ambient_light, world.lamps);
     ground_.set_floor(world.arena.floor_grey, world.patches);
     ears_.set_speakers(world.speakers);
+    looked_around_ = true;  // the room light is part of a reading
     if (!ears_.any()) store(kMicrophoneChannel, std::array<double, kMicrophones>{});
     light_the_floor();
 }
@@ -70,7 +71,9 @@ FloorVelocity RobotModel::floor_velocity(const RobotState& state, double seconds
 }
 
 void RobotModel::look_around(const SensorView& view) {
-    reflected_ = proximity_.reflected(view);
+    const auto now = proximity_.reflected(view);
+    if (now == reflected_) return;
+    reflected_ = now;
     looked_around_ = true;
 }
 
@@ -118,9 +121,11 @@ void RobotModel::sense_each_step(const RobotState& state, double seconds) {
     const Surroundings now = surroundings(seconds);
     sense_proximity(now);
     greys_to_sample_ = late_greys_.next(greys_);
-    const double speed =
-        state.velocity[0] * std::cos(state.heading) + state.velocity[1] * std::sin(state.heading);
-    acceleration_ = (speed - late_speed_.next({speed})[0]) / kAccelerationWindow;
+    if (parameters_.ground.acceleration_tilt != 0.0) {
+        const double speed =
+            state.velocity[0] * std::cos(state.heading) + state.velocity[1] * std::sin(state.heading);
+        acceleration_ = (speed - late_speed_.next({speed})[0]) / kAccelerationWindow;
+    }
     const auto step = std::llround(seconds / kStepSeconds);
     if (step % std::max(1L, std::lround(parameters_.ground.period / kStepSeconds)) == 0)
         sample_ground(seconds);

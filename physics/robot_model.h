@@ -54,6 +54,9 @@ class RobotModel {
     double sensor_height() const { return parameters_.proximity.height; }
     const BodyParameters& body() const { return parameters_.robot; }
     const Channels& channels() const { return channels_; }
+    /// What the readings are made of: own light that comes back, grey under the ground sensors.
+    const std::array<double, kProximitySensors>& reflected() const { return reflected_; }
+    const std::array<double, kGroundSensors>& greys() const { return greys_; }
 
   private:
     int motors_running(double seconds) const;
@@ -74,7 +77,7 @@ class RobotModel {
     ProximityNoise proximity_noise_;
     std::array<double, kProximitySensors> reflected_{};
     DelayLine<kProximitySensors> late_reflected_;
-    bool looked_around_ = false;  // since the last reading
+    bool looked_around_ = true;  // what is seen, or the room light, is another since the last reading
     bool lifted_ = false;
     LightRing light_;
     GroundRow ground_;
@@ -82,7 +85,7 @@ class RobotModel {
     std::array<double, kGroundSensors> greys_{}, greys_to_sample_{};
     DelayLine<kGroundSensors> late_greys_;
     DelayLine<1> late_speed_;
-    double acceleration_ = 0.0;  // m/s2 forward, over the control period
+    double acceleration_ = 0.0;  // m/s2 forward, over the control period; kept where it tilts the ground row
     RandomStream ground_noise_;
     Accelerometer accelerometer_;
     Ears ears_;

@@ -70,6 +70,11 @@ void WorldModel::step() {
     sense();
 }
 
+void WorldModel::observe(StepObserver* observer) {
+    observer_ = observer;
+    dynamics_.observe(observer);
+}
+
 void WorldModel::move_bodies() {
     ++steps_done_;
     for (std::size_t i = 0; i < robots_.size(); ++i) {
@@ -80,7 +85,9 @@ void WorldModel::move_bodies() {
         if (!robots_[i].floor_motion().still())
             dynamics_.move_floor(i, robots_[i].floor_velocity(dynamics_.robot(i), seconds()));
     }
+    done(StepPart::Inputs);
     dynamics_.step();
+    done(StepPart::Poses);
 }
 
 void WorldModel::sense() {
@@ -98,54 +105,80 @@ void WorldModel::sense() {
 void WorldModel::look() {
     const bool any_moved = scene_changed_ || std::any_of(moving_.begin(), moving_.end(),
                                                          [](const Moving& body) { return body.moved; });
-    for (std::size_t i = 0; i < robots_.size(); ++i) {
-        look_around(i, any_moved);
+    refresh_neighbours();
+    for (std::size_t i = 0; i < robots_.size(); ++i)
+        look_at_lamps(i, any_moved);
+    done(StepPart::Light);
+    for (std::size_t i = 0; i < robots_.size(); ++i)
+        look_around(i);
+    done(StepPart::Around);
+    for (std::size_t i = 0; i < robots_.size(); ++i)
         look_down(i);
+    done(StepPart::Ground);
+    for (std::size_t i = 0; i < robots_.size(); ++i)
         robots_[i].sense_each_step(dynamics_.robot(i), seconds());
-    }
+    done(StepPart::Readings);
     scene_changed_ = false;
 }
 
-bool WorldModel::neighbour_moved(std::size_t robot) const {
-    const auto& own = moving_[robot];
-    const double horizon = robots_[robot].proximity().horizon();
-    return std::any_of(moving_.begin(), moving_.end(), [&](const Moving& body) {
-        return body.moved && std::hypot(body.x - own.x, body.y - own.y) < horizon + 2 * body.shape.radius;
-    });
+void WorldModel::refresh_neighbours() {
+    const auto at = [&](std::size_t i) -> const Moving& { return moving_[i]; };
+    if (!scene_changed_ && near_.hold(moving_.size(), at)) return;
+    std::vector<Disc> moving;
+    std::vector<double> reach;
+    std::vector<const Shape*> still;
+    for (const Moving& body : moving_)
+        moving.push_back({body.x, body.y, body.shape.radius});
+    for (const RobotModel& robot : robots_)
+        reach.push_back(robot.proximity().horizon());
+    for (const Shape& shape : fixed_)
+        still.push_back(&shape);
+    near_.make(std::move(moving), reach, still);
 }
 
-void WorldModel::look_around(std::size_t index, bool any_moved) {
+/// The robot itself, or something that it may see.
+bool WorldModel::neighbour_moved(std::size_t robot) const {
+    const auto others = near_.moving(robot);
+    return moving_[robot].moved ||
+           std::any_of(others.begin(), others.end(), [&](std::uint32_t i) { return moving_[i].moved; });
+}
+
+void WorldModel::look_at_lamps(std::size_t index, bool any_moved) {
+    auto& robot = robots_[index];
+    const bool lamps = !description_.lamps.empty();
+    if (!scene_changed_ && !robot.light().varies_with_time() && !(lamps && any_moved)) return;
+    view_.clear();
+    if (lamps && !robot.lifted()) {
+        for (const Shape& shape : fixed_)
+            if (shape.height > 0.0) view_.push_back(&shape);
+        for (std::size_t i = 0; i < moving_.size(); ++i)
+            if (i != index && moving_[i].shape.height > 0.0) view_.push_back(&moving_[i].shape);
+    }
+    const auto& own = moving_[index];
+    const RobotState seen{.x = own.x, .y = own.y, .heading = own.heading};
+    robot.sense_light({seen, view_, seconds()});
+}
+
+void WorldModel::look_around(std::size_t index) {
+    if (!scene_changed_ && !neighbour_moved(index)) return;
     auto& robot = robots_[index];
     const auto& own = moving_[index];
-    const auto gather = [&](double horizon) {
-        view_.clear();
-        if (robot.lifted()) return;
-        const auto see = [&](const Shape& shape) {
-            if (shape.height <= 0.0) return;
-            const double reach = horizon + shape.radius;
-            const double dx = shape.x - own.x;
-            const double dy = shape.y - own.y;
-            if (dx * dx + dy * dy < reach * reach) view_.push_back(&shape);
-        };
-        for (const auto& shape : fixed_)
-            see(shape);
-        for (std::size_t i = 0; i < moving_.size(); ++i)
-            if (i != index) see(moving_[i].shape);
+    const double horizon = robot.proximity().horizon();
+    view_.clear();
+    const auto see = [&](const Shape& shape) {
+        if (shape.height <= 0.0 || shape.height < robot.sensor_height()) return;
+        // Nearer than the horizon by its edge, not only by the circle around it: long walls have a wide one.
+        constexpr double kRounding = 1e-6;
+        if (within(shape, own.x, own.y, horizon + kRounding)) view_.push_back(&shape);
     };
+    if (!robot.lifted()) {
+        for (const std::uint32_t i : near_.fixed(index))
+            see(fixed_[i]);
+        for (const std::uint32_t i : near_.moving(index))
+            see(moving_[i].shape);
+    }
     const RobotState seen{.x = own.x, .y = own.y, .heading = own.heading};
-    if (any_moved || robot.light().varies_with_time()) {
-        if (own.moved || scene_changed_ || !description_.lamps.empty() || robot.light().varies_with_time()) {
-            constexpr double kEverything = 1e4;
-            view_.clear();
-            if (!description_.lamps.empty()) gather(kEverything);
-            robot.sense_light({seen, view_, seconds()});
-        }
-    }
-    if (scene_changed_ || neighbour_moved(index)) {
-        gather(robot.proximity().horizon());
-        std::erase_if(view_, [&](const Shape* s) { return s->height < robot.sensor_height(); });
-        robot.look_around({seen, view_, seconds()});
-    }
+    robot.look_around({seen, view_, seconds()});
 }
 
 void WorldModel::look_down(std::size_t index) {

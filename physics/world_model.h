@@ -1,7 +1,9 @@
 #pragma once
 // The physical world in steps of 1 ms: wheels in, sensor channels out.
 
+#include "physics/neighbours.h"
 #include "physics/robot_model.h"
+#include "physics/step_observer.h"
 
 #include <cstdint>
 #include <deque>
@@ -22,6 +24,12 @@ class WorldModel {
     void step();
     void move_bodies();
     void sense();
+    /// Hears of every part of the steps to come; nullptr: nobody does.
+    void observe(StepObserver* observer);
+    /// A part of the step has been done, here or by whoever steps this.
+    void done(StepPart part) const {
+        if (observer_ != nullptr) observer_->done(part);
+    }
 
     std::uint64_t steps_done() const { return steps_done_; }
     double seconds() const { return static_cast<double>(steps_done_) * kStepSeconds; }
@@ -60,7 +68,9 @@ class WorldModel {
     void add_bodies();
     void add_object(const Shape& shape, const std::string& name, double heading, double mass);
     void look();
-    void look_around(std::size_t robot, bool any_moved);
+    void refresh_neighbours();
+    void look_around(std::size_t robot);
+    void look_at_lamps(std::size_t robot, bool any_moved);
     void look_down(std::size_t robot);
     bool neighbour_moved(std::size_t robot) const;
 
@@ -73,10 +83,12 @@ class WorldModel {
     std::vector<std::string> object_names_;
     std::deque<RobotModel> robots_;
     std::vector<Moving> moving_;  // robots first, then objects
+    Neighbours near_{0.03};       // of robots: what their proximity sensors may see
     std::vector<std::array<double, 2>> looked_tilt_;
     std::vector<const Shape*> view_;  // scratch
     std::uint64_t steps_done_ = 0;
-    bool scene_changed_ = false;  // since the sensors last looked
+    StepObserver* observer_ = nullptr;
+    bool scene_changed_ = true;  // since the sensors last looked
 };
 
 }  // namespace puckloop::physics

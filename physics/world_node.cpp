@@ -29,7 +29,8 @@ struct RobotLinks {
         std::size_t channel = 0;
         cosim::PortIndex port = 0;
         std::uint16_t id = 0;
-        double last = std::nan("");
+        double last = std::nan("");       // as published
+        double unrounded = std::nan("");  // what it was made of
     };
     std::vector<Output> outputs;
 };
@@ -142,6 +143,7 @@ void WorldNode::Impl::step() {
     if (next_step == 0) return;
     if (recorder) recorder->after_step(model);
     log.after_step(model);
+    model.done(StepPart::Record);
 }
 
 void WorldNode::Impl::publish_events(std::vector<cosim::Message>& outbox) {
@@ -160,8 +162,11 @@ void WorldNode::Impl::publish(std::vector<cosim::Message>& outbox) {
     for (std::size_t robot = 0; robot < links.size(); ++robot) {
         const auto& channels = model.robot(robot).channels();
         for (auto& output : links[robot].outputs) {
+            const double now = channels[output.channel];
+            if (now == output.unrounded) continue;
+            output.unrounded = now;
             const double quantum = channel_quantum(output.channel, count_quantum);
-            const double value = std::round(channels[output.channel] / quantum) * quantum;
+            const double value = std::round(now / quantum) * quantum;
             if (value == output.last) continue;
             output.last = value;
             outbox.push_back({next_step + kStep, output.port, cosim::Signal{output.id, value}});
@@ -246,6 +251,7 @@ void WorldNode::advance(cosim::Time until, std::span<const cosim::Message> inbox
         w.publish(outbox);
         w.publish_poses(outbox);
         w.publish_scene(outbox);
+        w.model.done(StepPart::Publish);
     }
     w.waiting.erase(w.waiting.begin(), next);
 }
@@ -256,6 +262,10 @@ cosim::Time WorldNode::promise(cosim::PortIndex) const {
 
 cosim::Time WorldNode::reaction(cosim::PortIndex) const {
     return kStep + 1;  // a message just before a step shows one step after it
+}
+
+void WorldNode::observe(StepObserver* observer) {
+    impl_->model.observe(observer);
 }
 
 std::string WorldNode::finish() {

@@ -11,6 +11,7 @@
 #include "cosim/core/node.h"
 #include "physics/description.h"
 #include "physics/events/command_source.h"
+#include "physics/step_observer.h"
 
 #include <memory>
 
@@ -32,6 +33,9 @@ class WorldNode final : public cosim::Node {
     cosim::Time promise(cosim::PortIndex port) const override;
     cosim::Time reaction(cosim::PortIndex port) const override;
     std::string finish() override;
+
+    /// Hears of every part of the steps to come; nullptr: nobody does.
+    void observe(StepObserver* observer);
 
   private:
     struct Impl;

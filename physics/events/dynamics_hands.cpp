@@ -20,12 +20,14 @@ void rest(dBodyID body) {
 std::size_t Dynamics::add_fixed(const Shape& shape) {
     const OdeSession session(impl_->complaints);
     impl_->set_fixed(impl_->fixed.emplace_back(), shape);
+    impl_->near.forget();
     return impl_->fixed.size() - 1;
 }
 
 void Dynamics::place_fixed(std::size_t index, const Shape& shape) {
     const OdeSession session(impl_->complaints);
     impl_->set_fixed(impl_->fixed[index], shape);
+    impl_->near.forget();
     // What leant on it or slept beside it may move now.
     for (auto& object : impl_->objects)
         if (object.present) dBodyEnable(object.body);
