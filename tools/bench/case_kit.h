@@ -32,6 +32,8 @@ class Kit {
     void time_overhead(const std::string& name, const std::filesystem::path& scenario, double simulated_s);
     /// Wandering robots: real-time factors, and what a robot costs among many.
     void time_growth(double simulated_s);
+    /// The physical world alone, part by part (tools/bench/world_cost.h).
+    void time_world();
     /// Wandering robots: peak memory.
     void weigh(double simulated_s);
 

@@ -61,6 +61,7 @@ const std::vector<Case>& table() {
                                          {"swarm", swarm},
                                          {"overhead", overhead},
                                          {"wander", wander},
+                                         {"world", [](Kit& kit) { kit.time_world(); }},
                                          {"memory", memory},
                                          {"rab1", [](Kit& kit) { rab(kit, 1); }},
                                          {"rab2", [](Kit& kit) { rab(kit, 2); }},

@@ -46,7 +46,8 @@ void declare_bench(Command& app, int& status) {
             "--case", bench.cases,
             "what to measure (repeatable; default core and scenario): core; board = one range-and-bearing "
             "board alone; scenario = in one process and with a process a node; swarm = swarm.toml; overhead "
-            "= hello.toml and swarm.toml beside their boards alone; wander, memory = wandering robots; rab1, "
+            "= hello.toml and swarm.toml beside their boards alone; wander, memory = wandering robots; world "
+            "= the physical world alone, part by part; rab1, "
             "rab2, rab8 = so many robots with busy range-and-bearing boards (docs/bench.md)")
         ->allow_extra_args(false)
         ->check(one_of(bench_cases()));
