@@ -12,12 +12,20 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 
 namespace puckloop::tools {
 
 namespace {
 
 using nlohmann::json;
+
+double thread_seconds() {
+    timespec time{};
+    ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    constexpr double kNano = 1e-9;
+    return static_cast<double>(time.tv_sec) + kNano * static_cast<double>(time.tv_nsec);
+}
 
 bool earlier(const cosim::Message& a, const cosim::Message& b) {
     return a.time < b.time;
@@ -71,9 +79,11 @@ ReplayTiming replay_boards(const Recording& recording) {
     for (const RecordedBoard& recorded : recording.boards) {
         const auto board = make_board(json::parse(recorded.description));
         std::vector<cosim::Message> sent;
+        const double cpu = thread_seconds();
         const auto start = Clock::now();
         board->advance(recorded.life.time, recorded.life.received, sent);
         timing.wall_s += std::chrono::duration<double>(Clock::now() - start).count();
+        timing.cpu_s += thread_seconds() - cpu;
         if (!same_sent(std::move(sent), recorded.life))
             throw RunError(
                 fmt::format("{} alone sends something else than it did in the run", board->name()));

@@ -30,6 +30,7 @@ Recording record_boards(const std::filesystem::path& scenario, double simulated_
 
 struct ReplayTiming {
     double wall_s = 0;  ///< of execution: boards are made and images loaded before
+    double cpu_s = 0;   ///< the same in processor time, which other load on the machine changes little
     std::uint64_t instructions = 0;
     std::uint64_t cycles = 0;
 };

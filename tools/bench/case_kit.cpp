@@ -154,7 +154,7 @@ void Kit::time_overhead(const std::string& name, const std::filesystem::path& sc
     const Recording recording = record_boards(scenario, simulated_s, folder_ / "recording");
     struct Way {
         RunSpec spec;
-        Figure run, factor;
+        Figure run, factor, cpu;
     };
     // The boards alone take one thread; a run with several may be quicker than them by that alone.
     std::vector<Way> ways;
@@ -162,26 +162,33 @@ void Kit::time_overhead(const std::string& name, const std::filesystem::path& sc
         const std::string title = name + (threads == 1 ? ", 1 thread" : "");
         ways.push_back({{scenario, simulated_s, true, threads},
                         {title, kRealTime, {}, {}, {}},
-                        {title + ", overhead factor", "x boards alone", {}, {}, {}}});
+                        {title + ", overhead factor", "x boards alone", {}, {}, {}},
+                        {title + ", overhead in processor time", "x boards alone", {}, {}, {}}});
     }
     Figure alone{name + ", boards alone", kRealTime, {}, {}, {}};
     for (int round = 0; round < options_.rounds; ++round) {
         add_reference(alone);
-        alone.values.push_back(recording.simulated_s / replay_boards(recording).wall_s);
+        const ReplayTiming replay = replay_boards(recording);
+        alone.values.push_back(recording.simulated_s / replay.wall_s);
+        const auto cpu_factor = [&](const RunTiming& timing) {
+            return timing.program.cpu_s / timing.simulated_s / (replay.cpu_s / recording.simulated_s);
+        };
         for (Way& way : ways) {
             const RunTiming own = own_run(way.spec);
             way.run.references.push_back(alone.references.back());
             way.run.values.push_back(own.real_time_factor());
             way.factor.values.push_back(alone.values.back() / own.real_time_factor());
+            way.cpu.values.push_back(cpu_factor(own));
             const auto peer = peer_run(way.spec, own, way.run);
             if (!peer) continue;
             way.run.peers.push_back(peer->real_time_factor());
             way.factor.peers.push_back(alone.values.back() / peer->real_time_factor());
+            way.cpu.peers.push_back(cpu_factor(*peer));
         }
     }
     figures_.push_back(alone);
     for (const Way& way : ways)
-        figures_.insert(figures_.end(), {way.run, way.factor});
+        figures_.insert(figures_.end(), {way.run, way.factor, way.cpu});
 }
 
 void Kit::time_growth(double simulated_s) {

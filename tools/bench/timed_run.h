@@ -14,9 +14,9 @@
 namespace puckloop::tools {
 
 struct ProgramTiming {
-    double wall_s = 0;       ///< from its start to its end
-    double cpu_s = 0;        ///< user and system, with the processes that it waited for
-    std::string output;      ///< what it wrote to standard output
+    double wall_s = 0;   ///< from its start to its end
+    double cpu_s = 0;    ///< user and system, with the processes that it waited for
+    std::string output;  ///< what it wrote to standard output
 };
 
 /// Runs `words` and waits; while it does, calls `watch` (may be null) with the process's number at most every
