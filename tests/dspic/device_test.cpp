@@ -1,8 +1,10 @@
 // The register and interrupt tables hold together: order, uniqueness, fields inside the implemented bits.
 
+#include "emu/dspic/core/sfr_space.h"
 #include "emu/dspic/devices/device.h"
 #include "emu/dspic/devices/dspic30f6014a_irq.h"
 #include "emu/dspic/devices/dspic33fj256gp710_irq.h"
+#include "emu/dspic/devices/register_bits.h"
 
 #include <catch2/catch.hpp>
 
@@ -97,4 +99,28 @@ TEST_CASE("devices are found by command-line name, vectors by number") {
     CHECK_FALSE(dspic33fj256gp710().irq("NVM"));
     CHECK(dspic33fj256gp710().vector_name(5) == "DmacError");
     CHECK(dspic33fj256gp710().vector_name(8 + 16) == "SI2C1");
+}
+
+TEST_CASE("bits of registers come from the device tables") {
+    constexpr RegisterBits kTxCON{"T?CON"};
+    STATIC_REQUIRE(kTxCON["TON"] == 0x8000);
+    STATIC_REQUIRE(kTxCON["TCKPS"] == 0x0030);
+    STATIC_REQUIRE(kTxCON["TCKPS"].of(0xFFEF) == 2);
+    STATIC_REQUIRE(RegisterBits{"I2C*STAT"}["R_W"] == 0x0004);      // the 33FJ's name
+    STATIC_REQUIRE(RegisterBits{"I2C*STAT"}["R_NOT_W"] == 0x0004);  // the 30F's
+    STATIC_REQUIRE((RegisterBits{"INTCON1"}["MATHERR"] | RegisterBits{"INTCON1"}["OSCFAIL"]) == 0x0012);
+    STATIC_REQUIRE(name_fits("*SIDL", "TSIDL"));
+    STATIC_REQUIRE_FALSE(name_fits("T?CON", "T10CON"));
+    // Every field lies within its register, and no two share a bit.
+    for (const DeviceInfo* device : devices())
+        for (const RegisterInfo& info : device->registers) {
+            std::uint16_t seen = 0;
+            for_fields(info, [&](const RegisterField& field) {
+                INFO(device->name << " " << info.name << " " << field.name);
+                CHECK(field.mask != 0);
+                CHECK((field.mask & seen) == 0);
+                CHECK(field_mask(info, field.name) == field.mask);
+                seen |= field.mask;
+            });
+        }
 }

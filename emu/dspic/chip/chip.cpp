@@ -3,6 +3,8 @@
 #include "emu/dspic/chip/layout.h"
 #include "emu/dspic/core/core.h"
 #include "emu/dspic/core/interrupts.h"
+#include "emu/dspic/devices/dspic30f6014a_sfr.h"
+#include "emu/dspic/devices/register_bits.h"
 #include "emu/dspic/peripherals/adc12.h"
 #include "emu/dspic/peripherals/external_interrupts.h"
 #include "emu/dspic/peripherals/i2c_slave.h"
@@ -24,14 +26,14 @@ using cosim::Time;
 
 namespace {
 
+/// "Stop in Idle" is in the same place in every module that has it.
+constexpr RegisterBits kAnyModule{"*"};
 constexpr std::uint32_t kFosc30F = 0xF80000;
 constexpr std::uint32_t kFoscsel33F = 0xF80006;
 constexpr std::uint32_t kFosc33F = 0xF80008;
-constexpr std::uint16_t kRcon = 0x740;
 constexpr std::size_t kRecords = 1000;
 constexpr int kUartLookaheadBits = 9;
-constexpr double kShortestWait = 0.1;           // s
-constexpr std::uint16_t kStopInIdle = bit(13);  // xSIDL
+constexpr double kShortestWait = 0.1;  // s
 
 /// Instruction rate before the first configuration word is known.
 double start_hertz(const DeviceInfo& device, const ChipOptions& options) {
@@ -218,9 +220,9 @@ struct Chip::Parts {
     // Registers and modules at a reset; the core does its own and RCON.
     void reset(ResetCause cause) {
         const bool power_on = cause == ResetCause::PowerOn;
-        const std::uint16_t rcon = sfr.raw(kRcon);
+        const std::uint16_t rcon = sfr.raw(sfr::RCON);
         sfr.reset_values();
-        if (!power_on) sfr.raw(kRcon) = rcon;
+        if (!power_on) sfr.raw(sfr::RCON) = rcon;
         oscillator->configure(clock_words());
         oscillator->reset(power_on || cause == ResetCause::BrownOut);
         ports.reset();
@@ -245,7 +247,8 @@ struct Chip::Parts {
         asleep_since.reset();
         if (mode != PowerMode::Run) asleep_since = core.cycle();
         const auto stops = [&](std::uint16_t control) {
-            return mode == PowerMode::Sleep || (mode == PowerMode::Idle && (sfr.raw(control) & kStopInIdle));
+            return mode == PowerMode::Sleep ||
+                   (mode == PowerMode::Idle && (sfr.raw(control) & kAnyModule["*SIDL"]));
         };
         for (std::size_t i = 0; i < timers.size(); ++i)
             timers[i].hold(stops(layout.timers[i].setup.con));

@@ -2,10 +2,14 @@
 // address arithmetic of modulo and bit-reversed pointers.
 
 #include "emu/dspic/core/machine.h"
+#include "emu/dspic/devices/register_bits.h"
 
 namespace puckloop::dspic {
 
 namespace {
+
+constexpr RegisterBits kMODCON{"MODCON"};
+constexpr RegisterBits kXBREV{"XBREV"};
 
 std::uint16_t read_sfr(Machine& m, std::uint16_t address) {
     const std::uint16_t value = m.sfr.read(address);
@@ -72,21 +76,20 @@ std::uint16_t reverse_carry_add(std::uint16_t address, std::uint16_t xb) {
     return static_cast<std::uint16_t>(mirror(sum) << 1);
 }
 
-constexpr std::uint16_t kXmoden = 1u << 15, kYmoden = 1u << 14, kBren = 1u << 15;
 int xwm(const Machine& m) {
-    return m.st.modcon & 15;
+    return static_cast<int>(kMODCON["XWM"].of(m.st.modcon));
 }
 int ywm(const Machine& m) {
-    return m.st.modcon >> 4 & 15;
+    return static_cast<int>(kMODCON["YWM"].of(m.st.modcon));
 }
 int bwm(const Machine& m) {
-    return m.st.modcon >> 8 & 15;
+    return static_cast<int>(kMODCON["BWM"].of(m.st.modcon));
 }
 bool bit_reversed(const Machine& m) {
-    return m.st.xbrev & kBren && bwm(m) != 15;
+    return m.st.xbrev & kXBREV["BREN"] && bwm(m) != 15;
 }
 bool x_modulo(const Machine& m, int reg, bool write) {
-    return m.st.modcon & kXmoden && xwm(m) == reg && reg != 15 && !(write && bit_reversed(m));
+    return m.st.modcon & kMODCON["XMODEN"] && xwm(m) == reg && reg != 15 && !(write && bit_reversed(m));
 }
 
 }  // namespace
@@ -118,7 +121,7 @@ std::uint16_t special_ea(Machine& m, int reg, int pre, int post, bool write, boo
     const std::uint16_t old = get_w(m, reg);
     const bool increments = pre > 0 || post > 0;
     if (write && word && increments && bit_reversed(m) && bwm(m) == reg) {
-        const std::uint16_t next = reverse_carry_add(old, m.st.xbrev & 0x7FFF);
+        const std::uint16_t next = reverse_carry_add(old, m.st.xbrev & kXBREV["XB"]);
         set_w(m, reg, next);
         return pre ? next : old;
     }
@@ -144,14 +147,14 @@ std::uint16_t special_offset(Machine& m, int reg, std::uint16_t offset, bool wri
 
 std::uint16_t modulo_y(Machine& m, int reg, int step) {
     const std::uint16_t old = get_w(m, reg);
-    if (!(m.st.modcon & kYmoden) || ywm(m) != reg) return static_cast<std::uint16_t>(old + step);
+    if (!(m.st.modcon & kMODCON["YMODEN"]) || ywm(m) != reg) return static_cast<std::uint16_t>(old + step);
     return wrap(old, step, m.st.ymodsrt, m.st.ymodend);
 }
 
 void update_pointer_rules(Machine& m) {
     forget_loops(m);
     std::uint32_t special = 1u << 15;
-    if (m.st.modcon & kXmoden) special |= 1u << xwm(m);
+    if (m.st.modcon & kMODCON["XMODEN"]) special |= 1u << xwm(m);
     if (bit_reversed(m)) special |= 1u << bwm(m);
     m.special = static_cast<std::uint16_t>(special);
     m.stack_span = (m.st.splim_armed ? m.st.splim : 0xFFFF) - kRamStart;

@@ -1,44 +1,56 @@
 // The core's own registers in the SFR space, 0x0000 to 0x0053.
 
 #include "emu/dspic/core/machine.h"
+#include "emu/dspic/devices/dspic30f6014a_sfr.h"
+#include "emu/dspic/devices/register_bits.h"
 
 namespace puckloop::dspic {
 
 namespace {
 
-enum : std::uint16_t {
-    kSplim = 0x020,
-    kAccal = 0x022,
-    kAccah = 0x024,
-    kAccau = 0x026,
-    kAccbl = 0x028,
-    kAccbh = 0x02A,
-    kAccbu = 0x02C,
-    kPcl = 0x02E,
-    kPch = 0x030,
-    kTblpag = 0x032,
-    kPsvpag = 0x034,
-    kRcount = 0x036,
-    kDcount = 0x038,
-    kDostartl = 0x03A,
-    kDostarth = 0x03C,
-    kDoendl = 0x03E,
-    kDoendh = 0x040,
-    kSr = 0x042,
-    kCorcon = 0x044,
-    kModcon = 0x046,
-    kXmodsrt = 0x048,
-    kXmodend = 0x04A,
-    kYmodsrt = 0x04C,
-    kYmodend = 0x04E,
-    kXbrev = 0x050,
-    kDisicnt = 0x052,
-    kLast = 0x052,
-};
+// The names that instructions use are the tables' too.
+constexpr RegisterBits kSR{"SR"}, kCORCON{"CORCON"}, kRCON{"RCON"};
+#define SAME(NAMESPACE, TABLE, NAME) static_assert(NAMESPACE::NAME == TABLE[#NAME])
+SAME(sr, kSR, C);
+SAME(sr, kSR, Z);
+SAME(sr, kSR, OV);
+SAME(sr, kSR, N);
+SAME(sr, kSR, RA);
+SAME(sr, kSR, IPL);
+SAME(sr, kSR, DC);
+SAME(sr, kSR, DA);
+SAME(sr, kSR, SAB);
+SAME(sr, kSR, OAB);
+SAME(sr, kSR, SB);
+SAME(sr, kSR, SA);
+SAME(sr, kSR, OB);
+SAME(sr, kSR, OA);
+SAME(corcon, kCORCON, IF);
+SAME(corcon, kCORCON, RND);
+SAME(corcon, kCORCON, PSV);
+SAME(corcon, kCORCON, IPL3);
+SAME(corcon, kCORCON, ACCSAT);
+SAME(corcon, kCORCON, SATDW);
+SAME(corcon, kCORCON, SATB);
+SAME(corcon, kCORCON, SATA);
+SAME(corcon, kCORCON, DL);
+SAME(corcon, kCORCON, EDT);
+SAME(corcon, kCORCON, US);
+SAME(rcon, kRCON, POR);
+SAME(rcon, kRCON, BOR);
+SAME(rcon, kRCON, IDLE);
+SAME(rcon, kRCON, SLEEP);
+SAME(rcon, kRCON, WDTO);
+SAME(rcon, kRCON, SWDTEN);
+SAME(rcon, kRCON, SWR);
+SAME(rcon, kRCON, EXTR);
+SAME(rcon, kRCON, IOPUWR);
+SAME(rcon, kRCON, TRAPR);
+#undef SAME
 
 std::uint16_t accumulator_part(const CoreState& st, std::uint16_t address) {
-    const std::int64_t acc = st.acc[address >= kAccbl];
-    const int part = (address - (address >= kAccbl ? kAccbl : kAccal)) / 2;
+    const std::int64_t acc = st.acc[address >= sfr::ACCBL];
+    const int part = (address - (address >= sfr::ACCBL ? sfr::ACCBL : sfr::ACCAL)) / 2;
     return static_cast<std::uint16_t>(acc >> (16 * part));  // the upper byte reads sign extended
 }
 
@@ -47,54 +59,54 @@ std::uint16_t read_register(void* owner, std::uint16_t address) {
     const CoreState& st = m.st;
     const auto low = [](std::uint32_t a) { return static_cast<std::uint16_t>(a); };
     const auto high = [](std::uint32_t a) { return static_cast<std::uint16_t>(a >> 16); };
-    if (address < kSplim) return st.w[address >> 1];
+    if (address < sfr::SPLIM) return st.w[address >> 1];
     switch (address) {
-    case kSplim:
+    case sfr::SPLIM:
         return st.splim;
-    case kAccal:
-    case kAccah:
-    case kAccau:
-    case kAccbl:
-    case kAccbh:
-    case kAccbu:
+    case sfr::ACCAL:
+    case sfr::ACCAH:
+    case sfr::ACCAU:
+    case sfr::ACCBL:
+    case sfr::ACCBH:
+    case sfr::ACCBU:
         return accumulator_part(st, address);
-    case kPcl:
+    case sfr::PCL:
         return low(m.pc_of(m.current));
-    case kPch:
+    case sfr::PCH:
         return high(m.pc_of(m.current));
-    case kTblpag:
+    case sfr::TBLPAG:
         return st.tblpag;
-    case kPsvpag:
+    case sfr::PSVPAG:
         return st.psvpag;
-    case kRcount:
+    case sfr::RCOUNT:
         return st.rcount;
-    case kDcount:
+    case sfr::DCOUNT:
         return st.loop.dcount;
-    case kDostartl:
+    case sfr::DOSTARTL:
         return low(st.loop.dostart);
-    case kDostarth:
+    case sfr::DOSTARTH:
         return high(st.loop.dostart);
-    case kDoendl:
+    case sfr::DOENDL:
         return low(st.loop.doend);
-    case kDoendh:
+    case sfr::DOENDH:
         return high(st.loop.doend);
-    case kSr:
+    case sfr::SR:
         return st.sr;
-    case kCorcon:
+    case sfr::CORCON:
         return st.corcon & ~corcon::EDT;
-    case kModcon:
+    case sfr::MODCON:
         return st.modcon;
-    case kXmodsrt:
+    case sfr::XMODSRT:
         return st.xmodsrt;
-    case kXmodend:
+    case sfr::XMODEND:
         return st.xmodend;
-    case kYmodsrt:
+    case sfr::YMODSRT:
         return st.ymodsrt;
-    case kYmodend:
+    case sfr::YMODEND:
         return st.ymodend;
-    case kXbrev:
+    case sfr::XBREV:
         return st.xbrev;
-    case kDisicnt:
+    case sfr::DISICNT:
         return static_cast<std::uint16_t>(st.disi_end > st.cycle ? st.disi_end - st.cycle : 0);
     default:
         return 0;
@@ -102,8 +114,8 @@ std::uint16_t read_register(void* owner, std::uint16_t address) {
 }
 
 void write_accumulator(CoreState& st, std::uint16_t address, std::uint16_t value, std::uint16_t mask) {
-    std::int64_t& acc = st.acc[address >= kAccbl];
-    const int shift = 8 * (address - (address >= kAccbl ? kAccbl : kAccal));
+    std::int64_t& acc = st.acc[address >= sfr::ACCBL];
+    const int shift = 8 * (address - (address >= sfr::ACCBL ? sfr::ACCBL : sfr::ACCAL));
     const std::uint64_t bits = std::uint64_t{mask} << shift;
     const std::uint64_t merged =
         (static_cast<std::uint64_t>(acc) & ~bits) | (std::uint64_t{value} << shift & bits);
@@ -150,70 +162,70 @@ void write_register(void* owner, std::uint16_t address, std::uint16_t written, s
     const auto value = static_cast<std::uint16_t>((read_register(owner, address) & ~mask) | (written & mask));
     const auto put_low = [&](std::uint32_t& a) { a = (a & 0x7F0000) | (value & 0xFFFEu); };
     const auto put_high = [&](std::uint32_t& a) { a = (a & 0xFFFF) | (value & 0x7Fu) << 16; };
-    if (address < kSplim) return set_w(m, address >> 1, value);
+    if (address < sfr::SPLIM) return set_w(m, address >> 1, value);
     switch (address) {
-    case kSplim:
+    case sfr::SPLIM:
         st.splim = value & 0xFFFE;
         st.splim_armed = true;
         update_pointer_rules(m);
         break;
-    case kAccal:
-    case kAccah:
-    case kAccau:
-    case kAccbl:
-    case kAccbh:
-    case kAccbu:
+    case sfr::ACCAL:
+    case sfr::ACCAH:
+    case sfr::ACCAU:
+    case sfr::ACCBL:
+    case sfr::ACCBH:
+    case sfr::ACCBU:
         write_accumulator(st, address, written, mask);
         break;
-    case kTblpag:
+    case sfr::TBLPAG:
         st.tblpag = value & 0xFF;
         break;
-    case kPsvpag:
+    case sfr::PSVPAG:
         st.psvpag = value & 0xFF;
         break;
-    case kRcount:
+    case sfr::RCOUNT:
         st.rcount = value & 0x3FFF;
         break;
-    case kDcount:
+    case sfr::DCOUNT:
         st.loop.dcount = value & 0x3FFF;
         break;
-    case kDostartl:
-    case kDostarth:
+    case sfr::DOSTARTL:
+    case sfr::DOSTARTH:
         if (m.device.family_33f) break;  // read only there
-        address == kDostartl ? put_low(st.loop.dostart) : put_high(st.loop.dostart);
+        address == sfr::DOSTARTL ? put_low(st.loop.dostart) : put_high(st.loop.dostart);
         break;
-    case kDoendl:
-    case kDoendh:
-        address == kDoendl ? put_low(st.loop.doend) : put_high(st.loop.doend);
+    case sfr::DOENDL:
+    case sfr::DOENDH:
+        address == sfr::DOENDL ? put_low(st.loop.doend) : put_high(st.loop.doend);
         mark(m, st.loop.doend, kLoopEnd);
         break;
-    case kSr:
+    case sfr::SR:
         write_status(m, written, mask);
         break;
-    case kCorcon:
+    case sfr::CORCON:
         write_control(m, written, mask);
         break;
-    case kModcon:
+    case sfr::MODCON:
         st.modcon = value & 0xCFFF;
         update_pointer_rules(m);
         break;
-    case kXmodsrt:
+    case sfr::XMODSRT:
         st.xmodsrt = value & 0xFFFE;
         break;
-    case kXmodend:
+    case sfr::XMODEND:
         st.xmodend = value | 1;
         break;
-    case kYmodsrt:
+    case sfr::YMODSRT:
         st.ymodsrt = value & 0xFFFE;
         break;
-    case kYmodend:
+    case sfr::YMODEND:
         st.ymodend = value | 1;
         break;
-    case kXbrev:
+    case sfr::XBREV:
         st.xbrev = value;
         update_pointer_rules(m);
         break;
-    case kDisicnt:
+    case sfr::DISICNT:
         write_disicnt(m, value);
         break;
     default:  // PCL, PCH are read-only
@@ -224,7 +236,8 @@ void write_register(void* owner, std::uint16_t address, std::uint16_t written, s
 }  // namespace
 
 void hook_registers(Machine& m) {
-    for (std::uint16_t address = 0; address <= kLast; address = static_cast<std::uint16_t>(address + 2))
+    for (std::uint16_t address = 0; address <= sfr::DISICNT;
+         address = static_cast<std::uint16_t>(address + 2))
         m.sfr.hook(address, &m, &read_register, &write_register);
 }
 

@@ -1,5 +1,7 @@
 #include "emu/dspic/core/interrupts.h"
 
+#include "emu/dspic/devices/register_bits.h"
+
 #include <bit>
 #include <utility>
 
@@ -7,15 +9,19 @@ namespace puckloop::dspic {
 
 namespace {
 
-constexpr std::uint16_t kNstdis = 1u << 15;
-constexpr std::uint16_t kAltivt = 1u << 15;
-constexpr std::uint16_t kDisi = 1u << 14;
-constexpr std::uint16_t kTrapFlags30F = 0x001E;  ///< MATHERR ADDRERR STKERR OSCFAIL
-constexpr std::uint16_t kTrapFlags33F = 0x003E;  ///< and DMACERR
-constexpr std::uint16_t kIntcon1Bits30F = 0x871E;
-constexpr std::uint16_t kIntcon1Bits33F = 0xFFFE;
-constexpr std::uint16_t kIntcon2Bits = 0x801F;
+constexpr RegisterBits kINTCON1{"INTCON1"};
+constexpr RegisterBits kINTCON2{"INTCON2"};
 
+constexpr std::uint16_t kTrapFlags30F =
+    kINTCON1["MATHERR"] | kINTCON1["ADDRERR"] | kINTCON1["STKERR"] | kINTCON1["OSCFAIL"];
+constexpr std::uint16_t kTrapFlags33F = kTrapFlags30F | kINTCON1["DMACERR"];
+
+/// Bits of a register that exist on the device.
+std::uint16_t implemented(const DeviceInfo& device, std::uint16_t address) {
+    for (const RegisterInfo& info : device.registers)
+        if (info.address == address) return info.implemented;
+    return 0;
+}
 constexpr std::uint16_t word_of(std::uint16_t base, int irq) {
     return static_cast<std::uint16_t>(base + 2 * (irq / 16));
 }
@@ -100,10 +106,10 @@ bool InterruptController::falling_edge(int external) const {
     return sfr_.raw(kIntcon2) >> external & 1;
 }
 bool InterruptController::nesting_disabled() const {
-    return sfr_.raw(kIntcon1) & kNstdis;
+    return sfr_.raw(kIntcon1) & kINTCON1["NSTDIS"];
 }
 bool InterruptController::alternate_table() const {
-    return sfr_.raw(kIntcon2) & kAltivt;
+    return sfr_.raw(kIntcon2) & kINTCON2["ALTIVT"];
 }
 
 bool InterruptController::any_enabled_flag() const {
@@ -177,7 +183,7 @@ void InterruptController::registers_loaded() {
 std::uint16_t InterruptController::read_register(void* owner, std::uint16_t address) {
     const auto& self = *static_cast<const InterruptController*>(owner);
     std::uint16_t value = self.sfr_.raw(address);
-    if (self.disi_end_ && *self.disi_end_ > *self.now_) value |= kDisi;
+    if (self.disi_end_ && *self.disi_end_ > *self.now_) value |= kINTCON2["DISI"];
     return value;
 }
 
@@ -192,9 +198,9 @@ void InterruptController::write_register(void* owner, std::uint16_t address, std
     } else if (in(d.iec)) {
         exists = self.implemented_[static_cast<std::size_t>(address - d.iec) / 2];
     } else if (address == kIntcon1) {
-        exists = d.family_33f ? kIntcon1Bits33F : kIntcon1Bits30F;
+        exists = implemented(d, kIntcon1);
     } else if (address == kIntcon2) {
-        exists = kIntcon2Bits;
+        exists = implemented(d, kIntcon2) & ~kINTCON2["DISI"];
     } else {
         const int first = 4 * ((address - d.ipc) / 2);
         for (int i = 0; i < 4; ++i)

@@ -6,6 +6,8 @@
 //   3. write protection by configuration words is not enforced.
 
 #include "emu/dspic/core/machine.h"
+#include "emu/dspic/devices/dspic30f6014a_sfr.h"
+#include "emu/dspic/devices/register_bits.h"
 
 #include <algorithm>
 
@@ -13,8 +15,8 @@ namespace puckloop::dspic {
 
 namespace {
 
-constexpr std::uint16_t kNvmcon = 0x760, kNvmadr = 0x762, kNvmadru = 0x764, kNvmkey = 0x766;
-constexpr std::uint16_t kWr = 1u << 15, kWren = 1u << 14, kWrerr = 1u << 13;
+constexpr RegisterBits kNVMCON{"NVMCON"};
+
 constexpr std::uint32_t kErased = 0xFFFFFF;
 constexpr double kDuration = 2e-3;             ///< seconds, typical
 constexpr Cycle kDurationUnknownRate = 29491;  ///< 2 ms at the e-puck's 14.7456 MHz
@@ -106,20 +108,20 @@ bool start_33f(Machine& m, std::uint16_t code) {
 
 void finished(void* owner, Cycle due) {
     auto& m = *static_cast<Machine*>(owner);
-    m.sfr.raw(kNvmcon) &= static_cast<std::uint16_t>(~kWr);
+    m.sfr.raw(sfr::NVMCON) &= static_cast<std::uint16_t>(~kNVMCON["WR"]);
     if (const auto irq = m.device.irq("NVM")) m.irq.raise(*irq, due);
 }
 
 void start(Machine& m) {
-    std::uint16_t& con = m.sfr.raw(kNvmcon);
+    std::uint16_t& con = m.sfr.raw(sfr::NVMCON);
     const auto code = static_cast<std::uint16_t>(con & 0x7F);
     const bool background = in_eeprom(m, m.nvm.address) || code == 0x46;
     const bool done = m.device.family_33f ? start_33f(m, code) : start_30f(m, code);
     if (!done) {
-        con = static_cast<std::uint16_t>((con & ~kWr) | kWrerr);
+        con = static_cast<std::uint16_t>((con & ~kNVMCON["WR"]) | kNVMCON["WRERR"]);
         return;
     }
-    con = static_cast<std::uint16_t>((con | kWr) & ~kWrerr);
+    con = static_cast<std::uint16_t>((con | kNVMCON["WR"]) & ~kNVMCON["WRERR"]);
     const Cycle length =
         m.cycle_rate > 0 ? static_cast<Cycle>(kDuration * m.cycle_rate) : kDurationUnknownRate;
     m.events.schedule(m.nvm.slot, m.st.cycle + length);
@@ -129,8 +131,8 @@ void start(Machine& m) {
 
 std::uint16_t read_register(void* owner, std::uint16_t address) {
     const auto& m = *static_cast<const Machine*>(owner);
-    if (address == kNvmadr) return static_cast<std::uint16_t>(m.nvm.address);
-    if (address == kNvmadru) return static_cast<std::uint16_t>(m.nvm.address >> 16 & 0xFF);
+    if (address == sfr::NVMADR) return static_cast<std::uint16_t>(m.nvm.address);
+    if (address == sfr::NVMADRU) return static_cast<std::uint16_t>(m.nvm.address >> 16 & 0xFF);
     return 0;  // NVMKEY is write-only
 }
 
@@ -140,23 +142,23 @@ void write_register(void* owner, std::uint16_t address, std::uint16_t value, std
         return (old & ~std::uint32_t{mask} & 0xFFFF) | (value & mask);
     };
     switch (address) {
-    case kNvmadr:
+    case sfr::NVMADR:
         m.nvm.address = (m.nvm.address & 0xFF0000) | merged(m.nvm.address);
         break;
-    case kNvmadru:
+    case sfr::NVMADRU:
         m.nvm.address = (m.nvm.address & 0xFFFF) | (merged(m.nvm.address >> 16) & 0xFF) << 16;
         break;
-    case kNvmkey:
+    case sfr::NVMKEY:
         if (!(mask & 0xFF)) break;
         m.nvm.key_step = (value & 0xFF) == 0x55 ? 1 : (value & 0xFF) == 0xAA && m.nvm.key_step == 1 ? 2 : 0;
         break;
-    case kNvmcon: {
-        std::uint16_t& con = m.sfr.raw(kNvmcon);
-        if (con & kWr) break;  // busy
+    case sfr::NVMCON: {
+        std::uint16_t& con = m.sfr.raw(sfr::NVMCON);
+        if (con & kNVMCON["WR"]) break;  // busy
         const std::uint32_t next = merged(con) & 0xE17F;
-        const bool go = next & kWr && next & kWren && m.nvm.key_step == 2;
-        con = static_cast<std::uint16_t>(next & ~std::uint32_t{kWr});
-        if (next & kWr) m.nvm.key_step = 0;
+        const bool go = next & kNVMCON["WR"] && next & kNVMCON["WREN"] && m.nvm.key_step == 2;
+        con = static_cast<std::uint16_t>(next & ~std::uint32_t{kNVMCON["WR"]});
+        if (next & kNVMCON["WR"]) m.nvm.key_step = 0;
         if (go) start(m);
         break;
     }
@@ -168,11 +170,11 @@ void write_register(void* owner, std::uint16_t address, std::uint16_t value, std
 }  // namespace
 
 void hook_nvm(Machine& m) {
-    m.sfr.hook(kNvmcon, &m, nullptr, &write_register);
-    m.sfr.hook(kNvmkey, &m, &read_register, &write_register);
+    m.sfr.hook(sfr::NVMCON, &m, nullptr, &write_register);
+    m.sfr.hook(sfr::NVMKEY, &m, &read_register, &write_register);
     if (!m.device.family_33f) {
-        m.sfr.hook(kNvmadr, &m, &read_register, &write_register);
-        m.sfr.hook(kNvmadru, &m, &read_register, &write_register);
+        m.sfr.hook(sfr::NVMADR, &m, &read_register, &write_register);
+        m.sfr.hook(sfr::NVMADRU, &m, &read_register, &write_register);
     }
     m.nvm.slot = m.events.add(&m, &finished);
     m.nvm.latch.assign(m.device.row_words, kErased);
@@ -180,7 +182,7 @@ void hook_nvm(Machine& m) {
 
 void reset_nvm(Machine& m) {
     m.events.cancel(m.nvm.slot);
-    m.sfr.raw(kNvmcon) = 0;
+    m.sfr.raw(sfr::NVMCON) = 0;
     m.nvm.key_step = 0;
     std::fill(m.nvm.latch.begin(), m.nvm.latch.end(), kErased);
 }

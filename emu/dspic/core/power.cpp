@@ -5,17 +5,17 @@
 //   2. a device without a programmed FWDT word runs with FWDTEN = 0 (erased silicon: 1).
 
 #include "emu/dspic/core/machine.h"
+#include "emu/dspic/devices/dspic30f6014a_sfr.h"
 
 namespace puckloop::dspic {
 
 namespace {
 
-constexpr std::uint16_t kRcon = 0x740;
 constexpr std::uint32_t kFwdt30F = 0xF80002;
 constexpr std::uint32_t kFwdt33F = 0xF8000A;
 
 bool watchdog_on(const Machine& m) {
-    if (m.sfr.raw(kRcon) & rcon::SWDTEN) return true;
+    if (m.sfr.raw(sfr::RCON) & rcon::SWDTEN) return true;
     const std::uint32_t fwdt = read_program(m, m.device.family_33f ? kFwdt33F : kFwdt30F);
     return fwdt & (m.device.family_33f ? 1u << 7 : 1u << 15);
 }
@@ -38,7 +38,7 @@ void expired(void* owner, Cycle due) {
     auto& m = *static_cast<Machine*>(owner);
     if (m.mode == PowerMode::Run) return request_reset(m, ResetCause::Watchdog);
     (void)due;
-    m.sfr.raw(kRcon) |= rcon::WDTO;
+    m.sfr.raw(sfr::RCON) |= rcon::WDTO;
     leave_power_save(m);
 }
 
@@ -59,11 +59,11 @@ void set_mode(Machine& m, PowerMode mode) {
 }  // namespace
 
 std::uint16_t& rcon_register(Machine& m) {
-    return m.sfr.raw(kRcon);
+    return m.sfr.raw(sfr::RCON);
 }
 
 void hook_power(Machine& m) {
-    m.sfr.hook(kRcon, &m, nullptr, &write_rcon);
+    m.sfr.hook(sfr::RCON, &m, nullptr, &write_rcon);
     m.watchdog_slot = m.events.add(&m, &expired);
 }
 
@@ -80,7 +80,7 @@ void clear_watchdog(Machine& m) {
 }
 
 void enter_power_save(Machine& m, PowerMode mode) {
-    std::uint16_t& flags = m.sfr.raw(kRcon);
+    std::uint16_t& flags = m.sfr.raw(sfr::RCON);
     flags = static_cast<std::uint16_t>((flags & ~rcon::WDTO) |
                                        (mode == PowerMode::Idle ? rcon::IDLE : rcon::SLEEP));
     clear_watchdog(m);

@@ -2,6 +2,8 @@
 // The special-function register space, 0x0000 to 0x07FF: plain storage with masks, hooks where a register
 // acts, and a report of the first touch of every register that no model stands behind.
 
+#include "emu/dspic/devices/register_info.h"
+
 #include <array>
 #include <cstdint>
 #include <functional>
@@ -9,15 +11,6 @@
 #include <string_view>
 
 namespace puckloop::dspic {
-
-/// One register of a device's table: the data sheet's name, its address, reset value and implemented bits.
-struct RegisterInfo {
-    std::string_view name;
-    std::uint16_t address = 0;
-    std::uint16_t reset = 0;        ///< power-on value; bits the sheet calls unknown are 0 here
-    std::uint16_t implemented = 0;  ///< bits that exist; the others read 0
-    std::string_view fields;  ///< "TON:15 TCKPS:5:4 ...", high bit first; empty for whole-word registers
-};
 
 /// A register access as hooks see it. Addresses are even. `mask` is 0xFFFF, 0x00FF or 0xFF00: which bytes are
 /// written.

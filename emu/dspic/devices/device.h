@@ -2,7 +2,7 @@
 // What differs between parts of the family: sizes, places and numbers. One row a device; the core and the
 // peripherals read their differences here and nowhere else.
 
-#include "emu/dspic/core/sfr_space.h"
+#include "emu/dspic/devices/register_info.h"
 
 #include <array>
 #include <cstdint>

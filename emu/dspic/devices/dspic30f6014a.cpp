@@ -2,16 +2,11 @@
 
 #include "emu/dspic/devices/device.h"
 #include "emu/dspic/devices/dspic30f6014a_sfr.h"
+#include "emu/dspic/devices/register_tables.h"
 
 namespace puckloop::dspic {
 
 namespace {
-
-constexpr RegisterInfo kRegisters[] = {
-#define REGISTER(name, address, reset, implemented, fields) {#name, address, reset, implemented, fields},
-#include "emu/dspic/devices/dspic30f6014a_registers.inc"
-#undef REGISTER
-};
 
 constexpr StatusBits kStatusBits[] = {
 #define DRIVEN(registers, bits) {registers, bits, true},
@@ -48,7 +43,7 @@ constexpr DeviceInfo kDevice = {
     .ram_start = 0x0800,
     .ram_end = 0x2800,
     .y_start = 0x1800,
-    .registers = kRegisters,
+    .registers = kRegisters30F6014A,
     .status_bits = kStatusBits,
     .ifs = sfr::IFS0,
     .iec = sfr::IEC0,

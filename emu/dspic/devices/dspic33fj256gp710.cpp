@@ -3,16 +3,11 @@
 
 #include "emu/dspic/devices/device.h"
 #include "emu/dspic/devices/dspic33fj256gp710_sfr.h"
+#include "emu/dspic/devices/register_tables.h"
 
 namespace puckloop::dspic {
 
 namespace {
-
-constexpr RegisterInfo kRegisters[] = {
-#define REGISTER(name, address, reset, implemented, fields) {#name, address, reset, implemented, fields},
-#include "emu/dspic/devices/dspic33fj256gp710_registers.inc"
-#undef REGISTER
-};
 
 constexpr StatusBits kStatusBits[] = {
 #define DRIVEN(registers, bits) {registers, bits, true},
@@ -44,7 +39,7 @@ constexpr DeviceInfo kDevice = {
     .ram_start = 0x0800,
     .ram_end = 0x8000,
     .y_start = 0x4800,
-    .registers = kRegisters,
+    .registers = kRegisters33FJ256GP710,
     .status_bits = kStatusBits,
     .ifs = sfr33::IFS0,
     .iec = sfr33::IEC0,

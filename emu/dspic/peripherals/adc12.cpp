@@ -2,6 +2,7 @@
 
 #include "emu/dspic/devices/dspic30f6014a_irq.h"
 #include "emu/dspic/devices/dspic30f6014a_sfr.h"
+#include "emu/dspic/devices/register_bits.h"
 
 #include <algorithm>
 #include <bit>
@@ -11,18 +12,10 @@ namespace puckloop::dspic {
 
 namespace {
 
-// ADCON1
-constexpr std::uint16_t kAdon = bit(15);
-constexpr std::uint16_t kAsam = bit(2);
-constexpr std::uint16_t kSamp = bit(1);
-constexpr std::uint16_t kDone = bit(0);
-// ADCON2
-constexpr std::uint16_t kCscna = bit(10);
-constexpr std::uint16_t kBufs = bit(7);
-constexpr std::uint16_t kBufm = bit(1);
-constexpr std::uint16_t kAlts = bit(0);
-// ADCON3
-constexpr std::uint16_t kAdrc = bit(7);
+constexpr RegisterBits kADCON1{"ADCON1"};
+constexpr RegisterBits kADCON2{"ADCON2"};
+constexpr RegisterBits kADCON3{"ADCON3"};
+constexpr RegisterBits kADCHS{"ADCHS"};
 
 constexpr int kConversionTads = 14;
 constexpr double kRcTadSeconds = 900e-9;
@@ -50,16 +43,16 @@ void Adc12::reset() {
 }
 
 Adc12::Trigger Adc12::source() const {
-    return static_cast<Trigger>(dspic::field(around_.sfr.raw(sfr::ADCON1), 7, 5));
+    return static_cast<Trigger>(kADCON1["SSRC"].of(around_.sfr.raw(sfr::ADCON1)));
 }
 
 // TAD = TCY (ADCS + 1) / 2, in half cycles.
 Adc12::HalfCycle Adc12::tad() const {
     const std::uint16_t adcon3 = around_.sfr.raw(sfr::ADCON3);
-    if (adcon3 & kAdrc)
+    if (adcon3 & kADCON3["ADRC"])
         return std::max<HalfCycle>(
             1, static_cast<HalfCycle>(std::llround(kRcTadSeconds * 2.0 * clock_.hertz())));
-    return dspic::field(adcon3, 5, 0) + 1u;
+    return kADCON3["ADCS"].of(adcon3) + 1u;
 }
 
 // The next input to scan: ADCSSL from the last one upward, all over again after the highest.
@@ -76,15 +69,15 @@ std::uint8_t Adc12::scan() {
 void Adc12::begin_sampling(HalfCycle at) {
     const std::uint16_t adchs = around_.sfr.raw(sfr::ADCHS);
     if (state_.mux_b)
-        state_.channel = static_cast<std::uint8_t>(dspic::field(adchs, 11, 8));
-    else if (around_.sfr.raw(sfr::ADCON2) & kCscna)
+        state_.channel = static_cast<std::uint8_t>(kADCHS["CH0SB"].of(adchs));
+    else if (around_.sfr.raw(sfr::ADCON2) & kADCON2["CSCNA"])
         state_.channel = scan();
     else
-        state_.channel = static_cast<std::uint8_t>(dspic::field(adchs, 3, 0));
+        state_.channel = static_cast<std::uint8_t>(kADCHS["CH0SA"].of(adchs));
     state_.phase = Phase::Sampling;
     state_.timed = source() == Trigger::Counter;
-    state_.phase_end = at + dspic::field(around_.sfr.raw(sfr::ADCON3), 12, 8) * tad();
-    around_.sfr.raw(sfr::ADCON1) |= kSamp;
+    state_.phase_end = at + kADCON3["SAMC"].of(around_.sfr.raw(sfr::ADCON3)) * tad();
+    around_.sfr.raw(sfr::ADCON1) |= kADCON1["SAMP"];
 }
 
 void Adc12::end_sampling(HalfCycle at) {
@@ -93,32 +86,32 @@ void Adc12::end_sampling(HalfCycle at) {
     state_.timed = true;
     state_.phase_end = at + kConversionTads * tad();
     std::uint16_t& adcon1 = around_.sfr.raw(sfr::ADCON1);
-    adcon1 = static_cast<std::uint16_t>(adcon1 & ~(kSamp | kDone));
+    adcon1 = static_cast<std::uint16_t>(adcon1 & ~(kADCON1["SAMP"] | kADCON1["DONE"]));
 }
 
 // ADIF comes with this conversion.
 bool Adc12::last_of_group() const {
-    return state_.done >= dspic::field(around_.sfr.raw(sfr::ADCON2), 5, 2);
+    return state_.done >= kADCON2["SMPI"].of(around_.sfr.raw(sfr::ADCON2));
 }
 
 void Adc12::end_conversion(HalfCycle at) {
     std::uint16_t& adcon1 = around_.sfr.raw(sfr::ADCON1);
     std::uint16_t& adcon2 = around_.sfr.raw(sfr::ADCON2);
     around_.sfr.raw(static_cast<std::uint16_t>(sfr::ADCBUF0 + 2 * state_.next)) = state_.result;
-    adcon1 |= kDone;
-    if (adcon2 & kAlts) state_.mux_b = !state_.mux_b;
+    adcon1 |= kADCON1["DONE"];
+    if (adcon2 & kADCON2["ALTS"]) state_.mux_b = !state_.mux_b;
     if (last_of_group()) {
         state_.done = 0;
         state_.scanned = 0;
-        if (adcon2 & kBufm) adcon2 ^= kBufs;
-        state_.next = adcon2 & kBufm && adcon2 & kBufs ? kHalfBuffer : 0;
+        if (adcon2 & kADCON2["BUFM"]) adcon2 ^= kADCON2["BUFS"];
+        state_.next = adcon2 & kADCON2["BUFM"] && adcon2 & kADCON2["BUFS"] ? kHalfBuffer : 0;
         around_.interrupts.raise(irq::ADC, (at + 1) / 2);
     } else {
         ++state_.done;
         state_.next = static_cast<std::uint8_t>((state_.next + 1) % kInputs);
     }
     state_.phase = Phase::Idle;
-    if (adcon1 & kAsam) begin_sampling(at);
+    if (adcon1 & kADCON1["ASAM"]) begin_sampling(at);
 }
 
 double Adc12::input(int channel, Cycle at) const {
@@ -131,8 +124,8 @@ double Adc12::input(int channel, Cycle at) const {
 std::uint16_t Adc12::convert(Cycle at) const {
     double value = input(state_.channel, at);
     const std::uint16_t adchs = around_.sfr.raw(sfr::ADCHS);
-    if (adchs & (state_.mux_b ? bit(12) : bit(4))) value -= input(kVrefMinusPin, at);  // CH0NB, CH0NA
-    const unsigned vcfg = dspic::field(around_.sfr.raw(sfr::ADCON2), 15, 13);
+    if (adchs & (state_.mux_b ? kADCHS["CH0NB"] : kADCHS["CH0NA"])) value -= input(kVrefMinusPin, at);
+    const unsigned vcfg = kADCON2["VCFG"].of(around_.sfr.raw(sfr::ADCON2));
     if (vcfg != 0 && vcfg < 4) {
         const double high = vcfg & 1 ? pins_.analog(kVrefPlusPin, at) : 1.0;
         const double low = vcfg & 2 ? pins_.analog(kVrefMinusPin, at) : 0.0;
@@ -144,15 +137,15 @@ std::uint16_t Adc12::convert(Cycle at) const {
 
 // FORM: integer, signed integer, fractional, signed fractional.
 std::uint16_t Adc12::formatted(unsigned counts) const {
-    const unsigned form = dspic::field(around_.sfr.raw(sfr::ADCON1), 9, 8);
+    const unsigned form = kADCON1["FORM"].of(around_.sfr.raw(sfr::ADCON1));
     if (form & 1) counts -= kFullScale / 2;
     return static_cast<std::uint16_t>(form & 2 ? counts << 4 : counts);
 }
 
 void Adc12::switch_off() {
     state_ = {};
-    around_.sfr.raw(sfr::ADCON1) &= static_cast<std::uint16_t>(~kSamp);
-    around_.sfr.raw(sfr::ADCON2) &= static_cast<std::uint16_t>(~kBufs);
+    around_.sfr.raw(sfr::ADCON1) &= static_cast<std::uint16_t>(~kADCON1["SAMP"]);
+    around_.sfr.raw(sfr::ADCON2) &= static_cast<std::uint16_t>(~kADCON2["BUFS"]);
 }
 
 void Adc12::catch_up(Cycle now) {
@@ -173,10 +166,10 @@ void Adc12::plan() {
         return;
     }
     HalfCycle when = state_.phase_end;
-    if ((around_.sfr.raw(sfr::ADCON1) & kAsam) && source() == Trigger::Counter) {
+    if ((around_.sfr.raw(sfr::ADCON1) & kADCON1["ASAM"]) && source() == Trigger::Counter) {
         const HalfCycle conversion = kConversionTads * tad();
-        const HalfCycle sampling = dspic::field(around_.sfr.raw(sfr::ADCON3), 12, 8) * tad();
-        const unsigned last = dspic::field(around_.sfr.raw(sfr::ADCON2), 5, 2);
+        const HalfCycle sampling = kADCON3["SAMC"].of(around_.sfr.raw(sfr::ADCON3)) * tad();
+        const unsigned last = kADCON2["SMPI"].of(around_.sfr.raw(sfr::ADCON2));
         if (state_.phase == Phase::Sampling) when += conversion;
         if (last > state_.done) when += (last - state_.done) * (sampling + conversion);
     }
@@ -197,7 +190,7 @@ void Adc12::trigger(Trigger source, Cycle at) {
 }
 
 bool Adc12::runs_in_sleep() const {
-    return around_.sfr.raw(sfr::ADCON3) & kAdrc;
+    return around_.sfr.raw(sfr::ADCON3) & kADCON3["ADRC"];
 }
 
 void Adc12::hold(bool on) {
@@ -209,8 +202,8 @@ void Adc12::hold(bool on) {
         catch_up(around_.now);
         state_.phase = Phase::Idle;
         state_.timed = false;
-        adcon1 &= static_cast<std::uint16_t>(~kSamp);
-    } else if (adcon1 & kAsam) {
+        adcon1 &= static_cast<std::uint16_t>(~kADCON1["SAMP"]);
+    } else if (adcon1 & kADCON1["ASAM"]) {
         begin_sampling(2 * around_.now);
     }
     plan();
@@ -225,7 +218,7 @@ std::uint16_t Adc12::read_register(void* owner, std::uint16_t address) {
 void Adc12::write_register(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask) {
     Adc12& self = *static_cast<Adc12*>(owner);
     self.catch_up(self.around_.now);
-    if (address == sfr::ADCON2) mask &= static_cast<std::uint16_t>(~kBufs);
+    if (address == sfr::ADCON2) mask &= static_cast<std::uint16_t>(~kADCON2["BUFS"]);
     self.around_.sfr.store(address, value, mask);
     self.plan();
 }
@@ -237,24 +230,24 @@ void Adc12::write_adcon1(void* owner, std::uint16_t address, std::uint16_t value
     const std::uint16_t old = self.around_.sfr.raw(address);
     self.around_.sfr.store(address, value, mask);
     std::uint16_t& adcon1 = self.around_.sfr.raw(address);
-    if (!(adcon1 & kAdon)) {
+    if (!(adcon1 & kADCON1["ADON"])) {
         self.switch_off();
     } else {
         if (self.state_.phase == Phase::Off) self.state_.phase = Phase::Idle;
-        const bool asked = adcon1 & (kAsam | kSamp);
+        const bool asked = adcon1 & (kADCON1["ASAM"] | kADCON1["SAMP"]);
         if (self.state_.phase == Phase::Idle && asked) {
             self.begin_sampling(at);
         } else if (self.state_.phase == Phase::Sampling) {
-            if (!(adcon1 & kSamp) && self.source() == Trigger::Software)
+            if (!(adcon1 & kADCON1["SAMP"]) && self.source() == Trigger::Software)
                 self.end_sampling(at);
             else
-                adcon1 |= kSamp;
+                adcon1 |= kADCON1["SAMP"];
         } else if (self.state_.phase == Phase::Converting) {
-            adcon1 &= static_cast<std::uint16_t>(~kSamp);
+            adcon1 &= static_cast<std::uint16_t>(~kADCON1["SAMP"]);
         }
     }
     // DONE can be cleared, not set.
-    if (!(old & kDone)) adcon1 &= static_cast<std::uint16_t>(~kDone);
+    if (!(old & kADCON1["DONE"])) adcon1 &= static_cast<std::uint16_t>(~kADCON1["DONE"]);
     self.plan();
 }
 

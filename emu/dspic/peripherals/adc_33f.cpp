@@ -1,5 +1,7 @@
 #include "emu/dspic/peripherals/adc_33f.h"
 
+#include "emu/dspic/devices/register_bits.h"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -8,19 +10,11 @@ namespace puckloop::dspic {
 
 namespace {
 
-// ADxCON1
-constexpr std::uint16_t kAdon = bit(15);
-constexpr std::uint16_t kAd12b = bit(10);
-constexpr std::uint16_t kSimsam = bit(3);
-constexpr std::uint16_t kAsam = bit(2);
-constexpr std::uint16_t kSamp = bit(1);
-constexpr std::uint16_t kDone = bit(0);
-// ADxCON2
-constexpr std::uint16_t kCscna = bit(10);
-constexpr std::uint16_t kBufs = bit(7);
-constexpr std::uint16_t kAlts = bit(0);
-// ADxCON3
-constexpr std::uint16_t kAdrc = bit(15);
+constexpr RegisterBits kADxCON1{"AD?CON1"};
+constexpr RegisterBits kADxCON2{"AD?CON2"};
+constexpr RegisterBits kADxCON3{"AD?CON3"};
+constexpr RegisterBits kADxCHS0{"AD1CHS0"};  // AD2CHS0 names the uppermost bits apart
+constexpr RegisterBits kADxCHS123{"AD?CHS123"};
 
 constexpr Cycle kTads12 = 14;
 constexpr Cycle kTads10 = 12;
@@ -57,24 +51,24 @@ void Adc33F::reset() {
 }
 
 Adc33F::Trigger Adc33F::source() const {
-    return static_cast<Trigger>(field(con(1), 7, 5));
+    return static_cast<Trigger>(kADxCON1["SSRC"].of(con(1)));
 }
 bool Adc33F::twelve_bits() const {
-    return con(1) & kAd12b;
+    return con(1) & kADxCON1["AD12B"];
 }
 
 // CHPS: CH0; CH0 and CH1; all four. 12 bits: always CH0 alone.
 int Adc33F::channels() const {
     if (twelve_bits()) return 1;
-    const unsigned chps = field(con(2), 9, 8);
+    const unsigned chps = kADxCON2["CHPS"].of(con(2));
     return chps == 0 ? 1 : chps == 1 ? 2 : kChannels;
 }
 
 // TAD = TCY (ADCS + 1)
 Cycle Adc33F::tad() const {
-    if (con(3) & kAdrc)
+    if (con(3) & kADxCON3["ADRC"])
         return std::max<Cycle>(1, static_cast<Cycle>(std::llround(kRcTadSeconds * clock_.hertz())));
-    return field(con(3), 7, 0) + 1u;
+    return kADxCON3["ADCS"].of(con(3)) + 1u;
 }
 
 Cycle Adc33F::conversion_cycles() const {
@@ -95,26 +89,26 @@ std::uint8_t Adc33F::scan() {
 
 void Adc33F::begin_sampling(Cycle at) {
     if (state_.mux_b)
-        state_.input = static_cast<std::uint8_t>(field(chs0(), 12, 8));
-    else if (con(2) & kCscna)
+        state_.input = static_cast<std::uint8_t>(kADxCHS0["CH0SB"].of(chs0()));
+    else if (con(2) & kADxCON2["CSCNA"])
         state_.input = scan();
     else
-        state_.input = static_cast<std::uint8_t>(field(chs0(), 4, 0));
+        state_.input = static_cast<std::uint8_t>(kADxCHS0["CH0SA"].of(chs0()));
     state_.phase = Phase::Sampling;
-    con(1) |= kSamp;
+    con(1) |= kADxCON1["SAMP"];
     if (source() == Trigger::Counter)
-        around_.events.schedule(slot_, at + field(con(3), 12, 8) * tad());
+        around_.events.schedule(slot_, at + kADxCON3["SAMC"].of(con(3)) * tad());
     else
         around_.events.cancel(slot_);
 }
 
 void Adc33F::end_sampling(Cycle at) {
-    const int taken = con(1) & kSimsam ? channels() : 1;
+    const int taken = con(1) & kADxCON1["SIMSAM"] ? channels() : 1;
     for (int channel = 0; channel < taken; ++channel)
         state_.results[static_cast<std::size_t>(channel)] = convert(channel, at);
     state_.phase = Phase::Converting;
     state_.channel = 0;
-    con(1) = static_cast<std::uint16_t>(con(1) & ~(kSamp | kDone));
+    con(1) = static_cast<std::uint16_t>(con(1) & ~(kADxCON1["SAMP"] | kADxCON1["DONE"]));
     around_.events.schedule(slot_, at + conversion_cycles());
 }
 
@@ -123,7 +117,7 @@ void Adc33F::end_conversion(Cycle at) {
     ++state_.channel;
     if (state_.channel < channels()) {
         around_.interrupts.request(setup_.irq, at);
-        if (!(con(1) & kSimsam)) state_.results[state_.channel] = convert(state_.channel, at);
+        if (!(con(1) & kADxCON1["SIMSAM"])) state_.results[state_.channel] = convert(state_.channel, at);
         around_.events.schedule(slot_, at + conversion_cycles());
         return;
     }
@@ -131,10 +125,10 @@ void Adc33F::end_conversion(Cycle at) {
 }
 
 void Adc33F::group_done(Cycle at) {
-    con(1) |= kDone;
+    con(1) |= kADxCON1["DONE"];
     state_.phase = Phase::Idle;
-    if (con(2) & kAlts) state_.mux_b = !state_.mux_b;
-    if (state_.groups >= field(con(2), 5, 2)) {
+    if (con(2) & kADxCON2["ALTS"]) state_.mux_b = !state_.mux_b;
+    if (state_.groups >= kADxCON2["SMPI"].of(con(2))) {
         state_.groups = 0;
         state_.scanned = 0;
         around_.interrupts.raise(setup_.irq, at);
@@ -142,7 +136,7 @@ void Adc33F::group_done(Cycle at) {
         ++state_.groups;
         around_.interrupts.request(setup_.irq, at);
     }
-    if (con(1) & kAsam) begin_sampling(at);
+    if (con(1) & kADxCON1["ASAM"]) begin_sampling(at);
 }
 
 double Adc33F::input(int number, Cycle at) const {
@@ -155,21 +149,23 @@ double Adc33F::input(int number, Cycle at) const {
 // CH123SA/SB: CH1..CH3 take AN0..AN2 or AN3..AN5.
 double Adc33F::positive(int channel, Cycle at) const {
     if (channel == 0) return input(state_.input, at);
-    const bool upper = chs123() & (state_.mux_b ? bit(8) : bit(0));
+    const bool upper = chs123() & (state_.mux_b ? kADxCHS123["CH123SB"] : kADxCHS123["CH123SA"]);
     return input(channel - 1 + (upper ? 3 : 0), at);
 }
 
 // CH0NA/NB: VREF- or AN1. CH123NA/NB: 0x VREF-, 10 AN6..AN8, 11 AN9..AN11.
 double Adc33F::negative(int channel, Cycle at) const {
-    if (channel == 0) return chs0() & (state_.mux_b ? bit(15) : bit(7)) ? input(kVrefMinusInput, at) : 0.0;
-    const unsigned select = state_.mux_b ? field(chs123(), 10, 9) : field(chs123(), 2, 1);
+    if (channel == 0)
+        return chs0() & (state_.mux_b ? kADxCHS0["CH0NB"] : kADxCHS0["CH0NA"]) ? input(kVrefMinusInput, at)
+                                                                               : 0.0;
+    const unsigned select = (state_.mux_b ? kADxCHS123["CH123NB"] : kADxCHS123["CH123NA"]).of(chs123());
     if (select < 2) return 0.0;
     return input((select == 2 ? 6 : 9) + channel - 1, at);
 }
 
 std::uint16_t Adc33F::convert(int channel, Cycle at) const {
     double value = positive(channel, at) - negative(channel, at);
-    const unsigned vcfg = field(con(2), 15, 13);
+    const unsigned vcfg = kADxCON2["VCFG"].of(con(2));
     if (vcfg != 0 && vcfg < 4) {
         const double high = vcfg & 1 ? pins_.analog(kVrefPlusInput, at) : 1.0;
         const double low = vcfg & 2 ? pins_.analog(kVrefMinusInput, at) : 0.0;
@@ -179,7 +175,7 @@ std::uint16_t Adc33F::convert(int channel, Cycle at) const {
     const unsigned span = 1u << bits;
     auto counts = static_cast<unsigned>(std::clamp(std::floor(value * span), 0.0, span - 1.0));
     // FORM: integer, signed integer, fractional, signed fractional.
-    const unsigned form = field(con(1), 9, 8);
+    const unsigned form = kADxCON1["FORM"].of(con(1));
     if (form & 1) counts -= span / 2;
     return static_cast<std::uint16_t>(form & 2 ? counts << (16 - bits) : counts);
 }
@@ -197,7 +193,7 @@ void Adc33F::trigger(Trigger source, Cycle at) {
 }
 
 bool Adc33F::runs_in_sleep() const {
-    return con(3) & kAdrc;
+    return con(3) & kADxCON3["ADRC"];
 }
 
 void Adc33F::hold(bool on) {
@@ -207,8 +203,8 @@ void Adc33F::hold(bool on) {
     if (on) {
         state_.phase = Phase::Idle;
         around_.events.cancel(slot_);
-        con(1) &= static_cast<std::uint16_t>(~kSamp);
-    } else if (con(1) & kAsam) {
+        con(1) &= static_cast<std::uint16_t>(~kADxCON1["SAMP"]);
+    } else if (con(1) & kADxCON1["ASAM"]) {
         begin_sampling(around_.now);
     }
 }
@@ -219,31 +215,33 @@ void Adc33F::write_con1(void* owner, std::uint16_t address, std::uint16_t value,
     std::uint16_t& con1 = self.con(1);
     const std::uint16_t old = con1;
     self.around_.sfr.store(address, value, mask);
-    if (!(old & kDone)) con1 &= static_cast<std::uint16_t>(~kDone);  // it can be cleared, not set
-    if (!(con1 & kAdon)) {
+    if (!(old & kADxCON1["DONE"]))
+        con1 &= static_cast<std::uint16_t>(~kADxCON1["DONE"]);  // it can be cleared, not set
+    if (!(con1 & kADxCON1["ADON"])) {
         self.reset();
-        con1 &= static_cast<std::uint16_t>(~kSamp);
+        con1 &= static_cast<std::uint16_t>(~kADxCON1["SAMP"]);
         return;
     }
     if (self.state_.phase == Phase::Off) self.state_.phase = Phase::Idle;
     switch (self.state_.phase) {
     case Phase::Idle:
-        if (con1 & (kAsam | kSamp)) self.begin_sampling(at);
+        if (con1 & (kADxCON1["ASAM"] | kADxCON1["SAMP"])) self.begin_sampling(at);
         break;
     case Phase::Sampling:
-        if (!(con1 & kSamp) && self.source() == Trigger::Software)
+        if (!(con1 & kADxCON1["SAMP"]) && self.source() == Trigger::Software)
             self.end_sampling(at);
         else
-            con1 |= kSamp;
+            con1 |= kADxCON1["SAMP"];
         break;
     default:
-        con1 &= static_cast<std::uint16_t>(~kSamp);
+        con1 &= static_cast<std::uint16_t>(~kADxCON1["SAMP"]);
         break;
     }
 }
 
 void Adc33F::write_con2(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask) {
-    static_cast<Adc33F*>(owner)->around_.sfr.store(address, value, static_cast<std::uint16_t>(mask & ~kBufs));
+    static_cast<Adc33F*>(owner)->around_.sfr.store(address, value,
+                                                   static_cast<std::uint16_t>(mask & ~kADxCON2["BUFS"]));
 }
 
 void Adc33F::write_con3(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask) {

@@ -1,21 +1,17 @@
 #include "emu/dspic/peripherals/dma.h"
 
+#include "emu/dspic/devices/register_bits.h"
+
 namespace puckloop::dspic {
 
 namespace {
 
 enum Offset : int { kCon = 0, kReq = 2, kSta = 4, kStb = 6, kPad = 8, kCnt = 10, kStep = 12 };
-// DMAxCON
-constexpr std::uint16_t kChen = bit(15);
-constexpr std::uint16_t kSize = bit(14);
-constexpr std::uint16_t kDir = bit(13);
-constexpr std::uint16_t kHalf = bit(12);
-constexpr std::uint16_t kNullw = bit(11);
+constexpr RegisterBits kDMAxCON{"DMA?CON"};
+constexpr RegisterBits kDMAxREQ{"DMA?REQ"};
 constexpr unsigned kFixedAddress = 1;        // AMODE
 constexpr std::uint16_t kOneShot = bit(0);   // MODE
 constexpr std::uint16_t kPingPong = bit(1);  // MODE
-// DMAxREQ
-constexpr std::uint16_t kForce = bit(15);
 
 constexpr Cycle kLatency = 2;
 
@@ -52,8 +48,8 @@ std::uint16_t& Dma::reg(int number, int offset) const {
 void Dma::listen() {
     std::array<std::uint64_t, 2> sources{};
     for (int number = 0; number < kChannels; ++number) {
-        if (!(reg(number, kCon) & kChen)) continue;
-        const unsigned irq = field(reg(number, kReq), 6, 0);
+        if (!(reg(number, kCon) & kDMAxCON["CHEN"])) continue;
+        const unsigned irq = kDMAxREQ["IRQSEL"].of(reg(number, kReq));
         sources[irq / 64] |= std::uint64_t{1} << (irq % 64);
     }
     around_.interrupts.set_tap(this, requested, sources);
@@ -62,8 +58,8 @@ void Dma::listen() {
 void Dma::requested(void* owner, int irq, Cycle at) {
     Dma& self = *static_cast<Dma*>(owner);
     for (int number = 0; number < kChannels; ++number)
-        if ((self.reg(number, kCon) & kChen) &&
-            field(self.reg(number, kReq), 6, 0) == static_cast<unsigned>(irq))
+        if ((self.reg(number, kCon) & kDMAxCON["CHEN"]) &&
+            kDMAxREQ["IRQSEL"].of(self.reg(number, kReq)) == static_cast<unsigned>(irq))
             self.pending_ |= static_cast<std::uint8_t>(bit(number));
     if (self.pending_) self.around_.events.schedule(self.slot_, at + kLatency);
 }
@@ -84,19 +80,19 @@ void Dma::move(int number) {
     const unsigned start = reg(number, channel.second ? kStb : kSta);
     const auto offset = static_cast<std::uint16_t>((start + channel.offset) % (2 * ram_.size()));
     std::uint16_t& word = ram_[offset / 2u];
-    const bool byte = con & kSize;
+    const bool byte = con & kDMAxCON["SIZE"];
     const int shift = byte && (offset & 1) ? 8 : 0;
     const auto lane = static_cast<std::uint16_t>(byte ? 0xFF << shift : 0xFFFF);
     const std::uint16_t mask = !byte ? 0xFFFF : pad & 1 ? 0xFF00 : 0x00FF;
     const auto even = static_cast<std::uint16_t>(pad & 0xFFFE);
     const int pad_shift = byte && (pad & 1) ? 8 : 0;
-    if (con & kDir) {
+    if (con & kDMAxCON["DIR"]) {
         const auto value = static_cast<std::uint16_t>((word & lane) >> shift << pad_shift);
         around_.sfr.write(even, value, mask);
     } else {
         const auto value = static_cast<std::uint16_t>((around_.sfr.read(even) & mask) >> pad_shift);
         word = static_cast<std::uint16_t>((word & ~lane) | (value << shift & lane));
-        if (con & kNullw) around_.sfr.write(even, 0, mask);
+        if (con & kDMAxCON["NULLW"]) around_.sfr.write(even, 0, mask);
     }
     around_.sfr.raw(static_cast<std::uint16_t>(setup_.cs0 + 4)) =
         static_cast<std::uint16_t>(setup_.ram + offset);
@@ -104,17 +100,17 @@ void Dma::move(int number) {
 
 void Dma::transfer(int number, Cycle at) {
     const std::uint16_t con = reg(number, kCon);
-    if (!(con & kChen)) return;
-    assign(reg(number, kReq), kForce, false);
+    if (!(con & kDMAxCON["CHEN"])) return;
+    assign(reg(number, kReq), kDMAxREQ["FORCE"], false);
     if (reg(number, kPad) < 2 * SfrSpace::kWords) move(number);
     std::uint16_t& cs1 = around_.sfr.raw(static_cast<std::uint16_t>(setup_.cs0 + 2));
     cs1 = static_cast<std::uint16_t>((cs1 & 0x00FFu) | static_cast<unsigned>(number) << 8);
     Channel& channel = channels_[static_cast<std::size_t>(number)];
-    if (field(con, 5, 4) != kFixedAddress)
-        channel.offset = static_cast<std::uint16_t>(channel.offset + (con & kSize ? 1 : 2));
+    if (kDMAxCON["AMODE"].of(con) != kFixedAddress)
+        channel.offset = static_cast<std::uint16_t>(channel.offset + (con & kDMAxCON["SIZE"] ? 1 : 2));
     ++channel.done;
     const unsigned block = reg(number, kCnt) + 1u;
-    if ((con & kHalf) && channel.done == block / 2)
+    if ((con & kDMAxCON["HALF"]) && channel.done == block / 2)
         around_.interrupts.raise(setup_.irqs[static_cast<std::size_t>(number)], at);
     if (channel.done >= block) block_done(number, at);
 }
@@ -131,18 +127,19 @@ void Dma::block_done(int number, Cycle at) {
         assign(cs1, bit(number), channel.second);
     }
     if ((con & kOneShot) && last_of_pair) {
-        assign(con, kChen, false);
+        assign(con, kDMAxCON["CHEN"], false);
         listen();
     }
-    if (!(con & kHalf)) around_.interrupts.raise(setup_.irqs[static_cast<std::size_t>(number)], at);
+    if (!(con & kDMAxCON["HALF"]))
+        around_.interrupts.raise(setup_.irqs[static_cast<std::size_t>(number)], at);
 }
 
 void Dma::write_con(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask) {
     Dma& self = *static_cast<Dma*>(owner);
-    const bool was_on = self.around_.sfr.raw(address) & kChen;
+    const bool was_on = self.around_.sfr.raw(address) & kDMAxCON["CHEN"];
     self.around_.sfr.store(address, value, mask);
     const int number = (address - self.setup_.con) / kStep;
-    if (!was_on && (self.around_.sfr.raw(address) & kChen)) {
+    if (!was_on && (self.around_.sfr.raw(address) & kDMAxCON["CHEN"])) {
         self.channels_[static_cast<std::size_t>(number)] = {};
         assign(self.around_.sfr.raw(static_cast<std::uint16_t>(self.setup_.cs0 + 2)), bit(number), false);
     }
@@ -151,11 +148,12 @@ void Dma::write_con(void* owner, std::uint16_t address, std::uint16_t value, std
 
 void Dma::write_req(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask) {
     Dma& self = *static_cast<Dma*>(owner);
-    const bool forced = self.around_.sfr.raw(address) & kForce;
+    const bool forced = self.around_.sfr.raw(address) & kDMAxREQ["FORCE"];
     self.around_.sfr.store(address, value, mask);
     const int number = (address - self.setup_.con) / kStep;
-    if (forced) self.around_.sfr.raw(address) |= kForce;  // software cannot take it back
-    if (!forced && (self.around_.sfr.raw(address) & kForce) && (self.reg(number, kCon) & kChen)) {
+    if (forced) self.around_.sfr.raw(address) |= kDMAxREQ["FORCE"];  // software cannot take it back
+    if (!forced && (self.around_.sfr.raw(address) & kDMAxREQ["FORCE"]) &&
+        (self.reg(number, kCon) & kDMAxCON["CHEN"])) {
         self.pending_ |= static_cast<std::uint8_t>(bit(number));
         self.around_.events.schedule(self.slot_, self.around_.now + kLatency);
     }

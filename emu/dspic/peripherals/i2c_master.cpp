@@ -14,7 +14,8 @@ namespace {
 
 using namespace i2c;
 
-constexpr std::uint16_t kOneAtATime = kAcken | kRcen | kPen | kRsen | kSen;
+constexpr std::uint16_t kOneAtATime =
+    kI2CxCON["ACKEN"] | kI2CxCON["RCEN"] | kI2CxCON["PEN"] | kI2CxCON["RSEN"] | kI2CxCON["SEN"];
 
 constexpr double kStartClocks = 1.0;
 constexpr double kRestartClocks = 1.5;
@@ -79,8 +80,8 @@ void I2cMaster::begin(Activity activity, double duration_clocks) {
 
 void I2cMaster::stop_condition_seen(bool stopped) {
     std::uint16_t& stat = reg(kStat);
-    assign(stat, kP, stopped);
-    assign(stat, kS, !stopped);
+    assign(stat, kI2CxSTAT["P"], stopped);
+    assign(stat, kI2CxSTAT["S"], !stopped);
 }
 
 void I2cMaster::complete(Cycle at) {
@@ -97,7 +98,7 @@ void I2cMaster::complete(Cycle at) {
         stop_condition_seen(true);
         break;
     case Activity::Transmit:
-        stat = static_cast<std::uint16_t>(stat & ~(kTrstat | kTbf));
+        stat = static_cast<std::uint16_t>(stat & ~(kI2CxSTAT["TRSTAT"] | kI2CxSTAT["TBF"]));
         break;
     case Activity::Receive:
     case Activity::Acknowledge:
@@ -114,10 +115,10 @@ void I2cMaster::due(void* owner, Cycle due) {
     I2cMaster& self = *static_cast<I2cMaster*>(owner);
     if (self.state_.buffer_empty <= due) {  // the eighth falling edge of a byte sent
         self.state_.buffer_empty = kNoCycle;
-        assign(self.reg(kStat), kTbf, false);
+        assign(self.reg(kStat), kI2CxSTAT["TBF"], false);
     }
     if (self.state_.ends <= due) {
-        if (self.state_.activity == Activity::Transmit) self.reg(kStat) |= kAckstat;
+        if (self.state_.activity == Activity::Transmit) self.reg(kStat) |= kI2CxSTAT["ACKSTAT"];
         self.complete(due);
     }
     self.around_.events.schedule(self.slot_, std::min(self.state_.buffer_empty, self.state_.ends));
@@ -135,16 +136,16 @@ void I2cMaster::answer(const cosim::I2cPhase& phase, Cycle at) {
     around_.events.cancel(slot_);
     std::uint16_t& stat = reg(kStat);
     if (phase.kind == I2cPhaseKind::BusLost) {
-        stat |= kBcl;
+        stat |= kI2CxSTAT["BCL"];
         state_.owns_bus = false;
     } else if (state_.activity == Activity::Transmit) {
-        assign(stat, kAckstat, !phase.ack);
+        assign(stat, kI2CxSTAT["ACKSTAT"], !phase.ack);
         if (!phase.ack && address_sent_) ++refused_[sent_address_];
-    } else if (stat & kRbf) {
-        stat |= kI2cov;
+    } else if (stat & kI2CxSTAT["RBF"]) {
+        stat |= kI2CxSTAT["I2COV"];
     } else {
         reg(kRcv) = phase.byte;
-        stat |= kRbf;
+        stat |= kI2CxSTAT["RBF"];
     }
     complete(at);
 }
@@ -159,7 +160,7 @@ Cycle I2cMaster::earliest(Cycle now) const {
 
 std::uint16_t I2cMaster::read_rcv(void* owner, std::uint16_t address) {
     I2cMaster& self = *static_cast<I2cMaster*>(owner);
-    assign(self.reg(kStat), kRbf, false);
+    assign(self.reg(kStat), kI2CxSTAT["RBF"], false);
     return self.around_.sfr.raw(address);
 }
 
@@ -167,17 +168,17 @@ void I2cMaster::write_trn(void* owner, std::uint16_t address, std::uint16_t valu
     I2cMaster& self = *static_cast<I2cMaster*>(owner);
     State& state = self.state_;
     std::uint16_t& stat = self.reg(kStat);
-    if (!(self.reg(kCon) & kI2cen) || mask == 0xFF00) {
+    if (!(self.reg(kCon) & kI2CxCON["I2CEN"]) || mask == 0xFF00) {
         self.around_.sfr.store(address, value, mask);
         return;
     }
     if (self.slave_ && self.slave_->transmitting()) return self.slave_->load(value);
     if (state.activity != Activity::Idle || state.awaits_answer) {
-        stat |= kIwcol;
+        stat |= kI2CxSTAT["IWCOL"];
         return;
     }
     self.around_.sfr.store(address, value, mask);
-    stat |= kTbf | kTrstat;
+    stat |= kI2CxSTAT["TBF"] | kI2CxSTAT["TRSTAT"];
     if (!state.owns_bus) {
         self.begin(Activity::Transmit, kByteClocks);
         return;
@@ -205,7 +206,8 @@ void I2cMaster::switch_off() {
     std::uint16_t& con = reg(kCon);
     con = static_cast<std::uint16_t>(con & ~kOneAtATime);
     std::uint16_t& stat = reg(kStat);
-    stat = static_cast<std::uint16_t>(stat & ~(kTrstat | kTbf | kRbf));  // P and S stay, as firmware needs
+    stat = static_cast<std::uint16_t>(stat & ~(kI2CxSTAT["TRSTAT"] | kI2CxSTAT["TBF"] |
+                                               kI2CxSTAT["RBF"]));  // P and S stay, as firmware needs
 }
 
 void I2cMaster::write_con(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask) {
@@ -216,9 +218,9 @@ void I2cMaster::write_con(void* owner, std::uint16_t address, std::uint16_t valu
     // Hardware alone clears the activity bits; one that is set while another is active is ignored.
     self.around_.sfr.store(address, value, static_cast<std::uint16_t>(mask & ~kOneAtATime));
     if (self.slave_) self.slave_->control_written(old);
-    if ((old ^ con) & kI2cen) {
+    if ((old ^ con) & kI2CxCON["I2CEN"]) {
         const auto pins = static_cast<std::uint16_t>(bit(self.setup_.scl) | bit(self.setup_.sda));
-        if (con & kI2cen) {
+        if (con & kI2CxCON["I2CEN"]) {
             self.ports_.lend(self.setup_.port, pins, 0, 0);
         } else {
             self.ports_.give_back(self.setup_.port, pins);
@@ -226,25 +228,26 @@ void I2cMaster::write_con(void* owner, std::uint16_t address, std::uint16_t valu
         }
     }
     const std::uint16_t asked = value & mask & kOneAtATime;
-    if (!(con & kI2cen) || !asked || state.activity != Activity::Idle || state.awaits_answer) return;
+    if (!(con & kI2CxCON["I2CEN"]) || !asked || state.activity != Activity::Idle || state.awaits_answer)
+        return;
     const cosim::Time start = self.clock_.time_of(self.around_.now + 1);
-    if (asked & kSen) {
-        con |= kSen;
+    if (asked & kI2CxCON["SEN"]) {
+        con |= kI2CxCON["SEN"];
         self.begin(Activity::Start, kStartClocks);
-    } else if (asked & kRsen) {
-        con |= kRsen;
+    } else if (asked & kI2CxCON["RSEN"]) {
+        con |= kI2CxCON["RSEN"];
         self.begin(Activity::Restart, kRestartClocks);
-    } else if (asked & kPen) {
-        con |= kPen;
+    } else if (asked & kI2CxCON["PEN"]) {
+        con |= kI2CxCON["PEN"];
         const bool owned = state.owns_bus;
         state.owns_bus = false;
         self.begin(Activity::Stop, kStopClocks);
         if (owned) self.send(I2cPhaseKind::Stop, 0, 0, start);
-    } else if (asked & kRcen) {
-        con |= kRcen;
+    } else if (asked & kI2CxCON["RCEN"]) {
+        con |= kI2CxCON["RCEN"];
         if (!state.owns_bus) {  // an idle bus reads as ones
             self.reg(kRcv) = 0xFF;
-            self.reg(kStat) |= kRbf;
+            self.reg(kStat) |= kI2CxSTAT["RBF"];
             self.begin(Activity::Receive, kDataClocks);
             return;
         }
@@ -252,7 +255,7 @@ void I2cMaster::write_con(void* owner, std::uint16_t address, std::uint16_t valu
         state.awaits_answer = true;
         self.send(I2cPhaseKind::Read, 0, 1, start);
     } else {
-        con |= kAcken;
+        con |= kI2CxCON["ACKEN"];
         self.begin(Activity::Acknowledge, kAcknowledgeClocks);
     }
 }

@@ -47,15 +47,15 @@ Cycle I2cSlave::cycle_before(Time time) const {
 }
 
 bool I2cSlave::released() const {
-    return reg(kCon) & kSclrel;
+    return reg(kCon) & kI2CxCON["SCLREL"];
 }
 
 bool I2cSlave::matches(std::uint8_t address_byte) const {
     const std::uint16_t con = reg(kCon);
-    if (!(con & kI2cen)) return false;
-    if (con & kIpmien) return true;
-    if (address_byte == 0) return con & kGcen;
-    if (con & kA10m) return false;
+    if (!(con & kI2CxCON["I2CEN"])) return false;
+    if (con & kI2CxCON["IPMIEN"]) return true;
+    if (address_byte == 0) return con & kI2CxCON["GCEN"];
+    if (con & kI2CxCON["A10M"]) return false;
     const unsigned mask = setup_.has_mask ? reg(kMsk) : 0u;
     return (((address_byte >> 1) ^ reg(kAdd)) & ~mask & 0x7F) == 0;
 }
@@ -93,9 +93,9 @@ void I2cSlave::open(const I2cPhase& phase) {
 
 void I2cSlave::start(const I2cPhase& phase) {
     std::uint16_t& stat = reg(kStat);
-    if (reg(kCon) & kI2cen) {
-        assign(stat, kS, true);
-        assign(stat, kP, false);
+    if (reg(kCon) & kI2CxCON["I2CEN"]) {
+        assign(stat, kI2CxSTAT["S"], true);
+        assign(stat, kI2CxSTAT["P"], false);
     }
     state_.addressed = matches(phase.byte);
     state_.sends = phase.byte & 1;
@@ -126,34 +126,34 @@ void I2cSlave::read(const I2cPhase& phase, Cycle at) {
 
 void I2cSlave::stop() {
     std::uint16_t& stat = reg(kStat);
-    if (reg(kCon) & kI2cen) {
-        assign(stat, kS, false);
-        assign(stat, kP, true);
-        assign(stat, kGcstat, false);
+    if (reg(kCon) & kI2CxCON["I2CEN"]) {
+        assign(stat, kI2CxSTAT["S"], false);
+        assign(stat, kI2CxSTAT["P"], true);
+        assign(stat, kI2CxSTAT["GCSTAT"], false);
     }
-    if (transmitting()) assign(reg(kCon), kSclrel, true);
+    if (transmitting()) assign(reg(kCon), kI2CxCON["SCLREL"], true);
     state_.addressed = false;
     state_.step = Step::None;
     state_.step_due = kNoCycle;
 }
 
 void I2cSlave::hold_clock() {
-    assign(reg(kCon), kSclrel, false);
+    assign(reg(kCon), kI2CxCON["SCLREL"], false);
 }
 
 // Puts a byte into I2CxRCV, status with it, and asks for service.
 void I2cSlave::show(bool address, std::uint8_t byte, Cycle at) {
     std::uint16_t& stat = reg(kStat);
-    if (stat & kRbf) {
-        stat |= kI2cov;
+    if (stat & kI2CxSTAT["RBF"]) {
+        stat |= kI2CxSTAT["I2COV"];
     } else {
         reg(kRcv) = byte;
-        stat |= kRbf;
+        stat |= kI2CxSTAT["RBF"];
     }
-    assign(stat, kDa, !address);
+    assign(stat, kI2CxSTAT["D_A"], !address);
     if (address) {
-        assign(stat, kRw, byte & 1);
-        assign(stat, kGcstat, byte == 0);
+        assign(stat, kI2CxSTAT["R_W"], byte & 1);
+        assign(stat, kI2CxSTAT["GCSTAT"], byte == 0);
         if (state_.sends && state_.addressed) hold_clock();
     }
     around_.interrupts.raise(setup_.slave_irq, at);
@@ -186,9 +186,9 @@ void I2cSlave::eighth_clock(Cycle at) {
     const Time late = std::max<Time>(0, clock_.time_of(at) - eighth);
     const bool is_data = state_.open.kind == I2cPhaseKind::Write && !state_.sends;
     const bool is_address = state_.open.kind == I2cPhaseKind::Start;
-    state_.acknowledge = state_.addressed && (is_data || is_address) && !(reg(kStat) & kRbf);
+    state_.acknowledge = state_.addressed && (is_data || is_address) && !(reg(kStat) & kI2CxSTAT["RBF"]);
     if (state_.addressed && is_data) {
-        if (state_.acknowledge && (reg(kCon) & kStren)) {
+        if (state_.acknowledge && (reg(kCon) & kI2CxCON["STREN"])) {
             state_.step = Step::Stretch;
             state_.step_due = kNoCycle;
             hold_clock();
@@ -206,7 +206,7 @@ void I2cSlave::due(void* owner, Cycle due) {
     I2cSlave& self = *static_cast<I2cSlave*>(owner);
     State& state = self.state_;
     if (state.step_due <= due && state.step == Step::Shift) {
-        assign(self.reg(kStat), kTbf, false);
+        assign(self.reg(kStat), kI2CxSTAT["TBF"], false);
         state.byte_sent = true;
         self.answer(state.released - state.open.start, true, static_cast<std::uint8_t>(self.reg(kTrn)));
     } else if (state.step_due <= due && state.step == Step::Answer) {
@@ -225,20 +225,20 @@ void I2cSlave::plan() {
 
 void I2cSlave::load(std::uint16_t value) {
     std::uint16_t& stat = reg(kStat);
-    if (stat & kTbf) {
-        stat |= kIwcol;
+    if (stat & kI2CxSTAT["TBF"]) {
+        stat |= kI2CxSTAT["IWCOL"];
         return;
     }
     reg(kTrn) = value & 0xFF;
-    stat |= kTbf | kDa;
+    stat |= kI2CxSTAT["TBF"] | kI2CxSTAT["D_A"];
 }
 
 void I2cSlave::control_written(std::uint16_t old) {
     std::uint16_t& con = reg(kCon);
     // Without STREN the program can only let go.
-    if (!(con & kStren) && (old & kSclrel)) con |= kSclrel;
-    if ((old & kI2cen) && !(con & kI2cen)) return reset();
-    if (!(con & kSclrel) || (old & kSclrel)) return;
+    if (!(con & kI2CxCON["STREN"]) && (old & kI2CxCON["SCLREL"])) con |= kI2CxCON["SCLREL"];
+    if ((old & kI2CxCON["I2CEN"]) && !(con & kI2CxCON["I2CEN"])) return reset();
+    if (!(con & kI2CxCON["SCLREL"]) || (old & kI2CxCON["SCLREL"])) return;
     const Time free = clock_.time_of(around_.now + 1);
     if (state_.step == Step::Hold) {
         shift(free);

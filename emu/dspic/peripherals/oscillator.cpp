@@ -1,6 +1,7 @@
 #include "emu/dspic/peripherals/oscillator.h"
 
 #include "emu/dspic/devices/dspic30f6014a_sfr.h"
+#include "emu/dspic/devices/register_bits.h"
 
 #include <cmath>
 
@@ -17,11 +18,9 @@ constexpr double kPostscale[] = {1.0, 4.0, 16.0, 64.0};  // POST
 // FOS codes; the primary oscillator and the PLL are told apart further by FPR.
 enum Source : std::uint8_t { kLp = 0, kFrc = 1, kLprc = 2, kPrimary = 3, kPll = 7 };
 
-// OSCCON
-constexpr std::uint16_t kLock = bit(5);
-constexpr std::uint16_t kOswen = bit(0);
-constexpr std::uint16_t kLowWritable = 0x00C3;    // POST, LPOSCEN, OSWEN
-constexpr std::uint16_t kHighWritable = 0x0700;   // NOSC
+constexpr RegisterBits kOSCCON{"OSCCON"};
+constexpr std::uint16_t kLowWritable = kOSCCON["POST"] | kOSCCON["LPOSCEN"] | kOSCCON["OSWEN"];
+constexpr std::uint16_t kHighWritable = kOSCCON["NOSC"];
 constexpr std::uint16_t kSwitchingOff = bit(15);  // FOSC<FCKSM1>
 
 constexpr Cycle kSwitchCycles = 10;
@@ -86,7 +85,7 @@ void Oscillator::reset(bool) {
     around_.events.cancel(slot_);
     select(decode_fosc(fosc_, crystal_hertz_).source, around_.now);
     std::uint16_t& osccon = around_.sfr.raw(sfr::OSCCON);
-    osccon = static_cast<std::uint16_t>((osccon & ~kHighWritable) | field(osccon, 14, 12) << 8);
+    osccon = static_cast<std::uint16_t>((osccon & ~kHighWritable) | kOSCCON["COSC"].of(osccon) << 8);
 }
 
 double Oscillator::source_hertz(std::uint8_t source) const {
@@ -98,8 +97,8 @@ double Oscillator::source_hertz(std::uint8_t source) const {
 void Oscillator::select(std::uint8_t source, Cycle at) {
     std::uint16_t& osccon = around_.sfr.raw(sfr::OSCCON);
     osccon = static_cast<std::uint16_t>((osccon & ~0x7000u) | static_cast<unsigned>(source) << 12);
-    assign(osccon, kLock, source == kPll);
-    const double hertz = source_hertz(source) / kClocksPerCycle / kPostscale[field(osccon, 7, 6)];
+    assign(osccon, kOSCCON["LOCK"], source == kPll);
+    const double hertz = source_hertz(source) / kClocksPerCycle / kPostscale[kOSCCON["POST"].of(osccon)];
     change_rate(clock_, at, hertz);
 }
 
@@ -117,26 +116,26 @@ void Oscillator::write_osccon(void* owner, std::uint16_t address, std::uint16_t 
     if (!self.state_.low.opens(static_cast<std::uint8_t>(value), self.around_.now)) return;
     const std::uint16_t old = osccon;
     osccon = merge(osccon, value, kLowWritable);
-    const auto present = static_cast<std::uint8_t>(field(osccon, 14, 12));
-    const auto wanted = static_cast<std::uint8_t>(field(osccon, 10, 8));
-    if (!(osccon & kOswen) || (self.fosc_ & kSwitchingOff) || wanted == present) {
-        assign(osccon, kOswen, false);
+    const auto present = static_cast<std::uint8_t>(kOSCCON["COSC"].of(osccon));
+    const auto wanted = static_cast<std::uint8_t>(kOSCCON["NOSC"].of(osccon));
+    if (!(osccon & kOSCCON["OSWEN"]) || (self.fosc_ & kSwitchingOff) || wanted == present) {
+        assign(osccon, kOSCCON["OSWEN"], false);
         self.around_.events.cancel(self.slot_);
-    } else if (!(old & kOswen)) {
+    } else if (!(old & kOSCCON["OSWEN"])) {
         double wait = 0.0;
         if (wanted == kPrimary || wanted == kPll)
             wait = kStartupPeriods / self.crystal_hertz_ * self.clock_.hertz();
         self.around_.events.schedule(self.slot_, self.around_.now + 1 + kSwitchCycles +
                                                      static_cast<Cycle>(std::llround(wait)));
     }
-    if (field(old ^ osccon, 7, 6)) self.select(present, self.around_.now + 1);
+    if ((old ^ osccon) & kOSCCON["POST"]) self.select(present, self.around_.now + 1);
 }
 
 void Oscillator::switch_due(void* owner, Cycle due) {
     Oscillator& self = *static_cast<Oscillator*>(owner);
     std::uint16_t& osccon = self.around_.sfr.raw(sfr::OSCCON);
-    assign(osccon, kOswen, false);
-    self.select(static_cast<std::uint8_t>(field(osccon, 10, 8)), due);
+    assign(osccon, kOSCCON["OSWEN"], false);
+    self.select(static_cast<std::uint8_t>(kOSCCON["NOSC"].of(osccon)), due);
 }
 
 }  // namespace puckloop::dspic

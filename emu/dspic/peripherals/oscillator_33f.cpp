@@ -1,6 +1,7 @@
 #include "emu/dspic/peripherals/oscillator_33f.h"
 
 #include "emu/dspic/devices/dspic33fj256gp710_sfr.h"
+#include "emu/dspic/devices/register_bits.h"
 
 #include <cmath>
 
@@ -25,14 +26,11 @@ enum Source : std::uint8_t {
     kFrcDivided = 7
 };
 
-// OSCCON
-constexpr std::uint16_t kHighWritable = 0x0700;  // NOSC
-constexpr std::uint16_t kClklock = bit(7);
-constexpr std::uint16_t kLock = bit(5);
-constexpr std::uint16_t kCf = bit(3);
-constexpr std::uint16_t kLposcen = bit(1);
-constexpr std::uint16_t kOswen = bit(0);
-constexpr std::uint16_t kLowWritable = kClklock | kLposcen | kOswen;
+constexpr RegisterBits kOSCCON{"OSCCON"};
+constexpr RegisterBits kCLKDIV{"CLKDIV"};
+constexpr RegisterBits kPLLFBD{"PLLFBD"};
+constexpr std::uint16_t kHighWritable = kOSCCON["NOSC"];
+constexpr std::uint16_t kLowWritable = kOSCCON["CLKLOCK"] | kOSCCON["LPOSCEN"] | kOSCCON["OSWEN"];
 // FOSC
 constexpr std::uint16_t kSwitchingOff = bit(7);  // FCKSM1
 constexpr std::uint16_t kMonitorOff = bit(6);    // FCKSM0
@@ -77,12 +75,13 @@ void Oscillator33F::reset(bool power_on) {
 
 double Oscillator33F::pll(double input) const {
     const std::uint16_t clkdiv = around_.sfr.raw(sfr33::CLKDIV);
-    const double multiplier = field(around_.sfr.raw(sfr33::PLLFBD), 8, 0) + 2.0;
-    return input * multiplier / ((field(clkdiv, 4, 0) + 2.0) * kPllPost[field(clkdiv, 7, 6)]);
+    const double multiplier = kPLLFBD["PLLDIV"].of(around_.sfr.raw(sfr33::PLLFBD)) + 2.0;
+    return input * multiplier /
+           ((kCLKDIV["PLLPRE"].of(clkdiv) + 2.0) * kPllPost[kCLKDIV["PLLPOST"].of(clkdiv)]);
 }
 
 double Oscillator33F::source_hertz(std::uint8_t source) const {
-    const double divided = kFrcHertz / kFrcDivider[field(around_.sfr.raw(sfr33::CLKDIV), 10, 8)];
+    const double divided = kFrcHertz / kFrcDivider[kCLKDIV["FRCDIV"].of(around_.sfr.raw(sfr33::CLKDIV))];
     switch (source) {
     case kFrcPll:
         return pll(divided);
@@ -108,7 +107,7 @@ void Oscillator33F::select(std::uint8_t source, Cycle at) {
     running_ = source;
     std::uint16_t& osccon = around_.sfr.raw(sfr33::OSCCON);
     osccon = static_cast<std::uint16_t>((osccon & ~0x7000u) | static_cast<unsigned>(source) << 12);
-    assign(osccon, kLock, is_pll(source));
+    assign(osccon, kOSCCON["LOCK"], is_pll(source));
     change_rate(clock_, at, source_hertz(source) / kClocksPerCycle);
 }
 
@@ -116,10 +115,10 @@ void Oscillator33F::begin_switch(std::uint8_t present, std::uint8_t wanted) {
     std::uint16_t& osccon = around_.sfr.raw(sfr33::OSCCON);
     const bool primary = wanted == kPrimary || wanted == kPrimaryPll;
     if (is_pll(present) && is_pll(wanted)) {
-        assign(osccon, kOswen, false);
+        assign(osccon, kOSCCON["OSWEN"], false);
         return;
     }
-    osccon = static_cast<std::uint16_t>(osccon & ~(kLock | kCf));
+    osccon = static_cast<std::uint16_t>(osccon & ~(kOSCCON["LOCK"] | kOSCCON["CF"]));
     // Without an oscillator to switch to, the part waits for it for ever.
     if (primary && field(words_.fosc, 1, 0) == kPrimaryDisabled) return;
     double seconds = kSwitchCycles * kClocksPerCycle / source_hertz(wanted);
@@ -134,7 +133,7 @@ void Oscillator33F::write_osccon(void* owner, std::uint16_t address, std::uint16
     Oscillator33F& self = *static_cast<Oscillator33F*>(owner);
     std::uint16_t& osccon = self.around_.sfr.raw(address);
     const Cycle now = self.around_.now;
-    const bool locked = (osccon & kClklock) && (self.words_.fosc & kMonitorOff);
+    const bool locked = (osccon & kOSCCON["CLKLOCK"]) && (self.words_.fosc & kMonitorOff);
     if (mask == 0xFF00) {
         self.state_.low = kLowKeys;
         if (self.state_.high.opens(static_cast<std::uint8_t>(value >> 8), now) && !locked)
@@ -146,13 +145,13 @@ void Oscillator33F::write_osccon(void* owner, std::uint16_t address, std::uint16
     if (!self.state_.low.opens(static_cast<std::uint8_t>(value), now) || locked) return;
     const std::uint16_t old = osccon;
     osccon = merge(osccon, value, kLowWritable);
-    if (!(value & kCf)) assign(osccon, kCf, false);
-    const auto present = static_cast<std::uint8_t>(field(osccon, 14, 12));
-    const auto wanted = static_cast<std::uint8_t>(field(osccon, 10, 8));
-    if (!(osccon & kOswen) || (self.words_.fosc & kSwitchingOff) || wanted == present) {
-        assign(osccon, kOswen, false);
+    if (!(value & kOSCCON["CF"])) assign(osccon, kOSCCON["CF"], false);
+    const auto present = static_cast<std::uint8_t>(kOSCCON["COSC"].of(osccon));
+    const auto wanted = static_cast<std::uint8_t>(kOSCCON["NOSC"].of(osccon));
+    if (!(osccon & kOSCCON["OSWEN"]) || (self.words_.fosc & kSwitchingOff) || wanted == present) {
+        assign(osccon, kOSCCON["OSWEN"], false);
         self.around_.events.cancel(self.slot_);
-    } else if (!(old & kOswen)) {
+    } else if (!(old & kOSCCON["OSWEN"])) {
         self.begin_switch(present, wanted);
     }
 }
@@ -167,8 +166,8 @@ void Oscillator33F::write_divider(void* owner, std::uint16_t address, std::uint1
 void Oscillator33F::switch_due(void* owner, Cycle due) {
     Oscillator33F& self = *static_cast<Oscillator33F*>(owner);
     std::uint16_t& osccon = self.around_.sfr.raw(sfr33::OSCCON);
-    assign(osccon, kOswen, false);
-    self.select(static_cast<std::uint8_t>(field(osccon, 10, 8)), due);
+    assign(osccon, kOSCCON["OSWEN"], false);
+    self.select(static_cast<std::uint8_t>(kOSCCON["NOSC"].of(osccon)), due);
 }
 
 }  // namespace puckloop::dspic

@@ -1,14 +1,14 @@
 #include "emu/dspic/peripherals/output_compare.h"
 
+#include "emu/dspic/devices/register_bits.h"
+
 #include <algorithm>
 
 namespace puckloop::dspic {
 
 namespace {
 
-// OCxCON
-constexpr std::uint16_t kOcflt = bit(4);
-constexpr std::uint16_t kOctsel = bit(3);
+constexpr RegisterBits kOCxCON{"OC?CON"};
 enum Mode : int { kOff = 0, kHigh = 1, kLow = 2, kToggle = 3, kPulse = 4, kPulses = 5 };
 
 constexpr std::uint16_t kUnitBytes = 6;
@@ -49,11 +49,11 @@ std::size_t OutputCompare::index_of(std::uint16_t address) const {
 }
 
 int OutputCompare::mode(std::size_t index) const {
-    return static_cast<int>(field(con(index), 2, 0));
+    return static_cast<int>(kOCxCON["OCM"].of(con(index)));
 }
 
 Timer& OutputCompare::timer(std::size_t index) const {
-    return *bases_[con(index) & kOctsel ? 1 : 0].timer;
+    return *bases_[con(index) & kOCxCON["OCTSEL"] ? 1 : 0].timer;
 }
 
 OutputCompareState OutputCompare::present(int unit) const {
@@ -204,7 +204,7 @@ void OutputCompare::write_con(void* owner, std::uint16_t address, std::uint16_t 
     OutputCompare& self = *static_cast<OutputCompare*>(owner);
     const std::size_t index = self.index_of(address);
     const std::uint16_t old = self.con(index);
-    self.around_.sfr.store(address, value, static_cast<std::uint16_t>(mask & ~kOcflt));
+    self.around_.sfr.store(address, value, static_cast<std::uint16_t>(mask & ~kOCxCON["OCFLT"]));
     if (self.con(index) == old) return;
     self.begin(index);
     self.tell(index, self.around_.now + 1);

@@ -1,22 +1,14 @@
 #include "emu/dspic/peripherals/spi.h"
 
+#include "emu/dspic/devices/register_bits.h"
+
 namespace puckloop::dspic {
 
 namespace {
 
 enum Offset : int { kStat = 0, kCon1 = 2, kCon2 = 4, kBuf = 8 };
-// SPIxSTAT
-constexpr std::uint16_t kSpien = bit(15);
-constexpr std::uint16_t kSpisidl = bit(13);
-constexpr std::uint16_t kSpirov = bit(6);
-constexpr std::uint16_t kSpitbf = bit(1);
-constexpr std::uint16_t kSpirbf = bit(0);
-// SPIxCON1
-constexpr std::uint16_t kDissck = bit(12);
-constexpr std::uint16_t kDissdo = bit(11);
-constexpr std::uint16_t kMode16 = bit(10);
-constexpr std::uint16_t kCkp = bit(6);
-constexpr std::uint16_t kMsten = bit(5);
+constexpr RegisterBits kSPIxSTAT{"SPI?STAT"};
+constexpr RegisterBits kSPIxCON1{"SPI?CON1"};
 constexpr unsigned kPrimary[] = {64, 16, 4, 1};  // PPRE
 constexpr unsigned kSecondaryMost = 8;           // SPRE = 0
 
@@ -37,17 +29,17 @@ void Spi::reset() {
 }
 
 bool Spi::enabled() const {
-    return reg(kStat) & kSpien;
+    return reg(kStat) & kSPIxSTAT["SPIEN"];
 }
 bool Spi::master() const {
-    return reg(kCon1) & kMsten;
+    return reg(kCon1) & kSPIxCON1["MSTEN"];
 }
 int Spi::bits() const {
-    return reg(kCon1) & kMode16 ? 16 : 8;
+    return reg(kCon1) & kSPIxCON1["MODE16"] ? 16 : 8;
 }
 Cycle Spi::word_cycles() const {
     const unsigned con1 = reg(kCon1);
-    const Cycle clock = kPrimary[field(con1, 1, 0)] * (kSecondaryMost - field(con1, 4, 2));
+    const Cycle clock = kPrimary[kSPIxCON1["PPRE"].of(con1)] * (kSecondaryMost - kSPIxCON1["SPRE"].of(con1));
     return clock * static_cast<Cycle>(bits());
 }
 
@@ -68,10 +60,10 @@ void Spi::lend_pins() {
     ports_.give_back(setup_.port, all);
     if (!enabled()) return;
     std::uint16_t lent = all;
-    if (con1 & kDissck) lent = static_cast<std::uint16_t>(lent & ~sck);
-    if (con1 & kDissdo) lent = static_cast<std::uint16_t>(lent & ~sdo);
+    if (con1 & kSPIxCON1["DISSCK"]) lent = static_cast<std::uint16_t>(lent & ~sck);
+    if (con1 & kSPIxCON1["DISSDO"]) lent = static_cast<std::uint16_t>(lent & ~sdo);
     const auto output = static_cast<std::uint16_t>(lent & ((master() ? sck : 0) | sdo));
-    ports_.lend(setup_.port, lent, output, con1 & kCkp ? sck : 0);
+    ports_.lend(setup_.port, lent, output, con1 & kSPIxCON1["CKP"] ? sck : 0);
 }
 
 void Spi::begin(std::uint16_t value, Cycle from) {
@@ -89,15 +81,15 @@ void Spi::due(void* owner, Cycle due) {
     const auto got =
         static_cast<std::uint16_t>(self.pins_.spi_exchange(self.setup_.unit, sent, bits, due) & mask);
     self.state_.shifting = false;
-    if (stat & kSpirbf) {  // nobody fetched the last word: this one is lost
-        stat |= kSpirov;
+    if (stat & kSPIxSTAT["SPIRBF"]) {  // nobody fetched the last word: this one is lost
+        stat |= kSPIxSTAT["SPIROV"];
         self.around_.interrupts.raise(self.setup_.error_irq, due);
     } else {
         self.state_.received = got;
-        stat |= kSpirbf;
+        stat |= kSPIxSTAT["SPIRBF"];
     }
-    if (stat & kSpitbf) {
-        assign(stat, kSpitbf, false);
+    if (stat & kSPIxSTAT["SPITBF"]) {
+        assign(stat, kSPIxSTAT["SPITBF"], false);
         self.begin(self.state_.waiting, due);
     }
     self.around_.interrupts.raise(self.setup_.irq, due);
@@ -105,7 +97,7 @@ void Spi::due(void* owner, Cycle due) {
 
 std::uint16_t Spi::read_buf(void* owner, std::uint16_t) {
     Spi& self = *static_cast<Spi*>(owner);
-    assign(self.reg(kStat), kSpirbf, false);
+    assign(self.reg(kStat), kSPIxSTAT["SPIRBF"], false);
     return self.state_.received;
 }
 
@@ -115,9 +107,9 @@ void Spi::write_buf(void* owner, std::uint16_t, std::uint16_t value, std::uint16
     if (!self.enabled() || !self.master() || mask == 0xFF00 || self.state_.held) return;
     if (!self.state_.shifting) {
         self.begin(value & mask, self.around_.now + 1);
-    } else if (!(stat & kSpitbf)) {
+    } else if (!(stat & kSPIxSTAT["SPITBF"])) {
         self.state_.waiting = value & mask;
-        stat |= kSpitbf;
+        stat |= kSPIxSTAT["SPITBF"];
     }
 }
 
@@ -125,14 +117,16 @@ void Spi::write_stat(void* owner, std::uint16_t, std::uint16_t value, std::uint1
     Spi& self = *static_cast<Spi*>(owner);
     std::uint16_t& stat = self.reg(kStat);
     const std::uint16_t old = stat;
-    stat = merge(stat, value, static_cast<std::uint16_t>(mask & (kSpien | kSpisidl)));
-    if ((mask & kSpirov) && !(value & kSpirov)) assign(stat, kSpirov, false);
-    if (!((old ^ stat) & kSpien)) return;
+    stat = merge(stat, value, static_cast<std::uint16_t>(mask & (kSPIxSTAT["SPIEN"] | kSPIxSTAT["SPISIDL"])));
+    if ((mask & kSPIxSTAT["SPIROV"]) && !(value & kSPIxSTAT["SPIROV"]))
+        assign(stat, kSPIxSTAT["SPIROV"], false);
+    if (!((old ^ stat) & kSPIxSTAT["SPIEN"])) return;
     if (!self.enabled()) {
         const bool held = self.state_.held;
         self.reset();
         self.state_.held = held;
-        stat = static_cast<std::uint16_t>(stat & ~(kSpirov | kSpitbf | kSpirbf));
+        stat = static_cast<std::uint16_t>(stat &
+                                          ~(kSPIxSTAT["SPIROV"] | kSPIxSTAT["SPITBF"] | kSPIxSTAT["SPIRBF"]));
     }
     self.lend_pins();
 }

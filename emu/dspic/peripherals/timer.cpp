@@ -1,16 +1,13 @@
 #include "emu/dspic/peripherals/timer.h"
 
+#include "emu/dspic/devices/register_bits.h"
+
 #include <algorithm>
 
 namespace puckloop::dspic {
 
 namespace {
-// TxCON
-constexpr std::uint16_t kTon = bit(15);
-constexpr std::uint16_t kTgate = bit(6);
-constexpr std::uint16_t kT32 = bit(3);
-constexpr std::uint16_t kTsync = bit(2);
-constexpr std::uint16_t kTcs = bit(1);
+constexpr RegisterBits kTxCON{"T?CON"};
 constexpr std::uint32_t kPrescale[] = {1, 8, 64, 256};  // TCKPS
 }  // namespace
 
@@ -32,25 +29,26 @@ void Timer::reset() {
 }
 
 bool Timer::paired() const {
-    return upper_ && (con() & kT32);
+    return upper_ && (con() & kTxCON["T32"]);
 }
 bool Timer::ruled_by_lower() const {
     return lower_ && lower_->paired();
 }
 bool Timer::external() const {
-    return con() & kTcs;
+    return con() & kTxCON["TCS"];
 }
 bool Timer::synchronised() const {
-    return !setup_.asynchronous || (con() & kTsync);
+    return !setup_.asynchronous || (con() & kTxCON["TSYNC"]);
 }
 bool Timer::gated() const {
-    return !external() && (con() & kTgate);
+    return !external() && (con() & kTxCON["TGATE"]);
 }
 bool Timer::running() const {
-    return (con() & kTon) && !state_.held && !ruled_by_lower() && !external() && (!gated() || state_.pin);
+    return (con() & kTxCON["TON"]) && !state_.held && !ruled_by_lower() && !external() &&
+           (!gated() || state_.pin);
 }
 std::uint32_t Timer::prescale() const {
-    return kPrescale[dspic::field(con(), 5, 4)];
+    return kPrescale[kTxCON["TCKPS"].of(con())];
 }
 std::uint32_t Timer::period() const {
     const std::uint32_t low = around_.sfr.raw(setup_.pr);
@@ -158,7 +156,7 @@ void Timer::clock_pin(bool level, Cycle at) {
         state_.pin = level;
         return;
     }
-    if ((con() & kTon) && !ruled_by_lower()) {
+    if ((con() & kTxCON["TON"]) && !ruled_by_lower()) {
         if (gated()) {
             settle(at);
             if (!level) match(at);
@@ -228,7 +226,7 @@ void Timer::write_con(void* owner, std::uint16_t address, std::uint16_t value, s
     self.settle(at);
     if (self.upper_) self.upper_->settle(at);
     self.around_.sfr.store(address, value, mask);
-    if (!(self.con() & kTon)) self.state_.fraction = 0;
+    if (!(self.con() & kTxCON["TON"])) self.state_.fraction = 0;
     self.state_.fraction %= self.prescale();
     if (self.upper_ && self.paired() != was_paired) {  // the high word changes hands
         if (self.paired()) {

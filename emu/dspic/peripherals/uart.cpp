@@ -1,5 +1,7 @@
 #include "emu/dspic/peripherals/uart.h"
 
+#include "emu/dspic/devices/register_bits.h"
+
 #include "protocols/uart_sampling.h"
 
 #include <algorithm>
@@ -9,26 +11,10 @@ namespace puckloop::dspic {
 
 namespace {
 
-// UxMODE
-constexpr std::uint16_t kUarten = bit(15);
-constexpr std::uint16_t kLpback = bit(6);
-constexpr std::uint16_t kBrgh = bit(3);  // 33FJ
-constexpr std::uint16_t kStsel = bit(0);
-// UxSTA
-constexpr std::uint16_t kUtxisel = bit(15);   // 30F; on the 33FJ UTXISEL1
-constexpr std::uint16_t kUtxinv = bit(14);    // 33FJ
-constexpr std::uint16_t kUtxisel0 = bit(13);  // 33FJ
-constexpr std::uint16_t kUtxbrk = bit(11);
-constexpr std::uint16_t kUtxen = bit(10);
-constexpr std::uint16_t kUtxbf = bit(9);
-constexpr std::uint16_t kTrmt = bit(8);
-constexpr std::uint16_t kAdden = bit(5);
-constexpr std::uint16_t kRidle = bit(4);
-constexpr std::uint16_t kPerr = bit(3);
-constexpr std::uint16_t kFerr = bit(2);
-constexpr std::uint16_t kOerr = bit(1);
-constexpr std::uint16_t kUrxda = bit(0);
-constexpr std::uint16_t kStaWritable = kUtxisel | kUtxbrk | kUtxen | bit(7) | bit(6) | kAdden;
+constexpr RegisterBits kUxMODE{"U?MODE"};
+constexpr RegisterBits kUxSTA{"U?STA"};
+constexpr std::uint16_t kStaWritable =
+    kUxSTA["UTXISEL"] | kUxSTA["UTXBRK"] | kUxSTA["UTXEN"] | kUxSTA["URXISEL"] | kUxSTA["ADDEN"];
 
 constexpr std::uint16_t kNinthBit = bit(8);
 constexpr std::uint32_t kTicksPerBit = 16;
@@ -62,7 +48,7 @@ void Uart::reset() {
 }
 
 bool Uart::enabled() const {
-    return mode() & kUarten;
+    return mode() & kUxMODE["UARTEN"];
 }
 
 std::optional<cosim::UartFrame> Uart::begun() const {
@@ -71,18 +57,18 @@ std::optional<cosim::UartFrame> Uart::begun() const {
 }
 
 std::uint32_t Uart::ticks_per_bit() const {
-    return setup_.family_33f && (mode() & kBrgh) ? kTicksPerBitHigh : kTicksPerBit;
+    return setup_.family_33f && (mode() & kUxMODE["BRGH"]) ? kTicksPerBitHigh : kTicksPerBit;
 }
 
 std::uint16_t Uart::writable_sta() const {
-    return setup_.family_33f ? kStaWritable | kUtxinv | kUtxisel0 : kStaWritable;
+    return setup_.family_33f ? kStaWritable | kUxSTA["UTXINV"] | kUxSTA["UTXISEL0"] : kStaWritable;
 }
 
 // The word that moves to the shift register now raises UxTXIF. 30F: UTXISEL 0 each one, 1 the one that
 // empties the FIFO. 33FJ: 00 each one, 10 the one that empties the FIFO, 01 none (the end of the last frame).
 bool Uart::transfer_interrupts() const {
-    if (setup_.family_33f && (sta() & kUtxisel0)) return false;
-    return !(sta() & kUtxisel) || state_.transmit.count == 0;
+    if (setup_.family_33f && (sta() & kUxSTA["UTXISEL0"])) return false;
+    return !(sta() & kUxSTA["UTXISEL"]) || state_.transmit.count == 0;
 }
 
 // UARTEN = 0: both FIFOs, both shift registers.
@@ -91,7 +77,8 @@ void Uart::clear() {
     state_.receive = {};
     state_.sampled.reset();
     around_.events.cancel(receive_slot_);
-    sta() = static_cast<std::uint16_t>((sta() & ~(kOerr | kUrxda | kFerr | kPerr)) | kRidle);
+    sta() = static_cast<std::uint16_t>(
+        (sta() & ~(kUxSTA["OERR"] | kUxSTA["URXDA"] | kUxSTA["FERR"] | kUxSTA["PERR"])) | kUxSTA["RIDLE"]);
 }
 
 void Uart::hold(bool on) {
@@ -103,10 +90,10 @@ void Uart::hold(bool on) {
         state_.sampled.reset();
         around_.events.cancel(transmit_slot_);
         around_.events.cancel(receive_slot_);
-        sta() |= kRidle;
+        sta() |= kUxSTA["RIDLE"];
     } else {
         receiver_.start(around_.now);
-        if (sta() & kUtxen) begin_frame(around_.now);
+        if (sta() & kUxSTA["UTXEN"]) begin_frame(around_.now);
     }
     show_transmitter();
 }
@@ -116,8 +103,8 @@ void Uart::lend_pins() {
     const std::uint16_t tx = bit(setup_.tx_pin);
     if (!enabled()) {
         ports_.give_back(setup_.port, rx | tx);
-    } else if (sta() & kUtxen) {
-        const bool low = (sta() & kUtxbrk) && !setup_.family_33f;
+    } else if (sta() & kUxSTA["UTXEN"]) {
+        const bool low = (sta() & kUxSTA["UTXBRK"]) && !setup_.family_33f;
         ports_.lend(setup_.port, rx | tx, tx, low ? 0 : tx);
     } else {
         ports_.lend(setup_.port, rx, 0, 0);
@@ -128,8 +115,8 @@ void Uart::lend_pins() {
 // ---- transmitter
 
 void Uart::show_transmitter() {
-    assign(sta(), kUtxbf, state_.transmit.full());
-    assign(sta(), kTrmt, !state_.shifting && state_.transmit.count == 0);
+    assign(sta(), kUxSTA["UTXBF"], state_.transmit.full());
+    assign(sta(), kUxSTA["TRMT"], !state_.shifting && state_.transmit.count == 0);
 }
 
 void Uart::stop_transmitter() {
@@ -141,7 +128,7 @@ void Uart::stop_transmitter() {
 
 // Moves the next word into the empty shift register; its start bit begins at a tick at or after `from`.
 void Uart::begin_frame(Cycle from) {
-    const bool is_break = sta() & kUtxbrk;
+    const bool is_break = sta() & kUxSTA["UTXBRK"];
     if (state_.held) return;
     if ((setup_.family_33f || !is_break) && state_.transmit.count == 0) return;
     const Cycle late = (from - state_.phase) % divisor();
@@ -149,14 +136,14 @@ void Uart::begin_frame(Cycle from) {
 
     cosim::UartFrame& frame = state_.frame;
     frame = {};
-    const unsigned pdsel = dspic::field(mode(), 2, 1);
+    const unsigned pdsel = kUxMODE["PDSEL"].of(mode());
     frame.data_bits = pdsel == 3 ? 9 : 8;
     frame.parity = pdsel == 1 ? 2 : pdsel == 2 ? 1 : 0;
-    frame.stop_bits = mode() & kStsel ? 2 : 1;
+    frame.stop_bits = mode() & kUxMODE["STSEL"] ? 2 : 1;
     frame.is_break = is_break;
     if (is_break && setup_.family_33f) {  // the word written is a dummy
         state_.transmit.pop();
-        assign(sta(), kUtxbrk, false);
+        assign(sta(), kUxSTA["UTXBRK"], false);
         if (transfer_interrupts()) around_.interrupts.raise(setup_.tx_irq, from);
     }
     if (!is_break) {
@@ -187,7 +174,7 @@ void Uart::transmit_due(void* owner, Cycle due) {
         self.around_.events.schedule(self.transmit_slot_, self.state_.frame_end);
         ++self.counters_.sent;
         const cosim::UartFrame frame = self.state_.frame;
-        if (self.mode() & kLpback) {
+        if (self.mode() & kUxMODE["LPBACK"]) {
             self.receiver_.frame(frame);
             self.sample(due);
         } else {
@@ -197,7 +184,7 @@ void Uart::transmit_due(void* owner, Cycle due) {
     }
     self.state_.shifting = false;
     self.show_transmitter();
-    const bool at_end = self.setup_.family_33f && (self.sta() & kUtxisel0);
+    const bool at_end = self.setup_.family_33f && (self.sta() & kUxSTA["UTXISEL0"]);
     if (at_end && self.state_.transmit.count == 0) self.around_.interrupts.raise(self.setup_.tx_irq, due);
     self.begin_frame(due);
 }
@@ -208,13 +195,13 @@ void Uart::write_txreg(void* owner, std::uint16_t address, std::uint16_t value, 
     if (!self.enabled() || mask == 0xFF00 || self.state_.transmit.full()) return;
     self.state_.transmit.push(mask == 0xFFFF ? value & 0x1FF : value & 0xFF);
     self.show_transmitter();
-    if ((self.sta() & kUtxen) && !self.state_.shifting) self.begin_frame(self.around_.now + 1);
+    if ((self.sta() & kUxSTA["UTXEN"]) && !self.state_.shifting) self.begin_frame(self.around_.now + 1);
 }
 
 // ---- receiver
 
 UartReceiver::Format Uart::format() const {
-    const unsigned pdsel = dspic::field(mode(), 2, 1);
+    const unsigned pdsel = kUxMODE["PDSEL"].of(mode());
     return {divisor(), pdsel == 3 ? 9 : 8,
             pdsel == 1   ? 2
             : pdsel == 2 ? 1
@@ -223,7 +210,7 @@ UartReceiver::Format Uart::format() const {
 }
 
 void Uart::receive(const cosim::UartFrame& frame, Cycle at) {
-    if (enabled() && (mode() & kLpback)) return;
+    if (enabled() && (mode() & kUxMODE["LPBACK"])) return;
     if (state_.held) return;
     receiver_.frame(frame);
     if (enabled())
@@ -244,7 +231,7 @@ void Uart::sample(Cycle now) {
         if (!state_.sampled) break;
     }
     around_.events.schedule(receive_slot_, state_.sampled ? state_.sampled->done : receiver_.ask_again());
-    assign(sta(), kRidle, !state_.sampled && receiver_.ask_again() == kNoCycle);
+    assign(sta(), kUxSTA["RIDLE"], !state_.sampled && receiver_.ask_again() == kNoCycle);
 }
 
 void Uart::receive_due(void* owner, Cycle due) {
@@ -255,14 +242,15 @@ void Uart::deliver(const UartReceiver::Character& character, Cycle now) {
     ++counters_.received;
     counters_.framing_errors += character.framing_error;
     counters_.parity_errors += character.parity_error;
-    if ((sta() & kAdden) && dspic::field(mode(), 2, 1) == 3 && !(character.data & kNinthBit)) return;
-    if (sta() & kOerr) {
+    if ((sta() & kUxSTA["ADDEN"]) && kUxMODE["PDSEL"].of(mode()) == 3 && !(character.data & kNinthBit))
+        return;
+    if (sta() & kUxSTA["OERR"]) {
         ++counters_.overruns;
         return;
     }
     if (state_.receive.full()) {
         ++counters_.overruns;
-        sta() |= kOerr;
+        sta() |= kUxSTA["OERR"];
         if (setup_.family_33f) around_.interrupts.raise(setup_.error_irq, std::max(character.done, now));
         return;
     }
@@ -270,7 +258,7 @@ void Uart::deliver(const UartReceiver::Character& character, Cycle now) {
     show_receiver();
     if (setup_.family_33f && (character.framing_error || character.parity_error))
         around_.interrupts.raise(setup_.error_irq, std::max(character.done, now));
-    const unsigned urxisel = dspic::field(sta(), 7, 6);
+    const unsigned urxisel = kUxSTA["URXISEL"].of(sta());
     if (urxisel < 2 || state_.receive.count == (urxisel == 2 ? 3 : 4))
         around_.interrupts.raise(setup_.rx_irq, std::max(character.done, now));
 }
@@ -278,9 +266,9 @@ void Uart::deliver(const UartReceiver::Character& character, Cycle now) {
 // URXDA, and the top of the FIFO with its errors.
 void Uart::show_receiver() {
     const bool any = state_.receive.count > 0;
-    assign(sta(), kUrxda, any);
-    assign(sta(), kFerr, any && state_.receive.top().framing_error);
-    assign(sta(), kPerr, any && state_.receive.top().parity_error);
+    assign(sta(), kUxSTA["URXDA"], any);
+    assign(sta(), kUxSTA["FERR"], any && state_.receive.top().framing_error);
+    assign(sta(), kUxSTA["PERR"], any && state_.receive.top().parity_error);
     if (any) rxreg() = state_.receive.top().data;
 }
 
@@ -317,18 +305,19 @@ void Uart::write_sta(void* owner, std::uint16_t address, std::uint16_t value, st
     Uart& self = *static_cast<Uart*>(owner);
     const std::uint16_t old = self.sta();
     self.around_.sfr.store(address, value, mask & self.writable_sta());
-    if ((mask & kOerr) && !(value & kOerr) && (old & kOerr)) {  // empties the FIFO and UxRSR
+    if ((mask & kUxSTA["OERR"]) && !(value & kUxSTA["OERR"]) &&
+        (old & kUxSTA["OERR"])) {  // empties the FIFO and UxRSR
         self.state_.receive = {};
-        assign(self.sta(), kOerr, false);
+        assign(self.sta(), kUxSTA["OERR"], false);
         self.show_receiver();
     }
     const std::uint16_t changed = old ^ self.sta();
-    if (!self.enabled() || !(changed & (kUtxen | kUtxbrk))) return;
+    if (!self.enabled() || !(changed & (kUxSTA["UTXEN"] | kUxSTA["UTXBRK"]))) return;
     self.lend_pins();
     // 33FJ: the empty transmitter asks for words as soon as it may send.
-    if (self.setup_.family_33f && (changed & kUtxen) && (self.sta() & kUtxen))
+    if (self.setup_.family_33f && (changed & kUxSTA["UTXEN"]) && (self.sta() & kUxSTA["UTXEN"]))
         self.around_.interrupts.raise(self.setup_.tx_irq, self.around_.now);
-    if (!(self.sta() & kUtxen))
+    if (!(self.sta() & kUxSTA["UTXEN"]))
         self.stop_transmitter();
     else if (!self.state_.shifting)
         self.begin_frame(self.around_.now + 1);

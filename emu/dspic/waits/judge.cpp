@@ -1,6 +1,7 @@
 #include "emu/dspic/waits/judge.h"
 
 #include "emu/dspic/core/memory_map.h"
+#include "emu/dspic/devices/register_bits.h"
 #include "emu/dspic/waits/routines.h"
 #include "emu/dspic/waits/status_bits.h"
 
@@ -10,8 +11,9 @@ namespace puckloop::dspic {
 
 namespace {
 
+constexpr RegisterBits kDMAxCON{"DMA?CON"};
+
 constexpr int kHighestUser = 7;
-constexpr std::uint16_t kChannelOn = 1u << 15;
 constexpr std::uint16_t kDmaStep = 12;
 constexpr int kDmaChannels = 8;
 
@@ -111,7 +113,7 @@ class Judge {
         if (chip_.layout.dma.con == 0) return false;
         for (int channel = 0; channel < kDmaChannels; ++channel)
             if (chip_.sfr.raw(static_cast<std::uint16_t>(chip_.layout.dma.con + kDmaStep * channel)) &
-                kChannelOn)
+                kDMAxCON["CHEN"])
                 return true;
         return false;
     }

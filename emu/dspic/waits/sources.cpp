@@ -1,5 +1,6 @@
 // Whether an interrupt can come: what its source stands at.
 
+#include "emu/dspic/devices/register_bits.h"
 #include "emu/dspic/waits/judge.h"
 #include "emu/dspic/waits/status_bits.h"
 
@@ -9,8 +10,9 @@ namespace puckloop::dspic {
 
 namespace {
 
-constexpr std::uint16_t kTon = 1u << 15, kTcs = 1u << 1, kT32 = 1u << 3;
-constexpr std::uint16_t kUarten = 1u << 15, kTrmt = 1u << 8;
+constexpr RegisterBits kTxCON{"T?CON"};
+constexpr RegisterBits kUxMODE{"U?MODE"};
+constexpr RegisterBits kUxSTA{"U?STA"};
 
 bool driven_flag(const WaitContext& chip, int irq) {
     const auto address = static_cast<std::uint16_t>(chip.device.ifs + 2 * (irq / 16));
@@ -27,10 +29,10 @@ std::string pin_text(const WaitContext& chip, PortLetter port, int bit) {
 std::optional<std::string> timer_silent(const WaitContext& chip, const TimerPlace& place,
                                         const TimerPlace* lower) {
     // In a pair the lower timer's clock drives both.
-    const TimerPlace& counts = lower && chip.sfr.raw(lower->setup.con) & kT32 ? *lower : place;
+    const TimerPlace& counts = lower && chip.sfr.raw(lower->setup.con) & kTxCON["T32"] ? *lower : place;
     const std::uint16_t con = chip.sfr.raw(counts.setup.con);
-    if (!(con & kTon)) return fmt::format("T{} is off", counts.number);
-    if (!(con & kTcs)) return std::nullopt;
+    if (!(con & kTxCON["TON"])) return fmt::format("T{} is off", counts.number);
+    if (!(con & kTxCON["TCS"])) return std::nullopt;
     const std::uint16_t bit = static_cast<std::uint16_t>(1u << counts.clock.number);
     if (chip.ports.changeable(counts.clock.port) & bit) return std::nullopt;
     return fmt::format("T{} counts pin {}, on which nothing changes", counts.number,
@@ -58,8 +60,8 @@ std::optional<std::string> why_silent(const WaitContext& chip, int irq) {
     }
     for (const Uart::Setup& uart : chip.layout.uarts) {
         if (uart.rx_irq != irq && uart.tx_irq != irq) continue;
-        if (!(chip.sfr.raw(uart.mode) & kUarten)) return fmt::format("UART{} is off", uart.unit);
-        const bool empty = chip.sfr.raw(static_cast<std::uint16_t>(uart.mode + 2)) & kTrmt;
+        if (!(chip.sfr.raw(uart.mode) & kUxMODE["UARTEN"])) return fmt::format("UART{} is off", uart.unit);
+        const bool empty = chip.sfr.raw(static_cast<std::uint16_t>(uart.mode + 2)) & kUxSTA["TRMT"];
         if (uart.tx_irq == irq && empty) return fmt::format("UART{} has nothing to send", uart.unit);
     }
     return std::nullopt;

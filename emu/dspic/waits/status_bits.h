@@ -14,8 +14,6 @@ namespace puckloop::dspic {
 std::uint16_t driven_bits(const DeviceInfo& device, const RegisterInfo& info);
 /// Bits that silicon changes and no model does.
 std::uint16_t missing_bits(const DeviceInfo& device, const RegisterInfo& info);
-/// Mask of a field by its name in the register table; 0 if there is none.
-std::uint16_t field_mask(const RegisterInfo& info, std::string_view field);
 /// "RCON, bit BGST", "IFS0, bits T2IF and T1IF"; the register alone where all its bits are meant or they have
 /// no names.
 std::string register_text(const RegisterInfo& info, std::uint16_t mask);

@@ -4,10 +4,13 @@
 //   set if bit 39 overflowed. OAx = bits 39:31 differ. SAx stays until software clears it.
 
 #include "emu/dspic/core/machine.h"
+#include "emu/dspic/devices/register_bits.h"
 
 namespace puckloop::dspic {
 
 namespace {
+
+constexpr RegisterBits kINTCON1{"INTCON1"};
 
 constexpr std::int64_t kMax131 = 0x7FFFFFFF;
 constexpr std::int64_t kMin131 = -0x80000000LL;
@@ -17,9 +20,6 @@ constexpr std::int64_t kMin931 = -0x8000000000LL;
 std::int64_t wrap40(std::int64_t value) {
     return static_cast<std::int64_t>(static_cast<std::uint64_t>(value) << 24) >> 24;
 }
-
-// INTCON1's math trap enables.
-constexpr std::uint16_t kOvate = 1u << 10, kOvbte = 1u << 9, kCovte = 1u << 8;
 
 void summarise(Machine& m) {
     std::uint32_t s = m.st.sr & ~std::uint32_t{sr::OAB | sr::SAB};
@@ -52,8 +52,8 @@ void accumulate(Machine& m, int which, std::int64_t exact) {
     summarise(m);
     if (over || limited) {
         const std::uint16_t enables = m.irq.intcon1();
-        const bool overflow_trap = over && enables & (which ? kOvbte : kOvate);
-        const bool catastrophe = limited && !saturate && enables & kCovte;
+        const bool overflow_trap = over && enables & (which ? kINTCON1["OVBTE"] : kINTCON1["OVATE"]);
+        const bool catastrophe = limited && !saturate && enables & kINTCON1["COVTE"];
         if (overflow_trap || catastrophe) raise_trap(m, Trap::MathError);
     }
 }
