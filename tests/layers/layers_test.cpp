@@ -1,0 +1,138 @@
+// Folders depend downward only: what a file includes lies in its own folder or in one further up in this
+// list. docs/architecture.md says what each folder is.
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// From the bottom to the top. A file belongs to the longest entry that begins its path.
+const std::vector<std::string> kFolders = {
+    "base",
+    "cosim/core",
+    "protocols",
+    "cosim/faults",
+    "cosim/trace",
+    "cosim/schedule",
+    "cosim/remote",
+    "cosim/i2c",
+    "cosim/resume",
+    "cosim",
+    "emu/chip",
+    "emu/assembly",
+    "emu/image",
+    "emu/dspic/devices",
+    "emu/dspic/core",
+    "emu/dspic/assembler",
+    "emu/dspic/fast",
+    "emu/dspic/translate",
+    "emu/dspic/waits",
+    "emu/dspic/peripherals",
+    "emu/dspic/chip",
+    "emu/avr",
+    "emu/i2c_devices",
+    "emu/board",
+    "emu/pic",
+    "emu/rab_board",
+    "emu/tam_avr",
+    "physics",
+    "scenarios",
+};
+
+/// Includes that go up, each with its reason. One that is no longer there has to leave this list.
+const std::set<std::string> kUpward = {
+    // The machine holds the state of what watches and shortens its loops; Core makes and saves it.
+    "emu/dspic/core/machine.h emu/dspic/fast/service_shortcut.h",
+    "emu/dspic/core/machine.h emu/dspic/waits/wait_watch.h",
+    "emu/dspic/core/core.h emu/dspic/waits/wait_watch.h",
+    "emu/dspic/core/core.cpp emu/dspic/fast/loop_undo.h",
+    "emu/dspic/core/core.cpp emu/dspic/fast/skip_loops.h",
+    "emu/dspic/core/core_archive.cpp emu/dspic/fast/loop_undo.h",
+    // The benchmark of the core assembles its program and runs an image on the chip.
+    "emu/dspic/core/core_bench.cpp emu/dspic/assembler/assembler.h",
+    "emu/dspic/core/core_bench.cpp emu/dspic/chip/chip.h",
+    // The wiring of a device names the modules' set-ups.
+    "emu/dspic/devices/dspic30f6014a_layout.cpp emu/dspic/chip/layout.h",
+    "emu/dspic/devices/dspic33fj256gp710_layout.cpp emu/dspic/chip/layout.h",
+    "emu/dspic/waits/judge.h emu/dspic/chip/layout.h",
+    // What modules see of the board around the chip is declared beside the chip.
+    "emu/dspic/peripherals/adc12.h emu/dspic/chip/pins.h",
+    "emu/dspic/peripherals/adc_33f.h emu/dspic/chip/pins.h",
+    "emu/dspic/peripherals/i2c_master.h emu/dspic/chip/pins.h",
+    "emu/dspic/peripherals/i2c_slave.h emu/dspic/chip/pins.h",
+    "emu/dspic/peripherals/output_compare.h emu/dspic/chip/chip.h",
+    "emu/dspic/peripherals/output_compare.h emu/dspic/chip/pins.h",
+    "emu/dspic/peripherals/ports.h emu/dspic/chip/pins.h",
+    "emu/dspic/peripherals/spi.h emu/dspic/chip/pins.h",
+    "emu/dspic/peripherals/uart.h emu/dspic/chip/pins.h",
+    "emu/dspic/peripherals/uart.h emu/dspic/chip/uart_counters.h",
+};
+
+/// Place of a file's folder in the list; -1 where it has none (tools, gap, linuxboard: no order is asked).
+int rank_of(std::string_view path) {
+    int best = -1;
+    std::size_t longest = 0;
+    for (std::size_t i = 0; i < kFolders.size(); ++i) {
+        const std::string prefix = kFolders[i] + "/";
+        if (path.starts_with(prefix) && prefix.size() > longest) {
+            longest = prefix.size();
+            best = static_cast<int>(i);
+        }
+    }
+    return best;
+}
+
+std::vector<std::string> includes_of(const fs::path& file) {
+    std::vector<std::string> found;
+    std::ifstream in(file);
+    constexpr std::string_view kStart = "#include \"";
+    for (std::string line; std::getline(in, line);) {
+        if (!line.starts_with(kStart)) continue;
+        line.erase(0, kStart.size());
+        found.push_back(line.substr(0, line.find('"')));
+    }
+    return found;
+}
+
+}  // namespace
+
+TEST_CASE("folders depend downward only") {
+    const fs::path source = PUCKLOOP_SOURCE;
+    std::set<std::string> upward;
+    int files = 0;
+    for (const char* top : {"base", "protocols", "cosim", "emu", "physics", "scenarios"}) {
+        for (const auto& entry : fs::recursive_directory_iterator(source / top)) {
+            const std::string extension = entry.path().extension().string();
+            if (extension != ".h" && extension != ".cpp") continue;
+            const std::string path = fs::relative(entry.path(), source).generic_string();
+            const int rank = rank_of(path);
+            INFO(path << " is in no folder of the list");
+            REQUIRE(rank >= 0);
+            ++files;
+            for (const std::string& included : includes_of(entry.path())) {
+                CHECK_FALSE(included.starts_with("tools/"));
+                CHECK_FALSE(included.starts_with("gap/"));
+                CHECK_FALSE(included.starts_with("tests/"));
+                if (rank_of(included) > rank) upward.insert(path + " " + included);
+            }
+        }
+    }
+    CHECK(files > 200);
+    for (const std::string& pair : upward) {
+        INFO("upward: " << pair);
+        CHECK(kUpward.contains(pair));
+    }
+    for (const std::string& pair : kUpward) {
+        INFO("no longer there, take it off the list: " << pair);
+        CHECK(upward.contains(pair));
+    }
+}
