@@ -79,6 +79,7 @@ struct KilledRun {
         unsetenv(kMark);
         std::this_thread::sleep_for(std::chrono::duration<double>(moment_s));
         for (const double begun = wall_seconds(); victim == 0 && wall_seconds() - begun < 60.0;) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(2));
             const auto processes = family(mark);
             victim = pick(processes, process->id());
             if (!processes.contains(victim))
