@@ -1,6 +1,7 @@
 #include "cosim/remote/bell.h"
 
 #include <linux/futex.h>
+#include <sched.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -8,7 +9,6 @@
 #include <cerrno>
 #include <climits>
 #include <ctime>
-#include <thread>
 
 namespace puckloop::cosim {
 
@@ -39,8 +39,13 @@ bool futex(std::atomic<std::uint32_t>& word, int operation, std::uint32_t value,
 
 }  // namespace
 
-Bell::Bell(BellState& state, Busy& busy)
-    : state_(state), busy_(busy), cores_(std::max(1u, std::thread::hardware_concurrency())) {}
+std::uint32_t usable_cores() {
+    cpu_set_t cores;
+    if (sched_getaffinity(0, sizeof cores, &cores) != 0) return 1;
+    return static_cast<std::uint32_t>(std::max(1, CPU_COUNT(&cores)));
+}
+
+Bell::Bell(BellState& state, Busy& busy) : state_(state), busy_(busy), cores_(usable_cores()) {}
 
 bool Bell::rung(std::uint32_t wake_at) const {
     return static_cast<std::int32_t>(rings() - wake_at) >= 0;
@@ -61,16 +66,21 @@ void Bell::wait(std::uint32_t seen, std::uint32_t more, std::chrono::nanoseconds
     if (!look(wake_at)) sleep(wake_at, limit);
 }
 
+/// No core to spare for one that only looks.
+bool Bell::crowded() const {
+    const bool one_core = busy_.core.load(std::memory_order_relaxed) != kAnyCore;
+    return busy_.processes.load(std::memory_order_relaxed) > (one_core ? 1 : cores_);
+}
+
 bool Bell::look(std::uint32_t wake_at) {
     if (rung(wake_at)) return true;
     if (skip_ > 0) {
         --skip_;
         return false;
     }
+    if (crowded()) return false;
     const auto end = std::chrono::steady_clock::now() + kLook;
     do {
-        const bool one_core = busy_.core.load(std::memory_order_relaxed) != kAnyCore;
-        if (busy_.processes.load(std::memory_order_relaxed) > (one_core ? 1 : cores_)) return false;
         for (int looks = 0; looks < kLooksBetweenClocks; ++looks) {
             if (rung(wake_at)) {
                 in_vain_ = 0;
@@ -78,6 +88,7 @@ bool Bell::look(std::uint32_t wake_at) {
             }
             relax_core();
         }
+        if (crowded()) return false;
     } while (std::chrono::steady_clock::now() < end);
     skip_ = 1u << in_vain_;
     in_vain_ = std::min(in_vain_ + 1, kLongestPause);

@@ -19,6 +19,9 @@ struct alignas(64) BellState {
     std::atomic<std::uint32_t> asleep;   ///< 1: to be woken by whoever takes this to 0
 };
 
+/// Cores that this process may use; more than 0.
+std::uint32_t usable_cores();
+
 inline constexpr std::uint32_t kAnyCore = 0;
 
 /// In shared memory, one a run: how many of its processes work or look, and on which core; kAnyCore or its
@@ -42,12 +45,13 @@ class Bell {
 
   private:
     bool rung(std::uint32_t wake_at) const;
+    bool crowded() const;
     bool look(std::uint32_t wake_at);
     void sleep(std::uint32_t wake_at, std::chrono::nanoseconds limit);
 
     BellState& state_;
     Busy& busy_;
-    const std::uint32_t cores_;  ///< of the machine
+    const std::uint32_t cores_;
     std::uint32_t in_vain_ = 0;  ///< looks in a row that did not help
     std::uint32_t skip_ = 0;     ///< waits to come without looking
 };

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <mutex>
-#include <thread>
 
 namespace puckloop::cosim {
 
@@ -53,7 +52,7 @@ void CoreFollower::move(std::uint32_t core) {
 }
 
 CoreChoice::CoreChoice(Busy& busy)
-    : busy_(busy), follower_(busy), worth_it_(std::thread::hardware_concurrency() > 1), slice_(kSlices) {}
+    : busy_(busy), follower_(busy), worth_it_(usable_cores() > 1), slice_(kSlices) {}
 
 /// How fast it went. Where nodes chatter a grant takes little simulated and little wall time, where they work
 /// much of both: the product of the two rates does not depend on which stretch a slice met.

@@ -7,11 +7,9 @@
 #include "cosim/remote/ring.h"
 #include "cosim/remote/shared_memory.h"
 
-#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
-#include <thread>
 
 namespace puckloop::cosim {
 
@@ -60,7 +58,7 @@ class NodeProcesses {
     Bell bell_;
     CoreChoice choice_;
     DeathWatch deaths_;
-    const std::size_t cores_ = std::max(1u, std::thread::hardware_concurrency());
+    const std::size_t cores_ = usable_cores();
 };
 
 }  // namespace puckloop::cosim

@@ -16,7 +16,9 @@ namespace puckloop::cosim {
 
 SharedMemory::SharedMemory(const char* name, std::size_t size)
     : descriptor_(memfd_create(name, MFD_CLOEXEC | MFD_ALLOW_SEALING)) {
-    if (descriptor_ < 0) throw RunError(fmt::format("no shared memory: {}", std::strerror(errno)));
+    if (descriptor_ < 0)
+        throw RunError(fmt::format("no shared memory: {}{}", std::strerror(errno),
+                                   errno == EMFILE ? " (ulimit -n 4096 raises the limit)" : ""));
     if (ftruncate(descriptor_, static_cast<off_t>(size)) != 0 ||
         fcntl(descriptor_, F_ADD_SEALS, F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_SEAL) != 0) {
         const int error = errno;

@@ -8,8 +8,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <thread>
-
 using namespace puckloop::cosim;
 
 namespace {
@@ -23,6 +21,7 @@ int cores_of_this_thread() {
 /// Part of `seconds` that a run spends on one core where that is `factor` times as fast. Stretches of chatter
 /// (many grants, little simulated time) and of work follow each other, longer than a slice of a trial.
 double part_on_one_core(double factor, double seconds) {
+    const int all = cores_of_this_thread();
     Busy busy{};
     CoreChoice choice(busy);
     double on_one = 0, time = 0, grants = 0;
@@ -31,9 +30,7 @@ double part_on_one_core(double factor, double seconds) {
     for (double wall = 0; wall < seconds; wall += step) {
         choice.step(wall, from_seconds(time), static_cast<std::uint64_t>(grants));
         const bool one = busy.core != kAnyCore;
-        if (step_number++ % 64 == 0)
-            CHECK(cores_of_this_thread() ==
-                  (one ? 1 : static_cast<int>(std::thread::hardware_concurrency())));
+        if (step_number++ % 64 == 0) CHECK(cores_of_this_thread() == (one ? 1 : all));
         if (one) on_one += step;
         const double speed = one ? factor : 1.0;
         const bool chatter = static_cast<int>(wall / 0.013) % 2 == 0;

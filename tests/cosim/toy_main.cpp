@@ -11,7 +11,6 @@
 #include <cstdlib>
 #include <cstring>
 #include <functional>
-#include <memory>
 #include <string>
 #include <thread>
 
@@ -72,9 +71,9 @@ int main(int argc, char** argv) {
     if (mode == "silent") pause();
     if (mode == "exit") return 5;
     // node NAME SEED: the process of node NAME does so
-    std::unique_ptr<SharedMemory> memory;
     if (argc > 3 && node_name(argv[0]) == argv[2]) {
-        memory = std::make_unique<SharedMemory>(dup(protocol::kDescriptor), sizeof(SharedWithNode));
+        // Never given back: the thread writes until the process has ended.
+        static auto* const memory = new SharedMemory(dup(protocol::kDescriptor), sizeof(SharedWithNode));
         std::thread(write_nonsense, std::ref(*memory), std::strtoull(argv[3], nullptr, 10)).detach();
     }
     return serve_node(protocol::kDescriptor, toy::make);
