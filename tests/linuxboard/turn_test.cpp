@@ -82,11 +82,14 @@ TEST_CASE("nobody looks on a host with one processor, nor where it was in vain")
         CHECK_FALSE(turn.await<Host<2>>(Turn::Node, patience, 1'000));
         if (Host<2>::clock_readings > before) ++looks;
     }
-    CHECK(looks >= 10);
-    CHECK(looks <= 15);  // 4 at first, then each 64th time
-    for (int wait = 0; wait < 8; ++wait)
-        patience.ended(true);
-    CHECK(patience.next(2) == Patience::kLook);
+    CHECK(looks == 7);  // 2 at first, then after 16, 32, 64, 128 and 256 waits without
+    Patience used;
+    for (int wait = 0; wait < 1000; ++wait)  // one wait in four takes longer
+        if (used.next(2) > 0) used.ended(wait % 4 != 0);
+    int again = 0;
+    for (int wait = 0; wait < 100; ++wait)
+        again += used.next(2) > 0 ? 1 : 0;
+    CHECK(again == 100);
 }
 
 TEST_CASE("completions that are too many for a channel come in parts") {
