@@ -21,7 +21,6 @@ constexpr double kFlushSeconds = 1.0;
 constexpr Time kPaceSlack = kMillisecond;
 constexpr std::chrono::microseconds kPaceSleep{500};
 // Records held back before the trace is put in order and released.
-constexpr std::size_t kTraceBatch = 512;
 
 /// Thrown through the loop when the user ends the run.
 struct Interrupted {};
@@ -123,7 +122,7 @@ void Conductor::State::loop() {
             grant(n, until);
         }
         collect();
-        if (merger_.waiting() >= kTraceBatch) release_trace(std::min(schedule_.bounds().floor(), end_));
+        if (merger_.full()) release_trace(std::min(schedule_.bounds().floor(), end_));
         keep_house();
     }
 }

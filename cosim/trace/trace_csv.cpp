@@ -30,14 +30,30 @@ void TraceCsvSink::put(const std::string& line) {
 }
 
 void TraceCsvSink::begin(const std::vector<LinkSpec>& links) {
-    links_ = links;
+    senders_.clear();
+    for (const LinkSpec& link : links) {
+        senders_.push_back({sender_columns(link.name, link.a.node), link.record_from_a, {}});
+        senders_.push_back({sender_columns(link.name, link.b.node), link.record_from_b, {}});
+        for (std::size_t id = 0; id < link.signal_names.size(); ++id)
+            for (Sender* one : {&senders_.back() - 1, &senders_.back()})
+                one->signals.push_back(signal_column(link.signal_names[id], static_cast<std::uint16_t>(id)));
+    }
     put(std::string(kTraceColumns) + "\n");
 }
 
 void TraceCsvSink::record(const TraceRecord& record) {
-    const LinkSpec& link = links_[record.link];
-    const bool wanted = record.direction == Direction::FromA ? link.record_from_a : link.record_from_b;
-    if (wanted) put(to_csv(to_row(record, links_)) + "\n");
+    const Sender& sender = senders_[record.link * 2u + static_cast<unsigned>(record.direction)];
+    if (!sender.wanted) return;
+    line_.clear();
+    const auto* signal = std::get_if<Signal>(&record.payload);
+    if (signal == nullptr || signal->id < sender.signals.size())
+        append_row(line_, record.time, sender.columns, record.payload,
+                   signal == nullptr ? "" : sender.signals[signal->id], record.fault);
+    else
+        append_row(line_, record.time, sender.columns, record.payload, signal_column("", signal->id),
+                   record.fault);
+    line_ += '\n';
+    put(line_);
 }
 
 void TraceCsvSink::flush() {

@@ -32,7 +32,14 @@ class TraceCsvSink : public TraceSink {
     std::string path_;
     std::FILE* file_ = nullptr;
     bool failed_ = false;
-    std::vector<LinkSpec> links_;
+    /// What is the same in all that one end of a link sends.
+    struct Sender {
+        std::string columns;
+        bool wanted = true;
+        std::vector<std::string> signals;
+    };
+    std::vector<Sender> senders_;  // by link, from a and from b
+    std::string line_;             // scratch
 };
 
 /// What a record says, with names for numbers.

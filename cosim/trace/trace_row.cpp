@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
+#include <iterator>
 #include <vector>
 
 namespace puckloop::cosim {
@@ -18,40 +20,98 @@ constexpr std::string_view kParityLetters = "NOE";
 // In the order of I2cPhaseKind; Read and Acknowledge tell the ninth bit as well.
 constexpr std::array<std::string_view, 7> kPhases{"start", "write", "read", "stop", "", "data", "lost"};
 
-std::string quoted(const std::string& text) {
-    if (text.find_first_of(",\"\n") == std::string::npos) return text;
-    std::string result = "\"";
+void put_quoted(std::string& out, std::string_view text) {
+    if (text.find_first_of(",\"\n") == std::string_view::npos) {
+        out += text;
+        return;
+    }
+    out += '"';
     for (const char c : text) {
-        if (c == '"') result += '"';
-        result += c == '\n' ? ' ' : c;
+        if (c == '"') out += '"';
+        out += c == '\n' ? ' ' : c;
     }
-    return result + "\"";
+    out += '"';
 }
 
-std::string phase_text(const I2cPhase& phase) {
-    if (phase.kind == I2cPhaseKind::Acknowledge) return phase.ack ? "ack" : "nack";
-    std::string text(kPhases.at(static_cast<std::size_t>(phase.kind)));
-    if (phase.kind == I2cPhaseKind::Read) text += phase.ack ? "+ack" : "+nack";
-    return text;
+void put_number(std::string& out, std::uint64_t number) {
+    std::array<char, 20> digits;
+    const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr;
+    out.append(digits.data(), end);
 }
 
-std::string payload_text(const TraceRow& row) {
-    if (const auto* frame = std::get_if<UartFrame>(&row.payload)) {
-        const std::string format =
-            fmt::format("{}{}{}{}", frame->data_bits, kParityLetters[frame->parity % kParityLetters.size()],
-                        frame->stop_bits, frame->parity == 0 ? "" : (frame->parity_bit ? " p1" : " p0"));
-        const std::string times =
-            fmt::format("{},{},", format_seconds(frame->start), format_seconds(frame->bit_period));
-        if (frame->is_break) return fmt::format("break,,{},{}", format, times);
-        return fmt::format("uart,{:02x},{},{}", frame->data, format, times);
+/// As the shortest decimal that reads back as the same number.
+void put_value(std::string& out, double value) {
+    constexpr double kWhole = 1e15;  // below, whole numbers have no exponent
+    if (!std::signbit(value) && value < kWhole && value == std::trunc(value))
+        put_number(out, static_cast<std::uint64_t>(value));
+    else
+        fmt::format_to(std::back_inserter(out), "{}", value);
+}
+
+void put_seconds(std::string& out, Time time) {
+    constexpr std::uint64_t kPerSecond = kSecond;
+    constexpr std::size_t kDigits = 12;
+    const std::uint64_t size =
+        time < 0 ? 0 - static_cast<std::uint64_t>(time) : static_cast<std::uint64_t>(time);
+    if (time < 0) out += '-';
+    put_number(out, size / kPerSecond);
+    std::array<char, kDigits + 1> fraction;
+    fraction[0] = '.';
+    // In two halves that fit 32 bits.
+    constexpr std::uint64_t kHalf = 1'000'000;
+    auto high = static_cast<std::uint32_t>(size % kPerSecond / kHalf);
+    auto low = static_cast<std::uint32_t>(size % kHalf);
+    for (std::size_t i = kDigits / 2; i > 0; --i, high /= 10, low /= 10) {
+        fraction[i] = static_cast<char>('0' + high % 10);
+        fraction[i + kDigits / 2] = static_cast<char>('0' + low % 10);
     }
-    if (const auto* phase = std::get_if<I2cPhase>(&row.payload))
-        return fmt::format("i2c,{:02x},{},{},{},{}", phase->byte, phase_text(*phase),
-                           format_seconds(phase->start), format_seconds(phase->clock_period),
-                           format_seconds(phase->stretch));
-    const auto& signal = std::get<Signal>(row.payload);
-    const std::string name = row.signal.empty() ? fmt::format("#{}", signal.id) : row.signal;
-    return fmt::format("signal,{},{},,,", signal.value, quoted(name));
+    out.append(fraction.data(), fraction.size());
+}
+
+/// At least two digits.
+void put_hex(std::string& out, unsigned value) {
+    constexpr std::string_view kDigits = "0123456789abcdef";
+    for (int shift = value > 0xfff ? 12 : value > 0xff ? 8 : 4; shift >= 0; shift -= 4)
+        out += kDigits[(value >> shift) & 0xf];
+}
+
+void put_phase(std::string& out, const I2cPhase& phase) {
+    if (phase.kind == I2cPhaseKind::Acknowledge) {
+        out += phase.ack ? "ack" : "nack";
+        return;
+    }
+    out += kPhases.at(static_cast<std::size_t>(phase.kind));
+    if (phase.kind == I2cPhaseKind::Read) out += phase.ack ? "+ack" : "+nack";
+}
+
+void put_payload(std::string& out, const UartFrame& frame) {
+    if (frame.is_break) {
+        out += "break,,";
+    } else {
+        out += "uart,";
+        put_hex(out, frame.data);
+        out += ',';
+    }
+    put_number(out, frame.data_bits);
+    out += kParityLetters[frame.parity % kParityLetters.size()];
+    put_number(out, frame.stop_bits);
+    if (frame.parity != 0) out += frame.parity_bit ? " p1" : " p0";
+    out += ',';
+    put_seconds(out, frame.start);
+    out += ',';
+    put_seconds(out, frame.bit_period);
+    out += ',';
+}
+
+void put_payload(std::string& out, const I2cPhase& phase) {
+    out += "i2c,";
+    put_hex(out, phase.byte);
+    out += ',';
+    put_phase(out, phase);
+    for (const Time time : {phase.start, phase.clock_period, phase.stretch}) {
+        out += ',';
+        put_seconds(out, time);
+    }
 }
 
 /// Reads fields, and says where and what when one cannot be.
@@ -175,15 +235,51 @@ Signal parse_signal(const Parser& in, std::string& name) {
 }  // namespace
 
 std::string format_seconds(Time time) {
-    const std::uint64_t size =
-        time < 0 ? 0 - static_cast<std::uint64_t>(time) : static_cast<std::uint64_t>(time);
-    constexpr std::uint64_t kPerSecond = kSecond;
-    return fmt::format("{}{}.{:012}", time < 0 ? "-" : "", size / kPerSecond, size % kPerSecond);
+    std::string text;
+    put_seconds(text, time);
+    return text;
+}
+
+std::string sender_columns(std::string_view link, std::string_view from) {
+    std::string text = ",";
+    put_quoted(text, link);
+    text += ',';
+    put_quoted(text, from);
+    return text + ",";
+}
+
+std::string signal_column(std::string_view name, std::uint16_t id) {
+    if (name.empty()) return fmt::format("#{}", id);
+    std::string text;
+    put_quoted(text, name);
+    return text;
+}
+
+void append_row(std::string& out, Time time, std::string_view sender, const Payload& payload,
+                std::string_view signal, FaultKind fault) {
+    put_seconds(out, time);
+    out += sender;
+    if (const auto* frame = std::get_if<UartFrame>(&payload)) {
+        put_payload(out, *frame);
+    } else if (const auto* phase = std::get_if<I2cPhase>(&payload)) {
+        put_payload(out, *phase);
+    } else {
+        out += "signal,";
+        put_value(out, std::get<Signal>(payload).value);
+        out += ',';
+        out += signal;
+        out += ",,,";
+    }
+    out += ',';
+    out += fault_name(fault);
 }
 
 std::string to_csv(const TraceRow& row) {
-    return fmt::format("{},{},{},{},{}", format_seconds(row.time), quoted(row.link), quoted(row.from),
-                       payload_text(row), fault_name(row.fault));
+    const auto* signal = std::get_if<Signal>(&row.payload);
+    std::string text;
+    append_row(text, row.time, sender_columns(row.link, row.from), row.payload,
+               signal == nullptr ? "" : signal_column(row.signal, signal->id), row.fault);
+    return text;
 }
 
 TraceRow parse_trace_row(std::string_view text, std::string_view file, std::size_t line) {

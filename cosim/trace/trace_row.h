@@ -36,6 +36,15 @@ inline constexpr std::string_view kTraceColumns =
 
 /// Without the line end.
 std::string to_csv(const TraceRow& row);
+
+// The same for whoever writes many rows and keeps what is the same in them.
+/// The columns of a link's sender, commas around them.
+std::string sender_columns(std::string_view link, std::string_view from);
+/// `name`, or "#id" where that is empty.
+std::string signal_column(std::string_view name, std::uint16_t id);
+/// Appends the row, without a line end; `signal` is looked at for signals only.
+void append_row(std::string& out, Time time, std::string_view sender, const Payload& payload,
+                std::string_view signal, FaultKind fault);
 /// Throws InputError naming `file` and `line` for anything to_csv() does not write.
 TraceRow parse_trace_row(std::string_view text, std::string_view file, std::size_t line);
 

@@ -10,6 +10,7 @@
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -221,4 +222,140 @@ TEST_CASE("statistics of a trace") {
     CHECK_THAT(stats.json(), Catch::Contains("\"messages\": 14") && Catch::Contains("\"i2c_nacks\": 1") &&
                                  Catch::Contains("\"uart_breaks\": 1") &&
                                  Catch::Contains("\"link\": \"a, \\\"b\\\"\""));
+}
+
+TEST_CASE("the merger does not go through what waits again and again") {
+    TraceMerger merger;
+    const auto sink = [](const TraceRecord&) {};
+    int releases = 0;
+    constexpr int kRecords = 20'000;
+    for (int i = 0; i < kRecords; ++i) {
+        merger.add({kSecond, 0, Direction::FromA, static_cast<std::uint64_t>(i), FaultKind::None, Signal{}});
+        if (!merger.full()) continue;
+        merger.release(kSecond, sink);  // none is due
+        ++releases;
+    }
+    CHECK(releases > 0);
+    CHECK(releases < 10);
+    merger.release(kNever, sink);
+    CHECK(merger.waiting() == 0);
+}
+
+namespace {
+
+/// A row as the format's comment says it, written plainly.
+std::string plain_row(const TraceRow& row) {
+    const auto seconds = [](Time time) {
+        const Time size = std::abs(time);
+        return fmt::format("{}{}.{:012}", time < 0 ? "-" : "", size / kSecond, size % kSecond);
+    };
+    std::string text = seconds(row.time) + "," + row.link + "," + row.from + ",";
+    if (const auto* frame = std::get_if<UartFrame>(&row.payload)) {
+        text += frame->is_break ? "break,," : fmt::format("uart,{:02x},", frame->data);
+        text += fmt::format("{}{}{}", frame->data_bits, "NOE"[frame->parity], frame -> stop_bits);
+        if (frame->parity != 0) text += frame->parity_bit ? " p1" : " p0";
+        text += fmt::format(",{},{},", seconds(frame->start), seconds(frame->bit_period));
+    } else if (const auto* phase = std::get_if<I2cPhase>(&row.payload)) {
+        const char* const kinds[] = {
+            "start", "write", phase->ack ? "read+ack" : "read+nack", "stop", phase->ack ? "ack" : "nack",
+            "data",  "lost"};
+        text += fmt::format("i2c,{:02x},{},{},{},{}", phase->byte, kinds[static_cast<int>(phase->kind)],
+                            seconds(phase->start), seconds(phase->clock_period), seconds(phase->stretch));
+    } else {
+        const auto& signal = std::get<Signal>(row.payload);
+        text += fmt::format("signal,{},{},,,", signal.value,
+                            row.signal.empty() ? fmt::format("#{}", signal.id) : row.signal);
+    }
+    return text + "," + std::string(fault_name(row.fault));
+}
+
+Time random_time(RandomStream& chance) {
+    return static_cast<Time>(chance.next() >> (1 + chance.below(62))) -
+           (chance.below(4) == 0 ? 1'000'000 : 0);
+}
+
+double random_value(RandomStream& chance) {
+    constexpr double kOdd[] = {0.0,     -0.0,  1e15,    999999999999999.0,   1e16, 1e-7, 0.1, -1.0,
+                               4095.25, 1e300, -1e-300, 123456789012345680.0};
+    switch (chance.below(5)) {
+    case 0:
+        return kOdd[chance.below(std::size(kOdd))];
+    case 1:
+        return static_cast<double>(chance.below(5000));
+    case 2:
+        return 0.25 * static_cast<double>(chance.below(20000));
+    case 3:
+        return -static_cast<double>(chance.below(100000));
+    default:
+        return chance.normal() * std::pow(10.0, static_cast<double>(chance.below(30)) - 10.0);
+    }
+}
+
+Payload random_payload(RandomStream& chance) {
+    const auto bit = [&] { return static_cast<std::uint8_t>(chance.below(2)); };
+    switch (chance.below(3)) {
+    case 0: {
+        UartFrame frame;
+        frame.start = random_time(chance);
+        frame.bit_period = random_time(chance);
+        frame.data = static_cast<std::uint16_t>(chance.below(512));
+        frame.data_bits = static_cast<std::uint8_t>(5 + chance.below(5));
+        frame.parity = static_cast<std::uint8_t>(chance.below(3));
+        frame.stop_bits = static_cast<std::uint8_t>(1 + bit());
+        frame.parity_bit = bit();
+        frame.is_break = bit();
+        return frame;
+    }
+    case 1:
+        return I2cPhase{static_cast<I2cPhaseKind>(chance.below(7)),
+                        static_cast<std::uint8_t>(chance.below(256)),
+                        bit(),
+                        random_time(chance),
+                        random_time(chance),
+                        random_time(chance)};
+    default:
+        return Signal{static_cast<std::uint16_t>(chance.below(6)), random_value(chance)};
+    }
+}
+
+}  // namespace
+
+TEST_CASE("rows are written as their plain form says") {
+    const std::string path = temporary("rows.csv");
+    std::vector<LinkSpec> links(2);
+    for (std::size_t i = 0; i < links.size(); ++i) {
+        links[i].name = fmt::format("robot{}.world", i);
+        links[i].a = {fmt::format("robot{}.pic", i), "world"};
+        links[i].b = {"world", fmt::format("robot{}.board", i)};
+        links[i].signal_names = {"proximity0", "acc_x", "wheel_left"};  // ids 3 to 5 have no name
+    }
+    links[1].record_from_b = false;
+    RandomStream chance(11, "rows");
+    std::vector<std::string> expected;
+    {
+        TraceCsvSink csv(path);
+        csv.begin(links);
+        for (std::uint64_t i = 0; i < 30'000; ++i) {
+            TraceRecord record{random_time(chance),
+                               static_cast<std::uint16_t>(chance.below(2)),
+                               chance.below(2) == 0 ? Direction::FromA : Direction::FromB,
+                               i,
+                               static_cast<FaultKind>(chance.below(9)),
+                               random_payload(chance)};
+            csv.record(record);
+            const TraceRow row = to_row(record, links);
+            REQUIRE(to_csv(row) == plain_row(row));
+            if (record.link == 0 || record.direction == Direction::FromA) expected.push_back(plain_row(row));
+        }
+    }
+    std::ifstream in(path);
+    std::string line;
+    REQUIRE(std::getline(in, line));
+    REQUIRE(line == kTraceColumns);
+    for (const std::string& row : expected) {
+        REQUIRE(std::getline(in, line));
+        REQUIRE(line == row);
+    }
+    CHECK_FALSE(std::getline(in, line));
+    std::filesystem::remove(path);
 }
