@@ -43,8 +43,7 @@ Machine::Machine(const DeviceInfo& info, SfrSpace& registers, EventQueue& queue,
     program.assign(code_words + kGuards + 1, 0xFFFFFF);
     code_store.resize(code_words + kGuards);
     code = code_store.data();
-    for (std::uint32_t i = 0; i < code_words + kGuards; ++i)
-        invalidate(*this, 2 * i);
+    invalidate_all(*this);
     current = code;
     ram_store.assign((info.ram_end - info.ram_start) / 2u, 0);
     ram = ram_store.data();

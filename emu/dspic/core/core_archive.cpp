@@ -94,8 +94,7 @@ void Core::state(StateReader& archive) {
     list(archive, m);
     for (std::uint32_t& word : m.program)
         word &= kWordMask;
-    for (std::uint32_t i = 0; i < m.code_words + kGuards; ++i)
-        invalidate(m, 2 * i);
+    invalidate_all(m);
     m.current = at(m, pc & kProgramSpace);
     m.limit = 0;
     m.stopped = m.end_requested = false;

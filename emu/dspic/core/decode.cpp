@@ -155,6 +155,14 @@ void invalidate(Machine& m, std::uint32_t address) {
     if (index > 0) forget(index - 1);  // its second word may be this one
 }
 
+void invalidate_all(Machine& m) {
+    forget_loops(m);
+    for (std::uint32_t i = 0; i < m.code_store.size(); ++i) {
+        if (m.program_undo.on()) m.program_undo.note_operation(m, i);
+        blank(m, i);
+    }
+}
+
 void mark(Machine& m, std::uint32_t pc, std::uint8_t what) {
     const std::uint32_t index = pc >> 1;
     if (index >= m.code_words) return;
