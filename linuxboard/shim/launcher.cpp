@@ -69,6 +69,84 @@ std::vector<char*> pointers(std::vector<std::string>& strings) {
     list.push_back(nullptr);
     return list;
 }
+
+/// All that the child needs; it may not allocate.
+struct Child {
+    const char* file;
+    char* const* arguments;
+    char* const* variables;
+    const char* stdin_file;
+    const char* folder;  // to start in; nullptr: this one
+    int log, page, link, report;
+    int first;             // descriptor of the link, the page follows
+    rlim_t most;           // descriptors
+    const sigset_t& mask;  // of signals
+    wire::ProcessEntry& entry;
+};
+
+/// The child of vfork() has this process's memory until it has become the program: no handler of puckloop's
+/// may run there.
+void drop_handlers() {
+    for (int signal = 1; signal < NSIG; ++signal) {
+        struct sigaction action {};
+        if (sigaction(signal, nullptr, &action) != 0) continue;
+        if (action.sa_handler == SIG_DFL || action.sa_handler == SIG_IGN) continue;
+        action = {};
+        action.sa_handler = SIG_DFL;
+        sigaction(signal, &action, nullptr);
+    }
+}
+
+/// In the child: system calls only.
+[[noreturn]] void become(const Child& child) {
+    // Away from where the link and the page go.
+    const int report = fcntl(child.report, F_DUPFD_CLOEXEC, child.first + 2);
+    const auto give_up = [&](int where) {
+        const int status[2] = {where, errno};
+        [[maybe_unused]] const auto written = write(report, status, sizeof status);
+        _exit(127);
+    };
+    drop_handlers();
+    sigprocmask(SIG_SETMASK, &child.mask, nullptr);
+    setpgid(0, 0);  // Ctrl-C ends the run; the run ends the program
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    personality(ADDR_NO_RANDOMIZE);
+    child.entry.host = getpid();
+    const int in = open(child.stdin_file, O_RDONLY);
+    if (in < 0) give_up(1);
+    if (in != STDIN_FILENO) {
+        dup2(in, STDIN_FILENO);
+        close(in);
+    }
+    const int out = child.log >= 0 ? child.log : open("/dev/null", O_WRONLY);
+    dup2(out, STDOUT_FILENO);
+    dup2(out, STDERR_FILENO);
+    // Neither puckloop's files nor their numbers are the program's business: it differs with the placement.
+    close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);
+    // Either may be where the other one goes, in a process with many descriptors.
+    const int page = fcntl(child.page, F_DUPFD, child.first + 2);
+    const int link = fcntl(child.link, F_DUPFD, child.first + 2);
+    if (page < 0 || link < 0 || dup2(link, child.first) < 0 || dup2(page, child.first + 1) < 0) give_up(2);
+    close(page);
+    close(link);
+    rlimit limit{};  // puckloop may have raised its own
+    if (getrlimit(RLIMIT_NOFILE, &limit) == 0) {
+        limit.rlim_cur = child.most;
+        setrlimit(RLIMIT_NOFILE, &limit);
+    }
+    if (child.folder != nullptr && chdir(child.folder) != 0) give_up(3);
+    execve(child.file, child.arguments, child.variables);
+    give_up(0);
+    __builtin_unreachable();
+}
+
+/// vfork(), which comes back when the child has become the program or has given up: fork() would copy the
+/// page tables of all boards, and fault in again every page that they write.
+[[gnu::noinline]] pid_t start_child(const Child& child) {
+    const pid_t id = vfork();
+    if (id == 0) become(child);
+    return id;
+}
 }  // namespace
 
 Launcher::Launcher(const LinuxSpec& spec)
@@ -132,7 +210,7 @@ std::unique_ptr<Process> Launcher::start() {
     if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, sockets) != 0) fail("socket pair");
     if (pipe2(report, O_CLOEXEC) != 0) fail("pipe");
 
-    // Everything is prepared before fork(): the child may only make system calls.
+    // Everything is prepared before start_child(): the child may only make system calls.
     std::vector<std::string> args{spec_.program};
     args.insert(args.end(), spec_.args.begin(), spec_.args.end());
     std::vector<std::string> env;
@@ -155,45 +233,16 @@ std::unique_ptr<Process> Launcher::start() {
     const std::vector<char*> variables = pointers(env);
     const char* stdin_file = spec_.stdin_file.empty() ? "/dev/null" : spec_.stdin_file.c_str();
 
-    const pid_t pid = fork();
-    if (pid < 0) fail("fork");
-    if (pid == 0) {
-        const auto give_up = [&](int where) {
-            const int status[2] = {where, errno};
-            [[maybe_unused]] const auto written = write(report[1], status, sizeof status);
-            _exit(127);
-        };
-        setpgid(0, 0);  // Ctrl-C ends the run; the run ends the program
-        prctl(PR_SET_PDEATHSIG, SIGKILL);
-        personality(ADDR_NO_RANDOMIZE);
-        entry.host = getpid();
-        const int in = open(stdin_file, O_RDONLY);
-        if (in < 0) give_up(1);
-        if (in != STDIN_FILENO) {
-            dup2(in, STDIN_FILENO);
-            close(in);
-        }
-        const int out = log_fd_ >= 0 ? log_fd_ : open("/dev/null", O_WRONLY);
-        dup2(out, STDOUT_FILENO);
-        dup2(out, STDERR_FILENO);
-        // Neither puckloop's files nor their numbers are the program's business: it differs with the
-        // placement.
-        close_range(STDERR_FILENO + 1, ~0U, CLOSE_RANGE_CLOEXEC);
-        // Either may be where the other one goes, in a process with many descriptors.
-        const int page = fcntl(page_fd_, F_DUPFD, first + 2);
-        const int link = fcntl(sockets[1], F_DUPFD, first + 2);
-        if (page < 0 || link < 0 || dup2(link, first) < 0 || dup2(page, first + 1) < 0) give_up(2);
-        close(page);
-        close(link);
-        rlimit limit{};  // puckloop may have raised its own
-        if (getrlimit(RLIMIT_NOFILE, &limit) == 0) {
-            limit.rlim_cur = most;
-            setrlimit(RLIMIT_NOFILE, &limit);
-        }
-        if (!spec_.cwd.empty() && chdir(spec_.cwd.c_str()) != 0) give_up(3);
-        execve(file_.c_str(), arguments.data(), variables.data());
-        give_up(0);
-    }
+    sigset_t all, mask;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &mask);
+    const pid_t pid = start_child({file_.c_str(), arguments.data(), variables.data(), stdin_file,
+                                   spec_.cwd.empty() ? nullptr : spec_.cwd.c_str(), log_fd_, page_fd_,
+                                   sockets[1], report[1], first, most, mask, entry});
+    const int error = errno;
+    pthread_sigmask(SIG_SETMASK, &mask, nullptr);
+    errno = error;
+    if (pid < 0) fail("vfork");
     close(sockets[1]);
     close(report[1]);
     entry.host = pid;
