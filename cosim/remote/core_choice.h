@@ -2,15 +2,13 @@
 // On which cores the processes of a run work.
 //
 // Where they take turns, as a board, its bus and its Linux program do byte for byte, waking a process on
-// another core costs more than it wins: an interrupt there, and here the way out of idleness, together some
-// times a plain switch on one core. Where they have work to do side by side, all cores win. Which of the two
-// a stretch of a run is shows only in how fast it goes, so both are tried now and then; simulated results
-// do not depend on it.
+// another core costs an interrupt there and the way out of idleness: several times a switch between processes
+// on one core. Where they have work to do side by side, all cores are better. Which of the two holds shows
+// only in how fast a run goes, so both are tried now and then. What is simulated does not depend on it.
 
 #include "cosim/core/time.h"
 #include "cosim/remote/bell.h"
 
-#include <chrono>
 #include <cstdint>
 
 namespace puckloop::cosim {

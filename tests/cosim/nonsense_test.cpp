@@ -36,3 +36,20 @@ TEST_CASE("a node process that writes nonsense into its ring is blamed for it, b
         CHECK((waitpid(-1, nullptr, WNOHANG) == -1 && errno == ECHILD));
     }
 }
+
+TEST_CASE("nonsense in what all processes share costs time at most") {
+    toy::Run run = toy::random_chatter(5, 4);
+    run.options.duration = 20 * kMillisecond;
+    const Outcome plain = run();
+    REQUIRE(plain.reason == EndReason::Duration);
+    for (int seed = 1; seed <= 6; ++seed) {
+        INFO("seed " << seed);
+        RunOptions options = run.options;
+        options.in_process = false;
+        options.node_command = {PUCKLOOP_TOY_NODE, "node", run.nodes[1].name, std::to_string(seed), "all"};
+        Conductor conductor(run.nodes, run.links, {}, options, toy::make);
+        const Outcome outcome = conductor.run();
+        CHECK(outcome.reason == EndReason::Duration);
+        CHECK(outcome.trace_sha256 == plain.trace_sha256);
+    }
+}

@@ -53,6 +53,17 @@ using namespace puckloop::cosim;
     }
 }
 
+/// The same in what all processes of the run share: who sleeps, who works, on which core.
+[[noreturn]] void write_nonsense_for_all(SharedMemory& memory, std::uint64_t seed) {
+    RandomStream random(seed, "nonsense for all");
+    while (true) {
+        const std::size_t word = random.below(sizeof(SharedByRun) / 4);
+        auto& target = *reinterpret_cast<std::atomic<std::uint32_t>*>(memory.data() + 4 * word);
+        target = static_cast<std::uint32_t>(random.next() >> random.below(64));
+        std::this_thread::sleep_for(std::chrono::microseconds(random.below(300)));
+    }
+}
+
 /// The name of the node that this process is started for.
 std::string node_name(const char* title) {
     const std::string text = title;
@@ -70,11 +81,15 @@ int main(int argc, char** argv) {
     }
     if (mode == "silent") pause();
     if (mode == "exit") return 5;
-    // node NAME SEED: the process of node NAME does so
+    // node NAME SEED: the process of node NAME writes nonsense; NAME SEED all: where all processes see it.
     if (argc > 3 && node_name(argv[0]) == argv[2]) {
+        const bool all = argc > 4;
         // Never given back: the thread writes until the process has ended.
-        static auto* const memory = new SharedMemory(dup(protocol::kDescriptor), sizeof(SharedWithNode));
-        std::thread(write_nonsense, std::ref(*memory), std::strtoull(argv[3], nullptr, 10)).detach();
+        static auto* const memory = new SharedMemory(dup(protocol::kDescriptor + (all ? 1 : 0)),
+                                                     all ? sizeof(SharedByRun) : sizeof(SharedWithNode));
+        std::thread(all ? write_nonsense_for_all : write_nonsense, std::ref(*memory),
+                    std::strtoull(argv[3], nullptr, 10))
+            .detach();
     }
     return serve_node(protocol::kDescriptor, toy::make);
 }
