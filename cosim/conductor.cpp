@@ -85,7 +85,7 @@ Outcome Conductor::State::run() {
             outcome.stop_time = interrupted_at_;
         } else if (stop_) {
             outcome.reason = EndReason::NodeStopped;
-            outcome.node = handles_[stopper_]->name();
+            outcome.node = handles_[stop_requester_]->name();
             outcome.stop_time = stop_->time;
             outcome.text = fmt::format("node {} stopped at {:.9f} s: {}", outcome.node,
                                        to_seconds(stop_->time), stop_->reason);

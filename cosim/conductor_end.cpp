@@ -17,19 +17,20 @@ void Conductor::State::take_stop(std::size_t n, Time before) {
     Stop wish = *stop;
     wish.time = std::max(wish.time, before);
     if (wish.together <= 1) return end_with(wish, n);
-    wishes_.emplace_back(wish, n);
-    if (wishes_.size() < wish.together) return;
-    const auto last = std::max_element(wishes_.begin(), wishes_.end(), [](const auto& a, const auto& b) {
-        return std::pair(a.first.time, a.second) < std::pair(b.first.time, b.second);
-    });
+    stop_requests_.emplace_back(wish, n);
+    if (stop_requests_.size() < wish.together) return;
+    const auto last =
+        std::max_element(stop_requests_.begin(), stop_requests_.end(), [](const auto& a, const auto& b) {
+            return std::pair(a.first.time, a.second) < std::pair(b.first.time, b.second);
+        });
     end_with(last->first, last->second);
 }
 
 void Conductor::State::end_with(const Stop& stop, std::size_t n) {
-    if (stop_ && (stop_->time < stop.time || (stop_->time == stop.time && stopper_ < n))) return;
+    if (stop_ && (stop_->time < stop.time || (stop_->time == stop.time && stop_requester_ < n))) return;
     if (stop.time >= end_) return;
     stop_ = stop;
-    stopper_ = n;
+    stop_requester_ = n;
     end_ = std::min(end_, later(stop.time, options_.stop_latency));
 }
 

@@ -96,9 +96,9 @@ class Conductor::State {
     std::vector<std::exception_ptr> failures_;  ///< of nodes, by index
 
     Time end_ = kNever;
-    std::vector<std::pair<Stop, std::size_t>> wishes_;  ///< to stop together, and whose
+    std::vector<std::pair<Stop, std::size_t>> stop_requests_;  ///< to stop together, and whose
     std::optional<Stop> stop_;
-    std::size_t stopper_ = kNobody;
+    std::size_t stop_requester_ = kNobody;
     std::optional<Time> interrupted_at_;
     std::optional<Time> wind_up_at_;  ///< the nodes are winding up since
     std::size_t winding_ = 0;         ///< so many still do

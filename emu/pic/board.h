@@ -10,7 +10,7 @@
 // 3. The microphones and the accelerometer have no bandwidth of their own.
 
 #include "base/random.h"
-#include "emu/dspic/chip/pins.h"
+#include "emu/dspic/peripherals/pins.h"
 #include "emu/pic/emitter.h"
 #include "emu/pic/microphone.h"
 #include "emu/pic/signals.h"

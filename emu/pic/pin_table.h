@@ -6,7 +6,7 @@
 // 1. No camera, codec or LIS turret is fitted: their inputs stand at the idle level given here.
 // 2. Board revision up to 1.2: AN7 is the accelerometer's z axis, not the battery of revision 1.3.
 
-#include "emu/dspic/chip/pins.h"
+#include "emu/dspic/peripherals/pins.h"
 #include "emu/pic/signals.h"
 
 #include <array>

@@ -10,7 +10,7 @@
 
 #include "base/random.h"
 #include "emu/dspic/chip/chip.h"
-#include "emu/dspic/chip/pins.h"
+#include "emu/dspic/peripherals/pins.h"
 #include "emu/rab_board/peak_detector.h"
 #include "emu/rab_board/pin_table.h"
 #include "emu/rab_board/potentiometer.h"

@@ -6,7 +6,7 @@
 // 1. The strap of newer boards (RC14, receivers for 455 or 57.6 kHz) stands open: 1, receivers for 455 kHz.
 // 2. JTAG is off, as in the real board's configuration words: RA0, RA1, RA4 and RA5 are always the port's.
 
-#include "emu/dspic/chip/pins.h"
+#include "emu/dspic/peripherals/pins.h"
 #include "emu/rab_board/signals.h"
 
 #include <array>

@@ -35,8 +35,8 @@ const std::vector<std::string> kFolders = {
     "emu/dspic/assembler",
     "emu/dspic/fast",
     "emu/dspic/translate",
-    "emu/dspic/waits",
     "emu/dspic/peripherals",
+    "emu/dspic/waits",
     "emu/dspic/chip",
     "emu/avr",
     "emu/i2c_devices",
@@ -57,24 +57,8 @@ const std::set<std::string> kUpward = {
     "emu/dspic/core/core.cpp emu/dspic/fast/loop_undo.h",
     "emu/dspic/core/core.cpp emu/dspic/fast/skip_loops.h",
     "emu/dspic/core/core_archive.cpp emu/dspic/fast/loop_undo.h",
-    // The benchmark of the core assembles its program and runs an image on the chip.
-    "emu/dspic/core/core_bench.cpp emu/dspic/assembler/assembler.h",
-    "emu/dspic/core/core_bench.cpp emu/dspic/chip/chip.h",
-    // The wiring of a device names the modules' set-ups.
-    "emu/dspic/devices/dspic30f6014a_layout.cpp emu/dspic/chip/layout.h",
-    "emu/dspic/devices/dspic33fj256gp710_layout.cpp emu/dspic/chip/layout.h",
+    // Judging a wait asks which modules could end it.
     "emu/dspic/waits/judge.h emu/dspic/chip/layout.h",
-    // What modules see of the board around the chip is declared beside the chip.
-    "emu/dspic/peripherals/adc12.h emu/dspic/chip/pins.h",
-    "emu/dspic/peripherals/adc_33f.h emu/dspic/chip/pins.h",
-    "emu/dspic/peripherals/i2c_master.h emu/dspic/chip/pins.h",
-    "emu/dspic/peripherals/i2c_slave.h emu/dspic/chip/pins.h",
-    "emu/dspic/peripherals/output_compare.h emu/dspic/chip/chip.h",
-    "emu/dspic/peripherals/output_compare.h emu/dspic/chip/pins.h",
-    "emu/dspic/peripherals/ports.h emu/dspic/chip/pins.h",
-    "emu/dspic/peripherals/spi.h emu/dspic/chip/pins.h",
-    "emu/dspic/peripherals/uart.h emu/dspic/chip/pins.h",
-    "emu/dspic/peripherals/uart.h emu/dspic/chip/uart_counters.h",
 };
 
 /// Place of a file's folder in the list; -1 where it has none (tools, gap, linuxboard: no order is asked).

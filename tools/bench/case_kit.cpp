@@ -1,7 +1,7 @@
 #include "tools/bench/case_kit.h"
 
 #include "base/error.h"
-#include "emu/dspic/core/core_bench.h"
+#include "emu/dspic/chip/core_bench.h"
 #include "tools/bench/board_replay.h"
 #include "tools/bench/process_memory.h"
 #include "tools/bench/rab_speed.h"

@@ -24,7 +24,7 @@ struct Leap {
     Cycle due = kNoCycle;  ///< of the steady event
     Cycle horizon = 0;     ///< no arrival at or after this
 
-    // The landing.
+    // Where it ends.
     Cycle arrival = 0;
     std::uint64_t iterations = 0;
     std::size_t services = 0;
@@ -93,8 +93,8 @@ bool prepare(Machine& m, SkipLoops::Branch& known, Leap& leap) {
 }
 
 /// Follows loop and interrupts up to the last arrival before the horizon, at most `most` iterations on.
-void fly(const SkipLoops::Plan& plan, const LoopTrace& trace, Leap& leap, Cycle arrival, std::uint64_t most,
-         std::vector<Service>& services) {
+void simulate(const SkipLoops::Plan& plan, const LoopTrace& trace, Leap& leap, Cycle arrival,
+              std::uint64_t most, std::vector<Service>& services) {
     const Cycle length = plan.cycles;
     Cycle base = arrival;  // when the iteration under way began, had it not been interrupted
     Cycle due = leap.due;
@@ -102,14 +102,14 @@ void fly(const SkipLoops::Plan& plan, const LoopTrace& trace, Leap& leap, Cycle 
     leap.arrival = arrival;
     while (services.size() < kMostServices) {
         const Cycle room = leap.horizon > base ? (leap.horizon - 1 - base) / length : 0;
-        const auto land_after = [&](std::uint64_t whole) {
+        const auto commit = [&](std::uint64_t whole) {
             whole = std::min({whole, room, most - iteration});
             if (whole == 0) return;
             leap.arrival = base + whole * length;
             leap.iterations = iteration + whole;
             leap.services = services.size();
         };
-        if (due >= leap.horizon) return land_after(room);
+        if (due >= leap.horizon) return commit(room);
         // The first boundary after the flag is set.
         std::uint64_t whole = 0;
         std::size_t boundary = 0;
@@ -125,7 +125,7 @@ void fly(const SkipLoops::Plan& plan, const LoopTrace& trace, Leap& leap, Cycle 
                 boundary = 0;
             }
         }
-        land_after(whole);
+        commit(whole);
         iteration += whole;
         if (iteration >= most) return;
         base += whole * length;
@@ -165,7 +165,7 @@ std::uint64_t steady_arrival(Machine& m, SkipLoops::Branch& known, std::uint64_t
     Leap leap;
     std::vector<Service> services;
     if (!prepare(m, known, leap)) return kNoCycle;
-    fly(known.plan, known.trace, leap, arrival, iterations, services);
+    simulate(known.plan, known.trace, leap, arrival, iterations, services);
     interrupted = leap.services > 0;
     return leap.iterations == iterations ? leap.arrival : kNoCycle;
 }
@@ -176,7 +176,7 @@ bool steady_leap(Machine& m, SkipLoops::Branch& known, std::uint64_t arrival) {
     static thread_local std::vector<Service> services;
     services.clear();
     const LoopTrace& trace = known.trace;
-    fly(known.plan, trace, leap, arrival, known.plan.iterations - 1, services);
+    simulate(known.plan, trace, leap, arrival, known.plan.iterations - 1, services);
     if (leap.iterations < kFewestIterations || leap.services == 0) return false;
 
     services.resize(leap.services);

@@ -10,7 +10,7 @@
 //  4. Reserved SSRC codes never end sampling.
 
 #include "cosim/core/clock.h"
-#include "emu/dspic/chip/pins.h"
+#include "emu/dspic/peripherals/pins.h"
 #include "emu/dspic/peripherals/surroundings.h"
 
 #include <cstdint>

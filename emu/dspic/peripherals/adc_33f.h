@@ -14,7 +14,7 @@
 //     stored: the DMA channel stores in conversion order.
 
 #include "cosim/core/clock.h"
-#include "emu/dspic/chip/pins.h"
+#include "emu/dspic/peripherals/pins.h"
 #include "emu/dspic/peripherals/ports.h"
 #include "emu/dspic/peripherals/surroundings.h"
 

@@ -18,7 +18,7 @@
 
 #include "cosim/core/clock.h"
 #include "cosim/core/message.h"
-#include "emu/dspic/chip/pins.h"
+#include "emu/dspic/peripherals/pins.h"
 #include "emu/dspic/peripherals/ports.h"
 #include "emu/dspic/peripherals/surroundings.h"
 

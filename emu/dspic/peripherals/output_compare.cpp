@@ -37,9 +37,9 @@ OutputCompare::OutputCompare(const Surroundings& around, std::span<const Unit> u
 void OutputCompare::reset() {
     around_.events.cancel(slot_);
     for (std::size_t i = 0; i < units_.size(); ++i) {
-        const OutputCompareState told = states_[i].told;
+        const OutputCompareState reported = states_[i].reported;
         states_[i] = {};
-        states_[i].told = told;
+        states_[i].reported = reported;
         tell(i, around_.now);
     }
 }
@@ -83,8 +83,8 @@ OutputCompareState OutputCompare::present(int unit) const {
 void OutputCompare::tell(std::size_t index, Cycle at) {
     OutputCompareState now = present(static_cast<int>(index) + 1);
     if (now.period) now.level = false;
-    if (now == states_[index].told) return;
-    states_[index].told = now;
+    if (now == states_[index].reported) return;
+    states_[index].reported = now;
     pins_.output_compare_changed(static_cast<int>(index) + 1, at);
 }
 

@@ -3,14 +3,15 @@
 // Source: DS70286, output compare chapter; fact sheet peripherals.md section 5.
 //
 // Deviations
-//  1. PWM (and nothing else) has no waveform at its pin, which rests low: period and duty are told instead,
+//  1. PWM (and nothing else) has no waveform at its pin, which rests low: period and duty are reported
+//  instead,
 //     Pins::output_compare_changed().
 //  2. The fault inputs OCFA and OCFB never act; OCFLT reads 0.
 //  3. In 32-bit mode of the timers the compare looks at the low word only.
 //  4. An edge takes place in the cycle in which the count is reached.
 
-#include "emu/dspic/chip/chip.h"
-#include "emu/dspic/chip/pins.h"
+#include "emu/dspic/peripherals/output_compare_state.h"
+#include "emu/dspic/peripherals/pins.h"
 #include "emu/dspic/peripherals/ports.h"
 #include "emu/dspic/peripherals/surroundings.h"
 #include "emu/dspic/peripherals/timer.h"
@@ -49,12 +50,12 @@ class OutputCompare {
         Step step = Step::Idle;
         bool level = false;
         Cycle due = kNoCycle;
-        OutputCompareState told;
+        OutputCompareState reported;
 
         template <class Archive>
         void state(Archive& archive) {
             archive.bounded(step, Step::Idle, Step::Second);
-            archive(level, due, told);
+            archive(level, due, reported);
         }
     };
 

@@ -11,7 +11,7 @@
 //  3. A pin lent to a UART or I2C module rests at its idle level; frames travel as messages, not as levels.
 //  4. CN pull-ups are stored; what an open pin reads is the board's affair.
 
-#include "emu/dspic/chip/pins.h"
+#include "emu/dspic/peripherals/pins.h"
 #include "emu/dspic/peripherals/surroundings.h"
 
 #include <array>

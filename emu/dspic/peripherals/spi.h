@@ -8,7 +8,7 @@
 //  3. A write while SPITBF is set is dropped.
 //  4. Prescalers of 1:1 both, which the sheet forbids, run as such.
 
-#include "emu/dspic/chip/pins.h"
+#include "emu/dspic/peripherals/pins.h"
 #include "emu/dspic/peripherals/ports.h"
 #include "emu/dspic/peripherals/surroundings.h"
 

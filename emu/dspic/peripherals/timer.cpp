@@ -108,10 +108,10 @@ void Timer::plan() {
     const Cycle next = next_match();
     state_.reload = next == kNoCycle ? 0 : period_cycles();
     around_.events.schedule(slot_, next);
-    tell_steady();
+    announce_steady();
 }
 
-void Timer::tell_steady() {
+void Timer::announce_steady() {
     const Timer& source = paired() ? *upper_ : *this;
     EventQueue::Steady steady;
     if (state_.reload && !source.on_match && !period_wanted_)
@@ -147,7 +147,7 @@ void Timer::match_due(void* owner, Cycle due) {
     if (self.period_wanted_) {
         self.period_wanted_ = false;
         self.period_(self.served_, due);
-        self.tell_steady();
+        self.announce_steady();
     }
 }
 

@@ -58,14 +58,14 @@ class Timer {
     void serve(void* owner, void (*changed)(void* owner, Cycle at), void (*period)(void* owner, Cycle at));
     void want_period() {
         period_wanted_ = true;
-        tell_steady();
+        announce_steady();
     }
 
     /// After the registers.
     template <class Archive>
     void state(Archive& archive) {
         archive(state_, period_wanted_);
-        if constexpr (Archive::kLoads) tell_steady();
+        if constexpr (Archive::kLoads) announce_steady();
     }
 
   private:
@@ -89,7 +89,7 @@ class Timer {
     static void write_con(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask);
     static void match_due(void* owner, Cycle due);
     static void matches_passed(void* owner, std::uint64_t times);
-    void tell_steady();  ///< to the timetable: whether matches do no more than interrupt
+    void announce_steady();  ///< to the timetable: whether matches do no more than interrupt
 
     bool paired() const;           ///< this lower timer counts 32 bits
     bool ruled_by_lower() const;   ///< this upper timer is the high word of a pair

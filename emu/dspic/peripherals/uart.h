@@ -15,10 +15,10 @@
 #include "cosim/core/clock.h"
 #include "cosim/core/message.h"
 #include "cosim/core/message_state.h"
-#include "emu/dspic/chip/pins.h"
-#include "emu/dspic/chip/uart_counters.h"
+#include "emu/dspic/peripherals/pins.h"
 #include "emu/dspic/peripherals/ports.h"
 #include "emu/dspic/peripherals/surroundings.h"
+#include "emu/dspic/peripherals/uart_counters.h"
 #include "emu/dspic/peripherals/uart_receiver.h"
 
 #include <array>

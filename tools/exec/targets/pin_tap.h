@@ -1,7 +1,7 @@
 #pragma once
 // Stands between a chip and what is around it, and tells the bench of every pin that changes.
 
-#include "emu/dspic/chip/pins.h"
+#include "emu/dspic/peripherals/pins.h"
 #include "tools/exec/targets/target.h"
 
 #include <array>

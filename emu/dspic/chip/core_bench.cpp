@@ -1,4 +1,4 @@
-#include "emu/dspic/core/core_bench.h"
+#include "emu/dspic/chip/core_bench.h"
 
 #include "emu/dspic/assembler/assembler.h"
 #include "emu/dspic/chip/chip.h"
