@@ -1,7 +1,8 @@
 #include "cosim/remote/bell.h"
 
+#include "cosim/core/cores.h"
+
 #include <linux/futex.h>
-#include <sched.h>
 #include <sys/syscall.h>
 #include <unistd.h>
 
@@ -38,12 +39,6 @@ bool futex(std::atomic<std::uint32_t>& word, int operation, std::uint32_t value,
 }
 
 }  // namespace
-
-std::uint32_t usable_cores() {
-    cpu_set_t cores;
-    if (sched_getaffinity(0, sizeof cores, &cores) != 0) return 1;
-    return static_cast<std::uint32_t>(std::max(1, CPU_COUNT(&cores)));
-}
 
 Bell::Bell(BellState& state, Busy& busy) : state_(state), busy_(busy), cores_(usable_cores()) {}
 

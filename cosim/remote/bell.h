@@ -19,9 +19,6 @@ struct alignas(64) BellState {
     std::atomic<std::uint32_t> asleep;   ///< 1: to be woken by whoever takes this to 0
 };
 
-/// Cores that this process may use; more than 0.
-std::uint32_t usable_cores();
-
 inline constexpr std::uint32_t kAnyCore = 0;
 
 /// In shared memory, one a run: how many of its processes work or look, and on which core; kAnyCore or its

@@ -1,10 +1,10 @@
 #include "cosim/remote/core_choice.h"
 
-#include <pthread.h>
+#include "cosim/core/cores.h"
+
 #include <sched.h>
 
 #include <algorithm>
-#include <mutex>
 
 namespace puckloop::cosim {
 
@@ -18,14 +18,6 @@ constexpr double kFirstHold = 0.5, kLongestHold = 8.0;
 // One core must be better by so much: all of them are what the machine's own scheduler would take.
 constexpr double kMargin = 1.1;
 
-cpu_set_t all_cores;
-thread_local bool on_one_core = false;
-
-void use_all_cores() {
-    if (on_one_core) sched_setaffinity(0, sizeof all_cores, &all_cores);
-    on_one_core = false;
-}
-
 bool on_one_core_in_trial(int slice) {
     return slice % 4 == 1 || slice % 4 == 2;
 }
@@ -37,18 +29,9 @@ CoreFollower::~CoreFollower() {
 }
 
 void CoreFollower::move(std::uint32_t core) {
-    static std::once_flag once;
-    std::call_once(once, [] {
-        sched_getaffinity(0, sizeof all_cores, &all_cores);
-        pthread_atfork(nullptr, nullptr, use_all_cores);
-    });
     core_ = core;
     use_all_cores();
-    if (core == kAnyCore || core > CPU_SETSIZE || !CPU_ISSET(core - 1, &all_cores)) return;
-    cpu_set_t one;
-    CPU_ZERO(&one);
-    CPU_SET(core - 1, &one);
-    on_one_core = sched_setaffinity(0, sizeof one, &one) == 0;
+    if (core != kAnyCore) use_one_core(core - 1);
 }
 
 CoreChoice::CoreChoice(Busy& busy)

@@ -13,8 +13,7 @@
 
 namespace puckloop::cosim {
 
-/// The calling thread's share: follows what the run's conductor has chosen. Processes that this one makes by
-/// fork() may use all cores again.
+/// The calling thread's share: follows what the run's conductor has chosen (cosim/core/cores.h).
 class CoreFollower {
   public:
     explicit CoreFollower(const Busy& busy) : busy_(busy) {}

@@ -1,6 +1,7 @@
 #pragma once
 // What a run's node processes share with the conductor, and how it waits for them all.
 
+#include "cosim/core/cores.h"
 #include "cosim/remote/bell.h"
 #include "cosim/remote/core_choice.h"
 #include "cosim/remote/death_watch.h"

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "cosim/core/cores.h"
 #include "linuxboard/shim/last_line.h"
 #include "linuxboard/shim/program_file.h"
 
@@ -111,6 +112,7 @@ void drop_handlers() {
     setpgid(0, 0);  // Ctrl-C ends the run; the run ends the program
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     personality(ADDR_NO_RANDOMIZE);
+    cosim::use_all_cores_in_child();
     child.entry.host = getpid();
     const int in = open(child.stdin_file, O_RDONLY);
     if (in < 0) give_up(1);

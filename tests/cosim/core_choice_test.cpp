@@ -1,5 +1,6 @@
 // On which cores a run's processes work: what goes faster is chosen, and nothing of it is left behind.
 
+#include "cosim/core/cores.h"
 #include "cosim/remote/core_choice.h"
 
 #include <catch2/catch.hpp>
@@ -63,6 +64,7 @@ TEST_CASE("a process that is made on one core may use all of them") {
     CHECK(cores_of_this_thread() == 1);
     const pid_t child = fork();
     if (child == 0) {
+        use_all_cores_in_child();
         cpu_set_t set;
         sched_getaffinity(0, sizeof set, &set);
         _exit(CPU_COUNT(&set));

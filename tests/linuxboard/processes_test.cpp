@@ -1,9 +1,11 @@
 // Programs behind wrappers, and programs of several processes, in simulated time.
 
+#include "cosim/core/cores.h"
 #include "tests/linuxboard/bench.h"
 
 #include <catch2/catch.hpp>
 
+#include <sched.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -253,4 +255,13 @@ TEST_CASE("a program has none of the files that puckloop has open, however many"
     CHECK_THAT(ran.log, StartsWith("end\n"));
     REQUIRE(ran.stop);
     CHECK(ran.stop->success);
+}
+
+TEST_CASE("a program finds all cores, whichever one the run keeps to") {
+    const std::string all = run(shell("nproc")).log;
+    cosim::use_one_core(static_cast<std::uint32_t>(::sched_getcpu()));
+    const std::string from_one_core = run(shell("nproc")).log;
+    cosim::use_all_cores();
+    CHECK_THAT(all, StartsWith(std::to_string(cosim::usable_cores()) + "\n"));
+    CHECK(from_one_core == all);
 }
