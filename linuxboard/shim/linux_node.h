@@ -1,10 +1,11 @@
 #pragma once
 // A Linux program as a node: port `uart` is its serial port, port `i2c` its I2C adapter.
 //
-// The program runs on its own only between two requests; what it may see is fixed by the simulated time of
-// each request, so its behaviour does not depend on how grants are cut. Of several processes the one that is
-// earliest runs (of those at the same time the oldest), and only until another one or a device is due: so
-// they meet in pipes, files and signals in the order of simulated time.
+// The program runs on its own only between two requests, and then only up to the limit of the last reply;
+// what it may see is fixed by the simulated time of each request, so its behaviour does not depend on how
+// grants are cut. Of several processes the one that is earliest runs (of those at the same time the oldest),
+// and only until another one or a device is due: so they meet in pipes, files and signals in the order of
+// simulated time.
 //
 // Deviations: 1. Computing takes no simulated time; each call taken over costs the charge of its class
 // (wire::Charges). 2. One thread runs at a time, as on a board with one processor.
@@ -89,9 +90,6 @@ class LinuxNode : public cosim::Node {
     void handle_request(Client& client);
     void answer(Client& client, cosim::Time now);
     void listen(Client& client);
-    /// Does at the devices what the library did by itself since the last reply.
-    void catch_up(Client& client);
-    void show_ahead(const Client& client, wire::Reply& reply) const;
     /// Lets devices and deliveries happen up to and including `now`, in order.
     void run_devices(cosim::Time now);
     cosim::Time next_scheduled() const;
@@ -100,6 +98,12 @@ class LinuxNode : public cosim::Node {
     cosim::Time next_action() const;
     void collect(std::vector<cosim::Message>& outbox);
     void pace(cosim::Time time);
+
+    // linux_node_ahead.cpp: what the library answers by itself
+    /// Sets the limit of `reply`, whose time is set, and shows the serial port.
+    void show_ahead(const Client& client, wire::Reply& reply) const;
+    /// Does at the devices what the library did by itself since the last reply.
+    void catch_up(Client& client);
 
     // linux_node_family.cpp: the processes among themselves
     wire::ProcessEntry& entry(std::uint32_t slot) { return launcher_->page().processes[slot]; }
