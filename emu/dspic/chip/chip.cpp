@@ -340,8 +340,10 @@ Chip::~Chip() = default;
 
 void Chip::load(const image::Image& image) {
     image::check_fits(image, image::find_device(parts_->device.name));
+    std::vector<ProgramWord> words;
     for (const auto& [address, word] : image.all_words())
-        parts_->core.poke_program(address, word);
+        words.push_back({address, word});
+    parts_->core.load(words);
 }
 
 void Chip::load_word(std::uint32_t address, std::uint32_t word) {

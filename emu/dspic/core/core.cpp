@@ -37,13 +37,12 @@ Machine::Machine(const DeviceInfo& info, SfrSpace& registers, EventQueue& queue,
       sfr(registers),
       irq(controller),
       device(info),
+      pages(info.flash_end / 2, kGuards),
+      program(pages.words()),
       skip(std::make_unique<SkipLoops>()),
       loop_undo(std::make_unique<LoopUndo>()) {
     code_words = info.flash_end / 2;
-    program.assign(code_words + kGuards + 1, 0xFFFFFF);
-    code_store.resize(code_words + kGuards);
-    code = code_store.data();
-    invalidate_all(*this);
+    code = pages.operations();
     current = code;
     ram_store.assign((info.ram_end - info.ram_start) / 2u, 0);
     ram = ram_store.data();
@@ -77,12 +76,17 @@ Core::Core(const DeviceInfo& device, SfrSpace& sfr, EventQueue& events, Interrup
 Core::~Core() = default;
 
 void Core::load(std::span<const ProgramWord> words) {
+    constexpr std::size_t kFew = 256;
+    constexpr std::uint32_t kWordMask = 0xFFFFFF;
+    const bool many = words.size() > kFew;
     for (const ProgramWord& word : words)
-        if (!poke_program(word.address, word.word))
+        if (many ? !store_program(*machine_, word.address & ~1u, word.word & kWordMask)
+                 : !poke_program(word.address, word.word))
             throw InputError("", fmt::format("address 0x{:06X}", word.address),
                              fmt::format("{} has no memory there", machine_->device.name),
                              fmt::format("flash below 0x{:06X}, EEPROM or configuration words",
                                          machine_->device.flash_end));
+    if (many) renew_code(*machine_);
 }
 std::uint32_t Core::program(std::uint32_t address) const {
     return read_program(*machine_, address);

@@ -3,6 +3,8 @@
 #include "emu/dspic/core/machine.h"
 #include "emu/dspic/fast/loop_undo.h"
 
+#include <algorithm>
+
 namespace puckloop::dspic {
 
 namespace {
@@ -28,7 +30,11 @@ void list(Archive& archive, Machine& m) {
     archive(m.nvm.address, m.nvm.key_step);
     archive.fixed(m.nvm.latch);
     if constexpr (!Archive::kRaw) {  // see ProgramUndo
-        archive.fixed(m.program);
+        std::vector<std::uint32_t> words(m.program.begin(), m.program.end());
+        archive.fixed(words);
+        if constexpr (Archive::kLoads)
+            std::transform(words.begin(), words.end(), m.program.begin(),
+                           [](std::uint32_t word) { return word & kWordMask; });
         archive.fixed(m.eeprom);
         archive.fixed(m.config);
         archive.fixed(m.unit_id);
@@ -92,9 +98,7 @@ void Core::state(StateReader& archive) {
     std::uint32_t pc = 0;
     archive(pc);
     list(archive, m);
-    for (std::uint32_t& word : m.program)
-        word &= kWordMask;
-    invalidate_all(m);
+    renew_code(m);
     m.current = at(m, pc & kProgramSpace);
     m.limit = 0;
     m.stopped = m.end_requested = false;

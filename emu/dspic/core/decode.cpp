@@ -133,15 +133,20 @@ const Op* decode_now(Machine& m, const Op* op) {
     return op;
 }
 
-void blank(Machine& m, std::uint32_t index) {
-    Op& op = m.code[index];
-    const std::uint8_t marks = op.marks;
-    op = Op{};
-    op.marks = marks;
+Op blank_operation(std::uint32_t word) {
+    Op op;
     op.run = &decode_now;
     op.keep = 0xFFFFFFFF;
     op.cycles = 0;
-    op.word = m.program[index];
+    op.word = word;
+    return op;
+}
+
+void blank(Machine& m, std::uint32_t index) {
+    Op& op = m.code[index];
+    const std::uint8_t marks = op.marks;
+    op = blank_operation(m.program[index]);
+    op.marks = marks;
 }
 
 void invalidate(Machine& m, std::uint32_t address) {
@@ -155,12 +160,11 @@ void invalidate(Machine& m, std::uint32_t address) {
     if (index > 0) forget(index - 1);  // its second word may be this one
 }
 
-void invalidate_all(Machine& m) {
+void renew_code(Machine& m) {
+    m.pages.share();
     forget_loops(m);
-    for (std::uint32_t i = 0; i < m.code_store.size(); ++i) {
-        if (m.program_undo.on()) m.program_undo.note_operation(m, i);
-        blank(m, i);
-    }
+    for (const std::uint32_t pc : m.stops)
+        mark(m, pc, kStop);
 }
 
 void mark(Machine& m, std::uint32_t pc, std::uint8_t what) {

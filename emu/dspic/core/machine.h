@@ -6,6 +6,7 @@
 #include "emu/dspic/core/exception_frame.h"
 #include "emu/dspic/core/isa.h"
 #include "emu/dspic/core/memory_map.h"
+#include "emu/dspic/core/program_pages.h"
 #include "emu/dspic/core/program_undo.h"
 #include "emu/dspic/fast/service_shortcut.h"
 #include "emu/dspic/waits/wait_watch.h"
@@ -118,8 +119,8 @@ struct Machine {
         EventQueue::Slot slot = 0;
     } nvm;
 
-    std::vector<Op> code_store;
-    std::vector<std::uint32_t> program;  ///< raw words of flash, guards included
+    ProgramPages pages;
+    std::span<std::uint32_t> program;  ///< raw words of flash, guards included
     std::vector<std::uint16_t> ram_store;
     std::vector<std::uint16_t> eeprom;
     std::vector<std::uint32_t> config;
@@ -175,9 +176,11 @@ bool write_program(Machine& m, std::uint32_t address, std::uint32_t word);
 bool store_program(Machine& m, std::uint32_t address, std::uint32_t word);
 void invalidate(Machine& m, std::uint32_t address);
 /// As invalidate() for every word, without forgetting the loops for each.
-void invalidate_all(Machine& m);
 /// The operation is to be decoded again when it is next reached.
 void blank(Machine& m, std::uint32_t index);
+Op blank_operation(std::uint32_t word);
+/// After many words were stored: nothing that was decoded from them or is known of them holds any more.
+void renew_code(Machine& m);
 const Op* decode_now(Machine& m, const Op* op);
 void decode(Machine& m, Op& op);
 void hook_registers(Machine& m);
