@@ -175,7 +175,6 @@ bool write_program(Machine& m, std::uint32_t address, std::uint32_t word);
 /// As write_program(), with no word to what was decoded from it.
 bool store_program(Machine& m, std::uint32_t address, std::uint32_t word);
 void invalidate(Machine& m, std::uint32_t address);
-/// As invalidate() for every word, without forgetting the loops for each.
 /// The operation is to be decoded again when it is next reached.
 void blank(Machine& m, std::uint32_t index);
 Op blank_operation(std::uint32_t word);
