@@ -100,7 +100,11 @@ class PlainWorld {
 
     /// Mean grey under each ground sensor.
     std::array<double, kGroundSensors> greys(std::size_t robot, const GroundParameters& p) const {
-        const RobotState& at = over_ground_[robot];
+        const World& world = model_.description();
+        return greys(p, world.arena.floor_grey, world.patches, over_ground_[robot]);
+    }
+    static std::array<double, kGroundSensors> greys(const GroundParameters& p, double base,
+                                                    const std::vector<Patch>& patches, const RobotState& at) {
         const double cosine = std::cos(at.heading), sine = std::sin(at.heading);
         const double reach = p.footprint / 2;
         std::array<double, kGroundSensors> result{};
@@ -109,7 +113,7 @@ class PlainWorld {
             const double y = at.y + sine * p.x + cosine * p.y[i];
             for (const Point& spot :
                  {Point{0, 0}, Point{reach, 0}, Point{-reach, 0}, Point{0, reach}, Point{0, -reach}})
-                result[i] += grey(x + spot.x, y + spot.y);
+                result[i] += grey(base, patches, x + spot.x, y + spot.y);
             result[i] /= 5.0;
         }
         return result;
@@ -176,8 +180,7 @@ class PlainWorld {
         return all;
     }
 
-    double grey(double x, double y) const {
-        const auto& patches = model_.description().patches;
+    static double grey(double base, const std::vector<Patch>& patches, double x, double y) {
         for (auto i = patches.size(); i-- > 0;) {
             const Patch& patch = patches[i];
             const double dx = x - patch.x, dy = y - patch.y;
@@ -188,7 +191,7 @@ class PlainWorld {
                                       std::abs(cosine * dy - sine * dx) <= patch.width / 2;
             if (on) return patch.grey;
         }
-        return model_.description().arena.floor_grey;
+        return base;
     }
 
     static double from_lamp(const Lamp& lamp, const Ray& sensor, const LightParameters& p, double height,

@@ -73,7 +73,7 @@ inline World random_world(RandomStream& chance, int robots) {
                     .height = between(chance, .02, .4),
                     .intensity = chance.uniform()};
     });
-    add_things(world, world.patches, static_cast<int>(chance.below(4)), [&](const std::string& name) {
+    add_things(world, world.patches, static_cast<int>(2 + chance.below(4)), [&](const std::string& name) {
         const auto shape = chance.below(2) == 0 ? Patch::Shape::Disc : Patch::Shape::Rectangle;
         return Patch{.name = "patch" + name,
                      .shape = shape,
@@ -94,7 +94,7 @@ inline World random_world(RandomStream& chance, int robots) {
 inline Action random_action(RandomStream& chance, const World& world) {
     constexpr Verb kVerbs[] = {Verb::Move,      Verb::Remove,   Verb::Lift, Verb::Put,
                                Verb::SwitchOff, Verb::SwitchOn, Verb::Set,  Verb::Move};
-    std::vector<std::string> names{"floor", "room_light"};
+    std::vector<std::string> names{std::string(kFloor), std::string(kRoomLight)};
     const auto note = [&](const auto& things) {
         for (const auto& thing : things)
             names.push_back(thing.name);
@@ -117,6 +117,10 @@ inline Action random_action(RandomStream& chance, const World& world) {
     if (action.verb == Verb::Set) {
         constexpr const char* kProperties[] = {"grey", "ambient", "intensity", "reflectivity", "charge"};
         action.property = kProperties[chance.below(std::size(kProperties))];
+        if (chance.below(2) == 0) {
+            action.object = kRoomLight;
+            action.property = "ambient";
+        }
         action.value = chance.uniform();
     }
     return action;

@@ -29,6 +29,8 @@ void vary_optics(World& world, RandomStream& chance) {
     p["proximity.reach"] = between(chance, 0.05, 0.3);
     p["proximity.height"] = between(chance, 0.02, 0.08);
     if (chance.below(2) == 0) p["proximity.incidence_exponent"] = between(chance, 0.5, 3);
+    p["proximity.ambient_offset"] = between(chance, -100, 100);
+    p["proximity.ambient_gain"] = between(chance, -0.3, 0.5);
     p["light.range"] = between(chance, 0.3, 3);
     if (chance.below(3) == 0) p["light.flicker"] = 0.2;
     p["ground.footprint"] = between(chance, 0, 0.02);
@@ -43,8 +45,6 @@ void vary_effects(World& world, RandomStream& chance) {
     maybe("proximity.warmup_gain", -0.2, 0.2);
     maybe("proximity.battery_gain", -0.5, 0.5);
     maybe("proximity.motor_sag", 0, 0.1);
-    maybe("proximity.ambient_offset", -100, 100);
-    maybe("proximity.ambient_gain", -0.3, 0.5);
     maybe("proximity.age", 0, 0.05);
     maybe("proximity.motor_noise", 0, 1);
     maybe("proximity.proportional_noise", 0, 0.1);
@@ -144,6 +144,39 @@ TEST_CASE("nothing is another if everything is worked out anew at every step", "
             }
         }
     }
+}
+
+TEST_CASE("the floor under a robot is that of a plain look at all patches", "[increments]") {
+    RandomStream chance(3, "floor");
+    int partly = 0;
+    for (int round = 0; round < 300; ++round) {
+        Parameters parameters;
+        parameters.ground.footprint = between(chance, 0, 0.02);
+        parameters.ground.x = between(chance, -0.05, 0.05);
+        std::vector<Patch> patches;
+        for (std::uint64_t i = chance.below(5); i > 0; --i)
+            patches.push_back({.name = "patch",
+                               .shape = chance.below(2) == 0 ? Patch::Shape::Disc : Patch::Shape::Rectangle,
+                               .x = between(chance, -.3, .3),
+                               .y = between(chance, -.3, .3),
+                               .heading = between(chance, -4, 4),
+                               .length = between(chance, .01, .3),
+                               .width = between(chance, .01, .3),
+                               .radius = between(chance, .005, .1),
+                               .grey = chance.uniform()});
+        const double base = chance.uniform();
+        const GroundRow row(parameters.ground, base, patches);
+        for (int i = 0; i < 200; ++i) {
+            RobotState robot;
+            robot.x = between(chance, -.4, .4);
+            robot.y = between(chance, -.4, .4);
+            robot.heading = between(chance, -4, 4);
+            const auto greys = PlainWorld::greys(parameters.ground, base, patches, robot);
+            REQUIRE(same_bits(row.greys(robot), greys));
+            if (greys[0] != greys[2]) ++partly;
+        }
+    }
+    CHECK(partly > 1000);
 }
 
 TEST_CASE("a power of one is the number itself") {  // ProximityRing leaves the work out
