@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "emu/dspic/chip/core_bench.h"
 #include "tools/bench/board_replay.h"
+#include "tools/bench/mark_speed.h"
 #include "tools/bench/process_memory.h"
 #include "tools/bench/rab_speed.h"
 #include "tools/bench/reference.h"
@@ -14,6 +15,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <set>
+#include <tuple>
 
 namespace puckloop::tools {
 
@@ -120,6 +122,14 @@ void Kit::time_boards() {
             speeds.push_back(
                 {fmt::format("rab board, {}, {}", title, image.filename().string()), kRealTime,
                  [=, work = work, slice = options_.slice_s] { return rab_board_speed(image, work, slice); }});
+    for (const auto& [board, path, title] : {std::tuple{MarkedBoard::Main, main_image(), "main board"},
+                                             std::tuple{MarkedBoard::Rab, rab_image(), "rab board"}})
+        for (const auto& [what, verb] :
+             {std::pair{GoingBack::Mark, "marked"}, std::pair{GoingBack::Rewind, "taken back"}})
+            speeds.push_back({fmt::format("{}, {}", title, verb), "times a us",
+                              [=, board = board, path = path, what = what, slice = options_.slice_s] {
+                                  return mark_speed(path, board, what, slice);
+                              }});
     time_speeds("board", speeds);
 }
 
