@@ -21,6 +21,7 @@ std::size_t RingWriter::space() const {
 
 std::size_t RingWriter::write(std::span<const std::uint8_t> bytes) {
     const std::size_t count = std::min(space(), bytes.size());
+    if (count == 0) return 0;
     const std::size_t at = offset(written_);
     const std::size_t before_wrap = std::min(count, RingState::kCapacity - at);
     std::memcpy(state_.bytes + at, bytes.data(), before_wrap);

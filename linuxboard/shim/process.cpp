@@ -112,7 +112,7 @@ void Process::reply(wire::Reply reply, const std::vector<FinishedCall>& calls, i
         }
         std::memcpy(channel_.reply_data + used, &header, sizeof header);
         used += sizeof header;
-        std::memcpy(channel_.reply_data + used, call.data.data(), call.data.size());
+        if (!call.data.empty()) std::memcpy(channel_.reply_data + used, call.data.data(), call.data.size());
         used += call.data.size();
         ++reply.count;
     }
