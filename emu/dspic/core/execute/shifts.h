@@ -2,7 +2,7 @@
 // Shifts and rotates by one, shifts by many, sign and zero extension, byte swapping, bit searching, over any
 // domain (words.h).
 
-#include "emu/dspic/core/execute/arithmetic.h"
+#include "emu/dspic/core/execute/forms.h"
 
 #include <bit>
 
