@@ -1,7 +1,9 @@
-// puckloop step: the vectors of two independent sources (when given), and what the parser makes of bad lines.
+// puckloop step: the vectors of two independent sources (when given), interpreted and translated, and what
+// the parser makes of bad lines.
 
 #include "base/random.h"
 #include "emu/dspic/core/step_vector.h"
+#include "tests/translate/translation_guard.h"
 
 #include <catch2/catch.hpp>
 
@@ -98,7 +100,9 @@ TEST_CASE("every shared vector passes, states and cycles") {
         files.emplace_back(place);
     }
     REQUIRE_FALSE(files.empty());
-    StepMachine machine(dspic30f6014a());
+    StepMachine interpreted(dspic30f6014a());
+    const puckloop::tests::TranslationGuard guard(true);
+    StepMachine translated(dspic30f6014a(), true);
     int cases = 0, failures = 0;
     for (const auto& file : files) {
         const std::string command = "xz -dcf '" + file.string() + "'";
@@ -113,7 +117,7 @@ TEST_CASE("every shared vector passes, states and cycles") {
             const std::string id = line.substr(0, line.find(' '));
             const std::string state = line.substr(first + 3, last - first - 3);
             std::istringstream initial(state), changes(line.substr(last + 3));
-            const std::string answer = machine.answer(id + " " + state);
+            const std::string answer = interpreted.answer(id + " " + state);
             std::istringstream answered(answer);
             std::string got_id, verdict;
             answered >> got_id >> verdict;
@@ -121,6 +125,8 @@ TEST_CASE("every shared vector passes, states and cycles") {
                 verdict == "ok" && got_id == id
                     ? difference(fields_of(initial), fields_of(changes), fields_of(answered))
                     : answer;
+            if (const std::string again = translated.answer(id + " " + state); again != answer)
+                problem += " translated: " + again;
             if (problem.empty()) continue;
             if (++failures <= 20) UNSCOPED_INFO(line.substr(0, line.find(" I ")) << ":" << problem);
         }

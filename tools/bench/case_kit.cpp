@@ -133,7 +133,9 @@ void Kit::time_boards() {
     time_speeds("board", speeds);
 }
 
-RunTiming Kit::own_run(const RunSpec& spec, const std::function<void(pid_t)>& watch) const {
+RunTiming Kit::own_run(const RunSpec& given, const std::function<void(pid_t)>& watch) const {
+    RunSpec spec = given;
+    if (!options_.translate) spec.options.emplace_back("--no-translate");
     return time_run(self(), spec, folder_ / "own", watch);
 }
 

@@ -1,5 +1,6 @@
 // `puckloop bench`: performance figures, each measured beside a reference that the same machine runs in turn.
 
+#include "emu/dspic/translate/translation.h"
 #include "tools/bench/cases.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
@@ -22,6 +23,7 @@ struct Options {
 };
 
 void run(const Options& options) {
+    if (!options.bench.translate) dspic::set_translation(false);
     const OtherLoadMeter meter;
     const std::vector<Figure> figures = measure_cases(options.bench);
     fmt::print("{}",
@@ -74,6 +76,8 @@ void declare_bench(Command& app, int& status) {
     command->add_option("--rounds", bench.rounds, "measurements of each figure (default 5)")
         ->check(whole_number_between(1, kMostRounds))
         ->type_name("N");
+    command->add_flag("!--no-translate", bench.translate,
+                      "this build interprets every dsPIC instruction (default: hot code is translated)");
     command->add_flag("--json", options->json, "print JSON");
     declare_bench_rab(*command, status);
     command->callback([options, command, &status] {

@@ -8,6 +8,7 @@
 #include "tools/cli/command.h"
 #include "tools/cli/log_options.h"
 #include "tools/commands.h"
+#include "tools/run/node_process.h"
 #include "tools/run/parameter_list.h"
 #include "tools/run/report.h"
 #include "tools/run/run_scenario.h"
@@ -31,6 +32,7 @@ struct Options {
     LogOptions log;
     std::string save_at;
     bool no_cache = false;
+    bool translate = true;
     bool json = false;
     bool list_parameters = false;
 };
@@ -69,6 +71,7 @@ int run(Options& options) {
     }
     start_log("puckloop", options.log);
     if (!request.in_process) log::share_with_children();
+    if (!options.translate) interpret_from_here(!request.in_process);
     if (!options.save_at.empty()) request.save_at = time_of(options.save_at);
     request.cache = !options.no_cache;
     const RunSetup setup = set_up(request);
@@ -117,6 +120,9 @@ void declare_run(Command& app, int& status) {
             "with --in-process: threads for the boards (default: by the number of range-and-bearing boards)")
         ->check(whole_number_between(1, 16))
         ->type_name("N");
+    command->add_flag("!--no-translate", options->translate,
+                      "interpret every dsPIC instruction (default: hot code is translated to this machine's; "
+                      "the run is the same)");
     command->add_flag("--realtime", request.realtime, "pace simulated time by the wall clock");
     command->add_flag("--paced", request.paced,
                       "the same, but Linux programs stay in simulated time: the run can be repeated");

@@ -10,4 +10,8 @@ namespace puckloop::tools {
 /// started.
 std::optional<int> serve_as_node(int count, char** words);
 
+/// No dsPIC program is translated in this process from here on, and, if asked, in its nodes' processes (by a
+/// variable in their environment, which they remove at once).
+void interpret_from_here(bool in_nodes_too);
+
 }  // namespace puckloop::tools

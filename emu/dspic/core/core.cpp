@@ -60,6 +60,7 @@ Machine::Machine(const DeviceInfo& info, SfrSpace& registers, EventQueue& queue,
     irq.set_clock(&st.cycle, &st.disi_end);
     irq.set_listener(this, [](void* owner, Cycle now) { reconsider(*static_cast<Machine*>(owner), now); });
     reset_registers(*this);
+    adopt_translation(translated);
 }
 
 Machine::~Machine() = default;
@@ -129,6 +130,9 @@ void Core::set_stops(std::span<const std::uint32_t> addresses) {
 }
 void Core::set_skip_idle(bool on) {
     machine_->skip_idle = on;
+}
+void Core::set_translate(bool on) {
+    machine_->translated.on = on;
 }
 void Core::stall_until(Cycle cycle) {
     machine_->stall_end = std::max(machine_->stall_end, cycle);
@@ -212,6 +216,7 @@ void Core::set_power_hook(std::function<void(PowerMode)> hook) {
 }
 void Core::set_cycle_rate(double hertz) {
     machine_->cycle_rate = hertz;
+    note_rate(*machine_);
     schedule_watchdog(*machine_);
 }
 CoreObserver& Core::observer() {

@@ -86,6 +86,9 @@ class Core {
     void set_stops(std::span<const std::uint32_t> addresses);
     /// Busy-wait loops are skipped without changing anything observable. On from the start.
     void set_skip_idle(bool on);
+    /// Hot code is translated to the host's, where that is possible, without changing anything observable: by
+    /// default as set_translation() says (emu/dspic/translate/translation.h).
+    void set_translate(bool on);
     /// Keeps the CPU from executing until `cycle` (flash programming, oscillator start-up); events go on.
     void stall_until(Cycle cycle);
 

@@ -123,7 +123,7 @@ void Core::state(CheckpointReader& archive) {
 
 void Core::mark() {
     machine_->program_undo.begin();
-    machine_->loop_undo->begin();
+    machine_->loop_undo->begin(*machine_);
 }
 
 void Core::rewind() {

@@ -3,6 +3,7 @@
 // Everything that has to interrupt the flow (an event, the end of the grant, an interrupt, a stop) is folded
 // into Machine::limit; the inner loop compares the cycle with it and nothing else.
 
+#include "emu/dspic/core/interpret.h"
 #include "emu/dspic/core/machine.h"
 
 #include <algorithm>
@@ -11,37 +12,6 @@
 namespace puckloop::dspic {
 
 namespace {
-
-/// A pointer was just written (one cycle of stall) or never written (reset). The instruction has not started.
-const Op* execute_with_hazard(Machine& m, const Op* op) {
-    if (op->uses & m.watch & 0xFFFF0000) {
-        request_reset(m, ResetCause::IllegalOpcode);
-        return op;
-    }
-    m.watch = (m.watch & op->keep) | op->writes;
-    const Op* next = op->run(m, op);
-    m.st.cycle += op->cycles + 1u;
-    ++m.instructions;
-    return next;
-}
-
-void run_straight(Machine& m) {
-    const Op* op = m.current;
-    do {
-        m.current = op;
-        if (op->uses & m.watch) [[unlikely]] {
-            op = execute_with_hazard(m, op);
-            continue;
-        }
-        m.watch = (m.watch & op->keep) | op->writes;
-        const Op* next = op->run(m, op);
-        m.st.cycle += op->cycles;
-        ++m.instructions;
-        op = next;
-    } while (m.st.cycle < m.limit);
-    m.current = op;
-    m.st.cycle += std::exchange(m.late, 0);
-}
 
 /// RA is set: the instruction at PC runs RCOUNT + 1 times.
 void run_repeated(Machine& m) {
@@ -81,8 +51,10 @@ void run_repeated(Machine& m) {
 void execute(Machine& m) {
     if (m.st.sr & sr::RA)
         run_repeated(m);
+    else if (m.translated.on)
+        run_translated(m);
     else
-        run_straight(m);
+        run_interpreted(m);
 }
 
 void enter_interrupt(Machine& m) {
@@ -151,7 +123,7 @@ void pass_stop(Machine& m) {
     forget_loops(m);
     decode(m, op);
     m.limit = std::min(m.limit, m.st.cycle + 1);
-    execute(m);
+    m.st.sr & sr::RA ? run_repeated(m) : run_interpreted(m);
     op.marks |= kStop;
     forget_loops(m);
     decode(m, op);

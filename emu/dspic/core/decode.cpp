@@ -147,6 +147,7 @@ void blank(Machine& m, std::uint32_t index) {
     const std::uint8_t marks = op.marks;
     op = blank_operation(m.program[index]);
     op.marks = marks;
+    forget_blocks(m, index);
 }
 
 void invalidate(Machine& m, std::uint32_t address) {
@@ -162,6 +163,7 @@ void invalidate(Machine& m, std::uint32_t address) {
 
 void renew_code(Machine& m) {
     m.pages.share();
+    forget_all_blocks(m);
     forget_loops(m);
     for (const std::uint32_t pc : m.stops)
         mark(m, pc, kStop);
@@ -174,6 +176,7 @@ void mark(Machine& m, std::uint32_t pc, std::uint8_t what) {
     if (op.marks & what) return;
     if (m.program_undo.on()) m.program_undo.note_operation(m, index);
     op.marks |= what;
+    forget_blocks(m, index);
     forget_loops(m);
     if (op.run != &decode_now) decode(m, op);
 }

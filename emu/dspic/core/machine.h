@@ -9,6 +9,7 @@
 #include "emu/dspic/core/program_pages.h"
 #include "emu/dspic/core/program_undo.h"
 #include "emu/dspic/fast/service_shortcut.h"
+#include "emu/dspic/translate/translation.h"
 #include "emu/dspic/waits/wait_watch.h"
 
 #include <bit>
@@ -132,10 +133,15 @@ struct Machine {
     std::vector<std::uint32_t> warned;
     bool skip_idle = true;
     std::unique_ptr<SkipLoops> skip;
+    /// Into `skip`, for translated code: a branch's place plus 1 by program word (null: none is known), and
+    /// by place how many arrivals it waits.
+    std::uint16_t* loop_index = nullptr;
+    std::uint16_t* loop_waits = nullptr;
     ProgramUndo program_undo;
     std::unique_ptr<LoopUndo> loop_undo;
     ServiceShortcuts shortcuts;
     WaitWatch waits;
+    Translated translated;
 
     std::uint32_t pc_of(const Op* op) const {
         const auto index = static_cast<std::uint32_t>(op - code);
@@ -203,6 +209,8 @@ void schedule_watchdog(Machine& m);
 void try_skip(Machine& m, const Op* branch, const Op* head);
 /// Code, marks or pointer rules changed: nothing known about loops holds any more.
 void forget_loops(Machine& m);
+/// Sets Machine::loop_index and loop_waits.
+void publish_loops(Machine& m);
 
 inline int cpu_level(const Machine& m) {
     return (m.st.sr >> sr::kIplShift & 7) | (m.st.corcon & corcon::IPL3);

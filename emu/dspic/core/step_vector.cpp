@@ -118,9 +118,13 @@ struct StepMachine::Parts {
     Core core;
     std::vector<std::uint32_t> dirty;  ///< program addresses that the last case wrote
     std::optional<std::string> interrupted;
+    bool twice;
 
-    explicit Parts(const DeviceInfo& info)
-        : device(info), interrupts(info, described(sfr, info)), core(info, sfr, events, interrupts) {
+    Parts(const DeviceInfo& info, bool run_twice)
+        : device(info),
+          interrupts(info, described(sfr, info)),
+          core(info, sfr, events, interrupts),
+          twice(run_twice) {
         core.set_skip_idle(false);
         core.observer().on_reset = [this](ResetCause cause, std::uint32_t, Cycle) {
             interrupted = fmt::format("resets the part ({})", to_string(cause));
@@ -139,22 +143,17 @@ struct StepMachine::Parts {
             throw Malformed{fmt::format("{}: no program memory at {:06x}", key, address)};
         dirty.push_back(address);
     }
+    void place_program(const Case& c);
     void set_up(const Case& c);
     void execute(const Case& c);
     std::string print(const Case& c, Cycle cycles) const;
 };
 
-void StepMachine::Parts::set_up(const Case& c) {
+void StepMachine::Parts::place_program(const Case& c) {
     constexpr std::uint32_t kErased = 0xFFFFFF;
     for (const std::uint32_t address : dirty)
         core.poke_program(address, kErased);
     dirty.clear();
-    interrupted.reset();
-    sfr.reset_values();
-    interrupts.reset();
-    const auto ram = core.ram();
-    std::fill(ram.begin(), ram.end(), std::uint16_t{0});
-
     const auto count = static_cast<std::uint32_t>(c.words.size());
     if (c.state.pc + 2 * count > device.flash_end)
         throw Malformed{fmt::format("pc: {:06x} is outside the flash of {}", c.state.pc, device.name)};
@@ -162,6 +161,14 @@ void StepMachine::Parts::set_up(const Case& c) {
         place("p", cell.address, cell.word);
     for (std::uint32_t i = 0; i < count; ++i)
         place("op", c.state.pc + 2 * i, c.words[i]);
+}
+
+void StepMachine::Parts::set_up(const Case& c) {
+    interrupted.reset();
+    sfr.reset_values();
+    interrupts.reset();
+    const auto ram = core.ram();
+    std::fill(ram.begin(), ram.end(), std::uint16_t{0});
     for (const Cell& cell : c.data) {
         if (cell.address < device.ram_start || cell.address >= device.ram_end)
             throw Malformed{fmt::format("m: no RAM at {:04x}", cell.address)};
@@ -242,7 +249,8 @@ std::string StepMachine::Parts::print(const Case& c, Cycle cycles) const {
     return out;
 }
 
-StepMachine::StepMachine(const DeviceInfo& device) : parts_(std::make_unique<Parts>(device)) {}
+StepMachine::StepMachine(const DeviceInfo& device, bool twice)
+    : parts_(std::make_unique<Parts>(device, twice)) {}
 StepMachine::~StepMachine() = default;
 
 std::string StepMachine::answer(std::string_view line) {
@@ -251,9 +259,14 @@ std::string StepMachine::answer(std::string_view line) {
     try {
         if (!parts.has_rest) throw Malformed{"no state after the id"};
         const Case c = parse_case(parts.rest);
+        parts_->place_program(c);
         parts_->set_up(c);
         if (!find_form(c.words[0]))
             return id + fmt::format(" unsupported {:06x} is no instruction", c.words[0]);
+        if (parts_->twice) {
+            parts_->execute(c);
+            parts_->set_up(c);
+        }
         const Cycle start = parts_->core.cycle();
         parts_->execute(c);
         if (parts_->interrupted) return id + " unsupported " + *parts_->interrupted;

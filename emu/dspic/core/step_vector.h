@@ -17,7 +17,9 @@ namespace puckloop::dspic {
 
 class StepMachine {
   public:
-    explicit StepMachine(const DeviceInfo& device);
+    /// `twice`: each case is executed once, set up again and executed from operations that are decoded, which
+    /// a core that translates at the first arrival then does translate.
+    explicit StepMachine(const DeviceInfo& device, bool twice = false);
     ~StepMachine();
 
     /// The answer to one line, without a line end. Never throws for what a line contains.

@@ -6,6 +6,13 @@
 
 namespace puckloop::dspic {
 
+void LoopUndo::begin(const Machine& m) {
+    end();
+    on_ = true;
+    ++stamp_;
+    waits_ = m.skip->waits;  // small, and translated code counts them down
+}
+
 void LoopUndo::end() {
     on_ = false;
     count_ = 0;
@@ -20,7 +27,6 @@ void LoopUndo::note_first(SkipLoops::Branch& branch) {
     if (count_ == notes_.size()) notes_.emplace_back();
     Note& note = notes_[count_++];
     note.branch = &branch;
-    note.wait = branch.wait;
     note.patience = branch.patience;
     note.polls_noted = branch.polls_noted;
     note.walked = branch.walked;
@@ -43,7 +49,6 @@ void LoopUndo::take_back(Machine& m) {
     for (std::size_t i = 0; i < count_; ++i) {
         Note& note = notes_[i];
         SkipLoops::Branch& branch = *note.branch;
-        branch.wait = note.wait;
         branch.patience = note.patience;
         branch.polls_noted = note.polls_noted;
         branch.walked = note.walked;
@@ -56,6 +61,9 @@ void LoopUndo::take_back(Machine& m) {
         branch.trace.accesses.swap(note.trace.accesses);
     }
     count_ = 0;
+    m.skip->waits = waits_;
+    m.skip->waits.resize(m.skip->branches.size(), 0);
+    publish_loops(m);
     for (auto note = shortcuts_.rbegin(); note != shortcuts_.rend(); ++note)
         m.shortcuts.known[note->first] = note->second;
     shortcuts_.clear();
@@ -64,19 +72,21 @@ void LoopUndo::take_back(Machine& m) {
 void LoopUndo::note_forgetting(Machine& m) {
     if (!on_ || forgotten_) return;
     take_back(m);
-    forgotten_.emplace(
-        Forgotten{std::move(m.skip->index), std::move(m.skip->branches), std::move(m.shortcuts.known)});
+    forgotten_.emplace(Forgotten{std::move(m.skip->index), std::move(m.skip->branches),
+                                 std::move(m.skip->waits), std::move(m.shortcuts.known)});
 }
 
 void LoopUndo::rewind(Machine& m) {
     if (forgotten_) {
         m.skip->index = std::move(forgotten_->index);
         m.skip->branches = std::move(forgotten_->branches);
+        m.skip->waits = std::move(forgotten_->waits);
+        publish_loops(m);
         m.shortcuts.known = std::move(forgotten_->shortcuts);
     } else {
         take_back(m);
     }
-    begin();
+    begin(m);
 }
 
 }  // namespace puckloop::dspic

@@ -20,11 +20,7 @@ class LoopUndo {
   public:
     bool on() const { return on_; }
     /// Notes from here on; forgets earlier notes.
-    void begin() {
-        end();
-        on_ = true;
-        ++stamp_;
-    }
+    void begin(const Machine& m);
     void end();
     /// Takes back everything noted; notes go on.
     void rewind(Machine& m);
@@ -45,7 +41,6 @@ class LoopUndo {
   private:
     struct Note {
         SkipLoops::Branch* branch = nullptr;
-        std::uint16_t wait = 0;
         std::uint8_t patience = 0;
         bool polls_noted = false;
         bool walked = false;
@@ -57,6 +52,7 @@ class LoopUndo {
     struct Forgotten {
         std::vector<std::uint16_t> index;
         std::deque<SkipLoops::Branch> branches;
+        std::vector<std::uint16_t> waits;
         std::vector<std::optional<ServiceShortcut>> shortcuts;
     };
     void note_first(SkipLoops::Branch& branch);
@@ -66,6 +62,7 @@ class LoopUndo {
     std::uint32_t stamp_ = 0;
     std::deque<Note> notes_;  ///< the first count_ are in use
     std::size_t count_ = 0;
+    std::vector<std::uint16_t> waits_;  ///< as they were at the mark
     std::vector<std::pair<std::size_t, std::optional<ServiceShortcut>>> shortcuts_;
     std::optional<Forgotten> forgotten_;
 };

@@ -27,8 +27,10 @@ SkipLoops::Branch& branch_at(Machine& m, std::size_t word) {
     SkipLoops& skip = *m.skip;
     if (skip.index.empty()) skip.index.assign(m.code_words + kGuards, 0);
     if (skip.index[word] == 0) {
-        skip.branches.emplace_back();
+        skip.branches.emplace_back().place = static_cast<std::uint16_t>(skip.waits.size());
+        skip.waits.push_back(0);
         skip.index[word] = static_cast<std::uint16_t>(skip.branches.size());
+        publish_loops(m);
     }
     return skip.branches[skip.index[word] - 1u];
 }
@@ -76,9 +78,9 @@ void leap(Machine& m, SkipLoops::Plan& plan, Cycle arrival) {
     m.skip->skipped_cycles += cycles;
 }
 
-void give_up_for_now(SkipLoops::Branch& known, std::uint8_t most = kMostPatience) {
+void give_up_for_now(Machine& m, SkipLoops::Branch& known, std::uint8_t most = kMostPatience) {
     if (known.patience < most) ++known.patience;
-    known.wait = static_cast<std::uint16_t>((1u << known.patience) - 1);
+    m.skip->waits[known.place] = static_cast<std::uint16_t>((1u << known.patience) - 1);
 }
 
 void make_plan(Machine& m, SkipLoops::Branch& known, const Op* branch, const Op* head, Cycle arrival) {
@@ -88,7 +90,7 @@ void make_plan(Machine& m, SkipLoops::Branch& known, const Op* branch, const Op*
     switch (walk.analyse(branch, head)) {
     case LoopWalk::Verdict::Pure:
         known.walked = true;
-        if (plan.iterations < kFewestIterations) return give_up_for_now(known);
+        if (plan.iterations < kFewestIterations) return give_up_for_now(m, known);
         plan.alive = true;
         plan.proven = plan.used = false;
         plan.proof_due = arrival + plan.cycles;
@@ -96,17 +98,17 @@ void make_plan(Machine& m, SkipLoops::Branch& known, const Op* branch, const Op*
         if (m.limit < plan.proof_due) {
             plan.proof_due = steady_arrival(m, known, arrival, 1, plan.proof_interrupted);
             plan.alive = plan.proof_due != kNoCycle;
-            if (!plan.alive && !known.trace.steady) return give_up_for_now(known);
+            if (!plan.alive && !known.trace.steady) return give_up_for_now(m, known);
         }
         --plan.iterations;  // the one that runs now
         break;
     case LoopWalk::Verdict::NotNow:
-        give_up_for_now(known);
+        give_up_for_now(m, known);
         break;
     case LoopWalk::Verdict::Unknown:
         // On its last round a loop leaves by instructions that the walk need not know.
-        if (known.walked) return give_up_for_now(known);
-        if (walk.chose()) return give_up_for_now(known, kMostPatienceUnknown);  // another way round may do
+        if (known.walked) return give_up_for_now(m, known);
+        if (walk.chose()) return give_up_for_now(m, known, kMostPatienceUnknown);  // another way round may do
         if (m.program_undo.on())
             m.program_undo.note_operation(m, static_cast<std::uint32_t>(branch - m.code));
         m.code[branch - m.code].may_skip = false;
@@ -130,7 +132,15 @@ void forget_loops(Machine& m) {
     m.waits.forget();
     m.skip->index.clear();
     m.skip->branches.clear();
+    m.skip->waits.clear();
     m.shortcuts.known.clear();
+    publish_loops(m);
+}
+
+void publish_loops(Machine& m) {
+    SkipLoops& skip = *m.skip;
+    m.loop_index = skip.index.empty() ? nullptr : skip.index.data();
+    m.loop_waits = skip.waits.data();
 }
 
 void try_skip(Machine& m, const Op* branch, const Op* head) {
@@ -138,8 +148,8 @@ void try_skip(Machine& m, const Op* branch, const Op* head) {
     if (!m.skip_idle) return;
     SkipLoops::Branch& known = branch_at(m, static_cast<std::size_t>(branch - m.code));
     m.loop_undo->note(known);
-    if (known.wait > 0) {
-        --known.wait;
+    if (std::uint16_t& wait = m.skip->waits[known.place]; wait > 0) {
+        --wait;
         return;
     }
     const Cycle arrival = m.st.cycle + branch->cycles;  // the run loop adds them after this
@@ -156,7 +166,7 @@ void try_skip(Machine& m, const Op* branch, const Op* head) {
             return;
         }
         plan.alive = false;
-        if (!plan.used) return give_up_for_now(known);
+        if (!plan.used) return give_up_for_now(m, known);
         known.patience = 0;
     }
     if (m.limit < arrival + kWorthwhile && !steady_event_next(m)) return;

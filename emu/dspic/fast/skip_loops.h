@@ -96,7 +96,7 @@ struct SkipLoops {
     };
     /// What is known of one backward branch.
     struct Branch {
-        std::uint16_t wait = 0;     ///< arrivals until the next try
+        std::uint16_t place = 0;    ///< in `branches` and `waits`
         std::uint8_t patience = 0;  ///< failures in a row
         bool polls_noted = false;   ///< note_polls() was called for it
         bool walked = false;        ///< a walk came round once: no way out of the loop decides for all of it
@@ -107,6 +107,7 @@ struct SkipLoops {
     };
     std::vector<std::uint16_t> index;  ///< by program word: place in `branches` plus 1, 0 = not seen yet
     std::deque<Branch> branches;
+    std::vector<std::uint16_t> waits;  ///< by branch: arrivals until the next try
     std::uint64_t leaps = 0;  ///< for tests and curiosity
     std::uint64_t skipped_cycles = 0;
     std::uint64_t passed_services = 0;  ///< routines without a trace that fell into leaps

@@ -29,6 +29,10 @@ void look(const Machine& m, WaitWatch::Stay& stay) {
 
 }  // namespace
 
+void note_rate(Machine& m) {
+    m.waits.stale_after = seconds(m, kStale);
+}
+
 void note_arrival(Machine& m, const Op* branch, const Op* head) {
     WaitWatch& watch = m.waits;
     const int level = cpu_level(m);

@@ -67,6 +67,7 @@ struct WaitWatch {
     std::array<Stay, 16> stays;  ///< by CPU level
     int level = 0;               ///< of the last arrival
     std::vector<MissingPoll> polls;
+    Cycle stale_after = 0;  ///< cycles without an arrival that end a stay; by note_rate()
 
     void forget() {
         stays = {};
@@ -74,6 +75,8 @@ struct WaitWatch {
     }
 };
 
+/// Sets WaitWatch::stale_after by the clock's present rate.
+void note_rate(Machine& m);
 /// At a taken backward branch, before anything is leapt over.
 void note_arrival(Machine& m, const Op* branch, const Op* head);
 /// After a leap at `branch`: the loop came round all the time.

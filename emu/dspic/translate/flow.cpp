@@ -1,0 +1,273 @@
+// Branches, skips, calls and returns, and what happens at a taken backward branch (skip_loops.h,
+// wait_watch.h).
+
+#include "emu/dspic/translate/emitter.h"
+
+#include <cstddef>
+
+namespace puckloop::dspic::translate {
+
+using namespace Xbyak::util;
+
+namespace {
+
+struct Condition {
+    Test test;
+    bool holds;  ///< taken if the test holds
+};
+
+std::optional<Condition> condition_of(FormId form) {
+    switch (form) {
+        // clang-format off
+    case FormId::BRA_OV_Expr: return Condition{Test::Overflow, true};
+    case FormId::BRA_NOV_Expr: return Condition{Test::Overflow, false};
+    case FormId::BRA_C_Expr: return Condition{Test::Carry, true};
+    case FormId::BRA_NC_Expr: return Condition{Test::Carry, false};
+    case FormId::BRA_Z_Expr: return Condition{Test::Zero, true};
+    case FormId::BRA_NZ_Expr: return Condition{Test::Zero, false};
+    case FormId::BRA_N_Expr: return Condition{Test::Negative, true};
+    case FormId::BRA_NN_Expr: return Condition{Test::Negative, false};
+    case FormId::BRA_LT_Expr: return Condition{Test::Less, true};
+    case FormId::BRA_GE_Expr: return Condition{Test::Less, false};
+    case FormId::BRA_LE_Expr: return Condition{Test::LessOrEqual, true};
+    case FormId::BRA_GT_Expr: return Condition{Test::LessOrEqual, false};
+    case FormId::BRA_LEU_Expr: return Condition{Test::NotAbove, true};
+    case FormId::BRA_GTU_Expr: return Condition{Test::NotAbove, false};
+        // clang-format on
+    default:
+        return std::nullopt;
+    }
+}
+
+constexpr int kHostLess = 12, kHostGreater = 15, kHostEqual = 4, kHostNotEqual = 5;
+/// Pushed by CALL and RCALL: two words.
+constexpr int kReturnBytes = 4;
+
+}  // namespace
+
+/// rcx: the branch, r8: its program word, rdx: the cycle of the arrival. Carry set: not as last time, the
+/// interpreter does it. Uses rax, rdx and rsi: SR is whole when it is called.
+void Emitter::emit_arrival() {
+    static const WaitWatch::Stay stay;
+    const auto of_stay = [](const auto& field) {
+        return static_cast<int>(reinterpret_cast<const char*>(&field) - reinterpret_cast<const char*>(&stay));
+    };
+    Xbyak::Label noted, slow, inside, done, other;
+    cmp(byte[rcx + static_cast<int>(offsetof(Op, may_skip))], 0);
+    je(done, T_NEAR);
+    // note_arrival(), as long as the stay neither ends nor is to be looked at.
+    test(byte[rbp + layout_.corcon], corcon::IPL3);
+    jnz(slow, T_NEAR);
+    movzx(eax, byte[rbp + layout_.sr]);
+    shr(eax, sr::kIplShift);
+    cmp(eax, dword[rbp + layout_.wait_level]);
+    jne(slow, T_NEAR);
+    imul(eax, eax, sizeof(WaitWatch::Stay));
+    lea(rax, ptr[rbp + rax + layout_.stays]);
+    cmp(rcx, qword[rax + of_stay(stay.branch)]);
+    jne(other, T_NEAR);
+    cmp(rdx, qword[rax + of_stay(stay.next_look)]);
+    jae(slow, T_NEAR);
+    mov(qword[rax + of_stay(stay.last)], rdx);
+    L(noted);
+    // try_skip(), as long as it has to wait.
+    cmp(byte[rbp + layout_.skip_idle], 0);
+    je(done, T_NEAR);
+    mov(rax, qword[rbp + layout_.loop_index]);
+    test(rax, rax);
+    jz(slow, T_NEAR);
+    movzx(eax, word[rax + r8 * 2]);
+    sub(eax, 1);
+    jb(slow, T_NEAR);
+    mov(rsi, qword[rbp + layout_.loop_waits]);
+    movzx(edx, word[rsi + rax * 2]);
+    sub(edx, 1);
+    jb(slow, T_NEAR);
+    mov(word[rsi + rax * 2], dx);
+    L(done);
+    clc();
+    ret();
+    L(other);  // a loop within the one that is stayed in, or in what it calls
+    cmp(qword[rax + of_stay(stay.branch)], 0);
+    je(slow, T_NEAR);
+    movzx(esi, w_word(15));
+    cmp(si, word[rax + of_stay(stay.stack)]);
+    ja(inside, T_NEAR);
+    cmp(rcx, qword[rax + of_stay(stay.head)]);
+    jb(slow, T_NEAR);
+    cmp(rcx, qword[rax + of_stay(stay.branch)]);
+    ja(slow, T_NEAR);
+    L(inside);
+    sub(rdx, qword[rax + of_stay(stay.last)]);
+    cmp(rdx, qword[rbp + layout_.stale_after]);
+    jb(noted, T_NEAR);
+    L(slow);
+    stc();
+    ret();
+}
+
+void Emitter::arrive(std::uint32_t extra_cycles) {
+    mov(rcx, qword[rbp + layout_.code]);
+    add(rcx, static_cast<std::uint32_t>(index_ * sizeof(Op)));
+    mov(r8d, index_);
+    lea(rdx, ptr[rbx + static_cast<int>(cycles_ + extra_cycles)]);
+    call(at_start(shared_.arrival));
+    jc(bail(), T_NEAR);
+}
+
+void Emitter::leave_taken(const Op* op, std::uint32_t target, std::uint32_t extra_cycles) {
+    flush_flags();
+    account(cycles_ + stall_ + op->cycles + extra_cycles, steps_ + 1, keep_ & op->keep, op->writes);
+    go_to(target);
+}
+
+void Emitter::side_exit(const Op* op, int host_condition, std::uint32_t target, std::uint32_t extra_cycles) {
+    Xbyak::Label taken;
+    jump_if(host_condition, taken);
+    cold(taken, [this, op, target, extra_cycles, flags = flags_, cycles = cycles_, steps = steps_,
+                 keep = keep_, stall = stall_] {
+        flags_ = flags;
+        cycles_ = cycles;
+        steps_ = steps;
+        keep_ = keep;
+        stall_ = stall;
+        leave_taken(op, target, extra_cycles);
+    });
+}
+
+Emitter::Flow Emitter::emit_flow(Machine& m, const Op* op) {
+    const std::optional<Condition> condition_wanted = condition_of(op->form);
+    const std::uint32_t target = op->target / 2;
+    // Longer ones never skip; may_skip says of the others which do.
+    constexpr std::uint32_t kFarthestArrival = 66;
+    const bool arrives = target <= index_ && index_ - target <= kFarthestArrival;
+    if (condition_wanted || op->form == FormId::BRA_Expr || op->form == FormId::GOTO_Expr) {
+        if (target >= layout_.code_words) return Flow::Unknown;
+        if (!condition_wanted) {
+            flush_flags();
+            if (arrives) arrive(0);
+            finish_bail();
+            leave_taken(op, target, 0);
+            return end_block(op);
+        }
+        if (!arrives) {
+            const int host = condition(condition_wanted->test) ^ (condition_wanted->holds ? 0 : 1);
+            side_exit(op, host, target, 1);
+            finish_step(op);
+            return Flow::Next;
+        }
+        // Both ways want SR whole.
+        Flags before = flags_;
+        flush_flags();
+        std::swap(before, flags_);
+        const int host = condition(condition_wanted->test) ^ (condition_wanted->holds ? 0 : 1);
+        flags_ = {};
+        side_exit(op, host ^ 1, index_ + 1, std::uint32_t{0});
+        arrive(1);
+        finish_bail();
+        leave_taken(op, target, 1);
+        return end_block(op);
+    }
+    switch (op->form) {
+    case FormId::NOP:
+    case FormId::NOPR:
+        finish_step(op);
+        return Flow::Next;
+    case FormId::CALL_Expr:
+    case FormId::RCALL_Expr:
+        if (target >= layout_.code_words) return Flow::Unknown;
+        emit_call(op);
+        finish_bail();
+        leave_taken(op, target, 0);
+        return end_block(op);
+    case FormId::RETURN:
+        emit_return(op);
+        return end_block(op);
+    default:
+        if (!emit_skip(m, op)) return Flow::Unknown;
+        finish_step(op);
+        return Flow::Next;
+    }
+}
+
+Emitter::Flow Emitter::end_block(const Op* op) {
+    ++steps_;
+    index_ += form(op->form).two_words() ? 2 : 1;
+    return Flow::Ended;
+}
+
+void Emitter::emit_call(const Op* op) {
+    load_w(eax, 15, false);
+    // The second word is the higher one; below the first one RAM ends too.
+    lea(ecx, ptr[rax + 2 - kRamStart]);
+    cmp(ecx, dword[rbp + layout_.stack_span]);
+    jg(bail(), T_NEAR);
+    ram_index(edx, 0, false, false, 2);
+    mov(dword[r12 + rdx * 2], 2 * index_ + op->k);
+    add(w_word(15), kReturnBytes);
+}
+
+void Emitter::emit_return(const Op* op) {
+    flush_flags();
+    cmp(byte[rbp + layout_.eligible], 0);  // then it takes a cycle less
+    jne(bail(), T_NEAR);
+    load_w(eax, 15, false);
+    lea(ecx, ptr[rax - 2 - kRamStart]);
+    cmp(ecx, dword[rbp + layout_.stack_span]);
+    jg(bail(), T_NEAR);
+    ram_index(edx, -kReturnBytes, false, false, 2);
+    mov(ecx, dword[r12 + rdx * 2]);
+    and_(ecx, 0x7FFFFE);
+    shr(ecx, 1);
+    cmp(ecx, layout_.code_words);
+    jae(bail(), T_NEAR);
+    finish_bail();
+    add(w_word(15), -kReturnBytes);
+    account(cycles_ + stall_ + op->cycles, steps_ + 1, keep_ & op->keep, op->writes);
+    mov(eax, dword[r15 + rcx * sizeof(std::uint32_t)]);
+    add(rax, rdi);
+    jmp(rax);
+}
+
+bool Emitter::emit_skip(Machine& m, const Op* op) {
+    int host = kHostNotEqual;
+    const std::uint32_t over = is_two_words(m.code[index_ + 1].word) ? 2 : 1;
+    if (index_ + 1 + over >= layout_.code_words) return false;
+    switch (op->form) {
+    case FormId::BTSS_f_bit4:
+    case FormId::BTSC_f_bit4: {
+        int file = 0;
+        if (!ram_literal(op->k, true, file)) return false;
+        test(file_cell(file, true), op->aux);
+        if (op->form == FormId::BTSC_f_bit4) host ^= 1;
+        break;
+    }
+    case FormId::BTSS_Ws_bit4:
+    case FormId::BTSC_Ws_bit4:
+        if (op->source == Ea::Indirect) source_index(op, ecx, false);
+        load_source(op, eax, false);
+        move_source(op, false);
+        test(eax, op->k);
+        if (op->form == FormId::BTSC_Ws_bit4) host ^= 1;
+        break;
+    case FormId::CPSEQ_Wb_Wn:
+    case FormId::CPSNE_Wb_Wn:
+    case FormId::CPSGT_Wb_Wn:
+    case FormId::CPSLT_Wb_Wn:
+        if (op->byte)
+            mov(al, w_byte(op->b)), cmp(al, w_byte(op->s));
+        else
+            mov(ax, w_word(op->b)), cmp(ax, w_word(op->s));
+        host = op->form == FormId::CPSEQ_Wb_Wn   ? kHostEqual
+               : op->form == FormId::CPSNE_Wb_Wn ? kHostNotEqual
+               : op->form == FormId::CPSGT_Wb_Wn ? kHostGreater
+                                                 : kHostLess;
+        break;
+    default:
+        return false;
+    }
+    side_exit(op, host, index_ + 1 + over, over);
+    return true;
+}
+
+}  // namespace puckloop::dspic::translate

@@ -1,0 +1,17 @@
+#pragma once
+// Where translated code finds a machine's fields: distances from Machine::st, which one host register holds.
+
+#include "emu/dspic/core/machine.h"
+
+namespace puckloop::dspic::translate {
+
+struct Layout {
+    explicit Layout(const Machine& m);
+
+    int w, sr, corcon, cycle;
+    int current, code, limit, watch, stack_span, ram, instructions, eligible, skip_idle;
+    int wait_level, stays, stale_after, loop_index, loop_waits, entries;
+    std::uint32_t ram_words, code_words;
+};
+
+}  // namespace puckloop::dspic::translate

@@ -1,0 +1,16 @@
+#pragma once
+// Cores made while it lives translate as it says.
+
+#include "emu/dspic/translate/translation.h"
+
+namespace puckloop::tests {
+
+class TranslationGuard {
+  public:
+    explicit TranslationGuard(bool on, std::uint8_t hot = 1) { dspic::set_translation(on, hot); }
+    ~TranslationGuard() { dspic::set_translation(true); }
+    TranslationGuard(const TranslationGuard&) = delete;
+    TranslationGuard& operator=(const TranslationGuard&) = delete;
+};
+
+}  // namespace puckloop::tests
