@@ -72,8 +72,10 @@ Outcome Conductor::State::run() {
             sink->begin(links_);
         for (std::size_t n = 0; n < handles_.size(); ++n)
             network_->update(n, handles_[n]->state(), 0, kNever);
-        network_->preset(deliveries_);
+        network_->preset(deliveries_, changes_);
         take_deliveries(kNobody);
+        for (std::size_t n = 0; n < handles_.size(); ++n)
+            times_[n].runs_ahead = handles_[n]->state().runs_ahead;
         loop();
         wind_up();
         current_ = kNobody;
@@ -113,18 +115,30 @@ void Conductor::State::loop() {
         take_interrupt();
         plan();
         if (schedule_.complete()) return;
+        network_->settle(schedule_.bounds(), deliveries_, changes_);
+        take_deliveries(kNobody);
         for (const std::size_t n : schedule_.chosen()) {
             Time until = schedule_.target(n);
-            if (chop_)
-                until =
-                    times_[n].granted + 1 +
-                    static_cast<Time>(chop_->below(static_cast<std::uint64_t>(until - times_[n].granted)));
-            grant(n, until);
+            Time ahead = schedule_.ahead(n);
+            if (chop_) chop(n, until, ahead);
+            grant(n, until, ahead);
         }
         collect();
         if (merger_.full()) release_trace(std::min(schedule_.bounds().floor(), end_));
         keep_house();
     }
+}
+
+void Conductor::State::chop(std::size_t n, Time& until, Time& ahead) {
+    const auto below = [this](Time span) {
+        return static_cast<Time>(chop_->below(static_cast<std::uint64_t>(span)));
+    };
+    const NodeTimes& node = times_[n];
+    if (until > node.granted) until = node.granted + 1 + below(until - node.granted);
+    if (!node.runs_ahead) ahead = until;
+    // Back to what is sure it goes as it is asked to: at the end, and where it could not go on.
+    if (ahead > until && ahead > node.ahead)
+        ahead = std::max(until, node.ahead) + 1 + below(ahead - std::max(until, node.ahead));
 }
 
 void Conductor::State::take_interrupt() {
@@ -140,8 +154,12 @@ void Conductor::State::take_interrupt() {
 void Conductor::State::plan() {
     pending_.resize(slots_.size());
     for (std::size_t n = 0; n < slots_.size(); ++n) {
-        const Slot& slot = slots_[n];
-        pending_[n] = std::min(slot.first_in, slot.queue.empty() ? kNever : slot.queue.front().time);
+        Slot& slot = slots_[n];
+        if (slot.stale && !times_[n].busy) {
+            slot.unknown = first_unknown(n);
+            slot.stale = false;
+        }
+        pending_[n] = std::min(slot.unknown, slot.changed);
     }
     ScheduleLimits limits{end_, kNever, options_.stop_latency};
     if (options_.realtime) {
@@ -152,27 +170,52 @@ void Conductor::State::plan() {
     schedule_.plan(network_->channels(), pending_, times_, limits);
 }
 
-void Conductor::State::grant(std::size_t n, Time until) {
+/// The first message that node `n` has neither handled nor foreseen as it is now.
+Time Conductor::State::first_unknown(std::size_t n) const {
+    const NodeTimes& node = times_[n];
+    Time first = std::min(node.surprise, network_->first_foreseen(n, node.ahead));
+    for (const TraceRecord& record : slots_[n].queue)
+        if (record.time >= node.ahead) first = std::min(first, record.time);
+    return first;
+}
+
+/// With what comes in for node `n` before `until`, foreseen messages among it.
+void Conductor::State::fill_inbox(std::size_t n, Time until) {
     Slot& slot = slots_[n];
     slot.inbox.clear();
     slot.taken.clear();
-    while (!slot.queue.empty() && slot.queue.front().time < until) {
-        const TraceRecord& record = slot.queue.front();
-        slot.inbox.push_back({record.time, network_->wire(record).to_port, record.payload});
-        slot.taken.push_back(record);
-        std::pop_heap(slot.queue.begin(), slot.queue.end(), after);
-        slot.queue.pop_back();
+    if (times_[n].runs_ahead) {
+        for (const TraceRecord& record : slot.queue)
+            if (record.time < until) slot.taken.push_back(record);
+        network_->foreseen(n, until, slot.taken);
+        std::sort(slot.taken.begin(), slot.taken.end(),
+                  [](const TraceRecord& a, const TraceRecord& b) { return after(b, a); });
+    } else {
+        while (!slot.queue.empty() && slot.queue.front().time < until) {
+            slot.taken.push_back(slot.queue.front());
+            std::pop_heap(slot.queue.begin(), slot.queue.end(), after);
+            slot.queue.pop_back();
+        }
     }
+    for (const TraceRecord& record : slot.taken)
+        slot.inbox.push_back({record.time, network_->wire(record).to_port, record.payload});
+}
+
+void Conductor::State::grant(std::size_t n, Time until, Time ahead) {
+    Slot& slot = slots_[n];
+    if (slot.stale) slot.unknown = first_unknown(n);  // faults may have acted since the plan
+    slot.stale = false;
+    fill_inbox(n, ahead);
     slot.asked = until;
-    slot.first_in = slot.inbox.empty() ? kNever : slot.inbox.front().time;
+    slot.changed = kNever;
     times_[n].busy = true;
     ++grants_;
     ++slot.grants;
     current_ = n;
     slot.echoes.clear();
     const Time sure = std::min(until, schedule_.bounds().limit(n));
-    if (until > sure) network_->echoes(n, slot.echoes);
-    handles_[n]->grant({sure, until}, slot.inbox, slot.echoes);
+    if (!times_[n].runs_ahead && until > sure) network_->echoes(n, slot.echoes);
+    handles_[n]->grant({sure, until, ahead}, slot.inbox, slot.echoes);
 }
 
 /// Lets the granted nodes of this process work, and takes their replies in order.
@@ -232,19 +275,32 @@ void Conductor::State::collect_elsewhere(bool wait) {
 
 void Conductor::State::take_reply(std::size_t n) {
     Slot& slot = slots_[n];
-    const Time before = times_[n].granted;
-    slot.asked = handles_[n]->reached();
-    const Time first_in = slot.first_in < slot.asked ? slot.first_in : kNever;
-    for (const Message& message : handles_[n]->outbox())
-        network_->send(n, message, first_in, deliveries_);
-    times_[n] = {slot.asked, false};
-    slot.first_in = kNever;
-    while (!slot.taken.empty() && slot.taken.back().time >= slot.asked) {
+    NodeTimes& node = times_[n];
+    const Time before = node.granted;
+    const Advanced& done = handles_[n]->advanced();
+    const bool ran_ahead = std::exchange(node.runs_ahead, handles_[n]->state().runs_ahead);
+    slot.asked = done.reached;
+    Time first_in = slot.unknown < done.ahead ? slot.unknown : kNever;
+    // Having gone back, it may foresee something else from there on.
+    if (done.ahead < node.ahead) first_in = std::min(first_in, done.ahead);
+    network_->take_sent(n, handles_[n]->outbox(), done, first_in, deliveries_, changes_);
+    node.granted = done.reached;
+    node.ahead = done.ahead;
+    node.busy = false;
+    if (ran_ahead) {
+        std::erase_if(slot.queue, [&](const TraceRecord& record) { return record.time < done.reached; });
+        std::make_heap(slot.queue.begin(), slot.queue.end(), after);
+    }
+    while (!ran_ahead && !slot.taken.empty() && slot.taken.back().time >= slot.asked) {
         slot.queue.push_back(slot.taken.back());
         std::push_heap(slot.queue.begin(), slot.queue.end(), after);
         slot.taken.pop_back();
     }
-    network_->update(n, handles_[n]->state(), slot.asked, first_in);
+    node.surprise = kNever;
+    if (slot.changed < done.ahead) surprise(slot.changed_by, n, slot.changed);
+    slot.changed = kNever;
+    slot.stale = true;
+    network_->update(n, handles_[n]->state(), done.ahead, first_in);
     take_deliveries(n);
     take_stop(n, before);
     take_wound_up(n, before);
@@ -254,16 +310,42 @@ void Conductor::State::take_deliveries(std::size_t sender) {
     for (const TraceRecord& record : deliveries_) {
         merger_.add(record);
         if (lost(record)) continue;
-        const std::size_t to = network_->wire(record).to;
-        if (record.time < slots_[to].asked)
-            throw RunError(fmt::format(
-                "node {} sent a message for {:.12f} s on link {} when {} had been granted {:.12f} s",
-                sender == kNobody ? "?" : handles_[sender]->name(), to_seconds(record.time),
-                links_[record.link].name, handles_[to]->name(), to_seconds(slots_[to].asked)));
-        slots_[to].queue.push_back(record);
-        std::push_heap(slots_[to].queue.begin(), slots_[to].queue.end(), after);
+        Slot& slot = slots_[network_->wire(record).to];
+        if (record.time < slot.asked) too_late(sender, network_->wire(record).to, record.time);
+        slot.queue.push_back(record);
+        std::push_heap(slot.queue.begin(), slot.queue.end(), after);
     }
     deliveries_.clear();
+    take_changes();
+}
+
+void Conductor::State::take_changes() {
+    for (const Change& change : changes_) {
+        Slot& slot = slots_[change.to];
+        NodeTimes& node = times_[change.to];
+        if (change.time < slot.asked) too_late(change.from, change.to, change.time);
+        slot.stale = true;
+        if (!node.busy) {
+            if (change.time < node.ahead) surprise(change.from, change.to, change.time);
+        } else if (change.time < slot.changed) {
+            slot.changed = change.time;
+            slot.changed_by = change.from;
+        }
+    }
+    changes_.clear();
+}
+
+/// Something else comes in for node `to` at `time` than it foresaw.
+void Conductor::State::surprise(std::size_t from, std::size_t to, Time time) {
+    times_[to].surprise = std::min(times_[to].surprise, time);
+    if (times_[from].runs_ahead) schedule_.surprised(from, to);
+}
+
+void Conductor::State::too_late(std::size_t sender, std::size_t to, Time time) const {
+    throw RunError(
+        fmt::format("node {} sent a message for {:.12f} s to node {}, which had been granted {:.12f} s",
+                    sender == kNobody ? "?" : handles_[sender]->name(), to_seconds(time),
+                    handles_[to]->name(), to_seconds(slots_[to].asked)));
 }
 
 void Conductor::State::release_trace(Time floor) {

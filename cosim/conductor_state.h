@@ -42,9 +42,12 @@ class Conductor::State {
     struct Slot {
         Time asked = 0;
         std::uint64_t grants = 0;
-        Time first_in = kNever;          ///< of the grant under way
-        std::vector<TraceRecord> queue;  ///< heap, earliest first
-        std::vector<TraceRecord> taken;  ///< of the queue, for the grant under way
+        Time unknown = kNever;  ///< first message that the node does not know of
+        Time changed = kNever;  ///< first change in what comes in since the grant under way
+        std::size_t changed_by = kNobody;
+        bool stale = true;               ///< `unknown` is to be found again
+        std::vector<TraceRecord> queue;  ///< final and not handled; heap, earliest first
+        std::vector<TraceRecord> taken;  ///< what comes in, for the grant under way
         std::vector<Message> inbox;      ///< the same, as the node gets it
         std::vector<PortEcho> echoes;
         bool stop_seen = false;
@@ -56,14 +59,20 @@ class Conductor::State {
     void wind_up();
     void take_wound_up(std::size_t n, Time before);
     void plan();
-    void grant(std::size_t n, Time until);
+    void grant(std::size_t n, Time until, Time ahead);
+    void chop(std::size_t n, Time& until, Time& ahead);
     void collect();
     void work_here();
     void collect_elsewhere(bool wait);
     void take_reply(std::size_t n);
     void take_stop(std::size_t n, Time before);
     void end_with(const Stop& stop, std::size_t n);
+    Time first_unknown(std::size_t n) const;
+    void fill_inbox(std::size_t n, Time until);
     void take_deliveries(std::size_t sender);
+    void take_changes();
+    void surprise(std::size_t from, std::size_t to, Time time);
+    [[noreturn]] void too_late(std::size_t sender, std::size_t to, Time time) const;
     void release_trace(Time floor);
     void keep_house();
     bool stuck() const;
@@ -85,6 +94,7 @@ class Conductor::State {
     std::vector<Time> pending_;
     Schedule schedule_;
     std::vector<TraceRecord> deliveries_;
+    std::vector<Change> changes_;
     std::vector<LinkStats> stats_;  ///< one a wire
     TraceMerger merger_;
     TraceHash hash_;

@@ -79,7 +79,10 @@ class Node {
     /// UART ports only: start of the frame that is on the line and still to be handed out, if there is one.
     virtual std::optional<Time> begun(PortIndex /*port*/) const { return std::nullopt; }
 
-    /// Not null if the node can go back; valid for the node's life.
+    /// Not null if the node can go back; asked after each advance. Of such a node reaction(p) holds for
+    /// changes as well: what comes in at t adds no message on p before t + reaction(p), unless later than one
+    /// that would carry t or more, and takes none away that would carry less than t (t or less, if
+    /// reaction(p) > 0).
     virtual Rewindable* rewindable() { return nullptr; }
 
     /// Set once the node wants the run to end (a Linux program that exited, a breakpoint). Everything else

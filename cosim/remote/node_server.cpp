@@ -5,6 +5,7 @@
 #include "cosim/remote/node_processes.h"
 #include "cosim/remote/protocol.h"
 #include "cosim/remote/ring_stream.h"
+#include "cosim/schedule/run_ahead.h"
 
 #include <exception>
 
@@ -71,29 +72,30 @@ class Server {
     void hello(std::span<const std::uint8_t> body) {
         const protocol::Hello hello = protocol::read_hello(body);
         name_thread(hello.name);  // before the node makes threads, which inherit it
-        node_ = factory_(hello.json);
-        if (!node_) throw RunError("nothing can make this node");
+        std::unique_ptr<Node> node = factory_(hello.json);
+        if (!node) throw RunError("nothing can make this node");
         protocol::Ready ready;
-        ready.ports.assign(node_->ports().begin(), node_->ports().end());
-        read_state(*node_, ready.state);
+        ready.ports.assign(node->ports().begin(), node->ports().end());
+        node_ = std::make_unique<RunAhead>(std::move(node));
+        node_->read_state(ready.state);
         protocol::write_ready(bytes_, ready);
     }
 
     void grant(std::span<const std::uint8_t> body) {
         if (!node_) throw RunError("granted before it was made");
         protocol::read_grant(body, grant_);
-        outbox_.clear();
-        reached_ = advance_in_strides(*node_, reached_, grant_.reach, grant_.inbox, grant_.echoes, outbox_);
-        read_state(*node_, state_);
-        protocol::write_done(bytes_, reached_, state_, outbox_);
+        advanced_ = node_->advance(grant_.reach, grant_.inbox, grant_.echoes, outbox_);
+        node_->read_state(state_);
+        protocol::write_done(bytes_, advanced_, state_, outbox_);
     }
 
     void wind_up(std::span<const std::uint8_t> body) {
         if (!node_) throw RunError("is to end before it was made");
-        node_->wind_up(reached_, protocol::read_wind_up(body));
+        node_->wind_up(protocol::read_wind_up(body));
         outbox_.clear();
-        read_state(*node_, state_);
-        protocol::write_done(bytes_, reached_, state_, outbox_);
+        advanced_.sure = 0;
+        node_->read_state(state_);
+        protocol::write_done(bytes_, advanced_, state_, outbox_);
     }
 
     void finish() {
@@ -126,9 +128,9 @@ class Server {
     Bell conductor_bell_;
     RingStream stream_;
     const NodeFactory& factory_;
-    std::unique_ptr<Node> node_;
+    std::unique_ptr<RunAhead> node_;
     protocol::Grant grant_;
-    Time reached_ = 0;
+    Advanced advanced_;
     NodeState state_;
     std::vector<Message> outbox_;
     Bytes bytes_;

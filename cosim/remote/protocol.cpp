@@ -56,6 +56,7 @@ void write_state(ByteWriter& writer, const NodeState& state) {
         writer.u32(state.stop->together);
     }
     writer.time(state.wound_up);
+    writer.u8(state.runs_ahead);
 }
 
 void read_state(ByteReader& reader, NodeState& state) {
@@ -76,6 +77,7 @@ void read_state(ByteReader& reader, NodeState& state) {
         state.stop = stop;
     }
     state.wound_up = reader.time();
+    state.runs_ahead = reader.boolean();
 }
 
 void write_messages(ByteWriter& writer, const std::vector<Message>& messages) {
@@ -116,6 +118,7 @@ void write_grant(Bytes& bytes, Reach reach, const std::vector<Message>& inbox,
     Frame frame(bytes, Kind::Grant);
     frame.writer.time(reach.sure);
     frame.writer.time(reach.until);
+    frame.writer.time(reach.ahead);
     write_messages(frame.writer, inbox);
     frame.writer.u32(static_cast<std::uint32_t>(echoes.size()));
     for (const PortEcho& echo : echoes) {
@@ -126,9 +129,12 @@ void write_grant(Bytes& bytes, Reach reach, const std::vector<Message>& inbox,
     }
 }
 
-void write_done(Bytes& bytes, Time reached, const NodeState& state, const std::vector<Message>& outbox) {
+void write_done(Bytes& bytes, const Advanced& advanced, const NodeState& state,
+                const std::vector<Message>& outbox) {
     Frame frame(bytes, Kind::Done);
-    frame.writer.time(reached);
+    frame.writer.time(advanced.reached);
+    frame.writer.time(advanced.ahead);
+    frame.writer.u32(static_cast<std::uint32_t>(advanced.sure));
     write_state(frame.writer, state);
     write_messages(frame.writer, outbox);
 }
@@ -187,6 +193,7 @@ void read_grant(std::span<const std::uint8_t> body, Grant& grant) {
     ByteReader reader = open(body, Kind::Grant);
     grant.reach.sure = reader.time();
     grant.reach.until = reader.time();
+    grant.reach.ahead = reader.time();
     read_messages(reader, grant.inbox);
     grant.echoes.resize(reader.count(kPortEcho));
     for (PortEcho& echo : grant.echoes) {
@@ -205,15 +212,20 @@ int read_wind_up(std::span<const std::uint8_t> body) {
     return signal;
 }
 
-Time read_done(std::span<const std::uint8_t> body, std::size_t ports, NodeState& state,
-               std::vector<Message>& outbox) {
+Advanced read_done(std::span<const std::uint8_t> body, std::size_t ports, NodeState& state,
+                   std::vector<Message>& outbox) {
     ByteReader reader = open(body, Kind::Done);
-    const Time reached = reader.time();
+    Advanced advanced;
+    advanced.reached = reader.time();
+    advanced.ahead = reader.time();
+    advanced.sure = reader.u32();
     read_state(reader, state);
     if (state.ports.size() != ports) throw CodecError("state of another number of ports");
     read_messages(reader, outbox);
     reader.end();
-    return reached;
+    if (advanced.ahead < advanced.reached || advanced.sure > outbox.size())
+        throw CodecError("less than nothing foreseen");
+    return advanced;
 }
 
 std::string read_report(std::span<const std::uint8_t> body) {

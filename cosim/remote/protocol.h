@@ -23,8 +23,8 @@ inline constexpr int kDescriptor = 3;
 enum class Kind : std::uint8_t {
     Hello,   ///< to the node: version, name, description
     Ready,   ///< from the node: ports, state
-    Grant,   ///< to the node: until, inbox, echoes
-    Done,    ///< from the node: reached, state, outbox
+    Grant,   ///< to the node: reach, inbox, echoes
+    Done,    ///< from the node: how far it came, state, outbox
     WindUp,  ///< to the node: signal
     Finish,  ///< to the node: nothing
     Report,  ///< from the node: JSON text
@@ -54,7 +54,8 @@ void write_hello(Bytes& bytes, const Hello& hello);
 void write_ready(Bytes& bytes, const Ready& ready);
 void write_grant(Bytes& bytes, Reach reach, const std::vector<Message>& inbox,
                  const std::vector<PortEcho>& echoes);
-void write_done(Bytes& bytes, Time reached, const NodeState& state, const std::vector<Message>& outbox);
+void write_done(Bytes& bytes, const Advanced& advanced, const NodeState& state,
+                const std::vector<Message>& outbox);
 void write_wind_up(Bytes& bytes, int signal);
 void write_finish(Bytes& bytes);
 void write_report(Bytes& bytes, const std::string& json);
@@ -67,9 +68,9 @@ Ready read_ready(std::span<const std::uint8_t> body);
 /// Into `grant`, whose memory is reused.
 void read_grant(std::span<const std::uint8_t> body, Grant& grant);
 int read_wind_up(std::span<const std::uint8_t> body);
-/// Into `state` and `outbox` (reused) of a node with `ports` ports; returns the time reached.
-Time read_done(std::span<const std::uint8_t> body, std::size_t ports, NodeState& state,
-               std::vector<Message>& outbox);
+/// Into `state` and `outbox` (reused) of a node with `ports` ports.
+Advanced read_done(std::span<const std::uint8_t> body, std::size_t ports, NodeState& state,
+                   std::vector<Message>& outbox);
 std::string read_report(std::span<const std::uint8_t> body);
 Error read_error(std::span<const std::uint8_t> body);
 

@@ -58,9 +58,10 @@ class RemoteNode : public NodeHandle {
     bool poll(bool wait) override {
         if (!receive(wait)) return false;
         decode(protocol::Kind::Done, [&](auto body) {
-            const Time reached = protocol::read_done(body, ports_.size(), state_, outbox_);
-            if (reached <= reached_ || reached > asked_) throw CodecError("a time that was not granted");
-            reached_ = reached;
+            const Advanced done = protocol::read_done(body, ports_.size(), state_, outbox_);
+            if (done.reached < reached() || done.reached > asked_)
+                throw CodecError("a time that was not granted");
+            advanced_ = done;
         });
         busy_ = false;
         return true;
@@ -75,7 +76,8 @@ class RemoteNode : public NodeHandle {
         while (!receive(true)) {
         }
         decode(protocol::Kind::Done, [&](auto body) {
-            if (protocol::read_done(body, ports_.size(), state_, outbox_) != reached_ || !outbox_.empty())
+            if (protocol::read_done(body, ports_.size(), state_, outbox_).reached != reached() ||
+                !outbox_.empty())
                 throw CodecError("more than it was asked for");
         });
     }
@@ -146,7 +148,7 @@ class RemoteNode : public NodeHandle {
         lost_ = true;
         if (error.input) throw InputError("", "", error.text);
         throw RunError(fmt::format("node {} stopped at simulated time {:.9f} s: {}", name_,
-                                   to_seconds(reached_), error.text));
+                                   to_seconds(reached()), error.text));
     }
 
     /// Asked before looking for what it said: a node that dies has said it before.
@@ -165,7 +167,7 @@ class RemoteNode : public NodeHandle {
         const std::string granted =
             busy_ ? fmt::format(" (granted to {:.9f} s)", to_seconds(asked_)) : std::string();
         throw RunError(fmt::format("node {} (process {}) {}; last simulated time {:.9f} s{}", name_,
-                                   child_->id(), cause, to_seconds(reached_), granted));
+                                   child_->id(), cause, to_seconds(reached()), granted));
     }
 
     SharedMemory memory_;

@@ -6,9 +6,18 @@ namespace puckloop::cosim {
 
 namespace {
 Time bound(const Channel& channel, const std::vector<Time>& earliest) {
-    return std::min(channel.base, later(earliest[channel.from], channel.reaction));
+    return std::min(channel.base, channel.answer(earliest[channel.from]));
 }
 }  // namespace
+
+Time Channel::answer(Time time) const {
+    const Time caused = later(time, reaction);
+    if (foreseen.empty() || !may_change(foreseen.back().stamp, time)) return caused;
+    const auto changed =
+        std::lower_bound(foreseen.begin(), foreseen.end(), time,
+                         [this](const Foreseen& message, Time t) { return !may_change(message.stamp, t); });
+    return std::min(caused, changed->delivery);
+}
 
 /// Lists of the channels that leave each node; they hardly ever change.
 void Bounds::sort_channels(std::size_t nodes) {
@@ -64,7 +73,7 @@ void Bounds::relax() {
             told_[n] = time;
             for (const std::size_t c : leaving_[n]) {
                 const Channel& channel = (*channels_)[c];
-                const Time there = later(time, channel.reaction);
+                const Time there = channel.answer(time);
                 if (there >= earliest_[channel.to]) continue;
                 earliest_[channel.to] = there;
                 changed = true;
@@ -80,7 +89,7 @@ std::size_t Bounds::root(std::size_t n) const {
         if (critical_[n] == kNobody) return kNobody;
         const Channel& channel = (*channels_)[critical_[n]];
         const std::size_t from = channel.from;
-        if (channel.base <= later(earliest_[from], channel.reaction)) return from;
+        if (channel.base <= channel.answer(earliest_[from])) return from;
         if ((*pending_)[from] <= limit_[from]) return from;
         n = from;
     }

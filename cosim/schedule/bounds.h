@@ -6,9 +6,14 @@
 //     limit(t)   = min of bound(c) over the channels into t
 //     earliest(t)= min(pending(t), limit(t))
 // where base is the sender's promise and reaction its shortest answer, both with the link's own flight time
-// added, and pending(t) is the first message already known that t has not handled. The answer is the greatest
-// solution, which is a shortest path from the promises and pending messages: chains of zero reactions of any
-// length come out right.
+// added, and pending(t) is the first message already known that t has not handled.
+//
+// A node that runs ahead (cosim/schedule/run_ahead.h) has handled what is foreseen up to some time; pending
+// is then the first message that it did not foresee. Its channels hold the messages that it is going to send
+// if nothing else comes in. Its promise lies beyond them; what comes in at t may change those stamped t or
+// later, so that bound(c) is no later than the delivery of the first one stamped earliest(f) or later. The
+// answer is the greatest solution, which is a shortest path from the promises and pending messages: chains of
+// zero reactions of any length come out right.
 
 #include "cosim/core/time.h"
 
@@ -20,11 +25,27 @@ namespace puckloop::cosim {
 
 inline constexpr std::size_t kNobody = static_cast<std::size_t>(-1);
 
+/// A message that is going to be sent unless something comes in for its sender by its stamp.
+struct Foreseen {
+    Time stamp = 0;
+    Time delivery = 0;
+};
+
 struct Channel {
     std::size_t from = 0;
     std::size_t to = 0;
     Time base = 0;
     Time reaction = 0;
+    std::vector<Foreseen> foreseen{};  ///< in order
+    bool instant =
+        true;  ///< the sender may answer, or take back, at the very time at which something comes in
+    /// How surely a message comes when the promise falls due, by what happened before: from 0, never.
+    int punctual = 0;
+
+    /// The earliest delivery of what the sender may change or send when something comes in for it at `time`.
+    Time answer(Time time) const;
+    /// Whether what comes in at `time` may change what is foreseen with this stamp.
+    bool may_change(Time stamp, Time time) const { return instant ? stamp >= time : stamp > time; }
 };
 
 /// Bounds of one instant of the run; kept between calls only to save allocations.
@@ -37,6 +58,8 @@ class Bounds {
 
     /// Nothing not yet known can reach node `n` before this.
     Time limit(std::size_t n) const { return limit_[n]; }
+    /// Nothing that node `n` has not handled comes in before: what it sends stamped earlier is final.
+    Time earliest(std::size_t n) const { return earliest_[n]; }
     /// No message still to come on any channel is delivered before this.
     Time floor() const { return floor_; }
     /// The node that must go on for limit(n) to grow: the one whose promise, or whose message not yet

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "cosim/schedule/node_handle.h"
+#include "cosim/schedule/run_ahead.h"
 
 #include <fmt/format.h>
 
@@ -16,6 +17,7 @@ void read_state(const Node& node, NodeState& state) {
     }
     state.stop = node.stop();
     state.wound_up = node.wound_up();
+    state.runs_ahead = false;
 }
 
 namespace {
@@ -23,11 +25,13 @@ namespace {
 class LocalNode : public NodeHandle {
   public:
     LocalNode(const std::string& name, const std::string& json, const NodeFactory& factory)
-        : node_(factory(json)) {
+        : LocalNode(name, factory(json)) {}
+    LocalNode(const std::string& name, std::unique_ptr<Node> node) {
         name_ = name;
-        if (!node_) throw RunError(fmt::format("node {}: nothing can make it", name_));
-        ports_.assign(node_->ports().begin(), node_->ports().end());
-        read_state(*node_, state_);
+        if (!node) throw RunError(fmt::format("node {}: nothing can make it", name_));
+        ports_.assign(node->ports().begin(), node->ports().end());
+        node_ = std::make_unique<RunAhead>(std::move(node));
+        node_->read_state(state_);
     }
 
     void await_ready() override {}
@@ -39,16 +43,14 @@ class LocalNode : public NodeHandle {
     }
 
     bool poll(bool) override {
-        outbox_.clear();
-        guarded("stopped",
-                [&] { reached_ = advance_in_strides(*node_, reached_, reach_, *inbox_, *echoes_, outbox_); });
-        read_state(*node_, state_);
+        guarded("stopped", [&] { advanced_ = node_->advance(reach_, *inbox_, *echoes_, outbox_); });
+        node_->read_state(state_);
         return true;
     }
 
     void wind_up(int signal) override {
-        guarded("could not wind up", [&] { node_->wind_up(reached_, signal); });
-        read_state(*node_, state_);
+        guarded("could not wind up", [&] { node_->wind_up(signal); });
+        node_->read_state(state_);
     }
 
     std::string finish() override {
@@ -67,11 +69,11 @@ class LocalNode : public NodeHandle {
             throw;
         } catch (const std::exception& error) {
             throw RunError(fmt::format("node {} {} at simulated time {:.9f} s: {}", name_, what,
-                                       to_seconds(reached_), error.what()));
+                                       to_seconds(reached()), error.what()));
         }
     }
 
-    std::unique_ptr<Node> node_;
+    std::unique_ptr<RunAhead> node_;
     const std::vector<Message>* inbox_ = nullptr;
     const std::vector<PortEcho>* echoes_ = nullptr;
     Reach reach_;

@@ -28,6 +28,9 @@ PortIndex find_port(const NodeHandle& node, const LinkSpec& link, const std::str
                      fmt::format("node {} has no port \"{}\"", node.name(), name), known);
 }
 
+/// Promises in a row that were broken by silence, until a sender is not counted on any more.
+constexpr int kPatience = 4;
+
 }  // namespace
 
 Network::Network(const std::vector<std::unique_ptr<NodeHandle>>& nodes, const std::vector<LinkSpec>& links,
@@ -40,6 +43,9 @@ Network::Network(const std::vector<std::unique_ptr<NodeHandle>>& nodes, const st
     for (std::size_t l = 0; l < links.size(); ++l)
         attach(links[l], static_cast<std::uint16_t>(l));
     ways_back_.resize(nodes.size());
+    into_.resize(nodes.size());
+    for (std::size_t w = 0; w < wires_.size(); ++w)
+        into_[wires_[w].to].push_back(w);
     for (std::size_t f = 0; f < faults.size(); ++f)
         attach_fault(faults[f], f, seed);
 }
@@ -61,8 +67,8 @@ void Network::attach(const LinkSpec& spec, std::uint16_t link) {
                          "one for UART links, and for no others");
     if (spec.latency < 0) throw InputError("", place, "negative latency");
     const Time flight = flight_time(spec);
-    wires_.push_back({link, Direction::FromA, a, port_a, b, port_b, is_uart, flight, spec.latency, 0, {}});
-    wires_.push_back({link, Direction::FromB, b, port_b, a, port_a, is_uart, flight, spec.latency, 0, {}});
+    wires_.push_back({link, Direction::FromA, a, port_a, b, port_b, is_uart, flight, spec.latency});
+    wires_.push_back({link, Direction::FromB, b, port_b, a, port_a, is_uart, flight, spec.latency});
     for (const std::size_t w : {wires_.size() - 2, wires_.size() - 1}) {
         std::size_t& slot = port_wire_[wires_[w].from][wires_[w].from_port];
         if (slot != kNobody)
@@ -92,24 +98,40 @@ void Network::attach_fault(const FaultSpec& spec, std::size_t index, std::uint64
 }
 
 void Network::update(std::size_t n, const NodeState& state, Time reached, Time first_in) {
+    sent_.resize(std::max(sent_.size(), port_wire_[n].size()));
     for (std::size_t p = 0; p < port_wire_[n].size(); ++p) {
         if (port_wire_[n][p] == kNobody) continue;
-        const Wire& wire = wires_[port_wire_[n][p]];
+        Wire& wire = wires_[port_wire_[n][p]];
         const PortState& port = state.ports[p];
         Channel& channel = channels_[port_wire_[n][p]];
+        Sent& sent = sent_[p];
         // A frame begins when the node promised or later; what an incoming message causes begins after it.
         const Time begun = wire.is_uart ? later(port.begun.value_or(reached), wire.flight) : 0;
-        const Time said_before = std::min(channel.base, later(first_in, channel.reaction));
-        channel.base = std::max(said_before, later(std::max(port.promise, begun), wire.latency));
+        const Time said_before = std::min({wire.base, later(first_in, channel.reaction), sent.first_change});
+        const Time base = std::max(said_before, later(std::max(port.promise, begun), wire.latency));
+        judge_punctuality(channel, base, sent);
+        if (state.runs_ahead) channel.punctual = 0;
+        wire.base = base;
+        update_channel(port_wire_[n][p]);
         const Time reaction = later(std::max(port.reaction, wire.flight), wire.latency);
         if (reaction != channel.reaction) ++reactions_;
         channel.reaction = reaction;
+        channel.instant = port.reaction == 0;
+        sent = {std::move(sent.messages)};
     }
+}
+
+/// Whether something came when the promise fell due: `base` is the next one.
+void Network::judge_punctuality(Channel& channel, Time base, const Sent& sent) const {
+    if (sent.first_new != kNever)
+        channel.punctual = sent.first_new == channel.base ? kPatience : std::max(0, channel.punctual - 1);
+    else if (base > channel.base)
+        channel.punctual = std::max(0, channel.punctual - 1);
 }
 
 void Network::renew(std::size_t n, const NodeState& state, Time now) {
     for (const std::size_t wire : port_wire_[n])
-        if (wire != kNobody) channels_[wire].base = 0;
+        if (wire != kNobody) wires_[wire].base = 0;
     update(n, state, now, kNever);
 }
 
@@ -133,9 +155,9 @@ void Network::echoes(std::size_t n, std::vector<PortEcho>& echoes) {
     }
 }
 
-void Network::check_promise(const Wire& wire, const Message& message, Time delivery, Time first_in) const {
+void Network::check_promise(const Wire& wire, Time stamp, Time delivery, Time first_in) const {
     const Channel& channel = channels_[wire.link * 2u + static_cast<unsigned>(wire.direction)];
-    const Time earliest = std::min(channel.base, later(first_in, channel.reaction));
+    const Time earliest = std::min(channel.base, channel.answer(first_in));
     if (delivery >= earliest) return;
     const NodeHandle& node = *nodes_[wire.from];
     const PortState& port = node.state().ports[wire.from_port];
@@ -146,42 +168,151 @@ void Network::check_promise(const Wire& wire, const Message& message, Time deliv
         "node {} broke its promise on port {}: a message stamped {}, to be delivered at {}, after it had "
         "said: "
         "not before {} (first message in since: {}; promise now {}, reaction now {}, frame on the line {})",
-        node.name(), node.ports()[wire.from_port].name, seconds(message.time), seconds(delivery),
-        seconds(earliest), seconds(first_in), seconds(port.promise), seconds(port.reaction),
+        node.name(), node.ports()[wire.from_port].name, seconds(stamp), seconds(delivery), seconds(earliest),
+        seconds(first_in), seconds(port.promise), seconds(port.reaction),
         port.begun ? "begun at " + seconds(*port.begun) : "none"));
 }
 
-void Network::send(std::size_t n, const Message& message, Time first_in,
-                   std::vector<TraceRecord>& deliveries) {
-    if (message.port >= port_wire_[n].size())
-        throw RunError(fmt::format("node {} sent a message by port {}, which it does not have",
-                                   nodes_[n]->name(), message.port));
-    const std::size_t w = port_wire_[n][message.port];
-    if (w == kNobody) {  // an open serial line is no mistake
-        if (nodes_[n]->ports()[message.port].kind != PortKind::Uart) ++unlinked_;
-        return;
+void Network::take_sent(std::size_t n, const std::vector<Message>& outbox, const Advanced& done,
+                        Time first_in, std::vector<TraceRecord>& deliveries, std::vector<Change>& changes) {
+    const std::size_t ports = port_wire_[n].size();
+    sent_.resize(std::max(sent_.size(), ports));
+    for (std::size_t p = 0; p < ports; ++p) {
+        sent_[p].messages.clear();
+        sent_[p].sure = 0;
     }
+    for (std::size_t i = 0; i < outbox.size(); ++i) {
+        const PortIndex port = outbox[i].port;
+        if (port >= ports)
+            throw RunError(fmt::format("node {} sent a message by port {}, which it does not have",
+                                       nodes_[n]->name(), port));
+        sent_[port].messages.push_back(outbox[i]);
+        if (i < done.sure) ++sent_[port].sure;
+    }
+    for (std::size_t p = 0; p < ports; ++p) {
+        const std::size_t w = port_wire_[n][p];
+        if (w != kNobody)
+            take_wire(w, sent_[p], done.ahead, first_in, deliveries, changes);
+        else if (nodes_[n]->ports()[p].kind != PortKind::Uart)  // an open serial line is no mistake
+            unlinked_ += sent_[p].sure;
+    }
+}
+
+/// The first message that is not what was foreseen; how many were, if all are.
+std::size_t Network::first_difference(const Wire& wire, const Sent& sent) const {
+    const auto pair =
+        std::mismatch(wire.foreseen.begin(), wire.foreseen.end(), sent.messages.begin(), sent.messages.end());
+    return static_cast<std::size_t>(pair.first - wire.foreseen.begin());
+}
+
+void Network::take_wire(std::size_t w, Sent& sent, Time ahead, Time first_in,
+                        std::vector<TraceRecord>& deliveries, std::vector<Change>& changes) {
     Wire& wire = wires_[w];
+    if (wire.foreseen.empty() && sent.messages.empty()) return;
+    const auto delivery = [&wire](const Message& message) {
+        return delivery_time(message, wire.flight, wire.latency);
+    };
+    std::size_t first = first_difference(wire, sent);
+    // One that went back will send again what is final already.
+    while (first == sent.messages.size() && first < wire.settled && wire.foreseen[first].time >= ahead)
+        sent.messages.push_back(wire.foreseen[first++]);
+    if (first < wire.foreseen.size()) {
+        const Message& gone = wire.foreseen[first];
+        sent.first_change = delivery(gone);
+        if (first < wire.settled)
+            throw RunError(fmt::format("node {} took back a message stamped {:.12f} s that was final",
+                                       nodes_[wire.from]->name(), to_seconds(gone.time)));
+        // What lies beyond where the sender now stands may come again.
+        if (gone.time < ahead) check_promise(wire, gone.time, sent.first_change, first_in);
+    }
+    for (std::size_t i = first; i < sent.messages.size(); ++i)
+        check_promise(wire, sent.messages[i].time, delivery(sent.messages[i]), first_in);
+    if (first < sent.messages.size()) sent.first_new = delivery(sent.messages[first]);
+    const Time change = std::min(sent.first_new, sent.first_change);
+    if (change != kNever && wire.faults.empty()) changes.push_back({wire.from, wire.to, change});
+    for (std::size_t i = wire.settled; i < sent.sure; ++i)
+        send(wire, sent.messages[i], deliveries, changes);
+    wire.settled = std::max(wire.settled, sent.sure) - sent.sure;
+    wire.foreseen.assign(sent.messages.begin() + static_cast<std::ptrdiff_t>(sent.sure), sent.messages.end());
+    update_channel(w);
+}
+
+/// To what the wire holds. What faults make of a message is known once it is final.
+void Network::update_channel(std::size_t w) {
+    const Wire& wire = wires_[w];
+    Channel& channel = channels_[w];
+    channel.base = wire.base;
+    channel.foreseen.clear();
+    for (std::size_t i = wire.settled; i < wire.foreseen.size(); ++i) {
+        const Time delivery = delivery_time(wire.foreseen[i], wire.flight, wire.latency);
+        if (!wire.faults.empty()) {
+            channel.base = std::min(channel.base, delivery);
+            return;
+        }
+        channel.foreseen.push_back({wire.foreseen[i].time, delivery});
+    }
+}
+
+void Network::settle(const Bounds& bounds, std::vector<TraceRecord>& deliveries,
+                     std::vector<Change>& changes) {
+    for (std::size_t w = 0; w < wires_.size(); ++w) {
+        Wire& wire = wires_[w];
+        const std::size_t before = wire.settled;
+        while (wire.settled < wire.foreseen.size() &&
+               !channels_[w].may_change(wire.foreseen[wire.settled].time, bounds.earliest(wire.from)))
+            send(wire, wire.foreseen[wire.settled++], deliveries, changes);
+        if (wire.settled != before) update_channel(w);
+    }
+}
+
+void Network::foreseen(std::size_t n, Time until, std::vector<TraceRecord>& inbox) const {
+    for (const std::size_t w : into_[n]) {
+        const Wire& wire = wires_[w];
+        if (!wire.faults.empty()) continue;
+        for (std::size_t i = wire.settled; i < wire.foreseen.size(); ++i) {
+            const Time time = delivery_time(wire.foreseen[i], wire.flight, wire.latency);
+            if (time < until)
+                inbox.push_back({time, wire.link, wire.direction, wire.sequence + (i - wire.settled),
+                                 FaultKind::None, wire.foreseen[i].payload});
+        }
+    }
+}
+
+Time Network::first_foreseen(std::size_t n, Time from) const {
+    Time first = kNever;
+    for (const std::size_t w : into_[n])
+        for (const Foreseen& message : channels_[w].foreseen)
+            if (message.delivery >= from) {
+                first = std::min(first, message.delivery);
+                break;
+            }
+    return first;
+}
+
+void Network::send(Wire& wire, const Message& message, std::vector<TraceRecord>& deliveries,
+                   std::vector<Change>& changes) {
     const Time time = delivery_time(message, wire.flight, wire.latency);
-    check_promise(wire, message, time, first_in);
     batch_.assign(1, {Message{time, wire.to_port, message.payload}, FaultKind::None});
     for (LinkFault* fault : wire.faults)
         fault->apply(batch_);
-    deliver(wire, deliveries);
+    deliver(wire, deliveries, changes);
 }
 
-void Network::preset(std::vector<TraceRecord>& deliveries) {
+void Network::preset(std::vector<TraceRecord>& deliveries, std::vector<Change>& changes) {
     for (Wire& wire : wires_)
         for (const LinkFault* fault : wire.faults) {
             batch_ = fault->preset();
-            deliver(wire, deliveries);
+            deliver(wire, deliveries, changes);
         }
 }
 
-void Network::deliver(Wire& wire, std::vector<TraceRecord>& deliveries) {
-    for (const Delivery& delivery : batch_)
+void Network::deliver(Wire& wire, std::vector<TraceRecord>& deliveries, std::vector<Change>& changes) {
+    for (const Delivery& delivery : batch_) {
         deliveries.push_back({delivery.message.time, wire.link, wire.direction, wire.sequence++,
                               delivery.fault, delivery.message.payload});
+        if (!wire.faults.empty() && !lost(deliveries.back()))
+            changes.push_back({wire.from, wire.to, delivery.message.time});
+    }
 }
 
 }  // namespace puckloop::cosim

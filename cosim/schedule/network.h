@@ -25,7 +25,19 @@ struct Wire {
     Time flight = 0;
     Time latency = 0;
     std::uint64_t sequence = 0;
-    std::vector<LinkFault*> faults;
+    std::vector<LinkFault*> faults{};
+    /// What its sender, which runs ahead, has sent since its mark, and how much of that is final and was
+    /// delivered. Where there are faults the rest is not known to the receiver before.
+    std::vector<Message> foreseen{};
+    std::size_t settled = 0;
+    Time base = 0;  ///< nothing but what is foreseen is delivered before, as the sender promised
+};
+
+/// What a node is to receive became another from `time` on, by what `from` sent.
+struct Change {
+    std::size_t from = 0;
+    std::size_t to = 0;
+    Time time = 0;
 };
 
 class Network {
@@ -36,6 +48,7 @@ class Network {
 
     /// Takes over what node `n`, whose last reply covers everything before `reached`, says of its future.
     /// What it said before still holds, as far as `first_in`, the first message it took since, lets it.
+    /// Before that take_sent() has taken what it sent.
     void update(std::size_t n, const NodeState& state, Time reached, Time first_in);
     /// Takes over what node `n` says of its future after it was asked to wind up at `now`, which all nodes
     /// have reached: what it said before holds no more.
@@ -44,12 +57,20 @@ class Network {
     /// What comes back of what node `n` says on each port, as the others stand now.
     void echoes(std::size_t n, std::vector<PortEcho>& echoes);
 
-    /// Sends one message of node `n` on its way. Appends what it becomes to `deliveries` (lost ones too).
-    /// `first_in` is the first message that the node had to answer when it sent this one, or kNever.
-    /// Throws RunError when the message is earlier than the node promised.
-    void send(std::size_t n, const Message& message, Time first_in, std::vector<TraceRecord>& deliveries);
+    /// Takes what node `n` has sent since the mark before its last one: `done.sure` messages are final, the
+    /// others foreseen. Appends what final messages become to `deliveries` (lost ones too), and the receivers
+    /// of those foreseen to `changes`. `first_in` is the first message that the node had to answer, or
+    /// kNever. Throws RunError when a message is earlier than the node promised.
+    void take_sent(std::size_t n, const std::vector<Message>& outbox, const Advanced& done, Time first_in,
+                   std::vector<TraceRecord>& deliveries, std::vector<Change>& changes);
+    /// Delivers what is foreseen and cannot change any more.
+    void settle(const Bounds& bounds, std::vector<TraceRecord>& deliveries, std::vector<Change>& changes);
+    /// Appends what is foreseen for node `n` before `until`, in the order of the trace.
+    void foreseen(std::size_t n, Time until, std::vector<TraceRecord>& inbox) const;
+    /// The first message foreseen for node `n` from `from` on.
+    Time first_foreseen(std::size_t n, Time from) const;
     /// What faults put on the lines by themselves.
-    void preset(std::vector<TraceRecord>& deliveries);
+    void preset(std::vector<TraceRecord>& deliveries, std::vector<Change>& changes);
 
     const Wire& wire(const TraceRecord& record) const {
         return wires_[record.link * 2u + static_cast<unsigned>(record.direction)];
@@ -69,9 +90,24 @@ class Network {
 
     void attach(const LinkSpec& spec, std::uint16_t link);
     void attach_fault(const FaultSpec& spec, std::size_t index, std::uint64_t seed);
-    void check_promise(const Wire& wire, const Message& message, Time delivery, Time first_in) const;
+    /// Those of one port of the node that take_sent() is about.
+    struct Sent {
+        std::vector<Message> messages;
+        std::size_t sure = 0;
+        Time first_new = kNever;     ///< delivery of the first message that had not been foreseen
+        Time first_change = kNever;  ///< delivery of the first message that had been, and is no more
+    };
+
+    void check_promise(const Wire& wire, Time stamp, Time delivery, Time first_in) const;
+    void take_wire(std::size_t w, Sent& sent, Time ahead, Time first_in, std::vector<TraceRecord>& deliveries,
+                   std::vector<Change>& changes);
+    std::size_t first_difference(const Wire& wire, const Sent& sent) const;
+    void send(Wire& wire, const Message& message, std::vector<TraceRecord>& deliveries,
+              std::vector<Change>& changes);
+    void update_channel(std::size_t w);
+    void judge_punctuality(Channel& channel, Time base, const Sent& sent) const;
     const std::vector<Time>& distances_to_node(std::size_t n);
-    void deliver(Wire& wire, std::vector<TraceRecord>& deliveries);
+    void deliver(Wire& wire, std::vector<TraceRecord>& deliveries, std::vector<Change>& changes);
 
     const std::vector<std::unique_ptr<NodeHandle>>& nodes_;
     const std::vector<LinkSpec>& links_;
@@ -82,6 +118,8 @@ class Network {
     std::vector<std::vector<std::size_t>> port_wire_;  ///< node, port -> wire or kNobody
     std::vector<std::unique_ptr<LinkFault>> faults_;
     std::vector<std::size_t> fault_specs_;
+    std::vector<std::vector<std::size_t>> into_;  ///< node -> wires that end there
+    std::vector<Sent> sent_;                      ///< by port
     std::vector<Delivery> batch_;
     std::uint64_t unlinked_ = 0;
 };

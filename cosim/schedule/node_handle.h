@@ -30,10 +30,18 @@ struct PortState {
 struct NodeState {
     std::vector<PortState> ports;
     std::optional<Stop> stop;
-    Time wound_up = 0;  ///< Node::wound_up
+    Time wound_up = 0;        ///< Node::wound_up
+    bool runs_ahead = false;  ///< it can go back (Node::rewindable())
 };
 
-/// Fills `state` from a node in this process.
+/// What came of one grant.
+struct Advanced {
+    Time reached = 0;      ///< what lies before is final
+    Time ahead = 0;        ///< executed so far on what was foreseen; >= reached
+    std::size_t sure = 0;  ///< so many messages of the outbox are final, the others foreseen
+};
+
+/// Fills `state` from a node in this process, which has not run ahead.
 void read_state(const Node& node, NodeState& state);
 
 /// Every call may throw RunError that names the node, the time it had reached and the cause.
@@ -48,7 +56,8 @@ class NodeHandle {
     /// As of the last reply.
     const NodeState& state() const { return state_; }
     /// How far the last reply says it came; messages of its inbox from then on were not taken.
-    Time reached() const { return reached_; }
+    const Advanced& advanced() const { return advanced_; }
+    Time reached() const { return advanced_.reached; }
     /// Messages of the last reply, by the sender's port.
     std::vector<Message>& outbox() { return outbox_; }
 
@@ -76,7 +85,7 @@ class NodeHandle {
     std::vector<Port> ports_;
     NodeState state_;
     std::vector<Message> outbox_;
-    Time reached_ = 0;
+    Advanced advanced_;
 };
 
 /// A node in this process.

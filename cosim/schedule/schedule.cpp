@@ -7,7 +7,23 @@ namespace puckloop::cosim {
 namespace {
 // Free stretch, as a part of the stop latency, for which a node nobody waits for is granted all the same.
 constexpr Time kStretchDivisor = 4;
+// To run ahead at least and at most: what is wrong is executed again from the mark on, so that a surprise every
+// few milliseconds (a program that polls a board) costs a stretch each.
+constexpr Time kShortest = 50 * kMicrosecond;
+constexpr Time kLongest = 500 * kMicrosecond;
+// Stretches without surprise after which a node is no longer put behind others, and how many ranks there are.
+constexpr int kCalm = 16;
+constexpr int kLastRank = 3;
 }  // namespace
+
+Schedule::Stretch::Stretch() : length(kLongest) {}
+
+void Schedule::surprised(std::size_t from, std::size_t to) {
+    if (std::max(from, to) >= stretches_.size()) return;
+    Stretch& stretch = stretches_[to];
+    stretch.rank = std::max(stretch.rank, std::min(kLastRank, stretches_[from].rank + 1));
+    stretch.calm = 0;
+}
 
 /// Limit of node `n`, which its own messages set, as if it were silent: it will go in strides.
 Time Schedule::limit_if_silent(std::size_t n) {
@@ -37,31 +53,109 @@ void Schedule::plan(const std::vector<Channel>& channels, const std::vector<Time
     reached_ = limits.end;
     for (const NodeTimes& node : nodes)
         reached_ = std::min(reached_, node.granted);
-    complete_ = reached_ >= limits.end;
-    const Time window = later(reached_, limits.stop_latency);
-    const Time ceiling = std::min({window, limits.end, limits.pace});
+    complete_ = reached_ >= limits.end && std::all_of(nodes.begin(), nodes.end(), [&](const NodeTimes& node) {
+                    return node.ahead <= std::max(limits.end, node.granted);
+                });
+    window_ = later(reached_, limits.stop_latency);
+    ceiling_ = std::min({window_, limits.end, limits.pace});
 
-    target_.assign(count, 0);
-    bool busy = false, last_holds_up = false;
-    for (std::size_t n = 0; n < count; ++n) {
-        busy = busy || nodes[n].busy;
-        const Time limit = bounds_.limit(n);
-        target_[n] = std::min(limit, ceiling);
-        if (nodes[n].granted < limits.end && limit > window) last_holds_up = true;
-    }
+    target_.resize(count);
+    ahead_.resize(count);
+    stretches_.resize(count);
+    for (std::size_t n = 0; n < count; ++n)
+        target_[n] = ahead_[n] = std::min(bounds_.limit(n), ceiling_);
+    any_ahead_ = std::any_of(nodes.begin(), nodes.end(), [](const auto& n) { return n.runs_ahead; });
     chosen_.clear();
-    const auto choose = [&](auto serves) {
-        for (std::size_t n = 0; n < count; ++n)
-            if (!nodes[n].busy && target_[n] > nodes[n].granted && serves(n)) chosen_.push_back(n);
-    };
-    choose([&](std::size_t n) {
-        return next_[n] <= round_ || target_[n] == limits.end ||
-               (last_holds_up && nodes[n].granted == reached_) ||
-               target_[n] - nodes[n].granted >= limits.stop_latency / kStretchDivisor;
-    });
-    if (chosen_.empty() && !busy) choose([](std::size_t) { return true; });
-    for (const std::size_t n : chosen_)
-        if (bounds_.root(n) == n) target_[n] = std::min(limit_if_silent(n), ceiling);
+    plan_ahead(nodes, limits);
+    if (chosen_.empty()) choose_plain(nodes, limits);
+    const bool idle =
+        chosen_.empty() && std::none_of(nodes.begin(), nodes.end(), [](const auto& n) { return n.busy; });
+    if (idle && limits.pace > ceiling_) choose_any(nodes);
+}
+
+/// Whether node `n`, which can go back, has something to do, and how far it is to go.
+bool Schedule::aims_ahead(std::size_t n, const NodeTimes& node, Time end) {
+    const Time sure = std::max(target_[n], node.granted);
+    if (node.ahead > end) {  // the end came nearer
+        target_[n] = ahead_[n] = std::min(sure, end);
+        return true;
+    }
+    const Time from = std::min(node.surprise, node.ahead);
+    const Time reach = std::min({ceiling_, expected_[n], later(from, stretches_[n].length)});
+    if (node.surprise < node.ahead) {
+        target_[n] = std::max(node.granted, std::min(sure, std::max(reach, from)));
+        ahead_[n] = std::max(target_[n], reach);
+        return ahead_[n] > from;
+    }
+    if (sure < node.ahead) return false;  // the mark would stay behind
+    target_[n] = std::max(node.ahead, std::min(sure, reach));
+    ahead_[n] = std::max(target_[n], reach);
+    return ahead_[n] > node.ahead ||
+           (node.granted < node.ahead && (node.ahead == end || node.granted == reached_));
+}
+
+/// Nodes that can go back and have something to do, those of the lowest rank.
+void Schedule::plan_ahead(const std::vector<NodeTimes>& nodes, const ScheduleLimits& limits) {
+    expected_.assign(nodes.size(), kNever);
+    for (const Channel& channel : *channels_)
+        if (channel.punctual > 0) expected_[channel.to] = std::min(expected_[channel.to], channel.base);
+    int lowest = kLastRank;
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+        if (!nodes[n].runs_ahead || nodes[n].busy || !aims_ahead(n, nodes[n], limits.end)) continue;
+        lowest = std::min(lowest, stretches_[n].rank);
+        chosen_.push_back(n);
+    }
+    std::erase_if(chosen_, [&](std::size_t n) { return stretches_[n].rank > lowest; });
+    for (const std::size_t n : chosen_) {
+        Stretch& stretch = stretches_[n];
+        if (nodes[n].surprise < nodes[n].ahead) {
+            stretch.length = kShortest;
+            continue;
+        }
+        stretch.length = std::clamp(2 * stretch.length, kShortest, kLongest);
+        if (++stretch.calm < kCalm || stretch.rank == 0) continue;
+        stretch.calm = 0;
+        --stretch.rank;
+    }
+}
+
+/// Nodes that cannot go back, as far as that serves.
+void Schedule::choose_plain(const std::vector<NodeTimes>& nodes, const ScheduleLimits& limits) {
+    bool last_holds_up = false;
+    for (std::size_t n = 0; n < nodes.size(); ++n)
+        last_holds_up = last_holds_up || (nodes[n].granted < limits.end && bounds_.limit(n) > window_);
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+        if (nodes[n].runs_ahead || nodes[n].busy || target_[n] <= nodes[n].granted) continue;
+        if (next_[n] <= round_ || target_[n] == limits.end ||
+            (last_holds_up && nodes[n].granted == reached_) ||
+            target_[n] - nodes[n].granted >= limits.stop_latency / kStretchDivisor)
+            chosen_.push_back(n);
+    }
+    if (chosen_.empty() && std::none_of(nodes.begin(), nodes.end(), [](const auto& n) { return n.busy; }))
+        for (std::size_t n = 0; n < nodes.size(); ++n)
+            if (!nodes[n].runs_ahead && target_[n] > nodes[n].granted) chosen_.push_back(n);
+    for (const std::size_t n : chosen_) {
+        // Beyond what is foreseen for others its echo would come earlier than their reactions say.
+        if (!any_ahead_ && bounds_.root(n) == n) target_[n] = std::min(limit_if_silent(n), ceiling_);
+        ahead_[n] = target_[n];
+    }
+}
+
+/// Nobody has something to do, or may. What nodes claim that have run ahead may be less than what they could
+/// claim otherwise: they go back to what is sure, until that is further.
+void Schedule::choose_any(const std::vector<NodeTimes>& nodes) {
+    for (const bool back : {false, true}) {
+        for (std::size_t n = 0; n < nodes.size(); ++n) {
+            const NodeTimes& node = nodes[n];
+            if (!node.runs_ahead) continue;
+            target_[n] = std::max(node.granted, std::min(bounds_.limit(n), ceiling_));
+            ahead_[n] = back ? target_[n] : std::max(target_[n], node.ahead);
+            if (back ? node.ahead == node.granted : target_[n] == node.granted) continue;
+            stretches_[n].length = back ? 0 : kShortest;
+            chosen_.push_back(n);
+        }
+        if (!chosen_.empty()) return;
+    }
 }
 
 }  // namespace puckloop::cosim

@@ -13,6 +13,9 @@ namespace puckloop::cosim {
 struct NodeTimes {
     Time granted = 0;  ///< handled everything before
     bool busy = false;
+    Time ahead = 0;           ///< executed so far on what was foreseen; >= granted
+    Time surprise = kNever;   ///< from there on something else comes in than was foreseen, if before `ahead`
+    bool runs_ahead = false;  ///< it can go back
 };
 
 struct ScheduleLimits {
@@ -21,10 +24,15 @@ struct ScheduleLimits {
     Time stop_latency = 0;  ///< no node runs further ahead of the last one
 };
 
-/// A grant costs a round trip to another process, so a node is granted only when that serves: when something
-/// may happen there no later than the first node of all may go now, when it may go to the end, or when a good
-/// stretch has become free for it to run beside the others. One that only the echo of its own messages limits
-/// is granted as if it said nothing.
+/// A node that can go back runs ahead on what is foreseen, by a stretch that begins short when something was
+/// wrong and doubles each time that it was not. It does so at once, the others wait for it: what they are to
+/// receive is then known. One that is often taken by surprise waits for those that surprise it. A message
+/// that has come punctually is counted on, so that a node does not run beyond it.
+///
+/// For the others a grant costs a round trip to another process, so one is granted only when that serves:
+/// when something may happen there no later than the first node of all may go now, when it may go to the end,
+/// or when a good stretch has become free for it to run beside the others. One that only the echo of its own
+/// messages limits is granted as if it said nothing.
 class Schedule {
   public:
     void plan(const std::vector<Channel>& channels, const std::vector<Time>& pending,
@@ -34,6 +42,10 @@ class Schedule {
     /// How far node `n` may go, in strides where that is beyond bounds().limit(n): there only the echo of
     /// what it says itself limits it. At most its present time if it may not go.
     Time target(std::size_t n) const { return target_[n]; }
+    /// How far it is to run ahead; target(n) if not at all.
+    Time ahead(std::size_t n) const { return ahead_[n]; }
+    /// What node `from` sends took node `to` by surprise.
+    void surprised(std::size_t from, std::size_t to);
     const std::vector<std::size_t>& chosen() const { return chosen_; }
     /// Every node has reached the end.
     bool complete() const { return complete_; }
@@ -41,7 +53,19 @@ class Schedule {
     Time reached() const { return reached_; }
 
   private:
+    /// How a node that runs ahead fared.
+    struct Stretch {
+        Time length;
+        int rank = 0;  ///< nodes of lower rank go first
+        int calm = 0;  ///< stretches since a surprise
+        Stretch();
+    };
+
     Time limit_if_silent(std::size_t n);
+    void plan_ahead(const std::vector<NodeTimes>& nodes, const ScheduleLimits& limits);
+    bool aims_ahead(std::size_t n, const NodeTimes& node, Time end);
+    void choose_plain(const std::vector<NodeTimes>& nodes, const ScheduleLimits& limits);
+    void choose_any(const std::vector<NodeTimes>& nodes);
     void find_next(const std::vector<NodeTimes>& nodes, Time end);
 
     Bounds bounds_;
@@ -49,6 +73,11 @@ class Schedule {
     const std::vector<Channel>* channels_ = nullptr;
     const std::vector<Time>* pending_ = nullptr;
     std::vector<Time> target_;
+    std::vector<Time> ahead_;
+    std::vector<Stretch> stretches_;
+    std::vector<Time> expected_;  ///< when a punctual message is due next
+    Time window_ = 0, ceiling_ = 0;
+    bool any_ahead_ = false;
     std::vector<Time> next_;
     Time round_ = 0;
     std::vector<std::size_t> chosen_;

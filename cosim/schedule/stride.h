@@ -30,6 +30,7 @@ struct PortEcho {
 struct Reach {
     Time sure = 0;   ///< nothing comes in before, whatever the node says
     Time until = 0;  ///< nothing but the echo of what it says; >= sure
+    Time ahead = 0;  ///< a node that can go back runs on to here (cosim/schedule/run_ahead.h); >= until
 
     friend bool operator==(const Reach&, const Reach&) = default;
 };

@@ -52,8 +52,8 @@ std::vector<Bytes> whole_messages() {
     std::vector<Bytes> all(6);
     protocol::write_hello(all[0], {"robot0.pic", "{\"kind\": \"pic\"}"});
     protocol::write_ready(all[1], {{{"uart2", PortKind::Uart}, {"world", PortKind::Signals}}, some_state()});
-    protocol::write_grant(all[2], {1000, 1234}, some_messages(), some_echoes());
-    protocol::write_done(all[3], 77, some_state(), some_messages());
+    protocol::write_grant(all[2], {1000, 1234, 1300}, some_messages(), some_echoes());
+    protocol::write_done(all[3], {77, 99, 1}, some_state(), some_messages());
     protocol::write_report(all[4], "{}");
     protocol::write_error(all[5], {true, "x.hex: line 3: bad"});
     return all;
@@ -71,12 +71,15 @@ TEST_CASE("what is written is read back") {
     CHECK(ready.state.ports == some_state().ports);
     protocol::Grant grant;
     protocol::read_grant(body_of(all[2]), grant);
-    CHECK(grant.reach == Reach{1000, 1234});
+    CHECK(grant.reach == Reach{1000, 1234, 1300});
     CHECK(grant.inbox == some_messages());
     CHECK(grant.echoes == some_echoes());
     NodeState state;
     std::vector<Message> outbox;
-    CHECK(protocol::read_done(body_of(all[3]), 2, state, outbox) == 77);
+    const Advanced advanced = protocol::read_done(body_of(all[3]), 2, state, outbox);
+    CHECK(advanced.reached == 77);
+    CHECK(advanced.ahead == 99);
+    CHECK(advanced.sure == 1);
     CHECK(outbox == some_messages());
     CHECK(state.ports == some_state().ports);
     REQUIRE(state.stop);
@@ -127,8 +130,8 @@ TEST_CASE("huge counts and lengths are refused before memory is taken for them")
     Bytes bytes;
     ByteWriter writer(bytes);
     writer.u8(static_cast<std::uint8_t>(protocol::Kind::Grant));
-    writer.time(0);
-    writer.time(0);
+    for (int time = 0; time < 3; ++time)
+        writer.time(0);
     writer.u32(0xffffffff);
     protocol::Grant grant;
     CHECK_THROWS_WITH(protocol::read_grant(bytes, grant),

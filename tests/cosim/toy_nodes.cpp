@@ -99,6 +99,7 @@ class Chatter : public ToyNode {
     explicit Chatter(const Settings& settings)
         : ToyNode(settings),
           random_(static_cast<std::uint64_t>(settings.get("seed", 1)), "chatter"),
+          answers_(static_cast<std::uint64_t>(settings.get("seed", 1)), "answers"),
           think_(settings.get("think_us", 3) * kMicrosecond),
           fly_(settings.get("fly_us", 2) * kMicrosecond),
           gap_(settings.get("gap_us", 150) * kMicrosecond),
@@ -150,27 +151,11 @@ class Chatter : public ToyNode {
     }
 
     void receive(const Message& message, std::vector<Message>&) override {
-        if (random_.below(10) < 3) push({message.time + think_, Kind::Act, 0});
         // An answer adds an act, and every act the next one: keep the population bounded.
-        while (events_.size() > 12)
-            drop_one_act();
+        if (answers_.below(10) < 3 && events_.size() < 12) push({message.time + think_, Kind::Act, 0});
     }
 
   private:
-    void drop_one_act() {
-        std::vector<Event> kept;
-        bool dropped = false;
-        while (!events_.empty()) {
-            if (!dropped && events_.top().kind == Kind::Act)
-                dropped = true;
-            else
-                kept.push_back(events_.top());
-            events_.pop();
-        }
-        for (const Event& event : kept)
-            events_.push(event);
-    }
-
     void say(Time now, std::vector<Message>& outbox) {
         const auto port = static_cast<PortIndex>(random_.below(ports_.size()));
         if (ports_[port].kind == PortKind::Signals) {
@@ -204,6 +189,7 @@ class Chatter : public ToyNode {
     }
 
     RandomStream random_;
+    RandomStream answers_;  ///< apart, so that what comes in changes nothing before it was thought about
     Time think_, fly_, gap_;
     bool early_;
     std::vector<Line> lines_;
@@ -297,10 +283,40 @@ class Mutual : public ToyNode {
     Time reaction(PortIndex) const override { return 0; }
 };
 
+/// One that can go back, by a copy of all of it.
+template <class Toy>
+class GoesBack final : public Toy, public Rewindable {
+  public:
+    using Toy::Toy;
+    Rewindable* rewindable() override { return this; }
+    void mark() override { marked_ = std::make_unique<Toy>(*this); }
+    void rewind() override {
+        if (!marked_) throw RunError("was never marked");
+        static_cast<Toy&>(*this) = *marked_;
+    }
+    void settle() override { marked_.reset(); }
+
+  private:
+    std::unique_ptr<Toy> marked_;
+};
+
+template <class Toy>
+std::unique_ptr<Node> make_ahead(const Settings& settings) {
+    return std::make_unique<GoesBack<Toy>>(settings);
+}
+
+std::unique_ptr<Node> make_that_goes_back(const Settings& settings) {
+    if (settings.kind == "chatter") return make_ahead<Chatter>(settings);
+    if (settings.kind == "echo") return make_ahead<Echo>(settings);
+    if (settings.kind == "idle") return make_ahead<ToyNode>(settings);
+    return make_ahead<AtTime>(settings);
+}
+
 }  // namespace
 
 std::unique_ptr<Node> make(const std::string& line) {
     const Settings settings(line);
+    if (settings.get("ahead", 0) != 0) return make_that_goes_back(settings);
     if (settings.kind == "chatter") return std::make_unique<Chatter>(settings);
     if (settings.kind == "echo") return std::make_unique<Echo>(settings);
     if (settings.kind == "idle") return std::make_unique<ToyNode>(settings);

@@ -1,0 +1,175 @@
+#include "cosim/schedule/run_ahead.h"
+
+#include "base/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace puckloop::cosim {
+
+namespace {
+
+/// Takes the messages before `until` off `inbox`.
+std::span<const Message> take_before(Time until, std::span<const Message>& inbox) {
+    const auto end =
+        std::find_if(inbox.begin(), inbox.end(), [until](const Message& m) { return m.time >= until; });
+    const auto count = static_cast<std::size_t>(end - inbox.begin());
+    const auto first = inbox.first(count);
+    inbox = inbox.subspan(count);
+    return first;
+}
+
+}  // namespace
+
+Advanced RunAhead::advance(const Reach& reach, std::span<const Message> inbox,
+                           const std::vector<PortEcho>& echoes, std::vector<Message>& outbox) {
+    outbox.clear();
+    if (!marked_ && node_->rewindable() == nullptr) {
+        reached_ = ahead_ = advance_in_strides(*node_, reached_, reach, inbox, echoes, outbox);
+        return {reached_, ahead_, outbox.size()};
+    }
+    const Time until = reach.until;
+    if (until < reached_) throw RunError("was granted time that it had passed");
+    Time wrong = first_difference(inbox);
+    if (reach.ahead <= until) wrong = std::min(wrong, until);
+    std::vector<Message> again, sent_before;
+    if (wrong < ahead_) {
+        sent_before = sent_;
+        // From the mark, with what was final already and what is known now.
+        again = used_before_reached();
+        again.insert(again.end(), inbox.begin(), inbox.end());
+        inbox = again;
+        take_back();
+    } else {
+        take_before(ahead_, inbox);
+    }
+    if (ahead_ <= until) {
+        if (ahead_ < until) execute(until, inbox);
+        if (marked_) node_->rewindable()->settle();
+        marked_ = false;
+        used_.clear();
+        outbox.swap(sent_);
+    }
+    const std::size_t sure = outbox.size();
+    reached_ = until;
+    if (reach.ahead > std::max(ahead_, no_further_)) run_on(reach.ahead, inbox);
+    outbox.insert(outbox.end(), sent_.begin(), sent_.end());
+    check_same(sent_before, outbox, wrong);
+    return {reached_, ahead_, sure};
+}
+
+/// What was sent before the inbox differed must come again.
+void RunAhead::check_same(const std::vector<Message>& before, const std::vector<Message>& now,
+                          Time differs) const {
+    for (std::size_t p = 0; p < node_->ports().size(); ++p) {
+        auto other = now.begin();
+        for (const Message& message : before) {
+            if (message.port != p || message.time >= std::min(differs, ahead_)) continue;
+            other = std::find_if(other, now.end(), [p](const Message& m) { return m.port == p; });
+            if (other == now.end() || !(*other == message))
+                throw RunError(fmt::format("executed again from {:.12f} s, it did not send by {} at {:.12f} "
+                                           "s what it had sent (inbox differs from {:.12f} s)",
+                                           to_seconds(mark_), node_->ports()[p].name,
+                                           to_seconds(message.time), to_seconds(differs)));
+            ++other;
+        }
+    }
+}
+
+/// Where the inbox is not what the node was executed with up to ahead_; kNever if it is the same.
+Time RunAhead::first_difference(std::span<const Message> inbox) const {
+    auto used = std::find_if(used_.begin(), used_.end(),
+                             [this](const Message& message) { return message.time >= reached_; });
+    auto known = inbox.begin();
+    while (true) {
+        const bool more = known != inbox.end() && known->time < ahead_;
+        if (used == used_.end()) return more ? known->time : kNever;
+        if (!more) return used->time;
+        if (!(*used == *known)) return std::min(used->time, known->time);
+        ++used;
+        ++known;
+    }
+}
+
+std::vector<Message> RunAhead::used_before_reached() const {
+    std::vector<Message> sure;
+    for (const Message& message : used_)
+        if (message.time < reached_) sure.push_back(message);
+    return sure;
+}
+
+void RunAhead::take_back() {
+    node_->rewindable()->rewind();
+    ahead_ = mark_;
+    used_.clear();
+    sent_.clear();
+}
+
+/// Nothing is foreseen afterwards; the mark stays.
+void RunAhead::back_to_reached() {
+    const std::vector<Message> known = used_before_reached();
+    std::span<const Message> inbox(known);
+    take_back();
+    if (ahead_ < reached_) execute(reached_, inbox);
+}
+
+void RunAhead::execute(Time until, std::span<const Message>& inbox) {
+    const auto due = take_before(until, inbox);
+    node_->advance(until, due, sent_);
+    if (marked_) used_.insert(used_.end(), due.begin(), due.end());
+    ahead_ = until;
+}
+
+/// Beyond what is final. The node is cut after each message, since what it claims of its reactions holds
+/// until the next one comes in.
+void RunAhead::run_on(Time until, std::span<const Message>& inbox) {
+    if (!marked_) {
+        node_->rewindable()->mark();
+        marked_ = true;
+        mark_ = ahead_;
+        reactions_.assign(node_->ports().size(), kNever);
+        sample_reactions();
+    }
+    try {
+        while (ahead_ < until) {
+            const bool open = std::any_of(reactions_.begin(), reactions_.end(), [](Time r) { return r > 0; });
+            const Time next = open && !inbox.empty() ? inbox.front().time + 1 : until;
+            execute(std::min(until, next), inbox);
+            sample_reactions();
+        }
+    } catch (const std::exception&) {
+        // Perhaps only because the foreseen did not come true: as far as it is sure, and no further for now.
+        no_further_ = until;
+        back_to_reached();
+    }
+}
+
+void RunAhead::sample_reactions() {
+    for (std::size_t p = 0; p < reactions_.size(); ++p)
+        reactions_[p] = std::min(reactions_[p], node_->reaction(static_cast<PortIndex>(p)));
+}
+
+void RunAhead::read_state(NodeState& state) const {
+    cosim::read_state(*node_, state);
+    state.runs_ahead = marked_ || node_->rewindable() != nullptr;
+    if (marked_)
+        for (std::size_t p = 0; p < reactions_.size(); ++p)
+            state.ports[p].reaction = std::min(state.ports[p].reaction, reactions_[p]);
+    if (ahead_ == reached_) return;
+    if (state.stop && state.stop->time >= reached_) state.stop.reset();
+    if (state.wound_up >= reached_) state.wound_up = kNever;
+}
+
+void RunAhead::wind_up(int signal) {
+    if (ahead_ != reached_) throw RunError("is to end while it runs ahead");
+    node_->wind_up(reached_, signal);
+}
+
+std::string RunAhead::finish() {
+    if (ahead_ != reached_) back_to_reached();
+    if (marked_) node_->rewindable()->settle();
+    return node_->finish();
+}
+
+}  // namespace puckloop::cosim

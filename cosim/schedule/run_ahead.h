@@ -1,0 +1,67 @@
+#pragma once
+// Runs a node ahead of the time granted to it, on what is known to come in, and takes that back when it was
+// wrong. The same for a node in this process and for one in its own.
+//
+// A grant reaches to `until`, before which the inbox is final, and on to `ahead`, before which the inbox is
+// what is foreseen: messages that are on their way, or that other nodes running ahead are going to send. The
+// node is marked at `until` and executed on to `ahead`. What it sends there is handed out as foreseen too. If
+// a later grant brings the same inbox, nothing is executed again; if not, the node goes back to its mark.
+// Only what truly comes in decides what becomes final, so no trace depends on how far a node ran ahead.
+
+#include "cosim/core/message.h"
+#include "cosim/core/node.h"
+#include "cosim/schedule/node_handle.h"
+#include "cosim/schedule/stride.h"
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace puckloop::cosim {
+
+class RunAhead {
+  public:
+    explicit RunAhead(std::unique_ptr<Node> node) : node_(std::move(node)) {}
+
+    const Node& node() const { return *node_; }
+    Time reached() const { return reached_; }
+
+    /// `inbox` is sorted by time and holds everything known from the time reached before until `reach.ahead`.
+    /// A node that cannot go back takes what comes before reach.until, in strides as `echoes` say. With
+    /// reach.ahead == reach.until nothing is foreseen any more. In place of what `outbox` held: everything
+    /// sent since the mark that the last call left; how much of it is final is part of the answer.
+    Advanced advance(const Reach& reach, std::span<const Message> inbox, const std::vector<PortEcho>& echoes,
+                     std::vector<Message>& outbox);
+
+    /// What the node says of its future, having run ahead: its promises are beyond what is foreseen, its
+    /// reactions hold for whatever else comes in from the time reached on.
+    void read_state(NodeState& state) const;
+
+    /// Node::wind_up() at the time reached; nothing may be foreseen.
+    void wind_up(int signal);
+    /// What was run ahead is taken back.
+    std::string finish();
+
+  private:
+    Time first_difference(std::span<const Message> inbox) const;
+    std::vector<Message> used_before_reached() const;
+    void check_same(const std::vector<Message>& before, const std::vector<Message>& now, Time differs) const;
+    void take_back();
+    void back_to_reached();
+    void execute(Time until, std::span<const Message>& inbox);
+    void run_on(Time until, std::span<const Message>& inbox);
+    void sample_reactions();
+
+    std::unique_ptr<Node> node_;
+    Time reached_ = 0;
+    Time ahead_ = 0;  ///< the node stands there
+    Time mark_ = 0;   ///< of the node, while marked_
+    bool marked_ = false;
+    Time no_further_ = 0;          ///< what was tried up to there ended in an exception
+    std::vector<Message> used_;    ///< what came in since the mark
+    std::vector<Message> sent_;    ///< what was sent since the mark
+    std::vector<Time> reactions_;  ///< by port, the shortest since the mark
+};
+
+}  // namespace puckloop::cosim

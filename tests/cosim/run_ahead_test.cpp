@@ -1,0 +1,335 @@
+// Nodes that run ahead on what is foreseen: how one node is executed, and that no trace shows it.
+
+#include "cosim/schedule/run_ahead.h"
+
+#include "base/error.h"
+#include "base/random.h"
+#include "toy_run.h"
+
+#include <catch2/catch.hpp>
+#include <fmt/format.h>
+
+using namespace puckloop;
+using namespace puckloop::cosim;
+using toy::Recorder;
+using toy::Run;
+
+namespace {
+
+const std::vector<PortEcho> kNoEchoes;
+
+Message said(Time time, std::uint16_t id) {
+    return {time, 0, Signal{id, 1.0}};
+}
+
+/// Sends its count of messages every 100; notes what it executed.
+class Counter final : public Node, public Rewindable {
+  public:
+    std::string_view name() const override { return "counter"; }
+    std::span<const Port> ports() const override { return ports_; }
+    Time promise(PortIndex) const override { return next_; }
+    Time reaction(PortIndex) const override { return received_ == 0 ? 40 : 7; }
+    std::optional<Stop> stop() const override {
+        return now_ > stop_at ? std::optional<Stop>(Stop{stop_at, true, "enough", 1}) : std::nullopt;
+    }
+    Rewindable* rewindable() override { return this; }
+
+    void advance(Time until, std::span<const Message> inbox, std::vector<Message>& outbox) override {
+        for (const Message& message : inbox) {
+            REQUIRE(message.time >= now_);
+            REQUIRE(message.time < until);
+            act_before(message.time, outbox);
+            received_ += std::get<Signal>(message.payload).id;
+        }
+        act_before(until, outbox);
+        executed += until - now_;
+        now_ = until;
+    }
+    void mark() override {
+        saved_ = {now_, next_, received_};
+        ++marks;
+    }
+    void rewind() override {
+        std::tie(now_, next_, received_) = saved_;
+        ++rewinds;
+    }
+    void settle() override {}
+    std::string finish() override { return std::to_string(now_); }
+
+    Time executed = 0;
+    int marks = 0, rewinds = 0;
+    Time throws_at = kNever;
+    Time stop_at = kNever - 1;
+
+  private:
+    void act_before(Time until, std::vector<Message>& outbox) {
+        if (throws_at < until && received_ == 0) throw RunError("on purpose");
+        for (; next_ < until; next_ += 100)
+            outbox.push_back(said(next_, static_cast<std::uint16_t>(received_)));
+    }
+
+    std::vector<Port> ports_{{"signals", PortKind::Signals}};
+    Time now_ = 0, next_ = 100;
+    int received_ = 0;
+    std::tuple<Time, Time, int> saved_;
+};
+
+struct Fixture {
+    Counter* counter = new Counter;
+    RunAhead node{std::unique_ptr<Node>(counter)};
+    std::vector<Message> outbox;
+
+    Advanced advance(Time until, Time ahead, const std::vector<Message>& inbox = {}) {
+        return node.advance({until, until, ahead}, inbox, kNoEchoes, outbox);
+    }
+    NodeState state() const {
+        NodeState state;
+        node.read_state(state);
+        return state;
+    }
+};
+
+}  // namespace
+
+TEST_CASE("what was foreseen rightly is not executed again") {
+    Fixture f;
+    Advanced done = f.advance(150, 450, {said(320, 2)});
+    CHECK(done.reached == 150);
+    CHECK(done.ahead == 450);
+    CHECK(done.sure == 1);
+    CHECK(f.outbox == std::vector<Message>{said(100, 0), said(200, 0), said(300, 0), said(400, 2)});
+    CHECK(f.state().ports[0].promise == 500);
+    CHECK(f.state().ports[0].reaction == 7);  // the shortest within what was run ahead
+
+    done = f.advance(330, 450, {said(320, 2)});  // less than was foreseen is granted
+    CHECK(done.ahead == 450);
+    CHECK(done.sure == 0);
+    CHECK(f.outbox == std::vector<Message>{said(200, 0), said(300, 0), said(400, 2)});
+    done = f.advance(450, 450);
+    CHECK(done.sure == 3);
+    CHECK(f.counter->executed == 450);
+    CHECK(f.counter->rewinds == 0);
+    CHECK(f.node.finish() == "450");
+}
+
+TEST_CASE("what came in unforeseen, or did not come in, is executed again from the mark") {
+    Fixture f;
+    f.advance(150, 450, {said(320, 2)});
+    Advanced done = f.advance(250, 450);  // it will not come in after all
+    CHECK(done.sure == 1);
+    CHECK(f.outbox == std::vector<Message>{said(200, 0), said(300, 0), said(400, 0)});
+    CHECK(f.counter->rewinds == 1);
+    done = f.advance(300, 500, {said(260, 1), said(270, 4), said(499, 1)});
+    CHECK(done.ahead == 500);
+    CHECK(done.sure == 0);  // stamped 300: not before it
+    CHECK(f.outbox == std::vector<Message>{said(300, 5), said(400, 5)});
+    CHECK(f.counter->rewinds == 2);
+    // Once more from the same mark, which stays before what was granted meanwhile.
+    f.advance(350, 500, {said(499, 1)});
+    CHECK(f.counter->rewinds == 2);
+    done = f.advance(360, 500, {said(355, 1), said(499, 1)});
+    CHECK(f.outbox == std::vector<Message>{said(300, 5), said(400, 6)});
+    CHECK(f.counter->rewinds == 3);
+}
+
+TEST_CASE("without anything foreseen a node that ran ahead goes back to what is sure") {
+    Fixture f;
+    f.advance(150, 450);
+    const Advanced done = f.advance(150, 150);
+    CHECK(done.ahead == 150);
+    CHECK(done.sure == 0);
+    CHECK(f.outbox.empty());
+    CHECK(f.state().ports[0].promise == 200);
+    f.advance(220, 900);
+    CHECK(f.node.finish() == "220");
+}
+
+TEST_CASE("an exception beyond what is sure counts only once that is sure") {
+    Fixture f;
+    f.counter->throws_at = 400;
+    Advanced done = f.advance(150, 800);
+    CHECK(done.ahead == 150);
+    CHECK(f.outbox == std::vector<Message>{said(100, 0)});
+    done = f.advance(250, 300);  // not tried again
+    CHECK(done.ahead == 250);
+    // With this message it does not come to that.
+    done = f.advance(900, 900, {said(380, 3)});
+    CHECK(done.ahead == 900);
+    CHECK(f.outbox.back() == said(800, 3));
+
+    Fixture again;
+    again.counter->throws_at = 400;
+    CHECK_THROWS_WITH(again.advance(500, 800), "on purpose");
+}
+
+TEST_CASE("a wish to stop is known when its time is final") {
+    Fixture f;
+    f.counter->stop_at = 200;
+    f.advance(150, 450);
+    CHECK(!f.state().stop);
+    f.advance(250, 450);
+    REQUIRE(f.state().stop);
+    CHECK(f.state().stop->time == 200);
+}
+
+TEST_CASE("what comes of any sequence of grants is what one grant makes of it") {
+    RandomStream random(11, "grants");
+    for (int round = 0; round < 300; ++round) {
+        std::vector<Message> truth;
+        for (Time time = 1; time < 2000; time += 1 + static_cast<Time>(random.below(200)))
+            truth.push_back(said(time, static_cast<std::uint16_t>(random.below(3))));
+        Counter plain;
+        std::vector<Message> expected, sure;
+        plain.advance(2000, truth, expected);
+
+        Fixture f;
+        Time reached = 0;
+        while (reached < 2000) {
+            const Time until = std::min<Time>(2000, reached + static_cast<Time>(random.below(150)));
+            const Time ahead = until + static_cast<Time>(random.below(300));
+            std::vector<Message> inbox;
+            for (const Message& message : truth)
+                if (message.time >= reached && message.time < ahead &&
+                    (message.time < until || random.below(4) != 0))
+                    inbox.push_back(message);
+            const Advanced done = f.advance(until, ahead, inbox);
+            sure.insert(sure.end(), f.outbox.begin(),
+                        f.outbox.begin() + static_cast<std::ptrdiff_t>(done.sure));
+            REQUIRE(done.reached == until);
+            reached = until;
+        }
+        f.advance(2000, 2000);
+        sure.insert(sure.end(), f.outbox.begin(), f.outbox.end());
+        REQUIRE(sure == expected);
+    }
+}
+
+namespace {
+
+/// The same network, its nodes with bit n of `subset` able to go back.
+Run with_ahead(Run run, unsigned subset) {
+    for (std::size_t n = 0; n < run.nodes.size(); ++n)
+        if ((subset >> n & 1) != 0) run.nodes[n].json += " ahead=1";
+    return run;
+}
+
+void check_same(const Outcome& a, const Outcome& b) {
+    CHECK(a.trace_sha256 == b.trace_sha256);
+    CHECK(a.text == b.text);
+    REQUIRE(a.nodes.size() == b.nodes.size());
+    for (std::size_t n = 0; n < a.nodes.size(); ++n)
+        CHECK(a.nodes[n].json == b.nodes[n].json);
+}
+
+}  // namespace
+
+TEST_CASE("no trace shows that nodes ran ahead") {
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+        const int count = 2 + static_cast<int>(seed % 6);
+        const Run run = toy::random_chatter(seed, count);
+        Recorder plain;
+        const Outcome expected = run(&plain);
+        INFO(expected.text);
+        REQUIRE(expected.reason == EndReason::Duration);
+        RandomStream random(seed, "subset");
+        for (int variant = 0; variant < 4; ++variant) {
+            const unsigned subset = variant == 0 ? ~0u : static_cast<unsigned>(random.below(1u << count));
+            Run ahead = with_ahead(run, subset);
+            if (variant >= 2) ahead.options.chop_seed = seed;
+            if (variant == 3) ahead.options.threads = 2;
+            if (variant == 3)
+                for (NodeSpec& node : ahead.nodes)
+                    node.any_thread = true;
+            Recorder recorder;
+            const Outcome outcome = ahead(&recorder);
+            INFO("seed " << seed << " subset " << subset << ": " << outcome.text);
+            check_same(expected, outcome);
+            REQUIRE((recorder.records == plain.records));
+        }
+    }
+}
+
+TEST_CASE("nodes run ahead in processes of their own, too") {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+        Run run = with_ahead(toy::random_chatter(seed, 4), seed == 1 ? ~0u : 5u);
+        run.options.duration = 10 * kMillisecond;
+        const Outcome here = run();
+        REQUIRE(here.reason == EndReason::Duration);
+        run.options.in_process = false;
+        check_same(here, run());
+    }
+}
+
+TEST_CASE("faults fire the same when the sender or the receiver runs ahead") {
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+        Run run = toy::random_chatter(seed, 5);
+        for (const LinkSpec& link : run.links)
+            if (link.nominal_baud > 0.0)
+                for (const FaultKind kind : {FaultKind::Drop, FaultKind::Delay, FaultKind::Duplicate}) {
+                    FaultSpec fault;
+                    fault.link = link.name;
+                    fault.kind = kind;
+                    fault.probability = 0.3;
+                    fault.amount = kind == FaultKind::Delay ? 3e-4 : 0.0;
+                    run.faults.push_back(fault);
+                }
+        Recorder plain;
+        const Outcome expected = run(&plain);
+        INFO(expected.text);
+        REQUIRE(expected.reason == EndReason::Duration);
+        for (const unsigned subset : {~0u, 1u, 6u, 21u}) {
+            Recorder recorder;
+            const Outcome outcome = with_ahead(run, subset)(&recorder);
+            INFO("seed " << seed << " subset " << subset << ": " << outcome.text);
+            check_same(expected, outcome);
+            REQUIRE((recorder.records == plain.records));
+        }
+    }
+}
+
+TEST_CASE("a run of nodes that run ahead ends when one wants it to, exactly") {
+    for (const unsigned subset : {0u, 1u, 7u}) {
+        Run run{
+            {{"a", "chatter seed=4 uarts=1"}, {"b", "chatter seed=5 uarts=2"}, {"c", "stopper at_us=7003"}},
+            {toy::uart("ab", {"a", "uart0"}, {"b", "uart0"}),
+             toy::uart("bc", {"b", "uart1"}, {"c", "uart0"})}};
+        run = with_ahead(run, subset);
+        run.options.in_process = true;
+        const Outcome outcome = run();
+        CHECK(outcome.reason == EndReason::NodeStopped);
+        CHECK(outcome.stop_time == 7003 * kMicrosecond);
+        CHECK(outcome.simulated == 7003 * kMicrosecond + run.options.stop_latency);
+    }
+}
+
+TEST_CASE("a node that breaks its promise having run ahead is named") {
+    Run run{{{"a", "liar at_us=2000 ahead=1"}, {"b", "chatter seed=5 ahead=1"}},
+            {toy::uart("ab", {"a", "uart0"}, {"b", "uart0"})}};
+    run.options.in_process = true;
+    run.options.duration = 10 * kMillisecond;
+    const Outcome outcome = run();
+    CHECK(outcome.reason == EndReason::Failed);
+    CHECK(outcome.node == "a");
+    CHECK_THAT(outcome.text, Catch::Contains("broke its promise on port uart0"));
+}
+
+TEST_CASE("nodes that seldom speak go in long stretches, however close they are coupled") {
+    // Four in a ring with 2 us from one to the next; each speaks some ten times in 20 ms.
+    Run run;
+    for (int n = 0; n < 4; ++n) {
+        run.nodes.push_back(
+            {fmt::format("n{}", n),
+             fmt::format("chatter seed={} uarts=0 signals=2 think_us=0 fly_us=2 gap_us=2000", n + 1)});
+        run.links.push_back({fmt::format("l{}", n),
+                             {fmt::format("n{}", n), "signals0"},
+                             {fmt::format("n{}", (n + 1) % 4), "signals1"}});
+    }
+    run.options.in_process = true;
+    run.options.duration = 200 * kMillisecond;
+    const Outcome plain = run();
+    const Outcome ahead = with_ahead(run, ~0u)();
+    check_same(plain, ahead);
+    CHECK(ahead.links[0].from_a.messages > 10);
+    INFO(plain.grants << " and " << ahead.grants);
+    CHECK(ahead.grants < 20'000);
+}
