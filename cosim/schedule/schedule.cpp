@@ -7,10 +7,13 @@ namespace puckloop::cosim {
 namespace {
 // Free stretch, as a part of the stop latency, for which a node nobody waits for is granted all the same.
 constexpr Time kStretchDivisor = 4;
-// To run ahead at least and at most: what is wrong is executed again from the mark on, so that a surprise every
-// few milliseconds (a program that polls a board) costs a stretch each.
-constexpr Time kShortest = 50 * kMicrosecond;
+// To run ahead at least and at most: what is wrong is executed again from the mark on, so that a surprise
+// every few milliseconds (a program that polls a board) costs a stretch each.
+constexpr Time kShortest = 40 * kMicrosecond;
 constexpr Time kLongest = 500 * kMicrosecond;
+// A stretch that was right makes the next one longer by this part: it stays a fraction of the time since the
+// last surprise.
+constexpr Time kGrowth = 3;
 // Stretches without surprise after which a node is no longer put behind others, and how many ranks there are.
 constexpr int kCalm = 16;
 constexpr int kLastRank = 3;
@@ -112,7 +115,7 @@ void Schedule::plan_ahead(const std::vector<NodeTimes>& nodes, const ScheduleLim
             stretch.length = kShortest;
             continue;
         }
-        stretch.length = std::clamp(2 * stretch.length, kShortest, kLongest);
+        stretch.length = std::clamp(stretch.length + stretch.length / kGrowth, kShortest, kLongest);
         if (++stretch.calm < kCalm || stretch.rank == 0) continue;
         stretch.calm = 0;
         --stretch.rank;

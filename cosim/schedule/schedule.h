@@ -25,9 +25,9 @@ struct ScheduleLimits {
 };
 
 /// A node that can go back runs ahead on what is foreseen, by a stretch that begins short when something was
-/// wrong and doubles each time that it was not. It does so at once, the others wait for it: what they are to
-/// receive is then known. One that is often taken by surprise waits for those that surprise it. A message
-/// that has come punctually is counted on, so that a node does not run beyond it.
+/// wrong and grows by a third each time that it was not. It does so at once, the others wait for it: what
+/// they are to receive is then known. One that is often taken by surprise waits for those that surprise it. A
+/// message that has come punctually is counted on, so that a node does not run beyond it.
 ///
 /// For the others a grant costs a round trip to another process, so one is granted only when that serves:
 /// when something may happen there no later than the first node of all may go now, when it may go to the end,
