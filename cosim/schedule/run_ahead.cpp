@@ -121,8 +121,8 @@ void RunAhead::execute(Time until, std::span<const Message>& inbox) {
     ahead_ = until;
 }
 
-/// Beyond what is final. The node is cut after each message, since what it claims of its reactions holds
-/// until the next one comes in.
+/// Beyond what is final. The node is cut at each message, since what it claims of its reactions holds until
+/// the next one comes in.
 void RunAhead::run_on(Time until, std::span<const Message>& inbox) {
     if (!marked_) {
         node_->rewindable()->mark();
@@ -133,9 +133,11 @@ void RunAhead::run_on(Time until, std::span<const Message>& inbox) {
     }
     try {
         while (ahead_ < until) {
-            const bool open = std::any_of(reactions_.begin(), reactions_.end(), [](Time r) { return r > 0; });
-            const Time next = open && !inbox.empty() ? inbox.front().time + 1 : until;
-            execute(std::min(until, next), inbox);
+            if (inbox.empty() || inbox.front().time >= until || !answers_late()) {
+                execute(until, inbox);
+            } else {
+                take_in(inbox);
+            }
             sample_reactions();
         }
     } catch (const std::exception&) {
@@ -143,6 +145,39 @@ void RunAhead::run_on(Time until, std::span<const Message>& inbox) {
         no_further_ = until;
         back_to_reached();
     }
+}
+
+/// Whether what comes in shows on some port only later.
+bool RunAhead::answers_late() const {
+    return std::any_of(reactions_.begin(), reactions_.end(), [](Time reaction) { return reaction > 0; });
+}
+
+/// The next messages, all of one time. What they take away would come after all if one of them did not come
+/// in: a message that was promised for P and is not any more counts as a reaction within P - time.
+void RunAhead::take_in(std::span<const Message>& inbox) {
+    const Time time = inbox.front().time;
+    const auto passed = [time](Time promise) { return promise <= time; };
+    note_promises();
+    if (ahead_ < time && std::any_of(promises_.begin(), promises_.end(), passed)) {
+        execute(time, inbox);
+        note_promises();
+    }
+    const std::size_t first = sent_.size();
+    execute(time + 1, inbox);
+    for (std::size_t p = 0; p < promises_.size(); ++p) {
+        const auto port = static_cast<PortIndex>(p);
+        const Time promised = promises_[p];
+        if (node_->promise(port) <= promised) continue;
+        const bool kept = std::any_of(sent_.begin() + static_cast<std::ptrdiff_t>(first), sent_.end(),
+                                      [&](const Message& m) { return m.port == port && m.time == promised; });
+        if (!kept) reactions_[p] = std::min(reactions_[p], std::max<Time>(0, promised - time));
+    }
+}
+
+void RunAhead::note_promises() {
+    promises_.resize(reactions_.size());
+    for (std::size_t p = 0; p < promises_.size(); ++p)
+        promises_[p] = reactions_[p] > 0 ? node_->promise(static_cast<PortIndex>(p)) : kNever;
 }
 
 void RunAhead::sample_reactions() {

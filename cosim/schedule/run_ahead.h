@@ -51,6 +51,9 @@ class RunAhead {
     void back_to_reached();
     void execute(Time until, std::span<const Message>& inbox);
     void run_on(Time until, std::span<const Message>& inbox);
+    void take_in(std::span<const Message>& inbox);
+    bool answers_late() const;
+    void note_promises();
     void sample_reactions();
 
     std::unique_ptr<Node> node_;
@@ -61,6 +64,7 @@ class RunAhead {
     Time no_further_ = 0;          ///< what was tried up to there ended in an exception
     std::vector<Message> used_;    ///< what came in since the mark
     std::vector<Message> sent_;    ///< what was sent since the mark
+    std::vector<Time> promises_;   ///< by port, where the reaction is not zero: before a message came in
     std::vector<Time> reactions_;  ///< by port, the shortest since the mark
 };
 

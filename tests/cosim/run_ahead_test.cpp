@@ -162,6 +162,54 @@ TEST_CASE("an exception beyond what is sure counts only once that is sure") {
     CHECK_THROWS_WITH(again.advance(500, 800), "on purpose");
 }
 
+namespace {
+
+/// What comes in stops what it would send 50 later, and what comes in next starts it again.
+class Holder final : public Node, public Rewindable {
+  public:
+    std::string_view name() const override { return "holder"; }
+    std::span<const Port> ports() const override { return ports_; }
+    Time promise(PortIndex) const override { return due_; }
+    Time reaction(PortIndex) const override { return 50; }
+    Rewindable* rewindable() override { return this; }
+    void advance(Time until, std::span<const Message> inbox, std::vector<Message>& outbox) override {
+        for (const Message& message : inbox) {
+            send_before(message.time, outbox);
+            due_ = due_ == kNever ? message.time + 50 : kNever;
+        }
+        send_before(until, outbox);
+    }
+    void mark() override { saved_ = due_; }
+    void rewind() override { due_ = saved_; }
+    void settle() override {}
+
+  private:
+    void send_before(Time until, std::vector<Message>& outbox) {
+        if (due_ < until) outbox.push_back(said(std::exchange(due_, kNever), 1));
+    }
+    std::vector<Port> ports_{{"signals", PortKind::Signals}};
+    Time due_ = kNever, saved_ = kNever;
+};
+
+}  // namespace
+
+TEST_CASE("what a foreseen message takes away may come, should the message not") {
+    RunAhead node(std::make_unique<Holder>());
+    std::vector<Message> outbox;
+    NodeState state;
+    // Due at 110; stopped at 100; due again at 250.
+    node.advance({90, 90, 220}, std::vector<Message>{said(60, 0), said(100, 0), said(200, 0)}, kNoEchoes,
+                 outbox);
+    node.read_state(state);
+    CHECK(outbox.empty());
+    CHECK(state.ports[0].promise == 250);
+    CHECK(state.ports[0].reaction == 10);  // without what comes in at 100 it is sent at 110
+    node.advance({95, 95, 220}, std::vector<Message>{said(200, 0)}, kNoEchoes, outbox);
+    CHECK(outbox == std::vector<Message>{said(110, 1)});
+    node.read_state(state);
+    CHECK(state.ports[0].reaction == 50);
+}
+
 TEST_CASE("a wish to stop is known when its time is final") {
     Fixture f;
     f.counter->stop_at = 200;
