@@ -144,9 +144,11 @@ class Emitter : private Xbyak::CodeGenerator {
     bool emit_bit_test(const Op* op);
     void bit_to_z(std::uint32_t mask);
 
-    // flow.cpp
+    // arrival.cpp
     void emit_arrival();
     void arrive(std::uint32_t extra_cycles);
+
+    // flow.cpp
     void leave_taken(const Op* op, std::uint32_t target, std::uint32_t extra_cycles);
     void side_exit(const Op* op, int host_condition, std::uint32_t target, std::uint32_t extra_cycles);
     Flow emit_flow(Machine& m, const Op* op);
