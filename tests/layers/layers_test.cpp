@@ -51,11 +51,11 @@ const std::vector<std::string> kFolders = {
 /// Includes that go up, each with its reason. One that is no longer there has to leave this list.
 const std::set<std::string> kUpward = {
     // The machine holds the state of what watches and shortens its loops; Core makes and saves it.
-    "emu/dspic/core/machine.h emu/dspic/fast/service_shortcut.h",
+    "emu/dspic/core/machine.h emu/dspic/fast/isr_summary.h",
     "emu/dspic/core/machine.h emu/dspic/waits/wait_watch.h",
     "emu/dspic/core/core.h emu/dspic/waits/wait_watch.h",
     "emu/dspic/core/core.cpp emu/dspic/fast/loop_undo.h",
-    "emu/dspic/core/core.cpp emu/dspic/fast/skip_loops.h",
+    "emu/dspic/core/core.cpp emu/dspic/fast/idle_loops.h",
     "emu/dspic/core/core_archive.cpp emu/dspic/fast/loop_undo.h",
     // Judging a wait asks which modules could end it.
     "emu/dspic/waits/judge.h emu/dspic/chip/layout.h",

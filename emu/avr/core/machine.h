@@ -32,7 +32,7 @@ static_assert(sizeof(Op) == 16, "four operations to a cache line");
 /// Behind the last flash word: the program counter wraps. Two, because the last word may begin a pair.
 inline constexpr std::uint32_t kGuards = 2;
 
-/// What is known about a backward branch (skip_loops.cpp).
+/// What is known about a backward branch (idle_loops.cpp).
 struct LoopInfo {
     enum class Purity : std::uint8_t { Unknown, Pure, Impure };
     Purity purity = Purity::Unknown;
@@ -99,7 +99,7 @@ void forget(Machine& m, std::uint32_t address);
 // run.cpp
 Core::Outcome run_until(Machine& m, Cycle until);
 void perform_reset(Machine& m, ResetCause cause);
-// skip_loops.cpp
+// idle_loops.cpp
 /// At a taken backward branch: leaps over turns of an idle loop if it can. The operation to execute next.
 const Op* leap(Machine& m, const Op* branch, const Op* head);
 /// The instruction itself, behind loop_back().

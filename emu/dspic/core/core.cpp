@@ -2,8 +2,8 @@
 
 #include "base/error.h"
 #include "emu/dspic/core/machine.h"
+#include "emu/dspic/fast/idle_loops.h"
 #include "emu/dspic/fast/loop_undo.h"
-#include "emu/dspic/fast/skip_loops.h"
 
 #include <fmt/format.h>
 
@@ -39,7 +39,7 @@ Machine::Machine(const DeviceInfo& info, SfrSpace& registers, EventQueue& queue,
       device(info),
       pages(info.flash_end / 2, kGuards),
       program(pages.words()),
-      skip(std::make_unique<SkipLoops>()),
+      skip(std::make_unique<IdleLoops>()),
       loop_undo(std::make_unique<LoopUndo>()) {
     code_words = info.flash_end / 2;
     code = pages.operations();

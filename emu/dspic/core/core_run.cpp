@@ -86,19 +86,19 @@ void enter_interrupt(Machine& m) {
 bool pass_service(Machine& m, Cycle horizon) {
     if (!m.skip_idle || m.st.sr & sr::RA || m.st.disi_end > m.st.cycle || m.observer.on_interrupt)
         return false;
-    const ServiceShortcut* shortcut = service_shortcut(m, m.irq.first().vector);
-    if (!shortcut || shortcut->uses & m.watch & 0xFFFF0000) return false;
-    const Cycle end = service_start(m.since, m.st.cycle) + shortcut->cycles;
-    if (end > horizon || !stack_holds(m, *shortcut, m.st.w[15]) || !refreshes_hold(m, *shortcut) ||
+    const IsrSummary* summary = isr_summary(m, m.irq.first().vector);
+    if (!summary || summary->uses & m.watch & 0xFFFF0000) return false;
+    const Cycle end = service_start(m.since, m.st.cycle) + summary->cycles;
+    if (end > horizon || !stack_holds(m, *summary, m.st.w[15]) || !refreshes_hold(m, *summary) ||
         !m.irq.waits_alone())
         return false;
     m.irq.acknowledge(m.irq.first(), cpu_level(m));
-    push_trace(m, *shortcut, {m.st.w.data(), m.st.sr, m.pc_of(m.current)});
+    push_trace(m, *summary, {m.st.w.data(), m.st.sr, m.pc_of(m.current)});
     m.irq.serve_alone();
     m.eligible = m.disi_waits = false;
-    m.watch = (m.watch & shortcut->keep) | shortcut->writes;
+    m.watch = (m.watch & summary->keep) | summary->writes;
     m.repeat_first = true;
-    m.instructions += shortcut->instructions;
+    m.instructions += summary->instructions;
     m.st.cycle = end;
     return true;
 }
@@ -123,7 +123,7 @@ void pass_stop(Machine& m) {
     forget_loops(m);
     decode(m, op);
     m.limit = std::min(m.limit, m.st.cycle + 1);
-    m.st.sr & sr::RA ? run_repeated(m) : run_interpreted(m);
+    m.st.sr& sr::RA ? run_repeated(m) : run_interpreted(m);
     op.marks |= kStop;
     forget_loops(m);
     decode(m, op);

@@ -8,7 +8,7 @@
 #include "emu/dspic/core/memory_map.h"
 #include "emu/dspic/core/program_pages.h"
 #include "emu/dspic/core/program_undo.h"
-#include "emu/dspic/fast/service_shortcut.h"
+#include "emu/dspic/fast/isr_summary.h"
 #include "emu/dspic/translate/translation.h"
 #include "emu/dspic/waits/wait_watch.h"
 
@@ -48,7 +48,7 @@ struct Op {
     std::uint8_t psv_extra = 0;
     std::uint8_t marks = 0;  ///< kStop, kLoopEnd
     FormId form = kNoForm;
-    Ea source = Ea::Literal;  ///< how the source operand is reached (for skip_loops.cpp)
+    Ea source = Ea::Literal;  ///< how the source operand is reached (for idle_loops.cpp)
     Ea destination = Ea::Literal;
     bool byte = false;
     bool may_skip = false;  ///< a backward branch whose loop is worth analysing
@@ -59,7 +59,7 @@ inline constexpr std::uint8_t kStop = 1, kLoopEnd = 2;
 /// Guard operations behind the last flash word: three for running off the end, one for every other address.
 inline constexpr std::uint32_t kGuards = 4;
 
-struct SkipLoops;
+struct IdleLoops;
 class LoopUndo;
 
 struct Machine {
@@ -132,14 +132,14 @@ struct Machine {
     CoreObserver observer;
     std::vector<std::uint32_t> warned;
     bool skip_idle = true;
-    std::unique_ptr<SkipLoops> skip;
+    std::unique_ptr<IdleLoops> skip;
     /// Into `skip`, for translated code: a branch's place plus 1 by program word (null: none is known), and
     /// by place how many arrivals it waits.
     std::uint16_t* loop_index = nullptr;
     std::uint16_t* loop_waits = nullptr;
     ProgramUndo program_undo;
     std::unique_ptr<LoopUndo> loop_undo;
-    ServiceShortcuts shortcuts;
+    IsrSummaries isr_summaries;
     WaitWatch waits;
     Translated translated;
 
@@ -204,7 +204,7 @@ void enter_power_save(Machine& m, PowerMode mode);
 void leave_power_save(Machine& m);
 std::uint16_t& rcon_register(Machine& m);
 void schedule_watchdog(Machine& m);
-// skip_loops.cpp
+// idle_loops.cpp
 /// At a taken backward branch: leaps over iterations of a pure loop if it can.
 void try_skip(Machine& m, const Op* branch, const Op* head);
 /// Code, marks or pointer rules changed: nothing known about loops holds any more.

@@ -6,12 +6,12 @@ namespace puckloop::dspic {
 
 // --- cells -----------------------------------------------------------------------------------------------
 
-SkipLoops::Cell& AffineDomain::cell(std::uint16_t key) {
+IdleLoops::Cell& AffineDomain::cell(std::uint16_t key) {
     if (key < 16 && w_[key]) return *w_[key];
     for (std::size_t i = 0; i < plan_.count; ++i)
         if (plan_.cells[i].key == key) return plan_.cells[i];
     if (plan_.count == plan_.cells.size()) fail(Verdict::NotNow);
-    SkipLoops::Cell& fresh = plan_.cells[plan_.count++];
+    IdleLoops::Cell& fresh = plan_.cells[plan_.count++];
     fresh = {};
     fresh.key = key;
     fresh.start = key < 16 ? m_.st.w[key] : probed(key, m_.ram[(key - kRamStart) / 2]);
@@ -23,14 +23,14 @@ SkipLoops::Cell& AffineDomain::cell(std::uint16_t key) {
 }
 
 AffineDomain::Value AffineDomain::read_cell(std::uint16_t key) {
-    SkipLoops::Cell& c = cell(key);
+    IdleLoops::Cell& c = cell(key);
     if (!c.written) c.carried = true;
     if (key >= 16) note_access(key, c.now, false);
     return {c.now, c.now_step};
 }
 
 void AffineDomain::write_cell(std::uint16_t key, Value value) {
-    SkipLoops::Cell& c = cell(key);
+    IdleLoops::Cell& c = cell(key);
     c.written = true;
     c.now = value.v;
     c.now_step = value.step;

@@ -4,7 +4,7 @@
 // are cells; a register of a module is a constant that the plan polls. What cannot be followed ends the walk.
 
 #include "emu/dspic/core/execute/shape.h"
-#include "emu/dspic/fast/skip_loops.h"
+#include "emu/dspic/fast/idle_loops.h"
 
 #include <array>
 
@@ -109,7 +109,7 @@ class AffineDomain {
     void clear_watchdog() { plan_.clears_watchdog = true; }
 
   protected:
-    AffineDomain(const Machine& m, SkipLoops::Plan& plan, LoopTrace& trace, const Probe& probe)
+    AffineDomain(const Machine& m, IdleLoops::Plan& plan, LoopTrace& trace, const Probe& probe)
         : m_(m), plan_(plan), trace_(trace), probe_(probe) {}
 
     struct Flag {
@@ -121,18 +121,18 @@ class AffineDomain {
     void hold(std::int64_t value, std::int64_t step, std::int64_t low, std::int64_t high);
 
     const Machine& m_;
-    SkipLoops::Plan& plan_;
+    IdleLoops::Plan& plan_;
     LoopTrace& trace_;
     Probe probe_;
-    std::array<SkipLoops::Cell*, 16> w_{};                              ///< the W registers among the cells
-    std::array<SkipLoops::Cell, SkipLoops::Plan::kMostCells> first_{};  ///< what the first walk found
+    std::array<IdleLoops::Cell*, 16> w_{};                              ///< the W registers among the cells
+    std::array<IdleLoops::Cell, IdleLoops::Plan::kMostCells> first_{};  ///< what the first walk found
     std::size_t first_count_ = 0;                                       ///< 0: this is the first walk
     std::uint64_t bound_ = 0;
     bool chose_ = false;
     Flag c_, z_, n_, ov_;
 
   private:
-    SkipLoops::Cell& cell(std::uint16_t key);
+    IdleLoops::Cell& cell(std::uint16_t key);
     Value read_cell(std::uint16_t key);
     void write_cell(std::uint16_t key, Value value);
     void note_access(std::uint16_t address, std::int32_t value, bool write);

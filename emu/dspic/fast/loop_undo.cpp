@@ -16,11 +16,11 @@ void LoopUndo::begin(const Machine& m) {
 void LoopUndo::end() {
     on_ = false;
     count_ = 0;
-    shortcuts_.clear();
+    summaries_.clear();
     forgotten_.reset();
 }
 
-void LoopUndo::note_first(SkipLoops::Branch& branch) {
+void LoopUndo::note_first(IdleLoops::Branch& branch) {
     branch.noted = stamp_;
     if (forgotten_) return;  // learned after everything was thrown away: it will be thrown away itself
     branch.note = count_;
@@ -37,7 +37,7 @@ void LoopUndo::note_first(SkipLoops::Branch& branch) {
     note.trace.live = branch.trace.live;
 }
 
-void LoopUndo::note_walk(SkipLoops::Branch& branch) {
+void LoopUndo::note_walk(IdleLoops::Branch& branch) {
     if (!on_ || forgotten_) return;
     Note& note = notes_[branch.note];
     if (std::exchange(note.swapped, true)) return;
@@ -48,7 +48,7 @@ void LoopUndo::note_walk(SkipLoops::Branch& branch) {
 void LoopUndo::take_back(Machine& m) {
     for (std::size_t i = 0; i < count_; ++i) {
         Note& note = notes_[i];
-        SkipLoops::Branch& branch = *note.branch;
+        IdleLoops::Branch& branch = *note.branch;
         branch.patience = note.patience;
         branch.polls_noted = note.polls_noted;
         branch.walked = note.walked;
@@ -64,16 +64,16 @@ void LoopUndo::take_back(Machine& m) {
     m.skip->waits = waits_;
     m.skip->waits.resize(m.skip->branches.size(), 0);
     publish_loops(m);
-    for (auto note = shortcuts_.rbegin(); note != shortcuts_.rend(); ++note)
-        m.shortcuts.known[note->first] = note->second;
-    shortcuts_.clear();
+    for (auto note = summaries_.rbegin(); note != summaries_.rend(); ++note)
+        m.isr_summaries.known[note->first] = note->second;
+    summaries_.clear();
 }
 
 void LoopUndo::note_forgetting(Machine& m) {
     if (!on_ || forgotten_) return;
     take_back(m);
     forgotten_.emplace(Forgotten{std::move(m.skip->index), std::move(m.skip->branches),
-                                 std::move(m.skip->waits), std::move(m.shortcuts.known)});
+                                 std::move(m.skip->waits), std::move(m.isr_summaries.known)});
 }
 
 void LoopUndo::rewind(Machine& m) {
@@ -82,7 +82,7 @@ void LoopUndo::rewind(Machine& m) {
         m.skip->branches = std::move(forgotten_->branches);
         m.skip->waits = std::move(forgotten_->waits);
         publish_loops(m);
-        m.shortcuts.known = std::move(forgotten_->shortcuts);
+        m.isr_summaries.known = std::move(forgotten_->isr_summaries);
     } else {
         take_back(m);
     }

@@ -3,8 +3,8 @@
 // noted at its first change, taken back at a rewind. A machine that went back so leaps where one would that
 // never ran ahead; leaps differ from executing in nothing but dead words above the stack and arrivals noted.
 
-#include "emu/dspic/fast/service_shortcut.h"
-#include "emu/dspic/fast/skip_loops.h"
+#include "emu/dspic/fast/idle_loops.h"
+#include "emu/dspic/fast/isr_summary.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -26,36 +26,36 @@ class LoopUndo {
     void rewind(Machine& m);
 
     /// Before anything known of a branch changes.
-    void note(SkipLoops::Branch& branch) {
+    void note(IdleLoops::Branch& branch) {
         if (on_ && branch.noted != stamp_) note_first(branch);
     }
     /// Before a noted branch is walked anew.
-    void note_walk(SkipLoops::Branch& branch);
+    void note_walk(IdleLoops::Branch& branch);
     /// Before what is known of an interrupt vector changes.
-    void note_shortcut(std::size_t vector, const std::optional<ServiceShortcut>& before) {
-        if (on_ && !forgotten_) shortcuts_.emplace_back(vector, before);
+    void note_isr_summary(std::size_t vector, const std::optional<IsrSummary>& before) {
+        if (on_ && !forgotten_) summaries_.emplace_back(vector, before);
     }
     /// Before all of it is thrown away.
     void note_forgetting(Machine& m);
 
   private:
     struct Note {
-        SkipLoops::Branch* branch = nullptr;
+        IdleLoops::Branch* branch = nullptr;
         std::uint8_t patience = 0;
         bool polls_noted = false;
         bool walked = false;
         bool swapped = false;  ///< `trace` holds the old one whole, else no more than its numbers
-        SkipLoops::Plan plan;
+        IdleLoops::Plan plan;
         LoopTrace trace;
     };
     /// Everything that was known when it was first thrown away.
     struct Forgotten {
         std::vector<std::uint16_t> index;
-        std::deque<SkipLoops::Branch> branches;
+        std::deque<IdleLoops::Branch> branches;
         std::vector<std::uint16_t> waits;
-        std::vector<std::optional<ServiceShortcut>> shortcuts;
+        std::vector<std::optional<IsrSummary>> isr_summaries;
     };
-    void note_first(SkipLoops::Branch& branch);
+    void note_first(IdleLoops::Branch& branch);
     void take_back(Machine& m);
 
     bool on_ = false;
@@ -63,7 +63,7 @@ class LoopUndo {
     std::deque<Note> notes_;  ///< the first count_ are in use
     std::size_t count_ = 0;
     std::vector<std::uint16_t> waits_;  ///< as they were at the mark
-    std::vector<std::pair<std::size_t, std::optional<ServiceShortcut>>> shortcuts_;
+    std::vector<std::pair<std::size_t, std::optional<IsrSummary>>> summaries_;
     std::optional<Forgotten> forgotten_;
 };
 

@@ -1,4 +1,4 @@
-// Branches, skips, calls and returns, and what happens at a taken backward branch (skip_loops.h,
+// Branches, skips, calls and returns, and what happens at a taken backward branch (idle_loops.h,
 // wait_watch.h).
 
 #include "emu/dspic/translate/emitter.h"

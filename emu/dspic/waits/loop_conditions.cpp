@@ -1,7 +1,7 @@
 #include "emu/dspic/waits/loop_conditions.h"
 
 #include "emu/dspic/core/machine.h"
-#include "emu/dspic/fast/loop_walk.h"
+#include "emu/dspic/fast/symbolic_loop.h"
 
 #include <algorithm>
 
@@ -20,8 +20,8 @@ class Finder {
 
     std::optional<LoopFinding> find() {
         LoopTrace trace;
-        LoopWalk walk(m_, plan_, trace, {.on = true, .most_steps = kMostSteps});
-        if (walk.analyse(branch_, head_) != LoopWalk::Verdict::Pure) return std::nullopt;
+        SymbolicLoop walk(m_, plan_, trace, {.on = true, .most_steps = kMostSteps});
+        if (walk.analyse(branch_, head_) != SymbolicLoop::Verdict::Pure) return std::nullopt;
         LoopFinding finding;
         finding.first = m_.pc_of(head_);
         finding.last = m_.pc_of(branch_);
@@ -29,11 +29,11 @@ class Finder {
         for (const LoopTrace::Boundary& boundary : trace.boundaries)
             path_.push_back(boundary.op);
         if (!walk.chose()) return finding;
-        const SkipLoops::Plan plan = plan_;  // the walks to come overwrite it
+        const IdleLoops::Plan plan = plan_;  // the walks to come overwrite it
         for (std::size_t i = 0; i < plan.polled_count; ++i)
             try_word(plan.polled[i].address, plan.polled[i].value, finding);
         for (std::size_t i = 0; i < plan.count; ++i) {
-            const SkipLoops::Cell& cell = plan.cells[i];
+            const IdleLoops::Cell& cell = plan.cells[i];
             if (cell.key < kRamStart || !cell.carried || cell.step != 0 || is_local(cell.key)) continue;
             try_word(cell.key, static_cast<std::uint16_t>(cell.start), finding);
         }
@@ -50,8 +50,8 @@ class Finder {
     /// True if the loop goes another way with these bits of the word inverted.
     bool matters(std::uint16_t address, std::uint16_t flip) {
         LoopTrace trace;
-        LoopWalk walk(m_, plan_, trace,
-                      {.on = true, .most_steps = kMostSteps, .address = address, .flip = flip});
+        SymbolicLoop walk(m_, plan_, trace,
+                          {.on = true, .most_steps = kMostSteps, .address = address, .flip = flip});
         if (!walk.comes_round(branch_, head_)) return true;
         return !std::equal(path_.begin(), path_.end(), trace.boundaries.begin(), trace.boundaries.end(),
                            [](const Op* a, const LoopTrace::Boundary& b) { return a == b.op; });
@@ -77,7 +77,7 @@ class Finder {
     const Machine& m_;
     const Op* branch_;
     const Op* head_;
-    SkipLoops::Plan plan_;
+    IdleLoops::Plan plan_;
     std::vector<const Op*> path_;
 };
 

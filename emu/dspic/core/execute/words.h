@@ -2,8 +2,8 @@
 // The domain of the interpreter: a value is a 16-bit word, and every effect happens to the machine.
 //
 // The instructions (arithmetic.h, shifts.h, moves.h, bits.h, branches.h) are templates over such a domain;
-// the loop walk (fast/loop_walk.h) and the summary of service routines (fast/service_walk.h) are two more. A
-// domain has
+// the loop walk (fast/symbolic_loop.h) and the summary of service routines (fast/symbolic_isr.h) are two
+// more. A domain has
 //   Value, Address    what a register or a memory word holds, and what reaches memory
 //   value, word       from a number to a Value and back; a domain that does not know the number fails there
 //   whole, part, ...  registers; load, store, change: memory; source, destination: an operand of any mode

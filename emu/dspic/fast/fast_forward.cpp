@@ -1,4 +1,4 @@
-#include "emu/dspic/fast/steady_leap.h"
+#include "emu/dspic/fast/fast_forward.h"
 
 #include "emu/dspic/core/machine.h"
 
@@ -20,7 +20,7 @@ struct Service {
 struct Leap {
     EventQueue::Slot slot = 0;
     EventQueue::Steady steady;
-    const ServiceShortcut* shortcut = nullptr;
+    const IsrSummary* summary = nullptr;
     Cycle due = kNoCycle;  ///< of the steady event
     Cycle horizon = 0;     ///< no arrival at or after this
 
@@ -31,7 +31,7 @@ struct Leap {
 };
 
 /// The loop does not look at what the interrupts change on their way.
-bool polls_interrupts(const Machine& m, const SkipLoops::Plan& plan) {
+bool polls_interrupts(const Machine& m, const IdleLoops::Plan& plan) {
     for (std::size_t i = 0; i < plan.polled_count; ++i) {
         const std::uint16_t address = plan.polled[i].address;
         if (address >= m.device.ifs && address < m.device.ifs + 2 * m.device.ifs_words) return true;
@@ -65,7 +65,7 @@ bool live_above_stack(const LoopTrace& trace, std::uint16_t depth) {
 }
 
 /// What the leap may pass; false if it may not begin.
-bool prepare(Machine& m, SkipLoops::Branch& known, Leap& leap) {
+bool prepare(Machine& m, IdleLoops::Branch& known, Leap& leap) {
     LoopTrace& trace = known.trace;
     if (!trace.steady || m.limit == 0 || m.mode != PowerMode::Run || m.eligible || m.disi_waits ||
         m.st.disi_end > m.st.cycle || m.st.sr & sr::RA || m.observer.on_interrupt)
@@ -78,22 +78,22 @@ bool prepare(Machine& m, SkipLoops::Branch& known, Leap& leap) {
         m.irq.priority(irq) <= cpu_level(m))
         return false;
     if (m.irq.first().level != 0 || m.irq.any_enabled_flag()) return false;
-    leap.shortcut = service_shortcut(m, irq + kTrapVectors);
-    if (!leap.shortcut || leap.shortcut->uses & m.watch & 0xFFFF0000 || !refreshes_hold(m, *leap.shortcut))
+    leap.summary = isr_summary(m, irq + kTrapVectors);
+    if (!leap.summary || leap.summary->uses & m.watch & 0xFFFF0000 || !refreshes_hold(m, *leap.summary))
         return false;
     leap.horizon = std::min(m.until, m.events.next_except(leap.slot));
-    if (trace.depth < leap.shortcut->depth) {
-        trace.depth = leap.shortcut->depth;
+    if (trace.depth < leap.summary->depth) {
+        trace.depth = leap.summary->depth;
         trace.live = polls_interrupts(m, known.plan) || live_above_stack(trace, trace.depth);
     }
     if (trace.live) return false;
     for (const LoopTrace::Boundary& boundary : trace.boundaries)
-        if (!stack_holds(m, *leap.shortcut, boundary.w[15])) return false;
+        if (!stack_holds(m, *leap.summary, boundary.w[15])) return false;
     return true;
 }
 
 /// Follows loop and interrupts up to the last arrival before the horizon, at most `most` iterations on.
-void simulate(const SkipLoops::Plan& plan, const LoopTrace& trace, Leap& leap, Cycle arrival,
+void simulate(const IdleLoops::Plan& plan, const LoopTrace& trace, Leap& leap, Cycle arrival,
               std::uint64_t most, std::vector<Service>& services) {
     const Cycle length = plan.cycles;
     Cycle base = arrival;  // when the iteration under way began, had it not been interrupted
@@ -130,7 +130,7 @@ void simulate(const SkipLoops::Plan& plan, const LoopTrace& trace, Leap& leap, C
         if (iteration >= most) return;
         base += whole * length;
         const LoopTrace::Boundary& at = trace.boundaries[boundary];
-        const Cycle end = service_start(due, base + at.offset) + leap.shortcut->cycles;
+        const Cycle end = service_start(due, base + at.offset) + leap.summary->cycles;
         if (end > leap.horizon || end > due + leap.steady.period) return;
         services.push_back({static_cast<std::uint32_t>(boundary), iteration});
         base = end - at.offset - (at.stall ? 1 : 0);
@@ -147,21 +147,21 @@ void repeat_writes(Machine& m, const LoopTrace& trace, std::uint32_t from) {
         if (access.write && access.boundary >= from) word(m, access.address) = access.value;
 }
 
-void push_at(Machine& m, const LoopTrace& trace, const ServiceShortcut& shortcut, const Service& service) {
+void push_at(Machine& m, const LoopTrace& trace, const IsrSummary& summary, const Service& service) {
     const LoopTrace::Boundary& at = trace.boundaries[service.boundary];
     const auto sr = static_cast<std::uint16_t>((m.st.sr & ~unsigned{at.known}) | at.flags);
-    push_trace(m, shortcut, {at.w.data(), sr, m.pc_of(at.op)});
+    push_trace(m, summary, {at.w.data(), sr, m.pc_of(at.op)});
 }
 
 }  // namespace
 
 bool steady_event_next(Machine& m) {
     const int irq = m.events.steady(m.events.next_slot()).irq;
-    return irq >= 0 && m.irq.enabled(irq) && service_shortcut(m, irq + kTrapVectors);
+    return irq >= 0 && m.irq.enabled(irq) && isr_summary(m, irq + kTrapVectors);
 }
 
-std::uint64_t steady_arrival(Machine& m, SkipLoops::Branch& known, std::uint64_t arrival,
-                             std::uint64_t iterations, bool& interrupted) {
+std::uint64_t fast_forward_arrival(Machine& m, IdleLoops::Branch& known, std::uint64_t arrival,
+                                   std::uint64_t iterations, bool& interrupted) {
     Leap leap;
     std::vector<Service> services;
     if (!prepare(m, known, leap)) return kNoCycle;
@@ -170,7 +170,7 @@ std::uint64_t steady_arrival(Machine& m, SkipLoops::Branch& known, std::uint64_t
     return leap.iterations == iterations ? leap.arrival : kNoCycle;
 }
 
-bool steady_leap(Machine& m, SkipLoops::Branch& known, std::uint64_t arrival) {
+bool fast_forward(Machine& m, IdleLoops::Branch& known, std::uint64_t arrival) {
     Leap leap;
     if (!prepare(m, known, leap)) return false;
     static thread_local std::vector<Service> services;
@@ -181,21 +181,21 @@ bool steady_leap(Machine& m, SkipLoops::Branch& known, std::uint64_t arrival) {
 
     services.resize(leap.services);
     for (const Service& service : services)
-        push_at(m, trace, *leap.shortcut, service);
+        push_at(m, trace, *leap.summary, service);
     // The last iteration in its order: what the loop writes, and what interrupts put over it afterwards.
     repeat_writes(m, trace, 0);
     for (const Service& service : services) {
         if (service.iteration + 1 != leap.iterations) continue;
-        push_at(m, trace, *leap.shortcut, service);
+        push_at(m, trace, *leap.summary, service);
         repeat_writes(m, trace, service.boundary);
     }
     const int irq = leap.steady.irq;
     m.irq.acknowledge({m.irq.priority(irq), irq + kTrapVectors}, cpu_level(m));
     m.events.pass(leap.slot, leap.services);
-    m.watch &= leap.shortcut->keep | 0xFFFFu;
+    m.watch &= leap.summary->keep | 0xFFFFu;
     m.repeat_first = true;
     m.st.cycle += leap.arrival - arrival;
-    m.instructions += leap.iterations * known.plan.instructions + leap.services * leap.shortcut->instructions;
+    m.instructions += leap.iterations * known.plan.instructions + leap.services * leap.summary->instructions;
     m.limit = std::min(m.until, m.events.next());
     known.plan.iterations -= leap.iterations;
     known.plan.used = true;

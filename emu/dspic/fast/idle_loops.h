@@ -12,7 +12,7 @@
 // The next real iteration must end in the state that the walk predicted; only then are iterations leapt over,
 // at most up to the next event, and one fewer than could be, so that a real one sets flags and scratch cells.
 // A loop that changes nothing at all from iteration to iteration (it waits for somebody else) is leapt over
-// together with the interrupts that leave no trace (service_shortcut.h): see steady_leap.h.
+// together with the interrupts that leave no trace (isr_summary.h): see fast_forward.h.
 //
 // A plan stays good over events and interrupts for as long as its cells and registers are as predicted at
 // every arrival at the branch.
@@ -58,7 +58,7 @@ struct LoopTrace {
     }
 };
 
-struct SkipLoops {
+struct IdleLoops {
     /// A cell of the loop: 0..15 a W register, above a RAM byte address.
     struct Cell {
         std::uint16_t key = 0;
@@ -108,7 +108,7 @@ struct SkipLoops {
     std::vector<std::uint16_t> index;  ///< by program word: place in `branches` plus 1, 0 = not seen yet
     std::deque<Branch> branches;
     std::vector<std::uint16_t> waits;  ///< by branch: arrivals until the next try
-    std::uint64_t leaps = 0;  ///< for tests and curiosity
+    std::uint64_t leaps = 0;           ///< for tests and curiosity
     std::uint64_t skipped_cycles = 0;
     std::uint64_t passed_services = 0;  ///< routines without a trace that fell into leaps
 };

@@ -1,6 +1,6 @@
 // One iteration, walked twice.
 
-#include "emu/dspic/fast/loop_walk.h"
+#include "emu/dspic/fast/symbolic_loop.h"
 
 #include "emu/dspic/core/execute/semantics.h"
 
@@ -15,7 +15,7 @@ constexpr std::uint64_t kForever = std::numeric_limits<std::int64_t>::max();
 
 }  // namespace
 
-void LoopWalk::walk(const Op* branch, const Op* head) {
+void SymbolicLoop::walk(const Op* branch, const Op* head) {
     plan_.count = plan_.polled_count = 0;
     plan_.cycles = plan_.instructions = 0;
     plan_.clears_watchdog = false;
@@ -38,20 +38,20 @@ void LoopWalk::walk(const Op* branch, const Op* head) {
 }
 
 /// Only what the interpreter could execute next, with the pointers' hazards.
-void LoopWalk::hazards(const Op* op) {
+void SymbolicLoop::hazards(const Op* op) {
     if (op->run == &decode_now || op->marks != 0) fail(Verdict::NotNow);
     if (op->uses & m_.watch & 0xFFFF0000) fail(Verdict::NotNow);
     if (op->uses & watch_) ++plan_.cycles;
     watch_ = op->writes;
 }
 
-const Op* LoopWalk::execute(const Op* op) {
+const Op* SymbolicLoop::execute(const Op* op) {
     const Op* next = execute_in<AffineDomain>(*this, op);
     if (!next) fail(Verdict::Unknown);
     return next;
 }
 
-void LoopWalk::record(const Op* op) {
+void SymbolicLoop::record(const Op* op) {
     LoopTrace::Boundary& boundary = trace_.boundaries.emplace_back();
     boundary.op = op;
     boundary.offset = static_cast<std::uint32_t>(plan_.cycles);
@@ -69,7 +69,7 @@ void LoopWalk::record(const Op* op) {
 }
 
 /// A flag that an iteration sets late still has at its head what the iteration before left.
-void LoopWalk::settle_flags() {
+void SymbolicLoop::settle_flags() {
     record(trace_.boundaries.front().op);
     const LoopTrace::Boundary end = trace_.boundaries.back();
     trace_.boundaries.pop_back();
@@ -80,7 +80,7 @@ void LoopWalk::settle_flags() {
     }
 }
 
-bool LoopWalk::comes_round(const Op* branch, const Op* head) {
+bool SymbolicLoop::comes_round(const Op* branch, const Op* head) {
     try {
         first_count_ = 0;
         walk(branch, head);
@@ -90,13 +90,13 @@ bool LoopWalk::comes_round(const Op* branch, const Op* head) {
     }
 }
 
-LoopWalk::Verdict LoopWalk::analyse(const Op* branch, const Op* head) {
+SymbolicLoop::Verdict SymbolicLoop::analyse(const Op* branch, const Op* head) {
     try {
         first_count_ = 0;
         walk(branch, head);
         bool moves = false;
         for (std::size_t i = 0; i < plan_.count; ++i) {
-            SkipLoops::Cell& c = plan_.cells[i];
+            IdleLoops::Cell& c = plan_.cells[i];
             if (!c.carried) continue;
             c.step = static_cast<std::int16_t>(static_cast<std::uint16_t>(c.now - c.start));
             moves = moves || c.step != 0;
@@ -109,7 +109,7 @@ LoopWalk::Verdict LoopWalk::analyse(const Op* branch, const Op* head) {
             walk(branch, head);
         }
         for (std::size_t i = 0; i < plan_.count; ++i) {
-            const SkipLoops::Cell& c = plan_.cells[i];
+            const IdleLoops::Cell& c = plan_.cells[i];
             if (c.carried && (c.now != c.start + c.step || c.now_step != c.step)) return Verdict::NotNow;
             if (c.carried) hold(c.start, c.step, 0, 0xFFFF);
         }

@@ -1,17 +1,17 @@
 #pragma once
-// The symbolic walk through one iteration of a loop: see skip_loops.h. Instructions have the interpreter's
+// The symbolic walk through one iteration of a loop: see idle_loops.h. Instructions have the interpreter's
 // semantics (core/execute/semantics.h) over the domain of affine values.
 
 #include "emu/dspic/fast/affine_domain.h"
 
 namespace puckloop::dspic {
 
-class LoopWalk : private AffineDomain {
+class SymbolicLoop : private AffineDomain {
   public:
     using AffineDomain::Probe;
     using AffineDomain::Verdict;
 
-    LoopWalk(const Machine& m, SkipLoops::Plan& plan, LoopTrace& trace, const Probe& probe = {})
+    SymbolicLoop(const Machine& m, IdleLoops::Plan& plan, LoopTrace& trace, const Probe& probe = {})
         : AffineDomain(m, plan, trace, probe) {}
     /// Walks from `head` until `branch` is taken again, twice: to find the steps, then to prove them.
     Verdict analyse(const Op* branch, const Op* head);

@@ -1,4 +1,4 @@
-#include "emu/dspic/fast/service_walk.h"
+#include "emu/dspic/fast/symbolic_isr.h"
 
 #include "emu/dspic/core/execute/semantics.h"
 
@@ -14,8 +14,7 @@ constexpr std::uint32_t kMostDepth = 0x1000;
 
 }  // namespace
 
-ServiceWalk::ServiceWalk(const Machine& m, ServiceShortcut& result, int irq)
-    : m_(m), shortcut_(result), irq_(irq) {
+SymbolicIsr::SymbolicIsr(const Machine& m, IsrSummary& result, int irq) : m_(m), summary_(result), irq_(irq) {
     for (std::uint16_t reg = 0; reg < 16; ++reg)
         w_[reg] = {Word::Register, reg};
     w_[15] = {Word::StackOffset, kExceptionFrame};
@@ -23,7 +22,7 @@ ServiceWalk::ServiceWalk(const Machine& m, ServiceShortcut& result, int irq)
     slots_.push_back({2, Word::ReturnHigh, 0});
 }
 
-ServiceWalk::End ServiceWalk::run(const Op* op) {
+SymbolicIsr::End SymbolicIsr::run(const Op* op) {
     try {
         return walk(op);
     } catch (const Stop&) {
@@ -31,20 +30,20 @@ ServiceWalk::End ServiceWalk::run(const Op* op) {
     }
 }
 
-ServiceWalk::End ServiceWalk::walk(const Op* op) {
-    shortcut_.keep = 0xFFFFFFFF;
+SymbolicIsr::End SymbolicIsr::walk(const Op* op) {
+    summary_.keep = 0xFFFFFFFF;
     std::uint32_t writes = 0;
     for (int i = 0; i < kMostInstructions; ++i) {
         if (op->run == &decode_now) return End::NotYet;
         if (op->marks) return End::Never;
-        if (op->uses & writes & 0xFFFF) ++shortcut_.cycles;
-        shortcut_.uses |= op->uses & 0xFFFF0000 & shortcut_.keep;
-        shortcut_.keep &= op->keep;
+        if (op->uses & writes & 0xFFFF) ++summary_.cycles;
+        summary_.uses |= op->uses & 0xFFFF0000 & summary_.keep;
+        summary_.keep &= op->keep;
         writes = op->writes;
-        shortcut_.cycles += op->cycles;
-        ++shortcut_.instructions;
+        summary_.cycles += op->cycles;
+        ++summary_.instructions;
         if (op->form == FormId::RETFIE) {
-            shortcut_.writes = writes;
+            summary_.writes = writes;
             return restored() ? End::Done : End::Never;
         }
         op = execute_in(*this, op);
@@ -53,23 +52,23 @@ ServiceWalk::End ServiceWalk::walk(const Op* op) {
     return End::Never;
 }
 
-/// Everything is as it was found, but for words above the stack pointer; these become the shortcut's pushes.
-bool ServiceWalk::restored() const {
+/// Everything is as it was found, but for words above the stack pointer; these become the summary's pushes.
+bool SymbolicIsr::restored() const {
     if (w_[15] != Value{Word::StackOffset, kExceptionFrame} || !flag_cleared_) return false;
     for (std::uint16_t reg = 0; reg < 15; ++reg)
         if (w_[reg] != Value{Word::Register, reg}) return false;
-    if (slots_.size() > ServiceShortcut::kMost) return false;
-    std::copy(slots_.begin(), slots_.end(), shortcut_.pushes.begin());
-    shortcut_.push_count = slots_.size();
+    if (slots_.size() > IsrSummary::kMost) return false;
+    std::copy(slots_.begin(), slots_.end(), summary_.pushes.begin());
+    summary_.push_count = slots_.size();
     return true;
 }
 
-std::uint32_t ServiceWalk::word(Value value) {
+std::uint32_t SymbolicIsr::word(Value value) {
     if (value.kind != Word::Constant) throw Stop{};
     return value.value;
 }
 
-void ServiceWalk::set_whole(int reg, Value value) {
+void SymbolicIsr::set_whole(int reg, Value value) {
     if (reg == 15) {
         if (value.kind != Word::StackOffset || value.value < kExceptionFrame || value.value & 1) throw Stop{};
         reach(value.value);
@@ -78,45 +77,44 @@ void ServiceWalk::set_whole(int reg, Value value) {
 }
 
 /// The routine needs this many bytes of stack.
-void ServiceWalk::reach(std::uint32_t depth) {
+void SymbolicIsr::reach(std::uint32_t depth) {
     if (depth > kMostDepth) throw Stop{};
-    shortcut_.depth = std::max(shortcut_.depth, static_cast<std::uint16_t>(depth));
+    summary_.depth = std::max(summary_.depth, static_cast<std::uint16_t>(depth));
 }
 
-ServiceWalk::Value ServiceWalk::plus(Value value, std::uint16_t offset) {
+SymbolicIsr::Value SymbolicIsr::plus(Value value, std::uint16_t offset) {
     if (value.kind != Word::Constant && value.kind != Word::StackOffset) throw Stop{};
     return {value.kind, static_cast<std::uint16_t>(value.value + offset)};
 }
 
-ServiceWalk::Address ServiceWalk::step_pointer(int reg, int pre, int post) {
+SymbolicIsr::Address SymbolicIsr::step_pointer(int reg, int pre, int post) {
     if (reg != 15 && m_.special >> reg & 1) throw Stop{};
     const Address at = plus(whole(reg), static_cast<std::uint16_t>(pre));
     if (pre != 0 || post != 0) set_whole(reg, plus(at, static_cast<std::uint16_t>(post)));
     return at;
 }
 
-ServiceWalk::Address ServiceWalk::indexed(int reg, int index) const {
+SymbolicIsr::Address SymbolicIsr::indexed(int reg, int index) const {
     if (reg != 15 && m_.special >> reg & 1) throw Stop{};
     return plus(whole(reg), static_cast<std::uint16_t>(word(whole(index))));
 }
 
 /// Words that the routine itself put on the stack; the interrupted program's are not its own.
-ServiceWalk::Value ServiceWalk::load(Address at, bool byte) const {
+SymbolicIsr::Value SymbolicIsr::load(Address at, bool byte) const {
     if (at.kind != Word::StackOffset || byte || at.value < kExceptionFrame) throw Stop{};
-    for (const ServiceShortcut::Push& slot : slots_)
+    for (const IsrSummary::Push& slot : slots_)
         if (slot.offset == at.value) return {slot.kind, slot.value};
     throw Stop{};
 }
 
-void ServiceWalk::store(Address at, bool byte, Value value) {
+void SymbolicIsr::store(Address at, bool byte, Value value) {
     if (byte) throw Stop{};
     if (at.kind == Word::Constant) return refresh(at.value, static_cast<std::uint16_t>(word(value)));
     if (at.kind != Word::StackOffset || at.value < kExceptionFrame || at.value & 1) throw Stop{};
     reach(at.value + 2u);
-    const auto slot = std::find_if(slots_.begin(), slots_.end(), [&](const ServiceShortcut::Push& known) {
-        return known.offset == at.value;
-    });
-    const ServiceShortcut::Push push{at.value, value.kind, value.value};
+    const auto slot = std::find_if(slots_.begin(), slots_.end(),
+                                   [&](const IsrSummary::Push& known) { return known.offset == at.value; });
+    const IsrSummary::Push push{at.value, value.kind, value.value};
     if (slot == slots_.end())
         slots_.push_back(push);
     else
@@ -124,33 +122,33 @@ void ServiceWalk::store(Address at, bool byte, Value value) {
 }
 
 /// A module's register: may be written what it holds.
-void ServiceWalk::refresh(std::uint16_t address, std::uint16_t value) {
+void SymbolicIsr::refresh(std::uint16_t address, std::uint16_t value) {
     if (address < kWEnd || address >= kRamStart || address & 1 || !m_.sfr.idempotent(address) ||
-        shortcut_.refresh_count == ServiceShortcut::kMost)
+        summary_.refresh_count == IsrSummary::kMost)
         throw Stop{};
-    shortcut_.refreshes[shortcut_.refresh_count++] = {address, value};
+    summary_.refreshes[summary_.refresh_count++] = {address, value};
 }
 
-void ServiceWalk::clear_flag(Address at, bool byte, std::uint32_t set, std::uint32_t cleared) {
+void SymbolicIsr::clear_flag(Address at, bool byte, std::uint32_t set, std::uint32_t cleared) {
     const auto flag = static_cast<std::uint16_t>(m_.device.ifs + irq_ / 8);
     if (!byte || at != address(flag) || set != 0 || cleared != 1u << irq_ % 8) throw Stop{};
     flag_cleared_ = true;
 }
 
-const Op* ServiceWalk::go(std::uint32_t pc) const {
+const Op* SymbolicIsr::go(std::uint32_t pc) const {
     if (pc >> 1 >= m_.code_words) throw Stop{};
     return m_.code + (pc >> 1);
 }
 
-const Op* ServiceWalk::branch(const Op* op, bool conditional) {
-    if (conditional) ++shortcut_.cycles;
+const Op* SymbolicIsr::branch(const Op* op, bool conditional) {
+    if (conditional) ++summary_.cycles;
     return go(op->target);
 }
 
-const Op* ServiceWalk::skip_if(const Op* op, bool condition) {
+const Op* SymbolicIsr::skip_if(const Op* op, bool condition) {
     if (!condition) return op + 1;
     const bool two = is_two_words(op[1].word);
-    shortcut_.cycles += two ? 2 : 1;
+    summary_.cycles += two ? 2 : 1;
     return op + (two ? 3 : 2);
 }
 

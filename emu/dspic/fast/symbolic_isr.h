@@ -1,31 +1,31 @@
 #pragma once
-// The walk through a service routine (service_shortcut.h). Its domain (core/execute/words.h says what that
+// The walk through a service routine (isr_summary.h). Its domain (core/execute/words.h says what that
 // is) has names for what the routine finds: registers by their numbers, the stack by offsets from the
-// interrupted stack pointer, constants. It leaves by an exception where the routine does more than a shortcut
+// interrupted stack pointer, constants. It leaves by an exception where the routine does more than a summary
 // can say.
 
 #include "emu/dspic/core/execute/shape.h"
-#include "emu/dspic/fast/service_shortcut.h"
+#include "emu/dspic/fast/isr_summary.h"
 
 #include <array>
 #include <vector>
 
 namespace puckloop::dspic {
 
-class ServiceWalk {
+class SymbolicIsr {
   public:
-    using Word = ServiceShortcut::Word;
+    using Word = IsrSummary::Word;
     struct Value {
         Word kind{};
         std::uint16_t value = 0;
         bool operator==(const Value&) const = default;
     };
     using Address = Value;
-    /// Thrown: the routine has no shortcut.
+    /// Thrown: the routine has no summary.
     struct Stop {};
     enum class End : std::uint8_t { Done, NotYet, Never };
 
-    ServiceWalk(const Machine& m, ServiceShortcut& result, int irq);
+    SymbolicIsr(const Machine& m, IsrSummary& result, int irq);
     /// Walks from the routine's first instruction to RETFIE. NotYet: parts of it were never executed.
     End run(const Op* op);
 
@@ -106,10 +106,10 @@ class ServiceWalk {
     End walk(const Op* op);
 
     const Machine& m_;
-    ServiceShortcut& shortcut_;
+    IsrSummary& summary_;
     int irq_;
     std::array<Value, 16> w_{};
-    std::vector<ServiceShortcut::Push> slots_;
+    std::vector<IsrSummary::Push> slots_;
     bool flag_cleared_ = false;
 };
 

@@ -1,9 +1,9 @@
-#include "emu/dspic/fast/skip_loops.h"
+#include "emu/dspic/fast/idle_loops.h"
 
 #include "emu/dspic/core/machine.h"
+#include "emu/dspic/fast/fast_forward.h"
 #include "emu/dspic/fast/loop_undo.h"
-#include "emu/dspic/fast/loop_walk.h"
-#include "emu/dspic/fast/steady_leap.h"
+#include "emu/dspic/fast/symbolic_loop.h"
 
 #include <algorithm>
 #include <utility>
@@ -23,8 +23,8 @@ std::uint16_t& word_of(Machine& m, std::uint16_t key) {
     return key < 16 ? m.st.w[key] : m.ram[(key - kRamStart) / 2];
 }
 
-SkipLoops::Branch& branch_at(Machine& m, std::size_t word) {
-    SkipLoops& skip = *m.skip;
+IdleLoops::Branch& branch_at(Machine& m, std::size_t word) {
+    IdleLoops& skip = *m.skip;
     if (skip.index.empty()) skip.index.assign(m.code_words + kGuards, 0);
     if (skip.index[word] == 0) {
         skip.branches.emplace_back().place = static_cast<std::uint16_t>(skip.waits.size());
@@ -36,12 +36,12 @@ SkipLoops::Branch& branch_at(Machine& m, std::size_t word) {
 }
 
 /// The machine stands where the plan expects it, at the branch.
-bool as_predicted(Machine& m, const SkipLoops::Plan& plan, Cycle arrival) {
+bool as_predicted(Machine& m, const IdleLoops::Plan& plan, Cycle arrival) {
     for (std::size_t i = 0; i < plan.polled_count; ++i)
         if (m.sfr.raw(plan.polled[i].address) != plan.polled[i].value) return false;
     if (!plan.proven && plan.proof_due != arrival) return false;
     for (std::size_t i = 0; i < plan.count; ++i) {
-        const SkipLoops::Cell& cell = plan.cells[i];
+        const IdleLoops::Cell& cell = plan.cells[i];
         // Scratch, an interrupt may have used it.
         if (!cell.carried && (plan.proven || (plan.proof_interrupted && cell.key >= 16))) continue;
         if (word_of(m, cell.key) != static_cast<std::uint16_t>(cell.now)) return false;
@@ -49,7 +49,7 @@ bool as_predicted(Machine& m, const SkipLoops::Plan& plan, Cycle arrival) {
     return true;
 }
 
-void advance(SkipLoops::Plan& plan, std::uint64_t iterations) {
+void advance(IdleLoops::Plan& plan, std::uint64_t iterations) {
     for (std::size_t i = 0; i < plan.count; ++i)
         plan.cells[i].now +=
             static_cast<std::int32_t>(static_cast<std::int64_t>(iterations) * plan.cells[i].step);
@@ -57,7 +57,7 @@ void advance(SkipLoops::Plan& plan, std::uint64_t iterations) {
 }
 
 /// Leaps over as many iterations as the plan and the limit allow, less one.
-void leap(Machine& m, SkipLoops::Plan& plan, Cycle arrival) {
+void leap(Machine& m, IdleLoops::Plan& plan, Cycle arrival) {
     if (m.limit < arrival) return;
     const std::uint64_t room = (m.limit - arrival) / plan.cycles;
     if (room < 2 || plan.iterations < 2) return;
@@ -78,17 +78,17 @@ void leap(Machine& m, SkipLoops::Plan& plan, Cycle arrival) {
     m.skip->skipped_cycles += cycles;
 }
 
-void give_up_for_now(Machine& m, SkipLoops::Branch& known, std::uint8_t most = kMostPatience) {
+void give_up_for_now(Machine& m, IdleLoops::Branch& known, std::uint8_t most = kMostPatience) {
     if (known.patience < most) ++known.patience;
     m.skip->waits[known.place] = static_cast<std::uint16_t>((1u << known.patience) - 1);
 }
 
-void make_plan(Machine& m, SkipLoops::Branch& known, const Op* branch, const Op* head, Cycle arrival) {
-    SkipLoops::Plan& plan = known.plan;
+void make_plan(Machine& m, IdleLoops::Branch& known, const Op* branch, const Op* head, Cycle arrival) {
+    IdleLoops::Plan& plan = known.plan;
     m.loop_undo->note_walk(known);
-    LoopWalk walk(m, plan, known.trace);
+    SymbolicLoop walk(m, plan, known.trace);
     switch (walk.analyse(branch, head)) {
-    case LoopWalk::Verdict::Pure:
+    case SymbolicLoop::Verdict::Pure:
         known.walked = true;
         if (plan.iterations < kFewestIterations) return give_up_for_now(m, known);
         plan.alive = true;
@@ -96,16 +96,16 @@ void make_plan(Machine& m, SkipLoops::Branch& known, const Op* branch, const Op*
         plan.proof_due = arrival + plan.cycles;
         plan.proof_interrupted = false;
         if (m.limit < plan.proof_due) {
-            plan.proof_due = steady_arrival(m, known, arrival, 1, plan.proof_interrupted);
+            plan.proof_due = fast_forward_arrival(m, known, arrival, 1, plan.proof_interrupted);
             plan.alive = plan.proof_due != kNoCycle;
             if (!plan.alive && !known.trace.steady) return give_up_for_now(m, known);
         }
         --plan.iterations;  // the one that runs now
         break;
-    case LoopWalk::Verdict::NotNow:
+    case SymbolicLoop::Verdict::NotNow:
         give_up_for_now(m, known);
         break;
-    case LoopWalk::Verdict::Unknown:
+    case SymbolicLoop::Verdict::Unknown:
         // On its last round a loop leaves by instructions that the walk need not know.
         if (known.walked) return give_up_for_now(m, known);
         if (walk.chose()) return give_up_for_now(m, known, kMostPatienceUnknown);  // another way round may do
@@ -118,11 +118,11 @@ void make_plan(Machine& m, SkipLoops::Branch& known, const Op* branch, const Op*
 
 /// When the iteration that begins at `arrival` is over, if nothing but routines without a trace can come
 /// between.
-Cycle clean_arrival(Machine& m, SkipLoops::Branch& known, Cycle arrival) {
+Cycle clean_arrival(Machine& m, IdleLoops::Branch& known, Cycle arrival) {
     if (!known.trace.steady) return kNoCycle;
     if (arrival + known.plan.cycles < m.limit) return arrival + known.plan.cycles;
     bool interrupted = false;
-    return steady_arrival(m, known, arrival, 1, interrupted);
+    return fast_forward_arrival(m, known, arrival, 1, interrupted);
 }
 
 }  // namespace
@@ -133,12 +133,12 @@ void forget_loops(Machine& m) {
     m.skip->index.clear();
     m.skip->branches.clear();
     m.skip->waits.clear();
-    m.shortcuts.known.clear();
+    m.isr_summaries.known.clear();
     publish_loops(m);
 }
 
 void publish_loops(Machine& m) {
-    SkipLoops& skip = *m.skip;
+    IdleLoops& skip = *m.skip;
     m.loop_index = skip.index.empty() ? nullptr : skip.index.data();
     m.loop_waits = skip.waits.data();
 }
@@ -146,20 +146,20 @@ void publish_loops(Machine& m) {
 void try_skip(Machine& m, const Op* branch, const Op* head) {
     note_arrival(m, branch, head);
     if (!m.skip_idle) return;
-    SkipLoops::Branch& known = branch_at(m, static_cast<std::size_t>(branch - m.code));
+    IdleLoops::Branch& known = branch_at(m, static_cast<std::size_t>(branch - m.code));
     m.loop_undo->note(known);
     if (std::uint16_t& wait = m.skip->waits[known.place]; wait > 0) {
         --wait;
         return;
     }
     const Cycle arrival = m.st.cycle + branch->cycles;  // the run loop adds them after this
-    SkipLoops::Plan& plan = known.plan;
+    IdleLoops::Plan& plan = known.plan;
     if (plan.alive) {
         if (plan.iterations >= 2 && as_predicted(m, plan, arrival)) {
             const bool clean = !plan.proven || plan.clean_due == arrival;
             plan.proven = true;
             if (!std::exchange(known.polls_noted, true) && plan.polled_count > 0) note_polls(m, branch, head);
-            if (!clean || !steady_leap(m, known, arrival)) leap(m, plan, arrival);
+            if (!clean || !fast_forward(m, known, arrival)) leap(m, plan, arrival);
             note_leap(m, branch);
             plan.clean_due = clean_arrival(m, known, m.st.cycle + branch->cycles);
             advance(plan, 1);  // the real iteration that follows

@@ -3,10 +3,10 @@
 //
 // Such a loop's state at its branch is the same at every arrival; only time passes, and dead words above the
 // stack pointer change. Events of one slot may fall into the leap if all they do is to raise an interrupt
-// whose routine has a shortcut: where each comes in follows from the times at which the loop's instructions
-// start, and what it costs from the shortcut. The leap ends at an arrival before any other event.
+// whose routine has a summary: where each comes in follows from the times at which the loop's instructions
+// start, and what it costs from the summary. The leap ends at an arrival before any other event.
 
-#include "emu/dspic/fast/skip_loops.h"
+#include "emu/dspic/fast/idle_loops.h"
 
 namespace puckloop::dspic {
 
@@ -16,9 +16,9 @@ struct Machine;
 bool steady_event_next(Machine& m);
 /// Arrival at the branch after `iterations` more; kNoCycle if something else than routines without a trace
 /// may come between, or if the loop is not of this kind. `interrupted`: whether any routine does.
-std::uint64_t steady_arrival(Machine& m, SkipLoops::Branch& known, std::uint64_t arrival,
-                             std::uint64_t iterations, bool& interrupted);
+std::uint64_t fast_forward_arrival(Machine& m, IdleLoops::Branch& known, std::uint64_t arrival,
+                                   std::uint64_t iterations, bool& interrupted);
 /// Leaps; false if nothing was to be gained. The machine stands at the branch, arrival being when it is over.
-bool steady_leap(Machine& m, SkipLoops::Branch& known, std::uint64_t arrival);
+bool fast_forward(Machine& m, IdleLoops::Branch& known, std::uint64_t arrival);
 
 }  // namespace puckloop::dspic

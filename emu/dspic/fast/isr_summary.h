@@ -3,8 +3,8 @@
 //
 // A routine that only saves and restores registers, writes registers of modules the values that they hold
 // already, and clears its own flag, changes nothing but time and the dead words above the stack pointer. Such
-// a routine is walked through once: its pushes, its cycles and its conditions make a shortcut. At an
-// interrupt that leads to it the shortcut is taken if the conditions hold and nothing else can happen before
+// a routine is walked through once: its pushes, its cycles and its conditions make a summary. At an
+// interrupt that leads to it the summary is taken if the conditions hold and nothing else can happen before
 // its end; else the routine is executed. (A firmware that refreshes a duty cycle at every period of its
 // carrier spends a third of its instructions in such a routine.)
 
@@ -20,7 +20,7 @@ namespace puckloop::dspic {
 struct Machine;
 struct Op;
 
-struct ServiceShortcut {
+struct IsrSummary {
     enum class Word : std::uint8_t { Register, Constant, StackOffset, ReturnLow, ReturnHigh };
     /// A word that ends up above the interrupted stack pointer.
     struct Push {
@@ -50,8 +50,8 @@ struct ServiceShortcut {
 };
 
 /// By vector; filled as they are met.
-struct ServiceShortcuts {
-    std::vector<std::optional<ServiceShortcut>> known;
+struct IsrSummaries {
+    std::vector<std::optional<IsrSummary>> known;
 };
 
 /// What a routine interrupts: registers, status and the address to come back to.
@@ -61,13 +61,13 @@ struct Interrupted {
     std::uint32_t pc = 0;
 };
 
-/// The shortcut for an interrupt vector, if its routine has one.
-const ServiceShortcut* service_shortcut(Machine& m, int vector);
+/// The summary for an interrupt vector, if its routine has one.
+const IsrSummary* isr_summary(Machine& m, int vector);
 /// True if what it expects of the modules' registers is so now.
-bool refreshes_hold(const Machine& m, const ServiceShortcut& shortcut);
+bool refreshes_hold(const Machine& m, const IsrSummary& summary);
 /// True if it finds room with the stack pointer at `stack`.
-bool stack_holds(const Machine& m, const ServiceShortcut& shortcut, std::uint16_t stack);
+bool stack_holds(const Machine& m, const IsrSummary& summary, std::uint16_t stack);
 /// Does what the routine leaves behind.
-void push_trace(Machine& m, const ServiceShortcut& shortcut, const Interrupted& interrupted);
+void push_trace(Machine& m, const IsrSummary& summary, const Interrupted& interrupted);
 
 }  // namespace puckloop::dspic
