@@ -1,4 +1,4 @@
-// What happens at a taken backward branch (skip_loops.h, wait_watch.h), as far as it is the same as last
+// What happens at a taken backward branch (idle_loops.h, wait_watch.h), as far as it is the same as last
 // time.
 
 #include "emu/dspic/translate/emitter.h"
