@@ -97,6 +97,8 @@ struct Chip::Parts {
     std::optional<std::uint32_t> stopped_at;
     Time now = 0;  ///< the last `until`
     std::optional<Cycle> asleep_since;
+    std::vector<std::uint16_t> idle_controls;  ///< registers with a bit that stops a module in Idle
+    bool holding = true;                       ///< set_power() may have stopped a module
 
     Parts(const DeviceInfo& device_info, Pins& board, const ChipOptions& chip_options)
         : device(device_info),
@@ -134,7 +136,20 @@ struct Chip::Parts {
             dma.emplace(around, layout.dma, core.ram().subspan((layout.dma.ram - device.ram_start) / 2u));
         for (const std::uint16_t address : layout.stored)
             sfr.claim(address);
+        list_idle_controls();
         wire();
+    }
+
+    void list_idle_controls() {
+        for (const TimerPlace& place : layout.timers)
+            idle_controls.push_back(place.setup.con);
+        for (const Uart::Setup& setup : layout.uarts)
+            idle_controls.push_back(setup.mode);
+        if (layout.adc12) idle_controls.push_back(Adc12::kControl);
+        for (const Adc33F::Setup& setup : layout.adcs)
+            idle_controls.push_back(setup.con1);
+        for (const Spi::Setup& setup : layout.spis)
+            idle_controls.push_back(setup.stat);
     }
 
     SfrSpace& described() {
@@ -246,6 +261,14 @@ struct Chip::Parts {
     void set_power(PowerMode mode) {
         asleep_since.reset();
         if (mode != PowerMode::Run) asleep_since = core.cycle();
+        // Firmware that idles between interrupts comes by here twice for each of them.
+        unsigned controls = 0;
+        if (mode == PowerMode::Idle)
+            for (const std::uint16_t address : idle_controls)
+                controls |= sfr.raw(address);
+        const bool holds = mode == PowerMode::Sleep || (controls & kAnyModule["*SIDL"]);
+        if (!holds && !holding) return;
+        holding = holds;
         const auto stops = [&](std::uint16_t control) {
             return mode == PowerMode::Sleep ||
                    (mode == PowerMode::Idle && (sfr.raw(control) & kAnyModule["*SIDL"]));
@@ -298,6 +321,7 @@ struct Chip::Parts {
         if (dma) archive.part("dma", *dma);
         archive.part("report", report);
         archive(asleep_since);
+        if constexpr (Archive::kLoads) holding = true;
         if constexpr (!Archive::kRaw) check_report(archive);
         archive.part("events", events);
         archive.bounded(now, 0, cosim::kNever);
