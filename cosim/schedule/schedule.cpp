@@ -11,6 +11,8 @@ constexpr Time kStretchDivisor = 4;
 // every few milliseconds (a program that polls a board) costs a stretch each.
 constexpr Time kShortest = 40 * kMicrosecond;
 constexpr Time kLongest = 500 * kMicrosecond;
+// Where so much is sure anyway, nothing is to be won by running ahead.
+constexpr Time kLongEnough = 200 * kMicrosecond;
 // A stretch that was right makes the next one longer by this part: it stays a fraction of the time since the
 // last surprise.
 constexpr Time kGrowth = 3;
@@ -91,8 +93,8 @@ bool Schedule::aims_ahead(std::size_t n, const NodeTimes& node, Time end) {
         return ahead_[n] > from;
     }
     if (sure < node.ahead) return false;  // the mark would stay behind
-    target_[n] = std::max(node.ahead, std::min(sure, reach));
-    ahead_[n] = std::max(target_[n], reach);
+    target_[n] = std::max(node.ahead, std::min(sure, ceiling_));
+    ahead_[n] = target_[n] - node.ahead >= kLongEnough ? target_[n] : std::max(target_[n], reach);
     return ahead_[n] > node.ahead ||
            (node.granted < node.ahead && (node.ahead == end || node.granted == reached_));
 }
