@@ -79,7 +79,8 @@ void Schedule::plan(const std::vector<Channel>& channels, const std::vector<Time
 }
 
 /// Whether node `n`, which can go back, has something to do, and how far it is to go.
-bool Schedule::aims_ahead(std::size_t n, const NodeTimes& node, Time end) {
+bool Schedule::aims_ahead(std::size_t n, const NodeTimes& node, const ScheduleLimits& limits) {
+    const Time end = limits.end;
     const Time sure = std::max(target_[n], node.granted);
     if (node.ahead > end) {  // the end came nearer
         target_[n] = ahead_[n] = std::min(sure, end);
@@ -95,8 +96,11 @@ bool Schedule::aims_ahead(std::size_t n, const NodeTimes& node, Time end) {
     if (sure < node.ahead) return false;  // the mark would stay behind
     target_[n] = std::max(node.ahead, std::min(sure, ceiling_));
     ahead_[n] = target_[n] - node.ahead >= kLongEnough ? target_[n] : std::max(target_[n], reach);
-    return ahead_[n] > node.ahead ||
-           (node.granted < node.ahead && (node.ahead == end || node.granted == reached_));
+    if (node.granted < node.ahead && (node.ahead == end || node.granted == reached_)) return true;
+    // One that would only wait, and is known to, need not: it limits nobody.
+    const bool serves = next_[n] < ahead_[n] || target_[n] >= end ||
+                        target_[n] - node.granted >= limits.stop_latency / kStretchDivisor;
+    return serves && ahead_[n] > node.ahead;
 }
 
 /// Nodes that can go back and have something to do, those of the lowest rank.
@@ -106,7 +110,7 @@ void Schedule::plan_ahead(const std::vector<NodeTimes>& nodes, const ScheduleLim
         if (channel.punctual > 0) expected_[channel.to] = std::min(expected_[channel.to], channel.base);
     int lowest = kLastRank;
     for (std::size_t n = 0; n < nodes.size(); ++n) {
-        if (!nodes[n].runs_ahead || nodes[n].busy || !aims_ahead(n, nodes[n], limits.end)) continue;
+        if (!nodes[n].runs_ahead || nodes[n].busy || !aims_ahead(n, nodes[n], limits)) continue;
         lowest = std::min(lowest, stretches_[n].rank);
         chosen_.push_back(n);
     }

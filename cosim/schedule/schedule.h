@@ -63,7 +63,7 @@ class Schedule {
 
     Time limit_if_silent(std::size_t n);
     void plan_ahead(const std::vector<NodeTimes>& nodes, const ScheduleLimits& limits);
-    bool aims_ahead(std::size_t n, const NodeTimes& node, Time end);
+    bool aims_ahead(std::size_t n, const NodeTimes& node, const ScheduleLimits& limits);
     void choose_plain(const std::vector<NodeTimes>& nodes, const ScheduleLimits& limits);
     void choose_any(const std::vector<NodeTimes>& nodes);
     void find_next(const std::vector<NodeTimes>& nodes, Time end);
