@@ -28,6 +28,8 @@ struct Interrupted {};
 bool after(const TraceRecord& a, const TraceRecord& b) {
     return a.key() > b.key();
 }
+// Simulated time of boards that takes longer to execute than a thread to wake: some 10 us.
+constexpr Time kWorthSharing = 150 * kMicrosecond;
 
 }  // namespace
 
@@ -207,6 +209,7 @@ void Conductor::State::grant(std::size_t n, Time until, Time ahead) {
     slot.stale = false;
     fill_inbox(n, ahead);
     slot.asked = until;
+    slot.span = ahead - std::min(ahead, std::min(times_[n].surprise, times_[n].ahead));
     slot.changed = kNever;
     times_[n].busy = true;
     ++grants_;
@@ -218,19 +221,35 @@ void Conductor::State::grant(std::size_t n, Time until, Time ahead) {
     handles_[n]->grant({sure, until, ahead}, slot.inbox, slot.echoes);
 }
 
+/// Whether enough is left for a second thread, besides the longest piece, to be woken for.
+bool Conductor::State::worth_sharing() const {
+    Time longest = 0, all = 0;
+    for (const std::size_t n : shared_) {
+        longest = std::max(longest, slots_[n].span);
+        all = later(all, slots_[n].span);
+    }
+    return all - longest >= kWorthSharing;
+}
+
 /// Lets the granted nodes of this process work, and takes their replies in order.
 void Conductor::State::work_here() {
     shared_.clear();
     for (const std::size_t n : here_)
         if (specs_[n].any_thread) shared_.push_back(n);
-    workers_->run(shared_.size(), [this](std::size_t piece) {
+    const auto work = [this](std::size_t piece) {
         const std::size_t n = shared_[piece];
         try {
             handles_[n]->poll(false);
         } catch (...) {
             failures_[n] = std::current_exception();
         }
-    });
+    };
+    if (worth_sharing()) {
+        workers_->run(shared_.size(), work);
+    } else {
+        for (std::size_t piece = 0; piece < shared_.size(); ++piece)
+            work(piece);
+    }
     for (const std::size_t n : here_) {
         current_ = n;
         if (!specs_[n].any_thread) handles_[n]->poll(false);

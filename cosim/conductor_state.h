@@ -45,6 +45,7 @@ class Conductor::State {
         Time unknown = kNever;  ///< first message that the node does not know of
         Time changed = kNever;  ///< first change in what comes in since the grant under way
         std::size_t changed_by = kNobody;
+        Time span = 0;  ///< to be executed for the grant under way, in simulated time
         bool stale = true;               ///< `unknown` is to be found again
         std::vector<TraceRecord> queue;  ///< final and not handled; heap, earliest first
         std::vector<TraceRecord> taken;  ///< what comes in, for the grant under way
@@ -63,6 +64,7 @@ class Conductor::State {
     void chop(std::size_t n, Time& until, Time& ahead);
     void collect();
     void work_here();
+    bool worth_sharing() const;
     void collect_elsewhere(bool wait);
     void take_reply(std::size_t n);
     void take_stop(std::size_t n, Time before);

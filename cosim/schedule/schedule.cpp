@@ -10,7 +10,8 @@ constexpr Time kStretchDivisor = 4;
 // To run ahead at least and at most: what is wrong is executed again from the mark on, so that a surprise
 // every few milliseconds (a program that polls a board) costs a stretch each.
 constexpr Time kShortest = 40 * kMicrosecond;
-constexpr Time kLongest = 500 * kMicrosecond;
+constexpr Time kLongest = kMillisecond;
+constexpr Time kTogether = 250 * kMicrosecond;
 // Where so much is sure anyway, nothing is to be won by running ahead.
 constexpr Time kLongEnough = 200 * kMicrosecond;
 // A stretch that was right makes the next one longer by this part: it stays a fraction of the time since the
@@ -78,6 +79,12 @@ void Schedule::plan(const std::vector<Channel>& channels, const std::vector<Time
     if (idle && limits.pace > ceiling_) choose_any(nodes);
 }
 
+/// Long stretches end together, so that the nodes' next ones begin together: side by side on several threads.
+Time Schedule::stretch_end(Time from, Time length) {
+    const Time end = later(from, length);
+    return length < 2 * kTogether ? end : end - end % kTogether;
+}
+
 /// Whether node `n`, which can go back, has something to do, and how far it is to go.
 bool Schedule::aims_ahead(std::size_t n, const NodeTimes& node, const ScheduleLimits& limits) {
     const Time end = limits.end;
@@ -87,7 +94,7 @@ bool Schedule::aims_ahead(std::size_t n, const NodeTimes& node, const ScheduleLi
         return true;
     }
     const Time from = std::min(node.surprise, node.ahead);
-    const Time reach = std::min({ceiling_, expected_[n], later(from, stretches_[n].length)});
+    const Time reach = std::min({ceiling_, expected_[n], stretch_end(from, stretches_[n].length)});
     if (node.surprise < node.ahead) {
         target_[n] = std::max(node.granted, std::min(sure, std::max(reach, from)));
         ahead_[n] = std::max(target_[n], reach);

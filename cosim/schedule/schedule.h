@@ -61,6 +61,7 @@ class Schedule {
         Stretch();
     };
 
+    static Time stretch_end(Time from, Time length);
     Time limit_if_silent(std::size_t n);
     void plan_ahead(const std::vector<NodeTimes>& nodes, const ScheduleLimits& limits);
     bool aims_ahead(std::size_t n, const NodeTimes& node, const ScheduleLimits& limits);

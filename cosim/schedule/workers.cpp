@@ -12,8 +12,8 @@ namespace {
 constexpr unsigned kNextBits = 16, kCountBits = 16;
 constexpr std::uint64_t kNextMask = (std::uint64_t{1} << kNextBits) - 1;
 constexpr std::uint64_t kCountMask = (std::uint64_t{1} << kCountBits) - 1;
-// Looks before a helper sleeps; some 100 us.
-constexpr int kLooks = 3'000;
+// Looks before a helper sleeps; some 20 us, about what it takes to wake it.
+constexpr int kLooks = 600;
 constexpr int kLooksBeforeYield = 200;
 constexpr auto kPutAside = std::chrono::microseconds(500);
 constexpr int kRoundsAlone = 2'000;
