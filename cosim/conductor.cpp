@@ -20,7 +20,6 @@ constexpr double kFlushSeconds = 1.0;
 // With --realtime, how far ahead of the wall clock nodes are let, and how long to sleep when they are there.
 constexpr Time kPaceSlack = kMillisecond;
 constexpr std::chrono::microseconds kPaceSleep{500};
-// Records held back before the trace is put in order and released.
 
 /// Thrown through the loop when the user ends the run.
 struct Interrupted {};
@@ -28,6 +27,7 @@ struct Interrupted {};
 bool after(const TraceRecord& a, const TraceRecord& b) {
     return a.key() > b.key();
 }
+
 // Simulated time of boards that takes longer to execute than a thread to wake: some 10 us.
 constexpr Time kWorthSharing = 150 * kMicrosecond;
 

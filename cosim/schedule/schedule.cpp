@@ -17,18 +17,16 @@ constexpr Time kLongEnough = 200 * kMicrosecond;
 // A stretch that was right makes the next one longer by this part: it stays a fraction of the time since the
 // last surprise.
 constexpr Time kGrowth = 3;
-// Stretches without surprise after which a node is no longer put behind others, and how many ranks there are.
+// Stretches without surprise after which a node no longer waits for the one that caused the last.
 constexpr int kCalm = 16;
-constexpr int kLastRank = 3;
 }  // namespace
 
 Schedule::Stretch::Stretch() : length(kLongest) {}
 
 void Schedule::surprised(std::size_t from, std::size_t to) {
-    if (std::max(from, to) >= stretches_.size()) return;
-    Stretch& stretch = stretches_[to];
-    stretch.rank = std::max(stretch.rank, std::min(kLastRank, stretches_[from].rank + 1));
-    stretch.calm = 0;
+    if (to >= stretches_.size()) return;
+    stretches_[to].waits_for = from;
+    stretches_[to].calm = 0;
 }
 
 /// Limit of node `n`, which its own messages set, as if it were silent: it will go in strides.
@@ -110,28 +108,27 @@ bool Schedule::aims_ahead(std::size_t n, const NodeTimes& node, const ScheduleLi
     return serves && ahead_[n] > node.ahead;
 }
 
-/// Nodes that can go back and have something to do, those of the lowest rank.
+/// Nodes that can go back and have something to do, but for those that wait for another one of them.
 void Schedule::plan_ahead(const std::vector<NodeTimes>& nodes, const ScheduleLimits& limits) {
     expected_.assign(nodes.size(), kNever);
     for (const Channel& channel : *channels_)
         if (channel.punctual > 0) expected_[channel.to] = std::min(expected_[channel.to], channel.base);
-    int lowest = kLastRank;
+    goes_.assign(nodes.size(), false);
+    for (std::size_t n = 0; n < nodes.size(); ++n)
+        goes_[n] = nodes[n].runs_ahead && !nodes[n].busy && aims_ahead(n, nodes[n], limits);
     for (std::size_t n = 0; n < nodes.size(); ++n) {
-        if (!nodes[n].runs_ahead || nodes[n].busy || !aims_ahead(n, nodes[n], limits)) continue;
-        lowest = std::min(lowest, stretches_[n].rank);
-        chosen_.push_back(n);
-    }
-    std::erase_if(chosen_, [&](std::size_t n) { return stretches_[n].rank > lowest; });
-    for (const std::size_t n : chosen_) {
+        if (!goes_[n]) continue;
         Stretch& stretch = stretches_[n];
+        // Of several that wait for each other in a circle the last one goes.
+        goes_[n] = stretch.waits_for == kNobody || !goes_[stretch.waits_for];
+        if (!goes_[n]) continue;
+        chosen_.push_back(n);
         if (nodes[n].surprise < nodes[n].ahead) {
             stretch.length = kShortest;
             continue;
         }
         stretch.length = std::clamp(stretch.length + stretch.length / kGrowth, kShortest, kLongest);
-        if (++stretch.calm < kCalm || stretch.rank == 0) continue;
-        stretch.calm = 0;
-        --stretch.rank;
+        if (++stretch.calm >= kCalm) stretch.waits_for = kNobody;
     }
 }
 

@@ -26,7 +26,7 @@ struct ScheduleLimits {
 
 /// A node that can go back runs ahead on what is foreseen, by a stretch that begins short when something was
 /// wrong and grows by a third each time that it was not. It does so at once, the others wait for it: what
-/// they are to receive is then known. One that is often taken by surprise waits for those that surprise it. A
+/// they are to receive is then known. One that was taken by surprise waits for the one that did it. A
 /// message that has come punctually is counted on, so that a node does not run beyond it.
 ///
 /// For the others a grant costs a round trip to another process, so one is granted only when that serves:
@@ -56,8 +56,8 @@ class Schedule {
     /// How a node that runs ahead fared.
     struct Stretch {
         Time length;
-        int rank = 0;  ///< nodes of lower rank go first
-        int calm = 0;  ///< stretches since a surprise
+        std::size_t waits_for = kNobody;  ///< took it by surprise and so goes first
+        int calm = 0;                     ///< stretches since a surprise
         Stretch();
     };
 
@@ -77,6 +77,7 @@ class Schedule {
     std::vector<Time> ahead_;
     std::vector<Stretch> stretches_;
     std::vector<Time> expected_;  ///< when a punctual message is due next
+    std::vector<bool> goes_;
     Time window_ = 0, ceiling_ = 0;
     bool any_ahead_ = false;
     std::vector<Time> next_;
