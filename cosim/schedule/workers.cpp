@@ -16,7 +16,7 @@ constexpr std::uint64_t kCountMask = (std::uint64_t{1} << kCountBits) - 1;
 constexpr int kLooks = 600;
 constexpr int kLooksBeforeYield = 200;
 constexpr auto kPutAside = std::chrono::microseconds(500);
-constexpr int kRoundsAlone = 2'000;
+constexpr int kRoundsAlone = 200;
 
 std::size_t next_of(std::uint64_t ticket) {
     return ticket & kNextMask;
