@@ -10,13 +10,11 @@ Time bound(const Channel& channel, const std::vector<Time>& earliest) {
 }
 }  // namespace
 
-Time Channel::answer(Time time) const {
-    const Time caused = later(time, reaction);
-    if (foreseen.empty() || !may_change(foreseen.back().stamp, time)) return caused;
+Time Channel::first_change(Time time) const {
     const auto changed =
         std::lower_bound(foreseen.begin(), foreseen.end(), time,
                          [this](const Foreseen& message, Time t) { return !may_change(message.stamp, t); });
-    return std::min(caused, changed->delivery);
+    return changed == foreseen.end() ? kNever : changed->delivery;
 }
 
 /// Lists of the channels that leave each node; they hardly ever change.

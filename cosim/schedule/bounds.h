@@ -17,6 +17,7 @@
 
 #include "cosim/core/time.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <utility>
 #include <vector>
@@ -43,7 +44,12 @@ struct Channel {
     int punctual = 0;
 
     /// The earliest delivery of what the sender may change or send when something comes in for it at `time`.
-    Time answer(Time time) const;
+    Time answer(Time time) const {
+        const Time caused = later(time, reaction);
+        return foreseen.empty() ? caused : std::min(caused, first_change(time));
+    }
+    /// Delivery of the first foreseen message that what comes in at `time` may change, or kNever.
+    Time first_change(Time time) const;
     /// Whether what comes in at `time` may change what is foreseen with this stamp.
     bool may_change(Time stamp, Time time) const { return instant ? stamp >= time : stamp > time; }
 };
