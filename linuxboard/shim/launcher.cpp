@@ -35,7 +35,7 @@ namespace {
 constexpr int kFirstPrivateFd = 500;  // well above what a program counts on
 constexpr rlim_t kUsualDescriptors = 1024;
 constexpr rlim_t kFewestDescriptors = 32;  // of a program; with fewer it is not started
-constexpr rlim_t kPrivateDescriptors = 4;  // two to keep, two on the way there
+constexpr rlim_t kPrivateDescriptors = 5;  // link and page; on their way there a copy of each, and the report
 constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
 
 [[noreturn]] void fail(const std::string& what) {

@@ -135,7 +135,7 @@ void Kit::time_boards() {
 
 RunTiming Kit::own_run(const RunSpec& given, const std::function<void(pid_t)>& watch) const {
     RunSpec spec = given;
-    if (!options_.translate) spec.options.emplace_back("--no-translate");
+    if (options_.interpret) spec.options.emplace_back("--no-translate");
     return time_run(self(), spec, folder_ / "own", watch);
 }
 

@@ -20,7 +20,7 @@ struct BenchOptions {
     double slice_s = 0.4;       ///< wall time of each measurement that has no duration of its own
     unsigned threads = 0;       ///< of runs in one process; 0: as many as the build chooses
     int rounds = 5;
-    bool translate = true;  ///< false: this build's dsPIC cores interpret
+    bool interpret = false;  ///< this build's dsPIC cores translate nothing
 };
 
 /// Names of the cases, in the order of the help.

@@ -23,7 +23,7 @@ struct Options {
 };
 
 void run(const Options& options) {
-    if (!options.bench.translate) dspic::set_translation(false);
+    if (options.bench.interpret) dspic::set_translation(false);
     const OtherLoadMeter meter;
     const std::vector<Figure> figures = measure_cases(options.bench);
     fmt::print("{}",
@@ -77,7 +77,7 @@ void declare_bench(Command& app, int& status) {
     command->add_option("--rounds", bench.rounds, "measurements of each figure (default 5)")
         ->check(whole_number_between(1, kMostRounds))
         ->type_name("N");
-    command->add_flag("!--no-translate", bench.translate,
+    command->add_flag("--no-translate", bench.interpret,
                       "this build interprets every dsPIC instruction (default: hot code is translated)");
     command->add_flag("--json", options->json, "print JSON");
     declare_bench_rab(*command, status);

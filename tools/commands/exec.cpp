@@ -47,7 +47,7 @@ struct Arguments {
     LogOptions log;
     bool realtime = false;
     bool unpaced = false;
-    bool translate = true;
+    bool interpret = false;
 };
 
 void describe(Command& app, Arguments& a) {
@@ -144,7 +144,7 @@ void describe(Command& app, Arguments& a) {
     app.add_flag("--no-realtime", a.unpaced, "never pace")->excludes(realtime);
     declare_log_options(app, a.log);
     app.add_flag("!--no-skip", t.skip_idle, "execute every turn of busy-wait loops");
-    app.add_flag("!--no-translate", a.translate,
+    app.add_flag("--no-translate", a.interpret,
                  "interpret every dsPIC instruction (default: hot code is translated)");
 }
 
@@ -159,7 +159,7 @@ void declare_exec(Command& app, int& status) {
         if (a.options.bench.mcu.empty() && a.options.bench.board.empty())
             throw InputError("", "exec", "nothing lies on the bench", "--mcu CHIP or --board BOARD");
         start_log("exec", a.log);
-        if (!a.translate) dspic::set_translation(false);
+        if (a.interpret) dspic::set_translation(false);
         exec::BenchOptions& bench = a.options.bench;
         if (command->count("--selector") > 0 && bench.board != "pic")
             throw InputError("", "--selector",

@@ -32,7 +32,7 @@ struct Options {
     LogOptions log;
     std::string save_at;
     bool no_cache = false;
-    bool translate = true;
+    bool interpret = false;
     bool json = false;
     bool list_parameters = false;
 };
@@ -71,7 +71,7 @@ int run(Options& options) {
     }
     start_log("puckloop", options.log);
     if (!request.in_process) log::share_with_children();
-    if (!options.translate) interpret_from_here(!request.in_process);
+    if (options.interpret) interpret_from_here(!request.in_process);
     if (!options.save_at.empty()) request.save_at = time_of(options.save_at);
     request.cache = !options.no_cache;
     const RunSetup setup = set_up(request);
@@ -120,7 +120,7 @@ void declare_run(Command& app, int& status) {
             "with --in-process: threads for the boards (default: by the number of range-and-bearing boards)")
         ->check(whole_number_between(1, 16))
         ->type_name("N");
-    command->add_flag("!--no-translate", options->translate,
+    command->add_flag("--no-translate", options->interpret,
                       "interpret every dsPIC instruction (default: hot code is translated to this machine's; "
                       "the run is the same)");
     command->add_flag("--realtime", request.realtime, "pace simulated time by the wall clock");
