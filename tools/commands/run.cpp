@@ -115,9 +115,8 @@ void declare_run(Command& app, int& status) {
     command->add_flag("--in-process", request.in_process,
                       "all nodes in this process (default: each in its own)");
     command
-        ->add_option(
-            "--threads", request.threads,
-            "with --in-process: threads for the boards (default: by the number of range-and-bearing boards)")
+        ->add_option("--threads", request.threads,
+                     "with --in-process: threads for the boards (default: by the number of boards)")
         ->check(whole_number_between(1, 16))
         ->type_name("N");
     command->add_flag("--no-translate", options->interpret,

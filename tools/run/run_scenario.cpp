@@ -82,14 +82,15 @@ std::vector<std::string> result_files(const RunSetup& setup) {
     return names;
 }
 
-/// Range-and-bearing boards go in steps of 20 us, each with enough to do to share them out; others hardly.
+/// With fewer boards there is too little to do side by side.
 unsigned threads_for(const RunSetup& setup, const RunRequest& request) {
-    constexpr unsigned kBoardsOfThread = 3, kMost = 4;
+    constexpr unsigned kBoardsOfThread = 4, kMost = 4;
     if (!request.in_process) return 1;
     if (request.threads != 0) return request.threads;
     const auto& robots = setup.scenario.robots;
-    const auto boards = static_cast<unsigned>(
-        std::count_if(robots.begin(), robots.end(), [](const auto& robot) { return robot.rab.has_value(); }));
+    const auto has_rab = [](const auto& robot) { return robot.rab.has_value(); };
+    const auto boards = static_cast<unsigned>(robots.size()) +
+                        static_cast<unsigned>(std::count_if(robots.begin(), robots.end(), has_rab));
     const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
     return std::clamp(boards / kBoardsOfThread, 1U, std::min(cores, kMost));
 }
