@@ -146,10 +146,10 @@ void Conductor::State::chop(std::size_t n, Time& until, Time& ahead) {
 void Conductor::State::take_interrupt() {
     if (options_.hurried && *options_.hurried) throw Interrupted{};
     if (interrupted_at_ || !options_.interrupted || !*options_.interrupted) return;
-    // The first instant that is in nobody's past.
-    interrupted_at_ = 0;
+    // The first instant that is in nobody's past: what is foreseen may be final already.
+    interrupted_at_ = network_->after_settled();
     for (const Slot& slot : slots_)
-        interrupted_at_ = std::max(*interrupted_at_, slot.asked);
+        interrupted_at_ = std::max({*interrupted_at_, slot.asked, slot.asked_ahead});
     if (!wind_up_at_) end_ = std::min(end_, std::max<Time>(*interrupted_at_, 1));
 }
 
@@ -209,6 +209,7 @@ void Conductor::State::grant(std::size_t n, Time until, Time ahead) {
     slot.stale = false;
     fill_inbox(n, ahead);
     slot.asked = until;
+    slot.asked_ahead = ahead;
     slot.span = ahead - std::min(ahead, std::min(times_[n].surprise, times_[n].ahead));
     slot.changed = kNever;
     times_[n].busy = true;
@@ -299,6 +300,7 @@ void Conductor::State::take_reply(std::size_t n) {
     const Advanced& done = handles_[n]->advanced();
     const bool ran_ahead = std::exchange(node.runs_ahead, handles_[n]->state().runs_ahead);
     slot.asked = done.reached;
+    slot.asked_ahead = done.ahead;
     Time first_in = slot.unknown < done.ahead ? slot.unknown : kNever;
     // Having gone back, it may foresee something else from there on.
     if (done.ahead < node.ahead) first_in = std::min(first_in, done.ahead);

@@ -41,11 +41,12 @@ class Conductor::State {
     /// What has been asked of a node and what waits for it.
     struct Slot {
         Time asked = 0;
+        Time asked_ahead = 0;  ///< how far to run ahead
         std::uint64_t grants = 0;
         Time unknown = kNever;  ///< first message that the node does not know of
         Time changed = kNever;  ///< first change in what comes in since the grant under way
         std::size_t changed_by = kNobody;
-        Time span = 0;  ///< to be executed for the grant under way, in simulated time
+        Time span = 0;                   ///< to be executed for the grant under way, in simulated time
         bool stale = true;               ///< `unknown` is to be found again
         std::vector<TraceRecord> queue;  ///< final and not handled; heap, earliest first
         std::vector<TraceRecord> taken;  ///< what comes in, for the grant under way

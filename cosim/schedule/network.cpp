@@ -265,6 +265,13 @@ void Network::settle(const Bounds& bounds, std::vector<TraceRecord>& deliveries,
     }
 }
 
+Time Network::after_settled() const {
+    Time after = 0;
+    for (const Wire& wire : wires_)
+        if (wire.settled > 0) after = std::max(after, wire.foreseen[wire.settled - 1].time + 1);
+    return after;
+}
+
 void Network::foreseen(std::size_t n, Time until, std::vector<TraceRecord>& inbox) const {
     for (const std::size_t w : into_[n]) {
         const Wire& wire = wires_[w];

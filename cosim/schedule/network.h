@@ -65,6 +65,8 @@ class Network {
                    std::vector<TraceRecord>& deliveries, std::vector<Change>& changes);
     /// Delivers what is foreseen and cannot change any more.
     void settle(const Bounds& bounds, std::vector<TraceRecord>& deliveries, std::vector<Change>& changes);
+    /// The first instant after everything that is final although its sender may still go back before it.
+    Time after_settled() const;
     /// Appends what is foreseen for node `n` before `until`, in the order of the trace.
     void foreseen(std::size_t n, Time until, std::vector<TraceRecord>& inbox) const;
     /// The first message foreseen for node `n` from `from` on.
