@@ -127,7 +127,7 @@ void Conductor::State::loop() {
         }
         collect();
         if (merger_.full()) release_trace(std::min(schedule_.bounds().floor(), end_));
-        keep_house();
+        report_progress();
     }
 }
 
@@ -166,8 +166,10 @@ void Conductor::State::plan() {
     ScheduleLimits limits{end_, kNever, options_.stop_latency};
     if (options_.realtime) {
         if (!paced_since_ && schedule_.reached() >= options_.pace_from) paced_since_ = WallClock::now();
-        const double paced = paced_since_ ? seconds_since(*paced_since_) : 0.0;
-        limits.pace = options_.pace_from + from_seconds(paced) + (paced_since_ ? kPaceSlack : 0);
+        // Before that the wall clock limits nobody: a node that has to wait for it would not go back.
+        limits.pace =
+            options_.pace_from + (paced_since_ ? from_seconds(seconds_since(*paced_since_)) + kPaceSlack
+                                               : options_.stop_latency + 1);
     }
     schedule_.plan(network_->channels(), pending_, times_, limits);
 }
@@ -379,7 +381,7 @@ void Conductor::State::release_trace(Time floor) {
     });
 }
 
-void Conductor::State::keep_house() {
+void Conductor::State::report_progress() {
     const double wall = seconds_since(start_);
     if (processes_) processes_->cores().step(wall, schedule_.reached(), grants_);
     if (wall - told_wall_ >= kProgressSeconds) {

@@ -77,7 +77,7 @@ class Conductor::State {
     void surprise(std::size_t from, std::size_t to, Time time);
     [[noreturn]] void too_late(std::size_t sender, std::size_t to, Time time) const;
     void release_trace(Time floor);
-    void keep_house();
+    void report_progress();
     bool stuck() const;
     [[noreturn]] void deadlock() const;
     void fail(Outcome& outcome, const std::string& text);

@@ -18,7 +18,7 @@ Time Channel::first_change(Time time) const {
 }
 
 /// Lists of the channels that leave each node; they hardly ever change.
-void Bounds::sort_channels(std::size_t nodes) {
+void Bounds::build_adjacency(std::size_t nodes) {
     const auto same = [this](const Channel& channel) {
         const std::size_t index = static_cast<std::size_t>(&channel - channels_->data());
         return ends_[index] == std::pair(channel.from, channel.to);
@@ -40,7 +40,7 @@ void Bounds::compute(const std::vector<Channel>& channels, const std::vector<Tim
     channels_ = &channels;
     pending_ = &pending;
     silent_ = silent;
-    sort_channels(pending.size());
+    build_adjacency(pending.size());
     earliest_ = pending;
     for (const Channel& channel : channels)
         if (channel.from != silent && channel.base < earliest_[channel.to])
@@ -62,13 +62,13 @@ void Bounds::compute(const std::vector<Channel>& channels, const std::vector<Tim
 
 /// Shortest paths from what is promised and pending: a node whose earliest time fell tells those behind it.
 void Bounds::relax() {
-    told_.assign(earliest_.size(), kNever);
+    last_relaxed_.assign(earliest_.size(), kNever);
     for (bool changed = true; changed;) {
         changed = false;
         for (std::size_t n = 0; n < earliest_.size(); ++n) {
             const Time time = earliest_[n];
-            if (time >= told_[n] || n == silent_) continue;
-            told_[n] = time;
+            if (time >= last_relaxed_[n] || n == silent_) continue;
+            last_relaxed_[n] = time;
             for (const std::size_t c : leaving_[n]) {
                 const Channel& channel = (*channels_)[c];
                 const Time there = channel.answer(time);

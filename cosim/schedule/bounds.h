@@ -75,7 +75,7 @@ class Bounds {
     std::size_t limiter(std::size_t n) const;
 
   private:
-    void sort_channels(std::size_t nodes);
+    void build_adjacency(std::size_t nodes);
     void relax();
 
     const std::vector<Channel>* channels_ = nullptr;
@@ -87,7 +87,7 @@ class Bounds {
     Time floor_ = kNever;
     std::vector<std::vector<std::size_t>> leaving_;          ///< channels, by their sender
     std::vector<std::pair<std::size_t, std::size_t>> ends_;  ///< of the channels that leaving_ was made for
-    std::vector<Time> told_;  ///< what the channels that leave a node were relaxed with
+    std::vector<Time> last_relaxed_;  ///< what the channels that leave a node were relaxed with
 };
 
 /// For each node the shortest time from a message that reaches it to one, caused by it, that reaches
