@@ -21,31 +21,23 @@ inline constexpr std::uint16_t kXBeeUnknownNet = 0xFFFE;  ///< DigiMesh has no 1
 
 // Each struct lists its fields in the order of the frame: `fields(message, visit)` calls visit(name, member).
 
-/// 08, host to module; `id` 0 asks for no answer.
-struct XBeeAt {
-    static constexpr std::uint8_t kType = 0x08;
-    static constexpr std::string_view kName = "at";
+/// An AT command, host to module; `id` 0 asks for no answer.
+template <bool Queued>
+struct XBeeAtRequest {
+    static constexpr std::uint8_t kType = Queued ? 0x09 : 0x08;
+    static constexpr std::string_view kName = Queued ? "queued-at" : "at";
     std::uint8_t id = 1;
     XBeeCommand command{};
     XBeeBytes value;
     static void fields(auto& m, auto&& visit) {
         visit("id", m.id), visit("command", m.command), visit("value", m.value);
     }
-    bool operator==(const XBeeAt&) const = default;
+    bool operator==(const XBeeAtRequest&) const = default;
 };
-
-/// 09, host to module: as 08, in force only after AC, WR or an 08.
-struct XBeeQueuedAt {
-    static constexpr std::uint8_t kType = 0x09;
-    static constexpr std::string_view kName = "queued-at";
-    std::uint8_t id = 1;
-    XBeeCommand command{};
-    XBeeBytes value;
-    static void fields(auto& m, auto&& visit) {
-        visit("id", m.id), visit("command", m.command), visit("value", m.value);
-    }
-    bool operator==(const XBeeQueuedAt&) const = default;
-};
+/// 08: in force at once.
+using XBeeAt = XBeeAtRequest<false>;
+/// 09: in force only after AC, WR or an 08.
+using XBeeQueuedAt = XBeeAtRequest<true>;
 
 /// 10, host to module: send `data` over the air; `id` 0 asks for no XBeeTxStatus.
 struct XBeeTx {

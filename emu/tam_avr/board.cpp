@@ -1,7 +1,6 @@
 #include "emu/tam_avr/board.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace puckloop::tam {
 
