@@ -86,8 +86,9 @@ void Conductor::State::deadlock() const {
     }
     if (n < times_.size()) names += handles_[n]->name();
     throw RunError(fmt::format(
-        "deadlock at simulated time {:.12f} s: each node waits for the next and none can promise to "
-        "be silent: {} (a cycle of links needs a positive sum of promises, reactions and latencies)",
+        "deadlock at simulated time {:.12f} s: each node waits for the next and none can rule out "
+        "sending: {} (a cycle of links needs a positive sum of earliest output times, lookaheads and "
+        "latencies)",
         to_seconds(schedule_.reached()), names));
 }
 

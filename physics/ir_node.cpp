@@ -293,14 +293,14 @@ void IrNode::advance(Time until, std::span<const Message> inbox, std::vector<Mes
     ir.release(until, outbox);
 }
 
-Time IrNode::promise(PortIndex port) const {
+Time IrNode::earliest_output(PortIndex port) const {
     if (port >= impl_->receivers.size()) return kNever;
     return impl_->receivers[port].next_output();
 }
 
-Time IrNode::reaction(PortIndex port) const {
+Time IrNode::lookahead(PortIndex port) const {
     if (port >= impl_->receivers.size() || !impl_->medium.can_hear(port)) return kNever;
-    return impl_->receivers[port].reaction();
+    return impl_->receivers[port].lookahead();
 }
 
 cosim::Rewindable* IrNode::rewindable() {

@@ -33,8 +33,8 @@ class IrNode final : public cosim::Node {
     std::span<const cosim::Port> ports() const override;
     void advance(cosim::Time until, std::span<const cosim::Message> inbox,
                  std::vector<cosim::Message>& outbox) override;
-    cosim::Time promise(cosim::PortIndex port) const override;
-    cosim::Time reaction(cosim::PortIndex port) const override;
+    cosim::Time earliest_output(cosim::PortIndex port) const override;
+    cosim::Time lookahead(cosim::PortIndex port) const override;
     cosim::Rewindable* rewindable() override;
     /// {"boards": [...]}: frames on the air as each board could hear them.
     std::string finish() override;

@@ -27,7 +27,7 @@ IrReceiver::IrReceiver(const IrParameters& p)
       min_gap_(decided_within(p.min_gap, delay_off_)),
       level_delay_(cosim::from_seconds(p.level_delay)),
       level_hold_(cosim::from_seconds(p.level_hold)),
-      reaction_(std::min({delay_on_, delay_off_, level_delay_})),
+      lookahead_(std::min({delay_on_, delay_off_, level_delay_})),
       settled_(std::min({delay_on_ - min_burst_, delay_off_ - min_gap_, level_delay_})),
       threshold_(static_cast<float>(p.threshold)),
       rail_(static_cast<float>(p.rail)) {

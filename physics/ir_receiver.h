@@ -39,7 +39,7 @@ class IrReceiver {
     /// First output still to come if nothing changes any more.
     cosim::Time next_output() const;
     /// Shortest time from a change of light to an output.
-    cosim::Time reaction() const { return reaction_; }
+    cosim::Time lookahead() const { return lookahead_; }
 
     template <class Archive>
     void state(Archive& archive) {
@@ -59,7 +59,7 @@ class IrReceiver {
     void decide(const Change& change, cosim::Time delay, double value);
 
     cosim::Time delay_on_, delay_off_, min_burst_, min_gap_, level_delay_, level_hold_;
-    cosim::Time reaction_, settled_;
+    cosim::Time lookahead_, settled_;
     float threshold_, rail_;
     std::uint16_t above_ = 0;
     std::deque<Change> rising_, falling_, lower_;

@@ -256,11 +256,11 @@ void WorldNode::advance(cosim::Time until, std::span<const cosim::Message> inbox
     w.waiting.erase(w.waiting.begin(), next);
 }
 
-cosim::Time WorldNode::promise(cosim::PortIndex) const {
+cosim::Time WorldNode::earliest_output(cosim::PortIndex) const {
     return std::min(impl_->next_step + kStep, impl_->timeline.next_signal());
 }
 
-cosim::Time WorldNode::reaction(cosim::PortIndex) const {
+cosim::Time WorldNode::lookahead(cosim::PortIndex) const {
     return kStep + 1;  // a message just before a step shows one step after it
 }
 

@@ -30,8 +30,8 @@ class WorldNode final : public cosim::Node {
     std::span<const cosim::Port> ports() const override;
     void advance(cosim::Time until, std::span<const cosim::Message> inbox,
                  std::vector<cosim::Message>& outbox) override;
-    cosim::Time promise(cosim::PortIndex port) const override;
-    cosim::Time reaction(cosim::PortIndex port) const override;
+    cosim::Time earliest_output(cosim::PortIndex port) const override;
+    cosim::Time lookahead(cosim::PortIndex port) const override;
     std::string finish() override;
 
     /// Hears of every part of the steps to come; nullptr: nobody does.

@@ -37,7 +37,7 @@ class Rewindable {
     virtual ~Rewindable() = default;
     /// Remembers the present state, in microseconds; a mark set before is given up as settle() does.
     virtual void mark() = 0;
-    /// Goes back to the mark, which stays: state, promises and logs are as if nothing had been done since.
+    /// Goes back to the mark, which stays: state, EOTs and logs are as if nothing had been done since.
     virtual void rewind() = 0;
     /// What was done since the mark stands; the mark is given up.
     virtual void settle() = 0;
@@ -49,18 +49,18 @@ class Rewindable {
 /// and nothing else. What a node does must depend only on the messages it got and their times, never on how
 /// the grants were cut: that is what makes the trace the same in every placement.
 ///
-/// promise(p) is the earliest time stamp that a message leaving by port p can still carry if nothing more
-/// comes in; reaction(p) is the shortest delay from any incoming message to a message it can cause on p (0 is
-/// allowed, but a cycle of links needs a positive sum). Together they say: every message still to leave by p
-/// carries at least min(promise(p), t + reaction(p)), t being the first message that comes in. Both may
-/// change with every advance: a program asleep until T, which no message can wake, has promise T and reaction
-/// kNever. The conductor checks each message against them and ends the run, naming the node, when they were
-/// broken.
+/// earliest_output(p) is the earliest time stamp that a message leaving by port p can still carry if nothing
+/// more comes in; lookahead(p) is the shortest delay from any incoming message to a message it can cause on p
+/// (0 is allowed, but a cycle of links needs a positive sum). Together they say: every message still to leave
+/// by p carries at least min(earliest_output(p), t + lookahead(p)), t being the first message that comes in.
+/// Both may change with every advance: a program asleep until T, which no message can wake, has EOT T and
+/// lookahead kNever. The conductor checks each message against them and ends the run, naming the node, when
+/// they were broken.
 ///
 /// UART ports: the link adds the 9 nominal bit times by itself. A frame that is not yet begun when advance()
-/// returns begins at `until` or later, so promise `until` and reaction 0 are good enough for a UART. A node
+/// returns begins at `until` or later, so EOT `until` and lookahead 0 are good enough for a UART. A node
 /// that hands a frame out when its stop bit begins says through begun(p) that one is being shifted out, and
-/// since when; its promise is then that stop bit. (A node may as well hand a frame out as soon as it begins,
+/// since when; its EOT is then that stop bit. (A node may as well hand a frame out as soon as it begins,
 /// stamped with its stop bit, and leave begun() alone.)
 class Node {
   public:
@@ -74,15 +74,15 @@ class Node {
     /// Appends to `outbox`, sorted by time for each port.
     virtual void advance(Time until, std::span<const Message> inbox, std::vector<Message>& outbox) = 0;
 
-    virtual Time promise(PortIndex port) const = 0;
-    virtual Time reaction(PortIndex port) const = 0;
+    virtual Time earliest_output(PortIndex port) const = 0;
+    virtual Time lookahead(PortIndex port) const = 0;
     /// UART ports only: start of the frame that is on the line and still to be handed out, if there is one.
     virtual std::optional<Time> begun(PortIndex /*port*/) const { return std::nullopt; }
 
-    /// Not null if the node can go back; asked after each advance. Of such a node reaction(p) holds for
-    /// changes as well: what comes in at t adds no message on p before t + reaction(p), unless later than one
-    /// that would carry t or more, and takes none away that would carry less than t (t or less, if
-    /// reaction(p) > 0).
+    /// Not null if the node can go back; asked after each advance. Of such a node lookahead(p) holds for
+    /// changes as well: what comes in at t adds no message on p before t + lookahead(p), unless later than
+    /// one that would carry t or more, and takes none away that would carry less than t (t or less, if
+    /// lookahead(p) > 0).
     virtual Rewindable* rewindable() { return nullptr; }
 
     /// Set once the node wants the run to end (a Linux program that exited, a breakpoint). Everything else

@@ -225,19 +225,19 @@ void I2cBusNode::answer(PortIndex port, const I2cPhase& phase, I2cPhaseKind kind
     answers_.push_back({std::max(ninth_clock(phase), earliest) + reply.stretch, port, out});
 }
 
-Time I2cBusNode::promise(PortIndex port) const {
+Time I2cBusNode::earliest_output(PortIndex port) const {
     Time first = kNever;
     if (is_world(port)) return bus_ == Bus::Recovering ? later(changes_, nominal_period_) : first;
     if (!is_master(port)) return changes_;
     for (const Contender& contender : contenders_)
         if (contender.port == port) first = std::min(first, ninth_clock(contender.phase));
-    // A Start that waits for another master's Stop is answered in reaction to it.
+    // A Start that waits for another master's Stop is answered when that comes.
     if ((bus_ == Bus::Stopping || bus_ == Bus::Recovering) && !waiting_.empty())
         first = std::min(first, later(changes_, kClocksOfByte * nominal_period_));
     return first;
 }
 
-Time I2cBusNode::reaction(PortIndex port) const {
+Time I2cBusNode::lookahead(PortIndex port) const {
     if (is_world(port)) return nominal_period_;
     if (!is_master(port)) return half_clock();
     return options_.devices.empty() ? kClocksOfByte * nominal_period_ : nominal_period_;

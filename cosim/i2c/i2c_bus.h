@@ -77,8 +77,8 @@ class I2cBusNode final : public Node {
     std::string_view name() const override { return options_.name; }
     std::span<const Port> ports() const override { return ports_; }
     void advance(Time until, std::span<const Message> inbox, std::vector<Message>& outbox) override;
-    Time promise(PortIndex port) const override;
-    Time reaction(PortIndex port) const override;
+    Time earliest_output(PortIndex port) const override;
+    Time lookahead(PortIndex port) const override;
     Rewindable* rewindable() override { return going_back_ ? &*going_back_ : nullptr; }
     std::string finish() override;
 

@@ -43,8 +43,8 @@ ByteReader open(std::span<const std::uint8_t> body, Kind expected) {
 void write_state(ByteWriter& writer, const NodeState& state) {
     writer.u32(static_cast<std::uint32_t>(state.ports.size()));
     for (const PortState& port : state.ports) {
-        writer.time(port.promise);
-        writer.time(port.reaction);
+        writer.time(port.earliest_output);
+        writer.time(port.lookahead);
         writer.u8(port.begun.has_value());
         if (port.begun) writer.time(*port.begun);
     }
@@ -62,8 +62,8 @@ void write_state(ByteWriter& writer, const NodeState& state) {
 void read_state(ByteReader& reader, NodeState& state) {
     state.ports.resize(reader.count(kSmallestPortState));
     for (PortState& port : state.ports) {
-        port.promise = reader.time();
-        port.reaction = reader.time();
+        port.earliest_output = reader.time();
+        port.lookahead = reader.time();
         port.begun.reset();
         if (reader.boolean()) port.begun = reader.time();
     }

@@ -190,8 +190,8 @@ const Message* ResumedNode::next_sent(PortIndex port) const {
 
 /// What the saved board sent next, as long as nothing but what it received comes in: with `fall_back` that is
 /// known up to the next message that it received.
-Time ResumedNode::promise(PortIndex port) const {
-    if (!replaying_) return inner_->promise(port);
+Time ResumedNode::earliest_output(PortIndex port) const {
+    if (!replaying_) return inner_->earliest_output(port);
     Time first = options_.from->time;
     if (options_.fall_back && next_received_ < options_.from->received.size())
         first = std::min(first, options_.from->received[next_received_].time);
@@ -199,8 +199,8 @@ Time ResumedNode::promise(PortIndex port) const {
     return std::max(first, granted_);
 }
 
-Time ResumedNode::reaction(PortIndex port) const {
-    if (!replaying_) return inner_->reaction(port);
+Time ResumedNode::lookahead(PortIndex port) const {
+    if (!replaying_) return inner_->lookahead(port);
     return options_.fall_back ? 0 : kNever;
 }
 

@@ -43,8 +43,8 @@ class ResumedNode : public Node {
     std::string_view name() const override { return inner_->name(); }
     std::span<const Port> ports() const override { return inner_->ports(); }
     void advance(Time until, std::span<const Message> inbox, std::vector<Message>& outbox) override;
-    Time promise(PortIndex port) const override;
-    Time reaction(PortIndex port) const override;
+    Time earliest_output(PortIndex port) const override;
+    Time lookahead(PortIndex port) const override;
     std::optional<Time> begun(PortIndex port) const override;
     std::optional<Stop> stop() const override;
     /// None while it replays or records.

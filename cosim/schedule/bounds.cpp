@@ -60,7 +60,7 @@ void Bounds::compute(const std::vector<Channel>& channels, const std::vector<Tim
     }
 }
 
-/// Shortest paths from what is promised and pending: a node whose earliest time fell tells those behind it.
+/// Shortest paths from the EOTs and what is pending: a node whose earliest time fell tells those behind it.
 void Bounds::relax() {
     last_relaxed_.assign(earliest_.size(), kNever);
     for (bool changed = true; changed;) {
@@ -81,8 +81,8 @@ void Bounds::relax() {
 }
 
 std::size_t Bounds::root(std::size_t n) const {
-    // Walk the critical channels back to the promise or the pending message that starts the path. A path
-    // of equal bounds may close on itself (zero reactions); its length is bounded by the number of nodes.
+    // Walk the critical channels back to the EOT or the pending message that starts the path. A path
+    // of equal bounds may close on itself (zero lookaheads); its length is bounded by the number of nodes.
     for (std::size_t steps = 0; steps <= limit_.size(); ++steps) {
         if (critical_[n] == kNobody) return kNobody;
         const Channel& channel = (*channels_)[critical_[n]];
@@ -105,7 +105,7 @@ std::vector<Time> distances_to(std::size_t target, const std::vector<Channel>& c
         changed = false;
         for (const Channel& channel : channels) {
             if (channel.from == target || distance[channel.to] == kNever) continue;
-            const Time way = later(distance[channel.to], channel.reaction);
+            const Time way = later(distance[channel.to], channel.lookahead);
             if (way < distance[channel.from]) {
                 distance[channel.from] = way;
                 changed = true;

@@ -2,18 +2,18 @@
 // How far each node may be granted: conservative look-ahead by relaxation over the graph of links.
 //
 // For every directed channel c (one direction of a link) from node f to node t
-//     bound(c)   = min(base(c), earliest(f) + reaction(c))
+//     bound(c)   = min(base(c), earliest(f) + lookahead(c))
 //     limit(t)   = min of bound(c) over the channels into t
 //     earliest(t)= min(pending(t), limit(t))
-// where base is the sender's promise and reaction its shortest answer, both with the link's own flight time
+// where base is the sender's EOT and lookahead its shortest answer, both with the link's own flight time
 // added, and pending(t) is the first message already known that t has not handled.
 //
 // A node that runs ahead (cosim/schedule/run_ahead.h) has handled what is foreseen up to some time; pending
 // is then the first message that it did not foresee. Its channels hold the messages that it is going to send
-// if nothing else comes in. Its promise lies beyond them; what comes in at t may change those stamped t or
+// if nothing else comes in. Its EOT lies beyond them; what comes in at t may change those stamped t or
 // later, so that bound(c) is no later than the delivery of the first one stamped earliest(f) or later. The
-// answer is the greatest solution, which is a shortest path from the promises and pending messages: chains of
-// zero reactions of any length come out right.
+// answer is the greatest solution, which is a shortest path from the EOTs and pending messages: chains of
+// zero lookaheads of any length come out right.
 
 #include "cosim/core/time.h"
 
@@ -36,16 +36,16 @@ struct Channel {
     std::size_t from = 0;
     std::size_t to = 0;
     Time base = 0;
-    Time reaction = 0;
+    Time lookahead = 0;
     std::vector<Foreseen> foreseen{};  ///< in order
     bool instant =
         true;  ///< the sender may answer, or take back, at the very time at which something comes in
-    /// How surely a message comes when the promise falls due, by what happened before: from 0, never.
+    /// How surely a message comes when the EOT falls due, by what happened before: from 0, never.
     int punctual = 0;
 
     /// The earliest delivery of what the sender may change or send when something comes in for it at `time`.
     Time answer(Time time) const {
-        const Time caused = later(time, reaction);
+        const Time caused = later(time, lookahead);
         return foreseen.empty() ? caused : std::min(caused, first_change(time));
     }
     /// Delivery of the first foreseen message that what comes in at `time` may change, or kNever.
@@ -68,7 +68,7 @@ class Bounds {
     Time earliest(std::size_t n) const { return earliest_[n]; }
     /// No message still to come on any channel is delivered before this.
     Time floor() const { return floor_; }
-    /// The node that must go on for limit(n) to grow: the one whose promise, or whose message not yet
+    /// The node that must go on for limit(n) to grow: the one whose EOT, or whose message not yet
     /// handled, sets it; kNobody when nothing limits n.
     std::size_t root(std::size_t n) const;
     /// The sender of the channel that sets limit(n), or kNobody.

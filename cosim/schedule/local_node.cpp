@@ -13,7 +13,7 @@ void read_state(const Node& node, NodeState& state) {
     state.ports.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
         const auto port = static_cast<PortIndex>(i);
-        state.ports[i] = {node.promise(port), node.reaction(port), node.begun(port)};
+        state.ports[i] = {node.earliest_output(port), node.lookahead(port), node.begun(port)};
     }
     state.stop = node.stop();
     state.wound_up = node.wound_up();

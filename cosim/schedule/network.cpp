@@ -28,7 +28,7 @@ PortIndex find_port(const NodeHandle& node, const LinkSpec& link, const std::str
                      fmt::format("node {} has no port \"{}\"", node.name(), name), known);
 }
 
-/// Promises in a row that were broken by silence, until a sender is not counted on any more.
+/// EOTs in a row at which nothing was sent, until a sender is not counted on any more.
 constexpr int kPatience = 4;
 
 }  // namespace
@@ -105,23 +105,23 @@ void Network::update(std::size_t n, const NodeState& state, Time reached, Time f
         const PortState& port = state.ports[p];
         Channel& channel = channels_[port_wire_[n][p]];
         Sent& sent = sent_[p];
-        // A frame begins when the node promised or later; what an incoming message causes begins after it.
+        // A frame begins at the EOT or later; what an incoming message causes begins after it.
         const Time begun = wire.is_uart ? later(port.begun.value_or(reached), wire.flight) : 0;
-        const Time said_before = std::min({wire.base, later(first_in, channel.reaction), sent.first_change});
-        const Time base = std::max(said_before, later(std::max(port.promise, begun), wire.latency));
+        const Time said_before = std::min({wire.base, later(first_in, channel.lookahead), sent.first_change});
+        const Time base = std::max(said_before, later(std::max(port.earliest_output, begun), wire.latency));
         judge_punctuality(channel, base, sent);
         if (state.runs_ahead) channel.punctual = 0;
         wire.base = base;
         update_channel(port_wire_[n][p]);
-        const Time reaction = later(std::max(port.reaction, wire.flight), wire.latency);
-        if (reaction != channel.reaction) ++reactions_;
-        channel.reaction = reaction;
-        channel.instant = port.reaction == 0;
+        const Time lookahead = later(std::max(port.lookahead, wire.flight), wire.latency);
+        if (lookahead != channel.lookahead) ++lookaheads_;
+        channel.lookahead = lookahead;
+        channel.instant = port.lookahead == 0;
         sent = {std::move(sent.messages)};
     }
 }
 
-/// Whether something came when the promise fell due: `base` is the next one.
+/// Whether something came when the EOT fell due: `base` is the next one.
 void Network::judge_punctuality(Channel& channel, Time base, const Sent& sent) const {
     if (sent.first_new != kNever)
         channel.punctual = sent.first_new == channel.base ? kPatience : std::max(0, channel.punctual - 1);
@@ -135,12 +135,12 @@ void Network::renew(std::size_t n, const NodeState& state, Time now) {
     update(n, state, now, kNever);
 }
 
-/// Ways back to node `n`; they change only when somebody's reaction does.
+/// Ways back to node `n`; they change only when somebody's lookahead does.
 const std::vector<Time>& Network::distances_to_node(std::size_t n) {
     WaysBack& ways = ways_back_[n];
-    if (ways.reactions != reactions_) {
+    if (ways.lookaheads != lookaheads_) {
         ways.distances = distances_to(n, channels_, nodes_.size());
-        ways.reactions = reactions_;
+        ways.lookaheads = lookaheads_;
     }
     return ways.distances;
 }
@@ -155,7 +155,7 @@ void Network::echoes(std::size_t n, std::vector<PortEcho>& echoes) {
     }
 }
 
-void Network::check_promise(const Wire& wire, Time stamp, Time delivery, Time first_in) const {
+void Network::check_earliest_output(const Wire& wire, Time stamp, Time delivery, Time first_in) const {
     const Channel& channel = channels_[wire.link * 2u + static_cast<unsigned>(wire.direction)];
     const Time earliest = std::min(channel.base, channel.answer(first_in));
     if (delivery >= earliest) return;
@@ -165,11 +165,12 @@ void Network::check_promise(const Wire& wire, Time stamp, Time delivery, Time fi
         return time == kNever ? std::string("never") : fmt::format("{:.12f} s", to_seconds(time));
     };
     throw RunError(fmt::format(
-        "node {} broke its promise on port {}: a message stamped {}, to be delivered at {}, after it had "
-        "said: "
-        "not before {} (first message in since: {}; promise now {}, reaction now {}, frame on the line {})",
+        "node {} sent before its earliest output time on port {}: a message stamped {}, to be delivered at "
+        "{}, after it had reported: not before {} (first message in since: {}; earliest output time now {}, "
+        "lookahead now "
+        "{}, frame on the line {})",
         node.name(), node.ports()[wire.from_port].name, seconds(stamp), seconds(delivery), seconds(earliest),
-        seconds(first_in), seconds(port.promise), seconds(port.reaction),
+        seconds(first_in), seconds(port.earliest_output), seconds(port.lookahead),
         port.begun ? "begun at " + seconds(*port.begun) : "none"));
 }
 
@@ -223,10 +224,10 @@ void Network::take_wire(std::size_t w, Sent& sent, Time ahead, Time first_in,
             throw RunError(fmt::format("node {} took back a message stamped {:.12f} s that was final",
                                        nodes_[wire.from]->name(), to_seconds(gone.time)));
         // What lies beyond where the sender now stands may come again.
-        if (gone.time < ahead) check_promise(wire, gone.time, sent.first_change, first_in);
+        if (gone.time < ahead) check_earliest_output(wire, gone.time, sent.first_change, first_in);
     }
     for (std::size_t i = first; i < sent.messages.size(); ++i)
-        check_promise(wire, sent.messages[i].time, delivery(sent.messages[i]), first_in);
+        check_earliest_output(wire, sent.messages[i].time, delivery(sent.messages[i]), first_in);
     if (first < sent.messages.size()) sent.first_new = delivery(sent.messages[first]);
     const Time change = std::min(sent.first_new, sent.first_change);
     if (change != kNever && wire.faults.empty()) changes.push_back({wire.from, wire.to, change});

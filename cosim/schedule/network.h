@@ -30,7 +30,7 @@ struct Wire {
     /// delivered. Where there are faults the rest is not known to the receiver before.
     std::vector<Message> foreseen{};
     std::size_t settled = 0;
-    Time base = 0;  ///< nothing but what is foreseen is delivered before, as the sender promised
+    Time base = 0;  ///< nothing but what is foreseen is delivered before, as the sender reported
 };
 
 /// What a node is to receive became another from `time` on, by what `from` sent.
@@ -60,7 +60,7 @@ class Network {
     /// Takes what node `n` has sent since the mark before its last one: `done.sure` messages are final, the
     /// others foreseen. Appends what final messages become to `deliveries` (lost ones too), and the receivers
     /// of those foreseen to `changes`. `first_in` is the first message that the node had to answer, or
-    /// kNever. Throws RunError when a message is earlier than the node promised.
+    /// kNever. Throws RunError when a message is earlier than the node's EOT.
     void take_sent(std::size_t n, const std::vector<Message>& outbox, const Advanced& done, Time first_in,
                    std::vector<TraceRecord>& deliveries, std::vector<Change>& changes);
     /// Delivers what is foreseen and cannot change any more.
@@ -84,9 +84,9 @@ class Network {
     std::uint64_t unlinked() const { return unlinked_; }
 
   private:
-    /// Shortest ways from each node to one, and as of which state of the reactions.
+    /// Shortest ways from each node to one, and as of which state of the lookaheads.
     struct WaysBack {
-        std::uint64_t reactions = 0;
+        std::uint64_t lookaheads = 0;
         std::vector<Time> distances;
     };
 
@@ -100,7 +100,7 @@ class Network {
         Time first_change = kNever;  ///< delivery of the first message that had been, and is no more
     };
 
-    void check_promise(const Wire& wire, Time stamp, Time delivery, Time first_in) const;
+    void check_earliest_output(const Wire& wire, Time stamp, Time delivery, Time first_in) const;
     void take_wire(std::size_t w, Sent& sent, Time ahead, Time first_in, std::vector<TraceRecord>& deliveries,
                    std::vector<Change>& changes);
     std::size_t first_difference(const Wire& wire, const Sent& sent) const;
@@ -115,7 +115,7 @@ class Network {
     const std::vector<LinkSpec>& links_;
     std::vector<Wire> wires_;
     std::vector<Channel> channels_;  ///< one a wire, same index
-    std::uint64_t reactions_ = 1;    ///< how often one changed
+    std::uint64_t lookaheads_ = 1;   ///< how often one changed
     std::vector<WaysBack> ways_back_;
     std::vector<std::vector<std::size_t>> port_wire_;  ///< node, port -> wire or kNobody
     std::vector<std::unique_ptr<LinkFault>> faults_;

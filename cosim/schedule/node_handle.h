@@ -19,8 +19,8 @@ namespace puckloop::cosim {
 using NodeFactory = std::function<std::unique_ptr<Node>(const std::string& json)>;
 
 struct PortState {
-    Time promise = 0;
-    Time reaction = 0;
+    Time earliest_output = 0;
+    Time lookahead = 0;
     std::optional<Time> begun;
 
     friend bool operator==(const PortState&, const PortState&) = default;

@@ -121,15 +121,15 @@ void RunAhead::execute(Time until, std::span<const Message>& inbox) {
     ahead_ = until;
 }
 
-/// Beyond what is final. The node is cut at each message, since what it claims of its reactions holds until
+/// Beyond what is final. The node is cut at each message, since what it claims of its lookaheads holds until
 /// the next one comes in.
 void RunAhead::run_on(Time until, std::span<const Message>& inbox) {
     if (!marked_) {
         node_->rewindable()->mark();
         marked_ = true;
         mark_ = ahead_;
-        reactions_.assign(node_->ports().size(), kNever);
-        sample_reactions();
+        lookaheads_.assign(node_->ports().size(), kNever);
+        sample_lookaheads();
     }
     try {
         while (ahead_ < until) {
@@ -138,7 +138,7 @@ void RunAhead::run_on(Time until, std::span<const Message>& inbox) {
             } else {
                 take_in(inbox);
             }
-            sample_reactions();
+            sample_lookaheads();
         }
     } catch (const std::exception&) {
         // Perhaps only because the foreseen did not come true: as far as it is sure, and no further for now.
@@ -149,48 +149,49 @@ void RunAhead::run_on(Time until, std::span<const Message>& inbox) {
 
 /// Whether what comes in shows on some port only later.
 bool RunAhead::answers_late() const {
-    return std::any_of(reactions_.begin(), reactions_.end(), [](Time reaction) { return reaction > 0; });
+    return std::any_of(lookaheads_.begin(), lookaheads_.end(), [](Time lookahead) { return lookahead > 0; });
 }
 
 /// The next messages, all of one time. What they take away would come after all if one of them did not come
-/// in: a message that was promised for P and is not any more counts as a reaction within P - time.
+/// in: a message that was due at P and is not any more limits the lookahead to P - time.
 void RunAhead::take_in(std::span<const Message>& inbox) {
     const Time time = inbox.front().time;
-    const auto passed = [time](Time promise) { return promise <= time; };
-    note_promises();
-    if (ahead_ < time && std::any_of(promises_.begin(), promises_.end(), passed)) {
+    const auto passed = [time](Time output) { return output <= time; };
+    note_earliest_outputs();
+    if (ahead_ < time && std::any_of(earliest_outputs_.begin(), earliest_outputs_.end(), passed)) {
         execute(time, inbox);
-        note_promises();
+        note_earliest_outputs();
     }
     const std::size_t first = sent_.size();
     execute(time + 1, inbox);
-    for (std::size_t p = 0; p < promises_.size(); ++p) {
+    for (std::size_t p = 0; p < earliest_outputs_.size(); ++p) {
         const auto port = static_cast<PortIndex>(p);
-        const Time promised = promises_[p];
-        if (node_->promise(port) <= promised) continue;
+        const Time earliest = earliest_outputs_[p];
+        if (node_->earliest_output(port) <= earliest) continue;
         const bool kept = std::any_of(sent_.begin() + static_cast<std::ptrdiff_t>(first), sent_.end(),
-                                      [&](const Message& m) { return m.port == port && m.time == promised; });
-        if (!kept) reactions_[p] = std::min(reactions_[p], std::max<Time>(0, promised - time));
+                                      [&](const Message& m) { return m.port == port && m.time == earliest; });
+        if (!kept) lookaheads_[p] = std::min(lookaheads_[p], std::max<Time>(0, earliest - time));
     }
 }
 
-void RunAhead::note_promises() {
-    promises_.resize(reactions_.size());
-    for (std::size_t p = 0; p < promises_.size(); ++p)
-        promises_[p] = reactions_[p] > 0 ? node_->promise(static_cast<PortIndex>(p)) : kNever;
+void RunAhead::note_earliest_outputs() {
+    earliest_outputs_.resize(lookaheads_.size());
+    for (std::size_t p = 0; p < earliest_outputs_.size(); ++p)
+        earliest_outputs_[p] =
+            lookaheads_[p] > 0 ? node_->earliest_output(static_cast<PortIndex>(p)) : kNever;
 }
 
-void RunAhead::sample_reactions() {
-    for (std::size_t p = 0; p < reactions_.size(); ++p)
-        reactions_[p] = std::min(reactions_[p], node_->reaction(static_cast<PortIndex>(p)));
+void RunAhead::sample_lookaheads() {
+    for (std::size_t p = 0; p < lookaheads_.size(); ++p)
+        lookaheads_[p] = std::min(lookaheads_[p], node_->lookahead(static_cast<PortIndex>(p)));
 }
 
 void RunAhead::read_state(NodeState& state) const {
     cosim::read_state(*node_, state);
     state.runs_ahead = marked_ || node_->rewindable() != nullptr;
     if (marked_)
-        for (std::size_t p = 0; p < reactions_.size(); ++p)
-            state.ports[p].reaction = std::min(state.ports[p].reaction, reactions_[p]);
+        for (std::size_t p = 0; p < lookaheads_.size(); ++p)
+            state.ports[p].lookahead = std::min(state.ports[p].lookahead, lookaheads_[p]);
     if (ahead_ == reached_) return;
     if (state.stop && state.stop->time >= reached_) state.stop.reset();
     if (state.wound_up >= reached_) state.wound_up = kNever;

@@ -34,8 +34,8 @@ class RunAhead {
     Advanced advance(const Reach& reach, std::span<const Message> inbox, const std::vector<PortEcho>& echoes,
                      std::vector<Message>& outbox);
 
-    /// What the node says of its future, having run ahead: its promises are beyond what is foreseen, its
-    /// reactions hold for whatever else comes in from the time reached on.
+    /// What the node says of its future, having run ahead: its EOTs are beyond what is foreseen, its
+    /// lookaheads hold for whatever else comes in from the time reached on.
     void read_state(NodeState& state) const;
 
     /// Node::wind_up() at the time reached; nothing may be foreseen.
@@ -53,19 +53,20 @@ class RunAhead {
     void run_on(Time until, std::span<const Message>& inbox);
     void take_in(std::span<const Message>& inbox);
     bool answers_late() const;
-    void note_promises();
-    void sample_reactions();
+    void note_earliest_outputs();
+    void sample_lookaheads();
 
     std::unique_ptr<Node> node_;
     Time reached_ = 0;
     Time ahead_ = 0;  ///< the node stands there
     Time mark_ = 0;   ///< of the node, while marked_
     bool marked_ = false;
-    Time no_further_ = 0;          ///< what was tried up to there ended in an exception
-    std::vector<Message> used_;    ///< what came in since the mark
-    std::vector<Message> sent_;    ///< what was sent since the mark
-    std::vector<Time> promises_;   ///< by port, where the reaction is not zero: before a message came in
-    std::vector<Time> reactions_;  ///< by port, the shortest since the mark
+    Time no_further_ = 0;        ///< what was tried up to there ended in an exception
+    std::vector<Message> used_;  ///< what came in since the mark
+    std::vector<Message> sent_;  ///< what was sent since the mark
+    std::vector<Time>
+        earliest_outputs_;          ///< by port, where the lookahead is not zero: before a message came in
+    std::vector<Time> lookaheads_;  ///< by port, the shortest since the mark
 };
 
 }  // namespace puckloop::cosim

@@ -148,7 +148,7 @@ void Schedule::choose_plain(const std::vector<NodeTimes>& nodes, const ScheduleL
         for (std::size_t n = 0; n < nodes.size(); ++n)
             if (!nodes[n].runs_ahead && target_[n] > nodes[n].granted) chosen_.push_back(n);
     for (const std::size_t n : chosen_) {
-        // Beyond what is foreseen for others its echo would come earlier than their reactions say.
+        // Beyond what is foreseen for others its echo would come earlier than their lookaheads say.
         if (!any_ahead_ && bounds_.root(n) == n) target_[n] = std::min(limit_if_silent(n), ceiling_);
         ahead_[n] = target_[n];
     }

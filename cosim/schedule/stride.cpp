@@ -17,8 +17,8 @@ Time first_echo(const Node& node, Time now, Time first_in, const std::vector<Por
         if (echo.back == kNever) continue;
         const auto port = static_cast<PortIndex>(p);
         const Time begun = echo.is_uart ? later(node.begun(port).value_or(now), echo.flight) : 0;
-        const Time unasked = std::max(node.promise(port), begun);
-        const Time answer = later(first_in, std::max(node.reaction(port), echo.flight));
+        const Time unasked = std::max(node.earliest_output(port), begun);
+        const Time answer = later(first_in, std::max(node.lookahead(port), echo.flight));
         first = std::min(first, later(later(std::min(unasked, answer), echo.latency), echo.back));
     }
     return first;

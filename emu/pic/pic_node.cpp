@@ -105,7 +105,7 @@ void PicNode::receive(const cosim::Message& message) {
     }
 }
 
-cosim::Time PicNode::promise(cosim::PortIndex port) const {
+cosim::Time PicNode::earliest_output(cosim::PortIndex port) const {
     if (port == kI2c) return std::max(granted_, chip_->earliest_i2c(kI2cUnit));
     return granted_;
 }

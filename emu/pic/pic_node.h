@@ -44,8 +44,8 @@ class PicNode : public cosim::StatefulNode, private BoardListener {
     std::span<const cosim::Port> ports() const override { return ports_; }
     void advance(cosim::Time until, std::span<const cosim::Message> inbox,
                  std::vector<cosim::Message>& outbox) override;
-    cosim::Time promise(cosim::PortIndex port) const override;
-    cosim::Time reaction(cosim::PortIndex /*port*/) const override { return 0; }
+    cosim::Time earliest_output(cosim::PortIndex port) const override;
+    cosim::Time lookahead(cosim::PortIndex /*port*/) const override { return 0; }
     std::optional<cosim::Time> begun(cosim::PortIndex port) const override;
     /// JSON: cycles, instructions, resets, traps, unmodelled registers, motor and UART counters.
     std::string finish() override;

@@ -80,12 +80,12 @@ void RabNode::receive(const cosim::Message& message) {
     }
 }
 
-/// Holds the promise of reaction(): no answer before that long after the phase came in. A bus that passes a
+/// Holds what lookahead() guarantees: no answer before that long after the phase came in. A bus that passes a
 /// phase on late, or a master faster than the fastest, moves the phase.
 void RabNode::begin_i2c(cosim::I2cPhase phase, cosim::Time now) {
     if (phase.kind != cosim::I2cPhaseKind::Stop) {
         phase.clock_period = std::max(phase.clock_period, fastest_period_);
-        const cosim::Time earliest = now + reaction_of_idle() - kClocksToAnswer * phase.clock_period;
+        const cosim::Time earliest = now + lookahead_when_idle() - kClocksToAnswer * phase.clock_period;
         phase.start = std::max(phase.start, earliest);
     }
     log_.i2c_phase(phase, now);
@@ -93,18 +93,18 @@ void RabNode::begin_i2c(cosim::I2cPhase phase, cosim::Time now) {
 }
 
 /// The bus hands a phase on half a clock late at most.
-cosim::Time RabNode::reaction_of_idle() const {
+cosim::Time RabNode::lookahead_when_idle() const {
     return kClocksToAnswer * fastest_period_ - fastest_period_ / 2;
 }
 
-cosim::Time RabNode::promise(cosim::PortIndex port) const {
+cosim::Time RabNode::earliest_output(cosim::PortIndex port) const {
     if (port == kI2c) return std::max(granted_, chip_->earliest_i2c_slave_answer(kI2cUnit));
     return granted_;
 }
 
-cosim::Time RabNode::reaction(cosim::PortIndex port) const {
+cosim::Time RabNode::lookahead(cosim::PortIndex port) const {
     const bool idle = chip_->earliest_i2c_slave_answer(kI2cUnit) == cosim::kNever;
-    return port == kI2c && idle ? reaction_of_idle() : 0;
+    return port == kI2c && idle ? lookahead_when_idle() : 0;
 }
 
 std::optional<cosim::Time> RabNode::begun(cosim::PortIndex port) const {

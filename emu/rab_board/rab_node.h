@@ -40,8 +40,8 @@ class RabNode : public cosim::StatefulNode, private BoardListener {
     std::span<const cosim::Port> ports() const override { return ports_; }
     void advance(cosim::Time until, std::span<const cosim::Message> inbox,
                  std::vector<cosim::Message>& outbox) override;
-    cosim::Time promise(cosim::PortIndex port) const override;
-    cosim::Time reaction(cosim::PortIndex port) const override;
+    cosim::Time earliest_output(cosim::PortIndex port) const override;
+    cosim::Time lookahead(cosim::PortIndex port) const override;
     std::optional<cosim::Time> begun(cosim::PortIndex port) const override;
     /// JSON: cycles, instructions, resets, traps, unmodelled registers, emission, I2C and UART counters.
     std::string finish() override;
@@ -62,7 +62,7 @@ class RabNode : public cosim::StatefulNode, private BoardListener {
     void settle(cosim::Time until);
     void receive(const cosim::Message& message);
     void begin_i2c(cosim::I2cPhase phase, cosim::Time now);
-    cosim::Time reaction_of_idle() const;
+    cosim::Time lookahead_when_idle() const;
 
     void signal_changed(SignalId id, double value, cosim::Time now) override;
     void emitters_changed(std::uint16_t on, cosim::Time now) override { log_.emitters(on, now); }

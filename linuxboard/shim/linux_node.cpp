@@ -250,7 +250,7 @@ Time LinuxNode::next_action() const {
     return next;
 }
 
-Time LinuxNode::promise(cosim::PortIndex port) const {
+Time LinuxNode::earliest_output(cosim::PortIndex port) const {
     const Time action = std::max(next_action(), until_);
     if (port == kUartPort) {
         Time own = kernel_.tty().next_frame(until_);
@@ -260,8 +260,8 @@ Time LinuxNode::promise(cosim::PortIndex port) const {
     return std::min(action, std::max(kernel_.adapter().next_event(), until_));
 }
 
-Time LinuxNode::reaction(cosim::PortIndex port) const {
-    // Only a thread that waits on a device can be woken by a message, and not before the promised time while
+Time LinuxNode::lookahead(cosim::PortIndex port) const {
+    // Only a thread that waits on a device can be woken by a message, and not before the earliest time while
     // the program stands at a request.
     const bool waits = std::any_of(clients_.begin(), clients_.end(), [](const auto& client) {
         return client->state == Client::State::Waiting;

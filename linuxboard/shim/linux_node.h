@@ -39,8 +39,8 @@ class LinuxNode : public cosim::Node {
     std::span<const cosim::Port> ports() const override { return ports_; }
     void advance(cosim::Time until, std::span<const cosim::Message> inbox,
                  std::vector<cosim::Message>& outbox) override;
-    cosim::Time promise(cosim::PortIndex port) const override;
-    cosim::Time reaction(cosim::PortIndex port) const override;
+    cosim::Time earliest_output(cosim::PortIndex port) const override;
+    cosim::Time lookahead(cosim::PortIndex port) const override;
     std::optional<cosim::Stop> stop() const override { return stop_; }
     /// The program gets `signal`, or the scenario's, and SIGKILL once the grace period is over. One that
     /// would die of the signal without a word does so now.

@@ -8,7 +8,7 @@
 
 using namespace puckloop::cosim;
 
-TEST_CASE("a promise and a latency bound the receiver") {
+TEST_CASE("an EOT and a latency bound the receiver") {
     Bounds bounds;
     const std::vector<Channel> channels{{0, 1, 100, 5}};
     const std::vector<Time> pending{kNever, kNever};
@@ -31,7 +31,7 @@ TEST_CASE("a pending message shortens what its node may answer, not how far it m
     CHECK(bounds.root(0) == 0);
 }
 
-TEST_CASE("zero-reaction chains of any length come out exactly") {
+TEST_CASE("zero-lookahead chains of any length come out exactly") {
     constexpr std::size_t kNodes = 200;
     std::vector<Channel> channels;
     // Worst order for a relaxation that goes through the list once.
@@ -57,14 +57,14 @@ TEST_CASE("bounds on random graphs equal the shortest of all paths") {
         std::vector<Time> pending(count, kNever);
         for (Time& time : pending)
             if (random.below(3) == 0) time = static_cast<Time>(random.below(60));
-        // All walks of up to `count` channels, from every promise and every pending message.
+        // All walks of up to `count` channels, from every EOT and every pending message.
         std::vector<Time> earliest = pending, limit(count, kNever);
         std::vector<Time> walk = pending;
         for (std::size_t length = 0; length <= count; ++length) {
             std::vector<Time> next(count, kNever);
             for (const Channel& c : channels)
                 next[c.to] =
-                    std::min({next[c.to], later(walk[c.from], c.reaction), length == 0 ? c.base : kNever});
+                    std::min({next[c.to], later(walk[c.from], c.lookahead), length == 0 ? c.base : kNever});
             for (std::size_t n = 0; n < count; ++n) {
                 limit[n] = std::min(limit[n], next[n]);
                 earliest[n] = std::min(earliest[n], next[n]);

@@ -110,7 +110,7 @@ TEST_CASE("the trace is the same for every placement") {
 }
 
 TEST_CASE("a node that may speak at any time but does not is granted long stretches") {
-    // "mutual" promises no more than its own time and answers at once; its partner answers after a while.
+    // "mutual" has no EOT beyond its own time and answers at once; its partner answers after a while.
     Run run{{{"board", "mutual"}, {"program", "echo delay_us=10"}},
             {toy::uart("wire", {"board", "uart0"}, {"program", "uart0"})}};
     run.options.duration = kSecond;
@@ -254,7 +254,7 @@ TEST_CASE("a node at the edge of a zero cycle does not spin, it is told as deadl
     CHECK(run().reason == EndReason::Duration);
 }
 
-TEST_CASE("a broken promise names the node, the port and what was promised") {
+TEST_CASE("a message before the EOT names the node, the port and the EOT") {
     Run run{{{"honest", "idle"}, {"forger", "liar at_us=700"}},
             {toy::uart("wire", {"honest", "uart0"}, {"forger", "uart0"})}};
     run.options.duration = 5 * kMillisecond;
@@ -263,12 +263,13 @@ TEST_CASE("a broken promise names the node, the port and what was promised") {
         const Outcome outcome = run();
         CHECK(outcome.reason == EndReason::Failed);
         CHECK(outcome.node == "forger");
-        CHECK_THAT(outcome.text, Catch::Contains("node forger broke its promise on port uart0") &&
-                                     Catch::Contains("0.000700000000 s"));
+        CHECK_THAT(outcome.text,
+                   Catch::Contains("node forger sent before its earliest output time on port uart0") &&
+                       Catch::Contains("0.000700000000 s"));
     }
 }
 
-TEST_CASE("what was promised holds, even when the node promises less later") {
+TEST_CASE("an EOT holds, even when the node reports an earlier one later") {
     // It says that it will be silent for ever, then that it may speak at any time, then speaks.
     Run run{{{"honest", "idle"}, {"turncoat", "turncoat at_us=700"}},
             {toy::uart("wire", {"honest", "uart0"}, {"turncoat", "uart0"})}};
@@ -278,7 +279,8 @@ TEST_CASE("what was promised holds, even when the node promises less later") {
         run.options.chop_seed = chop;
         const Outcome outcome = run();
         CHECK(outcome.reason == EndReason::Failed);
-        CHECK_THAT(outcome.text, Catch::Contains("node turncoat broke its promise on port uart0"));
+        CHECK_THAT(outcome.text,
+                   Catch::Contains("node turncoat sent before its earliest output time on port uart0"));
     }
 }
 

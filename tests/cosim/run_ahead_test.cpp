@@ -27,8 +27,8 @@ class Counter final : public Node, public Rewindable {
   public:
     std::string_view name() const override { return "counter"; }
     std::span<const Port> ports() const override { return ports_; }
-    Time promise(PortIndex) const override { return next_; }
-    Time reaction(PortIndex) const override { return received_ == 0 ? 40 : 7; }
+    Time earliest_output(PortIndex) const override { return next_; }
+    Time lookahead(PortIndex) const override { return received_ == 0 ? 40 : 7; }
     std::optional<Stop> stop() const override {
         return now_ > stop_at ? std::optional<Stop>(Stop{stop_at, true, "enough", 1}) : std::nullopt;
     }
@@ -98,8 +98,8 @@ TEST_CASE("what was foreseen rightly is not executed again") {
     CHECK(done.ahead == 450);
     CHECK(done.sure == 1);
     CHECK(f.outbox == std::vector<Message>{said(100, 0), said(200, 0), said(300, 0), said(400, 2)});
-    CHECK(f.state().ports[0].promise == 500);
-    CHECK(f.state().ports[0].reaction == 7);  // the shortest within what was run ahead
+    CHECK(f.state().ports[0].earliest_output == 500);
+    CHECK(f.state().ports[0].lookahead == 7);  // the shortest within what was run ahead
 
     done = f.advance(330, 450, {said(320, 2)});  // less than was foreseen is granted
     CHECK(done.ahead == 450);
@@ -139,7 +139,7 @@ TEST_CASE("without anything foreseen a node that ran ahead goes back to what is 
     CHECK(done.ahead == 150);
     CHECK(done.sure == 0);
     CHECK(f.outbox.empty());
-    CHECK(f.state().ports[0].promise == 200);
+    CHECK(f.state().ports[0].earliest_output == 200);
     f.advance(220, 900);
     CHECK(f.node.finish() == "220");
 }
@@ -169,8 +169,8 @@ class Holder final : public Node, public Rewindable {
   public:
     std::string_view name() const override { return "holder"; }
     std::span<const Port> ports() const override { return ports_; }
-    Time promise(PortIndex) const override { return due_; }
-    Time reaction(PortIndex) const override { return 50; }
+    Time earliest_output(PortIndex) const override { return due_; }
+    Time lookahead(PortIndex) const override { return 50; }
     Rewindable* rewindable() override { return this; }
     void advance(Time until, std::span<const Message> inbox, std::vector<Message>& outbox) override {
         for (const Message& message : inbox) {
@@ -202,12 +202,12 @@ TEST_CASE("what a foreseen message takes away may come, should the message not")
                  outbox);
     node.read_state(state);
     CHECK(outbox.empty());
-    CHECK(state.ports[0].promise == 250);
-    CHECK(state.ports[0].reaction == 10);  // without what comes in at 100 it is sent at 110
+    CHECK(state.ports[0].earliest_output == 250);
+    CHECK(state.ports[0].lookahead == 10);  // without what comes in at 100 it is sent at 110
     node.advance({95, 95, 220}, std::vector<Message>{said(200, 0)}, kNoEchoes, outbox);
     CHECK(outbox == std::vector<Message>{said(110, 1)});
     node.read_state(state);
-    CHECK(state.ports[0].reaction == 50);
+    CHECK(state.ports[0].lookahead == 50);
 }
 
 TEST_CASE("a wish to stop is known when its time is final") {
@@ -350,7 +350,7 @@ TEST_CASE("a run of nodes that run ahead ends when one wants it to, exactly") {
     }
 }
 
-TEST_CASE("a node that breaks its promise having run ahead is named") {
+TEST_CASE("a node that sends before its earliest output time having run ahead is named") {
     Run run{{{"a", "liar at_us=2000 ahead=1"}, {"b", "chatter seed=5 ahead=1"}},
             {toy::uart("ab", {"a", "uart0"}, {"b", "uart0"})}};
     run.options.in_process = true;
@@ -358,7 +358,7 @@ TEST_CASE("a node that breaks its promise having run ahead is named") {
     const Outcome outcome = run();
     CHECK(outcome.reason == EndReason::Failed);
     CHECK(outcome.node == "a");
-    CHECK_THAT(outcome.text, Catch::Contains("broke its promise on port uart0"));
+    CHECK_THAT(outcome.text, Catch::Contains("sent before its earliest output time on port uart0"));
 }
 
 TEST_CASE("nodes that seldom speak go in long stretches, however close they are coupled") {

@@ -1,4 +1,4 @@
-// Measures what the conductor costs in a swarm: nodes with the links, promises and reactions of robots with
+// Measures what the conductor costs in a swarm: nodes with the links, EOTs and lookaheads of robots with
 // range-and-bearing boards, but nothing to do. No test, run by hand: cosim_swarm_cost [simulated seconds]
 
 #include "cosim/conductor.h"
@@ -19,9 +19,9 @@ constexpr Time kSclClock = 10 * kMicrosecond;
 /// How one port of a toy behaves.
 struct ToyPort {
     Port port;
-    bool busy = false;    ///< may send at any time; otherwise only in reaction
+    bool busy = false;    ///< may send at any time; otherwise only in answer
     Time every = kNever;  ///< sends a signal so often
-    Time reaction = kNever;
+    Time lookahead = kNever;
     Time ahead = 0;  ///< it knows so early what it will send
 };
 
@@ -41,10 +41,10 @@ class Toy final : public Node {
                 outbox.push_back({next_[p], static_cast<PortIndex>(p), Signal{0, 1.0}});
         granted_ = until;
     }
-    Time promise(PortIndex port) const override {
+    Time earliest_output(PortIndex port) const override {
         return toys_[port].busy ? granted_ : std::max(granted_, next_[port]);
     }
-    Time reaction(PortIndex port) const override { return toys_[port].reaction; }
+    Time lookahead(PortIndex port) const override { return toys_[port].lookahead; }
 
   private:
     std::string name_;
@@ -54,11 +54,11 @@ class Toy final : public Node {
     Time granted_ = 0;
 };
 
-ToyPort signals(const std::string& name, bool busy, Time every, Time reaction) {
-    return {{name, PortKind::Signals}, busy, every, reaction, 0};
+ToyPort signals(const std::string& name, bool busy, Time every, Time lookahead) {
+    return {{name, PortKind::Signals}, busy, every, lookahead, 0};
 }
-ToyPort i2c(const std::string& name, bool busy, Time reaction) {
-    return {{name, PortKind::I2c}, busy, kNever, reaction, 0};
+ToyPort i2c(const std::string& name, bool busy, Time lookahead) {
+    return {{name, PortKind::I2c}, busy, kNever, lookahead, 0};
 }
 
 /// Name of a node -> its ports.

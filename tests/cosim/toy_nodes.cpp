@@ -47,8 +47,8 @@ class ToyNode : public Node {
 
     std::string_view name() const override { return name_; }
     std::span<const Port> ports() const override { return ports_; }
-    Time promise(PortIndex) const override { return kNever; }
-    Time reaction(PortIndex) const override { return kNever; }
+    Time earliest_output(PortIndex) const override { return kNever; }
+    Time lookahead(PortIndex) const override { return kNever; }
     std::string finish() override {
         return "{\"digest\": " + std::to_string(digest_) + ", \"messages\": " + std::to_string(received_) +
                "}";
@@ -108,12 +108,12 @@ class Chatter : public ToyNode {
         push({draw_gap(), Kind::Act, 0});
     }
 
-    Time promise(PortIndex port) const override {
+    Time earliest_output(PortIndex port) const override {
         if (lines_[port].begun) return *lines_[port].begun + 9 * kBit;
         const Time next = next_event();
         return ports_[port].kind == PortKind::Uart ? next : later(next, fly_);
     }
-    Time reaction(PortIndex port) const override {
+    Time lookahead(PortIndex port) const override {
         return ports_[port].kind == PortKind::Uart ? think_ : think_ + fly_;
     }
     std::optional<Time> begun(PortIndex port) const override { return lines_[port].begun; }
@@ -204,8 +204,8 @@ class Echo : public ToyNode {
         : ToyNode(settings), delay_(settings.get("delay_us", 10) * kMicrosecond) {
         if (settings.get("first", 0) != 0) first_ = kMicrosecond;
     }
-    Time promise(PortIndex) const override { return first_; }
-    Time reaction(PortIndex) const override { return delay_ + 9 * kBit; }
+    Time earliest_output(PortIndex) const override { return first_; }
+    Time lookahead(PortIndex) const override { return delay_ + 9 * kBit; }
 
   protected:
     Time next_event() const override { return first_; }
@@ -262,7 +262,7 @@ class Turncoat : public ToyNode {
   public:
     explicit Turncoat(const Settings& settings)
         : ToyNode(settings), at_(settings.get("at_us", 1000) * kMicrosecond) {}
-    Time promise(PortIndex) const override { return reached_ > at_ ? reached_ : kNever; }
+    Time earliest_output(PortIndex) const override { return reached_ > at_ ? reached_ : kNever; }
 
   protected:
     Time next_event() const override { return spoke_ ? kNever : at_ + 20 * kMillisecond; }
@@ -279,8 +279,8 @@ class Turncoat : public ToyNode {
 class Mutual : public ToyNode {
   public:
     using ToyNode::ToyNode;
-    Time promise(PortIndex) const override { return reached_; }
-    Time reaction(PortIndex) const override { return 0; }
+    Time earliest_output(PortIndex) const override { return reached_; }
+    Time lookahead(PortIndex) const override { return 0; }
 };
 
 /// One that can go back, by a copy of all of it.

@@ -118,7 +118,7 @@ TEST_CASE("a timer interrupt toggles a pin at exact times, however the run is cu
     }
 }
 
-TEST_CASE("an echo answers each byte, never earlier than the chip promised") {
+TEST_CASE("an echo answers each byte, never earlier than the chip reported") {
     Bench bench(kEcho);
     Chip& chip = bench.chip;
     const Time bit = cosim::from_seconds(1.0 / 115200.0);

@@ -1,4 +1,4 @@
-// A bus that ran ahead and went back is the bus that never did: what it sends, promises, logs and reports.
+// A bus that ran ahead and went back is the bus that never did: what it sends, EOTs, logs and reports.
 // Two masters, a board behind a port, ground sensor and turret, all at random; a twin is never marked.
 
 #include "base/random.h"
@@ -113,7 +113,8 @@ std::string text_of(const std::string& file) {
 
 bool same_future(const Node& a, const Node& b) {
     for (PortIndex port = 0; port <= kWorld; ++port)
-        if (a.promise(port) != b.promise(port) || a.reaction(port) != b.reaction(port)) return false;
+        if (a.earliest_output(port) != b.earliest_output(port) || a.lookahead(port) != b.lookahead(port))
+            return false;
     return true;
 }
 

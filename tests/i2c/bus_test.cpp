@@ -24,7 +24,7 @@ constexpr PortIndex kPic = 0, kLinux = 1;
 constexpr Time kPeriod = 10 * kMicrosecond;  // 100 kHz
 constexpr Time kSlow = 11'140'000;           // 89.8 kHz, the dsPIC's
 
-/// Speaks to a bus node as one or more masters would, checking every promise on the way.
+/// Speaks to a bus node as one or more masters would, checking every EOT on the way.
 class Bench {
   public:
     explicit Bench(BusSpec spec = {}) : node_(make_bus_node(spec)) {
@@ -45,7 +45,7 @@ class Bench {
         std::vector<Time> earliest;
         const Time first_in = inbox_.empty() ? kNever : inbox_.front().time;
         for (PortIndex p = 0; p <= world; ++p)
-            earliest.push_back(std::min(node_->promise(p), later(first_in, node_->reaction(p))));
+            earliest.push_back(std::min(node_->earliest_output(p), later(first_in, node_->lookahead(p))));
         node_->advance(time, inbox_, told);
         inbox_.clear();
         for (const auto& message : told) {
@@ -59,7 +59,7 @@ class Bench {
         const std::vector<Message> out(told_.begin(), later_on);
         told_.erase(told_.begin(), later_on);
         for (PortIndex p = 0; p <= world; ++p)
-            CHECK(node_->promise(p) >= time);
+            CHECK(node_->earliest_output(p) >= time);
         return out;
     }
     /// One phase and its answer; advances in small grants.

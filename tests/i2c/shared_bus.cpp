@@ -30,8 +30,8 @@ class Master final : public Node {
         run_until(until, outbox);
         granted_ = until;
     }
-    Time promise(PortIndex) const override { return std::max(granted_, next()); }
-    Time reaction(PortIndex) const override { return 0; }
+    Time earliest_output(PortIndex) const override { return std::max(granted_, next()); }
+    Time lookahead(PortIndex) const override { return 0; }
 
   private:
     Time next() const {
@@ -77,8 +77,8 @@ class BoardNode final : public Node {
             outbox.push_back({phase.start + 8 * phase.clock_period + late, 0, said});
         }
     }
-    Time promise(PortIndex) const override { return kNever; }
-    Time reaction(PortIndex) const override { return kMicrosecond; }
+    Time earliest_output(PortIndex) const override { return kNever; }
+    Time lookahead(PortIndex) const override { return kMicrosecond; }
 
   private:
     I2cPhase answer(const I2cPhase& phase, Time& late) {

@@ -97,15 +97,16 @@ void Bench::run(Time end, bool past_stop) {
         const std::vector<Message> inbox(pending_.begin(), split);
         pending_.erase(pending_.begin(), split);
         std::vector<Message> outbox;
-        const Time uart_promise = node_.promise(linuxboard::kUartPort);
-        const Time i2c_promise = node_.promise(linuxboard::kI2cPort);
+        const Time uart_eot = node_.earliest_output(linuxboard::kUartPort);
+        const Time i2c_eot = node_.earliest_output(linuxboard::kI2cPort);
         node_.advance(until, inbox, outbox);
         now_ = until;
         const Time first_in = inbox.empty() ? kNever : inbox.front().time;
         for (const Message& message : outbox) {
-            const Time promised = message.port == linuxboard::kUartPort ? uart_promise : i2c_promise;
-            if (message.time < std::min(promised, first_in))
-                throw std::logic_error(fmt::format("promise broken: {} before {}", message.time, promised));
+            const Time earliest = message.port == linuxboard::kUartPort ? uart_eot : i2c_eot;
+            if (message.time < std::min(earliest, first_in))
+                throw std::logic_error(
+                    fmt::format("before the earliest output time: {} before {}", message.time, earliest));
             if (const auto* frame = std::get_if<UartFrame>(&message.payload)) {
                 trace_ += fmt::format("{} uart {} {:02x}\n", message.time, frame->start, frame->data);
                 sent_ += static_cast<char>(frame->data);

@@ -1,4 +1,4 @@
-// The medium as a node: times, promises, grants cut anyhow, frames as they were on the air.
+// The medium as a node: times, EOTs, grants cut anyhow, frames as they were on the air.
 
 #include "base/error.h"
 #include "physics/ir_node.h"
@@ -57,7 +57,7 @@ void sort(std::vector<Message>& messages) {
                      [](const Message& a, const Message& b) { return a.time < b.time; });
 }
 
-/// Runs the node in grants of `slice`, checking order, promise and reaction of every message.
+/// Runs the node in grants of `slice`, checking order, EOT and lookahead of every message.
 std::vector<Message> run(IrNode& node, std::vector<Message> messages, Time duration, Time slice) {
     sort(messages);
     std::vector<Message> all;
@@ -69,8 +69,8 @@ std::vector<Message> run(IrNode& node, std::vector<Message> messages, Time durat
             ++end;
         std::vector<Time> earliest;
         for (PortIndex p = 0; p < node.ports().size(); ++p) {
-            const Time caused = next == end ? kNever : cosim::later(next->time, node.reaction(p));
-            earliest.push_back(std::min(node.promise(p), caused));
+            const Time caused = next == end ? kNever : cosim::later(next->time, node.lookahead(p));
+            earliest.push_back(std::min(node.earliest_output(p), caused));
         }
         std::vector<Message> out;
         node.advance(until, std::vector<Message>(next, end), out);
@@ -301,23 +301,23 @@ TEST_CASE("alone, a board is told its baseline and nothing can reach it") {
     world.arena = rectangular_arena(1, 1);
     world.robots = {rab_robot("a", 0, 0)};
     IrNode node(world, {});
-    CHECK(node.reaction(0) == kNever);
-    CHECK(node.reaction(1) == kNever);
+    CHECK(node.lookahead(0) == kNever);
+    CHECK(node.lookahead(1) == kNever);
     std::vector<Message> messages;
     set_up_board(messages, 0);
     send(messages, 5 * kMillisecond, 0);
     const auto out = run(node, messages, 20 * kMillisecond, kMillisecond);
     CHECK(out.size() == kIrSensors);
-    CHECK(node.promise(0) == kNever);
+    CHECK(node.earliest_output(0) == kNever);
 }
 
 TEST_CASE("boards may run ahead of each other by the shortest delay") {
     World world = rab_pair(0.2);
-    CHECK(IrNode(world, {}).reaction(0) == 20 * kMicrosecond);
+    CHECK(IrNode(world, {}).lookahead(0) == 20 * kMicrosecond);
     world.robots[1].parameters = {{"ir.delay_off", 5e-6}};
-    CHECK(IrNode(world, {}).reaction(1) == 5 * kMicrosecond);
-    CHECK(IrNode(world, {}).reaction(0) == 20 * kMicrosecond);
-    CHECK(IrNode(world, {}).reaction(2) == kNever);
+    CHECK(IrNode(world, {}).lookahead(1) == 5 * kMicrosecond);
+    CHECK(IrNode(world, {}).lookahead(0) == 20 * kMicrosecond);
+    CHECK(IrNode(world, {}).lookahead(2) == kNever);
 }
 
 TEST_CASE("a carrier that never ends follows the robots") {

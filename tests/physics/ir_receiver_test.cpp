@@ -65,7 +65,7 @@ TEST_CASE("a burst shows after the delay on and goes after the delay off") {
     check_output(bench.got[0], 1020, 3, 1.0);
     check_output(bench.got[1], 1108, 3, 0.0);
     CHECK(bench.receiver.next_output() == kNever);
-    CHECK(bench.receiver.reaction() == 8 * kMicrosecond);
+    CHECK(bench.receiver.lookahead() == 8 * kMicrosecond);
 }
 
 TEST_CASE("too short a burst is not seen, nor is too short a gap") {

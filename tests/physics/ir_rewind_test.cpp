@@ -1,4 +1,4 @@
-// A medium that ran ahead and went back is the medium that never did: what it sends and promises, its file of
+// A medium that ran ahead and went back is the medium that never did: what it sends, its EOTs and its file of
 // frames and its report. Boards that shine at random, bodies that move, are lifted and change their shape; a
 // twin is never marked.
 
@@ -93,7 +93,8 @@ std::string text_of(const std::string& file) {
 
 bool same_future(const IrNode& a, const IrNode& b) {
     for (PortIndex port = 0; port <= kWorldPort; ++port)
-        if (a.promise(port) != b.promise(port) || a.reaction(port) != b.reaction(port)) return false;
+        if (a.earliest_output(port) != b.earliest_output(port) || a.lookahead(port) != b.lookahead(port))
+            return false;
     return true;
 }
 

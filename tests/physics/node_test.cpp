@@ -57,7 +57,7 @@ std::vector<Message> steps_for(Time duration) {
     return messages;
 }
 
-/// Runs the node with grants of `slice` picoseconds, checking every promise.
+/// Runs the node with grants of `slice` picoseconds, checking every EOT.
 std::vector<Message> run(WorldNode& node, Time duration, Time slice) {
     const auto messages = steps_for(duration);
     std::vector<Message> all;
@@ -67,12 +67,12 @@ std::vector<Message> run(WorldNode& node, Time duration, Time slice) {
         auto end = next;
         while (end != messages.end() && end->time < until)
             ++end;
-        const Time promised = node.promise(0);
+        const Time earliest = node.earliest_output(0);
         std::vector<Message> out;
         node.advance(until, std::vector<Message>(next, end), out);
         for (const auto& message : out)
-            REQUIRE(message.time >= promised);
-        REQUIRE(node.promise(0) > until);
+            REQUIRE(message.time >= earliest);
+        REQUIRE(node.earliest_output(0) > until);
         all.insert(all.end(), out.begin(), out.end());
         next = end;
         if (until == duration) return all;
@@ -123,8 +123,8 @@ TEST_CASE("a step is used in the step after it and seen one later") {
     REQUIRE_FALSE(out.empty());
     for (const auto& message : out)
         CHECK(message.time == kMillisecond);
-    CHECK(node.promise(0) == 2 * kMillisecond);
-    CHECK(node.reaction(0) > kMillisecond);
+    CHECK(node.earliest_output(0) == 2 * kMillisecond);
+    CHECK(node.lookahead(0) > kMillisecond);
     CHECK(node.ports()[1].name == "e1.ground");
     CHECK(node.ports()[2].name == "e2.board");
     out.clear();

@@ -138,17 +138,17 @@ std::map<int, std::vector<Message>> run_cut(const std::vector<Time>& cuts, bool 
         const std::size_t first = next;
         while (next < inbox.size() && inbox[next].time < cut)
             ++next;
-        std::vector<Time> promised;
+        std::vector<Time> earliest;
         std::vector<bool> begun;
         for (cosim::PortIndex port = 0; port < node.ports().size(); ++port) {
-            promised.push_back(node.promise(port));
+            earliest.push_back(node.earliest_output(port));
             begun.push_back(node.begun(port).has_value());
         }
-        const Time reached = node.promise(pic::PicNode::kWorld);
+        const Time reached = node.earliest_output(pic::PicNode::kWorld);
         std::vector<Message> outbox;
         node.advance(cut, std::span(inbox).subspan(first, next - first), outbox);
         for (const Message& message : outbox) {
-            CHECK(message.time >= promised[message.port]);
+            CHECK(message.time >= earliest[message.port]);
             if (const auto* frame = std::get_if<cosim::UartFrame>(&message.payload)) {
                 if (!begun[message.port]) CHECK(frame->start >= reached);
                 begun[message.port] = false;  // one frame at most was on the line

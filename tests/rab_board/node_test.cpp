@@ -1,4 +1,4 @@
-// The board as a node: what leaves does not depend on how grants are cut, promises are kept, the log tells
+// The board as a node: what leaves does not depend on how grants are cut, EOTs hold, the log tells
 // what matters. Runs a small program of its own.
 
 #include "base/random.h"
@@ -127,16 +127,16 @@ std::map<int, std::vector<Message>> run_cut(const std::vector<Time>& cuts, bool 
         const std::size_t first = next;
         while (next < inbox.size() && inbox[next].time < cut)
             ++next;
-        std::vector<Time> promised;
+        std::vector<Time> earliest;
         for (cosim::PortIndex port = 0; port < node.ports().size(); ++port) {
             const Time caused =
-                next > first ? cosim::later(inbox[first].time, node.reaction(port)) : cosim::kNever;
-            promised.push_back(std::min(node.promise(port), caused));
+                next > first ? cosim::later(inbox[first].time, node.lookahead(port)) : cosim::kNever;
+            earliest.push_back(std::min(node.earliest_output(port), caused));
         }
         std::vector<Message> outbox;
         node.advance(cut, std::span(inbox).subspan(first, next - first), outbox);
         for (const Message& message : outbox) {
-            CHECK(message.time >= promised[message.port]);
+            CHECK(message.time >= earliest[message.port]);
             auto& port = out[message.port];
             if (!port.empty()) CHECK(port.back().time <= message.time);
             port.push_back(message);
@@ -234,21 +234,21 @@ TEST_CASE("a board's log tells what the firmware swallows, the same however the 
     }
 }
 
-TEST_CASE("a bus that is no faster than it says gets no answer before the promised time") {
+TEST_CASE("a bus that is no faster than it says gets no answer before the earliest time") {
     rab::RabNodeOptions options = quiet();
     options.fastest_i2c_hertz = 100e3;
     rab::RabNode node(assembled(kFirmware), options);
     std::vector<Message> outbox;
     node.advance(cosim::kMillisecond, {}, outbox);
-    CHECK(node.promise(rab::RabNode::kI2c) == cosim::kNever);
-    CHECK(node.reaction(rab::RabNode::kI2c) == 75 * cosim::kMicrosecond);
+    CHECK(node.earliest_output(rab::RabNode::kI2c) == cosim::kNever);
+    CHECK(node.lookahead(rab::RabNode::kI2c) == 75 * cosim::kMicrosecond);
     // A master at 400 kHz: its phase is answered as one of 100 kHz.
     Message fast = phase_at(2 * cosim::kMillisecond, I2cPhaseKind::Start, 0x40);
     std::get<I2cPhase>(fast.payload).clock_period = kClock / 4;
     outbox.clear();
     node.advance(2 * cosim::kMillisecond + 1, std::span(&fast, 1), outbox);
-    CHECK(node.promise(rab::RabNode::kI2c) < 2 * cosim::kMillisecond + 8 * kClock);
-    CHECK(node.promise(rab::RabNode::kI2c) > 2 * cosim::kMillisecond + 7 * kClock);
+    CHECK(node.earliest_output(rab::RabNode::kI2c) < 2 * cosim::kMillisecond + 8 * kClock);
+    CHECK(node.earliest_output(rab::RabNode::kI2c) > 2 * cosim::kMillisecond + 7 * kClock);
     node.advance(3 * cosim::kMillisecond, {}, outbox);
     const auto answer = std::find_if(outbox.begin(), outbox.end(), [](const Message& message) {
         return message.port == rab::RabNode::kI2c;

@@ -230,7 +230,7 @@ std::vector<Message> run(cosim::Node& node, const Stretch& outside) {
 
 bool same_future(const cosim::Node& a, const cosim::Node& b) {
     for (cosim::PortIndex port = 0; port < a.ports().size(); ++port)
-        if (a.promise(port) != b.promise(port) || a.reaction(port) != b.reaction(port) ||
+        if (a.earliest_output(port) != b.earliest_output(port) || a.lookahead(port) != b.lookahead(port) ||
             a.begun(port) != b.begun(port))
             return false;
     return true;

@@ -20,7 +20,7 @@ namespace {
 
 constexpr Time kBoot = 60 * cosim::kMillisecond, kEnd = 90 * cosim::kMillisecond;
 
-/// Runs to kEnd in random grants and holds the node to its promises, as the conductor would.
+/// Runs to kEnd in random grants and holds the node to its EOTs, as the conductor would.
 std::vector<Message> run(cosim::Node& node, const std::vector<Message>& inbox, std::uint64_t seed) {
     RandomStream random(seed, "grants");
     std::vector<Message> all;
@@ -31,20 +31,20 @@ std::vector<Message> run(cosim::Node& node, const std::vector<Message>& inbox, s
             kEnd, now + 1 + static_cast<Time>(random.below(random.below(2) ? 100'000'000 : 9'000'000'000)));
         const auto end = std::find_if(next, inbox.end(), [&](const Message& m) { return m.time >= until; });
         std::vector<Message> outbox;
-        std::vector<Time> reactions;
+        std::vector<Time> lookaheads;
         for (cosim::PortIndex port = 0; port < node.ports().size(); ++port)
-            reactions.push_back(node.reaction(port));
+            lookaheads.push_back(node.lookahead(port));
         node.advance(until, {next, end}, outbox);
         const Time first_in = next == end ? cosim::kNever : next->time;
         for (const Message& message : outbox) {
             const Time bound =
-                std::min(earliest[message.port], cosim::later(first_in, reactions[message.port]));
+                std::min(earliest[message.port], cosim::later(first_in, lookaheads[message.port]));
             REQUIRE(message.time >= bound);
         }
         for (cosim::PortIndex port = 0; port < node.ports().size(); ++port) {
-            REQUIRE(node.promise(port) >= until);
-            const Time kept = std::min(earliest[port], cosim::later(first_in, reactions[port]));
-            earliest[port] = std::max(kept, node.promise(port));
+            REQUIRE(node.earliest_output(port) >= until);
+            const Time kept = std::min(earliest[port], cosim::later(first_in, lookaheads[port]));
+            earliest[port] = std::max(kept, node.earliest_output(port));
         }
         all.insert(all.end(), outbox.begin(), outbox.end());
         next = end;
@@ -106,7 +106,7 @@ TEST_CASE("a resumed board sends what it would have sent") {
         const auto expected = run(*plain, inbox, 1);
         const BoardState state = state_after(board.make, inbox);
         for (const bool fall_back : {true, false}) {
-            // Reactions of a range-and-bearing board between messages are not kept: only from files.
+            // Lookaheads of a range-and-bearing board between messages are not kept: only from files.
             if (fall_back && !board.pic) continue;
             ResumeOptions options;
             options.from = state;

@@ -42,11 +42,11 @@ std::vector<cosim::Message> sent_by(OutsideNode& node, std::uint64_t seed) {
     std::vector<cosim::Message> outbox;
     for (cosim::Time until = 0; until < 20 * cosim::kMillisecond;) {
         until += 1 + static_cast<cosim::Time>(random.below(700 * cosim::kMicrosecond));
-        const cosim::Time promised = node.promise(0);
+        const cosim::Time earliest = node.earliest_output(0);
         const std::size_t before = outbox.size();
         node.advance(until, {}, outbox);
         for (std::size_t i = before; i < outbox.size(); ++i)
-            CHECK(outbox[i].time >= promised);
+            CHECK(outbox[i].time >= earliest);
     }
     return outbox;
 }
@@ -67,7 +67,7 @@ TEST_CASE("a script's bytes leave at their times, back to back where they are cl
     CHECK(frame(2).start == 10 * cosim::kMillisecond);
     OutsideNode again(spec);
     CHECK(sent_by(again, 2) == sent);
-    CHECK(node.promise(0) == cosim::kNever);
+    CHECK(node.earliest_output(0) == cosim::kNever);
 }
 
 TEST_CASE("what the robot sends is kept, garbage of a wrong rate counted") {

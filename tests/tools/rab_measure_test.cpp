@@ -102,14 +102,14 @@ TEST_CASE("the stage tells when it will speak next") {
     plan.distances = {0.1};
     plan.repeats = 1;
     StageNode stage(plan, rows);
-    CHECK(stage.promise(1) == 92 * cosim::kMillisecond);
-    CHECK(stage.promise(0) == 100 * cosim::kMillisecond);
-    CHECK(stage.reaction(0) == kNever);
+    CHECK(stage.earliest_output(1) == 92 * cosim::kMillisecond);
+    CHECK(stage.earliest_output(0) == 100 * cosim::kMillisecond);
+    CHECK(stage.lookahead(0) == kNever);
     std::vector<cosim::Message> out;
     stage.advance(200 * cosim::kMillisecond, {}, out);  // nobody answers: poses, and one Start a bus
     CHECK(out.size() == 6 + 2);
-    CHECK(stage.promise(0) == kNever);
-    CHECK(stage.promise(1) == kNever);
+    CHECK(stage.earliest_output(0) == kNever);
+    CHECK(stage.earliest_output(1) == kNever);
     CHECK(rows.size() == 2);
 }
 

@@ -116,7 +116,7 @@ void StageNode::send(int sender, Time now) {
     row.emitter = plan_.one_emitter ? facing_emitter(row.bearing_back) : 0;
     rows_.push_back(row);
     I2cHost& host = hosts_[static_cast<std::size_t>(sender)];
-    now += host.clock();  // a lookahead, as every answer has
+    now += host.clock();  // a reaction, as every answer has
     host.write(now, {kHighByte, static_cast<std::uint8_t>(payload_ >> 8)});
     const auto low = static_cast<std::uint8_t>(payload_ & 0xFF);
     if (row.emitter == 0) {
@@ -188,14 +188,14 @@ void StageNode::advance(Time until, std::span<const cosim::Message> inbox,
     }
 }
 
-Time StageNode::promise(cosim::PortIndex port) const {
+Time StageNode::earliest_output(cosim::PortIndex port) const {
     if (port == 0) return next_pose_;
     const I2cHost& host = hosts_[port - 1U];
     const Time acts = actions_.empty() ? kNever : actions_.begin()->first + host.clock();
     return std::min({host.due(), acts, cosim::later(next_pose_, kFirstSend)});
 }
 
-Time StageNode::reaction(cosim::PortIndex port) const {
+Time StageNode::lookahead(cosim::PortIndex port) const {
     return port == 0 ? kNever : hosts_[port - 1U].clock();
 }
 

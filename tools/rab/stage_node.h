@@ -57,8 +57,8 @@ class StageNode final : public cosim::Node {
     std::span<const cosim::Port> ports() const override { return ports_; }
     void advance(cosim::Time until, std::span<const cosim::Message> inbox,
                  std::vector<cosim::Message>& outbox) override;
-    cosim::Time promise(cosim::PortIndex port) const override;
-    cosim::Time reaction(cosim::PortIndex port) const override;
+    cosim::Time earliest_output(cosim::PortIndex port) const override;
+    cosim::Time lookahead(cosim::PortIndex port) const override;
 
   private:
     void pose(cosim::Time now, std::vector<cosim::Message>& outbox);

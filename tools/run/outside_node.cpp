@@ -124,7 +124,7 @@ void OutsideNode::receive(const cosim::UartFrame& frame) {
     }
 }
 
-cosim::Time OutsideNode::promise(cosim::PortIndex /*port*/) const {
+cosim::Time OutsideNode::earliest_output(cosim::PortIndex /*port*/) const {
     if (end_->live()) return next_start() == cosim::kNever ? std::max(granted_, next_look_) : granted_;
     return std::max(cosim::later(next_start(), kBitsToStop * bit_period_), granted_);
 }

@@ -37,9 +37,9 @@ class OutsideNode : public cosim::Node {
     std::span<const cosim::Port> ports() const override { return ports_; }
     void advance(cosim::Time until, std::span<const cosim::Message> inbox,
                  std::vector<cosim::Message>& outbox) override;
-    cosim::Time promise(cosim::PortIndex port) const override;
-    /// Never: what a live end says in answer is covered by its promise, a script does not answer.
-    cosim::Time reaction(cosim::PortIndex /*port*/) const override { return cosim::kNever; }
+    cosim::Time earliest_output(cosim::PortIndex port) const override;
+    /// Never: what a live end says in answer is covered by its EOT, a script does not answer.
+    cosim::Time lookahead(cosim::PortIndex /*port*/) const override { return cosim::kNever; }
     std::string finish() override;
 
   private:

@@ -86,7 +86,7 @@ inline std::vector<Message> even_steps(double left, double right, Time duration)
     return messages;
 }
 
-/// Runs a node with grants of `slice`, holding it to its promises; what it sent.
+/// Runs a node with grants of `slice`, holding it to its EOTs; what it sent.
 inline std::vector<Message> run_node(cosim::Node& node, const std::vector<Message>& inputs, Time duration,
                                      Time slice) {
     std::vector<Message> all;
@@ -96,12 +96,13 @@ inline std::vector<Message> run_node(cosim::Node& node, const std::vector<Messag
         auto end = next;
         while (end != inputs.end() && end->time < until)
             ++end;
-        const Time promised = node.promise(0);
-        const Time reaction = next == end ? cosim::kNever : next->time + node.reaction(0);
+        const Time earliest = node.earliest_output(0);
+        const Time lookahead = next == end ? cosim::kNever : next->time + node.lookahead(0);
         std::vector<Message> out;
         node.advance(until, std::vector<Message>(next, end), out);
         for (const auto& message : out)
-            if (message.time < std::min(promised, reaction)) throw std::logic_error("broke its promise");
+            if (message.time < std::min(earliest, lookahead))
+                throw std::logic_error("sent before its earliest output time");
         for (cosim::PortIndex port = 0; port < node.ports().size(); ++port) {
             Time last = 0;
             for (const auto& message : out) {

@@ -109,13 +109,13 @@ void DeviceBus::set_channels(Time now, Time earliest) {
         pending_.push_back(part.inbox.empty() ? cosim::kNever : part.inbox.front().time);
     const cosim::Node& bus = *parts_[kBus].node;
     channels_.push_back({kTargetVertex, kBus + 1, std::max(now, earliest), 0});
-    channels_.push_back({kBus + 1, kTargetVertex, bus.promise(kMaster), bus.reaction(kMaster)});
+    channels_.push_back({kBus + 1, kTargetVertex, bus.earliest_output(kMaster), bus.lookahead(kMaster)});
     for (std::size_t part = 1; part < parts_.size(); ++part) {
         const auto port = static_cast<PortIndex>(part);
         const cosim::Node& board = *parts_[part].node;
-        channels_.push_back({kBus + 1, part + 1, bus.promise(port), bus.reaction(port)});
-        channels_.push_back(
-            {part + 1, kBus + 1, board.promise(rab::RabNode::kI2c), board.reaction(rab::RabNode::kI2c)});
+        channels_.push_back({kBus + 1, part + 1, bus.earliest_output(port), bus.lookahead(port)});
+        channels_.push_back({part + 1, kBus + 1, board.earliest_output(rab::RabNode::kI2c),
+                             board.lookahead(rab::RabNode::kI2c)});
     }
 }
 
