@@ -1,6 +1,7 @@
 #include "emu/avr/chip.h"
 
 #include "base/archive.h"
+#include "base/checkpoint.h"
 
 #include "emu/avr/peripherals/adc.h"
 #include "emu/avr/peripherals/comparator.h"
@@ -225,9 +226,11 @@ struct Chip::Parts {
 
     template <class Archive>
     void state(Archive& archive) {
-        std::string part(device.name);
-        archive(part);
-        archive.check(part == device.name, "a state of another chip");
+        if constexpr (!Archive::kRaw) {
+            std::string part(device.name);
+            archive(part);
+            archive.check(part == device.name, "a state of another chip");
+        }
         archive.part("clock", clock);
         archive.part("registers", io);
         archive.part("timetable", events);
@@ -251,7 +254,10 @@ struct Chip::Parts {
         archive.part("watchdog", watchdog);
         archive.part("programming", programming);
         archive.bounded(now, 0, cosim::kNever);
-        archive(report.resets, report.unmodelled, report.warnings);
+        if constexpr (Archive::kRaw)
+            archive.grows(report.resets, report.unmodelled, report.warnings);
+        else
+            archive(report.resets, report.unmodelled, report.warnings);
     }
 
     Usart& usart(int unit) { return unit == 0 ? usart0 : usart1; }
@@ -395,6 +401,26 @@ void Chip::state(StateWriter& archive) const {
 void Chip::state(StateReader& archive) {
     parts_->state(archive);
     parts_->stopped = false;
+}
+void Chip::state(CheckpointWriter& archive) const {
+    parts_->state(archive);
+}
+void Chip::state(CheckpointReader& archive) {
+    parts_->state(archive);
+    parts_->stopped = false;
+}
+
+void Chip::mark() {
+    parts_->core.mark();
+    parts_->eeprom.mark();
+}
+void Chip::rewind() {
+    parts_->core.rewind();
+    parts_->eeprom.rewind();
+}
+void Chip::settle() {
+    parts_->core.settle();
+    parts_->eeprom.settle();
 }
 
 void Chip::set_skipping(bool on) {

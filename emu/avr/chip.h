@@ -18,6 +18,8 @@
 #include <vector>
 
 namespace puckloop {
+class CheckpointReader;
+class CheckpointWriter;
 class StateReader;
 class StateWriter;
 }  // namespace puckloop
@@ -133,6 +135,14 @@ class Chip {
     /// StateError.
     void state(StateWriter& archive) const;
     void state(StateReader& archive);
+    /// The same for a checkpoint (base/checkpoint.h), taken after mark(): flash and EEPROM stay out of it,
+    /// their changes since the mark are taken back by rewind(), before the checkpoint is read. The mark stays
+    /// until settle(). No stop address may be met or set between.
+    void state(CheckpointWriter& archive) const;
+    void state(CheckpointReader& archive);
+    void mark();
+    void rewind();
+    void settle();
 
     /// Busy-wait loops are skipped forward (default); off, every turn of them is executed.
     void set_skipping(bool on);

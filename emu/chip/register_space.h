@@ -94,9 +94,7 @@ class RegisterSpace {
     }
     template <class Archive>
     void state(Archive& archive) {
-        archive(values_);
-        for (Cell& cell : cells_)
-            archive(cell.reported);
+        archive(values_, reported_);
     }
 
     const Info* info(std::uint16_t address) const { return at(address).info; }
@@ -115,20 +113,21 @@ class RegisterSpace {
         void* owner = nullptr;
         const Info* info = nullptr;
         Behaviour behaviour = Behaviour::Absent;
-        bool reported = false;
         bool steady = false;
     };
     Cell& at(std::uint16_t address) { return cells_[address / sizeof(Word)]; }
     const Cell& at(std::uint16_t address) const { return cells_[address / sizeof(Word)]; }
     void touch(std::uint16_t address, bool write) {
-        Cell& cell = at(address);
-        if (cell.reported) return;
-        cell.reported = true;
+        const Cell& cell = at(address);
+        bool& reported = reported_[address / sizeof(Word)];
+        if (reported) return;
+        reported = true;
         if (on_first_touch) on_first_touch(cell.info ? cell.info->name : std::string_view{}, address, write);
     }
 
     std::array<Word, kWords> values_{};
     std::array<Cell, kWords> cells_{};
+    std::array<bool, kWords> reported_{};
 };
 
 }  // namespace puckloop::chip

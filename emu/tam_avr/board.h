@@ -90,6 +90,10 @@ class Board : private avr::Pins {
         archive.part("chip", chip_);
         archive.check(now_ == chip_.now() || !powered(), "board and chip at different times");
     }
+    /// Goes with a checkpoint of state(), see avr::Chip::mark().
+    void mark() { chip_.mark(); }
+    void rewind() { chip_.rewind(); }
+    void settle() { chip_.settle(); }
     /// Noise begins anew, by this board's own name and seed.
     void renew_random_streams() { noise_ = RandomStream(parameters_.seed, parameters_.name + "/adc"); }
 

@@ -67,7 +67,8 @@ std::uint16_t Core::program(std::uint32_t address) const {
 
 void Core::set_program(std::uint32_t address, std::uint16_t word) {
     Machine& m = *machine_;
-    if (address >= m.device.flash_words) return;
+    if (address >= m.device.flash_words || m.program[address] == word) return;
+    m.program_undo.note(address, m.program[address]);
     m.program[address] = word;
     forget(m, address);
     if (address < kGuards) m.program[m.device.flash_words + address] = word;  // a pair over the end

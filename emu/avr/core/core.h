@@ -15,6 +15,8 @@
 #include <string_view>
 
 namespace puckloop {
+class CheckpointReader;
+class CheckpointWriter;
 class StateReader;
 class StateWriter;
 }  // namespace puckloop
@@ -106,6 +108,13 @@ class Core {
     /// Everything but stop addresses, hooks and observers.
     void state(StateWriter& archive) const;
     void state(StateReader& archive);
+    /// The same but for program memory: from mark() on its changes are noted, and rewind() takes them back,
+    /// before the checkpoint is read; the mark stays. settle() gives it up.
+    void state(CheckpointWriter& archive) const;
+    void state(CheckpointReader& archive);
+    void mark();
+    void rewind();
+    void settle();
 
     CoreObserver& observer();
     CoreHooks& hooks();

@@ -4,6 +4,7 @@
 #include "emu/avr/core/machine.h"
 
 #include "base/archive.h"
+#include "base/checkpoint.h"
 
 namespace puckloop::avr {
 
@@ -20,11 +21,21 @@ void list(Archive& archive, Machine& m) {
     archive(resets);
     archive.bounded(cause, ResetCause::PowerOn, ResetCause::Watchdog);
     if constexpr (Archive::kLoads) m.reset_request = resets ? std::optional(cause) : std::nullopt;
-    archive.fixed(m.program);
-    for (std::uint32_t i = 0; i < 32; ++i)
-        archive(m.data[i]);
-    for (std::uint32_t i = 0; i < m.ram_bytes; ++i)
-        archive(m.data[m.ram_start + i]);
+    if constexpr (!Archive::kRaw) archive.fixed(m.program);  // see Core::mark()
+    constexpr std::size_t kRegisters = 32;
+    std::span<std::uint8_t> registers(m.data.data(), kRegisters);
+    std::span<std::uint8_t> ram(m.data.data() + m.ram_start, m.ram_bytes);
+    for (std::span<std::uint8_t>* bytes : {&registers, &ram}) {
+        if constexpr (Archive::kRaw)
+            archive.fixed(*bytes);
+        else
+            for (std::uint8_t& byte : *bytes)
+                archive(byte);
+    }
+    if constexpr (Archive::kRaw)
+        archive.grows(m.warned);
+    else
+        archive(m.warned);
 }
 
 }  // namespace
@@ -40,6 +51,31 @@ void Core::state(StateReader& archive) {
         forget(m, i);
     m.stopped = m.end_requested = false;
     m.pass_pc.reset();
+}
+
+void Core::state(CheckpointWriter& archive) const {
+    list(archive, *machine_);
+}
+
+void Core::state(CheckpointReader& archive) {
+    Machine& m = *machine_;
+    list(archive, m);
+    m.limit = 0;
+    m.stopped = m.end_requested = false;
+    m.pass_pc.reset();
+}
+
+void Core::mark() {
+    machine_->program_undo.begin();
+}
+
+void Core::rewind() {
+    machine_->program_undo.rewind(
+        [this](std::uint32_t address, std::uint16_t word) { set_program(address, word); });
+}
+
+void Core::settle() {
+    machine_->program_undo.end();
 }
 
 }  // namespace puckloop::avr

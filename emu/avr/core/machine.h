@@ -3,10 +3,10 @@
 // instruction uses. Only the core's own files include this.
 
 #include "emu/avr/core/core.h"
+#include "emu/avr/core/memory_undo.h"
 #include "emu/avr/isa/isa.h"
 
 #include <optional>
-#include <set>
 #include <vector>
 
 namespace puckloop::avr {
@@ -76,7 +76,8 @@ struct Machine {
     std::vector<Op> code_store;
     std::vector<LoopInfo> loops;
     std::vector<std::uint16_t> stops;
-    std::set<std::uint32_t> warned;
+    MemoryUndo<std::uint16_t> program_undo;
+    std::vector<std::uint32_t> warned;
     CoreObserver observer;
     CoreHooks hooks;
 

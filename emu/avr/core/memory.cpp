@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace puckloop::avr {
 
 namespace {
@@ -110,7 +112,9 @@ std::uint8_t load_program(Machine& m, std::uint32_t address) {
 }
 
 void warn_once(Machine& m, const Op* op, std::uint32_t key, std::string_view text) {
-    if (m.warned.insert(key).second && m.observer.on_warning) m.observer.on_warning(text, m.pc_of(op));
+    if (std::find(m.warned.begin(), m.warned.end(), key) != m.warned.end()) return;
+    m.warned.push_back(key);
+    if (m.observer.on_warning) m.observer.on_warning(text, m.pc_of(op));
 }
 
 }  // namespace puckloop::avr

@@ -67,6 +67,7 @@ void Eeprom::write_control(void* owner, std::uint16_t address, std::uint8_t valu
 void Eeprom::program() {
     const unsigned mode = field(around_.io.raw(kEecr), 5, 4);
     std::uint8_t& cell = bytes_[address()];
+    undo_.note(static_cast<std::uint32_t>(address()), cell);
     const std::uint8_t data = around_.io.raw(kEedr);
     cell = mode == kEraseOnly ? kErased : mode == kWriteOnly ? static_cast<std::uint8_t>(cell & data) : data;
     state_.armed_until = 0;

@@ -6,6 +6,7 @@
 
 #include "cosim/core/clock.h"
 #include "emu/avr/core/core.h"
+#include "emu/avr/core/memory_undo.h"
 #include "emu/avr/peripherals/surroundings.h"
 
 #include <cstdint>
@@ -24,8 +25,15 @@ class Eeprom {
     template <class Archive>
     void state(Archive& archive) {
         archive(state_);
-        archive.fixed(bytes_);
+        if constexpr (!Archive::kRaw) archive.fixed(bytes_);  // see mark()
     }
+
+    /// As Core::mark(), rewind() and settle().
+    void mark() { undo_.begin(); }
+    void rewind() {
+        undo_.rewind([this](std::uint32_t cell, std::uint8_t byte) { bytes_[cell] = byte; });
+    }
+    void settle() { undo_.end(); }
 
   private:
     struct State {
@@ -48,6 +56,7 @@ class Eeprom {
     Core& core_;
     const cosim::ClockDomain& clock_;
     std::vector<std::uint8_t> bytes_;
+    MemoryUndo<std::uint8_t> undo_;
     State state_;
     EventQueue::Slot slot_;
 };
