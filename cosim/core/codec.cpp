@@ -7,8 +7,9 @@
 namespace puckloop::cosim {
 
 namespace {
-enum class PayloadTag : std::uint8_t { Uart, I2c, Signal };
-}
+enum class PayloadTag : std::uint8_t { Uart, I2c, Signal, Radio };
+constexpr std::uint8_t kFirstChannel = 11, kLastChannel = 26;
+}  // namespace
 
 void ByteWriter::f64(double value) {
     u64(std::bit_cast<std::uint64_t>(value));
@@ -38,11 +39,20 @@ void ByteWriter::payload(const Payload& payload) {
         time(phase->start);
         time(phase->clock_period);
         time(phase->stretch);
-    } else {
-        const auto& signal = std::get<Signal>(payload);
+    } else if (const auto* signal = std::get_if<Signal>(&payload)) {
         u8(static_cast<std::uint8_t>(PayloadTag::Signal));
-        u16(signal.id);
-        f64(signal.value);
+        u16(signal->id);
+        f64(signal->value);
+    } else {
+        const auto& radio = std::get<RadioFrame>(payload);
+        u8(static_cast<std::uint8_t>(PayloadTag::Radio));
+        time(radio.start);
+        time(radio.duration);
+        u8(radio.channel);
+        u8(static_cast<std::uint8_t>(radio.dbm));
+        const auto octets = radio.octets.view();
+        u8(static_cast<std::uint8_t>(octets.size()));
+        bytes_.insert(bytes_.end(), octets.begin(), octets.end());
     }
 }
 
@@ -85,7 +95,7 @@ std::string ByteReader::text() {
 }
 
 Payload ByteReader::payload() {
-    switch (enumerator(PayloadTag::Signal)) {
+    switch (enumerator(PayloadTag::Radio)) {
     case PayloadTag::Uart: {
         UartFrame frame;
         frame.start = time();
@@ -110,6 +120,20 @@ Payload ByteReader::payload() {
         phase.clock_period = time();
         phase.stretch = time();
         return phase;
+    }
+    case PayloadTag::Radio: {
+        RadioFrame radio;
+        radio.start = time();
+        radio.duration = time();
+        radio.channel = u8();
+        radio.dbm = static_cast<std::int8_t>(u8());
+        const std::size_t size = u8();
+        if (radio.duration <= 0 || radio.channel < kFirstChannel || radio.channel > kLastChannel ||
+            size == 0 || size > kMostRadioOctets || size > left())
+            fail("radio frame with values out of range");
+        radio.octets = Octets(bytes_.subspan(position_, size));
+        position_ += size;
+        return radio;
     }
     case PayloadTag::Signal:
         break;

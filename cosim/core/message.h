@@ -1,9 +1,11 @@
 #pragma once
 // What travels on links: time-stamped frames and signal changes, plain values that any process can carry.
 
+#include "cosim/core/octets.h"
 #include "cosim/core/time.h"
 
 #include <cstdint>
+#include <type_traits>
 #include <variant>
 
 namespace puckloop::cosim {
@@ -57,7 +59,24 @@ struct Signal {
     friend bool operator==(const Signal&, const Signal&) = default;
 };
 
-using Payload = std::variant<UartFrame, I2cPhase, Signal>;
+/// A frame of the 2.4 GHz radio (IEEE 802.15.4 O-QPSK: 250 kbit/s). What its octets mean is the radio's own
+/// (protocols/digimesh_frame.h for the XBee mesh). A module hands it to the medium stamped when it wants to
+/// transmit; the medium hands it on stamped when it ends.
+struct RadioFrame {
+    Time start = 0;            ///< the preamble begins
+    Time duration = 0;         ///< on air, preamble to last octet
+    Octets octets;             ///< the PHY payload, 1 to 127
+    std::uint8_t channel = 0;  ///< 11..26
+    std::int8_t dbm = 0;       ///< from a module: what it sends with; to a module: what it receives with
+
+    friend bool operator==(const RadioFrame&, const RadioFrame&) = default;
+};
+/// Longest PHY payload, 802.15.4 aMaxPHYPacketSize.
+inline constexpr std::size_t kMostRadioOctets = 127;
+
+using Payload = std::variant<UartFrame, I2cPhase, Signal, RadioFrame>;
+// Messages are copied byte by byte in every grant: keep them small and plain.
+static_assert(std::is_trivially_copyable_v<Payload> && sizeof(Payload) == 40);
 
 /// `port` is the sender's port in an outbox and the receiver's port in an inbox.
 struct Message {

@@ -35,15 +35,28 @@ void state(Archive& archive, Signal& signal) {
 }
 
 template <class Archive>
+void state(Archive& archive, RadioFrame& frame) {
+    archive(frame.start);
+    archive.bounded(frame.duration, 0, kSecond);
+    archive(frame.channel, frame.dbm);
+    const auto view = frame.octets.view();
+    std::vector<std::uint8_t> octets(view.begin(), view.end());
+    archive(octets);
+    archive.check(octets.size() <= kMostRadioOctets, "a radio frame is too long");
+    if constexpr (Archive::kLoads) frame.octets = Octets(octets);
+}
+
+template <class Archive>
 void state(Archive& archive, Message& message) {
     archive.bounded(message.time, 0, kNever);
     archive(message.port);
     auto kind = static_cast<std::uint8_t>(message.payload.index());
-    archive.bounded(kind, 0, 2);
+    archive.bounded(kind, 0, 3);
     if constexpr (Archive::kLoads) {
         if (kind == 0) message.payload = UartFrame{};
         if (kind == 1) message.payload = I2cPhase{};
         if (kind == 2) message.payload = Signal{};
+        if (kind == 3) message.payload = RadioFrame{};
     }
     std::visit([&](auto& payload) { archive(payload); }, message.payload);
 }

@@ -13,7 +13,7 @@
 
 namespace puckloop::cosim {
 
-enum class PortKind : std::uint8_t { Uart, I2c, Signals };
+enum class PortKind : std::uint8_t { Uart, I2c, Signals, Radio };
 
 /// A named place where a link can be attached.
 struct Port {

@@ -24,6 +24,37 @@ Time frame_time(const UartFrame& frame) {
     const int bits = 1 + frame.data_bits + (frame.parity != 0 ? 1 : 0) + frame.stop_bits;
     return frame.bit_period * bits;
 }
+Time frame_time(const RadioFrame& frame) {
+    return frame.duration;
+}
+
+/// True where a frame carries one of `bytes`, or they are none; radio frames carry no single byte.
+bool is_among(const std::vector<std::uint8_t>& bytes, const UartFrame& frame) {
+    return bytes.empty() || std::find(bytes.begin(), bytes.end(), frame.data) != bytes.end();
+}
+bool is_among(const std::vector<std::uint8_t>& bytes, const RadioFrame&) {
+    return bytes.empty();
+}
+
+void flip(UartFrame& frame, RandomStream& random) {
+    frame.data = static_cast<std::uint16_t>(frame.data ^ (1u << random.below(frame.data_bits)));
+}
+void flip(RadioFrame& frame, RandomStream& random) {
+    const auto view = frame.octets.view();
+    if (view.empty()) return;
+    std::vector<std::uint8_t> octets(view.begin(), view.end());
+    const std::uint64_t bit = random.below(8 * octets.size());
+    octets[bit / 8] = static_cast<std::uint8_t>(octets[bit / 8] ^ 1u << bit % 8);
+    frame.octets = Octets(octets);
+}
+
+/// Calls work(frame) for a UART or radio frame; for anything else the result is `Result{}`.
+template <class Result>
+Result with_frame(Payload& payload, auto work) {
+    if (auto* frame = std::get_if<UartFrame>(&payload)) return work(*frame);
+    if (auto* radio = std::get_if<RadioFrame>(&payload)) return work(*radio);
+    return Result{};
+}
 
 /// Decides which frames suffer; the kinds below say how.
 class WindowFault : public LinkFault {
@@ -34,12 +65,11 @@ class WindowFault : public LinkFault {
         // What earlier faults appended suffers as well, what this one appends does not.
         const std::size_t count = batch.size();
         for (std::size_t i = 0; i < count; ++i) {
-            auto* frame = std::get_if<UartFrame>(&batch[i].message.payload);
-            if (!frame || keeps_from_arriving(batch[i].fault)) continue;
-            if (frame->start < spec_.begin || frame->start >= spec_.end || fired_ >= spec_.count) continue;
-            if (!spec_.bytes.empty() &&
-                std::find(spec_.bytes.begin(), spec_.bytes.end(), frame->data) == spec_.bytes.end())
-                continue;
+            if (keeps_from_arriving(batch[i].fault) || fired_ >= spec_.count) continue;
+            const bool meant = with_frame<bool>(batch[i].message.payload, [this](const auto& frame) {
+                return frame.start >= spec_.begin && frame.start < spec_.end && is_among(spec_.bytes, frame);
+            });
+            if (!meant) continue;
             if (spec_.probability < 1.0 && random_.uniform() >= spec_.probability) continue;
             ++fired_;
             batch[i].fault = spec_.kind;
@@ -50,7 +80,10 @@ class WindowFault : public LinkFault {
   protected:
     virtual void harm(std::size_t i, std::vector<Delivery>& batch) = 0;
 
-    static UartFrame& frame_of(Delivery& delivery) { return std::get<UartFrame>(delivery.message.payload); }
+    static void shift(Message& message, Time delay) {
+        with_frame<void>(message.payload, [delay](auto& frame) { frame.start += delay; });
+        message.time = later(message.time, delay);
+    }
 
     FaultSpec spec_;
     RandomStream random_;
@@ -71,8 +104,7 @@ class Flip : public WindowFault {
 
   protected:
     void harm(std::size_t i, std::vector<Delivery>& batch) override {
-        UartFrame& frame = frame_of(batch[i]);
-        frame.data = static_cast<std::uint16_t>(frame.data ^ (1u << random_.below(frame.data_bits)));
+        with_frame<void>(batch[i].message.payload, [this](auto& frame) { flip(frame, random_); });
     }
 };
 
@@ -82,9 +114,7 @@ class Late : public WindowFault {
 
   protected:
     void harm(std::size_t i, std::vector<Delivery>& batch) override {
-        const Time delay = from_seconds(spec_.amount);
-        frame_of(batch[i]).start += delay;
-        batch[i].message.time = later(batch[i].message.time, delay);
+        shift(batch[i].message, from_seconds(spec_.amount));
     }
 };
 
@@ -95,9 +125,8 @@ class Twice : public WindowFault {
   protected:
     void harm(std::size_t i, std::vector<Delivery>& batch) override {
         Delivery copy = batch[i];
-        const Time delay = frame_time(frame_of(copy));
-        frame_of(copy).start += delay;
-        copy.message.time = later(copy.message.time, delay);
+        shift(copy.message,
+              with_frame<Time>(copy.message.payload, [](const auto& frame) { return frame_time(frame); }));
         batch.push_back(copy);
     }
 };
@@ -108,7 +137,7 @@ class Rate : public WindowFault {
 
   protected:
     void harm(std::size_t i, std::vector<Delivery>& batch) override {
-        UartFrame& frame = frame_of(batch[i]);
+        UartFrame& frame = std::get<UartFrame>(batch[i].message.payload);
         const Time before = frame.bit_period;
         frame.bit_period = std::max<Time>(1, std::llround(static_cast<double>(before) * spec_.amount));
         // The stop bit moves with the bit time; never earlier than the link promised.

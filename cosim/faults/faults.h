@@ -14,18 +14,18 @@
 
 namespace puckloop::cosim {
 
-/// A fault as a scenario asks for it. UART links only.
+/// A fault as a scenario asks for it. UART and radio links only; radio frames cannot be Stuck, Rate or Cut.
 struct FaultSpec {
     std::string link;  ///< the link's name
     std::string from;  ///< the node whose frames suffer; empty: both ends
     FaultKind kind = FaultKind::Drop;
     double probability = 1.0;     ///< for each frame begun within the window (Cut: for each record), 0..1
     std::uint64_t count = ~0ull;  ///< fires at most so often
-    Time begin = 0;               ///< window, by the frame's start bit: [begin, end)
+    Time begin = 0;               ///< window, by the start bit or preamble: [begin, end)
     Time end = kNever;
     double amount = 0.0;                ///< Delay: seconds, >= 0; Rate: factor > 0 on the bit time
     double again = 0.0;                 ///< Cut: probability that the fault stays for the next record, 0..1
-    std::vector<std::uint8_t> bytes{};  ///< only frames with one of these values suffer; empty: all
+    std::vector<std::uint8_t> bytes{};  ///< only UART frames with one of these values suffer; empty: all
 };
 
 /// A message on its way: `message.time` is when it will be delivered.
@@ -33,6 +33,11 @@ struct Delivery {
     Message message;
     FaultKind fault = FaultKind::None;
 };
+
+/// True of the kinds that a radio frame can suffer.
+constexpr bool harms_radio(FaultKind kind) {
+    return kind != FaultKind::Stuck && kind != FaultKind::Rate && kind != FaultKind::Cut;
+}
 
 /// One fault on one direction of one link.
 class LinkFault {

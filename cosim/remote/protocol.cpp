@@ -181,7 +181,7 @@ Ready read_ready(std::span<const std::uint8_t> body) {
     ready.ports.resize(reader.count(kSmallestPort));
     for (Port& port : ready.ports) {
         port.name = reader.text();
-        port.kind = reader.enumerator(PortKind::Signals);
+        port.kind = reader.enumerator(PortKind::Radio);
     }
     read_state(reader, ready.state);
     reader.end();

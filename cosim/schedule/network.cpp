@@ -86,7 +86,12 @@ void Network::attach_fault(const FaultSpec& spec, std::size_t index, std::uint64
     for (Wire& wire : wires_) {
         if (links_[wire.link].name != spec.link) continue;
         found_link = true;
-        if (!wire.is_uart) throw InputError("", place, "the link is no UART", "a UART link");
+        const bool is_radio = nodes_[wire.from]->ports()[wire.from_port].kind == PortKind::Radio;
+        if (!wire.is_uart && !is_radio)
+            throw InputError("", place, "the link is no UART and no radio", "a UART or radio link");
+        if (is_radio && !harms_radio(spec.kind))
+            throw InputError("", place, fmt::format("{} on a radio link", fault_name(spec.kind)),
+                             "drop, flip, delay, duplicate or disconnect");
         if (!spec.from.empty() && nodes_[wire.from]->name() != spec.from) continue;
         found_wire = true;
         faults_.push_back(make_fault(spec, wire.direction, wire.flight, seed, index));

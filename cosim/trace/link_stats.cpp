@@ -55,6 +55,9 @@ void LinkStats::count(const TraceRecord& record, double nominal_baud) {
         case I2cPhaseKind::Stop:
             break;
         }
+    } else if (const auto* radio = std::get_if<RadioFrame>(&record.payload)) {
+        ++radio_frames;
+        radio_octets += radio->octets.size();
     } else {
         ++signals;
     }
@@ -75,6 +78,8 @@ std::string to_json(const LinkStats& s) {
     add("i2c_nacks", s.i2c_nacks, false);
     add("i2c_bus_lost", s.i2c_bus_lost, false);
     add("signals", s.signals, false);
+    add("radio_frames", s.radio_frames, false);
+    add("radio_octets", s.radio_octets, false);
     add("faults", s.faults, false);
     add("lost", s.lost, false);
     return text + "}";

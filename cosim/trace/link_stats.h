@@ -21,8 +21,10 @@ struct LinkStats {
     std::uint64_t i2c_nacks = 0;         ///< to a master
     std::uint64_t i2c_bus_lost = 0;
     std::uint64_t signals = 0;
-    std::uint64_t faults = 0;  ///< messages harmed by a fault
-    std::uint64_t lost = 0;    ///< of these, kept from arriving
+    std::uint64_t radio_frames = 0;
+    std::uint64_t radio_octets = 0;  ///< of their PHY payloads
+    std::uint64_t faults = 0;        ///< messages harmed by a fault
+    std::uint64_t lost = 0;          ///< of these, kept from arriving
 
     void count(const TraceRecord& record, double nominal_baud);
     friend bool operator==(const LinkStats&, const LinkStats&) = default;

@@ -114,6 +114,22 @@ void put_payload(std::string& out, const I2cPhase& phase) {
     }
 }
 
+std::string to_radio_detail(const RadioFrame& frame) {
+    return fmt::format("ch{} {}dBm", frame.channel, frame.dbm);
+}
+
+void put_payload(std::string& out, const RadioFrame& frame) {
+    out += "radio,";
+    out += hex_of(frame.octets);
+    out += ',';
+    out += to_radio_detail(frame);
+    out += ',';
+    put_seconds(out, frame.start);
+    out += ',';
+    put_seconds(out, frame.duration);
+    out += ',';
+}
+
 /// Reads fields, and says where and what when one cannot be.
 class Parser {
   public:
@@ -232,7 +248,41 @@ Signal parse_signal(const Parser& in, std::string& name) {
     return signal;
 }
 
+RadioFrame parse_radio(const Parser& in) {
+    RadioFrame frame;
+    const std::string& text = in[4];
+    std::vector<std::uint8_t> octets(text.size() / 2);
+    bool good = text.size() % 2 == 0 && !octets.empty() && octets.size() <= kMostRadioOctets;
+    for (std::size_t i = 0; good && i < octets.size(); ++i) {
+        const char* digits = text.data() + 2 * i;
+        good = std::from_chars(digits, digits + 2, octets[i], 16).ptr == digits + 2;
+    }
+    if (!good) in.fail(fmt::format("\"{}\" is no radio frame", text), "1 to 127 octets, two hex digits each");
+    frame.octets = Octets(octets);
+    const std::string& detail = in[5];
+    const char* end = detail.data() + detail.size();
+    bool shaped = detail.starts_with("ch");
+    const char* at = detail.data() + 2;
+    if (shaped) {
+        at = std::from_chars(at, end, frame.channel).ptr;
+        shaped = at != end && *at == ' ';
+    }
+    if (shaped) shaped = std::string_view(std::from_chars(at + 1, end, frame.dbm).ptr, end) == "dBm";
+    if (!shaped || to_radio_detail(frame) != detail)
+        in.fail(fmt::format("\"{}\" is no channel and power", detail), "ch12 -60dBm, ...");
+    frame.start = in.time(6);
+    frame.duration = in.time(7);
+    return frame;
+}
+
 }  // namespace
+
+std::string hex_of(const Octets& octets) {
+    std::string text;
+    for (const std::uint8_t octet : octets.view())
+        put_hex(text, octet);
+    return text;
+}
 
 std::string format_seconds(Time time) {
     std::string text;
@@ -263,12 +313,14 @@ void append_row(std::string& out, Time time, std::string_view sender, const Payl
         put_payload(out, *frame);
     } else if (const auto* phase = std::get_if<I2cPhase>(&payload)) {
         put_payload(out, *phase);
-    } else {
+    } else if (const auto* change = std::get_if<Signal>(&payload)) {
         out += "signal,";
-        put_value(out, std::get<Signal>(payload).value);
+        put_value(out, change->value);
         out += ',';
         out += signal;
         out += ",,,";
+    } else {
+        put_payload(out, std::get<RadioFrame>(payload));
     }
     out += ',';
     out += fault_name(fault);
@@ -299,8 +351,10 @@ TraceRow parse_trace_row(std::string_view text, std::string_view file, std::size
         row.payload = parse_phase(in);
     else if (in[3] == "signal")
         row.payload = parse_signal(in, row.signal);
+    else if (in[3] == "radio")
+        row.payload = parse_radio(in);
     else
-        in.fail(fmt::format("\"{}\" is no kind of message", in[3]), "uart, break, i2c, signal");
+        in.fail(fmt::format("\"{}\" is no kind of message", in[3]), "uart, break, i2c, signal, radio");
     return row;
 }
 

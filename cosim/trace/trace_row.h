@@ -9,6 +9,9 @@
 //                                                                               begin of the phase, SCL
 //                                                                               period
 //   signal value in its unit     the signal's name, or #id                      -
+//   radio  PHY payload, hex      channel and power, "ch12 -60dBm"               begin of the preamble, time
+//   on
+//                                                                               air
 // Times have all their 12 digits: nothing is lost in a file but the acknowledge of phases that have none.
 
 #include "cosim/core/message.h"
@@ -47,6 +50,9 @@ void append_row(std::string& out, Time time, std::string_view sender, const Payl
                 std::string_view signal, FaultKind fault);
 /// Throws InputError naming `file` and `line` for anything to_csv() does not write.
 TraceRow parse_trace_row(std::string_view text, std::string_view file, std::size_t line);
+
+/// Two lower-case hex digits an octet.
+std::string hex_of(const Octets& octets);
 
 /// "0.000123456789": seconds with all digits of a picosecond.
 std::string format_seconds(Time time);

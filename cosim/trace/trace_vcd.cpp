@@ -80,6 +80,12 @@ void VcdWriter::add(const TraceRow& row) {
         if (phase->kind == I2cPhaseKind::Acknowledge && phase->ack == 0) name = "nack";
         change(row.time, variable(row, "phase", "string", 1, "s "), fmt::format("s{} ", name));
         change(row.time, variable(row, "byte", "wire", kByteWidth, kUnknownByte), binary(phase->byte));
+    } else if (const auto* radio = std::get_if<RadioFrame>(&row.payload)) {
+        const std::size_t on_air = variable(row, "on_air", "wire", 1, "0");
+        change(radio->start, on_air, "1");
+        change(radio->start + radio->duration, on_air, "0");
+        change(row.time, variable(row, "octets", "string", 1, "s "),
+               fmt::format("s{} ", hex_of(radio->octets)));
     } else {
         const auto& signal = std::get<Signal>(row.payload);
         const std::string name = row.signal.empty() ? fmt::format("signal{}", signal.id) : row.signal;

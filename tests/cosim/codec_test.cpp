@@ -12,10 +12,15 @@ std::span<const std::uint8_t> body_of(const Bytes& bytes) {
     return std::span(bytes).subspan(protocol::kLengthBytes);
 }
 
+RadioFrame some_radio_frame() {
+    const Bytes octets{0x41, 0x88, 0x00, 0xff};
+    return {12, 320 * kMicrosecond, Octets(octets), 26, -90};
+}
+
 std::vector<Message> some_messages() {
     UartFrame frame{123456789, 8680555, 0x1a5, 9, 2, 2, 1, 0};
     I2cPhase phase{I2cPhaseKind::Data, 0xc0, 1, -5, 2500000, 7};
-    return {{1, 0, frame}, {2, 65535, phase}, {kNever, 3, Signal{7, -0.25}}};
+    return {{1, 0, frame}, {2, 65535, phase}, {kNever, 3, Signal{7, -0.25}}, {9, 1, some_radio_frame()}};
 }
 
 NodeState some_state() {

@@ -4,6 +4,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <bit>
+
 using namespace puckloop;
 using namespace puckloop::cosim;
 using toy::Recorder;
@@ -206,6 +208,43 @@ TEST_CASE("only the bytes that are named suffer") {
         fault->apply(batch);
         CHECK((batch[0].fault == FaultKind::Drop) == (value == 0x00 || value == 0xFF));
     }
+}
+
+TEST_CASE("radio frames are lost, flipped, delayed and doubled as bytes are") {
+    const std::vector<std::uint8_t> octets{0x41, 0x88, 0x07};
+    const RadioFrame sent{5 * kMs, 288 * kMicrosecond, Octets(octets), 12, -60};
+    const auto harmed = [&](FaultSpec spec, double amount = 0) {
+        spec.amount = amount;
+        const auto fault = make_fault(spec, Direction::FromA, 0, 1, 0);
+        std::vector<Delivery> batch{{Message{sent.start + sent.duration, 0, sent}, FaultKind::None}};
+        fault->apply(batch);
+        return batch;
+    };
+    const auto frame_of = [](const Delivery& one) { return std::get<RadioFrame>(one.message.payload); };
+    CHECK(harmed({"", "", FaultKind::Drop}).at(0).fault == FaultKind::Drop);
+    CHECK(harmed({"", "", FaultKind::Drop, 1.0, 1, 0, 5 * kMs}).at(0).fault == FaultKind::None);
+    const auto late = harmed({"", "", FaultKind::Delay}, 0.002);
+    CHECK(late.at(0).message.time == sent.start + sent.duration + 2 * kMs);
+    CHECK(frame_of(late[0]).start == sent.start + 2 * kMs);
+    const auto twice = harmed({"", "", FaultKind::Duplicate});
+    REQUIRE(twice.size() == 2);
+    CHECK(twice[1].message.time == sent.start + 2 * sent.duration);
+    CHECK(frame_of(twice[1]).octets == sent.octets);
+    const auto flipped = frame_of(harmed({"", "", FaultKind::Flip}).at(0)).octets.view();
+    REQUIRE(flipped.size() == octets.size());
+    int bits = 0;
+    for (std::size_t i = 0; i < octets.size(); ++i)
+        bits += std::popcount(static_cast<unsigned>(octets[i] ^ flipped[i]));
+    CHECK(bits == 1);
+}
+
+TEST_CASE("octets are kept once and compare by content") {
+    const std::vector<std::uint8_t> one{1, 2}, other{1, 3};
+    CHECK(Octets(one) == Octets(std::vector<std::uint8_t>{1, 2}));
+    CHECK(Octets(one).view().data() == Octets(std::vector<std::uint8_t>{1, 2}).view().data());
+    CHECK_FALSE(Octets(one) == Octets(other));
+    CHECK(Octets() == Octets(std::span<const std::uint8_t>{}));
+    CHECK(Octets().view().empty());
 }
 
 TEST_CASE("faults that make no sense are refused") {

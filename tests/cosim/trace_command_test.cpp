@@ -59,7 +59,7 @@ TEST_CASE("puckloop trace counts, filters and converts what a run recorded") {
                              !Catch::Contains("\n0.008"));
     CHECK(call(path + " --vcd - --kind i2c").out.find("$enddefinitions") != std::string::npos);
     CHECK(call(path + " --vcd /dev/full").status == 1);
-    CHECK(call(path + " --kind radio").status == 2);
+    CHECK(call(path + " --kind smoke").status == 2);
     CHECK(call("/nonexistent.csv").status == 2);
     {
         std::ofstream damage(path, std::ios::app);

@@ -40,6 +40,9 @@ std::vector<TraceRow> some_rows() {
                             I2cPhase{kind, 0x60, ack, kSecond, 2'500'000, 0}});
     rows.push_back({2 * kSecond, "a, \"b\"", "world", "", FaultKind::None, Signal{17, 0.1}});
     rows.push_back({3 * kSecond, "world0", "robot0.pic", "wheel_left", FaultKind::None, Signal{0, -1e-17}});
+    const std::vector<std::uint8_t> octets{0x00, 0x7e, 0xff};
+    rows.push_back({kSecond, "tam0.radio", "ether", "", FaultKind::None,
+                    RadioFrame{kSecond - 288'000'000, 288'000'000, Octets(octets), 12, -60}});
     return rows;
 }
 
@@ -56,6 +59,8 @@ TEST_CASE("rows go to text and back without loss") {
     }
     CHECK(to_csv(some_rows()[0]) ==
           "1.000000000001,robot0.uart,robot0.pic,uart,4e,8N1,0.999921875000,0.000008680555,,");
+    CHECK(to_csv(some_rows().back()) ==
+          "1.000000000000,tam0.radio,ether,radio,007eff,ch12 -60dBm,0.999712000000,0.000288000000,,");
     CHECK(format_seconds(-1) == "-0.000000000001");
 }
 
@@ -72,6 +77,10 @@ TEST_CASE("damaged rows are refused with file and line, never more") {
     refused("1.000000000000,l,n,i2c,4e,jump,0.000000000000,0.000000000000,0.000000000000,", "no I2C phase");
     refused("1.000000000000,l,n,signal,4e!,a,,,,", "no value");
     refused("1.000000000000,l,n,uart,4e,8N1,0.000000000000,0.000000000000,,worn", "no fault");
+    refused("1.000000000000,l,n,radio,7ef,ch12 -60dBm,0.000000000000,0.000000000000,,", "no radio frame");
+    refused("1.000000000000,l,n,radio,,ch12 -60dBm,0.000000000000,0.000000000000,,", "no radio frame");
+    refused("1.000000000000,l,n,radio,7e,ch12 -600dBm,0.000000000000,0.000000000000,,", "no channel");
+    refused("1.000000000000,l,n,radio,7e,ch,0.000000000000,0.000000000000,,", "no channel");
     RandomStream random(1, "rows");
     const auto rows = some_rows();
     for (int round = 0; round < 5000; ++round) {
@@ -211,7 +220,8 @@ TEST_CASE("a value change dump holds every kind of message and is in order") {
         }
     CHECK(before == 3 * kSecond);
     CHECK_THAT(out.str(), Catch::Contains("snack ") && Catch::Contains("sstart ") &&
-                              Catch::Contains("$var real 64") && Catch::Contains("wheel_left"));
+                              Catch::Contains("$var real 64") && Catch::Contains("wheel_left") &&
+                              Catch::Contains("s007eff "));
 }
 
 TEST_CASE("statistics of a trace") {
@@ -219,8 +229,9 @@ TEST_CASE("statistics of a trace") {
     for (const TraceRow& row : some_rows())
         stats.add(row);
     CHECK_THAT(stats.text(), Catch::Contains("robot0.i2c"));
-    CHECK_THAT(stats.json(), Catch::Contains("\"messages\": 14") && Catch::Contains("\"i2c_nacks\": 1") &&
+    CHECK_THAT(stats.json(), Catch::Contains("\"messages\": 15") && Catch::Contains("\"i2c_nacks\": 1") &&
                                  Catch::Contains("\"uart_breaks\": 1") &&
+                                 Catch::Contains("\"radio_frames\": 1, \"radio_octets\": 3") &&
                                  Catch::Contains("\"link\": \"a, \\\"b\\\"\""));
 }
 

@@ -35,7 +35,7 @@ struct Options {
 };
 
 std::string kind_of(const TraceRow& row) {
-    constexpr const char* kKinds[] = {"uart", "i2c", "signal"};
+    constexpr const char* kKinds[] = {"uart", "i2c", "signal", "radio"};
     return kKinds[row.payload.index()];
 }
 
@@ -115,9 +115,9 @@ void declare_trace(Command& app, int&) {
     command->add_option("--link", options->links, "only these links (repeatable)")->allow_extra_args(false);
     command->add_option("--from-node", options->nodes, "only what these nodes sent (repeatable)")
         ->allow_extra_args(false);
-    command->add_option("--kind", options->kinds, "only uart, i2c or signal (repeatable)")
+    command->add_option("--kind", options->kinds, "only uart, i2c, signal or radio (repeatable)")
         ->allow_extra_args(false)
-        ->check(one_of({"uart", "i2c", "signal"}));
+        ->check(one_of({"uart", "i2c", "signal", "radio"}));
     command->add_option("--from", options->from_s, "first time, s")->check(number_between(0.0, 9e6));
     command->add_option("--to", options->until_s, "end time, s; not included")
         ->check(number_between(0.0, 9e6));
