@@ -22,25 +22,20 @@ Ports::Ports(const Surroundings& around, const Setup& setup, Pins& pins)
         port.lat = place.lat;
         port.odc = place.odc;
         port.implemented = around_.sfr.info(place.tris)->implemented;
+        for (const std::uint16_t address : {place.tris, place.port, place.lat, place.odc})
+            if (address) places_[address >> 1] = static_cast<std::uint8_t>(place.letter);
         around_.sfr.hook(place.tris, this, nullptr, write_tris);
         around_.sfr.hook(place.port, this, read_port, write_port);
         around_.sfr.hook_quiet(place.port, this, look_at_port);
         around_.sfr.hook(place.lat, this, nullptr, write_port);
         if (place.odc) around_.sfr.hook(place.odc, this, nullptr, write_tris);
     }
+    for (const Pin& pin : setup_.analog)
+        at(pin.port).analog |= bit(pin.number);
     for (const std::uint16_t address : setup_.cnen)
         around_.sfr.hook(address, this, nullptr, write_cn);
     for (const std::uint16_t address : setup_.cnpu)
         around_.sfr.claim(address);
-}
-
-int Ports::index_of(std::uint16_t address) const {
-    for (int i = 0; i < kPorts; ++i) {
-        const Port& port = ports_[static_cast<std::size_t>(i)];
-        if (port.tris == address || port.port == address || port.lat == address || port.odc == address)
-            return i;
-    }
-    return 0;
 }
 
 void Ports::reset() {
@@ -147,6 +142,7 @@ std::uint32_t Ports::pcfg() const {
 // The digital input buffers of analog pins are off: PORT reads 0 there.
 std::uint16_t Ports::digital_pins(int index) const {
     std::uint16_t mask = 0xFFFF;
+    if (ports_[static_cast<std::size_t>(index)].analog == 0) return mask;
     const std::uint32_t digital = pcfg();
     for (std::size_t channel = 0; channel < setup_.analog.size(); ++channel) {
         const Pin& pin = setup_.analog[channel];

@@ -86,6 +86,7 @@ class Ports {
         std::uint16_t lat = 0;
         std::uint16_t odc = 0;
         std::uint16_t implemented = 0;
+        std::uint16_t analog = 0;  ///< pins that can be analog inputs
         std::uint16_t lent = 0;
         std::uint16_t lent_output = 0;
         std::uint16_t lent_levels = 0;
@@ -115,7 +116,7 @@ class Ports {
 
     Port& at(PortLetter letter) { return ports_[static_cast<std::size_t>(letter)]; }
     const Port& at(PortLetter letter) const { return ports_[static_cast<std::size_t>(letter)]; }
-    int index_of(std::uint16_t address) const;
+    int index_of(std::uint16_t address) const { return places_[address >> 1]; }
     std::uint16_t digital_pins(int index) const;
     std::uint32_t pcfg() const;
     std::uint16_t pin_levels(int index, Cycle now) const;
@@ -130,6 +131,7 @@ class Ports {
     Setup setup_;
     Pins& pins_;
     std::array<Port, kPorts> ports_{};
+    std::array<std::uint8_t, SfrSpace::kWords> places_{};  ///< index of the port, by register word
     std::vector<Watcher> watchers_;
 };
 
