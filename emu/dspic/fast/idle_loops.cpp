@@ -14,7 +14,7 @@ namespace {
 
 /// With less than this to the next event a walk is not begun.
 constexpr Cycle kWorthwhile = 64;
-constexpr std::uint8_t kMostPatience = 7;
+constexpr std::uint8_t kMostPatience = 10;
 /// For loops that do something unknown on one of their ways round.
 constexpr std::uint8_t kMostPatienceUnknown = 12;
 constexpr std::uint64_t kFewestIterations = 4;
