@@ -306,6 +306,11 @@ struct Chip::Parts {
         else
             archive.part("oscillator", static_cast<Oscillator&>(*oscillator));
         archive.part("ports", ports);
+        if constexpr (Archive::kLoads) interrupts.forget_rests();
+        if constexpr (!Archive::kRaw && !Archive::kLoads)  // what rests is nobody's business
+            if (const Cycle cycle = message_cycle(); cycle > 0)
+                for (Timer& timer : timers)
+                    timer.wake(cycle - 1);
         const auto parts_of = [&](const char* name, auto& modules) {
             for (std::size_t i = 0; i < modules.size(); ++i)
                 archive.part(name, i + 1, modules[i]);
@@ -324,6 +329,9 @@ struct Chip::Parts {
         if constexpr (Archive::kLoads) holding = true;
         if constexpr (!Archive::kRaw) check_report(archive);
         archive.part("events", events);
+        if constexpr (Archive::kLoads)
+            for (Timer& timer : timers)
+                timer.loaded();
         archive.bounded(now, 0, cosim::kNever);
         if constexpr (!Archive::kRaw) check_times(archive);
     }
@@ -577,6 +585,7 @@ void Chip::settle() {
 
 void Chip::set_skipping(bool on) {
     parts_->core.set_skip_idle(on);
+    parts_->interrupts.set_resting(on);
 }
 
 }  // namespace puckloop::dspic

@@ -103,17 +103,6 @@ bool pass_service(Machine& m, Cycle horizon) {
     return true;
 }
 
-/// While the CPU sleeps nobody clears flags: events that only set one that is set already can be passed.
-void pass_idle_events(Machine& m, Cycle until) {
-    const EventQueue::Slot slot = m.events.next_slot();
-    const EventQueue::Steady& steady = m.events.steady(slot);
-    if (!m.skip_idle || steady.irq < 0 || !m.irq.flag(steady.irq) || m.irq.tapped(steady.irq)) return;
-    const Cycle horizon = std::min(until, m.events.next_except(slot));
-    const Cycle due = m.events.next();
-    if (horizon != kNoCycle && due < horizon)
-        m.events.pass(slot, (horizon - due + steady.period - 1) / steady.period);
-}
-
 /// Executes the instruction under a stop address that was reported before.
 void pass_stop(Machine& m) {
     const std::uint32_t pc = *m.pass_pc;
@@ -223,7 +212,6 @@ Core::Outcome run_until(Machine& m, Cycle until) {
         const Cycle quiet = std::min(until, m.events.next());
         if (m.mode != PowerMode::Run) {
             if (!m.irq.any_enabled_flag()) {
-                pass_idle_events(m, until);
                 m.st.cycle = std::min(until, m.events.next());
                 continue;
             }

@@ -63,6 +63,39 @@ void InterruptController::reset() {
             static_cast<std::uint16_t>(kResetPriority << (4 * (entry.irq % 4)));
     if (device_.inttreg) sfr_.raw(device_.inttreg) = 0;
     first_ = {};
+    for (int i = 0; i < device_.ifs_words; ++i)
+        wake_hearing(i);
+}
+
+void InterruptController::set_tap(void* owner, void (*served)(void* owner, int irq, Cycle now),
+                                  const std::array<std::uint64_t, 2>& irqs) {
+    tap_owner_ = owner;
+    tap_ = served;
+    tapped_ = irqs;
+    for (int i = 0; i < device_.ifs_words; ++i)
+        wake_hearing(i);
+}
+
+void InterruptController::rest(int irq, void* owner, void (*wake)(void* owner, Cycle passed)) {
+    resters_[static_cast<std::size_t>(irq)] = {owner, wake};
+    resting_[static_cast<std::size_t>(irq) / 16] |= bit_of(irq);
+}
+
+void InterruptController::set_resting(bool on) {
+    rests_ = on;
+    for (int i = 0; i < device_.ifs_words; ++i)
+        wake_hearing(i);
+}
+
+void InterruptController::wake(int irq) {
+    resting_[static_cast<std::size_t>(irq) / 16] &= static_cast<std::uint16_t>(~bit_of(irq));
+    const Rester& rester = resters_[static_cast<std::size_t>(irq)];
+    rester.wake(rester.owner, now_ ? *now_ : 0);
+}
+
+void InterruptController::wake_hearing(int word) {
+    for (unsigned left = resting_[static_cast<std::size_t>(word)]; left != 0; left &= left - 1)
+        if (const int irq = 16 * word + std::countr_zero(left); !is_deaf(irq)) wake(irq);
 }
 
 void InterruptController::raise(int irq, Cycle now) {
@@ -82,6 +115,7 @@ void InterruptController::raise(int irq, Cycle now) {
 void InterruptController::clear(int irq) {
     sfr_.raw(word_of(device_.ifs, irq)) &= static_cast<std::uint16_t>(~bit_of(irq));
     if (enabled(irq)) find_first(now_ ? *now_ : 0);
+    wake_hearing(irq / 16);
 }
 
 bool InterruptController::flag(int irq) const {
@@ -135,6 +169,7 @@ void InterruptController::serve_alone() {
     const int irq = first_.vector - kTrapVectors;
     sfr_.raw(word_of(device_.ifs, irq)) &= static_cast<std::uint16_t>(~bit_of(irq));
     first_ = {};
+    wake_hearing(irq / 16);
 }
 
 void InterruptController::set_listener(void* owner, void (*changed)(void*, Cycle)) {
@@ -211,6 +246,8 @@ void InterruptController::write_register(void* owner, std::uint16_t address, std
     std::uint16_t& stored = self.sfr_.raw(address);
     stored = static_cast<std::uint16_t>((stored & ~bits) | (value & bits));
     self.find_first(self.now_ ? *self.now_ : 0);
+    if (in(d.ifs)) self.wake_hearing((address - d.ifs) / 2);
+    if (in(d.iec)) self.wake_hearing((address - d.iec) / 2);
 }
 
 }  // namespace puckloop::dspic

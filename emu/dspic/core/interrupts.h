@@ -48,11 +48,17 @@ class InterruptController {
     bool tapped(int irq) const { return tapped_[static_cast<std::size_t>(irq) / 64] >> (irq % 64) & 1; }
     /// Calls `served` at every raise() and request() of the sources in `irqs` (bit n % 64 of word n / 64).
     void set_tap(void* owner, void (*served)(void* owner, int irq, Cycle now),
-                 const std::array<std::uint64_t, 2>& irqs) {
-        tap_owner_ = owner;
-        tap_ = served;
-        tapped_ = irqs;
-    }
+                 const std::array<std::uint64_t, 2>& irqs);
+
+    /// Until somebody clears its flag, enables it or taps it, raise() of this source changes nothing.
+    bool is_deaf(int irq) const { return rests_ && flag(irq) && !enabled(irq) && !tapped(irq); }
+    /// The source stops raising while is_deaf(). `wake` is called once, with the cycle up to which raising
+    /// would have changed nothing, when that is over, or with no need at any other time.
+    void rest(int irq, void* owner, void (*wake)(void* owner, Cycle passed));
+    /// No source rests any more, and none is woken: what is loaded is another state.
+    void forget_rests() { resting_ = {}; }
+    /// Off: every source raises as it is due (on from the start).
+    void set_resting(bool on);
     void clear(int irq);
     bool flag(int irq) const;
     bool enabled(int irq) const;
@@ -99,7 +105,13 @@ class InterruptController {
     static constexpr std::uint16_t kIntcon2 = 0x082;
 
   private:
+    struct Rester {
+        void* owner = nullptr;
+        void (*wake)(void* owner, Cycle passed) = nullptr;
+    };
     void find_first(Cycle now);
+    void wake(int irq);
+    void wake_hearing(int word);  ///< resting sources of this IFS word that are not deaf any more
     static std::uint16_t read_register(void* owner, std::uint16_t address);
     static void write_register(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask);
 
@@ -109,6 +121,9 @@ class InterruptController {
     std::array<std::uint64_t, 2> tapped_{};
     void* tap_owner_ = nullptr;
     void (*tap_)(void*, int, Cycle) = nullptr;
+    bool rests_ = true;
+    std::array<std::uint16_t, 8> resting_{};  ///< by IFS word
+    std::array<Rester, 128> resters_{};
     Request first_;
     void* listener_ = nullptr;
     void (*changed_)(void*, Cycle) = nullptr;

@@ -34,6 +34,9 @@ bool Timer::paired() const {
 bool Timer::ruled_by_lower() const {
     return lower_ && lower_->paired();
 }
+int Timer::irq() const {
+    return paired() ? upper_->setup_.irq : setup_.irq;
+}
 bool Timer::external() const {
     return con() & kTxCON["TCS"];
 }
@@ -105,18 +108,35 @@ void Timer::settle(Cycle at) {
 }
 
 void Timer::plan() {
+    wake(around_.now);
     const Cycle next = next_match();
     state_.reload = next == kNoCycle ? 0 : period_cycles();
     around_.events.schedule(slot_, next);
     announce_steady();
 }
 
-void Timer::announce_steady() {
+bool Timer::steady() const {
     const Timer& source = paired() ? *upper_ : *this;
-    EventQueue::Steady steady;
-    if (state_.reload && !source.on_match && !period_wanted_)
-        steady = {source.setup_.irq, state_.reload, matches_passed};
-    around_.events.set_steady(slot_, steady);
+    return state_.reload && !source.on_match && !period_wanted_;
+}
+
+void Timer::announce_steady() {
+    EventQueue::Steady announced;
+    if (steady()) announced = {irq(), state_.reload, matches_passed};
+    around_.events.set_steady(slot_, announced);
+}
+
+void Timer::watch_flag() {
+    around_.interrupts.rest(irq(), this,
+                            [](void* owner, Cycle passed) { static_cast<Timer*>(owner)->wake(passed); });
+}
+
+void Timer::wake(Cycle passed) {
+    if (!resting()) return;
+    const Cycle first = next_match();
+    if (first > passed) return around_.events.schedule(slot_, first);
+    around_.events.schedule(slot_, first);
+    matches_passed(this, (passed - first) / state_.reload + 1);
 }
 
 void Timer::matches_passed(void* owner, std::uint64_t times) {
@@ -129,7 +149,7 @@ void Timer::matches_passed(void* owner, std::uint64_t times) {
 }
 
 void Timer::match(Cycle at) {
-    around_.interrupts.raise(paired() ? upper_->setup_.irq : setup_.irq, at);
+    around_.interrupts.raise(irq(), at);
     Timer& source = paired() ? *upper_ : *this;
     if (source.on_match) source.on_match(source.on_match_owner, at);
 }
@@ -144,6 +164,10 @@ void Timer::match_due(void* owner, Cycle due) {
     else
         self.plan();
     self.match(due);
+    if (self.steady() && self.around_.interrupts.is_deaf(self.irq())) {
+        self.around_.events.cancel(self.slot_);
+        self.watch_flag();
+    }
     if (self.period_wanted_) {
         self.period_wanted_ = false;
         self.period_(self.served_, due);

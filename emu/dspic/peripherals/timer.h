@@ -57,8 +57,17 @@ class Timer {
     /// of the new order; `period` at the next period match after want_period().
     void serve(void* owner, void (*changed)(void* owner, Cycle at), void (*period)(void* owner, Cycle at));
     void want_period() {
+        wake(around_.now);
         period_wanted_ = true;
         announce_steady();
+    }
+
+    /// Matches that change nothing, since the flag that they raise is set and nobody hears of it, are left
+    /// out of the timetable. Puts the next one after cycle `passed` back.
+    void wake(Cycle passed);
+    /// After registers and timetable were loaded.
+    void loaded() {
+        if (resting()) watch_flag();
     }
 
     /// After the registers.
@@ -90,9 +99,13 @@ class Timer {
     static void match_due(void* owner, Cycle due);
     static void matches_passed(void* owner, std::uint64_t times);
     void announce_steady();  ///< to the timetable: whether matches do no more than interrupt
+    bool steady() const;     ///< they do no more
+    bool resting() const { return state_.reload != 0 && around_.events.due(slot_) == kNoCycle; }
+    void watch_flag();  ///< to be woken when a match would change something
 
     bool paired() const;           ///< this lower timer counts 32 bits
     bool ruled_by_lower() const;   ///< this upper timer is the high word of a pair
+    int irq() const;               ///< that a match raises
     bool external() const;         ///< counts edges of TxCK
     bool synchronised() const;     ///< edges of TxCK need the instruction clock
     bool gated() const;            ///< counts cycles while TxCK is high
