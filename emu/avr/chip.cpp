@@ -431,6 +431,7 @@ ChipReport Chip::report() const {
     ChipReport report = parts_->report;
     report.instructions = parts_->core.instructions();
     report.cycles = parts_->core.cycle();
+    report.skipped = parts_->core.skipped();
     return report;
 }
 

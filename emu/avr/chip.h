@@ -71,6 +71,7 @@ struct ChipReport {
     std::vector<ChipWarning> warnings;
     std::uint64_t instructions = 0;
     Cycle cycles = 0;
+    Cycle skipped = 0;  ///< cycles in idle loops that this process did not execute one by one
 };
 
 /// Use: construct, load, power_on(), then run_until() in rising steps, handing in what arrives in between.

@@ -3,6 +3,8 @@
 // the first touch of every register that no model stands behind. `Word` is the width of one register; an
 // address counts bytes.
 
+#include "emu/chip/event_queue.h"
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -81,6 +83,15 @@ class RegisterSpace {
     }
     /// The read hook has no side effect, and its value only changes with an event or an access.
     void mark_steady(std::uint16_t address) { at(address).steady = true; }
+    /// A register without side effects whose value follows the clock: fills `values` with what reads at
+    /// first, first + period, ... would give if nothing but time happened, and returns how many are known.
+    using FollowHook = std::size_t (*)(void* owner, std::uint16_t address, Cycle first, Cycle period,
+                                       std::span<Word> values);
+    void set_follow(std::uint16_t address, FollowHook follow) { at(address).follow = follow; }
+    std::size_t follow(std::uint16_t address, Cycle first, Cycle period, std::span<Word> values) const {
+        const Cell& cell = at(address);
+        return cell.follow ? cell.follow(cell.owner, address, first, period, values) : 0;
+    }
     /// A loop that polls the register may be skipped until the next event.
     bool steady_read(std::uint16_t address) const {
         const Cell& cell = at(address);
@@ -110,6 +121,7 @@ class RegisterSpace {
     struct Cell {
         ReadHook read = nullptr;
         WriteHook write = nullptr;
+        FollowHook follow = nullptr;
         void* owner = nullptr;
         const Info* info = nullptr;
         Behaviour behaviour = Behaviour::Absent;

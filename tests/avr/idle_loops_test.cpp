@@ -1,6 +1,8 @@
 // Idle-loop elision: programs with and without it, everything compared.
 
+#include "base/archive.h"
 #include "base/random.h"
+#include "tests/avr/random_loops.h"
 #include "tests/avr/rig.h"
 
 #include <catch2/catch.hpp>
@@ -109,6 +111,39 @@ TEST_CASE("skipping idle loops changes nothing that can be seen") {
         REQUIRE(with.edges.size() > 100);
         REQUIRE(with.same(without));
     }
+}
+
+TEST_CASE("random waiting loops end in the same state with and without skipping") {
+    std::uint64_t cycles = 0, skipped = 0;
+    for (std::uint64_t seed = 1; seed <= 150; ++seed) {
+        RandomStream random(seed, "avr loops");
+        const std::string program = test::RandomLoops(random).program();
+        INFO("seed " << seed << "\n" << program);
+        Rig fast(program), slow(program);
+        slow.chip.set_skipping(false);
+        const auto saved = [](const Rig& rig) {
+            std::vector<std::uint8_t> bytes;
+            StateWriter writer(bytes);
+            rig.chip.state(writer);
+            return bytes;
+        };
+        for (int i = 0; i < 25; ++i) {
+            const Pin pin{PortLetter::D, static_cast<std::uint8_t>(random.below(8))};
+            const cosim::Time until = fast.chip.now() + static_cast<cosim::Time>(random.below(600'000'000));
+            const bool level = random.below(2);
+            for (Rig* rig : {&fast, &slow}) {
+                rig->chip.run_until(until);
+                rig->set_pin(pin, level);
+            }
+            const bool same = saved(fast) == saved(slow);
+            REQUIRE(same);
+        }
+        REQUIRE(fast.edges.size() == slow.edges.size());
+        CHECK(slow.chip.report().skipped == 0);
+        cycles += fast.chip.report().cycles;
+        skipped += fast.chip.report().skipped;
+    }
+    CHECK(skipped > cycles / 4);
 }
 
 TEST_CASE("an idle program runs a hundred times faster than it would") {

@@ -137,6 +137,9 @@ std::uint16_t Core::pc() const {
 std::uint64_t Core::instructions() const {
     return machine_->instructions;
 }
+Cycle Core::skipped() const {
+    return machine_->skipped;
+}
 const DeviceInfo& Core::device() const {
     return machine_->device;
 }

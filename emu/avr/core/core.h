@@ -95,6 +95,7 @@ class Core {
     void set_now(Cycle now);
     std::uint16_t pc() const;            ///< of the next instruction; inside hooks: of the present one
     std::uint64_t instructions() const;  ///< executed since power-up
+    Cycle skipped() const;               ///< cycles in idle loops that were not executed one by one
     const DeviceInfo& device() const;
 
     CoreState state() const;

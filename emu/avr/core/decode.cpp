@@ -36,7 +36,9 @@ const Op* loop_back(Machine& m, const Op* op) {
     const Op* next = kInstruction(m, op);
     if (next > op || !m.skip_idle) return next;
     LoopInfo& loop = m.loops[m.pc_of(op)];
-    return (++loop.visits & loop.backoff) == 0 ? leap(m, op, next) : next;
+    if (loop.wait == 0) return leap(m, op, next);
+    --loop.wait;
+    return next;
 }
 
 /// Longer loops are no busy waits.
@@ -105,7 +107,10 @@ void decode(Machine& m, Op& op) {
         }
     }
     if (const Handler loop = loop_handler_of(op, index)) op.run = loop;
-    if (std::find(m.stops.begin(), m.stops.end(), index) != m.stops.end()) op.run = &stop_here;
+    if (std::find(m.stops.begin(), m.stops.end(), index) != m.stops.end()) {
+        op.run = &stop_here;
+        op.form = FormId::Undefined;  // nobody looks ahead over it
+    }
 }
 
 /// First visit: decode, then leave and come back to the finished operation. What the run loop adds for it
@@ -115,10 +120,6 @@ const Op* decode_now(Machine& m, const Op* op) {
     m.cycle -= op->cycles;
     --m.instructions;
     return op;
-}
-
-Handler loop_handler(FormId form) {
-    return kHandlers[static_cast<std::size_t>(form)];
 }
 
 void forget(Machine& m, std::uint32_t address) {

@@ -32,12 +32,11 @@ static_assert(sizeof(Op) == 16, "four operations to a cache line");
 /// Behind the last flash word: the program counter wraps. Two, because the last word may begin a pair.
 inline constexpr std::uint32_t kGuards = 2;
 
-/// What is known about a backward branch (idle_loops.cpp).
+/// What is known about a backward branch (fast/idle_loops.cpp).
 struct LoopInfo {
-    enum class Purity : std::uint8_t { Unknown, Pure, Impure };
-    Purity purity = Purity::Unknown;
-    std::uint8_t visits = 0;
-    std::uint8_t backoff = 0;  ///< a turn is watched when visits & backoff is 0
+    std::uint16_t wait = 0;     ///< visits until its turns are looked at again
+    std::uint8_t patience = 0;  ///< failures in a row
+    std::uint32_t period = 0;   ///< cycles of its last turn that was looked at; 0: none was
 };
 
 struct Machine {
@@ -59,8 +58,8 @@ struct Machine {
     Cycle now = 0;             ///< of the access or event in progress
     Cycle hold_at = kNoCycle;  ///< the instruction that starts here comes before any interrupt
     Cycle stall_end = 0;
-    Cycle quiet_since = 0;       ///< the inner loop was entered here
-    bool unsteady_read = false;  ///< a register was read whose value follows the clock
+    Cycle skipped = 0;      ///< cycles of turns that were not executed one by one
+    Cycle quiet_since = 0;  ///< the inner loop was entered here
     bool skip_idle = true;
     bool asleep = false;
     bool stopped = false;
@@ -100,11 +99,9 @@ void forget(Machine& m, std::uint32_t address);
 // run.cpp
 Core::Outcome run_until(Machine& m, Cycle until);
 void perform_reset(Machine& m, ResetCause cause);
-// idle_loops.cpp
+// fast/idle_loops.cpp
 /// At a taken backward branch: leaps over turns of an idle loop if it can. The operation to execute next.
 const Op* leap(Machine& m, const Op* branch, const Op* head);
-/// The instruction itself, behind loop_back().
-Handler loop_handler(FormId form);
 // memory.cpp
 std::uint8_t load_outside_ram(Machine& m, const Op* op, std::uint16_t address);
 void store_outside_ram(Machine& m, const Op* op, std::uint16_t address, std::uint8_t value,

@@ -84,7 +84,6 @@ std::uint8_t load_outside_ram(Machine& m, const Op* op, std::uint16_t address) {
         return 0;
     }
     begin_access(m, op);
-    if (!m.io.steady_read(address)) m.unsteady_read = true;
     const std::uint8_t value = m.io.read(address);
     end_access(m);
     return value;

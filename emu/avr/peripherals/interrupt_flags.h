@@ -4,6 +4,7 @@
 
 #include "emu/avr/peripherals/surroundings.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -31,6 +32,12 @@ class InterruptFlags {
     InterruptFlags(const InterruptFlags&) = delete;
     InterruptFlags& operator=(const InterruptFlags&) = delete;
 
+    /// `next_change`: from when on a read of the flags may give something else, without an access or event.
+    void follow(Cycle (*next_change)(void* owner)) {
+        next_change_ = next_change;
+        around_.io.set_follow(setup_.flags, &follow_flags);
+    }
+
     std::uint8_t flags() const { return around_.io.raw(setup_.flags); }
     std::uint8_t masks() const { return around_.io.raw(setup_.masks); }
     void raise(std::uint8_t bits) {
@@ -57,6 +64,16 @@ class InterruptFlags {
         self.touch();
         return self.flags();
     }
+    static std::size_t follow_flags(void* owner, std::uint16_t, Cycle first, Cycle period,
+                                    std::span<std::uint8_t> values) {
+        const auto& self = *static_cast<InterruptFlags*>(owner);
+        const Cycle change = self.next_change_(self.owner_);
+        if (first >= change) return 0;
+        std::fill(values.begin(), values.end(), self.flags());
+        if (period == 0) return values.size();
+        return static_cast<std::size_t>(
+            std::min<Cycle>(values.size(), (change - first + period - 1) / period));
+    }
     static void write_flags(void* owner, std::uint16_t, std::uint8_t value, std::uint8_t mask) {
         auto& self = *static_cast<InterruptFlags*>(owner);
         self.touch();
@@ -81,6 +98,7 @@ class InterruptFlags {
     Setup setup_;
     void* owner_;
     Touched touched_;
+    Cycle (*next_change_)(void*) = nullptr;
 };
 
 }  // namespace puckloop::avr

@@ -19,6 +19,11 @@ class Prescaler {
         if (held_ && divider > 1) return kNoCycle;
         return phase_ + ((from - phase_) / divider + n) * divider;
     }
+    /// Clocks at `now` since the last tick.
+    Cycle position(Cycle now, Cycle divider) const {
+        return held_ && divider > 1 ? 0 : (now - phase_) % divider;
+    }
+    bool held() const { return held_; }
     /// The counter is 0 in this clock; `held`: it stays there.
     void reset(Cycle now, bool held) {
         phase_ = now;

@@ -78,12 +78,12 @@ std::uint64_t Timer::until_update() const {
     return leaves > 1 ? leaves - 1 : leaves + 2 * std::uint64_t{std::max(end, 1u)} - 1;
 }
 
-// Ticks until something has to happen by itself: an interrupt, a pin, a buffer, the return from above the
-// top.
-std::uint64_t Timer::next_tick() const {
+// Ticks until something has to happen by itself: a flag in `masks` that is not set, a pin, a buffer, the
+// return from above the top.
+std::uint64_t Timer::next_tick(std::uint8_t masks) const {
     const Waveform wave = waveform();
     const std::uint32_t end = top();
-    const std::uint8_t wanted = flags_.masks() & static_cast<std::uint8_t>(~flags_.flags());
+    const std::uint8_t wanted = masks & static_cast<std::uint8_t>(~flags_.flags());
     const auto leaves = [&](std::uint32_t value, bool blocked) {
         return state_.counter.leaves(value, wave, end, max(), blocked);
     };
@@ -109,7 +109,7 @@ std::uint64_t Timer::next_tick() const {
 
 void Timer::plan() {
     const std::uint32_t division = divider();
-    const std::uint64_t tick = division ? next_tick() : kNoTick;
+    const std::uint64_t tick = division ? next_tick(flags_.masks()) : kNoTick;
     around_.events.schedule(slot_, tick == kNoTick ? kNoCycle : prescaler_.tick(state_.at, tick, division));
 }
 

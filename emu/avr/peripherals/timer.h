@@ -87,7 +87,7 @@ class Timer {
     void settle(Cycle now);
     void pass(std::uint64_t ticks);
     void plan();
-    std::uint64_t next_tick() const;
+    std::uint64_t next_tick(std::uint8_t masks) const;
     bool buffers_wait() const;
     std::uint64_t until_update() const;
     void match(int channel);
@@ -97,6 +97,9 @@ class Timer {
     void do_capture(Cycle now);
     void set_compare(int channel, std::uint16_t value);
 
+    static std::size_t follow_count(void* owner, std::uint16_t address, Cycle first, Cycle period,
+                                    std::span<std::uint8_t> values);
+    static Cycle flags_change(void* owner);
     static void due(void* owner, Cycle cycle);
     static void noise_over(void* owner, Cycle cycle);
     static void touched(void* owner);

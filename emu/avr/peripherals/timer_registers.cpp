@@ -21,6 +21,8 @@ Timer::Timer(const Surroundings& around, const Setup& setup, Prescaler& prescale
         io.hook(low, this, &read_value, &write_value);
         if (setup.wide) io.hook(static_cast<std::uint16_t>(low + 1), this, &read_value, &write_value);
     }
+    if (!setup.wide) io.set_follow(setup.count, &follow_count);
+    flags_.follow(&flags_change);
     ports_.listen(this, &pins_changed);
 }
 
@@ -87,6 +89,39 @@ std::uint8_t Timer::read_value(void* owner, std::uint16_t address) {
     if (address != low) return compare ? static_cast<std::uint8_t>(value >> 8) : self.state_.temp;
     if (!compare) self.state_.temp = static_cast<std::uint8_t>(value >> 8);
     return static_cast<std::uint8_t>(value);
+}
+
+/// Up to the end of the counter's way; 16-bit counters have TEMP as a side effect.
+std::size_t Timer::follow_count(void* owner, std::uint16_t, Cycle first, Cycle period,
+                                std::span<std::uint8_t> values) {
+    const auto& self = *static_cast<Timer*>(owner);
+    if (self.waveform().dual_slope() || first < self.state_.at) return 0;
+    const std::uint32_t count = self.state_.counter.count, end = self.top();
+    const std::uint64_t room = (count > end ? self.max() : end) - count;
+    const Cycle division = self.divider();
+    const bool stands = division == 0 || (division > 1 && self.prescaler_.held());
+    Cycle ticks = stands ? 0 : self.prescaler_.ticks(self.state_.at, first, division);
+    Cycle position = stands ? 0 : self.prescaler_.position(first, division);
+    const Cycle whole = stands ? 0 : period / division, rest = stands ? 0 : period % division;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (ticks > room) return i;
+        values[i] = static_cast<std::uint8_t>(count + ticks);
+        ticks += whole;
+        position += rest;
+        if (position >= division && !stands) {
+            position -= division;
+            ++ticks;
+        }
+    }
+    return values.size();
+}
+
+Cycle Timer::flags_change(void* owner) {
+    const auto& self = *static_cast<Timer*>(owner);
+    constexpr std::uint8_t kEvery = 0xFF;
+    const std::uint32_t division = self.divider();
+    const std::uint64_t tick = division ? self.next_tick(kEvery) : kNoTick;
+    return tick == kNoTick ? kNoCycle : self.prescaler_.tick(self.state_.at, tick, division);
 }
 
 void Timer::write_value(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t) {

@@ -34,12 +34,9 @@ inline void set_rd(Machine& m, const Op* op, std::uint8_t value) {
 inline void set_flags(Machine& m, std::uint8_t mask, std::uint8_t flags) {
     m.sreg = static_cast<std::uint8_t>((m.sreg & ~mask) | flags);
 }
-inline bool carry(const Machine& m) {
+/// 0 or 1.
+inline std::uint8_t carry(const Machine& m) {
     return m.sreg & sreg::C;
-}
-/// SBC, CPC and SBCI leave Z only where it was set: the result of several bytes is zero if every byte is.
-inline std::uint8_t chained(const Machine& m, std::uint8_t flags) {
-    return static_cast<std::uint8_t>(flags & (m.sreg | static_cast<std::uint8_t>(~sreg::Z)));
 }
 
 }  // namespace puckloop::avr::execute
