@@ -2,8 +2,8 @@
 // Reads one table of a scenario key by key. Keys that nobody asked for are errors, with the nearest known key
 // named.
 
+#include "base/toml_file.h"
 #include "scenarios/quantity.h"
-#include "scenarios/toml_file.h"
 
 #include <cstdint>
 #include <optional>

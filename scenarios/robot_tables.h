@@ -1,9 +1,9 @@
 #pragma once
 // The [[robot]] tables of a scenario.
 
+#include "base/toml_file.h"
 #include "scenarios/reader.h"
 #include "scenarios/scenario.h"
-#include "scenarios/toml_file.h"
 
 #include <filesystem>
 #include <string>

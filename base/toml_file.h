@@ -1,5 +1,5 @@
 #pragma once
-// A TOML file as a plain tree with line numbers: what the scenario reader walks.
+// A TOML file as a plain tree with line numbers: what readers of scenarios and options walk.
 
 #include <cstdint>
 #include <filesystem>
@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-namespace puckloop::scenarios {
+namespace puckloop {
 
 struct TomlValue;
 using TomlArray = std::vector<TomlValue>;
@@ -27,4 +27,4 @@ struct TomlValue {
 /// Reads and parses a file; dates and times are refused. Throws InputError with the line.
 TomlValue read_toml(const std::filesystem::path& file);
 
-}  // namespace puckloop::scenarios
+}  // namespace puckloop

@@ -1,4 +1,4 @@
-#include "scenarios/toml_file.h"
+#include "base/toml_file.h"
 
 #include "base/error.h"
 
@@ -9,7 +9,7 @@
 #include <map>
 #include <sstream>
 
-namespace puckloop::scenarios {
+namespace puckloop {
 
 namespace {
 
@@ -128,4 +128,4 @@ TomlValue read_toml(const std::filesystem::path& file) {
     }
 }
 
-}  // namespace puckloop::scenarios
+}  // namespace puckloop
