@@ -1,6 +1,7 @@
 // Is a described world possible? Every refusal names the element, and where the user wrote it.
 
 #include "base/error.h"
+#include "physics/booth.h"
 #include "physics/parameters.h"
 #include "physics/plan.h"
 #include "physics/robot_parameters.h"
@@ -43,6 +44,9 @@ class Checker {
             check_speaker(s);
         for (const auto& p : world_.patches)
             check_patch(p);
+        for (const auto& b : world_.booths)
+            check_booth(b);
+        check_booths_apart();
         check_robots();
         check_bodies();
         check_recording();
@@ -182,6 +186,29 @@ class Checker {
             size(what, p.place, "width", p.width);
         }
     }
+    void check_booth(const Booth& b) {
+        const auto what = named("tam", b.name, b.place);
+        position(what, b.place, b.x, b.y, b.heading);
+        range(what, b.place, "reflectivity", b.reflectivity, 0.0, kMostReflective);
+        for (const Shape& part : shapes_of(b))
+            fixed_.push_back({what, b.place, part});
+        booths_.push_back(
+            {what, b.place, box_shape(b.x, b.y, b.heading, booth::kSize, booth::kSize, booth::kSize, 1.0)});
+    }
+    /// A booth may stand against a wall, and not in one or in another booth.
+    void check_booths_apart() const {
+        constexpr double kTouch = 1e-4;  // m
+        for (std::size_t i = 0; i < booths_.size(); ++i) {
+            const Body& b = booths_[i];
+            if (!inside(world_.arena.corners, b.shape.x, b.shape.y))
+                fail(b.what, b.place, fmt::format("({} m, {} m) is outside the arena", b.shape.x, b.shape.y));
+            for (const auto& wall : arena_walls(world_.arena))
+                if (overlap(b.shape, wall, kTouch)) fail(b.what, b.place, "stands in the arena's wall");
+            for (std::size_t j = 0; j < i; ++j)
+                if (overlap(b.shape, booths_[j].shape, kTouch))
+                    fail(b.what, b.place, "overlaps " + booths_[j].what, "a free place");
+        }
+    }
     void check_robots() {
         for (const auto& r : world_.robots) {
             const auto what = named("robot", r.name, r.place);
@@ -225,7 +252,7 @@ class Checker {
 
     const World& world_;
     std::set<std::string> names_;
-    std::vector<Body> fixed_, moving_;
+    std::vector<Body> fixed_, moving_, booths_;
 };
 
 }  // namespace

@@ -92,6 +92,18 @@ struct Patch {
     Place place{};
 };
 
+/// A TAM: a booth that a robot drives into (physics/booth.h).
+struct Booth {
+    std::string name;
+    double x = 0.0, y = 0.0;  ///< of its middle
+    double heading = 0.0;     ///< the way its opening looks
+    double reflectivity = 1.0;
+    /// Signal ids on the link to its board ("barrier_front", "barrier_back", "led_top_red", ...). Names that
+    /// are absent are neither read nor published.
+    std::map<std::string, std::uint16_t> signals{};
+    Place place{};
+};
+
 struct Robot {
     std::string name;
     double x = 0.0, y = 0.0, heading = 0.0;
@@ -127,6 +139,7 @@ struct World {
     std::vector<Speaker> speakers;
     std::vector<Patch> patches;
     std::vector<Robot> robots;
+    std::vector<Booth> booths{};
     std::map<std::string, double> parameters;  ///< for all robots and the world
     Recording recording;
 };

@@ -1,5 +1,6 @@
 // From the description to plan shapes: arena polygon, walls, fixed things.
 
+#include "physics/booth.h"
 #include "physics/plan.h"
 
 #include <algorithm>
@@ -106,8 +107,15 @@ std::vector<Shape> arena_walls(const Arena& arena) {
     return walls;
 }
 
+std::size_t built_in_count(const World& world) {
+    return arena_walls(world.arena).size() + world.booths.size() * booth::kParts;
+}
+
 std::vector<Shape> fixed_shapes(const World& world) {
     auto shapes = arena_walls(world.arena);
+    for (const Booth& booth : world.booths)
+        for (const Shape& part : shapes_of(booth))
+            shapes.push_back(part);
     for (const auto& wall : world.walls)
         shapes.push_back(shape_of(wall));
     for (const auto& box : world.boxes)
@@ -124,6 +132,9 @@ std::vector<std::string> fixed_names(const World& world) {
     };
     for (std::size_t i = 0; i < arena_walls(world.arena).size(); ++i)
         add({}, "arena wall ", i);
+    for (const Booth& booth : world.booths)
+        for (const std::string& part : part_names(booth))
+            names.push_back(part);
     for (std::size_t i = 0; i < world.walls.size(); ++i)
         add(world.walls[i].name, "wall ", i);
     for (std::size_t i = 0; i < world.boxes.size(); ++i)

@@ -57,7 +57,9 @@ bool inside(const std::vector<Point>& corners, double x, double y);
 /// Distance from a point to the polygon's nearest edge.
 double edge_distance(const std::vector<Point>& corners, double x, double y);
 
-/// The fixed shapes of a world: arena walls, walls, boxes and cylinders that do not move.
+/// Arena walls and parts of booths, which nothing moves: the first of a world's fixed shapes.
+std::size_t built_in_count(const World& world);
+/// The fixed shapes of a world: arena walls, parts of booths, walls, boxes and cylinders that do not move.
 std::vector<Shape> fixed_shapes(const World& world);
 /// Their names, in the same order.
 std::vector<std::string> fixed_names(const World& world);

@@ -64,6 +64,9 @@ void WorldLog::elements(const World& world) {
                           lamp.height, lamp.intensity));
     for (const Patch& patch : world.patches)
         write(fmt::format("floor patch {} at {}, grey {:.4g}", patch.name, at(patch.x, patch.y), patch.grey));
+    for (const Booth& booth : world.booths)
+        write(fmt::format("tam {} at {}, opening towards {:.2f} deg", booth.name, at(booth.x, booth.y),
+                          degrees(booth.heading)));
     for (const Robot& robot : world.robots)
         write(fmt::format("robot {} at {}, heading {:.2f} deg", robot.name, at(robot.x, robot.y),
                           degrees(robot.heading)));

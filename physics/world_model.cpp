@@ -49,6 +49,8 @@ void WorldModel::add_bodies() {
                            robot.x, robot.y, robot.heading});
         looked_tilt_.push_back({0.0, 0.0});
     }
+    for (const auto& booth : description_.booths)
+        booths_.emplace_back(booth);
     for (const auto& box : description_.boxes)
         if (box.movable) add_object(shape_of(box), box.name, box.heading, box.mass);
     for (const auto& cylinder : description_.cylinders)
@@ -115,6 +117,7 @@ void WorldModel::look() {
     for (std::size_t i = 0; i < robots_.size(); ++i)
         look_down(i);
     done(StepPart::Ground);
+    look_at_barriers();
     for (std::size_t i = 0; i < robots_.size(); ++i)
         robots_[i].sense_each_step(dynamics_.robot(i), seconds());
     done(StepPart::Readings);
@@ -189,6 +192,24 @@ void WorldModel::look_down(std::size_t index) {
     if (!scene_changed_ && !moving_[index].moved && !tilted) return;
     tilt = {state.pitch, state.roll};
     robots_[index].look_down(state);
+}
+
+void WorldModel::look_at_barriers() {
+    if (booths_.empty()) return;
+    if (scene_changed_) {
+        in_booths_.assign(booths_.size(), {});
+        for (std::size_t k = built_in_count(description_); k < fixed_.size(); ++k)
+            for (std::size_t i = 0; i < booths_.size(); ++i)
+                if (booths_[i].near(fixed_[k])) in_booths_[i].push_back(k);
+    }
+    for (std::size_t i = 0; i < booths_.size(); ++i) {
+        view_.clear();
+        for (const std::size_t k : in_booths_[i])
+            view_.push_back(&fixed_[k]);
+        for (const Moving& body : moving_)
+            if (booths_[i].near(body.shape)) view_.push_back(&body.shape);
+        booths_[i].barriers = booths_[i].interrupted(view_);
+    }
 }
 
 }  // namespace puckloop::physics

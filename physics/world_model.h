@@ -1,6 +1,7 @@
 #pragma once
 // The physical world in steps of 1 ms: wheels in, sensor channels out.
 
+#include "physics/booth.h"
 #include "physics/neighbours.h"
 #include "physics/robot_model.h"
 #include "physics/step_observer.h"
@@ -38,6 +39,10 @@ class WorldModel {
     const Parameters& parameters() const { return parameters_; }
     std::size_t robot_count() const { return robots_.size(); }
     const RobotModel& robot(std::size_t index) const { return robots_[index]; }
+    std::size_t booth_count() const { return booths_.size(); }
+    const BoothModel& booth(std::size_t index) const { return booths_[index]; }
+    /// To let its lights shine.
+    BoothModel& booth(std::size_t index) { return booths_[index]; }
     const RobotState& state(std::size_t robot) const { return dynamics_.robot(robot); }
     /// Names and places of the movable things, those that have been taken away as well.
     std::span<const std::string> object_names() const { return object_names_; }
@@ -72,6 +77,7 @@ class WorldModel {
     void look_around(std::size_t robot);
     void look_at_lamps(std::size_t robot, bool any_moved);
     void look_down(std::size_t robot);
+    void look_at_barriers();
     bool neighbour_moved(std::size_t robot) const;
 
     World description_;
@@ -85,7 +91,9 @@ class WorldModel {
     std::vector<Moving> moving_;  // robots first, then objects
     Neighbours near_{0.03};       // of robots: what their proximity sensors may see
     std::vector<std::array<double, 2>> looked_tilt_;
-    std::vector<const Shape*> view_;  // scratch
+    std::vector<BoothModel> booths_;
+    std::vector<std::vector<std::size_t>> in_booths_;  // fixed things that might interrupt a beam
+    std::vector<const Shape*> view_;                   // scratch
     std::uint64_t steps_done_ = 0;
     StepObserver* observer_ = nullptr;
     bool scene_changed_ = true;  // since the sensors last looked

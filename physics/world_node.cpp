@@ -5,6 +5,7 @@
 #include "physics/recorder.h"
 #include "physics/world_log.h"
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <cmath>
@@ -19,6 +20,7 @@ constexpr cosim::Time kStep = cosim::kMillisecond;
 constexpr std::uint16_t kUnused = 0xFFFF;
 constexpr std::size_t kPortsOfRobot = 2;
 constexpr std::size_t kBoardInputs = 3;
+constexpr double kBeamQuantum = 1e-3;                                       // share of a beam
 constexpr std::array<double, kPoseSignals> kPoseQuantum{1e-5, 1e-5, 1e-4};  // m, m, rad
 
 /// One robot's ends of its two links: signal ids, and what was last published.
@@ -34,6 +36,34 @@ struct RobotLinks {
     };
     std::vector<Output> outputs;
 };
+
+/// One booth's end of its link.
+struct BoothLinks {
+    struct Colour {
+        std::size_t light = 0, colour = 0;  // red, green, blue
+    };
+    cosim::PortIndex port = 0;
+    std::map<std::uint16_t, Colour> leds;  // by signal id
+    std::array<std::uint16_t, booth::kBarriers> barrier{kUnused, kUnused};
+    std::array<double, booth::kBarriers> last{};  // as published; free beams need no word
+};
+
+BoothLinks links_of(const Booth& booth, cosim::PortIndex port) {
+    BoothLinks links;
+    links.port = port;
+    const auto id_of = [&](const std::string& name) {
+        const auto found = booth.signals.find(name);
+        return found == booth.signals.end() ? kUnused : found->second;
+    };
+    links.barrier = {id_of("barrier_front"), id_of("barrier_back")};
+    constexpr std::array<const char*, 3> kColours{"red", "green", "blue"};
+    for (std::size_t light = 0; light < booth::kLights; ++light)
+        for (std::size_t colour = 0; colour < kColours.size(); ++colour)
+            if (const auto id = id_of(fmt::format("led_{}_{}", booth::kLight[light].name, kColours[colour]));
+                id != kUnused)
+                links.leds[id] = {light, colour};
+    return links;
+}
 
 RobotLinks links_of(const Robot& robot, cosim::PortIndex board) {
     RobotLinks links;
@@ -78,6 +108,7 @@ struct WorldNode::Impl {
     void step();
     void publish_events(std::vector<cosim::Message>& outbox);
     void publish(std::vector<cosim::Message>& outbox);
+    void publish_barriers(std::vector<cosim::Message>& outbox);
     void publish_poses(std::vector<cosim::Message>& outbox);
     void publish_scene(std::vector<cosim::Message>& outbox);
     void publish_body(std::size_t id, double value, std::vector<cosim::Message>& outbox);
@@ -85,6 +116,7 @@ struct WorldNode::Impl {
     WorldModel model;
     std::vector<cosim::Port> ports;
     std::vector<RobotLinks> links;
+    std::vector<BoothLinks> booths;
     std::vector<double> poses;            // as last published; empty without the port "ir"
     std::map<std::size_t, double> scene;  // likewise, by id: what events change
     std::vector<cosim::Message> waiting;  // stamped at or after the next step
@@ -117,11 +149,24 @@ WorldNode::Impl::Impl(World description, EventPlan plan, std::unique_ptr<Command
             for (std::size_t k = 0; k < kShapeSignals; ++k)
                 scene[ids.shape(true, i) + k] = values_of(model.fixed(i))[k];
     }
+    for (const auto& booth : model.description().booths) {
+        booths.push_back(links_of(booth, static_cast<cosim::PortIndex>(ports.size())));
+        ports.push_back({booth.name, cosim::PortKind::Signals});
+    }
     if (!model.description().recording.directory.empty()) recorder.emplace(model);
 }
 
 void WorldNode::Impl::take(const cosim::Message& message) {
     const auto* signal = std::get_if<cosim::Signal>(&message.payload);
+    if (signal != nullptr && !booths.empty() && message.port >= booths.front().port) {
+        const std::size_t index = message.port - booths.front().port;
+        if (index >= booths.size()) return;
+        if (const auto led = booths[index].leds.find(signal->id); led != booths[index].leds.end()) {
+            const auto& [light, colour] = led->second;
+            model.booth(index).shine(light, colour, signal->value);
+        }
+        return;
+    }
     const std::size_t robot = message.port / kPortsOfRobot;
     if (signal == nullptr || message.port % kPortsOfRobot != 0 || robot >= links.size()) return;
     for (const Side side : {Side::Left, Side::Right})
@@ -170,6 +215,19 @@ void WorldNode::Impl::publish(std::vector<cosim::Message>& outbox) {
             if (value == output.last) continue;
             output.last = value;
             outbox.push_back({next_step + kStep, output.port, cosim::Signal{output.id, value}});
+        }
+    }
+}
+
+void WorldNode::Impl::publish_barriers(std::vector<cosim::Message>& outbox) {
+    for (std::size_t i = 0; i < booths.size(); ++i) {
+        BoothLinks& booth = booths[i];
+        const auto& shares = model.booth(i).barriers;
+        for (std::size_t k = 0; k < shares.size(); ++k) {
+            const double value = std::round(shares[k] / kBeamQuantum) * kBeamQuantum;
+            if (value == booth.last[k] || booth.barrier[k] == kUnused) continue;
+            booth.last[k] = value;
+            outbox.push_back({next_step + kStep, booth.port, cosim::Signal{booth.barrier[k], value}});
         }
     }
 }
@@ -249,6 +307,7 @@ void WorldNode::advance(cosim::Time until, std::span<const cosim::Message> inbox
         w.step();
         w.publish_events(outbox);
         w.publish(outbox);
+        w.publish_barriers(outbox);
         w.publish_poses(outbox);
         w.publish_scene(outbox);
         w.model.done(StepPart::Publish);

@@ -1,5 +1,6 @@
 #include "scenarios/robot_tables.h"
 
+#include "scenarios/board_keys.h"
 #include "scenarios/world_tables.h"
 
 #include <fmt/format.h>
@@ -15,37 +16,6 @@ namespace puckloop::scenarios {
 namespace {
 
 constexpr double kLongestGrace = 3600.0;  // s
-
-/// A list of times, each later than the one before, all after `start`.
-std::vector<double> read_times(Reader& reader, std::string_view key, double start) {
-    std::vector<double> times;
-    for (const std::string& text : reader.texts(key)) {
-        try {
-            times.push_back(parse_quantity(text, Dimension::Time));
-        } catch (const QuantityError& error) {
-            reader.fail(key, fmt::format("{}: {}", key, error.problem), error.expected);
-        }
-        if (times.back() <= (times.size() > 1 ? times[times.size() - 2] : start))
-            reader.fail(key, fmt::format("the times of {} do not rise from {:g} s on", key, start),
-                        "times later than that, each later than the one before");
-    }
-    return times;
-}
-
-/// crystal_error as ppm.
-double read_crystal(Reader& reader) {
-    const double ppm = reader.quantity("crystal_error", Dimension::Ratio, 0.0) * 1e6;
-    if (std::abs(ppm) > 10'000)
-        reader.fail("crystal_error", "crystal_error is out of range", "-1 % to 1 %, such as \"20 ppm\"");
-    return ppm;
-}
-
-double read_adc_noise(Reader& reader, double fallback) {
-    const double counts = reader.quantity("adc_noise", Dimension::Number, fallback);
-    if (counts < 0 || counts > 1000)
-        reader.fail("adc_noise", "adc_noise is out of range", "0 to 1000 counts");
-    return counts;
-}
 
 /// The file that keeps a board's memory: nobody else's.
 std::filesystem::path read_nvm(Reader& reader, const std::filesystem::path& folder,
@@ -67,7 +37,7 @@ PicBoard read_pic(const std::string& file, const std::string& where, const TomlV
     Reader reader(file, where, table);
     PicBoard pic;
     pic.firmware = folder / reader.text("firmware");
-    pic.crystal_ppm = read_crystal(reader);
+    pic.crystal_ppm = read_clock_error(reader, "crystal_error");
     pic.adc_noise = read_adc_noise(reader, pic.adc_noise);
     pic.selector = static_cast<int>(reader.integer("selector", 0, 0, 15));
     pic.uart1 = reader.text("uart1", "");
@@ -89,7 +59,7 @@ RabBoard read_rab(const std::string& file, const std::string& where, const TomlV
     Reader reader(file, where, table);
     RabBoard rab;
     rab.firmware = folder / reader.text("firmware");
-    rab.crystal_ppm = read_crystal(reader);
+    rab.crystal_ppm = read_clock_error(reader, "crystal_error");
     rab.adc_noise = read_adc_noise(reader, rab.adc_noise);
     rab.nvm = read_nvm(reader, folder, others);
     reader.finish();
@@ -149,23 +119,6 @@ LinuxBoard read_linux(const std::string& file, const std::string& where, const T
     board.place_line = table.line;
     reader.finish();
     return board;
-}
-
-/// The robot's name: part of file names, and nobody else's.
-std::string read_name(Reader& reader, const std::string& fallback, const Scenario& scenario) {
-    const std::string name = reader.text("name", fallback);
-    const bool plain = !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
-        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-               c == '-';
-    });
-    constexpr std::size_t kLongestName = 64;
-    if (name.size() > kLongestName) reader.fail("name", "the name is too long", "at most 64 letters");
-    if (!plain)
-        reader.fail("name", "the name has other signs than letters, digits, _ and -",
-                    "a name such as epuck12");
-    for (const RobotBoards& other : scenario.robots)
-        if (other.name == name) reader.fail("name", fmt::format("two robots are called '{}'", name));
-    return name;
 }
 
 }  // namespace

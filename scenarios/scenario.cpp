@@ -4,6 +4,7 @@
 #include "physics/parameters.h"
 #include "scenarios/events/event_tables.h"
 #include "scenarios/robot_tables.h"
+#include "scenarios/tam_tables.h"
 #include "scenarios/world_tables.h"
 
 #include <fmt/format.h>
@@ -118,7 +119,10 @@ Scenario read_scenario(const std::filesystem::path& file) {
     scenario.world.seed = scenario.seed;
     for (const TomlValue* table : top.tables("robot"))
         read_robot(name, *table, file.parent_path(), scenario);
-    if (scenario.robots.empty()) top.fail("robot", "no robot", "at least one [[robot]]");
+    for (const TomlValue* table : top.tables("tam"))
+        read_tam(name, *table, file.parent_path(), scenario);
+    if (scenario.robots.empty() && scenario.tams.empty())
+        top.fail("robot", "no robot", "at least one [[robot]] or [[tam]]");
     std::size_t index = 0;
     for (const TomlValue* table : top.tables("fault"))
         scenario.faults.push_back(read_fault(name, index++, *table, scenario));

@@ -1,5 +1,6 @@
 #pragma once
-// A scenario: the world, the robots with their firmware and Linux programs, the faults. See docs/scenario.md.
+// A scenario: the world, the robots with their firmware and Linux programs, the TAMs, the faults. See
+// docs/scenario.md.
 
 #include "cosim/faults/faults.h"
 #include "physics/events/event.h"
@@ -70,6 +71,21 @@ struct RobotBoards {
     bool rgb_turret = true;     ///< the I2C board at 0x61 is fitted
 };
 
+/// A TAM: board and booth.
+struct TamBoard {
+    std::string name;
+    std::filesystem::path firmware;       ///< ELF or HEX; empty: the project's own, as the build made it
+    std::filesystem::path boot_loader{};  ///< empty: none
+    double resonator_ppm = 0.0;           ///< error of the 16 MHz resonator, + is fast
+    double adc_noise = 0.5;               ///< counts, standard deviation
+    int network = 3;                      ///< DIP switches, 0..3
+    double battery = 3.7;                 ///< V
+    std::string console{};                ///< plugged in: "pty", "tcp:PORT", "script:FILE"; empty: nothing
+    double console_baud = 57600.0;        ///< of what is plugged in
+    double start = 0.0;                   ///< s: switched on
+    std::vector<double> resets{};         ///< s: the reset button is pressed, rising, after `start`
+};
+
 struct Scenario {
     std::filesystem::path file;
     std::string name;                ///< the file's stem
@@ -81,6 +97,7 @@ struct Scenario {
     physics::World world;         ///< robots in the same order as `robots`
     physics::EventPlan events;    ///< what happens to the world while it runs
     std::vector<RobotBoards> robots;
+    std::vector<TamBoard> tams{};  ///< in the order of the world's booths
     std::vector<cosim::FaultSpec> faults;
     std::vector<std::string>
         passed_over{};  ///< an overlay's [measurement]: of the measuring chain, not of a run

@@ -384,6 +384,12 @@ std::uint32_t Chip::pc() const {
 bool Chip::sleeping() const {
     return parts_->core.sleeping();
 }
+cosim::Time Chip::wakes() const {
+    const Parts& p = *parts_;
+    if (!p.core.rests()) return p.now;
+    const Cycle next = p.events.next();
+    return next == kNoCycle ? cosim::kNever : std::max(p.now, p.clock.time_of(next));
+}
 std::uint8_t Chip::peek(std::string_view register_name) const {
     const RegisterInfo* info = parts_->io.find(register_name);
     if (!info) throw std::out_of_range("no register " + std::string(register_name));

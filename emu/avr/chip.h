@@ -126,6 +126,9 @@ class Chip {
     Cycle cycle() const;
     std::uint32_t pc() const;  ///< byte address
     bool sleeping() const;
+    /// Unless something comes in, the program does nothing and no pin changes before this time: now() while
+    /// it runs, the next event while it sleeps, kNever if nothing will ever wake it.
+    cosim::Time wakes() const;
     /// A register's stored value by data-sheet name. Throws std::out_of_range if there is none.
     std::uint8_t peek(std::string_view register_name) const;
     /// A byte of RAM. Throws std::out_of_range elsewhere.

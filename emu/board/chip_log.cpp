@@ -13,7 +13,6 @@ using cosim::Time;
 
 namespace {
 
-constexpr Time kLook = 10 * cosim::kMillisecond;
 constexpr std::size_t kShownOfHash = 16;
 
 std::string image_line(const image::Image& image) {
@@ -34,18 +33,13 @@ std::string frame_text(const cosim::UartFrame& frame) {
 
 }  // namespace
 
-ChipLog::ChipLog(const std::string& path, const image::Image& image)
-    : log_(path), symbols_(image), next_look_(kLook) {
-    if (is_open()) log_.line(0, image_line(image));
+ChipLog::ChipLog(const std::string& path, const image::Image& image) : lines_(path), symbols_(image) {
+    if (is_open()) lines_.line(0, image_line(image));
 }
 
 std::string ChipLog::place(std::uint32_t pc) const {
     const std::string symbol = symbols_.place(pc);
     return fmt::format("pc 0x{:04x}{}", pc, symbol.empty() ? "" : " (" + symbol + ")");
-}
-
-void ChipLog::note(Time time, std::string text) {
-    if (is_open()) lines_.emplace_back(time, std::move(text));
 }
 
 void ChipLog::sent(int unit, const cosim::UartFrame& frame, Time now) {
@@ -64,18 +58,17 @@ void ChipLog::arrived(int unit, const cosim::UartFrame& frame, Time now, bool li
 }
 
 void ChipLog::look(const dspic::Chip& chip) {
-    const Time now = next_look_;
-    next_look_ += kLook;
+    const Time now = lines_.begin_look();
     read_report(now, chip);
     read_errors(now, chip);
-    write_until(now);
+    lines_.write_until(now);
 }
 
 void ChipLog::read_report(Time now, const dspic::Chip& chip) {
     const dspic::ChipReport report = chip.report();
     // Cycles before a change of clock cannot be turned into times any more: they are of this stretch.
     const auto time_of = [&](dspic::Cycle cycle) {
-        return std::clamp(chip.clock().time_of(cycle), written_, now);
+        return std::clamp(chip.clock().time_of(cycle), lines_.written(), now);
     };
     for (; resets_ < report.resets.size(); ++resets_) {
         const dspic::ResetRecord& reset = report.resets[resets_];
@@ -116,74 +109,26 @@ void ChipLog::read_errors(Time now, const dspic::Chip& chip) {
     }
 }
 
-void ChipLog::mark() {
-    log_.mark();
-    kept_.reset();
-    marked_ = true;
-    lines_at_mark_ = lines_.size();
-}
-
-void ChipLog::rewind() {
-    log_.rewind();
-    if (kept_) {
-        lines_ = std::move(*kept_);
-        kept_.reset();
-    } else {
-        lines_.resize(lines_at_mark_);
-    }
-}
-
-void ChipLog::settle() {
-    marked_ = false;
-    kept_.reset();
-    log_.settle();
-}
-
-void ChipLog::loaded(Time now) {
-    if (!is_open()) return;
-    for (const auto& [time, text] : history_)
-        log_.line(cosim::to_seconds(time), text);
-    // The saved board may have had no log, which never looks.
-    next_look_ = std::max(next_look_, (now / kLook + 1) * kLook);
-    written_ = std::min(written_, now);
-}
-
-void ChipLog::write_until(Time now) {
-    if (marked_ && !kept_)
-        kept_.emplace(lines_.begin(), lines_.begin() + static_cast<std::ptrdiff_t>(lines_at_mark_));
-    std::sort(lines_.begin(), lines_.end());
-    auto next = lines_.begin();
-    for (; next != lines_.end() && next->first <= now; ++next) {
-        log_.line(cosim::to_seconds(next->first), next->second);
-        history_.push_back(std::move(*next));
-    }
-    lines_.erase(lines_.begin(), next);
-    written_ = now;
-}
-
 void ChipLog::end(Time now, const dspic::Chip& chip, const std::string& board) {
     if (!is_open()) return;
     settle();
     read_report(now, chip);
     read_errors(now, chip);
-    write_until(cosim::kNever);
-    const double seconds = cosim::to_seconds(now);
+    lines_.write_until(cosim::kNever);
     for (int unit = 1; unit <= static_cast<int>(kUarts); ++unit) {
         const dspic::UartCounters counters = chip.uart_counters(unit);
-        log_.line(
-            seconds,
-            fmt::format("uart{}: {} sent, {} received, {} framing errors, {} parity errors, {} overruns",
-                        unit, counters.sent, counters.received, counters.framing_errors,
-                        counters.parity_errors, counters.overruns));
+        lines_.line(
+            now, fmt::format("uart{}: {} sent, {} received, {} framing errors, {} parity errors, {} overruns",
+                             unit, counters.sent, counters.received, counters.framing_errors,
+                             counters.parity_errors, counters.overruns));
     }
     if (const std::optional<dspic::WaitReport> wait = chip.waiting(); wait && wait->hung)
-        log_.line(seconds, "warning: the program " + *waiting_text(chip, wait));
+        lines_.line(now, "warning: the program " + *waiting_text(chip, wait));
     const dspic::ChipReport report = chip.report();
-    log_.line(seconds,
-              fmt::format("end: {} cycles, {} instructions, at {}; {} resets, {} traps, {} unmodelled "
-                          "registers; {}",
-                          report.cycles, report.instructions, place(chip.pc()), report.resets.size(),
-                          report.traps.size(), report.unmodelled.size(), board));
+    lines_.line(now, fmt::format("end: {} cycles, {} instructions, at {}; {} resets, {} traps, {} unmodelled "
+                                 "registers; {}",
+                                 report.cycles, report.instructions, place(chip.pc()), report.resets.size(),
+                                 report.traps.size(), report.unmodelled.size(), board));
 }
 
 }  // namespace puckloop::board

@@ -31,7 +31,8 @@ void load_node(StateReader& archive, cosim::Time& granted, Own& own, Board& boar
     log.loaded(granted);
 }
 
-/// Goes back by a checkpoint of all that `Node` lists for a CheckpointWriter and a CheckpointReader.
+/// Goes back by a checkpoint of all that `Node` lists for a CheckpointWriter and a CheckpointReader; `Chip`
+/// is whatever holds the chip.
 template <class Node, class Chip, class Log>
 class NodeMark : public cosim::Rewindable {
   public:

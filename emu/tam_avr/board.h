@@ -19,6 +19,7 @@
 #include "emu/tam_avr/pin_table.h"
 #include "emu/tam_avr/signals.h"
 
+#include <algorithm>
 #include <array>
 #include <string>
 
@@ -69,6 +70,8 @@ class Board : private avr::Pins {
     void set_signal(SignalId id, double value);
     double signal(SignalId id) const { return values_[id]; }
     void uart_receive(int unit, const cosim::UartFrame& frame);
+    /// Unless something comes in, no output changes before this time; kNever once the board is off.
+    cosim::Time wakes() const { return powered() ? std::min(chip_.wakes(), off_at_) : cosim::kNever; }
     /// The reset button, or DTR of the console's cable: a pulse now.
     void reset_button();
 

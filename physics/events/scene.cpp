@@ -34,9 +34,12 @@ void append(Things& to, const std::vector<Thing>& from) {
 
 }  // namespace
 
-Scene::Scene(WorldModel& model) : model_(model), arena_walls_(arena_walls(model.description().arena).size()) {
+Scene::Scene(WorldModel& model)
+    : model_(model),
+      arena_walls_(arena_walls(model.description().arena).size()),
+      built_in_(built_in_count(model.description())) {
     for (std::size_t i = 0; i < model.description().walls.size(); ++i)
-        walls_.insert(arena_walls_ + i);
+        walls_.insert(built_in_ + i);
 }
 
 std::string Scene::apply(const Action& action) {

@@ -80,7 +80,7 @@ class Scene {
     void stop_gliding(std::string_view name);
 
     WorldModel& model_;
-    std::size_t arena_walls_;
+    std::size_t arena_walls_, built_in_;    // among the fixed things: the first so many
     std::set<std::size_t> walls_;           // among the fixed things: these may meet each other
     std::map<std::string, double> was_on_;  // what is switched off: how bright or loud it was
     std::vector<Glide> glides_;

@@ -26,7 +26,7 @@ std::size_t index_of(const Things& things, std::string_view name) {
 Found Scene::find(std::string_view name) const {
     const World& world = model_.description_;
     if (const auto i = index_of(world.robots, name); i < world.robots.size()) return {Kind::Robot, i};
-    for (std::size_t i = arena_walls_; i < model_.fixed_.size(); ++i)
+    for (std::size_t i = built_in_; i < model_.fixed_.size(); ++i)
         if (model_.fixed_names_[i] == name && model_.fixed_[i].height > 0.0) return {Kind::Fixed, i};
     for (std::size_t i = 0; i < model_.object_names_.size(); ++i)
         if (model_.object_names_[i] == name && model_.object_shape(i).height > 0.0) return {Kind::Object, i};
@@ -47,7 +47,7 @@ std::vector<Scene::Listed> Scene::list() const {
     const auto kind_of = [](const Shape& shape) {
         return shape.kind == Shape::Kind::Box ? "box" : "cylinder";
     };
-    for (std::size_t i = arena_walls_; i < model_.fixed_.size(); ++i)
+    for (std::size_t i = built_in_; i < model_.fixed_.size(); ++i)
         if (model_.fixed_[i].height > 0.0)
             add(walls_.contains(i) ? "wall" : kind_of(model_.fixed_[i]), model_.fixed_names_[i],
                 {Kind::Fixed, i});

@@ -100,7 +100,7 @@ TEST_CASE("firmware is replaced on one board or on all of a kind") {
     scene.request.firmware = {"middle.rab=/x/y.hex"};
     CHECK_THROWS_WITH(set_up(scene.request),
                       "--firmware: the scenario has no board 'middle.rab' (expected one of left.pic, "
-                      "left.rab, right.pic, right.rab, or pic or rab for all)");
+                      "left.rab, right.pic, right.rab, or pic, rab or tam for all)");
 }
 
 TEST_CASE("the programs of all robots end a run together") {

@@ -103,7 +103,7 @@ void declare_run(Command& app, int& status) {
         ->type_name("SCENARIO");
     command
         ->add_option("--firmware", request.firmware,
-                     "BOARD=IMAGE, such as robot0.pic=my.hex, or pic=my.hex for all robots")
+                     "BOARD=IMAGE, such as robot0.pic=my.hex or tam0=my.elf, or pic=my.hex for all of a kind")
         ->type_name("BOARD=IMAGE");
     command
         ->add_option("--linux", options->linux_program,

@@ -1,11 +1,14 @@
 #include "tools/run/node_factory.h"
 
 #include "base/error.h"
+#include "emu/avr/device.h"
 #include "emu/i2c_devices/bus_node.h"
+#include "emu/image/avr_image.h"
 #include "emu/image/device.h"
 #include "emu/image/image.h"
 #include "emu/pic/pic_node.h"
 #include "emu/rab_board/rab_node.h"
+#include "emu/tam_avr/tam_node.h"
 #include "linuxboard/shim/linux_node.h"
 #include "physics/ir_node.h"
 #include "physics/world_node.h"
@@ -59,6 +62,36 @@ std::unique_ptr<cosim::StatefulNode> make_rab(const json& spec) {
     return std::make_unique<rab::RabNode>(image, options);
 }
 
+/// The firmware, and below it what a boot loader brings: its HEX file has two stray bytes at address 0.
+image::AvrImage tam_image(const json& spec) {
+    const image::AvrPart part = avr::atmega1284p().image_part();
+    image::AvrImage image = image::load_avr_image(spec.at("firmware").get<std::string>(), part);
+    if (const std::string path = spec.value("boot_loader", ""); !path.empty()) {
+        image::AvrImage boot = image::load_avr_image(path, part);
+        image.flash.insert(image.flash.begin(), boot.flash.begin(), boot.flash.end());
+        if (image.fuses.empty()) image.fuses = boot.fuses;
+        if (!image.lock_bits) image.lock_bits = boot.lock_bits;
+    }
+    return image;
+}
+
+std::unique_ptr<cosim::StatefulNode> make_tam(const json& spec) {
+    tam::TamNodeOptions options;
+    options.board.name = spec.at("name");
+    options.board.seed = spec.at("seed");
+    options.board.resonator_ppm = spec.at("resonator_ppm");
+    options.board.adc_noise_counts = spec.at("adc_noise");
+    options.network = spec.at("network");
+    options.battery = spec.at("battery_v");
+    options.start = cosim::from_seconds(spec.at("start_s"));
+    options.log = spec.value("log", "");
+    options.pins_linked = spec.value("pins_linked", false);
+    options.ir_linked = spec.value("ir_linked", false);
+    for (const double seconds : spec.at("resets").get<std::vector<double>>())
+        options.resets.push_back(cosim::from_seconds(seconds));
+    return std::make_unique<tam::TamNode>(tam_image(spec), options);
+}
+
 std::unique_ptr<cosim::Node> make_linux(json spec) {
     spec.erase("kind");
     return std::make_unique<linuxboard::LinuxNode>(linuxboard::parse_linux_spec(spec.dump()));
@@ -83,6 +116,7 @@ std::unique_ptr<cosim::Node> make_world(const json& spec) {
 }  // namespace
 
 std::unique_ptr<cosim::StatefulNode> make_board(const json& spec) {
+    if (spec.at("kind") == "tam") return make_tam(spec);
     return spec.at("kind") == "pic" ? make_pic(spec) : make_rab(spec);
 }
 
@@ -90,7 +124,8 @@ std::unique_ptr<cosim::Node> make_node(const std::string& text) {
     try {
         const json spec = json::parse(text);
         const std::string kind = spec.at("kind");
-        if (kind == "pic" || kind == "rab") return with_state(spec, [spec] { return make_board(spec); });
+        if (kind == "pic" || kind == "rab" || kind == "tam")
+            return with_state(spec, [spec] { return make_board(spec); });
         if (kind == "linux") return make_linux(spec);
         if (kind == "world") return make_world(spec);
         if (kind == "ir") return physics::make_ir_node(text);

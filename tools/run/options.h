@@ -11,7 +11,7 @@ namespace puckloop::tools {
 
 struct RunRequest {
     std::filesystem::path scenario;
-    std::vector<std::string> firmware;  ///< "BOARD=IMAGE": robot0.pic=x.hex, or pic=x.hex for every robot
+    std::vector<std::string> firmware;  ///< "BOARD=IMAGE": robot0.pic=x.hex, tam0=x.elf, or pic=x.hex for all
     std::vector<std::string> linux_command;  ///< replaces every robot's Linux program
     std::filesystem::path overlay;           ///< empty: none
     std::filesystem::path out;               ///< empty: out/<scenario name>

@@ -17,17 +17,25 @@ using scenarios::Scenario;
 
 namespace {
 
-/// Every board with firmware: "robot0.pic" and where its image is kept.
-std::vector<std::pair<std::string, std::filesystem::path*>> boards_of(Scenario& scenario) {
-    std::vector<std::pair<std::string, std::filesystem::path*>> boards;
+struct BoardPlace {
+    std::string name;  ///< "robot0.pic", "tam0"
+    const char* kind;  ///< all of them
+    std::filesystem::path* firmware;
+};
+
+/// Every board with firmware.
+std::vector<BoardPlace> boards_of(Scenario& scenario) {
+    std::vector<BoardPlace> boards;
     for (RobotBoards& robot : scenario.robots) {
-        boards.emplace_back(robot.name + ".pic", &robot.pic.firmware);
-        if (robot.rab) boards.emplace_back(robot.name + ".rab", &robot.rab->firmware);
+        boards.push_back({robot.name + ".pic", "pic", &robot.pic.firmware});
+        if (robot.rab) boards.push_back({robot.name + ".rab", "rab", &robot.rab->firmware});
     }
+    for (scenarios::TamBoard& tam : scenario.tams)
+        boards.push_back({tam.name, "tam", &tam.firmware});
     return boards;
 }
 
-/// "robot0.pic=x.hex", or "pic=x.hex" for all robots.
+/// "robot0.pic=x.hex", "tam0=x.elf", or "pic=x.hex" for all of a kind.
 void replace_firmware(Scenario& scenario, const std::string& assignment) {
     const auto equals = assignment.find('=');
     if (equals == std::string::npos || equals == 0 || equals + 1 == assignment.size())
@@ -37,15 +45,15 @@ void replace_firmware(Scenario& scenario, const std::string& assignment) {
     const std::filesystem::path image = std::filesystem::absolute(assignment.substr(equals + 1));
     std::string known;
     bool found = false;
-    for (const auto& [board, firmware] : boards_of(scenario)) {
+    for (const auto& [board, kind, firmware] : boards_of(scenario)) {
         known += board + ", ";
-        if (wanted != board && !board.ends_with("." + wanted)) continue;
+        if (wanted != board && wanted != kind) continue;
         *firmware = image;
         found = true;
     }
     if (!found)
         throw InputError("", "--firmware", fmt::format("the scenario has no board '{}'", wanted),
-                         "one of " + known + "or pic or rab for all");
+                         "one of " + known + "or pic, rab or tam for all");
 }
 
 }  // namespace

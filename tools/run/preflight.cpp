@@ -16,7 +16,7 @@ void check_files(const RunSetup& setup) {
         auto spec = nlohmann::json::parse(node.json);
         spec.erase("log");  // this one leaves nothing on disk
         if (spec.at("kind") == "linux") linuxboard::find_program(spec.at("program"));
-        if (spec.at("kind") != "pic" && spec.at("kind") != "rab") continue;
+        if (spec.at("kind") != "pic" && spec.at("kind") != "rab" && spec.at("kind") != "tam") continue;
         auto what = spec;
         what.erase("name");
         what.erase("seed");

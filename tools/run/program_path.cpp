@@ -13,6 +13,18 @@ std::filesystem::path full_path(const std::filesystem::path& path) {
     return error ? whole.lexically_normal() : (folder / whole.filename()).lexically_normal();
 }
 
+std::filesystem::path own_image(const std::string& board) {
+    namespace fs = std::filesystem;
+    constexpr int kHighest = 4;  // from a test's folder to the build's
+    std::error_code error;
+    fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
+    for (int i = 0; i < kHighest && folder.has_relative_path(); ++i, folder = folder.parent_path()) {
+        const fs::path image = folder / "firmware" / board / (board + ".elf");
+        if (fs::exists(image, error)) return image;
+    }
+    return {};
+}
+
 std::filesystem::path find_program(const std::string& name, const std::filesystem::path& folder) {
     namespace fs = std::filesystem;
     if (name.find('/') != std::string::npos) return full_path(folder / name);

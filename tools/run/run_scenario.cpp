@@ -89,7 +89,7 @@ unsigned threads_for(const RunSetup& setup, const RunRequest& request) {
     if (request.threads != 0) return request.threads;
     const auto& robots = setup.scenario.robots;
     const auto has_rab = [](const auto& robot) { return robot.rab.has_value(); };
-    const auto boards = static_cast<unsigned>(robots.size()) +
+    const auto boards = static_cast<unsigned>(robots.size() + setup.scenario.tams.size()) +
                         static_cast<unsigned>(std::count_if(robots.begin(), robots.end(), has_rab));
     const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
     return std::clamp(boards / kBoardsOfThread, 1U, std::min(cores, kMost));

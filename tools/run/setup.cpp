@@ -5,8 +5,9 @@
 #include "emu/pic/signals.h"
 #include "emu/rab_board/signals.h"
 #include "tools/run/control/control_place.h"
-#include "tools/run/outside_node.h"
 #include "tools/run/overrides.h"
+#include "tools/run/plan/plan_kit.h"
+#include "tools/run/plan/tam_nodes.h"
 #include "tools/run/program_path.h"
 #include "tools/run/states/state_plan.h"
 
@@ -26,25 +27,6 @@ using scenarios::Scenario;
 // A program that computes for ever is told by its own board, which knows more, before the conductor loses
 // patience with the board.
 constexpr double kWatchdogShare = 0.5;
-
-std::vector<std::string> names_of(std::span<const cosim::SignalInfo> signals) {
-    std::vector<std::string> names;
-    for (const cosim::SignalInfo& signal : signals)
-        names.push_back(signal.name);
-    return names;
-}
-
-std::map<std::string, std::uint16_t> ids_of(std::span<const cosim::SignalInfo> signals) {
-    std::map<std::string, std::uint16_t> ids;
-    for (std::size_t i = 0; i < signals.size(); ++i)
-        ids[signals[i].name] = static_cast<std::uint16_t>(i);
-    return ids;
-}
-
-/// "robot0.pic.log" in the results folder.
-std::string log_of(const RunSetup& setup, const std::string& node) {
-    return (setup.out / (node + ".log")).string();
-}
 
 json pic_spec(const RunSetup& setup, const RobotBoards& robot) {
     const Scenario& scenario = setup.scenario;
@@ -121,27 +103,9 @@ json linux_spec(const RunSetup& setup, const RobotBoards& robot, std::int64_t pr
 /// What the scenario plugs into the board's UART1, if anything.
 void add_uart1(RunSetup& setup, const RobotBoards& robot, const RunRequest& request) {
     if (robot.pic.uart1.empty()) return;
-    const std::string name = robot.name + ".uart1";
-    const std::filesystem::path folder = std::filesystem::absolute(setup.scenario.file).parent_path();
-    const exec::UartSpec end = parse_outside(name, robot.pic.uart1, folder.string());
-    if (end.kind != exec::UartSpec::Kind::Script && !request.realtime && !request.paced)
-        throw InputError(setup.scenario.file.string(), name,
-                         fmt::format("'{}' has a clock of its own", robot.pic.uart1),
-                         "--realtime, or script:FILE");
-    const json spec{{"kind", "outside"},
-                    {"name", name},
-                    {"end", robot.pic.uart1},
-                    {"folder", folder.string()},
-                    {"baud", setup.scenario.uart_baud},
-                    {"record", (setup.out / (name + ".received")).string()}};
-    setup.nodes.push_back({name, spec.dump()});
-    setup.links.push_back({name, {name, "uart"}, {robot.name + ".pic", "uart1"}, setup.scenario.uart_baud});
-}
-
-/// A node that any thread may advance.
-void add_free(RunSetup& setup, const std::string& name, const json& spec) {
-    setup.nodes.push_back({name, spec.dump()});
-    setup.nodes.back().any_thread = true;
+    const double baud = setup.scenario.uart_baud;
+    add_outside(setup, robot.name + ".uart1", robot.pic.uart1, baud, {robot.name + ".pic", "uart1"}, baud,
+                request);
 }
 
 /// The range-and-bearing board: on the bus, and in the air.
@@ -246,6 +210,7 @@ RunSetup set_up(const RunRequest& request) {
         body.rab = scenario.robots[i].rab.has_value();
         if (body.rab) body.rab_signals = rab_ids;
     }
+    describe_booths(scenario);
     scenario.world.recording.directory = setup.out.string();
     scenario.world.recording.log = log_of(setup, "world");
     const json world = json::parse(physics::to_json(scenario.world));
@@ -257,6 +222,8 @@ RunSetup set_up(const RunRequest& request) {
                       [](const RobotBoards& robot) { return robot.linux_board.has_value(); });
     for (const RobotBoards& robot : scenario.robots)
         add_robot(setup, robot, programs, request);
+    add_tams(setup, request);
+    name_linked_ports(setup);
     plan_states(setup, request);
     return setup;
 }

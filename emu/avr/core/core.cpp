@@ -121,6 +121,10 @@ void Core::sleep() {
 bool Core::sleeping() const {
     return machine_->asleep;
 }
+bool Core::rests() const {
+    const Machine& m = *machine_;
+    return m.asleep && !m.may_interrupt() && !m.reset_request && m.stall_end <= m.cycle;
+}
 
 Cycle Core::cycle() const {
     return machine_->cycle;

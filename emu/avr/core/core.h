@@ -85,6 +85,8 @@ class Core {
     /// The CPU executes nothing until an interrupt that is enabled requests.
     void sleep();
     bool sleeping() const;
+    /// Asleep, with no interrupt or reset that would end it: only an event can.
+    bool rests() const;
 
     // Seen from outside.
     Cycle cycle() const;  ///< where the next instruction starts

@@ -7,7 +7,7 @@
 
 namespace puckloop::tools {
 
-/// Of a "pic" or "rab" description. Reads the firmware's file for its hash; throws InputError.
+/// Of a "pic", "rab" or "tam" description. Reads the firmware's file for its hash; throws InputError.
 cosim::BoardIdentity identity_of(const nlohmann::json& spec);
 
 /// True if the description is of a board whose state can be saved.

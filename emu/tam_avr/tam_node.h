@@ -1,0 +1,87 @@
+#pragma once
+// The TAM's board as a node of a run: ports where the console, the radio module, the world and the infra-red
+// light attach. Signals on every port are numbered as in tam::signals().
+//
+//   console  UART0
+//   xbee     UART1, the socket of the radio module
+//   pins     to the module: xbee_reset, xbee_rts, xbee_wake, power
+//   world    out: the coloured LEDs; in: barriers, ambient light, battery
+//   ir       out: proximity_emit; in: proximity_sense
+
+#include "cosim/core/stateful_node.h"
+#include "emu/board/node_state.h"
+#include "emu/image/avr_image.h"
+#include "emu/tam_avr/board.h"
+#include "emu/tam_avr/tam_log.h"
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace puckloop::tam {
+
+struct TamNodeOptions {
+    BoardParameters board;              ///< its name is the node's name
+    int network = 3;                    ///< DIP switches, 0..3: the network is 01B2 + this
+    double battery = 3.7;               ///< volts
+    cosim::Time start = 0;              ///< switched on
+    bool skip_idle = true;              ///< busy-wait loops are skipped forward
+    std::vector<cosim::Time> resets{};  ///< the reset button, rising times after `start`
+    std::string log{};                  ///< file for the board's log; empty: none
+    bool pins_linked = true;            ///< false: there is no radio module to hear of the pins
+    bool ir_linked = true;              ///< false: nobody sees the transceiver
+};
+
+class TamNode : public cosim::StatefulNode, private BoardListener {
+  public:
+    static constexpr cosim::PortIndex kConsole = 0, kXBee = 1, kPins = 2, kWorld = 3, kIr = 4;
+
+    /// The image was checked against the chip (load_avr_image). Throws RunError as TamLog does.
+    TamNode(const image::AvrImage& image, const TamNodeOptions& options);
+
+    std::string_view name() const override { return options_.board.name; }
+    std::span<const cosim::Port> ports() const override { return ports_; }
+    void advance(cosim::Time until, std::span<const cosim::Message> inbox,
+                 std::vector<cosim::Message>& outbox) override;
+    /// Never, once the board is off; while its chip sleeps, what wakes it next.
+    cosim::Time earliest_output(cosim::PortIndex port) const override;
+    cosim::Time lookahead(cosim::PortIndex port) const override;
+    std::optional<cosim::Time> begun(cosim::PortIndex port) const override;
+    /// JSON: cycles, instructions, resets, unmodelled registers, fuses, warnings, UART counters, barriers.
+    std::string finish() override;
+
+    void state(StateWriter& archive) const override;
+    void state(StateReader& archive) override;
+    void state(CheckpointWriter& archive) const;
+    void state(CheckpointReader& archive);
+    cosim::Rewindable* rewindable() override { return &mark_; }
+    void renew_random_streams() override { board_->renew_random_streams(); }
+
+    Board& board() { return *board_; }
+
+  private:
+    // The board's time begins when it is switched on.
+    cosim::Time to_board(cosim::Time time) const { return time > options_.start ? time - options_.start : 0; }
+    cosim::Time from_board(cosim::Time time) const { return time + options_.start; }
+
+    void run_until(cosim::Time until);
+    /// Presses the reset button where it is due before (or at) `until`.
+    void press_reset(cosim::Time until, bool inclusive);
+    void receive(const cosim::Message& message);
+
+    void signal_changed(SignalId id, double value, cosim::Time now) override;
+    void uart_sent(int unit, const cosim::UartFrame& frame) override;
+
+    TamNodeOptions options_;
+    std::vector<cosim::Port> ports_;
+    std::vector<std::string> warnings_;  // of the image
+    TamLog log_;
+    std::unique_ptr<Board> board_;
+    board::NodeMark<TamNode, Board, TamLog> mark_{*this, board_, log_};
+    std::vector<cosim::Message>* outbox_ = nullptr;
+    cosim::Time granted_ = 0;
+    std::size_t next_reset_ = 0;
+};
+
+}  // namespace puckloop::tam

@@ -1,0 +1,228 @@
+// The board as a node: what it sends is the same however grants are cut, saved or gone back, and never earlier
+// than it said. The firmware is the project's own, or a small program.
+
+#include "base/random.h"
+#include "emu/avr/assembler/assembler.h"
+#include "emu/tam_avr/tam_node.h"
+#include "tests/scratch.h"
+#include "tests/state/board_runs.h"
+#include "tests/tam_board/rig.h"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include <array>
+#include <fstream>
+#include <sstream>
+
+using namespace puckloop;
+using namespace puckloop::tam;
+using cosim::Message;
+using cosim::Time;
+using tests::run;
+
+namespace {
+
+constexpr Time kMs = cosim::kMillisecond;
+
+/// Sleeps, and at each overflow of timer 0 (1.024 ms) sends a byte on the console, switches the emitter, and
+/// at every eighth the module's reset.
+const char* const kProgram = R"(
+        .org 0
+        jmp main
+        .org 0x48
+        jmp tick
+        .org 0x100
+main:   ldi r16, 0x40
+        out 0x3e, r16
+        ldi r16, 0xff
+        out 0x3d, r16
+        ldi r16, 0x02
+        out 0x04, r16
+        ldi r16, 0x80
+        out 0x0a, r16
+        ldi r16, 16
+        sts 0xc4, r16
+        ldi r16, 0x08
+        sts 0xc1, r16
+        ldi r16, 0x03
+        out 0x25, r16
+        ldi r16, 1
+        sts 0x6e, r16
+        out 0x33, r16
+        sei
+loop:   sleep
+        sts 0xc6, r20
+        rjmp loop
+tick:   inc r20
+        ldi r18, 0x02
+        out 0x03, r18
+        sbrc r20, 3
+        sbi 0x0b, 7
+        sbrs r20, 3
+        cbi 0x0b, 7
+        reti
+)";
+
+TamNodeOptions options(const std::string& log = {}) {
+    TamNodeOptions result;
+    result.board.name = "tam0.avr";
+    result.board.resonator_ppm = 1234;
+    result.network = 2;
+    result.log = log;
+    return result;
+}
+
+std::string text_of(const std::filesystem::path& file) {
+    std::ostringstream text;
+    text << std::ifstream(file).rdbuf();
+    return text.str();
+}
+
+image::AvrImage own_image() {
+    return image::load_avr_image(TAM_FIRMWARE, avr::atmega1284p().image_part());
+}
+
+}  // namespace
+
+TEST_CASE("a board that is switched on later lives the same life, later") {
+    const image::AvrImage image = test::assembled(kProgram);
+    TamNode first(image, options());
+    TamNodeOptions late = options();
+    late.start = 30 * kMs + 7;
+    TamNode second(image, late);
+    CHECK(second.earliest_output(TamNode::kConsole) == late.start);
+    std::vector<Message> now, later;
+    first.advance(50 * kMs, {}, now);
+    second.advance(80 * kMs + 7, {}, later);
+    REQUIRE(now.size() > 50);
+    REQUIRE(now.size() == later.size());
+    for (std::size_t i = 0; i < now.size(); ++i) {
+        CHECK(later[i].time == now[i].time + late.start);
+        CHECK(later[i].port == now[i].port);
+    }
+    const auto report = nlohmann::json::parse(second.finish());
+    CHECK(report["resets"][0]["time_s"] == Approx(0.030).margin(1e-6));
+}
+
+TEST_CASE("outputs go to the ports where they are of interest, and nowhere else") {
+    TamNode node(own_image(), options());
+    std::vector<Message> sent;
+    node.advance(3 * cosim::kSecond, {}, sent);
+    std::array<int, 5> count{};
+    for (const Message& message : sent) {
+        ++count[message.port];
+        const auto* signal = std::get_if<cosim::Signal>(&message.payload);
+        CHECK((signal != nullptr) == (message.port >= TamNode::kPins));
+        if (signal != nullptr && message.port == TamNode::kPins) CHECK(signal->id == kXBeeReset);
+    }
+    CHECK(count[TamNode::kConsole] > 20);  // it greets
+    CHECK(count[TamNode::kXBee] > 5);      // and asks its module
+    CHECK(count[TamNode::kPins] == 2);     // which it has reset
+    CHECK(count[TamNode::kIr] == 0);
+    TamNodeOptions alone = options();
+    alone.pins_linked = false;
+    TamNode without(own_image(), alone);
+    sent.clear();
+    without.advance(500 * kMs, {}, sent);
+    for (const Message& message : sent)
+        CHECK(message.port != TamNode::kPins);
+}
+
+TEST_CASE("cuts, saved states and going back change nothing") {
+    for (const bool own : {true, false}) {
+        RandomStream random(5, own ? "own" : "program");
+        const image::AvrImage image = own ? own_image() : test::assembled(kProgram);
+        const std::string log = tests::scratch_path("tam.log").string();
+        const std::string twin_log = tests::scratch_path("tam-twin.log").string();
+        TamNodeOptions with_resets = options(log);
+        with_resets.resets = {90 * kMs, 310 * kMs};
+        TamNode node(image, with_resets);
+        with_resets.log = twin_log;
+        TamNode twin(image, with_resets);
+        cosim::Rewindable& back = *node.rewindable();
+        Time now = 0;
+        for (int i = 0; i < 60; ++i) {
+            INFO("mark " << i << " at " << cosim::to_seconds(now) << " s");
+            back.mark();
+            const Time ahead = now + 1 + static_cast<Time>(random.below(12 * kMs));
+            run(node, tests::random_stretch(random, now, ahead, 200, kSignalCount));
+            back.rewind();
+            const bool same_bytes = tests::saved(node) == tests::saved(twin);
+            REQUIRE(same_bytes);
+            REQUIRE(tests::same_future(node, twin));
+            if (random.below(2) == 0) back.settle();
+            const Time until = now + 1 + static_cast<Time>(random.below(12 * kMs));
+            tests::Stretch outside = tests::random_stretch(random, now, until, 200, kSignalCount);
+            const auto sent = run(node, outside);
+            outside.cuts = {until};
+            const bool same_messages = sent == run(twin, outside);
+            REQUIRE(same_messages);
+            now = until;
+            if (i % 10 != 0) continue;
+            TamNodeOptions fresh = with_resets;
+            fresh.log = {};
+            TamNode copy(image, fresh);
+            const auto bytes = tests::saved(twin);
+            StateReader reader(bytes);
+            copy.state(reader);
+            reader.end();
+            const bool same_copy = tests::saved(copy) == bytes;
+            CHECK(same_copy);
+            CHECK(tests::same_future(copy, twin));
+        }
+        back.settle();
+        CHECK(node.finish() == twin.finish());
+        CHECK(text_of(log) == text_of(twin_log));
+    }
+}
+
+TEST_CASE("nothing is sent before the time that the node states") {
+    RandomStream random(3, "eot");
+    for (const bool own : {true, false}) {
+        TamNode node(own ? own_image() : test::assembled(kProgram), options());
+        Time now = 0;
+        int later_than_now = 0;
+        for (int i = 0; i < 3000; ++i) {
+            std::vector<Time> earliest;
+            for (cosim::PortIndex port = 0; port < node.ports().size(); ++port)
+                earliest.push_back(node.earliest_output(port));
+            later_than_now += earliest[TamNode::kIr] > now ? 1 : 0;
+            const Time until = now + 1 + static_cast<Time>(random.below(200 * cosim::kMicrosecond));
+            std::vector<Message> sent;
+            node.advance(until, {}, sent);
+            for (const Message& message : sent)
+                REQUIRE(message.time >= earliest[message.port]);
+            now = until;
+        }
+        CHECK(later_than_now > 1000);  // it sleeps most of the time, and says so
+    }
+}
+
+TEST_CASE("a board that is off says that it will never send again") {
+    TamNodeOptions empty = options();
+    empty.battery = 2.5;
+    TamNode node(own_image(), empty);
+    std::vector<Message> sent;
+    node.advance(6 * cosim::kSecond, {}, sent);
+    const auto report = nlohmann::json::parse(node.finish());
+    CHECK(report["powered"] == false);
+    CHECK(report["switched_off_s"] > 0.1);
+    CHECK(node.earliest_output(TamNode::kXBee) == cosim::kNever);
+    CHECK(node.lookahead(TamNode::kXBee) == cosim::kNever);
+}
+
+TEST_CASE("wrong fuses are named") {
+    image::AvrImage image = own_image();
+    image.fuses = {0x62, 0x99, 0xFF};
+    TamNode node(image, options());
+    const std::string warnings = nlohmann::json::parse(node.finish())["warnings"].dump();
+    for (const char* word : {"CKDIV8", "CKSEL", "JTAGEN", "brown-out"})
+        CHECK_THAT(warnings, Catch::Contains(word));
+    image.fuses = {0xFF, 0xDE, 0xFD};  // without a boot loader
+    TamNode other(image, options());
+    CHECK_THAT(nlohmann::json::parse(other.finish())["warnings"].dump(),
+               Catch::Contains("nothing is at 0x1FC00"));
+    TamNode good(own_image(), options());
+    CHECK(nlohmann::json::parse(good.finish())["warnings"].empty());
+}
