@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,7 +36,8 @@ inline std::vector<Time> ircom_edges(std::uint8_t word) {
         for (int half = 0; half < (space ? 5 : 10); ++half)
             edges.push_back(edges.back() + (space ? 520 : 260) * cosim::kMicrosecond);
     }
-    edges.pop_back();  // the line is low again behind the last half period
+    edges.pop_back();                             // the line is low again behind the last half period:
+    if (edges.size() % 2 != 0) edges.pop_back();  // it was forced low, so that an odd last edge is lost
     return edges;
 }
 
@@ -51,6 +53,7 @@ struct Booth {
     bool answers = true, acknowledges = true;
     std::uint8_t found_status = 0x40;  ///< of the answer to DN; other modules say 0
     std::string console;
+    std::map<std::string, XBeeBytes> values;  ///< of AT commands, where they matter
 
     explicit Booth(const std::string& image) {
         rig.board.load(image::load_avr_image(image, avr::atmega1284p().image_part()));
@@ -68,7 +71,9 @@ struct Booth {
         if (const auto* command = std::get_if<XBeeAt>(&message); command && answers) {
             XBeeAtResponse response{.command = command->command, .value = {}};
             const std::string name(command->command.begin(), command->command.end());
-            if (name == "DN") {
+            if (values.contains(name)) {
+                response.value = values.at(name);
+            } else if (name == "DN") {
                 response.status = found_status;
                 response.value = {0xFF, 0xFE, 0x00, 0x13, 0xA2, 0x00, 0x40, 0x8A, 0x31, 0x07};
             } else if (name == "NI") {
