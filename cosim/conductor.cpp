@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <set>
-#include <thread>
 
 namespace puckloop::cosim {
 
@@ -17,9 +16,8 @@ namespace {
 constexpr double kProgressSeconds = 0.2;
 // What is recorded is on disk after so long, should this very process be killed.
 constexpr double kFlushSeconds = 1.0;
-// With --realtime, how far ahead of the wall clock nodes are let, and how long to sleep when they are there.
+// With --realtime, how far ahead of the wall clock nodes are let.
 constexpr Time kPaceSlack = kMillisecond;
-constexpr std::chrono::microseconds kPaceSleep{500};
 
 /// Thrown through the loop when the user ends the run.
 struct Interrupted {};
@@ -27,9 +25,6 @@ struct Interrupted {};
 bool after(const TraceRecord& a, const TraceRecord& b) {
     return a.key() > b.key();
 }
-
-// Simulated time of boards that takes longer to execute than a thread to wake: some 10 us.
-constexpr Time kWorthSharing = 150 * kMicrosecond;
 
 }  // namespace
 
@@ -61,7 +56,8 @@ Conductor::State::State(std::vector<NodeSpec> nodes, std::vector<LinkSpec> links
     slots_.resize(handles_.size());
     stats_.resize(2 * links_.size());
     failures_.resize(handles_.size());
-    workers_ = std::make_unique<Workers>(options_.threads > 1 ? options_.threads - 1 : 0);
+    workers_ = std::make_unique<Workers>(options_.threads > 1 ? options_.threads - 1 : 0, handles_.size(),
+                                         [this](std::size_t n) { work(n); });
     if (options_.chop_seed) chop_.emplace(*options_.chop_seed, "chop");
 }
 
@@ -222,77 +218,7 @@ void Conductor::State::grant(std::size_t n, Time until, Time ahead) {
     const Time sure = std::min(until, schedule_.bounds().limit(n));
     if (!times_[n].runs_ahead && until > sure) network_->echoes(n, slot.echoes);
     handles_[n]->grant({sure, until, ahead}, slot.inbox, slot.echoes);
-}
-
-/// Whether enough is left for a second thread, besides the longest piece, to be woken for.
-bool Conductor::State::worth_sharing() const {
-    Time longest = 0, all = 0;
-    for (const std::size_t n : shared_) {
-        longest = std::max(longest, slots_[n].span);
-        all = later(all, slots_[n].span);
-    }
-    return all - longest >= kWorthSharing;
-}
-
-/// Lets the granted nodes of this process work, and takes their replies in order.
-void Conductor::State::work_here() {
-    shared_.clear();
-    for (const std::size_t n : here_)
-        if (specs_[n].any_thread) shared_.push_back(n);
-    const auto work = [this](std::size_t piece) {
-        const std::size_t n = shared_[piece];
-        try {
-            handles_[n]->poll(false);
-        } catch (...) {
-            failures_[n] = std::current_exception();
-        }
-    };
-    if (worth_sharing()) {
-        workers_->run(shared_.size(), work);
-    } else {
-        for (std::size_t piece = 0; piece < shared_.size(); ++piece)
-            work(piece);
-    }
-    for (const std::size_t n : here_) {
-        current_ = n;
-        if (!specs_[n].any_thread) handles_[n]->poll(false);
-        if (failures_[n]) std::rethrow_exception(failures_[n]);
-        take_reply(n);
-    }
-}
-
-void Conductor::State::collect() {
-    elsewhere_.clear();
-    here_.clear();
-    for (std::size_t n = 0; n < handles_.size(); ++n) {
-        if (!times_[n].busy) continue;
-        (handles_[n]->elsewhere() ? elsewhere_ : here_).push_back(n);
-    }
-    const bool any = !here_.empty();
-    if (any) work_here();
-    if (!elsewhere_.empty()) {
-        collect_elsewhere(!any);
-    } else if (!any) {
-        // Nobody works and nobody may be granted: ahead of the wall clock, or locked for good.
-        if (!options_.realtime || stuck()) deadlock();
-        std::this_thread::sleep_for(kPaceSleep);
-    }
-}
-
-/// Takes what nodes of other processes have answered; with `wait` until there is something.
-void Conductor::State::collect_elsewhere(bool wait) {
-    for (int looks = wait ? 2 : 1; looks > 0; --looks) {
-        const std::uint32_t seen = processes_->rings();
-        bool any = false;
-        for (const std::size_t n : elsewhere_) {
-            current_ = n;
-            if (!handles_[n]->poll(false)) continue;
-            take_reply(n);
-            any = true;
-        }
-        if (any) return;
-        if (looks == 2) processes_->await_answers(seen, elsewhere_.size());
-    }
+    if (!handles_[n]->elsewhere()) here_.push_back(n);
 }
 
 void Conductor::State::take_reply(std::size_t n) {

@@ -102,6 +102,7 @@ void Conductor::State::fail(Outcome& outcome, const std::string& text) {
 void Conductor::State::finish(Outcome& outcome) {
     // What was sent before a failure is kept whole; an interrupted trace ends where all of it is known.
     const bool failed = outcome.reason == EndReason::Failed;
+    workers_->stop();
     const auto guarded = [&](auto work) {
         try {
             work();

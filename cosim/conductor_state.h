@@ -1,6 +1,6 @@
 #pragma once
 // The conductor's state and the loop over it; private to its source files: conductor.cpp (the loop),
-// conductor_end.cpp (how a run ends, what is told of it).
+// conductor_work.cpp (who does the work), conductor_end.cpp (how a run ends, what is told of it).
 
 #include "base/random.h"
 #include "cosim/conductor.h"
@@ -54,6 +54,13 @@ class Conductor::State {
         std::vector<PortEcho> echoes;
         bool stop_seen = false;
         bool wound_up = false;
+        double pace = 0.0;  ///< wall ns that a simulated ps takes it, about
+
+        double expected_ns() const { return pace * static_cast<double>(span); }
+        void worked(double ns) {
+            if (span > 0) pace += (ns / static_cast<double>(span) - pace) / kPaceMemory;
+        }
+        static constexpr double kPaceMemory = 8.0;
     };
 
     void loop();
@@ -64,8 +71,10 @@ class Conductor::State {
     void grant(std::size_t n, Time until, Time ahead);
     void chop(std::size_t n, Time& until, Time& ahead);
     void collect();
-    void work_here();
-    bool worth_sharing() const;
+    bool work_here();
+    void share_out();
+    void work(std::size_t n);
+    void take_local_reply(std::size_t n);
     void collect_elsewhere(bool wait);
     void take_reply(std::size_t n);
     void take_stop(std::size_t n, Time before);
@@ -103,9 +112,10 @@ class Conductor::State {
     TraceHash hash_;
     std::optional<RandomStream> chop_;
     std::unique_ptr<Workers> workers_;
-    std::vector<std::size_t> here_;             ///< nodes of this process that are granted
+    std::vector<std::size_t> here_;             ///< nodes of this process just granted, for this thread
     std::vector<std::size_t> elsewhere_;        ///< nodes of other processes that are granted
-    std::vector<std::size_t> shared_;           ///< those of them that any thread may advance
+    std::vector<std::size_t> shared_;           ///< those just granted that any thread may advance
+    std::vector<std::size_t> done_;             ///< that any thread has
     std::vector<std::exception_ptr> failures_;  ///< of nodes, by index
 
     Time end_ = kNever;

@@ -2,28 +2,20 @@
 
 #include "cosim/core/process_name.h"
 
+#include <bit>
 #include <chrono>
 #include <string>
+#include <utility>
 
 namespace puckloop::cosim {
 
 namespace {
 
-constexpr unsigned kNextBits = 16, kCountBits = 16;
-constexpr std::uint64_t kNextMask = (std::uint64_t{1} << kNextBits) - 1;
-constexpr std::uint64_t kCountMask = (std::uint64_t{1} << kCountBits) - 1;
 // Looks before a helper sleeps; some 20 us, about what it takes to wake it.
 constexpr int kLooks = 600;
 constexpr int kLooksBeforeYield = 200;
 constexpr auto kPutAside = std::chrono::microseconds(500);
-constexpr int kRoundsAlone = 200;
-
-std::size_t next_of(std::uint64_t ticket) {
-    return ticket & kNextMask;
-}
-std::size_t count_of(std::uint64_t ticket) {
-    return ticket >> kNextBits & kCountMask;
-}
+constexpr int kTurnsAlone = 400;
 
 void relax_core() {
 #if defined(__x86_64__) || defined(__i386__)
@@ -33,7 +25,9 @@ void relax_core() {
 
 }  // namespace
 
-Workers::Workers(unsigned helpers) {
+// The rings' sizes are powers of two, so that counters may wrap around.
+Workers::Workers(unsigned helpers, std::size_t pieces, Work work)
+    : work_(std::move(work)), pieces_(std::bit_ceil(pieces + 1)), done_(std::bit_ceil(pieces + 1)) {
     for (unsigned i = 0; i < helpers; ++i)
         threads_.emplace_back([this, i] {
             name_thread("worker " + std::to_string(i + 1));
@@ -42,22 +36,54 @@ Workers::Workers(unsigned helpers) {
 }
 
 Workers::~Workers() {
-    ending_.store(true, std::memory_order_release);
-    ticket_.fetch_add(std::uint64_t{1} << (kNextBits + kCountBits));
-    ticket_.notify_all();
+    ending_.store(true);
+    calls_.fetch_add(1);
+    calls_.notify_all();
     for (std::thread& thread : threads_)
         thread.join();
 }
 
+void Workers::submit(std::size_t piece, bool wake) {
+    const std::uint32_t place = handed_out_.load(std::memory_order_relaxed);
+    pieces_[place % pieces_.size()].store(piece, std::memory_order_relaxed);
+    ++under_way_;
+    handed_out_.store(place + 1);
+    if (!wake || sleeping_.load() == 0) return;
+    calls_.fetch_add(1);
+    calls_.notify_one();
+}
+
+bool Workers::has_work() const {
+    return begun_.load() != handed_out_.load();
+}
+
 bool Workers::do_one() {
-    std::uint64_t ticket = ticket_.load(std::memory_order_acquire);
-    while (next_of(ticket) < count_of(ticket)) {
-        if (!ticket_.compare_exchange_weak(ticket, ticket + 1, std::memory_order_acq_rel)) continue;
-        (*work_)(next_of(ticket));
-        done_.fetch_add(1, std::memory_order_release);
+    std::uint32_t place = begun_.load(std::memory_order_acquire);
+    while (place != handed_out_.load(std::memory_order_acquire)) {
+        const std::size_t piece = pieces_[place % pieces_.size()].load(std::memory_order_relaxed);
+        if (!begun_.compare_exchange_weak(place, place + 1, std::memory_order_acq_rel)) continue;
+        work_(piece);
+        const std::uint32_t end = finished_.fetch_add(1, std::memory_order_relaxed);
+        done_[end % done_.size()].store(piece + 1, std::memory_order_release);
         return true;
     }
     return false;
+}
+
+bool Workers::is_done() const {
+    return done_[taken_ % done_.size()].load(std::memory_order_acquire) != 0;
+}
+
+void Workers::take_done(std::vector<std::size_t>& done) {
+    while (true) {
+        std::atomic<std::size_t>& next = done_[taken_ % done_.size()];
+        const std::size_t piece = next.load(std::memory_order_acquire);
+        if (piece == 0) return;
+        next.store(0, std::memory_order_relaxed);
+        ++taken_;
+        --under_way_;
+        done.push_back(piece - 1);
+    }
 }
 
 void Workers::help() {
@@ -68,42 +94,40 @@ void Workers::help() {
         } else if (++looks < kLooks) {
             relax_core();
         } else {
-            const std::uint64_t ticket = ticket_.load(std::memory_order_acquire);
-            if (next_of(ticket) >= count_of(ticket)) ticket_.wait(ticket, std::memory_order_acquire);
+            const std::uint32_t calls = calls_.load();
+            sleeping_.fetch_add(1);
+            if (!has_work() && !ending_.load()) calls_.wait(calls);
+            sleeping_.fetch_sub(1);
             looks = 0;
         }
     }
 }
 
-void Workers::run(std::size_t count, const Work& work) {
-    if (threads_.empty() || count < 2 || alone_ > 0) {
-        if (alone_ > 0) --alone_;
-        for (std::size_t piece = 0; piece < count; ++piece)
-            work(piece);
-        return;
-    }
-    work_ = &work;
-    done_.store(0, std::memory_order_relaxed);
-    ++round_;
-    ticket_.store(std::uint64_t{round_} << (kNextBits + kCountBits) | std::uint64_t{count} << kNextBits,
-                  std::memory_order_release);
-    ticket_.notify_all();
-    while (do_one()) {
-    }
-    wait_for_all(count);
-}
-
-void Workers::wait_for_all(std::size_t count) {
+void Workers::wait() {
     using Clock = std::chrono::steady_clock;
     Clock::time_point begun{};
-    for (int looks = 0; done_.load(std::memory_order_acquire) < count; ++looks) {
+    for (int looks = 0; !is_done(); ++looks) {
         if (looks < kLooksBeforeYield) {
             relax_core();
             continue;
         }
         if (looks == kLooksBeforeYield) begun = Clock::now();
         std::this_thread::yield();
-        if (Clock::now() - begun > kPutAside) alone_ = kRoundsAlone;
+        if (Clock::now() - begun > kPutAside) alone_ = kTurnsAlone;
+    }
+}
+
+void Workers::stop() {
+    std::vector<std::size_t> done;
+    // Nobody begins another one; those begun come to their end.
+    std::uint32_t place = begun_.load();
+    while (!begun_.compare_exchange_weak(place, handed_out_.load())) {
+    }
+    const std::uint32_t left = handed_out_.load() - place;
+    under_way_ -= left;
+    while (under_way_ > 0) {
+        wait();
+        take_done(done);
     }
 }
 

@@ -1,10 +1,11 @@
 #pragma once
-// A few threads that share short pieces of work: nodes of one process that may advance side by side.
+// A few threads that take pieces of work from the caller's: nodes of one process that advance beside each
+// other and beside the caller, who hands out more as pieces come back.
 //
 // A piece takes some microseconds, so that handing it over must cost less: threads that have nothing to do
 // look again for a moment before they sleep. Where the machine has no core to spare for them, a thread may be
-// put aside in the middle of a piece while everybody waits; after such a wait the caller works alone for a
-// while.
+// put aside in the middle of a piece while the caller waits; after such a wait the caller should work alone
+// for a while.
 
 #include <atomic>
 #include <cstddef>
@@ -19,30 +20,53 @@ class Workers {
   public:
     using Work = std::function<void(std::size_t piece)>;
 
-    /// `helpers`: threads besides the caller's; 0 is allowed.
-    explicit Workers(unsigned helpers);
+    /// `helpers`: threads besides the caller's; 0 is allowed. `pieces`: how many there are at most at a time.
+    /// `work` must not throw.
+    Workers(unsigned helpers, std::size_t pieces, Work work);
     ~Workers();
     Workers(const Workers&) = delete;
     Workers& operator=(const Workers&) = delete;
 
-    /// Does pieces 0..count-1, each once, in any order, on any thread; returns when all are done. `work` must
-    /// not throw. At most 65535 pieces.
-    void run(std::size_t count, const Work& work);
+    /// All calls are the caller's thread's. Hands out a piece; `wake`: a helper that sleeps is woken for it.
+    void submit(std::size_t piece, bool wake);
+    /// Does a piece that nobody has begun. False: there is none.
+    bool do_one();
+    /// Appends the pieces that have been done since.
+    void take_done(std::vector<std::size_t>& done);
+    /// Waits until there is one to take. Something must be under way.
+    void wait();
+    /// Waits until nobody works any more; what was not begun is left out, what was done is forgotten.
+    void stop();
+
+    unsigned helpers() const { return static_cast<unsigned>(threads_.size()); }
+    /// So many have been handed out and not been taken.
+    std::size_t under_way() const { return under_way_; }
+    /// So many helpers look for work.
+    unsigned awake() const { return helpers() - sleeping_.load(std::memory_order_relaxed); }
+    /// False for a while after a helper was put aside.
+    bool available() {
+        if (alone_ > 0) --alone_;
+        return !threads_.empty() && alone_ == 0;
+    }
 
   private:
-    /// Takes the next piece, if there is one. False: nothing left.
-    bool do_one();
+    bool has_work() const;
+    bool is_done() const;
     void help();
-    void wait_for_all(std::size_t count);
 
+    Work work_;
     std::vector<std::thread> threads_;
-    /// Round, number of pieces, next piece: a piece taken belongs to the round that is under way.
-    std::atomic<std::uint64_t> ticket_{0};
-    std::atomic<std::size_t> done_{0};
+    std::vector<std::atomic<std::size_t>> pieces_;  ///< ring: those to be begun are [begun_, handed_out_)
+    std::vector<std::atomic<std::size_t>> done_;    ///< ring: number + 1 of a piece that is done, 0: none
+    std::atomic<std::uint32_t> handed_out_{0};
+    std::atomic<std::uint32_t> begun_{0};
+    std::atomic<std::uint32_t> finished_{0};
+    std::uint32_t taken_ = 0;
+    std::size_t under_way_ = 0;
+    std::atomic<unsigned> sleeping_{0};
+    std::atomic<std::uint32_t> calls_{0};  ///< to wake up
     std::atomic<bool> ending_{false};
-    const Work* work_ = nullptr;
-    std::uint32_t round_ = 0;
-    int alone_ = 0;  ///< rounds to go without help
+    int alone_ = 0;  ///< calls of available() until helpers are tried again
 };
 
 }  // namespace puckloop::cosim

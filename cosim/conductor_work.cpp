@@ -1,0 +1,109 @@
+// Who does the work of a grant: this thread, a helper or another process; and when its reply is taken.
+
+#include "base/error.h"
+#include "cosim/conductor_state.h"
+
+#include <thread>
+
+namespace puckloop::cosim {
+
+namespace {
+// Handing a piece of work over costs a good part of a microsecond, and one more look at the schedule.
+constexpr double kWorthSharing = 3000.0;  // ns
+// How long to sleep where --realtime lets nobody go on.
+constexpr std::chrono::microseconds kPaceSleep{500};
+}  // namespace
+
+/// Which of the nodes of this process just granted go to all threads: those that take long. What is short or
+/// bound to this thread stays here.
+void Conductor::State::share_out() {
+    shared_.clear();
+    std::size_t kept = 0;
+    const bool available = workers_->available();
+    for (const std::size_t n : here_) {
+        if (available && specs_[n].any_thread && slots_[n].expected_ns() >= kWorthSharing)
+            shared_.push_back(n);
+        else
+            here_[kept++] = n;
+    }
+    here_.resize(kept);
+    // One alone is not worth waking a thread for.
+    if (shared_.size() == 1 && workers_->awake() == 0) {
+        here_.push_back(shared_.front());
+        shared_.clear();
+    }
+    for (const std::size_t n : shared_)
+        workers_->submit(n, shared_.size() > 1);
+}
+
+/// One node's work on a grant, on any thread.
+void Conductor::State::work(std::size_t n) {
+    const WallClock::time_point begun = WallClock::now();
+    try {
+        handles_[n]->poll(false);
+    } catch (...) {
+        failures_[n] = std::current_exception();
+    }
+    slots_[n].worked(std::chrono::duration<double, std::nano>(WallClock::now() - begun).count());
+}
+
+/// Lets the granted nodes of this process work, and takes what replies there are. False: none was granted.
+bool Conductor::State::work_here() {
+    share_out();
+    done_.clear();
+    for (const std::size_t n : here_) {
+        current_ = n;
+        work(n);
+        take_local_reply(n);
+    }
+    const bool any = !here_.empty() || workers_->under_way() > 0;
+    workers_->take_done(done_);
+    // Beside what has just been handed out others may be able to go on: that is seen first.
+    if (done_.empty() && here_.empty() && shared_.empty() && any) {
+        if (!workers_->do_one()) workers_->wait();
+        workers_->take_done(done_);
+    }
+    here_.clear();
+    for (const std::size_t n : done_)
+        take_local_reply(n);
+    return any;
+}
+
+void Conductor::State::take_local_reply(std::size_t n) {
+    current_ = n;
+    if (failures_[n]) std::rethrow_exception(failures_[n]);
+    take_reply(n);
+}
+
+void Conductor::State::collect() {
+    elsewhere_.clear();
+    if (processes_)
+        for (std::size_t n = 0; n < handles_.size(); ++n)
+            if (times_[n].busy && handles_[n]->elsewhere()) elsewhere_.push_back(n);
+    const bool any = work_here();
+    if (!elsewhere_.empty()) {
+        collect_elsewhere(!any);
+    } else if (!any) {
+        // Nobody works and nobody may be granted: ahead of the wall clock, or locked for good.
+        if (!options_.realtime || stuck()) deadlock();
+        std::this_thread::sleep_for(kPaceSleep);
+    }
+}
+
+/// Takes what nodes of other processes have answered; with `wait` until there is something.
+void Conductor::State::collect_elsewhere(bool wait) {
+    for (int looks = wait ? 2 : 1; looks > 0; --looks) {
+        const std::uint32_t seen = processes_->rings();
+        bool any = false;
+        for (const std::size_t n : elsewhere_) {
+            current_ = n;
+            if (!handles_[n]->poll(false)) continue;
+            take_reply(n);
+            any = true;
+        }
+        if (any) return;
+        if (looks == 2) processes_->await_answers(seen, elsewhere_.size());
+    }
+}
+
+}  // namespace puckloop::cosim
