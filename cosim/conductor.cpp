@@ -13,6 +13,8 @@ namespace puckloop::cosim {
 
 namespace {
 
+// Rounds between two plans.
+constexpr int kMostFollowing = 8;
 constexpr double kProgressSeconds = 0.2;
 // What is recorded is on disk after so long, should this very process be killed.
 constexpr double kFlushSeconds = 1.0;
@@ -111,6 +113,7 @@ Outcome Conductor::State::run() {
 void Conductor::State::loop() {
     while (true) {
         take_interrupt();
+        surprised_.clear();
         plan();
         if (schedule_.complete()) return;
         network_->settle(schedule_.bounds(), deliveries_, changes_);
@@ -122,9 +125,30 @@ void Conductor::State::loop() {
             grant(n, until, ahead);
         }
         collect();
+        for (int turns = 0; turns < kMostFollowing && follow_up(); ++turns)
+            collect();
         if (merger_.full()) release_trace(std::min(schedule_.bounds().floor(), end_));
         report_progress();
     }
+}
+
+/// Grants the nodes that were taken by surprise since the plan. Bounds need not be known for that: it only
+/// makes clear what there is to be foreseen. False: there is none.
+bool Conductor::State::follow_up() {
+    if (surprised_.empty()) return false;
+    bool any = false;
+    following_.swap(surprised_);
+    surprised_.clear();
+    for (const std::size_t n : following_) {
+        const NodeTimes& node = times_[n];
+        if (node.busy || !node.runs_ahead || node.surprise >= node.ahead) continue;
+        if (node.ahead > end_ || !schedule_.follow(n, times_)) continue;
+        Time until = schedule_.target(n), ahead = schedule_.ahead(n);
+        if (chop_) chop(n, until, ahead);
+        grant(n, until, ahead);
+        any = true;
+    }
+    return any;
 }
 
 void Conductor::State::chop(std::size_t n, Time& until, Time& ahead) {
@@ -287,6 +311,7 @@ void Conductor::State::take_changes() {
 /// Something else comes in for node `to` at `time` than it foresaw.
 void Conductor::State::surprise(std::size_t from, std::size_t to, Time time) {
     times_[to].surprise = std::min(times_[to].surprise, time);
+    surprised_.push_back(to);
     if (times_[from].runs_ahead) schedule_.surprised(from, to);
 }
 

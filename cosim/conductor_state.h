@@ -69,6 +69,7 @@ class Conductor::State {
     void take_wound_up(std::size_t n, Time before);
     void plan();
     void grant(std::size_t n, Time until, Time ahead);
+    bool follow_up();
     void chop(std::size_t n, Time& until, Time& ahead);
     void collect();
     bool work_here();
@@ -107,7 +108,9 @@ class Conductor::State {
     Schedule schedule_;
     std::vector<TraceRecord> deliveries_;
     std::vector<Change> changes_;
-    std::vector<LinkStats> stats_;  ///< one a wire
+    std::vector<LinkStats> stats_;        ///< one a wire
+    std::vector<std::size_t> surprised_;  ///< since the plan
+    std::vector<std::size_t> following_;
     TraceMerger merger_;
     TraceHash hash_;
     std::optional<RandomStream> chop_;

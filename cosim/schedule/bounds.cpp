@@ -1,14 +1,9 @@
 #include "cosim/schedule/bounds.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace puckloop::cosim {
-
-namespace {
-Time bound(const Channel& channel, const std::vector<Time>& earliest) {
-    return std::min(channel.base, channel.answer(earliest[channel.from]));
-}
-}  // namespace
 
 Time Channel::first_change(Time time) const {
     const auto changed =
@@ -28,6 +23,8 @@ void Bounds::build_adjacency(std::size_t nodes) {
         return;
     ends_.clear();
     leaving_.assign(nodes, {});
+    order_.resize(nodes);
+    std::iota(order_.begin(), order_.end(), std::size_t{0});
     for (std::size_t c = 0; c < channels_->size(); ++c) {
         const Channel& channel = (*channels_)[c];
         ends_.emplace_back(channel.from, channel.to);
@@ -50,28 +47,43 @@ void Bounds::compute(const std::vector<Channel>& channels, const std::vector<Tim
     critical_.assign(pending.size(), kNobody);
     floor_ = kNever;
     for (std::size_t c = 0; c < channels.size(); ++c) {
-        if (channels[c].from == silent) continue;
-        const Time time = bound(channels[c], earliest_);
+        const Channel& channel = channels[c];
+        if (channel.from == silent) continue;
+        const Time time = std::min(channel.base, answers_[c]);
         floor_ = std::min(floor_, time);
-        if (time < limit_[channels[c].to]) {
-            limit_[channels[c].to] = time;
-            critical_[channels[c].to] = c;
+        if (time < limit_[channel.to]) {
+            limit_[channel.to] = time;
+            critical_[channel.to] = c;
         }
     }
 }
 
+/// Nodes by their earliest time, which is much the same order each time.
+void Bounds::sort_nodes() {
+    for (std::size_t i = 1; i < order_.size(); ++i) {
+        const std::size_t n = order_[i];
+        std::size_t place = i;
+        for (; place > 0 && earliest_[order_[place - 1]] > earliest_[n]; --place)
+            order_[place] = order_[place - 1];
+        order_[place] = n;
+    }
+}
+
 /// Shortest paths from the EOTs and what is pending: a node whose earliest time fell tells those behind it.
+/// Begun with the earliest, hardly a node comes twice.
 void Bounds::relax() {
+    sort_nodes();
     last_relaxed_.assign(earliest_.size(), kNever);
+    answers_.assign(channels_->size(), kNever);
     for (bool changed = true; changed;) {
         changed = false;
-        for (std::size_t n = 0; n < earliest_.size(); ++n) {
+        for (const std::size_t n : order_) {
             const Time time = earliest_[n];
             if (time >= last_relaxed_[n] || n == silent_) continue;
             last_relaxed_[n] = time;
             for (const std::size_t c : leaving_[n]) {
                 const Channel& channel = (*channels_)[c];
-                const Time there = channel.answer(time);
+                const Time there = answers_[c] = channel.answer(time);
                 if (there >= earliest_[channel.to]) continue;
                 earliest_[channel.to] = there;
                 changed = true;

@@ -76,6 +76,7 @@ class Bounds {
 
   private:
     void build_adjacency(std::size_t nodes);
+    void sort_nodes();
     void relax();
 
     const std::vector<Channel>* channels_ = nullptr;
@@ -87,7 +88,9 @@ class Bounds {
     Time floor_ = kNever;
     std::vector<std::vector<std::size_t>> leaving_;          ///< channels, by their sender
     std::vector<std::pair<std::size_t, std::size_t>> ends_;  ///< of the channels that leaving_ was made for
+    std::vector<std::size_t> order_;
     std::vector<Time> last_relaxed_;  ///< what the channels that leave a node were relaxed with
+    std::vector<Time> answers_;       ///< of each channel to that
 };
 
 /// For each node the shortest time from a message that reaches it to one, caused by it, that reaches

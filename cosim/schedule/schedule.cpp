@@ -38,8 +38,11 @@ Time Schedule::limit_if_silent(std::size_t n) {
 /// When something may happen at each node next, if nothing new comes in.
 void Schedule::find_next(const std::vector<NodeTimes>& nodes, Time end) {
     next_ = *pending_;
-    for (const Channel& channel : *channels_)
+    expected_.assign(nodes.size(), kNever);
+    for (const Channel& channel : *channels_) {
         next_[channel.from] = std::min(next_[channel.from], channel.base);
+        if (channel.punctual > 0) expected_[channel.to] = std::min(expected_[channel.to], channel.base);
+    }
     // How far the first one may go: whatever happens within that time happens beside it.
     std::size_t first = kNobody;
     for (std::size_t n = 0; n < nodes.size(); ++n)
@@ -110,9 +113,6 @@ bool Schedule::aims_ahead(std::size_t n, const NodeTimes& node, const ScheduleLi
 
 /// Nodes that can go back and have something to do, but for those that wait for another one of them.
 void Schedule::plan_ahead(const std::vector<NodeTimes>& nodes, const ScheduleLimits& limits) {
-    expected_.assign(nodes.size(), kNever);
-    for (const Channel& channel : *channels_)
-        if (channel.punctual > 0) expected_[channel.to] = std::min(expected_[channel.to], channel.base);
     goes_.assign(nodes.size(), false);
     for (std::size_t n = 0; n < nodes.size(); ++n)
         goes_[n] = nodes[n].runs_ahead && !nodes[n].busy && aims_ahead(n, nodes[n], limits);
@@ -130,6 +130,19 @@ void Schedule::plan_ahead(const std::vector<NodeTimes>& nodes, const ScheduleLim
         stretch.length = std::clamp(stretch.length + stretch.length / kGrowth, kShortest, kLongest);
         if (++stretch.calm >= kCalm) stretch.waits_for = kNobody;
     }
+}
+
+bool Schedule::follow(std::size_t n, const std::vector<NodeTimes>& nodes) {
+    const NodeTimes& node = nodes[n];
+    Stretch& stretch = stretches_[n];
+    const std::size_t first = stretch.waits_for;
+    if (first != kNobody && (nodes[first].busy || nodes[first].surprise < nodes[first].ahead)) return false;
+    const Time reach = std::min({ceiling_, expected_[n], stretch_end(node.surprise, stretch.length)});
+    if (reach <= node.surprise) return false;
+    target_[n] = node.granted;
+    ahead_[n] = reach;
+    stretch.length = kShortest;
+    return true;
 }
 
 /// Nodes that cannot go back, as far as that serves.

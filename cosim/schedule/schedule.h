@@ -38,6 +38,9 @@ class Schedule {
     void plan(const std::vector<Channel>& channels, const std::vector<Time>& pending,
               const std::vector<NodeTimes>& nodes, const ScheduleLimits& limits);
     const Bounds& bounds() const { return bounds_; }
+    /// Between two plans: whether node `n`, taken by surprise, is to go again at once on what is foreseen;
+    /// then target(n) and ahead(n) say how far. Nothing more is sure than before.
+    bool follow(std::size_t n, const std::vector<NodeTimes>& nodes);
 
     /// How far node `n` may go, in strides where that is beyond bounds().limit(n): there only the echo of
     /// what it says itself limits it. At most its present time if it may not go.
