@@ -433,6 +433,10 @@ void Chip::set_skipping(bool on) {
     parts_->core.set_skip_idle(on);
 }
 
+void Chip::set_translating(bool on) {
+    parts_->core.set_translate(on);
+}
+
 ChipReport Chip::report() const {
     ChipReport report = parts_->report;
     report.instructions = parts_->core.instructions();

@@ -150,6 +150,8 @@ class Chip {
 
     /// Busy-wait loops are skipped forward (default); off, every turn of them is executed.
     void set_skipping(bool on);
+    /// Hot code is executed as the host's own; off, every instruction is interpreted (Core::set_translate()).
+    void set_translating(bool on);
 
   private:
     struct Parts;

@@ -47,7 +47,7 @@ void check(const MakeBoard& make, const Plan& plan, const std::string& name) {
 }  // namespace
 
 TEST_CASE("own firmware, translated and interpreted") {
-    for (const std::uint8_t hot : {std::uint8_t{1}, dspic::kHot}) {
+    for (const std::uint8_t hot : {std::uint8_t{1}, chip::kHot}) {
         check(pic_board(own_pic_image()), {.stretches = 40, .longest = 60 * cosim::kMillisecond, .hot = hot},
               "epuck.hex");
         const Plan plan{

@@ -1,14 +1,14 @@
 #pragma once
 // Cores made while it lives translate as it says.
 
-#include "emu/dspic/translate/translation.h"
+#include "emu/chip/translation_switch.h"
 
 namespace puckloop::tests {
 
 class TranslationGuard {
   public:
-    explicit TranslationGuard(bool on, std::uint8_t hot = 1) { dspic::set_translation(on, hot); }
-    ~TranslationGuard() { dspic::set_translation(true); }
+    explicit TranslationGuard(bool on, std::uint8_t hot = 1) { chip::set_translation(on, hot); }
+    ~TranslationGuard() { chip::set_translation(true); }
     TranslationGuard(const TranslationGuard&) = delete;
     TranslationGuard& operator=(const TranslationGuard&) = delete;
 };

@@ -1,6 +1,6 @@
 // `puckloop bench`: performance figures, each measured beside a reference that the same machine runs in turn.
 
-#include "emu/dspic/translate/translation.h"
+#include "emu/chip/translation_switch.h"
 #include "tools/bench/cases.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
@@ -23,7 +23,7 @@ struct Options {
 };
 
 void run(const Options& options) {
-    if (options.bench.interpret) dspic::set_translation(false);
+    if (options.bench.interpret) chip::set_translation(false);
     const OtherLoadMeter meter;
     const std::vector<Figure> figures = measure_cases(options.bench);
     fmt::print("{}",
@@ -77,8 +77,9 @@ void declare_bench(Command& app, int& status) {
     command->add_option("--rounds", bench.rounds, "measurements of each figure (default 5)")
         ->check(whole_number_between(1, kMostRounds))
         ->type_name("N");
-    command->add_flag("--no-translate", bench.interpret,
-                      "this build interprets every dsPIC instruction (default: hot code is translated)");
+    command->add_flag(
+        "--no-translate", bench.interpret,
+        "this build interprets every instruction of the chips (default: hot code is translated)");
     command->add_flag("--json", options->json, "print JSON");
     declare_bench_rab(*command, status);
     command->callback([options, command, &status] {

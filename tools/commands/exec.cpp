@@ -1,7 +1,7 @@
 // `puckloop exec`: one chip or board alone on the bench.
 
 #include "base/error.h"
-#include "emu/dspic/translate/translation.h"
+#include "emu/chip/translation_switch.h"
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
 #include "tools/cli/log_options.h"
@@ -145,7 +145,7 @@ void describe(Command& app, Arguments& a) {
     declare_log_options(app, a.log);
     app.add_flag("!--no-skip", t.skip_idle, "execute every turn of busy-wait loops");
     app.add_flag("--no-translate", a.interpret,
-                 "interpret every dsPIC instruction (default: hot code is translated)");
+                 "interpret every instruction of the chips (default: hot code is translated)");
 }
 
 }  // namespace
@@ -159,7 +159,7 @@ void declare_exec(Command& app, int& status) {
         if (a.options.bench.mcu.empty() && a.options.bench.board.empty())
             throw InputError("", "exec", "nothing lies on the bench", "--mcu CHIP or --board BOARD");
         start_log("exec", a.log);
-        if (a.interpret) dspic::set_translation(false);
+        if (a.interpret) chip::set_translation(false);
         exec::BenchOptions& bench = a.options.bench;
         if (command->count("--selector") > 0 && bench.board != "pic")
             throw InputError("", "--selector",

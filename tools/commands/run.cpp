@@ -119,9 +119,10 @@ void declare_run(Command& app, int& status) {
                      "with --in-process: threads for the boards (default: by the number of boards)")
         ->check(whole_number_between(1, 16))
         ->type_name("N");
-    command->add_flag("--no-translate", options->interpret,
-                      "interpret every dsPIC instruction (default: hot code is translated to this machine's; "
-                      "the run is the same)");
+    command->add_flag(
+        "--no-translate", options->interpret,
+        "interpret every instruction of the chips (default: hot code is translated to this machine's; "
+        "the run is the same)");
     command->add_flag("--realtime", request.realtime, "pace simulated time by the wall clock");
     command->add_flag("--paced", request.paced,
                       "the same, but Linux programs stay in simulated time: the run can be repeated");

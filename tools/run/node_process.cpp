@@ -4,7 +4,7 @@
 #include "cosim/core/process_name.h"
 #include "cosim/remote/node_server.h"
 #include "cosim/remote/protocol.h"
-#include "emu/dspic/translate/translation.h"
+#include "emu/chip/translation_switch.h"
 #include "tools/run/node_factory.h"
 
 #include <cstdlib>
@@ -19,7 +19,7 @@ constexpr const char* kInterpret = "PUCKLOOP_INTERPRET";
 }  // namespace
 
 void interpret_from_here(bool in_nodes_too) {
-    dspic::set_translation(false);
+    chip::set_translation(false);
     if (in_nodes_too) ::setenv(kInterpret, "1", 1);
 }
 
@@ -27,7 +27,7 @@ std::optional<int> serve_as_node(int count, char** words) {
     const std::string_view title = count == 1 ? words[0] : "";
     if (!title.starts_with(cosim::kNodeTitle)) return std::nullopt;
     log::start_in_child(std::string(title.substr(cosim::kNodeTitle.size())));
-    if (std::getenv(kInterpret) != nullptr) dspic::set_translation(false);
+    if (std::getenv(kInterpret) != nullptr) chip::set_translation(false);
     ::unsetenv(kInterpret);
     log::info("started for this node");
     const int status = cosim::serve_node(cosim::protocol::kDescriptor, make_node);

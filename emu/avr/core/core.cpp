@@ -1,6 +1,7 @@
 #include "emu/avr/core/core.h"
 
 #include "emu/avr/core/machine.h"
+#include "emu/chip/translation_switch.h"
 
 #include <algorithm>
 
@@ -50,6 +51,10 @@ Machine::Machine(const DeviceInfo& info, IoSpace& registers, EventQueue& queue,
         code_store[i].run = &wrap;
     code = code_store.data();
     current = code;
+    loop_info = loops.data();
+    const chip::Translation wanted = chip::translation();
+    translated.on = wanted.on;
+    translated.hot = wanted.hot;
     hook_core_registers(*this);
     irq.set_listener(this, [](void* owner) {
         Machine& m = *static_cast<Machine*>(owner);
@@ -108,6 +113,10 @@ void Core::set_stops(std::span<const std::uint16_t> addresses) {
 
 void Core::set_skip_idle(bool on) {
     machine_->skip_idle = on;
+}
+
+void Core::set_translate(bool on) {
+    machine_->translated.on = on;
 }
 
 void Core::stall_until(Cycle cycle) {

@@ -80,6 +80,9 @@ class Core {
     void set_stops(std::span<const std::uint16_t> addresses);
     /// Busy-wait loops are skipped without changing anything observable. On from the start.
     void set_skip_idle(bool on);
+    /// Hot code is translated to the host's, where that is possible, without changing anything observable: by
+    /// default as emu/chip/translation_switch.h says.
+    void set_translate(bool on);
     /// Keeps the CPU from executing until `cycle`; events go on.
     void stall_until(Cycle cycle);
     /// The CPU executes nothing until an interrupt that is enabled requests.

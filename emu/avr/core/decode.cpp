@@ -41,9 +41,6 @@ const Op* loop_back(Machine& m, const Op* op) {
     return next;
 }
 
-/// Longer loops are no busy waits.
-constexpr std::uint32_t kLongestLoop = 64;
-
 /// The handler of a short backward branch; null for any other operation.
 Handler loop_handler_of(const Op& op, std::uint32_t index) {
     if (op.k > index || index - op.k >= kLongestLoop) return nullptr;
@@ -133,6 +130,7 @@ void forget(Machine& m, std::uint32_t address) {
     };
     forget_one(address);
     if (address > 0) forget_one(address - 1);  // a pair's first word, or a skip over this one
+    forget_blocks(m, address);
 }
 
 }  // namespace puckloop::avr

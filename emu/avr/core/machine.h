@@ -5,6 +5,7 @@
 #include "emu/avr/core/core.h"
 #include "emu/avr/core/memory_undo.h"
 #include "emu/avr/isa/isa.h"
+#include "emu/avr/translate/translation.h"
 
 #include <optional>
 #include <vector>
@@ -38,6 +39,9 @@ struct LoopInfo {
     std::uint8_t patience = 0;  ///< failures in a row
     std::uint32_t period = 0;   ///< cycles of its last turn that was looked at; 0: none was
 };
+
+/// Longer loops are no busy waits.
+inline constexpr std::uint32_t kLongestLoop = 64;
 
 struct Machine {
     Machine(const DeviceInfo& info, IoSpace& registers, EventQueue& queue, InterruptController& controller);
@@ -74,6 +78,8 @@ struct Machine {
     std::vector<std::uint16_t> program;  ///< guards included
     std::vector<Op> code_store;
     std::vector<LoopInfo> loops;
+    LoopInfo* loop_info = nullptr;  ///< their first
+    Translated translated;
     std::vector<std::uint16_t> stops;
     MemoryUndo<std::uint16_t> program_undo;
     std::vector<std::uint32_t> warned;

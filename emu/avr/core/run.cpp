@@ -20,6 +20,7 @@ constexpr std::uint16_t kWordsPerVector = 2;
 
 void execute(Machine& m) {
     m.quiet_since = m.cycle;
+    if (m.translated.on && run_translated(m)) return;
     const Op* op = m.current;
     do {
         const Op* next = op->run(m, op);

@@ -1,6 +1,7 @@
 #include "emu/dspic/core/core.h"
 
 #include "base/error.h"
+#include "emu/chip/translation_switch.h"
 #include "emu/dspic/core/machine.h"
 #include "emu/dspic/fast/idle_loops.h"
 #include "emu/dspic/fast/loop_undo.h"
@@ -60,7 +61,9 @@ Machine::Machine(const DeviceInfo& info, SfrSpace& registers, EventQueue& queue,
     irq.set_clock(&st.cycle, &st.disi_end);
     irq.set_listener(this, [](void* owner, Cycle now) { reconsider(*static_cast<Machine*>(owner), now); });
     reset_registers(*this);
-    adopt_translation(translated);
+    const chip::Translation wanted = chip::translation();
+    translated.on = wanted.on;
+    translated.hot = wanted.hot;
 }
 
 Machine::~Machine() = default;

@@ -87,7 +87,7 @@ class Core {
     /// Busy-wait loops are skipped without changing anything observable. On from the start.
     void set_skip_idle(bool on);
     /// Hot code is translated to the host's, where that is possible, without changing anything observable: by
-    /// default as set_translation() says (emu/dspic/translate/translation.h).
+    /// default as emu/chip/translation_switch.h says.
     void set_translate(bool on);
     /// Keeps the CPU from executing until `cycle` (flash programming, oscillator start-up); events go on.
     void stall_until(Cycle cycle);

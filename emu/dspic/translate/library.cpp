@@ -1,6 +1,6 @@
 #include "emu/dspic/translate/library.h"
 
-#include "emu/dspic/translate/code_memory.h"
+#include "emu/chip/code_memory.h"
 #include "emu/dspic/translate/emitter.h"
 
 #include <list>
@@ -53,7 +53,7 @@ class Library {
         std::vector<Block>& known = blocks_[index];
         for (const Block& block : known)
             if (fits(m, index, block)) return block.code;
-        if (m.code[index].marks || used_ + 2 * kLargestBlock > CodeMemory::kBytes) return 0;
+        if (m.code[index].marks || used_ + 2 * kLargestBlock > chip::CodeMemory::kBytes) return 0;
         return known.emplace_back(make(m, index)).code;
     }
 
@@ -78,7 +78,7 @@ class Library {
     }
 
     const Layout layout_;
-    CodeMemory memory_;
+    chip::CodeMemory memory_;
     Emitter::Shared shared_;
     const std::uint8_t* start_ = nullptr;
     Enter enter_ = nullptr;

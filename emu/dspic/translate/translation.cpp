@@ -5,7 +5,6 @@
 #include "emu/dspic/translate/library.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cstdlib>
 #include <utility>
 
@@ -18,9 +17,6 @@ constexpr std::uint8_t kNever = 255;
 constexpr std::uint32_t kMostWords = 40;
 /// Only W15 has rules of its own; modulo and bit-reversed pointers are interpreted.
 constexpr std::uint16_t kPlainPointers = 0x8000;
-
-std::atomic<bool> wanted{true};
-std::atomic<std::uint8_t> wanted_hot{kHot};
 
 /// False: the host cannot, and this machine does not ask again.
 bool prepare(Machine& m) {
@@ -53,16 +49,6 @@ std::uint32_t block_at(Machine& m, std::uint32_t index) {
 Translated::~Translated() {
     std::free(entries);
     std::free(heat);
-}
-
-void set_translation(bool on, std::uint8_t hot) {
-    wanted = on;
-    wanted_hot = hot;
-}
-
-void adopt_translation(Translated& translated) {
-    translated.on = wanted;
-    translated.hot = wanted_hot;
 }
 
 void run_translated(Machine& m) {

@@ -33,11 +33,4 @@ void run_translated(Machine& m);
 void forget_blocks(Machine& m, std::uint32_t index);
 void forget_all_blocks(Machine& m);
 
-/// A block takes as long to make as some ten thousand instructions to interpret.
-inline constexpr std::uint8_t kHot = 40;
-/// For cores made from now on in this process (`--no-translate`); on from the start. `hot`: how often a place
-/// is come to before it is translated, 1..254.
-void set_translation(bool on, std::uint8_t hot = kHot);
-void adopt_translation(Translated& translated);
-
 }  // namespace puckloop::dspic

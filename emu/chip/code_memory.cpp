@@ -1,4 +1,4 @@
-#include "emu/dspic/translate/code_memory.h"
+#include "emu/chip/code_memory.h"
 
 #include "base/log.h"
 
@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <cstring>
 
-namespace puckloop::dspic {
+namespace puckloop::chip {
 
 CodeMemory::CodeMemory() {
     const int file = ::memfd_create("puckloop code", MFD_CLOEXEC);
@@ -29,7 +29,7 @@ CodeMemory::CodeMemory() {
         }
     }
     if (!available())
-        log::warning("no executable memory on this host ({}): dsPIC programs are interpreted",
+        log::warning("no executable memory on this host ({}): programs are interpreted",
                      std::strerror(errno));
     if (file >= 0) ::close(file);
 }
@@ -40,4 +40,4 @@ CodeMemory::~CodeMemory() {
     ::munmap(executable_, kBytes);
 }
 
-}  // namespace puckloop::dspic
+}  // namespace puckloop::chip

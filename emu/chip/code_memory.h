@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace puckloop::dspic {
+namespace puckloop::chip {
 
 class CodeMemory {
   public:
@@ -27,4 +27,4 @@ class CodeMemory {
     std::uint8_t* executable_ = nullptr;
 };
 
-}  // namespace puckloop::dspic
+}  // namespace puckloop::chip

@@ -1,0 +1,19 @@
+// Hosts for which no code is made: everything is interpreted.
+
+#include "emu/avr/translate/library.h"
+
+namespace puckloop::avr::translate {
+
+Library* library_for(const Machine&) {
+    return nullptr;
+}
+
+std::uint32_t block_at(Library&, Machine&, std::uint32_t) {
+    return 0;
+}
+
+Left enter(const Library&, Machine&, std::uint32_t) {
+    return Left::Slow;
+}
+
+}  // namespace puckloop::avr::translate
