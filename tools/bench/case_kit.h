@@ -25,6 +25,8 @@ class Kit {
     std::filesystem::path rab_image() const;
 
     void time_core();
+    /// The ATmega1284P beside libsimavr (tools/bench/avr_speed.h).
+    void time_avr();
     /// Range-and-bearing boards alone, one at a time.
     void time_boards();
     void time_runs(const std::string& name, const RunSpec& spec);

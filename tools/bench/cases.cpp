@@ -56,6 +56,7 @@ using Case = std::pair<std::string, std::function<void(Kit&)>>;
 
 const std::vector<Case>& table() {
     static const std::vector<Case> cases{{"core", [](Kit& kit) { kit.time_core(); }},
+                                         {"avr", [](Kit& kit) { kit.time_avr(); }},
                                          {"board", [](Kit& kit) { kit.time_boards(); }},
                                          {"scenario", hello},
                                          {"swarm", swarm},

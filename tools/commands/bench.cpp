@@ -46,7 +46,8 @@ void declare_bench(Command& app, int& status) {
     command
         ->add_option(
             "--case", bench.cases,
-            "what to measure (repeatable; default core and scenario): core; board = marks, one "
+            "what to measure (repeatable; default core and scenario): core; avr = the ATmega1284P beside "
+            "libsimavr on the same ELFs; board = marks, one "
             "range-and-bearing "
             "board alone; scenario = in one process and with a process a node; swarm = swarm.toml; overhead "
             "= hello.toml and swarm.toml beside their boards alone; wander, memory = wandering robots; world "
