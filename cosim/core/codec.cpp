@@ -128,7 +128,7 @@ Payload ByteReader::payload() {
         radio.channel = u8();
         radio.dbm = static_cast<std::int8_t>(u8());
         const std::size_t size = u8();
-        if (radio.duration <= 0 || radio.channel < kFirstChannel || radio.channel > kLastChannel ||
+        if (radio.duration < 0 || radio.channel < kFirstChannel || radio.channel > kLastChannel ||
             size == 0 || size > kMostRadioOctets || size > left())
             fail("radio frame with values out of range");
         radio.octets = Octets(bytes_.subspan(position_, size));

@@ -40,6 +40,8 @@ const std::vector<std::string> kFolders = {
     "emu/dspic/chip",
     "emu/avr",
     "emu/i2c_devices",
+    "emu/radio",
+    "emu/xbee",
     "emu/board",
     "emu/pic",
     "emu/rab_board",

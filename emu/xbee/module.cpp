@@ -1,0 +1,372 @@
+#include "emu/xbee/module.h"
+
+#include "base/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace puckloop::xbee {
+
+using cosim::Time;
+using protocols::XBeeBytes;
+using protocols::XBeeMessage;
+
+namespace {
+
+constexpr std::size_t kReceiveRoom = 255;  // FT reaches 17 bytes less
+constexpr std::size_t kFtHysteresis = 16;
+constexpr std::size_t kMostPackets = 4;
+constexpr std::uint32_t kTransparent = 0, kEscapedMode = 2;
+constexpr std::uint8_t kWatchdogReset = 1;
+
+}  // namespace
+
+Module::Module(const ModuleOptions& options, ModuleAir& air)
+    : options_(options), air_(air), discovery_random_(options.seed, options.name + "/discovery") {
+    const auto refuse = [&](const std::string& what, const char* expected) {
+        throw InputError("", "radio module " + options.name, what, expected);
+    };
+    for (const auto& [command, value] : options.parameters) {
+        const auto place = find_parameter(command);
+        if (!place) refuse("no AT parameter " + command, "one of the module's");
+        XBeeBytes octets;
+        for (int shift = 8 * (at_table()[*place].octets - 1); shift >= 0; shift -= 8)
+            octets.push_back(static_cast<std::uint8_t>(value >> shift));
+        const bool whole = at_table()[*place].octets >= 4 || value >> 8 * at_table()[*place].octets == 0;
+        if (!whole || settings_.write(*place, octets) != kAtOk)
+            refuse(fmt::format("{} = {:#x} is out of range", command, value),
+                   "a value that the module accepts");
+    }
+    const std::string& identifier = options.node_identifier;
+    if (settings_.write_identifier(XBeeBytes(identifier.begin(), identifier.end())) != kAtOk)
+        refuse("node identifier '" + identifier + "'", "1 to 20 printable characters");
+    if (options.processing <= 0 || options.boot < options.processing)
+        refuse("bad times", "0 < processing <= boot");
+    settings_.apply();
+    settings_.save();
+    bit_ = bit_period_of(settings_[kBD]);
+    out_.announce_bit_period(bit_);
+    out_.set_bit_period(bit_);
+    power(true, options.start);
+}
+
+// Power and reset ------------------------------------------------------------------------------------------
+
+void Module::power(bool on, Time now) {
+    if (on == powered_) return;
+    powered_ = on;
+    forget_everything();
+    if (on && !in_reset_)
+        add(now + options_.boot, {TaskKind::Boot, 0});
+    else
+        add(now + options_.processing, {TaskKind::RadioOff, 0});
+}
+
+void Module::reset_pin(bool asserted, Time now) {
+    if (asserted == in_reset_) return;
+    in_reset_ = asserted;
+    if (!powered_) return;
+    forget_everything();
+    if (asserted) {
+        ++counts_.resets;
+        add(now + options_.processing, {TaskKind::RadioOff, 0});
+    } else {
+        add(now + options_.boot, {TaskKind::Boot, 0});
+    }
+}
+
+void Module::rts(bool level, Time now) {
+    rts_ = level;
+    add(now + options_.processing, {TaskKind::Rts, level ? 1u : 0u});
+}
+
+void Module::forget_everything() {
+    // Bytes that are being received are lost by being down; that the radio goes off must still be said.
+    std::erase_if(tasks_, [](const auto& one) {
+        return one.second.kind != TaskKind::RadioOff && one.second.kind != TaskKind::Rts;
+    });
+    up_ = false;
+    out_.clear();
+    waiting_.clear();
+    waiting_bytes_ = partial_bytes_ = 0;
+    input_scheduled_ = false;
+    plain_.clear();
+    packets_.clear();
+    discoveries_.clear();
+    remotes_.clear();
+}
+
+void Module::boot(std::uint8_t status, Time now) {
+    settings_.reset();
+    new_reader(api_mode());
+    bit_ = bit_period_of(settings_[kBD]);
+    out_.set_bit_period(bit_);
+    up_ = true;
+    apply(now);
+    if (settings_[kAP] != kTransparent) to_host(protocols::XBeeModemStatus{status}, now);
+}
+
+void Module::tell_radio(bool on, Time now) {
+    // PL, "TX power level".
+    constexpr std::array<double, 5> kPower{-7.0, -1.7, -0.77, 0.62, 1.42};
+    radio::RadioSettings set;
+    set.on = on;
+    set.channel = static_cast<std::uint8_t>(settings_[kCH]);
+    set.pan = static_cast<std::uint16_t>(settings_[kID]);
+    set.address = options_.address;
+    set.dbm = static_cast<std::int8_t>(std::lround(kPower.at(settings_[kPL])));
+    set.cca = static_cast<std::uint8_t>(settings_[kCA]);
+    set.mac_retries = static_cast<std::uint8_t>(settings_[kRR]);
+    set.repeats = static_cast<std::uint8_t>(settings_[kMT]);
+    set.network_hops = static_cast<std::uint8_t>(settings_[kNH]);
+    set.delay_slots = static_cast<std::uint8_t>(settings_[kNN]);
+    set.network_retries = static_cast<std::uint8_t>(settings_[kMR]);
+    if (told_ == set) return;
+    told_ = set;
+    air_.radio_sent(radio::encode(set), 0, now);
+}
+
+protocols::XBeeApiMode Module::api_mode() const {
+    return settings_[kAP] == kEscapedMode ? protocols::XBeeApiMode::Escaped : protocols::XBeeApiMode::Plain;
+}
+
+void Module::new_reader(protocols::XBeeApiMode mode) {
+    reader_mode_ = mode;
+    reader_ = protocols::XBeeReader(mode);
+    partial_bytes_ = 0;
+}
+
+void Module::apply(Time now) {
+    settings_.apply();
+    if (const Time bit = bit_period_of(settings_[kBD]); bit != bit_) {
+        // Once the answer is out; the delay lets the medium of the line know in time of shorter bytes.
+        add(now + std::max(options_.processing, SerialOut::kBitsToStop * bit_), {TaskKind::Baud, settings_[kBD]});
+        bit_ = bit;
+        out_.announce_bit_period(bit);
+    }
+    if (const auto mode = api_mode(); mode != reader_mode_) new_reader(mode);
+    out_.hold(rts_ && settings_[kD6] == 1, now);
+    tell_radio(true, now);
+}
+
+// Tasks ----------------------------------------------------------------------------------------------------
+
+void Module::run_until(Time until) {
+    while (next_task() <= until) {
+        const auto node = tasks_.extract(tasks_.begin());
+        happen(node.mapped(), node.key());
+    }
+}
+
+Time Module::next_radio() const {
+    Time next = cosim::kNever;
+    for (const auto& [at, task] : tasks_) {
+        if (at >= next) break;
+        next = std::min(next, task.kind == TaskKind::Byte ? at + options_.processing : at);
+    }
+    return next;
+}
+
+Time Module::next_byte() const {
+    return std::min(next_radio(), out_.next());
+}
+
+void Module::happen(const Task& task, Time now) {
+    switch (task.kind) {
+    case TaskKind::Byte:
+        byte(static_cast<std::uint8_t>(task.value), now);
+        break;
+    case TaskKind::Input: {
+        input_scheduled_ = false;
+        const auto [message, bytes] = std::move(waiting_.front());
+        waiting_.pop_front();
+        waiting_bytes_ -= bytes;
+        handle(message, now);
+        schedule_input(now);
+        update_cts(now);
+        break;
+    }
+    case TaskKind::Boot:
+        boot(static_cast<std::uint8_t>(task.value), now);
+        break;
+    case TaskKind::Answer: {
+        const auto& frame = task.frame;
+        send(frame.kind, frame.target, frame.options, 0, frame.data, now);
+        break;
+    }
+    case TaskKind::DiscoveryEnd:
+        for (auto it = discoveries_.begin(); it != discoveries_.end(); ++it)
+            if (it->sequence == task.value) {
+                // ND has said all it found; DN found nobody.
+                if (it->single && it->id != 0)
+                    to_host(protocols::XBeeAtResponse{it->id, {'D', 'N'}, kAtError, {}}, now);
+                discoveries_.erase(it);
+                break;
+            }
+        break;
+    case TaskKind::RemoteEnd:
+        if (const auto remote = remotes_.find(static_cast<std::uint16_t>(task.value));
+            remote != remotes_.end()) {
+            to_host(protocols::XBeeRemoteAtResponse{remote->second.id,
+                                                    remote->second.to,
+                                                    protocols::kXBeeUnknownNet,
+                                                    remote->second.command,
+                                                    kAtNoAnswer,
+                                                    {}},
+                    now);
+            remotes_.erase(remote);
+        }
+        break;
+    case TaskKind::Packetize:
+        packetize(now);
+        break;
+    case TaskKind::Quiet:
+        if (task.value == last_byte_) add(now + options_.processing, {TaskKind::Packetize});
+        break;
+    case TaskKind::Restart:
+        forget_everything();
+        ++counts_.resets;
+        tell_radio(false, now);
+        add(now + options_.boot, {TaskKind::Boot, kWatchdogReset});
+        break;
+    case TaskKind::Rts:
+        out_.hold(task.value != 0 && settings_[kD6] == 1, now);
+        break;
+    case TaskKind::Heard:
+        heard(task.frame, now);
+        break;
+    case TaskKind::Baud:
+        out_.set_bit_period(bit_period_of(static_cast<std::uint32_t>(task.value)));
+        break;
+    case TaskKind::Fate:
+        fate(task.fate, now);
+        break;
+    case TaskKind::RadioOff:
+        if (!up_) tell_radio(false, now);
+        break;
+    }
+}
+
+// Serial line ----------------------------------------------------------------------------------------------
+
+void Module::byte_received(std::uint8_t byte, Time at) {
+    add(at, {TaskKind::Byte, byte});
+}
+
+void Module::byte(std::uint8_t value, Time now) {
+    ++counts_.bytes_in;
+    if (!up_) {
+        ++counts_.while_down;
+        return;
+    }
+    if (settings_[kAP] == kTransparent) {
+        if (plain_.size() >= kReceiveRoom) {
+            ++counts_.overflow;
+            return;
+        }
+        plain_.push_back(value);
+        ++last_byte_;
+        const Time quiet = static_cast<Time>(settings_[kRO]) * SerialOut::kBits * receiver_bit();
+        if (settings_[kRO] == 0 || plain_.size() >= protocols::kMostMeshData)
+            add(now + options_.processing, {TaskKind::Packetize});
+        else
+            add(now + quiet, {TaskKind::Quiet, last_byte_});
+        return;
+    }
+    if (buffered() >= kReceiveRoom) {
+        ++counts_.overflow;
+        return;
+    }
+    api_byte(value, now);
+    update_cts(now);
+}
+
+void Module::api_byte(std::uint8_t value, Time now) {
+    ++partial_bytes_;
+    const auto reading = reader_.take(value);
+    if (!reading) return;
+    if (!reading->ok()) {
+        ++counts_.bad_frames.at(static_cast<std::size_t>(reading->fault));
+        // A delimiter that ended one frame began the next.
+        partial_bytes_ = value == protocols::kXBeeStart ? 1 : 0;
+        return;
+    }
+    ++counts_.frames_in;
+    waiting_.emplace_back(protocols::decode_xbee(reading->data), partial_bytes_);
+    waiting_bytes_ += partial_bytes_;
+    partial_bytes_ = 0;
+    schedule_input(now);
+}
+
+void Module::schedule_input(Time now) {
+    if (input_scheduled_ || waiting_.empty() || packets_.size() >= kMostPackets) return;
+    input_scheduled_ = true;
+    add(now + options_.processing, {TaskKind::Input});
+}
+
+void Module::update_cts(Time now) {
+    if (settings_[kD7] != 1) return;
+    const std::size_t threshold = settings_[kFT];
+    const bool level = cts_ ? buffered() + kFtHysteresis >= threshold : buffered() >= threshold;
+    if (level != cts_) air_.cts_changed(cts_ = level, now);
+}
+
+void Module::packetize(Time now) {
+    if (plain_.empty()) return;
+    if (packets_.size() >= kMostPackets) {
+        // As much as the buffer holds waits.
+        add(now + options_.processing, {TaskKind::Packetize});
+        return;
+    }
+    const std::size_t size = std::min(plain_.size(), protocols::kMostMeshData);
+    protocols::XBeeTx tx;
+    tx.id = 0;
+    tx.to = settings_.destination();
+    tx.data.assign(plain_.begin(), plain_.begin() + static_cast<std::ptrdiff_t>(size));
+    plain_.erase(plain_.begin(), plain_.begin() + static_cast<std::ptrdiff_t>(size));
+    transmit(tx, now);
+    if (!plain_.empty()) add(now + options_.processing, {TaskKind::Packetize});
+}
+
+bool Module::to_host(const XBeeMessage& message, Time now) {
+    if (settings_[kAP] == kTransparent) return false;
+    const bool fits = out_.put(protocols::encode_xbee(protocols::encode(message), api_mode()), now);
+    ++(fits ? counts_.frames_out : counts_.dropped_out);
+    return fits;
+}
+
+void Module::handle(const XBeeMessage& message, Time now) {
+    using namespace protocols;
+    const auto answer = [&](const auto& request) {
+        AtResult result = at(request.command, request.value, request.id, now);
+        if (request.id != 0 && !result.answered_later)
+            to_host(XBeeAtResponse{request.id, request.command, result.status, std::move(result.value)}, now);
+    };
+    if (const auto* command = std::get_if<XBeeAt>(&message)) {
+        answer(*command);
+        // In force once the answer is on its way, so that it still comes as the host expects it.
+        apply(now);
+    } else if (const auto* later = std::get_if<XBeeQueuedAt>(&message)) {
+        answer(*later);
+    } else if (const auto* tx = std::get_if<XBeeTx>(&message)) {
+        transmit(*tx, now);
+    } else if (const auto* remote = std::get_if<XBeeRemoteAt>(&message)) {
+        XBeeBytes data{remote->id, remote->options};
+        data.insert(data.end(), remote->command.begin(), remote->command.end());
+        data.insert(data.end(), remote->value.begin(), remote->value.end());
+        const std::uint16_t sequence = send(MeshKind::RemoteAt, remote->to, 0, 0, std::move(data), now);
+        if (remote->id != 0) {
+            remotes_[sequence] = {remote->id, remote->to, remote->command};
+            // Longer than the network layer tries.
+            constexpr Time kPatience = 10 * cosim::kSecond;
+            add(now + kPatience, {TaskKind::RemoteEnd, sequence});
+        }
+    } else {
+        ++counts_.odd_frames;
+    }
+}
+
+}  // namespace puckloop::xbee

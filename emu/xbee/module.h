@@ -1,0 +1,202 @@
+#pragma once
+// An XB24-DMWIT-250 radio module (XBee Series 1 with DigiMesh 2.4 firmware): API frames and transparent data
+// on its serial line, AT commands, discovery, what it sends and gets over the air. Network layer and MAC are
+// the medium's (emu/radio).
+// Sources: TAM fact sheet, sections 6 and 10; XBee/XBee-PRO DigiMesh 2.4 manual (90000991), "Operate in API
+// mode", "AT commands", "Transparent operating mode", "Network discovery".
+//
+// Deviations:
+// 1. A command or frame takes a fixed time (`processing`), the start after reset another (`boot`); the manual
+//    gives neither.
+// 2. Frames 11 (explicit addressing) and 95 (node identification) are not there; sleep (SM), encryption (EE),
+//    analog and digital lines, command mode ("+++") have no effect. Asking for them is answered and counted.
+// 3. At most four packets wait for their fate; then the serial line waits.
+// 4. DN is answered with the status 0x40 that the TAM's firmware needs, as is ND.
+// 5. FR resets 100 ms after its answer, with modem status 1.
+
+#include "base/random.h"
+#include "cosim/core/message.h"
+#include "emu/radio/control.h"
+#include "emu/xbee/module_counts.h"
+#include "emu/xbee/serial_out.h"
+#include "emu/xbee/settings.h"
+#include "protocols/mesh_frame.h"
+#include "protocols/xbee_frame.h"
+#include "protocols/xbee_message.h"
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace puckloop::xbee {
+
+struct ModuleOptions {
+    std::string name = "xbee";  ///< the random stream is "<name>/discovery"
+    std::uint64_t seed = 1;
+    std::uint64_t address = 0x0013A20040000000;  ///< SH and SL
+    /// What was written into its flash: commands with values, in the range of the table.
+    std::vector<std::pair<std::string, std::uint32_t>> parameters{};
+    std::string node_identifier = " ";
+    cosim::Time start = 0;                         ///< switched on
+    cosim::Time boot = 50 * cosim::kMillisecond;   ///< from reset to modem status, >= processing
+    cosim::Time processing = cosim::kMillisecond;  ///< of a frame from either side, > 0
+};
+
+/// Where a module's radio leads.
+class ModuleAir {
+  public:
+    virtual ~ModuleAir() = default;
+    /// A frame for the network layer, or settings (`on_air` 0).
+    virtual void radio_sent(std::vector<std::uint8_t> octets, cosim::Time on_air, cosim::Time now) = 0;
+    /// CTS, active low, changed.
+    virtual void cts_changed(bool level, cosim::Time now) = 0;
+};
+
+/// Inputs come in order of time, each after run_until() of that time.
+class Module {
+  public:
+    /// Throws InputError for parameters that no module accepts.
+    Module(const ModuleOptions& options, ModuleAir& air);
+    Module(const Module&) = delete;
+    Module& operator=(const Module&) = delete;
+
+    void byte_received(std::uint8_t byte, cosim::Time at);
+    void framing_error() { ++counts_.framing_errors; }
+    void radio_received(const cosim::RadioFrame& frame, cosim::Time now);
+    void reset_pin(bool asserted, cosim::Time now);
+    void power(bool on, cosim::Time now);
+    /// The level of RTS: high holds DOUT back where D6 = 1.
+    void rts(bool level, cosim::Time now);
+
+    /// Everything that is due until then, inclusive.
+    void run_until(cosim::Time until);
+    cosim::Time next_task() const { return tasks_.empty() ? cosim::kNever : tasks_.begin()->first; }
+    /// Nothing leaves for the air before, if nothing comes in.
+    cosim::Time next_radio() const;
+    /// No byte that is still unknown begins before, if nothing comes in.
+    cosim::Time next_byte() const;
+    SerialOut& serial() { return out_; }
+    const SerialOut& serial() const { return out_; }
+    const Settings& settings() const { return settings_; }
+    const ModuleCounts& counts() const { return counts_; }
+    /// Bit time that its receiver samples with.
+    cosim::Time receiver_bit() const { return out_.bit_period(); }
+    const ModuleOptions& options() const { return options_; }
+
+  private:
+    enum class TaskKind : std::uint8_t {
+        Byte,
+        Input,
+        Boot,
+        Answer,
+        DiscoveryEnd,
+        RemoteEnd,
+        Packetize,
+        Quiet,
+        Restart,
+        Rts,
+        RadioOff,
+        Heard,
+        Fate,
+        Baud
+    };
+    struct Task {
+        TaskKind kind = TaskKind::Byte;
+        std::uint64_t value = 0;
+        protocols::MeshFrame frame{};  ///< Answer, Heard
+        radio::RadioOutcome fate{};    ///< Fate
+    };
+    /// An ND or DN that is under way.
+    struct Discovery {
+        std::uint16_t sequence = 0;
+        std::uint8_t id = 0;
+        bool single = false;  ///< DN
+    };
+    struct Packet {
+        std::uint8_t id = 0;
+    };
+    struct Remote {
+        std::uint8_t id = 0;
+        std::uint64_t to = 0;
+        protocols::XBeeCommand command{};
+    };
+    /// What a command does beside its status and value.
+    struct AtResult {
+        std::uint8_t status = kAtOk;
+        protocols::XBeeBytes value;
+        bool answered_later = false;
+    };
+
+    void add(cosim::Time at, Task task) { tasks_.emplace(at, std::move(task)); }
+    void happen(const Task& task, cosim::Time now);
+    void forget_everything();
+    void boot(std::uint8_t status, cosim::Time now);
+    void tell_radio(bool on, cosim::Time now);
+    void apply(cosim::Time now);
+    protocols::XBeeApiMode api_mode() const;
+    void new_reader(protocols::XBeeApiMode mode);
+
+    // Serial side (module.cpp).
+    void byte(std::uint8_t value, cosim::Time now);
+    void api_byte(std::uint8_t value, cosim::Time now);
+    void schedule_input(cosim::Time now);
+    void handle(const protocols::XBeeMessage& message, cosim::Time now);
+    void packetize(cosim::Time now);
+    void update_cts(cosim::Time now);
+    std::size_t buffered() const { return waiting_bytes_ + partial_bytes_; }
+    bool to_host(const protocols::XBeeMessage& message, cosim::Time now);
+
+    // AT commands (module_at.cpp).
+    AtResult at(const protocols::XBeeCommand& command, const protocols::XBeeBytes& value, std::uint8_t id,
+                cosim::Time now);
+    AtResult act(const std::string& command, const protocols::XBeeBytes& value, std::uint8_t id,
+                 cosim::Time now, bool& known);
+    void discover(bool single, const protocols::XBeeBytes& identifier, std::uint8_t id, cosim::Time now);
+
+    // Air side (module_air.cpp).
+    std::uint16_t send(protocols::MeshKind kind, std::uint64_t to, std::uint8_t options, std::uint8_t radius,
+                       protocols::XBeeBytes data, cosim::Time now);
+    void transmit(const protocols::XBeeTx& tx, cosim::Time now);
+    void outcome(const radio::RadioOutcome& outcome, cosim::Time now);
+    void fate(const radio::RadioOutcome& fate, cosim::Time now);
+    void frame_received(const protocols::MeshFrame& frame, cosim::Time at);
+    void heard(const protocols::MeshFrame& frame, cosim::Time now);
+    void asked_to_show_itself(const protocols::MeshFrame& frame, cosim::Time now);
+    void discovered(const protocols::MeshFrame& frame, cosim::Time now);
+    void remote_at(const protocols::MeshFrame& frame, cosim::Time now);
+    void remote_answer(const protocols::MeshFrame& frame, cosim::Time now);
+    protocols::XBeeBytes description(std::uint64_t address, const std::string& identifier) const;
+
+    ModuleOptions options_;
+    ModuleAir& air_;
+    Settings settings_;
+    SerialOut out_;
+    cosim::Time bit_ = 0;  ///< of the parameters in force; the line follows
+    ModuleCounts counts_;
+    RandomStream discovery_random_;
+    std::multimap<cosim::Time, Task> tasks_;
+    bool powered_ = false, in_reset_ = false, up_ = false;
+    bool cts_ = false, rts_ = false;
+
+    std::optional<radio::RadioSettings> told_;  ///< what the medium knows
+    protocols::XBeeApiMode reader_mode_ = protocols::XBeeApiMode::Plain;
+    protocols::XBeeReader reader_{protocols::XBeeApiMode::Plain};
+    std::size_t partial_bytes_ = 0;  ///< of the frame that is coming in
+    std::size_t waiting_bytes_ = 0;  ///< of what is complete but not handled
+    std::deque<std::pair<protocols::XBeeMessage, std::size_t>> waiting_;  ///< with their bytes on the line
+    bool input_scheduled_ = false;
+    protocols::XBeeBytes plain_;   ///< transparent data
+    std::uint64_t last_byte_ = 0;  ///< counts bytes: a Quiet task of an earlier one is void
+
+    std::uint16_t sequence_ = 0;  ///< 15 bits; goes on after a reset
+    std::map<std::uint16_t, Packet> packets_;
+    std::vector<Discovery> discoveries_;
+    std::map<std::uint16_t, Remote> remotes_;
+    std::uint8_t last_dbm_ = 0;  ///< DB: minus dBm of the last packet
+};
+
+}  // namespace puckloop::xbee
