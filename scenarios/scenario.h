@@ -71,6 +71,31 @@ struct RobotBoards {
     bool rgb_turret = true;     ///< the I2C board at 0x61 is fitted
 };
 
+/// A radio module as it is plugged in.
+struct XBeeModule {
+    bool fitted = true;
+    std::uint64_t address = 0;
+    std::string node_id;                                ///< NI
+    std::map<std::string, std::uint32_t> parameters{};  ///< AT parameters in its flash, by command
+    double boot = 0.05;                                 ///< s from reset to modem status
+};
+
+/// The air between radio modules.
+struct RadioMedium {
+    double range = 30.0;        ///< m, at full power
+    double exponent = 3.5;      ///< of the power's fall with distance
+    double loss = 0.0;          ///< share of frames that other users of the band spoil
+    double processing = 0.001;  ///< s, of a frame in a module
+};
+
+/// The coordinator's radio module and what is at its serial line.
+struct CoordinatorPlace {
+    XBeeModule module;
+    double x = 0.0, y = 0.0;  ///< m
+    std::string uart;         ///< plugged in: "pty", "tcp:PORT", "script:FILE"; empty: nothing
+    double baud = 9600.0;     ///< of what is plugged in
+};
+
 /// A TAM: board and booth.
 struct TamBoard {
     std::string name;
@@ -84,6 +109,7 @@ struct TamBoard {
     double console_baud = 57600.0;        ///< of what is plugged in
     double start = 0.0;                   ///< s: switched on
     std::vector<double> resets{};         ///< s: the reset button is pressed, rising, after `start`
+    XBeeModule xbee{};
 };
 
 struct Scenario {
@@ -98,6 +124,8 @@ struct Scenario {
     physics::EventPlan events;    ///< what happens to the world while it runs
     std::vector<RobotBoards> robots;
     std::vector<TamBoard> tams{};  ///< in the order of the world's booths
+    RadioMedium radio{};
+    std::optional<CoordinatorPlace> coordinator{};
     std::vector<cosim::FaultSpec> faults;
     std::vector<std::string>
         passed_over{};  ///< an overlay's [measurement]: of the measuring chain, not of a run

@@ -1,6 +1,7 @@
 #include "scenarios/tam_tables.h"
 
 #include "scenarios/board_keys.h"
+#include "scenarios/radio_tables.h"
 
 #include <fmt/format.h>
 
@@ -51,6 +52,7 @@ void read_tam(const std::string& file, const TomlValue& table, const std::filesy
     booth.reflectivity = reader.quantity("reflectivity", Dimension::Ratio, booth.reflectivity);
     booth.place = fmt::format("line {}", table.line);
     read_board(reader, folder, tam);
+    tam.xbee = read_tam_module(file, tam.name, reader.table("xbee"), scenario.tams.size(), tam.network);
     reader.finish();
     scenario.tams.push_back(std::move(tam));
     scenario.world.booths.push_back(std::move(booth));

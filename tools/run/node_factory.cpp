@@ -8,7 +8,9 @@
 #include "emu/image/image.h"
 #include "emu/pic/pic_node.h"
 #include "emu/rab_board/rab_node.h"
+#include "emu/radio/ether_node.h"
 #include "emu/tam_avr/tam_node.h"
+#include "emu/xbee/module_node.h"
 #include "linuxboard/shim/linux_node.h"
 #include "physics/ir_node.h"
 #include "physics/world_node.h"
@@ -131,6 +133,8 @@ std::unique_ptr<cosim::Node> make_node(const std::string& text) {
         if (kind == "ir") return physics::make_ir_node(text);
         if (kind == "i2c_bus") return i2c_devices::make_bus_node(text);
         if (kind == "outside") return make_outside(spec);
+        if (kind == "xbee") return xbee::make_module_node(text);
+        if (kind == "ether") return radio::make_ether_node(text);
         throw InputError("", "node", fmt::format("unknown kind '{}'", kind));
     } catch (const json::exception& error) {
         throw InputError("", "node description", error.what());

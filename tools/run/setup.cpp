@@ -7,6 +7,7 @@
 #include "tools/run/control/control_place.h"
 #include "tools/run/overrides.h"
 #include "tools/run/plan/plan_kit.h"
+#include "tools/run/plan/radio_nodes.h"
 #include "tools/run/plan/tam_nodes.h"
 #include "tools/run/program_path.h"
 #include "tools/run/states/state_plan.h"
@@ -223,6 +224,7 @@ RunSetup set_up(const RunRequest& request) {
     for (const RobotBoards& robot : scenario.robots)
         add_robot(setup, robot, programs, request);
     add_tams(setup, request);
+    add_radio(setup, request);
     name_linked_ports(setup);
     plan_states(setup, request);
     return setup;

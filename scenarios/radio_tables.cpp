@@ -1,0 +1,114 @@
+#include "scenarios/radio_tables.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+
+namespace puckloop::scenarios {
+
+namespace {
+
+// Digi's block of addresses; the lower half tells modules apart.
+constexpr std::uint64_t kDigi = 0x0013A20000000000, kCoordinatorLow = 0x40000000;
+constexpr std::int64_t kFirstNetwork = 0x01B2;  // TAM fact sheet, section 6
+constexpr int kNetworks = 4;
+constexpr double kLongestDelay = 1.0;  // s
+
+std::uint64_t read_address(Reader& reader, std::uint64_t fallback) {
+    if (!reader.has("address")) return fallback;
+    const std::string text = reader.text("address");
+    std::uint64_t address = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), address, 16);
+    constexpr std::size_t kDigits = 16;
+    if (error != std::errc() || end != text.data() + text.size() || text.size() != kDigits)
+        reader.fail("address", fmt::format("'{}' is no address", text),
+                    "16 hex digits: \"0013A20040000001\"");
+    return address;
+}
+
+/// Any AT parameters by name: parameters = { RR = 3, MT = 0 }; the module checks them.
+void read_parameters(Reader& reader, XBeeModule& module) {
+    const TomlValue* table = reader.table("parameters");
+    if (table == nullptr) return;
+    Reader parameters(reader.file(), "parameters", *table);
+    for (const auto& [command, value] : parameters.everything()) {
+        (void)value;
+        const std::int64_t number = parameters.integer(command, 0, 0, 0xFFFFFFFF);
+        module.parameters[command] = static_cast<std::uint32_t>(number);
+    }
+}
+
+void read_module(Reader& reader, XBeeModule& module) {
+    module.address = read_address(reader, module.address);
+    module.node_id = reader.text("node_id", module.node_id);
+    constexpr std::size_t kMostCharacters = 20;
+    if (module.node_id.empty() || module.node_id.size() > kMostCharacters)
+        reader.fail("node_id", fmt::format("'{}' is no node identifier", module.node_id),
+                    "1 to 20 characters");
+    module.parameters["CH"] = static_cast<std::uint32_t>(reader.integer("channel", 12, 11, 26));
+    module.boot = reader.quantity("boot", Dimension::Time, module.boot);
+    if (!(module.boot >= 0 && module.boot <= 10)) reader.fail("boot", "boot is out of range", "0 s to 10 s");
+    read_parameters(reader, module);
+}
+
+}  // namespace
+
+XBeeModule read_tam_module(const std::string& file, const std::string& tam, const TomlValue* table,
+                           std::size_t index, int network) {
+    XBeeModule module;
+    module.address = kDigi | (kCoordinatorLow + 1 + index);
+    module.node_id = fmt::format("TAM{:02}", index + 1);
+    module.parameters["ID"] = static_cast<std::uint32_t>(kFirstNetwork + network);
+    if (table == nullptr) return module;
+    Reader reader(file, tam + ".xbee", *table);
+    module.fitted = reader.flag("fitted", true);
+    read_module(reader, module);
+    reader.finish();
+    return module;
+}
+
+RadioMedium read_radio(Reader& top) {
+    RadioMedium medium;
+    const TomlValue* table = top.table("radio");
+    if (table == nullptr) return medium;
+    Reader reader(top.file(), "radio", *table);
+    medium.range = reader.quantity("range", Dimension::Length, medium.range);
+    if (!(medium.range > 0 && medium.range <= 1e4))
+        reader.fail("range", "range is out of range", "up to 10 km");
+    medium.exponent = reader.quantity("exponent", Dimension::Number, medium.exponent);
+    if (!(medium.exponent >= 1 && medium.exponent <= 10))
+        reader.fail("exponent", "exponent is out of range", "1 to 10; 2 in free space");
+    medium.loss = reader.quantity("loss", Dimension::Ratio, medium.loss);
+    if (!(medium.loss >= 0 && medium.loss <= 1))
+        reader.fail("loss", "loss is out of range", "0 to 1, or \"5 %\"");
+    medium.processing = reader.quantity("processing", Dimension::Time, medium.processing);
+    if (!(medium.processing >= 1e-5 && medium.processing <= kLongestDelay))
+        reader.fail("processing", "processing is out of range", "0.01 ms to 1 s");
+    reader.finish();
+    return medium;
+}
+
+std::optional<CoordinatorPlace> read_coordinator(Reader& top) {
+    const TomlValue* table = top.table("coordinator");
+    if (table == nullptr) return std::nullopt;
+    Reader reader(top.file(), "coordinator", *table);
+    CoordinatorPlace place;
+    place.module.address = kDigi | kCoordinatorLow;
+    place.module.node_id = "COORD";
+    const auto network = reader.integer("network", kNetworks - 1, 0, kNetworks - 1);
+    place.module.parameters["ID"] = static_cast<std::uint32_t>(kFirstNetwork + network);
+    if (reader.has("position")) {
+        const auto position = reader.quantities("position", Dimension::Length, 2);
+        place.x = position[0];
+        place.y = position[1];
+    }
+    place.uart = reader.text("uart", "");
+    place.baud = reader.quantity("baud", Dimension::Number, place.baud);
+    if (!(place.baud >= 1200 && place.baud <= 250'000))
+        reader.fail("baud", "baud is out of range", "1200 to 250000");
+    read_module(reader, place.module);
+    reader.finish();
+    return place;
+}
+
+}  // namespace puckloop::scenarios
