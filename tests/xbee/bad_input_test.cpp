@@ -1,0 +1,152 @@
+// Garbage and floods on a module's serial line and from the air: counted, and nothing hangs.
+
+#include "host.h"
+
+#include "base/random.h"
+
+using namespace puckloop;
+using namespace puckloop::xbee;
+using namespace puckloop::xbee::test;
+
+TEST_CASE("bad frames are counted by kind, and the next good one is answered") {
+    Host host;
+    host.boot();
+    host.say_bytes(
+        XBeeBytes{0x01, 0x02, 0x7E, 0x00, 0x04, 0x08, 0x7E, 0x00, 0x04, 0x08, 0x01, 0x4E, 0x49, 0x00});
+    CHECK(host.ask("NI").status == kAtOk);
+    host.say_bytes(XBeeBytes{0x7E, 0xFF, 0xFF});
+    CHECK(host.ask("NI").status == kAtOk);
+    host.say_bytes(encode_xbee(XBeeBytes{0x55, 1, 2}, XBeeApiMode::Escaped));
+    CHECK(host.ask("NI").status == kAtOk);
+    const auto uart = host.report()["uart"];
+    CHECK(uart["bad_frames"] == nlohmann::json{{"noise", 1}, {"restart", 1}, {"check", 1}, {"length", 1}});
+    CHECK(uart["unknown_frames"] == 1);
+}
+
+TEST_CASE("another baud rate: framing errors or bad frames, no answer, and back to work") {
+    Host host;
+    host.boot();
+    const auto bytes =
+        encode_xbee(encode(XBeeAt{.id = 1, .command = {'N', 'I'}, .value = {}}), XBeeApiMode::Escaped);
+    host.say_bytes(bytes, 208 * kUs);
+    host.run(100 * kMs);
+    CHECK(host.said.empty());
+    CHECK(host.node.module().counts().framing_errors > 0);
+    host.say_bytes(XBeeBytes{0, 0}, kBit);
+    host.run(100 * kMs);
+    CHECK(host.ask("NI").status == kAtOk);
+}
+
+TEST_CASE("a flood of packets: four are under way, CTS rises at FT, the buffer overflows, all is counted") {
+    Host host;
+    host.boot();
+    for (int i = 0; i < 40; ++i)
+        host.say(XBeeTx{.id = 1, .to = kXBeeBroadcast, .data = XBeeBytes(20, 'f')});
+    host.run(2000 * kMs);
+    CHECK(host.sent.size() == 4);
+    CHECK(host.cts == std::vector<double>{1.0});
+    const auto full = host.report()["uart"];
+    CHECK(full["overflow"].get<int>() > 300);
+    // The network gets rid of them one by one.
+    std::size_t done = 0;
+    for (int i = 0; i < 200; ++i) {
+        if (done < host.sent.size()) host.fate({host.sent[done++].second.sequence, 0, 0, 0});
+        host.run(20 * kMs);
+    }
+    CHECK(done == host.sent.size());
+    CHECK(done < 40);
+    CHECK(host.cts.back() == 0.0);
+    CHECK(host.all<XBeeTxStatus>().size() == done);
+    host.say_bytes(XBeeBytes(3, 0x7E));
+    CHECK(host.ask("NI").status == kAtOk);
+}
+
+TEST_CASE("a flood from the air: what the serial transmit buffer cannot hold is dropped and counted") {
+    Host host;
+    host.boot();
+    MeshFrame frame;
+    frame.origin = 0x0013A200408A3107;
+    frame.data.assign(60, 'a');
+    for (int i = 0; i < 50; ++i) {
+        host.hear(frame);
+        host.run(3 * kMs);
+    }
+    host.run(2000 * kMs);
+    const auto report = host.report();
+    CHECK(report["uart"]["dropped_out"].get<std::size_t>() + host.all<XBeeRx>().size() == 50);
+    CHECK(report["uart"]["dropped_out"].get<int>() > 30);
+}
+
+TEST_CASE("RTS holds DOUT back only with D6 = 1") {
+    Host host;
+    host.boot();
+    host.pin(2, 1.0);
+    CHECK(host.ask("NI").status == kAtOk);
+    host.pin(2, 0.0);
+    host.ask("D6", {1});
+    host.pin(2, 1.0);
+    host.run(20 * kMs);
+    host.say(XBeeAt{.id = 1, .command = {'N', 'I'}, .value = {}});
+    const std::size_t before = host.said.size();
+    host.run(200 * kMs);
+    CHECK(host.said.size() == before);
+    host.pin(2, 0.0);
+    host.run(200 * kMs);
+    CHECK(host.said.size() == before + 1);
+}
+
+TEST_CASE("random bytes, frames, pins and air: no promise broken, the same however time is granted") {
+    const auto life = [](std::uint64_t seed, Time step) {
+        Host host;
+        RandomStream random(seed, "life");
+        for (int round = 0; round < 150; ++round) {
+            XBeeBytes data(1 + random.below(12));
+            for (std::uint8_t& byte : data)
+                byte = static_cast<std::uint8_t>(random.next());
+            constexpr std::array<const char*, 14> kCommands{"BD", "AP", "RO", "WR", "RE", "FR", "AC",
+                                                            "ND", "DN", "NI", "D6", "FT", "CH", "NT"};
+            const char* command = kCommands[random.below(kCommands.size())];
+            switch (random.below(8)) {
+            case 0:
+                host.say_bytes(data);
+                break;
+            case 1:
+                host.say_bytes(encode_xbee(data, XBeeApiMode::Escaped));
+                break;
+            case 2:
+            case 3:
+                data.resize(random.below(3));
+                host.say(XBeeAt{.id = static_cast<std::uint8_t>(random.below(3)),
+                                .command = {command[0], command[1]},
+                                .value = data},
+                         random.below(2) == 0 ? XBeeApiMode::Escaped : XBeeApiMode::Plain);
+                break;
+            case 4:
+                host.say(XBeeTx{.id = 1, .to = random.next(), .data = data});
+                break;
+            case 5: {
+                MeshFrame frame;
+                frame.kind = static_cast<MeshKind>(random.below(8));
+                frame.target = random.below(2) == 0 ? kXBeeBroadcast : 0x0013A200408C04A4;
+                frame.sequence = static_cast<std::uint16_t>(random.below(4));
+                frame.data = data;
+                host.hear(frame);
+                break;
+            }
+            case 6:
+                host.hear_octets(data, random.below(2) == 0 ? 0 : kMs);
+                host.fate({static_cast<std::uint16_t>(random.below(8)), 0, 0, 0});
+                break;
+            default:
+                host.pin(static_cast<std::uint16_t>(random.below(5)), random.below(3) == 0 ? 1.0 : 0.0);
+            }
+            host.reader = XBeeReader(XBeeApiMode::Plain);
+            host.run(static_cast<Time>(random.below(60'000)) * kUs, step);
+        }
+        return std::tuple(host.bytes, host.starts, host.sent.size(), host.report().dump());
+    };
+    for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+        const auto whole = life(seed, cosim::kNever);
+        CHECK(life(seed, 700 * kUs) == whole);
+    }
+}
