@@ -55,7 +55,7 @@ class Behaviour {
     virtual Actuators step(const Sensors& sensors, double t) = 0;
 };
 
-/// "wander", "light", "aggregate", "follow", "still" or "spin"; null for any other name. `own_id` is the
+/// "wander", "light", "aggregate", "follow", "serve", "still" or "spin"; null for any other name. `own_id` is the
 /// robot's among its neighbours.
 std::unique_ptr<Behaviour> make_behaviour(std::string_view name, int own_id = 0);
 /// True for the behaviours that make no sense without a range-and-bearing board.

@@ -17,6 +17,7 @@ const char kUsage[] =
     "      light          towards the brightest light\n"
     "      aggregate      to the nearest robot heard, and stop beside it\n"
     "      follow         after the robot with the next lower id heard; the lowest leads\n"
+    "      serve          into the booth (TAM) that stands ahead, 8 s inside, out, and again\n"
     "      still          nothing; with --rab somebody to be heard\n"
     "      spin           on the spot, with a short stop every 10.3 s: to measure sensors\n"
     "  --duration S       seconds, a step each 0.1 s; 0: until Ctrl-C (0)\n"
@@ -146,7 +147,7 @@ void take(Options& options, int choice, const char* name) {
 /// What only shows when all options are known.
 void check(Options& options) {
     if (make_behaviour(options.behaviour) == nullptr)
-        wrong_value("behaviour", options.behaviour.c_str(), "wander, light, aggregate, follow, still or spin");
+        wrong_value("behaviour", options.behaviour.c_str(), "wander, light, aggregate, follow, serve, still or spin");
     if (needs_neighbours(options.behaviour)) options.rab = true;
     if (options.rab && options.rab_id == 0 && options.calibrate == 0) {
         std::fprintf(stderr, "puckloop-control: %s needs --rab-id N, 1 to 255, another on each robot\n",

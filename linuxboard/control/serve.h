@@ -1,0 +1,31 @@
+#pragma once
+// Serves at a booth (a TAM) that stands ahead: drives in, stays a while, backs out, pauses, and comes again.
+
+#include "linuxboard/control/wander.h"
+
+namespace puckloop::control {
+
+class Serve : public Behaviour {
+  public:
+    Actuators step(const Sensors& sensors, double t) override;
+    /// How often it has stood inside.
+    unsigned visits() const { return visits_; }
+
+  private:
+    enum class State { Approach, Stay, Leave, Pause };
+    void enter(State state, double t);
+    /// The booth's sides are to the left and the right.
+    bool between() const;
+    Actuators approach(double t);
+    Actuators align() const;
+
+    ProximityBaseline baseline_;
+    std::array<double, 8> above_{};
+    State state_ = State::Approach;
+    double since_ = 0;           // of the state
+    double blocked_since_ = -1;  // something ahead that is no booth; < 0: nothing
+    double bend_ = 0;            // mm/s, of the way back
+    unsigned visits_ = 0;
+};
+
+}  // namespace puckloop::control
