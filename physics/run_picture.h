@@ -1,6 +1,7 @@
 #pragma once
 // The picture of one run, drawn from back to front. Only its own files include this.
 
+#include "physics/booth_record.h"
 #include "physics/path_file.h"
 #include "physics/svg_canvas.h"
 
@@ -23,7 +24,8 @@ double round_up(double least);
 
 class Picture {
   public:
-    Picture(const World& world, const Paths& robots, const Paths& objects);
+    Picture(const World& world, const Paths& robots, const Paths& objects,
+            const std::vector<BoothColours>& booths);
     /// The SVG document.
     std::string draw();
 
@@ -40,6 +42,10 @@ class Picture {
     /// Where it stood, dashed; its way; where it ended.
     void moved(const std::string& name, Shape shape);
 
+    // The TAMs (run_picture_booths.cpp).
+    void booths();
+    void booth(const Booth& booth, double end);
+
     // The robots (run_picture_robots.cpp).
     void path(const std::vector<PathPoint>& points, const Colour& colour);
     /// A dot and the time at round seconds; labels only where they do not crowd.
@@ -50,6 +56,7 @@ class Picture {
     const World& world_;
     const Paths& robots_;
     const Paths& objects_;
+    const std::vector<BoothColours>& booths_;
     SvgCanvas canvas_;
     std::vector<Pixel> labels_;
     std::size_t glows_ = 0;

@@ -44,6 +44,7 @@ std::string Picture::draw() {
         canvas_.shape(wall, "fill=\"#5b616b\"");
     for (const auto& lamp : world_.lamps)
         glow(lamp);
+    booths();
     things();
     for (const auto& lamp : world_.lamps)
         bulb(lamp);

@@ -38,8 +38,9 @@ double round_up(double least) {
     return 10 * power;
 }
 
-Picture::Picture(const World& world, const Paths& robots, const Paths& objects)
-    : world_(world), robots_(robots), objects_(objects), canvas_(frame(world)) {}
+Picture::Picture(const World& world, const Paths& robots, const Paths& objects,
+                 const std::vector<BoothColours>& booths)
+    : world_(world), robots_(robots), objects_(objects), booths_(booths), canvas_(frame(world)) {}
 
 void Picture::floor() {
     canvas_.raw("<clipPath id=\"arena\">");

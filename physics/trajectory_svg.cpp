@@ -13,7 +13,9 @@ void write_trajectory_svg(const World& world, const std::filesystem::path& direc
     const Paths robots = read_paths(directory / "trajectory.csv");
     const auto objects_file = directory / "objects.csv";
     const Paths objects = std::filesystem::exists(objects_file) ? read_paths(objects_file) : Paths{};
-    const std::string document = Picture(world, robots, objects).draw();
+    const auto booths =
+        world.booths.empty() ? std::vector<BoothColours>{} : read_booth_colours(directory / "tams.csv");
+    const std::string document = Picture(world, robots, objects, booths).draw();
     const auto file = directory / "trajectory.svg";
     std::FILE* out = std::fopen(file.c_str(), "w");
     const bool written = out != nullptr && std::fputs(document.c_str(), out) >= 0;

@@ -37,7 +37,7 @@ std::string pose(const RobotState& s) {
 }  // namespace
 
 WorldLog::WorldLog(const WorldModel& world)
-    : log_(world.description().recording.log), told_(world.robot_count()) {
+    : log_(world.description().recording.log), told_(world.robot_count()), interrupted_(world.booth_count()) {
     for (const Robot& robot : world.description().robots)
         robots_.push_back(robot.name);
     if (log_.is_open()) elements(world.description());
@@ -94,6 +94,7 @@ void WorldLog::after_step(const WorldModel& world) {
     seconds_ = world.seconds();
     contacts(world);
     drives(world);
+    beams(world);
     if (complaints_ == 0 && world.dynamics().complaints() > 0)
         write("first message of ODE: " + world.dynamics().first_complaint());
     complaints_ = world.dynamics().complaints();
@@ -137,6 +138,18 @@ void WorldLog::drives(const WorldModel& world) {
                               robot.channels()[kBatteryVoltageChannel]));
         told.battery_low |= low;
     }
+}
+
+void WorldLog::beams(const WorldModel& world) {
+    constexpr const char* kBeam[] = {"front", "back"};
+    for (std::size_t i = 0; i < interrupted_.size(); ++i)
+        for (std::size_t k = 0; k < booth::kBarriers; ++k) {
+            const bool now = world.booth(i).barriers[k] > 0.5;
+            if (now == interrupted_[i][k]) continue;
+            interrupted_[i][k] = now;
+            write(fmt::format("{}: {} beam {}", world.description().booths[i].name, kBeam[k],
+                              now ? "interrupted" : "free"));
+        }
 }
 
 void WorldLog::end(const WorldModel& world) {

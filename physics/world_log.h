@@ -1,5 +1,6 @@
 #pragma once
-// The log of the world: what stands in it, who touches what and for how long, steps lost, batteries low.
+// The log of the world: what stands in it, who touches what and for how long, steps lost, batteries low,
+// beams of booths interrupted by more than half.
 
 #include "base/node_log.h"
 #include "physics/world_model.h"
@@ -37,6 +38,7 @@ class WorldLog {
     void elements(const World& world);
     void contacts(const WorldModel& world);
     void drives(const WorldModel& world);
+    void beams(const WorldModel& world);
     std::string name_of(const WorldModel& world, const RobotContact& contact) const;
     void write(const std::string& text) { log_.line(seconds_, text); }
 
@@ -45,6 +47,7 @@ class WorldLog {
     std::vector<std::string> robots_;
     std::map<RobotContact, Episode> touching_;
     std::vector<Told> told_;
+    std::vector<std::array<bool, booth::kBarriers>> interrupted_;  // of each booth
     std::uint64_t complaints_ = 0;
 };
 

@@ -1,5 +1,6 @@
 #include "physics/world_node.h"
 
+#include "physics/booth_record.h"
 #include "physics/events/timeline.h"
 #include "physics/pose_signals.h"
 #include "physics/recorder.h"
@@ -121,6 +122,7 @@ struct WorldNode::Impl {
     std::map<std::size_t, double> scene;  // likewise, by id: what events change
     std::vector<cosim::Message> waiting;  // stamped at or after the next step
     std::optional<Recorder> recorder;
+    std::optional<BoothRecord> booth_record;
     WorldLog log;
     std::unique_ptr<CommandSource> commands;
     Timeline timeline;
@@ -153,7 +155,10 @@ WorldNode::Impl::Impl(World description, EventPlan plan, std::unique_ptr<Command
         booths.push_back(links_of(booth, static_cast<cosim::PortIndex>(ports.size())));
         ports.push_back({booth.name, cosim::PortKind::Signals});
     }
-    if (!model.description().recording.directory.empty()) recorder.emplace(model);
+    const std::string& directory = model.description().recording.directory;
+    if (directory.empty()) return;
+    recorder.emplace(model);
+    if (!booths.empty()) booth_record.emplace(directory + "/tams.csv", model);
 }
 
 void WorldNode::Impl::take(const cosim::Message& message) {
@@ -187,6 +192,7 @@ void WorldNode::Impl::step() {
     if (next_step > 0 || !happened.empty()) model.sense();
     if (next_step == 0) return;
     if (recorder) recorder->after_step(model);
+    if (booth_record) booth_record->after_step(model);
     log.after_step(model);
     model.done(StepPart::Record);
 }

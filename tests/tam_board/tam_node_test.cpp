@@ -1,5 +1,5 @@
-// The board as a node: what it sends is the same however grants are cut, saved or gone back, and never earlier
-// than it said. The firmware is the project's own, or a small program.
+// The board as a node: what it sends is the same however grants are cut, saved or gone back, and never
+// earlier than it said. The firmware is the project's own, or a small program.
 
 #include "base/random.h"
 #include "emu/avr/assembler/assembler.h"

@@ -74,8 +74,9 @@ void raise_descriptor_limit() {
 
 /// Every name that nodes and the run itself may give a file in the results folder.
 std::vector<std::string> result_files(const RunSetup& setup) {
-    std::vector<std::string> names{"report.json",    "report.json.part", "trace.csv",   "trajectory.csv",
-                                   "trajectory.svg", "sensors.csv",      "objects.csv", "ir.csv"};
+    std::vector<std::string> names{"report.json",    "report.json.part", "trace.csv",
+                                   "trajectory.csv", "trajectory.svg",   "sensors.csv",
+                                   "objects.csv",    "ir.csv",           "tams.csv"};
     for (const cosim::NodeSpec& node : setup.nodes)
         for (const char* kind : {".log", ".received"})
             names.push_back(node.name + kind);

@@ -1,0 +1,72 @@
+// TAMs of a scenario become nodes and links.
+
+#include "base/error.h"
+#include "tests/scratch.h"
+#include "tools/run/preflight.h"
+#include "tools/run/setup.h"
+
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <fstream>
+
+using namespace puckloop;
+using nlohmann::json;
+
+namespace {
+
+tools::RunRequest request_of(const std::string& more) {
+    const auto file = tests::scratch_path("tam-setup.toml");
+    std::ofstream(file) << "[run]\nduration = \"1 s\"\n[arena]\nsize = [\"1 m\", \"1 m\"]\n"
+                           "[[tam]]\nposition = [\"0 m\", \"0 m\"]\n" +
+                               more;
+    tools::RunRequest request;
+    request.scenario = file;
+    return request;
+}
+
+json node(const tools::RunSetup& setup, const std::string& name) {
+    for (const auto& spec : setup.nodes)
+        if (spec.name == name) return json::parse(spec.json);
+    return nullptr;
+}
+
+}  // namespace
+
+TEST_CASE("a TAM is a node with a link to the world") {
+    tools::RunRequest request = request_of("network = 1\nstart = \"2 s\"\n");
+    request.firmware = {"tam0=/x/y.elf"};
+    const tools::RunSetup setup = tools::set_up(request);
+    const json tam = node(setup, "tam0.avr");
+    CHECK(tam.at("firmware") == "/x/y.elf");
+    CHECK(tam.at("network") == 1);
+    CHECK(tam.at("start_s") == 2.0);
+    CHECK(node(setup, "world").at("world").at("booths").at(0).at("signals").contains("barrier_back"));
+    bool linked = false;
+    for (const auto& link : setup.links)
+        linked |= link.a.node == "tam0.avr" && link.a.port == "world" && link.b.port == "tam0";
+    CHECK(linked);
+    request.firmware = {"tam=/x/z.elf"};
+    CHECK(node(tools::set_up(request), "tam0.avr").at("firmware") == "/x/z.elf");
+    request.firmware = {"tam1=/x/z.elf"};
+    CHECK_THROWS_WITH(tools::set_up(request), Catch::Contains("no board 'tam1' (expected one of tam0,"));
+}
+
+TEST_CASE("the console takes what is plugged in, and a live end only in real time") {
+    tools::RunRequest request = request_of("console = \"pty\"\n");
+    request.firmware = {"tam=/x/y.elf"};
+    CHECK_THROWS_WITH(tools::set_up(request), Catch::Contains("tam0.console: 'pty' has a clock of its own"));
+    request.realtime = true;
+    CHECK(node(tools::set_up(request), "tam0.console").at("baud") == 57600.0);
+}
+
+TEST_CASE("an image that is not for the chip is refused before the run") {
+    const auto file = tests::scratch_path("not-avr.elf");
+    std::ofstream(file) << "no image";
+    tools::RunRequest request = request_of("");
+    request.firmware = {"tam0=" + file.string()};
+    CHECK_THROWS_AS(tools::check_files(tools::set_up(request)), InputError);
+    request.firmware = {"tam0=/nowhere/x.elf"};
+    CHECK_THROWS_WITH(tools::check_files(tools::set_up(request)), Catch::Contains("/nowhere/x.elf"));
+}
