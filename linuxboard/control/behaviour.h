@@ -23,13 +23,23 @@ struct Neighbour {
     double age = 0;          ///< s since its last packet
 };
 
+/// A coloured light that the omnidirectional camera sees.
+struct ColouredSpot {
+    enum class Colour : std::uint8_t { Red, Green, Blue };
+    Colour colour = Colour::Red;
+    double bearing = 0;      ///< rad, as of a neighbour
+    double distance_cm = 0;  ///< from the robot's middle
+    int area = 0;            ///< pixels
+};
+
 /// Rings of 8 are in the robot's order: 0 is front right, then clockwise; kRingBearing tells where they look.
 struct Sensors {
     std::array<double, 8> proximity{};  ///< ADC counts reflected, >= 0; 0 nothing, about 4000 contact
     std::array<double, 8> light{};      ///< brightness, 0 dark to 4095
     std::optional<std::array<double, 3>> ground;  ///< left, centre, right; 0 black to 1000 white
     bool battery_ok = true;
-    std::vector<Neighbour> neighbours;  ///< by id; empty without a range-and-bearing board
+    std::vector<Neighbour> neighbours;                 ///< by id; empty without a range-and-bearing board
+    std::optional<std::vector<ColouredSpot>> spots{};  ///< largest first; none without a camera
 };
 
 struct Actuators {
@@ -55,8 +65,8 @@ class Behaviour {
     virtual Actuators step(const Sensors& sensors, double t) = 0;
 };
 
-/// "wander", "light", "aggregate", "follow", "serve", "still" or "spin"; null for any other name. `own_id` is the
-/// robot's among its neighbours.
+/// "wander", "light", "aggregate", "follow", "serve", "still" or "spin"; null for any other name. `own_id` is
+/// the robot's among its neighbours.
 std::unique_ptr<Behaviour> make_behaviour(std::string_view name, int own_id = 0);
 /// True for the behaviours that make no sense without a range-and-bearing board.
 bool needs_neighbours(std::string_view name);

@@ -54,6 +54,7 @@ bool run_control_loop(Session& session, Transport& transport, Behaviour& behavio
             Sensors sensors = to_sensors(*session.newest());
             if (surroundings.ground) sensors.ground = surroundings.ground();
             if (surroundings.neighbours) sensors.neighbours = surroundings.neighbours();
+            if (surroundings.spots) sensors.spots = surroundings.spots();
             const Actuators actuators = behaviour.step(sensors, t);
             if (surroundings.say) surroundings.say(actuators.say);
             record = to_record(actuators);

@@ -21,7 +21,8 @@ struct LoopSettings {
 struct Surroundings {
     std::function<std::optional<std::array<double, 3>>()> ground;
     std::function<std::vector<Neighbour>()> neighbours;
-    std::function<void(std::uint32_t)> say;  ///< to the neighbours, from now on
+    std::function<void(std::uint32_t)> say;              ///< to the neighbours, from now on
+    std::function<std::vector<ColouredSpot>()> spots{};  ///< before the omnidirectional camera
 };
 
 /// What the behaviour sees of a sensor record, and what the PIC gets of its wishes.

@@ -1,5 +1,7 @@
 #include "linuxboard/control/serve.h"
 
+#include "linuxboard/control/steering.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +13,10 @@ constexpr double kCruise = 60.0;      // mm/s, towards the booth
 constexpr double kCreep = 25.0;       // mm/s, between its sides
 constexpr double kBack = 50.0;        // mm/s
 constexpr double kBackFor = 4.0;      // s: 20 cm
-constexpr double kStay = 8.0;         // s
+constexpr double kStay = 8.0;         // s, without a camera
+constexpr double kDark = 0.5;         // s without light: the task is done
+constexpr double kWithin = 12.0;      // cm: a light of the booth that it stands in
+constexpr double kAhead = 1.2;        // rad to either side: a booth there is the one
 constexpr double kAlign = 3.0;        // s, of it
 constexpr double kStraight = 0.08;    // difference of the two front sensors, as a logarithm: a degree
 constexpr double kPause = 5.0;        // s
@@ -36,6 +41,7 @@ void Serve::enter(State state, double t) {
     since_ = t;
     blocked_since_ = -1;
     bend_ = 0;
+    lit_ = t;
     if (state == State::Stay) ++visits_;
 }
 
@@ -44,7 +50,7 @@ bool Serve::between() const {
 }
 
 /// Straight on, away from the nearer side.
-Actuators Serve::approach(double t) {
+Actuators Serve::approach(const Sensors& sensors, double t) {
     const double ahead = std::max(above_[0], above_[7]);
     const double right = between() ? above_[2] : above_[1], left = between() ? above_[5] : above_[6];
     if (between() && ahead > kAtBack) {
@@ -62,10 +68,30 @@ Actuators Serve::approach(double t) {
         return {.front_led = true};
     }
     if (blocked) return {.front_led = true};
+    const bool open = std::max({above_[1], above_[2], above_[5], above_[6]}) < kAlongside;
+    if (sensors.spots && open) {
+        const std::optional<Actuators> way = towards_light(sensors);
+        if (!way) since_ = t;  // it waits: that is not being stuck
+        return way.value_or(Actuators{});
+    }
     const double turn =
         std::clamp(kSteerGain * (std::log(right + kFaint) - std::log(left + kFaint)), -kMostTurn, kMostTurn);
     const double speed = between() || touching ? kCreep : kCruise;
     return {.left_mm_s = speed - turn, .right_mm_s = speed + turn};
+}
+
+std::optional<Actuators> Serve::towards_light(const Sensors& sensors) const {
+    for (const ColouredSpot& spot : *sensors.spots)
+        if (spot.colour != ColouredSpot::Colour::Red && std::abs(spot.bearing) < kAhead)
+            return drive_towards(spot.bearing, kCruise);
+    return std::nullopt;
+}
+
+bool Serve::done(const Sensors& sensors, double t) {
+    if (!sensors.spots) return t - since_ >= kStay;
+    for (const ColouredSpot& spot : *sensors.spots)
+        if (spot.distance_cm < kWithin) lit_ = t;
+    return t - since_ >= kAlign && t - lit_ >= kDark;
 }
 
 /// Turns until it looks straight at the booth's back, so that it leaves by the way that it came.
@@ -83,11 +109,11 @@ Actuators Serve::step(const Sensors& sensors, double t) {
     Actuators out;
     switch (state_) {
     case State::Approach:
-        out = approach(t);
+        out = approach(sensors, t);
         break;
     case State::Stay:
         if (t - since_ < kAlign) out = align();
-        if (t - since_ >= kStay) enter(State::Leave, t);
+        if (done(sensors, t)) enter(State::Leave, t);
         out.ring_leds = kAllLeds;
         break;
     case State::Leave:

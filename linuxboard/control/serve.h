@@ -1,5 +1,7 @@
 #pragma once
-// Serves at a booth (a TAM) that stands ahead: drives in, stays a while, backs out, pauses, and comes again.
+// Serves at a booth (a TAM) that stands ahead: drives in, stays, backs out, pauses, and comes again. With a
+// camera it drives towards a booth that shines green or blue, which offers a task, and stays until it is
+// dark; without one it drives straight on and stays for 8 s.
 
 #include "linuxboard/control/wander.h"
 
@@ -16,7 +18,10 @@ class Serve : public Behaviour {
     void enter(State state, double t);
     /// The booth's sides are to the left and the right.
     bool between() const;
-    Actuators approach(double t);
+    Actuators approach(const Sensors& sensors, double t);
+    /// Towards the booth that offers a task; none: there is none to be seen.
+    std::optional<Actuators> towards_light(const Sensors& sensors) const;
+    bool done(const Sensors& sensors, double t);
     Actuators align() const;
 
     ProximityBaseline baseline_;
@@ -24,6 +29,7 @@ class Serve : public Behaviour {
     State state_ = State::Approach;
     double since_ = 0;           // of the state
     double blocked_since_ = -1;  // something ahead that is no booth; < 0: nothing
+    double lit_ = 0;             // when the booth around it was last seen to shine
     double bend_ = 0;            // mm/s, of the way back
     unsigned visits_ = 0;
 };

@@ -72,3 +72,31 @@ TEST_CASE("it keeps to the middle") {
     const Actuators out = serve.step(seen, 0.1);
     CHECK(out.left_mm_s > out.right_mm_s);
 }
+
+TEST_CASE("with a camera it waits for a booth that shines, and stays as long as it does") {
+    using Colour = ColouredSpot::Colour;
+    Serve serve;
+    Sensors seen;
+    seen.spots.emplace();
+    CHECK(serve.step(seen, 0).left_mm_s == 0);
+    seen.spots = {{Colour::Red, 0.0, 30, 50}};  // somebody works there
+    CHECK(serve.step(seen, 0.1).left_mm_s == 0);
+    seen.spots = {{Colour::Red, 0.0, 30, 50}, {Colour::Blue, 0.5, 30, 40}};
+    const Actuators turn = serve.step(seen, 0.2);
+    CHECK(turn.right_mm_s > turn.left_mm_s);
+    seen.spots = {{Colour::Green, 2.5, 30, 50}};  // behind
+    CHECK(serve.step(seen, 0.3).left_mm_s == 0);
+
+    Track track;
+    double dark_at = 40, left_at = 0;
+    for (double t = 1; t < 60 && left_at == 0; t += 0.1) {
+        Sensors sensors = track.sensors();
+        sensors.spots.emplace();
+        if (t < dark_at) sensors.spots->push_back({Colour::Green, 0.0, track.gap / 10 + 4, 50});
+        const Actuators out = serve.step(sensors, t);
+        if (serve.visits() == 1 && out.left_mm_s < 0) left_at = t;
+        track.drive(out);
+    }
+    CHECK(serve.visits() == 1);
+    CHECK(left_at == Approx(dark_at + 0.5).margin(0.25));
+}
