@@ -117,6 +117,7 @@ void TamLog::read_report(Time now, const avr::Chip& chip) {
     };
     for (; resets_ < report.resets.size(); ++resets_) {
         const avr::ResetRecord& reset = report.resets[resets_];
+        if (chip.clock().time_of(reset.cycle) + start_ > now) break;  // not yet switched on
         lines_.note(time_of(reset.cycle),
                     fmt::format("reset: {}, pc 0x{:05x}", avr::to_string(reset.cause), reset.pc));
     }

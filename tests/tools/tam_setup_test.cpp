@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "tests/scratch.h"
+#include "tools/run/node_factory.h"
 #include "tools/run/preflight.h"
 #include "tools/run/setup.h"
 
@@ -69,4 +70,28 @@ TEST_CASE("an image that is not for the chip is refused before the run") {
     CHECK_THROWS_AS(tools::check_files(tools::set_up(request)), InputError);
     request.firmware = {"tam0=/nowhere/x.elf"};
     CHECK_THROWS_WITH(tools::check_files(tools::set_up(request)), Catch::Contains("/nowhere/x.elf"));
+}
+
+TEST_CASE("a boot loader lies below the firmware, whose first bytes it does not spoil") {
+    const auto hex = [](const std::string& name, const std::string& text) {
+        const auto file = tests::scratch_path(name);
+        std::ofstream(file) << text << ":00000001FF\n";
+        return file.string();
+    };
+    // At 0x1FC00 a jump to 0, and two stray bytes at 0 as optiboot's file has them; the firmware sets PD7.
+    const std::string boot = hex("boot.hex", ":020000000504F5\n:020000040001F9\n:04FC00000C94000060\n");
+    const std::string firmware = hex("firmware.hex", ":0800000080E88AB98BB9FFCF3B\n");
+    tools::RunRequest request = request_of("boot_loader = \"" + boot + "\"\n[coordinator]\n");
+    request.firmware = {"tam0=" + firmware};
+    const tools::RunSetup setup = tools::set_up(request);
+    CHECK_NOTHROW(tools::check_files(setup));
+    json spec = node(setup, "tam0.avr");
+    spec.erase("log");
+    const auto board = tools::make_board(spec);
+    std::vector<cosim::Message> sent;
+    board->advance(cosim::kMillisecond, {}, sent);
+    REQUIRE(sent.size() == 1);  // the module's reset
+    const json report = json::parse(board->finish());
+    CHECK(report["fuses"]["high"] == "0xDE");
+    CHECK(report["warnings"].empty());
 }
