@@ -48,6 +48,14 @@ void flip(RadioFrame& frame, RandomStream& random) {
     frame.octets = Octets(octets);
 }
 
+/// A radio frame without a duration is no frame on air (emu/radio/control.h).
+bool travels(const UartFrame&) {
+    return true;
+}
+bool travels(const RadioFrame& frame) {
+    return frame.duration > 0;
+}
+
 /// Calls work(frame) for a UART or radio frame; for anything else the result is `Result{}`.
 template <class Result>
 Result with_frame(Payload& payload, auto work) {
@@ -67,7 +75,8 @@ class WindowFault : public LinkFault {
         for (std::size_t i = 0; i < count; ++i) {
             if (keeps_from_arriving(batch[i].fault) || fired_ >= spec_.count) continue;
             const bool meant = with_frame<bool>(batch[i].message.payload, [this](const auto& frame) {
-                return frame.start >= spec_.begin && frame.start < spec_.end && is_among(spec_.bytes, frame);
+                return travels(frame) && frame.start >= spec_.begin && frame.start < spec_.end &&
+                       is_among(spec_.bytes, frame);
             });
             if (!meant) continue;
             if (spec_.probability < 1.0 && random_.uniform() >= spec_.probability) continue;

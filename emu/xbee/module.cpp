@@ -143,7 +143,8 @@ void Module::apply(Time now) {
     settings_.apply();
     if (const Time bit = bit_period_of(settings_[kBD]); bit != bit_) {
         // Once the answer is out; the delay lets the medium of the line know in time of shorter bytes.
-        add(now + std::max(options_.processing, SerialOut::kBitsToStop * bit_), {TaskKind::Baud, settings_[kBD]});
+        add(now + std::max(options_.processing, SerialOut::kBitsToStop * bit_),
+            {TaskKind::Baud, settings_[kBD]});
         bit_ = bit;
         out_.announce_bit_period(bit);
     }
@@ -206,6 +207,9 @@ void Module::happen(const Task& task, Time now) {
                 discoveries_.erase(it);
                 break;
             }
+        break;
+    case TaskKind::PacketEnd:
+        fate({static_cast<std::uint16_t>(task.value), 0, radio::kNoNetworkAck, 0}, now);
         break;
     case TaskKind::RemoteEnd:
         if (const auto remote = remotes_.find(static_cast<std::uint16_t>(task.value));

@@ -95,6 +95,7 @@ class Module {
         Answer,
         DiscoveryEnd,
         RemoteEnd,
+        PacketEnd,
         Packetize,
         Quiet,
         Restart,

@@ -19,6 +19,9 @@ namespace {
 constexpr std::uint8_t kAcknowledged = 1, kWasBroadcast = 2;  // options of a frame 90
 constexpr std::uint16_t kSequences = 0x8000;                  // the network layer's own begin there
 
+/// Longer than the network layer tries; what is not heard of by then was lost on the way to it.
+constexpr Time kPatience = 20 * cosim::kSecond;
+
 std::uint16_t number_at(const XBeeBytes& data, std::size_t at) {
     return static_cast<std::uint16_t>(data[at] << 8 | data[at + 1]);
 }
@@ -53,6 +56,7 @@ void Module::transmit(const protocols::XBeeTx& tx, Time now) {
     ++counts_.sent;
     const std::uint16_t sequence = send(MeshKind::Data, tx.to, tx.options & 1u, tx.radius, tx.data, now);
     packets_[sequence] = {tx.id};
+    add(now + kPatience, {TaskKind::PacketEnd, sequence});
 }
 
 void Module::radio_received(const cosim::RadioFrame& frame, Time now) {
@@ -77,8 +81,6 @@ void Module::radio_received(const cosim::RadioFrame& frame, Time now) {
 void Module::outcome(const radio::RadioOutcome& fate, Time now) {
     const auto packet = packets_.find(fate.sequence);
     if (packet == packets_.end()) return;
-    ++counts_.fates[fate.delivery];
-    counts_.retries += fate.retries;
     Task task{TaskKind::Fate, fate.sequence};
     task.fate = fate;
     add(now + options_.processing, std::move(task));
@@ -87,6 +89,8 @@ void Module::outcome(const radio::RadioOutcome& fate, Time now) {
 void Module::fate(const radio::RadioOutcome& fate, Time now) {
     const auto packet = packets_.find(fate.sequence);
     if (packet == packets_.end()) return;
+    ++counts_.fates[fate.delivery];
+    counts_.retries += fate.retries;
     if (packet->second.id != 0)
         to_host(protocols::XBeeTxStatus{packet->second.id, protocols::kXBeeUnknownNet, fate.retries,
                                         fate.delivery, fate.discovery},

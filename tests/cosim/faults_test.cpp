@@ -223,6 +223,15 @@ TEST_CASE("radio frames are lost, flipped, delayed and doubled as bytes are") {
     const auto frame_of = [](const Delivery& one) { return std::get<RadioFrame>(one.message.payload); };
     CHECK(harmed({"", "", FaultKind::Drop}).at(0).fault == FaultKind::Drop);
     CHECK(harmed({"", "", FaultKind::Drop, 1.0, 1, 0, 5 * kMs}).at(0).fault == FaultKind::None);
+    // What module and network layer say to each other beside the air is out of reach.
+    {
+        RadioFrame word = sent;
+        word.duration = 0;
+        const auto fault = make_fault({"", "", FaultKind::Drop}, Direction::FromA, 0, 1, 0);
+        std::vector<Delivery> batch{{Message{word.start, 0, word}, FaultKind::None}};
+        fault->apply(batch);
+        CHECK(batch.at(0).fault == FaultKind::None);
+    }
     const auto late = harmed({"", "", FaultKind::Delay}, 0.002);
     CHECK(late.at(0).message.time == sent.start + sent.duration + 2 * kMs);
     CHECK(frame_of(late[0]).start == sent.start + 2 * kMs);

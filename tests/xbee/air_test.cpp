@@ -45,6 +45,20 @@ TEST_CASE("a transmit request goes on air, and its fate comes back") {
     CHECK(host.report()["air"]["delivery_status"] == nlohmann::json{{"00", 1}, {"21", 1}});
 }
 
+TEST_CASE("a packet of which nothing is heard again is given up, with status 21") {
+    Host host;
+    host.boot();
+    for (std::uint8_t id = 1; id <= 5; ++id)
+        host.say(XBeeTx{.id = id, .to = kOther, .data = {id}});
+    host.run(500 * kMs);
+    CHECK(host.sent.size() == 4);
+    host.run(20'500 * kMs);
+    CHECK(host.sent.size() == 5);
+    REQUIRE(host.all<XBeeTxStatus>().size() == 4);
+    for (const XBeeTxStatus& status : host.all<XBeeTxStatus>())
+        CHECK(status.delivery == 0x21);
+}
+
 TEST_CASE("more than NP bytes are refused with status 74") {
     Host host;
     host.boot();

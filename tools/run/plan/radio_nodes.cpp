@@ -16,6 +16,10 @@ using scenarios::XBeeModule;
 
 constexpr double kBaud = 9600.0;  // BD = 3, nominal rate of the lines to modules
 
+/// Between a module's microcontroller and its transceiver. More than nothing, so that neither waits for the
+/// other where both are due at the same time.
+constexpr cosim::Time kTransfer = cosim::kMicrosecond;
+
 /// Frames on a line come no faster: the module's own divider makes 9615 baud, and oscillators are a little
 /// off.
 constexpr double nominal(double baud) {
@@ -39,7 +43,9 @@ json module_spec(const RunSetup& setup, const std::string& name, const XBeeModul
 
 void add_air(RunSetup& setup, json& stations, const std::string& owner, double x, double y) {
     stations.push_back({{"name", owner}, {"at", {x, y, 0.0}}});
-    setup.links.push_back({owner + ".radio", {owner + ".xbee", "radio"}, {"ether", owner}});
+    cosim::LinkSpec link{owner + ".radio", {owner + ".xbee", "radio"}, {"ether", owner}};
+    link.latency = kTransfer;
+    setup.links.push_back(link);
 }
 
 void add_tam_module(RunSetup& setup, json& stations, const TamBoard& tam, const physics::Booth& booth) {

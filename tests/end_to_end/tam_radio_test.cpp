@@ -1,0 +1,203 @@
+// TAMs with radio modules and a coordinator's module: real firmware ($PUCKLOOP_IMAGES, tam_firmware.elf)
+// where it is there, the project's own else. TAM fact sheet, sections 6 and 7.
+
+#include "base/random.h"
+#include "tests/end_to_end/same_run.h"
+#include "tests/end_to_end/workbench.h"
+
+#include <catch2/catch.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+
+using namespace puckloop::tests;
+using Catch::Contains;
+using Bytes = std::vector<int>;
+
+namespace {
+
+/// A frame on the line in API mode 2, as hex.
+std::string frame(const Bytes& data) {
+    Bytes body{static_cast<int>(data.size() >> 8), static_cast<int>(data.size() & 0xFF)};
+    int sum = 0;
+    for (const int byte : data) {
+        body.push_back(byte);
+        sum += byte;
+    }
+    body.push_back(0xFF - (sum & 0xFF));
+    std::string text = "7e";
+    for (const int byte : body) {
+        const bool special = byte == 0x7E || byte == 0x7D || byte == 0x11 || byte == 0x13;
+        text += special ? fmt::format(" 7d {:02x}", byte ^ 0x20) : fmt::format(" {:02x}", byte);
+    }
+    return text;
+}
+
+/// Frames that `from` sent on `link`: their data, and when the first byte began.
+std::vector<std::pair<double, Bytes>> frames_of(const std::vector<Row>& trace, const std::string& link,
+                                                const std::string& from) {
+    std::vector<std::pair<double, Bytes>> found;
+    bool escaped = false;
+    for (const Row& row : trace) {
+        if (row.at("link") != link || row.at("from") != from) continue;
+        int byte = std::stoi(row.at("value"), nullptr, 16);
+        if (byte == 0x7E) {
+            found.emplace_back(std::stod(row.at("start_s")), Bytes{});
+        } else if (byte == 0x7D) {
+            escaped = true;
+        } else if (!found.empty()) {
+            found.back().second.push_back(escaped ? byte ^ 0x20 : byte);
+            escaped = false;
+        }
+    }
+    for (auto& [at, data] : found)
+        if (data.size() >= 3) data = Bytes(data.begin() + 2, data.end() - 1);
+    return found;
+}
+
+std::string firmware() {
+    const auto real = outside("PUCKLOOP_IMAGES", "tam_firmware.elf");
+    if (!real) WARN("without PUCKLOOP_IMAGES: the project's own firmware in place of the real one");
+    return real ? real->string() : "own";
+}
+
+/// Two TAMs and a coordinator's module with a script at its line.
+std::filesystem::path scenario(const Workbench& bench, const std::string& script,
+                               const std::string& tam_keys = {}, const std::string& more = {}) {
+    bench.file("coordinator.txt", script);
+    std::string text = "[run]\nduration = \"12 s\"\n[arena]\nsize = [\"2 m\", \"2 m\"]\n";
+    for (const char* place : {"50 cm", "-50 cm"})
+        text += fmt::format("[[tam]]\nposition = [\"{}\", \"0 m\"]\nfirmware = \"{}\"\nadc_noise = 0\n{}",
+                            place, firmware(), tam_keys);
+    return bench.file("tams.toml", text +
+                                       "[coordinator]\nuart = \"script:coordinator.txt\"\n"
+                                       "address = \"0013A200408C04A4\"\n" +
+                                       more);
+}
+
+const Bytes kFirstTam{0x00, 0x13, 0xA2, 0x00, 0x40, 0x00, 0x00, 0x01};
+
+/// SET_LEDS for the first TAM.
+std::string set_leds(int red, int green, int blue) {
+    Bytes data{0x10, 1};
+    data.insert(data.end(), kFirstTam.begin(), kFirstTam.end());
+    data.insert(data.end(), {0xFF, 0xFE, 0, 0, 0x0A, red, green, blue});
+    return frame(data);
+}
+
+}  // namespace
+
+TEST_CASE("TAMs find the coordinator over the air, report, and obey; the same in every placement") {
+    const Workbench bench;
+    const auto file = scenario(bench, "4.0 " + frame({8, 1, 'N', 'D'}) + "\n10.8 " + set_leds(0x19, 0, 0x0C) +
+                                          "\n11.2 " + frame({8, 1, 'Q', 'Q'}) + "\n");
+    REQUIRE(bench.run("one", {file, "--in-process", "--threads", "1"}).status == 0);
+    REQUIRE(bench.run("threads", {file, "--in-process", "--threads", "4"}).status == 0);
+    REQUIRE(bench.run("many", {file}).status == 0);
+    check_same_run(bench, "one", "threads");
+    check_same_run(bench, "one", "many");
+
+    const auto trace = bench.csv("one", "trace.csv");
+    const auto sent = frames_of(trace, "tam0.xbee", "tam0.avr");
+    const auto got = frames_of(trace, "tam0.xbee", "tam0.xbee");
+    REQUIRE(sent.size() >= 4);
+    REQUIRE(got.size() >= 4);
+    // Section 6, in its order; modem status first.
+    CHECK(got[0].second == Bytes{0x8A, 0x00});
+    CHECK(sent[0].second == Bytes{8, 1, 'N', 'T', 0x82});
+    CHECK(sent[1].second == Bytes{8, 1, 'I', 'D', 0x01, 0xB5});
+    CHECK(sent[2].second == Bytes{8, 1, 'D', 'N', 'C', 'O', 'O', 'R', 'D'});
+    CHECK(got[3].second ==
+          Bytes{0x88, 1, 'D', 'N', 0x40, 0xFF, 0xFE, 0x00, 0x13, 0xA2, 0x00, 0x40, 0x8C, 0x04, 0xA4});
+    // The first report after 10 s, byte for byte as measured (section 7), and its acknowledgement.
+    const auto report =
+        std::find_if(sent.begin(), sent.end(), [](const auto& one) { return one.second[0] == 0x10; });
+    REQUIRE(report != sent.end());
+    CHECK(report->first == Approx(10.0).epsilon(0.01));
+    CHECK(report->second == Bytes{0x10, 1, 0x00, 0x13, 0xA2, 0x00, 0x40, 0x8C, 0x04, 0xA4, 0xFF,
+                                  0xFE, 0, 0,    0,    0,    0,    0,    0,    0xD3, 0x0E, 0x00});
+    CHECK(std::any_of(got.begin(), got.end(), [&](const auto& one) {
+        return one.first > report->first && one.second == Bytes{0x8B, 1, 0xFF, 0xFE, 0, 0, 0};
+    }));
+    // What the coordinator's host hears: answers to ND, reports, and the new colours after SET_LEDS.
+    const auto heard = frames_of(trace, "coordinator.uart", "coordinator.xbee");
+    const auto count = [&](auto condition) {
+        return std::count_if(heard.begin(), heard.end(),
+                             [&](const auto& one) { return condition(one.second); });
+    };
+    const Bytes nd{0x88, 1, 'N', 'D', 0x40, 0xFF, 0xFE, 0x00, 0x13, 0xA2, 0x00, 0x40, 0x00, 0x00, 0x01};
+    CHECK(count([&](const Bytes& data) {
+              return data.size() > 15 && std::equal(nd.begin(), nd.end(), data.begin());
+          }) <= 1);  // within NT (13 s), which is longer than what is left
+    CHECK(count([](const Bytes& data) { return data[0] == 0x90 && data.size() == 20 && data[12] == 0; }) >=
+          3);
+    CHECK(count([](const Bytes& data) {
+              return data == Bytes{0x90, 0x00, 0x13, 0xA2, 0x00, 0x40, 0x00, 0x00, 0x01, 0xFF,
+                                   0xFE, 1,    0x00, 0x19, 0x00, 0x0C, 0x00, 0xD3, 0x0E, 0x00};
+          }) == 1);
+    CHECK(count([](const Bytes& data) { return data == Bytes{0x88, 1, 'Q', 'Q', 2}; }) == 1);
+    const auto nodes = bench.report("one")["nodes"];
+    CHECK(nodes["coordinator.xbee"]["at"]["unknown"]["QQ"] == 1);
+    CHECK(nodes["ether"]["stations"]["tam0"]["delivered"] >= 2);
+    CHECK(bench.report("one")["warnings"].empty());
+    // The frames on air read back.
+    const Ended counts =
+        bench.puckloop({"trace", bench.out("one") / "trace.csv", "--kind", "radio", "--json"});
+    CHECK_THAT(counts.out, Contains("tam0.radio") && Contains("radio_frames"));
+}
+
+TEST_CASE("a coordinator that sends garbage and floods: counted, nothing hangs, reports still arrive") {
+    const Workbench bench;
+    puckloop::RandomStream random(1, "garbage");
+    std::string script;
+    for (int line = 0; line < 80; ++line) {
+        script += fmt::format("{:.3f}", 3.0 + 0.05 * line);
+        for (int i = 0; i < 60; ++i)
+            script += fmt::format(" {:02x}", random.below(4) == 0 ? 0x7E : random.below(256));
+        script += "\n";
+    }
+    // Then packets to nobody without a pause: each is looked for in vain for almost two seconds.
+    const Bytes all{0x10, 1, 0, 0x13, 0xA2, 0, 0xFF, 0xFF, 0xFF, 0xFF, 0xFF, 0xFE, 0, 0, 0x7F, 1, 2, 3};
+    for (int line = 0; line < 90; ++line)
+        script += fmt::format("{:.3f} {}\n", 8.5 + 0.01 * line, frame(all));
+    const auto file = scenario(bench, script);
+    const Ended ended = bench.run("o", {file, "--in-process"});
+    INFO(ended.err);
+    REQUIRE(ended.status == 0);
+    const auto module = bench.report("o")["nodes"]["coordinator.xbee"];
+    CHECK(module["uart"]["bad_frames"].size() >= 2);
+    CHECK(module["uart"]["overflow"] > 0);
+    CHECK(module["air"]["sent"] > 4);
+    const auto heard = frames_of(bench.csv("o", "trace.csv"), "coordinator.uart", "coordinator.xbee");
+    CHECK(std::count_if(heard.begin(), heard.end(), [](const auto& one) {
+              return one.second[0] == 0x90 && one.second.size() == 20;
+          }) >= 2);
+}
+
+TEST_CASE("two TAMs with one address: a warning, and both obey") {
+    const Workbench bench;
+    const auto file =
+        scenario(bench, "10.8 " + set_leds(1, 2, 3) + "\n", "[tam.xbee]\naddress = \"0013A20040000001\"\n");
+    REQUIRE(bench.run("o", {file, "--in-process"}).status == 0);
+    const auto report = bench.report("o");
+    REQUIRE(report["warnings"].size() == 1);
+    CHECK_THAT(report["warnings"][0].get<std::string>(),
+               Contains("ether: tam0 and tam1 have one address, 0013A20040000001"));
+    for (const char* module : {"tam0.xbee", "tam1.xbee"})
+        CHECK(report["nodes"][module]["air"]["received"] == 1);
+}
+
+TEST_CASE("faults on the air: what is lost is tried again, what is flipped is found") {
+    const Workbench bench;
+    const auto file =
+        scenario(bench, "10.8 " + set_leds(1, 2, 3) + "\n", "",
+                 "[[fault]]\nlink = \"tam0.radio\"\nfrom = \"ether\"\nkind = \"flip\"\nbegin = \"5 s\"\n"
+                 "[[fault]]\nlink = \"tam1.radio\"\nkind = \"disconnect\"\nbegin = \"2 s\"\n");
+    REQUIRE(bench.run("o", {file, "--in-process"}).status == 0);
+    const auto report = bench.report("o");
+    CHECK(report["nodes"]["tam0.xbee"]["air"]["bad_frames"]["check"] >= 1);
+    CHECK(report["nodes"]["tam0.xbee"]["air"]["received"] == 0);
+    CHECK(report["links"]["tam1.radio"]["from_a"]["lost"] >= 1);
+    // The report of the one that is cut off never arrives, and the firmware goes on.
+    CHECK(report["nodes"]["coordinator.xbee"]["air"]["received"] >= 1);
+}
