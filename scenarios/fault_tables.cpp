@@ -32,6 +32,8 @@ std::vector<FaultLink> fault_links(const Scenario& scenario) {
     if (scenario.coordinator) {
         if (!scenario.coordinator->uart.empty())
             links.push_back({"coordinator.uart", "coordinator.uart", "coordinator.xbee"});
+        if (scenario.coordinator->program)
+            links.push_back({"coordinator.uart", "coordinator.linux", "coordinator.xbee"});
         links.push_back({"coordinator.radio", "coordinator.xbee", "ether", true});
     }
     return links;

@@ -2,7 +2,7 @@
 
 #include "physics/description.h"
 #include "scenarios/reader.h"
-#include "scenarios/robot_tables.h"
+#include "scenarios/linux_keys.h"
 #include "scenarios/scenario.h"
 #include "scenarios/world_tables.h"
 

@@ -1,5 +1,7 @@
 #include "scenarios/radio_tables.h"
 
+#include "scenarios/linux_keys.h"
+
 #include <fmt/format.h>
 
 #include <charconv>
@@ -49,6 +51,21 @@ void read_module(Reader& reader, XBeeModule& module) {
     module.boot = reader.quantity("boot", Dimension::Time, module.boot);
     if (!(module.boot >= 0 && module.boot <= 10)) reader.fail("boot", "boot is out of range", "0 s to 10 s");
     read_parameters(reader, module);
+}
+
+/// The computer with the coordinator's program; its files go to a folder of their own.
+void read_computer(Reader& reader, CoordinatorPlace& place, int line) {
+    if (!place.uart.empty())
+        reader.fail("uart", "the module has one serial line, and the program is at it",
+                    "either 'program' or 'uart'");
+    LinuxBoard& board = place.program.emplace();
+    board.hostname = board.folder = "coordinator";
+    board.grace = 10.0;  // the time in which LEDs go off
+    board.place_line = line;
+    read_program(reader, board);
+    place.tty = reader.text("tty", place.tty);
+    if (!place.tty.starts_with("/dev/"))
+        reader.fail("tty", fmt::format("'{}' is no serial port", place.tty), "such as \"/dev/ttyUSB0\"");
 }
 
 }  // namespace
@@ -103,6 +120,7 @@ std::optional<CoordinatorPlace> read_coordinator(Reader& top) {
         place.y = position[1];
     }
     place.uart = reader.text("uart", "");
+    if (reader.has("program")) read_computer(reader, place, table->line);
     place.baud = reader.quantity("baud", Dimension::Number, place.baud);
     if (!(place.baud >= 1200 && place.baud <= 250'000))
         reader.fail("baud", "baud is out of range", "1200 to 250000");

@@ -14,7 +14,4 @@ namespace puckloop::scenarios {
 void read_robot(const std::string& file, const TomlValue& table, const std::filesystem::path& folder,
                 Scenario& scenario);
 
-/// The keys of [robot.linux] and of an overlay's [linux]; those that are absent leave `late` as it is.
-void read_lateness(Reader& reader, LinuxLateness& late);
-
 }  // namespace puckloop::scenarios

@@ -71,7 +71,8 @@ Scenario read_scenario(const std::filesystem::path& file) {
 void check_ending(const Scenario& scenario) {
     const bool any_program =
         std::any_of(scenario.robots.begin(), scenario.robots.end(),
-                    [](const RobotBoards& robot) { return robot.linux_board.has_value(); });
+                    [](const RobotBoards& robot) { return robot.linux_board.has_value(); }) ||
+        (scenario.coordinator && scenario.coordinator->program);
     if (!scenario.duration && !any_program)
         throw InputError(scenario.file.string(), "[run]", "nothing ends this run",
                          "duration = \"60 s\", a robot with a [robot.linux] program, or --duration");

@@ -91,9 +91,11 @@ struct RadioMedium {
 /// The coordinator's radio module and what is at its serial line.
 struct CoordinatorPlace {
     XBeeModule module;
-    double x = 0.0, y = 0.0;  ///< m
-    std::string uart;         ///< plugged in: "pty", "tcp:PORT", "script:FILE"; empty: nothing
-    double baud = 9600.0;     ///< of what is plugged in
+    double x = 0.0, y = 0.0;              ///< m
+    std::string uart;                     ///< plugged in: "pty", "tcp:PORT", "script:FILE"; empty: nothing
+    double baud = 9600.0;                 ///< of what is plugged in
+    std::optional<LinuxBoard> program{};  ///< plugged in: a computer that runs it, with the port `tty`
+    std::string tty = "/dev/ttyUSB0";
 };
 
 /// A TAM: board and booth.

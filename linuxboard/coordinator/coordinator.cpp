@@ -180,7 +180,7 @@ void Coordinator::switch_off() {
 void Coordinator::take(const XBeeMessage& message) {
     if (const auto* response = std::get_if<XBeeAtResponse>(&message)) {
         if (response->command == command_of("ND")) take_found(*response);
-        if (response->command == command_of("DB") && response->status == 0 && !response->value.empty())
+        if (response->command == command_of("DB") && !failed(*response) && !response->value.empty())
             note("strength", std::to_string(-int{response->value.back()}), "dBm");
     } else if (const auto* data = std::get_if<XBeeRx>(&message)) {
         take_data(*data);
@@ -199,7 +199,7 @@ void Coordinator::take(const XBeeMessage& message) {
 
 void Coordinator::take_found(const XBeeAtResponse& response) {
     const XBeeBytes& value = response.value;
-    if (response.status != 0 || value.size() <= kNameAt) return;  // the end of a discovery, or an error
+    if (failed(response) || value.size() <= kNameAt) return;  // the end of a discovery, or an error
     std::uint64_t address = 0;
     for (std::size_t i = 2; i < kNameAt; ++i)
         address = address << 8 | value[i];

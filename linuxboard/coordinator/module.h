@@ -53,6 +53,11 @@ class Module {
     std::optional<protocols::XBeeAtResponse> response_;
 };
 
+/// The command was refused; the status' upper half is flags of the module's own (found nodes: 40).
+inline bool failed(const protocols::XBeeAtResponse& response) {
+    return (response.status & 0x0F) != 0;
+}
+
 /// The letters of an AT command, of exactly two.
 protocols::XBeeCommand command_of(std::string_view letters);
 

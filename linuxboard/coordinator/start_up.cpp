@@ -11,7 +11,7 @@ using protocols::XBeeBytes;
 namespace {
 
 constexpr double kStepTimeout = 5.0;  // s
-constexpr int kTries = 2;             // within it: the first may meet a module that is still starting
+constexpr int kTries = 5;             // within it: the first may meet a module that is still starting
 constexpr double kWindowUnit = 0.1;   // s, of NT
 constexpr double kLongestWindow = 60;
 constexpr std::uint64_t kEscapedMode = 2;
@@ -41,7 +41,7 @@ std::optional<XBeeBytes> Coordinator::step(int number, std::string_view command,
         fail(fmt::format("no answer within {:g} s (expected an XBee module in API mode at 9600 baud; {} "
                          "bytes came, {} sound frames)",
                          kStepTimeout, counters().bytes, counters().frames));
-    if (answer->status != 0) fail(fmt::format("the module answers with status {}", answer->status));
+    if (failed(*answer)) fail(fmt::format("the module answers with status {}", answer->status));
     note("module", std::string(command),
          answer->value.empty() ? "ok" : fmt::format("{:02x}", fmt::join(answer->value, "")));
     return answer->value;

@@ -76,6 +76,7 @@ void SimulatedMesh::take_at(const XBeeAt& command, double now) {
         for (auto& [id, tam] : tams) {
             if (!tam.alive || tam.off || lost()) continue;
             XBeeAtResponse found = response;
+            found.status = 0x40;  // as the modules say it
             put(found.value, 0xFFFE, 2);
             put(found.value, tam.address, 8);
             found.value.insert(found.value.end(), tam.name.begin(), tam.name.end());

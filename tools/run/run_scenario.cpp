@@ -55,9 +55,14 @@ void write_results(const RunSetup& setup, cosim::Outcome& outcome, ReservedFile&
 }
 
 void make_work_folders(const RunSetup& setup) {
-    for (const auto& robot : setup.scenario.robots) {
-        if (!robot.linux_board || robot.linux_board->folder.empty()) continue;
-        const auto folder = setup.out / robot.linux_board->folder;
+    std::vector<std::string> names;
+    for (const auto& robot : setup.scenario.robots)
+        if (robot.linux_board) names.push_back(robot.linux_board->folder);
+    if (const auto& place = setup.scenario.coordinator; place && place->program)
+        names.push_back(place->program->folder);
+    for (const std::string& name : names) {
+        if (name.empty()) continue;
+        const auto folder = setup.out / name;
         std::error_code error;
         std::filesystem::create_directories(folder, error);
         if (error) throw InputError(folder.string(), "", "cannot be made a folder: " + error.message());

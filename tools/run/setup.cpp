@@ -6,6 +6,7 @@
 #include "emu/rab_board/signals.h"
 #include "tools/run/control/control_place.h"
 #include "tools/run/overrides.h"
+#include "tools/run/plan/linux_nodes.h"
 #include "tools/run/plan/plan_kit.h"
 #include "tools/run/plan/radio_nodes.h"
 #include "tools/run/plan/tam_nodes.h"
@@ -24,10 +25,6 @@ namespace {
 using nlohmann::json;
 using scenarios::RobotBoards;
 using scenarios::Scenario;
-
-// A program that computes for ever is told by its own board, which knows more, before the conductor loses
-// patience with the board.
-constexpr double kWatchdogShare = 0.5;
 
 json pic_spec(const RunSetup& setup, const RobotBoards& robot) {
     const Scenario& scenario = setup.scenario;
@@ -69,38 +66,6 @@ json bus_spec(const RunSetup& setup, const RobotBoards& robot) {
             {"log", log_of(setup, robot.name + ".i2c")}};
 }
 
-json linux_spec(const RunSetup& setup, const RobotBoards& robot, std::int64_t programs,
-                const RunRequest& request) {
-    const scenarios::LinuxBoard& board = *robot.linux_board;
-    const std::filesystem::path folder = setup.scenario.file.parent_path();
-    json signals = json::array();
-    for (const scenarios::LinuxSignal& signal : board.signals)
-        signals.push_back({{"time_s", signal.at}, {"signal", signal.send}});
-    json spec{
-        {"kind", "linux"},
-        {"name", robot.name + ".linux"},
-        {"program", find_program(board.command[0], folder).string()},
-        {"args", std::vector<std::string>(board.command.begin() + 1, board.command.end())},
-        {"host_name", board.hostname},
-        {"i2c_hertz", setup.scenario.i2c_clock},
-        {"seed", setup.scenario.seed},
-        {"start_s", board.start},
-        {"restart_at", board.restarts},
-        {"signals", std::move(signals)},
-        {"cwd", board.folder.empty() ? "" : (std::filesystem::absolute(setup.out) / board.folder).string()},
-        {"end_signal", board.end_signal},
-        {"grace_s", board.grace},
-        {"tty_batch_s", board.late.tty_batch},
-        {"i2c_hold_s", board.late.i2c_hold},
-        {"oversleep_s", board.late.oversleep},
-        {"oversleep_jitter_s", board.late.oversleep_jitter},
-        {"programs", programs},
-        {"watchdog_s", request.stall_seconds * kWatchdogShare},
-        {"real_time", request.realtime},
-        {"log", log_of(setup, robot.name + ".linux")}};
-    return spec;
-}
-
 /// What the scenario plugs into the board's UART1, if anything.
 void add_uart1(RunSetup& setup, const RobotBoards& robot, const RunRequest& request) {
     if (robot.pic.uart1.empty()) return;
@@ -125,16 +90,16 @@ void add_rab(RunSetup& setup, const RobotBoards& robot) {
                                              robot.name));
 }
 
-void add_linux(RunSetup& setup, const RobotBoards& robot, std::int64_t programs, const RunRequest& request) {
+void add_linux(RunSetup& setup, const RobotBoards& robot, const RunRequest& request) {
     if (!robot.linux_board) return;
     const std::string program = robot.name + ".linux";
-    setup.nodes.push_back({program, linux_spec(setup, robot, programs, request).dump()});
+    setup.nodes.push_back({program, linux_spec(setup, program, *robot.linux_board, request).dump()});
     setup.links.push_back(
         {robot.name + ".uart", {program, "uart"}, {robot.name + ".pic", "uart2"}, setup.scenario.uart_baud});
     setup.links.push_back({robot.name + ".i2c.linux", {program, "i2c"}, {robot.name + ".i2c", "linux"}});
 }
 
-void add_robot(RunSetup& setup, const RobotBoards& robot, std::int64_t programs, const RunRequest& request) {
+void add_robot(RunSetup& setup, const RobotBoards& robot, const RunRequest& request) {
     const std::string pic = robot.name + ".pic";
     const std::string bus = robot.name + ".i2c";
     add_free(setup, pic, pic_spec(setup, robot));
@@ -150,17 +115,14 @@ void add_robot(RunSetup& setup, const RobotBoards& robot, std::int64_t programs,
     setup.links.push_back({robot.name + ".i2c.pic", {pic, "i2c"}, {bus, "pic"}});
     add_uart1(setup, robot, request);
     add_rab(setup, robot);
-    add_linux(setup, robot, programs, request);
+    add_linux(setup, robot, request);
 }
 
 /// The world, and what happens to it.
 void add_world(RunSetup& setup, const json& world, const RunRequest& request) {
     physics::EventPlan& events = setup.scenario.events;
     events.live = request.realtime || request.paced;
-    const auto& robots = setup.scenario.robots;
-    events.repeats = !request.realtime ||
-                     std::none_of(robots.begin(), robots.end(),
-                                  [](const RobotBoards& robot) { return robot.linux_board.has_value(); });
+    events.repeats = !request.realtime || programs_of(setup.scenario) == 0;
     if (events.any()) events.journal = (setup.out / "events.toml").string();
     if (events.live) setup.control = new_control_path();
     const json spec{{"kind", "world"},
@@ -218,11 +180,8 @@ RunSetup set_up(const RunRequest& request) {
     add_world(setup, world, request);
     add_ir(setup, world);
 
-    const auto programs =
-        std::count_if(scenario.robots.begin(), scenario.robots.end(),
-                      [](const RobotBoards& robot) { return robot.linux_board.has_value(); });
     for (const RobotBoards& robot : scenario.robots)
-        add_robot(setup, robot, programs, request);
+        add_robot(setup, robot, request);
     add_tams(setup, request);
     add_radio(setup, request);
     name_linked_ports(setup);

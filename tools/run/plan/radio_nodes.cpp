@@ -1,6 +1,7 @@
 #include "tools/run/plan/radio_nodes.h"
 
 #include "emu/tam_avr/signals.h"
+#include "tools/run/plan/linux_nodes.h"
 #include "tools/run/plan/plan_kit.h"
 
 #include <fmt/format.h>
@@ -67,6 +68,14 @@ void add_coordinator(RunSetup& setup, json& stations, const RunRequest& request)
     if (!place.uart.empty())
         add_outside(setup, "coordinator.uart", place.uart, place.baud, {node, "uart"}, nominal(place.baud),
                     request);
+    if (place.program) {
+        const std::string computer = "coordinator.linux";
+        json spec = linux_spec(setup, computer, *place.program, request);
+        spec["tty"] = place.tty;
+        spec["i2c"] = json::array();
+        setup.nodes.push_back({computer, spec.dump()});
+        setup.links.push_back({"coordinator.uart", {computer, "uart"}, {node, "uart"}, nominal(kBaud)});
+    }
     add_air(setup, stations, "coordinator", place.x, place.y);
 }
 

@@ -155,11 +155,15 @@ void save_to_file(RunSetup& setup, const RunRequest& request) {
         spec["save_state"] = {{"path", part}, {"at_ps", setup.save_at}};
         node.json = spec.dump();
     }
-    for (const scenarios::RobotBoards& robot : setup.scenario.robots)
-        if (robot.linux_board && robot.linux_board->start < *request.save_at)
+    const auto check = [&](const std::string& name, const std::optional<scenarios::LinuxBoard>& board) {
+        if (board && board->start < *request.save_at)
             setup.warnings.push_back(fmt::format(
                 "{}.linux: runs already at {:g} s and is not part of the state, which holds boards only",
-                robot.name, *request.save_at));
+                name, *request.save_at));
+    };
+    for (const scenarios::RobotBoards& robot : setup.scenario.robots)
+        check(robot.name, robot.linux_board);
+    if (setup.scenario.coordinator) check("coordinator", setup.scenario.coordinator->program);
 }
 
 void use_cache(RunSetup& setup, const RunRequest& request) {
