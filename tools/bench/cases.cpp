@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <functional>
 #include <utility>
 
@@ -52,6 +53,19 @@ void rab(Kit& kit, int robots) {
                   {scenario, kSwarmShare * options.simulated_s, true, options.threads});
 }
 
+/// A laboratory of TAMs with their coordinator: the project's firmware, and the real one where it is there.
+void tams18(Kit& kit) {
+    const BenchOptions& options = kit.options();
+    RunSpec spec{kit.shipped("tams18.toml"), options.simulated_s, true, options.threads};
+    kit.time_runs("tams18.toml, one process", spec);
+    const char* folder = std::getenv("PUCKLOOP_IMAGES");
+    if (folder == nullptr) return;
+    const auto image = std::filesystem::path(folder) / "tam_firmware.elf";
+    if (!std::filesystem::exists(image)) return;
+    spec.options = {"--firmware", "tam=" + image.string()};
+    kit.time_runs("tams18.toml, tam_firmware.elf, one process", spec);
+}
+
 using Case = std::pair<std::string, std::function<void(Kit&)>>;
 
 const std::vector<Case>& table() {
@@ -66,7 +80,8 @@ const std::vector<Case>& table() {
                                          {"memory", memory},
                                          {"rab1", [](Kit& kit) { rab(kit, 1); }},
                                          {"rab2", [](Kit& kit) { rab(kit, 2); }},
-                                         {"rab8", [](Kit& kit) { rab(kit, 8); }}};
+                                         {"rab8", [](Kit& kit) { rab(kit, 8); }},
+                                         {"tams18", tams18}};
     return cases;
 }
 
