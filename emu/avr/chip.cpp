@@ -16,6 +16,8 @@
 #include "emu/avr/peripherals/usart.h"
 #include "emu/avr/peripherals/watchdog.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <stdexcept>
@@ -435,6 +437,30 @@ void Chip::set_skipping(bool on) {
 
 void Chip::set_translating(bool on) {
     parts_->core.set_translate(on);
+}
+
+std::optional<std::string> Chip::hang() const {
+    const Parts& p = *parts_;
+    constexpr double kLong = 0.5;
+    const auto seconds = [&](Cycle from) {
+        return cosim::to_seconds(p.clock.time_of(p.core.cycle()) - p.clock.time_of(from));
+    };
+    const std::optional<WaitingLoop> loop = p.core.waiting();
+    if (!loop || seconds(loop->since) < kLong) return std::nullopt;
+    const bool masked = !(p.core.state().sreg & sreg::I);
+    constexpr std::uint16_t kTwcr = 0xBC, kAdcsra = 0x7A;
+    const RegisterInfo* polled = loop->polled ? p.io.info(loop->polled) : nullptr;
+    std::string why;
+    if (loop->polled == kTwcr && p.twi.idle())
+        why = "reading TWCR, but the two-wire interface has nothing to do";
+    else if (loop->polled == kAdcsra && !p.adc.converting())
+        why = "reading ADCSRA, but no conversion is under way";
+    else if (!polled && loop->reads_ram && masked)
+        why = "reading RAM that only an interrupt could change, with interrupts off";
+    else
+        return std::nullopt;
+    return fmt::format("has run {:.1f} s in the loop 0x{:04x}..0x{:04x} {}", seconds(loop->since),
+                       2u * loop->head, 2u * loop->branch, why);
 }
 
 ChipReport Chip::report() const {

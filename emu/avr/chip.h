@@ -134,6 +134,8 @@ class Chip {
     /// A byte of RAM. Throws std::out_of_range elsewhere.
     std::uint8_t peek_data(std::uint16_t address) const;
     ChipReport report() const;
+    /// What the program waits for, if it has done so for half a second or more and it cannot come.
+    std::optional<std::string> hang() const;
 
     /// Everything that time changes, of a chip of the same device and options (base/archive.h). Throws
     /// StateError.

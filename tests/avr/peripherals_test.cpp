@@ -4,6 +4,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <memory>
+
 using namespace puckloop;
 using namespace puckloop::avr;
 using test::Rig;
@@ -402,4 +404,132 @@ TEST_CASE("an address without a register is reported once") {
     CHECK(touches[0].address == 0x2C);
     CHECK(touches[1].write);
     CHECK(touches[1].pc == 8);
+}
+
+TEST_CASE("differential channels of the ADC give two's complement, with gain") {
+    const auto convert = [](int mux, double plus, double minus, int positive, int negative) {
+        Rig rig("ldi r16, " + std::to_string(0x40 | mux) + R"(
+        sts ADMUX, r16
+        ldi r16, 0xC7
+        sts ADCSRA, r16
+busy:   lds r17, ADCSRA
+        sbrc r17, 6
+        rjmp busy
+        lds r20, ADCL
+        lds r21, ADCH
+        sts 0x100, r20
+        sts 0x101, r21
+end:    rjmp end
+)");
+        rig.volts[static_cast<std::size_t>(positive)] = plus;
+        rig.volts[static_cast<std::size_t>(negative)] = minus;
+        rig.run(6000);
+        const int code = rig.ram(0x100) | rig.ram(0x101) << 8;
+        return code >= 512 ? code - 1024 : code;
+    };
+    CHECK(convert(0x10, 3.0, 2.0, 0, 1) == 102);   // ADC0 - ADC1: 1 V of 5 V, 512 steps
+    CHECK(convert(0x10, 2.0, 3.0, 0, 1) == -103);  // rounded down
+    CHECK(convert(0x1D, 4.0, 1.5, 5, 2) == 256);   // ADC5 - ADC2
+    CHECK(convert(0x09, 2.05, 2.0, 1, 0) == 51);   // (ADC1 - ADC0) x 10
+    CHECK(convert(0x0F, 2.001, 2.0, 3, 2) == 20);  // (ADC3 - ADC2) x 200
+    CHECK(convert(0x0F, 3.0, 2.0, 3, 2) == 511);   // clipped
+    CHECK(convert(0x0B, 0.0, 1.0, 1, 0) == -512);
+}
+
+TEST_CASE("boot lock bits keep a section from being read by the other, and from being written") {
+    // The boot section reads the application and erases a page of it; the application reads the boot section.
+    const std::string source = R"(
+        .org 0
+        ldi r31, 0xFC
+        ldi r30, 0
+        ldi r16, 1
+        out RAMPZ, r16
+        elpm r20, Z         ; of the boot section
+        sts 0x101, r20
+end:    rjmp end
+        .org 0x200
+        .word 0x1234
+        .org 0x1FC00
+        ldi r31, 2
+        ldi r30, 0
+        lpm r20, Z          ; of the application
+        sts 0x100, r20
+        ldi r16, 3
+        out SPMCSR, r16
+        spm
+busy:   in r17, SPMCSR
+        sbrc r17, 0
+        rjmp busy
+        ldi r16, 0x11
+        out SPMCSR, r16
+        spm
+        lpm r20, Z
+        sts 0x102, r20
+        ldi r31, 0
+        ldi r30, 0
+        jmp 0
+)";
+    const auto run = [&](std::uint8_t lock) {
+        auto rig = std::make_unique<Rig>(source, ChipOptions{.fuses = {0xFF, 0xDE, 0xFD, lock}});
+        rig->run(200'000);
+        return rig;
+    };
+    const auto open = run(0xFF);
+    CHECK(open->ram(0x100) == 0x34);
+    CHECK(open->ram(0x101) == 0xF2);
+    CHECK(open->ram(0x102) == 0xFF);
+    const auto closed = run(0xC3);  // both sections in mode 3
+    CHECK(closed->ram(0x100) == 0xFF);
+    CHECK(closed->ram(0x101) == 0xFF);
+    const auto readable = run(0xFB);  // BLB01 alone: the application may not be written
+    CHECK(readable->ram(0x100) == 0x34);
+    CHECK(readable->ram(0x102) == 0x34);
+}
+
+TEST_CASE("a program that hangs, starts over or sleeps for good is reported") {
+    const auto warning = [](const Rig& rig) {
+        const ChipReport report = rig.chip.report();
+        return report.warnings.empty() ? std::string() : report.warnings.front().text;
+    };
+    Rig twi(R"(
+        ldi r16, 0x04
+        sts TWCR, r16       ; enabled, nothing begun
+wait:   lds r17, TWCR
+        sbrs r17, 7
+        rjmp wait
+)");
+    twi.chip.run_until(400 * cosim::kMillisecond);
+    CHECK_FALSE(twi.chip.hang());
+    twi.chip.run_until(cosim::kSecond);
+    REQUIRE(twi.chip.hang());
+    CHECK(*twi.chip.hang() == "has run 1.0 s in the loop 0x0006..0x000c reading TWCR, but the two-wire "
+                              "interface has nothing to do");
+    Rig ram("wait: lds r16, 0x200\n tst r16\n breq wait\n");
+    ram.chip.run_until(cosim::kSecond);
+    REQUIRE(ram.chip.hang());
+    CHECK(ram.chip.hang()->find("with interrupts off") != std::string::npos);
+    Rig listens("sei\nldi r16, 0x10\n sts UCSR0B, r16\nwait: lds r16, UCSR0A\n sbrs r16, 7\n rjmp wait\n");
+    listens.chip.run_until(cosim::kSecond);
+    CHECK_FALSE(listens.chip.hang());  // a character may come
+    Rig ended("cli\nend: rjmp end\n");
+    ended.chip.run_until(cosim::kSecond);
+    CHECK_FALSE(ended.chip.hang());
+
+    Rig again(R"(
+        jmp start
+        .org 0x48           ; TIMER0_OVF, without a routine
+        jmp 0
+        .org 0x100
+start:  ldi r16, 1
+        sts TIMSK0, r16
+        out TCCR0B, r16
+        sei
+wait:   rjmp wait
+)");
+    again.run(2000);
+    CHECK(warning(again) ==
+          "the program starts over at 0 without a reset; the last interrupt was TIMER0_OVF");
+    Rig asleep("ldi r16, 5\n out SMCR, r16\n cli\n sleep\n nop\n");
+    asleep.run(2000);
+    CHECK(warning(asleep) == "sleeps with interrupts off: only a reset ends it");
 }

@@ -1,5 +1,5 @@
 // Random C programs by Debian's avr-gcc, at several levels of optimisation: the same output and clocks as on
-// simavr, translated and interpreted; a program's output is also the same at every level.
+// simavr, translated and interpreted. (Levels may differ: C leaves the order of evaluation open.)
 
 #include "base/random.h"
 #include "emu/avr/chip.h"
@@ -74,7 +74,6 @@ TEST_CASE("random C programs do the same as on simavr, at every level of optimis
         RandomStream random(static_cast<std::uint64_t>(seed), "avr C");
         const std::string source = tests::scratch_path("program").string();
         std::ofstream(source) << test::RandomC(random).program();
-        std::string expected;
         for (const char* level : {"-O0", "-O2", "-Os", "-O3"}) {
             INFO("seed " << seed << " " << level);
             const std::string elf = source + ".elf";
@@ -90,8 +89,6 @@ TEST_CASE("random C programs do the same as on simavr, at every level of optimis
             REQUIRE(plain.output == ours.output);
             REQUIRE(plain.cycles == ours.cycles);
             REQUIRE(ours.output.size() == 81);
-            if (expected.empty()) expected = ours.output;
-            CHECK(ours.output == expected);
             ++compared;
         }
     }

@@ -157,6 +157,15 @@ const DeviceInfo& Core::device() const {
     return machine_->device;
 }
 
+std::optional<WaitingLoop> Core::waiting() const {
+    const Machine& m = *machine_;
+    const SteadyLoop& loop = m.steady;
+    // A walk begins where there is room for it: soon after whatever came between.
+    constexpr Cycle kBetween = 20'000;
+    if (loop.until == 0 || m.cycle > loop.until + kBetween || m.asleep) return std::nullopt;
+    return WaitingLoop{loop.head, loop.branch, loop.polled, loop.reads_ram, loop.since};
+}
+
 CoreState Core::state() const {
     const Machine& m = *machine_;
     CoreState state;

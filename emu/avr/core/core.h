@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -32,6 +33,14 @@ struct CoreObserver {
     std::function<void(int vector, std::uint16_t pc, Cycle now)> on_interrupt;
     /// One line, at most once each: "undefined word 0x9419 executed as NOP", ...
     std::function<void(std::string_view text, std::uint16_t pc)> on_warning;
+};
+
+/// A loop that waits for something that only others can change.
+struct WaitingLoop {
+    std::uint16_t head = 0, branch = 0;  ///< program words
+    std::uint16_t polled = 0;            ///< data address of a register that it reads; 0: none
+    bool reads_ram = false;
+    Cycle since = 0;
 };
 
 /// What the core leaves to others. All optional.
@@ -103,6 +112,9 @@ class Core {
     Cycle skipped() const;               ///< cycles in idle loops that were not executed one by one
     const DeviceInfo& device() const;
 
+    /// The loop in which the program has waited up to now, if it is in one that changes nothing (seen only
+    /// while idle loops are skipped). Interrupt routines may have run meanwhile.
+    std::optional<WaitingLoop> waiting() const;
     CoreState state() const;
     void set_state(const CoreState& state);
     /// The whole data space as the CPU would read and write it: registers have their side effects.

@@ -3,7 +3,10 @@
 #include "emu/avr/core/execute/handlers.h"
 #include "emu/avr/isa/operands.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <utility>
 
 namespace puckloop::avr {
 
@@ -20,6 +23,7 @@ constexpr Handler kHandlers[] = {
 };
 
 constexpr std::uint16_t kIoOffset = 0x20;
+constexpr std::uint32_t kStartedOver = 0x30000;  ///< key of the warning
 
 /// A stop address: nothing happens here, the run loop takes over.
 const Op* stop_here(Machine& m, const Op* op) {
@@ -28,6 +32,18 @@ const Op* stop_here(Machine& m, const Op* op) {
     m.cycle -= op->cycles;
     --m.instructions;
     return op;
+}
+
+/// The first word of the application: coming here again without a reset is what avr-libc does at an interrupt
+/// without a routine, and what a wild jump ends in.
+const Op* first_word(Machine& m, const Op* op) {
+    if (std::exchange(m.started, true) && !was_warned(m, kStartedOver)) {
+        const std::string_view vector = m.last_vector < 0 ? "none" : m.device.vector_name(m.last_vector);
+        warn_once(
+            m, op, kStartedOver,
+            fmt::format("the program starts over at 0 without a reset; the last interrupt was {}", vector));
+    }
+    return kHandlers[static_cast<std::size_t>(op->form)](m, op);
 }
 
 /// A backward branch: the instruction, then perhaps a leap.
@@ -103,7 +119,10 @@ void decode(Machine& m, Op& op) {
             bind(op, operand, form->field(letter, word, m.program[index + 1]), index, form->width(letter));
         }
     }
-    if (const Handler loop = loop_handler_of(op, index)) op.run = loop;
+    if (const Handler loop = loop_handler_of(op, index))
+        op.run = loop;
+    else if (index == 0 && op.form != FormId::Undefined)
+        op.run = &first_word;
     if (std::find(m.stops.begin(), m.stops.end(), index) != m.stops.end()) {
         op.run = &stop_here;
         op.form = FormId::Undefined;  // nobody looks ahead over it

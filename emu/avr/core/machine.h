@@ -40,6 +40,15 @@ struct LoopInfo {
     std::uint32_t period = 0;   ///< cycles of its last turn that was looked at; 0: none was
 };
 
+/// The steady loop in which the program was last seen to wait (fast/idle_loops.cpp).
+struct SteadyLoop {
+    std::uint16_t head = 0, branch = 0;  ///< program words
+    std::uint16_t polled = 0;            ///< register that it reads; 0: none
+    bool reads_ram = false;
+    std::uint32_t registers = 0;  ///< fingerprint: another one is another wait
+    Cycle since = 0, until = 0;
+};
+
 /// Longer loops are no busy waits.
 inline constexpr std::uint32_t kLongestLoop = 64;
 
@@ -81,6 +90,9 @@ struct Machine {
     LoopInfo* loop_info = nullptr;  ///< their first
     Translated translated;
     std::vector<std::uint16_t> stops;
+    bool started = false;           ///< the program was at address 0 since the last reset
+    std::int16_t last_vector = -1;  ///< of the interrupt taken last since then
+    SteadyLoop steady;
     MemoryUndo<std::uint16_t> program_undo;
     std::vector<std::uint32_t> warned;
     CoreObserver observer;
@@ -113,8 +125,9 @@ std::uint8_t load_outside_ram(Machine& m, const Op* op, std::uint16_t address);
 void store_outside_ram(Machine& m, const Op* op, std::uint16_t address, std::uint8_t value,
                        std::uint8_t mask);
 void write_sreg(Machine& m, const Op* op, std::uint8_t value);
-std::uint8_t load_program(Machine& m, std::uint32_t address);
+std::uint8_t load_program(Machine& m, const Op* op, std::uint32_t address);
 void hook_core_registers(Machine& m);
+bool was_warned(const Machine& m, std::uint32_t key);
 void warn_once(Machine& m, const Op* op, std::uint32_t key, std::string_view text);
 
 inline std::uint8_t load(Machine& m, const Op* op, std::uint16_t address) {

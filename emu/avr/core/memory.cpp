@@ -103,15 +103,20 @@ void store_outside_ram(Machine& m, const Op* op, std::uint16_t address, std::uin
     }
 }
 
-std::uint8_t load_program(Machine& m, std::uint32_t address) {
+std::uint8_t load_program(Machine& m, const Op* op, std::uint32_t address) {
+    m.current = op;
     std::uint8_t value = 0;
     if (m.hooks.load_program && m.hooks.load_program(address, value)) return value;
     const std::uint16_t word = m.program[(address >> 1) & (m.device.flash_words - 1)];
     return static_cast<std::uint8_t>(address & 1 ? word >> 8 : word);
 }
 
+bool was_warned(const Machine& m, std::uint32_t key) {
+    return std::find(m.warned.begin(), m.warned.end(), key) != m.warned.end();
+}
+
 void warn_once(Machine& m, const Op* op, std::uint32_t key, std::string_view text) {
-    if (std::find(m.warned.begin(), m.warned.end(), key) != m.warned.end()) return;
+    if (was_warned(m, key)) return;
     m.warned.push_back(key);
     if (m.observer.on_warning) m.observer.on_warning(text, m.pc_of(op));
 }

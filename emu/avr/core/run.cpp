@@ -43,6 +43,7 @@ void pass_stop(Machine& m, std::uint16_t pc) {
 
 void enter_interrupt(Machine& m) {
     const int vector = m.irq.first();
+    m.last_vector = static_cast<std::int16_t>(vector);
     const std::uint16_t pc = m.pc_of(m.current);
     if (m.observer.on_interrupt) m.observer.on_interrupt(vector, pc, m.cycle);
     m.now = m.cycle;
@@ -65,7 +66,8 @@ void perform_reset(Machine& m, ResetCause cause) {
     m.sreg = 0;
     m.rampz = 0;
     m.sp = static_cast<std::uint16_t>(m.device.ram_end() - 1);
-    m.asleep = m.stopped = false;
+    m.asleep = m.stopped = m.started = false;
+    m.last_vector = -1;
     m.stall_end = 0;
     m.hold_at = kNoCycle;
     m.limit = 0;

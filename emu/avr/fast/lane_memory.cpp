@@ -104,6 +104,7 @@ Lanes LaneWalk::load_module(const Op* op, std::uint16_t address) {
         break;
     }
     if (m_.io.steady_read(address)) {
+        polled_ = address;
         const Cycle now = std::exchange(m_.now, base_ + at);
         const std::uint8_t value = m_.io.read(address);
         m_.now = now;

@@ -42,7 +42,22 @@ LaneWalk::Verdict LaneWalk::run(const Op* branch, const Op* head, LoopInfo& loop
     const std::uint64_t turns = steady ? room : std::min<std::uint64_t>(room, valid_);
     if (turns == 0) return Verdict::NotNow;
     commit(steady ? 0 : turns - 1, turns);
+    if (steady) note_steady(branch, head);
     return turns >= kFewestTurns || period_ == 0 ? Verdict::Leapt : Verdict::NotNow;
+}
+
+/// A program that comes back to the same loop with the same registers has not left it, as far as one can see.
+void LaneWalk::note_steady(const Op* branch, const Op* head) {
+    SteadyLoop& loop = m_.steady;
+    std::uint32_t fingerprint = 2166136261u;
+    for (std::size_t i = 0; i < r_.size(); ++i)
+        fingerprint = (fingerprint ^ m_.data[i]) * 16777619u;
+    fingerprint = (fingerprint ^ m_.sp) * 16777619u;
+    const std::uint16_t at = m_.pc_of(branch);
+    if (loop.branch != at || loop.registers != fingerprint) {
+        loop = {m_.pc_of(head), at, polled_, cells_ > 0, fingerprint, base_, 0};
+    }
+    loop.until = m_.cycle;
 }
 
 const Op* LaneWalk::put(const Op* op, const Alu<Lanes>& result, std::uint8_t mask) {
@@ -178,8 +193,6 @@ const Op* LaneWalk::execute(const Op* op) {
     case ST_Z_DEC: { const Lanes value = r(); return stored(moved_pointer(kZ, -1, 0), value); }
     case STD_Z: return stored(displaced(kZ), r());
     case PUSH: return stored(sp_--, r());
-    case LPM: { const std::uint16_t z = pointer(kZ); set(op->d, Lanes(load_program(m_, z))); return done(); }
-    case LPM_INC: { const std::uint16_t z = moved_pointer(kZ, 0, 1); set(op->d, Lanes(load_program(m_, z))); return done(); }
 
     case RJMP: case JMP: offset_ += op->cycles; return m_.code + op->k;
     case BRBS: return branch_if(!zero(flags(op->b)), op);

@@ -81,6 +81,7 @@ class LaneWalk {
     /// Lanes behind the first one that does not hand on what it found.
     void compare_ends();
     void commit(std::size_t last, std::uint64_t turns);
+    void note_steady(const Op* branch, const Op* head);
 
     Machine& m_;
     Cycle base_ = 0;    ///< the first turn begins
@@ -88,6 +89,7 @@ class LaneWalk {
     Cycle offset_ = 0;  ///< from the turn's begin
     std::uint64_t instructions_ = 0;
     std::size_t valid_ = Lanes::kCount;
+    std::uint16_t polled_ = 0;              ///< a register that was read and follows no clock
     bool follows_ = false;                  ///< a value that follows the clock was read
     std::uint32_t read_ = 0, written_ = 0;  ///< registers; `read`: before they were written
     std::uint8_t flags_read_ = 0, flags_written_ = 0;

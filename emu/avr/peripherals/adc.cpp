@@ -1,6 +1,8 @@
 #include "emu/avr/peripherals/adc.h"
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 namespace puckloop::avr {
 
@@ -18,6 +20,21 @@ constexpr unsigned kFreeRunning = 0;     // ADTS
 constexpr Cycle kFirstSample = 27, kFirstEnd = 50, kSample = 3, kEnd = 26, kTriggeredSample = 4,
                 kTriggeredEnd = 27;
 constexpr double kBandgap = 1.1, kInternalReference = 2.56;
+
+/// MUX4:0 = 8..29 (data sheet 8272, table "Input Channel and Gain Selections").
+struct Differential {
+    int positive = 0, negative = 0;
+    double gain = 1;
+};
+std::optional<Differential> differential(unsigned channel) {
+    constexpr Differential kGain[] = {{0, 0, 10}, {1, 0, 10}, {0, 0, 200}, {1, 0, 200},
+                                      {2, 2, 10}, {3, 2, 10}, {2, 2, 200}, {3, 2, 200}};
+    constexpr unsigned kFirst = 8, kAgainst1 = 16, kAgainst2 = 24, kEnd = 30;
+    if (channel < kFirst || channel >= kEnd) return std::nullopt;
+    if (channel < kAgainst1) return kGain[channel - kFirst];
+    if (channel < kAgainst2) return Differential{static_cast<int>(channel - kAgainst1), 1, 1};
+    return Differential{static_cast<int>(channel - kAgainst2), 2, 1};
+}
 
 }  // namespace
 
@@ -72,6 +89,11 @@ std::uint16_t Adc::convert(Cycle now) const {
     const double reference = references[field(mux, 7, 6)];
     const unsigned channel = field(mux, 4, 0);
     constexpr unsigned kInputs = 8, kBandgapChannel = 0x1E;
+    if (const auto pair = differential(channel)) {  // two's complement, ten bits
+        const double volts = pins_.analog(pair->positive, now) - pins_.analog(pair->negative, now);
+        const double code = std::clamp(volts * pair->gain / reference * 512.0, -512.0, 511.0);
+        return static_cast<std::uint16_t>(static_cast<int>(std::floor(code)) & 0x3FF);
+    }
     const double volts = channel < kInputs            ? pins_.analog(static_cast<int>(channel), now)
                          : channel == kBandgapChannel ? kBandgap
                                                       : 0.0;

@@ -3,8 +3,7 @@
 // the first one after enabling 25. Source: data sheet 8272, "Analog-to-digital Converter".
 //
 // Deviations
-//  1. Gain and differential channels (MUX4:0 = 8..29) convert to 0; the internal 1.1 V and 0 V channels are
-//  ideal.
+//  1. The gain stage and the internal 1.1 V and 0 V channels are ideal: no offset, no bandwidth, no noise.
 //  2. ADC noise reduction mode has no effect on the result.
 //  3. A trigger resets the ADC's prescaler in the clock of the trigger.
 
@@ -27,6 +26,7 @@ class Adc {
     void reset();
     /// The source of auto-triggering `number` (ADTS2:0) had its edge.
     void trigger(unsigned number);
+    bool converting() const { return state_.converting; }
 
     template <class Archive>
     void state(Archive& archive) {

@@ -10,6 +10,8 @@ constexpr std::uint16_t kSpmcsr = 0x57, kOsccal = 0x66;
 constexpr std::uint8_t kSpmie = bit(7), kRwwsb = bit(6), kSigrd = bit(5), kRwwsre = bit(4), kBlbset = bit(3),
                        kPgwrt = bit(2), kPgers = bit(1), kSpmen = bit(0);
 constexpr std::uint8_t kCommand = kSigrd | kRwwsre | kBlbset | kPgwrt | kPgers | kSpmen;
+constexpr std::uint8_t kBlb01 = bit(2), kBlb02 = bit(3), kBlb11 = bit(4), kBlb12 = bit(5);  // lock bits
+constexpr std::uint8_t kReadLocks = kBlb02 | kBlb12;
 constexpr std::uint16_t kErased = 0xFFFF;
 constexpr Cycle kArmed = 4;
 constexpr double kPageSeconds = 3.7e-3;
@@ -38,6 +40,17 @@ void SelfProgramming::reset() {
 
 bool SelfProgramming::in_rww(std::uint32_t word) const {
     return word < core_.device().flash_words - kNoReadWhileWriteWords;
+}
+
+// Boot lock bits, 0 = programmed: BLB01 and BLB11 keep SPM from writing a section, BLB02 and BLB12 keep LPM
+// in the other one from reading it (data sheet, tables 25-2 and 25-3).
+bool SelfProgramming::writable(std::uint32_t word) const {
+    return fuses_.lock & (word < system_.boot_start() ? kBlb01 : kBlb11);
+}
+bool SelfProgramming::readable(std::uint32_t word) const {
+    const bool boot = word >= system_.boot_start();
+    if (boot == (core_.pc() >= system_.boot_start())) return true;
+    return fuses_.lock & (boot ? kBlb12 : kBlb02);
 }
 
 // SPM_READY requests while no operation is under way.
@@ -88,11 +101,13 @@ void SelfProgramming::spm(std::uint32_t address, std::uint16_t word) {
         buffer_[place % size] &= word;
         break;
     case kPgers:
+        if (!writable(page)) break;
         for (std::uint32_t i = 0; i < size; ++i)
             core_.set_program(page + i, kErased);
         begin(page);
         break;
     case kPgwrt:
+        if (!writable(page)) break;
         for (std::uint32_t i = 0; i < size; ++i)
             core_.set_program(page + i, core_.program(page + i) & buffer_[i]);
         std::fill(buffer_.begin(), buffer_.end(), kErased);
@@ -131,8 +146,11 @@ bool SelfProgramming::load(std::uint32_t address, std::uint8_t& value) const {
             return true;
         }
     }
-    if (!(control() & kRwwsb) || !in_rww(address / 2)) return false;
-    value = 0xFF;  // the section is busy
+    const std::uint32_t word = address / 2 % core_.device().flash_words;
+    const bool busy = (control() & kRwwsb) && in_rww(word);
+    if (!busy && (fuses_.lock & kReadLocks) == kReadLocks) return false;
+    if (!busy && readable(word)) return false;
+    value = 0xFF;
     return true;
 }
 

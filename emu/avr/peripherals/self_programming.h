@@ -4,7 +4,9 @@
 //
 // Deviations
 //  1. Erasing and writing a page take 3.7 ms, the data sheet's minimum.
-//  2. Boot lock bits do not protect anything.
+//  2. A byte that boot lock bits keep from being read is 0xFF, a page that they protect stays as it is: the
+//  data sheet only says
+//     that it is not allowed. They do not keep interrupts off (tables 25-2 and 25-3, modes 3 and 4).
 
 #include "cosim/core/clock.h"
 #include "emu/avr/core/core.h"
@@ -36,6 +38,8 @@ class SelfProgramming {
   private:
     std::uint8_t& control() const { return around_.io.raw(0x57); }
     bool in_rww(std::uint32_t word) const;
+    bool writable(std::uint32_t word) const;
+    bool readable(std::uint32_t word) const;
     void begin(std::uint32_t word);
     void update_request();
     static std::uint8_t read_control(void* owner, std::uint16_t address);

@@ -31,6 +31,9 @@ class Twi {
     /// Pins::twi_slave_answer(), with ack = 0 where this slave is not addressed.
     void slave_phase(const cosim::I2cPhase& phase);
 
+    /// TWINT will not rise by itself: nothing was begun, and no bus master was heard.
+    bool idle() const { return !state_.awaiting && state_.step == Step::None && !state_.slave; }
+
     template <class Archive>
     void state(Archive& archive) {
         archive(state_);

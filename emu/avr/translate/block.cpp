@@ -68,7 +68,7 @@ void Emitter::gather(Machine& m, std::uint32_t index) {
         const auto length = static_cast<std::uint32_t>(length_of(m.program[index]));
         // A skip looks at the word behind it.
         words_ = std::max(words_, index + length + (op.skip ? 1 : 0) - start_);
-        if (op.form == FormId::Undefined) break;
+        if (op.form == FormId::Undefined || index == 0) break;  // somebody looks at arrivals at 0
         plan_.push_back({&op, index, 0});
         cycles += op.cycles;
         index += length;

@@ -80,6 +80,7 @@ std::string AvrTarget::chip_text() {
 std::vector<std::string> AvrTarget::warnings() {
     const avr::ChipReport report = avr().report();
     std::vector<std::string> lines;
+    if (const auto hang = avr().hang()) lines.push_back(*hang);
     for (const avr::UnmodelledTouch& touch : report.unmodelled)
         lines.push_back(
             fmt::format("{} {}, which no model is behind, at pc {}", touch.write ? "writes" : "reads",

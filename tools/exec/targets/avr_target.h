@@ -34,7 +34,7 @@ class AvrTarget : public Target {
     std::string chip_json() override;
     std::string chip_text() override;
     std::vector<std::string> warnings() override;
-    std::optional<std::string> hang() override { return std::nullopt; }
+    std::optional<std::string> hang() override { return avr().hang(); }
     void reset_button() override { avr().external_reset(); }
     bool keeps_memory() const override { return false; }
 

@@ -99,6 +99,9 @@ const Op* SLEEP(Machine& m, const Op* op) {
     m.current = op;
     m.now = m.cycle;
     if (m.hooks.sleep) m.hooks.sleep();
+    constexpr std::uint32_t kForGood = 0x30001;  // key of the warning
+    if (m.asleep && !(m.sreg & sreg::I))
+        warn_once(m, op, kForGood, "sleeps with interrupts off: only a reset ends it");
     return op + 1;
 }
 const Op* WDR(Machine& m, const Op* op) {

@@ -153,32 +153,32 @@ const Op* CBI(Machine& m, const Op* op) {
 }
 
 const Op* LPM_R0(Machine& m, const Op* op) {
-    m.data[0] = load_program(m, pair(m, kZ));
+    m.data[0] = load_program(m, op, pair(m, kZ));
     return op + 1;
 }
 const Op* LPM(Machine& m, const Op* op) {
-    set_rd(m, op, load_program(m, pair(m, kZ)));
+    set_rd(m, op, load_program(m, op, pair(m, kZ)));
     return op + 1;
 }
 const Op* LPM_INC(Machine& m, const Op* op) {
     const std::uint16_t z = pair(m, kZ);
     set_pair(m, kZ, z + 1u);
-    set_rd(m, op, load_program(m, z));
+    set_rd(m, op, load_program(m, op, z));
     return op + 1;
 }
 const Op* ELPM_R0(Machine& m, const Op* op) {
-    m.data[0] = load_program(m, extended_z(m));
+    m.data[0] = load_program(m, op, extended_z(m));
     return op + 1;
 }
 const Op* ELPM(Machine& m, const Op* op) {
-    set_rd(m, op, load_program(m, extended_z(m)));
+    set_rd(m, op, load_program(m, op, extended_z(m)));
     return op + 1;
 }
 const Op* ELPM_INC(Machine& m, const Op* op) {
     const std::uint32_t z = extended_z(m);
     set_pair(m, kZ, z + 1);
     m.rampz = static_cast<std::uint8_t>((z + 1) >> 16 & 1);
-    set_rd(m, op, load_program(m, z));
+    set_rd(m, op, load_program(m, op, z));
     return op + 1;
 }
 const Op* SPM(Machine& m, const Op* op) {
