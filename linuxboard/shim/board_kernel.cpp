@@ -21,6 +21,7 @@ namespace {
 constexpr Time kVtimeUnit = 100 * cosim::kMillisecond;
 
 constexpr double kPicosecondsPerSecond = 1e12;
+constexpr int kInputEvents = POLLIN | POLLRDNORM;
 
 template <typename T>
 T read_object(std::string_view& data) {
@@ -28,6 +29,20 @@ T read_object(std::string_view& data) {
     std::memcpy(&object, data.data(), std::min(sizeof object, data.size()));
     data.remove_prefix(std::min(sizeof object, data.size()));
     return object;
+}
+
+/// The devices that know a call on an open file.
+DeviceKind kind_for(Op op) {
+    switch (op) {
+    case Op::Transfer:
+        return DeviceKind::I2c;
+    case Op::Ioctl:
+    case Op::Map:
+    case Op::VideoRead:
+        return DeviceKind::Video;
+    default:
+        return DeviceKind::Tty;
+    }
 }
 
 template <typename T>
@@ -66,6 +81,10 @@ void BoardKernel::open_file(const Request& request) {
     } else if (i2c_index < i2c_files_) {
         file.kind = DeviceKind::I2c;
         i2c_opened_ = true;
+    } else if (i2c_index - i2c_files_ < cameras_.size()) {
+        file.kind = DeviceKind::Video;
+        file.camera = i2c_index - i2c_files_;
+        camera_opened_ = true;
     } else {
         finish(request.thread, -1, ENODEV, request.now);
         return;
@@ -109,8 +128,7 @@ void BoardKernel::call(const Request& request, std::string_view data) {
             return;
         }
         const File& file = files_[handle];
-        const bool for_i2c = request.op == Op::Transfer;
-        if (request.op != Op::Close && for_i2c != (file.kind == DeviceKind::I2c)) {
+        if (request.op != Op::Close && kind_for(request.op) != file.kind) {
             finish(request.thread, -1, ENOTTY, now);
             return;
         }
@@ -172,6 +190,10 @@ bool BoardKernel::attempt(std::uint32_t thread, Waiting& waiting, Time now) {
         return done(0, 0, bytes_of(tty_.counters()));
     case Op::Transfer:
         return false;  // ends when the adapter says so
+    case Op::Ioctl:
+    case Op::Map:
+    case Op::VideoRead:
+        return attempt_video(thread, waiting, now);
     default:
         return done(-1, ENOSYS);
     }
@@ -233,20 +255,22 @@ std::int16_t BoardKernel::tty_events() const {
     return static_cast<std::int16_t>(events);
 }
 
+std::int16_t BoardKernel::events_of(const wire::PollEntry& entry, Time now) {
+    const auto handle = static_cast<std::size_t>(entry.handle);
+    if (entry.handle < 0 || handle >= files_.size() || !files_[handle].open) return POLLNVAL;
+    int events = POLLIN | POLLRDNORM | POLLOUT | POLLWRNORM;  // i2c-dev has no poll method
+    if (files_[handle].kind == DeviceKind::Tty) events = tty_events();
+    if (files_[handle].kind == DeviceKind::Video)
+        events = camera_of(entry.handle).events(entry.handle, (entry.events & kInputEvents) != 0, now);
+    return static_cast<std::int16_t>(events & (entry.events | POLLHUP | POLLERR));
+}
+
 bool BoardKernel::attempt_poll(std::uint32_t thread, Waiting& waiting, Time now) {
     std::string answer;
     std::int64_t ready = 0;
     for (std::string_view data = waiting.data; !data.empty();) {
         auto entry = read_object<wire::PollEntry>(data);
-        const auto handle = static_cast<std::size_t>(entry.handle);
-        if (entry.handle < 0 || handle >= files_.size() || !files_[handle].open) {
-            entry.returned = POLLNVAL;
-        } else if (files_[handle].kind == DeviceKind::Tty) {
-            entry.returned = static_cast<std::int16_t>(tty_events() & (entry.events | POLLHUP | POLLERR));
-        } else {
-            constexpr int kAlways = POLLIN | POLLRDNORM | POLLOUT | POLLWRNORM;  // i2c-dev has no poll method
-            entry.returned = static_cast<std::int16_t>(kAlways & entry.events);
-        }
+        entry.returned = events_of(entry, now);
         ready += entry.returned != 0 ? 1 : 0;
         answer += bytes_of(entry);
     }
@@ -294,7 +318,7 @@ Time BoardKernel::wake_time(const Waiting& waiting) const {
 }
 
 Time BoardKernel::next_event() const {
-    Time next = std::min(tty_.next_event(), adapter_.next_event());
+    Time next = std::min({tty_.next_event(), adapter_.next_event(), next_frame()});
     for (const auto& [thread, waiting] : waiting_)
         next = std::min(next, wake_time(waiting));
     return next;
@@ -311,8 +335,13 @@ Time BoardKernel::next_completion(Time message) const {
         case Op::Transfer:
             next = std::min(next, adapter_.next_event());
             break;
+        case Op::Ioctl:
+        case Op::VideoRead:
+            next = std::min(next, next_frame());
+            break;
         default:  // what goes out may end it as well
             next = std::min(next, asks_for_input_only(waiting) ? tty_.next_input() : tty_.next_event());
+            next = std::min(next, next_frame());
         }
     }
     return next;
@@ -334,6 +363,8 @@ void BoardKernel::attempt_all(Time now) {
 void BoardKernel::advance(Time now) {
     tty_.advance(now, frames_);
     adapter_.advance(now, phases_);
+    for (const auto& camera : cameras_)
+        camera->advance(now);
     for (I2cResult& result : adapter_.take_results()) {
         if (waiting_.erase(result.owner) == 0) continue;
         finish(result.owner, result.messages, result.error, result.time, std::move(result.data));
@@ -375,12 +406,16 @@ void BoardKernel::release(int handle) {
     File& file = files_[static_cast<std::size_t>(handle)];
     if (!file.open || --file.references > 0) return;
     if (file.kind == DeviceKind::Tty) tty_.close();
+    if (file.kind == DeviceKind::Video) camera_of(handle).close(handle);
     file.open = false;
 }
 
 void BoardKernel::reset() {
-    for (File& file : files_) {
+    for (std::size_t handle = 0; handle < files_.size(); ++handle) {
+        const File& file = files_[handle];
         if (file.open && file.kind == DeviceKind::Tty) tty_.close();
+        if (file.open && file.kind == DeviceKind::Video)
+            cameras_[file.camera]->close(static_cast<int>(handle));
     }
     files_.clear();
     for (const auto& [thread, waiting] : waiting_)

@@ -6,10 +6,12 @@
 #include "cosim/core/time.h"
 #include "linuxboard/shim/devices/i2c_adapter.h"
 #include "linuxboard/shim/devices/tty_port.h"
+#include "linuxboard/shim/devices/video_device.h"
 #include "linuxboard/shim/spec.h"
 #include "linuxboard/shim/wire.h"
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -35,6 +37,10 @@ constexpr std::uint32_t slot_of(std::uint32_t thread) {
 class BoardKernel {
   public:
     explicit BoardKernel(const LinuxSpec& spec);
+
+    /// The next camera, in the order of the spec.
+    void add_camera(std::unique_ptr<VideoDevice> camera) { cameras_.push_back(std::move(camera)); }
+    const std::vector<std::unique_ptr<VideoDevice>>& cameras() const { return cameras_; }
 
     /// One call of the program at `request.now`, to which the kernel has been advanced. It ends at once, or
     /// later, or never.
@@ -71,11 +77,13 @@ class BoardKernel {
     std::vector<cosim::UartFrame> take_frames();
     std::vector<cosim::I2cPhase> take_phases();
     bool tty_was_opened() const { return tty_opened_; }
+    bool camera_was_opened() const { return camera_opened_; }
     bool i2c_was_opened() const { return i2c_opened_; }
 
   private:
     struct File {
         wire::DeviceKind kind = wire::DeviceKind::None;
+        std::size_t camera = 0;
         bool open = false;
         int references = 1;
     };
@@ -92,6 +100,10 @@ class BoardKernel {
     bool attempt_read(std::uint32_t thread, Waiting& waiting, cosim::Time now);
     bool attempt_write(std::uint32_t thread, Waiting& waiting, cosim::Time now);
     bool attempt_poll(std::uint32_t thread, Waiting& waiting, cosim::Time now);
+    bool attempt_video(std::uint32_t thread, Waiting& waiting, cosim::Time now);
+    std::int16_t events_of(const wire::PollEntry& entry, cosim::Time now);
+    VideoDevice& camera_of(int handle) { return *cameras_[files_[static_cast<std::size_t>(handle)].camera]; }
+    cosim::Time next_frame() const;
     void attempt_all(cosim::Time now);
     void submit_transfer(const wire::Request& request, std::string_view data);
     void open_file(const wire::Request& request);
@@ -103,6 +115,7 @@ class BoardKernel {
 
     TtyPort tty_;
     I2cAdapter adapter_;
+    std::vector<std::unique_ptr<VideoDevice>> cameras_;
     std::vector<File> files_;
     std::map<std::uint32_t, Waiting> waiting_;
     std::vector<FinishedCall> finished_;
@@ -112,6 +125,7 @@ class BoardKernel {
     std::size_t i2c_files_ = 0;
     bool tty_opened_ = false;
     bool i2c_opened_ = false;
+    bool camera_opened_ = false;
 };
 
 }  // namespace puckloop::linuxboard

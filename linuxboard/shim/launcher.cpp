@@ -163,6 +163,7 @@ Launcher::Launcher(const LinuxSpec& spec)
 
 Launcher::~Launcher() {
     if (page_ != nullptr) munmap(page_, wire::kSharedSize);
+    if (video_ != nullptr) munmap(video_, spec_.cameras.size() * wire::kVideoSize);
     if (page_fd_ >= 0) close(page_fd_);
     if (log_fd_ >= 0) close(log_fd_);
 }
@@ -191,6 +192,22 @@ void Launcher::prepare_page() {
     if (!spec_.tty.empty()) add(wire::DeviceKind::Tty, spec_.tty);
     for (const std::string& path : spec_.i2c)
         add(wire::DeviceKind::I2c, path);
+    for (const CameraSpec& camera : spec_.cameras)
+        add(wire::DeviceKind::Video, camera.device);
+    if (!spec_.cameras.empty()) map_video();
+}
+
+void Launcher::map_video() {
+    const std::uint64_t size = spec_.cameras.size() * wire::kVideoSize;
+    constexpr std::uint64_t kFirst = wire::video_offset(0);
+    if (ftruncate(page_fd_, static_cast<off_t>(kFirst + size)) != 0) fail("shared memory of the cameras");
+    void* memory = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_SHARED, page_fd_, kFirst);
+    if (memory == MAP_FAILED) fail("shared memory of the cameras");
+    video_ = static_cast<char*>(memory);
+}
+
+char* Launcher::video_memory(std::size_t camera) {
+    return video_ + camera * wire::kVideoSize;
 }
 
 std::unique_ptr<Process> Launcher::start() {

@@ -25,6 +25,8 @@ class Launcher {
 
     wire::Page& page() { return *page_; }
     const wire::Page& page() const { return *page_; }
+    /// The frames of camera number `camera`, which the program maps: wire::kVideoSize bytes.
+    char* video_memory(std::size_t camera);
     /// What the program wrote to its log since the last call goes to this terminal too.
     void echo_output();
     /// Last line with text that the program wrote to its log, if there is a log file (last_line.h).
@@ -32,11 +34,13 @@ class Launcher {
 
   private:
     void prepare_page();
+    void map_video();
 
     const LinuxSpec& spec_;
     std::string file_;
     std::string shim_;
     wire::Page* page_ = nullptr;
+    char* video_ = nullptr;  // of all cameras
     int page_fd_ = -1;
     int log_fd_ = -1;
     off_t echoed_ = 0;

@@ -28,11 +28,19 @@ std::int64_t wall_nanoseconds() {
 }
 }  // namespace
 
-LinuxNode::LinuxNode(LinuxSpec spec)
+LinuxNode::LinuxNode(LinuxSpec spec, std::unique_ptr<Scenery> scenery)
     : spec_(std::move(spec)),
       ports_{{"uart", cosim::PortKind::Uart}, {"i2c", cosim::PortKind::I2c}},
       launcher_(std::make_unique<Launcher>(spec_)),
+      scenery_(std::move(scenery)),
       kernel_(spec_) {
+    if (!spec_.cameras.empty()) {
+        if (!scenery_) throw InputError("", "linux.cameras", "there is nothing that cameras could look at");
+        ports_.push_back({"camera", cosim::PortKind::Signals});
+    }
+    for (std::size_t i = 0; i < spec_.cameras.size(); ++i)
+        kernel_.add_camera(std::make_unique<VideoDevice>(
+            spec_.cameras[i], i, cosim::from_seconds(spec_.uptime_s), *scenery_, launcher_->video_memory(i)));
     if (spec_.start == 0) {
         start_program();
     } else {
@@ -122,6 +130,8 @@ void LinuxNode::run_devices(Time now) {
             kernel_.deliver_uart(*frame, message.time);
         } else if (const auto* phase = std::get_if<cosim::I2cPhase>(&message.payload)) {
             kernel_.deliver_i2c(*phase, message.time);
+        } else if (const auto* signal = std::get_if<cosim::Signal>(&message.payload)) {
+            if (scenery_) scenery_->change(signal->id, signal->value);
         }
     }
     for (Time next = kernel_.next_event(); next <= now; next = kernel_.next_event())
@@ -251,6 +261,7 @@ Time LinuxNode::next_action() const {
 }
 
 Time LinuxNode::earliest_output(cosim::PortIndex port) const {
+    if (port == kCameraPort) return kNever;
     const Time action = std::max(next_action(), until_);
     if (port == kUartPort) {
         Time own = kernel_.tty().next_frame(until_);
@@ -261,6 +272,7 @@ Time LinuxNode::earliest_output(cosim::PortIndex port) const {
 }
 
 Time LinuxNode::lookahead(cosim::PortIndex port) const {
+    if (port == kCameraPort) return kNever;
     // Only a thread that waits on a device can be woken by a message, and not before the earliest time while
     // the program stands at a request.
     const bool waits = std::any_of(clients_.begin(), clients_.end(), [](const auto& client) {

@@ -1,5 +1,6 @@
 #pragma once
-// A Linux program as a node: port `uart` is its serial port, port `i2c` its I2C adapter.
+// A Linux program as a node: port `uart` is its serial port, port `i2c` its I2C adapter; port `camera`, if
+// the board has cameras, brings the signals that say what they see (Scenery).
 //
 // The program runs on its own only between two requests, and then only up to the limit of the last reply;
 // what it may see is fixed by the simulated time of each request, so its behaviour does not depend on how
@@ -29,11 +30,13 @@ namespace puckloop::linuxboard {
 
 inline constexpr cosim::PortIndex kUartPort = 0;
 inline constexpr cosim::PortIndex kI2cPort = 1;
+inline constexpr cosim::PortIndex kCameraPort = 2;
 
 class LinuxNode : public cosim::Node {
   public:
-    /// Checks the program and starts it; it runs only from the first advance on. Throws InputError.
-    explicit LinuxNode(LinuxSpec spec);
+    /// Checks the program and starts it; it runs only from the first advance on. `scenery`: what the spec's
+    /// cameras look at. Throws InputError.
+    explicit LinuxNode(LinuxSpec spec, std::unique_ptr<Scenery> scenery = nullptr);
 
     std::string_view name() const override { return spec_.name; }
     std::span<const cosim::Port> ports() const override { return ports_; }
@@ -141,6 +144,7 @@ class LinuxNode : public cosim::Node {
     LinuxSpec spec_;
     std::vector<cosim::Port> ports_;
     std::unique_ptr<Launcher> launcher_;
+    std::unique_ptr<Scenery> scenery_;
     BoardKernel kernel_;
     std::vector<std::unique_ptr<Client>> clients_;  ///< by age
     std::int32_t last_number_ = 0;

@@ -39,7 +39,7 @@ void LinuxNode::program_ended(Time now) {
     if (end_signal_ != 0) return ended_winding_up(now);
     const bool comes_back = next_restart_ < spec_.restarts.size();
     std::string reason = fmt::format("{} {}", spec_.program, end_);
-    const bool opened = kernel_.tty_was_opened() || kernel_.i2c_was_opened();
+    const bool opened = kernel_.tty_was_opened() || kernel_.i2c_was_opened() || kernel_.camera_was_opened();
     if (!opened) {
         reason += spec_.tty.empty() ? " without opening its I2C bus"
                                     : fmt::format(" without ever opening {}", spec_.tty);
@@ -66,8 +66,8 @@ std::string LinuxNode::last_words() const {
 }
 
 void LinuxNode::note_devices() {
-    never_opened_ = !kernel_.tty_was_opened() && !kernel_.i2c_was_opened();
-    if (!kernel_.tty_was_opened() && !spec_.tty.empty())
+    never_opened_ = !kernel_.tty_was_opened() && !kernel_.i2c_was_opened() && !kernel_.camera_was_opened();
+    if (!kernel_.tty_was_opened() && !kernel_.camera_was_opened() && !spec_.tty.empty())
         warn(fmt::format("{} never opened {}", spec_.program, spec_.tty));
 }
 
@@ -152,8 +152,13 @@ std::string LinuxNode::finish() {
           {"breaks", tty.breaks},
           {"buffer_overruns", tty.buffer_overrun}}},
         {"i2c", {{"transfers", kernel_.adapter().transfers()}, {"failed", kernel_.adapter().failures()}}},
-        {"warnings", warnings_},
     };
+    for (const auto& camera : kernel_.cameras()) {
+        report["cameras"].push_back(nlohmann::ordered_json::parse(camera->report()));
+        for (std::string& line : camera->take_unknown())
+            warn(std::move(line));
+    }
+    report["warnings"] = warnings_;
     return report.dump();
 }
 

@@ -92,6 +92,19 @@ void read_charges(const json& value, const std::string& place, wire::Charges& ch
     read("yield", charges.yield);
     object.finish();
 }
+
+CameraSpec read_camera(const json& value, const std::string& place) {
+    CameraSpec camera;
+    Object object(value, place);
+    object.read("device", camera.device);
+    object.read("card", camera.card);
+    object.read("log", camera.log);
+    object.read("save", camera.save);
+    object.read("save_every", camera.save_every);
+    if (camera.save_every < 1) throw InputError("", object.where("save_every"), "must be at least 1");
+    object.finish();
+    return camera;
+}
 }  // namespace
 
 LinuxSpec parse_linux_spec(std::string_view text) {
@@ -118,6 +131,9 @@ LinuxSpec parse_linux_spec(std::string_view text) {
     if (spec.fifo_trigger < 1 || spec.fifo_trigger > kLargestFifo)
         throw InputError("", object.where("fifo_trigger"), "must be 1 to 64");
     object.read("i2c", spec.i2c);
+    if (const json* cameras = object.find("cameras"))
+        for (const json& camera : *cameras)
+            spec.cameras.push_back(read_camera(camera, object.where("cameras")));
     object.read("i2c_hertz", spec.i2c_hertz);
     if (spec.i2c_hertz <= 0) throw InputError("", object.where("i2c_hertz"), "must be above 0 Hz");
     std::string nack_error = strerrorname_np(spec.i2c_nack_error);
@@ -183,7 +199,8 @@ LinuxSpec parse_linux_spec(std::string_view text) {
     if (spec.program.empty()) throw InputError("", "linux.program", "no program is given");
     if (spec.host_name.size() >= wire::kNameLength)
         throw InputError("", "linux.host_name", "is longer than 63 characters");
-    if (spec.i2c.size() + 1 > wire::kMaximumDevices) throw InputError("", "linux.i2c", "too many adapters");
+    if (spec.i2c.size() + 1 + spec.cameras.size() > wire::kMaximumDevices)
+        throw InputError("", "linux", "too many I2C adapters and cameras");
     return spec;
 }
 

@@ -26,6 +26,15 @@ struct Restart {
     cosim::Time down = 0;
 };
 
+/// A camera of the board. What it sees comes from whoever made the node.
+struct CameraSpec {
+    std::string device = "/dev/video0";
+    std::string card = "e-puck camera";  ///< as VIDIOC_QUERYCAP gives it
+    std::string log;                     ///< CSV file with a line per frame; empty: none
+    std::string save;                    ///< folder for the pictures; empty: none are kept
+    std::uint32_t save_every = 1;        ///< keep one of so many
+};
+
 struct LinuxSpec {
     std::string name = "linux";
     std::string program;
@@ -36,6 +45,7 @@ struct LinuxSpec {
     std::string tty = "/dev/ttyS0";              ///< empty: no serial port
     int fifo_trigger = TtyPort::kTrigger;        ///< of the UART's receive FIFO, 1..64
     std::vector<std::string> i2c{"/dev/i2c-3"};  ///< names of the one adapter at the port `i2c`
+    std::vector<CameraSpec> cameras;             ///< in the order of the node's scenery
     double i2c_hertz = 100'000.0;
     int i2c_nack_error = 121;   ///< errno value where no slave acknowledges: EREMOTEIO, ENXIO, ...
     double clock_ppm = 0.0;     ///< error of the board's clock, for the baud rate

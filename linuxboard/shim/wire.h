@@ -15,7 +15,7 @@
 
 namespace puckloop::linuxboard::wire {
 
-inline constexpr std::uint32_t kVersion = 3;
+inline constexpr std::uint32_t kVersion = 4;
 inline constexpr const char* kLinkVariable = "PUCKLOOP_SHIM_LINK";  ///< "<socket>,<page>,<slot>"
 inline constexpr std::int64_t kNever = INT64_MAX;
 /// Most bytes that one request or reply carries after its header.
@@ -49,9 +49,12 @@ enum class Op : std::uint32_t {
     Changed,      ///< something was written or closed that other processes may wait for
     Kill,         ///< a = slot, b = signal for that process
     Reap,         ///< a = slot: its parent has taken its status
+    Ioctl,        ///< handle (camera), a = request, data: its struct, and what that points to; the same back
+    Map,  ///< handle (camera), a, b = offset and length to be mapped; result: where in the shared memory
+    VideoRead,  ///< handle (camera), a = most bytes; data: where they are in the shared memory (uint64)
 };
 
-enum class DeviceKind : std::uint32_t { None, Tty, I2c };
+enum class DeviceKind : std::uint32_t { None, Tty, I2c, Video };
 
 struct Request {
     Op op = Op::Sync;
@@ -219,6 +222,17 @@ struct Page {
 inline constexpr std::uint64_t kFirstChannel =
     (sizeof(Page) + alignof(Channel) - 1) / alignof(Channel) * alignof(Channel);
 inline constexpr std::uint64_t kSharedSize = kFirstChannel + kMaximumProcesses * sizeof(Channel);
+
+/// Frames of the cameras lie behind the channels: each camera has room for its buffers. Pages that nobody
+/// writes take no memory.
+inline constexpr std::uint32_t kMostVideoBuffers = 16;
+inline constexpr std::uint32_t kVideoBufferSize = 640 * 480 * 2;  ///< whole pages of 4096 bytes
+inline constexpr std::uint64_t kVideoSize = std::uint64_t{kMostVideoBuffers} * kVideoBufferSize;
+/// Where the frames of camera number `camera` begin.
+inline constexpr std::uint64_t video_offset(std::uint32_t camera) {
+    return (kSharedSize + 4095) / 4096 * 4096 + camera * kVideoSize;
+}
+static_assert(kVideoBufferSize % 4096 == 0);
 
 inline Channel* channel_of(Page& page, std::uint32_t slot) {
     return reinterpret_cast<Channel*>(reinterpret_cast<char*>(&page) + kFirstChannel) + slot;

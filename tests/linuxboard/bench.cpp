@@ -27,7 +27,12 @@ linuxboard::LinuxSpec spec_for(const std::string& name, std::vector<std::string>
     return spec;
 }
 
-Bench::Bench(linuxboard::LinuxSpec spec, Time slice) : spec_(spec), node_(std::move(spec)), slice_(slice) {}
+Bench::Bench(linuxboard::LinuxSpec spec, Time slice, std::unique_ptr<linuxboard::Scenery> scenery)
+    : spec_(spec), node_(std::move(spec), std::move(scenery)), slice_(slice) {}
+
+void Bench::change(Time time, std::uint16_t id, double value) {
+    queue({time, linuxboard::kCameraPort, Signal{id, value}});
+}
 
 Bench::~Bench() {
     unlink(spec_.log.c_str());

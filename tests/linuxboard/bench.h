@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,9 @@ linuxboard::LinuxSpec spec_for(const std::string& name, std::vector<std::string>
 class Bench {
   public:
     /// Time is granted in steps of `slice`, at most 78 us so that nothing can be answered within one.
-    explicit Bench(linuxboard::LinuxSpec spec, cosim::Time slice = 70 * cosim::kMicrosecond);
+    /// (without frames on the line it does not matter). `scenery`: for the spec's cameras.
+    explicit Bench(linuxboard::LinuxSpec spec, cosim::Time slice = 70 * cosim::kMicrosecond,
+                   std::unique_ptr<linuxboard::Scenery> scenery = nullptr);
     ~Bench();  ///< removes the log
     Bench(const Bench&) = delete;
     Bench& operator=(const Bench&) = delete;
@@ -29,6 +32,8 @@ class Bench {
     void send(cosim::Time start, const std::string& bytes);
     /// A device on the bus whose first written byte is a register number that counts up.
     void add_device(std::uint8_t address, std::map<std::uint8_t, std::uint8_t> registers);
+    /// A signal at the port `camera`.
+    void change(cosim::Time time, std::uint16_t id, double value);
     /// Called for every byte that the program sends.
     std::function<void(cosim::Time, std::uint8_t)> on_byte;
 

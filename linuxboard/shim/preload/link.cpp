@@ -106,6 +106,12 @@ int link_descriptors() {
     return std::max(socket_fd, page_fd) + 1;
 }
 
+void* map_shared(void* address, std::size_t length, int protection, int flags, std::uint64_t offset) {
+    return reinterpret_cast<void*>(host_call(SYS_mmap, reinterpret_cast<long>(address),
+                                             static_cast<long>(length), protection, flags, page_fd,
+                                             static_cast<long>(offset)));
+}
+
 std::uint32_t own_slot() {
     return slot_index;
 }

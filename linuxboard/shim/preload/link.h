@@ -34,6 +34,8 @@ std::uint32_t own_slot();
 inline wire::ProcessEntry& own() {
     return page().processes[own_slot()];
 }
+/// Memory that the node shares, `offset` bytes from its beginning, at an address as mmap() finds it.
+void* map_shared(void* address, std::size_t length, int protection, int flags, std::uint64_t offset);
 /// In a forked child: from now on this process is the one at `slot`, linked by `socket`, which is taken.
 void change_link(int socket, std::uint32_t slot);
 /// "<socket>,<page>,<slot>", the value of the variable that leads a program to its link.

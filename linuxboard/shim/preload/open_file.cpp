@@ -26,10 +26,7 @@ constexpr std::size_t kMostTransferData = wire::kMaximumData - 1024;
 
 /// The device's name in this program's own view of the page.
 static const char* path_of(const OpenFile& file) {
-    const auto kind = file.kind == OpenFile::Kind::Tty ? wire::DeviceKind::Tty : wire::DeviceKind::I2c;
-    for (const wire::DeviceName& device : page().devices)
-        if (device.kind == kind) return device.path;
-    return "";
+    return file.device >= 0 ? page().devices[file.device].path : "";
 }
 
 OpenFile* open_file(int fd) {
@@ -71,8 +68,11 @@ int open_device(int device, int flags) {
         file->path = kRandomPaths[0];
     } else {
         const wire::DeviceName& name = page().devices[device];
-        file->kind = name.kind == wire::DeviceKind::Tty ? OpenFile::Kind::Tty : OpenFile::Kind::I2c;
+        file->kind = name.kind == wire::DeviceKind::Tty   ? OpenFile::Kind::Tty
+                     : name.kind == wire::DeviceKind::I2c ? OpenFile::Kind::I2c
+                                                          : OpenFile::Kind::Video;
         file->path = name.path;
+        file->device = device;
         charge(page().charges.device);
         wire::Request request;
         request.op = wire::Op::Open;
@@ -160,6 +160,7 @@ std::int64_t read_device(OpenFile& file, void* buffer, std::size_t size) {
         i2c_msg message{file.slave, I2C_M_RD, length, static_cast<__u8*>(buffer)};
         return transfer(file, &message, 1) == 1 ? length : -1;
     }
+    if (file.kind == OpenFile::Kind::Video) return read_video(file, buffer, size);
     wire::Request request;
     request.op = wire::Op::Read;
     request.handle = file.handle;
@@ -181,6 +182,10 @@ std::int64_t write_device(OpenFile& file, const void* data, std::size_t size) {
         const auto length = static_cast<__u16>(std::min<std::size_t>(size, 8192));
         i2c_msg message{file.slave, 0, length, static_cast<__u8*>(const_cast<void*>(data))};
         return transfer(file, &message, 1) == 1 ? length : -1;
+    }
+    if (file.kind == OpenFile::Kind::Video) {
+        errno = EINVAL;  // a capture device takes none
+        return -1;
     }
     std::int64_t written = 0;
     const char* bytes = static_cast<const char*>(data);

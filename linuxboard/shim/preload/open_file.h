@@ -11,12 +11,13 @@ namespace puckloop::shim {
 
 /// One open file description; several descriptors may share it.
 struct OpenFile {
-    enum class Kind { Tty, I2c, Random };
+    enum class Kind { Tty, I2c, Random, Video };
     Kind kind = Kind::Tty;
     const char* path = "";
     int handle = -1;
     int references = 0;
-    int flags = 0;  ///< O_ACCMODE and O_NONBLOCK
+    int flags = 0;    ///< O_ACCMODE and O_NONBLOCK
+    int device = -1;  ///< index into the page's list; -1: none of the node's
     // i2c-dev, per open file
     std::uint16_t slave = 0;
     std::uint32_t timeout_ms = 1000;
@@ -53,6 +54,9 @@ std::int64_t read_device(OpenFile& file, void* buffer, std::size_t size);
 std::int64_t write_device(OpenFile& file, const void* data, std::size_t size);
 /// One or several I2C messages, as struct i2c_msg; number of messages done, or -1 and errno.
 int transfer(OpenFile& file, void* messages, unsigned count);
+/// video_calls.cpp: a frame, or what is left of it, and the ioctls of a camera.
+std::int64_t read_video(OpenFile& file, void* buffer, std::size_t size);
+int video_ioctl(OpenFile& file, unsigned long request, void* argument);
 int device_ioctl(OpenFile& file, unsigned long request, void* argument, const void* caller);
 
 /// "program+0x1234" or "main" of an address in the program.

@@ -233,6 +233,8 @@ int device_ioctl(OpenFile& file, unsigned long request, void* argument, const vo
         return tty_ioctl(file, request, argument, caller);
     case OpenFile::Kind::I2c:
         return i2c_ioctl(file, request, argument, caller);
+    case OpenFile::Kind::Video:
+        return video_ioctl(file, request, argument);
     case OpenFile::Kind::Random:
         break;
     }
