@@ -113,7 +113,8 @@ struct Robot {
     /// absent are neither read nor published.
     std::map<std::string, std::uint16_t> board_signals;
     std::map<std::string, std::uint16_t> ground_signals;
-    bool rab = false;  ///< carries a range-and-bearing board
+    bool rab = false;     ///< carries a range-and-bearing board
+    bool camera = false;  ///< its Linux board has cameras
     /// Signal ids on the link between that board and the infra-red medium: "emitter1".., "carrier", "power",
     /// "demod1".., "peak1"..
     std::map<std::string, std::uint16_t> rab_signals{};

@@ -19,7 +19,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Speaker, name, x, y, height, level, on, off, 
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Patch, name, shape, x, y, heading, length, width, radius, grey, place)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Booth, name, x, y, heading, reflectivity, signals, place)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Robot, name, x, y, heading, parameters, board_signals, ground_signals, rab,
-                                   rab_signals, place)
+                                   camera, rab_signals, place)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Recording, directory, period, log)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(World, node_name, file, seed, ambient_light, arena, walls, boxes,
                                    cylinders, lamps, speakers, patches, robots, booths, parameters, recording)

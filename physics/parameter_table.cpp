@@ -230,6 +230,25 @@ std::vector<ParameterInfo> build_table() {
         {"contact.surface_layer", "m", 1, {1e-4}, 0.0, 1e-2, AT(contact.surface_layer), "[O]"},
         {"contact.push_height", "m", 1, {0.02}, 0.005, 0.05, AT(contact.push_height), "? where the body's widest ring touches"},
 
+        // Cameras of the Linux board.
+        {"camera.height", "m", 1, {0.122}, 0.05, 0.3, AT(camera.height), "[A] the mirror's focus, through which all rays of the omnidirectional camera go"},
+        {"camera.eccentricity", "1", 1, {3.175}, 1.05, 20, AT(camera.eccentricity), "of the hyperbolic mirror; fitted to ARGoS' distance curve 1.25455 x 1.03848^px [A], see docs/fidelity.md"},
+        {"camera.rim", "1", 1, {0.4861}, 0.1, 1.0, AT(camera.rim), "[A] the mirror's edge: radius 140 of 288 rows"},
+        {"camera.rim_elevation", "rad", 1, {0.0873}, -0.5, 1.0, AT(camera.rim_elevation), "the omnidirectional turret of LIS sees up to 5 degrees above the horizon (e-puck.gctronic.com)"},
+        {"camera.centre_x", "1", 1, {0.0208}, -0.3, 0.3, AT(camera.centre_x), "[A] the mirror's middle in the image, right of the image's: 182 of 352 columns"},
+        {"camera.centre_y", "1", 1, {0.0}, -0.3, 0.3, AT(camera.centre_y), "[A] below the image's middle"},
+        {"camera.front_x", "m", 1, {0.030}, 0.0, 0.06, AT(camera.front_x), "[W] the front camera, ahead of the axle"},
+        {"camera.front_height", "m", 1, {0.028}, 0.005, 0.2, AT(camera.front_height), "[W] above the floor"},
+        {"camera.front_fov", "rad", 1, {0.84}, 0.2, 2.4, AT(camera.front_fov), "[W] width of all 640 columns; 60 degrees [E]"},
+        {"camera.exposure", "1", 1, {0.45}, 0.01, 5.0, AT(camera.exposure), "? level of a white floor in an ordinary room at the default gain, 1 = full scale"},
+        {"camera.noise", "1", 1, {0.008}, 0.0, 0.2, AT(camera.noise), "? standard deviation of a pixel, of full scale, at the default gain"},
+        {"camera.ring_level", "1", 1, {1.5}, 0.0, 50, AT(camera.ring_level), "? a lit LED of the ring, 1 = full scale"},
+        {"camera.turret_level", "1", 1, {1.5}, 0.0, 50, AT(camera.turret_level), "? a lit LED of the RGB turret"},
+        {"camera.booth_level", "1", 1, {8.0}, 0.0, 50, AT(camera.booth_level), "? a TAM's LED at full duty: at 25/255, which coordinators use, it still stands out"},
+        {"camera.crosstalk", "1", 1, {0.06}, 0.0, 0.5, AT(camera.crosstalk), "? share of a colour's light that the pixels of the other two see"},
+        {"camera.ring_radius", "m", 1, {0.004}, 0.0005, 0.02, AT(camera.ring_radius), "? of the spot as which a LED of the ring is seen"},
+        {"camera.turret_radius", "m", 1, {0.0084}, 0.0005, 0.03, AT(camera.turret_radius), "the blob areas of ARGoS, 95.644 exp(-0.11 d/cm) px at 10 and 20 cm [A]"},
+
         // The world.
         {"world.gravity", "m/s2", 1, {9.81}, 1.0, 30.0, AT(world.gravity), "standard"},
         {"world.slope_x", "rad", 1, {0.0}, -0.2, 0.2, AT(world.slope_x), "floor rises towards +x"},

@@ -89,6 +89,13 @@ struct IrParameters {
     double loss, spell, spell_time, stray, stray_loss;
 };
 
+/// Cameras of the Linux board (physics/camera). Lengths in the image are in heights of the image.
+struct CameraParameters {
+    double height, eccentricity, rim, rim_elevation, centre_x, centre_y;
+    double front_x, front_height, front_fov;
+    double exposure, noise, ring_level, turret_level, booth_level, crosstalk, ring_radius, turret_radius;
+};
+
 /// Contacts between any two things; one set for the whole world.
 struct ContactParameters {
     double mu, mu_lateral, mu_skid, mu_body, mu_object, creep;
@@ -112,6 +119,7 @@ struct Parameters {
     MicrophoneParameters microphone;
     BatteryParameters battery;
     IrParameters ir;
+    CameraParameters camera;
     ContactParameters contact;
     SimulationParameters world;
 

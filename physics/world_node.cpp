@@ -1,6 +1,7 @@
 #include "physics/world_node.h"
 
 #include "physics/booth_record.h"
+#include "physics/camera/camera_port.h"
 #include "physics/events/timeline.h"
 #include "physics/pose_signals.h"
 #include "physics/recorder.h"
@@ -105,6 +106,7 @@ void add_events(const Journal& journal, nlohmann::ordered_json& report) {
 
 struct WorldNode::Impl {
     Impl(World description, EventPlan plan, std::unique_ptr<CommandSource> commands);
+    void add_cameras();
     void take(const cosim::Message& message);
     void step();
     void publish_events(std::vector<cosim::Message>& outbox);
@@ -121,6 +123,8 @@ struct WorldNode::Impl {
     std::vector<double> poses;            // as last published; empty without the port "ir"
     std::map<std::size_t, double> scene;  // likewise, by id: what events change
     std::vector<cosim::Message> waiting;  // stamped at or after the next step
+    std::optional<CameraPort> cameras;
+    cosim::PortIndex first_camera = 0xFFFF;
     std::optional<Recorder> recorder;
     std::optional<BoothRecord> booth_record;
     WorldLog log;
@@ -155,10 +159,23 @@ WorldNode::Impl::Impl(World description, EventPlan plan, std::unique_ptr<Command
         booths.push_back(links_of(booth, static_cast<cosim::PortIndex>(ports.size())));
         ports.push_back({booth.name, cosim::PortKind::Signals});
     }
+    add_cameras();
     const std::string& directory = model.description().recording.directory;
     if (directory.empty()) return;
     recorder.emplace(model);
     if (!booths.empty()) booth_record.emplace(directory + "/tams.csv", model);
+}
+
+void WorldNode::Impl::add_cameras() {
+    if (!has_camera(model.description())) return;
+    first_camera = static_cast<cosim::PortIndex>(ports.size());
+    std::vector<cosim::PortIndex> of_cameras;
+    for (const auto& robot : model.description().robots) {
+        if (!robot.camera) continue;
+        of_cameras.push_back(static_cast<cosim::PortIndex>(ports.size()));
+        ports.push_back({robot.name + ".camera", cosim::PortKind::Signals});
+    }
+    cameras.emplace(model, std::move(of_cameras));
 }
 
 void WorldNode::Impl::take(const cosim::Message& message) {
@@ -173,7 +190,10 @@ void WorldNode::Impl::take(const cosim::Message& message) {
         return;
     }
     const std::size_t robot = message.port / kPortsOfRobot;
-    if (signal == nullptr || message.port % kPortsOfRobot != 0 || robot >= links.size()) return;
+    if (signal == nullptr || robot >= links.size()) return;
+    const bool from_board = message.port % kPortsOfRobot == 0;
+    if (cameras) cameras->led(robot, !from_board, signal->id, signal->value);
+    if (!from_board) return;
     for (const Side side : {Side::Left, Side::Right})
         if (links[robot].wheel[static_cast<std::size_t>(side)] == signal->id)
             model.wheel(robot, side, signal->value, cosim::to_seconds(message.time));
@@ -316,12 +336,14 @@ void WorldNode::advance(cosim::Time until, std::span<const cosim::Message> inbox
         w.publish_barriers(outbox);
         w.publish_poses(outbox);
         w.publish_scene(outbox);
+        if (w.cameras) w.cameras->publish(w.model, w.timeline.active(), w.next_step + kStep, outbox);
         w.model.done(StepPart::Publish);
     }
     w.waiting.erase(w.waiting.begin(), next);
 }
 
-cosim::Time WorldNode::earliest_output(cosim::PortIndex) const {
+cosim::Time WorldNode::earliest_output(cosim::PortIndex port) const {
+    if (port >= impl_->first_camera) return next_camera_message(impl_->next_step + kStep);
     return std::min(impl_->next_step + kStep, impl_->timeline.next_signal());
 }
 

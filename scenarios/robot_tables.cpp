@@ -1,6 +1,7 @@
 #include "scenarios/robot_tables.h"
 
 #include "scenarios/board_keys.h"
+#include "scenarios/camera_keys.h"
 #include "scenarios/linux_keys.h"
 #include "scenarios/world_tables.h"
 
@@ -69,6 +70,7 @@ LinuxBoard read_linux(const std::string& file, const std::string& where, const T
     LinuxBoard board;
     board.hostname = robot_name;
     read_program(reader, board);
+    read_cameras(reader, board);
     board.place_line = table.line;
     reader.finish();
     return board;
@@ -103,6 +105,7 @@ void read_robot(const std::string& file, const TomlValue& table, const std::file
         boards.rab = read_rab(file, boards.name + ".rab", *rab, folder, memories);
     if (const TomlValue* linux_table = reader.table("linux"))
         boards.linux_board = read_linux(file, boards.name + ".linux", *linux_table, boards.name);
+    body.camera = boards.linux_board && !boards.linux_board->cameras.empty();
     boards.ground_sensor = reader.flag("ground_sensor", true);
     boards.rgb_turret = reader.flag("rgb_turret", true);
     reader.finish();

@@ -48,6 +48,12 @@ struct LinuxSignal {
     std::string send;  ///< without SIG: "INT"
 };
 
+/// A camera of a Linux board.
+struct LinuxCamera {
+    std::string kind;    ///< "omni" or "front"
+    std::string device;  ///< such as /dev/video1
+};
+
 /// The Linux board of a robot: one program under the shim.
 struct LinuxBoard {
     std::vector<std::string> command;  ///< program and arguments; the program's path is resolved
@@ -59,6 +65,8 @@ struct LinuxBoard {
     std::string end_signal = "TERM";  ///< when the run is to end
     double grace = 2.0;               ///< s from the end signal to SIGKILL
     LinuxLateness late{};
+    std::vector<LinuxCamera> cameras{};
+    std::int64_t save_frames = 0;  ///< every so-many-th frame of each camera is kept as a picture; 0: none
     int place_line = 0;
 };
 

@@ -14,6 +14,7 @@
 #include "linuxboard/shim/linux_node.h"
 #include "physics/ir_node.h"
 #include "physics/world_node.h"
+#include "tools/run/camera_scenery.h"
 #include "tools/run/control/control_socket.h"
 #include "tools/run/outside_node.h"
 #include "tools/run/states/make_resumed.h"
@@ -96,7 +97,11 @@ std::unique_ptr<cosim::StatefulNode> make_tam(const json& spec) {
 
 std::unique_ptr<cosim::Node> make_linux(json spec) {
     spec.erase("kind");
-    return std::make_unique<linuxboard::LinuxNode>(linuxboard::parse_linux_spec(spec.dump()));
+    std::unique_ptr<linuxboard::Scenery> scenery;
+    if (spec.contains("scenery")) scenery = make_scenery(spec["scenery"]);
+    spec.erase("scenery");
+    return std::make_unique<linuxboard::LinuxNode>(linuxboard::parse_linux_spec(spec.dump()),
+                                                   std::move(scenery));
 }
 
 std::unique_ptr<cosim::Node> make_outside(const json& spec) {

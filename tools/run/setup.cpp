@@ -6,6 +6,7 @@
 #include "emu/rab_board/signals.h"
 #include "tools/run/control/control_place.h"
 #include "tools/run/overrides.h"
+#include "tools/run/plan/cameras.h"
 #include "tools/run/plan/linux_nodes.h"
 #include "tools/run/plan/plan_kit.h"
 #include "tools/run/plan/radio_nodes.h"
@@ -90,16 +91,24 @@ void add_rab(RunSetup& setup, const RobotBoards& robot) {
                                              robot.name));
 }
 
-void add_linux(RunSetup& setup, const RobotBoards& robot, const RunRequest& request) {
+void add_linux(RunSetup& setup, std::size_t index, const json& world, const RunRequest& request) {
+    const RobotBoards& robot = setup.scenario.robots[index];
     if (!robot.linux_board) return;
     const std::string program = robot.name + ".linux";
-    setup.nodes.push_back({program, linux_spec(setup, program, *robot.linux_board, request).dump()});
+    json spec = linux_spec(setup, program, *robot.linux_board, request);
+    add_cameras(setup, index, world, spec);
+    setup.nodes.push_back({program, spec.dump()});
     setup.links.push_back(
         {robot.name + ".uart", {program, "uart"}, {robot.name + ".pic", "uart2"}, setup.scenario.uart_baud});
     setup.links.push_back({robot.name + ".i2c.linux", {program, "i2c"}, {robot.name + ".i2c", "linux"}});
+    if (robot.linux_board->cameras.empty()) return;
+    cosim::LinkSpec seen{robot.name + ".camera", {program, "camera"}, {"world", robot.name + ".camera"}};
+    seen.record_from_b = false;
+    setup.links.push_back(seen);
 }
 
-void add_robot(RunSetup& setup, const RobotBoards& robot, const RunRequest& request) {
+void add_robot(RunSetup& setup, std::size_t index, const json& described, const RunRequest& request) {
+    const RobotBoards& robot = setup.scenario.robots[index];
     const std::string pic = robot.name + ".pic";
     const std::string bus = robot.name + ".i2c";
     add_free(setup, pic, pic_spec(setup, robot));
@@ -115,7 +124,7 @@ void add_robot(RunSetup& setup, const RobotBoards& robot, const RunRequest& requ
     setup.links.push_back({robot.name + ".i2c.pic", {pic, "i2c"}, {bus, "pic"}});
     add_uart1(setup, robot, request);
     add_rab(setup, robot);
-    add_linux(setup, robot, request);
+    add_linux(setup, index, described, request);
 }
 
 /// The world, and what happens to it.
@@ -180,8 +189,8 @@ RunSetup set_up(const RunRequest& request) {
     add_world(setup, world, request);
     add_ir(setup, world);
 
-    for (const RobotBoards& robot : scenario.robots)
-        add_robot(setup, robot, request);
+    for (std::size_t i = 0; i < scenario.robots.size(); ++i)
+        add_robot(setup, i, world, request);
     add_tams(setup, request);
     add_radio(setup, request);
     name_linked_ports(setup);

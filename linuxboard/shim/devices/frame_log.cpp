@@ -18,10 +18,22 @@ std::string fourcc_text(std::uint32_t fourcc) {
         text[i] = static_cast<char>(fourcc >> (8 * i) & 0x7f);
     return text;
 }
+
+/// Those of an earlier run, by their names.
+void remove_pictures(const std::filesystem::path& folder) {
+    std::error_code ignored;
+    for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) {
+        const std::string name = entry.path().filename().string();
+        const bool ours = name.size() == 12 && name.ends_with(".ppm") &&
+                          name.find_first_not_of("0123456789") == name.size() - 4;
+        if (ours) std::filesystem::remove(entry.path(), ignored);
+    }
+}
 }  // namespace
 
 FrameLog::FrameLog(const std::string& csv, std::string folder, std::uint32_t every)
     : folder_(std::move(folder)), every_(every) {
+    if (!folder_.empty()) remove_pictures(folder_);
     if (csv.empty()) return;
     csv_.open(csv);
     if (!csv_) throw InputError(csv, "", std::strerror(errno), "a file that can be written");

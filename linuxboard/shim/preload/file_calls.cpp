@@ -6,6 +6,7 @@
 #include "linuxboard/shim/preload/outside.h"
 #include "linuxboard/shim/preload/real.h"
 #include "linuxboard/shim/preload/timers.h"
+#include "linuxboard/shim/preload/video_names.h"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -91,6 +92,7 @@ SHIM_EXPORT int open(const char* path, int flags, ...) {
     const mode_t mode = mode_argument(flags, arguments);
     va_end(arguments);
     const int device = device_of(path);
+    if (const int uevent = open_video_uevent(path); uevent >= 0) return uevent;
     if (device == kNoDevice && is_named_pipe(path)) return opened(path, open_named_pipe(path, flags));
     return device == kNoDevice ? opened(path, REAL(open)(path, flags, mode)) : open_device(device, flags);
 }
@@ -101,6 +103,7 @@ SHIM_EXPORT int open64(const char* path, int flags, ...) {
     const mode_t mode = mode_argument(flags, arguments);
     va_end(arguments);
     const int device = device_of(path);
+    if (const int uevent = open_video_uevent(path); uevent >= 0) return uevent;
     if (device == kNoDevice && is_named_pipe(path)) return opened(path, open_named_pipe(path, flags));
     return device == kNoDevice ? opened(path, REAL(open64)(path, flags, mode)) : open_device(device, flags);
 }
@@ -111,6 +114,7 @@ SHIM_EXPORT int openat(int folder, const char* path, int flags, ...) {
     const mode_t mode = mode_argument(flags, arguments);
     va_end(arguments);
     const int device = device_of(path);
+    if (const int uevent = open_video_uevent(path); uevent >= 0) return uevent;
     if (device == kNoDevice && (folder == AT_FDCWD || path[0] == '/') && is_named_pipe(path))
         return opened(path, open_named_pipe(path, flags));
     return device == kNoDevice ? opened(path, REAL(openat)(folder, path, flags, mode))
@@ -123,6 +127,7 @@ SHIM_EXPORT int openat64(int folder, const char* path, int flags, ...) {
     const mode_t mode = mode_argument(flags, arguments);
     va_end(arguments);
     const int device = device_of(path);
+    if (const int uevent = open_video_uevent(path); uevent >= 0) return uevent;
     if (device == kNoDevice && (folder == AT_FDCWD || path[0] == '/') && is_named_pipe(path))
         return opened(path, open_named_pipe(path, flags));
     return device == kNoDevice ? opened(path, REAL(openat64)(folder, path, flags, mode))

@@ -4,6 +4,7 @@
 #include "linuxboard/shim/preload/calls.h"
 #include "linuxboard/shim/preload/open_file.h"
 #include "linuxboard/shim/preload/real.h"
+#include "linuxboard/shim/preload/video_names.h"
 
 #include <fcntl.h>
 #include <stdio.h>
@@ -110,6 +111,7 @@ int print(int fd, const char* format, std::va_list arguments) {
 
 SHIM_EXPORT FILE* fopen(const char* path, const char* mode) {
     const int device = device_of(path);
+    if (const int uevent = open_video_uevent(path); uevent >= 0) return REAL(fdopen)(uevent, mode);
     if (device == kNoDevice && is_named_pipe(path)) return open_stream(open(path, flags_of(mode)), mode);
     return device == kNoDevice ? REAL(fopen)(path, mode)
                                : open_stream(open_device(device, flags_of(mode)), mode);
@@ -117,6 +119,7 @@ SHIM_EXPORT FILE* fopen(const char* path, const char* mode) {
 
 SHIM_EXPORT FILE* fopen64(const char* path, const char* mode) {
     const int device = device_of(path);
+    if (const int uevent = open_video_uevent(path); uevent >= 0) return REAL(fdopen)(uevent, mode);
     if (device == kNoDevice && is_named_pipe(path)) return open_stream(open(path, flags_of(mode)), mode);
     return device == kNoDevice ? REAL(fopen64)(path, mode)
                                : open_stream(open_device(device, flags_of(mode)), mode);

@@ -1,0 +1,31 @@
+#include "tools/run/plan/cameras.h"
+
+#include <nlohmann/json.hpp>
+
+#include <string>
+#include <vector>
+
+namespace puckloop::tools {
+
+void add_cameras(const RunSetup& setup, std::size_t index, const nlohmann::json& world,
+                 nlohmann::json& spec) {
+    const scenarios::RobotBoards& robot = setup.scenario.robots[index];
+    const scenarios::LinuxBoard& board = *robot.linux_board;
+    if (board.cameras.empty()) return;
+    std::vector<std::string> kinds;
+    for (const scenarios::LinuxCamera& camera : board.cameras) {
+        const std::string name = (setup.out / (robot.name + "." + camera.kind)).string();
+        nlohmann::json one{{"device", camera.device},
+                           {"card", camera.kind == "omni" ? "e-puck omnidirectional" : "e-puck front"},
+                           {"log", name + ".csv"}};
+        if (board.save_frames > 0) {
+            one["save"] = name;
+            one["save_every"] = board.save_frames;
+        }
+        spec["cameras"].push_back(std::move(one));
+        kinds.push_back(camera.kind);
+    }
+    spec["scenery"] = {{"world", world}, {"robot", index}, {"kinds", kinds}};
+}
+
+}  // namespace puckloop::tools

@@ -1,0 +1,16 @@
+#pragma once
+// The cameras of the robots' Linux boards.
+
+#include "tools/run/setup.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <cstddef>
+
+namespace puckloop::tools {
+
+/// Adds the cameras of robot number `index`, and what they look at in `world`, to the description `spec` of
+/// its Linux node, if it has any.
+void add_cameras(const RunSetup& setup, std::size_t index, const nlohmann::json& world, nlohmann::json& spec);
+
+}  // namespace puckloop::tools
