@@ -1,0 +1,156 @@
+// What the world tells cameras: when, what, and that it is enough to see the world as it is.
+
+#include "physics/camera/camera_scene.h"
+#include "physics/camera/camera_signals.h"
+#include "tests/physics/events/plans.h"
+
+#include <catch2/catch.hpp>
+
+#include <random>
+#include <set>
+
+using namespace puckloop;
+using namespace puckloop::physics;
+using namespace puckloop::physics::test;
+
+namespace {
+
+/// Two robots, the second with a camera; a box that can be pushed; a floor patch and a lamp.
+World room() {
+    World world = world_with_robot(2.0, 2.0);
+    world.robots.push_back(robot_at("e2", 0.4, 0.1, 1.0));
+    world.robots[1].camera = true;
+    link_up(world);
+    for (Robot& robot : world.robots) {
+        robot.board_signals["led3"] = 77;
+        robot.ground_signals["rgb1_green"] = 78;
+    }
+    world.boxes.push_back({.name = "crate", .x = -0.3, .y = 0.4, .movable = true});
+    world.patches.push_back({.name = "dark", .x = 0.5, .y = 0.5, .grey = 0.2});
+    world.lamps.push_back({.name = "sun", .x = 0.6, .y = -0.6});
+    return world;
+}
+
+constexpr cosim::PortIndex kCamera = 4;  // behind the two ports of each robot
+
+std::vector<Message> to_camera(const std::vector<Message>& sent) {
+    std::vector<Message> found;
+    for (const Message& message : sent)
+        if (message.port == kCamera) found.push_back(message);
+    return found;
+}
+
+}  // namespace
+
+TEST_CASE("frame times are exact, and messages come just before them") {
+    CHECK(camera_frame_time(0) == 0);
+    CHECK(camera_frame_time(1) == 33'333'333'333);
+    CHECK(camera_frame_time(90) == 3 * cosim::kSecond);
+    std::mt19937_64 random(3);
+    for (int i = 0; i < 2000; ++i) {
+        const Time time = std::uniform_int_distribution<Time>(0, 100 * cosim::kSecond)(random);
+        const Time message = next_camera_message(time);
+        CHECK(message >= time);
+        CHECK(message % kMillisecond == 0);
+        // A frame begins within the millisecond from there on, and no other message time lies between.
+        const auto frame = static_cast<std::int64_t>(message / cosim::kMillisecond * kCameraRate / 1000);
+        const Time start =
+            std::min(camera_frame_time(frame) >= message ? camera_frame_time(frame) : cosim::kNever,
+                     camera_frame_time(frame + 1));
+        CHECK(start >= message);
+        CHECK(start < message + kMillisecond);
+        CHECK(message - time < 35 * kMillisecond);
+    }
+}
+
+TEST_CASE("ids of what cameras see do not meet, and mean what they are") {
+    const World world = room();
+    const CameraSignals ids(world);
+    std::set<std::size_t> used;
+    using Kind = CameraSignals::Kind;
+    const auto check = [&](std::size_t id, Kind kind, std::size_t index, std::size_t part) {
+        CHECK(used.insert(id).second);
+        const auto meaning = ids.meaning(id);
+        CHECK(meaning.kind == kind);
+        CHECK(meaning.index == index);
+        CHECK(meaning.part == part);
+    };
+    check(CameraSignals::kAmbient, Kind::Ambient, 0, 0);
+    check(CameraSignals::kFloorGrey, Kind::FloorGrey, 0, 0);
+    for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t k = 0; k < 3; ++k)
+            check(ids.pose(i) + k, Kind::Pose, i, k);
+        check(ids.out(i), Kind::Out, i, 0);
+    }
+    for (std::size_t r = 0; r < 2; ++r) {
+        for (std::size_t k = 0; k < kRingLeds; ++k)
+            check(ids.ring_led(r, k), Kind::RingLed, r, k);
+        for (std::size_t k = 0; k < kTurretColours; ++k)
+            check(ids.turret(r, k), Kind::Turret, r, k);
+    }
+    check(ids.lamp(0), Kind::Lamp, 0, 0);
+    for (std::size_t i = 0; i < ids.booth_lights(); ++i)
+        for (std::size_t k = 0; k < 3; ++k)
+            check(ids.booth_light(i, k), Kind::BoothLight, i, k);
+    for (std::size_t i = 0; i < 5; ++i)
+        for (std::size_t k = 0; k < kShapeSignals; ++k) {
+            check(ids.shape(true, i) + k, Kind::Fixed, i, k);
+            check(ids.shape(false, i) + k, Kind::Added, i, k);
+            check(ids.patch(i) + k, Kind::Patch, i, k);
+        }
+}
+
+TEST_CASE("cameras hear of poses, LEDs and events at frame times only") {
+    World world = room();
+    const CameraSignals ids(world);
+    Action add = action(Verb::Add, "new");
+    add.thing.boxes.push_back({.name = "new", .x = 0.25, .length = 0.02, .width = 0.4, .height = 0.2});
+    Action lit = action(Verb::Add, "spot");
+    lit.thing.patches.push_back({.name = "spot", .x = -0.5, .y = 0.1, .grey = 0.4});
+    const auto node =
+        node_with(world, {at(20 * kMillisecond, add), at(40 * kMillisecond, action(Verb::Lift, "e1")),
+                          at(60 * kMillisecond, action(Verb::Remove, "new")),
+                          at(80 * kMillisecond, action(Verb::Remove, "dark")), at(90 * kMillisecond, lit),
+                          at(95 * kMillisecond, action(Verb::Remove, "crate"))});
+    const std::vector<Message> in{{5 * kMillisecond, 0, cosim::Signal{77, 1.0}},
+                                  {10 * kMillisecond, 1, cosim::Signal{78, 51.0}},
+                                  {50 * kMillisecond, 0, cosim::Signal{77, 0.0}}};
+    const auto sent = to_camera(run_node(*node, in, 200 * kMillisecond, 10 * kMillisecond));
+    REQUIRE_FALSE(sent.empty());
+    CameraScene scene(world);
+    for (const Message& message : sent) {
+        CHECK(next_camera_message(message.time) == message.time);
+        const auto& signal = std::get<cosim::Signal>(message.payload);
+        scene.change(signal.id, signal.value);
+    }
+    using Changes = std::vector<std::pair<Time, double>>;
+    const auto id = [](std::size_t number) { return static_cast<std::uint16_t>(number); };
+    CHECK(changes(sent, kCamera, id(ids.ring_led(0, 3))) ==
+          Changes{{33 * kMillisecond, 1.0}, {66 * kMillisecond, 0.0}});
+    CHECK(changes(sent, kCamera, id(ids.turret(0, 4))) == Changes{{33 * kMillisecond, 0.2}});
+    CHECK(changes(sent, kCamera, id(ids.out(0))) == Changes{{66 * kMillisecond, 1.0}});
+    const std::size_t box = ids.shape(true, fixed_shapes(world).size());
+    CHECK(changes(sent, kCamera, id(box + 6)) == Changes{{33 * kMillisecond, 0.2}, {66 * kMillisecond, 0.0}});
+    CHECK(changes(sent, kCamera, id(ids.out(2))) == Changes{{100 * kMillisecond, 1.0}});
+
+    // With all of that the scene is the room as it is now.
+    std::vector<Body> bodies;
+    scene.bodies(1, bodies);
+    CHECK(bodies.size() == 4);  // the arena's walls: the robot is in the air, box and crate are gone
+    REQUIRE(scene.patches().size() == 1);
+    CHECK(scene.patches()[0].x == Approx(-0.5));
+    CHECK(scene.patches()[0].grey == Approx(0.4));
+    CHECK(scene.robot(1).x == Approx(0.4).margin(1e-4));
+    CHECK(scene.robot(1).heading == Approx(1.0).margin(1e-3));
+    std::vector<Glow> glows;
+    scene.glows(1, glows);
+    CHECK(glows.size() == 1);  // the lamp; the lifted robot's LEDs are out of sight
+}
+
+TEST_CASE("a world without cameras has no port for them") {
+    World world = room();
+    world.robots[1].camera = false;
+    const auto node = node_with(world, {});
+    CHECK(node->ports().size() == 4);
+    CHECK(to_camera(run_node(*node, {}, 200 * kMillisecond, 10 * kMillisecond)).empty());
+}
