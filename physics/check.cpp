@@ -209,6 +209,15 @@ class Checker {
                     fail(b.what, b.place, "overlaps " + booths_[j].what, "a free place");
         }
     }
+    void check_mirror(const std::string& what, const Robot& r, const CameraParameters& camera) const {
+        // A hyperboloid reflects nothing that looks up more steeply than its asymptote.
+        if (r.camera && std::sin(camera.rim_elevation) >= 1 / camera.eccentricity)
+            fail(what, r.place,
+                 fmt::format(
+                     "no mirror of eccentricity {} sees {} rad above the horizon (camera.rim_elevation)",
+                     camera.eccentricity, camera.rim_elevation),
+                 fmt::format("less than {:.3g} rad", std::asin(1 / camera.eccentricity)));
+    }
     void check_robots() {
         for (const auto& r : world_.robots) {
             const auto what = named("robot", r.name, r.place);
@@ -216,6 +225,7 @@ class Checker {
             check_parameters(what, r.place, r.parameters, true);
             const Parameters parameters = parameters_of(world_, r);
             const auto& b = parameters.robot;
+            check_mirror(what, r, parameters.camera);
             moving_.push_back({what, r.place, circle_shape(r.x, r.y, b.radius, b.height, b.reflectivity)});
             if (b.com_z >= b.height) fail(what, r.place, "robot.com_z is above robot.height");
             const auto& path = parameters.ir.distance;

@@ -115,6 +115,12 @@ void CameraPort::publish(const WorldModel& model, bool events, cosim::Time stamp
     put_poses(model);
     for (const auto& [id, value] : leds_)
         put(id, value);
+    for (std::size_t i = 0; i < signals_.booth_lights(); ++i) {
+        const ColouredLight& light = model.booth(i / booth::kLights).lights()[i % booth::kLights];
+        put(signals_.booth_light(i, 0), light.red);
+        put(signals_.booth_light(i, 1), light.green);
+        put(signals_.booth_light(i, 2), light.blue);
+    }
     if (events) put_changes(model);
     outbox_ = nullptr;
 }

@@ -1,5 +1,6 @@
 #include "physics/camera/camera_scene.h"
 
+#include "physics/booth.h"
 #include "physics/robot_parameters.h"
 
 #include <cmath>
@@ -96,6 +97,9 @@ CameraScene::CameraScene(const World& world)
         patches_.push_back(values_of(patch));
         seen_patches_.push_back(patch_from(patches_.back()));
     }
+    for (const Booth& booth : world.booths)
+        for (const ColouredLight& light : BoothModel(booth).lights())
+            booth_lights_.push_back({light.x, light.y, light.z, light.radius});
     for (const Lamp& lamp : world.lamps) {
         const double level = kLampLevel * lamp.intensity;
         lamps_.push_back({lamp.x, lamp.y, lamp.height, kLampRadius, {level, level, level}});
@@ -135,6 +139,7 @@ void CameraScene::change(std::size_t id, double value) {
         lamps_[index].level.fill(kLampLevel * value);
         break;
     case Kind::BoothLight:
+        booth_lights_[index].level[part] = value;
         break;
     case Kind::Fixed:
         grown(fixed_, index)[part] = value;
@@ -200,6 +205,11 @@ void CameraScene::glows(std::size_t but, std::vector<Glow>& out) const {
     out.clear();
     for (const Glow& lamp : lamps_)
         if (lamp.level[0] > 0.0) out.push_back(lamp);
+    for (Glow light : booth_lights_) {
+        for (double& level : light.level)
+            level *= robots_[but].camera.booth_level;
+        out.push_back(light);
+    }
     for (std::size_t robot = 0; robot < robots_.size(); ++robot) {
         if (robot == but || moving_[robot].out) continue;
         ring_glows(robot, out);

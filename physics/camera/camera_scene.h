@@ -74,6 +74,7 @@ class CameraScene {
     std::vector<std::array<double, kRingLeds>> ring_;
     std::vector<std::array<double, kTurretColours>> turret_;
     std::vector<Glow> lamps_;
+    std::vector<Glow> booth_lights_;  // levels: share of full duty
 };
 
 /// A patch as signals.

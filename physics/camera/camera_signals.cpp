@@ -1,5 +1,7 @@
 #include "physics/camera/camera_signals.h"
 
+#include "physics/booth.h"
+
 namespace puckloop::physics {
 
 CameraSignals::CameraSignals(const World& world)
@@ -10,7 +12,7 @@ CameraSignals::CameraSignals(const World& world)
       turret_(ring_ + robots_ * kRingLeds),
       lamps_(turret_ + robots_ * kTurretColours),
       lights_(lamps_ + world.lamps.size()),
-      open_(lights_) {}
+      open_(lights_ + 3 * booth::kLights * world.booths.size()) {}
 
 CameraSignals::Meaning CameraSignals::meaning(std::size_t id) const {
     if (id == kAmbient) return {Kind::Ambient, 0, 0};
