@@ -24,6 +24,7 @@ size = ["1 m", "80 cm"]
 [[cylinder]]
 name = "can"
 centre = ["20 cm", "15 cm"]
+radius = "4 cm"
 mass = "50 g"
 [[floor_patch]]
 centre = ["-20 cm", "0 cm"]

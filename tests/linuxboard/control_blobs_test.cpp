@@ -81,7 +81,7 @@ TEST_CASE("pixels that touch are one blob, whatever its shape; small ones do not
     picture.disc(200, 100, 20, {40, 220, 40});
     picture.disc(200, 100, 15, {90, 90, 90});
     picture.disc(120, 200, 6, {40, 220, 40});
-    picture.disc(150, 220, 0.8, {40, 220, 40});
+    picture.disc(150.5, 220.5, 0.8, {40, 220, 40});
     const auto blobs = find_blobs(picture.yuyv(), 352, 288, *colour_named("green"), {});
     REQUIRE(blobs.size() == 2);
     CHECK(blobs[0].area > 400);
