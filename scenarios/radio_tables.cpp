@@ -14,7 +14,8 @@ namespace {
 constexpr std::uint64_t kDigi = 0x0013A20000000000, kCoordinatorLow = 0x40000000;
 constexpr std::int64_t kFirstNetwork = 0x01B2;  // TAM fact sheet, section 6
 constexpr int kNetworks = 4;
-constexpr double kLongestDelay = 1.0;  // s
+constexpr std::uint32_t kEuropeanCca = 0x3A;  // -58 dBm: Digi's manual, CA, "ETSI compliance"
+constexpr double kLongestDelay = 1.0;         // s
 
 std::uint64_t read_address(Reader& reader, std::uint64_t fallback) {
     if (!reader.has("address")) return fallback;
@@ -76,6 +77,7 @@ XBeeModule read_tam_module(const std::string& file, const std::string& tam, cons
     module.address = kDigi | (kCoordinatorLow + 1 + index);
     module.node_id = fmt::format("TAM{:02}", index + 1);
     module.parameters["ID"] = static_cast<std::uint32_t>(kFirstNetwork + network);
+    module.parameters["CA"] = kEuropeanCca;
     if (table == nullptr) return module;
     Reader reader(file, tam + ".xbee", *table);
     module.fitted = reader.flag("fitted", true);
@@ -114,6 +116,7 @@ std::optional<CoordinatorPlace> read_coordinator(Reader& top) {
     place.module.node_id = "COORD";
     const auto network = reader.integer("network", kNetworks - 1, 0, kNetworks - 1);
     place.module.parameters["ID"] = static_cast<std::uint32_t>(kFirstNetwork + network);
+    place.module.parameters["CA"] = kEuropeanCca;
     if (reader.has("position")) {
         const auto position = reader.quantities("position", Dimension::Length, 2);
         place.x = position[0];

@@ -12,6 +12,7 @@ namespace puckloop::radio {
 enum class EventKind : std::uint8_t {
     // MAC
     Access,      ///< a station's backoff is over
+    NoAccess,    ///< a station gives an attempt up, as the channel was never free
     FrameEnd,    ///< a transmission ends
     AckEnd,      ///< an acknowledgement ends
     AckMissing,  ///< a station has waited for one long enough

@@ -80,6 +80,9 @@ void Mac::happen(const Event& event) {
     case EventKind::Access:
         if (current) access(event.station, event.at);
         break;
+    case EventKind::NoAccess:
+        if (current) failed_attempt(event.station, true, event.at);
+        break;
     case EventKind::AckMissing:
         if (current) failed_attempt(event.station, false, event.at);
         break;
@@ -107,7 +110,9 @@ void Mac::access(std::size_t station, Time now) {
         medium_.busy(station, it.settings.channel, -static_cast<double>(it.settings.cca), now)) {
         if (++it.backoffs > kMostBackoffs) {
             ++it.counts.channel_busy;
-            failed_attempt(station, true, now);
+            // As late as the shortest frame would have ended: nothing that a frame leads to comes earlier.
+            agenda_.add(
+                {start + air_time(protocols::kMeshOverhead), EventKind::NoAccess, station, ++it.turn});
             return;
         }
         it.exponent = std::min(it.exponent + 1, kMaxExponent);

@@ -82,7 +82,7 @@ class Mac {
     const RadioSettings& settings(std::size_t station) const { return stations_[station].settings; }
     /// Sends a frame to frame.hop_to; sent() follows.
     void submit(std::size_t station, const protocols::MeshFrame& frame, std::uint64_t token, cosim::Time now);
-    /// Access, FrameEnd, AckEnd and AckMissing.
+    /// Access, NoAccess, FrameEnd, AckEnd and AckMissing.
     void happen(const Event& event);
     /// The earliest time at which what happens at `event` can reach a module.
     static cosim::Time earliest_end(const Event& event);

@@ -36,7 +36,7 @@ Mesh::Mesh(Medium& medium, const std::vector<std::string>& names, std::uint64_t 
            MeshUser& user)
     : processing_(processing), user_(user), mac_(medium, agenda_, names, seed, *this) {
     for (const std::string& name : names)
-        stations_.emplace_back(RandomStream(seed, "radio/slots/" + name));
+        stations_.emplace_back(RandomStream(seed, "radio/delays/" + name));
 }
 
 void Mesh::set(std::size_t station, const RadioSettings& settings, Time now) {
@@ -136,9 +136,7 @@ void Mesh::sent(std::size_t station, std::uint64_t token, bool delivered, bool b
     if (job.purpose == Purpose::Copies) {
         if (job.copies > 0 && settings(station).on) {
             --job.copies;
-            const auto slots = static_cast<Time>(
-                stations_[station].slots.below(std::max<std::uint64_t>(1, settings(station).delay_slots)));
-            agenda_.add({now + slots * kDelaySlot, EventKind::Repeat, station, token});
+            agenda_.add({now + random_delay(station), EventKind::Repeat, station, token});
             return;
         }
         if (job.reports) user_.report(station, {job.frame.sequence, 0, kDelivered, 0}, now);
@@ -161,6 +159,11 @@ void Mesh::sent(std::size_t station, std::uint64_t token, bool delivered, bool b
         stations_[station].routes.erase(job.frame.target);
     }
     jobs_.erase(token);
+}
+
+Time Mesh::random_delay(std::size_t station) {
+    const auto most = static_cast<std::uint64_t>(settings(station).delay_slots * kDelaySlot);
+    return static_cast<Time>(stations_[station].delays.below(most + 1));
 }
 
 bool Mesh::seen_before(std::size_t station, const MeshFrame& frame) {
@@ -200,10 +203,8 @@ void Mesh::heard_broadcast(std::size_t station, const MeshFrame& frame, const He
     ++on.hops;
     --on.radius;
     ++it.counts.relayed;
-    const auto slots =
-        static_cast<Time>(it.slots.below(std::max<std::uint64_t>(1, settings(station).delay_slots)));
     submit_at(station, {Purpose::Copies, 0, std::move(on), settings(station).repeats, false},
-              heard.end + processing_ + slots * kDelaySlot);
+              heard.end + processing_ + random_delay(station));
 }
 
 void Mesh::heard_unicast(std::size_t station, const MeshFrame& frame, const Heard& heard) {

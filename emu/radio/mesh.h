@@ -6,7 +6,7 @@
 // Deviations:
 // 1. DigiMesh's algorithms are not published. A route request is answered at its first copy to reach the
 //    target, and leaves routes back to the origin on its way, as in AODV; DigiMesh weighs link quality too.
-// 2. Of NN delay slots of 18 ms a broadcast waits a random number before each copy but its origin's first.
+// 2. Before each copy of a broadcast but its origin's first a random time of up to NN slots of 18 ms passes.
 // 3. The manual's table of the time of one hop is replaced by what the MAC needs at most (kAttempt).
 // 4. Tables of routes have no limit; the module has 32.
 // 5. Network acknowledgements are kept from nobody's way: they cost no memory of the module.
@@ -95,12 +95,12 @@ class Mesh : private MacUser {
         std::deque<std::pair<std::uint64_t, std::uint16_t>> seen;  ///< origins and sequences, newest last
         std::map<std::uint64_t, std::uint64_t> requests;  ///< target: token of the request that is under way
         std::uint16_t sequence = 0x8000;  ///< of frames of the network layer itself; modules count below
-        RandomStream slots;
+        RandomStream delays;
         MeshCounts counts;
-        explicit Station(RandomStream stream) : slots(stream) {}
+        explicit Station(RandomStream stream) : delays(stream) {}
         template <class Archive>
         void state(Archive& archive) {
-            archive(routes, seen, requests, sequence, slots, counts);
+            archive(routes, seen, requests, sequence, delays, counts);
         }
     };
     /// A module's unicast whose fate is open.
@@ -140,6 +140,8 @@ class Mesh : private MacUser {
     void heard_broadcast(std::size_t station, const protocols::MeshFrame& frame, const Heard& heard);
     void heard_unicast(std::size_t station, const protocols::MeshFrame& frame, const Heard& heard);
     void arrived(std::size_t station, const protocols::MeshFrame& frame, const Heard& heard);
+    /// Before a copy of a broadcast goes out.
+    cosim::Time random_delay(std::size_t station);
     void answer(std::size_t station, const protocols::MeshFrame& frame, protocols::MeshKind kind,
                 cosim::Time now);
     void learn(std::size_t station, std::uint64_t target, const Route& route);

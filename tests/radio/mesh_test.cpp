@@ -3,6 +3,8 @@
 #include "base/error.h"
 #include "base/random.h"
 
+#include <array>
+
 using namespace puckloop;
 using namespace puckloop::radio;
 using namespace puckloop::radio::test;
@@ -245,9 +247,58 @@ TEST_CASE("nonsense from a module is counted and changes nothing") {
                     InputError);
 }
 
+TEST_CASE("listening before talking: with CA two that start together hardly collide") {
+    const auto collisions = [](std::uint8_t cca) {
+        Air air({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, 30.0, 0.0, 5);
+        for (RadioSettings& settings : air.settings)
+            settings.cca = cca;
+        air.tell_all();
+        for (int i = 0; i < 60; ++i) {
+            air.send(1, address(0), std::vector<std::uint8_t>(40, 1), 1);
+            air.send(2, address(0), std::vector<std::uint8_t>(40, 2), 1);
+            air.run(air.now() + 400 * kMs);
+        }
+        air.run(air.now() + 5000 * kMs);
+        std::size_t delivered = 0;
+        for (const Air::Fate& fate : air.fates)
+            delivered += fate.outcome.delivery == kDelivered;
+        const auto mac = air.report()["stations"]["m0"]["mac"];
+        return std::pair(mac["collisions"].get<int>(), delivered);
+    };
+    const auto deaf = collisions(0), listening = collisions(58);
+    CHECK(listening.second == 120);
+    CHECK(deaf.first > 60);
+    CHECK(listening.first < deaf.first / 4);
+}
+
+TEST_CASE("a channel that is never free: status 2 at the earliest promised, and on it goes") {
+    // Stations 0 and 1 fill the channel; all hear each other at -40 dBm, above -80 dBm.
+    Air air({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, 30.0, 0.0, 2);
+    for (std::size_t i = 0; i < 4; ++i) {
+        air.settings[i].cca = i < 2 ? 0 : 80;
+        air.settings[i].mac_retries = i < 2 ? 10 : 0;
+        air.settings[i].repeats = 0;
+        air.settings[i].network_retries = 0;
+    }
+    air.tell_all();
+    for (int i = 0; i < 300; ++i) {
+        for (std::size_t filler = 0; filler < 2; ++filler)
+            for (int k = 0; k < 3; ++k)
+                air.send(filler, protocols::kXBeeBroadcast, std::vector<std::uint8_t>(73, 1), 0, 1);
+        air.send(2, protocols::kXBeeBroadcast, {1}, 0, 1);
+        air.run(air.now() + 11 * kMs);
+    }
+    air.run(air.now() + 20'000 * kMs);
+    CHECK(air.report()["stations"]["m2"]["mac"]["channel_busy"] > 20);
+    CHECK(std::count_if(air.fates.begin(), air.fates.end(),
+                        [](const Air::Fate& fate) { return fate.station == 2; }) == 300);
+}
+
 TEST_CASE("what happens does not depend on how time is granted") {
-    const auto life = [](Time step) {
+    const auto life = [](Time step, std::uint8_t cca) {
         Air air({{0, 0, 0}, {15, 0, 0}, {30, 0, 0}, {15, 15, 0}}, 20.0, 0.2, 11);
+        for (RadioSettings& settings : air.settings)
+            settings.cca = cca;
         air.tell_all();
         RandomStream random(9, "traffic");
         for (int i = 0; i < 60; ++i) {
@@ -263,8 +314,10 @@ TEST_CASE("what happens does not depend on how time is granted") {
             all.emplace_back(one.station, one.at, encode(one.outcome));
         return all;
     };
-    const auto whole = life(cosim::kNever);
-    CHECK(whole.size() > 100);
-    CHECK(life(kMs / 3) == whole);
-    CHECK(life(17 * kMs) == whole);
+    for (const std::uint8_t cca : std::array<std::uint8_t, 2>{0, 80}) {
+        const auto whole = life(cosim::kNever, cca);
+        CHECK(whole.size() > 100);
+        CHECK(life(kMs / 3, cca) == whole);
+        CHECK(life(17 * kMs, cca) == whole);
+    }
 }
