@@ -4,6 +4,7 @@
 // Exit status: 0 the session ran its time or was ended by a signal; 1 the PIC could not be reached or the
 // line failed; 2 wrong use, or a device that cannot be opened.
 
+#include "linuxboard/control/coloured_spots.h"
 #include "linuxboard/control/ground_sensor.h"
 #include "linuxboard/control/posix_serial.h"
 #include "linuxboard/control/rab_session.h"
@@ -79,8 +80,9 @@ RabSession::Log make_log(Clock& clock) {
     };
 }
 
-Surroundings surroundings_of(GroundSensor* ground, RabSession* rab) {
+Surroundings surroundings_of(GroundSensor* ground, RabSession* rab, ColouredSpots* spots) {
     Surroundings surroundings;
+    if (spots != nullptr) surroundings.spots = [spots] { return spots->look(); };
     if (ground != nullptr) surroundings.ground = [ground] { return ground->read(); };
     if (rab == nullptr) return surroundings;
     surroundings.neighbours = [rab] { return rab->neighbours(); };
@@ -102,17 +104,20 @@ int drive(const Options& options) {
     const RabSession::Log log = make_log(serial);
     const std::unique_ptr<GroundSensor> ground = open_ground(options);
     const std::unique_ptr<RabSession> rab = open_rab(options, serial, log);
+    const auto spots = options.camera.empty() ? nullptr : std::make_unique<ColouredSpots>(options.camera);
     const std::unique_ptr<Behaviour> behaviour = make_behaviour(options.behaviour, options.rab_id);
     Session session(serial, log, interrupted);
     bool reached = false;
     try {
-        reached = run_control_loop(session, serial, *behaviour, surroundings_of(ground.get(), rab.get()),
-                                   interrupted, options.loop);
+        reached = run_control_loop(session, serial, *behaviour,
+                                   surroundings_of(ground.get(), rab.get(), spots.get()), interrupted,
+                                   options.loop);
     } catch (const LineError& error) {
         std::fprintf(stderr, "puckloop-control: %s\n", error.what());
     }
     if (interrupted()) log("ended by a signal");
     report(session.counters(), ground.get(), rab.get());
+    if (spots) std::printf("camera frames %lu, lost %lu\n", spots->camera().frames(), spots->camera().lost());
     if (!reached) std::fprintf(stderr, "puckloop-control: the PIC does not answer\n");
     return reached ? 0 : 1;
 }

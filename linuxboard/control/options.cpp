@@ -26,6 +26,7 @@ const char kUsage[] =
     "  --no-ground        do not use the ground sensors\n"
     "  --start-wait S     wait so long for the PIC at the start (60)\n"
     "  --give-up S        end with status 1 after so long without the PIC in mid-session (60)\n"
+    "  --camera DEVICE    the omnidirectional camera, such as /dev/video1: lets serve see which TAM shines\n"
     "range-and-bearing board:\n"
     "  --rab              use it if it is there (aggregate and follow do so anyway)\n"
     "  --rab-required     use it; end with status 2 when it does not answer\n"
@@ -60,6 +61,7 @@ enum {
     kRabBurst,
     kRabGain,
     kRabCalibrate,
+    kCamera,
 };
 
 const option kTable[] = {{"behaviour", required_argument, nullptr, kBehaviour},
@@ -79,6 +81,7 @@ const option kTable[] = {{"behaviour", required_argument, nullptr, kBehaviour},
                          {"rab-burst", no_argument, nullptr, kRabBurst},
                          {"rab-gain", required_argument, nullptr, kRabGain},
                          {"rab-calibrate", required_argument, nullptr, kRabCalibrate},
+                         {"camera", required_argument, nullptr, kCamera},
                          {"help", no_argument, nullptr, 'h'},
                          {nullptr, 0, nullptr, 0}};
 
@@ -135,6 +138,9 @@ void take(Options& options, int choice, const char* name) {
     case kRabCalibrate:
         options.calibrate = whole(name, optarg, 2, 1000000);
         break;
+    case kCamera:
+        options.camera = optarg;
+        break;
     case 'h':
         std::fputs(kUsage, stdout);
         std::exit(0);
@@ -147,7 +153,8 @@ void take(Options& options, int choice, const char* name) {
 /// What only shows when all options are known.
 void check(Options& options) {
     if (make_behaviour(options.behaviour) == nullptr)
-        wrong_value("behaviour", options.behaviour.c_str(), "wander, light, aggregate, follow, serve, still or spin");
+        wrong_value("behaviour", options.behaviour.c_str(),
+                    "wander, light, aggregate, follow, serve, still or spin");
     if (needs_neighbours(options.behaviour)) options.rab = true;
     if (options.rab && options.rab_id == 0 && options.calibrate == 0) {
         std::fprintf(stderr, "puckloop-control: %s needs --rab-id N, 1 to 255, another on each robot\n",

@@ -16,6 +16,7 @@ struct Options {
     std::string tty = "/dev/ttyS0";
     std::string i2c;  ///< empty: kDefaultBus if it is there
     bool ground = true;
+    std::string camera{};  ///< empty: none
     bool rab = false;
     bool rab_required = false;
     int calibrate = 0;  ///< messages; 0: no calibration

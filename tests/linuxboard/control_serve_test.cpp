@@ -98,5 +98,5 @@ TEST_CASE("with a camera it waits for a booth that shines, and stays as long as 
         track.drive(out);
     }
     CHECK(serve.visits() == 1);
-    CHECK(left_at == Approx(dark_at + 0.5).margin(0.25));
+    CHECK(left_at == Approx(dark_at + 0.8).margin(0.25));
 }
