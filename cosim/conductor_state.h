@@ -1,6 +1,7 @@
 #pragma once
 // The conductor's state and the loop over it; private to its source files: conductor.cpp (the loop),
-// conductor_work.cpp (who does the work), conductor_end.cpp (how a run ends, what is told of it).
+// conductor_grants.cpp (what is granted, what is replied), conductor_work.cpp (who does the work),
+// conductor_end.cpp (how a run ends, what is told of it).
 
 #include "base/random.h"
 #include "cosim/conductor.h"
