@@ -94,6 +94,7 @@ void BoardKernel::open_file(const Request& request) {
         ++handle;
     if (handle == files_.size()) files_.emplace_back();
     files_[handle] = file;
+    if (file.kind == DeviceKind::Video) cameras_[file.camera]->open(static_cast<int>(handle));
     finish(request.thread, static_cast<std::int64_t>(handle), 0, request.now);
 }
 
@@ -141,7 +142,11 @@ void BoardKernel::call(const Request& request, std::string_view data) {
         return;
     }
     Waiting waiting{request, std::string(data), {}, 0, now};
-    if (!attempt(request.thread, waiting, now)) waiting_.insert_or_assign(request.thread, std::move(waiting));
+    if (!attempt(request.thread, waiting, now)) {
+        waiting_.insert_or_assign(request.thread, std::move(waiting));
+    } else if (request.op == Op::Ioctl || request.op == Op::Close) {
+        attempt_all(now);  // a stream's end ends the calls that wait for its frames
+    }
 }
 
 bool BoardKernel::attempt(std::uint32_t thread, Waiting& waiting, Time now) {

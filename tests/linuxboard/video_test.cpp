@@ -238,6 +238,15 @@ TEST_CASE("a stream ends with its file, is shared by fork, and never hangs a run
     CHECK(report["cameras"][0]["lost"].get<int>() > 50);
 }
 
+TEST_CASE("the end of a stream ends what waits for its frames; the highest priority changes the device") {
+    const Result result = run_mode("threads", 1, kMillisecond);
+    INFO(result.log);
+    CHECK(lines_of(result.log, "waited EINVAL until").size() == 1);
+    CHECK(result.log.find("joined after 0.200\n") != std::string::npos);
+    CHECK(result.log.find("record ok\ngain elsewhere EBUSY\ngain here ok\ngain now ok\n") !=
+          std::string::npos);
+}
+
 TEST_CASE("pixel formats carry colours as programs expect them") {
     std::mt19937 random(7);
     const auto* yuyv = find_format(V4L2_PIX_FMT_YUYV);

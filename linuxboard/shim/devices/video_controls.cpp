@@ -129,7 +129,7 @@ int VideoControls::get_several(std::string& data) const {
     const auto head = get_struct<v4l2_ext_controls>(data);
     const bool initial = head.which == V4L2_CTRL_WHICH_DEF_VAL;
     const std::size_t count = listed(data);
-    if (count < head.count) return EINVAL;
+    if (count < head.count || head.which == V4L2_CTRL_WHICH_REQUEST_VAL) return EINVAL;
     for (std::size_t i = 0; i < count; ++i) {
         auto one = get_struct<v4l2_ext_control>(data, place_of(i));
         const VideoControl* control = find(one.id);
@@ -146,7 +146,9 @@ int VideoControls::get_several(std::string& data) const {
 int VideoControls::set_several(std::string& data, bool only_try) {
     const auto head = get_struct<v4l2_ext_controls>(data);
     const std::size_t count = listed(data);
-    if (count < head.count || head.which == V4L2_CTRL_WHICH_DEF_VAL) return EINVAL;
+    if (count < head.count || head.which == V4L2_CTRL_WHICH_DEF_VAL ||
+        head.which == V4L2_CTRL_WHICH_REQUEST_VAL)
+        return EINVAL;
     for (std::size_t i = 0; i < count; ++i) {
         const auto one = get_struct<v4l2_ext_control>(data, place_of(i));
         if (find(one.id) != nullptr) continue;

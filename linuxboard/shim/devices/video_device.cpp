@@ -25,6 +25,26 @@ constexpr std::size_t kRgbBytes = 3;
 bool is_capture(std::uint32_t type) {
     return type == V4L2_BUF_TYPE_VIDEO_CAPTURE;
 }
+
+/// Not for an open file of lower priority than another one's.
+bool changes_device(std::uint32_t request) {
+    switch (request) {
+    case VIDIOC_S_FMT:
+    case VIDIOC_S_PARM:
+    case VIDIOC_S_INPUT:
+    case VIDIOC_S_CTRL:
+    case VIDIOC_S_EXT_CTRLS:
+    case VIDIOC_S_CROP:
+    case VIDIOC_S_SELECTION:
+    case VIDIOC_S_PRIORITY:
+    case VIDIOC_REQBUFS:
+    case VIDIOC_STREAMON:
+    case VIDIOC_STREAMOFF:
+        return true;
+    default:
+        return false;
+    }
+}
 }  // namespace
 
 VideoDevice::VideoDevice(const CameraSpec& spec, std::size_t number, Time uptime, Scenery& scenery,
@@ -35,7 +55,6 @@ VideoDevice::VideoDevice(const CameraSpec& spec, std::size_t number, Time uptime
       uptime_(uptime),
       scenery_(scenery),
       memory_(memory),
-      priority_(V4L2_PRIORITY_INTERACTIVE),
       log_(spec.log, spec.save, spec.save_every) {}
 
 Time VideoDevice::frame_start(std::uint64_t frame) const {
@@ -49,6 +68,7 @@ std::span<std::uint8_t> VideoDevice::memory_of(std::size_t index) const {
 
 std::optional<int> VideoDevice::ioctl(int handle, std::uint32_t request, std::string& data, bool nonblocking,
                                       Time now) {
+    if (changes_device(request) && priorities_[handle] < highest_priority()) return EBUSY;
     switch (request) {
     case VIDIOC_REQBUFS:
         return request_buffers(handle, data);
@@ -73,6 +93,11 @@ int VideoDevice::request_buffers(int handle, std::string& data) {
     if (busy_for(handle) || reading_ || streaming_) return EBUSY;
     free_buffers();
     wanted.count = std::min(wanted.count, wire::kMostVideoBuffers);
+    const std::uint32_t count = wanted.count;
+    wanted = {};
+    wanted.count = count;
+    wanted.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+    wanted.memory = V4L2_MEMORY_MMAP;
     wanted.capabilities = V4L2_BUF_CAP_SUPPORTS_MMAP;
     buffers_.assign(wanted.count, {});
     owner_ = wanted.count > 0 ? handle : -1;
@@ -115,6 +140,7 @@ int VideoDevice::queue_buffer(int handle, std::string& data) {
     if (!is_capture(buffer.type)) return EINVAL;
     if (busy_for(handle) || reading_) return EBUSY;
     if (buffer.memory != V4L2_MEMORY_MMAP || buffer.index >= buffers_.size()) return EINVAL;
+    if ((buffer.flags & V4L2_BUF_FLAG_REQUEST_FD) != 0) return EBADR;  // as drivers without requests
     Buffer& own = buffers_[buffer.index];
     if (own.state != Buffer::State::Dequeued) return EINVAL;
     own.state = Buffer::State::Queued;
@@ -181,6 +207,7 @@ void VideoDevice::free_buffers() {
 }
 
 void VideoDevice::close(int handle) {
+    priorities_.erase(handle);
     if (owner_ == handle) free_buffers();
 }
 

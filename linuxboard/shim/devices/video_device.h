@@ -37,7 +37,9 @@ class VideoDevice {
     VideoDevice(const CameraSpec& spec, std::size_t number, cosim::Time uptime, Scenery& scenery,
                 char* memory);
 
-    /// Open file `handle` is gone.
+    /// There is an open file `handle`.
+    void open(int handle) { priorities_[handle] = kUsualPriority; }
+    /// It is gone.
     void close(int handle);
     /// One ioctl; its struct, and what that points to, is changed in place. The errno value, 0 if none;
     /// nothing if it has to wait for a frame.
@@ -96,6 +98,8 @@ class VideoDevice {
     // video_queries.cpp: what does not move a frame
     std::optional<int> query(int handle, std::uint32_t request, std::string& data);
     int refuse(std::uint32_t request);
+    std::uint32_t highest_priority() const;
+    int set_priority(int handle, const std::string& data);
     int set_format(int handle, std::string& data, bool only_try);
     int get_format(std::string& data) const;
     int enumerate_sizes(std::string& data) const;
@@ -115,7 +119,8 @@ class VideoDevice {
     FrameSize size_ = kSensorSize;
     std::uint32_t rate_ = kFrameRates[0];
     VideoControls controls_;
-    std::uint32_t priority_;
+    static constexpr std::uint32_t kUsualPriority = 2;  ///< V4L2_PRIORITY_INTERACTIVE
+    std::map<int, std::uint32_t> priorities_;           // by open file
 
     int owner_ = -1;  // open file that has the buffers
     bool reading_ = false;

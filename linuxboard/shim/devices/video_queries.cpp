@@ -98,6 +98,20 @@ int VideoDevice::refuse(std::uint32_t request) {
     return ENOTTY;
 }
 
+std::uint32_t VideoDevice::highest_priority() const {
+    std::uint32_t highest = V4L2_PRIORITY_UNSET;
+    for (const auto& [handle, priority] : priorities_)
+        highest = std::max(highest, priority);
+    return highest;
+}
+
+int VideoDevice::set_priority(int handle, const std::string& data) {
+    const auto priority = get_struct<std::uint32_t>(data);
+    if (priority < V4L2_PRIORITY_BACKGROUND || priority > V4L2_PRIORITY_RECORD) return EINVAL;
+    priorities_[handle] = priority;
+    return 0;
+}
+
 std::optional<int> VideoDevice::query(int handle, std::uint32_t request, std::string& data) {
     switch (request) {
     case VIDIOC_QUERYCAP:
@@ -126,12 +140,10 @@ std::optional<int> VideoDevice::query(int handle, std::uint32_t request, std::st
     case VIDIOC_S_INPUT:
         return get_struct<int>(data) == 0 ? 0 : EINVAL;
     case VIDIOC_G_PRIORITY:
-        put_struct(data, priority_);
+        put_struct(data, highest_priority());
         return 0;
     case VIDIOC_S_PRIORITY:
-        if (get_struct<std::uint32_t>(data) > V4L2_PRIORITY_RECORD) return EINVAL;
-        priority_ = get_struct<std::uint32_t>(data);
-        return 0;
+        return set_priority(handle, data);
     case VIDIOC_CROPCAP:
     case VIDIOC_G_CROP:
     case VIDIOC_S_CROP:
@@ -268,8 +280,11 @@ int VideoDevice::selection(std::string& data, bool set) const {
     default:
         return EINVAL;
     }
-    wanted.r = whole_sensor();
-    put_struct(data, wanted);
+    v4l2_selection found{};
+    found.type = wanted.type;
+    found.target = wanted.target;
+    found.r = whole_sensor();
+    put_struct(data, found);
     return 0;
 }
 

@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <linux/videodev2.h>
 #include <poll.h>
+#include <pthread.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -199,6 +200,13 @@ static void conform(void) {
     say("of another kind", ioctl(fd, 0x5401, &input));
 }
 
+static void* wait_for_frame(void* nothing) {
+    struct v4l2_buffer b = buffer_of(0);
+    int result = ioctl(fd, VIDIOC_DQBUF, &b);
+    printf("waited %s until %.3f\n", outcome(result), now());
+    return nothing;
+}
+
 int main(int argc, char** argv) {
     const char* mode = argc > 1 ? argv[1] : "conform";
     int count = argc > 2 ? atoi(argv[2]) : 5;
@@ -300,6 +308,26 @@ int main(int argc, char** argv) {
         waitpid(child, &status, 0);
         printf("child %d\n", WEXITSTATUS(status));
         take(1);
+    } else if (strcmp(mode, "threads") == 0) { /* one waits for a frame, the other one ends the stream */
+        begin(160, 120, V4L2_PIX_FMT_GREY, 1);
+        take(0);
+        pthread_t other;
+        pthread_create(&other, NULL, wait_for_frame, NULL);
+        double started = now();
+        usleep(200000);
+        say("off", stream(0));
+        pthread_join(other, NULL);
+        printf("joined after %.3f\n", now() - started);
+        /* Who has the highest priority changes the device; nobody else. */
+        int second = open(kDevice, O_RDWR | O_NONBLOCK);
+        unsigned priority = V4L2_PRIORITY_RECORD;
+        say("record", ioctl(fd, VIDIOC_S_PRIORITY, &priority));
+        struct v4l2_control gain = {V4L2_CID_GAIN, 30};
+        say("gain elsewhere", ioctl(second, VIDIOC_S_CTRL, &gain));
+        say("gain here", ioctl(fd, VIDIOC_S_CTRL, &gain));
+        close(fd);
+        fd = second;
+        say("gain now", ioctl(second, VIDIOC_S_CTRL, &gain));
     } else if (strcmp(mode, "stuck") == 0) { /* waits for a frame that never comes */
         begin(160, 120, V4L2_PIX_FMT_GREY, 1);
         take(0);
