@@ -1,5 +1,6 @@
 #include "linuxboard/coordinator/tam.h"
 
+#include <cstdlib>
 #include <fmt/format.h>
 
 namespace puckloop::coordinator {
@@ -10,6 +11,7 @@ namespace {
 constexpr std::uint8_t kReport = 0x00;
 constexpr std::uint8_t kSetLeds = 0x0A, kWriteRobot = 0x0C, kShutDown = 0x0D;
 constexpr std::size_t kReportSize = 8;
+constexpr int kBatteryStep = 33;  // mV: one count of the TAM's converter, which is its noise
 
 std::string hex(std::uint8_t byte) {
     return fmt::format("{:02x}", byte);
@@ -40,8 +42,10 @@ void Tam::take_report(const Report& report, double now) {
     if (!before || before->leds != report.leds) note("leds", to_text(report.leds));
     if (!before || before->robot != report.robot) note("robot", report.robot ? "in" : "out");
     if (!before || before->robot_byte != report.robot_byte) note("heard", hex(report.robot_byte));
-    if (!before || before->battery_mv != report.battery_mv)
+    if (std::abs(report.battery_mv - battery_noted_) > kBatteryStep) {
+        battery_noted_ = report.battery_mv;
         note("battery", std::to_string(report.battery_mv), "mV");
+    }
     // A TAM that lost a colour it had was restarted, and has forgotten the byte too.
     const bool asked = set_leds_.outstanding && report.leds == color_sent_;
     if (before && before->leds != report.leds && report.leds == kOff && !asked) written_.reset();

@@ -90,6 +90,7 @@ class Tam {
     Note note_;
     std::optional<Report> report_;
     double heard_ = 0;
+    int battery_noted_ = 0;  ///< mV
     bool lost_ = false;
     std::optional<Color> color_;
     std::optional<std::uint8_t> byte_, written_;
