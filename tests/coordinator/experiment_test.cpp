@@ -6,11 +6,13 @@
 #include "linuxboard/coordinator/experiments/experiments.h"
 #include "linuxboard/coordinator/gantt.h"
 #include "tests/coordinator/virtual_line.h"
+#include "tests/coordinator/visits.h"
 #include "tests/scratch.h"
 
 #include <catch2/catch.hpp>
 
 #include <fmt/format.h>
+#include <fstream>
 #include <map>
 #include <set>
 
@@ -41,7 +43,7 @@ Outcome perform(const std::string& name, const std::vector<const char*>& options
     SimulatedMesh mesh(mesh_settings);
     prepare(mesh);
     VirtualLine line(mesh);
-    const ExperimentKind* kind = find_experiment(name);
+    const ExperimentKind* kind = name == "visits" ? &kVisitsKind : find_experiment(name);
     REQUIRE(kind != nullptr);
     Parameters parameters;
     parameters.read_options(options);
@@ -326,4 +328,26 @@ TEST_CASE("random bytes and damaged frames never stop the coordinator") {
         CHECK(outcome.bad_frames == 0);
         CHECK_FALSE(outcome.of("TAM01", "state").empty());
     }
+}
+
+TEST_CASE("the experiment of the documentation works, and is the one that is documented") {
+    const Outcome outcome = perform("visits", {"--visits", "3"}, {}, 0, [](SimulatedMesh& mesh) {
+        SimulatedTam& tam = mesh.add("TAM09", kFirst);
+        for (double t = 5; t < 60; t += 10) {
+            mesh.plan(t, [&, t] { mesh.set_robot(tam, true, t); });
+            mesh.plan(t + 4, [&, t] { mesh.set_robot(tam, false, t + 4); });
+        }
+    });
+    CHECK(outcome.of("TAM09", "visit").size() == 3);
+    CHECK(outcome.tams.at("TAM09").written == 0x42);
+    CHECK(outcome.end < 30);
+    const auto text_of = [](const std::string& file, const std::string& begin, const std::string& end) {
+        std::ifstream in(std::string(PUCKLOOP_SOURCE) + file);
+        const std::string text(std::istreambuf_iterator<char>(in), {});
+        const std::size_t first = text.find(begin) + begin.size();
+        return text.substr(first, text.find(end, first) - first);
+    };
+    const std::string example = text_of("/tests/coordinator/visits.h", "// begin\n", "// end\n");
+    CHECK(example.size() > 1000);
+    CHECK(text_of("/docs/coordinator.md", "```cpp\n", "```") == example);
 }
