@@ -63,6 +63,7 @@ void read_avr_elf(std::string_view bytes, AvrImage& image, const AvrPart& part, 
             throw InputError(image.file, place, "holds bytes where no memory can be programmed");
     }
     elf.read_symbols(image.symbols, &symbol_of);
+    image.lines = read_lines(elf);
 }
 
 void check_fits(const std::vector<ByteSegment>& segments, std::uint32_t size, std::string_view what,

@@ -6,6 +6,7 @@
 
 #include "emu/image/byte_segments.h"
 #include "emu/image/image.h"
+#include "emu/image/line_table.h"
 
 #include <cstdint>
 #include <map>
@@ -27,6 +28,7 @@ struct AvrImage {
     std::vector<std::uint8_t> fuses;  ///< low, high, extended; empty: not given
     std::optional<std::uint8_t> lock_bits;
     std::map<std::string, Symbol> symbols;  ///< Program: byte addresses of flash; Data: of the data space
+    LineTable lines;                        ///< by byte address of flash; empty without debug information
 
     /// Byte address of a function or label.
     std::optional<std::uint32_t> find_code(std::string_view name) const;

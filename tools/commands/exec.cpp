@@ -58,7 +58,7 @@ void describe(Command& app, Arguments& a) {
                                "atmega1284p (its USART0 and 1 are uart1 and 2)");
     auto* board =
         app.add_option("--board", o.bench.board,
-                       "the chip on its board: pic (the e-puck main board) or rab (range and bearing)");
+                       "the chip on its board: pic (the e-puck main board), rab (range and bearing) or tam");
     mcu->excludes(board);
     app.add_option("IMAGE", o.image, "firmware: Intel HEX, ELF (XC16, avr-gcc) or COFF (C30)");
     auto* seconds =
@@ -68,7 +68,8 @@ void describe(Command& app, Arguments& a) {
         ->check(count_up_to(kMostCycles))
         ->excludes(seconds);
     app.add_option("--stop-at", o.stop_at,
-                   "symbol or 0xPC; status 0 when reached, 1 when the budget ends first")
+                   "symbol, 0xPC or FILE:LINE (ELF of avr-gcc -g); status 0 when reached, 1 when the budget "
+                   "ends first")
         ->allow_extra_args(false);
     app.add_option("--uart1", o.uart[0], "- (stdin and stdout), pty, tcp:PORT (on 127.0.0.1) or script:FILE");
     app.add_option("--uart2", o.uart[1], "the same for the second UART");

@@ -91,6 +91,7 @@ std::string json_report(Bench& bench, const image::Image& image, const ExecOutco
     if (!outcome.failure.empty()) json["failure"] = outcome.failure;
     json["pc"] = at(outcome.pc);
     if (!outcome.symbol.empty()) json["symbol"] = outcome.symbol;
+    if (!outcome.line.empty()) json["line"] = outcome.line;
     json["image"] = {
         {"file", image.file}, {"format", image::name_of(image.format)}, {"sha256", image.sha256}};
     json.update(Json::parse(bench.target().chip_json()));
@@ -114,8 +115,9 @@ std::string json_report(Bench& bench, const image::Image& image, const ExecOutco
 std::string text_report(Bench& bench, const ExecOutcome& outcome) {
     const double simulated = seconds_of(bench.now());
     std::string text =
-        fmt::format("stopped: {} at pc {}{}\n", outcome.stopped, at(outcome.pc),
-                    outcome.symbol.empty() ? std::string() : fmt::format(" ({})", outcome.symbol));
+        fmt::format("stopped: {} at pc {}{}{}\n", outcome.stopped, at(outcome.pc),
+                    outcome.symbol.empty() ? std::string() : fmt::format(" ({})", outcome.symbol),
+                    outcome.line.empty() ? std::string() : fmt::format(" {}", outcome.line));
     text += fmt::format("time: {:.6f} s simulated in {:.3f} s ({:.1f} x real time)\n", simulated,
                         outcome.wall_s, outcome.wall_s > 0 ? simulated / outcome.wall_s : 0.0);
     if (bench.fallen_behind() > 0)

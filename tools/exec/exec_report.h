@@ -14,6 +14,7 @@ struct ExecOutcome {
     std::string stopped;   ///< what the user called the address, "budget" or "interrupted"
     std::uint32_t pc = 0;  ///< program counter at the end
     std::string symbol;    ///< of `pc`, if the image has one
+    std::string line{};    ///< "main.c:12", if the image has source lines
     double wall_s = 0.0;
     bool success = false;
     std::string failure{};  ///< why not, where the rest of the report does not say it

@@ -42,7 +42,9 @@ struct StopAddress {
 /// Runs the bench; returns the exit status (0 or 1). Throws InputError for anything that cannot be used.
 int run_exec(const ExecOptions& options);
 
-/// `text` is 0xPC (even, a program address) or a symbol of the image; throws InputError with a suggestion.
-StopAddress resolve_stop(const std::string& text, const image::Image& image);
+/// `text` is 0xPC (even, a program address), a symbol of the image, or FILE:LINE where the image has source
+/// lines (then perhaps several addresses); throws InputError with a suggestion.
+std::vector<StopAddress> resolve_stop(const std::string& text, const image::Image& image,
+                                      const Target& target);
 
 }  // namespace puckloop::exec

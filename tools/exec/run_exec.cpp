@@ -84,6 +84,9 @@ BenchOptions bench_options(const ExecOptions& options) {
     if (bench.board == "rab")
         throw InputError("", "--i2c-device", "the rab board is a slave of its bus, not its master",
                          "a board that is an I2C master, or --i2c script:FILE");
+    if (bench.mcu.starts_with("atmega") || bench.board == "tam")
+        throw InputError("", "--i2c-device", "devices cannot be put on the two-wire bus of an AVR",
+                         "a dsPIC that is an I2C master");
     if (!options.i2c.empty())
         throw InputError("", "--i2c-device", "an --i2c script speaks to the target on the same bus",
                          "one of the two");
@@ -136,8 +139,10 @@ int run_exec(const ExecOptions& options) {
         bench.target().read_image(options.image, defaults_of(options.bench.mcu, options.bench.board).mcu);
     std::vector<StopAddress> stops;
     for (const std::string& text : options.stop_at) {
-        stops.push_back(resolve_stop(text, image));
-        bench.target().stop_at(stops.back().pc);
+        for (const StopAddress& stop : resolve_stop(text, image, bench.target())) {
+            stops.push_back(stop);
+            bench.target().stop_at(stop.pc);
+        }
     }
     if (!options.stimulus.empty())
         bench.stimulate(
@@ -199,6 +204,7 @@ int run_exec(const ExecOptions& options) {
     outcome.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     outcome.pc = bench.target().pc();
     outcome.symbol = symbol_at(image, outcome.pc);
+    outcome.line = bench.target().source_line(outcome.pc);
     outcome.stopped = outcome.end == Bench::End::Interrupted ? "interrupted" : "budget";
     if (outcome.end == Bench::End::Address)
         for (const StopAddress& stop : stops)

@@ -13,7 +13,31 @@ namespace {
 constexpr std::uint32_t kHighestProgramAddress = 0x7FFFFE;
 }
 
-StopAddress resolve_stop(const std::string& text, const image::Image& image) {
+namespace {
+
+std::vector<StopAddress> resolve_line(const std::string& text, std::size_t colon, const image::Image& image,
+                                      const Target& target) {
+    std::uint32_t line = 0;
+    const char* const last = text.data() + text.size();
+    const auto [end, error] = std::from_chars(text.data() + colon + 1, last, line);
+    if (error != std::errc{} || end != last || colon == 0)
+        throw InputError("", "--stop-at", fmt::format("'{}' is not a source line", text),
+                         "FILE:LINE, such as main.c:12");
+    std::vector<StopAddress> stops;
+    for (const std::uint32_t pc : target.addresses_of(text.substr(0, colon), line))
+        stops.push_back({pc, text});
+    if (stops.empty())
+        throw InputError(image.file, "--stop-at", fmt::format("no code of line {}", text),
+                         "a line with code, and an ELF of avr-gcc -g");
+    return stops;
+}
+
+}  // namespace
+
+std::vector<StopAddress> resolve_stop(const std::string& text, const image::Image& image,
+                                      const Target& target) {
+    if (const std::size_t colon = text.rfind(':'); colon != std::string::npos)
+        return resolve_line(text, colon, image, target);
     if (text.starts_with("0x") || text.starts_with("0X")) {
         std::uint32_t pc = 0;
         const char* const last = text.data() + text.size();
@@ -22,9 +46,9 @@ StopAddress resolve_stop(const std::string& text, const image::Image& image) {
             pc % 2 != 0)
             throw InputError("", "--stop-at", fmt::format("'{}' is not a program address", text),
                              "an even one, such as 0x1f48");
-        return {pc, text};
+        return {{pc, text}};
     }
-    if (const auto pc = image.find_code(text)) return {*pc, text};
+    if (const auto pc = image.find_code(text)) return {{*pc, text}};
     if (image.symbols.empty())
         throw InputError(image.file, "--stop-at",
                          fmt::format("the image has no symbols, so '{}' is unknown", text),

@@ -27,6 +27,11 @@ image::Image AvrTarget::read_image(const std::string& file, std::string_view) {
     return image;
 }
 
+std::string AvrTarget::place(std::uint32_t pc) const {
+    const std::string line = source_line(pc);
+    return line.empty() ? hexadecimal(pc) : fmt::format("{} ({})", hexadecimal(pc), line);
+}
+
 double AvrTarget::seconds(avr::Cycle cycle) {
     return static_cast<double>(avr().clock().time_of(cycle)) / static_cast<double>(cosim::kSecond);
 }
@@ -84,9 +89,9 @@ std::vector<std::string> AvrTarget::warnings() {
     for (const avr::UnmodelledTouch& touch : report.unmodelled)
         lines.push_back(
             fmt::format("{} {}, which no model is behind, at pc {}", touch.write ? "writes" : "reads",
-                        touch.name.empty() ? hexadecimal(touch.address) : touch.name, hexadecimal(touch.pc)));
+                        touch.name.empty() ? hexadecimal(touch.address) : touch.name, place(touch.pc)));
     for (const avr::ChipWarning& warning : report.warnings)
-        lines.push_back(fmt::format("{}, at pc {}", warning.text, hexadecimal(warning.pc)));
+        lines.push_back(fmt::format("{}, at pc {}", warning.text, place(warning.pc)));
     return lines;
 }
 

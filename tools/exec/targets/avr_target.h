@@ -35,6 +35,10 @@ class AvrTarget : public Target {
     std::string chip_text() override;
     std::vector<std::string> warnings() override;
     std::optional<std::string> hang() override { return avr().hang(); }
+    std::string source_line(std::uint32_t pc) const override { return firmware_.lines.at(pc); }
+    std::vector<std::uint32_t> addresses_of(std::string_view file, std::uint32_t line) const override {
+        return firmware_.lines.addresses(file, line);
+    }
     void reset_button() override { avr().external_reset(); }
     bool keeps_memory() const override { return false; }
 
@@ -50,6 +54,8 @@ class AvrTarget : public Target {
     static constexpr int kPorts = 4;
 
   private:
+    /// "0x0128 (main.c:12)".
+    std::string place(std::uint32_t pc) const;
     double seconds(avr::Cycle cycle);
 
     const avr::DeviceInfo& device_;

@@ -1,0 +1,37 @@
+#pragma once
+// Which source line a program address belongs to, as a compiler noted it in an ELF file.
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace puckloop::image {
+
+class LineTable {
+  public:
+    /// From `address` on the code is of this line; line 0: of none.
+    void add(std::uint32_t address, std::string_view file, std::uint32_t line);
+
+    bool empty() const { return rows_.empty(); }
+    /// "main.c:12", the file without its folder; empty if nothing is known.
+    std::string at(std::uint32_t address) const;
+    /// Lowest address of each stretch of code of this line, rising; `file` with or without its folder.
+    std::vector<std::uint32_t> addresses(std::string_view file, std::uint32_t line) const;
+
+  private:
+    struct Row {
+        std::uint16_t file = 0;
+        std::uint32_t line = 0;
+    };
+    std::map<std::uint32_t, Row> rows_;
+    std::vector<std::string> files_;
+};
+
+class ElfFile;
+/// What the sections .stab (gcc's default for the AVR) and .debug_line (DWARF 2 to 4) hold. Debug information
+/// is of no use to the chip: where it is damaged reading ends, and what was read so far stays.
+LineTable read_lines(const ElfFile& elf);
+
+}  // namespace puckloop::image
