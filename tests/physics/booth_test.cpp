@@ -3,14 +3,19 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "physics/booth.h"
+#include "physics/booth_record.h"
 #include "physics/world_node.h"
 #include "tests/physics/worlds.h"
+#include "tests/scratch.h"
 
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <numbers>
 #include <optional>
+#include <sstream>
 
 using namespace puckloop;
 using namespace puckloop::physics;
@@ -204,4 +209,45 @@ TEST_CASE("lights are where the booth has them, and go out") {
     model.dark();
     for (const ColouredLight& light : lights)
         CHECK_FALSE(light.lit());
+}
+
+TEST_CASE("tams.csv is read back, and damage is named or passed over") {
+    const auto file = puckloop::tests::scratch_path("puckloop-tams.csv");
+    WorldModel model(booth_world(0.36));
+    {
+        BoothRecord record(file.string(), model);
+        for (int i = 0; i < 30; ++i) {
+            model.booth(0).shine(static_cast<std::size_t>(i % 4), static_cast<std::size_t>(i % 3), i / 30.0);
+            model.step();
+            record.after_step(model);
+        }
+    }
+    std::ostringstream whole;
+    whole << std::ifstream(file).rdbuf();
+    const auto good = read_booth_colours(file);
+    REQUIRE(good.size() == 1);
+    CHECK(good[0].colours.size() == 30);  // the first step shone no brighter
+    RandomStream random(2, "tams.csv");
+    int named = 0;
+    for (int i = 0; i < 400; ++i) {
+        std::string text = whole.str();
+        for (std::uint64_t n = 1 + random.below(3); n > 0; --n) {
+            const std::size_t at = random.below(text.size());
+            if (random.below(3) == 0)
+                text.erase(at, 1 + random.below(200));
+            else
+                text[at] = static_cast<char>(random.below(256));
+        }
+        std::ofstream(file, std::ios::binary) << text;
+        try {
+            for (const BoothColours& one : read_booth_colours(file))
+                CHECK(one.colours.size() <= 60);
+        } catch (const RunError& error) {
+            ++named;
+            CHECK_THAT(error.what(), Catch::Contains("line "));
+        }
+    }
+    CHECK(named > 50);
+    std::filesystem::remove(file);
+    CHECK_THROWS_WITH(read_booth_colours(file), Catch::Contains("puckloop-tams.csv"));
 }
