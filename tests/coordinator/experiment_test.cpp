@@ -286,6 +286,23 @@ TEST_CASE("a TAM that dies is given up, one that comes back under another addres
     CHECK(outcome.of("TAM05", "leds").size() >= 2);
 }
 
+TEST_CASE("a mesh that answers late costs time-outs, and nothing else") {
+    SimulatedMesh::Settings slow;
+    slow.latency = 0.9;  // up to 3.6 s there, and as much back
+    RandomStream robots(17, "robots");
+    const Outcome outcome = perform("random-task", {"--durations", "2,3", "--dead-time", "1"}, slow, 200,
+                                    [&](SimulatedMesh& mesh) {
+                                        haunt(mesh, mesh.add("TAM01", kFirst), robots, 190, 15);
+                                        haunt(mesh, mesh.add("TAM02", kFirst + 1), robots, 190, 15);
+                                    });
+    CHECK_FALSE(outcome.of("TAM01", "timeout").empty());
+    for (const char* tam : {"TAM01", "TAM02"}) {
+        CHECK(outcome.of(tam, "task").size() > 2);
+        CHECK(outcome.of(tam, "lost").empty());
+        CHECK(outcome.tams.at(tam).red + outcome.tams.at(tam).green + outcome.tams.at(tam).blue == 0);
+    }
+}
+
 TEST_CASE("a module in API mode 1 is set to 2; odd modules are refused with the step") {
     SimulatedMesh::Settings settings;
     settings.api_mode = 1;
