@@ -42,6 +42,7 @@ Network::Network(const std::vector<std::unique_ptr<NodeHandle>>& nodes, const st
         throw InputError("", "", "too many links", "at most 65535");
     for (std::size_t l = 0; l < links.size(); ++l)
         attach(links[l], static_cast<std::uint16_t>(l));
+    has_unsettled_.assign(wires_.size(), false);
     ways_back_.resize(nodes.size());
     into_.resize(nodes.size());
     for (std::size_t w = 0; w < wires_.size(); ++w)

@@ -114,8 +114,9 @@ class Network {
     const std::vector<std::unique_ptr<NodeHandle>>& nodes_;
     const std::vector<LinkSpec>& links_;
     std::vector<Wire> wires_;
-    std::vector<Channel> channels_;  ///< one a wire, same index
-    std::uint64_t lookaheads_ = 1;   ///< how often one changed
+    std::vector<Channel> channels_;    ///< one a wire, same index
+    std::vector<bool> has_unsettled_;  ///< whether something foreseen on a wire is not final
+    std::uint64_t lookaheads_ = 1;     ///< how often one changed
     std::vector<WaysBack> ways_back_;
     std::vector<std::vector<std::size_t>> port_wire_;  ///< node, port -> wire or kNobody
     std::vector<std::unique_ptr<LinkFault>> faults_;

@@ -96,6 +96,7 @@ void Network::take_wire(std::size_t w, Sent& sent, Time ahead, Time first_in,
 void Network::update_channel(std::size_t w) {
     const Wire& wire = wires_[w];
     Channel& channel = channels_[w];
+    has_unsettled_[w] = wire.settled < wire.foreseen.size();
     channel.base = wire.base;
     channel.foreseen.clear();
     for (std::size_t i = wire.settled; i < wire.foreseen.size(); ++i) {
@@ -111,6 +112,7 @@ void Network::update_channel(std::size_t w) {
 void Network::settle(const Bounds& bounds, std::vector<TraceRecord>& deliveries,
                      std::vector<Change>& changes) {
     for (std::size_t w = 0; w < wires_.size(); ++w) {
+        if (!has_unsettled_[w]) continue;
         Wire& wire = wires_[w];
         const std::size_t before = wire.settled;
         while (wire.settled < wire.foreseen.size() &&

@@ -34,7 +34,8 @@ Advanced RunAhead::advance(const Reach& reach, std::span<const Message> inbox,
     Time wrong = first_difference(inbox);
     if (reach.ahead <= until) wrong = std::min(wrong, until);
     std::vector<Message> again, sent_before;
-    if (wrong < ahead_) {
+    const bool back = wrong < ahead_;
+    if (back) {
         sent_before = sent_;
         // From the mark, with what was final already and what is known now.
         again = used_before_reached();
@@ -44,7 +45,9 @@ Advanced RunAhead::advance(const Reach& reach, std::span<const Message> inbox,
     } else {
         take_before(ahead_, inbox);
     }
-    if (ahead_ <= until) {
+    if (back && ahead_ == until && reach.ahead > until) {
+        forget_lookaheads();  // nothing more is sure: the mark stays good
+    } else if (ahead_ <= until) {
         if (ahead_ < until) execute(until, inbox);
         if (marked_) node_->rewindable()->settle();
         marked_ = false;
@@ -128,8 +131,7 @@ void RunAhead::run_on(Time until, std::span<const Message>& inbox) {
         node_->rewindable()->mark();
         marked_ = true;
         mark_ = ahead_;
-        lookaheads_.assign(node_->ports().size(), kNever);
-        sample_lookaheads();
+        forget_lookaheads();
     }
     try {
         while (ahead_ < until) {
@@ -179,6 +181,11 @@ void RunAhead::note_earliest_outputs() {
     for (std::size_t p = 0; p < earliest_outputs_.size(); ++p)
         earliest_outputs_[p] =
             lookaheads_[p] > 0 ? node_->earliest_output(static_cast<PortIndex>(p)) : kNever;
+}
+
+void RunAhead::forget_lookaheads() {
+    lookaheads_.assign(node_->ports().size(), kNever);
+    sample_lookaheads();
 }
 
 void RunAhead::sample_lookaheads() {

@@ -55,6 +55,7 @@ class RunAhead {
     bool answers_late() const;
     void note_earliest_outputs();
     void sample_lookaheads();
+    void forget_lookaheads();
 
     std::unique_ptr<Node> node_;
     Time reached_ = 0;
