@@ -48,13 +48,6 @@ struct MeshFrame {
 
     bool broadcast() const { return target == kXBeeBroadcast || kind == MeshKind::RouteRequest; }
     bool operator==(const MeshFrame&) const = default;
-
-    template <class Archive>
-    void state(Archive& archive) {
-        archive(pan, hop_to, hop_from, mac_sequence, asks_ack);
-        archive.bounded(kind, MeshKind::Data, MeshKind::RemoteAtAnswer);
-        archive(options, radius, hops, sequence, origin, target, data);
-    }
 };
 
 enum class MeshFault : std::uint8_t {

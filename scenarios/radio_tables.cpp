@@ -1,9 +1,12 @@
 #include "scenarios/radio_tables.h"
 
+#include "emu/xbee/at_table.h"
+
 #include "scenarios/linux_keys.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 
 namespace puckloop::scenarios {
@@ -29,25 +32,31 @@ std::uint64_t read_address(Reader& reader, std::uint64_t fallback) {
     return address;
 }
 
-/// Any AT parameters by name: parameters = { RR = 3, MT = 0 }; the module checks them.
+/// Any AT parameters by name: parameters = { RR = 3, MT = 0 }.
 void read_parameters(Reader& reader, XBeeModule& module) {
     const TomlValue* table = reader.table("parameters");
     if (table == nullptr) return;
     Reader parameters(reader.file(), "parameters", *table);
     for (const auto& [command, value] : parameters.everything()) {
         (void)value;
-        const std::int64_t number = parameters.integer(command, 0, 0, 0xFFFFFFFF);
-        module.parameters[command] = static_cast<std::uint32_t>(number);
+        const auto place = xbee::find_parameter(command);
+        if (!place || xbee::at_table()[*place].read_only)
+            parameters.fail(command, fmt::format("the module has no AT parameter '{}' to set", command),
+                            "RR, MT, CA, PL, NT, ...");
+        const xbee::AtParameter& parameter = xbee::at_table()[*place];
+        module.parameters[command] = static_cast<std::uint32_t>(
+            parameters.integer(command, parameter.factory, parameter.least, parameter.most));
     }
 }
 
 void read_module(Reader& reader, XBeeModule& module) {
     module.address = read_address(reader, module.address);
     module.node_id = reader.text("node_id", module.node_id);
-    constexpr std::size_t kMostCharacters = 20;
-    if (module.node_id.empty() || module.node_id.size() > kMostCharacters)
+    const bool printable = std::all_of(module.node_id.begin(), module.node_id.end(),
+                                       [](char c) { return c >= ' ' && c <= '~'; });
+    if (module.node_id.empty() || module.node_id.size() > xbee::kMostNodeIdentifier || !printable)
         reader.fail("node_id", fmt::format("'{}' is no node identifier", module.node_id),
-                    "1 to 20 characters");
+                    "1 to 20 printable characters");
     module.parameters["CH"] = static_cast<std::uint32_t>(reader.integer("channel", 12, 11, 26));
     module.boot = reader.quantity("boot", Dimension::Time, module.boot);
     if (!(module.boot >= 0 && module.boot <= 10)) reader.fail("boot", "boot is out of range", "0 s to 10 s");

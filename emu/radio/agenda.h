@@ -28,11 +28,6 @@ struct Event {
     EventKind kind = EventKind::Access;
     std::size_t station = 0;
     std::uint64_t token = 0;  ///< which transmission, job, packet
-
-    template <class Archive>
-    void state(Archive& archive) {
-        archive(at, kind, station, token);
-    }
 };
 
 class Agenda {
@@ -46,11 +41,6 @@ class Agenda {
         return event;
     }
     const std::map<std::pair<cosim::Time, std::uint64_t>, Event>& events() const { return events_; }
-
-    template <class Archive>
-    void state(Archive& archive) {
-        archive(events_, next_);
-    }
 
   private:
     std::map<std::pair<cosim::Time, std::uint64_t>, Event> events_;

@@ -23,12 +23,6 @@ struct RadioSettings {
     std::uint8_t delay_slots = 3;      ///< NN
     std::uint8_t network_retries = 1;  ///< MR
     bool operator==(const RadioSettings&) const = default;
-
-    template <class Archive>
-    void state(Archive& archive) {
-        archive(on, channel, pan, address, dbm, cca, mac_retries, repeats, network_hops, delay_slots,
-                network_retries);
-    }
 };
 
 /// What became of a frame that the module gave to the medium.

@@ -46,12 +46,6 @@ struct MacCounts {
     std::uint64_t noise = 0;          ///< not read because of noise or other users of the band
     std::uint64_t while_sending = 0;  ///< not read because the station was sending
     std::uint64_t dropped = 0;        ///< forgotten when the module was reset or switched off
-
-    template <class Archive>
-    void state(Archive& archive) {
-        archive(frames, acks, retries, failures, channel_busy, received, duplicates, collisions, noise,
-                while_sending, dropped);
-    }
 };
 
 /// What a received frame came with.
@@ -88,21 +82,11 @@ class Mac {
     static cosim::Time earliest_end(const Event& event);
     const MacCounts& counts(std::size_t station) const { return stations_[station].counts; }
 
-    template <class Archive>
-    void state(Archive& archive) {
-        archive.fixed(stations_);
-        archive(flying_, next_id_);
-    }
-
   private:
     struct Job {
         protocols::MeshFrame frame;
         std::uint64_t token = 0;
         int attempts = 0;
-        template <class Archive>
-        void state(Archive& archive) {
-            archive(frame, token, attempts);
-        }
     };
     struct Station {
         RadioSettings settings;
@@ -115,20 +99,12 @@ class Mac {
         RandomStream backoff, noise;
         Station(RandomStream backoff_stream, RandomStream noise_stream)
             : backoff(backoff_stream), noise(noise_stream) {}
-        template <class Archive>
-        void state(Archive& archive) {
-            archive(settings, queue, turn, backoffs, exponent, sequence, last_heard, counts, backoff, noise);
-        }
     };
     /// A frame on air, to its end.
     struct Flying {
         Transmission transmission;
         protocols::MeshFrame frame;
         std::uint64_t turn = 0;
-        template <class Archive>
-        void state(Archive& archive) {
-            archive(transmission, frame, turn);
-        }
     };
 
     void attempt(std::size_t station, cosim::Time now);

@@ -43,11 +43,6 @@ struct Transmission {
     double dbm = 0.0;
     cosim::Time start = 0, end = 0;
     std::uint64_t answers = 0;  ///< an acknowledgement: id of the frame that it is for, else 0
-
-    template <class Archive>
-    void state(Archive& archive) {
-        archive(id, station, channel, dbm, start, end, answers);
-    }
 };
 
 /// What keeps a frame from a receiver.
@@ -75,11 +70,6 @@ class Medium {
     /// End of the station's own transmission that overlaps [start, end), or 0.
     cosim::Time own_until(std::size_t station, cosim::Time start, cosim::Time end) const;
     const Propagation& propagation() const { return propagation_; }
-
-    template <class Archive>
-    void state(Archive& archive) {
-        archive(on_air_);
-    }
 
   private:
     Propagation propagation_;

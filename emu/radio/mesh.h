@@ -34,12 +34,6 @@ struct MeshCounts {
     std::uint64_t no_way_on = 0;    ///< frames of others that could not be handed on
     std::uint64_t duplicates = 0;   ///< frames that had come by another way
     std::uint64_t bad_frames = 0;   ///< from the module: FCS, format
-
-    template <class Archive>
-    void state(Archive& archive) {
-        archive(unicasts, broadcasts, delivered, undelivered, retries, discoveries, relayed, no_way_on,
-                duplicates, bad_frames);
-    }
 };
 
 /// The modules' side of the network layer.
@@ -73,22 +67,10 @@ class Mesh : private MacUser {
     static constexpr std::size_t kHopClasses = 8;
     const std::array<std::uint64_t, kHopClasses>& hops() const { return hops_; }
 
-    template <class Archive>
-    void state(Archive& archive) {
-        archive(agenda_, mac_);
-        archive.fixed(stations_);
-        archive(packets_, jobs_, next_token_);
-        archive(hops_);
-    }
-
   private:
     struct Route {
         std::uint64_t next = 0;  ///< address of the next hop
         std::uint8_t hops = 0;
-        template <class Archive>
-        void state(Archive& archive) {
-            archive(next, hops);
-        }
     };
     struct Station {
         std::map<std::uint64_t, Route> routes;
@@ -98,10 +80,6 @@ class Mesh : private MacUser {
         RandomStream delays;
         MeshCounts counts;
         explicit Station(RandomStream stream) : delays(stream) {}
-        template <class Archive>
-        void state(Archive& archive) {
-            archive(routes, seen, requests, sequence, delays, counts);
-        }
     };
     /// A module's unicast whose fate is open.
     struct Packet {
@@ -112,10 +90,6 @@ class Mesh : private MacUser {
         bool discovered = false;  ///< a route was looked for
         bool looked_again = false;
         std::uint64_t turn = 0;  ///< waits of earlier turns are void
-        template <class Archive>
-        void state(Archive& archive) {
-            archive(station, frame, attempts, retries, discovered, looked_again, turn);
-        }
     };
     enum class Purpose : std::uint8_t { Packet, Copies, Relay, Own };
     /// What a MAC job, a submission or a repetition is for.
@@ -125,11 +99,6 @@ class Mesh : private MacUser {
         protocols::MeshFrame frame;
         int copies = 0;        ///< still to be sent after this one
         bool reports = false;  ///< a module's own broadcast
-        template <class Archive>
-        void state(Archive& archive) {
-            archive.bounded(purpose, Purpose::Packet, Purpose::Own);
-            archive(packet, frame, copies, reports);
-        }
     };
 
     void received(std::size_t station, const protocols::MeshFrame& frame, const Heard& heard) override;

@@ -83,6 +83,13 @@ TEST_CASE("what the radio's tables cannot be") {
     refused(kHead + kTam + "[tam.xbee]\nnode_id = \"\"\n", "is no node identifier");
     refused(kHead + kTam + "[tam.xbee]\nchannel = 10\n", "channel");
     refused(kHead + kTam + "[tam.xbee]\nadress = \"1\"\n", "unknown key 'adress'");
+    refused(kHead + kTam + "[tam.xbee]\nnode_id = \"\u00e9\"\n", "is no node identifier");
+    refused(kHead + kTam + "[tam.xbee]\nparameters = { RR = 16 }\n",
+            "line 8: parameters: RR is out of range (expected a whole number from 0 to 15)");
+    refused(kHead + kTam + "[tam.xbee]\nparameters = { XX = 1 }\n",
+            "the module has no AT parameter 'XX' to set");
+    refused(kHead + kTam + "[tam.xbee]\nparameters = { NP = 1 }\n",
+            "the module has no AT parameter 'NP' to set");
     refused(kHead + kTam + "[radio]\nloss = 1.5\n", "loss is out of range");
     refused(kHead + kTam + "[radio]\nrange = \"0 m\"\n", "range is out of range");
     refused(kHead + kTam + "[coordinator]\nbaud = 3\n", "baud is out of range");
