@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdlib>
+#include <filesystem>
 #include <fmt/format.h>
 
 namespace puckloop::coordinator {
@@ -20,6 +22,13 @@ std::vector<std::string> split(std::string_view text) {
         if (comma == std::string_view::npos) return parts;
         text.remove_prefix(comma + 1);
     }
+}
+
+/// A file of that name here or, in a run of puckloop, beside the scenario.
+std::string config_path(const std::string& name) {
+    const char* folder = std::getenv("PUCKLOOP_SCENARIO_FOLDER");
+    if (folder == nullptr || std::filesystem::exists(name)) return name;
+    return (std::filesystem::path(folder) / name).string();
 }
 
 /// A number as short as it reads back.
@@ -90,7 +99,7 @@ void Parameters::read_options(std::span<const char* const> words) {
     if (const auto config = set_.find("config"); config != set_.end()) {
         if (config->second.values.size() != 1)
             throw InputError("", "--config", "has no value", "a TOML file");
-        read_file(config->second.values[0]);
+        read_file(config_path(config->second.values[0]));
     }
 }
 

@@ -109,6 +109,18 @@ TEST_CASE("a coordinator's table that cannot be used is refused in one line") {
     refused("programm = [\"x\"]\n", "programm");
 }
 
+TEST_CASE("a coordinator's parameters may come from a file beside the scenario") {
+    const Workbench bench;
+    bench.file("mine.toml", "experiment = \"sequence\"\norder = [\"TAM01\", \"TAM02\"]\nduration = 2.5\n");
+    std::string text = tams("program = [\"puckloop-coordinator\", \"--config\", \"mine.toml\"]\n");
+    text.replace(text.find("17 s"), 4, "30 s");
+    REQUIRE(bench.run("mine", {bench.file("mine_too.toml", text), "--in-process"}).status == 0);
+    const auto events = bench.csv("mine", "coordinator/tam_events.csv");
+    CHECK(events.at(0).at("value") == "sequence");
+    CHECK(when(events, "", "ended", "duration") > 2.5);  // its own end ends the run
+    CHECK(bench.report("mine")["simulated_s"] < 15.0);
+}
+
 TEST_CASE("a coordinator's program that fails ends with its own words") {
     const Workbench bench;
     const auto file = bench.file(

@@ -3,6 +3,7 @@
 #include "emu/tam_avr/signals.h"
 #include "tools/run/plan/linux_nodes.h"
 #include "tools/run/plan/plan_kit.h"
+#include "tools/run/program_path.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -73,6 +74,8 @@ void add_coordinator(RunSetup& setup, json& stations, const RunRequest& request)
         json spec = linux_spec(setup, computer, *place.program, request);
         spec["tty"] = place.tty;
         spec["i2c"] = json::array();
+        // It works in a folder of the results; files of its own lie beside the scenario.
+        spec["env"] = {{"PUCKLOOP_SCENARIO_FOLDER", full_path(setup.scenario.file).parent_path().string()}};
         setup.nodes.push_back({computer, spec.dump()});
         setup.links.push_back({"coordinator.uart", {computer, "uart"}, {node, "uart"}, nominal(kBaud)});
     }
