@@ -12,7 +12,7 @@ namespace puckloop::physics {
 
 namespace {
 
-/// As bright as the screen can show it: LEDs dimmed to a tenth are to be told apart, too.
+/// As bright as the screen can show it: LEDs dimmed to a tenth are to be distinguished, too.
 std::string shown(const BoothColour& colour) {
     const double most = std::max({colour.red, colour.green, colour.blue});
     if (most <= 0.0) return "#d8d4cc";

@@ -12,7 +12,7 @@ namespace {
 using cosim::Time;
 
 constexpr std::size_t kShownOfHash = 16;
-/// Lines of the console that are all told; then milestones.
+/// Lines of the console that are all logged; then milestones.
 constexpr std::uint64_t kAllLines = 100;
 constexpr std::size_t kLongestLine = 120;
 constexpr std::uint64_t kAllColours = 200;
@@ -95,11 +95,11 @@ void TamLog::text(char character, Time now) {
     const bool end = character == '\n' || character == '\r';
     if (!end && character >= ' ' && character <= '~') line_ += character;
     if (line_.empty() || (!end && line_.size() < kLongestLine)) return;
-    const std::uint64_t count = ++told_lines_;
+    const std::uint64_t count = ++line_count_;
     if (count <= kAllLines || is_milestone(count))
         lines_.note(now,
                     fmt::format("console says: {}{}", line_,
-                                count == kAllLines ? " (from here on only powers of two are told)" : ""));
+                                count == kAllLines ? " (from here on only powers of two are logged)" : ""));
     line_.clear();
 }
 
@@ -135,7 +135,7 @@ void TamLog::read_report(Time now, const avr::Chip& chip) {
                                      report.warnings[warnings_].pc));
 }
 
-/// A colour is set LED by LED: it is told when a look finds it changed, all lights in one line.
+/// A colour is set LED by LED: it is logged when a look finds it changed, all lights in one line.
 void TamLog::read_colours(Time now) {
     const auto changed = [&](int led) {
         const auto i = static_cast<std::size_t>(led);

@@ -35,7 +35,7 @@ class TamLog {
 
     template <class Archive>
     void state(Archive& archive) {
-        archive(lines_, resets_, unmodelled_, warnings_, uarts_, line_, told_lines_, blocked_, interruptions_,
+        archive(lines_, resets_, unmodelled_, warnings_, uarts_, line_, line_count_, blocked_, interruptions_,
                 emitter_edges_, network_led_changes_, colour_changes_);
         archive.bounded(switched_off_, 0, cosim::kNever);
         for (double& duty : shown_)
@@ -66,11 +66,11 @@ class TamLog {
     std::size_t resets_ = 0, unmodelled_ = 0, warnings_ = 0;
     std::array<UartSeen, 2> uarts_;
     std::string line_;  // of the console, not yet ended
-    std::uint64_t told_lines_ = 0;
+    std::uint64_t line_count_ = 0;
     std::array<bool, kBarriers> blocked_{};
     std::array<std::uint64_t, kBarriers> interruptions_{};
     std::uint64_t emitter_edges_ = 0, network_led_changes_ = 0, colour_changes_ = 0;
-    std::array<double, kLeds> duty_{}, shown_{};  // now, and as last told
+    std::array<double, kLeds> duty_{}, shown_{};  // now, and as last logged
     cosim::Time switched_off_ = cosim::kNever;
 };
 

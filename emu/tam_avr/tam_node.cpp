@@ -56,7 +56,7 @@ void TamNode::advance(Time until, std::span<const cosim::Message> inbox,
         run_until(message.time);
         receive(message);
     }
-    // A press at `until` itself belongs to the next grant: what this one tells must not depend on the cut.
+    // A press at `until` itself belongs to the next grant: what this one sends must not depend on the cut.
     press_reset(until, false);
     run_until(until);
     granted_ = until;
