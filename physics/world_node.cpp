@@ -1,13 +1,14 @@
 #include "physics/world_node.h"
 
+#include "physics/booth_link.h"
 #include "physics/booth_record.h"
 #include "physics/camera/camera_port.h"
 #include "physics/events/timeline.h"
 #include "physics/pose_signals.h"
 #include "physics/recorder.h"
+#include "physics/robot_links.h"
 #include "physics/world_log.h"
 
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <cmath>
@@ -19,74 +20,8 @@ namespace puckloop::physics {
 namespace {
 
 constexpr cosim::Time kStep = cosim::kMillisecond;
-constexpr std::uint16_t kUnused = 0xFFFF;
 constexpr std::size_t kPortsOfRobot = 2;
-constexpr std::size_t kBoardInputs = 3;
-constexpr double kBeamQuantum = 1e-3;                                       // share of a beam
 constexpr std::array<double, kPoseSignals> kPoseQuantum{1e-5, 1e-5, 1e-4};  // m, m, rad
-
-/// One robot's ends of its two links: signal ids, and what was last published.
-struct RobotLinks {
-    std::array<std::uint16_t, 2> wheel{kUnused, kUnused};
-    std::array<std::uint16_t, kBoardInputs> input{kUnused, kUnused, kUnused};  // by BoardInput
-    struct Output {
-        std::size_t channel = 0;
-        cosim::PortIndex port = 0;
-        std::uint16_t id = 0;
-        double last = std::nan("");       // as published
-        double unrounded = std::nan("");  // what it was made of
-    };
-    std::vector<Output> outputs;
-};
-
-/// One booth's end of its link.
-struct BoothLinks {
-    struct Colour {
-        std::size_t light = 0, colour = 0;  // red, green, blue
-    };
-    cosim::PortIndex port = 0;
-    std::map<std::uint16_t, Colour> leds;  // by signal id
-    std::array<std::uint16_t, booth::kBarriers> barrier{kUnused, kUnused};
-    std::array<double, booth::kBarriers> last{};  // as published; free beams need no word
-};
-
-BoothLinks links_of(const Booth& booth, cosim::PortIndex port) {
-    BoothLinks links;
-    links.port = port;
-    const auto id_of = [&](const std::string& name) {
-        const auto found = booth.signals.find(name);
-        return found == booth.signals.end() ? kUnused : found->second;
-    };
-    links.barrier = {id_of("barrier_front"), id_of("barrier_back")};
-    constexpr std::array<const char*, 3> kColours{"red", "green", "blue"};
-    for (std::size_t light = 0; light < booth::kLights; ++light)
-        for (std::size_t colour = 0; colour < kColours.size(); ++colour)
-            if (const auto id = id_of(fmt::format("led_{}_{}", booth::kLight[light].name, kColours[colour]));
-                id != kUnused)
-                links.leds[id] = {light, colour};
-    return links;
-}
-
-RobotLinks links_of(const Robot& robot, cosim::PortIndex board) {
-    RobotLinks links;
-    const auto id_of = [](const std::map<std::string, std::uint16_t>& ids, std::string_view name) {
-        const auto found = ids.find(std::string(name));
-        return found == ids.end() ? kUnused : found->second;
-    };
-    links.wheel = {id_of(robot.board_signals, "wheel_left"), id_of(robot.board_signals, "wheel_right")};
-    links.input = {id_of(robot.board_signals, "selector"), id_of(robot.board_signals, "reset"),
-                   id_of(robot.board_signals, "remote")};
-    const bool has_voltage = robot.board_signals.contains("battery_v");
-    for (std::size_t channel = 0; channel < kChannelCount; ++channel) {
-        if (channel == kBatteryLowChannel && has_voltage) continue;  // the board derives it
-        const auto name = channel_name(channel);
-        if (const auto id = id_of(robot.board_signals, name); id != kUnused)
-            links.outputs.push_back({channel, board, id, silent_at_zero(channel) ? 0.0 : std::nan("")});
-        if (const auto id = id_of(robot.ground_signals, name); id != kUnused)
-            links.outputs.push_back({channel, static_cast<cosim::PortIndex>(board + 1), id});
-    }
-    return links;
-}
 
 /// What was done, and what never happened.
 void add_events(const Journal& journal, nlohmann::ordered_json& report) {
@@ -111,7 +46,6 @@ struct WorldNode::Impl {
     void step();
     void publish_events(std::vector<cosim::Message>& outbox);
     void publish(std::vector<cosim::Message>& outbox);
-    void publish_barriers(std::vector<cosim::Message>& outbox);
     void publish_poses(std::vector<cosim::Message>& outbox);
     void publish_scene(std::vector<cosim::Message>& outbox);
     void publish_body(std::size_t id, double value, std::vector<cosim::Message>& outbox);
@@ -119,7 +53,8 @@ struct WorldNode::Impl {
     WorldModel model;
     std::vector<cosim::Port> ports;
     std::vector<RobotLinks> links;
-    std::vector<BoothLinks> booths;
+    std::vector<BoothLink> booths;
+    cosim::PortIndex first_booth = 0xFFFF;
     std::vector<double> poses;            // as last published; empty without the port "ir"
     std::map<std::size_t, double> scene;  // likewise, by id: what events change
     std::vector<cosim::Message> waiting;  // stamped at or after the next step
@@ -156,7 +91,8 @@ WorldNode::Impl::Impl(World description, EventPlan plan, std::unique_ptr<Command
                 scene[ids.shape(true, i) + k] = values_of(model.fixed(i))[k];
     }
     for (const auto& booth : model.description().booths) {
-        booths.push_back(links_of(booth, static_cast<cosim::PortIndex>(ports.size())));
+        if (booths.empty()) first_booth = static_cast<cosim::PortIndex>(ports.size());
+        booths.emplace_back(booth, static_cast<cosim::PortIndex>(ports.size()));
         ports.push_back({booth.name, cosim::PortKind::Signals});
     }
     add_cameras();
@@ -180,13 +116,9 @@ void WorldNode::Impl::add_cameras() {
 
 void WorldNode::Impl::take(const cosim::Message& message) {
     const auto* signal = std::get_if<cosim::Signal>(&message.payload);
-    if (signal != nullptr && !booths.empty() && message.port >= booths.front().port) {
-        const std::size_t index = message.port - booths.front().port;
-        if (index >= booths.size()) return;
-        if (const auto led = booths[index].leds.find(signal->id); led != booths[index].leds.end()) {
-            const auto& [light, colour] = led->second;
-            model.booth(index).shine(light, colour, signal->value);
-        }
+    if (signal != nullptr && message.port >= first_booth) {
+        const std::size_t index = message.port - first_booth;
+        if (index < booths.size()) booths[index].take(*signal, model.booth(index));
         return;
     }
     const std::size_t robot = message.port / kPortsOfRobot;
@@ -224,38 +156,16 @@ void WorldNode::Impl::publish_events(std::vector<cosim::Message>& outbox) {
     for (const BoardSignal& signal : board_signals) {
         const auto id = links[signal.robot].input[static_cast<std::size_t>(signal.input)];
         const auto port = static_cast<cosim::PortIndex>(signal.robot * kPortsOfRobot);
-        if (id != kUnused) outbox.push_back({signal.time, port, cosim::Signal{id, signal.value}});
+        if (id != kUnusedSignal) outbox.push_back({signal.time, port, cosim::Signal{id, signal.value}});
     }
 }
 
 void WorldNode::Impl::publish(std::vector<cosim::Message>& outbox) {
     const double count_quantum = model.parameters().world.publish_quantum;
-    for (std::size_t robot = 0; robot < links.size(); ++robot) {
-        const auto& channels = model.robot(robot).channels();
-        for (auto& output : links[robot].outputs) {
-            const double now = channels[output.channel];
-            if (now == output.unrounded) continue;
-            output.unrounded = now;
-            const double quantum = channel_quantum(output.channel, count_quantum);
-            const double value = std::round(now / quantum) * quantum;
-            if (value == output.last) continue;
-            output.last = value;
-            outbox.push_back({next_step + kStep, output.port, cosim::Signal{output.id, value}});
-        }
-    }
-}
-
-void WorldNode::Impl::publish_barriers(std::vector<cosim::Message>& outbox) {
-    for (std::size_t i = 0; i < booths.size(); ++i) {
-        BoothLinks& booth = booths[i];
-        const auto& shares = model.booth(i).barriers;
-        for (std::size_t k = 0; k < shares.size(); ++k) {
-            const double value = std::round(shares[k] / kBeamQuantum) * kBeamQuantum;
-            if (value == booth.last[k] || booth.barrier[k] == kUnused) continue;
-            booth.last[k] = value;
-            outbox.push_back({next_step + kStep, booth.port, cosim::Signal{booth.barrier[k], value}});
-        }
-    }
+    for (std::size_t robot = 0; robot < links.size(); ++robot)
+        links[robot].publish(model.robot(robot).channels(), count_quantum, next_step + kStep, outbox);
+    for (std::size_t i = 0; i < booths.size(); ++i)
+        booths[i].publish(model.booth(i), next_step + kStep, outbox);
 }
 
 void WorldNode::Impl::publish_poses(std::vector<cosim::Message>& outbox) {
@@ -290,7 +200,7 @@ void WorldNode::Impl::publish_scene(std::vector<cosim::Message>& outbox) {
     const SceneSignals ids{moving};
     const auto body = [&](bool fixed, std::size_t index, const Shape& shape) {
         const std::size_t first = ids.shape(fixed, index);
-        if (first + kShapeSignals > kUnused) return;  // more than eight thousand things
+        if (first + kShapeSignals > kUnusedSignal) return;  // more than eight thousand things
         const ShapeValues values = values_of(shape);
         for (std::size_t k = 0; k < kShapeSignals; ++k)
             publish_body(first + k, values[k], outbox);
@@ -333,7 +243,6 @@ void WorldNode::advance(cosim::Time until, std::span<const cosim::Message> inbox
         w.step();
         w.publish_events(outbox);
         w.publish(outbox);
-        w.publish_barriers(outbox);
         w.publish_poses(outbox);
         w.publish_scene(outbox);
         if (w.cameras) w.cameras->publish(w.model, w.timeline.active(), w.next_step + kStep, outbox);
