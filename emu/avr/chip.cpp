@@ -170,12 +170,19 @@ struct Chip::Parts {
         hooks.reset_pc = [this] { return system.reset_pc(); };
         hooks.vector_base = [this] { return system.vector_base(); };
         hooks.sleep = [this] { system.sleep(); };
+        hooks.wake = [this] { system.wake(); };
         hooks.watchdog_reset = [this] { watchdog.restart(); };
         hooks.spm = [this](std::uint32_t address, std::uint16_t word) { programming.spm(address, word); };
         hooks.load_program = [this](std::uint32_t address, std::uint8_t& value) {
             return programming.load(address, value);
         };
         system.synchronise = [this] { synchronise_timers(); };
+        system.stop_clocks = [this](bool stopped) {
+            synchronise_timers();
+            synchronous.stop(stopped);
+            asynchronous.stop(stopped);
+            synchronise_timers();
+        };
         ports.listen(this, [](void* owner, PortLetter, std::uint8_t, std::uint8_t, Cycle) {
             static_cast<Parts*>(owner)->comparator.update();
         });
@@ -200,8 +207,10 @@ struct Chip::Parts {
         ports.reset();
         for (Timer* timer : {&timer0, &timer1, &timer2, &timer3})
             timer->reset();
-        for (Prescaler* prescaler : {&synchronous, &asynchronous})
+        for (Prescaler* prescaler : {&synchronous, &asynchronous}) {
+            prescaler->stop(false);
             prescaler->reset(core.now(), false);
+        }
         usart0.reset();
         usart1.reset();
         twi.reset();

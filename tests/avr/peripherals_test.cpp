@@ -533,3 +533,70 @@ wait:   rjmp wait
     asleep.run(2000);
     CHECK(warning(asleep) == "sleeps with interrupts off: only a reset ends it");
 }
+
+TEST_CASE("each sleep mode wakes by its own sources, after its own start-up time, with its own clocks") {
+    // Timer 0 overflows every 2048 clocks; INT0 is a level. 0x100 counts overflows, 0x102 is 1 once awake by
+    // INT0.
+    const auto sleeper = [](int mode, int fuse) {
+        return std::make_unique<Rig>(
+            R"(
+        jmp start
+        .org 0x04
+        jmp int0
+        .org 0x48
+        lds r20, 0x100
+        inc r20
+        sts 0x100, r20
+        reti
+int0:   ldi r16, 0
+        out EIMSK, r16
+        ldi r16, 1
+        sts 0x102, r16
+        sbi PINB, 0
+        reti
+start:  sbi DDRB, 0
+        ldi r16, 2
+        out TCCR0B, r16
+        ldi r16, 1
+        sts TIMSK0, r16
+        out EIMSK, r16
+        ldi r16, )" +
+                std::to_string(mode << 1 | 1) + R"(
+        out SMCR, r16
+        sei
+loop:   sleep
+        in r21, TCNT0
+        sts 0x103, r21
+        rjmp loop
+)",
+            ChipOptions{.fuses = {static_cast<std::uint8_t>(fuse), 0x99, 0xFD, 0xFF}});
+    };
+    struct Case {
+        int mode, fuse;
+        bool timer;
+        Cycle start_up;
+    };
+    for (const Case& c : {Case{0, 0xFF, true, 0},
+                          {1, 0xFF, false, 0},
+                          {2, 0xFF, false, 16'384},
+                          {2, 0xC2, false, 6},
+                          {2, 0xCE, false, 258},
+                          {3, 0xFF, false, 16'384},
+                          {6, 0xFF, false, 6},
+                          {7, 0xFF, false, 6}}) {
+        INFO("mode " << c.mode << ", low fuse " << c.fuse);
+        const auto rig = sleeper(c.mode, c.fuse);
+        rig->run(100'000);
+        const int overflows = rig->ram(0x100);
+        CHECK((overflows > 40) == c.timer);
+        CHECK((overflows < 2) == !c.timer);
+        REQUIRE(rig->ram(0x102) == 0);
+        rig->set_pin({PortLetter::D, 2}, false);
+        rig->run(100'000 + c.start_up - 1);
+        CHECK(rig->ram(0x102) == 0);
+        rig->run(100'000 + c.start_up + 40);
+        CHECK(rig->ram(0x102) == 1);
+        // Awake in power-down, the timer has stood still.
+        if (!c.timer) CHECK(rig->ram(0x103) < 20);
+    }
+}

@@ -123,8 +123,10 @@ void Core::stall_until(Cycle cycle) {
     machine_->stall_end = std::max(machine_->stall_end, cycle);
     machine_->limit = 0;
 }
-void Core::sleep() {
+void Core::sleep(std::uint64_t wakers, std::uint32_t start_up) {
     machine_->asleep = true;
+    machine_->wakers = wakers;
+    machine_->start_up = start_up;
     machine_->limit = 0;
 }
 bool Core::sleeping() const {

@@ -49,6 +49,7 @@ struct CoreHooks {
     std::function<std::uint16_t()> reset_pc;     ///< word address of the reset vector; 0 without it
     std::function<std::uint16_t()> vector_base;  ///< word address of vector 0; 0 without it
     std::function<void()> sleep;                 ///< SLEEP: may call Core::sleep()
+    std::function<void()> wake;                  ///< clocks that stood still run again from now() on
     std::function<void()> watchdog_reset;        ///< WDR
     /// SPM with Z and R1:R0 as they are; the answer is how many cycles the CPU is halted.
     std::function<void(std::uint32_t address, std::uint16_t word)> spm;
@@ -94,8 +95,9 @@ class Core {
     void set_translate(bool on);
     /// Keeps the CPU from executing until `cycle`; events go on.
     void stall_until(Cycle cycle);
-    /// The CPU executes nothing until an interrupt that is enabled requests.
-    void sleep();
+    /// The CPU executes nothing until one of the vectors in `wakers` (bit n = vector n) requests and
+    /// interrupts are enabled, and `start_up` clocks more. Then CoreHooks::wake is called.
+    void sleep(std::uint64_t wakers, std::uint32_t start_up);
     bool sleeping() const;
     /// Asleep, with no interrupt or reset that would end it: only an event can.
     bool rests() const;

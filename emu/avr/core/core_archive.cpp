@@ -15,7 +15,7 @@ void list(Archive& archive, Machine& m) {
     std::uint16_t pc = m.pc_of(m.current);
     archive(m.sreg, m.sp, m.rampz, m.cycle, m.instructions, pc);
     if constexpr (Archive::kLoads) m.current = m.code + pc;
-    archive(m.now, m.hold_at, m.stall_end, m.asleep, m.started);
+    archive(m.now, m.hold_at, m.stall_end, m.asleep, m.wakers, m.start_up, m.started);
     archive.bounded(m.last_vector, -1, 63);
     bool resets = m.reset_request.has_value();
     ResetCause cause = m.reset_request.value_or(ResetCause::PowerOn);

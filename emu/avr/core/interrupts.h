@@ -28,6 +28,8 @@ class InterruptController {
     }
 
     bool any() const { return requests_ != 0; }
+    /// One of the vectors in `mask` (bit n = vector n).
+    bool any(std::uint64_t mask) const { return (requests_ & mask) != 0; }
     /// The vector that comes first; only if any().
     int first() const { return std::countr_zero(requests_); }
     void acknowledge(int vector) {

@@ -75,6 +75,8 @@ struct Machine {
     Cycle quiet_since = 0;  ///< the inner loop was entered here
     bool skip_idle = true;
     bool asleep = false;
+    std::uint64_t wakers = 0;    ///< vectors that end this sleep
+    std::uint32_t start_up = 0;  ///< clocks from such a request to the first one of the CPU
     bool stopped = false;
     bool end_requested = false;
     std::optional<std::uint16_t> pass_pc;  ///< this stop was reported; execute it next time
@@ -99,7 +101,7 @@ struct Machine {
     CoreHooks hooks;
 
     std::uint16_t pc_of(const Op* op) const { return static_cast<std::uint16_t>(op - code); }
-    bool may_interrupt() const { return (sreg & sreg::I) && irq.any(); }
+    bool may_interrupt() const { return (sreg & sreg::I) && (asleep ? irq.any(wakers) : irq.any()); }
 };
 
 /// Every event due by `horizon`, each at its own `now`.

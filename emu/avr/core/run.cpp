@@ -42,6 +42,11 @@ void pass_stop(Machine& m, std::uint16_t pc) {
 }
 
 void enter_interrupt(Machine& m) {
+    if (std::exchange(m.asleep, false)) {
+        m.cycle += kWakeUp + m.start_up;
+        m.now = m.cycle;
+        if (m.hooks.wake) m.hooks.wake();
+    }
     const int vector = m.irq.first();
     m.last_vector = static_cast<std::int16_t>(vector);
     const std::uint16_t pc = m.pc_of(m.current);
@@ -50,7 +55,7 @@ void enter_interrupt(Machine& m) {
     m.irq.acknowledge(vector);
     push_pc(m, m.current, pc);
     m.sreg &= static_cast<std::uint8_t>(~sreg::I);
-    m.cycle += kInterruptResponse + (std::exchange(m.asleep, false) ? kWakeUp : 0);
+    m.cycle += kInterruptResponse;
     const std::uint16_t base = m.hooks.vector_base ? m.hooks.vector_base() : std::uint16_t{0};
     m.current = m.code + static_cast<std::uint16_t>(base + kWordsPerVector * vector);
 }

@@ -24,6 +24,9 @@ class Prescaler {
         return held_ && divider > 1 ? 0 : (now - phase_) % divider;
     }
     bool held() const { return held_; }
+    /// The clock that it divides stands still (sleep): its timers do, whatever they divide by.
+    bool stopped() const { return stopped_; }
+    void stop(bool on) { stopped_ = on; }
     /// The counter is 0 in this clock; `held`: it stays there.
     void reset(Cycle now, bool held) {
         phase_ = now;
@@ -32,12 +35,13 @@ class Prescaler {
 
     template <class Archive>
     void state(Archive& archive) {
-        archive(phase_, held_);
+        archive(phase_, held_, stopped_);
     }
 
   private:
     Cycle phase_ = 0;
     bool held_ = false;
+    bool stopped_ = false;
 };
 
 }  // namespace puckloop::avr

@@ -57,8 +57,48 @@ std::uint16_t SystemControl::reset_pc() const {
     return fuses_.boot_reset() ? static_cast<std::uint16_t>(boot_start()) : std::uint16_t{0};
 }
 
+// Data sheet, "Power Management and Sleep Modes", table 10-1: which vectors wake. Timer 2 does from the
+// deeper modes only with its own crystal, which is not modelled.
 void SystemControl::sleep() {
-    if (around_.io.raw(kSmcr) & kSe) core_.sleep();
+    const unsigned control = around_.io.raw(kSmcr);
+    if (!(control & kSe)) return;
+    const auto vectors = [](int first, int last) {
+        return (std::uint64_t{2} << last) - (std::uint64_t{1} << first);
+    };
+    constexpr int kInt0 = 1, kWatchdog = 8, kAdcReady = 24, kEeprom = 25, kTwi = 26, kSpm = 27;
+    const std::uint64_t deep = vectors(kInt0, kWatchdog) | vectors(kTwi, kTwi);
+    enum Mode : unsigned { kIdle, kNoiseReduction, kPowerDown, kPowerSave, kStandby = 6, kExtendedStandby };
+    constexpr std::uint32_t kStandbyStartUp = 6;
+    switch (field(control, 3, 1)) {
+    case kNoiseReduction:
+        if (stop_clocks) stop_clocks(true);
+        return core_.sleep(deep | vectors(kAdcReady, kEeprom) | vectors(kSpm, kSpm), 0);
+    case kPowerDown:
+    case kPowerSave:
+        if (stop_clocks) stop_clocks(true);
+        return core_.sleep(deep, start_up_clocks());
+    case kStandby:
+    case kExtendedStandby:
+        if (stop_clocks) stop_clocks(true);
+        return core_.sleep(deep, kStandbyStartUp);
+    default:
+        return core_.sleep(~std::uint64_t{0}, 0);
+    }
+}
+
+void SystemControl::wake() {
+    if (stop_clocks) stop_clocks(false);
+}
+
+// From power-down and power-save, by CKSEL3:0 and SUT1:0 (data sheet, tables 9-2 to 9-13).
+std::uint32_t SystemControl::start_up_clocks() const {
+    const unsigned select = field(fuses_.low, 3, 0), time = field(fuses_.low, 5, 4);
+    constexpr std::uint32_t kAtOnce = 6, kFast = 258, kThousand = 1024, kSlow = 16'384, kWatch = 32'768;
+    if (select < 4) return kAtOnce;                           // external clock, RC oscillators
+    if (select < 6) return select == 5 ? kWatch : kThousand;  // low-frequency crystal
+    const unsigned code = (select & 1u) << 2 | time;
+    if (code < 2) return kFast;
+    return code < 5 ? kThousand : kSlow;
 }
 
 // A zero written clears a flag, a one leaves it.

@@ -4,9 +4,9 @@
 // "Interrupts".
 //
 // Deviations
-//  1. In every sleep mode the clocks of all modules go on: a timer wakes the CPU from power-down, and there
-//  is no start-up
-//     time.
+//  1. In the deeper sleep modes timers stand still (and their prescalers run on unseen); a transfer of a
+//  USART, of
+//     the SPI, of the two-wire interface or of the ADC that is under way goes on.
 //  2. OSCCAL is stored; JTAG (MCUCR.JTD, OCDR) and the brown-out switch (BODS) have no effect.
 
 #include "cosim/core/clock.h"
@@ -26,6 +26,7 @@ class SystemControl {
     void reset(ResetCause cause);
     /// SLEEP.
     void sleep();
+    void wake();
     /// Word address of vector 0, and of the reset vector.
     std::uint16_t vector_base() const;
     std::uint16_t reset_pc() const;
@@ -34,6 +35,8 @@ class SystemControl {
 
     /// Called before and after PRRn changes: modules bring themselves up to date.
     std::function<void()> synchronise;
+    /// The clock of timers and USARTs stands still, or runs again.
+    std::function<void(bool stopped)> stop_clocks;
 
     template <class Archive>
     void state(Archive& archive) {
@@ -42,6 +45,7 @@ class SystemControl {
 
   private:
     void set_divider(unsigned select);
+    std::uint32_t start_up_clocks() const;
     static void write_flags(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);
     static void write_mcucr(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);
     static void write_prescaler(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);

@@ -56,7 +56,7 @@ std::uint32_t Timer::top() const {
 }
 
 std::uint32_t Timer::divider() const {
-    if (reg(setup_.power) & setup_.power_bit) return 0;
+    if ((reg(setup_.power) & setup_.power_bit) || prescaler_.stopped()) return 0;
     return setup_.dividers[field(control_b(), 2, 0)];
 }
 
