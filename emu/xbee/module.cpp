@@ -280,7 +280,7 @@ void Module::byte(std::uint8_t value, Time now) {
             add(now + quiet, {TaskKind::Quiet, last_byte_});
         return;
     }
-    if (buffered() >= kReceiveRoom) {
+    if (waiting_bytes_ >= kReceiveRoom) {
         ++counts_.overflow;
         return;
     }
@@ -314,7 +314,7 @@ void Module::schedule_input(Time now) {
 void Module::update_cts(Time now) {
     if (settings_[kD7] != 1) return;
     const std::size_t threshold = settings_[kFT];
-    const bool level = cts_ ? buffered() + kFtHysteresis >= threshold : buffered() >= threshold;
+    const bool level = cts_ ? waiting_bytes_ + kFtHysteresis >= threshold : waiting_bytes_ >= threshold;
     if (level != cts_) air_.cts_changed(cts_ = level, now);
 }
 

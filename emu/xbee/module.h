@@ -148,7 +148,6 @@ class Module {
     void handle(const protocols::XBeeMessage& message, cosim::Time now);
     void packetize(cosim::Time now);
     void update_cts(cosim::Time now);
-    std::size_t buffered() const { return waiting_bytes_ + partial_bytes_; }
     bool to_host(const protocols::XBeeMessage& message, cosim::Time now);
 
     // AT commands (module_at.cpp).
@@ -186,8 +185,8 @@ class Module {
     std::optional<radio::RadioSettings> told_;  ///< what the medium knows
     protocols::XBeeApiMode reader_mode_ = protocols::XBeeApiMode::Plain;
     protocols::XBeeReader reader_{protocols::XBeeApiMode::Plain};
-    std::size_t partial_bytes_ = 0;  ///< of the frame that is coming in
-    std::size_t waiting_bytes_ = 0;  ///< of what is complete but not handled
+    std::size_t partial_bytes_ = 0;  ///< on the line since the last frame; the parser holds them
+    std::size_t waiting_bytes_ = 0;  ///< in the serial receive buffer: of frames that are not handled
     std::deque<std::pair<protocols::XBeeMessage, std::size_t>> waiting_;  ///< with their bytes on the line
     bool input_scheduled_ = false;
     protocols::XBeeBytes plain_;   ///< transparent data

@@ -23,6 +23,29 @@ TEST_CASE("bad frames are counted by kind, and the next good one is answered") {
     CHECK(uart["unknown_frames"] == 1);
 }
 
+TEST_CASE("garbage of any kind and length: the next command is answered") {
+    RandomStream random(8, "garbage");
+    for (int round = 0; round < 40; ++round) {
+        Host host;
+        host.boot();
+        XBeeBytes garbage(1 + random.below(2000));
+        const std::uint64_t delimiters = random.below(4);
+        for (std::uint8_t& byte : garbage) {
+            byte = static_cast<std::uint8_t>(random.below(256));
+            if (byte == 0x7E && delimiters == 0) byte = 0;
+            if (random.below(20) < delimiters) byte = 0x7E;
+        }
+        host.say_bytes(garbage);
+        host.run(2200 * kMs);
+        host.reader = XBeeReader(XBeeApiMode::Escaped);
+        const std::size_t before = host.all<XBeeAtResponse>().size();
+        host.say(XBeeAt{.id = 9, .command = {'N', 'I'}, .value = {}});
+        host.run(100 * kMs);
+        CHECK(host.all<XBeeAtResponse>().size() == before + 1);
+        CHECK(host.report()["uart"]["overflow"] == 0);
+    }
+}
+
 TEST_CASE("another baud rate: framing errors or bad frames, no answer, and back to work") {
     Host host;
     host.boot();
