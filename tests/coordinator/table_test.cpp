@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "linuxboard/coordinator/event_log.h"
+#include "linuxboard/coordinator/experiments/experiments.h"
 #include "linuxboard/coordinator/gantt.h"
 #include "tests/scratch.h"
 
@@ -67,4 +68,51 @@ TEST_CASE("the picture has a bar for each state, as long as it lasted") {
     CHECK(svg.find("<title>TAM02: robot inside, 4.00 s to 8.00 s</title>") != std::string::npos);
     CHECK(svg.find("width=\"550.00\"") != std::string::npos);
     CHECK(gantt_svg({}, "empty").find("</svg>") != std::string::npos);
+}
+
+TEST_CASE("damaged parameter files make an experiment, or one line with the file's name") {
+    const std::string file = tests::scratch_path("parameters.toml").string();
+    const std::string texts[] = {
+        "tasks = [\"a\", \"b\", \"c\"]\ncolors = [\"190000\", \"001900\", \"000019\"]\n"
+        "durations = [1, 2.5, 3]\nbusy_color = \"191900\"\ndead-time = 4\nseed = 99\n",
+        "order = [\"TAM03\", \"TAM01\"]\ncolors = [\"190000\", \"001900\"]\n"
+        "durations = [1, 2.5]\non_mistake = \"ignore\"\nrounds = 3\ntime_limit = 1e3\n"};
+    RandomStream random(31, "parameters");
+    int made = 0, refused = 0;
+    for (int i = 0; i < 600; ++i) {
+        const std::size_t which = random.below(2);
+        const ExperimentKind& kind = experiments()[which];
+        std::string text = texts[which];
+        for (std::uint64_t n = random.below(3); n > 0; --n) {
+            const std::size_t at = random.below(text.size());
+            switch (random.below(3)) {
+            case 0:
+                text[at] = static_cast<char>(random.next());
+                break;
+            case 1:
+                text.erase(at, 1 + random.below(4));
+                break;
+            default:
+                text.insert(at, 1, "0\"[],=\n.-x"[random.below(10)]);
+            }
+        }
+        std::ofstream(file, std::ios::binary) << text;
+        CAPTURE(text);
+        try {
+            Parameters parameters;
+            parameters.read_file(file);
+            parameters.declare({kind.parameters()});
+            const auto experiment = kind.make(parameters);
+            CHECK_FALSE(experiment->finished());
+            ++made;
+        } catch (const InputError& error) {
+            const std::string what = error.what();
+            CHECK(what.starts_with(file + ": "));
+            CHECK(what.find('\n') == std::string::npos);
+            ++refused;
+        }
+    }
+    CHECK(made > 100);
+    CHECK(refused > 100);
+    std::filesystem::remove(file);
 }

@@ -388,6 +388,37 @@ TEST_CASE("section 6: an unescaped 7E costs two packets; errors and unknown fram
     }
 }
 
+TEST_CASE("section 6: a packet has at most 110 bytes of data, whatever its length's high byte says",
+          "[slow]") {
+    NEEDS_IMAGE();
+    Ready booth;
+    const auto red = [&] { return static_cast<int>(booth.reports().back().second[1]); };
+    const auto send = [&](std::uint8_t value, std::size_t size, bool high_byte) {
+        XBeeRx packet{.from = 0x0013A200408A3107, .options = 1, .data = {0x0A, value, 0, 0}};
+        packet.data.resize(size - 12);  // behind the type, two addresses and the options
+        std::vector<std::uint8_t> bytes = encode_xbee(encode(XBeeMessage(packet)), XBeeApiMode::Escaped);
+        if (high_byte) bytes[1] = 0x01;
+        for (const std::uint8_t byte : bytes) {
+            booth.line_free = std::max(booth.line_free, booth.now()) + kByteTime;
+            booth.to_booth.emplace_back(booth.line_free - kBit, byte);
+        }
+        booth.wait(1500 * kMs);
+    };
+    send(3, 16, false);
+    CHECK(red() == 3);
+    send(5, 100, false);
+    CHECK(red() == 5);
+    send(6, 16, true);  // a length of 272, taken as 16
+    CHECK(red() == 6);
+    const std::size_t before = booth.report_count();
+    send(8, 125, false);
+    CHECK(red() == 6);
+    CHECK(booth.report_count() > before);  // an error asks for a report
+    send(9, 16, false);
+    send(10, 16, false);
+    CHECK(red() == 10);
+}
+
 TEST_CASE("section 7: heartbeats every 10 s, one packet outstanding, what clears it", "[slow]") {
     NEEDS_IMAGE();
     Ready booth;
