@@ -65,10 +65,12 @@ class Behaviour {
     virtual Actuators step(const Sensors& sensors, double t) = 0;
 };
 
-/// "wander", "light", "aggregate", "follow", "serve", "still" or "spin"; null for any other name. `own_id` is
-/// the robot's among its neighbours.
+/// "wander", "light", "aggregate", "follow", "seek", "serve", "still" or "spin"; null for any other name.
+/// `own_id` is the robot's among its neighbours.
 std::unique_ptr<Behaviour> make_behaviour(std::string_view name, int own_id = 0);
 /// True for the behaviours that make no sense without a range-and-bearing board.
 bool needs_neighbours(std::string_view name);
+/// True for the behaviours that make no sense without a camera.
+bool needs_camera(std::string_view name);
 
 }  // namespace puckloop::control

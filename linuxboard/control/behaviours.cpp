@@ -1,6 +1,7 @@
 #include "linuxboard/control/aggregate.h"
 #include "linuxboard/control/drive_to_light.h"
 #include "linuxboard/control/follow.h"
+#include "linuxboard/control/seek.h"
 #include "linuxboard/control/serve.h"
 
 #include <cmath>
@@ -39,10 +40,15 @@ std::unique_ptr<Behaviour> make_behaviour(std::string_view name, int own_id) {
     if (name == "light") return std::make_unique<DriveToLight>();
     if (name == "aggregate") return std::make_unique<Aggregate>(own_id);
     if (name == "follow") return std::make_unique<Follow>(own_id);
+    if (name == "seek") return std::make_unique<Seek>();
     if (name == "serve") return std::make_unique<Serve>();
     if (name == "still") return std::make_unique<Still>();
     if (name == "spin") return std::make_unique<Spin>();
     return nullptr;
+}
+
+bool needs_camera(std::string_view name) {
+    return name == "seek";
 }
 
 bool needs_neighbours(std::string_view name) {

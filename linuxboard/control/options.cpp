@@ -17,6 +17,8 @@ const char kUsage[] =
     "      light          towards the brightest light\n"
     "      aggregate      to the nearest robot heard, and stop beside it\n"
     "      follow         after the robot with the next lower id heard; the lowest leads\n"
+    "      seek           looks for a booth that shines green or blue, and serves there; uses /dev/video1\n"
+    "                     unless --camera names another\n"
     "      serve          into the booth (TAM) that stands ahead, 8 s inside, out, and again\n"
     "      still          nothing; with --rab somebody to be heard\n"
     "      spin           on the spot, with a short stop every 10.3 s: to measure sensors\n"
@@ -154,8 +156,9 @@ void take(Options& options, int choice, const char* name) {
 void check(Options& options) {
     if (make_behaviour(options.behaviour) == nullptr)
         wrong_value("behaviour", options.behaviour.c_str(),
-                    "wander, light, aggregate, follow, serve, still or spin");
+                    "wander, light, aggregate, follow, seek, serve, still or spin");
     if (needs_neighbours(options.behaviour)) options.rab = true;
+    if (needs_camera(options.behaviour) && options.camera.empty()) options.camera = kDefaultCamera;
     if (options.rab && options.rab_id == 0 && options.calibrate == 0) {
         std::fprintf(stderr, "puckloop-control: %s needs --rab-id N, 1 to 255, another on each robot\n",
                      needs_neighbours(options.behaviour) ? options.behaviour.c_str() : "--rab");

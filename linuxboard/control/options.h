@@ -10,6 +10,7 @@
 namespace puckloop::control {
 
 inline constexpr char kDefaultBus[] = "/dev/i2c-3";
+inline constexpr char kDefaultCamera[] = "/dev/video1";
 
 struct Options {
     std::string behaviour = "wander";

@@ -12,6 +12,8 @@ class Serve : public Behaviour {
     Actuators step(const Sensors& sensors, double t) override;
     /// How often it has stood inside.
     unsigned visits() const { return visits_; }
+    /// It has backed out, or has found no way in, and waits before it comes again.
+    bool pausing() const { return state_ == State::Pause; }
 
   private:
     enum class State { Approach, Stay, Leave, Pause };
