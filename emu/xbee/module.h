@@ -141,7 +141,7 @@ class Module {
     protocols::XBeeApiMode api_mode() const;
     void new_reader(protocols::XBeeApiMode mode);
 
-    // Serial side (module.cpp).
+    // Serial side (module_serial.cpp).
     void byte(std::uint8_t value, cosim::Time now);
     void api_byte(std::uint8_t value, cosim::Time now);
     void schedule_input(cosim::Time now);
