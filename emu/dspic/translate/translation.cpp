@@ -66,6 +66,8 @@ void run_translated(Machine& m) {
                 if (left == translate::Left::NoEntry) continue;
                 if (m.st.cycle >= m.limit) break;
                 resumes = left == translate::Left::Slow;
+            } else {
+                resumes = index < m.code_words && m.translated.heat[index] == kNever;
             }
         }
         m.current = op;
