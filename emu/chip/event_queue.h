@@ -33,13 +33,9 @@ class EventQueue {
     Slot add(void* owner, Handler handler);
     void schedule(Slot slot, Cycle due) {
         if (due_[slot] == due) return;
+        if (under_way_ != kNone && under_way_ != slot) play(under_way_);
         due_[slot] = due;
-        for (unsigned place = (kCapacity + slot) / 2; place; place /= 2) {
-            const Slot left = winner(2 * place);
-            const Slot right = winner(2 * place + 1);
-            winners_[place] = due_[right] < due_[left] ? right : left;
-        }
-        next_ = due_[winners_[1]];
+        play(slot);
     }
     void cancel(Slot slot) { schedule(slot, kNoCycle); }
     Cycle due(Slot slot) const { return due_[slot]; }
@@ -61,11 +57,15 @@ class EventQueue {
     void pass(Slot slot, std::uint64_t times) { steady_[slot].pass(handlers_[slot].owner, times); }
     /// Runs every handler due at or before `now`, by due cycle, then by slot. Handlers may schedule again.
     void service(Cycle now) {
+        if (under_way_ != kNone) play(under_way_);  // its handler threw
         while (next_ <= now) {
             const Slot slot = winners_[1];
             const Cycle due = next_;
-            cancel(slot);
+            // Most handlers schedule their slot again: the tournament is played once, then or afterwards.
+            due_[slot] = kNoCycle;
+            under_way_ = slot;
             handlers_[slot].call(handlers_[slot].owner, due);
+            if (under_way_ == slot) play(slot);
         }
     }
 
@@ -81,6 +81,7 @@ class EventQueue {
 
   private:
     static constexpr unsigned kCapacity = 64;
+    static constexpr Slot kNone = 0xFF;
     struct Entry {
         Handler call = nullptr;
         void* owner = nullptr;
@@ -89,11 +90,25 @@ class EventQueue {
         return place < kCapacity ? winners_[place] : static_cast<Slot>(place - kCapacity);
     }
 
+    void play(Slot slot) {
+        under_way_ = kNone;
+        for (unsigned place = (kCapacity + slot) / 2; place; place /= 2) {
+            const Slot left = winner(2 * place);
+            const Slot right = winner(2 * place + 1);
+            const Slot first = due_[right] < due_[left] ? right : left;
+            // Another one won here before, too: nothing changes above.
+            if (first == winners_[place] && first != slot) break;
+            winners_[place] = first;
+        }
+        next_ = due_[winners_[1]];
+    }
+
     std::array<Cycle, kCapacity> due_ = never();
     std::array<Slot, kCapacity> winners_ = first_slots();  ///< of inner places, 1 = the top
     std::array<Entry, kCapacity> handlers_{};
     std::array<Steady, kCapacity> steady_{};
     unsigned size_ = 0;
+    Slot under_way_ = kNone;  ///< its handler runs, and its place in the tournament is not settled
     Cycle next_ = kNoCycle;
 
     static constexpr std::array<Cycle, kCapacity> never() {

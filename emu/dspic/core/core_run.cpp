@@ -74,7 +74,7 @@ void enter_interrupt(Machine& m) {
     m.watch &= 0xFFFF0000;
 
     const std::uint32_t table = m.irq.alternate_table() ? m.device.aivt : m.device.ivt;
-    const std::uint32_t handler = read_program(m, table + 2u * static_cast<std::uint32_t>(taken.vector));
+    const std::uint32_t handler = m.program[table / 2 + static_cast<std::uint32_t>(taken.vector)];
     const Cycle start = service_start(m.since, m.st.cycle);
     m.eligible = false;
     reconsider(m, m.st.cycle);

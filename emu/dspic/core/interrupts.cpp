@@ -45,7 +45,20 @@ InterruptController::InterruptController(const DeviceInfo& device, SfrSpace& sfr
         sfr.hook(static_cast<std::uint16_t>(device.ipc + 2 * (entry.irq / 4)), this, nullptr,
                  &write_register);
     if (device.inttreg) sfr.claim(device.inttreg);
+    list_writable();
     reset();
+}
+
+void InterruptController::list_writable() {
+    const auto at = [this](int address) -> std::uint16_t& {
+        return writable_[static_cast<std::size_t>(address - kIntcon1) / 2];
+    };
+    at(kIntcon1) = implemented(device_, kIntcon1);
+    at(kIntcon2) = static_cast<std::uint16_t>(implemented(device_, kIntcon2) & ~kINTCON2["DISI"]);
+    for (int i = 0; i < device_.ifs_words; ++i)
+        at(device_.ifs + 2 * i) = at(device_.iec + 2 * i) = implemented_[static_cast<std::size_t>(i)];
+    for (const IrqName& entry : device_.irqs)
+        at(device_.ipc + 2 * (entry.irq / 4)) |= static_cast<std::uint16_t>(7u << (4 * (entry.irq % 4)));
 }
 
 void InterruptController::reset() {
@@ -94,8 +107,11 @@ void InterruptController::wake(int irq) {
 }
 
 void InterruptController::wake_hearing(int word) {
-    for (unsigned left = resting_[static_cast<std::size_t>(word)]; left != 0; left &= left - 1)
-        if (const int irq = 16 * word + std::countr_zero(left); !is_deaf(irq)) wake(irq);
+    const auto index = static_cast<std::size_t>(word);
+    if (resting_[index] == 0) return;
+    const unsigned deaf = ifs()[index] & ~iec()[index] & ~(tapped_[index / 4] >> (index % 4 * 16));
+    for (unsigned woken = resting_[index] & (rests_ ? ~deaf : ~0u); woken != 0; woken &= woken - 1)
+        wake(16 * word + std::countr_zero(woken));
 }
 
 void InterruptController::raise(int irq, Cycle now) {
@@ -118,19 +134,6 @@ void InterruptController::clear(int irq) {
     wake_hearing(irq / 16);
 }
 
-bool InterruptController::flag(int irq) const {
-    return sfr_.raw(word_of(device_.ifs, irq)) & bit_of(irq);
-}
-
-bool InterruptController::enabled(int irq) const {
-    return sfr_.raw(word_of(device_.iec, irq)) & bit_of(irq);
-}
-
-int InterruptController::priority(int irq) const {
-    const std::uint16_t word = sfr_.raw(static_cast<std::uint16_t>(device_.ipc + 2 * (irq / 4)));
-    return word >> (4 * (irq % 4)) & 7;
-}
-
 void InterruptController::raise_trap(Trap trap, Cycle now) {
     sfr_.raw(kIntcon1) |= trap_flag(trap);
     find_first(now);
@@ -147,11 +150,12 @@ bool InterruptController::alternate_table() const {
 }
 
 bool InterruptController::any_enabled_flag() const {
+    const std::uint16_t* const flags = ifs();
+    const std::uint16_t* const enables = iec();
+    unsigned waiting = 0;
     for (int i = 0; i < device_.ifs_words; ++i)
-        if (sfr_.raw(static_cast<std::uint16_t>(device_.ifs + 2 * i)) &
-            sfr_.raw(static_cast<std::uint16_t>(device_.iec + 2 * i)))
-            return true;
-    return first_.level > 7;
+        waiting |= static_cast<unsigned>(flags[i] & enables[i]);
+    return waiting != 0 || first_.level > 7;
 }
 
 bool InterruptController::waits_alone() const {
@@ -195,9 +199,10 @@ void InterruptController::find_first(Cycle now) {
             trap = static_cast<Trap>(static_cast<int>(trap) + 1);
         best = {trap_level(trap), static_cast<int>(trap)};
     } else {
+        const std::uint16_t* const flags = ifs();
+        const std::uint16_t* const enables = iec();
         for (int i = 0; i < device_.ifs_words; ++i) {
-            std::uint32_t pending = sfr_.raw(static_cast<std::uint16_t>(device_.ifs + 2 * i)) &
-                                    sfr_.raw(static_cast<std::uint16_t>(device_.iec + 2 * i));
+            std::uint32_t pending = static_cast<std::uint32_t>(flags[i] & enables[i]);
             for (; pending; pending &= pending - 1) {
                 const int irq = 16 * i + std::countr_zero(pending);
                 const int level = priority(irq);
@@ -225,29 +230,13 @@ std::uint16_t InterruptController::read_register(void* owner, std::uint16_t addr
 void InterruptController::write_register(void* owner, std::uint16_t address, std::uint16_t value,
                                          std::uint16_t mask) {
     auto& self = *static_cast<InterruptController*>(owner);
-    const DeviceInfo& d = self.device_;
-    const auto in = [&](std::uint16_t base) { return address >= base && address < base + 2 * d.ifs_words; };
-    std::uint16_t exists = 0;
-    if (in(d.ifs)) {
-        exists = self.implemented_[static_cast<std::size_t>(address - d.ifs) / 2];
-    } else if (in(d.iec)) {
-        exists = self.implemented_[static_cast<std::size_t>(address - d.iec) / 2];
-    } else if (address == kIntcon1) {
-        exists = implemented(d, kIntcon1);
-    } else if (address == kIntcon2) {
-        exists = implemented(d, kIntcon2) & ~kINTCON2["DISI"];
-    } else {
-        const int first = 4 * ((address - d.ipc) / 2);
-        for (int i = 0; i < 4; ++i)
-            if (self.implemented_[static_cast<std::size_t>(first + i) / 16] & bit_of(first + i))
-                exists |= static_cast<std::uint16_t>(7u << (4 * i));
-    }
-    const auto bits = static_cast<std::uint16_t>(exists & mask);
+    const auto bits = static_cast<std::uint16_t>(self.writable_[(address - kIntcon1) / 2u] & mask);
     std::uint16_t& stored = self.sfr_.raw(address);
     stored = static_cast<std::uint16_t>((stored & ~bits) | (value & bits));
     self.find_first(self.now_ ? *self.now_ : 0);
-    if (in(d.ifs)) self.wake_hearing((address - d.ifs) / 2);
-    if (in(d.iec)) self.wake_hearing((address - d.iec) / 2);
+    const DeviceInfo& d = self.device_;
+    if (address >= d.ifs && address < d.ifs + 2 * d.ifs_words) self.wake_hearing((address - d.ifs) / 2);
+    if (address >= d.iec && address < d.iec + 2 * d.ifs_words) self.wake_hearing((address - d.iec) / 2);
 }
 
 }  // namespace puckloop::dspic

@@ -51,7 +51,7 @@ class InterruptController {
                  const std::array<std::uint64_t, 2>& irqs);
 
     /// Until somebody clears its flag, enables it or taps it, raise() of this source changes nothing.
-    bool is_deaf(int irq) const { return rests_ && flag(irq) && !enabled(irq) && !tapped(irq); }
+    bool is_deaf(int irq) const { return !enabled(irq) && rests_ && flag(irq) && !tapped(irq); }
     /// The source stops raising while is_deaf(). `wake` is called once, with the cycle up to which raising
     /// would have changed nothing, when that is over, or with no need at any other time.
     void rest(int irq, void* owner, void (*wake)(void* owner, Cycle passed));
@@ -60,10 +60,10 @@ class InterruptController {
     /// Off: every source raises as it is due (on from the start).
     void set_resting(bool on);
     void clear(int irq);
-    bool flag(int irq) const;
-    bool enabled(int irq) const;
+    bool flag(int irq) const { return ifs()[irq / 16] >> (irq % 16) & 1; }
+    bool enabled(int irq) const { return iec()[irq / 16] >> (irq % 16) & 1; }
     /// The IPC field of the source, 0..7.
-    int priority(int irq) const;
+    int priority(int irq) const { return (&sfr_.raw(device_.ipc))[irq / 4] >> (4 * (irq % 4)) & 7; }
     /// Sets the trap's flag in INTCON1.
     void raise_trap(Trap trap, Cycle now);
     /// Edge polarity of INTn, n = 0..4: true if INTCON2<INTnEP> selects the falling edge.
@@ -109,6 +109,9 @@ class InterruptController {
         void* owner = nullptr;
         void (*wake)(void* owner, Cycle passed) = nullptr;
     };
+    void list_writable();
+    const std::uint16_t* ifs() const { return &sfr_.raw(device_.ifs); }
+    const std::uint16_t* iec() const { return &sfr_.raw(device_.iec); }
     void find_first(Cycle now);
     void wake(int irq);
     void wake_hearing(int word);  ///< resting sources of this IFS word that are not deaf any more
@@ -118,6 +121,7 @@ class InterruptController {
     const DeviceInfo& device_;
     SfrSpace& sfr_;
     std::array<std::uint16_t, 8> implemented_{};  ///< IFS/IEC bits that exist
+    std::array<std::uint16_t, 64> writable_{};    ///< bits that a write changes, by word from INTCON1 on
     std::array<std::uint64_t, 2> tapped_{};
     void* tap_owner_ = nullptr;
     void (*tap_)(void*, int, Cycle) = nullptr;

@@ -14,24 +14,25 @@ namespace {
 constexpr std::uint32_t kFwdt30F = 0xF80002;
 constexpr std::uint32_t kFwdt33F = 0xF8000A;
 
+std::uint32_t fwdt(const Machine& m) {
+    const std::uint32_t address = m.device.family_33f ? kFwdt33F : kFwdt30F;
+    return m.config[(address - m.device.config_start) / 2];
+}
 bool watchdog_on(const Machine& m) {
     if (m.sfr.raw(sfr::RCON) & rcon::SWDTEN) return true;
-    const std::uint32_t fwdt = read_program(m, m.device.family_33f ? kFwdt33F : kFwdt30F);
-    return fwdt & (m.device.family_33f ? 1u << 7 : 1u << 15);
+    return fwdt(m) & (m.device.family_33f ? 1u << 7 : 1u << 15);
 }
 
 /// Nominal period in seconds from the configuration word.
 double watchdog_period(const Machine& m) {
     if (m.device.family_33f) {
         constexpr double kLprc = 32768.0;
-        const std::uint32_t fwdt = read_program(m, kFwdt33F);
-        const double prescale = fwdt & 1u << 4 ? 128.0 : 32.0;
-        return prescale * static_cast<double>(1u << (fwdt & 15)) / kLprc;
+        const double prescale = fwdt(m) & 1u << 4 ? 128.0 : 32.0;
+        return prescale * static_cast<double>(1u << (fwdt(m) & 15)) / kLprc;
     }
     constexpr double kShortest = 2e-3;
     static constexpr double kPrescaleA[4] = {1, 8, 64, 512};
-    const std::uint32_t fwdt = read_program(m, kFwdt30F);
-    return kShortest * kPrescaleA[fwdt >> 4 & 3] * static_cast<double>((fwdt & 15) + 1);
+    return kShortest * kPrescaleA[fwdt(m) >> 4 & 3] * static_cast<double>((fwdt(m) & 15) + 1);
 }
 
 void expired(void* owner, Cycle due) {

@@ -164,7 +164,7 @@ void Timer::match_due(void* owner, Cycle due) {
     else
         self.plan();
     self.match(due);
-    if (self.steady() && self.around_.interrupts.is_deaf(self.irq())) {
+    if (self.around_.interrupts.is_deaf(self.irq()) && self.steady()) {
         self.around_.events.cancel(self.slot_);
         self.watch_flag();
     }

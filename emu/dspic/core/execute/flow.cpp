@@ -17,8 +17,8 @@ const Op* return_from_interrupt(Machine& m, const Op*) {
         static_cast<std::uint16_t>((m.st.corcon & ~corcon::IPL3) | (high & kStackedIpl3 ? corcon::IPL3 : 0));
     m.eligible = false;
     reconsider(m, m.st.cycle + 1);
-    m.repeat_first = true;  // RA may have come back
-    m.limit = 0;
+    m.repeat_first = true;
+    if (m.st.sr & sr::RA) m.limit = 0;
     return Words(m).return_to(stacked_pc(low, high));
 }
 
