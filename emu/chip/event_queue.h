@@ -13,8 +13,8 @@ inline constexpr Cycle kNoCycle = std::numeric_limits<Cycle>::max();
 
 /// Peripherals compute their next event; they never tick. The core runs freely until next().
 ///
-/// Slots are the leaves of a tournament: each inner place holds the earlier one of the two below it, the
-/// lower slot at equal cycles, so that finding the next event costs one walk from a leaf to the top.
+/// A slot's key is its due cycle with its number behind it, so that the least key is the next event, the
+/// lower slot at equal cycles; the least ones of groups of eight are kept.
 class EventQueue {
   public:
     /// `due` is the cycle that was asked for; it may lie a few cycles before the core's present one, because
@@ -33,23 +33,21 @@ class EventQueue {
     Slot add(void* owner, Handler handler);
     void schedule(Slot slot, Cycle due) {
         if (due_[slot] == due) return;
-        if (under_way_ != kNone && under_way_ != slot) play(under_way_);
+        if (under_way_ != kNone && under_way_ != slot) settle(under_way_);
         due_[slot] = due;
-        play(slot);
+        settle(slot);
     }
     void cancel(Slot slot) { schedule(slot, kNoCycle); }
     Cycle due(Slot slot) const { return due_[slot]; }
 
     Cycle next() const { return next_; }
     /// The slot whose event is next(), if there is one.
-    Slot next_slot() const { return winners_[1]; }
+    Slot next_slot() const { return slot_of(first_); }
     /// The first event of all other slots.
     Cycle next_except(Slot slot) const {
         Cycle first = kNoCycle;
-        for (unsigned place = kCapacity + slot; place > 1; place /= 2) {
-            const Cycle beside = due_[winner(place ^ 1u)];
-            if (beside < first) first = beside;
-        }
+        for (unsigned other = 0; other < size_; ++other)
+            if (other != slot && due_[other] < first) first = due_[other];
         return first;
     }
     void set_steady(Slot slot, const Steady& steady) { steady_[slot] = steady; }
@@ -57,15 +55,15 @@ class EventQueue {
     void pass(Slot slot, std::uint64_t times) { steady_[slot].pass(handlers_[slot].owner, times); }
     /// Runs every handler due at or before `now`, by due cycle, then by slot. Handlers may schedule again.
     void service(Cycle now) {
-        if (under_way_ != kNone) play(under_way_);  // its handler threw
+        if (under_way_ != kNone) settle(under_way_);  // its handler threw
         while (next_ <= now) {
-            const Slot slot = winners_[1];
+            const Slot slot = next_slot();
             const Cycle due = next_;
-            // Most handlers schedule their slot again: the tournament is played once, then or afterwards.
+            // Most handlers schedule their slot again: what is first is found once, then or afterwards.
             due_[slot] = kNoCycle;
             under_way_ = slot;
             handlers_[slot].call(handlers_[slot].owner, due);
-            if (under_way_ == slot) play(slot);
+            if (under_way_ == slot) settle(slot);
         }
     }
 
@@ -80,35 +78,42 @@ class EventQueue {
     }
 
   private:
-    static constexpr unsigned kCapacity = 64;
+    static constexpr unsigned kSlotBits = 6;
+    static constexpr unsigned kCapacity = 1u << kSlotBits;
+    static constexpr unsigned kGroup = 8;
+    using Key = std::uint64_t;
     static constexpr Slot kNone = 0xFF;
     struct Entry {
         Handler call = nullptr;
         void* owner = nullptr;
     };
-    Slot winner(unsigned place) const {
-        return place < kCapacity ? winners_[place] : static_cast<Slot>(place - kCapacity);
+    static constexpr Key key(Slot slot, Cycle due) {
+        constexpr Cycle kFarthest = kNoCycle >> kSlotBits;
+        return (due < kFarthest ? due : kFarthest) << kSlotBits | slot;
     }
-
-    void play(Slot slot) {
+    static Slot slot_of(Key key) { return static_cast<Slot>(key % kCapacity); }
+    static Key least(const Key* keys) {
+        const auto first = [](Key a, Key b) { return b < a ? b : a; };
+        return first(first(first(keys[0], keys[1]), first(keys[2], keys[3])),
+                     first(first(keys[4], keys[5]), first(keys[6], keys[7])));
+    }
+    void settle(Slot slot) {
         under_way_ = kNone;
-        for (unsigned place = (kCapacity + slot) / 2; place; place /= 2) {
-            const Slot left = winner(2 * place);
-            const Slot right = winner(2 * place + 1);
-            const Slot first = due_[right] < due_[left] ? right : left;
-            // Another one won here before, too: nothing changes above.
-            if (first == winners_[place] && first != slot) break;
-            winners_[place] = first;
-        }
-        next_ = due_[winners_[1]];
+        keys_[slot] = key(slot, due_[slot]);
+        const unsigned group = slot / kGroup;
+        firsts_[group] = least(&keys_[group * kGroup]);
+        first_ = least(firsts_.data());
+        next_ = due_[slot_of(first_)];
     }
 
     std::array<Cycle, kCapacity> due_ = never();
-    std::array<Slot, kCapacity> winners_ = first_slots();  ///< of inner places, 1 = the top
+    std::array<Key, kCapacity> keys_ = no_keys();
+    std::array<Key, kCapacity / kGroup> firsts_ = no_firsts();
+    Key first_ = key(0, kNoCycle);
     std::array<Entry, kCapacity> handlers_{};
     std::array<Steady, kCapacity> steady_{};
     unsigned size_ = 0;
-    Slot under_way_ = kNone;  ///< its handler runs, and its place in the tournament is not settled
+    Slot under_way_ = kNone;  ///< its handler runs, and what is first is not settled
     Cycle next_ = kNoCycle;
 
     static constexpr std::array<Cycle, kCapacity> never() {
@@ -116,12 +121,17 @@ class EventQueue {
         cycles.fill(kNoCycle);
         return cycles;
     }
-    static constexpr std::array<Slot, kCapacity> first_slots() {
-        std::array<Slot, kCapacity> slots{};
-        for (unsigned place = kCapacity - 1; place > 0; --place)
-            slots[place] =
-                2 * place < kCapacity ? slots[2 * place] : static_cast<Slot>(2 * place - kCapacity);
-        return slots;
+    static constexpr std::array<Key, kCapacity> no_keys() {
+        std::array<Key, kCapacity> keys{};
+        for (unsigned slot = 0; slot < kCapacity; ++slot)
+            keys[slot] = key(static_cast<Slot>(slot), kNoCycle);
+        return keys;
+    }
+    static constexpr std::array<Key, kCapacity / kGroup> no_firsts() {
+        std::array<Key, kCapacity / kGroup> keys{};
+        for (unsigned group = 0; group < kCapacity / kGroup; ++group)
+            keys[group] = key(static_cast<Slot>(group * kGroup), kNoCycle);
+        return keys;
     }
 };
 

@@ -103,6 +103,7 @@ std::uint32_t random_word(RandomStream& random, std::uint32_t pc) {
         const auto reg = static_cast<std::uint32_t>(random.below(14));
         return kind == 14 ? kStack[0] | reg : kStack[1] | reg << 7;
     }
+    if (kind == 17 && random.below(2) != 0) return random.below(2) != 0 ? 0xF80036 : 0xF90036;  // RCOUNT
     return some_word(random, all[kind == 16]);
 }
 
@@ -116,8 +117,9 @@ LoopProgram random_loops(RandomStream& random) {
               "trap:   clr 0x80\n        clr 0x44\n        mov #0x1800, w15\n        mov #0x200, w0\n"
               "        push w0\n        clr w0\n        push w0\n        clr 0x46\n        clr 0x50\n        "
               "retfie\n"
-              "isr:    push w0\n        mov 0x0900, w0\n        inc w0, w0\n        mov w0, 0x0900\n"
-              "        bclr 0x84, #3\n        pop w0\n        retfie\n";
+              "isr:    push w0\n        push 0x36\n        mov 0x0900, w0\n        inc w0, w0\n        mov "
+              "w0, 0x0900\n"
+              "        bclr 0x84, #3\n        pop 0x36\n        pop w0\n        retfie\n";
     const dspic::Program assembled = dspic::assemble(source);
     LoopProgram program;
     for (const auto& [address, word] : assembled.words)

@@ -45,6 +45,7 @@ Machine::Machine(const DeviceInfo& info, SfrSpace& registers, EventQueue& queue,
     code_words = info.flash_end / 2;
     code = pages.operations();
     current = code;
+    first_level = &irq.first().level;
     ram_store.assign((info.ram_end - info.ram_start) / 2u, 0);
     ram = ram_store.data();
     ram_words = static_cast<std::uint16_t>(ram_store.size());

@@ -88,6 +88,7 @@ struct Machine {
     bool eligible = false;  ///< irq.first() may interrupt now ...
     Cycle since = 0;        ///< ... since this cycle
     bool disi_waits = false;
+    const int* first_level = nullptr;  ///< of irq.first(), for translated code
     std::optional<ResetCause> reset_request;
     std::uint32_t fault_pc = 0;
 

@@ -155,6 +155,9 @@ class Emitter : private Xbyak::CodeGenerator {
     Flow end_block(const Op* op);
     void emit_call(const Op* op);
     void emit_return(const Op* op);
+    void emit_return_from_interrupt(const Op* op);
+    /// Out if any interrupt or trap is requested, whatever its priority.
+    void bail_if_requested();
     bool emit_skip(Machine& m, const Op* op);
 
     struct Cold {

@@ -1,6 +1,7 @@
 // Branches, skips, calls and returns, and what happens at a taken backward branch (idle_loops.h,
 // wait_watch.h).
 
+#include "emu/dspic/core/exception_frame.h"
 #include "emu/dspic/translate/emitter.h"
 
 namespace puckloop::dspic::translate {
@@ -111,6 +112,16 @@ Emitter::Flow Emitter::emit_flow(Machine& m, const Op* op) {
     case FormId::RETURN:
         emit_return(op);
         return end_block(op);
+    case FormId::RETFIE:
+        emit_return_from_interrupt(op);
+        return end_block(op);
+    case FormId::DISI_lit14:
+        // While somebody waits the interpreter finds out whether it may still come in.
+        bail_if_requested();
+        lea(rax, ptr[rbx + static_cast<int>(cycles_ + 1 + op->k)]);
+        mov(qword[rbp + layout_.disi_end], rax);
+        finish_step(op);
+        return Flow::Next;
     default:
         if (!emit_skip(m, op)) return Flow::Unknown;
         finish_step(op);
@@ -151,6 +162,45 @@ void Emitter::emit_return(const Op* op) {
     jae(bail(), T_NEAR);
     finish_bail();
     add(w_word(15), -kReturnBytes);
+    account(cycles_ + stall_ + op->cycles, steps_ + 1, keep_ & op->keep, op->writes);
+    mov(eax, dword[r15 + rcx * sizeof(std::uint32_t)]);
+    add(rax, rdi);
+    jmp(rax);
+}
+
+void Emitter::bail_if_requested() {
+    mov(rax, qword[rbp + layout_.first_level]);
+    cmp(dword[rax], 0);
+    jne(bail(), T_NEAR);
+}
+
+/// From a user interrupt to code that nothing interrupts next and that is not repeated.
+void Emitter::emit_return_from_interrupt(const Op* op) {
+    flush_flags();
+    bail_if_requested();
+    test(byte[rbp + layout_.corcon], corcon::IPL3);
+    jne(bail(), T_NEAR);
+    load_w(eax, 15, false);
+    lea(ecx, ptr[rax - 2 - kRamStart]);
+    cmp(ecx, dword[rbp + layout_.stack_span]);
+    jg(bail(), T_NEAR);
+    ram_index(edx, -kReturnBytes, false, false, 2);
+    mov(ecx, dword[r12 + rdx * 2]);  // PC<15:0>; PC<22:16>, IPL3, SR<7:0>
+    constexpr std::uint32_t kHigh = 16, kStatus = 24;
+    test(ecx, std::uint32_t{kStackedIpl3} << kHigh | std::uint32_t{sr::RA} << kStatus);
+    jne(bail(), T_NEAR);
+    mov(edx, ecx);
+    and_(ecx, 0x7FFFFE);
+    shr(ecx, 1);
+    cmp(ecx, layout_.code_words);
+    jae(bail(), T_NEAR);
+    finish_bail();
+    shr(edx, kStatus);
+    movzx(eax, word[rbp + layout_.sr]);
+    mov(al, dl);
+    mov(word[rbp + layout_.sr], ax);
+    add(w_word(15), -kReturnBytes);
+    mov(byte[rbp + layout_.repeat_first], 1);
     account(cycles_ + stall_ + op->cycles, steps_ + 1, keep_ & op->keep, op->writes);
     mov(eax, dword[r15 + rcx * sizeof(std::uint32_t)]);
     add(rax, rdi);

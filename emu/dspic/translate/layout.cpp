@@ -12,6 +12,10 @@ Layout::Layout(const Machine& m) {
     sr = from_state(m.st.sr);
     corcon = from_state(m.st.corcon);
     cycle = from_state(m.st.cycle);
+    rcount = from_state(m.st.rcount);
+    disi_end = from_state(m.st.disi_end);
+    first_level = from_state(m.first_level);
+    repeat_first = from_state(m.repeat_first);
     current = from_state(m.current);
     code = from_state(m.code);
     limit = from_state(m.limit);

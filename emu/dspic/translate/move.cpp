@@ -1,5 +1,6 @@
 // Moving data: MOV in its addressing modes, double words, the stack.
 
+#include "emu/dspic/devices/dspic30f6014a_sfr.h"
 #include "emu/dspic/translate/emitter.h"
 
 namespace puckloop::dspic::translate {
@@ -92,22 +93,31 @@ bool Emitter::emit_move(const Op* op) {
         mov(word[r12 + rdx * 2], ax);
         mov(word[r12 + rdx * 2 + 2], cx);
         return true;
-    case FormId::PUSH_f:
-        if (!ram_literal(op->k, false, file)) return false;
+    case FormId::PUSH_f: {  // RCOUNT is what compilers save of the core's registers
+        const bool count = op->k == sfr::RCOUNT;
+        if (!count && !ram_literal(op->k, false, file)) return false;
         load_w(eax, 15, false);
         ram_index(edx, 0, false, true);
-        movzx(eax, file_cell(file, false));
+        movzx(eax, count ? word[rbp + layout_.rcount] : file_cell(file, false));
         mov(ram_cell(rdx, false), ax);
         add(w_word(15), 2);
         return true;
-    case FormId::POP_f:
-        if (!ram_literal(op->k, false, file)) return false;
+    }
+    case FormId::POP_f: {
+        const bool count = op->k == sfr::RCOUNT;
+        if (!count && !ram_literal(op->k, false, file)) return false;
         load_w(eax, 15, false);
         ram_index(ecx, -2, false, true);
         movzx(eax, ram_cell(rcx, false));
         add(w_word(15), -2);
-        store_file(file, eax, false);
+        if (!count) {
+            store_file(file, eax, false);
+            return true;
+        }
+        and_(eax, 0x3FFF);
+        mov(word[rbp + layout_.rcount], ax);
         return true;
+    }
     default:
         return emit_frame(op);
     }
