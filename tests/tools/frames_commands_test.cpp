@@ -2,6 +2,7 @@
 #include "tests/tools/shell.h"
 
 #include <catch2/catch.hpp>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <string>
@@ -178,6 +179,43 @@ TEST_CASE("frames xbee refuses what is no frame in one line") {
          {"xbee decode 7", "xbee decode ''", "xbee encode 'nonsense'", "xbee encode 'at idd 1'",
           "xbee encode 'at id'", "xbee encode 'at id 100'", "xbee encode 'at command ABC'",
           "xbee encode 'tx to 00000000000000001'", "xbee check --mode 3 7E"}) {
+        const Result result = frames(arguments);
+        CAPTURE(arguments, result.output);
+        CHECK(result.status == 2);
+        CHECK(result.output.starts_with("puckloop: "));
+        CHECK(std::count(result.output.begin(), result.output.end(), '\n') == 1);
+    }
+}
+
+TEST_CASE("frames ircom encodes, decodes and checks every word") {
+    const Result sixteen = frames("ircom encode --json 10");
+    CHECK(sixteen.status == 0);
+    CHECK_THAT(
+        sixteen.output,
+        Catch::StartsWith(R"({"word":"10","symbols":"MMMMMSMMMMSS","check":3,"edges_us":[0.0,260.0,)"));
+    std::string words, expected;
+    for (int word = 0; word < 256; ++word) {
+        words += fmt::format("{:02x}{}", word, word < 255 ? "\\n" : "");
+        expected += "ok\n";
+    }
+    for (const char* timing : {"nominal", "epuck", "tam"}) {
+        const Result encoded = frames(fmt::format("ircom encode --timing {}", timing), words);
+        REQUIRE(encoded.status == 0);
+        std::string lines = encoded.output;
+        for (std::size_t at = 0; (at = lines.find('\n', at)) != std::string::npos; at += 2)
+            lines.replace(at, 1, "\\n");
+        expect(frames("ircom check", lines), 0, expected);
+        CHECK_THAT(frames("ircom decode", lines).output, Catch::EndsWith("word FF check 0\n"));
+    }
+    const Result bad = frames("ircom decode --json '0 260 520'");
+    CHECK(bad.status == 1);
+    CHECK_THAT(bad.output, Catch::Contains(R"("ok":false)") && Catch::Contains(R"("fault":"short")"));
+}
+
+TEST_CASE("frames ircom refuses what is no word in one line") {
+    for (const char* arguments :
+         {"ircom encode 100", "ircom encode G", "ircom encode --timing robot 1", "ircom decode ''",
+          "ircom decode '0 1 x'", "ircom decode '0 0'", "ircom check '5 nan'", "ircom check '1e300'"}) {
         const Result result = frames(arguments);
         CAPTURE(arguments, result.output);
         CHECK(result.status == 2);

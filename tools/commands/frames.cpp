@@ -13,6 +13,7 @@ void declare_frames(Command& app, int& status) {
     declare_rab_frames(*frames, status);
     declare_epuck_frames(*frames, status);
     declare_xbee_frames(*frames, status);
+    declare_ircom_frames(*frames, status);
 }
 
 }  // namespace puckloop::tools

@@ -14,6 +14,7 @@ class Command;
 void declare_rab_frames(Command& frames, int& status);
 void declare_epuck_frames(Command& frames, int& status);
 void declare_xbee_frames(Command& frames, int& status);
+void declare_ircom_frames(Command& frames, int& status);
 
 /// Hands over each argument, or without arguments each line of standard input as it comes, white space around
 /// it removed. `origin` is empty for arguments, else "standard input, line 3". Throws InputError if there is
