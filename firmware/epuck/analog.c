@@ -2,6 +2,7 @@
 
 #include "accelerometer.h"
 #include "board.h"
+#include "ircom.h"
 #include "microphones.h"
 #include "proximity.h"
 
@@ -13,6 +14,9 @@ void INTERRUPT _ADCInterrupt(void) {
     IFS0 &= ~ADIF;
     microphones_scanned();
     accelerometer_scanned();
+#ifdef IRCOM
+    ircom_scanned();
+#endif
     proximity_scanned();
 }
 

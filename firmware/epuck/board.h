@@ -42,6 +42,7 @@
 #define PHOTOTRANSISTORS 0xFF00
 
 /* Interrupt levels: the converter's results must be fetched before its next scan */
+#define LEVEL_IRCOM 7
 #define LEVEL_ADC 6
 #define LEVEL_UART 5
 #define LEVEL_MOTOR 4

@@ -31,7 +31,13 @@ __unexpected:
         unexpected_vectors 8            ; 0..7   traps
         unexpected_vectors 3            ; 8..10
         .pword  paddr(__T1Interrupt)    ; 11
+        .ifdef IRCOM
+        unexpected_vectors 2            ; 12..13
+        .pword  paddr(__T2Interrupt)    ; 14
+        unexpected_vectors 4            ; 15..18
+        .else
         unexpected_vectors 7            ; 12..18
+        .endif
         .pword  paddr(__ADCInterrupt)   ; 19
         unexpected_vectors 9            ; 20..28
         .pword  paddr(__T4Interrupt)    ; 29

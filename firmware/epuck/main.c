@@ -3,6 +3,7 @@
 #include "analog.h"
 #include "board.h"
 #include "clock.h"
+#include "ircom.h"
 #include "leds.h"
 #include "motors.h"
 #include "proximity.h"
@@ -28,10 +29,16 @@ int main(void) {
     proximity_start();
     analog_start();
     uart_start();
+#ifdef IRCOM
+    ircom_start();
+#endif
     while (!proximity_ready())
         IDLE(); /* 13 ms; what Linux sends meanwhile is kept */
     session_start(!power_on);
     for (;;) {
+#ifdef IRCOM
+        ircom_step();
+#endif
         session_step();
         IDLE();
     }

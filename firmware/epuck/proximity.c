@@ -7,12 +7,17 @@
 #define SCANS_LIT 2             /* 284.8 us: the phototransistor has settled */
 #define SCANS_PAIR 23           /* 3.28 ms: each emitter is on 2.2 % of the time */
 #define PAIRS 4
+#ifdef IRCOM
+#define VOLATILE_SCAN volatile /* the main loop looks at them */
+#else
+#define VOLATILE_SCAN
+#endif
 
 static volatile s16 ambient_value[SENSORS];
 static volatile s16 proximity_value[SENSORS];
 static volatile u8 rounds;
-static u8 scan;
-static u8 pair;
+static VOLATILE_SCAN u8 scan;
+static VOLATILE_SCAN u8 pair;
 static s16 before_front;
 static s16 before_rear;
 
@@ -33,7 +38,21 @@ static s16 rear_result(void) {
     return ANALOG(FIRST_PHOTOTRANSISTOR + PAIRS + pair);
 }
 
+#ifdef IRCOM
+static volatile u8 held;
+
+void proximity_hold(u8 hold) {
+    held = hold;
+}
+u8 proximity_lit(void) {
+    return scan != 0 && scan <= SCANS_LIT ? pair : PROXIMITY_DARK;
+}
+#endif
+
 void proximity_scanned(void) {
+#ifdef IRCOM
+    if (held && scan == 0) return;
+#endif
     if (scan == 0) {
         before_front = front_result();
         before_rear = rear_result();

@@ -10,6 +10,13 @@
 void proximity_start(void);
 /* By the converter's interrupt. */
 void proximity_scanned(void);
+#ifdef IRCOM
+/* While held no pulse begins; one that is lit is finished. */
+void proximity_hold(u8 held);
+/* The pair whose emitters are lit, 0..3, or PROXIMITY_DARK. */
+u8 proximity_lit(void);
+#define PROXIMITY_DARK 0xFF
+#endif
 /* 0 until the first round is complete. */
 u8 proximity_ready(void);
 /* Ambient minus lit, ADC counts; more than 0 where something reflects. */

@@ -14,16 +14,19 @@ SFR(IFS1, 0x086);
 SFR(IEC0, 0x08C);
 SFR(IEC1, 0x08E);
 SFR(IPC0, 0x094);
+SFR(IPC1, 0x096);
 SFR(IPC2, 0x098);
 SFR(IPC5, 0x09E);
 SFR(IPC6, 0x0A0);
 #define T1IF (1 << 3)  /* IFS0, and T1IE in IEC0 */
 #define ADIF (1 << 11) /* IFS0, IEC0 */
+#define T2IF (1 << 6)  /* IFS0, IEC0 */
 #define T4IF (1 << 5)  /* IFS1, IEC1 */
 #define T5IF (1 << 6)  /* IFS1, IEC1 */
 #define U2RXIF (1 << 8)
 #define U2TXIF (1 << 9)
 #define T1IP(level) ((level) << 12)  /* IPC0 */
+#define T2IP(level) ((level) << 8)   /* IPC1 */
 #define ADIP(level) ((level) << 12)  /* IPC2 */
 #define T4IP(level) ((level) << 4)   /* IPC5 */
 #define T5IP(level) ((level) << 8)   /* IPC5 */
@@ -35,6 +38,9 @@ SFR(IPC6, 0x0A0);
 SFR(TMR1, 0x100);
 SFR(PR1, 0x102);
 SFR(T1CON, 0x104);
+SFR(TMR2, 0x106);
+SFR(PR2, 0x10C);
+SFR(T2CON, 0x110);
 SFR(TMR4, 0x114);
 SFR(TMR5, 0x118);
 SFR(PR4, 0x11A);
@@ -42,6 +48,7 @@ SFR(PR5, 0x11C);
 SFR(T4CON, 0x11E);
 SFR(T5CON, 0x120);
 #define TON 0x8000
+#define TCKPS_8 0x0010
 #define TCKPS_64 0x0020
 #define TCKPS_256 0x0030
 
