@@ -17,6 +17,7 @@
 #define LONG_TICKS 780u                     /* between a MARK's and a SPACE's */
 #define LONGEST_TICKS 2000u                 /* no edge for so long: not within a word */
 #define WORD_MS 34
+#define FEWEST_EDGES 20 /* a word has 60 and more; fewer are a robot that measures proximity */
 
 static u8 check_of(u8 word) {
     u8 ones = 0;
@@ -71,6 +72,8 @@ u8 ircom_sending(void) {
 /* ---- receiving: each gap between two edges votes for the symbol in whose time its middle lies ---- */
 
 static volatile u8 running;       /* a word has begun */
+static volatile u8 seen;          /* and has been under way since begun_ms */
+static volatile u8 edges;         /* of it, at most 255 */
 static volatile u16 first, last;  /* times of its first and its newest edge */
 static volatile s8 votes[SYMBOLS]; /* > 0: SPACE */
 static u32 begun_ms;
@@ -87,12 +90,15 @@ INTERRUPT(TIMER1_CAPT) {
     }
     if (!running || gap > LONGEST_TICKS) {
         u8 i;
+        if (running && edges >= FEWEST_EDGES) return; /* a word that is not read yet */
         for (i = 0; i < SYMBOLS; ++i)
             votes[i] = 0;
-        running = 1;
+        running = edges = 1;
+        seen = 0;
         first = last = now;
         return;
     }
+    if (edges < 255) ++edges;
     if (gap >= SHORTEST_TICKS) {
         const u16 symbol = (last - first + gap / 2) / SYMBOL_TICKS;
         if (symbol < SYMBOLS) votes[symbol] += gap > LONG_TICKS ? 2 : -1;
@@ -107,29 +113,30 @@ void ircom_start(void) {
 }
 
 u8 ircom_receive(u8 *word) {
-    static u8 seen; /* a word has been under way since begun_ms */
     u16 bits = 0;
+    u8 found;
     u8 i;
     if (!running) {
         seen = 0;
         return 0;
     }
     if (!seen) {
-        seen = 1;
         begun_ms = clock_ms();
+        seen = 1; /* until a flash that was no word makes room for the next */
         return 0;
     }
     if (!clock_passed(begun_ms, WORD_MS)) return 0;
     CLI();
     for (i = 0; i < SYMBOLS; ++i)
         bits = bits << 1 | (votes[i] > 0);
+    found = edges;
     running = seen = 0;
     TCCR1B |= ICES1;
     TIFR1 = ICF1;
     SEI();
     *word = (u8)(bits >> 2);
     if (bits >> 10 || (bits & 3) != check_of(*word)) {
-        ++errors;
+        if (found >= FEWEST_EDGES) ++errors;
         return 0;
     }
     return 1;
