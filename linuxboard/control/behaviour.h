@@ -32,6 +32,13 @@ struct ColouredSpot {
     int area = 0;            ///< pixels
 };
 
+/// A word that came by the proximity sensors' light (IRcom): from another robot or from a TAM.
+struct InfraredWord {
+    std::uint8_t data = 0;
+    double bearing = 0;   ///< rad, -pi..pi, of the sensor that saw it brightest
+    double range_cm = 0;  ///< between the middles of two robots face to face; of a TAM it says little
+};
+
 /// Rings of 8 are in the robot's order: 0 is front right, then clockwise; kRingBearing tells where they look.
 struct Sensors {
     std::array<double, 8> proximity{};  ///< ADC counts reflected, >= 0; 0 nothing, about 4000 contact
@@ -40,6 +47,7 @@ struct Sensors {
     bool battery_ok = true;
     std::vector<Neighbour> neighbours;                 ///< by id; empty without a range-and-bearing board
     std::optional<std::vector<ColouredSpot>> spots{};  ///< largest first; none without a camera
+    std::optional<InfraredWord> word{};                ///< since the step before
 };
 
 struct Actuators {
@@ -48,6 +56,7 @@ struct Actuators {
     std::uint8_t ring_leds = 0;  ///< bit i = LED i: 0 front, then clockwise every 45 degrees
     bool front_led = false;
     bool body_led = false;
+    std::optional<std::uint8_t> word{};  ///< to be sent by IRcom in this step
     std::uint32_t say = 0;  ///< to the neighbours; 0, 8, 16 or 24 bits of it go out with 1 to 4 payload bytes
 };
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <utility>
 
 namespace puckloop::control {
 
@@ -17,6 +19,22 @@ std::int16_t to_steps(double mm_s) {
     return std::isfinite(mm_s) ? static_cast<std::int16_t>(std::lround(clamped / kMillimetresPerStep))
                                : std::int16_t{0};
 }
+
+/// Which of a session's words are new. The original firmware renews its fields only after a record that sends
+/// a word; ours reports each word once.
+class WordFilter {
+  public:
+    std::optional<InfraredWord> take(const EpuckSensors& record, bool sent) {
+        const bool was = std::exchange(shown_, record.ircom_received != 0);
+        if (!shown_ || (was && !sent)) return std::nullopt;
+        return InfraredWord{record.ircom_data, std::remainder(double{record.ircom_bearing}, kTurn),
+                            record.ircom_range};
+    }
+
+  private:
+    static constexpr double kTurn = 2 * std::numbers::pi;
+    bool shown_ = false;
+};
 
 }  // namespace
 
@@ -37,6 +55,10 @@ EpuckActuators to_record(const Actuators& actuators) {
     record.ring_leds = actuators.ring_leds;
     record.other_leds =
         static_cast<std::uint8_t>((actuators.front_led ? 1 : 0) | (actuators.body_led ? 2 : 0));
+    if (actuators.word) {
+        record.ircom_enabled = 1;
+        record.ircom_data = *actuators.word;
+    }
     return record;
 }
 
@@ -46,6 +68,9 @@ bool run_control_loop(Session& session, Transport& transport, Behaviour& behavio
     if (!session.start(transport.now() + settings.start_wait)) return false;
     const double begun = transport.now();
     const long steps = settings.duration > 0 ? std::lround(settings.duration / settings.period) : 0;
+    WordFilter words;
+    std::optional<InfraredWord> word;
+    double next_word = 0;
     for (long step = 0; steps == 0 || step < steps;) {
         const double t = transport.now() - begun;
         const bool last = interrupted() || step + 1 == steps;
@@ -55,11 +80,19 @@ bool run_control_loop(Session& session, Transport& transport, Behaviour& behavio
             if (surroundings.ground) sensors.ground = surroundings.ground();
             if (surroundings.neighbours) sensors.neighbours = surroundings.neighbours();
             if (surroundings.spots) sensors.spots = surroundings.spots();
-            const Actuators actuators = behaviour.step(sensors, t);
+            sensors.word = std::exchange(word, std::nullopt);
+            Actuators actuators = behaviour.step(sensors, t);
+            if (!actuators.word && settings.word >= 0 && t >= next_word) {
+                actuators.word = static_cast<std::uint8_t>(settings.word);
+                next_word = t + settings.word_every;
+            }
             if (surroundings.say) surroundings.say(actuators.say);
             record = to_record(actuators);
         }
-        session.exchange(record);
+        if (const auto answer = session.exchange(record)) {
+            word = words.take(*answer, record.ircom_enabled != 0);
+            if (word && surroundings.heard) surroundings.heard(*word);
+        }
         // A last record that went unanswered may not have been obeyed: get the robot to rest before the end.
         const double give_up = transport.now() + (last ? kLastTry : settings.give_up);
         if (session.lost() && !session.resync(give_up) && !interrupted()) return false;

@@ -14,6 +14,8 @@ struct LoopSettings {
     double duration = 0;     ///< s, 0: until interrupted
     double start_wait = 60;  ///< s to wait for the PIC at the start (the original needs 40 s after power-up)
     double give_up = 60;     ///< s without the PIC in mid-session before the run fails
+    int word = -1;           ///< 0..255: sent by IRcom when the behaviour has none of its own
+    double word_every = 0;   ///< s between two of those, 0: every step
     double stale_after = 0.3;  ///< s: the robot stands still while its newest sensors are older
 };
 
@@ -23,6 +25,7 @@ struct Surroundings {
     std::function<std::vector<Neighbour>()> neighbours;
     std::function<void(std::uint32_t)> say;              ///< to the neighbours, from now on
     std::function<std::vector<ColouredSpot>()> spots{};  ///< before the omnidirectional camera
+    std::function<void(const InfraredWord&)> heard{};    ///< of every word that came
 };
 
 /// What the behaviour sees of a sensor record, and what the PIC gets of its wishes.

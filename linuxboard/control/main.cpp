@@ -80,9 +80,17 @@ RabSession::Log make_log(Clock& clock) {
     };
 }
 
-Surroundings surroundings_of(GroundSensor* ground, RabSession* rab, ColouredSpots* spots) {
+Surroundings surroundings_of(GroundSensor* ground, RabSession* rab, ColouredSpots* spots,
+                             const RabSession::Log& log) {
     Surroundings surroundings;
     if (spots != nullptr) surroundings.spots = [spots] { return spots->look(); };
+    surroundings.heard = [&log](const InfraredWord& word) {
+        constexpr double kDegree = 3.14159265358979 / 180;
+        char text[80];
+        std::snprintf(text, sizeof text, "infra-red word %d from %.0f deg, %.1f cm", int{word.data},
+                      word.bearing / kDegree, word.range_cm);
+        log(text);
+    };
     if (ground != nullptr) surroundings.ground = [ground] { return ground->read(); };
     if (rab == nullptr) return surroundings;
     surroundings.neighbours = [rab] { return rab->neighbours(); };
@@ -110,7 +118,7 @@ int drive(const Options& options) {
     bool reached = false;
     try {
         reached = run_control_loop(session, serial, *behaviour,
-                                   surroundings_of(ground.get(), rab.get(), spots.get()), interrupted,
+                                   surroundings_of(ground.get(), rab.get(), spots.get(), log), interrupted,
                                    options.loop);
     } catch (const LineError& error) {
         std::fprintf(stderr, "puckloop-control: %s\n", error.what());

@@ -29,6 +29,8 @@ const char kUsage[] =
     "  --start-wait S     wait so long for the PIC at the start (60)\n"
     "  --give-up S        end with status 1 after so long without the PIC in mid-session (60)\n"
     "  --camera DEVICE    the omnidirectional camera, such as /dev/video1: lets serve see which TAM shines\n"
+    "  --ircom-send W     send the word W, 0 to 255, by IRcom; words that come are printed in any case\n"
+    "  --ircom-every S    between two words; 0: in every step (0)\n"
     "range-and-bearing board:\n"
     "  --rab              use it if it is there (aggregate and follow do so anyway)\n"
     "  --rab-required     use it; end with status 2 when it does not answer\n"
@@ -53,6 +55,8 @@ enum {
     kNoGround,
     kStartWait,
     kGiveUp,
+    kIrcomSend,
+    kIrcomEvery,
     kRab,
     kRabRequired,
     kRabId,
@@ -73,6 +77,8 @@ const option kTable[] = {{"behaviour", required_argument, nullptr, kBehaviour},
                          {"no-ground", no_argument, nullptr, kNoGround},
                          {"start-wait", required_argument, nullptr, kStartWait},
                          {"give-up", required_argument, nullptr, kGiveUp},
+                         {"ircom-send", required_argument, nullptr, kIrcomSend},
+                         {"ircom-every", required_argument, nullptr, kIrcomEvery},
                          {"rab", no_argument, nullptr, kRab},
                          {"rab-required", no_argument, nullptr, kRabRequired},
                          {"rab-id", required_argument, nullptr, kRabId},
@@ -109,6 +115,12 @@ void take(Options& options, int choice, const char* name) {
         break;
     case kGiveUp:
         options.loop.give_up = seconds(name, optarg);
+        break;
+    case kIrcomSend:
+        options.loop.word = whole(name, optarg, 0, 255);
+        break;
+    case kIrcomEvery:
+        options.loop.word_every = seconds(name, optarg);
         break;
     case kRab:
         options.rab = true;

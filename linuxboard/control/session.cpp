@@ -94,7 +94,8 @@ std::optional<EpuckSensors> Session::exchange(const EpuckActuators& actuators) {
         return std::nullopt;
     }
     transport_.write(std::span(frame).last(1));
-    const std::size_t have = receive(record, transport_.now() + timing_.answer);
+    const double patience = actuators.ircom_enabled != 0 ? timing_.answer_to_word : timing_.answer;
+    const std::size_t have = receive(record, transport_.now() + patience);
     if (have == 0) {
         ++counters_.no_answer;
         log_("no answer to actuator record " + std::to_string(counters_.frames));

@@ -25,10 +25,11 @@ namespace puckloop::control {
 
 /// All in seconds.
 struct SessionTiming {
-    double start_answer = 0.25;  ///< wake-up to the end of the first record: waiting loop 122 ms + wire
-    double answer = 0.060;       ///< actuator record to the first byte of the answer
-    double silence = 0.020;      ///< this long without a byte ends a record
-    double hold_back = 0.004;    ///< wait before an actuator record's last byte
+    double start_answer = 0.25;    ///< wake-up to the end of the first record: waiting loop 122 ms + wire
+    double answer = 0.060;         ///< actuator record to the first byte of the answer
+    double answer_to_word = 0.25;  ///< likewise after a record that sends a word: the original takes 115 ms
+    double silence = 0.020;        ///< this long without a byte ends a record
+    double hold_back = 0.004;      ///< wait before an actuator record's last byte
     double step = 0.010;  ///< between single zeros; below the 20 ms after which our firmware drops a part
     double pause_first = 0.1;  ///< between rounds of zeros, doubled up to ...
     double pause_last = 0.8;
