@@ -48,8 +48,10 @@ inline constexpr std::array<LampPlace, kLights> kLight{{{"right", -0.035, -0.025
                                                         {"middle", -0.035, 0.0, 0.060, 0.010},
                                                         {"left", -0.035, 0.025, 0.060, 0.010},
                                                         {"top", -0.050, 0.0, 0.113, 0.0025}}};
-/// The infra-red transceiver, which looks out of the opening.
-inline constexpr std::array<double, 3> kTransceiver{-0.034, 0.0, 0.052};
+/// The infra-red transceiver is on the left side board and looks across (the boards' drawings: 21 mm from the
+/// main board's edge, where the beams are at 63 and 103 mm, and 30 mm up).
+inline constexpr std::array<double, 3> kTransceiver{-0.030, 0.049, 0.030};
+inline constexpr std::array<double, 2> kTransceiverLooks{0.0, -1.0};
 
 }  // namespace booth
 

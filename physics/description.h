@@ -142,6 +142,7 @@ struct World {
     std::vector<Robot> robots;
     std::vector<Booth> booths{};
     std::map<std::string, double> parameters;  ///< for all robots and the world
+    bool ircom = false;                        ///< robots' and TAMs' infra-red light reaches others
     Recording recording;
 };
 

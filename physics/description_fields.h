@@ -22,6 +22,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Robot, name, x, y, heading, parameters, board
                                    camera, rab_signals, place)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Recording, directory, period, log)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(World, node_name, file, seed, ambient_light, arena, walls, boxes,
-                                   cylinders, lamps, speakers, patches, robots, booths, parameters, recording)
+                                   cylinders, lamps, speakers, patches, robots, booths, parameters, ircom,
+                                   recording)
 
 }  // namespace puckloop::physics

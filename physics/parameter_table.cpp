@@ -215,6 +215,17 @@ std::vector<ParameterInfo> build_table() {
         {"ir.stray_loss", "ln counts", 1, {0.7}, 0.0, 5.0, AT(ir.stray_loss), "? what such a reflection costs; 3-10 dB"},
         {"ir.refresh", "s", 1, {0.005}, 0.001, 1.0, AT(ir.refresh), "a burst that lasts longer is looked at anew when something moved"},
 
+        // IRcom: the proximity sensors' light between robots, and between a robot and a TAM.
+        {"ircom.power", "1", 1, {1.0}, 0.0, 10.0, AT(ircom.power), "of a robot's infra-red diodes, as others see them"},
+        {"ircom.gain", "1", 1, {1.0}, 0.0, 10.0, AT(ircom.gain), "of a robot's phototransistors, for the light of others"},
+        {"ircom.emitter_exponent", "1", 1, {2.0}, 0.0, 20.0, AT(ircom.emitter_exponent), "? lobe cos^n of a diode: half at 45 deg"},
+        {"ircom.receiver_exponent", "1", 1, {1.0}, 0.0, 20.0, AT(ircom.receiver_exponent), "? lobe cos^n of a phototransistor"},
+        {"ircom.reach", "m", 1, {0.4}, 0.01, 2.0, AT(ircom.reach), "beyond that nothing is seen: the measured curve gives a tenth of a count there"},
+        {"ircom.delay", "s", 1, {20e-6}, 1e-6, 1e-3, AT(ircom.delay), "? every edge comes so much later, beside the parts' own time constants; also what lets boards run ahead of each other"},
+        {"ircom.tam_power", "1", 1, {1.0}, 0.0, 10.0, AT(ircom.tam_power), "? of the TAM's diode; the same part as the robots', its current is 50 mA (39 ohm), theirs is not known"},
+        {"ircom.tam_threshold", "counts", 1, {100}, 1, 4095, AT(ircom.tam_threshold), "? light at which the TAM's comparator switches (98.5 uA in 10 kohm), in counts of a robot's sensor: words cross everywhere in the booth"},
+        {"ircom.tam_time", "s", 1, {20e-6}, 1e-6, 1e-3, AT(ircom.tam_time), "? time constant at the comparator's input; its filter alone has 1 us (10 kohm, 100 pF)"},
+
         // Contacts.
         {"contact.mu", "1", 1, {0.7}, 0.01, 3.0, AT(contact.mu), "[A] tyre along; 0.4-0.8 ?"},
         {"contact.mu_lateral", "1", 1, {0.7}, 0.01, 3.0, AT(contact.mu_lateral), "[A] tyre across"},

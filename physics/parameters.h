@@ -96,6 +96,13 @@ struct CameraParameters {
     double exposure, noise, ring_level, turret_level, booth_level, crosstalk, ring_radius, turret_radius;
 };
 
+/// IRcom: light of proximity diodes between robots, and between a robot and a TAM. `tam_*` are the TAMs', and
+/// hold for the whole world.
+struct IrcomParameters {
+    double power, gain, emitter_exponent, receiver_exponent, reach, delay;
+    double tam_power, tam_threshold, tam_time;
+};
+
 /// Contacts between any two things; one set for the whole world.
 struct ContactParameters {
     double mu, mu_lateral, mu_skid, mu_body, mu_object, creep;
@@ -120,6 +127,7 @@ struct Parameters {
     BatteryParameters battery;
     IrParameters ir;
     CameraParameters camera;
+    IrcomParameters ircom;
     ContactParameters contact;
     SimulationParameters world;
 

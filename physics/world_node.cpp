@@ -55,9 +55,10 @@ struct WorldNode::Impl {
     std::vector<RobotLinks> links;
     std::vector<BoothLink> booths;
     cosim::PortIndex first_booth = 0xFFFF;
-    std::vector<double> poses;            // as last published; empty without the port "ir"
-    std::map<std::size_t, double> scene;  // likewise, by id: what events change
-    std::vector<cosim::Message> waiting;  // stamped at or after the next step
+    std::vector<cosim::PortIndex> pose_ports;  // "ir", "ircom": whoever is told where everything is
+    std::vector<double> poses;                 // as last published; empty without those
+    std::map<std::size_t, double> scene;       // likewise, by id: what events change
+    std::vector<cosim::Message> waiting;       // stamped at or after the next step
     std::optional<CameraPort> cameras;
     cosim::PortIndex first_camera = 0xFFFF;
     std::optional<Recorder> recorder;
@@ -82,7 +83,14 @@ WorldNode::Impl::Impl(World description, EventPlan plan, std::unique_ptr<Command
         ports.push_back({robot.name + ".ground", cosim::PortKind::Signals});
     }
     if (has_rab(model.description())) {
+        pose_ports.push_back(static_cast<cosim::PortIndex>(ports.size()));
         ports.push_back({"ir", cosim::PortKind::Signals});
+    }
+    if (model.description().ircom) {
+        pose_ports.push_back(static_cast<cosim::PortIndex>(ports.size()));
+        ports.push_back({"ircom", cosim::PortKind::Signals});
+    }
+    if (!pose_ports.empty()) {
         poses.assign(pose_signal_names(model.description()).size(), std::nan(""));
         // The medium knows what is there from the start.
         const SceneSignals ids{poses.size() / kPoseSignals};
@@ -169,7 +177,6 @@ void WorldNode::Impl::publish(std::vector<cosim::Message>& outbox) {
 }
 
 void WorldNode::Impl::publish_poses(std::vector<cosim::Message>& outbox) {
-    const auto port = static_cast<cosim::PortIndex>(links.size() * kPortsOfRobot);
     for (std::size_t i = 0; i * kPoseSignals < poses.size(); ++i) {
         const auto pose = [&](const auto& s) {
             return std::array<double, kPoseSignals>{s.x, s.y, s.heading};
@@ -180,7 +187,9 @@ void WorldNode::Impl::publish_poses(std::vector<cosim::Message>& outbox) {
             const double value = std::round(now[k] / kPoseQuantum[k]) * kPoseQuantum[k];
             if (value == poses[id]) continue;
             poses[id] = value;
-            outbox.push_back({next_step + kStep, port, cosim::Signal{static_cast<std::uint16_t>(id), value}});
+            for (const auto port : pose_ports)
+                outbox.push_back(
+                    {next_step + kStep, port, cosim::Signal{static_cast<std::uint16_t>(id), value}});
         }
     }
 }
@@ -189,8 +198,8 @@ void WorldNode::Impl::publish_body(std::size_t id, double value, std::vector<cos
     double& last = scene[id];
     if (value == last) return;
     last = value;
-    const auto port = static_cast<cosim::PortIndex>(links.size() * kPortsOfRobot);
-    outbox.push_back({next_step + kStep, port, cosim::Signal{static_cast<std::uint16_t>(id), value}});
+    for (const auto port : pose_ports)
+        outbox.push_back({next_step + kStep, port, cosim::Signal{static_cast<std::uint16_t>(id), value}});
 }
 
 /// What events change, for the infra-red medium.

@@ -56,6 +56,13 @@ Scenario read_scenario(const std::filesystem::path& file) {
         read_tam(name, *table, file.parent_path(), scenario);
     scenario.radio = read_radio(top);
     scenario.coordinator = read_coordinator(top);
+    scenario.world.ircom = !scenario.robots.empty() && !scenario.tams.empty();
+    if (const TomlValue* table = top.table("ircom")) {
+        Reader ircom(name, "ircom", *table);
+        scenario.world.ircom = true;
+        scenario.record_ircom = ircom.flag("record", false);
+        ircom.finish();
+    }
     if (scenario.robots.empty() && scenario.tams.empty())
         top.fail("robot", "no robot", "at least one [[robot]] or [[tam]]");
     std::size_t index = 0;

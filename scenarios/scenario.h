@@ -130,6 +130,7 @@ struct Scenario {
     double uart_baud = 115200.0;  ///< nominal rate of the UART links
     double i2c_clock = 100e3;     ///< Hz, of Linux as bus master
     bool record_ir = false;       ///< light of range-and-bearing boards, chip by chip, in trace.csv
+    bool record_ircom = false;    ///< IRcom's light, edge by edge, in trace.csv
     physics::World world;         ///< robots in the same order as `robots`
     physics::EventPlan events;    ///< what happens to the world while it runs
     std::vector<RobotBoards> robots;

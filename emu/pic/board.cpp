@@ -18,6 +18,12 @@ double cycles(double seconds, const BoardParameters& parameters) {
     return seconds * parameters.crystal_hertz * kPllOverCycle;
 }
 
+/// One for each phototransistor.
+std::array<LightInput, kProximityCount> lights(double time_constant) {
+    const LightInput one{time_constant};
+    return {one, one, one, one, one, one, one, one};
+}
+
 StepperDecoder motor(StepSense sense, const BoardParameters& parameters) {
     return {sense, static_cast<dspic::Cycle>(std::ceil(cycles(parameters.coil_settle_s, parameters)))};
 }
@@ -44,6 +50,7 @@ Board::Board(const BoardParameters& parameters, BoardListener& listener)
                 Emitter{cycles(parameters.light_time_constant_s, parameters)},
                 Emitter{cycles(parameters.light_time_constant_s, parameters)},
                 Emitter{cycles(parameters.light_time_constant_s, parameters)}},
+      lights_(lights(cycles(parameters.light_time_constant_s, parameters))),
       microphones_{Microphone{parameters.seed, parameters.name + "/mic0"},
                    Microphone{parameters.seed, parameters.name + "/mic1"},
                    Microphone{parameters.seed, parameters.name + "/mic2"}},
@@ -61,6 +68,8 @@ std::optional<dspic::PortLetter> Board::set_signal(SignalId id, double value, ds
     input.before = input.at(now);
     input.value = wanted;
     input.since = now;
+    if (id >= kInfraredLight && id < kInfraredLight + kProximityCount)
+        lights_[static_cast<std::size_t>(id - kInfraredLight)].set(wanted, now);
     if (id == kBatteryVoltage) values_[kBatteryLow].value = wanted < parameters_.battery_low_volts ? 1 : 0;
     const std::array<std::uint16_t, kPorts> before = levels_;
     place_levels();
@@ -159,6 +168,7 @@ double Board::analog(int channel, dspic::Cycle now) {
         const int sensor = channel - kFirstProximityChannel;
         const Emitter& emitter = emitters_[static_cast<std::size_t>(sensor % kPulseCount)];
         counts -= values_[static_cast<std::size_t>(kProximity + sensor)].at(now) * emitter.intensity(now);
+        counts -= lights_[static_cast<std::size_t>(sensor)].counts_at(now);
     }
     if (channel >= kFirstMicrophoneChannel && channel < kFirstMicrophoneChannel + kMicrophoneCount) {
         const auto i = static_cast<std::size_t>(channel - kFirstMicrophoneChannel);

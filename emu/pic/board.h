@@ -12,6 +12,7 @@
 #include "base/random.h"
 #include "emu/dspic/peripherals/pins.h"
 #include "emu/pic/emitter.h"
+#include "emu/pic/light_input.h"
 #include "emu/pic/microphone.h"
 #include "emu/pic/signals.h"
 #include "emu/pic/stepper.h"
@@ -64,7 +65,7 @@ class Board : public dspic::Pins {
     /// Positions of all signals, lights, motors and noise; the parameters are each board's own.
     template <class Archive>
     void state(Archive& archive) {
-        archive(noise_, values_, emitters_, microphones_, motors_, outputs_);
+        archive(noise_, values_, emitters_, lights_, microphones_, motors_, outputs_);
         if constexpr (Archive::kLoads) check_loaded();
     }
     /// Noise begins anew, by this board's own name and seed.
@@ -108,6 +109,7 @@ class Board : public dspic::Pins {
     RandomStream noise_;
     std::array<Input, kSignalCount> values_{};
     std::array<Emitter, kPulseCount> emitters_;
+    std::array<LightInput, kProximityCount> lights_;
     std::array<Microphone, kMicrophoneCount> microphones_;
     std::array<StepperDecoder, 2> motors_;
     std::array<std::uint16_t, kPorts> outputs_{};  ///< pins that are driven high

@@ -27,6 +27,7 @@ PicNode::PicNode(const image::Image& image, const PicNodeOptions& options)
              {"world", cosim::PortKind::Signals}},
       board_(options.board, *this),
       log_(options.log, image) {
+    if (options.ircom) ports_.push_back({"ir", cosim::PortKind::Signals});
     dspic::ChipOptions chip_options;
     chip_options.crystal_hertz = options.board.crystal_hertz;
     chip_options.ppm = options.board.crystal_ppm;
@@ -119,6 +120,8 @@ void PicNode::signal_changed(SignalId id, double value, dspic::Cycle now) {
     const cosim::Time time = chip_->clock().time_of(now);
     log_.signal_changed(id, value, time);
     outbox_->push_back({time, kWorld, cosim::Signal{id, value}});
+    if (options_.ircom && id >= kPulse && id < kPulse + kPulseCount)
+        outbox_->push_back({time, kIr, cosim::Signal{id, value}});
 }
 
 void PicNode::uart_sent(int unit, const cosim::UartFrame& frame) {

@@ -20,6 +20,8 @@ namespace puckloop::pic {
 
 struct PicNodeOptions {
     BoardParameters board;   ///< its name is the node's name
+    /// The board has the port "ir", as IRcom's medium (physics/ircom) needs it.
+    bool ircom = false;
     bool i2c_linked = true;  ///< false: nobody else is on the bus, and the node answers the master itself
     bool skip_idle = true;   ///< busy-wait loops are skipped forward
     std::vector<cosim::Time> resets;  ///< the reset button (a pulse on MCLR), rising times above 0
@@ -36,6 +38,7 @@ class PicNode : public cosim::StatefulNode, private BoardListener {
     static constexpr cosim::PortIndex kUart2 = 1;
     static constexpr cosim::PortIndex kI2c = 2;
     static constexpr cosim::PortIndex kWorld = 3;
+    static constexpr cosim::PortIndex kIr = 4;  ///< if `ircom`: pulses out, ir_light in
 
     /// Throws InputError if the image does not fit the chip.
     PicNode(const image::Image& image, const PicNodeOptions& options);

@@ -17,6 +17,7 @@ constexpr double kFullScale = 4095;
 constexpr double kRoomLight = 3800;  // ordinary room 3450..3860; dark ~4000
 constexpr double kMidScale = 2048;
 constexpr double kOneG = 800;  // counts for 1 g
+constexpr double kBrightest = 1e6;  // far beyond what the converter shows
 constexpr double kStepRange = 2147483647;
 
 struct ListBuilder {
@@ -85,6 +86,9 @@ std::vector<SignalInfo> build() {
                  fmt::format("sound about mic{}: largest minus smallest of 100 samples", i));
     b.input("mic_lost", "1", 0, 1, 0, "share of microphone samples that hold the one before");
     b.input("reset", "level", 0, 1, 0, "reset button; a change to 1 resets the chip (MCLR)");
+    for (int i = 0; i < kProximityCount; ++i)
+        b.input(fmt::format("ir_light{}", i), "counts", 0, kBrightest, 0,
+                fmt::format("infra-red light of other robots and booths at AN{}, by which it drops", 8 + i));
     return b.list;
 }
 

@@ -35,7 +35,8 @@ inline constexpr SignalId kCameraReset = 59;
 inline constexpr SignalId kMicrophoneLevel = 60;  ///< 3: volume of the sound at microphone i, counts
 inline constexpr SignalId kMicrophoneLost = 63;   ///< share of microphone samples that hold the one before
 inline constexpr SignalId kResetButton = 64;  ///< 1 = the reset button is pressed (MCLR), which resets once
-inline constexpr SignalId kSignalCount = 65;
+inline constexpr SignalId kInfraredLight = 65;  ///< 8: counts by which others' infra-red light drops AN8+i
+inline constexpr SignalId kSignalCount = 73;
 
 inline constexpr int kProximityCount = 8;
 inline constexpr int kMicrophoneCount = 3;

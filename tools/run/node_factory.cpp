@@ -13,6 +13,7 @@
 #include "emu/xbee/module_node.h"
 #include "linuxboard/shim/linux_node.h"
 #include "physics/ir_node.h"
+#include "physics/ircom/ircom_node.h"
 #include "physics/world_node.h"
 #include "tools/run/camera_scenery.h"
 #include "tools/run/control/control_socket.h"
@@ -46,6 +47,7 @@ std::unique_ptr<cosim::StatefulNode> make_pic(const json& spec) {
     options.board.crystal_ppm = spec.at("crystal_ppm");
     options.board.adc_noise_counts = spec.at("adc_noise");
     options.board.selector = spec.at("selector");
+    options.ircom = spec.value("ircom", false);
     options.log = spec.value("log", "");
     for (const double seconds : spec.at("resets").get<std::vector<double>>())
         options.resets.push_back(cosim::from_seconds(seconds));
@@ -136,6 +138,7 @@ std::unique_ptr<cosim::Node> make_node(const std::string& text) {
         if (kind == "linux") return make_linux(spec);
         if (kind == "world") return make_world(spec);
         if (kind == "ir") return physics::make_ir_node(text);
+        if (kind == "ircom") return physics::make_ircom_node(text);
         if (kind == "i2c_bus") return i2c_devices::make_bus_node(text);
         if (kind == "outside") return make_outside(spec);
         if (kind == "xbee") return xbee::make_module_node(text);

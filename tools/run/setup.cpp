@@ -7,6 +7,7 @@
 #include "tools/run/control/control_place.h"
 #include "tools/run/overrides.h"
 #include "tools/run/plan/cameras.h"
+#include "tools/run/plan/ircom_nodes.h"
 #include "tools/run/plan/linux_nodes.h"
 #include "tools/run/plan/plan_kit.h"
 #include "tools/run/plan/radio_nodes.h"
@@ -29,16 +30,18 @@ using scenarios::Scenario;
 
 json pic_spec(const RunSetup& setup, const RobotBoards& robot) {
     const Scenario& scenario = setup.scenario;
-    return {{"kind", "pic"},
-            {"name", robot.name + ".pic"},
-            {"firmware", full_path(robot.pic.firmware).string()},
-            {"seed", scenario.seed},
-            {"crystal_ppm", robot.pic.crystal_ppm},
-            {"adc_noise", robot.pic.adc_noise},
-            {"selector", robot.pic.selector},
-            {"resets", robot.pic.resets},
-            {"nvm", robot.pic.nvm.empty() ? "" : full_path(robot.pic.nvm).string()},
-            {"log", log_of(setup, robot.name + ".pic")}};
+    json spec{{"kind", "pic"},
+              {"name", robot.name + ".pic"},
+              {"firmware", full_path(robot.pic.firmware).string()},
+              {"seed", scenario.seed},
+              {"crystal_ppm", robot.pic.crystal_ppm},
+              {"adc_noise", robot.pic.adc_noise},
+              {"selector", robot.pic.selector},
+              {"resets", robot.pic.resets},
+              {"nvm", robot.pic.nvm.empty() ? "" : full_path(robot.pic.nvm).string()},
+              {"log", log_of(setup, robot.name + ".pic")}};
+    if (scenario.world.ircom) spec["ircom"] = true;
+    return spec;
 }
 
 json rab_spec(const RunSetup& setup, const RobotBoards& robot) {
@@ -193,6 +196,7 @@ RunSetup set_up(const RunRequest& request) {
         add_robot(setup, i, world, request);
     add_tams(setup, request);
     add_radio(setup, request);
+    add_ircom(setup, world);
     name_linked_ports(setup);
     plan_states(setup, request);
     return setup;
