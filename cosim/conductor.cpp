@@ -110,6 +110,7 @@ void Conductor::State::loop() {
     while (true) {
         take_interrupt();
         surprised_.clear();
+        plan_begun_ = WallClock::now();
         plan();
         if (schedule_.complete()) return;
         network_->settle(schedule_.bounds(), deliveries_, changes_);
@@ -120,6 +121,7 @@ void Conductor::State::loop() {
             if (chop_) chop(n, until, ahead);
             grant(n, until, ahead);
         }
+        planned_at_ = WallClock::now();
         collect();
         for (int turns = 0; turns < kMostFollowing && follow_up(); ++turns)
             collect();

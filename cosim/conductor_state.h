@@ -133,6 +133,7 @@ class Conductor::State {
     std::size_t current_ = kNobody;  ///< whose call is under way: names the one that failed
     std::uint64_t grants_ = 0;
     WallClock::time_point start_{};
+    WallClock::time_point plan_begun_{}, planned_at_{};  ///< the last plan and its grants
     std::optional<WallClock::time_point> paced_since_;  ///< RunOptions::pace_from was reached
     double told_wall_ = 0.0;
     double flushed_wall_ = 0.0;

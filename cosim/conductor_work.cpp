@@ -10,6 +10,8 @@ namespace puckloop::cosim {
 namespace {
 // Handing a piece of work over costs a good part of a microsecond, and one more look at the schedule.
 constexpr double kWorthSharing = 3000.0;  // ns
+// The conductor works at least so many times as long as it planned while there is something to do.
+constexpr int kWorkByPlanning = 4;
 // How long to sleep where --realtime lets nobody go on.
 constexpr std::chrono::microseconds kPaceSleep{500};
 }  // namespace
@@ -57,6 +59,10 @@ bool Conductor::State::work_here() {
         take_local_reply(n);
     }
     const bool any = !here_.empty() || workers_->under_way() > 0;
+    // Where a look at the whole run takes long, as with many nodes, some work is done between two.
+    const WallClock::duration least = kWorkByPlanning * (planned_at_ - plan_begun_);
+    while (workers_->waiting() > workers_->helpers() && WallClock::now() - planned_at_ < least)
+        workers_->do_one();
     workers_->take_done(done_);
     // Beside what has just been handed out others may be able to go on: that is seen first.
     if (done_.empty() && here_.empty() && shared_.empty() && any) {

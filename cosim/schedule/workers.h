@@ -39,6 +39,8 @@ class Workers {
     void stop();
 
     unsigned helpers() const { return static_cast<unsigned>(threads_.size()); }
+    /// So many have been handed out and not been begun.
+    std::size_t waiting() const { return handed_out_.load() - begun_.load(); }
     /// So many have been handed out and not been taken.
     std::size_t under_way() const { return under_way_; }
     /// So many helpers look for work.
