@@ -22,6 +22,22 @@ std::uint64_t hash_name(std::string_view name) {
     return hash;
 }
 
+inline std::uint64_t draw(std::array<std::uint64_t, 4>& state) {
+    const std::uint64_t result = std::rotl(state[1] * 5, 7) * 9;
+    const std::uint64_t t = state[1] << 17;
+    state[2] ^= state[0];
+    state[3] ^= state[1];
+    state[1] ^= state[2];
+    state[0] ^= state[3];
+    state[2] ^= t;
+    state[3] = std::rotl(state[3], 45);
+    return result;
+}
+
+inline double fraction(std::uint64_t bits) {
+    return static_cast<double>(bits >> 11) * 0x1.0p-53;
+}
+
 }  // namespace
 
 RandomStream::RandomStream(std::uint64_t seed, std::string_view name) {
@@ -32,19 +48,11 @@ RandomStream::RandomStream(std::uint64_t seed, std::string_view name) {
 }
 
 std::uint64_t RandomStream::next() {
-    const std::uint64_t result = std::rotl(state_[1] * 5, 7) * 9;
-    const std::uint64_t t = state_[1] << 17;
-    state_[2] ^= state_[0];
-    state_[3] ^= state_[1];
-    state_[1] ^= state_[2];
-    state_[0] ^= state_[3];
-    state_[2] ^= t;
-    state_[3] = std::rotl(state_[3], 45);
-    return result;
+    return draw(state_);
 }
 
 double RandomStream::uniform() {
-    return static_cast<double>(next() >> 11) * 0x1.0p-53;
+    return fraction(draw(state_));
 }
 
 double RandomStream::normal() {
@@ -53,11 +61,13 @@ double RandomStream::normal() {
         return spare_;
     }
     double u = 0, v = 0, s = 0;
+    std::array<std::uint64_t, 4> state = state_;
     do {
-        u = 2.0 * uniform() - 1.0;
-        v = 2.0 * uniform() - 1.0;
+        u = 2.0 * fraction(draw(state)) - 1.0;
+        v = 2.0 * fraction(draw(state)) - 1.0;
         s = u * u + v * v;
     } while (s >= 1.0 || s == 0.0);
+    state_ = state;
     const double factor = std::sqrt(-2.0 * std::log(s) / s);
     spare_ = v * factor;
     has_spare_ = true;

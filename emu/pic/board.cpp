@@ -176,7 +176,9 @@ double Board::analog(int channel, dspic::Cycle now) {
             microphones_[i].sample(values_[kMicrophoneLevel + i].at(now), values_[kMicrophoneLost].value);
     }
     if (parameters_.adc_noise_counts > 0) counts += parameters_.adc_noise_counts * noise_.normal();
-    const double code = std::fmin(std::fmax(std::nearbyint(counts), 0.0), kFullScale);
+    const double clipped = counts > 0.0 ? counts : 0.0;
+    constexpr double kWhole = 0x1.0p52;  // from here on doubles are whole: to the nearest, to even between
+    const double code = clipped < kFullScale ? (clipped + kWhole) - kWhole : kFullScale;
     return (code + kInsideCode) / kSpan;
 }
 

@@ -1,7 +1,5 @@
 #include "emu/rab_board/board.h"
 
-#include <cmath>
-
 namespace puckloop::rab {
 
 namespace {
@@ -137,7 +135,9 @@ double Board::analog(int channel, dspic::Cycle now) {
     if (channel < kFirstPeakChannel || channel >= kFirstPeakChannel + kSensorCount) return 0.0;
     double counts = peaks_[static_cast<std::size_t>(channel - kFirstPeakChannel)].level(time_of(now));
     if (parameters_.adc_noise_counts > 0) counts += parameters_.adc_noise_counts * noise_.normal();
-    const double code = std::fmin(std::fmax(std::nearbyint(counts), 0.0), kFullScale);
+    const double clipped = counts > 0.0 ? counts : 0.0;
+    constexpr double kWhole = 0x1.0p52;  // from here on doubles are whole: to the nearest, to even between
+    const double code = clipped < kFullScale ? (clipped + kWhole) - kWhole : kFullScale;
     return (code + kInsideCode) / kSpan;
 }
 

@@ -131,8 +131,8 @@ std::uint16_t Adc12::convert(Cycle at) const {
         const double low = vcfg & 2 ? pins_.analog(kVrefMinusPin, at) : 0.0;
         value = high > low ? (value - low) / (high - low) : 0.0;
     }
-    const double counts = std::floor(value * kFullScale);
-    return static_cast<std::uint16_t>(std::clamp(counts, 0.0, kFullScale - 1.0));
+    const double counts = std::clamp(value * kFullScale, 0.0, kFullScale - 1.0);
+    return static_cast<std::uint16_t>(static_cast<int>(counts));  // what is below a whole one does not count
 }
 
 // FORM: integer, signed integer, fractional, signed fractional.
