@@ -4,6 +4,9 @@
 #include "emu/dspic/fast/loop_undo.h"
 
 #include <algorithm>
+#include <array>
+#include <cstring>
+#include <span>
 
 namespace puckloop::dspic {
 
@@ -11,6 +14,32 @@ namespace {
 
 constexpr std::uint32_t kWordMask = 0xFFFFFF;
 constexpr Cycle kLongestExtra = 100;  ///< cycles that PSV reads of one instruction add, generously
+
+/// Words up to the last one that is not 0. Looking for it costs a fraction of copying what no program uses.
+std::size_t used_words(std::span<const std::uint16_t> ram) {
+    constexpr std::size_t kPiece = 32;
+    std::size_t end = ram.size();
+    for (; end >= kPiece; end -= kPiece) {
+        std::uint64_t any = 0;
+        std::array<std::uint64_t, kPiece / 4> words;
+        std::memcpy(words.data(), ram.data() + end - kPiece, sizeof words);
+        for (const std::uint64_t word : words)
+            any |= word;
+        if (any != 0) return end;
+    }
+    return end;
+}
+
+/// The rest of RAM is 0.
+template <class Archive>
+void list_used_ram(Archive& archive, std::vector<std::uint16_t>& ram) {
+    std::size_t used = Archive::kLoads ? 0 : used_words(ram);
+    archive(used);
+    std::span<std::uint16_t> words(ram.data(), used);
+    archive.fixed(words);
+    if constexpr (Archive::kLoads)
+        std::fill(ram.begin() + static_cast<std::ptrdiff_t>(used), ram.end(), std::uint16_t{0});
+}
 
 template <class Archive>
 void list(Archive& archive, Machine& m) {
@@ -39,7 +68,10 @@ void list(Archive& archive, Machine& m) {
         archive.fixed(m.config);
         archive.fixed(m.unit_id);
     }
-    archive.fixed(m.ram_store);
+    if constexpr (Archive::kRaw)
+        list_used_ram(archive, m.ram_store);
+    else
+        archive.fixed(m.ram_store);
     archive.grows(m.warned);
 }
 
