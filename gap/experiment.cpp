@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/suggest.h"
+#include "base/toml_file.h"
 #include "gap/check.h"
 #include "gap/columns.h"
 #include "gap/csv.h"
@@ -21,8 +22,6 @@ namespace {
 
 using scenarios::Dimension;
 using scenarios::Reader;
-using scenarios::TomlTable;
-using scenarios::TomlValue;
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
@@ -277,7 +276,7 @@ Experiment read_experiment(const std::filesystem::path& folder) {
     frame.file = (folder / "experiment.toml").string();
     if (std::filesystem::is_fifo(frame.file, ignored))
         throw InputError(frame.file, "", "is a pipe, which may never end", "a TOML file");
-    const TomlValue root = scenarios::read_toml(frame.file);
+    const TomlValue root = read_toml(frame.file);
     Reader top(frame.file, "", root);
     Experiment experiment;
     experiment.folder = folder;
