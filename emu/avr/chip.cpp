@@ -27,7 +27,7 @@ namespace puckloop::avr {
 namespace {
 
 constexpr std::size_t kMostRecords = 1000;
-constexpr std::uint16_t kGtccr = 0x43, kPrr0 = 0x64, kPrr1 = 0x65;
+constexpr std::uint16_t kAssr = 0xB6, kGtccr = 0x43, kPrr0 = 0x64, kPrr1 = 0x65;
 
 using P = PortLetter;
 constexpr std::array<std::uint16_t, 8> kSynchronousDividers = {0, 1, 8, 64, 256, 1024, 0, 0};
@@ -151,7 +151,7 @@ struct Chip::Parts {
           watchdog(around, core, clock),
           programming(around, core, clock, fuses, system) {
         io.hook(kGtccr, this, nullptr, &write_gtccr);
-        io.claim(0xB6);  // ASSR
+        io.hook(kAssr, this, nullptr, &write_assr);
         connect_hooks();
         connect_reports();
     }
@@ -220,6 +220,14 @@ struct Chip::Parts {
         eeprom.reset();
         watchdog.reset(fuses.watchdog_always(), cause == ResetCause::Watchdog);
         programming.reset();
+    }
+
+    // Timer 2's own crystal is not modelled.
+    static void write_assr(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask) {
+        auto& self = *static_cast<Parts*>(owner);
+        constexpr std::uint8_t kExclk = bit(6), kAs2 = bit(5);
+        self.io.store(address, value, mask & (kExclk | kAs2));
+        if (value & mask & kAs2) self.io.report_unmodelled(address, "ASSR.AS2", true);
     }
 
     // PSRSYNC, PSRASY: the prescaler starts again; with TSM it stays at 0.

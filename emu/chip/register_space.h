@@ -11,6 +11,7 @@
 #include <functional>
 #include <span>
 #include <string_view>
+#include <utility>
 
 namespace puckloop::chip {
 
@@ -69,6 +70,14 @@ class RegisterSpace {
         if (cell.write) return cell.write(cell.owner, address, value, mask);
         if (cell.behaviour != Behaviour::Modelled) touch(address, true);
         store(address, value, mask);
+    }
+
+    /// A modelled register was asked for something that no model is behind: reported as a first touch, under
+    /// `name`.
+    void report_unmodelled(std::uint16_t address, std::string_view name, bool write) {
+        bool& reported = reported_[address / sizeof(Word)];
+        if (std::exchange(reported, true)) return;
+        if (on_first_touch) on_first_touch(name, address, write);
     }
 
     /// The stored value itself, no side effects: what models keep their register contents in.

@@ -600,3 +600,26 @@ loop:   sleep
         if (!c.timer) CHECK(rig->ram(0x103) < 20);
     }
 }
+
+TEST_CASE("a mode that no model is behind is reported by name, once") {
+    Rig rig(R"(
+        ldi r16, 0xC6
+        sts UCSR0C, r16     ; SPI master
+        sts UCSR0C, r16
+        ldi r16, 0x46
+        sts UCSR1C, r16     ; synchronous
+        ldi r16, 0x20
+        sts ASSR, r16
+        ldi r16, 0x06
+        sts UCSR1C, r16
+end:    rjmp end
+)");
+    rig.run(100);
+    const ChipReport report = rig.chip.report();
+    REQUIRE(report.unmodelled.size() == 3);
+    CHECK(report.unmodelled[0].name == "UCSR0C.UMSEL0");
+    CHECK(report.unmodelled[0].write);
+    CHECK(report.unmodelled[1].name == "UCSR1C.UMSEL1");
+    CHECK(report.unmodelled[2].name == "ASSR.AS2");
+    CHECK(rig.chip.peek("UCSR0C") == 0xC6);
+}

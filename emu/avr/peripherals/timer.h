@@ -5,8 +5,8 @@
 // 8272, chapters "8-bit Timer/Counter0", "16-bit Timer/Counter1 and 3", "Timer/Counter2".
 //
 // Deviations
-//  1. Timer 2's asynchronous clock (ASSR.AS2) is not modelled: the register is stored, the timer runs from
-//  the CPU clock.
+//  1. Timer 2's asynchronous clock (ASSR.AS2) is not modelled: the register is stored and reported, the
+//  timer runs from the CPU clock.
 //  2. A counter above the top of a dual-slope mode turns at once.
 //  3. An external clock edge counts in the clock in which the pin changes, not up to 3.5 clocks later.
 

@@ -37,7 +37,7 @@ Usart::Usart(const Surroundings& around, const Setup& setup, const cosim::ClockD
     const auto at = [&](int offset) { return static_cast<std::uint16_t>(setup_.base + offset); };
     around_.io.hook(at(0), this, nullptr, &write_a);
     around_.io.hook(at(1), this, nullptr, &write_b);
-    around_.io.claim(at(2));
+    around_.io.hook(at(2), this, nullptr, &write_c);
     around_.io.hook(at(4), this, nullptr, &write_baud);
     around_.io.claim(at(5));
     around_.io.hook(at(6), this, &read_data, &write_data);
@@ -251,6 +251,15 @@ void Usart::write_b(void* owner, std::uint16_t, std::uint8_t value, std::uint8_t
     if (changed & kRxen) self.enable_receiver(self.b() & kRxen);
     if (changed & kTxen) self.enable_transmitter(self.b() & kTxen);
     self.update_requests();
+}
+
+void Usart::write_c(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask) {
+    auto& self = *static_cast<Usart*>(owner);
+    constexpr std::uint8_t kUmsel = bit(7) | bit(6);
+    self.around_.io.store(address, value, mask);
+    if (value & mask & kUmsel)
+        self.around_.io.report_unmodelled(address, self.setup_.unit ? "UCSR1C.UMSEL1" : "UCSR0C.UMSEL0",
+                                          true);
 }
 
 // Writing the low byte restarts the generator.

@@ -3,7 +3,7 @@
 // FIFO with its errors, 5 to 9 data bits. Source: data sheet 8272, "USART".
 //
 // Deviations
-//  1. UMSELn other than 0 (synchronous, SPI master) is stored; the unit stays asynchronous.
+//  1. UMSELn other than 0 (synchronous, SPI master) is stored and reported; the unit stays asynchronous.
 //  2. Between frames and in them the TXD pin is shown high: the line's waveform is in the frame.
 //  3. A frame begins at the next tick of the baud rate generator's 16x (8x) clock.
 //  4. The majority of three samples is taken as the middle one.
@@ -99,6 +99,7 @@ class Usart {
     static void write_data(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);
     static void write_a(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);
     static void write_b(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);
+    static void write_c(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);
     static void write_baud(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);
     static void acknowledge_transmitted(void* owner, int vector);
     static void transmit_due(void* owner, Cycle due);
