@@ -62,6 +62,11 @@ double covered(std::vector<Interval>& shadows, double middle) {
 
 }  // namespace
 
+bool is_booth(const World& world, std::string_view name) {
+    return std::any_of(world.booths.begin(), world.booths.end(),
+                       [&](const Booth& booth) { return booth.name == name; });
+}
+
 Point from_booth(const Booth& booth, double x, double y) {
     const double cosine = std::cos(booth.heading), sine = std::sin(booth.heading);
     return {booth.x + cosine * x - sine * y, booth.y + sine * x + cosine * y};

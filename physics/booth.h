@@ -20,6 +20,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace puckloop::physics {
@@ -63,6 +64,8 @@ struct ColouredLight {
     bool lit() const { return red > 0.0 || green > 0.0 || blue > 0.0; }
     friend bool operator==(const ColouredLight&, const ColouredLight&) = default;
 };
+
+bool is_booth(const World& world, std::string_view name);
 
 /// A point of the booth's frame in the world's.
 Point from_booth(const Booth& booth, double x, double y);

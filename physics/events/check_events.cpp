@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/suggest.h"
+#include "physics/booth.h"
 #include "physics/events/new_thing.h"
 #include "physics/plan.h"
 #include "physics/robot_parameters.h"
@@ -72,6 +73,7 @@ class Checker {
 
     std::string kind_of(const Event& event, const std::string& name) const {
         if (const auto found = kinds_.find(name); found != kinds_.end()) return found->second;
+        if (is_booth(world_, name)) fail(event, fmt::format("'{}' is a TAM, which no event is about", name));
         std::vector<std::string_view> names;
         for (const auto& [known, kind] : kinds_)
             names.emplace_back(known);

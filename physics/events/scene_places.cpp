@@ -1,6 +1,7 @@
 // Where things are, and where they can be.
 
 #include "base/suggest.h"
+#include "physics/booth.h"
 #include "physics/events/scene.h"
 
 #include <fmt/format.h>
@@ -64,6 +65,8 @@ std::vector<Scene::Listed> Scene::list() const {
 }
 
 std::string Scene::unknown(std::string_view name) const {
+    if (is_booth(model_.description_, name))
+        return fmt::format("'{}' is a TAM, which no event is about", name);
     const auto all = list();
     std::vector<std::string_view> names;
     for (const Listed& one : all)

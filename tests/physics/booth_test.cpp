@@ -211,6 +211,17 @@ TEST_CASE("lights are where the booth has them, and go out") {
         CHECK_FALSE(light.lit());
 }
 
+TEST_CASE("no event moves a booth or a part of it") {
+    World world = booth_world(0.36);
+    EventPlan plan;
+    Event& event = plan.events.emplace_back();
+    event.action.to = Point{0.0, 0.0};
+    event.action.object = "tam0";
+    CHECK_THROWS_WITH(check_events(plan, world), Catch::Contains("'tam0' is a TAM"));
+    event.action.object = "tam0 back";
+    CHECK_THROWS_WITH(check_events(plan, world), Catch::Contains("there is no 'tam0 back'"));
+}
+
 TEST_CASE("tams.csv is read back, and damage is named or passed over") {
     const auto file = puckloop::tests::scratch_path("puckloop-tams.csv");
     WorldModel model(booth_world(0.36));
