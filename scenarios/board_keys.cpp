@@ -8,6 +8,7 @@
 namespace puckloop::scenarios {
 
 std::vector<double> read_times(Reader& reader, std::string_view key, double start) {
+    constexpr double kLongestRun = 86'400.0 * 30;  // s
     std::vector<double> times;
     for (const std::string& text : reader.texts(key)) {
         try {
@@ -18,6 +19,8 @@ std::vector<double> read_times(Reader& reader, std::string_view key, double star
         if (times.back() <= (times.size() > 1 ? times[times.size() - 2] : start))
             reader.fail(key, fmt::format("the times of {} do not rise from {:g} s on", key, start),
                         "times later than that, each later than the one before");
+        if (times.back() > kLongestRun)
+            reader.fail(key, fmt::format("{}: {} is later than any run", key, text), "at most 720 h");
     }
     return times;
 }

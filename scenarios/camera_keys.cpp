@@ -33,6 +33,10 @@ std::vector<LinuxCamera> cameras_of(Reader& reader) {
         if (!devices[i].starts_with("/dev/") || devices[i].size() > kLongest)
             reader.fail("camera_devices", fmt::format("'{}' is not a device", devices[i]),
                         "a path such as /dev/video0");
+        // The serial port and the I2C bus of the same board would no longer be found.
+        if (devices[i] == "/dev/ttyS0" || devices[i] == "/dev/i2c-3")
+            reader.fail("camera_devices", fmt::format("'{}' is another device of the board", devices[i]),
+                        "a path such as /dev/video0");
         for (std::size_t k = 0; k < i; ++k)
             if (devices[k] == devices[i])
                 reader.fail("camera_devices", fmt::format("'{}' is there twice", devices[i]));

@@ -2,6 +2,7 @@
 
 #include "emu/xbee/at_table.h"
 
+#include "protocols/xbee_message.h"
 #include "scenarios/linux_keys.h"
 
 #include <fmt/format.h>
@@ -29,6 +30,10 @@ std::uint64_t read_address(Reader& reader, std::uint64_t fallback) {
     if (error != std::errc() || end != text.data() + text.size() || text.size() != kDigits)
         reader.fail("address", fmt::format("'{}' is no address", text),
                     "16 hex digits: \"0013A20040000001\"");
+    // Both mean something else as a destination: frames for them never reach a module that has them.
+    if (address == protocols::kXBeeBroadcast || address == 0)
+        reader.fail("address", fmt::format("'{}' is no module's own address", text),
+                    "neither 0 nor FFFF, which is for all");
     return address;
 }
 

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace puckloop::scenarios {
 
@@ -83,6 +84,8 @@ double Reader::number(std::string_view key, const TomlValue& value, Dimension di
         plain = *real;
     else
         fail(key, fmt::format("{} is not a quantity", key), example_of(dimension));
+    if (!std::isfinite(plain))
+        fail(key, fmt::format("{}: {} is not finite", key, plain), example_of(dimension));
     if (!unitless) fail(key, fmt::format("{}: {} has no unit", key, plain), example_of(dimension));
     return plain;
 }

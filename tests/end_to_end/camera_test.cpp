@@ -170,6 +170,8 @@ TEST_CASE("cameras that cannot be are refused with their place") {
     CHECK_THAT(refused("cameras = [\"omni\", \"omni\"]\n"), Contains("'omni' is there twice"));
     CHECK_THAT(refused("camera_devices = [\"/dev/video0\"]\n"), Contains("not one name for each"));
     CHECK_THAT(refused("camera_devices = [\"/dev/video0\", \"/dev/video0\"]\n"), Contains("is there twice"));
+    CHECK_THAT(refused("camera_devices = [\"/dev/video0\", \"/dev/ttyS0\"]\n"),
+               Contains("another device of the board"));
     CHECK_THAT(refused("camera_devices = [\"video0\", \"/dev/video1\"]\n"), Contains("not a device"));
     CHECK_THAT(refused("[robot.parameters]\n\"camera.eccentricity\" = 15\n"), Contains("eccentricity"));
 }

@@ -80,6 +80,9 @@ TEST_CASE("what the radio's tables cannot be") {
         CHECK_THAT(problem_of(text), Catch::Contains(why));
     };
     refused(kHead + kTam + "[tam.xbee]\naddress = \"0x13\"\n", "tam0.xbee: '0x13' is no address");
+    refused(kHead + kTam + "[tam.xbee]\naddress = \"000000000000FFFF\"\n", "is no module's own address");
+    refused(kHead + "[coordinator]\naddress = \"0000000000000000\"\n", "is no module's own address");
+    refused(kHead + kTam + "[radio]\nexponent = nan\n", "line 8: radio: exponent: nan is not finite");
     refused(kHead + kTam + "[tam.xbee]\nnode_id = \"\"\n", "is no node identifier");
     refused(kHead + kTam + "[tam.xbee]\nchannel = 10\n", "channel");
     refused(kHead + kTam + "[tam.xbee]\nadress = \"1\"\n", "unknown key 'adress'");

@@ -63,12 +63,15 @@ TEST_CASE("a TAM is read with its defaults, and needs no robot") {
 
 TEST_CASE("what a TAM cannot be is said with its line") {
     CHECK(problem_of("") == "accepted");
-    CHECK(problem_of("network = 4\n") == "line 7: tam0: network is out of range (expected a whole number from 0 to 3)");
+    CHECK(problem_of("network = 4\n") ==
+          "line 7: tam0: network is out of range (expected a whole number from 0 to 3)");
     CHECK(problem_of("batery = \"3 V\"\n") ==
           "line 7: tam0: unknown key 'batery' (expected perhaps 'battery')");
     CHECK_THAT(problem_of("battery = \"9 V\"\n"), Catch::StartsWith("line 7: tam0: battery is out of range"));
     CHECK_THAT(problem_of("battery = \"9 m\"\n"), Catch::StartsWith("line 7: tam0: battery: '9 m'"));
     CHECK_THAT(problem_of("start = \"-1 s\"\n"), Catch::StartsWith("line 7: tam0: start is out of range"));
+    CHECK_THAT(problem_of("adc_noise = nan\n"), Catch::Contains("adc_noise: nan is not finite"));
+    CHECK_THAT(problem_of("reset = [\"1e30 s\"]\n"), Catch::Contains("later than any run"));
     CHECK_THAT(problem_of("start = \"3 s\"\nreset = [\"2 s\"]\n"),
                Catch::StartsWith("line 8: tam0: the times"));
     CHECK_THAT(problem_of("console_baud = 1\n"),
