@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,7 +19,7 @@ struct ExecOptions {
     std::string image;
     std::optional<double> seconds;                   ///< budget in simulated time
     std::optional<std::uint64_t> cycles;             ///< budget in instruction cycles
-    std::vector<std::string> stop_at;                ///< symbols or 0xPC
+    std::vector<std::string> stop_at;                ///< symbols, 0xPC or FILE:LINE
     std::array<std::optional<std::string>, 2> uart;  ///< --uart1, --uart2
     std::string i2c;                                 ///< script:FILE, or empty
     std::vector<std::string> i2c_devices;            ///< --i2c-device
@@ -42,9 +43,12 @@ struct StopAddress {
 /// Runs the bench; returns the exit status (0 or 1). Throws InputError for anything that cannot be used.
 int run_exec(const ExecOptions& options);
 
+/// Program addresses where the code of a source line begins; none where the line has no code.
+using LineLookup = std::function<std::vector<std::uint32_t>(const std::string& file, std::uint32_t line)>;
+
 /// `text` is 0xPC (even, a program address), a symbol of the image, or FILE:LINE where the image has source
 /// lines (then perhaps several addresses); throws InputError with a suggestion.
 std::vector<StopAddress> resolve_stop(const std::string& text, const image::Image& image,
-                                      const Target& target);
+                                      const LineLookup& lines);
 
 }  // namespace puckloop::exec

@@ -137,9 +137,12 @@ int run_exec(const ExecOptions& options) {
     if (options.image.empty()) throw InputError("", "IMAGE", "missing", "a HEX, ELF or COFF file");
     const image::Image image =
         bench.target().read_image(options.image, defaults_of(options.bench.mcu, options.bench.board).mcu);
+    const LineLookup lines = [&target = bench.target()](const std::string& file, std::uint32_t line) {
+        return target.addresses_of(file, line);
+    };
     std::vector<StopAddress> stops;
     for (const std::string& text : options.stop_at) {
-        for (const StopAddress& stop : resolve_stop(text, image, bench.target())) {
+        for (const StopAddress& stop : resolve_stop(text, image, lines)) {
             stops.push_back(stop);
             bench.target().stop_at(stop.pc);
         }

@@ -1,4 +1,4 @@
-// `--stop-at SYMBOL|0xPC`.
+// `--stop-at SYMBOL|0xPC|FILE:LINE`.
 
 #include "base/error.h"
 #include "tools/exec/options.h"
@@ -10,13 +10,11 @@
 namespace puckloop::exec {
 
 namespace {
-constexpr std::uint32_t kHighestProgramAddress = 0x7FFFFE;
-}
 
-namespace {
+constexpr std::uint32_t kHighestProgramAddress = 0x7FFFFE;
 
 std::vector<StopAddress> resolve_line(const std::string& text, std::size_t colon, const image::Image& image,
-                                      const Target& target) {
+                                      const LineLookup& lines) {
     std::uint32_t line = 0;
     const char* const last = text.data() + text.size();
     const auto [end, error] = std::from_chars(text.data() + colon + 1, last, line);
@@ -24,7 +22,7 @@ std::vector<StopAddress> resolve_line(const std::string& text, std::size_t colon
         throw InputError("", "--stop-at", fmt::format("'{}' is not a source line", text),
                          "FILE:LINE, such as main.c:12");
     std::vector<StopAddress> stops;
-    for (const std::uint32_t pc : target.addresses_of(text.substr(0, colon), line))
+    for (const std::uint32_t pc : lines(text.substr(0, colon), line))
         stops.push_back({pc, text});
     if (stops.empty())
         throw InputError(image.file, "--stop-at", fmt::format("no code of line {}", text),
@@ -35,9 +33,9 @@ std::vector<StopAddress> resolve_line(const std::string& text, std::size_t colon
 }  // namespace
 
 std::vector<StopAddress> resolve_stop(const std::string& text, const image::Image& image,
-                                      const Target& target) {
+                                      const LineLookup& lines) {
     if (const std::size_t colon = text.rfind(':'); colon != std::string::npos)
-        return resolve_line(text, colon, image, target);
+        return resolve_line(text, colon, image, lines);
     if (text.starts_with("0x") || text.starts_with("0X")) {
         std::uint32_t pc = 0;
         const char* const last = text.data() + text.size();
