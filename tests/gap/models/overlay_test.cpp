@@ -194,6 +194,6 @@ TEST_CASE("an overlay's number that is none is refused in its own file") {
     const auto file = tests::scratch_path("overlay_nan.toml");
     std::ofstream(file) << "[parameters]\n\"ground.gain0\" = nan\n";
     CHECK_THROWS_WITH(scenarios::apply_overlay(scenario, file),
-                      Contains(file.string()) && Contains("line 2") && Contains("out of range"));
+                      Contains(file.string()) && Contains("line 2") && Contains("not finite"));
     std::filesystem::remove(file);
 }
