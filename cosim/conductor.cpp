@@ -55,7 +55,10 @@ Conductor::State::State(std::vector<NodeSpec> nodes, std::vector<LinkSpec> links
     stats_.resize(2 * links_.size());
     failures_.resize(handles_.size());
     workers_ = std::make_unique<Workers>(options_.threads > 1 ? options_.threads - 1 : 0, handles_.size(),
-                                         [this](std::size_t n) { work(n); });
+                                         [this](std::size_t n) {
+                                             while (!work(n, true)) {
+                                             }
+                                         });
     if (options_.chop_seed) chop_.emplace(*options_.chop_seed, "chop");
 }
 

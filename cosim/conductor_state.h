@@ -75,7 +75,9 @@ class Conductor::State {
     void collect();
     bool work_here();
     void share_out();
-    void work(std::size_t n);
+    bool work(std::size_t n, bool wait);
+    void resume(bool wait);
+    void await_work();
     void take_local_reply(std::size_t n);
     void collect_elsewhere(bool wait);
     void take_reply(std::size_t n);
@@ -117,6 +119,7 @@ class Conductor::State {
     std::optional<RandomStream> chop_;
     std::unique_ptr<Workers> workers_;
     std::vector<std::size_t> here_;             ///< nodes of this process just granted, for this thread
+    std::vector<std::size_t> suspended_;        ///< nodes of this process that wait for their programs
     std::vector<std::size_t> elsewhere_;        ///< nodes of other processes that are granted
     std::vector<std::size_t> shared_;           ///< those just granted that any thread may advance
     std::vector<std::size_t> done_;             ///< that any thread has

@@ -4,6 +4,7 @@
 #include "cosim/conductor_state.h"
 
 #include <thread>
+#include <utility>
 
 namespace puckloop::cosim {
 
@@ -12,6 +13,8 @@ namespace {
 constexpr double kWorthSharing = 3000.0;  // ns
 // The conductor works at least so many times as long as it planned while there is something to do.
 constexpr int kWorkByPlanning = 4;
+// Looks at several programs before one of them is waited for; some 20 us.
+constexpr int kLooks = 100;
 // How long to sleep where --realtime lets nobody go on.
 constexpr std::chrono::microseconds kPaceSleep{500};
 }  // namespace
@@ -38,35 +41,72 @@ void Conductor::State::share_out() {
         workers_->submit(n, shared_.size() > 1);
 }
 
-/// One node's work on a grant, on any thread.
-void Conductor::State::work(std::size_t n) {
+/// One node's work on a grant, on any thread; false if it now waits for its program. `wait`: it may, for some
+/// milliseconds.
+bool Conductor::State::work(std::size_t n, bool wait) {
     const WallClock::time_point begun = WallClock::now();
+    bool done = true;
     try {
-        handles_[n]->poll(false);
+        done = handles_[n]->poll(wait);
     } catch (...) {
         failures_[n] = std::current_exception();
     }
     slots_[n].worked(std::chrono::duration<double, std::nano>(WallClock::now() - begun).count());
+    return done;
+}
+
+/// Lets nodes go on whose programs have got on, and appends those that are done to done_. `wait`: until one
+/// has, for some milliseconds.
+void Conductor::State::resume(bool wait) {
+    std::size_t kept = 0;
+    for (const std::size_t n : suspended_) {
+        if (work(n, std::exchange(wait, false)))
+            done_.push_back(n);
+        else
+            suspended_[kept++] = n;
+    }
+    suspended_.resize(kept);
+}
+
+/// Works or waits until a piece of work or a program is done, some milliseconds at most where it is a
+/// program.
+void Conductor::State::await_work() {
+    if (workers_->do_one()) return;
+    if (workers_->under_way() == 0) {
+        // Others are not seen while one is waited for, which saves nothing where they answer at once.
+        for (int looks = suspended_.size() > 1 ? kLooks : 0; looks > 0 && done_.empty(); --looks)
+            resume(false);
+        if (done_.empty()) resume(true);
+        return;
+    }
+    workers_->wait([this] {
+        if (!suspended_.empty()) resume(false);
+        return !done_.empty();
+    });
 }
 
 /// Lets the granted nodes of this process work, and takes what replies there are. False: none was granted.
 bool Conductor::State::work_here() {
     share_out();
     done_.clear();
+    const bool any = !here_.empty() || workers_->under_way() > 0 || !suspended_.empty();
+    const bool granted = !here_.empty() || !shared_.empty();
+    resume(false);
     for (const std::size_t n : here_) {
         current_ = n;
-        work(n);
-        take_local_reply(n);
+        if (work(n, false))
+            take_local_reply(n);
+        else
+            suspended_.push_back(n);
     }
-    const bool any = !here_.empty() || workers_->under_way() > 0;
     // Where a look at the whole run takes long, as with many nodes, some work is done between two.
     const WallClock::duration least = kWorkByPlanning * (planned_at_ - plan_begun_);
     while (workers_->waiting() > workers_->helpers() && WallClock::now() - planned_at_ < least)
         workers_->do_one();
     workers_->take_done(done_);
     // Beside what has just been handed out others may be able to go on: that is seen first.
-    if (done_.empty() && here_.empty() && shared_.empty() && any) {
-        if (!workers_->do_one()) workers_->wait();
+    if (done_.empty() && !granted && any) {
+        await_work();
         workers_->take_done(done_);
     }
     here_.clear();

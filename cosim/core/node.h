@@ -43,6 +43,18 @@ class Rewindable {
     virtual void settle() = 0;
 };
 
+/// A node for which something outside of simulated time works, such as a program in a process of its own:
+/// whoever grants it need not wait for that.
+class Suspendable {
+  public:
+    virtual ~Suspendable() = default;
+    /// Begins what Node::advance() does, with the same parameters. False where it would wait; resume() then
+    /// goes on, and `outbox` must stay until that is done. `inbox` may go.
+    virtual bool begin(Time until, std::span<const Message> inbox, std::vector<Message>& outbox) = 0;
+    /// True once everything is done. `wait`: lets it wait for some milliseconds.
+    virtual bool resume(bool wait) = 0;
+};
+
 /// The contract with the conductor.
 ///
 /// Time is granted, never taken: advance(until, ...) handles everything that happens strictly before `until`
@@ -84,6 +96,9 @@ class Node {
     /// one that would carry t or more, and takes none away that would carry less than t (t or less, if
     /// lookahead(p) > 0).
     virtual Rewindable* rewindable() { return nullptr; }
+
+    /// Not null if the node can leave its advance() for others meanwhile; fixed for its life.
+    virtual Suspendable* suspendable() { return nullptr; }
 
     /// Set once the node wants the run to end (a Linux program that exited, a breakpoint). Everything else
     /// still runs on for the run's stop latency (10 ms), so that the end is the same in every placement.

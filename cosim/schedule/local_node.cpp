@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+
 namespace puckloop::cosim {
 
 void read_state(const Node& node, NodeState& state) {
@@ -40,10 +42,17 @@ class LocalNode : public NodeHandle {
         reach_ = reach;
         inbox_ = &inbox;
         echoes_ = &echoes;
+        begun_ = false;
     }
 
-    bool poll(bool) override {
-        guarded("stopped", [&] { advanced_ = node_->advance(reach_, *inbox_, *echoes_, outbox_); });
+    bool poll(bool wait) override {
+        std::optional<Advanced> done;
+        guarded("stopped", [&] {
+            done = begun_ ? node_->resume(wait, outbox_) : node_->begin(reach_, *inbox_, *echoes_, outbox_);
+        });
+        begun_ = true;
+        if (!done) return false;
+        advanced_ = *done;
         node_->read_state(state_);
         return true;
     }
@@ -77,6 +86,7 @@ class LocalNode : public NodeHandle {
     const std::vector<Message>* inbox_ = nullptr;
     const std::vector<PortEcho>* echoes_ = nullptr;
     Reach reach_;
+    bool begun_ = false;  ///< the work of the grant
 };
 
 }  // namespace

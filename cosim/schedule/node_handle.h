@@ -67,8 +67,9 @@ class NodeHandle {
     /// time.
     virtual void grant(Reach reach, const std::vector<Message>& inbox,
                        const std::vector<PortEcho>& echoes) = 0;
-    /// True once the reply to the last grant is complete. A node in this process does its work here; `wait`
-    /// lets one elsewhere wait for some tenths of a second.
+    /// True once the reply to the last grant is complete. A node in this process does its work here, up to
+    /// where it has to wait for a program (Suspendable). `wait` lets it wait for some milliseconds, one
+    /// elsewhere for some tenths of a second.
     virtual bool poll(bool wait) = 0;
     /// False where poll() does the work itself.
     virtual bool elsewhere() const { return false; }

@@ -62,6 +62,25 @@ Advanced RunAhead::advance(const Reach& reach, std::span<const Message> inbox,
     return {reached_, ahead_, sure};
 }
 
+std::optional<Advanced> RunAhead::begin(const Reach& reach, std::span<const Message> inbox,
+                                        const std::vector<PortEcho>& echoes, std::vector<Message>& outbox) {
+    Suspendable* const node = node_->suspendable();
+    if (node == nullptr || marked_ || node_->rewindable() != nullptr || !echoes.empty() ||
+        reach.until <= reached_)
+        return advance(reach, inbox, echoes, outbox);
+    outbox.clear();
+    begun_ = reach.until;
+    if (!node->begin(begun_, take_before(begun_, inbox), outbox)) return std::nullopt;
+    reached_ = ahead_ = begun_;
+    return Advanced{reached_, ahead_, outbox.size()};
+}
+
+std::optional<Advanced> RunAhead::resume(bool wait, const std::vector<Message>& outbox) {
+    if (!node_->suspendable()->resume(wait)) return std::nullopt;
+    reached_ = ahead_ = begun_;
+    return Advanced{reached_, ahead_, outbox.size()};
+}
+
 /// What was sent before the inbox differed must come again.
 void RunAhead::check_same(const std::vector<Message>& before, const std::vector<Message>& now,
                           Time differs) const {

@@ -14,6 +14,7 @@
 #include "cosim/schedule/stride.h"
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -33,6 +34,13 @@ class RunAhead {
     /// sent since the mark that the last call left; how much of it is final is part of the answer.
     Advanced advance(const Reach& reach, std::span<const Message> inbox, const std::vector<PortEcho>& echoes,
                      std::vector<Message>& outbox);
+
+    /// As advance(), but nothing where the node would wait for something outside of simulated time
+    /// (Suspendable): resume() then goes on, with what the outbox holds.
+    std::optional<Advanced> begin(const Reach& reach, std::span<const Message> inbox,
+                                  const std::vector<PortEcho>& echoes, std::vector<Message>& outbox);
+    /// After begin() gave nothing. `wait`: lets the node wait for some milliseconds.
+    std::optional<Advanced> resume(bool wait, const std::vector<Message>& outbox);
 
     /// What the node says of its future, having run ahead: its EOTs are beyond what is foreseen, its
     /// lookaheads hold for whatever else comes in from the time reached on.
@@ -62,6 +70,7 @@ class RunAhead {
     Time ahead_ = 0;  ///< the node stands there
     Time mark_ = 0;   ///< of the node, while marked_
     bool marked_ = false;
+    Time begun_ = 0;             ///< the node was last begun to advance to there
     Time no_further_ = 0;        ///< what was tried up to there ended in an exception
     std::vector<Message> used_;  ///< what came in since the mark
     std::vector<Message> sent_;  ///< what was sent since the mark

@@ -103,10 +103,10 @@ void Workers::help() {
     }
 }
 
-void Workers::wait() {
+void Workers::wait(const std::function<bool()>& other) {
     using Clock = std::chrono::steady_clock;
     Clock::time_point begun{};
-    for (int looks = 0; !is_done(); ++looks) {
+    for (int looks = 0; !is_done() && !other(); ++looks) {
         if (looks < kLooksBeforeYield) {
             relax_core();
             continue;

@@ -33,8 +33,9 @@ class Workers {
     bool do_one();
     /// Appends the pieces that have been done since.
     void take_done(std::vector<std::size_t>& done);
-    /// Waits until there is one to take. Something must be under way.
-    void wait();
+    /// Waits until there is one to take, or until `other()`, asked again and again, is true. Something must
+    /// be under way.
+    void wait(const std::function<bool()>& other = [] { return false; });
     /// Waits until nobody works any more; what was not begun is left out, what was done is forgotten.
     void stop();
 

@@ -76,33 +76,6 @@ void LinuxNode::start_program() {
     client.state = Client::State::Asking;
 }
 
-void LinuxNode::listen(Client& client) {
-    const Heard heard = client.process->hear(spec_.watchdog_s, client.request, client.data);
-    launcher_->echo_output();
-    catch_up(client);
-    switch (heard) {
-    case Heard::Request:
-        ++requests_;
-        // A program that has just taken another one's place does not know the time.
-        if (client.request.op == Op::Hello) client.request.now = client.answered;
-        client.state = Client::State::Asking;
-        return;
-    case Heard::Ended:
-        client_ended(client, client.announced_exit ? client.exit_time : entry(client.slot).now.load());
-        return;
-    case Heard::Silent: {
-        const Time now = entry(client.slot).now.load();
-        const std::string reason =
-            fmt::format("{} has not let time pass for {:g} s of wall clock (half of --stall): {}",
-                        spec_.program, spec_.watchdog_s, client.process->describe_silence());
-        kill_all();
-        end_ = "hung";
-        end_run(now, false, reason, 1);
-        return;
-    }
-    }
-}
-
 Time LinuxNode::next_device_event() const {
     Time next = kernel_.next_event();
     if (inbox_next_ < inbox_.size()) next = std::min(next, inbox_[inbox_next_].time);
@@ -162,85 +135,6 @@ void LinuxNode::run_scheduled(Time now) {
     if (end_signal_at_ <= now) send_end_signal(now);
     if (kill_at_ <= now) return out_of_grace(now);
     if (start_at_ <= now) start_program();
-}
-
-void LinuxNode::answer(Client& client, Time now) {
-    wire::Reply reply;
-    reply.now = now;
-    show_ahead(client, reply);
-    if (client.signals_at <= now) {
-        reply.signals = std::exchange(client.signals, 0);
-        client.signals_at = kNever;
-    }
-    if (client.woken_at <= now) {
-        reply.changed = 1;
-        client.woken_at = kNever;
-    }
-    const std::vector<FinishedCall> calls = std::exchange(client.finished, {});
-    reply.count = static_cast<std::uint32_t>(calls.size());
-    client.answered = now;
-    client.process->reply(reply, calls, client.passed);
-    if (client.passed >= 0) close(std::exchange(client.passed, -1));
-    listen(client);
-}
-
-void LinuxNode::handle_request(Client& client) {
-    const Time now = client.request.now;
-    run_devices(now);
-    switch (client.request.op) {
-    case Op::Note:
-        warn(client.data);
-        break;
-    case Op::Exit:
-        client.announced_exit = true;
-        client.exit_time = now;
-        listen(client);
-        return;
-    default:
-        if (handle_family(client)) break;
-        if (client.request.op == Op::Close) client.handles.erase(client.request.handle);
-        client.request.thread = thread_of(client.slot, client.request.thread);
-        kernel_.call(client.request, client.data);
-        break;
-    }
-    deal_out();
-    const bool happened = !client.finished.empty() || client.signals_at <= now;
-    if (client.request.wait != 0 && !happened && client.request.wait_until > now) {
-        client.state = Client::State::Waiting;
-        return;
-    }
-    answer(client, now);
-}
-
-void LinuxNode::advance(Time until, std::span<const Message> inbox, std::vector<Message>& outbox) {
-    inbox_.erase(inbox_.begin(), inbox_.begin() + static_cast<std::ptrdiff_t>(inbox_next_));
-    inbox_next_ = 0;
-    inbox_.insert(inbox_.end(), inbox.begin(), inbox.end());
-    until_ = until;
-    outbox_ = &outbox;
-    while (true) {
-        const Time scheduled = next_scheduled();
-        Client* const asking = first(Client::State::Asking);
-        Client* const waiting = first(Client::State::Waiting);
-        Time next = scheduled;
-        if (asking != nullptr) next = std::min(next, asking->request.now);
-        // A process that asks takes in what happened at the devices when it is handled.
-        if (asking == nullptr || waiting != nullptr) next = std::min(next, next_device_event());
-        if (waiting != nullptr) next = std::min(next, due(*waiting));
-        if (next >= until) break;
-        pace(next);
-        if (scheduled <= next) {
-            run_devices(next);
-            run_scheduled(next);
-        } else if (asking != nullptr && asking->request.now <= next) {
-            handle_request(*asking);
-        } else {
-            run_devices(next);
-        }
-        wake_ready(next);
-    }
-    run_devices(until - 1);
-    outbox_ = nullptr;
 }
 
 void LinuxNode::pace(Time time) {

@@ -32,7 +32,7 @@ inline constexpr cosim::PortIndex kUartPort = 0;
 inline constexpr cosim::PortIndex kI2cPort = 1;
 inline constexpr cosim::PortIndex kCameraPort = 2;
 
-class LinuxNode : public cosim::Node {
+class LinuxNode : public cosim::Node, public cosim::Suspendable {
   public:
     /// Checks the program and starts it; it runs only from the first advance on. `scenery`: what the spec's
     /// cameras look at. Throws InputError.
@@ -42,6 +42,10 @@ class LinuxNode : public cosim::Node {
     std::span<const cosim::Port> ports() const override { return ports_; }
     void advance(cosim::Time until, std::span<const cosim::Message> inbox,
                  std::vector<cosim::Message>& outbox) override;
+    cosim::Suspendable* suspendable() override { return this; }
+    bool begin(cosim::Time until, std::span<const cosim::Message> inbox,
+               std::vector<cosim::Message>& outbox) override;
+    bool resume(bool wait) override;
     cosim::Time earliest_output(cosim::PortIndex port) const override;
     cosim::Time lookahead(cosim::PortIndex port) const override;
     std::optional<cosim::Stop> stop() const override { return stop_; }
@@ -66,6 +70,7 @@ class LinuxNode : public cosim::Node {
     struct Client {
         enum class State {
             Starting,  ///< asked for by its parent, has not said Hello
+            Running,   ///< on its own, until its next request; one at most, while advance() is under way
             Asking,    ///< `request` has its time and is not yet handled
             Waiting,   ///< all threads wait; a device, `request.wait_until`, a signal or a process goes on
         };
@@ -90,9 +95,6 @@ class LinuxNode : public cosim::Node {
 
     // linux_node.cpp: time and devices
     void start_program();
-    void handle_request(Client& client);
-    void answer(Client& client, cosim::Time now);
-    void listen(Client& client);
     /// Lets devices and deliveries happen up to and including `now`, in order.
     void run_devices(cosim::Time now);
     cosim::Time next_scheduled() const;
@@ -101,6 +103,12 @@ class LinuxNode : public cosim::Node {
     cosim::Time next_action() const;
     void collect(std::vector<cosim::Message>& outbox);
     void pace(cosim::Time time);
+
+    // linux_node_turns.cpp: the program's turns and the node's
+    bool step();
+    void handle_request(Client& client);
+    void answer(Client& client, cosim::Time now);
+    bool listen(Client& client, bool wait);
 
     // linux_node_ahead.cpp: what the library answers by itself
     /// Sets the limit of `reply`, whose time is set, and shows the serial port.
@@ -115,8 +123,8 @@ class LinuxNode : public cosim::Node {
     Client* first(Client::State state);
     /// When `client` has something to do, as far as is known.
     static cosim::Time due(const Client& client);
-    /// Answers every waiting process for which something has happened.
-    void wake_ready(cosim::Time now);
+    /// Answers a waiting process for which something has happened by `now`; false if there is none.
+    bool wake_ready(cosim::Time now);
     void deal_out();
     void finish(Client& client, std::int64_t result, int error = 0, std::string data = {});
     /// True if the request was one about processes.
@@ -149,6 +157,7 @@ class LinuxNode : public cosim::Node {
     std::vector<std::unique_ptr<Client>> clients_;  ///< by age
     std::int32_t last_number_ = 0;
     cosim::Time until_ = 0;
+    std::optional<cosim::Time> waking_at_;  ///< instant of the last step: its processes are being woken
     cosim::Time start_at_ = cosim::kNever;
     std::size_t next_restart_ = 0;
     std::size_t next_signal_ = 0;

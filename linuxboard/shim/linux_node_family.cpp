@@ -48,6 +48,7 @@ Time LinuxNode::due(const Client& client) {
         if (!client.finished.empty()) return client.request.now;
         return std::min({client.request.wait_until, client.signals_at, client.woken_at});
     case Client::State::Starting:
+    case Client::State::Running:
         break;
     }
     return kNever;
@@ -63,16 +64,14 @@ void LinuxNode::deal_out() {
     }
 }
 
-void LinuxNode::wake_ready(Time now) {
+bool LinuxNode::wake_ready(Time now) {
     deal_out();
-    while (true) {
-        const auto ready = std::find_if(clients_.begin(), clients_.end(), [now](const auto& client) {
-            return client->state == Client::State::Waiting && due(*client) <= now;
-        });
-        if (ready == clients_.end()) return;
-        answer(**ready, now);
-        deal_out();
-    }
+    const auto ready = std::find_if(clients_.begin(), clients_.end(), [now](const auto& client) {
+        return client->state == Client::State::Waiting && due(*client) <= now;
+    });
+    if (ready == clients_.end()) return false;
+    answer(**ready, now);
+    return true;
 }
 
 void LinuxNode::finish(Client& client, std::int64_t result, int error, std::string data) {

@@ -140,25 +140,21 @@ bool Process::is_gone() const {
 }
 
 Heard Process::hear(double watchdog, wire::Request& request, std::string& data) {
-    double waited = 0.0, looked = 0.0;
-    double computed_before = -1.0;
-    while (!await_request()) {
-        if (is_gone()) {
-            if (channel_.turn.is(Turn::Node)) break;
+    while (true)
+        if (const auto heard = try_hear(watchdog, true, request, data)) return *heard;
+}
+
+std::optional<Heard> Process::try_hear(double watchdog, bool wait, wire::Request& request,
+                                       std::string& data) {
+    if (!(wait ? await_request() : channel_.turn.is(Turn::Node))) {
+        if (!wait) return std::nullopt;
+        if (!is_gone()) return is_silent(watchdog) ? std::optional(Heard::Silent) : std::nullopt;
+        if (!channel_.turn.is(Turn::Node)) {
             await_end();
             return Heard::Ended;
         }
-        waited += kMoment / kNanosecondsPerSecond;
-        const double slice = std::min(watchdog, kLookInterval);
-        if (waited < looked + slice) continue;
-        looked = waited;
-        // On a loaded host a program that computes may just not get the processor: its own time counts.
-        const HostState state = host_state(entry_.host);
-        if (computed_before < 0) computed_before = state.computed_s;
-        const bool computed_long = state.computed_s - computed_before + slice >= watchdog;
-        const bool slept_long = state.code != 'R' && waited >= watchdog;
-        if (computed_long || slept_long || waited >= watchdog * kLoadedHostFactor) return Heard::Silent;
     }
+    silence_ = {};
     request = channel_.request;
     data.assign(channel_.request_data, std::min(channel_.request_size, wire::kMaximumData));
     if (request.op == wire::Op::Exit) {
@@ -166,6 +162,20 @@ Heard Process::hear(double watchdog, wire::Request& request, std::string& data) 
         channel_.turn.give(Turn::Program);
     }
     return Heard::Request;
+}
+
+/// After another moment of waiting in vain.
+bool Process::is_silent(double watchdog) {
+    silence_.waited += kMoment / kNanosecondsPerSecond;
+    const double slice = std::min(watchdog, kLookInterval);
+    if (silence_.waited < silence_.looked + slice) return false;
+    silence_.looked = silence_.waited;
+    // On a loaded host a program that computes may just not get the processor: its own time counts.
+    const HostState state = host_state(entry_.host);
+    if (silence_.computed_before < 0) silence_.computed_before = state.computed_s;
+    const bool computed_long = state.computed_s - silence_.computed_before + slice >= watchdog;
+    const bool slept_long = state.code != 'R' && silence_.waited >= watchdog;
+    return computed_long || slept_long || silence_.waited >= watchdog * kLoadedHostFactor;
 }
 
 void Process::await_end() {

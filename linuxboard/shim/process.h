@@ -29,6 +29,8 @@ class Process {
     /// Waits for the next request; Silent after `watchdog` seconds of computing, or of waiting in the host.
     /// After Ended the exit state is known.
     Heard hear(double watchdog, wire::Request& request, std::string& data);
+    /// The same, but nothing if none has come yet; with `wait` after some milliseconds at the latest.
+    std::optional<Heard> try_hear(double watchdog, bool wait, wire::Request& request, std::string& data);
 
     /// SIGKILL, for the whole group of a process that leads one.
     void kill();
@@ -50,6 +52,7 @@ class Process {
 
   private:
     bool await_request();
+    bool is_silent(double watchdog);
     bool is_gone() const;
     void pass_descriptor(int descriptor);
     void reap(bool wait);
@@ -64,6 +67,11 @@ class Process {
     wire::Channel& channel_;
     Patience patience_;
     bool leaving_ = false;  ///< it has announced its exit
+    /// Of the request that is waited for; seconds.
+    struct Silence {
+        double waited = 0.0, looked = 0.0;
+        double computed_before = -1.0;
+    } silence_;
 };
 
 }  // namespace puckloop::linuxboard
