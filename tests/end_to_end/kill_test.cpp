@@ -49,6 +49,20 @@ std::map<pid_t, std::string> family(const std::string& mark) {
     return found;
 }
 
+/// A scenario of the project as text. The program of hello.toml is done after a simulated minute, which on a
+/// fast machine is less than a second: here it goes on.
+std::string lasting(const std::string& scenario) {
+    const std::string folder = PUCKLOOP_SOURCE "/";
+    std::string text = text_of(folder + "scenarios/" + scenario);
+    const auto replace = [&text](const std::string& what, const std::string& by) {
+        for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += by.size())
+            text.replace(at, what.size(), by);
+    };
+    replace("\"../", "\"" + folder);
+    replace("\"--duration\", \"60\"", "\"--duration\", \"36000\"");
+    return text;
+}
+
 /// What stands in /dev/shm under the project's name.
 std::set<std::string> shared_files() {
     std::set<std::string> names;
@@ -68,17 +82,18 @@ struct KilledRun {
     Ended ended;
     double seconds = 0;  ///< from the kill to the end
 
-    KilledRun(int number, const Words& words, double moment_s,
+    KilledRun(int number, const std::string& scenario, const Words& words, double moment_s,
               const std::function<pid_t(const std::map<pid_t, std::string>&, pid_t)>& pick) {
         mark = fmt::format("{}={}.{}.", kMark, getpid(), number);
         setenv(kMark, mark.c_str() + std::string(kMark).size() + 1, 1);
-        Words all{"run"};
+        Words all{"run", bench.file(scenario, lasting(scenario))};
         all.insert(all.end(), words.begin(), words.end());
-        all.insert(all.end(), {"--duration", "3600", "--out", bench.out("o")});
+        all.insert(all.end(), {"--duration", "36000", "--out", bench.out("o")});
         const auto process = bench.start(all);
         unsetenv(kMark);
         std::this_thread::sleep_for(std::chrono::duration<double>(moment_s));
-        for (const double begun = wall_seconds(); victim == 0 && wall_seconds() - begun < 60.0;) {
+        for (const double begun = wall_seconds();
+             victim == 0 && runs(process->id()) && wall_seconds() - begun < 60.0;) {
             std::this_thread::sleep_for(std::chrono::milliseconds(2));
             const auto processes = family(mark);
             victim = pick(processes, process->id());
@@ -121,8 +136,6 @@ bool is_program(const std::string& line) {
     return !is_node(line) && line.find("--behaviour") != std::string::npos;
 }
 
-const std::string kScenarios = PUCKLOOP_SOURCE "/scenarios/";
-
 }  // namespace
 
 TEST_CASE("node processes killed at random moments are named, and nothing is left", "[kill]") {
@@ -132,7 +145,7 @@ TEST_CASE("node processes killed at random moments are named, and nothing is lef
         const std::string scenario = random.below(3) == 0 ? "rab_pair.toml" : "hello.toml";
         const double moment = random.uniform();
         const std::uint64_t choice = random.next();
-        const KilledRun run(k, {kScenarios + scenario}, moment, [&](const auto& processes, pid_t) {
+        const KilledRun run(k, scenario, {}, moment, [&](const auto& processes, pid_t) {
             std::vector<pid_t> nodes;
             for (const auto& [id, line] : processes)
                 if (is_node(line)) nodes.push_back(id);
@@ -151,10 +164,10 @@ TEST_CASE("Linux programs killed at random moments are named in both placements"
     puckloop::RandomStream random(20261123, "programs");
     const auto before = shared_files();
     for (int k = 0; k < (kills() + 2) / 3; ++k) {
-        Words words{kScenarios + "hello.toml"};
+        Words words;
         if (k % 2 == 0) words.push_back("--in-process");
         const double moment = random.uniform();
-        const KilledRun run(1000 + k, words, moment, [](const auto& processes, pid_t) {
+        const KilledRun run(1000 + k, "hello.toml", words, moment, [](const auto& processes, pid_t) {
             const auto program = std::find_if(processes.begin(), processes.end(),
                                               [](const auto& entry) { return is_program(entry.second); });
             return program == processes.end() ? 0 : program->first;
@@ -171,10 +184,11 @@ TEST_CASE("a run killed at random moments takes all its processes along", "[kill
     puckloop::RandomStream random(20261123, "runs");
     const auto before = shared_files();
     for (int k = 0; k < (kills() + 5) / 6; ++k) {
-        Words words{kScenarios + "hello.toml"};
+        Words words;
         if (k % 2 != 0) words.push_back("--in-process");
         const double moment = random.uniform();
-        const KilledRun run(2000 + k, words, moment, [](const auto&, pid_t itself) { return itself; });
+        const KilledRun run(2000 + k, "hello.toml", words, moment,
+                            [](const auto&, pid_t itself) { return itself; });
         INFO(fmt::format("kill {} after {:.3f} s", k, moment));
         run.check(128 + SIGKILL);
     }
