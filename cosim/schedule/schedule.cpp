@@ -35,12 +35,17 @@ Time Schedule::limit_if_silent(std::size_t n) {
     return alone_.limit(n);
 }
 
-/// When something may happen at each node next, if nothing new comes in.
+/// When something may happen at each node next, if nothing new comes in. Of a node that cannot go back only
+/// what others see of it counts: what it has received, and answers later or not at all, can wait.
 void Schedule::find_next(const std::vector<NodeTimes>& nodes, Time end) {
-    next_ = *pending_;
+    next_.resize(nodes.size());
+    for (std::size_t n = 0; n < nodes.size(); ++n)
+        next_[n] = nodes[n].runs_ahead ? (*pending_)[n] : kNever;
     expected_.assign(nodes.size(), kNever);
     for (const Channel& channel : *channels_) {
-        next_[channel.from] = std::min(next_[channel.from], channel.base);
+        Time& next = next_[channel.from];
+        next = std::min(next, channel.base);
+        if (!nodes[channel.from].runs_ahead) next = std::min(next, channel.answer((*pending_)[channel.from]));
         if (channel.punctual > 0) expected_[channel.to] = std::min(expected_[channel.to], channel.base);
     }
     // How far the first one may go: whatever happens within that time happens beside it.
