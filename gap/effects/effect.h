@@ -3,7 +3,7 @@
 // models; the maths of how a parameter acts stands in gap/models and, where the simulator has it, in
 // physics/.
 
-#include "gap/experiment.h"
+#include "gap/data/experiment.h"
 
 #include <span>
 #include <string_view>

@@ -1,8 +1,8 @@
 #pragma once
 // What has to be done on the emulator to perform a measured experiment again, and what is compared then.
 
+#include "gap/data/experiment.h"
 #include "gap/emulate/stage.h"
-#include "gap/experiment.h"
 
 #include <string>
 #include <utility>

@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "gap/emulate/reacts.h"
 #include "gap/emulate/rerun_rab.h"
-#include "gap/overlay_sensors.h"
+#include "gap/overlay/overlay_sensors.h"
 #include "physics/parameters.h"
 
 #include <fmt/format.h>

@@ -6,8 +6,8 @@
 // loudspeaker), accelerometer (tilts), range and bearing (rerun_rab.h). Placements of sensors are re-made
 // standing, a selection of them where there are many.
 
-#include "gap/analyse.h"
 #include "gap/emulate/stage.h"
+#include "gap/pipeline/analyse.h"
 
 #include <filesystem>
 #include <functional>

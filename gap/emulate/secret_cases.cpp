@@ -1,6 +1,6 @@
 #include "gap/emulate/secret_cases.h"
 
-#include "gap/analyse.h"
+#include "gap/pipeline/analyse.h"
 
 #include <fmt/format.h>
 

@@ -2,8 +2,8 @@
 // Load and tilt of the table, which a laboratory knows: noted beside what is measured, and set up again from
 // what was noted.
 
+#include "gap/data/experiment.h"
 #include "gap/emulate/stage.h"
-#include "gap/experiment.h"
 #include "gap/selftest/hidden_table.h"
 
 #include <vector>

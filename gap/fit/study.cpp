@@ -1,7 +1,7 @@
 #include "gap/fit/study.h"
 
 #include "base/random.h"
-#include "gap/columns.h"
+#include "gap/data/columns.h"
 #include "gap/fit/parallel.h"
 #include "gap/fit/thinned.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 // A part of a large experiment, on which fits are begun and the hopeless ones told from the others.
 
-#include "gap/experiment.h"
+#include "gap/data/experiment.h"
 
 #include <cstddef>
 

@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/suggest.h"
-#include "gap/overlay_names.h"
+#include "gap/overlay/overlay_names.h"
 #include "physics/parameters.h"
 
 #include <fmt/format.h>

@@ -4,7 +4,7 @@
 // numbers. The physical formulas are the simulator's own (physics/), called here without its clockwork:
 // docs/gap.md says what the shortcut leaves out, tests hold it to the world model.
 
-#include "gap/experiment.h"
+#include "gap/data/experiment.h"
 
 #include <cstdint>
 #include <map>

@@ -1,6 +1,6 @@
 #include "gap/models/rows.h"
 
-#include "gap/columns.h"
+#include "gap/data/columns.h"
 
 #include <algorithm>
 #include <cmath>

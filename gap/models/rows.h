@@ -2,7 +2,7 @@
 // Rows of an experiment gathered for a model: columns side by side, chains in order, rows without truth left
 // out.
 
-#include "gap/experiment.h"
+#include "gap/data/experiment.h"
 #include "gap/models/model.h"
 
 #include <initializer_list>

@@ -2,7 +2,7 @@
 // What a wheel's motor did over a run: cumulative steps as a curve over time, from the counter or from
 // commands.
 
-#include "gap/experiment.h"
+#include "gap/data/experiment.h"
 
 #include <cstddef>
 #include <string_view>

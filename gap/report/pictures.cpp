@@ -1,7 +1,7 @@
 #include "gap/report/pictures.h"
 
+#include "gap/diagnostics/residual_structure.h"
 #include "gap/report/chart.h"
-#include "gap/residual_structure.h"
 #include "gap/stats/bootstrap.h"
 #include "gap/stats/robust.h"
 #include "gap/stats/tests.h"

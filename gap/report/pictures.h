@@ -1,8 +1,8 @@
 #pragma once
 // The pictures of a report: what was measured, what the simulator said before and after, what is left.
 
-#include "gap/experiment.h"
-#include "gap/verdict.h"
+#include "gap/data/experiment.h"
+#include "gap/verdict/verdict.h"
 
 #include <string>
 #include <vector>

@@ -2,8 +2,8 @@
 // The report an experimentalist prints: verdict first, then pictures, evidence and cautions. One HTML text
 // with pictures inside, no scripts, nothing from elsewhere, A4.
 
-#include "gap/experiment.h"
-#include "gap/verdict.h"
+#include "gap/data/experiment.h"
+#include "gap/verdict/verdict.h"
 
 #include <filesystem>
 #include <string>

@@ -1,8 +1,8 @@
 #pragma once
 // The report's parts as HTML, each empty where it has nothing to say.
 
-#include "gap/experiment.h"
-#include "gap/verdict.h"
+#include "gap/data/experiment.h"
+#include "gap/verdict/verdict.h"
 
 #include <string>
 

@@ -1,8 +1,8 @@
 // Noise floor and structure tests of every observable.
 
+#include "gap/diagnostics/residual_structure.h"
 #include "gap/report/sections.h"
 #include "gap/report/table.h"
-#include "gap/residual_structure.h"
 #include "gap/stats/noise_floor.h"
 #include "gap/stats/robust.h"
 #include "physics/svg_canvas.h"

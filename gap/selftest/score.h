@@ -2,7 +2,7 @@
 // From verdicts to rates: what the tool said against what was hidden.
 
 #include "gap/selftest/hidden_case.h"
-#include "gap/verdict.h"
+#include "gap/verdict/verdict.h"
 
 #include <string>
 #include <vector>

@@ -2,7 +2,7 @@
 // Drives whose tracker and counters do not tell the same time.
 
 #include "base/random.h"
-#include "gap/experiment.h"
+#include "gap/data/experiment.h"
 
 #include <cmath>
 #include <functional>

@@ -3,7 +3,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "gap/experiment.h"
+#include "gap/data/experiment.h"
 #include "tests/scratch.h"
 
 #include <fmt/format.h>

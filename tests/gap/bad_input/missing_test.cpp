@@ -1,6 +1,6 @@
 // Cells missing in columns that the models predict from: nothing is put there that nobody measured.
 
-#include "gap/analyse.h"
+#include "gap/pipeline/analyse.h"
 #include "tests/gap/bad_input/made_experiment.h"
 
 #include <catch2/catch.hpp>

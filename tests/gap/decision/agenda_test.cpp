@@ -2,7 +2,7 @@
 // wheels.
 
 #include "base/random.h"
-#include "gap/agenda.h"
+#include "gap/diagnostics/agenda.h"
 
 #include <catch2/catch.hpp>
 

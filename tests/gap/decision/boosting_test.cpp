@@ -1,7 +1,7 @@
 // The free-form correction: finds what is there on runs it did not see, and nothing in noise.
 
 #include "base/random.h"
-#include "gap/free_form_cells.h"
+#include "gap/residual_model/free_form_cells.h"
 #include "gap/stats/boosting.h"
 
 #include <catch2/catch.hpp>

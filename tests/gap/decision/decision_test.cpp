@@ -2,7 +2,7 @@
 // something alien, a cause that could take half of something alien, and single readings that go astray.
 
 #include "base/random.h"
-#include "gap/analyse.h"
+#include "gap/pipeline/analyse.h"
 
 #include <catch2/catch.hpp>
 

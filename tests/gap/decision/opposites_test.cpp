@@ -1,7 +1,7 @@
 // Effects that hide each other: each alone says next to nothing, both together all.
 
 #include "base/random.h"
-#include "gap/analyse.h"
+#include "gap/pipeline/analyse.h"
 
 #include <catch2/catch.hpp>
 

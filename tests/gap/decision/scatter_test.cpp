@@ -2,7 +2,7 @@
 // model lacks or for spells.
 
 #include "base/random.h"
-#include "gap/analyse.h"
+#include "gap/pipeline/analyse.h"
 
 #include <catch2/catch.hpp>
 

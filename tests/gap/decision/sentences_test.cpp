@@ -1,6 +1,6 @@
 // The verdict in words.
 
-#include "gap/sentences.h"
+#include "gap/verdict/sentences.h"
 
 #include <catch2/catch.hpp>
 

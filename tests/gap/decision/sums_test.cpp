@@ -1,9 +1,9 @@
 // What sums of a drive say of pushes and of way lost in some rows, on toy drives there and back.
 
 #include "base/random.h"
+#include "gap/diagnostics/pushes.h"
 #include "gap/fit/study.h"
-#include "gap/free_form.h"
-#include "gap/pushes.h"
+#include "gap/residual_model/free_form.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,7 +1,7 @@
 // What a verdict with rivals says, in a word and in a sentence.
 
-#include "gap/sentences.h"
-#include "gap/verdict.h"
+#include "gap/verdict/sentences.h"
+#include "gap/verdict/verdict.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,9 +1,9 @@
 // The fast path of the analysis says what the whole run with the firmware in the loop says, within the
 // instruments' noise: nothing changed, nothing seen.
 
-#include "gap/analyse.h"
+#include "gap/data/experiment.h"
 #include "gap/emulate/record.h"
-#include "gap/experiment.h"
+#include "gap/pipeline/analyse.h"
 #include "tests/scratch.h"
 
 #include <catch2/catch.hpp>

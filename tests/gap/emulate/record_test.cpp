@@ -1,11 +1,11 @@
 // Experiments recorded on the emulator: what a laboratory would have, and what the robot really did.
 
 #include "base/error.h"
-#include "gap/analyse.h"
+#include "gap/data/experiment.h"
 #include "gap/emulate/record.h"
 #include "gap/emulate/secrets.h"
 #include "gap/emulate/wave_floor.h"
-#include "gap/experiment.h"
+#include "gap/pipeline/analyse.h"
 #include "physics/ground.h"
 #include "tests/scratch.h"
 

@@ -2,7 +2,7 @@
 // by the one reader of experiment folders.
 
 #include "base/error.h"
-#include "gap/experiment.h"
+#include "gap/data/experiment.h"
 #include "gap/importers/importers.h"
 #include "tests/scratch.h"
 

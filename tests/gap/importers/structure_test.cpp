@@ -1,8 +1,8 @@
 // An experiment's own columns become the covariates of its residuals.
 
 #include "base/random.h"
-#include "gap/placements.h"
-#include "gap/residual_structure.h"
+#include "gap/diagnostics/residual_structure.h"
+#include "gap/validate/placements.h"
 
 #include <catch2/catch.hpp>
 

@@ -2,7 +2,7 @@
 // The generator's tables without noise, as the forward models see them: two programs that share no formula,
 // held to each other.
 
-#include "gap/experiment.h"
+#include "gap/data/experiment.h"
 #include "gap/models/model.h"
 #include "gap/selftest/rigs.h"
 #include "tests/scratch.h"

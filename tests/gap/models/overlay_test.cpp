@@ -1,8 +1,8 @@
 // What a verdict's overlay says, and that every effect enters the simulator where its file says.
 
-#include "gap/analyse.h"
 #include "gap/effects/effect.h"
-#include "gap/overlay_names.h"
+#include "gap/overlay/overlay_names.h"
+#include "gap/pipeline/analyse.h"
 #include "physics/parameters.h"
 #include "scenarios/scenario.h"
 #include "tests/scratch.h"

@@ -2,8 +2,8 @@
 // (docs/gap_real_data.md), above all what must not be claimed. Needs the sets: PUCKLOOP_MEASURED names their
 // folder.
 
-#include "gap/analyse.h"
 #include "gap/importers/importers.h"
+#include "gap/pipeline/analyse.h"
 #include "tests/scratch.h"
 
 #include <catch2/catch.hpp>

@@ -2,8 +2,8 @@
 // An experiment and a verdict as the analysis would give them, for the tests of the report.
 
 #include "base/random.h"
-#include "gap/experiment.h"
-#include "gap/verdict.h"
+#include "gap/data/experiment.h"
+#include "gap/verdict/verdict.h"
 
 #include <cmath>
 

@@ -1,6 +1,6 @@
 // The generator of hidden effects: what it writes the tool can read, and says nothing of what was hidden.
 
-#include "gap/experiment.h"
+#include "gap/data/experiment.h"
 #include "gap/selftest/case_list.h"
 #include "tests/scratch.h"
 

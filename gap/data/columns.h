@@ -1,0 +1,35 @@
+#pragma once
+// The canonical columns of each kind of experiment: names, units, what they are for, what is plausible.
+
+#include "gap/data/experiment.h"
+
+#include <span>
+
+namespace puckloop::gap {
+
+enum class Role {
+    Observable,  ///< what the simulation must explain
+    Truth,       ///< where things really were, or when; never missing as a whole
+    Stimulus,    ///< what was commanded or set up
+    Covariate,   ///< what else was noted: residuals are looked at against it
+};
+
+struct ColumnInfo {
+    const char* name;
+    const char* unit;  ///< SI unit of the column; "counts" and "1" are dimensionless
+    Role role;
+    bool required;
+    double low, high;  ///< plausible values; outside them a unit or a column is wrong
+    const char* meaning;
+};
+
+/// Columns of one kind, its own first, then those common to all kinds.
+std::span<const ColumnInfo> columns_of(Kind kind);
+/// nullptr if the kind has no such column.
+const ColumnInfo* find_column(Kind kind, std::string_view name);
+
+/// Factor and offset from `unit` to the SI unit `si`: value_si = value * factor + offset. Returns false if
+/// the units do not measure the same thing or one is unknown.
+bool unit_to_si(std::string_view unit, std::string_view si, double& factor, double& offset);
+
+}  // namespace puckloop::gap

@@ -1,0 +1,67 @@
+#pragma once
+// A measured experiment as the analysis sees it: kind, nominal numbers, runs with conditions and a table of
+// canonical columns in SI units. The format on disk is docs/gap.md; read_experiment() is its only reader.
+
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace puckloop::gap {
+
+enum class Kind { Proximity, Motion, Rab, Microphone, Ground, Accelerometer, Timing };
+
+/// One run: a table whose columns all have `rows` values; NaN = missing.
+struct Run {
+    std::string name;
+    std::string file;                               ///< as experiment.toml names it, for messages
+    std::map<std::string, std::string> conditions;  ///< "surface" -> "white"; the experiment's and the run's
+    std::size_t rows = 0;
+    std::map<std::string, std::vector<double>, std::less<>> columns;  ///< canonical names, SI units
+
+    /// s: where each row's tracker time stands on the counters' clock; empty: the two are one
+    /// (gap/sync/clocks).
+    std::vector<double> counted_at;
+
+    /// The column, or an empty vector if this run does not have it.
+    const std::vector<double>& column(std::string_view name) const;
+    bool has(std::string_view name) const { return !column(name).empty(); }
+    /// The condition's text, or "".
+    std::string condition(const std::string& name) const;
+};
+
+/// What the instrument can say of a column: clip levels and step; NaN / 0 = not known.
+struct Instrument {
+    double floor, ceiling;  ///< values at or beyond are "at least this far"; NaN: none
+    double quantum = 0.0;   ///< step between two values
+};
+
+struct Experiment {
+    Kind kind = Kind::Proximity;
+    std::filesystem::path folder;
+    std::string title, robot, description, source, licence;
+    std::map<std::string, double> nominal;  ///< model parameter -> value, where not the simulator's default
+    std::map<std::string, Instrument> instruments;  ///< by column
+    std::vector<Run> runs;
+    std::vector<std::string> assumed;   ///< truth columns that nobody measured: nothing can be named on them
+    std::vector<std::string> cautions;  ///< what the reader noticed, in plain words; part of the verdict
+
+    std::size_t rows() const;  ///< over all runs
+    /// What [nominal] says of a number, or `otherwise`.
+    double nominal_or(const std::string& name, double otherwise) const;
+    /// Does at least one run have this column?
+    bool has(std::string_view column) const;
+};
+
+/// Reads `folder`/experiment.toml and the CSV files it names, converts units, and looks for what cannot be
+/// used: wrong units, swapped columns, a clock that jumps, constant columns, missing truth, NaN, two robots
+/// mixed. What can be used with care becomes a caution. Throws InputError with file and line.
+Experiment read_experiment(const std::filesystem::path& folder);
+
+std::string_view kind_name(Kind kind);  ///< "proximity", ...
+/// Throws std::invalid_argument with one line and the nearest name.
+Kind kind_named(std::string_view name);
+
+}  // namespace puckloop::gap

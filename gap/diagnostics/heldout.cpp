@@ -1,0 +1,96 @@
+#include "gap/diagnostics/heldout.h"
+
+#include "base/random.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace puckloop::gap {
+
+namespace {
+
+constexpr int kDraws = 1000;  // of the bootstrap over blocks
+
+double root_mean(const std::vector<double>& sums, double rows) {
+    double sum = 0.0;
+    for (const double one : sums)
+        sum += one;
+    return std::sqrt(sum / std::max(rows, 1.0));
+}
+
+void ratio_of(const std::vector<double>& before, const std::vector<double>& after, std::uint64_t seed,
+              double& ratio, double& low, double& high) {
+    RandomStream random(seed, "gap/ratio");
+    std::vector<double> ratios;
+    const std::size_t n = before.size();
+    double all_before = 0, all_after = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        all_before += before[i];
+        all_after += after[i];
+    }
+    ratio = all_before > 0 ? std::sqrt(all_after / all_before) : 1.0;
+    for (int draw = 0; draw < kDraws; ++draw) {
+        double b = 0, a = 0;
+        for (std::size_t i = 0; i < n; ++i) {
+            const std::size_t k = random.below(n);
+            b += before[k];
+            a += after[k];
+        }
+        if (b > 0) ratios.push_back(std::sqrt(a / b));
+    }
+    std::sort(ratios.begin(), ratios.end());
+    low = ratios.empty() ? ratio : ratios[ratios.size() / 20];
+    high = ratios.empty() ? ratio : ratios[ratios.size() - 1 - ratios.size() / 20];
+}
+
+}  // namespace
+
+HeldFigures held_figures(const Study& study, const Selection& selection, std::uint64_t seed) {
+    const auto& observables = study.model().observables();
+    const std::size_t units = study.blocks().count;
+    std::vector<std::vector<double>> before(observables.size() + 1, std::vector<double>(units, 0.0)),
+        after = before;
+    std::vector<double> counts(units, 0.0);
+    for (std::size_t o = 0; o < observables.size(); ++o) {
+        const double sd = observables[o].noise == NoiseKind::Event
+                              ? 1.0
+                              : std::exp(selection.chosen.fitted.state.noise[o].log_sd);
+        for (std::size_t i = 0; i < observables[o].y.size(); ++i) {
+            const std::uint32_t block = study.blocks().of[o][i];
+            const double old_error = observables[o].y[i] - selection.held_none.mean[o][i];
+            const double new_error = observables[o].y[i] - selection.held_chosen.mean[o][i];
+            before[o][block] += old_error * old_error;
+            after[o][block] += new_error * new_error;
+            before.back()[block] += old_error * old_error / (sd * sd);
+            after.back()[block] += new_error * new_error / (sd * sd);
+            counts[block] += 1;
+        }
+    }
+    HeldFigures figures;
+    Held& held = figures.all;
+    double rows = 0.0;
+    for (const double count : counts)
+        rows += count;
+    ratio_of(before.back(), after.back(), seed, held.ratio, held.low, held.high);
+    held.before = root_mean(before.back(), rows);
+    held.after = root_mean(after.back(), rows);
+    for (std::size_t o = 0; o < observables.size(); ++o) {
+        HeldObservable one{observables[o].name, observables[o].unit};
+        ratio_of(before[o], after[o], seed, one.ratio, one.low, one.high);
+        one.before = root_mean(before[o], static_cast<double>(observables[o].y.size()));
+        one.after = root_mean(after[o], static_cast<double>(observables[o].y.size()));
+        figures.observables.push_back(std::move(one));
+        for (std::size_t i = 0; i < observables[o].y.size(); ++i) {
+            held.score_before += selection.held_none.score[o][i] / rows;
+            held.score_after += selection.held_chosen.score[o][i] / rows;
+        }
+    }
+    const Gain gain = gain_of(gains_by_block(study.blocks(), selection.held_none, selection.held_chosen));
+    held.score_low = (gain.sum - 1.645 * gain.sd) / rows;
+    held.score_high = (gain.sum + 1.645 * gain.sd) / rows;
+    held.runs = static_cast<int>(units);
+    held.runs_better = static_cast<int>(std::lround(gain.share_better * static_cast<double>(units)));
+    return figures;
+}
+
+}  // namespace puckloop::gap

@@ -1,0 +1,23 @@
+#pragma once
+// What the chosen effects gain on rows that were not fitted: errors and log scores before and after, with
+// intervals over blocks.
+
+#include "gap/fit/select.h"
+#include "gap/fit/study.h"
+#include "gap/verdict/verdict.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace puckloop::gap {
+
+struct HeldFigures {
+    Held
+        all;  ///< errors in units of the noise; whether a gain is claimed and its sentence are left to others
+    std::vector<HeldObservable> observables;
+};
+
+/// `seed` of the bootstrap over blocks.
+HeldFigures held_figures(const Study& study, const Selection& selection, std::uint64_t seed);
+
+}  // namespace puckloop::gap

@@ -1,0 +1,89 @@
+#include "gap/diagnostics/pushes.h"
+
+#include "gap/fit/filter.h"
+#include "gap/residual_model/free_form_cells.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace puckloop::gap {
+
+namespace {
+
+constexpr double kLeastPushes = 3.0;
+constexpr double kByChance = 1e-3;  // corrected p above which nothing is said
+
+/// ln of the chance that of `n` events `k` or more fall where a share of `share` should.
+double log_chance(int k, int n, double share) {
+    if (k <= 0) return 0.0;
+    if (share <= 0) return -INFINITY;
+    if (share >= 1) return 0.0;
+    double sum = 0.0;
+    for (int j = k; j <= n; ++j)
+        sum += std::exp(std::lgamma(n + 1.0) - std::lgamma(j + 1.0) - std::lgamma(n - j + 1.0) +
+                        j * std::log(share) + (n - j) * std::log1p(-share));
+    return std::log(std::min(std::max(sum, 1e-300), 1.0));
+}
+
+}  // namespace
+
+std::optional<PushPattern> push_pattern(const Experiment& experiment, const Model& model,
+                                        const State& state) {
+    Prediction prediction;
+    model.predict(state.values, prediction);
+    const Observable* base = nullptr;
+    std::vector<double> pushed, chance;
+    for (std::size_t o = 0; o < model.observables().size(); ++o) {
+        const Observable& observable = model.observables()[o];
+        if (observable.noise != NoiseKind::Level || prediction[o].lapse.empty() || observable.fixed_sd > 0)
+            continue;
+        if (base != nullptr && observable.row != base->row) continue;
+        Innovations innovations;
+        filter(observable, prediction[o], state.noise[o], innovations);
+        if (base == nullptr) {
+            base = &observable;
+            pushed.assign(observable.y.size(), 0.0);
+            chance = prediction[o].lapse;
+        }
+        // One push shows in any of the sums.
+        for (std::size_t i = 0; i < pushed.size(); ++i)
+            pushed[i] = std::max(pushed[i], innovations.pushed[i]);
+    }
+    if (base == nullptr) return std::nullopt;
+    PushPattern found;
+    double hoped = 0.0;
+    for (std::size_t i = 0; i < pushed.size(); ++i) {
+        found.all += pushed[i];
+        hoped += chance[i];
+    }
+    if (found.all < kLeastPushes || !(hoped > 0)) return std::nullopt;
+    Series rows;
+    rows.run = base->run;
+    rows.row = base->row;
+    const auto components = free_form_cells(experiment, rows, base->starts);
+    double tried = 0.0, least = 0.0;
+    for (const stats::Component& component : components) {
+        std::vector<double> there(static_cast<std::size_t>(component.cells), 0.0), share = there;
+        for (std::size_t i = 0; i < pushed.size(); ++i) {
+            if (component.cell[i] < 0) continue;
+            there[static_cast<std::size_t>(component.cell[i])] += pushed[i];
+            share[static_cast<std::size_t>(component.cell[i])] += chance[i] / hoped;
+        }
+        for (std::size_t c = 0; c < there.size(); ++c) {
+            if (share[c] <= 0) continue;
+            tried += 1;
+            const double log_p = log_chance(static_cast<int>(std::floor(there[c])),
+                                            static_cast<int>(std::ceil(found.all)), share[c]);
+            if (log_p >= least) continue;
+            least = log_p;
+            found.where = component.where[c];
+            found.pushes = there[c];
+            found.expected = share[c] * found.all;
+        }
+    }
+    found.p_value = std::min(std::exp(least) * tried, 1.0);
+    if (found.p_value > kByChance) return std::nullopt;
+    return found;
+}
+
+}  // namespace puckloop::gap

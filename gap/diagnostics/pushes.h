@@ -1,0 +1,26 @@
+#pragma once
+// Pushes come by chance: when and where has nothing to do with the robot. What keeps to a place, to a command
+// or to some runs is no push, but something the model lacks that a jump imitates.
+
+#include "gap/data/experiment.h"
+#include "gap/fit/fit.h"
+#include "gap/models/model.h"
+
+#include <optional>
+#include <string>
+
+namespace puckloop::gap {
+
+/// Most of the pushes lie where few should.
+struct PushPattern {
+    std::string where;      ///< "place x 0.4", "cmd_left -400, cmd_left a row before 400"
+    double pushes = 0.0;    ///< there, each by its probability
+    double all = 0.0;       ///< pushes found anywhere
+    double expected = 0.0;  ///< there, if they came by chance
+    double p_value = 1.0;   ///< of so many there by chance, corrected for every place that was looked at
+};
+
+/// Nothing when the pushes that the fit finds come by chance, or when there are none.
+std::optional<PushPattern> push_pattern(const Experiment& experiment, const Model& model, const State& state);
+
+}  // namespace puckloop::gap

@@ -1,0 +1,28 @@
+#pragma once
+// The structure tests of one observable's residual against everything the experiment knows: its own columns,
+// the conditions of its runs, what follows from commands and steps (speed, turn rate, acceleration, distance
+// so far), time, order, sessions.
+
+#include "gap/data/experiment.h"
+#include "gap/stats/structure.h"
+#include "gap/verdict/verdict.h"
+
+namespace puckloop::gap {
+
+enum class Stage { Before, After };  ///< of the simulator as it is, or with the chosen effects
+
+/// The residual that is looked at: standardised innovations where the series has them, else measured -
+/// simulated.
+std::vector<double> residual_of(const Series& series, Stage stage);
+
+/// A covariate a row of the series; only those that vary.
+std::vector<stats::Covariate> covariates_of(const Experiment& experiment, const Series& series);
+
+/// Time a row (t_s or the kind's clock); row numbers where there is none.
+std::vector<double> times_of(const Experiment& experiment, const Series& series);
+
+/// All tests, corrected together by Holm over this observable. Effects are in the residual's unit.
+std::vector<stats::Finding> residual_structure(const Experiment& experiment, const Series& series,
+                                               Stage stage, const stats::TestOptions& options);
+
+}  // namespace puckloop::gap

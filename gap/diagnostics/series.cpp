@@ -1,0 +1,48 @@
+#include "gap/diagnostics/series.h"
+
+#include "gap/fit/noise.h"
+#include "gap/models/model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace puckloop::gap {
+
+std::vector<Series> series_of(const Model& model, const State& before, const State& after) {
+    Prediction old_prediction, new_prediction;
+    const auto old_costs = costs_at(model, before, old_prediction),
+               new_costs = costs_at(model, after, new_prediction);
+    std::vector<Series> all;
+    for (std::size_t o = 0; o < model.observables().size(); ++o) {
+        const Observable& observable = model.observables()[o];
+        // Rows of a run in the order they were measured.
+        std::vector<std::size_t> order(observable.y.size());
+        for (std::size_t i = 0; i < order.size(); ++i)
+            order[i] = i;
+        std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+            return std::pair(observable.run[a], observable.row[a]) <
+                   std::pair(observable.run[b], observable.row[b]);
+        });
+        Series one;
+        one.observable = observable.name;
+        one.unit = observable.unit;
+        for (const std::size_t i : order) {
+            one.run.push_back(observable.run[i]);
+            one.row.push_back(observable.row[i]);
+            one.measured.push_back(observable.y[i]);
+            one.before.push_back(shown(old_prediction[o], i));
+            one.after.push_back(shown(new_prediction[o], i));
+            one.scale.push_back(
+                observable.noise == NoiseKind::Event
+                    ? std::sqrt(std::max(new_prediction[o].mean[i] * (1 - new_prediction[o].mean[i]), 1e-6))
+                    : row_sd(observable, new_prediction[o], after.noise[o], i));
+            one.innovation_before.push_back(old_costs[o].innovation[i]);
+            one.innovation_after.push_back(new_costs[o].innovation[i]);
+        }
+        all.push_back(std::move(one));
+    }
+    return all;
+}
+
+}  // namespace puckloop::gap

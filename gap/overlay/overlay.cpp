@@ -1,0 +1,120 @@
+// A verdict's causes as an overlay: [parameters], [uart], [linux] and [clock] are what `puckloop run --model`
+// takes, [measurement] what belongs to the measuring chain or has no counterpart in a run; `run` says that it
+// passes over it.
+
+#include "gap/overlay/overlay_links.h"
+#include "gap/overlay/overlay_rab.h"
+#include "gap/overlay/overlay_sensors.h"
+#include "gap/pipeline/analyse.h"
+#include "physics/parameters.h"
+#include "scenarios/world_tables.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace puckloop::gap {
+
+namespace {
+
+using Values = std::map<std::string, double>;
+
+/// One line, whatever the text holds: TOML knows no control characters in comments.
+std::string comment(std::string text) {
+    std::replace_if(
+        text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; }, ' ');
+    return "# " + text + "\n";
+}
+
+double get(const Values& values, const std::string& name, double neutral) {
+    const auto place = values.find(name);
+    return place == values.end() ? neutral : place->second;
+}
+
+constexpr double kLeastSlip = 1e-3;  // of inverse_friction: no floor holds better
+
+/// What the world model cannot take is cut to its range, and said.
+std::string parameter_line(const std::string& name, double value) {
+    int index = -1;
+    const auto* info = physics::find_parameter(name, index);
+    const double taken = std::clamp(value, info->min, info->max);
+    std::string text;
+    if (taken != value)
+        text = comment(fmt::format("{} = {:.6g} {} was found or told; the simulator takes {:g} to {:g}", name,
+                                   value, info->unit, info->min, info->max));
+    return text + fmt::format("\"{}\" = {}\n", name, scenarios::parameter_text(name, taken));
+}
+
+/// Ratios of the motion model are radii of the world model.
+void wheels(const Experiment& experiment, const Values& fitted, Values& simulator) {
+    if (!fitted.contains("wheel_scale") && !fitted.contains("wheel_mismatch")) return;
+    const physics::Parameters defaults;
+    const double scale = 1 + get(fitted, "wheel_scale", 0), mismatch = get(fitted, "wheel_mismatch", 0);
+    const double both = get(experiment.nominal, "robot.wheel_radius", defaults.robot.wheel_radius_left);
+    simulator["robot.wheel_radius_left"] =
+        get(experiment.nominal, "robot.wheel_radius_left", both) * scale * (1 - mismatch);
+    simulator["robot.wheel_radius_right"] =
+        get(experiment.nominal, "robot.wheel_radius_right", both) * scale * (1 + mismatch);
+}
+
+/// The ground board's place and height over the floor.
+void ground_board(const Experiment& experiment, Values& fitted, Values& simulator) {
+    const physics::GroundParameters drawn = physics::Parameters().ground;
+    const auto move = [&](const char* name, const std::string& place, double neutral) {
+        const double value = get(fitted, name, 0.0);
+        if (value != 0) simulator[place] = get(experiment.nominal, place, neutral) + value;
+    };
+    move("ground.forward_error", "ground.x", drawn.x);
+    move("ground.raised", "ground.height", drawn.height);
+    for (std::size_t i = 0; i < physics::kGroundSensors; ++i)
+        move("ground.left_error", fmt::format("ground.y{}", i), drawn.y[i]);
+    for (const char* name : {"ground.forward_error", "ground.raised", "ground.left_error"})
+        fitted.erase(name);
+}
+
+}  // namespace
+
+std::string overlay_toml(const Experiment& experiment, const Verdict& verdict) {
+    Values fitted;
+    std::string text = comment("Overlay of a measured experiment: " + experiment.title) +
+                       comment(fmt::format("Verdict: {}", decision_name(verdict.decision)));
+    for (const Cause& cause : verdict.causes) {
+        text += comment(fmt::format("{} ({}): {}", cause.name, cause.number, cause.sentence));
+        for (const FittedParameter& parameter : cause.parameters)
+            fitted[parameter.name] = parameter.value;
+    }
+    Values simulator, measuring;
+    wheels(experiment, fitted, simulator);
+    rab_overlay(fitted, simulator);
+    ground_board(experiment, fitted, simulator);
+    sensors_overlay(experiment, fitted, simulator);
+    for (const auto& [name, value] : fitted) {
+        int index = -1;
+        if (name == "wheel_scale" || name == "wheel_mismatch") continue;
+        if (name == "inverse_friction") {
+            simulator["contact.mu"] = simulator["contact.mu_lateral"] = 1 / std::max(value, kLeastSlip);
+        } else if (physics::find_parameter(name, index) != nullptr) {
+            simulator[name] = value;
+        } else {
+            measuring[name] = value;
+        }
+    }
+    // What the experiment says of its robot holds for the scenario as well.
+    for (const auto& [name, value] : experiment.nominal) {
+        int index = -1;
+        if (physics::find_parameter(name, index) != nullptr) simulator.emplace(name, value);
+    }
+    text += "\n[parameters]\n";
+    for (const auto& [name, value] : simulator)
+        text += parameter_line(name, value);
+    text += links_overlay(experiment.nominal, measuring);
+    if (!measuring.empty())
+        text += "\n# Of the measuring chain, or without a counterpart in the world model.\n[measurement]\n";
+    for (const auto& [name, value] : measuring)
+        text += fmt::format("\"{}\" = {:.9g}\n", name, value);
+    return text;
+}
+
+}  // namespace puckloop::gap

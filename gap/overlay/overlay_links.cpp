@@ -1,0 +1,91 @@
+// Deviations: 1. a longer or unsteady period is that of sleeps which end late; a program that sleeps until a
+// time, not for a time, keeps its period. 2. Commands are lost byte by byte, each with the share that makes
+// the found share of records.
+
+#include "gap/overlay/overlay_links.h"
+
+#include "protocols/epuck_serial.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace puckloop::gap {
+
+namespace {
+
+using Values = std::map<std::string, double>;
+
+class LinksOverlay {
+  public:
+    LinksOverlay(const Values& nominal, Values& fitted) : nominal_(nominal), fitted_(fitted) {}
+
+    std::string text() {
+        table("uart");
+        seconds("command.latency", "command_delay");
+        // A record is lost with any of its bytes.
+        if (const double lost = more("command.loss"); lost > 0)
+            line("command_loss",
+                 number(1 - std::pow(1 - std::clamp(lost, 0.0, 0.999),
+                                     1 / static_cast<double>(protocols::kEpuckActuatorBytes))));
+        const bool cut = share("timing.truncation", "answer_cut");
+        if (cut) share("timing.truncation_burst", "answer_cut_again");
+        share("timing.edge_errors", "answer_edge_loss");
+        table("linux");
+        seconds("timing.i2c_stretch", "i2c_hold");
+        seconds("timing.batch", "tty_batch");
+        seconds("timing.extra_period", "oversleep");
+        seconds("timing.period_jitter", "oversleep_jitter");
+        table("clock");
+        if (const double drift = more("timing.clock_drift"); drift != 0) {
+            constexpr double kMost = 2e5;  // ppm, what a run takes
+            const double ppm = (1 / (1 + drift) - 1) * 1e6, taken = std::clamp(ppm, -kMost, kMost);
+            if (taken != ppm)
+                header_ += fmt::format("# {:.6g} ppm was found; a run takes -200000 to 200000\n", ppm);
+            line("pic_error", fmt::format("\"{:.9g} ppm\"", taken));
+        }
+        return text_;
+    }
+
+  private:
+    static std::string number(double value) { return fmt::format("{:.9g}", value); }
+
+    /// The fitted value over the nominal one, taken out if a run can have it.
+    double more(const std::string& name) {
+        const auto place = fitted_.find(name);
+        if (place == fitted_.end()) return 0.0;
+        const auto known = nominal_.find(name);
+        const double value = place->second - (known == nominal_.end() ? 0.0 : known->second);
+        if (value > 0 || name == "timing.clock_drift") fitted_.erase(place);
+        return value;
+    }
+    void table(const char* name) { header_ = fmt::format("\n[{}]\n", name); }
+    void line(const char* key, const std::string& value) {
+        text_ += header_ + fmt::format("{} = {}\n", key, value);
+        header_.clear();
+    }
+    void seconds(const char* name, const char* key) {
+        constexpr double kLongest = 1.0;  // what a run takes
+        const double value = more(name);
+        const bool command = key == std::string_view("command_delay");
+        if (value > 0) line(key, fmt::format("\"{:.9g} s\"", command ? value : std::min(value, kLongest)));
+    }
+    bool share(const char* name, const char* key) {
+        const double value = more(name);
+        if (value > 0) line(key, number(std::min(value, 1.0)));
+        return value > 0;
+    }
+
+    const Values& nominal_;
+    Values& fitted_;
+    std::string header_, text_;
+};
+
+}  // namespace
+
+std::string links_overlay(const Values& nominal, Values& fitted) {
+    return LinksOverlay(nominal, fitted).text();
+}
+
+}  // namespace puckloop::gap

@@ -1,0 +1,316 @@
+#include "gap/residual_model/free_form.h"
+
+#include "gap/fit/study.h"
+#include "gap/residual_model/free_form_cells.h"
+#include "gap/residual_model/sum_form.h"
+#include "gap/stats/profile.h"
+#include "gap/stats/robust.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace puckloop::gap {
+
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t kTerms = 4;                          // told, the largest first
+constexpr double kLeastTerm = 0.05;                        // of the correction's variance
+constexpr double kWild = 5.0;                              // robust deviations
+constexpr double kLeastWild = 5.0;                         // values
+constexpr double kFar = 20.0;                              // robust deviations: no tail of a noise goes there
+constexpr double kOneSided = 1e-3;                         // chance that all wild values lie on one side
+constexpr double kManyTimes = 1.5, kManyDeviations = 4.0;  // neighbours that chance does not make
+constexpr double kClear = 6.0;                             // nats on held-out rows
+constexpr double kSure = 2.0;                              // their deviations between blocks
+constexpr std::ptrdiff_t kLeastEvents = 5;                 // of the rarer kind: of fewer nothing is learnt
+constexpr std::size_t kMostRows = 12000;                   // beyond, stretches are left out
+
+/// Errors of one observable or more, rows in chains.
+struct Errors {
+    std::string observable, unit;
+    stats::ErrorRows rows;
+    Series at;  // run and row of each
+    std::vector<char> starts;
+    std::vector<double> scale, level;  ///< noise and prediction, the observable's unit
+};
+
+Errors errors_of(const Observable& observable, const Predicted& predicted, const NoiseParameters& noise,
+                 const RowCosts& costs) {
+    Errors e;
+    e.observable = observable.name;
+    e.unit = observable.unit;
+    const bool whitened = observable.noise != NoiseKind::Carry || predicted.line_amplitude > 0;
+    e.rows.carry = whitened ? 0.0 : noise.carry;
+    e.rows.trimmed = observable.noise != NoiseKind::Event;
+    for (std::size_t i = 0; i < observable.y.size(); ++i) {
+        const bool clipped = observable.y[i] <= observable.instrument.floor ||
+                             observable.y[i] >= observable.instrument.ceiling;
+        const double sd = observable.noise == NoiseKind::Event
+                              ? std::sqrt(std::max(predicted.mean[i] * (1 - predicted.mean[i]), 1e-6))
+                              : row_sd(observable, predicted, noise, i);
+        const bool begins = observable.noise == NoiseKind::Level && observable.starts[i] != 0;
+        e.rows.error.push_back(begins     ? kNan
+                               : whitened ? costs.innovation[i]
+                               : clipped  ? kNan
+                                          : (observable.y[i] - predicted.mean[i]) / sd);
+        e.rows.follows.push_back(observable.starts[i] == 0 ? 1 : 0);
+        e.rows.run.push_back(static_cast<int>(observable.run[i]));
+        e.starts.push_back(observable.starts[i]);
+        e.scale.push_back(sd);
+        e.level.push_back(predicted.mean[i]);
+    }
+    e.at.run = observable.run;
+    e.at.row = observable.row;
+    return e;
+}
+
+void append(Errors& to, const Errors& from) {
+    const auto add = [](auto& a, const auto& b) { a.insert(a.end(), b.begin(), b.end()); };
+    add(to.rows.error, from.rows.error);
+    add(to.rows.follows, from.rows.follows);
+    add(to.rows.run, from.rows.run);
+    add(to.at.run, from.at.run);
+    add(to.at.row, from.at.row);
+    add(to.starts, from.starts);
+    add(to.scale, from.scale);
+}
+
+/// Along and across the heading instead of x and y: what a robot does wrong goes with it.
+std::vector<stats::Component> turned_with_robot(const Experiment& experiment, const Errors& errors,
+                                                std::size_t rows_of_x,
+                                                const std::vector<stats::Component>& components) {
+    std::vector<double> along, across;
+    for (std::size_t i = 0; i < errors.at.run.size(); ++i) {
+        const auto& theta = experiment.runs[errors.at.run[i]].column("theta_rad");
+        const double heading = theta.empty() ? kNan : theta[errors.at.row[i]];
+        const double c = std::isfinite(heading) ? std::cos(heading) : 0.0,
+                     s = std::isfinite(heading) ? std::sin(heading) : 0.0;
+        along.push_back(i < rows_of_x ? c : s);
+        across.push_back(i < rows_of_x ? -s : c);
+    }
+    std::vector<stats::Component> all;
+    for (const auto& component : components) {
+        if (component.pair) continue;  // twice as many, on twice the rows
+        all.push_back(component);
+        all.back().name = component.name + ", along";
+        all.back().weight = along;
+        all.push_back(component);
+        all.back().name = component.name + ", across";
+        all.back().weight = across;
+    }
+    return all;
+}
+
+/// The same cells again for what goes in proportion to the prediction.
+void add_proportional(const Errors& errors, std::vector<stats::Component>& components) {
+    double squares = 0.0;
+    for (const double level : errors.level)
+        squares += level * level;
+    const double rms = std::sqrt(squares / std::max<double>(static_cast<double>(errors.level.size()), 1.0));
+    if (!(rms > 0)) return;
+    std::vector<double> weight;
+    for (const double level : errors.level)
+        weight.push_back(level / rms);
+    const std::size_t count = components.size();
+    for (std::size_t g = 0; g < count; ++g) {
+        if (components[g].pair) continue;
+        components.push_back(components[g]);
+        components.back().name += ", in proportion";
+        components.back().weight = weight;
+    }
+}
+
+/// One number a cell, in the observable's unit, and its course in words.
+FreeFormTerm term_of(const stats::Component& component, const std::vector<double>& correction,
+                     const std::vector<double>& scale, double share, const std::string& unit) {
+    FreeFormTerm term;
+    term.over = component.name;
+    term.share = share;
+    std::vector<double> sums(static_cast<std::size_t>(component.cells), 0.0), weights = sums;
+    for (std::size_t i = 0; i < correction.size(); ++i) {
+        if (component.cell[i] < 0) continue;
+        const double weight = component.weight.empty() ? 1.0 : component.weight[i];
+        sums[static_cast<std::size_t>(component.cell[i])] += weight * correction[i] * scale[i];
+        weights[static_cast<std::size_t>(component.cell[i])] += weight * weight;
+    }
+    stats::Profile profile;
+    for (std::size_t k = 0; k < sums.size(); ++k) {
+        if (!(weights[k] > 0)) continue;
+        term.where.push_back(component.where[k]);
+        term.values.push_back(sums[k] / weights[k]);
+        if (!component.ordered) continue;
+        profile.x.push_back(component.at[k]);
+        profile.y.push_back(term.values.back());
+        profile.error.push_back(0.0);
+    }
+    if (term.values.empty()) return term;
+    const auto [low, high] = std::minmax_element(term.values.begin(), term.values.end());
+    const auto at = [&](auto one) { return term.where[static_cast<std::size_t>(one - term.values.begin())]; };
+    term.shape =
+        fmt::format("{:+.3g} {} at {}, {:+.3g} {} at {}", *high, unit, at(high), *low, unit, at(low));
+    if (component.ordered && profile.x.size() > 2)
+        term.shape = stats::shape_words(profile, component.name) + " (" + term.shape + ")";
+    return term;
+}
+
+FreeForm told(const Errors& errors, const std::vector<stats::Component>& components, std::uint64_t seed) {
+    const stats::Boosted fit = stats::boosted(errors.rows, components, seed);
+    FreeForm form;
+    form.observable = errors.observable;
+    form.unit = errors.unit;
+    const Gain gain = gain_of(fit.gains);
+    form.gain = gain.sum;
+    form.sd = gain.sd;
+    const double all = std::accumulate(fit.weight.begin(), fit.weight.end(), 0.0);
+    std::vector<std::size_t> order(components.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return fit.weight[a] > fit.weight[b]; });
+    double squares = 0.0, rows = 0.0;
+    for (std::size_t i = 0; i < fit.correction.size(); ++i)
+        if (std::isfinite(errors.rows.error[i])) {
+            squares += fit.correction[i] * fit.correction[i];
+            rows += 1;
+        }
+    form.size = rows > 0 ? std::sqrt(squares / rows) : 0.0;
+    for (std::size_t k = 0; k < std::min(kTerms, order.size()); ++k)
+        if (fit.weight[order[k]] > kLeastTerm * all)
+            form.terms.push_back(term_of(components[order[k]], fit.correction, errors.scale,
+                                         fit.weight[order[k]] / all, errors.unit));
+    // What only a few runs can show is clear when several gain by it and none loses.
+    form.clear =
+        form.gain > kClear && (form.gain > kSure * form.sd || gain.in_several()) && !form.terms.empty();
+    if (form.clear) form.shape = form.terms.front().shape;
+    return form;
+}
+
+/// Do wild values (not 0) keep together within their chains, more than rare chances that know nothing of each
+/// other? Of k among n in a chain, k (k - 1) / n neighbours are expected.
+bool in_spells(const stats::ErrorRows& rows) {
+    double seen = 0.0, expected = 0.0, n = 0.0, k = 0.0;
+    bool last = false;
+    for (std::size_t i = 0; i < rows.error.size(); ++i) {
+        if (rows.follows[i] == 0) {
+            expected += n > 0 ? k * (k - 1) / n : 0.0;
+            n = k = 0.0;
+            last = false;
+        }
+        if (!std::isfinite(rows.error[i])) continue;
+        const bool wild = rows.error[i] != 0.0;
+        seen += wild && last ? 1 : 0;
+        n += 1;
+        k += wild ? 1 : 0;
+        last = wild;
+    }
+    expected += n > 0 ? k * (k - 1) / n : 0.0;
+    return seen > kManyTimes * expected && seen - expected > kManyDeviations * std::sqrt(expected + 1);
+}
+
+/// Single readings far astray, always to one side or always in one place, are a structure that means do not
+/// show: -1, 0 or 1 for each row in place of its error.
+FreeForm wild_form(Errors errors, const std::vector<stats::Component>& components, std::uint64_t seed) {
+    FreeForm form;
+    form.observable = "wild values of " + errors.observable;
+    form.gain = -INFINITY;
+    std::vector<double> known;
+    for (const double error : errors.rows.error)
+        if (std::isfinite(error)) known.push_back(error);
+    const double unit = std::max(stats::robust_scale(known), 1.0);
+    double low = 0.0, high = 0.0, far = 0.0;  // low and high: stretches of wild values count once
+    double last = 0.0, rows = 0.0;
+    for (std::size_t i = 0; i < errors.rows.error.size(); ++i) {
+        double& error = errors.rows.error[i];
+        if (!std::isfinite(error)) continue;
+        const double wild = error > kWild * unit ? 1.0 : error < -kWild * unit ? -1.0 : 0.0;
+        const bool fresh = errors.rows.follows[i] == 0 || wild != last;
+        far += std::abs(error) > kFar * unit ? 1 : 0;
+        low += fresh && wild < 0 ? 1 : 0;
+        high += fresh && wild > 0 ? 1 : 0;
+        rows += std::abs(wild);
+        error = last = wild;
+    }
+    if (rows < kLeastWild) return form;
+    const bool spells = in_spells(errors.rows);
+    const double sd = std::sqrt(rows / static_cast<double>(known.size()));
+    for (double& error : errors.rows.error)
+        error /= sd;
+    for (double& scale : errors.scale)
+        scale = sd;
+    errors.observable = form.observable;
+    errors.unit = "of the readings";
+    errors.rows.carry = 0.0;
+    errors.rows.trimmed = false;
+    form = told(errors, components, seed);
+    form.wild = true;
+    form.spells = spells;
+    const bool one_sided = std::pow(0.5, low + high - 1) < kOneSided && std::min(low, high) == 0;
+    if (!form.clear && (one_sided || far >= kLeastWild)) {
+        form.clear = true;
+        form.gain = 0.0;
+        form.shape = fmt::format("{:.0f} of {} readings go far astray, {}", rows, known.size(),
+                                 high == 0  ? "all of them down"
+                                 : low == 0 ? "all of them up"
+                                            : "up and down");
+    }
+    return form;
+}
+
+/// Events that (nearly) always or never happen have no noise to measure a correction by.
+bool enough_events(const Observable& observable) {
+    if (observable.noise != NoiseKind::Event) return true;
+    const auto yes =
+        std::count_if(observable.y.begin(), observable.y.end(), [](double y) { return y > 0.5; });
+    const auto no = static_cast<std::ptrdiff_t>(observable.y.size()) - yes;
+    return std::min(yes, no) >= kLeastEvents;
+}
+
+}  // namespace
+
+std::vector<FreeForm> free_forms_of(const Experiment& experiment, const Model& model, const State& state,
+                                    std::uint64_t seed, std::span<const std::string> only) {
+    Prediction prediction;
+    const auto costs = costs_at(model, state, prediction);
+    std::vector<FreeForm> forms;
+    std::vector<Errors> track;
+    for (std::size_t o = 0; o < model.observables().size(); ++o) {
+        const Observable& observable = model.observables()[o];
+        if (!only.empty() && std::find(only.begin(), only.end(), observable.name) == only.end()) continue;
+        if (observable.fixed_sd > 0 || observable.y.size() > 4 * kMostRows) continue;
+        if (!enough_events(observable)) continue;
+        Errors errors = errors_of(observable, prediction[o], state.noise[o], costs[o]);
+        if (observable.name == "x_m" || observable.name == "y_m") {
+            track.push_back(std::move(errors));
+            continue;
+        }
+        auto components = free_form_cells(experiment, errors.at, errors.starts);
+        if (observable.noise == NoiseKind::Level) {
+            FreeForm rows = told(errors, components, seed),
+                     sums = sum_form_of(experiment, model, state, prediction, o, components, seed);
+            forms.push_back(sums.gain > rows.gain ? std::move(sums) : std::move(rows));
+            continue;
+        }
+        if (observable.noise == NoiseKind::Carry) add_proportional(errors, components);
+        forms.push_back(told(errors, components, seed));
+        if (observable.noise == NoiseKind::Carry) forms.push_back(wild_form(errors, components, seed));
+    }
+    if (track.size() == 2) {
+        Errors& both = track.front();
+        const std::size_t rows_of_x = both.rows.error.size();
+        append(both, track.back());
+        both.observable = "place";
+        forms.push_back(told(
+            both,
+            turned_with_robot(experiment, both, rows_of_x, free_form_cells(experiment, both.at, both.starts)),
+            seed));
+    }
+    std::stable_sort(forms.begin(), forms.end(),
+                     [](const FreeForm& a, const FreeForm& b) { return a.gain > b.gain; });
+    return forms;
+}
+
+}  // namespace puckloop::gap

@@ -1,0 +1,272 @@
+#include "gap/validate/check.h"
+
+#include "base/error.h"
+#include "gap/clean/copies.h"
+#include "gap/clean/fill_missing.h"
+#include "gap/clean/missing_cells.h"
+#include "gap/data/columns.h"
+#include "gap/data/nominal.h"
+#include "gap/sync/frames.h"
+#include "gap/validate/check_kinds.h"
+#include "gap/validate/check_mixed.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace puckloop::gap {
+
+namespace {
+
+constexpr double kMostMissing = 0.5;  // share of missing cells beyond which a needed column is unusable
+constexpr double kFewOutside = 0.02;  // share of implausible cells that may be outliers
+constexpr std::size_t kFewRows = 30;
+constexpr std::size_t kRunRows = 10;  // a run this long whose measurement never changes is odd
+constexpr double kLongestGap = 1e7;   // s
+constexpr double kManyClipped = 0.5, kMostClipped = 0.95;
+
+std::string place_of(const Experiment& experiment, const Run& run) {
+    return (experiment.folder / run.file).string();
+}
+
+/// " counts", "" for pure numbers.
+std::string unit_text(const ColumnInfo& info) {
+    return std::string_view(info.unit) == "1" ? "" : fmt::format(" {}", info.unit);
+}
+
+/// Values that this quantity cannot have in its unit: a wrong unit or a swapped column. A few are glitches
+/// and count as missing.
+void check_range(Experiment& experiment, Run& run, const ColumnInfo& info) {
+    auto& values = run.columns.at(info.name);
+    std::size_t outside = 0, present = 0, first = 0;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (std::isnan(values[i])) continue;
+        ++present;
+        if (values[i] >= info.low && values[i] <= info.high) continue;
+        if (outside++ == 0) first = i;
+    }
+    if (outside == 0) return;
+    if (static_cast<double>(outside) < kFewOutside * static_cast<double>(present)) {
+        experiment.cautions.push_back(
+            fmt::format("{}: {} = {:.6g}{} in row {} is impossible ({} of {} rows): taken as "
+                        "missing",
+                        run.file, info.name, values[first], unit_text(info), first + 1, outside, present));
+        for (double& value : values)
+            if (value < info.low || value > info.high) value = std::nan("");
+        return;
+    }
+    throw InputError(place_of(experiment, run), fmt::format("row {}", first + 1),
+                     fmt::format("{} = {:.6g}{} is impossible: wrong unit or swapped columns ({} of {} rows)",
+                                 info.name, values[first], unit_text(info), outside, present),
+                     fmt::format("{:g} to {:g}{}", info.low, info.high, unit_text(info)));
+}
+
+/// Columns that number something: between two of them is nothing.
+bool is_index(const ColumnInfo& info) {
+    static const std::set<std::string_view> names{"sensor", "mic",     "receiver", "emitter",
+                                                  "object", "senders", "window"};
+    return names.contains(info.name);
+}
+
+void check_index(const Experiment& experiment, const Run& run, const ColumnInfo& info) {
+    const auto& values = run.column(info.name);
+    for (std::size_t i = 0; i < values.size(); ++i)
+        if (!std::isnan(values[i]) && values[i] != std::round(values[i]))
+            throw InputError(place_of(experiment, run), fmt::format("row {}", i + 1),
+                             fmt::format("{} = {:.6g} is not whole", info.name, values[i]),
+                             "whole numbers; or the columns are swapped");
+}
+
+/// Missing cells, in one caution for all runs.
+void check_missing(Experiment& experiment, const ColumnInfo& info) {
+    std::vector<MissingIn> files;
+    for (const Run& run : experiment.runs) {
+        const auto& values = run.column(info.name);
+        const auto missing = static_cast<std::size_t>(
+            std::count_if(values.begin(), values.end(), [](double value) { return std::isnan(value); }));
+        if (missing == 0) continue;
+        const double share = static_cast<double>(missing) / static_cast<double>(values.size());
+        if (info.required && share > kMostMissing)
+            throw InputError(place_of(experiment, run), "",
+                             fmt::format("{} is missing in {} of {} rows", info.name, missing, values.size()),
+                             info.role == Role::Truth ? "the truth in most rows" : "it in most rows");
+        files.push_back({run.file, missing, values.size()});
+    }
+    if (files.empty()) return;
+    if (info.required)
+        experiment.cautions.push_back(missing_sentence(info.name, files, "which are left out"));
+    else if (info.role != Role::Observable && experiment.kind == Kind::Motion)  // others: fill_missing()
+        experiment.cautions.push_back(missing_sentence(info.name, files, "which are left out or filled in"));
+}
+
+/// A column without a single value says nothing; it goes.
+void drop_empty(Experiment& experiment, const ColumnInfo& info) {
+    if (info.required) return;
+    std::size_t runs = 0;
+    std::string first;
+    for (Run& run : experiment.runs) {
+        const auto& values = run.column(info.name);
+        if (values.empty() ||
+            !std::all_of(values.begin(), values.end(), [](double value) { return std::isnan(value); }))
+            continue;
+        run.columns.erase(run.columns.find(info.name));
+        if (runs++ == 0) first = run.file;
+    }
+    if (runs == 1)
+        experiment.cautions.push_back(fmt::format("{}: {} is empty in every row", first, info.name));
+    else if (runs > 1)
+        experiment.cautions.push_back(fmt::format("{} is empty in every row of {} runs", info.name, runs));
+}
+
+/// Readings beyond what the instrument can say tell next to nothing.
+void check_clipped(Experiment& experiment, const ColumnInfo& info) {
+    const auto instrument = experiment.instruments.find(info.name);
+    if (instrument == experiment.instruments.end()) return;
+    std::size_t clipped = 0, present = 0;
+    for (const Run& run : experiment.runs)
+        for (const double value : run.column(info.name)) {
+            if (std::isnan(value)) continue;
+            ++present;
+            if (value <= instrument->second.floor || value >= instrument->second.ceiling) ++clipped;
+        }
+    const double share =
+        static_cast<double>(clipped) / static_cast<double>(std::max<std::size_t>(present, 1));
+    const std::string told = fmt::format(
+        "{} is at or beyond [instrument]'s floor or ceiling in {} of {} rows", info.name, clipped, present);
+    if (share > kMostClipped)
+        throw InputError((experiment.folder / "experiment.toml").string(), "", told,
+                         "readings between the two");
+    if (share > kManyClipped)
+        experiment.cautions.push_back(told + ": such rows only say 'at least this far'");
+}
+
+/// A time that stands still or goes back; one long step forward is a gap, not an error.
+void check_clock(Experiment& experiment, const Run& run, const char* name) {
+    const auto& times = run.column(name);
+    double last = std::nan("");
+    std::vector<double> steps;
+    for (std::size_t i = 0; i < times.size(); ++i) {
+        if (std::isnan(times[i])) continue;
+        if (times[i] < last)
+            throw InputError(place_of(experiment, run), fmt::format("row {}", i + 1),
+                             fmt::format("{} goes back from {:.6g} to {:.6g} s", name, last, times[i]),
+                             "a clock that runs forward: one run a file");
+        if (!std::isnan(last)) steps.push_back(times[i] - last);
+        last = times[i];
+    }
+    if (!steps.empty() && *std::max_element(steps.begin(), steps.end()) <= 0) {
+        if (experiment.kind == Kind::Motion || experiment.kind == Kind::Timing)
+            throw InputError(place_of(experiment, run), "", fmt::format("the clock {} stands still", name),
+                             "a time for every row");
+        experiment.cautions.push_back(fmt::format(
+            "{}: the clock {} stands still: what depends on time cannot be seen", run.file, name));
+    }
+    if (!steps.empty() && *std::max_element(steps.begin(), steps.end()) > kLongestGap)
+        throw InputError(
+            place_of(experiment, run), "",
+            fmt::format("{} jumps by {:.3g} s", name, *std::max_element(steps.begin(), steps.end())),
+            "seconds");
+    if (steps.size() < 10) return;
+    std::sort(steps.begin(), steps.end());
+    const double usual = steps[steps.size() / 2];
+    const double longest = steps.back();
+    if (usual > 0 && longest > 50 * usual && longest > 1.0)
+        experiment.cautions.push_back(fmt::format(
+            "{}: the clock {} jumps by {:.3g} s (a step is {:.3g} s): rows before and after are not "
+            "taken as neighbours",
+            run.file, name, longest, usual));
+}
+
+/// Constant over the whole experiment, where something must change to learn anything.
+void check_constant(Experiment& experiment, const ColumnInfo& info) {
+    double low = INFINITY, high = -INFINITY;
+    for (const Run& run : experiment.runs)
+        for (const double value : run.column(info.name))
+            if (!std::isnan(value)) {
+                low = std::min(low, value);
+                high = std::max(high, value);
+            }
+    if (low != high) return;
+    if (info.role == Role::Observable && std::string_view(info.unit) != "1")
+        throw InputError((experiment.folder / "experiment.toml").string(), "",
+                         fmt::format("{} is {:g} in every row of every run", info.name, low),
+                         "a measurement that changes");
+    if (info.role != Role::Covariate)
+        experiment.cautions.push_back(
+            fmt::format("{} is {:g}{} in every row: nothing can be learnt about what depends on it",
+                        info.name, low, unit_text(info)));
+}
+
+/// A measurement that never changes inside one run while it does in others: a sensor that hung.
+void check_hung(Experiment& experiment, const ColumnInfo& info) {
+    if (info.role != Role::Observable || std::string_view(info.unit) == "1") return;
+    for (const Run& run : experiment.runs) {
+        const auto& values = run.column(info.name);
+        if (run.rows < kRunRows) continue;
+        if (std::any_of(values.begin(), values.end(), [&](double value) { return value != values.front(); }))
+            continue;
+        if (values.empty() || std::isnan(values.front())) continue;
+        experiment.cautions.push_back(fmt::format("{}: {} is {:g}{} in every row of this run: did it hang?",
+                                                  run.file, info.name, values.front(), unit_text(info)));
+    }
+}
+
+void check_runs(Experiment& experiment) {
+    if (experiment.rows() < kFewRows)
+        experiment.cautions.push_back(fmt::format(
+            "there are only {} rows: that nothing is found in so few does not mean that there is nothing",
+            experiment.rows()));
+    if (experiment.runs.size() == 1)
+        experiment.cautions.push_back(
+            "there is one run only: nothing can be held out whole, intervals come from blocks of the run and "
+            "say nothing about another day");
+    else if (experiment.runs.size() < 4)
+        experiment.cautions.push_back(fmt::format(
+            "there are only {} runs: intervals over runs are wide and uncertain", experiment.runs.size()));
+    std::set<double> units;
+    for (const Run& run : experiment.runs)
+        for (const double value : run.column("unit"))
+            if (!std::isnan(value)) units.insert(value);
+    if (units.size() > 1)
+        experiment.cautions.push_back(fmt::format(
+            "{} robots are mixed: what is found is common to them; a difference between robots shows as "
+            "structure against unit",
+            units.size()));
+    std::set<std::string> files;
+    for (const Run& run : experiment.runs)
+        if (!files.insert(run.file).second)
+            throw InputError((experiment.folder / "experiment.toml").string(), "",
+                             fmt::format("{} is named by two runs", run.file), "each file once");
+}
+
+}  // namespace
+
+void check(Experiment& experiment) {
+    check_nominal(experiment);
+    for (const ColumnInfo& info : columns_of(experiment.kind)) {
+        if (!experiment.has(info.name)) continue;
+        drop_empty(experiment, info);
+        for (Run& run : experiment.runs)
+            if (run.has(info.name)) {
+                check_range(experiment, run, info);
+                if (is_index(info)) check_index(experiment, run, info);
+            }
+        check_missing(experiment, info);
+        check_constant(experiment, info);
+        check_hung(experiment, info);
+        check_clipped(experiment, info);
+    }
+    for (const Run& run : experiment.runs)
+        for (const char* clock : {"t_s", "t_host_s", "t_robot_s"})
+            if (run.has(clock)) check_clock(experiment, run, clock);
+    fill_missing(experiment);
+    drop_copies(experiment);
+    check_runs(experiment);
+    check_mixed(experiment);
+    check_kind(experiment);
+    align_times(experiment);
+}
+
+}  // namespace puckloop::gap

@@ -1,0 +1,12 @@
+#pragma once
+// Is this data what it says it is? Looked at before anything is fitted.
+
+#include "gap/data/experiment.h"
+
+namespace puckloop::gap {
+
+/// Throws InputError for what cannot be used; appends to `cautions` what can be used with care. May drop
+/// rows that no analysis can use (all truth missing) and says so.
+void check(Experiment& experiment);
+
+}  // namespace puckloop::gap

@@ -1,0 +1,275 @@
+#include "gap/validate/check_kinds.h"
+
+#include "base/error.h"
+#include "gap/data/columns.h"
+#include "gap/validate/check_motion.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace puckloop::gap {
+
+namespace {
+
+[[noreturn]] void refuse(const Experiment& experiment, const Run& run, const std::string& problem,
+                         const std::string& expected) {
+    throw InputError((experiment.folder / run.file).string(), "", problem, expected);
+}
+
+/// Rank correlation of two columns over rows where both are there; 0 when there are few.
+double rank_correlation(const std::vector<double>& a, const std::vector<double>& b) {
+    std::vector<std::pair<double, double>> pairs;
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+        if (!std::isnan(a[i]) && !std::isnan(b[i])) pairs.emplace_back(a[i], b[i]);
+    if (pairs.size() < 8) return 0.0;
+    const auto ranks = [&](auto key) {
+        std::vector<std::size_t> order(pairs.size());
+        for (std::size_t i = 0; i < order.size(); ++i)
+            order[i] = i;
+        std::sort(order.begin(), order.end(),
+                  [&](std::size_t i, std::size_t j) { return key(pairs[i]) < key(pairs[j]); });
+        std::vector<double> rank(pairs.size());
+        for (std::size_t i = 0; i < order.size();) {
+            std::size_t j = i;
+            while (j < order.size() && key(pairs[order[j]]) == key(pairs[order[i]]))
+                ++j;
+            for (std::size_t k = i; k < j; ++k)
+                rank[order[k]] = static_cast<double>(i + j - 1) / 2;
+            i = j;
+        }
+        return rank;
+    };
+    const auto ra = ranks([](const auto& p) { return p.first; });
+    const auto rb = ranks([](const auto& p) { return p.second; });
+    const double mean = static_cast<double>(pairs.size() - 1) / 2;
+    double ab = 0, aa = 0, bb = 0;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        ab += (ra[i] - mean) * (rb[i] - mean);
+        aa += (ra[i] - mean) * (ra[i] - mean);
+        bb += (rb[i] - mean) * (rb[i] - mean);
+    }
+    return aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : 0.0;
+}
+
+/// A reflective sensor sees more when the wall is nearer; the other way round the columns are exchanged or
+/// the reading has the wrong sign.
+void check_proximity(Experiment& experiment) {
+    std::vector<double> distances, readings;
+    for (const Run& run : experiment.runs) {
+        distances.insert(distances.end(), run.column("distance_m").begin(), run.column("distance_m").end());
+        readings.insert(readings.end(), run.column("reading").begin(), run.column("reading").end());
+    }
+    const double correlation = rank_correlation(distances, readings);
+    if (correlation > 0.5)
+        refuse(experiment, experiment.runs.front(),
+               fmt::format("reading grows with distance_m (rank correlation {:.2f}): columns swapped, or "
+                           "ambient counts instead of "
+                           "ambient minus lit",
+                           correlation),
+               "readings that fall with distance");
+    std::vector<double> angles;
+    for (const Run& run : experiment.runs)
+        if (run.has("angle_rad"))
+            for (const double angle : run.column("angle_rad"))
+                angles.push_back(std::abs(angle));
+        else
+            angles.insert(angles.end(), run.rows, std::nan(""));
+    if (std::abs(correlation) < 0.3 && rank_correlation(angles, readings) < -0.85)
+        experiment.cautions.push_back(
+            "readings fall with angle_rad and not with distance_m: are the two columns swapped?");
+    const double furthest = *std::max_element(distances.begin(), distances.end(), [](double a, double b) {
+        return std::isnan(a) || (!std::isnan(b) && a < b);
+    });
+    if (furthest > 1.0)
+        refuse(
+            experiment, experiment.runs.front(),
+            fmt::format("distance_m reaches {:.3g} m, where these sensors see nothing: wrong unit", furthest),
+            "distances below 1 m; say unit = \"cm\" or \"mm\" in [columns]");
+}
+
+double nominal(const Experiment& experiment, const std::string& name, double fallback) {
+    const auto place = experiment.nominal.find(name);
+    return place == experiment.nominal.end() ? fallback : place->second;
+}
+
+/// Plain correlation of two columns over rows where both are there.
+double correlation(const std::vector<double>& a, const std::vector<double>& b) {
+    double n = 0, sa = 0, sb = 0, aa = 0, bb = 0, ab = 0;
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+        if (std::isnan(a[i] + b[i])) continue;
+        n += 1, sa += a[i], sb += b[i];
+    }
+    if (n < 8) return 0.0;
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+        if (std::isnan(a[i] + b[i])) continue;
+        const double da = a[i] - sa / n, db = b[i] - sb / n;
+        aa += da * da, bb += db * db, ab += da * db;
+    }
+    return aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : 0.0;
+}
+
+/// What the rear axis should feel, from the truth columns; the right axis likewise.
+std::vector<double> felt(const Run& run, const char* tilt, const char* push, double sign) {
+    const auto &angle = run.column(tilt), &force = run.column(push);
+    std::vector<double> out;
+    for (std::size_t i = 0; i < run.rows; ++i) {
+        const double a = angle.empty() ? 0.0 : angle[i], f = force.empty() ? 0.0 : force[i];
+        out.push_back(sign * (std::sin(a) + f * std::cos(a) / 9.81));
+    }
+    return out;
+}
+
+/// Intervals between rows.
+struct Pace {
+    double median = 0.0, mean = 0.0, scatter = 0.0;  ///< s; 0 where there are few
+};
+
+Pace pace(const std::vector<double>& times) {
+    std::vector<double> steps;
+    for (std::size_t i = 1; i < times.size(); ++i)
+        if (!std::isnan(times[i] - times[i - 1])) steps.push_back(times[i] - times[i - 1]);
+    if (steps.size() < 8) return {};
+    const auto median = [](std::vector<double> values) {
+        const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+        std::nth_element(values.begin(), middle, values.end());
+        return *middle;
+    };
+    Pace pace{median(steps), 0.0, 0.0};
+    for (double& step : steps) {
+        pace.mean += step / static_cast<double>(steps.size());
+        step = std::abs(step - pace.median);
+    }
+    pace.scatter = 1.4826 * median(steps);
+    return pace;
+}
+
+/// Batches move the median and gaps the mean: a wrong unit moves both.
+bool differ(const Pace& a, const Pace& b, double factor) {
+    const auto off = [factor](double x, double y) { return x > factor * y || y > factor * x; };
+    return a.mean > 0 && b.mean > 0 && off(a.mean, b.mean) && off(a.median, b.median);
+}
+
+void check_timing(Experiment& experiment) {
+    constexpr double kDefaultPeriod = 0.1, kClocks = 3.0, kPeriods = 20.0;
+    for (const Run& run : experiment.runs) {
+        const Pace host = pace(run.column("t_host_s")), robot = pace(run.column("t_robot_s"));
+        if (differ(host, robot, kClocks))
+            refuse(
+                experiment, run,
+                fmt::format("a frame takes {:.4g} s by t_host_s and {:.4g} s by t_robot_s: wrong unit of one",
+                            host.mean, robot.mean),
+                "clocks that agree within a factor of three");
+        const auto& given = run.column("nominal_period");
+        const double period = given.empty() || std::isnan(given.front()) ? kDefaultPeriod : given.front();
+        if (differ(host, {period, period, 0.0}, kPeriods))
+            refuse(experiment, run,
+                   fmt::format("a frame takes {:.4g} s where nominal_period is {:.4g} s{}", host.mean, period,
+                               given.empty() ? " (not given)" : ""),
+                   "times in seconds, and the loop's nominal_period");
+        // The host sees the robot's jitter and adds its own; the other way round, the columns are.
+        if (robot.scatter > 3 * host.scatter && robot.scatter > 1e-6)
+            refuse(experiment, run, "t_robot_s is more irregular than t_host_s: swapped columns",
+                   "the host's clock in t_host_s");
+    }
+}
+
+void check_microphone(Experiment& experiment) {
+    for (const Run& run : experiment.runs)
+        if (rank_correlation(run.column("distance_m"), run.column("level")) > 0.8)
+            refuse(experiment, run, "level grows with distance_m: swapped columns",
+                   "levels that fall with distance");
+}
+
+void check_ground(Experiment& experiment) {
+    for (const Run& run : experiment.runs)
+        if (rank_correlation(run.column("grey"), run.column("reading")) < -0.5)
+            refuse(experiment, run,
+                   "reading falls where the floor is lighter: swapped columns, or grey counted from white",
+                   "0 black, 1 white");
+}
+
+void check_accelerometer(Experiment& experiment) {
+    const double zero = nominal(experiment, "accelerometer.zero", 2048),
+                 gain = nominal(experiment, "accelerometer.gain", 800);
+    for (const Run& run : experiment.runs) {
+        double sum = 0.0, count = 0.0;
+        for (const double value : run.column("az"))
+            if (!std::isnan(value)) {
+                sum += (value - zero) / gain;
+                ++count;
+            }
+        if (count > 0 && (sum / count < 0.2 || sum / count > 3.0))
+            refuse(experiment, run,
+                   fmt::format("az is {:.2f} g on average: axes swapped, or accelerometer.zero and gain of "
+                               "another sensor",
+                               sum / count),
+                   "about 1 g; say accelerometer.zero and accelerometer.gain in [nominal]");
+        constexpr double kClear = 0.7, kNone = 0.3;
+        const auto rear = felt(run, "pitch_rad", "acceleration", -1.0),
+                   right = felt(run, "roll_rad", "lateral", -1.0);
+        const double own = correlation(run.column("ay"), rear), other = correlation(run.column("ax"), rear);
+        if (std::abs(other) > kClear && std::abs(own) < kNone)
+            refuse(experiment, run, "ax follows pitch and forward acceleration, ay does not: axes swapped",
+                   "ax to the right, ay to the rear");
+        if (own < -kClear || correlation(run.column("ax"), right) < -kClear)
+            refuse(experiment, run, "an axis has the wrong sign", "ax to the right, ay to the rear, az up");
+    }
+}
+
+/// How well one bearing follows the other, or the other's mirror image: mean vectors of their difference, so
+/// that an offset counts for nothing.
+double follows(const std::vector<double>& bearing, const std::vector<double>& truth, double sign) {
+    double c = 0, s = 0, n = 0;
+    for (std::size_t i = 0; i < std::min(bearing.size(), truth.size()); ++i) {
+        const double off = bearing[i] - sign * truth[i];
+        if (std::isnan(off)) continue;
+        c += std::cos(off), s += std::sin(off), n += 1;
+    }
+    return n < 8 ? 0.0 : std::hypot(c, s) / n;
+}
+
+void check_rab(Experiment& experiment) {
+    if (!experiment.has("strength") && !experiment.has("bearing_rad") && !experiment.has("received"))
+        refuse(experiment, experiment.runs.front(), "has none of strength, bearing_rad, received",
+               "at least one of them");
+    for (const Run& run : experiment.runs) {
+        if (run.has("bearing_rad") && !run.has("true_bearing_rad"))
+            refuse(experiment, run, "has bearing_rad but no true_bearing_rad",
+                   "the truth beside the measurement");
+        constexpr double kClear = 0.8, kNone = 0.5;
+        const auto &bearing = run.column("bearing_rad"), &truth = run.column("true_bearing_rad");
+        if (follows(bearing, truth, -1) > kClear && follows(bearing, truth, 1) < kNone)
+            refuse(experiment, run,
+                   "bearing_rad is the mirror image of true_bearing_rad: one of them runs clockwise",
+                   "counter-clockwise bearings in the receiver's frame");
+        if (rank_correlation(run.column("distance_m"), run.column("strength")) > 0.6)
+            refuse(experiment, run, "strength grows with distance_m: swapped columns",
+                   "strengths that fall with distance");
+    }
+}
+
+}  // namespace
+
+void check_kind(Experiment& experiment) {
+    switch (experiment.kind) {
+    case Kind::Proximity:
+        return check_proximity(experiment);
+    case Kind::Motion:
+        return check_motion(experiment);
+    case Kind::Rab:
+        return check_rab(experiment);
+    case Kind::Microphone:
+        return check_microphone(experiment);
+    case Kind::Ground:
+        return check_ground(experiment);
+    case Kind::Accelerometer:
+        return check_accelerometer(experiment);
+    case Kind::Timing:
+        return check_timing(experiment);
+    }
+}
+
+}  // namespace puckloop::gap

@@ -1,0 +1,262 @@
+#include "gap/validate/check_motion.h"
+
+#include "base/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace puckloop::gap {
+
+namespace {
+
+constexpr double kFastestWheel = 5.0;  // m/s
+constexpr double kFactor = 5.0;        // between what two columns say of one thing
+constexpr double kSideways = 0.6;      // share of a straight step that must lie along the heading
+
+[[noreturn]] void refuse(const Experiment& experiment, const Run& run, const std::string& problem,
+                         const std::string& expected) {
+    throw InputError((experiment.folder / run.file).string(), "", problem, expected);
+}
+
+struct Path {
+    double length = 0.0, turned = 0.0;  // tracked
+    double left = 0.0, right = 0.0;     // steps of either wheel, absolute
+    double largest_jump = 0.0, duration = 0.0;
+    double largest_turn = 0.0;
+    double forward = 0.0;  // signed displacement along the heading
+};
+
+Path measure(const Run& run) {
+    const auto &x = run.column("x_m"), &y = run.column("y_m"), &theta = run.column("theta_rad");
+    const auto &left = run.column("steps_left"), &right = run.column("steps_right"),
+               &time = run.column("t_s");
+    Path path;
+    std::size_t last = run.rows;
+    for (std::size_t i = 0; i < run.rows; ++i) {
+        if (std::isnan(x[i]) || std::isnan(y[i]) || std::isnan(theta[i])) continue;
+        if (last < run.rows) {
+            const double step = std::hypot(x[i] - x[last], y[i] - y[last]);
+            const double turn = std::remainder(theta[i] - theta[last], 2 * std::numbers::pi);
+            path.length += step;
+            path.turned += turn;
+            path.largest_jump = std::max(path.largest_jump, step / std::max(time[i] - time[last], 1e-3));
+            path.largest_turn = std::max(path.largest_turn, std::abs(turn));
+            path.forward += (x[i] - x[last]) * std::cos(theta[i]) + (y[i] - y[last]) * std::sin(theta[i]);
+            if (!left.empty() && !right.empty() &&
+                !std::isnan(left[i] + right[i] + left[last] + right[last])) {
+                path.left += std::abs(left[i] - left[last]);
+                path.right += std::abs(right[i] - right[last]);
+            }
+            path.duration += time[i] - time[last];
+        }
+        last = i;
+    }
+    return path;
+}
+
+/// A counter that wrapped, was reset, or has another unit.
+void check_counter(const Experiment& experiment, const Run& run, const char* name, double metre_per_step) {
+    constexpr double kWrap = 65536, kNearWrap = 0.2;
+    const auto &steps = run.column(name), &time = run.column("t_s");
+    std::size_t last = run.rows;
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        if (std::isnan(steps[i] + time[i])) continue;
+        const double change = last < run.rows ? steps[i] - steps[last] : 0.0,
+                     span = last < run.rows ? std::max(time[i] - time[last], 1e-3) : 1.0;
+        last = i;
+        if (std::abs(change) * metre_per_step < kFastestWheel * std::max(span, 0.1)) continue;
+        const bool wrapped = std::abs(std::abs(change) - kWrap) < kNearWrap * kWrap;
+        throw InputError((experiment.folder / run.file).string(), fmt::format("row {}", i + 1),
+                         fmt::format("{} jumps by {:.6g} steps in {:.3g} s{}", name, change, span,
+                                     wrapped ? ": a 16-bit counter that wrapped" : ""),
+                         wrapped ? "counters put together over wraps (add 65536)" : "a counter that runs on");
+    }
+}
+
+/// Counters beside commands: each wheel's counter must follow its own command, and by as much.
+void check_commands(const Experiment& experiment, const Run& run) {
+    if (!run.has("steps_left") || !run.has("cmd_left")) return;
+    const auto &time = run.column("t_s"), &left = run.column("steps_left"),
+               &right = run.column("steps_right"), &cmd_left = run.column("cmd_left"),
+               &cmd_right = run.column("cmd_right");
+    double own = 0.0, crossed = 0.0, counted = 0.0, asked = 0.0;
+    std::array<double, 2> ran{}, told{}, along{};  // a wheel each
+    std::vector<double> spans;
+    for (std::size_t i = 1; i < run.rows; ++i)
+        if (!std::isnan(time[i] - time[i - 1])) spans.push_back(time[i] - time[i - 1]);
+    if (spans.empty()) return;
+    const auto usual = spans.begin() + static_cast<std::ptrdiff_t>(spans.size() / 2);
+    std::nth_element(spans.begin(), usual, spans.end());
+    const double longest = 10 * *usual;  // beyond is a gap in the record
+    for (std::size_t i = 1; i < run.rows; ++i) {
+        const double span = time[i] - time[i - 1], l = left[i] - left[i - 1], r = right[i] - right[i - 1],
+                     cl = cmd_left[i - 1] * span, cr = cmd_right[i - 1] * span;
+        if (std::isnan(l + r + cl + cr) || span > longest) continue;
+        own += std::abs(l - cl) + std::abs(r - cr);
+        crossed += std::abs(l - cr) + std::abs(r - cl);
+        ran[0] += std::abs(l), ran[1] += std::abs(r);
+        told[0] += std::abs(cl), told[1] += std::abs(cr);
+        along[0] += std::copysign(l, l * cl), along[1] += std::copysign(r, r * cr);
+        counted += std::abs(l) + std::abs(r);
+        asked += std::abs(cl) + std::abs(cr);
+    }
+    constexpr double kEnough = 500;  // steps asked for, both wheels
+    if (asked > kEnough && (counted > kFactor * asked || counted < asked / kFactor))
+        refuse(experiment, run,
+               fmt::format(
+                   "the counters ran {:.4g} steps where the commands over t_s ask for {:.4g}: wrong unit of "
+                   "t_s or cmd_left, cmd_right",
+                   counted, asked),
+               "steps/s and seconds");
+    for (std::size_t w = 0; w < 2; ++w)
+        if (told[w] > kEnough && ran[w] == 0)
+            refuse(
+                experiment, run,
+                fmt::format("steps_{} stands still while its wheel is commanded", w == 0 ? "left" : "right"),
+                "a counter that counts");
+    for (std::size_t w = 0; w < 2; ++w)
+        if (told[w] > kEnough && along[w] < -ran[w] / 2)
+            refuse(experiment, run,
+                   fmt::format("steps_{0} runs against cmd_{0}: one of them has the wrong sign",
+                               w == 0 ? "left" : "right"),
+                   "forward positive in both");
+    if (asked > kEnough && crossed < 0.3 * own)
+        refuse(experiment, run,
+               "steps_left follows cmd_right and steps_right cmd_left: left and right are swapped in one",
+               "a wheel's counter beside its command");
+}
+
+/// Where the tracker saw the robot go while its wheels went straight, and how much its heading turns for a
+/// turn of the wheels.
+void check_pose(const Experiment& experiment, const Run& run, double metre_per_step, double axle) {
+    if (!run.has("steps_left")) return;
+    const auto &x = run.column("x_m"), &y = run.column("y_m"), &theta = run.column("theta_rad"),
+               &left = run.column("steps_left"), &right = run.column("steps_right");
+    constexpr double kLeastTurned = 0.25;                   // a turn for a radian is 0.16
+    constexpr double kLeastWay = 0.002, kLeastTurn = 0.02;  // m, rad: beyond a tracker's noise
+    double along = 0.0, all = 0.0;
+    std::vector<double> turns;
+    std::size_t last = 0;
+    for (std::size_t i = 1; i < run.rows; ++i) {
+        const double l = (left[i] - left[last]) * metre_per_step,
+                     r = (right[i] - right[last]) * metre_per_step;
+        const double dx = x[i] - x[last], dy = y[i] - y[last], turn = theta[i] - theta[last];
+        if (std::isnan(l + r + dx + dy + turn)) {
+            last = i;
+            continue;
+        }
+        const double way = (l + r) / 2, turned = (r - l) / axle, step = std::hypot(dx, dy);
+        if (std::abs(way) < kLeastWay && std::abs(turned) < kLeastTurn) continue;
+        if (std::abs(way) >= kLeastWay && step > std::abs(way) / 2 && step < 2 * std::abs(way)) {
+            const double middle = theta[last] + std::remainder(turn, 2 * std::numbers::pi) / 2;
+            along += std::copysign(1.0, way) * (dx * std::cos(middle) + dy * std::sin(middle));
+            all += step;
+        }
+        if (std::abs(turned) >= kLeastTurn) turns.push_back(std::abs(turn) / std::abs(turned));
+        last = i;
+    }
+    if (turns.size() >= 8) {
+        const auto middle = turns.begin() + static_cast<std::ptrdiff_t>(turns.size() / 2);
+        std::nth_element(turns.begin(), middle, turns.end());
+        if (*middle > 10)
+            refuse(experiment, run,
+                   fmt::format("theta_rad turns {:.3g} times as far as the wheels do: degrees?", *middle),
+                   "radians, or theta_rad = \"deg\" in [columns]");
+        if (*middle < kLeastTurned)
+            refuse(experiment, run,
+                   fmt::format("theta_rad turns {:.3g} times as far as the wheels do: wrong unit, or not the "
+                               "heading",
+                               *middle),
+                   "radians; \"turn\" and \"deg\" are known in [columns]");
+    }
+    constexpr double kEnough = 0.1;  // m
+    if (all > kEnough && along < -kSideways * all)
+        refuse(experiment, run,
+               "the robot drives backwards where its wheels turn forwards: theta_rad points to the rear",
+               "the heading's direction");
+    if (all > kEnough && along < kSideways * all)
+        refuse(experiment, run,
+               fmt::format(
+                   "only {:.0f} % of the way lies along theta_rad: x_m and y_m are swapped, or theta_rad is "
+                   "not the heading",
+                   100 * std::max(along, 0.0) / all),
+               "x, y and a counter-clockwise heading from the x axis");
+}
+
+}  // namespace
+
+/// Left and right wheel exchanged turn the other way; millimetres taken for metres go a thousand times too
+/// far.
+void check_motion(Experiment& experiment) {
+    double agree = 0.0, turned = 0.0;
+    double driven = 0.0, tracked = 0.0, duration = 0.0;
+    bool steps = false, heading_fixed = true;
+    const double axle = experiment.nominal_or("robot.axle_length", 0.053);
+    const double metre_per_step = 2 * std::numbers::pi *
+                                  experiment.nominal_or("robot.wheel_radius_left", 0.0205) /
+                                  experiment.nominal_or("robot.steps_per_turn", 1000);
+    for (const Run& run : experiment.runs) {
+        const Path path = measure(run);
+        tracked += path.length;
+        heading_fixed = heading_fixed && path.largest_turn == 0.0;
+        duration += path.duration;
+        if (run.has("steps_left") != run.has("steps_right") || run.has("cmd_left") != run.has("cmd_right"))
+            refuse(experiment, run, "has one wheel's column without the other's", "both");
+        if (!run.has("steps_left") && !run.has("cmd_left"))
+            refuse(experiment, run, "has neither steps_left, steps_right nor cmd_left, cmd_right",
+                   "what the wheels did or were told");
+        if (run.has("steps_left"))
+            for (const char* counter : {"steps_left", "steps_right"})
+                check_counter(experiment, run, counter, metre_per_step);
+        check_commands(experiment, run);
+        if (path.largest_turn > 2.5)
+            experiment.cautions.push_back(
+                fmt::format("{}: theta_rad jumps by {:.2f} rad between two rows: too sparse, or a wrong unit",
+                            run.file, path.largest_turn));
+        const auto &left = run.column(run.has("steps_left") ? "steps_left" : "cmd_left"),
+                   &right = run.column(run.has("steps_left") ? "steps_right" : "cmd_right");
+        const auto &theta = run.column("theta_rad"), &time = run.column("t_s");
+        steps = steps || run.has("steps_left");
+        driven += (path.left + path.right) / 2 * metre_per_step;
+        for (std::size_t i = 1; i < run.rows; ++i) {
+            const double turn = std::remainder(theta[i] - theta[i - 1], 2 * std::numbers::pi);
+            const double asked = run.has("steps_left")
+                                     ? (right[i] - right[i - 1]) - (left[i] - left[i - 1])
+                                     : (right[i - 1] - left[i - 1]) * (time[i] - time[i - 1]);
+            if (std::isnan(turn) || std::isnan(asked)) continue;
+            agree += turn * asked;
+            turned += std::abs(turn * asked);
+        }
+    }
+    const Run& first = experiment.runs.front();
+    if (tracked == 0.0 && heading_fixed)
+        refuse(experiment, first, "the pose is the same in every row",
+               "what the tracker saw of a robot that moves");
+    if (turned > 0 && agree < -0.5 * turned)
+        refuse(experiment, first,
+               "the robot turns the other way than its wheels: left and right are swapped, or theta_rad runs "
+               "clockwise",
+               "the right wheel faster for a counter-clockwise turn");
+    if (steps && driven > 0.1 && (tracked > 5 * driven || tracked < driven / 5) && tracked > 1e-9) {
+        if (tracked > 5 * driven || turned == 0 || tracked > 0.01 * driven)
+            refuse(experiment, first,
+                   fmt::format("the tracker saw {:.3g} m while the wheels turned {:.3g} m: wrong unit of "
+                               "x_m, y_m or a wrong "
+                               "robot.wheel_radius / steps_per_turn in [nominal]",
+                               tracked, driven),
+                   "the same within a factor of five");
+    }
+    if (duration > 0 && tracked / duration > 3.0)
+        refuse(experiment, first,
+               fmt::format("the robot moves {:.3g} m/s on average: wrong unit of x_m, y_m or t_s",
+                           tracked / duration),
+               "at most 3 m/s");
+    for (const Run& run : experiment.runs)
+        check_pose(experiment, run, metre_per_step, axle);
+}
+
+}  // namespace puckloop::gap

@@ -1,0 +1,11 @@
+#pragma once
+// Is a motion experiment what it says: units, sides, headings, counters?
+
+#include "gap/data/experiment.h"
+
+namespace puckloop::gap {
+
+/// As check(): throws InputError or adds cautions.
+void check_motion(Experiment& experiment);
+
+}  // namespace puckloop::gap

@@ -1,0 +1,125 @@
+#include "gap/verdict/sentences.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace puckloop::gap {
+
+namespace {
+
+constexpr double kLeastBits = 0.1;  // of one: an experiment that promises less would not tell
+
+constexpr double kDegree = 57.29577951308232;
+
+std::string listed(const std::vector<std::string>& words, const char* last) {
+    std::string text;
+    for (std::size_t i = 0; i < words.size(); ++i)
+        text += (i == 0 ? "" : i + 1 == words.size() ? fmt::format(" {} ", last) : ", ") + words[i];
+    return text;
+}
+
+/// Digits beyond the usual ones that a narrow interval takes: its ends and middle read differently.
+int digits_to_tell(const FittedParameter& p) {
+    constexpr int kMost = 4;
+    int more = 0;
+    const auto read = [&](double value) { return quantity(value, p.unit, more); };
+    const double middle = (p.low + p.high) / 2;
+    while (more < kMost && p.low < p.high && (read(p.low) == read(middle) || read(middle) == read(p.high)))
+        ++more;
+    return more;
+}
+
+}  // namespace
+
+std::string quantity(double value, const std::string& unit, int more_digits) {
+    const double size = std::abs(value);
+    const int three = 3 + more_digits, four = 4 + more_digits;
+    if (unit == "m" && size < 1) return fmt::format("{:.{}g} mm", value * 1e3, four);
+    if (unit == "s" && size < 1) return fmt::format("{:.{}g} ms", value * 1e3, four);
+    if (unit == "rad" && size < 7) return fmt::format("{:.{}g} deg", value * kDegree, three);
+    if (unit == "1" && size < 0.2 && size > 0) return fmt::format("{:.{}g} %", value * 100, three);
+    return unit == "1" || unit.empty() ? fmt::format("{:.{}g}", value, four)
+                                       : fmt::format("{:.{}g} {}", value, four, unit);
+}
+
+std::string cause_sentence(const Cause& cause) {
+    std::string text = cause.title;
+    if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+    std::vector<std::string> figures;
+    for (const FittedParameter& p : cause.parameters) {
+        const int more = digits_to_tell(p);
+        figures.push_back(fmt::format("{} = {} ({} to {})", p.name, quantity(p.value, p.unit, more),
+                                      quantity(p.low, p.unit, more), quantity(p.high, p.unit, more)));
+    }
+    if (!figures.empty()) text += ": " + listed(figures, "and");
+    return text + ".";
+}
+
+std::string gain_sentence(const Held& held) {
+    if (held.runs == 0) return "Nothing was held out.";
+    const std::string figures =
+        fmt::format("held-out error {:.0f} % of what it was (90 % interval {:.0f} to {:.0f} %), log score "
+                    "{:+.3g} a row, better in {} of {} blocks",
+                    100 * held.ratio, 100 * held.low, 100 * held.high, held.score_after - held.score_before,
+                    held.runs_better, held.runs);
+    if (!held.gain) return "No gain is claimed: " + figures + ".";
+    return "Gain on data that was not fitted: " + figures + ".";
+}
+
+std::string summary_of(const Verdict& verdict) {
+    std::vector<std::string> titles;
+    for (const Cause& cause : verdict.causes) {
+        titles.push_back(cause.title);
+        if (verdict.decision != Decision::Named) continue;
+        for (const Rival& rival : verdict.rivals)
+            if (rival.instead_of == cause.name)
+                titles.back() +=
+                    fmt::format(" (or {}: a small part, and the data cannot tell)", rival.cause.title);
+    }
+    switch (verdict.decision) {
+    case Decision::NoEffect:
+        return "No effect found: what differs from the simulation is not more than the noise. " +
+               verdict.heldout.sentence;
+    case Decision::Named:
+        return fmt::format("The simulation is wrong because {}. {}", listed(titles, "and"),
+                           verdict.heldout.sentence);
+    case Decision::CannotTell: {
+        std::vector<std::string> sure, names;
+        for (const Cause& cause : verdict.causes) {
+            const bool open = std::any_of(verdict.rivals.begin(), verdict.rivals.end(),
+                                          [&](const Rival& rival) { return rival.instead_of == cause.name; });
+            (open ? names : sure).push_back(cause.title);
+        }
+        for (const Rival& rival : verdict.rivals)
+            names.push_back(rival.cause.title);
+        const bool advice = !verdict.suggestions.empty() && verdict.suggestions.front().bits >= kLeastBits;
+        const std::string known =
+            sure.empty() ? "" : fmt::format("The simulation is wrong because {}. ", listed(sure, "and"));
+        return fmt::format("{}Cannot tell whether {}. {} {}", known, listed(names, "or"),
+                           advice
+                               ? fmt::format("This experiment would: {}.", verdict.suggestions.front().what)
+                               : "None of the experiments that were looked at would.",
+                           verdict.heldout.sentence);
+    }
+    case Decision::Unexplained:
+        break;
+    }
+    std::string text = "Structure remains that nothing in the catalogue explains";
+    if (const auto form = std::find_if(verdict.free_forms.begin(), verdict.free_forms.end(),
+                                       [](const FreeForm& one) { return one.clear; });
+        form != verdict.free_forms.end())
+        text += fmt::format(": {}: {}", form->observable, form->shape);
+    else if (!verdict.leftovers.empty())
+        text += fmt::format(": {} {}", verdict.leftovers.front().observable, verdict.leftovers.front().shape);
+    text += ".";
+    titles.clear();
+    for (const Cause& cause : verdict.nearest)
+        titles.push_back(cause.title);
+    if (!titles.empty())
+        text += fmt::format(" What comes nearest, but {}: {}.", verdict.doubt, listed(titles, "and"));
+    return text;
+}
+
+}  // namespace puckloop::gap

@@ -1,0 +1,19 @@
+#pragma once
+// The verdict in plain words.
+
+#include "gap/fit/select.h"
+#include "gap/verdict/verdict.h"
+
+#include <string>
+
+namespace puckloop::gap {
+
+/// "1.23 mm", "12.4 counts", "1.2 %": a number a person reads, with three or four digits and `more_digits`.
+std::string quantity(double value, const std::string& unit, int more_digits = 0);
+/// What a cause says about this robot: title and its parameters with intervals.
+std::string cause_sentence(const Cause& cause);
+std::string gain_sentence(const Held& held);
+/// One or two sentences at the top of the report.
+std::string summary_of(const Verdict& verdict);
+
+}  // namespace puckloop::gap
