@@ -1,7 +1,7 @@
 // `puckloop trace rab DIR`: which range-and-bearing frames of a run became messages, and why the others did
 // not.
 
-#include "tools/commands/trace_rab.h"
+#include "tools/commands/trace_parts.h"
 
 #include "base/error.h"
 #include "tools/cli/check.h"

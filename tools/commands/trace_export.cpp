@@ -1,0 +1,84 @@
+// `puckloop trace export`: a recorded trace for sigrok, Wireshark, GTKWave or a spreadsheet.
+
+#include "base/error.h"
+#include "tools/cli/check.h"
+#include "tools/cli/command.h"
+#include "tools/commands/trace_parts.h"
+#include "tools/trace/export.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+
+namespace puckloop::tools {
+
+namespace {
+
+constexpr double kMostRate = 1e9;  // Hz
+constexpr double kLongest = 9e6;   // s
+
+struct Options {
+    std::string trace, format, output;
+    TraceSelection selection;
+    double rate = 0.0;
+};
+
+std::string format_of(const Options& options) {
+    if (!options.format.empty()) return options.format;
+    const std::string suffix = std::filesystem::path(options.output).extension().string();
+    for (const char* known : {"csv", "pcapng", "sr", "vcd"})
+        if (suffix == std::string(".") + known) return known;
+    throw InputError("", "--format",
+                     fmt::format("not given, and {} does not end in one of the formats", options.output),
+                     "csv, pcapng, sr or vcd");
+}
+
+void run(const Options& options) {
+    const std::string format = format_of(options);
+    if (options.rate != 0.0 && format != "sr")
+        throw InputError("", "--rate", fmt::format("a {} file has no sample rate", format), "--format sr");
+    const RecordedTrace trace(options.trace, options.selection);
+    std::error_code error;
+    if (options.output != "-" && std::filesystem::equivalent(trace.file(), options.output, error))
+        throw InputError(options.output, "--output", "is the trace itself", "another file");
+    if (format == "sr") return export_sr(trace, options.output, static_cast<std::uint64_t>(options.rate));
+    const auto write = format == "csv" ? export_csv : format == "vcd" ? export_vcd : export_pcapng;
+    // What cannot be read is reported before a file is made of it.
+    RecordedTrace::Cursor(trace).next();
+    write_output(options.output, [&](std::ostream& out) { write(trace, out); });
+}
+
+}  // namespace
+
+void add_selection(Command& command, TraceSelection& selection) {
+    command.add_option("--link", selection.links, "only these links (repeatable)")->allow_extra_args(false);
+    command.add_option("--from-node", selection.nodes, "only what these nodes sent (repeatable)")
+        ->allow_extra_args(false);
+    command.add_option("--kind", selection.kinds, "only uart, i2c, signal or radio (repeatable)")
+        ->allow_extra_args(false)
+        ->check(one_of({"uart", "i2c", "signal", "radio"}));
+    command.add_option("--from", selection.from_s, "first time, s")->check(number_between(0.0, kLongest));
+    command.add_option("--to", selection.until_s, "end time, s; not included")
+        ->check(number_between(0.0, kLongest));
+}
+
+void declare_trace_export(Command& trace) {
+    auto options = std::make_shared<Options>();
+    Command* command = trace.add_subcommand(
+        "export", "write a trace for sigrok (sr), Wireshark (pcapng), GTKWave (vcd) or as csv");
+    command->add_option("trace", options->trace, "results folder of a run, or its trace.csv")
+        ->required()
+        ->type_name("DIR");
+    command->add_option("-o,--output", options->output, "the file; - is the standard output")
+        ->required()
+        ->type_name("FILE");
+    command->add_option("--format", options->format, "sr, pcapng, vcd or csv; else by the file's name")
+        ->check(one_of({"sr", "pcapng", "vcd", "csv"}));
+    command->add_option("--rate", options->rate, "samples per second of an sr file; else 16 or more a bit")
+        ->check(number_between(1.0, kMostRate));
+    add_selection(*command, options->selection);
+    command->callback([options] { run(*options); });
+}
+
+}  // namespace puckloop::tools

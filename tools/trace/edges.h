@@ -1,0 +1,49 @@
+#pragma once
+// Changes of all lines of a trace in the order of time, from a file that is never in memory as a whole.
+
+#include "tools/trace/lines.h"
+#include "tools/trace/recorded_trace.h"
+#include "tools/trace/reorder_buffer.h"
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace puckloop::tools {
+
+/// What one pass over the whole trace finds, for the passes after it.
+struct LineSurvey {
+    std::vector<Line> lines;
+    cosim::Time late = 0, last = 0, shortest_bit = cosim::kNever;
+};
+
+LineSurvey survey(const RecordedTrace& trace);
+
+/// Levels that changed at one time.
+struct Edges {
+    cosim::Time time = 0;
+    std::vector<std::pair<std::size_t, bool>> levels;  ///< line, level; by line
+};
+
+class EdgeStream {
+  public:
+    EdgeStream(const RecordedTrace& trace, const LineSurvey& survey);
+    EdgeStream(const EdgeStream&) = delete;
+    EdgeStream& operator=(const EdgeStream&) = delete;
+
+    /// Nothing at the end.
+    std::optional<Edges> next();
+
+  private:
+    void fill();
+
+    RecordedTrace::Cursor cursor_;
+    cosim::Time late_;
+    ReorderBuffer<LineEvent> buffer_;
+    LineRenderer renderer_;
+    std::vector<bool> rests_high_, level_;
+    std::vector<int> reasons_;
+    cosim::Time settled_ = -1;  // nothing earlier comes any more
+};
+
+}  // namespace puckloop::tools

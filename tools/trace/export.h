@@ -1,0 +1,32 @@
+#pragma once
+// A recorded trace in the formats of other tools. Each reads the trace in passes and keeps little of it.
+
+#include "tools/trace/recorded_trace.h"
+
+#include <cstdint>
+#include <ostream>
+#include <string>
+
+namespace puckloop::tools {
+
+/// Rows as they were, wanted ones only.
+void export_csv(const RecordedTrace& trace, std::ostream& out);
+
+/// Value change dump (IEEE 1364), for GTKWave and its like: the lines of lines.h, and beside them `byte` of a
+/// UART while a frame lasts, `phase` and `byte` of I2C, `octets` of a radio and the value of each signal.
+void export_vcd(const RecordedTrace& trace, std::ostream& out);
+
+/// pcapng for Wireshark, times in nanoseconds, one interface for each sender on each link (I2C: for each bus).
+///   UART   LINKTYPE_RTAC_SERIAL: bytes sent without a pause in one packet; a break, a wrong parity bit and a
+///          frame with a fault in a packet of their own
+///   I2C    LINKTYPE_I2C_LINUX: what lies between a START and the next START or STOP in one packet
+///   radio  LINKTYPE_IEEE802_15_4_WITHFCS
+/// What a fault did, a missing acknowledge and a lost bus are in the packet's comment. Signals have no place.
+void export_pcapng(const RecordedTrace& trace, std::ostream& out);
+
+/// sigrok session (srzip) with the lines of lines.h as logic channels. `rate` in samples per second, at most
+/// 1e9; 0: at least 16 samples in the shortest bit. The first sample is at `--from`, or at 0. Throws
+/// InputError when there is no line or too many samples, RunError when the file cannot be written.
+void export_sr(const RecordedTrace& trace, const std::string& path, std::uint64_t rate);
+
+}  // namespace puckloop::tools

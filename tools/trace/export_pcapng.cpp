@@ -1,0 +1,242 @@
+// Blocks: section header, one interface description for each sender, one enhanced packet for each packet
+// (draft-ietf-opsawg-pcapng). Little-endian, padded to 32 bits.
+
+#include "protocols/uart_sampling.h"
+#include "tools/trace/export.h"
+#include "tools/trace/i2c_transfers.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <vector>
+
+namespace puckloop::tools {
+
+namespace {
+
+using cosim::Time;
+using Bytes = std::vector<std::uint8_t>;
+
+enum class LinkType : std::uint16_t { Radio = 195, I2c = 209, Uart = 250 };
+enum : std::uint32_t { kSection = 0x0A0D0D0A, kInterface = 1, kPacket = 6 };
+enum : std::uint16_t { kEnd = 0, kComment = 1, kName = 2, kResolution = 9 };
+enum : std::uint8_t { kDataSent = 1, kParityError = 8, kBreak = 9 };  // events of LINKTYPE_RTAC_SERIAL
+
+constexpr Time kNanosecond = 1000;
+constexpr std::size_t kMostInPacket = 256;
+
+void little(Bytes& out, std::uint64_t value, int bytes) {
+    for (int i = 0; i < bytes; ++i)
+        out.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
+}
+
+void big(Bytes& out, std::uint64_t value, int bytes) {
+    for (int i = bytes - 1; i >= 0; --i)
+        out.push_back(static_cast<std::uint8_t>(value >> (8 * i)));
+}
+
+void pad(Bytes& out) {
+    while (out.size() % 4 != 0)
+        out.push_back(0);
+}
+
+void option(Bytes& out, std::uint16_t code, std::string_view value) {
+    little(out, code, 2);
+    little(out, value.size(), 2);
+    out.insert(out.end(), value.begin(), value.end());
+    pad(out);
+}
+
+class Writer {
+  public:
+    explicit Writer(std::ostream& out) : out_(out) {
+        Bytes body;
+        little(body, 0x1A2B3C4D, 4);
+        little(body, 1, 2);
+        little(body, 0, 2);
+        little(body, ~std::uint64_t{0}, 8);  // length of the section: not given
+        block(kSection, body);
+    }
+
+    std::uint32_t interface(const std::string& name, LinkType type) {
+        const auto [found, is_new] = interfaces_.try_emplace(name, interfaces_.size());
+        if (is_new) {
+            Bytes body;
+            little(body, static_cast<std::uint16_t>(type), 2);
+            little(body, 0, 2);
+            little(body, 0, 4);  // no limit of length
+            option(body, kName, name);
+            option(body, kResolution, "\x09");  // 1e-9 s
+            option(body, kEnd, "");
+            block(kInterface, body);
+        }
+        return found->second;
+    }
+
+    void packet(std::uint32_t interface, Time time, const Bytes& data, const std::string& comment) {
+        const auto stamp = static_cast<std::uint64_t>(std::max<Time>(time, 0) / kNanosecond);
+        Bytes body;
+        little(body, interface, 4);
+        little(body, stamp >> 32, 4);
+        little(body, stamp & 0xffffffff, 4);
+        little(body, data.size(), 4);
+        little(body, data.size(), 4);
+        body.insert(body.end(), data.begin(), data.end());
+        pad(body);
+        if (!comment.empty()) {
+            option(body, kComment, comment);
+            option(body, kEnd, "");
+        }
+        block(kPacket, body);
+    }
+
+  private:
+    void block(std::uint32_t type, const Bytes& body) {
+        constexpr std::size_t kFrame = 12;
+        Bytes all;
+        little(all, type, 4);
+        little(all, body.size() + kFrame, 4);
+        all.insert(all.end(), body.begin(), body.end());
+        little(all, body.size() + kFrame, 4);
+        out_.write(reinterpret_cast<const char*>(all.data()), static_cast<std::streamsize>(all.size()));
+    }
+
+    std::ostream& out_;
+    std::map<std::string, std::uint32_t> interfaces_;
+};
+
+std::string fault_text(cosim::FaultKind fault) {
+    if (fault == cosim::FaultKind::None) return {};
+    return fmt::format("fault: {}{}", fault_name(fault), keeps_from_arriving(fault) ? ", not received" : "");
+}
+
+/// Bytes of one sender until a pause.
+class Serial {
+  public:
+    void add(Writer& out, const cosim::TraceRow& row, const cosim::UartFrame& frame) {
+        const bool wrong_parity = is_parity_wrong(frame);
+        const bool apart = frame.is_break || wrong_parity || row.fault != cosim::FaultKind::None;
+        if (apart || frame.start > pause_from_ || data_.size() == kMostInPacket) flush(out);
+        if (data_.empty()) {
+            start_ = frame.start;
+            interface_ = out.interface(fmt::format("{} {}", row.link, row.from), LinkType::Uart);
+        }
+        data_.push_back(static_cast<std::uint8_t>(frame.data));
+        pause_from_ = protocols::frame_end(frame) + frame.bit_period;
+        if (!apart) return;
+        event_ = frame.is_break ? kBreak : wrong_parity ? kParityError : kDataSent;
+        if (frame.is_break) data_.clear(), empty_ = true;
+        comment_ = fault_text(row.fault);
+        flush(out);
+    }
+
+    void flush(Writer& out) {
+        if (!data_.empty() || empty_) {
+            constexpr Time kSecond = cosim::kSecond;
+            Bytes packet;
+            big(packet, static_cast<std::uint64_t>(start_ / kSecond), 4);
+            big(packet, static_cast<std::uint64_t>(start_ % kSecond / cosim::kMicrosecond), 4);
+            packet.insert(packet.end(), {event_, 0, 0, 0});
+            packet.insert(packet.end(), data_.begin(), data_.end());
+            out.packet(interface_, start_, packet, comment_);
+        }
+        data_.clear();
+        comment_.clear();
+        event_ = kDataSent;
+        empty_ = false;
+    }
+
+  private:
+    static bool is_parity_wrong(const cosim::UartFrame& frame) {
+        if (frame.parity == 0 || frame.is_break) return false;
+        const bool odd = (__builtin_popcount(frame.data) + frame.parity_bit) % 2 != 0;
+        return odd != (frame.parity == 1);
+    }
+
+    Bytes data_;
+    bool empty_ = false;
+    std::uint8_t event_ = kDataSent;
+    std::string comment_;
+    Time start_ = 0, pause_from_ = 0;
+    std::uint32_t interface_ = 0;
+};
+
+/// What lies between a START and the next START or STOP, on one bus.
+class Segment {
+  public:
+    void add(Writer& out, const I2cStep& step, std::uint8_t bus) {
+        using Kind = I2cStep::Kind;
+        if (step.end == I2cStep::End::Lost) {
+            flush(out);
+            begin(out, step, bus);
+            note("bus lost");
+            return flush(out);
+        }
+        if (step.kind == Kind::Start || step.kind == Kind::Stop) flush(out);
+        if (step.kind == Kind::Start) begin(out, step, bus);
+        if (packet_.empty() || step.kind == Kind::Stop) return;
+        packet_.push_back(step.byte);
+        if (step.end == I2cStep::End::Abandoned) note("no answer");
+        else if (!step.acknowledged && step.kind == Kind::Start) note("address not acknowledged");
+        else if (!step.acknowledged && step.kind == Kind::Write)
+            note(fmt::format("byte {} not acknowledged", packet_.size() - kHeader - 1));
+        if (step.fault != cosim::FaultKind::None) note(fault_text(step.fault));
+    }
+
+    void flush(Writer& out) {
+        if (packet_.size() > kHeader || !comment_.empty()) out.packet(interface_, start_, packet_, comment_);
+        packet_.clear();
+        comment_.clear();
+    }
+
+  private:
+    static constexpr std::size_t kHeader = 5;
+
+    void begin(Writer& out, const I2cStep& step, std::uint8_t bus) {
+        start_ = step.start;
+        interface_ = out.interface(step.bus, LinkType::I2c);
+        packet_.push_back(bus);
+        big(packet_, step.byte & 1U, 4);  // I2C_M_RD
+        if (step.end == I2cStep::End::Lost) packet_.push_back(step.byte);
+    }
+    void note(const std::string& text) { comment_ += (comment_.empty() ? "" : "; ") + text; }
+
+    Bytes packet_;
+    std::string comment_;
+    Time start_ = 0;
+    std::uint32_t interface_ = 0;
+};
+
+}  // namespace
+
+void export_pcapng(const RecordedTrace& trace, std::ostream& out) {
+    Writer writer(out);
+    std::map<std::pair<std::string, std::string>, Serial> serial;
+    std::map<std::string, Segment> segments;
+    std::map<std::string, std::uint8_t> buses;
+    I2cTransfers transfers([&](const I2cStep& step) {
+        constexpr std::size_t kMostBuses = 128;
+        const auto bus = buses.try_emplace(step.bus, buses.size() % kMostBuses).first->second;
+        segments[step.link].add(writer, step, bus);
+    });
+    trace.for_each_checked([&](const cosim::TraceRow& row) {
+        if (const auto* frame = std::get_if<cosim::UartFrame>(&row.payload)) {
+            serial[{row.link, row.from}].add(writer, row, *frame);
+        } else if (const auto* phase = std::get_if<cosim::I2cPhase>(&row.payload)) {
+            transfers.add(row, *phase);
+        } else if (const auto* radio = std::get_if<cosim::RadioFrame>(&row.payload)) {
+            const auto octets = radio->octets.view();
+            writer.packet(writer.interface(fmt::format("{} {}", row.link, row.from), LinkType::Radio), radio->start,
+                          {octets.begin(), octets.end()}, fault_text(row.fault));
+        }
+    });
+    transfers.end();
+    for (auto& [link, segment] : segments)
+        segment.flush(writer);
+    for (auto& [sender, one] : serial)
+        one.flush(writer);
+}
+
+}  // namespace puckloop::tools

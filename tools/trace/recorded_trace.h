@@ -1,0 +1,68 @@
+#pragma once
+// A recorded trace on disk, read row by row and as often as needed, and which of its rows are wanted.
+
+#include "cosim/trace/trace_row.h"
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace puckloop::tools {
+
+/// Which rows; an empty list is all. Times in seconds, the end not included.
+struct TraceSelection {
+    std::vector<std::string> links, nodes, kinds;
+    double from_s = 0.0;
+    double until_s = 9e6;
+
+    bool wanted(const cosim::TraceRow& row) const;
+};
+
+/// "uart", "i2c", "signal" or "radio".
+std::string_view kind_of(const cosim::TraceRow& row);
+
+class RecordedTrace {
+  public:
+    /// `place` is a trace.csv or the results folder that has one. Throws InputError: no such file, nothing
+    /// that can be read twice, another format.
+    RecordedTrace(const std::filesystem::path& place, TraceSelection selection);
+
+    const std::filesystem::path& file() const { return file_; }
+    const TraceSelection& selection() const { return selection_; }
+
+    /// Rows in the order of the file, wanted ones only.
+    class Cursor {
+      public:
+        explicit Cursor(const RecordedTrace& trace);
+        /// Nothing at the end. Throws InputError naming file and line.
+        std::optional<cosim::TraceRow> next();
+        /// The next row, wanted or not.
+        std::optional<cosim::TraceRow> next_of_all();
+        /// False once the end was reached in the middle of a line: its writer was killed.
+        bool whole() const { return whole_; }
+
+      private:
+        const RecordedTrace& trace_;
+        std::ifstream in_;
+        std::string line_;
+        std::size_t number_ = 1;
+        bool whole_ = true;
+    };
+
+    /// Reads everything once. Checks that the links and nodes asked for occur (throws InputError naming the
+    /// option) and warns on standard error of an incomplete last line.
+    void for_each_checked(const std::function<void(const cosim::TraceRow&)>& take) const;
+
+  private:
+    std::filesystem::path file_;
+    TraceSelection selection_;
+};
+
+/// Calls `write` with the open file, "-" being the standard output. Throws RunError when it cannot be
+/// written.
+void write_output(const std::string& path, const std::function<void(std::ostream&)>& write);
+
+}  // namespace puckloop::tools
