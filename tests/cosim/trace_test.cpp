@@ -5,7 +5,6 @@
 #include "cosim/trace/trace_csv.h"
 #include "cosim/trace/trace_merger.h"
 #include "cosim/trace/trace_stats.h"
-#include "cosim/trace/trace_vcd.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
@@ -190,38 +189,6 @@ TEST_CASE("the hash is a fixed function of the messages") {
     run.options.in_process = true;
     // Worked out from the documented form by a program of another language; changes only with that form.
     CHECK(run().trace_sha256 == "150ed69d5056d0be8c6bcb8e1d605bcdf15862079287630d578bbdb0c34ccbe2");
-}
-
-TEST_CASE("a byte is drawn bit by bit in a value change dump") {
-    VcdWriter vcd;
-    vcd.add({100, "wire", "left", "", FaultKind::None, UartFrame{10, 10, 0x4e, 8, 0, 1, 0, 0}});
-    std::ostringstream out;
-    vcd.write(out);
-    // 0x4e, least significant bit first: 0 1 1 1 0 0 1 0 after the start bit.
-    CHECK_THAT(out.str(),
-               Catch::Contains("$timescale 1 ps $end") && Catch::Contains("$scope module wire $end") &&
-                   Catch::Contains(
-                       "#10\nb1001110 \"\n0!\n#30\n1!\n#60\n0!\n#80\n1!\n#90\n0!\n#100\n1!\n#110\nbx \"\n"));
-}
-
-TEST_CASE("a value change dump holds every kind of message and is in order") {
-    VcdWriter vcd;
-    for (const TraceRow& row : some_rows())
-        vcd.add(row);
-    std::ostringstream out;
-    vcd.write(out);
-    std::istringstream in(out.str());
-    long long before = -1;
-    for (std::string line; std::getline(in, line);)
-        if (line[0] == '#' && line.size() > 1) {
-            const long long time = std::stoll(line.substr(1));
-            CHECK(time > before);
-            before = time;
-        }
-    CHECK(before == 3 * kSecond);
-    CHECK_THAT(out.str(), Catch::Contains("snack ") && Catch::Contains("sstart ") &&
-                              Catch::Contains("$var real 64") && Catch::Contains("wheel_left") &&
-                              Catch::Contains("s007eff "));
 }
 
 TEST_CASE("statistics of a trace") {

@@ -27,10 +27,8 @@ void run(const Options& options) {
         throw InputError("", "trace", "no file given",
                          "trace.csv of a run or its results folder, or one of export, decode and rab");
     const RecordedTrace trace(options.file, options.selection);
-    if (!options.csv.empty())
-        write_output(options.csv, [&](std::ostream& out) { export_csv(trace, out); });
-    if (!options.vcd.empty())
-        write_output(options.vcd, [&](std::ostream& out) { export_vcd(trace, out); });
+    if (!options.csv.empty()) write_output(options.csv, [&](std::ostream& out) { export_csv(trace, out); });
+    if (!options.vcd.empty()) write_output(options.vcd, [&](std::ostream& out) { export_vcd(trace, out); });
     if (!options.csv.empty() || !options.vcd.empty()) return;
     cosim::TraceStats stats;
     trace.for_each_checked([&](const cosim::TraceRow& row) { stats.add(row); });

@@ -16,7 +16,8 @@ void export_csv(const RecordedTrace& trace, std::ostream& out);
 /// UART while a frame lasts, `phase` and `byte` of I2C, `octets` of a radio and the value of each signal.
 void export_vcd(const RecordedTrace& trace, std::ostream& out);
 
-/// pcapng for Wireshark, times in nanoseconds, one interface for each sender on each link (I2C: for each bus).
+/// pcapng for Wireshark, times in nanoseconds, one interface for each sender on each link (I2C: for each
+/// bus).
 ///   UART   LINKTYPE_RTAC_SERIAL: bytes sent without a pause in one packet; a break, a wrong parity bit and a
 ///          frame with a fault in a packet of their own
 ///   I2C    LINKTYPE_I2C_LINUX: what lies between a START and the next START or STOP in one packet

@@ -178,8 +178,10 @@ class Segment {
         if (step.kind == Kind::Start) begin(out, step, bus);
         if (packet_.empty() || step.kind == Kind::Stop) return;
         packet_.push_back(step.byte);
-        if (step.end == I2cStep::End::Abandoned) note("no answer");
-        else if (!step.acknowledged && step.kind == Kind::Start) note("address not acknowledged");
+        if (step.end == I2cStep::End::Abandoned)
+            note("no answer");
+        else if (!step.acknowledged && step.kind == Kind::Start)
+            note("address not acknowledged");
         else if (!step.acknowledged && step.kind == Kind::Write)
             note(fmt::format("byte {} not acknowledged", packet_.size() - kHeader - 1));
         if (step.fault != cosim::FaultKind::None) note(fault_text(step.fault));
@@ -228,8 +230,8 @@ void export_pcapng(const RecordedTrace& trace, std::ostream& out) {
             transfers.add(row, *phase);
         } else if (const auto* radio = std::get_if<cosim::RadioFrame>(&row.payload)) {
             const auto octets = radio->octets.view();
-            writer.packet(writer.interface(fmt::format("{} {}", row.link, row.from), LinkType::Radio), radio->start,
-                          {octets.begin(), octets.end()}, fault_text(row.fault));
+            writer.packet(writer.interface(fmt::format("{} {}", row.link, row.from), LinkType::Radio),
+                          radio->start, {octets.begin(), octets.end()}, fault_text(row.fault));
         }
     });
     transfers.end();

@@ -38,8 +38,9 @@ std::uint64_t sample_at(Time time, std::uint64_t rate) {
 std::uint64_t fitting_rate(Time shortest_bit) {
     constexpr std::uint64_t kMostRate = 1'000'000'000;
     if (shortest_bit == cosim::kNever || shortest_bit <= 0) return 1'000'000;
-    const std::uint64_t wanted = sample_at(cosim::kSecond, kSamplesOfBit * static_cast<std::uint64_t>(
-                                                               cosim::kSecond / std::max<Time>(shortest_bit, 1)));
+    const std::uint64_t wanted = sample_at(
+        cosim::kSecond,
+        kSamplesOfBit * static_cast<std::uint64_t>(cosim::kSecond / std::max<Time>(shortest_bit, 1)));
     for (std::uint64_t decade = 1000; decade < kMostRate; decade *= 10)
         for (const std::uint64_t step : {1, 2, 5})
             if (step * decade >= wanted) return step * decade;
@@ -200,7 +201,9 @@ class Archive {
     }
 
   private:
-    [[noreturn]] void fail() { throw RunError(fmt::format("{}: cannot write: {}", path_, zip_strerror(zip_))); }
+    [[noreturn]] void fail() {
+        throw RunError(fmt::format("{}: cannot write: {}", path_, zip_strerror(zip_)));
+    }
     zip_int64_t put(const std::string& name, zip_source_t* source) {
         const zip_int64_t at = source == nullptr ? -1 : zip_file_add(zip_, name.c_str(), source, 0);
         if (at < 0) fail();
@@ -219,8 +222,8 @@ std::string metadata(const LineSurvey& found, std::uint64_t rate) {
     std::size_t count = 0;
     for (const Line& line : found.lines)
         if (line.logic) probes += fmt::format("probe{}={}\n", ++count, line.full_name());
-    return fmt::format("{}total probes={}\nsamplerate={} Hz\ntotal analog=0\n{}unitsize={}\n", text, count, rate,
-                       probes, (count + 7) / 8);
+    return fmt::format("{}total probes={}\nsamplerate={} Hz\ntotal analog=0\n{}unitsize={}\n", text, count,
+                       rate, probes, (count + 7) / 8);
 }
 
 }  // namespace
@@ -238,7 +241,8 @@ void export_sr(const RecordedTrace& trace, const std::string& path, std::uint64_
     const std::uint64_t count = sample_at(std::max<Time>(found.last - origin, 0), rate) + kSamplesOfBit;
     Samples samples(trace, found, rate, origin, count);
     if (count > kMostBytes / samples.unit())
-        throw InputError("", "--rate", fmt::format("{} samples of {} bytes are too many", count, samples.unit()),
+        throw InputError("", "--rate",
+                         fmt::format("{} samples of {} bytes are too many", count, samples.unit()),
                          "a lower rate, or fewer links or a shorter time by --link, --from and --to");
     const std::uint64_t per_chunk = kChunkBytes / samples.unit();
     std::vector<std::unique_ptr<Chunk>> chunks;

@@ -17,13 +17,14 @@ using cosim::Time;
 
 const std::string kUnknownByte = "bx ";
 
-/// Short printable identifiers, as the format asks.
+/// Short identifiers of characters with which neither a time nor a value nor a keyword begins: readers that
+/// do not know strings skip them word by word.
 std::string identifier(std::size_t n) {
-    constexpr std::size_t kFirst = 33, kCount = 94;
+    constexpr std::string_view kCharacters = "!%&()*+,./:;<=>?@[]^_{|}~";
     std::string text;
     do {
-        text += static_cast<char>(kFirst + n % kCount);
-        n /= kCount;
+        text += kCharacters[n % kCharacters.size()];
+        n /= kCharacters.size();
     } while (n != 0);
     return text;
 }
@@ -61,8 +62,7 @@ class Values {
         } else if (const auto* phase = std::get_if<cosim::I2cPhase>(&row.payload)) {
             add_phase(row, *phase);
         } else if (const auto* signal = std::get_if<cosim::Signal>(&row.payload)) {
-            const std::string name =
-                row.signal.empty() ? fmt::format("signal{}", signal->id) : row.signal;
+            const std::string name = row.signal.empty() ? fmt::format("signal{}", signal->id) : row.signal;
             emit_(row.time, variable(row, name, "real", 64, "r0 "), fmt::format("r{} ", signal->value));
         } else {
             const auto& radio = std::get<cosim::RadioFrame>(row.payload);
@@ -71,7 +71,8 @@ class Values {
             emit_(radio.start + radio.duration, octets, "s ");
         }
         if (row.fault == cosim::FaultKind::None) return;
-        emit_(row.time, variable(row, "fault_kind", "string", 1, "s "), fmt::format("s{} ", fault_name(row.fault)));
+        emit_(row.time, variable(row, "fault_kind", "string", 1, "s "),
+              fmt::format("s{} ", fault_name(row.fault)));
     }
 
     const std::vector<Variable>& variables() const { return variables_; }
@@ -80,7 +81,8 @@ class Values {
     static constexpr unsigned kByteWidth = 9;  // nine-bit frames fit
 
     void add_phase(const cosim::TraceRow& row, const cosim::I2cPhase& phase) {
-        static constexpr std::string_view kNames[] = {"start", "write", "read", "stop", "ack", "data", "lost"};
+        static constexpr std::string_view kNames[] = {"start", "write", "read", "stop",
+                                                      "ack",   "data",  "lost"};
         std::string_view name = kNames[static_cast<std::size_t>(phase.kind)];
         if (phase.kind == cosim::I2cPhaseKind::Acknowledge && phase.ack == 0) name = "nack";
         emit_(row.time, variable(row, "phase", "string", 1, "s "), fmt::format("s{} ", name));

@@ -79,7 +79,8 @@ void I2cTransfers::answer(Link& link, const TraceRow& row, const I2cPhase& phase
     step.start = phase.start;
     step.stretch = phase.stretch;
     step.byte = phase.byte;
-    step.acknowledged = phase.ack != 0;
+    // A row of Data has no acknowledge: that is the master's, in its Read.
+    if (phase.kind == I2cPhaseKind::Acknowledge) step.acknowledged = phase.ack != 0;
     hand_over(link, I2cStep::End::Answered);
     while (!link.open.empty() && link.open.front().kind == I2cStep::Kind::Stop)
         hand_over(link, I2cStep::End::Answered);

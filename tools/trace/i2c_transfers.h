@@ -25,7 +25,7 @@ struct I2cStep {
     };
     Kind kind = Kind::Stop;
     End end = End::Answered;
-    std::uint8_t byte = 0;  ///< address byte, data written or read; 0 for Stop and a Read without answer
+    std::uint8_t byte = 0;      ///< address byte, data written or read; 0 for Stop and a Read without answer
     bool acknowledged = false;  ///< the ninth bit was low
     cosim::Time start = 0, clock_period = 0, stretch = 0;
     cosim::Time known = 0;  ///< time of the row that completed it

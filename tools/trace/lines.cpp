@@ -31,7 +31,8 @@ LineRenderer::LineRenderer(Emit emit)
 
 std::size_t LineRenderer::line(const std::string& scope, const std::string& from, const std::string& name,
                                Line::Kind kind) {
-    const auto [found, is_new] = index_.try_emplace(fmt::format("{}\n{}\n{}", scope, from, name), lines_.size());
+    const auto [found, is_new] =
+        index_.try_emplace(fmt::format("{}\n{}\n{}", scope, from, name), lines_.size());
     if (is_new) {
         lines_.push_back({scope, from, name, kind});
         level_.push_back(false);
@@ -77,7 +78,8 @@ void LineRenderer::uart(const cosim::TraceRow& row, const cosim::UartFrame& fram
     const std::size_t wire = line(row.link, row.from, "line", Line::Kind::Uart);
     if (frame.bit_period <= 0) return;
     if (row.fault != cosim::FaultKind::None)
-        active(line(row.link, row.from, "fault", Line::Kind::Fault), frame.start, protocols::frame_end(frame));
+        active(line(row.link, row.from, "fault", Line::Kind::Fault), frame.start,
+               protocols::frame_end(frame));
     if (keeps_from_arriving(row.fault)) return;
     shortest_ = std::min(shortest_, frame.bit_period);
     const int bits = protocols::bits_before_stop(frame) + frame.stop_bits;
@@ -108,7 +110,8 @@ void LineRenderer::signal(const cosim::TraceRow& row, const cosim::Signal& signa
 
 void LineRenderer::i2c(const I2cStep& step) {
     if (step.fault != cosim::FaultKind::None && step.clock_period > 0)
-        active(line(step.bus, "", "fault", Line::Kind::Fault), step.start, step.start + 9 * step.clock_period);
+        active(line(step.bus, "", "fault", Line::Kind::Fault), step.start,
+               step.start + 9 * step.clock_period);
     if (step.end == I2cStep::End::Lost || step.clock_period <= 0) return;
     const auto [found, is_new] = buses_.try_emplace(step.bus);
     Wires& wires = found->second;

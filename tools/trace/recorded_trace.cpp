@@ -44,7 +44,8 @@ RecordedTrace::RecordedTrace(const std::filesystem::path& place, TraceSelection 
     if (std::filesystem::is_directory(file_, error)) file_ /= "trace.csv";
     const auto status = std::filesystem::status(file_, error);
     if (!std::filesystem::exists(status))
-        throw InputError(file_.string(), "", "no such file", "a trace.csv that a run recorded, or its folder");
+        throw InputError(file_.string(), "", "no such file",
+                         "a trace.csv that a run recorded, or its folder");
     if (!std::filesystem::is_regular_file(status))
         throw InputError(file_.string(), "", "is no regular file, and is read more than once",
                          "a trace.csv that a run recorded, or its folder");

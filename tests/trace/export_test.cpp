@@ -1,0 +1,131 @@
+// `puckloop trace export` as a user calls it, and what it makes of bad input.
+
+#include "trace_kit.h"
+
+#include <catch2/catch.hpp>
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <sstream>
+
+using namespace puckloop;
+using namespace puckloop::cosim;
+using namespace puckloop::tests;
+
+namespace {
+
+std::vector<TraceRow> some_rows() {
+    std::vector<TraceRow> rows{uart_row("wire", "left", {kMillisecond, kSecond / 9600, 0x4e})};
+    I2cScript script(rows, 10 * kMicrosecond);
+    script.pause(2 * kMillisecond);
+    script.start(0x41, true, 0);
+    script.read(0x55, false, 0);
+    script.stop();
+    rows.push_back({script.now(), "w", "board", "wheel_left", FaultKind::None, Signal{3, -2.5}});
+    RadioFrame radio{script.now(), kMillisecond, {}, 12, -60};
+    radio.octets = Octets(std::vector<std::uint8_t>{0x00, 0x7e, 0xff});
+    rows.push_back({script.now() + kMillisecond, "r", "m.xbee", "", FaultKind::Flip, radio});
+    return rows;
+}
+
+std::string text_of(const std::string& file) {
+    std::ifstream in(file, std::ios::binary);
+    std::ostringstream text;
+    text << in.rdbuf();
+    return text.str();
+}
+
+}  // namespace
+
+TEST_CASE("a value change dump holds every kind of message and is in order") {
+    const std::string trace = write_trace("all.csv", some_rows());
+    const std::string vcd = tests::puckloop(fmt::format("trace export {} --format vcd -o -", trace)).out;
+    long long before = -1;
+    for (const std::string& line : lines_of(vcd))
+        if (line[0] == '#' && line.size() > 1 && std::isdigit(static_cast<unsigned char>(line[1]))) {
+            const long long time = std::stoll(line.substr(1));
+            CHECK(time > before);
+            before = time;
+        }
+    CHECK_THAT(vcd, Catch::Contains("$timescale 1 ps $end") && Catch::Contains("$scope module wire $end") &&
+                        Catch::Contains("scl $end") && Catch::Contains("sstart ") &&
+                        Catch::Contains("sack ") && Catch::Contains("$var real 64") &&
+                        Catch::Contains("wheel_left") && Catch::Contains("s007eff ") &&
+                        Catch::Contains("sflip "));
+}
+
+TEST_CASE("the same trace gives the same files") {
+    const std::string trace = write_trace("same.csv", some_rows());
+    for (const char* format : {"sr", "pcapng", "vcd", "csv"}) {
+        for (const char* name : {"a", "b"})
+            REQUIRE(
+                tests::puckloop(fmt::format("trace export {0} -o {0}.{1}.{2}", trace, name, format)).status ==
+                0);
+        CHECK(text_of(fmt::format("{}.a.{}", trace, format)) ==
+              text_of(fmt::format("{}.b.{}", trace, format)));
+    }
+    CHECK(text_of(trace + ".a.csv") == text_of(trace));
+}
+
+TEST_CASE("what cannot be exported is reported in one line") {
+    const std::string trace = write_trace("bad.csv", some_rows());
+    const auto fails = [](const std::string& arguments, int status, const std::string& text) {
+        const Called called = tests::puckloop("trace export " + arguments);
+        INFO(arguments << "\n" << called.out);
+        CHECK(called.status == status);
+        CHECK(lines_of(called.out).size() == 1);
+        CHECK_THAT(called.out, Catch::StartsWith("puckloop: ") && Catch::Contains(text));
+    };
+    fails(trace + " -o " + trace + ".xyz", 2, "csv, pcapng, sr or vcd");
+    fails(trace + " --format smoke -o x", 2, "smoke");
+    fails(trace + " --format sr -o -", 2, "zip archive");
+    fails(trace + " --format csv -o " + trace, 2, "is the trace itself");
+    fails(trace + " --rate 1000 -o x.vcd", 2, "sample rate");
+    fails(trace + " --rate 1e9 --link none -o " + trace + ".sr", 2, "'none' does not occur");
+    fails(trace + " --link w -o " + trace + ".sr", 2, "no line to draw");
+    fails(trace + " --from 2 --to 1 -o " + trace + ".sr", 2, "not after --from");
+    fails(trace + " --format vcd -o /dev/full", 1, "cannot write");
+    fails(trace + " -o /nonexistent/x.sr", 1, "cannot write");
+    fails("/nonexistent -o x.sr", 2, "no such file");
+    fails("/dev/zero -o x.sr", 2, "no regular file");
+    const std::string far = write_trace("far.csv", {uart_row("w", "l", {8'000'000 * kSecond, 1'000'000, 1})});
+    fails(far + " -o " + far + ".sr", 2, "too many");
+}
+
+TEST_CASE("no damaged trace brings an export down") {
+    constexpr const char* kFormats[] = {"sr", "pcapng", "vcd", "csv"};
+    std::mt19937 random{Catch::rngSeed()};
+    INFO("seed " << Catch::rngSeed());
+    const std::string whole = text_of(write_trace("fuzz.csv", some_rows()));
+    const std::string file = scratch("damaged.csv");
+    for (int i = 0; i < 60; ++i) {
+        std::string text = whole;
+        const unsigned changes = 1 + random() % 4;
+        for (unsigned n = 0; n < changes; ++n) {
+            const std::size_t at = random() % text.size();
+            switch (random() % 4) {
+            case 0:
+                text[at] = static_cast<char>(random() % 256);
+                break;
+            case 1:
+                text.erase(at, 1 + random() % 20);
+                break;
+            case 2:
+                text.insert(at, text.substr(random() % text.size(), random() % 30));
+                break;
+            default:
+                text.resize(at + 1);
+            }
+        }
+        std::ofstream(file, std::ios::binary) << text;
+        const char* format = kFormats[i % 4];
+        const Called called =
+            tests::puckloop(fmt::format("trace export {} --format {} -o {}.out", file, format, file));
+        INFO(text << "\n" << called.out);
+        REQUIRE((called.status == 0 || called.status == 2));
+        if (called.status == 2)
+            CHECK_THAT(called.out, Catch::Contains(file + ": ") || Catch::Contains("too many"));
+    }
+}
