@@ -1,0 +1,134 @@
+// The serial records of the e-puck with one byte lost, doubled or flipped, at every place and in both
+// directions: the project's own program and firmware recover within three control periods and never drive
+// at a speed that was not commanded for longer than one.
+
+#include "base/random.h"
+#include "protocols/epuck_serial.h"
+#include "tests/framing/record_run.h"
+#include "tests/framing/table.h"
+
+#include <catch2/catch.hpp>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+using namespace puckloop;
+using namespace puckloop::framing;
+using namespace puckloop::protocols;
+
+namespace {
+
+const std::string kOwn = std::string(PUCKLOOP_FIRMWARE) + "/epuck/epuck.hex";
+constexpr double kOwnReady = 0.05;  // s after power-up
+constexpr int kRecords = 12;        // the last one with the wheels at rest, then the end record
+constexpr double kBound = 0.3;      // s, three control periods
+
+constexpr unsigned long kHello = 1 + kEpuckConfigurationBytes;
+
+/// First byte of the n-th record in its direction: the actuator record n follows the hello; the sensor
+/// record 0 answers the hello.
+unsigned long first_byte(bool to_pic, int record) {
+    return to_pic ? kHello + kEpuckActuatorBytes * static_cast<unsigned long>(record)
+                  : kEpuckSensorBytes * static_cast<unsigned long>(record);
+}
+
+void add_byte(std::vector<RecordFault>& all, bool to_pic, unsigned long byte) {
+    all.push_back({to_pic, byte, ByteFault::Lost});
+    all.push_back({to_pic, byte, ByteFault::Doubled});
+    for (int bit = 0; bit < 8; ++bit)
+        all.push_back({to_pic, byte, ByteFault::Flipped, bit});
+}
+
+/// Every fault on every byte of: hello, the first, the fifth, the last and the end record; the first, the
+/// sixth and the last sensor record.
+std::vector<RecordFault> every_fault() {
+    std::vector<RecordFault> all;
+    for (unsigned long i = 0; i < kHello; ++i)
+        add_byte(all, true, i);
+    for (const int record : {0, 4, kRecords - 1, kRecords})
+        for (unsigned long i = 0; i < kEpuckActuatorBytes; ++i)
+            add_byte(all, true, first_byte(true, record) + i);
+    for (const int record : {0, 5, kRecords})
+        for (unsigned long i = 0; i < kEpuckSensorBytes; ++i)
+            add_byte(all, false, first_byte(false, record) + i);
+    return all;
+}
+
+const char* part_of(const RecordFault& fault) {
+    if (!fault.to_pic) return "sensor record";
+    if (fault.byte < kHello) return "wake-up, configuration";
+    return fault.byte < first_byte(true, kRecords) ? "actuator record" : "end record";
+}
+
+struct Tally {
+    int cases = 0, late = 0, driven = 0, stuck = 0, unnoticed = 0;
+    double recovery = 0, garbage = 0, stale = 0;
+};
+
+void count(Tally& tally, const RecordRun& run) {
+    const auto& c = run.counters;
+    ++tally.cases;
+    tally.late += run.recovery > kBound;
+    tally.driven += run.garbage > kBound;
+    tally.stuck += !run.reached || !run.next_session;
+    tally.unnoticed +=
+        c.no_answer + c.short_records + c.implausible + c.slips + c.resyncs + c.stray_bytes == 0;
+    tally.recovery = std::max(tally.recovery, run.recovery);
+    tally.garbage = std::max(tally.garbage, run.garbage);
+    tally.stale = std::max(tally.stale, run.stale);
+}
+
+void write(const std::map<std::pair<std::string, std::string>, Tally>& tallies, const std::string& file) {
+    Table table(
+        file,
+        "part,fault,cases,later than 0.3 s,longest recovery s,longest uncommanded speed s,longest stale "
+        "speed s,unnoticed by the program,stuck");
+    for (const auto& [key, t] : tallies)
+        table.add(fmt::format("{},{},{},{},{:.3f},{:.3f},{:.3f},{},{}", key.first, key.second, t.cases,
+                              t.late, t.recovery, t.garbage, t.stale, t.unnoticed, t.stuck));
+}
+
+void check(const RecordFault& fault, const RecordRun& run) {
+    INFO(fault.text());
+    INFO("recovery " << run.recovery << " garbage " << run.garbage << " stale " << run.stale << " resyncs "
+                     << run.counters.resyncs << " records " << run.counters.records);
+    CHECK(run.fired);
+    CHECK(run.reached);
+    CHECK(run.recovery <= kBound);
+    CHECK(run.garbage <= kBound);
+    CHECK(run.stale <= kBound);
+    CHECK(run.came_to_rest);
+    CHECK(run.next_session);
+}
+
+void sweep(const std::vector<RecordFault>& faults, std::uint64_t seed, const std::string& file) {
+    RecordBench bench(kOwn, kOwnReady);
+    std::map<std::pair<std::string, std::string>, Tally> tallies;
+    const char* const kinds[] = {"lost", "doubled", "flipped"};
+    for (const RecordFault& fault : faults) {
+        const RecordRun run = bench.run(fault, seed++, kRecords);
+        check(fault, run);
+        count(tallies[{part_of(fault), kinds[static_cast<int>(fault.kind)]}], run);
+    }
+    write(tallies, file);
+}
+
+}  // namespace
+
+TEST_CASE("records: single faults drawn at random, own program and firmware") {
+    std::vector<RecordFault> all = every_fault(), some;
+    RandomStream random(41, "record faults");
+    for (int i = 0; i < 30; ++i)
+        some.push_back(all[random.below(all.size())]);
+    for (const ByteFault kind : {ByteFault::Lost, ByteFault::Doubled})
+        for (const bool to_pic : {true, false})
+            for (int i = 0; i < 4; ++i)
+                some.push_back({to_pic, first_byte(to_pic, 4) + random.below(kEpuckActuatorBytes), kind});
+    sweep(some, 1000, "records_sample.csv");
+}
+
+TEST_CASE("records: every byte lost, doubled and with each bit flipped, own program and firmware",
+          "[.slow]") {
+    sweep(every_fault(), 5000, "records.csv");
+}
