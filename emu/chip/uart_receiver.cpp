@@ -92,13 +92,14 @@ std::optional<UartReceiver::Character> UartReceiver::next(const Format& format, 
     }
     const auto centre = [&](int bit) { return clock_.time_of(first + bit_cycles * static_cast<Cycle>(bit)); };
     const int stop = 1 + format.data_bits + (format.parity ? 1 : 0);
-    const Cycle done = first + bit_cycles * static_cast<Cycle>(stop);
+    const int last_stop = stop + format.stop_bits - 1;
+    const Cycle done = first + bit_cycles * static_cast<Cycle>(last_stop);
 
     // Beyond the last known frame another may already have begun whose message is still to come.
     const UartFrame& last = frames_.back();
-    if (centre(stop) >= frame_end(last)) {
+    if (centre(last_stop) >= frame_end(last)) {
         const Cycle certain =
-            clock_.first_cycle_at(centre(stop) + last.bit_period * bits_before_stop(last)) + 1;
+            clock_.first_cycle_at(centre(last_stop) + last.bit_period * bits_before_stop(last)) + 1;
         if (now < certain) {
             ask_again_ = certain;
             return std::nullopt;
@@ -117,8 +118,9 @@ std::optional<UartReceiver::Character> UartReceiver::next(const Format& format, 
         ones += level(centre(stop - 1));
         character.parity_error = (ones % 2 == 1) != (format.parity == 1);
     }
-    const Time stop_time = centre(stop);
-    character.framing_error = !level(stop_time);
+    const Time stop_time = centre(last_stop);
+    for (int i = stop; i <= last_stop; ++i)
+        character.framing_error = character.framing_error || !level(centre(i));
     // After a framing error, a break above all, the line must rest before a start bit counts.
     listening_from_ = character.framing_error ? first_high(stop_time) : stop_time;
     return character;

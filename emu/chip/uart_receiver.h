@@ -31,9 +31,10 @@ class UartReceiver {
         int parity = 0;            ///< 0 none, 1 odd, 2 even
         Cycle phase = 0;           ///< a cycle in which the sampling clock ticks
         std::uint32_t ticks = 16;  ///< sampling clocks in a bit; 4 with BRGH = 1
+        int stop_bits = 1;         ///< that are looked at
     };
     struct Character {
-        Cycle done = 0;  ///< middle of the stop bit
+        Cycle done = 0;  ///< middle of the last stop bit looked at
         std::uint16_t data = 0;
         bool framing_error = false;
         bool parity_error = false;

@@ -25,7 +25,8 @@ struct DspicUartBench : dspic::test::Bench {
     void enable(const Format& format, std::uint32_t divisor, bool high_speed) {
         const int select = format.data_bits == 9 ? 3 : format.parity == 2 ? 1 : format.parity == 1 ? 2 : 0;
         write(at(8), static_cast<std::uint16_t>(divisor - 1));
-        write(at(0), static_cast<std::uint16_t>(0x8000 | (high_speed ? 8 : 0) | select << 1));
+        write(at(0), static_cast<std::uint16_t>(0x8000 | (high_speed ? 8 : 0) | select << 1 |
+                                                (format.stop_bits == 2 ? 1 : 0)));
         write(at(2), 0x0400);
         interrupts.clear(setup.rx_irq);
         interrupts.clear(setup.tx_irq);

@@ -16,9 +16,10 @@ using protocols::encode_rab;
 
 namespace {
 
-constexpr double kRead = 300e-6;   // s for one register at 400 kHz with what firmware stretches
-constexpr double kPause = 0.0035;  // s behind the reads: any decoder has seen silence
-constexpr double kDelay = 8e-6;    // s, the demodulator's, both ways
+constexpr double kRead = 300e-6;    // s for one register at 400 kHz with what firmware stretches
+constexpr double kPause = 0.0035;   // s behind the reads: any decoder has seen silence
+constexpr double kDelay = 8e-6;     // s, the demodulator's, both ways
+constexpr std::size_t kTexts = 33;  // a bench keeps a thousand reads, each text takes thirty
 constexpr int kSensor = 1;
 constexpr int kPeak = 900;
 
@@ -98,6 +99,19 @@ bool has_other(const std::vector<Popped>& popped, std::uint32_t payload, std::ui
     return false;
 }
 
+RabOutcome judge(const Plan& plan, std::size_t text, std::uint32_t payload, std::uint32_t good,
+                 std::uint32_t after) {
+    const auto first = plan.popped(3 * text), second = plan.popped(3 * text + 1),
+               third = plan.popped(3 * text + 2);
+    RabOutcome out;
+    out.accepted_right = has(first, payload);
+    out.accepted_wrong = has_other(first, payload, payload) || has_other(second, payload, good) ||
+                         has_other(third, good, after);
+    out.next_lost = !has(second, good);
+    out.second_lost = !has(third, after);
+    return out;
+}
+
 }  // namespace
 
 RabReceiver own_rab_receiver() {
@@ -112,54 +126,49 @@ std::vector<RabReceiver> rab_receivers() {
 
 std::vector<RabOutcome> send_wrong_frames(const RabReceiver& receiver, int size, std::uint32_t payload,
                                           const std::vector<std::string>& texts, std::uint64_t seed) {
-    Plan plan(receiver, size, seed);
-    std::vector<std::uint32_t> good;
-    for (const std::string& text : texts) {
-        plan.frame(text);
-        for (int i = 0; i < 2; ++i) {
-            std::uint32_t other = plan.draw_payload();
-            while (other == payload)
-                other = plan.draw_payload();
-            good.push_back(other);
-            plan.frame(encode_rab(size, other));
-        }
-    }
-    plan.run();
     std::vector<RabOutcome> outcomes;
-    for (std::size_t i = 0; i < texts.size(); ++i) {
-        const auto first = plan.popped(3 * i), second = plan.popped(3 * i + 1),
-                   third = plan.popped(3 * i + 2);
-        RabOutcome out;
-        out.accepted_right = has(first, payload);
-        out.accepted_wrong = has_other(first, payload, payload) || has_other(second, payload, good[2 * i]) ||
-                             has_other(third, good[2 * i], good[2 * i + 1]);
-        out.next_lost = !has(second, good[2 * i]);
-        out.second_lost = !has(third, good[2 * i + 1]);
-        outcomes.push_back(out);
+    for (std::size_t begin = 0; begin < texts.size(); begin += kTexts) {
+        const std::size_t end = std::min(texts.size(), begin + kTexts);
+        Plan plan(receiver, size, seed + begin);
+        std::vector<std::uint32_t> good;
+        for (std::size_t i = begin; i < end; ++i) {
+            plan.frame(texts[i]);
+            for (int j = 0; j < 2; ++j) {
+                std::uint32_t other = plan.draw_payload();
+                while (other == payload)
+                    other = plan.draw_payload();
+                good.push_back(other);
+                plan.frame(encode_rab(size, other));
+            }
+        }
+        plan.run();
+        for (std::size_t i = 0; i < end - begin; ++i)
+            outcomes.push_back(judge(plan, i, payload, good[2 * i], good[2 * i + 1]));
     }
     return outcomes;
 }
 
 Delivery send_jittered(const RabReceiver& receiver, int size, double jitter, double longer, int frames,
                        std::uint64_t seed) {
-    Plan plan(receiver, size, seed);
-    std::vector<std::uint32_t> payloads;
-    // A good frame in between puts a decoder right that a bad one left in the middle of a frame.
-    for (int i = 0; i < frames; ++i) {
-        payloads.push_back(plan.draw_payload());
-        plan.frame(encode_rab(size, payloads.back()), jitter, longer);
-        if (jitter == 0 && longer == 1) continue;
-        for (int good = 0; good < 2; ++good)
-            plan.frame(encode_rab(size, 0));
-    }
-    plan.run();
     Delivery out;
-    const std::size_t stride = jitter == 0 && longer == 1 ? 1 : 3;
-    for (std::size_t i = 0; i < payloads.size(); ++i) {
-        const auto popped = plan.popped(i * stride);
-        ++out.sent;
-        out.right += has(popped, payloads[i]);
-        out.wrong += has_other(popped, payloads[i], 0);
+    for (int begin = 0; begin < frames; begin += static_cast<int>(kTexts)) {
+        Plan plan(receiver, size, seed + static_cast<std::uint64_t>(begin));
+        std::vector<std::uint32_t> payloads;
+        const int end = std::min(frames, begin + static_cast<int>(kTexts));
+        for (int i = begin; i < end; ++i) {
+            payloads.push_back(plan.draw_payload());
+            plan.frame(encode_rab(size, payloads.back()), jitter, longer);
+            // Good frames put a decoder right that a bad one left in the middle of a frame.
+            for (int good = 0; good < 2; ++good)
+                plan.frame(encode_rab(size, 0));
+        }
+        plan.run();
+        for (std::size_t i = 0; i < payloads.size(); ++i) {
+            const auto popped = plan.popped(3 * i);
+            ++out.sent;
+            out.right += has(popped, payloads[i]);
+            out.wrong += has_other(popped, payloads[i], 0);
+        }
     }
     return out;
 }

@@ -9,7 +9,8 @@
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <cmath>
+#include <utility>
 
 using namespace puckloop;
 using namespace puckloop::framing;
@@ -111,10 +112,12 @@ TEST_CASE("rab errors: all errors of one and two chips", "[.slow]") {
     }
 }
 
-TEST_CASE("rab jitter: our firmware takes every frame below the edge", "") {
-    for (const double jitter : {0.0, 0.1, 0.15}) {
-        const Delivery delivery = send_jittered(own_rab_receiver(), 16, jitter, 1, 12, 71);
-        INFO("jitter " << jitter);
+TEST_CASE(
+    "rab jitter: our firmware takes every frame below the edge, whatever the sender's rate within 6 %") {
+    for (const auto& [jitter, longer] :
+         {std::pair{0.0, 1.0}, {0.1, 1.0}, {0.2, 1.0}, {0.0, 0.94}, {0.0, 1.06}}) {
+        const Delivery delivery = send_jittered(own_rab_receiver(), 32, jitter, longer, 12, 71);
+        INFO("jitter " << jitter << " longer " << longer);
         CHECK(delivery.right == delivery.sent);
         CHECK(delivery.wrong == 0);
     }
@@ -124,19 +127,28 @@ TEST_CASE("rab jitter: where frames begin to be lost", "[.slow]") {
     Table table("rab_jitter.csv",
                 "firmware,bits,edges displaced by up to +- chips,chips longer by %,sent,lost,wrong");
     for (const RabReceiver& receiver : rab_receivers()) {
-        const auto row = [&](int size, double jitter, double longer) {
-            const Delivery d = send_jittered(receiver, size, jitter, longer, 40, 72);
-            table.add(fmt::format("{},{},{:.2f},{:.2f},{},{},{}", receiver.name, size, jitter,
-                                  100 * (longer - 1), d.sent, d.sent - d.right, d.wrong));
-            CHECK(d.wrong == 0);
-            return d;
+        const bool own = receiver.name == own_rab_receiver().name;
+        const auto row = [&](int size, double jitter, double percent) {
+            const Delivery d = send_jittered(receiver, size, jitter, 1 + percent / 100, 40, 72);
+            table.add(fmt::format("{},{},{:.2f},{:.2f},{},{},{}", receiver.name, size, jitter, percent,
+                                  d.sent, d.sent - d.right, d.wrong));
+            INFO(receiver.name << " bits " << size << " jitter " << jitter << " longer by " << percent
+                               << " %");
+            if (own && jitter < 0.205 && std::abs(percent) < 6.5) CHECK(d.right == d.sent);
+            if (own) CHECK(d.wrong == 0);
+            if (!own && jitter == 0 && percent == 0) CHECK(d.right >= d.sent * 4 / 5);
+            if (!own && std::abs(percent) > 2.5) CHECK(d.right == 0);
         };
-        for (double jitter = 0; jitter < 0.51; jitter += 0.05)
-            for (const int size : {16, 32})
-                row(size, jitter, 1);
-        for (const double percent :
-             {-6.0, -4.0, -3.0, -2.0, -1.0, -0.5, -0.2, 0.2, 0.5, 1.0, 2.0, 3.0, 4.0, 6.0})
-            for (const int size : {16, 32})
-                row(size, 0, 1 + percent / 100);
+        for (const int size : {16, 32}) {
+            for (double jitter = 0; jitter < 0.51; jitter += 0.05)
+                row(size, jitter, 0);
+            for (double jitter = 0.21; own && jitter < 0.265; jitter += 0.01)
+                row(size, jitter, 0);
+            for (const double percent : {0.2, 0.5, 1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 10.0, 12.0, 14.0, 16.0}) {
+                if (!own && percent > 4) continue;
+                row(size, 0, percent);
+                row(size, 0, -percent);
+            }
+        }
     }
 }

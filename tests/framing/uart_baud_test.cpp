@@ -23,7 +23,7 @@ constexpr double kPicoseconds = 1e12;
 constexpr double kWidest = 6.0;  // % either way
 
 std::string text(const Format& format) {
-    return fmt::format("{}{}1", format.data_bits, "NOE"[format.parity]);
+    return fmt::format("{}{}{}", format.data_bits, "NOE"[format.parity], format.stop_bits);
 }
 
 std::uint16_t draw_word(RandomStream& random, const Format& format) {
@@ -67,7 +67,7 @@ std::vector<UartFrame> draw_line(RandomStream& random, const Format& format, Tim
     Time at = 1'000'000'000 + static_cast<Time>(random.below(static_cast<std::uint64_t>(bit)));
     for (int i = 0; i < count; ++i) {
         line.push_back(frame_of(format, draw_word(random, format), at, bit));
-        at += bit * (format.bits_before_stop() + 1);
+        at += bit * (format.bits_before_stop() + format.stop_bits);
         if (pauses) at += bit + static_cast<Time>(random.below(static_cast<std::uint64_t>(3 * bit)));
     }
     return line;
@@ -115,7 +115,7 @@ bool taken(const ChipKind& kind, const Format& format, Time bit, double wait) {
     const Time start = chip->tick(kind.ticks * 10) - static_cast<Time>(std::llround(wait * tick));
     const std::vector<UartFrame> line{
         frame_of(format, word, start, bit),
-        frame_of(format, word, start + bit * (format.bits_before_stop() + 1), bit)};
+        frame_of(format, word, start + bit * (format.bits_before_stop() + format.stop_bits), bit)};
     const auto heard = receive_all(*chip, line);
     return !heard.empty() && heard[0] == Character{word};
 }

@@ -82,7 +82,7 @@ std::unique_ptr<UartChip> avr(double ppm) {
 }  // namespace
 
 const std::vector<ChipKind>& chip_kinds() {
-    static const std::vector<Format> dspic_formats{{8, 0}, {8, 1}, {8, 2}, {9, 0}};
+    static const std::vector<Format> dspic_formats{{8, 0}, {8, 1}, {8, 2}, {9, 0}, {8, 0, 2}, {8, 2, 2}};
     static const std::vector<Format> avr_formats{{8, 0}, {8, 1}, {8, 2}, {9, 0}, {9, 2}, {5, 0}, {7, 1}};
     static const std::vector<ChipKind> kinds{
         {"dsPIC30F, 16x", 16, dspic_formats, dspic<false, false>},

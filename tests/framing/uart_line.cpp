@@ -20,6 +20,7 @@ UartFrame frame_of(const Format& format, std::uint16_t data, Time start, Time bi
     frame.data = data;
     frame.data_bits = static_cast<std::uint8_t>(format.data_bits);
     frame.parity = static_cast<std::uint8_t>(format.parity);
+    frame.stop_bits = static_cast<std::uint8_t>(format.stop_bits);
     frame.parity_bit = parity_bit(data, format.parity);
     return frame;
 }
@@ -65,7 +66,8 @@ std::vector<Character> listen(const std::vector<UartFrame>& line, const Format& 
             ones += next();
             character.parity = (ones % 2 == 1) != (format.parity == 1);
         }
-        character.framing = !next();
+        for (int i = 0; i < format.stop_bits; ++i)
+            character.framing = !next() || character.framing;
         heard.push_back(character);
         n = middle + ticks * (bit - 1);  // the stop bit's middle: a new start bit may follow at once
         while (!level(n) && tick(n) < end)
@@ -75,9 +77,10 @@ std::vector<Character> listen(const std::vector<UartFrame>& line, const Format& 
 }
 
 Limits limits(const Format& format, int ticks, double wait) {
-    const double stop = format.bits_before_stop();
-    const double middle = ticks / 2.0 + wait + ticks * stop;  // of the stop bit, in ticks from the edge
-    return {middle / (ticks * stop), middle / (ticks * (stop + 1))};
+    // Middles of bits in ticks from the edge. With two stop bits the second one meets the next start bit.
+    const auto middle = [&](double bit) { return ticks / 2.0 + wait + ticks * bit; };
+    const double stop = format.bits_before_stop(), last = stop + format.stop_bits - 1;
+    return {middle(stop) / (ticks * stop), middle(last) / (ticks * (last + 1))};
 }
 
 }  // namespace puckloop::framing

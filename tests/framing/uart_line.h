@@ -15,7 +15,8 @@ namespace puckloop::framing {
 
 struct Format {
     int data_bits = 8;
-    int parity = 0;  ///< 0 none, 1 odd, 2 even
+    int parity = 0;     ///< 0 none, 1 odd, 2 even
+    int stop_bits = 1;  ///< sent, and looked at by the receiver
     int bits_before_stop() const { return 1 + data_bits + (parity ? 1 : 0); }
     friend bool operator==(const Format&, const Format&) = default;
 };

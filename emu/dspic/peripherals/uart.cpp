@@ -206,7 +206,8 @@ UartReceiver::Format Uart::format() const {
             pdsel == 1   ? 2
             : pdsel == 2 ? 1
                          : 0,
-            state_.phase, ticks_per_bit()};
+            state_.phase, ticks_per_bit(),
+            mode() & kUxMODE["STSEL"] ? 2 : 1};
 }
 
 void Uart::receive(const cosim::UartFrame& frame, Cycle at) {
