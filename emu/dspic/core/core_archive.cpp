@@ -17,28 +17,25 @@ constexpr Cycle kLongestExtra = 100;  ///< cycles that PSV reads of one instruct
 
 /// Words up to the last one that is not 0. Looking for it costs a fraction of copying what no program uses.
 std::size_t used_words(std::span<const std::uint16_t> ram) {
-    constexpr std::size_t kPiece = 32;
+    static constexpr std::array<std::uint16_t, 512> kZeros{};
     std::size_t end = ram.size();
-    for (; end >= kPiece; end -= kPiece) {
-        std::uint64_t any = 0;
-        std::array<std::uint64_t, kPiece / 4> words;
-        std::memcpy(words.data(), ram.data() + end - kPiece, sizeof words);
-        for (const std::uint64_t word : words)
-            any |= word;
-        if (any != 0) return end;
-    }
+    for (const std::size_t piece : {kZeros.size(), std::size_t{32}})
+        while (end >= piece &&
+               std::memcmp(ram.data() + end - piece, kZeros.data(), piece * sizeof(std::uint16_t)) == 0)
+            end -= piece;
     return end;
 }
 
 /// The rest of RAM is 0.
 template <class Archive>
 void list_used_ram(Archive& archive, std::vector<std::uint16_t>& ram) {
-    std::size_t used = Archive::kLoads ? 0 : used_words(ram);
+    const std::size_t used_now = used_words(ram);
+    std::size_t used = used_now;
     archive(used);
     std::span<std::uint16_t> words(ram.data(), used);
     archive.fixed(words);
     if constexpr (Archive::kLoads)
-        std::fill(ram.begin() + static_cast<std::ptrdiff_t>(used), ram.end(), std::uint16_t{0});
+        if (used < used_now) std::fill(ram.data() + used, ram.data() + used_now, std::uint16_t{0});
 }
 
 template <class Archive>
