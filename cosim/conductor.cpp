@@ -54,9 +54,10 @@ Conductor::State::State(std::vector<NodeSpec> nodes, std::vector<LinkSpec> links
     slots_.resize(handles_.size());
     stats_.resize(2 * links_.size());
     failures_.resize(handles_.size());
-    workers_ = std::make_unique<Workers>(options_.threads > 1 ? options_.threads - 1 : 0, handles_.size(),
-                                         [this](std::size_t n) {
-                                             while (!work(n, true)) {
+    workers_ = std::make_unique<Workers>(options_.threads > 1 ? options_.threads - 1 : 0, handles_.size() + 1,
+                                         [this](std::size_t piece) {
+                                             if (piece == trace_piece()) return write_trace();
+                                             while (!work(piece, true)) {
                                              }
                                          });
     if (options_.chop_seed) chop_.emplace(*options_.chop_seed, "chop");
@@ -78,6 +79,7 @@ Outcome Conductor::State::run() {
         loop();
         wind_up();
         current_ = kNobody;
+        finish_trace();
         release_trace(end_);
         outcome.text = "the asked duration is over";
         if (interrupted_at_) {
@@ -128,7 +130,7 @@ void Conductor::State::loop() {
         collect();
         for (int turns = 0; turns < kMostFollowing && follow_up(); ++turns)
             collect();
-        if (merger_.full()) release_trace(std::min(schedule_.bounds().floor(), end_));
+        if (merger_.full()) release_trace_beside(std::min(schedule_.bounds().floor(), end_));
         report_progress();
     }
 }
@@ -195,16 +197,6 @@ void Conductor::State::plan() {
     schedule_.plan(network_->channels(), pending_, times_, limits);
 }
 
-void Conductor::State::release_trace(Time floor) {
-    current_ = kNobody;
-    merger_.release(floor, [this](const TraceRecord& record) {
-        stats_[record.link * 2u + static_cast<unsigned>(record.direction)].count(
-            record, links_[record.link].nominal_baud);
-        for (TraceSink* sink : sinks)
-            sink->record(record);
-    });
-}
-
 void Conductor::State::report_progress() {
     const double wall = seconds_since(start_);
     if (processes_) processes_->cores().step(wall, schedule_.reached(), grants_);
@@ -215,7 +207,7 @@ void Conductor::State::report_progress() {
         told_wall_ = wall;
         told_time_ = time;
     }
-    if (wall - flushed_wall_ >= kFlushSeconds) {
+    if (wall - flushed_wall_ >= kFlushSeconds && !writing_) {
         release_trace(std::min(schedule_.bounds().floor(), end_));
         for (TraceSink* sink : sinks)
             sink->flush();

@@ -113,6 +113,7 @@ void Conductor::State::finish(Outcome& outcome) {
                 outcome.warnings.emplace_back(error.what());
         }
     };
+    guarded([&] { take_written(); });
     guarded([&] { release_trace(failed ? kNever : std::min(schedule_.bounds().floor(), end_)); });
     for (TraceSink* sink : sinks)
         guarded([&] { sink->flush(); });

@@ -1,7 +1,7 @@
 #pragma once
 // The conductor's state and the loop over it; private to its source files: conductor.cpp (the loop),
 // conductor_grants.cpp (what is granted, what is replied), conductor_work.cpp (who does the work),
-// conductor_end.cpp (how a run ends, what is told of it).
+// conductor_trace.cpp (what becomes of the trace), conductor_end.cpp (how a run ends, what is told of it).
 
 #include "base/random.h"
 #include "cosim/conductor.h"
@@ -79,6 +79,7 @@ class Conductor::State {
     void resume(bool wait);
     void await_work();
     void take_local_reply(std::size_t n);
+    void take_done();
     void collect_elsewhere(bool wait);
     void take_reply(std::size_t n);
     void take_stop(std::size_t n, Time before);
@@ -89,7 +90,15 @@ class Conductor::State {
     void take_changes();
     void surprise(std::size_t from, std::size_t to, Time time);
     [[noreturn]] void too_late(std::size_t sender, std::size_t to, Time time) const;
+    // conductor_trace.cpp
     void release_trace(Time floor);
+    void release_trace_beside(Time floor);
+    void write_trace();
+    void take_written();
+    void finish_trace();
+    /// Among the pieces of work that helpers get, besides the nodes.
+    std::size_t trace_piece() const { return handles_.size(); }
+
     void report_progress();
     bool stuck() const;
     [[noreturn]] void deadlock() const;
@@ -116,6 +125,10 @@ class Conductor::State {
     std::vector<std::size_t> following_;
     TraceMerger merger_;
     TraceHash hash_;
+    std::vector<TraceRecord> batch_;    ///< being written by whatever thread
+    bool writing_ = false;              ///< batch_, the sinks and stats_ are not this thread's
+    std::size_t written_ = 0;           ///< of batch_
+    std::exception_ptr trace_failure_;  ///< of the sinks
     std::optional<RandomStream> chop_;
     std::unique_ptr<Workers> workers_;
     std::vector<std::size_t> here_;             ///< nodes of this process just granted, for this thread
@@ -137,7 +150,7 @@ class Conductor::State {
     std::uint64_t grants_ = 0;
     WallClock::time_point start_{};
     WallClock::time_point plan_begun_{}, planned_at_{};  ///< the last plan and its grants
-    std::optional<WallClock::time_point> paced_since_;  ///< RunOptions::pace_from was reached
+    std::optional<WallClock::time_point> paced_since_;   ///< RunOptions::pace_from was reached
     double told_wall_ = 0.0;
     double flushed_wall_ = 0.0;
     Time told_time_ = 0;

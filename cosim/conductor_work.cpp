@@ -44,14 +44,16 @@ void Conductor::State::share_out() {
 /// One node's work on a grant, on any thread; false if it now waits for its program. `wait`: it may, for some
 /// milliseconds.
 bool Conductor::State::work(std::size_t n, bool wait) {
-    const WallClock::time_point begun = WallClock::now();
+    // Only what may go to helpers is timed.
+    const bool timed = specs_[n].any_thread && workers_->helpers() > 0;
+    const WallClock::time_point begun = timed ? WallClock::now() : WallClock::time_point();
     bool done = true;
     try {
         done = handles_[n]->poll(wait);
     } catch (...) {
         failures_[n] = std::current_exception();
     }
-    slots_[n].worked(std::chrono::duration<double, std::nano>(WallClock::now() - begun).count());
+    if (timed) slots_[n].worked(std::chrono::duration<double, std::nano>(WallClock::now() - begun).count());
     return done;
 }
 
@@ -103,16 +105,22 @@ bool Conductor::State::work_here() {
     const WallClock::duration least = kWorkByPlanning * (planned_at_ - plan_begun_);
     while (workers_->waiting() > workers_->helpers() && WallClock::now() - planned_at_ < least)
         workers_->do_one();
-    workers_->take_done(done_);
+    take_done();
     // Beside what has just been handed out others may be able to go on: that is seen first.
     if (done_.empty() && !granted && any) {
         await_work();
-        workers_->take_done(done_);
+        take_done();
     }
     here_.clear();
     for (const std::size_t n : done_)
         take_local_reply(n);
     return any;
+}
+
+/// Appends the nodes that helpers are done with to done_.
+void Conductor::State::take_done() {
+    workers_->take_done(done_);
+    if (std::erase(done_, trace_piece()) > 0) take_written();
 }
 
 void Conductor::State::take_local_reply(std::size_t n) {

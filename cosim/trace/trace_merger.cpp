@@ -4,12 +4,17 @@
 
 namespace puckloop::cosim {
 
-void TraceMerger::order(Time floor) {
+void TraceMerger::take(Time floor, std::vector<TraceRecord>& batch) {
     const auto due = std::partition(waiting_.begin(), waiting_.end(),
                                     [floor](const TraceRecord& record) { return record.time < floor; });
-    std::sort(waiting_.begin(), due,
+    batch.assign(waiting_.begin(), due);
+    waiting_.erase(waiting_.begin(), due);
+    enough_ = std::max(kBatch, 2 * waiting_.size());
+}
+
+void TraceMerger::sort(std::vector<TraceRecord>& batch) {
+    std::sort(batch.begin(), batch.end(),
               [](const TraceRecord& a, const TraceRecord& b) { return a.key() < b.key(); });
-    ready_ = static_cast<std::size_t>(due - waiting_.begin());
 }
 
 }  // namespace puckloop::cosim

@@ -3,7 +3,7 @@
 
 #include "cosim/trace/trace.h"
 
-#include <algorithm>
+#include <cstddef>
 #include <vector>
 
 namespace puckloop::cosim {
@@ -15,23 +15,15 @@ class TraceMerger {
     /// Is a release worth its while? What had to wait then is not gone through again before as much has come.
     bool full() const { return waiting_.size() >= enough_; }
 
-    /// Hands everything before `floor` to `sink`, in order, and forgets it.
-    template <typename Sink>
-    void release(Time floor, Sink sink) {
-        order(floor);
-        for (std::size_t i = 0; i < ready_; ++i)
-            sink(waiting_[i]);
-        waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(ready_));
-        enough_ = std::max(kBatch, 2 * waiting_.size());
-    }
+    /// Moves everything before `floor` to `batch`, in place of what that held and in no order.
+    void take(Time floor, std::vector<TraceRecord>& batch);
+    /// The order of the trace.
+    static void sort(std::vector<TraceRecord>& batch);
 
   private:
-    void order(Time floor);
-
     static constexpr std::size_t kBatch = 512;
     std::vector<TraceRecord> waiting_;
     std::size_t enough_ = kBatch;
-    std::size_t ready_ = 0;
 };
 
 }  // namespace puckloop::cosim
