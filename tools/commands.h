@@ -16,6 +16,7 @@ void declare_asm(Command& app, int& status);
 void declare_disasm(Command& app, int& status);
 void declare_trace(Command& app, int& status);
 void declare_frames(Command& app, int& status);
+void declare_faults(Command& app, int& status);
 void declare_gap(Command& app, int& status);  ///< its line of the help
 void declare_bench(Command& app, int& status);
 
@@ -33,6 +34,7 @@ inline constexpr std::array kCommands{
     declare_disasm,
     declare_trace,
     declare_frames,
+    declare_faults,
     declare_gap,
     declare_bench,
 };

@@ -1,0 +1,200 @@
+#include "tools/faults/campaign.h"
+
+#include "base/error.h"
+#include "cosim/interrupt.h"
+#include "tools/faults/case_run.h"
+#include "tools/faults/html.h"
+#include "tools/faults/pool.h"
+#include "tools/faults/slurm.h"
+#include "tools/faults/table.h"
+#include "tools/faults/worker.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <thread>
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+namespace puckloop::faults {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// One campaign at a time in a folder; the lock ends with the process.
+class Lock {
+  public:
+    explicit Lock(const fs::path& out) {
+        std::error_code error;
+        fs::create_directories(out, error);
+        if (error) throw InputError(out.string(), "", "cannot be made: " + error.message(), "a folder for results");
+        file_ = ::open((out / ".campaign").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+        if (file_ < 0) throw InputError(out.string(), "", std::strerror(errno), "a folder for results");
+        if (::flock(file_, LOCK_EX | LOCK_NB) != 0)
+            throw InputError(out.string(), "", "another campaign writes here", "--out with another folder");
+    }
+    ~Lock() { ::close(file_); }
+    Lock(const Lock&) = delete;
+    Lock& operator=(const Lock&) = delete;
+
+  private:
+    int file_ = -1;
+};
+
+class Conduct {
+  public:
+    explicit Conduct(const CampaignOptions& options)
+        : options_(options), campaign_(read_campaign(options.file)), scenario_(scenario_of(campaign_)),
+          out_(fs::absolute(options.out.empty() ? fs::path("out") / options.file.stem() : options.out)),
+          lock_(out_) {
+        options_.file = fs::absolute(options.file);
+        campaign_.file = options_.file;
+        if (options.slurm) check_slurm();
+        for (const Sweep& sweep : campaign_.sweeps)
+            check_sweep(campaign_, scenario_, sweep);
+        if (options.fresh) drop();
+        store_.emplace(out_ / "campaign.db", Store::Access::Write);
+        claim();
+    }
+
+    void run() {
+        remove(work_folder(out_));
+        if (store_->planned("single")) resume_slurm(slurm(), take());
+        for (const std::uint64_t seed : campaign_.seeds)
+            run_nominal(seed);
+        phase("single", [&](int) { return plan_singles(campaign_, scenario_, nominals_); });
+        phase("fewer", [&](int first) { return plan_fewer(campaign_, scenario_, store_->results(), first); });
+        phase("pair", [&](int first) { return plan_pairs(campaign_, store_->results(), first); });
+        remove(work_folder(out_));
+        const Results results{campaign_, out_, store_->results(), store_->pruned()};
+        write_table(results);
+        write_html(results);
+        fmt::print("{}", summary(results));
+    }
+
+  private:
+    /// Only what a campaign writes.
+    void drop() {
+        for (const char* name : {"campaign.db", "campaign.db-journal", "nominal", "boots", "slurm", "work", "results.csv",
+                                 "report.html"})
+            remove(out_ / name);
+    }
+
+    void remove(const fs::path& path) {
+        std::error_code error;
+        fs::remove_all(path, error);
+        if (error) throw RunError(fmt::format("{}: cannot be removed: {}", path.string(), error.message()));
+    }
+
+    void claim() {
+        const auto before = store_->note("identity");
+        if (before && *before != campaign_.identity)
+            throw InputError(out_.string(), "",
+                             "has results of another campaign: the campaign file, its scenario or this build of "
+                             "puckloop has changed",
+                             "--fresh to drop them, or --out with another folder");
+        if (before) return;
+        store_->set_note("campaign", options_.file.string());
+        store_->set_note("identity", campaign_.identity);
+    }
+
+    void run_nominal(std::uint64_t seed) {
+        const fs::path folder = nominal_folder(out_, seed);
+        const std::string key = fmt::format("nominal {}", seed);
+        if (!store_->note(key)) {
+            Case nominal;
+            nominal.seed = seed;
+            execute(campaign_, nominal, folder, boots_folder(out_));
+        }
+        Profile profile = read_profile(folder);
+        if (!profile.report.value("success", false))
+            throw RunError(fmt::format("the nominal run with seed {} failed: {}", seed,
+                                       profile.report.value("ended_why", "")));
+        for (const Metric& metric : campaign_.metrics)
+            if (!measure(metric, profile))
+                throw InputError(campaign_.file.string(), fmt::format("metric '{}'", metric.name),
+                                 "the nominal run has no such number",
+                                 metric.robot.empty() ? "a number in report.json" : "the name of a robot");
+        store_->set_note(key, profile.report.value("trace_sha256", ""));
+        fmt::print(stderr, "nominal run: {:.3f} s simulated, seed {}\n", profile.report.value("simulated_s", 0.0),
+                   seed);
+        nominals_.emplace(seed, std::move(profile));
+    }
+
+    template <typename Plan>
+    void phase(const std::string& name, Plan plan) {
+        if (!store_->planned(name)) store_->plan(name, plan(next_id_()));
+        const std::vector<Case> cases = store_->cases(name), pending = store_->pending(name);
+        const auto pruned = std::count_if(cases.begin(), cases.end(), [](const Case& one) { return !one.pruned.empty(); });
+        if (cases.empty()) return;
+        const auto begun = std::chrono::steady_clock::now();
+        if (options_.slurm && !pending.empty()) run_slurm(slurm(), pending, take());
+        else run_local({options_.file, out_, jobs(), interrupt_.flag()}, pending, take());
+        const double minutes =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count() / 60;
+        fmt::print(stderr, "{}: {} cases, {} pruned, {} run now", name, cases.size(), pruned, pending.size());
+        if (!pending.empty()) fmt::print(stderr, " ({:.0f} a minute)", double(pending.size()) / minutes);
+        fmt::print(stderr, "\n");
+    }
+
+    int next_id_() const {
+        int last = 0;
+        for (const char* name : {"single", "fewer", "pair"})
+            for (const Case& one : store_->cases(name))
+                last = std::max(last, one.id);
+        return last + 1;
+    }
+
+    TakeVerdict take() {
+        return [this](int id, const nlohmann::json& verdict) { store_->add_result(id, verdict); };
+    }
+    SlurmOptions slurm() const { return {options_.file, out_, options_.tasks, interrupt_.flag()}; }
+    int jobs() const {
+        return options_.jobs > 0 ? options_.jobs : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    }
+
+    CampaignOptions options_;
+    Campaign campaign_;
+    scenarios::Scenario scenario_;
+    fs::path out_;
+    Lock lock_;
+    std::optional<Store> store_;
+    Nominals nominals_;
+    cosim::InterruptGuard interrupt_;
+};
+
+}  // namespace
+
+void run_campaign(const CampaignOptions& options) {
+    Conduct(options).run();
+}
+
+Results read_results(const fs::path& out) {
+    const Store store(out / "campaign.db", Store::Access::Read);
+    const auto file = store.note("campaign");
+    if (!file) throw InputError(out.string(), "", "the campaign was ended before it began", "start it again");
+    Results results{read_campaign(*file), fs::absolute(out), store.results(), store.pruned()};
+    if (store.note("identity") != results.campaign.identity)
+        fmt::print(stderr, "puckloop: {}: the campaign file, its scenario or this build of puckloop has changed since\n",
+                   out.string());
+    return results;
+}
+
+Verdict replay(const Results& results, int id, const fs::path& folder) {
+    const auto found = std::find_if(results.results.begin(), results.results.end(),
+                                    [&](const CaseResult& result) { return result.one.id == id; });
+    if (found == results.results.end())
+        throw InputError(results.out.string(), fmt::format("case {}", id), "there is no result of it",
+                         "a case of results.csv that was run");
+    execute(results.campaign, found->one, folder, boots_folder(results.out));
+    return judge(results.campaign, read_profile(nominal_folder(results.out, found->one.seed)), read_profile(folder),
+                 found->one.faults.size());
+}
+
+}  // namespace puckloop::faults

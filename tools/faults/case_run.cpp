@@ -1,0 +1,131 @@
+#include "tools/faults/case_run.h"
+
+#include "base/error.h"
+#include "scenarios/fault_tables.h"
+#include "tools/run/overrides.h"
+#include "tools/run/run_scenario.h"
+#include "tools/run/setup.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace puckloop::faults {
+
+namespace {
+
+constexpr double kStall = 60.0;  ///< s of wall time: a busy machine must not make a hang
+constexpr int kFailed = 3;       ///< status of a child that leaves a message
+
+tools::RunRequest request_of(const Campaign& campaign) {
+    tools::RunRequest request;
+    request.scenario = campaign.scenario;
+    request.firmware = campaign.firmware;
+    request.linux_command = campaign.program;
+    request.duration = campaign.duration;
+    request.in_process = true;
+    request.threads = 1;
+    request.stall_seconds = kStall;
+    return request;
+}
+
+void add_faults(const Campaign& campaign, const Case& one, scenarios::Scenario& scenario) {
+    for (std::size_t i = 0; i < one.faults.size(); ++i)
+        scenario.faults.push_back(
+            scenarios::read_fault(campaign.file.string(), i, to_toml(one.faults[i], 0), scenario));
+}
+
+/// In the child: never returns.
+[[noreturn]] void run_here(const Campaign& campaign, const Case& one, const std::filesystem::path& folder,
+                           int message) {
+    std::string problem;
+    try {
+        tools::RunRequest request = request_of(campaign);
+        request.out = folder;
+        request.seed = one.seed;
+        request.cache = true;
+        tools::RunSetup setup = tools::set_up(request);
+        add_faults(campaign, one, setup.scenario);
+        const cosim::Outcome outcome = tools::run_scenario(setup, request, {}, nullptr);
+        if (!outcome.success && outcome.reason == cosim::EndReason::Failed && outcome.node.empty())
+            problem = outcome.text;  // no node's fault: the disk is full, say
+    } catch (const std::exception& error) {
+        problem = error.what();
+    }
+    if (problem.empty()) ::_exit(0);
+    [[maybe_unused]] const auto written = ::write(message, problem.data(), problem.size());
+    ::_exit(kFailed);
+}
+
+std::string read_all(int descriptor) {
+    std::string text;
+    std::array<char, 4096> part{};
+    for (;;) {
+        const auto count = ::read(descriptor, part.data(), part.size());
+        if (count < 0 && errno == EINTR) continue;
+        if (count <= 0) return text;
+        text.append(part.data(), static_cast<std::size_t>(count));
+    }
+}
+
+}  // namespace
+
+scenarios::Scenario scenario_of(const Campaign& campaign) {
+    scenarios::Scenario scenario = scenarios::read_scenario(campaign.scenario);
+    tools::apply(request_of(campaign), scenario);
+    scenarios::check_ending(scenario);
+    return scenario;
+}
+
+void check_fault(const Campaign& campaign, const scenarios::Scenario& scenario, const nlohmann::json& fault,
+                 int line) {
+    scenarios::read_fault(campaign.file.string(), 0, to_toml(fault, line), scenario);
+}
+
+void execute(const Campaign& campaign, const Case& one, const std::filesystem::path& folder,
+             const std::filesystem::path& boots) {
+    std::error_code error;
+    std::filesystem::remove_all(folder, error);
+    std::filesystem::create_directories(folder, error);
+    if (error) throw RunError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
+    ::setenv("PUCKLOOP_CACHE", boots.c_str(), 1);
+    std::array<int, 2> ends{};
+    if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw RunError(fmt::format("no pipe: {}", std::strerror(errno)));
+    const pid_t parent = ::getpid();
+    const pid_t child = ::fork();
+    if (child == 0) {
+        ::close(ends[0]);
+        ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+        if (::getppid() != parent) ::_exit(kFailed);
+        const int nothing = ::open("/dev/null", O_RDWR | O_CLOEXEC);
+        for (int descriptor = 0; descriptor <= STDERR_FILENO; ++descriptor)
+            ::dup2(nothing, descriptor);
+        run_here(campaign, one, folder, ends[1]);
+    }
+    ::close(ends[1]);
+    if (child < 0) {
+        ::close(ends[0]);
+        throw RunError(fmt::format("no process for a case: {}", std::strerror(errno)));
+    }
+    const std::string problem = read_all(ends[0]);
+    ::close(ends[0]);
+    int status = 0;
+    while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
+    if (WIFSIGNALED(status))
+        throw RunError(fmt::format("puckloop itself was ended by SIG{}", sigabbrev_np(WTERMSIG(status))));
+    if (WEXITSTATUS(status) != 0)
+        throw RunError(problem.empty() ? fmt::format("a run ended with status {}", WEXITSTATUS(status)) : problem);
+}
+
+}  // namespace puckloop::faults

@@ -1,0 +1,24 @@
+#pragma once
+// Running one case: a `puckloop run` in a process of its own, and its verdict.
+
+#include "scenarios/scenario.h"
+#include "tools/faults/case.h"
+#include "tools/faults/outcome.h"
+
+#include <filesystem>
+
+namespace puckloop::faults {
+
+/// The scenario with the campaign's changes. Throws InputError.
+scenarios::Scenario scenario_of(const Campaign& campaign);
+
+/// Throws InputError, with the campaign's file and `line`, if the scenario cannot have this fault.
+void check_fault(const Campaign& campaign, const scenarios::Scenario& scenario, const nlohmann::json& fault,
+                 int line);
+
+/// Runs it with all results in `folder`, which it replaces. `boots`: where boots of boards are kept from one
+/// run to the next. Throws RunError if the run could not be made (disk full, puckloop itself died).
+void execute(const Campaign& campaign, const Case& one, const std::filesystem::path& folder,
+             const std::filesystem::path& boots);
+
+}  // namespace puckloop::faults

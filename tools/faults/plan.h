@@ -1,0 +1,38 @@
+#pragma once
+// Which cases a campaign runs.
+
+#include "scenarios/scenario.h"
+#include "tools/faults/case.h"
+#include "tools/faults/outcome.h"
+
+#include <map>
+
+namespace puckloop::faults {
+
+/// Nominal runs by seed.
+using Nominals = std::map<std::uint64_t, Profile>;
+
+struct CaseResult {
+    Case one;
+    Verdict verdict;
+};
+
+/// Throws InputError for faults of a sweep that the scenario cannot have, before any run.
+void check_sweep(const Campaign& campaign, const scenarios::Scenario& scenario, const Sweep& sweep);
+
+/// Every fault of every sweep, with every seed; what the nominal run shows to be without effect and what is
+/// over the budget is marked as pruned. Throws InputError for faults that the scenario cannot have.
+std::vector<Case> plan_singles(const Campaign& campaign, const scenarios::Scenario& scenario,
+                               const Nominals& nominals);
+
+/// For a finding of each kind whose fault fired more than once: the same with smaller counts.
+std::vector<Case> plan_fewer(const Campaign& campaign, const scenarios::Scenario& scenario,
+                             const std::vector<CaseResult>& singles, int first_id);
+
+/// Pairs of single faults that were survived, at most the campaign's budget.
+std::vector<Case> plan_pairs(const Campaign& campaign, const std::vector<CaseResult>& singles, int first_id);
+
+/// Why a fault can have no effect on a run that is as the nominal one until then; empty: it may have one.
+std::string useless(const nlohmann::json& fault, const Profile& nominal);
+
+}  // namespace puckloop::faults

@@ -1,0 +1,31 @@
+#pragma once
+// A phase of a campaign as a job array of a Slurm cluster.
+
+#include "tools/faults/case.h"
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace puckloop::faults {
+
+struct SlurmOptions {
+    std::filesystem::path campaign, out;
+    int tasks = 8;
+    const volatile int* interrupted = nullptr;
+};
+
+using TakeVerdict = std::function<void(int id, const nlohmann::json& verdict)>;
+
+/// Throws InputError if sbatch, squeue or scancel is missing.
+void check_slurm();
+
+/// After a kill: ends tasks of this campaign that still run and hands over what tasks have left.
+void resume_slurm(const SlurmOptions& options, const TakeVerdict& take);
+
+/// Runs the cases; what no task brought is submitted again, three times in all. RunError if cases are still
+/// missing then, or on a signal, after which the tasks are ended.
+void run_slurm(const SlurmOptions& options, const std::vector<Case>& cases, const TakeVerdict& take);
+
+}  // namespace puckloop::faults
