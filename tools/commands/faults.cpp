@@ -40,7 +40,8 @@ int replay(const Options& options) {
     const auto before = std::find_if(results.results.begin(), results.results.end(),
                                      [&](const auto& result) { return result.one.id == options.id; });
     fmt::print("{}", faults::case_text(results, options.id));
-    fmt::print("replayed: {}, trace {}\nresults in {}\n", faults::name_of(now.outcome), now.trace_sha256, out.string());
+    fmt::print("replayed: {}, trace {}\nresults in {}\n", faults::name_of(now.outcome), now.trace_sha256,
+               out.string());
     if (now.outcome == before->verdict.outcome && now.trace_sha256 == before->verdict.trace_sha256) return 0;
     fmt::print(stderr, "puckloop: case {} is not what it was in the campaign\n", options.id);
     return 1;
@@ -85,7 +86,8 @@ void declare_worker(Command& faults, const std::shared_ptr<Options>& options) {
 
 void declare_faults(Command& app, int& status) {
     auto options = std::make_shared<Options>();
-    Command* command = app.add_subcommand("faults", "campaigns of injected faults: what each does to the mission");
+    Command* command =
+        app.add_subcommand("faults", "campaigns of injected faults: what each does to the mission");
     command->require_subcommand();
     declare_campaign(*command, options);
     const auto add_folder = [&](Command* to) {
@@ -93,15 +95,20 @@ void declare_faults(Command& app, int& status) {
     };
     Command* show = command->add_subcommand("show", "outcomes and findings of a campaign, or one case");
     add_folder(show);
-    show->add_option("case", options->id, "a case's number")->check(whole_number_between(1, kLastCase))->type_name("CASE");
+    show->add_option("case", options->id, "a case's number")
+        ->check(whole_number_between(1, kLastCase))
+        ->type_name("CASE");
     show->callback([options] {
         need(options->folder, "faults show", "the results folder of a campaign");
         const faults::Results results = faults::read_results(options->folder);
-        fmt::print("{}", options->id == 0 ? faults::summary(results) : faults::case_text(results, options->id));
+        fmt::print("{}",
+                   options->id == 0 ? faults::summary(results) : faults::case_text(results, options->id));
     });
     Command* again = command->add_subcommand("replay", "run one case again, with all files of a run");
     add_folder(again);
-    again->add_option("case", options->id, "its number")->check(whole_number_between(1, kLastCase))->type_name("CASE");
+    again->add_option("case", options->id, "its number")
+        ->check(whole_number_between(1, kLastCase))
+        ->type_name("CASE");
     again->add_option("--out", options->replay_out, "folder for the run's results (default: DIR/replay/CASE)")
         ->type_name("DIR");
     again->callback([options, &status] {

@@ -33,7 +33,8 @@ class Lock {
     explicit Lock(const fs::path& out) {
         std::error_code error;
         fs::create_directories(out, error);
-        if (error) throw InputError(out.string(), "", "cannot be made: " + error.message(), "a folder for results");
+        if (error)
+            throw InputError(out.string(), "", "cannot be made: " + error.message(), "a folder for results");
         file_ = ::open((out / ".campaign").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
         if (file_ < 0) throw InputError(out.string(), "", std::strerror(errno), "a folder for results");
         if (::flock(file_, LOCK_EX | LOCK_NB) != 0)
@@ -50,7 +51,9 @@ class Lock {
 class Conduct {
   public:
     explicit Conduct(const CampaignOptions& options)
-        : options_(options), campaign_(read_campaign(options.file)), scenario_(scenario_of(campaign_)),
+        : options_(options),
+          campaign_(read_campaign(options.file)),
+          scenario_(scenario_of(campaign_)),
           out_(fs::absolute(options.out.empty() ? fs::path("out") / options.file.stem() : options.out)),
           lock_(out_) {
         options_.file = fs::absolute(options.file);
@@ -81,8 +84,8 @@ class Conduct {
   private:
     /// Only what a campaign writes.
     void drop() {
-        for (const char* name : {"campaign.db", "campaign.db-journal", "nominal", "boots", "slurm", "work", "results.csv",
-                                 "report.html"})
+        for (const char* name : {"campaign.db", "campaign.db-journal", "nominal", "boots", "slurm", "work",
+                                 "results.csv", "report.html"})
             remove(out_ / name);
     }
 
@@ -95,10 +98,11 @@ class Conduct {
     void claim() {
         const auto before = store_->note("identity");
         if (before && *before != campaign_.identity)
-            throw InputError(out_.string(), "",
-                             "has results of another campaign: the campaign file, its scenario or this build of "
-                             "puckloop has changed",
-                             "--fresh to drop them, or --out with another folder");
+            throw InputError(
+                out_.string(), "",
+                "has results of another campaign: the campaign file, its scenario or this build of "
+                "puckloop has changed",
+                "--fresh to drop them, or --out with another folder");
         if (before) return;
         store_->set_note("campaign", options_.file.string());
         store_->set_note("identity", campaign_.identity);
@@ -122,8 +126,8 @@ class Conduct {
                                  "the nominal run has no such number",
                                  metric.robot.empty() ? "a number in report.json" : "the name of a robot");
         store_->set_note(key, profile.report.value("trace_sha256", ""));
-        fmt::print(stderr, "nominal run: {:.3f} s simulated, seed {}\n", profile.report.value("simulated_s", 0.0),
-                   seed);
+        fmt::print(stderr, "nominal run: {:.3f} s simulated, seed {}\n",
+                   profile.report.value("simulated_s", 0.0), seed);
         nominals_.emplace(seed, std::move(profile));
     }
 
@@ -131,11 +135,14 @@ class Conduct {
     void phase(const std::string& name, Plan plan) {
         if (!store_->planned(name)) store_->plan(name, plan(next_id_()));
         const std::vector<Case> cases = store_->cases(name), pending = store_->pending(name);
-        const auto pruned = std::count_if(cases.begin(), cases.end(), [](const Case& one) { return !one.pruned.empty(); });
+        const auto pruned =
+            std::count_if(cases.begin(), cases.end(), [](const Case& one) { return !one.pruned.empty(); });
         if (cases.empty()) return;
         const auto begun = std::chrono::steady_clock::now();
-        if (options_.slurm && !pending.empty()) run_slurm(slurm(), pending, take());
-        else run_local({options_.file, out_, jobs(), interrupt_.flag()}, pending, take());
+        if (options_.slurm && !pending.empty())
+            run_slurm(slurm(), pending, take());
+        else
+            run_local({options_.file, out_, jobs(), interrupt_.flag()}, pending, take());
         const double minutes =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count() / 60;
         fmt::print(stderr, "{}: {} cases, {} pruned, {} run now", name, cases.size(), pruned, pending.size());
@@ -156,7 +163,8 @@ class Conduct {
     }
     SlurmOptions slurm() const { return {options_.file, out_, options_.tasks, interrupt_.flag()}; }
     int jobs() const {
-        return options_.jobs > 0 ? options_.jobs : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+        return options_.jobs > 0 ? options_.jobs
+                                 : static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     }
 
     CampaignOptions options_;
@@ -181,8 +189,10 @@ Results read_results(const fs::path& out) {
     if (!file) throw InputError(out.string(), "", "the campaign was ended before it began", "start it again");
     Results results{read_campaign(*file), fs::absolute(out), store.results(), store.pruned()};
     if (store.note("identity") != results.campaign.identity)
-        fmt::print(stderr, "puckloop: {}: the campaign file, its scenario or this build of puckloop has changed since\n",
-                   out.string());
+        fmt::print(
+            stderr,
+            "puckloop: {}: the campaign file, its scenario or this build of puckloop has changed since\n",
+            out.string());
     return results;
 }
 
@@ -193,8 +203,8 @@ Verdict replay(const Results& results, int id, const fs::path& folder) {
         throw InputError(results.out.string(), fmt::format("case {}", id), "there is no result of it",
                          "a case of results.csv that was run");
     execute(results.campaign, found->one, folder, boots_folder(results.out));
-    return judge(results.campaign, read_profile(nominal_folder(results.out, found->one.seed)), read_profile(folder),
-                 found->one.faults.size());
+    return judge(results.campaign, read_profile(nominal_folder(results.out, found->one.seed)),
+                 read_profile(folder), found->one.faults.size());
 }
 
 }  // namespace puckloop::faults

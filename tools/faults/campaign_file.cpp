@@ -181,15 +181,16 @@ Sweep read_sweep(const std::string& file, std::size_t index, const TomlValue& ta
     if (sweep.positions && (begins || !sweep.times.empty()))
         reader.fail("byte", "a byte's position says when the fault begins", "no 'begin' and no 'times'");
     if (!sweep.positions && (reader.has("record") || reader.has("after")))
-        reader.fail(reader.has("record") ? "record" : "after", "record and after count nothing without 'byte'",
-                    "byte = [...] or \"all\"");
+        reader.fail(reader.has("record") ? "record" : "after",
+                    "record and after count nothing without 'byte'", "byte = [...] or \"all\"");
     if (begins && !sweep.times.empty()) reader.fail("times", "'begin' is in 'fault', too", "one of them");
     reader.finish();
     std::size_t grid = std::max<std::size_t>(1, sweep.times.size());
     for (const auto& [key, values] : sweep.over)
         grid *= values.size();
     if (grid > kMostGrid)
-        reader.fail("over", fmt::format("the grid has {} faults", grid), fmt::format("at most {}", kMostGrid));
+        reader.fail("over", fmt::format("the grid has {} faults", grid),
+                    fmt::format("at most {}", kMostGrid));
     return sweep;
 }
 
@@ -255,7 +256,8 @@ Campaign read_campaign(const std::filesystem::path& file) {
     if (head == nullptr) reader.fail("campaign", "there is no [campaign]", "[campaign] with a scenario");
     Reader head_reader(file.string(), "campaign", *head);
     read_head(head_reader, *head, campaign);
-    if (const TomlValue* limits = reader.table("limits")) read_limits(file.string(), *limits, campaign.limits);
+    if (const TomlValue* limits = reader.table("limits"))
+        read_limits(file.string(), *limits, campaign.limits);
     for (const TomlValue* table : reader.tables("metric"))
         campaign.metrics.push_back(read_metric(file.string(), campaign.metrics.size(), *table));
     for (const TomlValue* table : reader.tables("sweep"))

@@ -34,13 +34,13 @@ struct Limits {
 /// A grid of faults.
 struct Sweep {
     std::string name;
-    nlohmann::json fault;                                              ///< keys of a [[fault]] table
+    nlohmann::json fault;                                                   ///< keys of a [[fault]] table
     std::vector<std::pair<std::string, std::vector<nlohmann::json>>> over;  ///< in the order of their names
-    std::vector<std::string> times;                                    ///< values of `begin`
-    bool positions = false;                                            ///< `byte` is given
-    std::optional<std::vector<int>> bytes;                             ///< of a record; none: all
-    std::vector<int> records;                                          ///< counted from 0
-    double after = 0.0;                                                ///< s: where counting begins
+    std::vector<std::string> times;                                         ///< values of `begin`
+    bool positions = false;                                                 ///< `byte` is given
+    std::optional<std::vector<int>> bytes;                                  ///< of a record; none: all
+    std::vector<int> records;                                               ///< counted from 0
+    double after = 0.0;                                                     ///< s: where counting begins
     int line = 0;
 };
 

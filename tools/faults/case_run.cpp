@@ -100,7 +100,8 @@ void execute(const Campaign& campaign, const Case& one, const std::filesystem::p
     if (error) throw RunError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
     ::setenv("PUCKLOOP_CACHE", boots.c_str(), 1);
     std::array<int, 2> ends{};
-    if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw RunError(fmt::format("no pipe: {}", std::strerror(errno)));
+    if (::pipe2(ends.data(), O_CLOEXEC) != 0)
+        throw RunError(fmt::format("no pipe: {}", std::strerror(errno)));
     const pid_t parent = ::getpid();
     const pid_t child = ::fork();
     if (child == 0) {
@@ -125,7 +126,8 @@ void execute(const Campaign& campaign, const Case& one, const std::filesystem::p
     if (WIFSIGNALED(status))
         throw RunError(fmt::format("puckloop itself was ended by SIG{}", sigabbrev_np(WTERMSIG(status))));
     if (WEXITSTATUS(status) != 0)
-        throw RunError(problem.empty() ? fmt::format("a run ended with status {}", WEXITSTATUS(status)) : problem);
+        throw RunError(problem.empty() ? fmt::format("a run ended with status {}", WEXITSTATUS(status))
+                                       : problem);
 }
 
 }  // namespace puckloop::faults

@@ -29,11 +29,12 @@ struct Look {
     const char* sign;
     const char* colour;
 };
-constexpr Look kLooks[] = {{Outcome::NotFired, "n", "-", "#ffffff"},  {Outcome::Crash, "c", "X", "#7b1fa2"},
-                           {Outcome::ResetLoop, "l", "L", "#ad1457"}, {Outcome::Hang, "h", "H", "#d32f2f"},
-                           {Outcome::Degraded, "d", "D", "#f57c00"},  {Outcome::Recovered, "r", "r", "#aed581"},
-                           {Outcome::Detected, "t", "d", "#81d4fa"},  {Outcome::SilentCorruption, "s", "S", "#fbc02d"},
-                           {Outcome::Masked, "m", "", "#e8f5e9"}};
+constexpr Look kLooks[] = {
+    {Outcome::NotFired, "n", "-", "#ffffff"},  {Outcome::Crash, "c", "X", "#7b1fa2"},
+    {Outcome::ResetLoop, "l", "L", "#ad1457"}, {Outcome::Hang, "h", "H", "#d32f2f"},
+    {Outcome::Degraded, "d", "D", "#f57c00"},  {Outcome::Recovered, "r", "r", "#aed581"},
+    {Outcome::Detected, "t", "d", "#81d4fa"},  {Outcome::SilentCorruption, "s", "S", "#fbc02d"},
+    {Outcome::Masked, "m", "", "#e8f5e9"}};
 
 const Look& look_of(Outcome outcome) {
     return *std::find_if(std::begin(kLooks), std::end(kLooks),
@@ -43,10 +44,14 @@ const Look& look_of(Outcome outcome) {
 std::string escaped(const std::string& text) {
     std::string html;
     for (const char letter : text) {
-        if (letter == '<') html += "&lt;";
-        else if (letter == '>') html += "&gt;";
-        else if (letter == '&') html += "&amp;";
-        else html += letter;
+        if (letter == '<')
+            html += "&lt;";
+        else if (letter == '>')
+            html += "&gt;";
+        else if (letter == '&')
+            html += "&amp;";
+        else
+            html += letter;
     }
     return html;
 }
@@ -74,7 +79,8 @@ std::string heat_map(const std::string& sweep, const Results& results) {
     const auto spot = [&](const Case& one) -> Spot& {
         std::string row = kind_and_link(one.faults[0]);
         for (const auto& [key, value] : one.faults[0].items())
-            if (key != "kind" && key != "link" && key != "node" && key != "from" && key != "begin" && key != "count")
+            if (key != "kind" && key != "link" && key != "node" && key != "from" && key != "begin" &&
+                key != "count")
                 row += fmt::format(" {}={}", key, value_text(value));
         if (std::find(rows.begin(), rows.end(), row) == rows.end()) rows.push_back(row);
         if (std::find(places.begin(), places.end(), one.place) == places.end()) places.push_back(one.place);
@@ -84,7 +90,8 @@ std::string heat_map(const std::string& sweep, const Results& results) {
     for (const Case& one : results.pruned)
         if (one.sweep == sweep && one.phase == "single") all[one.id] = {&one, nullptr};
     for (const CaseResult& result : results.results)
-        if (result.one.sweep == sweep && result.one.phase == "single") all[result.one.id] = {&result.one, &result};
+        if (result.one.sweep == sweep && result.one.phase == "single")
+            all[result.one.id] = {&result.one, &result};
     for (const auto& [id, entry] : all) {
         Spot& here = spot(*entry.first);
         if (entry.second == nullptr) {
@@ -103,16 +110,18 @@ std::string heat_map(const std::string& sweep, const Results& results) {
         html += fmt::format("<tr><th>{}</th>", escaped(row));
         for (const std::string& place : places) {
             const auto found = spots.find({row, place});
-            if (found == spots.end()) html += "<td></td>";
+            if (found == spots.end())
+                html += "<td></td>";
             else if (found->second.worst == nullptr)
                 html += fmt::format("<td title=\"pruned: {}\">&middot;</td>", escaped(found->second.pruned));
             else {
                 const CaseResult& worst = *found->second.worst;
                 const Look& look = look_of(worst.verdict.outcome);
-                html += fmt::format("<td class={} title=\"case {}: {}{}\">{}</td>", look.name, worst.one.id,
-                                    name_of(worst.verdict.outcome),
-                                    found->second.cases > 1 ? fmt::format(", worst of {}", found->second.cases) : "",
-                                    look.sign);
+                html += fmt::format(
+                    "<td class={} title=\"case {}: {}{}\">{}</td>", look.name, worst.one.id,
+                    name_of(worst.verdict.outcome),
+                    found->second.cases > 1 ? fmt::format(", worst of {}", found->second.cases) : "",
+                    look.sign);
             }
         }
         html += "</tr>\n";
@@ -124,36 +133,40 @@ std::string findings_html(const Results& results) {
     std::string html = "<h2>Findings</h2>\n";
     const std::vector<Finding> findings = findings_of(results.results);
     if (findings.empty()) return html + "<p>None.</p>\n";
-    html += "<table><tr><th>outcome</th><th>faults</th><th>what was seen</th><th>cases</th><th>smallest set that "
-            "causes it</th><th>replay</th></tr>\n";
+    html +=
+        "<table><tr><th>outcome</th><th>faults</th><th>what was seen</th><th>cases</th><th>smallest set that "
+        "causes it</th><th>replay</th></tr>\n";
     for (const Finding& finding : findings) {
         const CaseResult& smallest = *finding.smallest;
-        html += fmt::format("<tr><td class={}>{}</td><td>{}</td><td>{}</td><td>{}</td><td><code>{}</code></td>"
-                            "<td><code>{}</code></td></tr>\n",
-                            look_of(finding.outcome).name, name_of(finding.outcome), escaped(finding.faults),
-                            escaped(smallest.verdict.detail), finding.cases.size(),
-                            escaped(in_one_line(smallest.one.faults)), escaped(replay_command(results, smallest.one.id)));
+        html += fmt::format(
+            "<tr><td class={}>{}</td><td>{}</td><td>{}</td><td>{}</td><td><code>{}</code></td>"
+            "<td><code>{}</code></td></tr>\n",
+            look_of(finding.outcome).name, name_of(finding.outcome), escaped(finding.faults),
+            escaped(smallest.verdict.detail), finding.cases.size(), escaped(in_one_line(smallest.one.faults)),
+            escaped(replay_command(results, smallest.one.id)));
     }
     return html + "</table>\n";
 }
 
 std::string cases_html(const Results& results) {
-    std::string html = "<h2>Cases</h2>\n<table><tr><th>case</th><th>phase</th><th>faults</th><th>seed</th><th>outcome</th>"
-                       "<th>fired</th><th>recovery, s</th><th>departure, m</th><th>what was seen</th></tr>\n";
+    std::string html =
+        "<h2>Cases</h2>\n<table><tr><th>case</th><th>phase</th><th>faults</th><th>seed</th><th>outcome</th>"
+        "<th>fired</th><th>recovery, s</th><th>departure, m</th><th>what was seen</th></tr>\n";
     for (const CaseResult& result : results.results)
-        html += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td class={}>{}</td><td>{}</td><td>{}</td>"
-                            "<td>{:.4f}</td><td>{}</td></tr>\n",
-                            result.one.id, result.one.phase, escaped(in_one_line(result.one.faults)), result.one.seed,
-                            look_of(result.verdict.outcome).name, name_of(result.verdict.outcome),
-                            fmt::join(result.verdict.fired, "+"),
-                            result.verdict.recovery_s ? fmt::format("{:.3f}", *result.verdict.recovery_s) : "",
-                            result.verdict.departure_m, escaped(result.verdict.detail));
+        html += fmt::format(
+            "<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td class={}>{}</td><td>{}</td><td>{}</td>"
+            "<td>{:.4f}</td><td>{}</td></tr>\n",
+            result.one.id, result.one.phase, escaped(in_one_line(result.one.faults)), result.one.seed,
+            look_of(result.verdict.outcome).name, name_of(result.verdict.outcome),
+            fmt::join(result.verdict.fired, "+"),
+            result.verdict.recovery_s ? fmt::format("{:.3f}", *result.verdict.recovery_s) : "",
+            result.verdict.departure_m, escaped(result.verdict.detail));
     html += "</table>\n";
     if (results.pruned.empty()) return html;
     html += "<h2>Pruned</h2>\n<table><tr><th>case</th><th>faults</th><th>why</th></tr>\n";
     for (const Case& one : results.pruned)
-        html += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td></tr>\n", one.id, escaped(in_one_line(one.faults)),
-                            escaped(one.pruned));
+        html += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td></tr>\n", one.id,
+                            escaped(in_one_line(one.faults)), escaped(one.pruned));
     return html + "</table>\n";
 }
 
@@ -163,20 +176,23 @@ std::string html_text(const Results& results) {
     std::string style;
     for (const Look& look : kLooks)
         style += fmt::format(".{}{{background:{};color:{}}}\n", look.name, look.colour,
-                             std::string_view("clh").find(look.name[0]) != std::string_view::npos ? "#fff" : "#222");
+                             std::string_view("clh").find(look.name[0]) != std::string_view::npos ? "#fff"
+                                                                                                  : "#222");
     const std::string name = escaped(results.campaign.file.filename().string());
     std::string html = fmt::format(kHead, name, style);
-    html += fmt::format("<h1>Fault campaign {}</h1>\n<p>Scenario {}. The definitions of the outcomes are in docs/faults.md."
-                        "</p>\n<table><tr><th>outcome</th><th>sign</th><th>cases</th></tr>\n",
-                        name, escaped(results.campaign.scenario.string()));
+    html += fmt::format(
+        "<h1>Fault campaign {}</h1>\n<p>Scenario {}. The definitions of the outcomes are in docs/faults.md."
+        "</p>\n<table><tr><th>outcome</th><th>sign</th><th>cases</th></tr>\n",
+        name, escaped(results.campaign.scenario.string()));
     for (const Look& look : kLooks) {
-        const auto count = std::count_if(results.results.begin(), results.results.end(), [&](const CaseResult& result) {
-            return result.verdict.outcome == look.outcome;
-        });
-        html += fmt::format("<tr><td class={}>{}</td><td>{}</td><td>{}</td></tr>\n", look.name, name_of(look.outcome),
-                            look.sign, count);
+        const auto count =
+            std::count_if(results.results.begin(), results.results.end(),
+                          [&](const CaseResult& result) { return result.verdict.outcome == look.outcome; });
+        html += fmt::format("<tr><td class={}>{}</td><td>{}</td><td>{}</td></tr>\n", look.name,
+                            name_of(look.outcome), look.sign, count);
     }
-    html += fmt::format("<tr><td>pruned</td><td>&middot;</td><td>{}</td></tr></table>\n", results.pruned.size());
+    html +=
+        fmt::format("<tr><td>pruned</td><td>&middot;</td><td>{}</td></tr></table>\n", results.pruned.size());
     html += findings_html(results) + "<h2>Where and what</h2>\n";
     for (const Sweep& sweep : results.campaign.sweeps)
         html += heat_map(sweep.name, results);

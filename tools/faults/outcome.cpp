@@ -12,8 +12,9 @@ using nlohmann::json;
 
 namespace {
 
-constexpr std::array<std::string_view, 9> kNames{"not fired", "crash",     "reset loop",        "hang",  "degraded",
-                                                 "recovered", "detected",  "silent corruption", "masked"};
+constexpr std::array<std::string_view, 9> kNames{"not fired", "crash",     "reset loop", "hang",
+                                                 "degraded",  "recovered", "detected",   "silent corruption",
+                                                 "masked"};
 constexpr double kPauseShare = 0.5;  ///< a pause has to exceed the nominal one's by this share, too
 
 double end_of(const Profile& run) {
@@ -80,9 +81,7 @@ struct Judge {
         const std::string why = run.report.value("ended_why", "");
         if (success || !nominal.report.value("success", false)) return false;
         // A program that computes for ever without a call stalls simulated time: no crash.
-        if (is_stall(why) ||
-            why.find("never fired") != std::string::npos)
-            return false;
+        if (is_stall(why) || why.find("never fired") != std::string::npos) return false;
         note(shape_of(why), fmt::format(" ({})", why));
         return true;
     }
@@ -130,7 +129,8 @@ struct Judge {
             verdict.metrics.emplace_back(metric.name, now);
             const double allowed =
                 metric.relative ? metric.tolerance * std::abs(usual.value_or(0)) : metric.tolerance;
-            if (usual.has_value() == now.has_value() && (!usual || std::abs(*now - *usual) <= allowed)) continue;
+            if (usual.has_value() == now.has_value() && (!usual || std::abs(*now - *usual) <= allowed))
+                continue;
             note(metric.name + (now.value_or(0) < usual.value_or(0) ? " too small" : " too large"),
                  fmt::format(" ({:.6g}, nominal {:.6g})", now.value_or(NAN), usual.value_or(NAN)));
             worse = true;
@@ -165,7 +165,8 @@ struct Judge {
             if (count <= (usual == nominal.error_counters.end() ? 0.0 : usual->second)) continue;
             const std::string shown = name.starts_with("nodes.") ? name.substr(6) : name;
             note(shown + " counts up",
-                 fmt::format(" ({:g})", count - (usual == nominal.error_counters.end() ? 0.0 : usual->second)));
+                 fmt::format(" ({:g})",
+                             count - (usual == nominal.error_counters.end() ? 0.0 : usual->second)));
             said = true;
         }
         for (const std::string& line : run.log_shapes) {

@@ -24,9 +24,9 @@ enum class Outcome {
     Masked,
 };
 /// In the order of their precedence.
-inline constexpr std::array kOutcomes{Outcome::NotFired,  Outcome::Crash,    Outcome::ResetLoop,
-                                      Outcome::Hang,      Outcome::Degraded, Outcome::Recovered,
-                                      Outcome::Detected,  Outcome::SilentCorruption, Outcome::Masked};
+inline constexpr std::array kOutcomes{
+    Outcome::NotFired,  Outcome::Crash,    Outcome::ResetLoop,        Outcome::Hang,  Outcome::Degraded,
+    Outcome::Recovered, Outcome::Detected, Outcome::SilentCorruption, Outcome::Masked};
 
 std::string_view name_of(Outcome outcome);
 std::optional<Outcome> outcome_of(std::string_view name);
@@ -35,13 +35,13 @@ bool is_finding(Outcome outcome);
 
 struct Verdict {
     Outcome outcome = Outcome::Masked;
-    std::vector<std::uint64_t> fired;          ///< by each of the case's faults
-    std::optional<double> first_s;             ///< when the first of them did something
-    std::optional<double> recovery_s;          ///< recovered: from first_s on
-    double departure_m = 0.0;                  ///< greatest, of any robot
+    std::vector<std::uint64_t> fired;  ///< by each of the case's faults
+    std::optional<double> first_s;     ///< when the first of them did something
+    std::optional<double> recovery_s;  ///< recovered: from first_s on
+    double departure_m = 0.0;          ///< greatest, of any robot
     std::vector<std::pair<std::string, std::optional<double>>> metrics;
-    std::vector<std::string> symptoms;         ///< in a fixed order, without times
-    std::string detail;                        ///< with times
+    std::vector<std::string> symptoms;  ///< in a fixed order, without times
+    std::string detail;                 ///< with times
     std::string trace_sha256;
 };
 

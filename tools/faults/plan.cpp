@@ -58,7 +58,8 @@ std::vector<Placed> placed(const Sweep& sweep, const json& fault, const Profile&
 }
 
 /// Of more cases than the budget, a drawn sample is run: positions in `from`, ascending.
-std::vector<std::size_t> sample(std::size_t from, std::size_t budget, std::uint64_t seed, const char* stream) {
+std::vector<std::size_t> sample(std::size_t from, std::size_t budget, std::uint64_t seed,
+                                const char* stream) {
     std::set<std::size_t> chosen;
     if (from <= budget) {
         for (std::size_t i = 0; i < from; ++i)
@@ -151,7 +152,8 @@ std::vector<Case> plan_pairs(const Campaign& campaign, const std::vector<CaseRes
     std::size_t all = 0;
     for (const auto& [seed, list] : survivors)
         all += list.size() * (list.size() - 1) / 2;
-    const std::vector<std::size_t> chosen = sample(all, campaign.pairs, campaign.sample_seed, "campaign.pairs");
+    const std::vector<std::size_t> chosen =
+        sample(all, campaign.pairs, campaign.sample_seed, "campaign.pairs");
     std::vector<Case> cases;
     std::size_t index = 0;
     auto next = chosen.begin();

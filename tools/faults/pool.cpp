@@ -37,7 +37,8 @@ class Worker {
         posix_spawn_file_actions_init(&actions);
         posix_spawn_file_actions_adddup2(&actions, ends[1], STDIN_FILENO);
         posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
-        std::string words[] = {"puckloop", "faults", "worker", options.campaign.string(), options.out.string()};
+        std::string words[] = {"puckloop", "faults", "worker", options.campaign.string(),
+                               options.out.string()};
         char* arguments[] = {words[0].data(), words[1].data(), words[2].data(),
                              words[3].data(), words[4].data(), nullptr};
         const int error = ::posix_spawn(&id_, "/proc/self/exe", &actions, nullptr, arguments, environ);
@@ -117,7 +118,8 @@ class Pool {
             workers_.push_back(std::make_unique<Worker>(options_));
         for (auto& worker : workers_)
             give_next(*worker);
-        while (std::any_of(workers_.begin(), workers_.end(), [](const auto& worker) { return worker->busy.has_value(); }))
+        while (std::any_of(workers_.begin(), workers_.end(),
+                           [](const auto& worker) { return worker->busy.has_value(); }))
             listen();
         if (!problem_.empty()) throw RunError(problem_);
     }
@@ -137,8 +139,9 @@ class Pool {
             sockets.push_back({worker->socket(), POLLIN, 0});
         const int ready = ::poll(sockets.data(), sockets.size(), 500);
         if (options_.interrupted != nullptr && *options_.interrupted != 0)
-            throw RunError(fmt::format("interrupted (SIG{}); the results so far are kept, the same command goes on",
-                                       sigabbrev_np(*options_.interrupted)));
+            throw RunError(
+                fmt::format("interrupted (SIG{}); the results so far are kept, the same command goes on",
+                            sigabbrev_np(*options_.interrupted)));
         if (ready <= 0) return;
         for (std::size_t i = 0; i < sockets.size(); ++i)
             if (sockets[i].revents != 0) hear(i);
@@ -151,8 +154,10 @@ class Pool {
         if (line.empty()) return;
         const nlohmann::json result = nlohmann::json::parse(line);
         const Case one = worker.busy.value();
-        if (result.contains("problem")) try_again(one, result.at("problem"));
-        else take_(result.at("id"), result.at("verdict"));
+        if (result.contains("problem"))
+            try_again(one, result.at("problem"));
+        else
+            take_(result.at("id"), result.at("verdict"));
         give_next(worker);
     }
 
@@ -170,8 +175,9 @@ class Pool {
             fmt::print(stderr, "puckloop: case {}: {}: it is run again\n", one.id, why);
             waiting_.push_front(one);
         } else if (problem_.empty()) {
-            problem_ = fmt::format("case {}: {}, {} times; the results so far are kept, the same command goes on",
-                                   one.id, why, kTries);
+            problem_ =
+                fmt::format("case {}: {}, {} times; the results so far are kept, the same command goes on",
+                            one.id, why, kTries);
         }
     }
 

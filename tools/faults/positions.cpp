@@ -69,7 +69,8 @@ std::vector<Position> positions_of(const Sweep& sweep, const json& fault, const 
         const bool there = r + 1 < begins.size();
         const std::size_t length = there ? begins[r + 1] - begins[r] : 0;
         std::vector<int> bytes;
-        if (sweep.bytes) bytes = *sweep.bytes;
+        if (sweep.bytes)
+            bytes = *sweep.bytes;
         else
             for (std::size_t i = 0; i < std::max<std::size_t>(1, length); ++i)
                 bytes.push_back(static_cast<int>(i));
@@ -77,12 +78,14 @@ std::vector<Position> positions_of(const Sweep& sweep, const json& fault, const 
             Position position{fmt::format("byte {}", byte), "0 s", ""};
             if (sweep.records.size() > 1) position.name = fmt::format("record {} ", record) + position.name;
             if (!there)
-                position.missing = fmt::format("{} sends no {} records after {:g} s", name, record + 1, sweep.after);
+                position.missing =
+                    fmt::format("{} sends no {} records after {:g} s", name, record + 1, sweep.after);
             else if (static_cast<std::size_t>(byte) >= length)
                 position.missing = fmt::format("a record of {} bytes", length);
             else
                 position.begin = fmt::format(
-                    "{:.6f} s", std::floor(sender.times[begins[r] + static_cast<std::size_t>(byte)] * 1e6) / 1e6);
+                    "{:.6f} s",
+                    std::floor(sender.times[begins[r] + static_cast<std::size_t>(byte)] * 1e6) / 1e6);
             positions.push_back(std::move(position));
         }
     }

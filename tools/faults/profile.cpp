@@ -93,7 +93,8 @@ void count_in_line(const std::string& node, const std::string& line, Profile& pr
             continue;
         }
         std::size_t end = i;
-        while (end < line.size() && (std::isdigit(static_cast<unsigned char>(line[end])) != 0 || line[end] == '.'))
+        while (end < line.size() &&
+               (std::isdigit(static_cast<unsigned char>(line[end])) != 0 || line[end] == '.'))
             ++end;
         while (!words.empty() && std::isalpha(static_cast<unsigned char>(words.front())) == 0)
             words.erase(0, 1);
@@ -158,10 +159,12 @@ std::string shape_of(const std::string& line) {
 
 bool names_error(const std::string& name) {
     // "lost" of a bus, "errno" of a driver, "slips" of a program that looks for a record's begin.
-    static constexpr std::array kWords{"error",   "overrun",  "lost",    "fail",    "not_acknowledged", "refused",
-                                       "wrong",   "bad",      "short",   "slip",    "stray",            "synchron",
-                                       "invalid", "timeout",  "corrupt", "missed",  "implausible",      "not answered",
-                                       "stuck",   "breaks",   "illegal", "dropped", "rejected",         "retries"};
+    static constexpr std::array kWords{
+        "error",   "overrun",     "lost",         "fail",    "not_acknowledged",
+        "refused", "wrong",       "bad",          "short",   "slip",
+        "stray",   "synchron",    "invalid",      "timeout", "corrupt",
+        "missed",  "implausible", "not answered", "stuck",   "breaks",
+        "illegal", "dropped",     "rejected",     "retries"};
     return std::any_of(kWords.begin(), kWords.end(),
                        [&](const char* word) { return name.find(word) != std::string::npos; });
 }
@@ -188,7 +191,8 @@ std::optional<double> path_length(const Profile& profile, const std::string& rob
     std::sort(poses.begin(), poses.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     double length = 0;
     for (std::size_t i = 1; i < poses.size(); ++i)
-        length += std::hypot(poses[i].second.x - poses[i - 1].second.x, poses[i].second.y - poses[i - 1].second.y);
+        length +=
+            std::hypot(poses[i].second.x - poses[i - 1].second.x, poses[i].second.y - poses[i - 1].second.y);
     return length;
 }
 

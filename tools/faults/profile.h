@@ -15,10 +15,10 @@ namespace puckloop::faults {
 
 /// What one node sent on one link.
 struct Sender {
-    std::vector<double> times;               ///< s, of every frame's begin, ascending
-    std::vector<std::string> values;         ///< of every frame, as in the trace
-    std::vector<double> frame_s;             ///< of every frame: what it takes on the wire; 0 where unknown
-    std::set<std::string> addresses;         ///< I2C: first bytes of transfers, hexadecimal
+    std::vector<double> times;        ///< s, of every frame's begin, ascending
+    std::vector<std::string> values;  ///< of every frame, as in the trace
+    std::vector<double> frame_s;      ///< of every frame: what it takes on the wire; 0 where unknown
+    std::set<std::string> addresses;  ///< I2C: first bytes of transfers, hexadecimal
 };
 
 struct Pose {
@@ -27,11 +27,11 @@ struct Pose {
 
 struct Profile {
     nlohmann::json report;
-    std::map<std::string, Sender> senders;                           ///< by "link from node"
-    std::map<std::string, std::map<std::string, Pose>> paths;        ///< by robot, then by time as written
-    std::set<std::string> log_shapes;                                ///< "robot0.linux: line without digits"
-    std::map<std::string, double> error_counters;                    ///< of the report and of programs' logs
-    std::optional<double> first_fault_s;                             ///< first frame that the trace marks
+    std::map<std::string, Sender> senders;                     ///< by "link from node"
+    std::map<std::string, std::map<std::string, Pose>> paths;  ///< by robot, then by time as written
+    std::set<std::string> log_shapes;                          ///< "robot0.linux: line without digits"
+    std::map<std::string, double> error_counters;              ///< of the report and of programs' logs
+    std::optional<double> first_fault_s;                       ///< first frame that the trace marks
 };
 
 /// Reads report.json, trace.csv, trajectory.csv and the programs' logs. Throws RunError where the report is

@@ -112,8 +112,10 @@ class Collector {
                 const nlohmann::json result = nlohmann::json::parse(line, nullptr, false);
                 if (result.is_discarded()) continue;
                 const int id = result.at("id");
-                if (result.contains("problem")) problems[id] = result.at("problem");
-                else if (got.insert(id).second) take_(id, result.at("verdict"));
+                if (result.contains("problem"))
+                    problems[id] = result.at("problem");
+                else if (got.insert(id).second)
+                    take_(id, result.at("verdict"));
             }
         }
     }
@@ -160,13 +162,13 @@ void submit(const SlurmOptions& options, const std::vector<Case>& cases, int rou
     write_file(script,
                fmt::format("#!/bin/sh\nexec {} faults worker {} {} --cases {} --results "
                            "{}/{}-$SLURM_ARRAY_TASK_ID.results --task $SLURM_ARRAY_TASK_ID --tasks {}\n",
-                           quoted(fs::read_symlink("/proc/self/exe").string()), quoted(options.campaign.string()),
-                           quoted(options.out.string()), quoted(file.string()), quoted(folder.string()), round,
-                           tasks));
+                           quoted(fs::read_symlink("/proc/self/exe").string()),
+                           quoted(options.campaign.string()), quoted(options.out.string()),
+                           quoted(file.string()), quoted(folder.string()), round, tasks));
     const Said said =
-        ask({"sbatch", "--parsable", "--job-name", job_name(options.out), "--array", fmt::format("0-{}", tasks - 1),
-             "--ntasks", "1", "--cpus-per-task", "1", "--output", (folder / "%A_%a.log").string(), "--open-mode",
-             "append", script.string()});
+        ask({"sbatch", "--parsable", "--job-name", job_name(options.out), "--array",
+             fmt::format("0-{}", tasks - 1), "--ntasks", "1", "--cpus-per-task", "1", "--output",
+             (folder / "%A_%a.log").string(), "--open-mode", "append", script.string()});
     if (said.status != 0) throw RunError(fmt::format("sbatch: {}", said.text));
 }
 
@@ -211,11 +213,11 @@ void run_slurm(const SlurmOptions& options, const std::vector<Case>& cases, cons
         return;
     }
     const auto problem = collector.problems.find(left.front().id);
-    throw RunError(fmt::format("case {}: {}; the results so far are kept, the same command goes on",
-                               left.front().id,
-                               problem != collector.problems.end()
-                                   ? problem->second
-                                   : fmt::format("no task brought it (logs in {})", folder_of(options).string())));
+    throw RunError(
+        fmt::format("case {}: {}; the results so far are kept, the same command goes on", left.front().id,
+                    problem != collector.problems.end()
+                        ? problem->second
+                        : fmt::format("no task brought it (logs in {})", folder_of(options).string())));
 }
 
 }  // namespace puckloop::faults

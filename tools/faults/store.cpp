@@ -37,8 +37,10 @@ class Store::Statement {
         return *this;
     }
     Statement& bind(const nlohmann::json& number) {
-        if (number.is_number()) sqlite3_bind_double(statement_, ++bound_, number.get<double>());
-        else sqlite3_bind_null(statement_, ++bound_);
+        if (number.is_number())
+            sqlite3_bind_double(statement_, ++bound_, number.get<double>());
+        else
+            sqlite3_bind_null(statement_, ++bound_);
         return *this;
     }
     bool next() {
@@ -61,13 +63,16 @@ class Store::Statement {
 Store::Store(const std::filesystem::path& file, Access access) : file_(file.string()) {
     const bool write = access == Access::Write;
     if (!write && !std::filesystem::exists(file))
-        throw InputError(file_, "", "there is no campaign", "the results folder of `puckloop faults campaign`");
+        throw InputError(file_, "", "there is no campaign",
+                         "the results folder of `puckloop faults campaign`");
     const int flags = write ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY;
     try {
         if (sqlite3_open_v2(file_.c_str(), &database_, flags, nullptr) != SQLITE_OK) fail();
         sqlite3_busy_timeout(database_, 10'000);
-        if (write) execute(kTables);
-        else execute("select 1 from cases, results, notes limit 1");
+        if (write)
+            execute(kTables);
+        else
+            execute("select 1 from cases, results, notes limit 1");
     } catch (...) {
         sqlite3_close(database_);
         throw;
@@ -141,9 +146,10 @@ std::vector<Case> Store::cases(const std::string& phase) const {
 }
 
 std::vector<Case> Store::pending(const std::string& phase) const {
-    return select("select whole from cases where phase = ? and pruned = '' and id not in (select id from results) "
-                  "order by id",
-                  phase);
+    return select(
+        "select whole from cases where phase = ? and pruned = '' and id not in (select id from results) "
+        "order by id",
+        phase);
 }
 
 std::vector<Case> Store::pruned() const {

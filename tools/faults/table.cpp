@@ -109,7 +109,8 @@ std::string summary(const Results& results) {
     std::size_t number = 0;
     for (const Finding& finding : findings)
         text += fmt::format("{:>3}  {}: {}: {} ({} case{})\n     {}\n", ++number, name_of(finding.outcome),
-                            finding.faults, finding.symptoms.empty() ? "departs from the nominal path" : finding.symptoms,
+                            finding.faults,
+                            finding.symptoms.empty() ? "departs from the nominal path" : finding.symptoms,
                             finding.cases.size(), finding.cases.size() == 1 ? "" : "s",
                             replay_command(results, finding.smallest->one.id));
     return text + fmt::format("results in {}: report.html, results.csv, campaign.db\n", results.out.string());
@@ -118,8 +119,9 @@ std::string summary(const Results& results) {
 std::string case_text(const Results& results, int id) {
     const CaseResult& result = find(results, id);
     const Verdict& verdict = result.verdict;
-    std::string text = fmt::format("case {} ({}, sweep {}, seed {}): {}\n{}", id, result.one.phase, result.one.sweep,
-                                   result.one.seed, name_of(verdict.outcome), as_toml(result.one.faults));
+    std::string text =
+        fmt::format("case {} ({}, sweep {}, seed {}): {}\n{}", id, result.one.phase, result.one.sweep,
+                    result.one.seed, name_of(verdict.outcome), as_toml(result.one.faults));
     text += fmt::format("fired {} times", fmt::join(verdict.fired, " + "));
     if (verdict.first_s) text += fmt::format(", first at {:.6f} s", *verdict.first_s);
     if (verdict.recovery_s) text += fmt::format("; recovered after {:.6f} s", *verdict.recovery_s);

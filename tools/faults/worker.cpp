@@ -108,8 +108,8 @@ void work(const WorkerTask& task) {
     std::string line;
     for (int index = 0; std::getline(in, line); ++index)
         if (local || index % task.tasks == task.task)
-            write_line(out, runner.result(case_from_json(json::parse(line))).dump(-1, ' ', false,
-                                                                                   json::error_handler_t::replace));
+            write_line(out, runner.result(case_from_json(json::parse(line)))
+                                .dump(-1, ' ', false, json::error_handler_t::replace));
     ::close(out);
 }
 
