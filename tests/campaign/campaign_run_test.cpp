@@ -1,0 +1,171 @@
+// A whole campaign: the same table with any number of workers, after kills, and on a disk that was full.
+
+#include "base/random.h"
+#include "tests/campaign/small_campaign.h"
+#include "tools/faults/store.h"
+
+#include <catch2/catch.hpp>
+#include <fmt/format.h>
+
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+#include <sys/mount.h>
+#include <unistd.h>
+
+using namespace puckloop;
+using namespace puckloop::tests;
+using Catch::Contains;
+
+namespace {
+
+std::size_t results_in(const std::filesystem::path& out) {
+    try {
+        return faults::Store(out / "campaign.db", faults::Store::Access::Read).results().size();
+    } catch (const std::exception&) {
+        return 0;  // not there yet
+    }
+}
+
+/// False if the campaign ended before.
+bool wait_for_results(const Process& campaign, const std::filesystem::path& out, std::size_t count) {
+    while (results_in(out) < count) {
+        if (!runs(campaign.id())) return false;
+        std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+    return true;
+}
+
+std::size_t rows_of(const std::string& table) {
+    return static_cast<std::size_t>(std::count(table.begin(), table.end(), '\n')) - 1;
+}
+
+}  // namespace
+
+TEST_CASE("a small campaign has every outcome that its faults must have") {
+    const Workbench bench;
+    const auto file = small_campaign(bench);
+    const std::string table = reference_table(bench, file);
+    INFO(table);
+    // Byte 500 of a record is nowhere in the nominal run.
+    CHECK_THAT(table, Contains(",byte 500,") && Contains("pruned"));
+    // A cable that is pulled for good silences the board; one that comes back does not.
+    CHECK_THAT(table, Contains("end=9s,1,hang"));
+    CHECK_THAT(table, !Contains("end=1.6s,1,hang"));
+    CHECK_THAT(table, Contains("pair"));
+    const std::string report = text_of(bench.out("reference") / "report.html");
+    CHECK_THAT(report, Contains("class=heat") && Contains("faults replay") && Contains("</html>") &&
+                           !Contains("<script"));
+}
+
+TEST_CASE("two workers make the table of one") {
+    const Workbench bench;
+    const auto file = small_campaign(bench);
+    const std::string table = reference_table(bench, file);
+    REQUIRE(bench.puckloop(campaign_words(bench, file, "two", {"--jobs", "2"})).status == 0);
+    CHECK(table_of(bench, "two") == table);
+    // Once more in the same folder: nothing is left to run.
+    const Ended again = bench.puckloop(campaign_words(bench, file, "two"));
+    CHECK(again.status == 0);
+    CHECK_THAT(again.err, Contains(", 0 run now"));
+    CHECK(table_of(bench, "two") == table);
+}
+
+TEST_CASE("a campaign that is killed goes on without losing or repeating a case") {
+    const Workbench bench;
+    const auto file = small_campaign(bench);
+    const std::string table = reference_table(bench, file);
+    RandomStream random(static_cast<std::uint64_t>(::getpid()), "campaign kill");
+    const std::size_t after = 1 + random.below(7);
+    CAPTURE(after);
+    {
+        const auto campaign = bench.start(campaign_words(bench, file, "killed", {"--jobs", "2"}));
+        REQUIRE(wait_for_results(*campaign, bench.out("killed"), after));
+        const std::vector<pid_t> workers = campaign->children();
+        campaign->signal(SIGKILL);
+        campaign->wait();
+        for (int tries = 0; tries < 500; ++tries) {
+            if (std::none_of(workers.begin(), workers.end(), runs)) break;
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        }
+        CHECK(std::none_of(workers.begin(), workers.end(), runs));
+    }
+    const std::size_t kept = results_in(bench.out("killed"));
+    CHECK(kept >= after);
+    const Ended rest = bench.puckloop(campaign_words(bench, file, "killed", {"--jobs", "2"}));
+    INFO(rest.err);
+    REQUIRE(rest.status == 0);
+    CHECK(table_of(bench, "killed") == table);
+    // Of the singles only the missing ones were run.
+    const std::size_t singles = 10;
+    if (kept <= singles) CHECK_THAT(rest.err, Contains(fmt::format("{} run now", singles - kept)));
+    CHECK(rows_of(table) == results_in(bench.out("killed")) + 2);  // and two that were pruned
+}
+
+TEST_CASE("a worker that dies is replaced and its case run again") {
+    const Workbench bench;
+    const auto file = small_campaign(bench);
+    const std::string table = reference_table(bench, file);
+    const auto campaign = bench.start(campaign_words(bench, file, "lost", {"--jobs", "2"}));
+    REQUIRE(wait_for_results(*campaign, bench.out("lost"), 1));
+    const std::vector<pid_t> workers = campaign->children();
+    REQUIRE(!workers.empty());
+    for (const pid_t worker : workers)
+        ::kill(worker, SIGKILL);
+    const Ended ended = campaign->wait();
+    INFO(ended.err);
+    CHECK(ended.status == 0);
+    CHECK_THAT(ended.err, Contains("died (SIGKILL): it is run again"));
+    CHECK(table_of(bench, "lost") == table);
+}
+
+TEST_CASE("a full disk stops a campaign, and the rest is run when there is room") {
+    const Workbench bench;
+    const auto file = small_campaign(bench);
+    const std::string table = reference_table(bench, file);
+    const auto disk = bench.out("disk");
+    std::filesystem::create_directory(disk);
+    if (::geteuid() != 0 || ::mount("tmpfs", disk.c_str(), "tmpfs", 0, "size=900k") != 0) {
+        WARN("skipped: only root can mount a small disk");
+        return;
+    }
+    const Words words{"faults", "campaign", file.string(), "--out", (disk / "out").string(), "--jobs", "2"};
+    const Ended full = bench.puckloop(words);
+    INFO(full.err);
+    CHECK(full.status == 1);
+    CHECK_THAT(full.err, Contains("No space left") || Contains("full"));
+    REQUIRE(::mount("tmpfs", disk.c_str(), "tmpfs", MS_REMOUNT, "size=64m") == 0);
+    const Ended rest = bench.puckloop(words);
+    INFO(rest.err);
+    CHECK(rest.status == 0);
+    CHECK(text_of(disk / "out" / "results.csv") == table);
+    REQUIRE(::umount(disk.c_str()) == 0);
+}
+
+TEST_CASE("a case is replayed with all files of a run") {
+    const Workbench bench;
+    const auto file = small_campaign(bench);
+    const std::string table = reference_table(bench, file);
+    const std::string out = bench.out("reference").string();
+    // The finding's own command, from the summary.
+    const Ended shown = bench.puckloop({"faults", "show", out});
+    REQUIRE(shown.status == 0);
+    const auto place = shown.out.find("puckloop faults replay ");
+    REQUIRE(place != std::string::npos);
+    const std::string line = shown.out.substr(place, shown.out.find('\n', place) - place);
+    const std::string number = line.substr(line.rfind(' ') + 1);
+    const Ended again =
+        bench.puckloop({"faults", "replay", out, number, "--out", bench.out("again").string()});
+    INFO(again.out << again.err);
+    CHECK(again.status == 0);
+    const auto report = bench.report("again");
+    CHECK_THAT(table, Contains(report["trace_sha256"].get<std::string>()));
+    CHECK_THAT(again.out, Contains("[[fault]]") && Contains("replayed: hang"));
+    const Ended unknown = bench.puckloop({"faults", "show", out, "4000"});
+    CHECK(unknown.status == 2);
+    // The tables can be made again from the database alone.
+    std::filesystem::remove(bench.out("reference") / "results.csv");
+    CHECK(bench.puckloop({"faults", "report", out}).status == 0);
+    CHECK(table_of(bench, "reference") == table);
+}

@@ -1,0 +1,157 @@
+// Which cases there are: grids, positions in records, what is pruned, pairs of survivors.
+
+#include "base/random.h"
+#include "tools/faults/case_run.h"
+#include "tools/faults/positions.h"
+
+#include <catch2/catch.hpp>
+
+#include <set>
+
+using namespace puckloop;
+using namespace puckloop::faults;
+using nlohmann::json;
+
+namespace {
+
+constexpr double kByte = 10 / 115200.0;
+
+/// Records of `length` bytes every 100 ms from `first` on.
+Sender records(double first, int count, int length) {
+    Sender sender;
+    for (int record = 0; record < count; ++record)
+        for (int byte = 0; byte < length; ++byte) {
+            sender.times.push_back(first + 0.1 * record + byte * kByte);
+            sender.values.push_back(byte == 0 ? "4e" : "00");
+            sender.frame_s.push_back(kByte);
+        }
+    return sender;
+}
+
+Campaign hello_campaign() {
+    Campaign campaign;
+    campaign.file = "test.toml";
+    campaign.scenario = PUCKLOOP_SOURCE "/scenarios/hello.toml";
+    campaign.seeds = {1};
+    campaign.duration = 5;
+    return campaign;
+}
+
+}  // namespace
+
+TEST_CASE("a byte's position is a time of the nominal run") {
+    RandomStream random(GENERATE(1, 2, 3, 4), "positions");
+    const int length = 2 + static_cast<int>(random.below(80));
+    const double first = 1 + random.uniform();
+    Profile nominal;
+    nominal.senders["robot0.uart from robot0.pic"] = records(first, 20, length);
+    Sweep sweep;
+    sweep.positions = true;
+    const int record = static_cast<int>(random.below(10)), skipped = static_cast<int>(random.below(8)),
+              byte = static_cast<int>(random.below(static_cast<std::uint64_t>(length)));
+    sweep.records = {record};
+    sweep.after = first + 0.1 * skipped - 0.05;
+    const json fault{{"link", "robot0.uart"}, {"from", "robot0.pic"}};
+    sweep.bytes = std::vector<int>{byte, length};
+    const auto some = positions_of(sweep, fault, nominal);
+    REQUIRE(some.size() == 2);
+    const double begin = std::stod(some[0].begin), wanted = first + 0.1 * (record + skipped) + byte * kByte;
+    CHECK(begin <= wanted);
+    CHECK(begin > wanted - 1.1e-6);
+    CHECK(!some[1].missing.empty());
+    sweep.bytes.reset();
+    CHECK(positions_of(sweep, fault, nominal).size() == static_cast<std::size_t>(length));
+    sweep.records = {25};
+    CHECK(!positions_of(sweep, fault, nominal).at(0).missing.empty());
+}
+
+TEST_CASE("faults on what the nominal run never sent are pruned") {
+    Profile nominal;
+    nominal.senders["robot0.uart from robot0.pic"] = records(1.0, 20, 12);
+    const json base{{"link", "robot0.uart"}, {"kind", "drop"}};
+    const auto with = [&](const json& more) {
+        json fault = base;
+        fault.update(more);
+        return useless(fault, nominal);
+    };
+    CHECK(with(json::object()).empty());
+    CHECK(with({{"begin", "2 s"}}).empty());
+    CHECK(!with({{"begin", "4 s"}}).empty());
+    CHECK(!with({{"end", "900 ms"}}).empty());
+    CHECK(!with({{"from", "robot0.linux"}}).empty());
+    CHECK(!with({{"link", "robot1.uart"}}).empty());
+    CHECK(with({{"bytes", {"0x4E"}}}).empty());
+    CHECK(with({{"bytes", {"78"}}}).empty());
+    CHECK(!with({{"bytes", {"0x4F"}}}).empty());
+    // The line itself suffers: frames or none.
+    CHECK(with({{"kind", "stuck"}, {"begin", "4 s"}}).empty());
+    CHECK(with({{"kind", "a kind of tomorrow"}, {"begin", "4 s"}}).empty());
+}
+
+TEST_CASE("a sweep is every combination, and a budget is a sample that stays the same") {
+    Campaign campaign = hello_campaign();
+    Sweep sweep;
+    sweep.name = "all";
+    sweep.fault = {{"link", "robot0.uart"}};
+    sweep.over = {{"from", {"robot0.linux", "robot0.pic"}}, {"kind", {"drop", "flip", "duplicate"}}};
+    sweep.times = {"2 s", "2.5 s", "3 s", "3.5 s"};
+    campaign.sweeps = {sweep, sweep};  // what is there twice is run once
+    Nominals nominals;
+    for (const std::uint64_t seed : {1, 2})
+        for (const char* sender : {"robot0.uart from robot0.pic", "robot0.uart from robot0.linux"})
+            nominals[seed].senders[sender] = records(1.0, 40, 12);
+    campaign.seeds = {1, 2};
+    const auto scenario = scenario_of(campaign);
+    const auto cases = plan_singles(campaign, scenario, nominals);
+    CHECK(cases.size() == 2 * 2 * 3 * 4);
+    std::set<std::string> different;
+    for (const Case& one : cases)
+        different.insert(std::to_string(one.seed) + in_one_line(one.faults));
+    CHECK(different.size() == cases.size());
+    campaign.cases = 17;
+    const auto sampled = plan_singles(campaign, scenario, nominals),
+               again = plan_singles(campaign, scenario, nominals);
+    const auto run = [](const std::vector<Case>& list) {
+        std::set<int> ids;
+        for (const Case& one : list)
+            if (one.pruned.empty()) ids.insert(one.id);
+        return ids;
+    };
+    CHECK(sampled.size() == cases.size());
+    CHECK(run(sampled).size() == 17);
+    CHECK(run(sampled) == run(again));
+}
+
+TEST_CASE("pairs are made of survivors alone, and not more than asked for") {
+    RandomStream random(GENERATE(5, 6, 7), "pairs");
+    Campaign campaign = hello_campaign();
+    std::vector<CaseResult> singles;
+    std::set<std::string> survivors;
+    for (int i = 0; i < 60; ++i) {
+        CaseResult result;
+        result.one.id = i + 1;
+        result.one.phase = "single";
+        result.one.seed = 1 + random.below(2);
+        result.one.faults = {{{"number", i}}};
+        result.verdict.outcome = kOutcomes.at(random.below(kOutcomes.size()));
+        if (!is_finding(result.verdict.outcome) && result.verdict.outcome != Outcome::NotFired)
+            survivors.insert(result.one.faults[0].dump());
+        singles.push_back(result);
+    }
+    campaign.pairs = 10;
+    const auto pairs = plan_pairs(campaign, singles, 100);
+    CHECK(pairs.size() == 10);
+    std::set<std::string> different;
+    for (const Case& pair : pairs) {
+        REQUIRE(pair.faults.size() == 2);
+        for (const json& fault : pair.faults) {
+            CHECK(survivors.contains(fault.dump()));
+            CHECK(singles.at(fault["number"]).one.seed == pair.seed);
+        }
+        CHECK(pair.faults[0] != pair.faults[1]);
+        different.insert(in_one_line(pair.faults));
+    }
+    CHECK(different.size() == pairs.size());
+    campaign.pairs = 0;
+    CHECK(plan_pairs(campaign, singles, 100).empty());
+}

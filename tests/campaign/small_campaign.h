@@ -1,0 +1,24 @@
+#pragma once
+// A campaign of a few short cases, for tests of how it is carried out.
+
+#include "tests/end_to_end/workbench.h"
+
+#include <filesystem>
+#include <string>
+
+namespace puckloop::tests {
+
+/// Ten single cases and three pairs over the robot of Workbench::hello(), 2.6 s each.
+std::filesystem::path small_campaign(const Workbench& bench);
+
+/// `puckloop faults campaign FILE --out NAME` and further words.
+Words campaign_words(const Workbench& bench, const std::filesystem::path& file, const std::string& out,
+                     const Words& more = {});
+
+/// The table of a campaign; empty if there is none.
+std::string table_of(const Workbench& bench, const std::string& out);
+
+/// results.csv of the small campaign as one worker makes it.
+std::string reference_table(const Workbench& bench, const std::filesystem::path& file);
+
+}  // namespace puckloop::tests
