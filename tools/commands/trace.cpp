@@ -47,6 +47,7 @@ void declare_trace(Command& app, int&) {
     command->add_option("--vcd", options->vcd,
                         "write a value change dump, for GTKWave; - is the standard output");
     command->add_flag("--json", options->json, "counts as JSON");
+    declare_trace_decode(*command);
     declare_trace_export(*command);
     declare_trace_rab(*command);
     command->callback([command, options] {

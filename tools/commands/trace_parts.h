@@ -6,6 +6,7 @@ namespace puckloop::tools {
 class Command;
 struct TraceSelection;
 
+void declare_trace_decode(Command& trace);
 void declare_trace_export(Command& trace);
 void declare_trace_rab(Command& trace);
 

@@ -1,0 +1,141 @@
+#pragma once
+// One class for each protocol that decode.h knows. All take rows in the order of the trace.
+
+#include "cosim/trace/trace_row.h"
+#include "protocols/xbee_frame.h"
+#include "tools/trace/decode.h"
+#include "tools/trace/i2c_transfers.h"
+
+#include <array>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace puckloop::tools {
+
+/// Takes both senders of one UART link.
+class UartDecoder {
+  public:
+    virtual ~UartDecoder() = default;
+    virtual void add(const cosim::TraceRow& row, const cosim::UartFrame& frame) = 0;
+    virtual void end() = 0;
+};
+
+/// What is wrong with a single character, apart from its data: break, parity, fault. Empty: nothing.
+std::string character_error(const cosim::TraceRow& row, const cosim::UartFrame& frame);
+std::string hex_bytes(const std::vector<std::uint8_t>& bytes);
+
+/// Bytes of one sender that belong together, as they arrived.
+struct ByteRun {
+    std::vector<std::uint8_t> bytes;
+    std::vector<std::string> errors;  ///< with the place in the run: "byte 3: fault flip"
+    cosim::Time begin = 0, end = 0;
+    bool empty() const { return bytes.empty() && errors.empty(); }
+    /// Lost characters leave their error only.
+    void add(const cosim::TraceRow& row, const cosim::UartFrame& frame);
+};
+
+class BytesDecoder : public UartDecoder {
+  public:
+    explicit BytesDecoder(TakeFrame take) : take_(std::move(take)) {}
+    void add(const cosim::TraceRow& row, const cosim::UartFrame& frame) override;
+    void end() override;
+
+  private:
+    void hand_over(const std::string& from);
+    TakeFrame take_;
+    std::string link_;
+    std::map<std::string, ByteRun> runs_;
+};
+
+/// Records between a robot's Linux board and its main board. They have neither header nor check: a record is
+/// complete by its count, in the order wake-up and configuration, then actuators and sensors in turn, until
+/// actuators with reset 'R'. The main board answers complete records only, so what is left of the other side
+/// when it begins to answer was out of step.
+class EpuckDecoder : public UartDecoder {
+  public:
+    explicit EpuckDecoder(TakeFrame take) : take_(std::move(take)) {}
+    void add(const cosim::TraceRow& row, const cosim::UartFrame& frame) override;
+    void end() override;
+
+  private:
+    enum class Expect : std::uint8_t { Session, Actuators };
+    void from_linux(const std::string& from);
+    void from_board(const std::string& from);
+    void give(ByteRun& run, const std::string& from, DecodedFrame frame);
+    void give_rest(ByteRun& run, const std::string& from, const std::string& what);
+    TakeFrame take_;
+    std::string link_, linux_name_ = "?", board_name_ = "?";
+    ByteRun linux_, board_;
+    Expect expect_ = Expect::Session;
+};
+
+class XBeeDecoder : public UartDecoder {
+  public:
+    explicit XBeeDecoder(TakeFrame take) : take_(std::move(take)) {}
+    void add(const cosim::TraceRow& row, const cosim::UartFrame& frame) override;
+    void end() override;
+
+  private:
+    struct Side {
+        protocols::XBeeReader reader{protocols::XBeeApiMode::Escaped};
+        ByteRun run;
+    };
+    void give(const std::string& from, Side& side, const protocols::XBeeReading& reading);
+    TakeFrame take_;
+    std::string link_;
+    std::map<std::string, Side> sides_;
+};
+
+/// START to STOP, repeated STARTs included, with the names of known devices and registers.
+class I2cDecoder {
+  public:
+    explicit I2cDecoder(TakeFrame take);
+    void add(const cosim::TraceRow& row, const cosim::I2cPhase& phase) { transfers_.add(row, phase); }
+    void end();
+
+  private:
+    struct Open {
+        DecodedFrame frame;
+        bool begun = false;
+        std::uint8_t address = 0;
+        bool reads = false;
+        std::vector<std::uint8_t> bytes;
+        std::map<std::uint8_t, int> pointer;  ///< register selected last, by address
+    };
+    void step(const I2cStep& step);
+    void end_part(Open& open);
+    void give(Open& open);
+    TakeFrame take_;
+    I2cTransfers transfers_;
+    std::map<std::string, Open> links_;
+};
+
+/// Infra-red frames at the emitters of a range-and-bearing board, where the scenario records them.
+class RabDecoder {
+  public:
+    explicit RabDecoder(TakeFrame take) : take_(std::move(take)) {}
+    /// True if the row is a range-and-bearing emitter's.
+    bool add(const cosim::TraceRow& row, const cosim::Signal& signal);
+    void end();
+
+  private:
+    static constexpr int kEmitters = 12;
+    struct Emitter {
+        cosim::Time begin = 0, edge = 0;
+        bool level = false;
+        std::string chips;
+    };
+    struct Board {
+        std::array<Emitter, kEmitters> emitters;
+    };
+    void edge(Emitter& emitter, cosim::Time time, bool level);
+    void close(const std::string& link, const std::string& from, Board& board, cosim::Time now);
+    TakeFrame take_;
+    std::map<std::pair<std::string, std::string>, Board> boards_;
+};
+
+void decode_radio(const cosim::TraceRow& row, const cosim::RadioFrame& frame, const TakeFrame& take);
+
+}  // namespace puckloop::tools
