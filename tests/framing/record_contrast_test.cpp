@@ -4,73 +4,29 @@
 
 #include "base/random.h"
 #include "tests/end_to_end/workbench.h"
+#include "tests/framing/record_traffic.h"
 #include "tests/framing/table.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 using namespace puckloop;
 using namespace puckloop::tests;
-using framing::Table;
+using namespace puckloop::framing;
 
 namespace {
 
-constexpr std::size_t kHello = 5, kActuatorBytes = 12, kSensorBytes = 72;
 constexpr std::size_t kRecord = 6;  // the record that is hit, counted from 0
-constexpr double kSilence = 0.020;  // s
 
 struct Pair {
     std::string name;
     std::string scenario;
     Words words;  ///< of the run
-    /// A part of a record is forgotten after 20 ms of silence.
-    bool pic_forgets = true, linux_forgets = true;
+    Forgets forgets{};
 };
-
-/// One byte's start bit on its way.
-struct Byte {
-    bool to_pic = true;
-    std::size_t place = 0;  ///< in its record
-    double start = 0;
-};
-
-struct Outcome {
-    bool linux_goes_on = false;  ///< it still sends records at the end
-    bool pic_goes_on = false;
-    bool shifted = false;  ///< to the end, one side takes parts of two records for one
-    bool drives = false;   ///< the robot moves in the last second
-    double gap = 0;        ///< s, the longest without a byte from the PIC
-};
-
-std::vector<Row> uart_rows(const Workbench& bench, const std::string& name) {
-    std::vector<Row> rows = bench.csv(name, "trace.csv");
-    std::erase_if(rows, [](const Row& row) { return row.at("kind") != "uart"; });
-    return rows;
-}
-
-bool from_linux(const Row& row) {
-    return row.at("from") == "robot0.linux";
-}
-
-/// Starts of the bytes of both records number kRecord in a run without a fault, the actuator record's first.
-std::vector<Byte> bytes_of(const std::vector<Row>& rows) {
-    std::vector<Byte> bytes;
-    std::size_t sent = 0, heard = 0;
-    for (const Row& row : rows) {
-        const bool to_pic = from_linux(row);
-        const std::size_t ordinal = to_pic ? sent++ : heard++;
-        if (to_pic && ordinal < kHello) continue;
-        const std::size_t size = to_pic ? kActuatorBytes : kSensorBytes;
-        const std::size_t at = to_pic ? ordinal - kHello : ordinal;
-        if (at / size == kRecord) bytes.push_back({to_pic, at % size, std::stod(row.at("start_s"))});
-    }
-    REQUIRE(bytes.size() == kActuatorBytes + kSensorBytes);
-    std::stable_sort(bytes.begin(), bytes.end(),
-                     [](const Byte& a, const Byte& b) { return a.to_pic > b.to_pic; });
-    return bytes;
-}
 
 std::string fault_table(const Byte& byte, const std::string& kind) {
     return fmt::format("\n[[fault]]\nlink = \"robot0.uart\"\nfrom = \"robot0.{}\"\nkind = \"{}\"\ncount = 1\n"
@@ -78,63 +34,18 @@ std::string fault_table(const Byte& byte, const std::string& kind) {
                        byte.to_pic ? "linux" : "pic", kind, byte.start - 5e-6, byte.start + 5e-6);
 }
 
-/// Bytes on one way, as its receiver counts them into records.
-struct Way {
-    std::size_t bytes = 0;
-    double last = 0;
-    void arrive(double start, bool forgets) {
-        if (forgets && start - last > kSilence) bytes = 0;
-        last = start;
-        ++bytes;
-    }
-};
-
-/// Looks at what went over the line after `fault_s`.
-Outcome judge(const std::vector<Row>& rows, const Pair& pair, double fault_s, double end_s) {
-    Outcome out;
-    Way to_pic, from_pic;
-    std::size_t hello = 0;
-    bool answering = false, sending = false;  // a record of that side has begun
-    double last_pic = fault_s;
-    for (const Row& row : rows) {
-        const double start = std::stod(row.at("start_s"));
-        const bool late = start > end_s - 0.5;
-        if (from_linux(row)) {
-            out.linux_goes_on = out.linux_goes_on || late;
-            // The program begins a record: it has taken whole sensor records only, or has some bytes left
-            // over.
-            if (late && !sending && from_pic.bytes % kSensorBytes != 0) out.shifted = true;
-            sending = true;
-            answering = false;
-            if (row.at("fault") != "drop" && ++hello > kHello) to_pic.arrive(start, pair.pic_forgets);
-            continue;
-        }
-        out.pic_goes_on = out.pic_goes_on || late;
-        if (late && !answering && to_pic.bytes % kActuatorBytes != 0) out.shifted = true;
-        answering = true;
-        sending = false;
-        if (row.at("fault") != "drop") from_pic.arrive(start, pair.linux_forgets);
-        if (start > fault_s) {
-            out.gap = std::max(out.gap, start - last_pic);
-            last_pic = start;
-        }
-    }
-    out.gap = std::max(out.gap, end_s - last_pic);
-    return out;
-}
-
 class Contrast {
   public:
     explicit Contrast(Pair pair) : pair_(std::move(pair)) {
         run("plain", {});
-        bytes_ = bytes_of(uart_rows(bench_, "plain"));
+        bytes_ = bytes_of(uart_rows(bench_, "plain"), kRecord);
         end_s_ = journey(bench_.csv("plain", "trajectory.csv")).last_s;
     }
     const std::vector<Byte>& bytes() const { return bytes_; }
     Outcome with(const Byte& byte, const std::string& kind) {
         run("fault", fault_table(byte, kind));
         REQUIRE(bench_.report("fault")["faults"][0]["fired"] == 1);
-        Outcome out = judge(uart_rows(bench_, "fault"), pair_, byte.start, end_s_);
+        Outcome out = judge(uart_rows(bench_, "fault"), pair_.forgets, byte.start, end_s_);
         out.drives = journey(bench_.csv("fault", "trajectory.csv"), end_s_ - 1).length > 0.002;
         return out;
     }
@@ -180,13 +91,12 @@ std::optional<Pair> argos(bool on_original) {
              "skipped");
         return std::nullopt;
     }
-    Pair pair{"argos_epuck, epuck.hex", scenario_text("1 s"), {"--duration", "4.2"}, true, false};
+    Pair pair{"argos_epuck, epuck.hex", scenario_text("1 s"), {"--duration", "4.2"}, {true, false}};
     if (on_original)
         pair = {"argos_epuck, epuck_firmware.hex",
                 scenario_text("42 s"),
                 {"--duration", "45.2", "--firmware", "robot0.pic=" + image->string()},
-                false,
-                false};
+                {false, false}};
     const Words linux_words{"--linux", program->string(), "-c", experiment->string(), "-i", "avoid"};
     pair.words.insert(pair.words.end(), linux_words.begin(), linux_words.end());
     return pair;
