@@ -32,6 +32,7 @@ Conductor::State::State(std::vector<NodeSpec> nodes, std::vector<LinkSpec> links
       links_(std::move(links)),
       fault_specs_(std::move(faults)),
       options_(std::move(options)) {
+    name_faults(fault_specs_);
     std::set<std::string> names;
     for (const NodeSpec& spec : specs_)
         if (!names.insert(spec.name).second)

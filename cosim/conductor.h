@@ -80,14 +80,10 @@ struct Outcome {
         std::string a, b;  ///< "node.port"
         LinkStats from_a, from_b;
     };
-    struct FaultReport {
-        std::string text;  ///< "drop on robot0.uart from robot0.pic"
-        std::uint64_t fired = 0;
-    };
     std::vector<NodeReport> nodes;
     std::vector<LinkReport> links;
-    std::vector<FaultReport> faults;
-    std::vector<std::string> warnings;  ///< a fault that never fired, messages by ports without a link
+    std::vector<FaultReport> faults;  ///< in their order; of nodes' faults without what those have to say
+    std::vector<std::string> warnings;  ///< messages by ports without a link
 };
 
 /// Runs nodes to the end. Nodes are made by the constructor, which throws InputError for anything that does

@@ -136,11 +136,9 @@ void Conductor::State::report(Outcome& outcome) {
                                  stats_[2 * l], stats_[2 * l + 1]});
     }
     for (const FaultSpec& spec : fault_specs_)
-        outcome.faults.push_back({describe(spec), 0});
+        outcome.faults.push_back(report_of(spec));
     for (std::size_t f = 0; f < network_->faults().size(); ++f)
-        outcome.faults[network_->fault_specs()[f]].fired += network_->faults()[f]->fired();
-    for (const Outcome::FaultReport& fault : outcome.faults)
-        if (fault.fired == 0) outcome.warnings.push_back(fmt::format("fault never fired: {}", fault.text));
+        outcome.faults[network_->fault_specs()[f]].add(network_->faults()[f]->evidence(), outcome.simulated);
     if (network_->unlinked() != 0)
         outcome.warnings.push_back(
             fmt::format("{} messages were sent by ports without a link", network_->unlinked()));

@@ -40,19 +40,20 @@ void apply_uart(const std::string& file, const TomlValue& table, Scenario& scena
     reader.finish();
     for (const RobotBoards& robot : scenario.robots) {
         if (!robot.linux_board) continue;
-        const auto add = [&](const char* from, cosim::FaultKind kind, double share) -> cosim::FaultSpec& {
+        const auto add = [&](const char* from, const char* kind, double share) -> cosim::FaultSpec& {
             cosim::FaultSpec& fault = scenario.faults.emplace_back();
             fault.link = robot.name + ".uart";
             fault.from = robot.name + from;
             fault.kind = kind;
             fault.probability = share;
+            fault.may_not_fire = true;
             return fault;
         };
-        if (late > 0) add(".linux", cosim::FaultKind::Delay, 1.0).amount = late;
-        if (commands > 0) add(".linux", cosim::FaultKind::Drop, commands);
-        if (answers > 0) add(".pic", cosim::FaultKind::Drop, answers);
-        if (edges > 0) add(".pic", cosim::FaultKind::Drop, edges).bytes = {0x00, 0xFF};
-        if (cut > 0) add(".pic", cosim::FaultKind::Cut, cut).again = again;
+        if (late > 0) add(".linux", "delay", 1.0).set("delay", late);
+        if (commands > 0) add(".linux", "drop", commands);
+        if (answers > 0) add(".pic", "drop", answers);
+        if (edges > 0) add(".pic", "drop", edges).bytes = {0x00, 0xFF};
+        if (cut > 0) add(".pic", "cut", cut).set("again", again);
     }
 }
 

@@ -16,6 +16,11 @@ std::string joined(const std::vector<std::string>& words) {
     return fmt::format("{}", fmt::join(words, ", "));
 }
 
+/// What does not come from a file has no lines.
+std::string place_of(int line) {
+    return line > 0 ? fmt::format("line {}", line) : std::string{};
+}
+
 }  // namespace
 
 Reader::Reader(std::string file, std::string where, const TomlValue& table)
@@ -49,13 +54,18 @@ void Reader::fail_missing(std::string_view key) {
 
 void Reader::fail_unknown(std::string_view name, int line, const std::string& meant) const {
     const std::string prefix = where_.empty() ? std::string{} : where_ + ": ";
-    throw InputError(file_, fmt::format("line {}", line), fmt::format("{}unknown key '{}'", prefix, name),
+    throw InputError(file_, place_of(line), fmt::format("{}unknown key '{}'", prefix, name),
                      meant.empty() ? fmt::format("one of {}", joined(asked_))
                                    : fmt::format("perhaps '{}'", meant));
 }
 
 bool Reader::has(std::string_view key) {
     return find(key) != nullptr;
+}
+
+bool Reader::is_text(std::string_view key) {
+    const TomlValue* value = find(key);
+    return value && value->is_string();
 }
 
 int Reader::line_of(std::string_view key) {
@@ -65,7 +75,7 @@ int Reader::line_of(std::string_view key) {
 
 void Reader::fail(std::string_view key, std::string_view problem, std::string_view expected) {
     const std::string prefix = where_.empty() ? std::string{} : where_ + ": ";
-    throw InputError(file_, fmt::format("line {}", line_of(key)), prefix + std::string(problem), expected);
+    throw InputError(file_, place_of(line_of(key)), prefix + std::string(problem), expected);
 }
 
 double Reader::number(std::string_view key, const TomlValue& value, Dimension dimension) {

@@ -19,6 +19,8 @@ class Reader {
     Reader(std::string file, std::string where, const TomlValue& table);
 
     bool has(std::string_view key);
+    /// Whether it is there and a text.
+    bool is_text(std::string_view key);
     int line_of(std::string_view key);
 
     /// The forms without a default throw InputError when the key is missing.

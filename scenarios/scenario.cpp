@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "physics/parameters.h"
 #include "scenarios/events/event_tables.h"
-#include "scenarios/fault_tables.h"
+#include "scenarios/faults/fault_tables.h"
 #include "scenarios/radio_tables.h"
 #include "scenarios/robot_tables.h"
 #include "scenarios/tam_tables.h"

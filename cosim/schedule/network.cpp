@@ -82,6 +82,7 @@ void Network::attach(const LinkSpec& spec, std::uint16_t link) {
 }
 
 void Network::attach_fault(const FaultSpec& spec, std::size_t index, std::uint64_t seed) {
+    if (!spec.node.empty()) return;  // the node's own affair
     const auto place = fmt::format("fault on link {}", spec.link);
     bool found_link = false, found_wire = false;
     for (Wire& wire : wires_) {
@@ -90,12 +91,12 @@ void Network::attach_fault(const FaultSpec& spec, std::size_t index, std::uint64
         const bool is_radio = nodes_[wire.from]->ports()[wire.from_port].kind == PortKind::Radio;
         if (!wire.is_uart && !is_radio)
             throw InputError("", place, "the link is no UART and no radio", "a UART or radio link");
-        if (is_radio && !harms_radio(spec.kind))
-            throw InputError("", place, fmt::format("{} on a radio link", fault_name(spec.kind)),
-                             "drop, flip, delay, duplicate or disconnect");
         if (!spec.from.empty() && nodes_[wire.from]->name() != spec.from) continue;
         found_wire = true;
-        faults_.push_back(make_fault(spec, wire.direction, wire.flight, seed, index));
+        const PlaceKind kind = is_radio ? PlaceKind::Radio : PlaceKind::Uart;
+        const WireSite site{wire.direction, wire.flight, wire.latency, kind,
+                            std::string(nodes_[wire.from]->name())};
+        faults_.push_back(make_fault(spec, site, seed, index));
         fault_specs_.push_back(index);
         wire.faults.push_back(faults_.back().get());
     }

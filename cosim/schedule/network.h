@@ -25,6 +25,7 @@ struct Wire {
     Time flight = 0;
     Time latency = 0;
     std::uint64_t sequence = 0;
+    std::uint64_t sent = 0;  ///< messages that are final
     std::vector<LinkFault*> faults{};
     /// What its sender, which runs ahead, has sent since its mark, and how much of that is final and was
     /// delivered. Where there are faults the rest is not known to the receiver before.

@@ -157,14 +157,15 @@ void Network::send(Wire& wire, const Message& message, std::vector<TraceRecord>&
                    std::vector<Change>& changes) {
     const Time time = delivery_time(message, wire.flight, wire.latency);
     batch_.assign(1, {Message{time, wire.to_port, message.payload}, FaultKind::None});
+    const Sending sending{time, wire.sent++};
     for (LinkFault* fault : wire.faults)
-        fault->apply(batch_);
+        fault->apply(batch_, sending);
     deliver(wire, deliveries, changes);
 }
 
 void Network::preset(std::vector<TraceRecord>& deliveries, std::vector<Change>& changes) {
     for (Wire& wire : wires_)
-        for (const LinkFault* fault : wire.faults) {
+        for (LinkFault* fault : wire.faults) {
             batch_ = fault->preset();
             deliver(wire, deliveries, changes);
         }

@@ -71,7 +71,8 @@ std::string scenario_text(const Robot& robot, const Act& act, const Tools& tools
     late("oversleep", robot.lateness.oversleep);
     late("oversleep_jitter", robot.lateness.oversleep_jitter);
     const auto fault = [&](const std::string& more, const char* from = "robot0.pic") {
-        text += fmt::format("[[fault]]\nlink = \"robot0.uart\"\nfrom = \"{}\"\n{}", from, more);
+        text += fmt::format(
+            "[[fault]]\nlink = \"robot0.uart\"\nfrom = \"{}\"\nmay_not_fire = true\n{}", from, more);
     };
     if (robot.uart_factor != 1.0) fault(fmt::format("kind = \"rate\"\nfactor = {}\n", robot.uart_factor));
     if (robot.uart_loss > 0.0) fault(fmt::format("kind = \"drop\"\nprobability = {}\n", robot.uart_loss));

@@ -63,15 +63,56 @@ TEST_CASE("faults are the same in one process and in many") {
     check_same_run(bench, "one", "many");
 }
 
-TEST_CASE("a fault that never fired is a warning") {
+TEST_CASE("a run whose fault never fired has failed, unless that is allowed") {
     const Workbench bench;
-    const std::string scenario = bench.hello(fault("begin = \"1 h\"\n"));
-    const Ended ended = bench.run("o", {scenario, "--duration", "1", "--in-process"});
-    CHECK(ended.status == 0);
-    CHECK_THAT(ended.out, Contains("warning: fault never fired"));
-    REQUIRE(bench.report("o")["warnings"].size() == 1);
-    CHECK_THAT(bench.report("o")["warnings"][0].get<std::string>(),
-               Contains("never fired") && Contains("robot0.uart"));
+    const std::string never = bench.hello(fault("begin = \"1 h\"\n"));
+    const Ended ended = bench.run("o", {never, "--duration", "1", "--in-process"});
+    CHECK(ended.status == 1);
+    CHECK_THAT(ended.err, Contains("fault robot0.uart.drop never fired: drop on robot0.uart") &&
+                              Contains("may_not_fire"));
+    CHECK(bench.report("o")["success"] == false);
+    CHECK(bench.report("o")["faults"][0]["fired"] == 0);
+    const std::string allowed = bench.hello(fault("begin = \"1 h\"\nmay_not_fire = true\nname = \"late\"\n"));
+    REQUIRE(bench.run("p", {allowed, "--duration", "1", "--in-process"}).status == 0);
+    CHECK(bench.report("p")["faults"][0]["name"] == "late");
+    CHECK(bench.report("p")["warnings"].empty());
+}
+
+TEST_CASE("a fault of the command line is one of the scenario, with the same evidence") {
+    const Workbench bench;
+    const std::string plain = bench.hello();
+    const std::string table =
+        bench.hello(fault("from = \"robot0.linux\"\nat = \"2 s\"\ncount = 3\nevery = 5\nskip = 7\n"));
+    REQUIRE(bench.run("table", {table, "--duration", "4", "--in-process"}).status == 0);
+    REQUIRE(bench
+                .run("words", {plain, "--duration", "4", "--fault",
+                               "drop link=robot0.uart from=robot0.linux at=2s count=3 every=5 skip=7"})
+                .status == 0);
+    const auto a = bench.report("table"), b = bench.report("words");
+    CHECK(a["trace_sha256"] == b["trace_sha256"]);
+    CHECK(a["faults"] == b["faults"]);
+    CHECK(text_of(bench.out("table") / "faults.csv") == text_of(bench.out("words") / "faults.csv"));
+    const auto& firings = a["faults"][0]["firings"];
+    REQUIRE(firings.size() == 3);
+    // Each is in the trace where the evidence says.
+    int found = 0;
+    for (const Row& row : bench.csv("table", "trace.csv"))
+        if (row.at("fault") == "drop") {
+            CHECK(std::stod(row.at("start_s")) * 1e12 ==
+                  Approx(firings[found]["time_ps"].get<double>()).margin(2));
+            CHECK("0x" + row.at("value") == firings[found]["what"].get<std::string>());
+            ++found;
+        }
+    CHECK(found == 3);
+    CHECK(firings[1]["index"].get<int>() == firings[0]["index"].get<int>() + 5);
+    for (const char* words : {"", "drop", "drop link", "drop link=robot0.uart link=robot0.uart",
+                              "drop link=robot1.uart", "drop link=robot0.uart at=2", "dorp link=robot0.uart",
+                              "drop link=robot0.uart factor=2", "rate link=robot0.uart", "drop =3"}) {
+        INFO(words);
+        const Ended ended = bench.run("x", {plain, "--fault", words});
+        CHECK(ended.status == 2);
+        CHECK(std::count(ended.err.begin(), ended.err.end(), '\n') == 1);
+    }
 }
 
 TEST_CASE("the session recovers when either side starts again") {

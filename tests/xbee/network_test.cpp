@@ -143,6 +143,6 @@ TEST_CASE("four networks in one room: each finds and hears its own, and no other
 }
 
 TEST_CASE("what a radio link cannot suffer is refused") {
-    CHECK_THROWS_WITH(run(four_networks(), 0, {{"m0.radio", "", cosim::FaultKind::Stuck}}),
+    CHECK_THROWS_WITH(run(four_networks(), 0, {{"m0.radio", "", "stuck"}}),
                       Catch::Contains("stuck on a radio link") && Catch::Contains("drop, flip, delay"));
 }

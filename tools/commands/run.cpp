@@ -130,6 +130,12 @@ void declare_run(Command& app, int& status) {
         ->add_option("--events", request.events,
                      "[[event]] tables in place of the scenario's, such as events.toml of an earlier run")
         ->type_name("FILE");
+    command
+        ->add_option("--fault", request.faults,
+                     "a fault besides the scenario's, with the keys of a [[fault]] table: "
+                     "\"drop link=robot0.uart from=robot0.linux at=2s\"; may be given several times")
+        ->type_name("\"KIND KEY=VALUE...\"")
+        ->allow_extra_args(false);
     command->add_option("--duration", request.duration, "simulated seconds")
         ->check(number_between(kShortestRun, kLongestRun))
         ->type_name("S");
@@ -146,7 +152,7 @@ void declare_run(Command& app, int& status) {
         ->type_name("S");
     command->add_flag("--strict", request.strict,
                       "status 1 if there is anything to warn of: firmware that hangs, registers without a "
-                      "model, I2C addresses that nobody acknowledges, faults that never fired, ...");
+                      "model, I2C addresses that nobody acknowledges, ...");
     command
         ->add_option("--save-state", request.save_state,
                      "file for the states of all boards at --at; the run goes on")

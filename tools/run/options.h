@@ -25,6 +25,7 @@ struct RunRequest {
     bool realtime = false;
     bool paced = false;            ///< by the wall clock, with Linux programs in simulated time
     std::filesystem::path events;  ///< [[event]] tables in place of the scenario's; empty: none
+    std::vector<std::string> faults;  ///< one line each: "drop link=robot0.uart at=2s"
     unsigned threads = 0;          ///< of this process with in_process; 0: as many as serve
     double stall_seconds = 10.0;
     bool strict = false;  ///< a run with warnings has failed

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "scenarios/events/event_tables.h"
+#include "scenarios/faults/fault_tables.h"
 #include "tools/run/program_path.h"
 
 #include <fmt/format.h>
@@ -71,6 +72,8 @@ void apply(const RunRequest& request, Scenario& scenario) {
     if (request.duration) scenario.duration = request.duration;
     if (request.seed) scenario.seed = scenario.world.seed = *request.seed;
     if (!request.overlay.empty()) apply_overlay(scenario, request.overlay);
+    for (const std::string& words : request.faults)
+        scenarios::add_fault(words, scenario);
     if (!request.events.empty()) {
         scenario.events.events = scenarios::read_event_file(request.events);
         physics::check_events(scenario.events, scenario.world);

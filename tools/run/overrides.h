@@ -6,7 +6,7 @@
 
 namespace puckloop::tools {
 
-/// Firmware, Linux program, duration, seed, overlay. Throws InputError for a board that is not there, a file
+/// Firmware, Linux program, duration, seed, overlay, faults. Throws InputError for a board that is not there, a file
 /// that cannot be read.
 void apply(const RunRequest& request, scenarios::Scenario& scenario);
 

@@ -1,6 +1,7 @@
 #include "tools/run/report.h"
 
 #include "base/error.h"
+#include "tools/run/fault_results.h"
 #include "tools/run/states/state_plan.h"
 
 #include <fmt/format.h>
@@ -127,9 +128,6 @@ void write_report(const RunSetup& setup, const cosim::Outcome& outcome, Reserved
                             {"b", link.b},
                             {"from_a", ordered_json::parse(to_json(link.from_a))},
                             {"from_b", ordered_json::parse(to_json(link.from_b))}};
-    ordered_json faults = ordered_json::array();
-    for (const auto& fault : outcome.faults)
-        faults.push_back({{"fault", fault.text}, {"fired", fault.fired}});
     ordered_json report{{"scenario", setup.scenario.file.string()},
                         {"seed", setup.scenario.seed},
                         {"success", outcome.success},
@@ -143,7 +141,7 @@ void write_report(const RunSetup& setup, const cosim::Outcome& outcome, Reserved
                         {"grants", outcome.grants},
                         {"nodes", nodes},
                         {"links", links},
-                        {"faults", faults},
+                        {"faults", faults_json(outcome)},
                         {"events", events_of(nodes)},
                         {"warnings", warnings_of(setup, outcome)},
                         {"unmodelled_registers", unmodelled_of(nodes)}};

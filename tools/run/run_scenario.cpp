@@ -4,6 +4,7 @@
 #include "cosim/trace/trace_csv.h"
 #include "physics/trajectory_svg.h"
 #include "tools/run/control/control_place.h"
+#include "tools/run/fault_results.h"
 #include "tools/run/node_factory.h"
 #include "tools/run/preflight.h"
 #include "tools/run/report.h"
@@ -51,6 +52,9 @@ void write_results(const RunSetup& setup, cosim::Outcome& outcome, ReservedFile&
     });
     std::error_code ignored;
     if (!drawn) std::filesystem::remove(setup.out / "trajectory.svg", ignored);  // no half a picture
+    guarded([&] {
+        if (!outcome.faults.empty()) write_faults_csv(outcome, setup.out / "faults.csv");
+    });
     guarded([&] { write_report(setup, outcome, report); });
 }
 
@@ -81,7 +85,8 @@ void raise_descriptor_limit() {
 std::vector<std::string> result_files(const RunSetup& setup) {
     std::vector<std::string> names{"report.json",    "report.json.part", "trace.csv",
                                    "trajectory.csv", "trajectory.svg",   "sensors.csv",
-                                   "objects.csv",    "ir.csv",           "tams.csv"};
+                                   "objects.csv",    "ir.csv",           "tams.csv",
+                                   "faults.csv"};
     for (const cosim::NodeSpec& node : setup.nodes)
         for (const char* kind : {".log", ".received"})
             names.push_back(node.name + kind);
@@ -148,6 +153,7 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
                         cosim::to_seconds(outcome.stop_time.value_or(outcome.simulated)));
     }
     judge(outcome);
+    take_fault_results(outcome);
     collect_states(setup, outcome);
     if (request.strict) judge_strictly(setup, outcome);
     diary.ended(outcome);

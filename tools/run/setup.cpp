@@ -1,4 +1,5 @@
 #include "tools/run/setup.h"
+#include "tools/run/fault_results.h"
 
 #include "base/error.h"
 #include "emu/i2c_devices/signals.h"
@@ -198,6 +199,7 @@ RunSetup set_up(const RunRequest& request) {
     add_radio(setup, request);
     add_ircom(setup, world);
     name_linked_ports(setup);
+    hand_out_faults(setup);
     plan_states(setup, request);
     return setup;
 }

@@ -165,10 +165,10 @@ TEST_CASE("an overlay's links and clocks reach every robot of a scenario") {
     const double before = scenario.robots[0].pic.crystal_ppm;
     scenarios::apply_overlay(scenario, scratch / "overlay.toml");
     REQUIRE(scenario.faults.size() == faults + 2 * scenario.robots.size());
-    CHECK(scenario.faults[faults].kind == cosim::FaultKind::Delay);
-    CHECK(scenario.faults[faults].amount == Approx(0.03));
+    CHECK(scenario.faults[faults].kind == "delay");
+    CHECK(scenario.faults[faults].parameters.number("delay") == Approx(0.03));
     CHECK(scenario.faults[faults].from == scenario.robots[0].name + ".linux");
-    CHECK(scenario.faults[faults + 1].kind == cosim::FaultKind::Drop);
+    CHECK(scenario.faults[faults + 1].kind == "drop");
     CHECK(scenario.faults[faults + 1].probability == Approx(0.001));
     CHECK(scenario.robots[0].pic.crystal_ppm == Approx(before + 250));
     // A drift at the end of its range is a crystal beyond what a run takes.

@@ -1,10 +1,11 @@
 #pragma once
-// The [[fault]] tables of a scenario.
+// The [[fault]] tables of a scenario, and faults of the command line.
 
 #include "base/toml_file.h"
 #include "scenarios/scenario.h"
 
 #include <string>
+#include <string_view>
 
 namespace puckloop::scenarios {
 
@@ -12,5 +13,8 @@ namespace puckloop::scenarios {
 /// InputError with file and line.
 cosim::FaultSpec read_fault(const std::string& file, std::size_t index, const TomlValue& table,
                             const Scenario& scenario);
+
+/// Adds a fault given in one line (fault_words.h).
+void add_fault(std::string_view words, Scenario& scenario);
 
 }  // namespace puckloop::scenarios

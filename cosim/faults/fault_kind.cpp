@@ -1,0 +1,28 @@
+#include "cosim/faults/fault_kind.h"
+
+#include <algorithm>
+#include <array>
+
+namespace puckloop::cosim {
+
+namespace {
+constexpr std::array<std::string_view, 28> kNames{
+    "",         "drop",   "flip", "delay",         "duplicate",   "disconnect",
+    "stuck",    "rate",   "cut",  "insert",        "held",        "swap",
+    "truncate", "parity", "stop", "glitch",        "false_start", "break",
+    "invert",   "unplug", "torn", "swapped_wires", "batch",       "throttle",
+    "overflow", "stall",  "late", "baud"};
+static_assert(kNames.size() == static_cast<std::size_t>(FaultKind::Baud) + 1);
+}  // namespace
+
+std::string_view fault_name(FaultKind kind) {
+    return kNames.at(static_cast<std::size_t>(kind));
+}
+
+std::optional<FaultKind> fault_of_name(std::string_view name) {
+    const auto* found = std::find(kNames.begin() + 1, kNames.end(), name);
+    if (found == kNames.end()) return std::nullopt;
+    return static_cast<FaultKind>(found - kNames.begin());
+}
+
+}  // namespace puckloop::cosim

@@ -1,0 +1,29 @@
+#include "scenarios/faults/fault_places.h"
+
+namespace puckloop::scenarios {
+
+using cosim::PlaceKind;
+
+std::vector<FaultPlace> fault_places(const Scenario& scenario) {
+    std::vector<FaultPlace> places;
+    for (const RobotBoards& robot : scenario.robots)
+        if (robot.linux_board)
+            places.push_back(
+                {robot.name + ".uart", PlaceKind::Uart, {robot.name + ".linux", robot.name + ".pic"}});
+    for (const TamBoard& tam : scenario.tams) {
+        if (!tam.xbee.fitted) continue;
+        places.push_back({tam.name + ".xbee", PlaceKind::Uart, {tam.name + ".avr", tam.name + ".xbee"}});
+        places.push_back({tam.name + ".radio", PlaceKind::Radio, {tam.name + ".xbee", "ether"}});
+    }
+    if (scenario.coordinator) {
+        if (!scenario.coordinator->uart.empty())
+            places.push_back({"coordinator.uart", PlaceKind::Uart, {"coordinator.uart", "coordinator.xbee"}});
+        if (scenario.coordinator->program)
+            places.push_back(
+                {"coordinator.uart", PlaceKind::Uart, {"coordinator.linux", "coordinator.xbee"}});
+        places.push_back({"coordinator.radio", PlaceKind::Radio, {"coordinator.xbee", "ether"}});
+    }
+    return places;
+}
+
+}  // namespace puckloop::scenarios

@@ -1,0 +1,157 @@
+#include "scenarios/faults/fault_tables.h"
+
+#include "base/error.h"
+#include "scenarios/faults/fault_places.h"
+#include "scenarios/faults/fault_when.h"
+#include "scenarios/faults/fault_words.h"
+#include "scenarios/reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
+namespace puckloop::scenarios {
+
+using cosim::FaultSpec;
+using cosim::KindInfo;
+using cosim::ParameterInfo;
+using cosim::Unit;
+
+namespace {
+
+std::string range_of(const ParameterInfo& parameter) {
+    return fmt::format("{:g} to {:g}{}", parameter.low, parameter.high,
+                       parameter.unit == Unit::Time ? " s" : "");
+}
+
+double read_number(Reader& reader, const ParameterInfo& parameter) {
+    switch (parameter.unit) {
+    case Unit::Time:
+        return reader.quantity(parameter.key, Dimension::Time);
+    case Unit::Ratio:
+        return reader.quantity(parameter.key, Dimension::Ratio);
+    case Unit::Voltage:
+        return reader.quantity(parameter.key, Dimension::Voltage);
+    case Unit::Frequency:
+        return reader.quantity(parameter.key, Dimension::Frequency);
+    case Unit::Integer:
+        return static_cast<double>(reader.integer(parameter.key, 0, static_cast<std::int64_t>(parameter.low),
+                                                  static_cast<std::int64_t>(parameter.high)));
+    case Unit::Flag:
+        return reader.flag(parameter.key, false) ? 1.0 : 0.0;
+    default:
+        return reader.quantity(parameter.key, Dimension::Number);
+    }
+}
+
+/// "0x41", "65" or 65.
+double read_byte(Reader& reader, const ParameterInfo& parameter) {
+    return reader.is_text(parameter.key) ? byte_of(reader, parameter.key, reader.text(parameter.key))
+                                         : static_cast<double>(reader.integer(parameter.key, 0, 0, 255));
+}
+
+void read_parameter(Reader& reader, const ParameterInfo& parameter, FaultSpec& fault) {
+    if (!reader.has(parameter.key) && !parameter.required) return;
+    if (parameter.unit == Unit::Text) {
+        std::string text = reader.text(parameter.key);
+        std::vector<std::string> choices;
+        for (std::size_t from = 0; !parameter.choices.empty() && from <= parameter.choices.size();) {
+            const std::size_t bar = std::min(parameter.choices.find('|', from), parameter.choices.size());
+            choices.emplace_back(parameter.choices.substr(from, bar - from));
+            from = bar + 1;
+        }
+        if (!choices.empty()) text = reader.choice(parameter.key, choices.front(), choices);
+        fault.set(parameter.key, text);
+        return;
+    }
+    const double value =
+        parameter.unit == Unit::Byte ? read_byte(reader, parameter) : read_number(reader, parameter);
+    const bool ranged = parameter.unit != Unit::Byte && parameter.unit != Unit::Flag;
+    if (ranged && !(value >= parameter.low && value <= parameter.high))
+        reader.fail(parameter.key, fmt::format("{} is out of range", parameter.key), range_of(parameter));
+    fault.set(parameter.key, value);
+}
+
+/// Of link or node; what is not there is refused with what is.
+FaultPlace find_place(Reader& reader, const Scenario& scenario) {
+    const bool by_node = reader.has("node");
+    if (by_node && reader.has("link")) reader.fail("node", "both a link and a node are given", "one of them");
+    const char* const key = by_node ? "node" : "link";
+    const std::string name = reader.text(key);
+    std::string known;
+    for (const FaultPlace& place : fault_places(scenario)) {
+        if (place.is_node != by_node) continue;
+        if (place.name == name) return place;
+        known += (known.empty() ? "" : ", ") + place.name;
+    }
+    if (by_node)
+        reader.fail(key, fmt::format("there is no node '{}' that can suffer a fault", name),
+                    known.empty() ? "a link" : known);
+    reader.fail(key, fmt::format("there is no UART link '{}'", name),
+                known.empty() ? "a robot with a [robot.linux] program" : known);
+}
+
+void read_from(Reader& reader, const FaultPlace& place, const KindInfo& kind, FaultSpec& fault) {
+    if (place.ends.empty() || !reader.has("from")) return;
+    fault.from = reader.text("from", "");
+    if (fault.from.empty()) return;
+    if (kind.mark == cosim::FaultKind::SwappedWires)
+        reader.fail("from", "swapped wires have no direction", "no 'from'");
+    if (std::find(place.ends.begin(), place.ends.end(), fault.from) == place.ends.end())
+        reader.fail("from", fmt::format("'{}' is at no end of {}", fault.from, place.name),
+                    fmt::format("{}", fmt::join(place.ends, " or ")));
+}
+
+const KindInfo& find_kind(Reader& reader, const FaultPlace& place) {
+    const std::string name = reader.text("kind", "drop");
+    if (const KindInfo* kind = cosim::find_kind(name, place.kind)) return *kind;
+    reader.fail("kind", fmt::format("{} cannot suffer '{}'", place.name, name),
+                "one of " + cosim::kinds_of(place.kind));
+}
+
+FaultSpec read_fault(Reader& reader, const Scenario& scenario) {
+    const FaultPlace place = find_place(reader, scenario);
+    const KindInfo& kind = find_kind(reader, place);
+    FaultSpec fault;
+    (place.is_node ? fault.node : fault.link) = place.name;
+    if (!place.carrier.empty()) fault.node = place.carrier;
+    fault.kind = kind.name;
+    read_from(reader, place, kind, fault);
+    read_when(reader, kind, fault);
+    read_match(reader, kind, fault);
+    for (const ParameterInfo& parameter : kind.parameters)
+        read_parameter(reader, parameter, fault);
+    fault.name = reader.text("name", "");
+    if (fault.name.find_first_of(",\n\"") != std::string::npos)
+        reader.fail("name", "a name holds a comma, a quote or a line's end", "a plain name");
+    fault.may_not_fire = reader.flag("may_not_fire", false);
+    reader.finish();
+    cosim::complete(fault, kind);
+    try {
+        cosim::check_fault(fault, kind);
+    } catch (const InputError& error) {
+        reader.fail("kind", error.what());
+    }
+    return fault;
+}
+
+}  // namespace
+
+FaultSpec read_fault(const std::string& file, std::size_t index, const TomlValue& table,
+                     const Scenario& scenario) {
+    Reader reader(file, fmt::format("fault {}", index + 1), table);
+    FaultSpec fault = read_fault(reader, scenario);
+    for (const FaultSpec& other : scenario.faults)
+        if (!fault.name.empty() && other.name == fault.name)
+            reader.fail("name", fmt::format("two faults have the name '{}'", fault.name),
+                        "a name for each, or none");
+    return fault;
+}
+
+void add_fault(std::string_view words, Scenario& scenario) {
+    const TomlValue table = fault_table_of(words);
+    scenario.faults.push_back(read_fault("--fault", scenario.faults.size(), table, scenario));
+}
+
+}  // namespace puckloop::scenarios

@@ -1,0 +1,103 @@
+#include "tools/run/fault_results.h"
+
+#include "base/error.h"
+#include "cosim/faults/fault_json.h"
+#include "cosim/trace/trace_row.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <fstream>
+
+namespace puckloop::tools {
+
+using nlohmann::ordered_json;
+
+namespace {
+
+constexpr std::size_t kFiringsInReport = 10;
+
+/// A node's report, null if it could not give one.
+ordered_json report_of_node(const cosim::Outcome::NodeReport& node) {
+    return node.json.empty() ? ordered_json() : ordered_json::parse(node.json, nullptr, false);
+}
+
+ordered_json to_json(const cosim::Firing& firing) {
+    ordered_json json{{"time_ps", firing.time}, {"index", firing.index}};
+    if (!firing.from.empty()) json["from"] = firing.from;
+    json["what"] = firing.what;
+    return json;
+}
+
+}  // namespace
+
+void hand_out_faults(RunSetup& setup) {
+    auto& faults = setup.scenario.faults;
+    cosim::name_faults(faults);
+    for (std::size_t f = 0; f < faults.size(); ++f) {
+        if (faults[f].node.empty()) continue;
+        const auto node =
+            std::find_if(setup.nodes.begin(), setup.nodes.end(),
+                         [&](const cosim::NodeSpec& one) { return one.name == faults[f].node; });
+        if (node == setup.nodes.end())
+            throw InputError("", fmt::format("fault {}", faults[f].name),
+                             fmt::format("there is no node {}", faults[f].node));
+        ordered_json json = ordered_json::parse(node->json);
+        json["faults"].push_back(cosim::fault_to_json(faults[f], setup.scenario.seed, f));
+        node->json = json.dump();
+    }
+}
+
+void take_fault_results(cosim::Outcome& outcome) {
+    for (const auto& node : outcome.nodes) {
+        const ordered_json report = report_of_node(node);
+        if (!report.is_object() || !report.contains("faults")) continue;
+        for (const ordered_json& result : report["faults"])
+            for (cosim::FaultReport& fault : outcome.faults)
+                if (fault.name == result.value("name", "")) cosim::add_fault_result(fault, result);
+    }
+    if (!outcome.success) return;
+    for (const cosim::FaultReport& fault : outcome.faults) {
+        if (!fault.failed_to_fire()) continue;
+        outcome.success = false;
+        outcome.text =
+            fmt::format("fault {} never fired: {} (may_not_fire = true allows that)", fault.name, fault.text);
+        return;
+    }
+}
+
+ordered_json faults_json(const cosim::Outcome& outcome) {
+    ordered_json faults = ordered_json::array();
+    for (const cosim::FaultReport& fault : outcome.faults) {
+        ordered_json firings = ordered_json::array();
+        for (std::size_t i = 0; i < std::min(fault.firings.size(), kFiringsInReport); ++i)
+            firings.push_back(to_json(fault.firings[i]));
+        faults.push_back(
+            {{"name", fault.name},
+             {"fault", fault.text},
+             {"kind", fault.kind},
+             {"place", fault.place},
+             {"may_not_fire", fault.may_not_fire},
+             {"fired", fault.fired},
+             {"first_ps", fault.firings.empty() ? ordered_json() : ordered_json(fault.firings[0].time)},
+             {"last_ps", fault.last ? ordered_json(*fault.last) : ordered_json()},
+             {"firings", firings}});
+    }
+    return faults;
+}
+
+void write_faults_csv(const cosim::Outcome& outcome, const std::filesystem::path& file) {
+    std::ofstream out(file);
+    out << "fault,kind,place,firing,time_s,from,index,what\n";
+    for (const cosim::FaultReport& fault : outcome.faults)
+        for (std::size_t i = 0; i < fault.firings.size(); ++i) {
+            const cosim::Firing& one = fault.firings[i];
+            out << fmt::format("{},{},{},{},{},{},{},{}\n", fault.name, fault.kind, fault.place, i,
+                               cosim::format_seconds(one.time), one.from, one.index, one.what);
+        }
+    out.close();
+    if (!out) throw RunError(fmt::format("{} cannot be written", file.string()));
+}
+
+}  // namespace puckloop::tools
