@@ -1,0 +1,154 @@
+// [[fault]] tables and faults in one line: the same reader, and nothing that it chokes on.
+
+#include "base/error.h"
+#include "base/random.h"
+#include "scenarios/faults/fault_places.h"
+#include "scenarios/faults/fault_tables.h"
+#include "scenarios/faults/fault_words.h"
+#include "tests/scratch.h"
+
+#include <catch2/catch.hpp>
+#include <fmt/format.h>
+
+#include <fstream>
+
+using namespace puckloop;
+using namespace puckloop::scenarios;
+using cosim::FaultSpec;
+
+namespace {
+
+/// A scenario with a serial link and a radio link, without files.
+Scenario with_links() {
+    Scenario scenario;
+    scenario.robots.emplace_back().name = "robot0";
+    scenario.robots[0].linux_board.emplace();
+    scenario.tams.emplace_back().name = "tam0";
+    scenario.tams[0].xbee.fitted = true;
+    return scenario;
+}
+
+FaultSpec one(const std::string& words) {
+    Scenario scenario = with_links();
+    add_fault(words, scenario);
+    return scenario.faults.at(0);
+}
+
+std::string problem(const std::string& words) {
+    try {
+        one(words);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "accepted";
+}
+
+FaultSpec from_toml(const std::string& keys) {
+    const Scenario scenario = with_links();
+    const auto file = tests::scratch_path("fault_words");
+    std::ofstream(file) << keys;
+    const TomlValue table = read_toml(file);
+    std::filesystem::remove(file);
+    return read_fault("f.toml", 0, table, scenario);
+}
+
+}  // namespace
+
+TEST_CASE("words and a table give the same fault") {
+    CHECK(
+        one("flip link=robot0.uart from=robot0.pic bits=3 burst=true begin=1.5s end=2.5s p=0.1 r=0.4 1-h=90% "
+            "skip=4 every=2 count=9 match=f207 offset=3 bytes=0x00,255 position=7 name=\"a b\" "
+            "may_not_fire=true") ==
+        from_toml(
+            "kind = \"flip\"\nlink = \"robot0.uart\"\nfrom = \"robot0.pic\"\nbits = 3\nburst = true\n"
+            "begin = \"1.5 s\"\nend = \"2.5 s\"\np = 0.1\nr = 0.4\n1-h = \"90 %\"\nskip = 4\nevery = 2\n"
+            "count = 9\nmatch = \"F2 07\"\noffset = 3\nbytes = [\"0\", \"0xff\"]\nposition = 7\n"
+            "name = \"a b\"\nmay_not_fire = true\n"));
+    CHECK(one("corrupt link=tam0.radio at=2s") ==
+          from_toml("kind = \"flip\"\nlink = \"tam0.radio\"\nbegin = \"2 s\"\ncount = 1\n"));
+    CHECK(one("stall link=robot0.uart at=2s for=30ms") ==
+          from_toml("kind = \"stall\"\nlink = \"robot0.uart\"\nbegin = \"2 s\"\nend = \"2.03 s\"\n"));
+}
+
+TEST_CASE("what a fault cannot be is refused by name") {
+    const auto said = [](const std::string& words, const std::string& part) {
+        CHECK_THAT(problem(words), Catch::Contains(part));
+    };
+    said("drop", "'link' is missing");
+    said("drop link=robot1.uart",
+         "there is no UART link 'robot1.uart' (expected robot0.uart, tam0.xbee, tam0.radio)");
+    said("drop node=robot0.pic2", "there is no node");
+    said("drop link=robot0.uart node=x", "both a link and a node");
+    said("dorp link=robot0.uart", "cannot suffer 'dorp' (expected one of drop");
+    said("swap link=tam0.radio", "cannot suffer 'swap'");
+    said("drop link=robot0.uart factor=2", "unknown key 'factor'");
+    said("drop link=robot0.uart probabilty=2", "perhaps 'probability'");
+    said("drop link=robot0.uart at=1s begin=2s", "both at and begin");
+    said("drop link=robot0.uart end=1s for=2s", "both end and for");
+    said("drop link=robot0.uart at=-1s", "out of range");
+    said("drop link=robot0.uart at=2", "has no unit");
+    said("drop link=robot0.uart p=0.1 probability=0.2", "both a burst and a probability");
+    said("drop link=robot0.uart r=0.1", "unknown key 'r'");
+    said("drop link=robot0.uart every=0", "every is out of range");
+    said("drop link=robot0.uart match=f2f", "match is no pattern");
+    said("drop link=robot0.uart offset=3", "unknown key 'offset'");
+    said("drop link=robot0.uart from=robot0.pick", "at no end of robot0.uart");
+    said("rate link=robot0.uart", "'factor' is missing");
+    said("rate link=robot0.uart factor=100", "factor is out of range");
+    said("stall link=robot0.uart", "a stall without an end");
+    said("swapped_wires link=robot0.uart from=robot0.pic", "no direction");
+    said("break link=robot0.uart period=1ms", "too often");
+    said("insert link=robot0.uart value=300", "out of range");
+    said("insert link=robot0.uart value=0x3g", "not a byte");
+    said("parity link=robot0.uart mode=odd", "one of wrong, mark, space");
+    said("drop link=robot0.uart name=\"a,b\"", "comma");
+    said("drop link=robot0.uart \"", "a quote is open");
+    said("drop link=robot0.uart link=x", "given twice");
+}
+
+TEST_CASE("every kind of every place takes its own parameters") {
+    const Scenario scenario = with_links();
+    for (const FaultPlace& place : fault_places(scenario))
+        for (const cosim::KindInfo& kind : cosim::all_kinds()) {
+            if (kind.place != place.kind) continue;
+            std::string words =
+                fmt::format("{} {}={}", kind.name, place.is_node ? "node" : "link", place.name);
+            if (kind.mark == cosim::FaultKind::Stall) words += " for=1s";
+            if (kind.mark == cosim::FaultKind::Baud) words += " offset=2%";
+            for (const cosim::ParameterInfo& parameter : kind.parameters) {
+                if (!parameter.required) continue;
+                words += fmt::format(" {}={:.9f}", parameter.key, parameter.low);
+                if (parameter.unit == cosim::Unit::Time) words += "s";
+                if (parameter.unit == cosim::Unit::Integer || parameter.unit == cosim::Unit::Byte)
+                    words.erase(words.find('.', words.rfind('=')));
+            }
+            INFO(words);
+            CHECK(problem(words) == "accepted");
+        }
+}
+
+TEST_CASE("random words are read or refused in one line") {
+    RandomStream random(21, "words");
+    const std::vector<std::string> pieces{
+        "drop",    "flip",   "link=",  "robot0.uart", "tam0.radio",
+        "at=",     "2s",     " ",      " ",           "\"",
+        "=",       "count=", "-1",     "1e308",       "probability=",
+        "0.5",     "nan",    "bytes=", "0x41,",       "match=",
+        "f2",      ",",      "for=",   "9e99s",       "begin=",
+        "p=",      "r=",     "1-h=",   "every=",      "18446744073709551616",
+        "\n",      "\t",     "name=",  "delay",       "delay=",
+        "jitter=", "bits=",  "bit=",   "true"};
+    int accepted = 0;
+    for (int round = 0; round < 4000; ++round) {
+        std::string words = round % 2 ? "drop link=robot0.uart " : "";
+        for (std::uint64_t n = random.below(8); n > 0; --n)
+            words += pieces[random.below(pieces.size())];
+        if (random.below(4) == 0 && !words.empty())
+            words[random.below(words.size())] = static_cast<char>(random.next());
+        const std::string said = problem(words);
+        accepted += said == "accepted";
+        if (words.find('\n') == std::string::npos) CHECK(said.find('\n') == std::string::npos);
+    }
+    CHECK(accepted > 50);
+    CHECK(accepted < 3000);
+}
