@@ -82,6 +82,8 @@ ordered_json faults_json(const cosim::Outcome& outcome) {
              {"fired", fault.fired},
              {"first_ps", fault.firings.empty() ? ordered_json() : ordered_json(fault.firings[0].time)},
              {"last_ps", fault.last ? ordered_json(*fault.last) : ordered_json()},
+             {"first_s", fault.firings.empty() ? ordered_json()
+                                               : ordered_json(cosim::to_seconds(fault.firings[0].time))},
              {"firings", firings}});
     }
     return faults;
