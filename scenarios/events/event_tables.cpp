@@ -264,7 +264,7 @@ std::vector<Event> read_event_file(const std::filesystem::path& file) {
 
 Action parse_command(std::string_view text) {
     const TomlValue table = parse_command_text(text);
-    constexpr std::string_view kNowhere = "line 0: ";
+    constexpr std::string_view kCommand = "command: ";
     try {
         Reader reader("", "", table);
         Action action = read_action(reader, table, 0);
@@ -274,8 +274,7 @@ Action parse_command(std::string_view text) {
         return action;
     } catch (const InputError& error) {
         const std::string what = error.what();
-        throw InputError("", what.starts_with(kNowhere) ? "command" : "",
-                         what.starts_with(kNowhere) ? what.substr(kNowhere.size()) : what);
+        throw InputError("", what.starts_with(kCommand) ? "" : "command", what);
     }
 }
 

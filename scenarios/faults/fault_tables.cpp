@@ -75,6 +75,9 @@ void read_parameter(Reader& reader, const ParameterInfo& parameter, FaultSpec& f
 
 /// Of link or node; what is not there is refused with what is.
 FaultPlace find_place(Reader& reader, const Scenario& scenario) {
+    // Asked for here, they are no misspelt 'link'.
+    for (const char* key : {"kind", "name", "from", "at", "begin", "end"})
+        reader.has(key);
     const bool by_node = reader.has("node");
     if (by_node && reader.has("link")) reader.fail("node", "both a link and a node are given", "one of them");
     const char* const key = by_node ? "node" : "link";

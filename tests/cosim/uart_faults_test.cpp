@@ -162,14 +162,14 @@ TEST_CASE("position, match and offset choose the byte") {
 TEST_CASE("parity: wrong, or stuck at a level") {
     RandomStream random(6, "parity");
     for (const char* mode : {"wrong", "mark", "space"})
-        for (const std::uint8_t parity : {1, 2}) {
+        for (const std::uint8_t parity : {std::uint8_t{1}, std::uint8_t{2}}) {
             FaultLine line(fault("parity").set("mode", mode));
             for (int i = 0; i < 50; ++i, line.now += 12 * kBit) {
                 const auto data = static_cast<unsigned>(random.below(256));
                 const bool odd = std::popcount(data) % 2 == 1;
                 UartFrame frame;
                 frame.parity = parity;
-                frame.parity_bit = odd != (parity == 1) ? 1 : 0;
+                frame.parity_bit = odd != (parity == 1);
                 line.send(line.now, data, frame);
                 const UartFrame& got = std::get<UartFrame>(line.all.back().message.payload);
                 const std::string name = mode;

@@ -1,7 +1,8 @@
 #include "tools/faults/case_run.h"
 
 #include "base/error.h"
-#include "scenarios/fault_tables.h"
+#include "scenarios/faults/fault_tables.h"
+#include "tools/run/fault_results.h"
 #include "tools/run/overrides.h"
 #include "tools/run/run_scenario.h"
 #include "tools/run/setup.h"
@@ -56,6 +57,7 @@ void add_faults(const Campaign& campaign, const Case& one, scenarios::Scenario& 
         request.cache = true;
         tools::RunSetup setup = tools::set_up(request);
         add_faults(campaign, one, setup.scenario);
+        tools::hand_out_faults(setup);
         const cosim::Outcome outcome = tools::run_scenario(setup, request, {}, nullptr);
         if (!outcome.success && outcome.reason == cosim::EndReason::Failed && outcome.node.empty())
             problem = outcome.text;  // no node's fault: the disk is full, say

@@ -9,6 +9,8 @@
 
 #include <algorithm>
 #include <fstream>
+#include <map>
+#include <string>
 
 namespace puckloop::tools {
 
@@ -35,16 +37,17 @@ ordered_json to_json(const cosim::Firing& firing) {
 void hand_out_faults(RunSetup& setup) {
     auto& faults = setup.scenario.faults;
     cosim::name_faults(faults);
-    for (std::size_t f = 0; f < faults.size(); ++f) {
-        if (faults[f].node.empty()) continue;
-        const auto node =
-            std::find_if(setup.nodes.begin(), setup.nodes.end(),
-                         [&](const cosim::NodeSpec& one) { return one.name == faults[f].node; });
+    std::map<std::string, ordered_json> lists;
+    for (std::size_t f = 0; f < faults.size(); ++f)
+        if (!faults[f].node.empty())
+            lists[faults[f].node].push_back(cosim::fault_to_json(faults[f], setup.scenario.seed, f));
+    for (const auto& [name, list] : lists) {
+        const auto node = std::find_if(setup.nodes.begin(), setup.nodes.end(),
+                                       [&](const cosim::NodeSpec& one) { return one.name == name; });
         if (node == setup.nodes.end())
-            throw InputError("", fmt::format("fault {}", faults[f].name),
-                             fmt::format("there is no node {}", faults[f].node));
+            throw InputError("", "fault", fmt::format("there is no node {}", name));
         ordered_json json = ordered_json::parse(node->json);
-        json["faults"].push_back(cosim::fault_to_json(faults[f], setup.scenario.seed, f));
+        json["faults"] = list;
         node->json = json.dump();
     }
 }

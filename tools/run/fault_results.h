@@ -10,8 +10,8 @@
 
 namespace puckloop::tools {
 
-/// Names the faults and gives those of nodes to their nodes' descriptions. Throws InputError for a node that
-/// is not there.
+/// Names the faults and gives those of nodes to their nodes' descriptions; again, if faults were added since.
+/// Throws InputError for a node that is not there.
 void hand_out_faults(RunSetup& setup);
 
 /// Takes what nodes say of their faults into the outcome's reports. A run in which a fault never fired that
