@@ -9,7 +9,7 @@ namespace puckloop::cosim {
 namespace {
 
 // Two frames sent back to back may overlap by a sender's rounding.
-constexpr Time kSlackPart = 8;  // of a bit
+constexpr Time kSlackPart = 64;  // of a bit
 constexpr Time kDataBits = 8;
 
 /// A radio frame without a duration is no frame on air (emu/radio/control.h).
