@@ -73,6 +73,22 @@ std::string in_one_line(const std::vector<json>& faults) {
     return line;
 }
 
+std::string as_words(const json& fault) {
+    std::string words = value_text(fault.value("kind", json("drop")));
+    for (const std::string& key : keys_of(fault)) {
+        if (key == "kind") continue;
+        std::string value;
+        if (fault.at(key).is_array())
+            for (const json& item : fault.at(key))
+                value += (value.empty() ? "" : ",") + value_text(item);
+        else
+            value = value_text(fault.at(key));
+        const bool blank = value.empty() || value.find(' ') != std::string::npos;
+        words += blank ? fmt::format(" {}=\"{}\"", key, value) : fmt::format(" {}={}", key, value);
+    }
+    return words;
+}
+
 std::string as_toml(const std::vector<json>& faults) {
     std::string text;
     for (const json& fault : faults) {

@@ -26,6 +26,8 @@ Case case_from_json(const nlohmann::json& text);
 /// "kind=drop link=robot0.uart from=robot0.pic begin=3.2s count=1": keys in the order that reads best. Faults
 /// are joined by " + ".
 std::string in_one_line(const std::vector<nlohmann::json>& faults);
+/// "drop link=robot0.uart begin=\"3.2 s\"": what `puckloop run --fault` takes.
+std::string as_words(const nlohmann::json& fault);
 /// As [[fault]] tables.
 std::string as_toml(const std::vector<nlohmann::json>& faults);
 /// "drop on robot0.uart from robot0.pic": what heat maps and findings are sorted by.

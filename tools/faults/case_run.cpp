@@ -2,7 +2,6 @@
 
 #include "base/error.h"
 #include "scenarios/faults/fault_tables.h"
-#include "tools/run/fault_results.h"
 #include "tools/run/overrides.h"
 #include "tools/run/run_scenario.h"
 #include "tools/run/setup.h"
@@ -40,12 +39,6 @@ tools::RunRequest request_of(const Campaign& campaign) {
     return request;
 }
 
-void add_faults(const Campaign& campaign, const Case& one, scenarios::Scenario& scenario) {
-    for (std::size_t i = 0; i < one.faults.size(); ++i)
-        scenario.faults.push_back(
-            scenarios::read_fault(campaign.file.string(), i, to_toml(one.faults[i], 0), scenario));
-}
-
 /// In the child: never returns.
 [[noreturn]] void run_here(const Campaign& campaign, const Case& one, const std::filesystem::path& folder,
                            int message) {
@@ -55,9 +48,11 @@ void add_faults(const Campaign& campaign, const Case& one, scenarios::Scenario& 
         request.out = folder;
         request.seed = one.seed;
         request.cache = true;
-        tools::RunSetup setup = tools::set_up(request);
-        add_faults(campaign, one, setup.scenario);
-        tools::hand_out_faults(setup);
+        for (nlohmann::json fault : one.faults) {
+            fault["may_not_fire"] = true;  // that is an outcome
+            request.faults.push_back(as_words(fault));
+        }
+        const tools::RunSetup setup = tools::set_up(request);
         const cosim::Outcome outcome = tools::run_scenario(setup, request, {}, nullptr);
         if (!outcome.success && outcome.reason == cosim::EndReason::Failed && outcome.node.empty())
             problem = outcome.text;  // no node's fault: the disk is full, say

@@ -49,12 +49,10 @@ void read_fired(const Profile& run, std::size_t faults, Verdict& verdict) {
     const std::size_t skip = all.size() > faults ? all.size() - faults : 0;
     for (std::size_t i = skip; i < all.size(); ++i) {
         verdict.fired.push_back(all[i].value("fired", std::uint64_t{0}));
-        for (const char* key : {"first_s", "first_fired_s", "first"}) {
-            const auto found = all[i].find(key);
-            if (found == all[i].end() || !found->is_number()) continue;
-            const double first = found->get<double>();
-            if (!verdict.first_s || first < *verdict.first_s) verdict.first_s = first;
-        }
+        const json& when = all[i].value("first_ps", json());
+        if (!when.is_number()) continue;
+        const double first = when.get<double>() * 1e-12;
+        if (!verdict.first_s || first < *verdict.first_s) verdict.first_s = first;
     }
     verdict.fired.resize(faults, 0);
 }

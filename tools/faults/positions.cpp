@@ -17,7 +17,9 @@ namespace {
 constexpr double kPause = 2.0;  ///< byte times between two records
 
 /// Kinds that do something to a frame and nothing where there is none.
-constexpr std::array kOnFrames{"drop", "flip", "delay", "duplicate", "cut", "rate", "swap", "truncate"};
+constexpr std::array kOnFrames{"drop",   "loss",    "flip", "corrupt",  "duplicate", "insert",
+                               "swap",   "reorder", "cut",  "truncate", "parity",    "stop",
+                               "glitch", "delay",   "rate", "baud",     "batch",     "throttle"};
 
 double seconds(const json& fault, const char* key, double fallback) {
     if (!fault.contains(key) || !fault.at(key).is_string()) return fallback;
@@ -92,12 +94,36 @@ std::vector<Position> positions_of(const Sweep& sweep, const json& fault, const 
     return positions;
 }
 
+namespace {
+
+/// Of a bus: transfers with a device that nobody addresses, or none at all.
+std::string useless_on_bus(const std::string& bus, const json& fault, const Profile& nominal) {
+    bool any = false, meant = !fault.contains("address");
+    for (const auto& [name, sender] : nominal.senders) {
+        if (!name.starts_with(bus + ".")) continue;
+        for (const std::string& first : sender.addresses) {
+            any = true;
+            if (!meant && byte_value("0x" + first) >> 1 == byte_value(value_text(fault["address"])))
+                meant = true;
+        }
+    }
+    if (!any) return fmt::format("no transfer on {}", bus);
+    return meant ? std::string()
+                 : fmt::format("nobody addresses {} on {}", value_text(fault["address"]), bus);
+}
+
+}  // namespace
+
 std::string useless(const json& fault, const Profile& nominal) {
+    if (fault.contains("link") && value_text(fault["link"]).ends_with(".i2c"))
+        return useless_on_bus(value_text(fault["link"]), fault, nominal);
     const std::string kind = value_text(fault.value("kind", json("drop")));
     if (!fault.contains("link") || std::find(kOnFrames.begin(), kOnFrames.end(), kind) == kOnFrames.end())
         return {};
     const std::string link = value_text(fault["link"]);
-    const double begin = seconds(fault, "begin", 0), end = seconds(fault, "end", 1e9);
+    const double begin = seconds(fault, fault.contains("at") ? "at" : "begin", 0),
+                 end =
+                     fault.contains("for") ? begin + seconds(fault, "for", 1e9) : seconds(fault, "end", 1e9);
     bool any = false, value = !fault.contains("bytes");
     for (const auto& [name, sender] : nominal.senders) {
         const bool meant = fault.contains("from") ? name == sender_name(link, value_text(fault["from"]))

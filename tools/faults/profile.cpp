@@ -124,7 +124,7 @@ void read_logs(const std::filesystem::path& folder, Profile& profile) {
 void collect_counters(const json& value, const std::string& name, Profile& profile) {
     if (value.is_object()) {
         for (const auto& [key, item] : value.items())
-            if (key != "devices") collect_counters(item, name + "." + key, profile);
+            if (key != "devices" && key != "faults") collect_counters(item, name + "." + key, profile);
         return;
     }
     const std::string last = name.substr(name.rfind('.') + 1);
