@@ -162,6 +162,14 @@ TEST_CASE("a case is replayed with all files of a run") {
     const auto report = bench.report("again");
     CHECK_THAT(table, Contains(report["trace_sha256"].get<std::string>()));
     CHECK_THAT(again.out, Contains("[[fault]]") && Contains("replayed: hang"));
+    // The same without the campaign, as `show` gives it.
+    const Ended one = bench.puckloop({"faults", "show", out, number});
+    const std::string run = one.out.substr(one.out.find("puckloop run ") + 9);
+    const std::string shell = std::string(PUCKLOOP_PROGRAM) + " " + run.substr(0, run.find('\n')) +
+                              " --out " + bench.out("alone").string();
+    Process alone({"/bin/sh", "-c", shell}, bench.folder());
+    CHECK(alone.wait().status == 0);
+    CHECK(bench.report("alone")["trace_sha256"] == report["trace_sha256"]);
     const Ended unknown = bench.puckloop({"faults", "show", out, "4000"});
     CHECK(unknown.status == 2);
     // The tables can be made again from the database alone.

@@ -49,9 +49,9 @@ void read_fired(const Profile& run, std::size_t faults, Verdict& verdict) {
     const std::size_t skip = all.size() > faults ? all.size() - faults : 0;
     for (std::size_t i = skip; i < all.size(); ++i) {
         verdict.fired.push_back(all[i].value("fired", std::uint64_t{0}));
-        const json& when = all[i].value("first_ps", json());
+        const json when = all[i].value("first_s", json());
         if (!when.is_number()) continue;
-        const double first = when.get<double>() * 1e-12;
+        const double first = when.get<double>();
         if (!verdict.first_s || first < *verdict.first_s) verdict.first_s = first;
     }
     verdict.fired.resize(faults, 0);

@@ -164,7 +164,7 @@ bool names_error(const std::string& name) {
         "refused", "wrong",       "bad",          "short",   "slip",
         "stray",   "synchron",    "invalid",      "timeout", "corrupt",
         "missed",  "implausible", "not answered", "stuck",   "breaks",
-        "illegal", "dropped",     "rejected",     "retries"};
+        "dropped",     "rejected",     "retries"};
     return std::any_of(kWords.begin(), kWords.end(),
                        [&](const char* word) { return name.find(word) != std::string::npos; });
 }

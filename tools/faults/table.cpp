@@ -39,6 +39,16 @@ const CaseResult& find(const Results& results, int id) {
     return *found;
 }
 
+/// As a shell takes it for one word.
+std::string shell_word(const std::string& word) {
+    constexpr const char* kPlain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-./=:,+";
+    if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) return word;
+    std::string quoted = "'";
+    for (const char letter : word)
+        quoted += letter == '\'' ? std::string("'\\''") : std::string(1, letter);
+    return quoted + "'";
+}
+
 }  // namespace
 
 std::string table_text(const Results& results) {
@@ -96,6 +106,22 @@ std::string replay_command(const Results& results, int id) {
     return fmt::format("puckloop faults replay {} {}", (outside ? results.out : relative).string(), id);
 }
 
+std::string run_command(const Results& results, int id) {
+    const CaseResult& result = find(results, id);
+    const Campaign& campaign = results.campaign;
+    std::string text = fmt::format("puckloop run {} --in-process --seed {}",
+                                   shell_word(campaign.scenario.string()), result.one.seed);
+    if (campaign.duration) text += fmt::format(" --duration {:.9g}", *campaign.duration);
+    for (const std::string& firmware : campaign.firmware)
+        text += " --firmware " + shell_word(firmware);
+    for (const nlohmann::json& fault : result.one.faults)
+        text += " --fault " + shell_word(as_words(fault));
+    if (!campaign.program.empty()) text += " --linux";
+    for (const std::string& word : campaign.program)
+        text += " " + shell_word(word);
+    return text;
+}
+
 std::string summary(const Results& results) {
     std::map<Outcome, std::size_t> counts;
     for (const CaseResult& result : results.results)
@@ -133,7 +159,8 @@ std::string case_text(const Results& results, int id) {
         text += "  " + verdict.detail.substr(begin, end - begin) + "\n";
         begin = end + 2;
     }
-    return text + fmt::format("trace {}\n{}\n", verdict.trace_sha256, replay_command(results, id));
+    return text + fmt::format("trace {}\n{}\n{}\n", verdict.trace_sha256, replay_command(results, id),
+                              run_command(results, id));
 }
 
 }  // namespace puckloop::faults

@@ -20,6 +20,9 @@ std::string case_text(const Results& results, int id);
 /// "puckloop faults replay out/hello 17"
 std::string replay_command(const Results& results, int id);
 
+/// The same case without its campaign, for a shell: "puckloop run hello.toml --seed 1 --fault '...'"
+std::string run_command(const Results& results, int id);
+
 /// Writes the whole file or leaves the old one; throws RunError.
 void write_whole(const std::filesystem::path& file, const std::string& text);
 
