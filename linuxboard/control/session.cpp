@@ -11,6 +11,7 @@ namespace {
 
 constexpr int kGarbledLimit = 3;  // so many bad records in a row: not noise, something is out of step
 constexpr std::array<std::uint8_t, 1> kZero{0};
+constexpr EpuckActuatorBytes kStop{};  // a record of zeros keeps the sides as far out of step as they are
 
 }  // namespace
 
@@ -90,6 +91,7 @@ std::optional<EpuckSensors> Session::exchange(const EpuckActuators& actuators) {
         ++counters_.slips;
         counters_.stray_bytes += early;
         log_("answer before the record's last byte was sent: the PIC holds surplus bytes");
+        transport_.write(kStop);  // it has obeyed parts of two records: end that before all else
         lost_ = true;
         return std::nullopt;
     }

@@ -7,7 +7,8 @@
 // zeros are a safe configuration and a safe actuator record (wheels stopped, LEDs off); and it answers within
 // milliseconds except out of its waiting loop, where it may take an eighth of a second.
 //  * Exchange: the last byte of each actuator record is held back for a moment. A PIC that answers before it
-//    comes holds surplus bytes: the records have slipped against each other.
+//    comes holds surplus bytes: the records have slipped against each other. It has then
+//    obeyed parts of two records, so zeros follow at once.
 //  * No answer: the PIC misses bytes, waits for a session, or is restarting. Zeros are sent singly, each
 //  given
 //    time for an answer, until one comes.
