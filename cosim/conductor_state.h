@@ -129,6 +129,7 @@ class Conductor::State {
     bool writing_ = false;              ///< batch_, the sinks and stats_ are not this thread's
     std::size_t written_ = 0;           ///< of batch_
     std::exception_ptr trace_failure_;  ///< of the sinks
+    bool trace_ended_ = false;          ///< by a failure: what came after it would leave a gap
     std::optional<RandomStream> chop_;
     std::unique_ptr<Workers> workers_;
     std::vector<std::size_t> here_;             ///< nodes of this process just granted, for this thread

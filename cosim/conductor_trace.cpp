@@ -10,6 +10,7 @@ namespace puckloop::cosim {
 /// Everything before `floor`. Nothing may be written beside.
 void Conductor::State::release_trace(Time floor) {
     current_ = kNobody;
+    if (trace_ended_) return;
     merger_.take(floor, batch_);
     write_trace();
     take_written();
@@ -47,7 +48,9 @@ void Conductor::State::take_written() {
     if (!trace_failure_) write_trace();
     batch_.clear();
     written_ = 0;
-    if (trace_failure_) std::rethrow_exception(std::exchange(trace_failure_, nullptr));
+    if (!trace_failure_) return;
+    trace_ended_ = true;
+    std::rethrow_exception(std::exchange(trace_failure_, nullptr));
 }
 
 void Conductor::State::finish_trace() {

@@ -1,0 +1,80 @@
+// The trace is written by helpers where there are any: the same records in the same order, and what a sink
+// cannot take ends the run.
+
+#include "base/error.h"
+#include "toy_run.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <limits>
+#include <thread>
+#include <utility>
+
+using namespace puckloop;
+using namespace puckloop::cosim;
+using toy::Recorder;
+using toy::Run;
+
+namespace {
+
+/// Takes so many records, refuses one, and would take more: the trace must not go on behind a gap.
+struct FullDisk : Recorder {
+    std::size_t room = std::numeric_limits<std::size_t>::max();
+    std::thread::id own = std::this_thread::get_id();
+    bool full = false;
+    std::size_t beside = 0;  ///< records that came from another thread
+
+    void record(const TraceRecord& record) override {
+        if (records.size() == room && !std::exchange(full, true)) throw RunError("the disk is full");
+        if (std::this_thread::get_id() != own) ++beside;
+        Recorder::record(record);
+    }
+};
+
+Run long_run(std::uint64_t seed, unsigned threads) {
+    Run run = toy::random_chatter(seed, 6);
+    run.options.duration = 150 * kMillisecond;
+    run.options.threads = threads;
+    for (NodeSpec& node : run.nodes)
+        node.any_thread = true;
+    return run;
+}
+
+}  // namespace
+
+TEST_CASE("helpers write the same trace") {
+    std::size_t beside = 0;
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+        FullDisk alone;
+        const Outcome expected = long_run(seed, 1)(&alone);
+        REQUIRE(expected.reason == EndReason::Duration);
+        CHECK(alone.beside == 0);
+        for (const unsigned threads : {2u, 4u}) {
+            FullDisk recorder;
+            const Outcome outcome = long_run(seed, threads)(&recorder);
+            CHECK(outcome.trace_sha256 == expected.trace_sha256);
+            REQUIRE((recorder.records == alone.records));
+            beside += recorder.beside;
+        }
+    }
+    CHECK(beside > 0);
+}
+
+TEST_CASE("what a sink cannot take ends the run, whichever thread it is") {
+    FullDisk all;
+    long_run(3, 1)(&all);
+    REQUIRE(all.records.size() > 2000);
+    for (const unsigned threads : {1u, 2u, 4u})
+        for (const std::size_t room : {std::size_t{0}, std::size_t{700}, all.records.size() - 1}) {
+            FullDisk disk;
+            disk.room = room;
+            const Outcome outcome = long_run(3, threads)(&disk);
+            INFO(threads << " threads, room for " << room << ": " << outcome.text);
+            CHECK(outcome.reason == EndReason::Failed);
+            CHECK(outcome.text == "the disk is full");
+            CHECK(outcome.node.empty());
+            REQUIRE(disk.records.size() == room);
+            CHECK(std::equal(disk.records.begin(), disk.records.end(), all.records.begin()));
+        }
+}
