@@ -59,6 +59,8 @@ void check_fault(const FaultSpec& spec, const KindInfo& kind);
 // One function a family, in a file of its own.
 std::vector<KindInfo> uart_kinds();
 std::vector<KindInfo> radio_kinds();
+std::vector<KindInfo> i2c_kinds();
+std::vector<KindInfo> linux_kinds();
 void check_uart_fault(const FaultSpec& spec, const KindInfo& kind);
 
 }  // namespace puckloop::cosim

@@ -24,6 +24,7 @@ I2cBusNode::I2cBusNode(I2cBusOptions options, std::vector<std::unique_ptr<I2cSla
     : options_(std::move(options)),
       slaves_(std::move(slaves)),
       nominal_period_(static_cast<Time>(std::llround(static_cast<double>(kSecond) / options_.nominal_hertz))),
+      faults_(options_.faults, names_of(options_.masters), nominal_period_),
       log_(options_.log, names_of(options_.masters)) {
     log_.begin(device_list(), options_.nominal_hertz);
     for (const auto& master : options_.masters)
@@ -81,13 +82,22 @@ void I2cBusNode::advance(Time until, std::span<const Message> inbox, std::vector
 
 /// Everything that the bus does by itself before `until`.
 void I2cBusNode::run_events(Time until) {
-    while (changes_ < until) {
-        now_ = changes_;
-        if (bus_ == Bus::Contest)
+    for (Time next = next_event(); next < until; next = next_event()) {
+        now_ = next;
+        if (line_released_ == next)
+            line_released();
+        else if (changes_ != next)
+            begin_incomplete();
+        else if (bus_ == Bus::Contest)
             resolve_contest();
         else
             bus_freed();
     }
+}
+
+Time I2cBusNode::next_event() const {
+    const Time begins = bus_ == Bus::Free ? faults_.next_incomplete() : kNever;
+    return std::min({changes_, line_released_, begins});
 }
 
 void I2cBusNode::receive(const Message& message) {
@@ -128,6 +138,13 @@ void I2cBusNode::phase_from(PortIndex port, const I2cPhase& phase) {
 void I2cBusNode::start_from(PortIndex port, const I2cPhase& phase) {
     switch (bus_) {
     case Bus::Free:
+        if (const Time free = faults_.free_from(port, phase.start); free > phase.start) {
+            bus_ = Bus::Recovering;  // both masters' drivers look at the lines before they begin
+            changes_ = free;
+            break;
+        }
+        open_contest(port, phase);
+        return;
     case Bus::Contest:
         open_contest(port, phase);
         return;
@@ -182,9 +199,14 @@ void I2cBusNode::stop_from(PortIndex port, const I2cPhase& phase) {
         return;
     }
     if (pending_ && !pending_->open.empty()) return hang();
+    changes_ = phase.start + std::max(phase.clock_period, nominal_period_);
+    if (const Time free = faults_.free_from(port, phase.start); free > phase.start) {
+        bus_ = Bus::Recovering;  // the line's release makes the STOP
+        changes_ = std::max(changes_, free);
+        return;
+    }
     release_devices(phase.start);
     bus_ = Bus::Stopping;
-    changes_ = phase.start + std::max(phase.clock_period, nominal_period_);
 }
 
 void I2cBusNode::bus_freed() {
@@ -192,6 +214,7 @@ void I2cBusNode::bus_freed() {
     if (bus_ == Bus::Recovering) release_devices(now);
     bus_ = Bus::Free;
     changes_ = kNever;
+    if (begin_incomplete()) return;
     for (auto& contender : waiting_) {
         contender.phase.start = std::max(contender.phase.start, now);
         open_contest(contender.port, contender.phase);
@@ -227,8 +250,11 @@ void I2cBusNode::answer(PortIndex port, const I2cPhase& phase, I2cPhaseKind kind
 
 Time I2cBusNode::earliest_output(PortIndex port) const {
     Time first = kNever;
-    if (is_world(port)) return bus_ == Bus::Recovering ? later(changes_, nominal_period_) : first;
-    if (!is_master(port)) return changes_;
+    if (is_world(port))
+        return later(bus_ == Bus::Recovering ? std::min(changes_, line_released_) : line_released_,
+                     nominal_period_);
+    if (!is_master(port)) return next_event();
+    first = later(line_released_, nominal_period_);
     for (const Contender& contender : contenders_)
         if (contender.port == port) first = std::min(first, ninth_clock(contender.phase));
     // A Start that waits for another master's Stop is answered when that comes.

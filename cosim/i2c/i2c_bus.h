@@ -38,6 +38,7 @@
 
 #include "base/checkpoint.h"
 #include "cosim/core/node.h"
+#include "cosim/i2c/i2c_faults.h"
 #include "cosim/i2c/i2c_log.h"
 #include "cosim/i2c/i2c_slave.h"
 
@@ -66,6 +67,7 @@ struct I2cBusOptions {
     std::vector<I2cMasterPort> masters;
     std::vector<I2cDevicePort> devices{};
     std::string log{};  ///< file for the bus's log; empty: none
+    std::vector<CarriedFault> faults{};
 };
 
 /// Ports: the masters in their order, the devices in theirs, then "world" (signals to and from the devices in
@@ -101,7 +103,7 @@ class I2cBusNode final : public Node {
     void state(Archive& archive) {
         archive(bus_, owner_, addressed_, addressed_devices_, pending_, holders_, crowds_);
         archive(stuck_since_, stuck_for_, stuck_names_, changes_, contenders_, waiting_, answers_);
-        archive(emitted_at_, counters_, log_, now_);
+        archive(emitted_at_, counters_, log_, now_, faults_, line_released_, incomplete_byte_);
     }
 
     struct Contender {
@@ -141,12 +143,20 @@ class I2cBusNode final : public Node {
         I2cAnswer answer;             ///< of the others, together
         std::string who;              ///< acknowledged a Start
         int count = 0;
+        bool addresses = false;    ///< devices take the byte for an address
+        std::uint8_t flipped = 0;  ///< bits of the byte read that arrive inverted
+        bool lost = false;         ///< to the master the bus is lost
+        Time busy_until = 0;       ///< and somebody else's until then
 
         template <class Archive>
         void state(Archive& archive) {
             archive(master, phase, earliest, open, answer, who, count);
+            archive(addresses, flipped, lost, busy_until);
         }
     };
+
+    /// In place of a port: a line that a fault holds low, and the master of a transfer that a fault begins.
+    static constexpr PortIndex kFault = 0xFFFF;
 
     bool is_master(PortIndex port) const { return port < options_.masters.size(); }
     bool is_world(PortIndex port) const { return port + 1u == ports_.size(); }
@@ -159,11 +169,20 @@ class I2cBusNode final : public Node {
     void address(PortIndex port, const I2cPhase& phase, Time earliest);
     void device_answered(PortIndex port, const I2cPhase& phase, Time now);
     void byte_from(PortIndex port, const I2cPhase& phase);
+    I2cPhase begin_phase(PortIndex port, const I2cPhase& phase, Time earliest, bool& heard);
+    void offer_address(const I2cPhase& seen);
+    void hold_line(const I2cPhase& phase, Time time);
+    void line_released();
+    void reset_devices(Time now);
+    bool begin_incomplete();
+    void go_on_incomplete(bool acknowledged);
+    Time next_event() const;
     void take_answer(const I2cAnswer& reply, const std::string& name);
     void settle();
     void release_devices(Time now);
     void hang();
     void let_go(const I2cPhase& phase);
+    void sda_held();
     void recover(Time from);
     const std::string& device_name(PortIndex port) const;
     std::string device_list() const;
@@ -199,6 +218,9 @@ class I2cBusNode final : public Node {
     std::map<std::uint8_t, Crowd> crowds_;
     Time stuck_since_ = 0, stuck_for_ = 0;
     std::string stuck_names_;
+    I2cFaults faults_;
+    Time line_released_ = kNever;        // by a fault that holds SCL low behind a byte
+    bool incomplete_byte_ = false;       // of a fault's transfer: a byte is still to follow the address
     Time changes_ = kNever;              // a contest is decided, a stop or recovery is over
     std::vector<Contender> contenders_;  // for the bus, now
     std::vector<Contender> waiting_;     // for its end

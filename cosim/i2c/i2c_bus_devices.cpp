@@ -17,17 +17,26 @@ bool contains(const std::vector<std::uint8_t>& list, std::uint8_t value) {
 }  // namespace
 
 const std::string& I2cBusNode::device_name(PortIndex port) const {
-    return options_.devices[port - options_.masters.size()].name;
+    static const std::string kLine = "a fault";
+    return port == kFault ? kLine : options_.devices[port - options_.masters.size()].name;
 }
 
 void I2cBusNode::address(PortIndex port, const I2cPhase& phase, Time earliest) {
     ++counters_.transfers;
     log_.addressed(now_, port, phase.byte);
-    const auto wanted = static_cast<std::uint8_t>(phase.byte >> 1);
-    pending_ = Pending{port, phase, earliest, {}, {}, {}, 0};
+    bool heard = true;
+    const I2cPhase seen = begin_phase(port, phase, earliest, heard);
+    pending_->addresses = true;
+    if (heard) offer_address(seen);
+    settle();
+}
+
+/// All devices look whether they are meant.
+void I2cBusNode::offer_address(const I2cPhase& seen) {
+    const auto wanted = static_cast<std::uint8_t>(seen.byte >> 1);
     for (const auto& slave : slaves_)
         if (slave->listens_to(wanted)) {
-            const I2cAnswer reply = slave->start((phase.byte & kReadBit) != 0, phase.start);
+            const I2cAnswer reply = slave->start((seen.byte & kReadBit) != 0, seen.start);
             if (reply.acknowledge) addressed_.push_back(slave.get());
             take_answer(reply, std::string(slave->name()));
         }
@@ -35,20 +44,26 @@ void I2cBusNode::address(PortIndex port, const I2cPhase& phase, Time earliest) {
         const auto& addresses = options_.devices[i].addresses;
         if (!addresses.empty() && !contains(addresses, wanted)) continue;
         const auto device = static_cast<PortIndex>(options_.masters.size() + i);
-        answers_.push_back({std::max(phase.start + half_clock(), earliest), device, phase});
+        answers_.push_back({std::max(seen.start + half_clock(), pending_->earliest), device, seen});
         pending_->open.push_back(device);
     }
-    settle();
 }
 
 void I2cBusNode::byte_from(PortIndex port, const I2cPhase& phase) {
     const bool write = phase.kind == I2cPhaseKind::Write;
     ++(write ? counters_.bytes_written : counters_.bytes_read);
-    pending_ = Pending{port, phase, 0, addressed_devices_, {}, {}, 0};
-    for (const PortIndex device : addressed_devices_)
-        answers_.push_back({phase.start + half_clock(), device, phase});
-    for (I2cSlave* slave : addressed_)
-        take_answer(write ? slave->write(phase.byte, phase.start) : slave->read(phase.start), {});
+    bool heard = true;
+    const I2cPhase seen = begin_phase(port, phase, 0, heard);
+    if (pending_->addresses) {
+        offer_address(seen);
+    } else if (heard) {
+        for (const PortIndex device : addressed_devices_) {
+            pending_->open.push_back(device);
+            answers_.push_back({seen.start + half_clock(), device, seen});
+        }
+        for (I2cSlave* slave : addressed_)
+            take_answer(write ? slave->write(seen.byte, seen.start) : slave->read(seen.start), {});
+    }
     settle();
 }
 
@@ -65,8 +80,8 @@ void I2cBusNode::take_answer(const I2cAnswer& reply, const std::string& name) {
 void I2cBusNode::device_answered(PortIndex port, const I2cPhase& phase, Time now) {
     if (std::erase(holders_, port) != 0) return let_go(phase);
     if (!pending_ || std::erase(pending_->open, port) == 0) return;
-    const bool start = pending_->phase.kind == I2cPhaseKind::Start;
-    const bool read = pending_->phase.kind == I2cPhaseKind::Read;
+    const bool start = pending_->addresses;
+    const bool read = pending_->phase.kind == I2cPhaseKind::Read && !start;
     I2cAnswer reply{phase.ack != 0, read ? phase.byte : std::uint8_t{0xFF}, 0};
     const Time ninth = std::max(pending_->phase.clock_period, nominal_period_);
     reply.stretch = std::max<Time>(0, now + ninth - ninth_clock(pending_->phase));
@@ -78,14 +93,25 @@ void I2cBusNode::device_answered(PortIndex port, const I2cPhase& phase, Time now
 /// Tells the master once everybody has answered.
 void I2cBusNode::settle() {
     if (!pending_->open.empty()) return;
-    const Pending done = *pending_;
+    Pending done = *pending_;
     pending_.reset();
+    if (done.master == kFault) return go_on_incomplete(done.answer.acknowledge);
     if (done.count > 1) {
         Crowd& crowd = crowds_[static_cast<std::uint8_t>(done.phase.byte >> 1)];
         ++crowd.times;
         crowd.names = done.who;
         log_.crowded(now_, done.phase.byte, done.who, crowd.times);
     }
+    if (done.lost) {
+        ++counters_.lost;
+        log_.lost(now_, done.master, done.phase);
+        answer(done.master, done.phase, I2cPhaseKind::BusLost, {false, 0xFF, done.answer.stretch},
+               done.earliest);
+        bus_ = Bus::Recovering;  // until the STOP of whoever has it now
+        changes_ = std::max(done.busy_until, now_ + nominal_period_);
+        return;
+    }
+    done.answer.byte ^= done.flipped;
     const bool read = done.phase.kind == I2cPhaseKind::Read;
     answer(done.master, done.phase, read ? I2cPhaseKind::Data : I2cPhaseKind::Acknowledge, done.answer,
            done.earliest);
@@ -108,8 +134,8 @@ void I2cBusNode::hang() {
     bus_ = Bus::Stuck;
     holders_ = pending_->open;
     for (const PortIndex device : holders_)  // those of a Start are not addressed yet, but will want a STOP
-        if (std::find(addressed_devices_.begin(), addressed_devices_.end(), device) ==
-            addressed_devices_.end())
+        if (device != kFault && std::find(addressed_devices_.begin(), addressed_devices_.end(), device) ==
+                                    addressed_devices_.end())
             addressed_devices_.push_back(device);
     stuck_names_.clear();
     for (const PortIndex device : holders_)
@@ -126,15 +152,17 @@ void I2cBusNode::let_go(const I2cPhase& phase) {
     stuck_for_ += now_ - stuck_since_;
     log_.released(now_, stuck_names_);
     const bool pulls_sda = phase.kind == I2cPhaseKind::Data ? (phase.byte & kFirstBit) == 0 : phase.ack != 0;
+    if (pulls_sda) return sda_held();
+    bus_ = Bus::Recovering;  // nothing to wait for but the STOP
+    changes_ = now_ + nominal_period_;
+}
+
+/// A device in the middle of a byte holds SDA low.
+void I2cBusNode::sda_held() {
     bus_ = Bus::HeldLow;
-    if (!pulls_sda) {
-        bus_ = Bus::Recovering;  // nothing to wait for but the STOP
-        changes_ = now_ + nominal_period_;
-    } else if (std::any_of(waiting_.begin(), waiting_.end(), [this](const Contender& contender) {
-                   return options_.masters[contender.port].waits;
-               })) {
+    if (std::any_of(waiting_.begin(), waiting_.end(),
+                    [this](const Contender& contender) { return options_.masters[contender.port].waits; }))
         recover(now_);
-    }
 }
 
 void I2cBusNode::recover(Time from) {

@@ -4,6 +4,7 @@
 #include "cosim/i2c/i2c_bus.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace puckloop::cosim {
 
@@ -64,10 +65,10 @@ std::string I2cBusNode::finish() {
         told += fmt::format("{}\"{}\"", told.empty() ? "" : ",", line);
     return fmt::format(
         R"({{"transfers":{},"not_acknowledged":{},"lost":{},"bytes_written":{},"bytes_read":{},)"
-        R"("stretched":{},"longest_stretch_us":{:.3f},"stuck":{},"devices":{{{}}},"warnings":[{}]}})",
+        R"("stretched":{},"longest_stretch_us":{:.3f},"stuck":{},"devices":{{{}}},"warnings":[{}]{}}})",
         counters_.transfers, counters_.not_acknowledged, counters_.lost, counters_.bytes_written,
         counters_.bytes_read, counters_.stretched, microseconds(counters_.longest_stretch), counters_.stuck,
-        devices, told);
+        devices, told, faults_.empty() ? "" : ",\"faults\":" + fault_results(faults_.carried(), now_).dump());
 }
 
 }  // namespace puckloop::cosim

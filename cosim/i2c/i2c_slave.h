@@ -41,6 +41,8 @@ class I2cSlave {
     virtual I2cAnswer read(Time now) = 0;
     /// STOP, or a repeated START for somebody else.
     virtual void stop(Time /*now*/, const Emit& /*emit*/) {}
+    /// It begins anew, as when its supply comes back.
+    virtual void reset(const Emit& /*emit*/) {}
     /// A signal came in by the bus node's `world` port.
     virtual void signal(std::uint16_t /*id*/, double /*value*/) {}
     /// As Node::rewindable(): with a device that cannot go back the bus cannot.

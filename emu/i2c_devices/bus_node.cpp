@@ -36,6 +36,7 @@ std::unique_ptr<cosim::Node> make_bus_node(const BusSpec& spec) {
     options.name = spec.name;
     options.nominal_hertz = spec.hertz;
     options.log = spec.log;
+    options.faults = spec.faults;
     options.masters = {{"pic", false}, {"linux", true}};
     for (const BoardOnBus& board : spec.boards) {
         options.devices.push_back({board.name, {}});
@@ -50,13 +51,14 @@ std::unique_ptr<cosim::Node> make_bus_node(const BusSpec& spec) {
 std::unique_ptr<cosim::Node> make_bus_node(std::string_view text) {
     BusSpec spec;
     try {
-        const auto json = nlohmann::json::parse(text);
+        const auto json = nlohmann::ordered_json::parse(text);
         spec.name = json.value("name", spec.name);
         spec.ground_sensor = json.value("ground_sensor", spec.ground_sensor);
         spec.rgb_turret = json.value("rgb_turret", spec.rgb_turret);
         spec.hertz = json.value("hertz", spec.hertz);
         spec.log = json.value("log", spec.log);
-        for (const auto& board : json.value("boards", nlohmann::json::array())) {
+        if (json.contains("faults")) spec.faults = cosim::faults_from_json(json["faults"]);
+        for (const auto& board : json.value("boards", nlohmann::ordered_json::array())) {
             spec.boards.push_back({board.at("name").get<std::string>(), {}});
             if (board.contains("address")) spec.boards.back().address = board["address"].get<std::uint8_t>();
         }

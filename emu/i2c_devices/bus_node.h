@@ -2,6 +2,7 @@
 // A robot's I2C bus with its usual devices, from a description.
 
 #include "cosim/core/node.h"
+#include "cosim/faults/fault_json.h"
 
 #include <cstdint>
 #include <memory>
@@ -26,13 +27,14 @@ struct BusSpec {
     double hertz = 100e3;
     std::vector<BoardOnBus> boards{};
     std::string log{};  ///< file for the bus's log; empty: none
+    std::vector<cosim::CarriedFault> faults{};
 };
 
 /// Ports: "pic" and "linux" (masters), the boards in their order, "world" (signals()).
 std::unique_ptr<cosim::Node> make_bus_node(const BusSpec& spec);
 
 /// The same from JSON: {"name", "ground_sensor", "rgb_turret", "hertz", "boards": [{"name",
-/// "address"}], "log"}, all optional but a board's name. Throws InputError.
+/// "address"}], "log", "faults"}, all optional but a board's name. Throws InputError.
 std::unique_ptr<cosim::Node> make_bus_node(std::string_view json);
 
 }  // namespace puckloop::i2c_devices

@@ -9,6 +9,11 @@ I2cAnswer RegisterDevice::start(bool read, cosim::Time) {
     return {.acknowledge = true};
 }
 
+void RegisterDevice::reset(const Emit&) {
+    register_ = 0;
+    number_next_ = false;
+}
+
 I2cAnswer RegisterDevice::write(std::uint8_t byte, cosim::Time) {
     if (number_next_) {
         number_next_ = false;

@@ -14,6 +14,7 @@ class RegisterDevice : public cosim::I2cSlave {
     cosim::I2cAnswer start(bool read, cosim::Time now) override;
     cosim::I2cAnswer write(std::uint8_t byte, cosim::Time now) override;
     cosim::I2cAnswer read(cosim::Time now) override;
+    void reset(const Emit& emit) override;
 
     template <class Archive>
     void state(Archive& archive) {

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <utility>
+
 namespace puckloop::i2c_devices {
 
 using cosim::I2cAnswer;
@@ -40,6 +42,12 @@ void RgbTurret::stop(cosim::Time, const Emit& emit) {
             emit(static_cast<std::uint16_t>(kRgb + place), received_[i]);
         }
     received_.clear();
+}
+
+void RgbTurret::reset(const Emit& emit) {
+    received_.clear();
+    for (std::size_t place = 0; place < colours_.size(); ++place)
+        if (std::exchange(colours_[place], 0) != 0) emit(static_cast<std::uint16_t>(kRgb + place), 0);
 }
 
 std::string RgbTurret::report() const {

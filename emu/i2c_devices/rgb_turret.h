@@ -27,6 +27,8 @@ class RgbTurret final : public cosim::I2cSlave {
     cosim::I2cAnswer write(std::uint8_t byte, cosim::Time now) override;
     cosim::I2cAnswer read(cosim::Time now) override;
     void stop(cosim::Time now, const Emit& emit) override;
+    /// All dark.
+    void reset(const Emit& emit) override;
     std::string report() const override;
     cosim::Rewindable* rewindable() override { return &mark_; }
     template <class Archive>

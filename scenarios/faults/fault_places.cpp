@@ -6,10 +6,14 @@ using cosim::PlaceKind;
 
 std::vector<FaultPlace> fault_places(const Scenario& scenario) {
     std::vector<FaultPlace> places;
-    for (const RobotBoards& robot : scenario.robots)
-        if (robot.linux_board)
-            places.push_back(
-                {robot.name + ".uart", PlaceKind::Uart, {robot.name + ".linux", robot.name + ".pic"}});
+    for (const RobotBoards& robot : scenario.robots) {
+        const std::string pic = robot.name + ".pic", program = robot.name + ".linux";
+        if (robot.linux_board) places.push_back({robot.name + ".uart", PlaceKind::Uart, {program, pic}});
+        std::vector<std::string> masters{pic};
+        if (robot.linux_board) masters.push_back(program);
+        places.push_back({robot.name + ".i2c", PlaceKind::I2c, masters, robot.name + ".i2c"});
+        if (robot.linux_board) places.push_back({program, PlaceKind::Linux, {}, program, true});
+    }
     for (const TamBoard& tam : scenario.tams) {
         if (!tam.xbee.fitted) continue;
         places.push_back({tam.name + ".xbee", PlaceKind::Uart, {tam.name + ".avr", tam.name + ".xbee"}});
@@ -18,6 +22,8 @@ std::vector<FaultPlace> fault_places(const Scenario& scenario) {
     if (scenario.coordinator) {
         if (!scenario.coordinator->uart.empty())
             places.push_back({"coordinator.uart", PlaceKind::Uart, {"coordinator.uart", "coordinator.xbee"}});
+        if (scenario.coordinator->program)
+            places.push_back({"coordinator.linux", PlaceKind::Linux, {}, "coordinator.linux", true});
         if (scenario.coordinator->program)
             places.push_back(
                 {"coordinator.uart", PlaceKind::Uart, {"coordinator.linux", "coordinator.xbee"}});

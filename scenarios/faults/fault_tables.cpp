@@ -1,6 +1,7 @@
 #include "scenarios/faults/fault_tables.h"
 
 #include "base/error.h"
+#include "cosim/i2c/i2c_fault.h"
 #include "scenarios/faults/fault_places.h"
 #include "scenarios/faults/fault_when.h"
 #include "scenarios/faults/fault_words.h"

@@ -133,6 +133,8 @@ void SharedBus::run_once(std::optional<std::uint64_t> chop) {
     spec.hertz = hertz;
     spec.ground_sensor = ground_sensor;
     spec.rgb_turret = false;
+    for (std::size_t f = 0; f < faults.size(); ++f)
+        spec.faults.push_back({faults[f], Trigger(faults[f], fault_stream(faults[f], seed, f))});
     std::vector<NodeSpec> nodes{{"bus", "", {}}, {"pic", "", {}}, {"linux", "", {}}};
     std::vector<LinkSpec> links{{"i2c.pic", {"pic", "i2c"}, {"bus", "pic"}},
                                 {"i2c.linux", {"linux", "i2c"}, {"bus", "linux"}}};

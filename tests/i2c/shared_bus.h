@@ -33,6 +33,8 @@ struct SharedBus {
     std::vector<Task> pic, linux_board;
     std::vector<Board> boards;
     bool ground_sensor = false;
+    std::vector<cosim::FaultSpec> faults{};
+    std::uint64_t seed = 1;
     double hertz = 100e3;
     cosim::Time duration = 100 * cosim::kMillisecond;
 
