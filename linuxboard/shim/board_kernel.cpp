@@ -45,6 +45,18 @@ DeviceKind kind_for(Op op) {
     }
 }
 
+/// Of the messages of one transfer.
+std::vector<std::uint16_t> addresses_of(std::uint32_t count, std::string_view data) {
+    std::vector<std::uint16_t> addresses;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const auto segment = read_object<wire::I2cSegment>(data);
+        addresses.push_back(segment.address);
+        if ((segment.flags & I2C_M_RD) == 0)
+            data.remove_prefix(std::min<std::size_t>(segment.length, data.size()));
+    }
+    return addresses;
+}
+
 template <typename T>
 std::string bytes_of(const T& object) {
     std::string bytes(sizeof object, '\0');
@@ -53,8 +65,9 @@ std::string bytes_of(const T& object) {
 }
 }  // namespace
 
-BoardKernel::BoardKernel(const LinuxSpec& spec)
-    : tty_(spec.clock_ppm, spec.fifo_trigger, spec.tty_batch),
+BoardKernel::BoardKernel(const LinuxSpec& spec, LinuxFaults& faults)
+    : faults_(faults),
+      tty_(spec.clock_ppm, spec.fifo_trigger, spec.tty_batch),
       adapter_(std::llround(kPicosecondsPerSecond / spec.i2c_hertz), spec.i2c_nack_error, spec.i2c_hold),
       has_tty_(!spec.tty.empty()),
       i2c_files_(spec.i2c.size()) {}
@@ -135,13 +148,14 @@ void BoardKernel::call(const Request& request, std::string_view data) {
         }
     }
     }
+    Waiting waiting{request, std::string(data), {}, 0, now};
+    if (!faults_.empty() && suffers(waiting, now)) return;
     if (request.op == Op::Transfer) {
         submit_transfer(request, data);
         Waiting transfer{request, {}, {}, 0, now};
         waiting_.emplace(request.thread, std::move(transfer));
         return;
     }
-    Waiting waiting{request, std::string(data), {}, 0, now};
     if (!attempt(request.thread, waiting, now)) {
         waiting_.insert_or_assign(request.thread, std::move(waiting));
     } else if (request.op == Op::Ioctl || request.op == Op::Close) {
@@ -171,7 +185,9 @@ bool BoardKernel::attempt(std::uint32_t thread, Waiting& waiting, Time now) {
         if (request.a != TCSANOW && !tty_.drained(now)) return false;
         std::string_view data = waiting.data;
         if (request.a == TCSAFLUSH) tty_.flush_input();
-        tty_.configure(read_object<termios>(data));
+        const auto wanted = read_object<termios>(data);
+        tty_.configure(faults_.empty() ? wanted : faults_.configure(now, tty_.settings(), wanted));
+        tty_.distort_rate(faults_.rate_factor());
         return done(0);
     }
     case Op::Flush:
@@ -304,6 +320,24 @@ void BoardKernel::submit_transfer(const Request& request, std::string_view data)
     adapter_.submit(std::move(transfer), request.now);
 }
 
+bool BoardKernel::suffers(Waiting& waiting, Time now) {
+    wire::Request& request = waiting.request;
+    int error = 0;
+    if (request.op == Op::Read) {
+        const CallDamage damage = faults_.read(now, request.a);
+        request.a = static_cast<std::uint32_t>(std::min<std::size_t>(request.a, damage.most));
+        error = damage.error;
+    } else if (request.op == Op::Write) {
+        const CallDamage damage = faults_.write(now, waiting.data.size());
+        waiting.data.resize(std::min(waiting.data.size(), damage.most));
+        error = damage.error;
+    } else if (request.op == Op::Transfer) {
+        error = faults_.transfer(now, addresses_of(request.b, waiting.data));
+    }
+    if (error != 0) finish(request.thread, -1, error, now);
+    return error != 0;
+}
+
 Time BoardKernel::wake_time(const Waiting& waiting) const {
     switch (waiting.request.op) {
     case Op::Poll:
@@ -324,6 +358,7 @@ Time BoardKernel::wake_time(const Waiting& waiting) const {
 
 Time BoardKernel::next_event() const {
     Time next = std::min({tty_.next_event(), adapter_.next_event(), next_frame()});
+    if (resumes_ < kNever) return std::min(next, resumes_);
     for (const auto& [thread, waiting] : waiting_)
         next = std::min(next, wake_time(waiting));
     return next;
@@ -360,6 +395,8 @@ bool BoardKernel::asks_for_input_only(const Waiting& waiting) {
 }
 
 void BoardKernel::attempt_all(Time now) {
+    if (now < resumes_ && resumes_ < kNever) return;
+    resumes_ = kNever;
     for (auto it = waiting_.begin(); it != waiting_.end();) {
         it = attempt(it->first, it->second, now) ? waiting_.erase(it) : std::next(it);
     }
@@ -427,6 +464,7 @@ void BoardKernel::reset() {
         adapter_.abandon(thread);
     waiting_.clear();
     finished_.clear();
+    resumes_ = kNever;
 }
 
 std::vector<FinishedCall> BoardKernel::take_finished() {

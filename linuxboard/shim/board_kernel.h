@@ -7,6 +7,7 @@
 #include "linuxboard/shim/devices/i2c_adapter.h"
 #include "linuxboard/shim/devices/tty_port.h"
 #include "linuxboard/shim/devices/video_device.h"
+#include "linuxboard/shim/linux_faults.h"
 #include "linuxboard/shim/spec.h"
 #include "linuxboard/shim/wire.h"
 
@@ -36,7 +37,8 @@ constexpr std::uint32_t slot_of(std::uint32_t thread) {
 
 class BoardKernel {
   public:
-    explicit BoardKernel(const LinuxSpec& spec);
+    /// `faults` outlives the kernel.
+    BoardKernel(const LinuxSpec& spec, LinuxFaults& faults);
 
     /// The next camera, in the order of the spec.
     void add_camera(std::unique_ptr<VideoDevice> camera) { cameras_.push_back(std::move(camera)); }
@@ -48,12 +50,16 @@ class BoardKernel {
     void deliver_uart(const cosim::UartFrame& frame, cosim::Time now);
     void deliver_i2c(const cosim::I2cPhase& phase, cosim::Time now);
     void hang_up(cosim::Time now);
+    /// Nobody runs until `until`, so that no call ends before; transfers on the bus go on.
+    void hold_calls(cosim::Time until) { resumes_ = until; }
     /// Handles everything due up to and including `now`.
     void advance(cosim::Time now);
     /// When advance() next has something to do.
     cosim::Time next_event() const;
     /// When a call that waits may end at the earliest, if nothing comes in before `message`.
     cosim::Time next_completion(cosim::Time message) const;
+    /// The library may answer reads and writes by itself.
+    bool lets_library_answer() const { return !faults_.watches_calls(); }
     /// A read and a write that ended at once at `now`, to which the kernel has been advanced.
     void was_read(std::size_t bytes) { tty_.read(bytes); }
     void was_written(std::string_view data, cosim::Time now) { tty_.write(data, now); }
@@ -105,6 +111,8 @@ class BoardKernel {
     VideoDevice& camera_of(int handle) { return *cameras_[files_[static_cast<std::size_t>(handle)].camera]; }
     cosim::Time next_frame() const;
     void attempt_all(cosim::Time now);
+    /// True if the call ended by a fault; may shorten it.
+    bool suffers(Waiting& waiting, cosim::Time now);
     void submit_transfer(const wire::Request& request, std::string_view data);
     void open_file(const wire::Request& request);
     void finish(std::uint32_t thread, std::int64_t result, int error, cosim::Time time,
@@ -113,6 +121,7 @@ class BoardKernel {
     std::int16_t tty_events() const;
     static bool asks_for_input_only(const Waiting& waiting);
 
+    LinuxFaults& faults_;
     TtyPort tty_;
     I2cAdapter adapter_;
     std::vector<std::unique_ptr<VideoDevice>> cameras_;
@@ -121,6 +130,7 @@ class BoardKernel {
     std::vector<FinishedCall> finished_;
     std::vector<cosim::UartFrame> frames_;
     std::vector<cosim::I2cPhase> phases_;
+    cosim::Time resumes_ = cosim::kNever;  ///< calls that wait are held until then; kNever: they are not
     bool has_tty_ = true;
     std::size_t i2c_files_ = 0;
     bool tty_opened_ = false;

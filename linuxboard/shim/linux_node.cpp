@@ -30,10 +30,11 @@ std::int64_t wall_nanoseconds() {
 
 LinuxNode::LinuxNode(LinuxSpec spec, std::unique_ptr<Scenery> scenery)
     : spec_(std::move(spec)),
+      faults_(spec_.faults),
       ports_{{"uart", cosim::PortKind::Uart}, {"i2c", cosim::PortKind::I2c}},
       launcher_(std::make_unique<Launcher>(spec_)),
       scenery_(std::move(scenery)),
-      kernel_(spec_) {
+      kernel_(spec_, faults_) {
     if (!spec_.cameras.empty()) {
         if (!scenery_) throw InputError("", "linux.cameras", "there is nothing that cameras could look at");
         ports_.push_back({"camera", cosim::PortKind::Signals});
@@ -117,10 +118,11 @@ Time LinuxNode::next_scheduled() const {
     if (next_restart_ < spec_.restarts.size()) next = std::min(next, spec_.restarts[next_restart_].time);
     if (next_signal_ < spec_.signals.size()) next = std::min(next, spec_.signals[next_signal_].time);
     if (next_hangup_ < spec_.hangups.size()) next = std::min(next, spec_.hangups[next_hangup_]);
-    return std::min({next, end_signal_at_, kill_at_});
+    return std::min({next, end_signal_at_, kill_at_, faults_.next()});
 }
 
 void LinuxNode::run_scheduled(Time now) {
+    if (faults_.next() <= now) suffer(now);
     if (next_hangup_ < spec_.hangups.size() && spec_.hangups[next_hangup_] <= now) {
         ++next_hangup_;
         kernel_.hang_up(now);
@@ -148,7 +150,7 @@ void LinuxNode::pace(Time time) {
 Time LinuxNode::next_action() const {
     Time next = next_scheduled();
     for (const auto& client : clients_) {
-        next = std::min(next, due(*client));
+        next = std::min(next, goes_on(*client));
         if (client->state == Client::State::Waiting) next = std::min(next, kernel_.next_event());
     }
     return next;

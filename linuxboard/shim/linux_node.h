@@ -15,9 +15,11 @@
 #include "cosim/core/node.h"
 #include "linuxboard/shim/board_kernel.h"
 #include "linuxboard/shim/launcher.h"
+#include "linuxboard/shim/linux_faults.h"
 #include "linuxboard/shim/process.h"
 #include "linuxboard/shim/spec.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -99,6 +101,7 @@ class LinuxNode : public cosim::Node, public cosim::Suspendable {
     void run_devices(cosim::Time now);
     cosim::Time next_scheduled() const;
     void run_scheduled(cosim::Time now);
+    void suffer(cosim::Time now);
     cosim::Time next_device_event() const;
     cosim::Time next_action() const;
     void collect(std::vector<cosim::Message>& outbox);
@@ -123,6 +126,8 @@ class LinuxNode : public cosim::Node, public cosim::Suspendable {
     Client* first(Client::State state);
     /// When `client` has something to do, as far as is known.
     static cosim::Time due(const Client& client);
+    /// The same, not before the program goes on after a pause.
+    cosim::Time goes_on(const Client& client) const { return std::max(due(client), paused_until_); }
     /// Answers a waiting process for which something has happened by `now`; false if there is none.
     bool wake_ready(cosim::Time now);
     void deal_out();
@@ -150,6 +155,7 @@ class LinuxNode : public cosim::Node, public cosim::Suspendable {
     void end_run(cosim::Time now, bool success, std::string reason, std::uint32_t programs);
 
     LinuxSpec spec_;
+    LinuxFaults faults_;
     std::vector<cosim::Port> ports_;
     std::unique_ptr<Launcher> launcher_;
     std::unique_ptr<Scenery> scenery_;
@@ -166,6 +172,7 @@ class LinuxNode : public cosim::Node, public cosim::Suspendable {
     cosim::Time end_signal_at_ = cosim::kNever;
     bool end_signal_sent_ = false;  ///< to the processes that handle it
     cosim::Time kill_at_ = cosim::kNever;
+    cosim::Time paused_until_ = 0;  ///< by a fault
     cosim::Time wound_up_ = 0;
     bool never_opened_ = false;
     std::vector<cosim::Message> inbox_;

@@ -24,6 +24,7 @@ void LinuxNode::show_ahead(const Client& client, wire::Reply& reply) const {
     reply.limit = std::max(reply.now, reply.limit);
     wire::TtyView& view = client.process->channel().tty;
     kernel_.tty().show(view);
+    if (!kernel_.lets_library_answer()) view.usable = 0;
     view.valid_until = std::min(message, kernel_.tty().next_input());
 }
 

@@ -37,7 +37,7 @@ void LinuxNode::end_run(Time now, bool success, std::string reason, std::uint32_
 void LinuxNode::program_ended(Time now) {
     kernel_.reset();
     if (end_signal_ != 0) return ended_winding_up(now);
-    const bool comes_back = next_restart_ < spec_.restarts.size();
+    const bool comes_back = next_restart_ < spec_.restarts.size() || faults_.restarts_after(now);
     std::string reason = fmt::format("{} {}", spec_.program, end_);
     const bool opened = kernel_.tty_was_opened() || kernel_.i2c_was_opened() || kernel_.camera_was_opened();
     if (!opened) {
@@ -159,6 +159,7 @@ std::string LinuxNode::finish() {
             warn(std::move(line));
     }
     report["warnings"] = warnings_;
+    if (!faults_.empty()) report["faults"] = cosim::fault_results(faults_.carried(), until_);
     return report.dump();
 }
 

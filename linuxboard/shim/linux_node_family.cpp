@@ -66,8 +66,8 @@ void LinuxNode::deal_out() {
 
 bool LinuxNode::wake_ready(Time now) {
     deal_out();
-    const auto ready = std::find_if(clients_.begin(), clients_.end(), [now](const auto& client) {
-        return client->state == Client::State::Waiting && due(*client) <= now;
+    const auto ready = std::find_if(clients_.begin(), clients_.end(), [this, now](const auto& client) {
+        return client->state == Client::State::Waiting && goes_on(*client) <= now;
     });
     if (ready == clients_.end()) return false;
     answer(**ready, now);

@@ -55,16 +55,16 @@ bool LinuxNode::step() {
     Client* const asking = first(Client::State::Asking);
     Client* const waiting = first(Client::State::Waiting);
     Time next = scheduled;
-    if (asking != nullptr) next = std::min(next, asking->request.now);
+    if (asking != nullptr) next = std::min(next, goes_on(*asking));
     // A process that asks takes in what happened at the devices when it is handled.
     if (asking == nullptr || waiting != nullptr) next = std::min(next, next_device_event());
-    if (waiting != nullptr) next = std::min(next, due(*waiting));
+    if (waiting != nullptr) next = std::min(next, goes_on(*waiting));
     if (next >= until_) return false;
     pace(next);
     if (scheduled <= next) {
         run_devices(next);
         run_scheduled(next);
-    } else if (asking != nullptr && asking->request.now <= next) {
+    } else if (asking != nullptr && goes_on(*asking) <= next) {
         handle_request(*asking);
     } else {
         run_devices(next);
@@ -74,6 +74,7 @@ bool LinuxNode::step() {
 }
 
 void LinuxNode::handle_request(Client& client) {
+    client.request.now = std::max(client.request.now, paused_until_);
     const Time now = client.request.now;
     run_devices(now);
     switch (client.request.op) {
@@ -113,7 +114,9 @@ void LinuxNode::answer(Client& client, Time now) {
         reply.changed = 1;
         client.woken_at = kNever;
     }
-    const std::vector<FinishedCall> calls = std::exchange(client.finished, {});
+    std::vector<FinishedCall> calls = std::exchange(client.finished, {});
+    for (FinishedCall& call : calls)
+        call.header.time = std::max(call.header.time, std::min(now, paused_until_));
     reply.count = static_cast<std::uint32_t>(calls.size());
     client.answered = now;
     client.process->reply(reply, calls, client.passed);

@@ -195,6 +195,8 @@ LinuxSpec parse_linux_spec(std::string_view text) {
     object.read("programs", spec.programs);
     object.read("watchdog_s", spec.watchdog_s);
     object.read("shim", spec.shim);
+    if (const json* faults = object.find("faults"))
+        spec.faults = cosim::faults_from_json(nlohmann::ordered_json::parse(faults->dump()));
     object.finish();
     if (spec.program.empty()) throw InputError("", "linux.program", "no program is given");
     if (spec.host_name.size() >= wire::kNameLength)

@@ -2,6 +2,7 @@
 // What a scenario says of one Linux program: the JSON text from which its node is made.
 
 #include "cosim/core/time.h"
+#include "cosim/faults/fault_json.h"
 #include "linuxboard/shim/devices/tty_port.h"
 #include "linuxboard/shim/wire.h"
 
@@ -70,6 +71,7 @@ struct LinuxSpec {
     std::uint32_t programs = 1;  ///< of the run: the last of so many to end well ends it
     double watchdog_s = 5.0;     ///< wall-clock seconds a program may compute without letting time pass
     bool ask_always = false;     ///< no key; for tests: the library answers nothing by itself
+    std::vector<cosim::CarriedFault> faults;
     std::string shim;            ///< the preloaded library; empty: the one built with this program
 };
 

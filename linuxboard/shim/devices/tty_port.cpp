@@ -40,7 +40,7 @@ void TtyPort::hang_up() {
 
 void TtyPort::deliver(const UartFrame& frame, Time delivered) {
     if (!is_open() || hung_up_ || (settings_.c_cflag & CREAD) == 0) return;
-    const protocols::UartReceiver receiver = receiver_of(settings_, ppm_);
+    const protocols::UartReceiver receiver = receiver_of(settings_, rate_ppm_);
     if (receiver.bit_period == 0) return;
     for (const auto& character : protocols::sample_frame(frame, receiver, receiver_ready_)) {
         receiver_ready_ = character.time;
@@ -79,7 +79,7 @@ void TtyPort::advance(Time now, std::vector<UartFrame>& sent) {
     while (can_send() && next_frame(0) <= now) {
         const Output next = output_.front();
         output_.pop_front();
-        const protocols::UartReceiver format = receiver_of(settings_, ppm_);
+        const protocols::UartReceiver format = receiver_of(settings_, rate_ppm_);
         UartFrame frame;
         frame.start = std::max({next.not_before, line_free_, released_});
         frame.bit_period = format.bit_period;
@@ -105,7 +105,7 @@ Time TtyPort::fifo_due() const {
     const auto level = static_cast<std::size_t>(trigger_);
     const Time full = arriving_.size() >= level ? arriving_[level - 1].time : kNever;
     if (trigger_ == 1) return next_tick(full);
-    const protocols::UartReceiver format = receiver_of(settings_, ppm_);
+    const protocols::UartReceiver format = receiver_of(settings_, rate_ppm_);
     const int bits = 2 + format.data_bits + (format.parity != 0 ? 1 : 0);
     const Time pause = kTimeoutCharacters * bits * format.bit_period;
     Time idle = kNever;

@@ -36,7 +36,7 @@ class TtyPort {
     /// `ppm` is the error of the board's clock; `trigger` the receive FIFO's level, 1 hands on every
     /// character. With `batch` above 0 what is received is handed on at whole multiples of it.
     explicit TtyPort(double ppm = 0.0, int trigger = kTrigger, cosim::Time batch = 0)
-        : ppm_(ppm), trigger_(trigger), batch_(batch) {}
+        : ppm_(ppm), rate_ppm_(ppm), trigger_(trigger), batch_(batch) {}
 
     void open();
     /// The last close: what is written still goes out, what is received is dropped from now on.
@@ -85,6 +85,8 @@ class TtyPort {
 
     const termios& settings() const { return settings_; }
     void configure(const termios& settings);
+    /// The bit rate is another than the one set, by so much beside the clock's own error.
+    void distort_rate(double factor) { rate_ppm_ = ppm_ + (1e6 + ppm_) * (factor - 1.0); }
     void flush_input() { discipline_.discard(); }
     void flush_output();
     void stop_output() { stopped_ = true; }
@@ -98,7 +100,7 @@ class TtyPort {
     /// The driver's first tick at or after `time`.
     cosim::Time next_tick(cosim::Time time) const;
     void take(const protocols::ReceivedCharacter& character);
-    bool can_send() const { return !output_.empty() && !stopped_ && bit_period(settings_, ppm_) != 0; }
+    bool can_send() const { return !output_.empty() && !stopped_ && bit_period(settings_, rate_ppm_) != 0; }
 
     struct Arrival {
         cosim::Time time = 0;
@@ -111,6 +113,7 @@ class TtyPort {
     };
 
     double ppm_;
+    double rate_ppm_;  ///< of the rate set, the clock's error included
     int trigger_;
     cosim::Time batch_;
     termios settings_ = initial_termios();
