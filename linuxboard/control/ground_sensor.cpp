@@ -1,5 +1,7 @@
 #include "linuxboard/control/ground_sensor.h"
 
+#include "linuxboard/control/i2c_device.h"
+
 #include <cerrno>
 #include <cstdint>
 #include <cstring>
@@ -20,7 +22,8 @@ constexpr unsigned long kAddress = 0x60;
 GroundSensor::GroundSensor(const std::string& bus) {
     descriptor_ = ::open(bus.c_str(), O_RDWR | O_CLOEXEC);
     if (descriptor_ < 0) throw std::runtime_error(bus + ": " + std::strerror(errno));
-    if (::ioctl(descriptor_, I2C_SLAVE, kAddress) < 0) {
+    if (::ioctl(descriptor_, I2C_SLAVE, kAddress) < 0 ||
+        ::ioctl(descriptor_, I2C_TIMEOUT, kI2cPatience) < 0) {
         const std::string reason = bus + ": expected an I2C bus: " + std::strerror(errno);
         ::close(descriptor_);
         throw std::runtime_error(reason);

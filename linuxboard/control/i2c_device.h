@@ -6,6 +6,10 @@
 
 namespace puckloop::control {
 
+/// I2C_TIMEOUT in units of 10 ms, of each message. The adapter's own is a second; a bus that hangs would keep
+/// the control loop for as long, and the robot driving. A board's longest stretch is some milliseconds.
+inline constexpr unsigned long kI2cPatience = 3;
+
 struct I2cMessage {
     bool read = false;
     std::span<std::uint8_t> bytes;  ///< to write, or to fill
