@@ -83,6 +83,13 @@ void check_ending(const Scenario& scenario) {
     if (!scenario.duration && !any_program)
         throw InputError(scenario.file.string(), "[run]", "nothing ends this run",
                          "duration = \"60 s\", a robot with a [robot.linux] program, or --duration");
+    const bool outlived = std::any_of(scenario.faults.begin(), scenario.faults.end(), [](const auto& fault) {
+        return fault.kind == "kill" && fault.parameters.text("run") == "goes_on";
+    });
+    if (!scenario.duration && outlived)
+        throw InputError(scenario.file.string(), "[run]",
+                         "nothing ends this run once a fault killed its program",
+                         "duration = \"60 s\", --duration, or run = \"ends\" of the fault");
 }
 
 }  // namespace puckloop::scenarios

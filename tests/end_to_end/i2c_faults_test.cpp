@@ -176,5 +176,12 @@ TEST_CASE("bad I2C and Linux faults are refused in one line") {
     refused("stop link=robot0.i2c position=0", "START");
     refused("read_error node=robot0.linux errno=EMAGIC", "errno");
     refused("pause node=robot0.linux at=1s", "time");
+    const auto endless = bench.file("endless.toml", [] {
+        std::string text = scenario();
+        return text.erase(0, text.find("[arena]"));
+    }());
+    const Ended ended = bench.run("bad", {endless, "--fault", "kill node=robot0.linux at=1s run=goes_on"});
+    CHECK(ended.status == 2);
+    CHECK_THAT(ended.err, Contains("nothing ends this run"));
     refused("pause node=robot0.pic at=1s time=1s", "robot0.pic");
 }
