@@ -53,7 +53,9 @@ double read_byte(Reader& reader, const ParameterInfo& parameter) {
 }
 
 void read_parameter(Reader& reader, const ParameterInfo& parameter, FaultSpec& fault) {
-    if (!reader.has(parameter.key) && !parameter.required) return;
+    // A byte that is missing is check_fault()'s to refuse.
+    const bool optional = !parameter.required || parameter.unit == Unit::Byte;
+    if (!reader.has(parameter.key) && optional) return;
     if (parameter.unit == Unit::Text) {
         std::string text = reader.text(parameter.key);
         std::vector<std::string> choices;
