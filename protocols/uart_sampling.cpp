@@ -83,6 +83,11 @@ std::vector<ReceivedCharacter> sample_frame(const UartFrame& frame, const UartRe
     std::vector<ReceivedCharacter> characters;
     Time edge = next_falling_edge(frame, ready);
     while (edge != cosim::kNever) {
+        const Time middle = edge + receiver.bit_period / 2;
+        if (line_is_mark(frame, middle)) {  // too short for a start bit
+            edge = next_falling_edge(frame, middle);
+            continue;
+        }
         characters.push_back(take_character(frame, receiver, edge));
         edge = next_falling_edge(frame, characters.back().time);
     }

@@ -78,9 +78,11 @@ std::vector<KindInfo> uart_kinds() {
         kind("truncate", Style::Each, FaultKind::Truncate, {required("keep", Unit::Integer, 0, 1e6)}),
         // Levels
         kind("parity", Style::Each, FaultKind::Parity, {choice("mode", "wrong|mark|space")}),
+        kind("stop", Style::Each, FaultKind::Stop),
         kind("false_start", Style::Times, FaultKind::FalseStart, {required("width", Unit::Time, 1e-9, 1)}),
         kind("break", Style::Times, FaultKind::Break, {optional("length", Unit::Time, 1e-6, 10)}),
         kind("stuck", Style::Hold, FaultKind::Stuck, {choice("level", "low|high")}),
+        kind("invert", Style::Hold, FaultKind::Invert),
         // Timing
         kind("delay", Style::Each, FaultKind::Delay,
              {required("delay", Unit::Time, 0, kLongest), {"jitter", Unit::Time, 0, kLongest, 0}}),
@@ -94,6 +96,7 @@ std::vector<KindInfo> uart_kinds() {
         kind("stall", Style::Hold, FaultKind::Stall),
         // Wiring
         kind("disconnect", Style::Hold, FaultKind::Disconnect),
+        kind("unplug", Style::Hold, FaultKind::Unplug),
         kind("swapped_wires", Style::Hold, FaultKind::SwappedWires),
     };
 }

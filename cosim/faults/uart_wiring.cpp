@@ -3,6 +3,7 @@
 #include "cosim/faults/frame_fault.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace puckloop::cosim {
 
@@ -34,29 +35,36 @@ class Unplug : public LinkFault {
             const bool out_before = start >= begin_, back_after = end <= end_;
             delivery.fault = out_before && back_after ? FaultKind::Unplug : FaultKind::Torn;
             if (delivery.fault != FaultKind::Torn) continue;
-            tear(*frame);
+            if (!tear(*frame)) {
+                delivery.fault = FaultKind::Unplug;
+                continue;
+            }
             delivery.message.time = later(delivery.message.time, frame->start - start);
         }
     }
 
   private:
-    /// Levels are high while the plug is out; to the bit.
-    void tear(UartFrame& frame) const {
-        if (frame.is_break) {
-            // Low for the part that is left of it.
-            const Time from = std::max(frame.start, frame.start >= begin_ ? end_ : frame.start);
-            const Time to = std::min(frame.start + frame_time(frame), frame.start < begin_ ? begin_ : kNever);
-            frame.bit_period = std::max<Time>(1, (to - from) / bits_of(frame));
-            frame.start = from;
-            return;
-        }
-        const auto rests = [&](int bit) {
+    /// Levels are high while the plug is out, to the bit. False: nothing low is left.
+    bool tear(UartFrame& frame) const {
+        const int bits = bits_of(frame) - frame.stop_bits;
+        unsigned levels = (frame.data << 1 | frame.parity_bit << (1 + frame.data_bits)) & ((1u << bits) - 1);
+        if (frame.is_break != 0) levels = 0;
+        for (int bit = 0; bit < bits; ++bit) {
             const Time middle = frame.start + frame.bit_period * bit + frame.bit_period / 2;
-            return middle >= begin_ && middle < end_;
-        };
-        for (int bit = 0; bit < frame.data_bits; ++bit)
-            if (rests(1 + bit)) frame.data = static_cast<std::uint16_t>(frame.data | 1u << bit);
-        if (frame.parity != 0 && rests(1 + frame.data_bits)) frame.parity_bit = 1;
+            if (middle >= begin_ && middle < end_) levels |= 1u << bit;
+        }
+        const int start = std::countr_one(levels);  // the first that a receiver can take for a start bit
+        if (start >= bits) return false;
+        levels >>= start + 1;
+        levels |= ~0u << (bits - start - 1);  // at rest behind the frame
+        if (start == 0 && frame.parity != 0)
+            frame.parity_bit = levels >> frame.data_bits & 1;
+        else if (start != 0)
+            frame.parity = frame.parity_bit = 0;
+        frame.start += frame.bit_period * start;
+        frame.data = static_cast<std::uint16_t>(levels & ((1u << frame.data_bits) - 1));
+        frame.is_break = 0;
+        return true;
     }
 
     Time begin_, end_;
