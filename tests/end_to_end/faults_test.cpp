@@ -56,11 +56,16 @@ TEST_CASE("lost, garbled and late bytes do not end the mission") {
 
 TEST_CASE("faults are the same in one process and in many") {
     const Workbench bench;
-    const std::string scenario = bench.hello(fault("kind = \"drop\"\nprobability = 0.02\n") +
-                                             fault("kind = \"flip\"\nprobability = 0.02\n"));
+    const std::string scenario = bench.hello(
+        fault("kind = \"drop\"\nprobability = 0.02\n") + fault("kind = \"flip\"\nprobability = 0.02\n") +
+        fault("kind = \"insert\"\np = 0.01\nr = 0.3\n") + fault("kind = \"swap\"\nevery = 61\n") +
+        fault("kind = \"unplug\"\nbegin = \"3 s\"\nfor = \"50 ms\"\n") +
+        fault("kind = \"delay\"\ndelay = \"1 ms\"\njitter = \"1 ms\"\nbegin = \"3.5 s\"\n"));
     REQUIRE(bench.run("one", {scenario, "--duration", "5", "--in-process"}).status == 0);
     REQUIRE(bench.run("many", {scenario, "--duration", "5"}).status == 0);
     check_same_run(bench, "one", "many");
+    CHECK(bench.report("one")["faults"] == bench.report("many")["faults"]);
+    CHECK(text_of(bench.out("one") / "faults.csv") == text_of(bench.out("many") / "faults.csv"));
 }
 
 TEST_CASE("a run whose fault never fired has failed, unless that is allowed") {
@@ -80,14 +85,13 @@ TEST_CASE("a run whose fault never fired has failed, unless that is allowed") {
 
 TEST_CASE("a fault of the command line is one of the scenario, with the same evidence") {
     const Workbench bench;
-    const std::string plain = bench.hello();
+    REQUIRE(bench
+                .run("words", {bench.hello(), "--duration", "4", "--fault",
+                               "drop link=robot0.uart from=robot0.linux at=2s count=3 every=5 skip=7"})
+                .status == 0);
     const std::string table =
         bench.hello(fault("from = \"robot0.linux\"\nat = \"2 s\"\ncount = 3\nevery = 5\nskip = 7\n"));
     REQUIRE(bench.run("table", {table, "--duration", "4", "--in-process"}).status == 0);
-    REQUIRE(bench
-                .run("words", {plain, "--duration", "4", "--fault",
-                               "drop link=robot0.uart from=robot0.linux at=2s count=3 every=5 skip=7"})
-                .status == 0);
     const auto a = bench.report("table"), b = bench.report("words");
     CHECK(a["trace_sha256"] == b["trace_sha256"]);
     CHECK(a["faults"] == b["faults"]);
@@ -105,6 +109,7 @@ TEST_CASE("a fault of the command line is one of the scenario, with the same evi
         }
     CHECK(found == 3);
     CHECK(firings[1]["index"].get<int>() == firings[0]["index"].get<int>() + 5);
+    const std::string plain = bench.hello();
     for (const char* words : {"", "drop", "drop link", "drop link=robot0.uart link=robot0.uart",
                               "drop link=robot1.uart", "drop link=robot0.uart at=2", "dorp link=robot0.uart",
                               "drop link=robot0.uart factor=2", "rate link=robot0.uart", "drop =3"}) {
