@@ -1,6 +1,7 @@
 #include "linuxboard/control/rab_board.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <vector>
 
 namespace puckloop::control {
@@ -62,6 +63,7 @@ bool RabBoard::transfer(std::span<const I2cMessage> messages) {
             failed_in_a_row_ = 0;
             return true;
         }
+        if (error == ETIMEDOUT) break;  // a bus that hangs: trying again at once only keeps the caller
     }
     ++counters_.failures;
     ++failed_in_a_row_;

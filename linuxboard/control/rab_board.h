@@ -7,7 +7,7 @@
 //  * Different data for different emitters is stored first and sent once, not once an emitter.
 //  * An operation is one transfer with repeated starts: the robot's PIC, the other master of the bus, cannot
 //    move the board's register pointer in between.
-//  * Failed transfers are tried again a few times and counted, never for ever.
+//  * Failed transfers are tried again a few times and counted, never for ever; those that timed out are not.
 
 #include "linuxboard/control/clock.h"
 #include "linuxboard/control/i2c_device.h"

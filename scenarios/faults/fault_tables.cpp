@@ -94,7 +94,7 @@ FaultPlace find_place(Reader& reader, const Scenario& scenario) {
     if (by_node)
         reader.fail(key, fmt::format("there is no node '{}' that can suffer a fault", name),
                     known.empty() ? "a link" : known);
-    reader.fail(key, fmt::format("there is no UART link '{}'", name),
+    reader.fail(key, fmt::format("there is no link '{}' that can suffer a fault", name),
                 known.empty() ? "a robot with a [robot.linux] program" : known);
 }
 

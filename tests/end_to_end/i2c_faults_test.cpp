@@ -85,7 +85,7 @@ TEST_CASE("every I2C fault: the own driver and firmware go on within their bound
         {"flip address=0x20 probability=0.05 for=500ms", 0.5},
         {fmt::format("stretch address=0x20 position={} time={}us", below(2), 500 + below(5000))},
         {"sda time=200ms", 0.2, kAskedAgain},
-        {"scl time=200ms", 0.2, kAskedAgain},
+        {"scl time=600ms", 0.6, kAskedAgain},
         {fmt::format("lose_arbitration phase={} time={}us", below(2) == 0 ? "address" : "write",
                      100 + below(5000))},
         {fmt::format("stop position={}", 1 + below(2))},

@@ -5,6 +5,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <cerrno>
+
 using namespace puckloop::control;
 
 namespace {
@@ -24,6 +26,22 @@ struct Bench {
 using Writes = std::vector<std::pair<std::uint8_t, std::uint8_t>>;
 
 }  // namespace
+
+TEST_CASE("a transfer that timed out is not tried again") {
+    SimulatedClock clock;
+    SimulatedRab device(clock);
+    RabBoard board(device, clock, {.bytes = 2});
+    device.refuse = 1;
+    device.error = ETIMEDOUT;
+    CHECK_FALSE(board.repeat_range());
+    CHECK(board.counters().retries == 0);
+    CHECK(board.last_error() == ETIMEDOUT);
+    CHECK(board.repeat_range());
+    device.refuse = 1;
+    device.error = EREMOTEIO;
+    CHECK(board.repeat_range());
+    CHECK(board.counters().retries == 1);
+}
 
 TEST_CASE("the board is set up in ARGoS's order, with 20 ms around the darkness, and emptied") {
     Bench bench({.bytes = 3, .range = 0});

@@ -75,8 +75,8 @@ TEST_CASE("what a fault cannot be is refused by name") {
         CHECK_THAT(problem(words), Catch::Contains(part));
     };
     said("drop", "'link' is missing");
-    said("drop link=robot1.uart",
-         "there is no UART link 'robot1.uart' (expected robot0.uart, tam0.xbee, tam0.radio)");
+    said("drop link=robot1.uart", "there is no link 'robot1.uart' that can suffer a fault (expected "
+                                  "robot0.uart, robot0.i2c, tam0.xbee, tam0.radio)");
     said("drop node=robot0.pic2", "there is no node");
     said("drop link=robot0.uart node=x", "both a link and a node");
     said("dorp link=robot0.uart", "cannot suffer 'dorp' (expected one of drop");

@@ -121,7 +121,8 @@ TEST_CASE("what cannot be run is said with its line") {
     CHECK(problem_of(with_linux + "[[fault]]\nlink = \"robot0.uart\"\nbegin = \"5 s\"\nend = \"1 s\"\n")
               .find("window is empty") != std::string::npos);
     CHECK(problem_of(with_linux + "[[fault]]\nlink = \"robot1.uart\"\n")
-              .ends_with("fault 1: there is no UART link 'robot1.uart' (expected robot0.uart)"));
+              .ends_with("fault 1: there is no link 'robot1.uart' that can suffer a fault (expected "
+                         "robot0.uart, robot0.i2c)"));
     CHECK(problem_of(with_linux + "[[fault]]\nlink = \"robot0.uart\"\nbytes = [\"0x00\", \"300\"]\n")
               .find("'300' is not a byte") != std::string::npos);
     CHECK(problem_of(with_linux + "[[fault]]\nlink = \"robot0.uart\"\nbytes = []\n").find("bytes is empty") !=
