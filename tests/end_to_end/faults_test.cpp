@@ -57,10 +57,11 @@ TEST_CASE("lost, garbled and late bytes do not end the mission") {
 TEST_CASE("faults are the same in one process and in many") {
     const Workbench bench;
     const std::string scenario = bench.hello(
-        fault("kind = \"drop\"\nprobability = 0.02\n") + fault("kind = \"flip\"\nprobability = 0.02\n") +
-        fault("kind = \"insert\"\np = 0.01\nr = 0.3\n") + fault("kind = \"swap\"\nevery = 61\n") +
-        fault("kind = \"unplug\"\nbegin = \"3 s\"\nfor = \"50 ms\"\n") +
-        fault("kind = \"delay\"\ndelay = \"1 ms\"\njitter = \"1 ms\"\nbegin = \"3.5 s\"\n"));
+        fault("kind = \"drop\"\nprobability = 0.002\n") + fault("kind = \"flip\"\nprobability = 0.002\n") +
+        fault("kind = \"insert\"\np = 0.002\nr = 0.3\n") + fault("kind = \"swap\"\nevery = 211\n") +
+        fault("kind = \"unplug\"\nbegin = \"1.3 s\"\nfor = \"300 ms\"\n") +
+        fault(
+            "kind = \"delay\"\ndelay = \"1 ms\"\njitter = \"1 ms\"\nbegin = \"1.6 s\"\nprobability = 0.1\n"));
     REQUIRE(bench.run("one", {scenario, "--duration", "5", "--in-process"}).status == 0);
     REQUIRE(bench.run("many", {scenario, "--duration", "5"}).status == 0);
     check_same_run(bench, "one", "many");
