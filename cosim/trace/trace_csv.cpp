@@ -9,7 +9,8 @@
 
 namespace puckloop::cosim {
 
-TraceCsvSink::TraceCsvSink(const std::string& path) : path_(path), file_(std::fopen(path.c_str(), "we")) {
+TraceCsvSink::TraceCsvSink(const std::string& path, Rows rows)
+    : path_(path), rows_(rows), file_(std::fopen(path.c_str(), "we")) {
     if (!file_) throw RunError(fmt::format("{}: cannot write: {}", path_, std::strerror(errno)));
 }
 
@@ -32,8 +33,10 @@ void TraceCsvSink::put(const std::string& line) {
 void TraceCsvSink::begin(const std::vector<LinkSpec>& links) {
     senders_.clear();
     for (const LinkSpec& link : links) {
-        senders_.push_back({sender_columns(link.name, link.a.node), link.record_from_a, {}});
-        senders_.push_back({sender_columns(link.name, link.b.node), link.record_from_b, {}});
+        senders_.push_back(
+            {sender_columns(link.name, link.a.node), link.record_from_a || rows_ == Rows::All, {}});
+        senders_.push_back(
+            {sender_columns(link.name, link.b.node), link.record_from_b || rows_ == Rows::All, {}});
         for (std::size_t id = 0; id < link.signal_names.size(); ++id)
             for (Sender* one : {&senders_.back() - 1, &senders_.back()})
                 one->signals.push_back(signal_column(link.signal_names[id], static_cast<std::uint16_t>(id)));

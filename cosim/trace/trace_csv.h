@@ -15,8 +15,9 @@ namespace puckloop::cosim {
 /// what was written stays, and nothing more is tried.
 class TraceCsvSink : public TraceSink {
   public:
-    /// Creates or replaces the file; throws RunError.
-    explicit TraceCsvSink(const std::string& path);
+    enum class Rows : std::uint8_t { Wanted, All };
+    /// Creates or replaces the file; throws RunError. `All`: also of links that do not ask to be recorded.
+    explicit TraceCsvSink(const std::string& path, Rows rows = Rows::Wanted);
     ~TraceCsvSink() override;
     TraceCsvSink(const TraceCsvSink&) = delete;
     TraceCsvSink& operator=(const TraceCsvSink&) = delete;
@@ -30,6 +31,7 @@ class TraceCsvSink : public TraceSink {
     [[noreturn]] void fail();
 
     std::string path_;
+    Rows rows_;
     std::FILE* file_ = nullptr;
     bool failed_ = false;
     /// What is the same in all that one end of a link sends.

@@ -14,6 +14,7 @@
 #include "tools/run/run_scenario.h"
 #include "tools/run/setup.h"
 #include "tools/run/status_line.h"
+#include "tools/trace/export.h"
 
 #include <fmt/format.h>
 
@@ -56,6 +57,20 @@ double time_of(const std::string& text) {
     throw InputError("", "--at", fmt::format("'{}' is no time within a run", text), "such as 40s");
 }
 
+void export_trace(const std::filesystem::path& out, const std::vector<std::string>& formats) {
+    if (formats.empty()) return;
+    const RecordedTrace trace(out, {});
+    for (const std::string& format : formats) {
+        const std::string file = (out / ("trace." + format)).string();
+        if (format == "sr")
+            export_sr(trace, file, 0);
+        else
+            write_output(file, [&](std::ostream& to) {
+                format == "vcd" ? export_vcd(trace, to) : export_pcapng(trace, to);
+            });
+    }
+}
+
 int run(Options& options) {
     RunRequest& request = options.request;
     if (options.list_parameters) {
@@ -83,6 +98,7 @@ int run(Options& options) {
     const cosim::Outcome outcome = run_scenario(
         setup, request, [&](const cosim::Progress& progress) { status_line.show(progress); }, &interrupt);
     status_line.clear();
+    export_trace(setup.out, request.trace_formats);
     if (options.json)
         fmt::print("{}\n", (setup.out / "report.json").string());
     else
@@ -142,6 +158,12 @@ void declare_run(Command& app, int& status) {
     command->add_option("--seed", request.seed, "seed of every random stream")
         ->check(count_up_to(~std::uint64_t{0}))
         ->type_name("N");
+    command
+        ->add_option("--trace-format", request.trace_formats,
+                     "write the trace also as sr (sigrok), pcapng or vcd when the run ends (repeatable)")
+        ->allow_extra_args(false)
+        ->check(one_of({"sr", "pcapng", "vcd"}));
+    command->add_flag("--record", request.record, "write every message to record.csv, for `puckloop replay`");
     command->add_option("--model", request.overlay, "overlay of physical parameters")->type_name("OVERLAY");
     command->add_option("--out", request.out, "folder for the results (default: out/<scenario>)")
         ->type_name("DIR");

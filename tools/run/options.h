@@ -28,7 +28,9 @@ struct RunRequest {
     std::vector<std::string> faults;  ///< one line each: "drop link=robot0.uart at=2s"
     unsigned threads = 0;          ///< of this process with in_process; 0: as many as serve
     double stall_seconds = 10.0;
-    bool strict = false;  ///< a run with warnings has failed
+    bool record = false;                     ///< record.csv: every message, for `puckloop replay`
+    std::vector<std::string> trace_formats;  ///< forms of the trace beside trace.csv: sr, pcapng, vcd
+    bool strict = false;                     ///< a run with warnings has failed
 };
 
 }  // namespace puckloop::tools

@@ -18,6 +18,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
 #include <thread>
 
 namespace puckloop::tools {
@@ -83,10 +84,10 @@ void raise_descriptor_limit() {
 
 /// Every name that nodes and the run itself may give a file in the results folder.
 std::vector<std::string> result_files(const RunSetup& setup) {
-    std::vector<std::string> names{"report.json",    "report.json.part", "trace.csv",
-                                   "trajectory.csv", "trajectory.svg",   "sensors.csv",
-                                   "objects.csv",    "ir.csv",           "tams.csv",
-                                   "faults.csv"};
+    std::vector<std::string> names{"report.json",    "report.json.part", "trace.csv",   "trajectory.csv",
+                                   "trajectory.svg", "sensors.csv",      "objects.csv", "ir.csv",
+                                   "tams.csv",       "faults.csv",       "record.csv",  "trace.sr",
+                                   "trace.vcd",      "trace.pcapng"};
     for (const cosim::NodeSpec& node : setup.nodes)
         for (const char* kind : {".log", ".received"})
             names.push_back(node.name + kind);
@@ -144,6 +145,11 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
     cosim::Conductor conductor(setup.nodes, setup.links, setup.scenario.faults, options, make_node);
     cosim::TraceCsvSink trace((setup.out / "trace.csv").string());
     conductor.add_sink(trace);
+    std::optional<cosim::TraceCsvSink> record;
+    if (request.record) {
+        record.emplace((setup.out / "record.csv").string(), cosim::TraceCsvSink::Rows::All);
+        conductor.add_sink(*record);
+    }
     diary.started(conductor);
     cosim::Outcome outcome = conductor.run();
     if (outcome.reason == cosim::EndReason::Interrupted) {

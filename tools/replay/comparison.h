@@ -1,0 +1,45 @@
+#pragma once
+// What a node sends now against what it sent when it was recorded, link by link, in the order of sending.
+//
+// Rows that a fault of the recorded run harmed are compared as far as they show what was sent: a lost frame
+// wholly but for its fate, a changed or delayed one not in its content, and what the fault itself put on the
+// line is passed over.
+
+#include "cosim/trace/trace_row.h"
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+
+namespace puckloop::tools {
+
+struct ReplayDifference {
+    cosim::Time time = 0;
+    std::string link;
+    std::uint64_t message = 0;       ///< counted from 1 on this link
+    std::string recorded, replayed;  ///< rows of a trace; empty: no message
+};
+
+class SentComparison {
+  public:
+    void recorded(const cosim::TraceRow& row);
+    void replayed(const cosim::TraceRow& row);
+    /// The first difference in what arrives before `end`, once all before `end` was given.
+    std::optional<ReplayDifference> check(cosim::Time end);
+
+    std::uint64_t equal() const { return equal_; }
+
+  private:
+    struct Link {
+        std::deque<cosim::TraceRow> recorded, replayed;
+        std::uint64_t messages = 0;
+    };
+    std::optional<ReplayDifference> check(const std::string& name, Link& link, cosim::Time end);
+
+    std::map<std::string, Link> links_;
+    std::uint64_t equal_ = 0;
+};
+
+}  // namespace puckloop::tools

@@ -1,0 +1,133 @@
+#include "tools/replay/replay.h"
+
+#include "base/error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+namespace puckloop::tools {
+
+using cosim::LinkSpec;
+using cosim::Message;
+using cosim::Time;
+using cosim::TraceRow;
+
+namespace {
+
+constexpr Time kStride = cosim::kMillisecond;
+
+/// One of the node's ports and its link.
+struct Attached {
+    const LinkSpec* link = nullptr;
+    cosim::PortIndex port = 0;
+    Time flight = 0;
+};
+
+class Replay {
+  public:
+    Replay(cosim::Node& node, const std::vector<LinkSpec>& links)
+        : node_(node), by_port_(node.ports().size()) {
+        const auto ports = node.ports();
+        for (const LinkSpec& link : links)
+            for (const cosim::PortRef* end : {&link.a, &link.b}) {
+                if (end->node != node.name()) continue;
+                const auto port = std::find_if(ports.begin(), ports.end(),
+                                               [&](const cosim::Port& one) { return one.name == end->port; });
+                if (port == ports.end()) continue;
+                const auto index = static_cast<cosim::PortIndex>(port - ports.begin());
+                by_link_[link.name] = {&link, index, flight_time(link)};
+                by_port_[index] = by_link_[link.name];
+            }
+    }
+
+    void take(const TraceRow& row) {
+        if (row.time >= now_ + kStride && (inbox_.empty() || inbox_.back().time < row.time))
+            advance(row.time);
+        last_ = row.time;
+        const auto found = by_link_.find(row.link);
+        if (found == by_link_.end() || result_.difference) return;
+        if (row.from == node_.name())
+            sent_.recorded(row);
+        else if (!keeps_from_arriving(row.fault))
+            inbox_.push_back({row.time, found->second.port, payload_of(row, *found->second.link)});
+        ++rows_;
+    }
+
+    void advance(Time until) {
+        if (result_.difference) return;
+        result_.received += inbox_.size();
+        outbox_.clear();
+        node_.advance(until, inbox_, outbox_);
+        inbox_.clear();
+        now_ = until;
+        for (const Message& message : outbox_) {
+            const Attached& out = by_port_[message.port];
+            if (out.link == nullptr) continue;
+            sent_.replayed(row_of(message, out));
+        }
+        result_.difference = sent_.check(until);
+    }
+
+    ReplayResult end() {
+        if (!inbox_.empty() && inbox_.back().time == last_)
+            std::erase_if(inbox_, [this](const Message& message) { return message.time == last_; });
+        if (last_ > now_) advance(last_);
+        result_.equal = sent_.equal();
+        result_.until = now_;
+        return result_;
+    }
+    bool done() const { return result_.difference.has_value(); }
+    std::uint64_t rows() const { return rows_; }
+
+  private:
+    static cosim::Payload payload_of(const TraceRow& row, const LinkSpec& link) {
+        const auto* signal = std::get_if<cosim::Signal>(&row.payload);
+        if (signal == nullptr || row.signal.empty()) return row.payload;
+        const auto& names = link.signal_names;
+        const auto found = std::find(names.begin(), names.end(), row.signal);
+        if (found == names.end())
+            throw InputError("", link.name, fmt::format("the record has a signal '{}'", row.signal),
+                             "a record of this scenario");
+        return cosim::Signal{static_cast<std::uint16_t>(found - names.begin()), signal->value};
+    }
+
+    TraceRow row_of(const Message& message, const Attached& out) const {
+        TraceRow row{delivery_time(message, out.flight, out.link->latency),
+                     out.link->name,
+                     std::string(node_.name()),
+                     {},
+                     cosim::FaultKind::None,
+                     message.payload};
+        if (const auto* signal = std::get_if<cosim::Signal>(&message.payload))
+            if (signal->id < out.link->signal_names.size()) row.signal = out.link->signal_names[signal->id];
+        return row;
+    }
+
+    cosim::Node& node_;
+    std::map<std::string, Attached> by_link_;
+    std::vector<Attached> by_port_;
+    SentComparison sent_;
+    std::vector<Message> inbox_, outbox_;
+    Time now_ = 0, last_ = 0;
+    std::uint64_t rows_ = 0;
+    ReplayResult result_;
+};
+
+}  // namespace
+
+ReplayResult replay(cosim::Node& node, const std::vector<LinkSpec>& links, const RecordedTrace& record) {
+    Replay run(node, links);
+    RecordedTrace::Cursor cursor(record);
+    while (const auto row = cursor.next()) {
+        run.take(*row);
+        if (run.done()) break;
+    }
+    if (run.rows() == 0)
+        throw InputError(record.file().string(), "", fmt::format("holds no message of {}", node.name()),
+                         "a record of this scenario");
+    return run.end();
+}
+
+}  // namespace puckloop::tools

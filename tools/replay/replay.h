@@ -1,0 +1,27 @@
+#pragma once
+// One node of a recorded run, executed alone: it gets what it got then, at the same times, and what it sends
+// is compared with what it sent.
+
+#include "cosim/core/link.h"
+#include "cosim/core/node.h"
+#include "tools/replay/comparison.h"
+#include "tools/trace/recorded_trace.h"
+
+#include <optional>
+#include <vector>
+
+namespace puckloop::tools {
+
+struct ReplayResult {
+    std::uint64_t received = 0;                  ///< messages handed to the node
+    std::uint64_t equal = 0;                     ///< messages sent as recorded
+    cosim::Time until = 0;                       ///< how far the node was executed
+    std::optional<ReplayDifference> difference;  ///< where it ended, if there was one
+};
+
+/// `record` must hold every message of the node's links (a run's record.csv). Throws InputError for a record
+/// that cannot be read or holds nothing of the node.
+ReplayResult replay(cosim::Node& node, const std::vector<cosim::LinkSpec>& links,
+                    const RecordedTrace& record);
+
+}  // namespace puckloop::tools
