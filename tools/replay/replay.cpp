@@ -47,12 +47,13 @@ class Replay {
             advance(row.time);
         last_ = row.time;
         const auto found = by_link_.find(row.link);
-        if (found == by_link_.end() || result_.difference) return;
+        if (found == by_link_.end()) return;
+        ++rows_;
+        if (result_.difference) return;
         if (row.from == node_.name())
             sent_.recorded(row);
         else if (!keeps_from_arriving(row.fault))
             inbox_.push_back({row.time, found->second.port, payload_of(row, *found->second.link)});
-        ++rows_;
     }
 
     void advance(Time until) {
@@ -120,9 +121,10 @@ class Replay {
 ReplayResult replay(cosim::Node& node, const std::vector<LinkSpec>& links, const RecordedTrace& record) {
     Replay run(node, links);
     RecordedTrace::Cursor cursor(record);
+    // One row of the node is wanted before a difference counts: the record may be another scenario's.
     while (const auto row = cursor.next()) {
         run.take(*row);
-        if (run.done()) break;
+        if (run.done() && run.rows() > 0) break;
     }
     if (run.rows() == 0)
         throw InputError(record.file().string(), "", fmt::format("holds no message of {}", node.name()),

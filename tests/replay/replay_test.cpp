@@ -1,0 +1,196 @@
+// Boards of real runs, executed alone: bit for bit, and with changes drawn at random found at their place.
+
+#include "../scratch.h"
+#include "cosim/trace/trace_csv.h"
+
+#include <catch2/catch.hpp>
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdio>
+#include <fstream>
+#include <random>
+#include <vector>
+
+#include <sys/wait.h>
+
+using namespace puckloop;
+using namespace puckloop::cosim;
+
+namespace {
+
+struct Called {
+    int status = -1;
+    std::string out;
+};
+
+Called call(const std::string& arguments) {
+    std::FILE* pipe = popen(fmt::format("{} {} 2>&1", PUCKLOOP_PROGRAM, arguments).c_str(), "r");
+    REQUIRE(pipe != nullptr);
+    Called called;
+    std::array<char, 4096> buffer{};
+    while (const std::size_t got = std::fread(buffer.data(), 1, buffer.size(), pipe))
+        called.out.append(buffer.data(), got);
+    called.status = WEXITSTATUS(pclose(pipe));
+    return called;
+}
+
+std::string scenario(const char* name) {
+    return fmt::format("{}/scenarios/{}.toml", PUCKLOOP_SOURCE, name);
+}
+
+std::string record(const char* name, double duration, const std::string& options = {},
+                   const std::string& folder = "record") {
+    const std::string out = (tests::scratch_path("puckloop_replay") / folder).string();
+    const Called run = call(
+        fmt::format("run {} --duration {} --record --out {} {}", scenario(name), duration, out, options));
+    INFO(run.out);
+    REQUIRE(run.status <= 1);  // 1: a mutant may make a run fail; what it did until then is recorded
+    return out;
+}
+
+std::vector<std::string> lines_of(const std::string& file) {
+    std::ifstream in(file);
+    std::vector<std::string> lines;
+    for (std::string line; std::getline(in, line);)
+        lines.push_back(line);
+    REQUIRE(!lines.empty());
+    return lines;
+}
+
+bool is_from(const std::string& line, const std::string& node) {
+    const std::size_t link = line.find(','), from = line.find(',', link + 1);
+    return line.compare(from + 1, node.size() + 1, node + ",") == 0;
+}
+
+std::string time_of(const std::string& line) {
+    return line.substr(0, line.find(','));
+}
+
+/// A HEX file with one bit of one data byte inverted, its check sum set right.
+bool mutate(const std::string& from, const std::string& to, std::mt19937& random) {
+    std::vector<std::string> lines = lines_of(from);
+    std::string& line = lines[random() % lines.size()];
+    const auto byte = [&](std::size_t n) {
+        return static_cast<unsigned>(std::stoul(line.substr(1 + 2 * n, 2), nullptr, 16));
+    };
+    if (line.size() < 11 || byte(3) != 0 || byte(0) == 0) return false;
+    const std::size_t at = 4 + random() % byte(0);
+    line.replace(1 + 2 * at, 2, fmt::format("{:02X}", byte(at) ^ (1U << random() % 8)));
+    unsigned sum = 0;
+    for (std::size_t n = 0; n < 4 + byte(0); ++n)
+        sum += byte(n);
+    line.replace(1 + 2 * (4 + byte(0)), 2, fmt::format("{:02X}", (0x100 - sum % 0x100) % 0x100));
+    std::ofstream out(to);
+    for (const std::string& one : lines)
+        out << one << '\n';
+    return true;
+}
+
+}  // namespace
+
+TEST_CASE("boards, buses and worlds of a recorded run replay bit for bit") {
+    const std::string pair = record("rab_pair", 0.7);
+    for (const char* node : {"leader.pic", "follower.rab", "leader.i2c", "ir", "world"}) {
+        const Called called = call(fmt::format("replay {} {} --node {}", scenario("rab_pair"), pair, node));
+        INFO(called.out);
+        CHECK(called.status == 0);
+        CHECK_THAT(called.out, Catch::Contains(" out as recorded, until 0.7") && !Catch::Contains(" 0 out"));
+    }
+    const std::string tams = record("tam", 1.5, "", "tam");
+    for (const char* node : {"tam0.avr", "tam1.xbee", "ether"}) {
+        const Called called = call(fmt::format("replay {} {} --node {}", scenario("tam"), tams, node));
+        INFO(called.out);
+        CHECK(called.status == 0);
+        CHECK_THAT(called.out, !Catch::Contains(" 0 out"));
+    }
+}
+
+TEST_CASE("a record without the wanted rows says so, and the trace does not change by recording") {
+    const std::string out = record("rab_pair", 0.3);
+    const std::vector<std::string> all = lines_of(out + "/record.csv"), some = lines_of(out + "/trace.csv");
+    CHECK(all.size() > some.size());
+    std::size_t at = 0;  // the trace is the record without some rows
+    for (const std::string& line : all)
+        if (at < some.size() && some[at] == line) ++at;
+    CHECK(at == some.size());
+    const auto fails = [&](const std::string& arguments, const std::string& text) {
+        const Called called = call("replay " + arguments);
+        INFO(called.out);
+        CHECK(called.status == 2);
+        CHECK_THAT(called.out, Catch::StartsWith("puckloop: ") && Catch::Contains(text));
+    };
+    fails(scenario("rab_pair") + " " + out + " --node nobody", "one of world");
+    fails(scenario("tam") + " " + out + " --node tam0.avr", "holds no message of tam0.avr");
+    fails(scenario("rab_pair") + " /tmp --node leader.pic", "record.csv");
+    std::ofstream(out + "/record.csv", std::ios::app) << "rubbish\n";
+    fails(scenario("rab_pair") + " " + out + " --node leader.pic", fmt::format("line {}", all.size() + 1));
+}
+
+TEST_CASE("a message changed in the record is named") {
+    std::mt19937 random{Catch::rngSeed()};
+    INFO("seed " << Catch::rngSeed());
+    const std::string out = record("rab_pair", 0.5), file = out + "/record.csv";
+    const std::vector<std::string> lines = lines_of(file);
+    std::vector<std::size_t> sent;
+    for (std::size_t i = 1; i < lines.size(); ++i)
+        if (is_from(lines[i], "leader.pic") && lines[i].find(",uart,") != std::string::npos)
+            sent.push_back(i);
+    REQUIRE(sent.size() > 100);
+    for (int round = 0; round < 6; ++round) {
+        std::vector<std::string> changed = lines;
+        const std::size_t at = sent[random() % sent.size()];
+        if (round % 2 == 0) {
+            const std::size_t value = changed[at].find(",uart,") + 6;
+            changed[at][value] = changed[at][value] == '0' ? '1' : '0';
+        } else {
+            changed.erase(changed.begin() + static_cast<std::ptrdiff_t>(at));
+        }
+        {
+            std::ofstream write(file);
+            for (const std::string& line : changed)
+                write << line << '\n';
+        }
+        const Called called = call(fmt::format("replay {} {} --node leader.pic", scenario("rab_pair"), out));
+        INFO(called.out);
+        CHECK(called.status == 1);
+        CHECK_THAT(called.out, Catch::Contains("first difference at " + time_of(lines[at]) + " s"));
+    }
+}
+
+TEST_CASE("a changed firmware differs where a whole run with it differs first") {
+    std::mt19937 random{Catch::rngSeed()};
+    INFO("seed " << Catch::rngSeed());
+    const std::string out = record("rab_pair", 0.5);
+    const std::vector<std::string> before = lines_of(out + "/record.csv");
+    const std::string image = (tests::scratch_path("puckloop_replay") / "mutant.hex").string();
+    int found = 0;
+    for (const char* node : {"leader.pic", "leader.rab"}) {
+        const std::string firmware =
+            fmt::format("{}/firmware/{}", PUCKLOOP_SOURCE,
+                        node == std::string("leader.pic") ? "epuck/epuck.hex" : "rab/rab.hex");
+        for (int tries = 0; tries < 60; ++tries) {
+            if (!mutate(firmware, image, random)) continue;
+            const Called called = call(fmt::format("replay {} {} --node {} --firmware {}={}",
+                                                   scenario("rab_pair"), out, node, node, image));
+            INFO(called.out);
+            if (called.status == 0) continue;  // a byte that does not matter here
+            if (called.status == 2) continue;  // an image that is refused
+            REQUIRE(called.status == 1);
+            const std::string whole =
+                record("rab_pair", 0.5, fmt::format("--firmware {}={}", node, image), "mutant");
+            const std::vector<std::string> after = lines_of(whole + "/record.csv");
+            std::size_t line = 0;
+            while (line < before.size() && line < after.size() && before[line] == after[line])
+                ++line;
+            REQUIRE(line < before.size());
+            const std::string first = line < after.size()
+                                          ? std::min(time_of(before[line]), time_of(after[line]))
+                                          : time_of(before[line]);
+            CHECK_THAT(called.out, Catch::Contains("first difference at " + first + " s"));
+            ++found;
+            break;
+        }
+    }
+    CHECK(found == 2);
+}
