@@ -15,9 +15,19 @@ std::string text_of(TraceRow row) {
 /// Whether a harmed row still is one message of the sender.
 bool shows_a_message(const TraceRow& recorded, const TraceRow& replayed) {
     if (recorded.payload == replayed.payload) return true;
-    const auto* frame = std::get_if<cosim::UartFrame>(&recorded.payload);
-    const bool own_break = recorded.fault == FaultKind::Stuck && frame != nullptr && frame->is_break != 0;
-    return recorded.fault != FaultKind::Duplicate && !own_break;
+    switch (recorded.fault) {
+    case FaultKind::Duplicate:
+    case FaultKind::Insert:
+    case FaultKind::Swap:  // the one kept back has a row of its own
+    case FaultKind::FalseStart:
+        return false;
+    case FaultKind::Stuck: {
+        const auto* frame = std::get_if<cosim::UartFrame>(&recorded.payload);
+        return frame == nullptr || frame->is_break == 0;
+    }
+    default:
+        return true;
+    }
 }
 
 }  // namespace
