@@ -40,7 +40,7 @@ void run(const Options& options) {
 void declare_trace(Command& app, int&) {
     auto options = std::make_shared<Options>();
     Command* command = app.add_subcommand(
-        "trace", "read a recorded trace: count, filter, convert; without --csv or --vcd, counts");
+        "trace", "read a recorded trace: count, filter, decode, export; by itself it counts");
     command->add_option("file", options->file, "trace.csv of a run, or its results folder");
     add_selection(*command, options->selection);
     command->add_option("--csv", options->csv, "write the filtered trace; - is the standard output");
