@@ -36,6 +36,7 @@ PicBoard read_pic(const std::string& file, const std::string& where, const TomlV
     PicBoard pic;
     pic.firmware = folder / reader.text("firmware");
     pic.crystal_ppm = read_clock_error(reader, "crystal_error");
+    pic.adc_noise_given = reader.has("adc_noise");
     pic.adc_noise = read_adc_noise(reader, pic.adc_noise);
     pic.selector = static_cast<int>(reader.integer("selector", 0, 0, 15));
     pic.uart1 = reader.text("uart1", "");

@@ -19,6 +19,7 @@ struct PicBoard {
     std::filesystem::path firmware;
     double crystal_ppm = 0.0;      ///< error of the 7.3728 MHz crystal, + is fast
     double adc_noise = 2.0;        ///< counts, standard deviation
+    bool adc_noise_given = false;  ///< by the scenario: then it holds for the phototransistors in any case
     int selector = 0;              ///< position of the rotary selector, 0..15
     std::string uart1;             ///< plugged in: "pty", "tcp:PORT", "script:FILE"; empty: nothing
     std::vector<double> resets;    ///< s: the reset button (MCLR) is pressed, rising

@@ -45,6 +45,7 @@ double clipped(SignalId id, double value) {
 Board::Board(const BoardParameters& parameters, BoardListener& listener)
     : parameters_(parameters),
       listener_(listener),
+      phototransistor_noise_(parameters.phototransistor_noise_counts.value_or(parameters.adc_noise_counts)),
       noise_(parameters.seed, parameters.name + "/adc"),
       emitters_{Emitter{cycles(parameters.light_time_constant_s, parameters)},
                 Emitter{cycles(parameters.light_time_constant_s, parameters)},
@@ -175,7 +176,9 @@ double Board::analog(int channel, dspic::Cycle now) {
         counts +=
             microphones_[i].sample(values_[kMicrophoneLevel + i].at(now), values_[kMicrophoneLost].value);
     }
-    if (parameters_.adc_noise_counts > 0) counts += parameters_.adc_noise_counts * noise_.normal();
+    const double noise =
+        channel >= kFirstProximityChannel ? phototransistor_noise_ : parameters_.adc_noise_counts;
+    if (noise > 0) counts += noise * noise_.normal();
     const double clipped = counts > 0.0 ? counts : 0.0;
     constexpr double kWhole = 0x1.0p52;  // from here on doubles are whole: to the nearest, to even between
     const double code = clipped < kFullScale ? (clipped + kWhole) - kWhole : kFullScale;

@@ -6,7 +6,8 @@
 // Deviations:
 // 1. A sensor sees the light of its own pulse line only: no crosstalk from the neighbours (at most 2 % of
 // it).
-// 2. ADC noise is white, Gaussian and the same on every channel; motors and supply add none.
+// 2. ADC noise is white and Gaussian, the same on every channel but for the phototransistors', which may have
+//    their own; motors and supply add none.
 // 3. The microphones and the accelerometer have no bandwidth of their own.
 
 #include "base/random.h"
@@ -24,6 +25,12 @@
 
 namespace puckloop::pic {
 
+/// Standard deviation at a phototransistor within a few milliseconds, counts. IRcom's receiver takes a range
+/// of 10 counts in 32 scans of any of eight sensors for light that is switched (e-puck fact sheet, 3.10).
+/// White noise of 2 counts does that in four windows of five, of 1.25 in one of 400; robots do hear each
+/// other over 22 cm, where that table ends. 1 is also the least of the sheet's 1 to 3 LSB (section 5).
+inline constexpr double kPhototransistorNoise = 1.0;
+
 /// What differs from one robot to the next. All of it may be set by a scenario.
 struct BoardParameters {
     std::string name = "epuck";  ///< random streams are "<name>/adc", "<name>/mic0", ...
@@ -32,10 +39,11 @@ struct BoardParameters {
         7'372'800.0;                ///< FCY is twice this (XT with PLL x8), whatever the image's FOSC says
     double crystal_ppm = 0.0;       ///< error of the crystal, + is fast
     double adc_noise_counts = 1.0;  ///< standard deviation, 0 or more
-    double light_time_constant_s = 20e-6;  ///< of emitter and phototransistor together, > 0
-    double coil_settle_s = 2e-6;           ///< for how long a coil pattern must stand to be a step
-    double battery_low_volts = 3.4;        ///< below this RF1 falls
-    int selector = 0;                      ///< initial position, 0..15
+    std::optional<double> phototransistor_noise_counts{};  ///< of AN8..AN15; none: as of all channels
+    double light_time_constant_s = 20e-6;                  ///< of emitter and phototransistor together, > 0
+    double coil_settle_s = 2e-6;     ///< for how long a coil pattern must stand to be a step
+    double battery_low_volts = 3.4;  ///< below this RF1 falls
+    int selector = 0;                ///< initial position, 0..15
 };
 
 /// What leaves the board.
@@ -106,6 +114,7 @@ class Board : public dspic::Pins {
 
     BoardParameters parameters_;
     BoardListener& listener_;
+    double phototransistor_noise_;  // counts
     RandomStream noise_;
     std::array<Input, kSignalCount> values_{};
     std::array<Emitter, kPulseCount> emitters_;

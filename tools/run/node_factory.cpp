@@ -46,6 +46,8 @@ std::unique_ptr<cosim::StatefulNode> make_pic(const json& spec) {
     options.board.seed = spec.at("seed");
     options.board.crystal_ppm = spec.at("crystal_ppm");
     options.board.adc_noise_counts = spec.at("adc_noise");
+    if (spec.contains("phototransistor_noise"))
+        options.board.phototransistor_noise_counts = spec.at("phototransistor_noise");
     options.board.selector = spec.at("selector");
     options.ircom = spec.value("ircom", false);
     options.log = spec.value("log", "");

@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "emu/i2c_devices/signals.h"
+#include "emu/pic/board.h"
 #include "emu/pic/signals.h"
 #include "emu/rab_board/signals.h"
 #include "tools/run/control/control_place.h"
@@ -41,7 +42,10 @@ json pic_spec(const RunSetup& setup, const RobotBoards& robot) {
               {"resets", robot.pic.resets},
               {"nvm", robot.pic.nvm.empty() ? "" : full_path(robot.pic.nvm).string()},
               {"log", log_of(setup, robot.name + ".pic")}};
-    if (scenario.world.ircom) spec["ircom"] = true;
+    if (scenario.world.ircom) {
+        spec["ircom"] = true;
+        if (!robot.pic.adc_noise_given) spec["phototransistor_noise"] = pic::kPhototransistorNoise;
+    }
     return spec;
 }
 
