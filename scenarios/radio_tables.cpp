@@ -18,8 +18,9 @@ namespace {
 constexpr std::uint64_t kDigi = 0x0013A20000000000, kCoordinatorLow = 0x40000000;
 constexpr std::int64_t kFirstNetwork = 0x01B2;  // TAM fact sheet, section 6
 constexpr int kNetworks = 4;
-constexpr std::uint32_t kEuropeanCca = 0x3A;  // -58 dBm: Digi's manual, CA, "ETSI compliance"
-constexpr double kLongestDelay = 1.0;         // s
+constexpr std::uint32_t kEuropeanCca = 0x3A;          // -58 dBm: Digi's manual, CA, "ETSI compliance"
+constexpr double kLongestDelay = 1.0;                 // s
+constexpr std::string_view kCoordinatorId = "COORD";  // TAM fact sheet: whom a TAM asks for
 
 std::uint64_t read_address(Reader& reader, std::uint64_t fallback) {
     if (!reader.has("address")) return fallback;
@@ -49,8 +50,12 @@ void read_parameters(Reader& reader, XBeeModule& module) {
             parameters.fail(command, fmt::format("the module has no AT parameter '{}' to set", command),
                             "RR, MT, CA, PL, NT, ...");
         const xbee::AtParameter& parameter = xbee::at_table()[*place];
-        module.parameters[command] = static_cast<std::uint32_t>(
+        const auto number = static_cast<std::uint32_t>(
             parameters.integer(command, parameter.factory, parameter.least, parameter.most));
+        if (!xbee::accepts(parameter, number))
+            parameters.fail(command, fmt::format("{} has no value {}", command, number),
+                            "0 to 7 for 1200 to 115200 baud, or a rate from 128 on");
+        module.parameters[command] = number;
     }
 }
 
@@ -89,13 +94,19 @@ XBeeModule read_tam_module(const std::string& file, const std::string& tam, cons
                            std::size_t index, int network) {
     XBeeModule module;
     module.address = kDigi | (kCoordinatorLow + 1 + index);
-    module.node_id = fmt::format("TAM{:02}", index + 1);
+    module.node_id = fmt::format("TAM{:02}", index);
     module.parameters["ID"] = static_cast<std::uint32_t>(kFirstNetwork + network);
     module.parameters["CA"] = kEuropeanCca;
     if (table == nullptr) return module;
     Reader reader(file, tam + ".xbee", *table);
     module.fitted = reader.flag("fitted", true);
+    if (!module.fitted && reader.everything().size() > 1)
+        reader.fail("fitted", "a module that is not fitted has no other keys", "'fitted = false' alone");
     read_module(reader, module);
+    if (module.node_id == kCoordinatorId)
+        reader.fail("node_id",
+                    fmt::format("'{}' is the coordinator's: TAMs would report to each other", module.node_id),
+                    "another one, such as \"TAM07\"");
     reader.finish();
     return module;
 }
@@ -127,7 +138,7 @@ std::optional<CoordinatorPlace> read_coordinator(Reader& top) {
     Reader reader(top.file(), "coordinator", *table);
     CoordinatorPlace place;
     place.module.address = kDigi | kCoordinatorLow;
-    place.module.node_id = "COORD";
+    place.module.node_id = kCoordinatorId;
     const auto network = reader.integer("network", kNetworks - 1, 0, kNetworks - 1);
     place.module.parameters["ID"] = static_cast<std::uint32_t>(kFirstNetwork + network);
     place.module.parameters["CA"] = kEuropeanCca;

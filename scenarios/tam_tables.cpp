@@ -19,6 +19,11 @@ void read_board(Reader& reader, const std::filesystem::path& folder, TamBoard& t
         tam.firmware = folder / image;
     if (const std::string image = reader.text("boot_loader", ""); !image.empty())
         tam.boot_loader = folder / image;
+    std::error_code ignored;  // what is not there is said when it is loaded
+    if (!tam.boot_loader.empty() && std::filesystem::weakly_canonical(tam.boot_loader, ignored) ==
+                                        std::filesystem::weakly_canonical(tam.firmware, ignored))
+        reader.fail("boot_loader", "boot_loader is the same file as 'firmware'",
+                    "the boot loader's image alone, such as \"optiboot_atmega1284p.hex\"");
     tam.resonator_ppm = read_clock_error(reader, "resonator_error");
     tam.adc_noise = read_adc_noise(reader, tam.adc_noise);
     tam.network = static_cast<int>(reader.integer("network", tam.network, 0, 3));

@@ -80,4 +80,10 @@ std::optional<std::size_t> find_parameter(std::string_view command) {
     return static_cast<std::size_t>(found - kTable.begin());
 }
 
+bool accepts(const AtParameter& parameter, std::uint64_t value) {
+    constexpr std::uint32_t kLastStandardRate = 7, kLeastRate = 0x80;
+    if (parameter.command == "BD" && value > kLastStandardRate && value < kLeastRate) return false;
+    return value >= parameter.least && value <= parameter.most;
+}
+
 }  // namespace puckloop::xbee

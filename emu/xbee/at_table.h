@@ -1,7 +1,9 @@
 #pragma once
-// The AT parameters of an XB24-DM module (XBee Series 1 hardware, DigiMesh 2.4 firmware 8073): size, range
-// and factory value, one line each. Source: XBee/XBee-PRO DigiMesh 2.4 manual (90000991 W), "AT commands". HV
-// and VR are those of modules of this kind, not of the manual.
+// The AT parameters of an XB24-DM module (XBee Series 1 hardware, DigiMesh 2.4): size, range and factory
+// value, one line each. They follow the tables of the XBee/XBee-PRO DigiMesh 2.4 manual (90000991), "AT
+// commands"; none was read out of a module, and firmware versions differ in single ranges and factory values.
+// The sizes of answers, HV and VR are what modules of this kind were seen to answer (TAM fact sheet, section
+// 9), or assumptions.
 
 #include "protocols/xbee_message.h"
 
@@ -54,5 +56,8 @@ inline constexpr std::uint8_t kAtOk = 0, kAtError = 1, kAtUnknown = 2, kAtBadVal
 inline constexpr std::uint8_t kAtFromAir = 0x40;
 
 inline constexpr std::size_t kMostNodeIdentifier = 20;
+
+/// May the parameter have this value? BD has a gap between the eight standard rates and rates in bit/s.
+bool accepts(const AtParameter& parameter, std::uint64_t value);
 
 }  // namespace puckloop::xbee

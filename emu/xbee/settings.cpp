@@ -27,7 +27,7 @@ std::uint8_t Settings::write(std::size_t place, const XBeeBytes& value) {
     std::uint64_t number = 0;
     for (const std::uint8_t octet : value)
         number = number << 8 | octet;
-    if (number < parameter.least || number > parameter.most) return kAtBadValue;
+    if (!accepts(parameter, number)) return kAtBadValue;
     queued_.numbers[place] = static_cast<std::uint32_t>(number);
     return kAtOk;
 }

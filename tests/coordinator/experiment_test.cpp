@@ -233,17 +233,18 @@ TEST_CASE("sequence: tasks are done in order, a mistake begins the round anew") 
 }
 
 TEST_CASE("sequence: ends behind its rounds, answers robots by infra-red") {
-    const Outcome outcome = perform("sequence", {"--rounds", "2", "--durations", "1,1", "--dead-time", "1"},
-                                    {}, 0, [](SimulatedMesh& mesh) {
-                                        SimulatedTam& a = mesh.add("TAM01", kFirst);
-                                        SimulatedTam& b = mesh.add("TAM02", kFirst + 1);
-                                        for (double t = 10; t < 50; t += 20) {
-                                            mesh.plan(t, [&, t] { mesh.set_robot(a, true, t); });
-                                            mesh.plan(t + 5, [&, t] { mesh.set_robot(a, false, t + 5); });
-                                            mesh.plan(t + 8, [&, t] { mesh.set_robot(b, true, t + 8); });
-                                            mesh.plan(t + 13, [&, t] { mesh.set_robot(b, false, t + 13); });
-                                        }
-                                    });
+    const Outcome outcome = perform(
+        "sequence", {"--order", "TAM01,TAM02", "--rounds", "2", "--durations", "1,1", "--dead-time", "1"}, {},
+        0, [](SimulatedMesh& mesh) {
+            SimulatedTam& a = mesh.add("TAM01", kFirst);
+            SimulatedTam& b = mesh.add("TAM02", kFirst + 1);
+            for (double t = 10; t < 50; t += 20) {
+                mesh.plan(t, [&, t] { mesh.set_robot(a, true, t); });
+                mesh.plan(t + 5, [&, t] { mesh.set_robot(a, false, t + 5); });
+                mesh.plan(t + 8, [&, t] { mesh.set_robot(b, true, t + 8); });
+                mesh.plan(t + 13, [&, t] { mesh.set_robot(b, false, t + 13); });
+            }
+        });
     CHECK(outcome.events.back().value == "finished");
     CHECK(outcome.end < 45);
     std::vector<std::string> written;

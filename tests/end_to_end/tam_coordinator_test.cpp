@@ -55,7 +55,7 @@ TEST_CASE("a coordinator's program finds its TAMs and sets their LEDs; the same 
               text_of(bench.out("one") / "coordinator" / "tam_gantt.svg"));
     }
     const auto events = bench.csv("one", "coordinator/tam_events.csv");
-    for (const char* tam : {"TAM01", "TAM02"}) {
+    for (const char* tam : {"TAM00", "TAM01"}) {
         CAPTURE(tam);
         const double dark = when(events, tam, "leds", "000000");
         CHECK(dark > 0);
@@ -79,7 +79,7 @@ TEST_CASE("robots enter booths with real firmware, work and leave, and the coord
     REQUIRE(bench.run("work", words).status == 0);
     const auto events = bench.csv("work", "coordinator/tam_events.csv");
     int done = 0;
-    for (const char* tam : {"TAM01", "TAM02"}) {
+    for (const char* tam : {"TAM00", "TAM01"}) {
         const double entered = when(events, tam, "robot", "in");
         const double finished = when(events, tam, "task", "done");
         const double left = when(events, tam, "robot", "out", entered);
@@ -111,7 +111,7 @@ TEST_CASE("a coordinator's table that cannot be used is refused in one line") {
 
 TEST_CASE("a coordinator's parameters may come from a file beside the scenario") {
     const Workbench bench;
-    bench.file("mine.toml", "experiment = \"sequence\"\norder = [\"TAM01\", \"TAM02\"]\nduration = 2.5\n");
+    bench.file("mine.toml", "experiment = \"sequence\"\norder = [\"TAM00\", \"TAM01\"]\nduration = 2.5\n");
     std::string text = tams("program = [\"puckloop-coordinator\", \"--config\", \"mine.toml\"]\n");
     text.replace(text.find("17 s"), 4, "30 s");
     REQUIRE(bench.run("mine", {bench.file("mine_too.toml", text), "--in-process"}).status == 0);

@@ -41,8 +41,8 @@ TEST_CASE("every TAM has a module with an address and a name of its own") {
         addresses.insert(tam.xbee.address);
     }
     CHECK(addresses.size() == 3);
-    CHECK(scenario.tams[0].xbee.node_id == "TAM01");
-    CHECK(scenario.tams[1].xbee.node_id == "TAM02");
+    CHECK(scenario.tams[0].xbee.node_id == "TAM00");
+    CHECK(scenario.tams[1].xbee.node_id == "TAM01");
     CHECK(scenario.tams[0].xbee.parameters.at("ID") == 0x01B5);
     CHECK(scenario.tams[1].xbee.parameters.at("ID") == 0x01B3);
     CHECK(scenario.coordinator->module.node_id == "COORD");
@@ -93,6 +93,9 @@ TEST_CASE("what the radio's tables cannot be") {
             "the module has no AT parameter 'XX' to set");
     refused(kHead + kTam + "[tam.xbee]\nparameters = { NP = 1 }\n",
             "the module has no AT parameter 'NP' to set");
+    refused(kHead + kTam + "[tam.xbee]\nnode_id = \"COORD\"\n", "is the coordinator's");
+    refused(kHead + kTam + "[tam.xbee]\nfitted = false\nchannel = 15\n", "has no other keys");
+    refused(kHead + kTam + "[tam.xbee]\nparameters = { BD = 99 }\n", "BD has no value 99");
     refused(kHead + kTam + "[radio]\nloss = 1.5\n", "loss is out of range");
     refused(kHead + kTam + "[radio]\nrange = \"0 m\"\n", "range is out of range");
     refused(kHead + kTam + "[coordinator]\nbaud = 3\n", "baud is out of range");

@@ -70,6 +70,8 @@ TEST_CASE("what a TAM cannot be is said with its line") {
     CHECK_THAT(problem_of("battery = \"9 V\"\n"), Catch::StartsWith("line 7: tam0: battery is out of range"));
     CHECK_THAT(problem_of("battery = \"9 m\"\n"), Catch::StartsWith("line 7: tam0: battery: '9 m'"));
     CHECK_THAT(problem_of("start = \"-1 s\"\n"), Catch::StartsWith("line 7: tam0: start is out of range"));
+    CHECK_THAT(problem_of("firmware = \"a.elf\"\nboot_loader = \"./a.elf\"\n"),
+               Catch::Contains("boot_loader is the same file as 'firmware'"));
     CHECK_THAT(problem_of("adc_noise = nan\n"), Catch::Contains("adc_noise: nan is not finite"));
     CHECK_THAT(problem_of("reset = [\"1e30 s\"]\n"), Catch::Contains("later than any run"));
     CHECK_THAT(problem_of("start = \"3 s\"\nreset = [\"2 s\"]\n"),

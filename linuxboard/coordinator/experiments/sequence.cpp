@@ -9,7 +9,7 @@ namespace {
 constexpr double kLongest = 1e6;  // s
 
 constexpr Parameter kParameters[] = {
-    {"order", "TAM01,TAM02", "the TAMs, in the order in which their tasks have to be done"},
+    {"order", "TAM00,TAM01", "the TAMs, in the order in which their tasks have to be done"},
     {"colors", "001900,000019", "of the LEDs while a TAM has its turn, rrggbb, one per TAM"},
     {"durations", "5,5", "s of work, one per TAM"},
     {"busy-color", "190000", "of the LEDs while a robot works"},
