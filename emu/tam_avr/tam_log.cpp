@@ -98,7 +98,7 @@ void TamLog::text(char character, Time now) {
     const std::uint64_t count = ++line_count_;
     if (count <= kAllLines || is_milestone(count))
         lines_.note(now,
-                    fmt::format("console says: {}{}", line_,
+                    fmt::format("console: {}{}", line_,
                                 count == kAllLines ? " (from here on only powers of two are logged)" : ""));
     line_.clear();
 }

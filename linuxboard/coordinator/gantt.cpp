@@ -111,8 +111,9 @@ std::string gantt_svg(const std::vector<Event>& events, const std::string& title
             fmt::format("<line x1=\"{0:.2f}\" y1=\"{1}\" x2=\"{0:.2f}\" y2=\"{2}\" stroke=\"#e4e4e4\"/>"
                         "<text x=\"{0:.2f}\" y=\"{3}\" text-anchor=\"middle\" fill=\"#555\">{4:g}</text>\n",
                         x(time), kTop - 6, foot, foot + 16, time);
-    svg += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"end\" fill=\"#555\">s</text>\n",
-                       kLeft + kWidth + 20, foot + 16);
+    svg += fmt::format(
+        "<text x=\"{}\" y=\"{}\" text-anchor=\"end\" fill=\"#555\">s since the coordinator began</text>\n",
+        kLeft + kWidth + 20, foot + 40);
     double y = kTop;
     for (const auto& [name, row] : rows) {
         svg += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"end\">{}</text>\n", kLeft - 8,

@@ -143,7 +143,7 @@ void declare(Command& ircom, const char* name, const char* help, bool takes_edge
 void declare_ircom_frames(Command& frames, int& status) {
     Command* ircom = frames.add_subcommand("ircom", "Infra-red words of e-puck and TAM, as edges of light");
     ircom->require_subcommand(1);
-    declare(*ircom, "encode", "Print the edges of a word, the first at 0", false, encode);
+    declare(*ircom, "encode", "Print the edges of a word in microseconds, the first at 0", false, encode);
     declare(*ircom, "decode", "Print the word of a line of edges, or what is wrong; status 1 if it is bad",
             true, [&status](const Arguments& arguments) { read(arguments, status, true); });
     declare(*ircom, "check", "Print ok or what is wrong, edges counted from 0; status 1 if a word is bad",

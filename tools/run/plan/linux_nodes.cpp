@@ -31,6 +31,8 @@ json linux_spec(const RunSetup& setup, const std::string& name, const scenarios:
     json signals = json::array();
     for (const scenarios::LinuxSignal& signal : board.signals)
         signals.push_back({{"time_s", signal.at}, {"signal", signal.send}});
+    // A coordinator from outside goes on, and so does the run.
+    const bool outside = setup.scenario.coordinator && !setup.scenario.coordinator->uart.empty();
     json spec{
         {"kind", "linux"},
         {"name", name},
@@ -49,7 +51,7 @@ json linux_spec(const RunSetup& setup, const std::string& name, const scenarios:
         {"i2c_hold_s", board.late.i2c_hold},
         {"oversleep_s", board.late.oversleep},
         {"oversleep_jitter_s", board.late.oversleep_jitter},
-        {"programs", programs_of(setup.scenario)},
+        {"programs", programs_of(setup.scenario) + (outside ? 1 : 0)},
         {"watchdog_s", request.stall_seconds * kWatchdogShare},
         {"real_time", request.realtime},
         {"log", log_of(setup, name)}};

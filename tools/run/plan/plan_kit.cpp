@@ -39,7 +39,7 @@ void add_outside(RunSetup& setup, const std::string& name, const std::string& en
     const exec::UartSpec parsed = parse_outside(name, end, folder.string());
     if (parsed.kind != exec::UartSpec::Kind::Script && !request.realtime && !request.paced)
         throw InputError(setup.scenario.file.string(), name, fmt::format("'{}' has a clock of its own", end),
-                         "--realtime, or script:FILE");
+                         "--realtime or --paced, or script:FILE");
     const json spec{{"kind", "outside"}, {"name", name},
                     {"end", end},        {"folder", folder.string()},
                     {"baud", baud},      {"record", (setup.out / (name + ".received")).string()}};
