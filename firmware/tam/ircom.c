@@ -26,7 +26,7 @@ static u8 check_of(u8 word) {
     return (u8)(-ones) & 3;
 }
 
-/* ---- sending: timer 2's compare interrupt makes the edges ---- */
+/* ---- sending: each half period ends with an edge, made by timer 2's compare interrupt; the last in the dark ---- */
 
 static volatile u16 symbols; /* those to come, the next one in bit 11 */
 static volatile u8 left;     /* symbols to come, the present one included */
@@ -59,7 +59,6 @@ u8 ircom_send(u8 word) {
     begin_symbol();
     TCNT2 = 0;
     TIFR2 = OCIEA;
-    PORTB |= PROX_EMIT;
     TIMSK2 = OCIEA;
     TCCR2B = CS2_64;
     return 1;

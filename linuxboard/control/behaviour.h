@@ -72,6 +72,8 @@ class Behaviour {
     virtual ~Behaviour() = default;
     /// Called every 100 ms with the newest sensors; `t` is the time since the start in seconds.
     virtual Actuators step(const Sensors& sensors, double t) = 0;
+    /// As of the last step: a word of LoopSettings may be sent.
+    virtual bool may_send() const { return true; }
 };
 
 /// "wander", "light", "aggregate", "follow", "seek", "serve", "still" or "spin"; null for any other name.

@@ -82,7 +82,7 @@ bool run_control_loop(Session& session, Transport& transport, Behaviour& behavio
             if (surroundings.spots) sensors.spots = surroundings.spots();
             sensors.word = std::exchange(word, std::nullopt);
             Actuators actuators = behaviour.step(sensors, t);
-            if (!actuators.word && settings.word >= 0 && t >= next_word) {
+            if (!actuators.word && settings.word >= 0 && t >= next_word && behaviour.may_send()) {
                 actuators.word = static_cast<std::uint8_t>(settings.word);
                 next_word = t + settings.word_every;
             }

@@ -87,7 +87,7 @@ Surroundings surroundings_of(GroundSensor* ground, RabSession* rab, ColouredSpot
     surroundings.heard = [&log](const InfraredWord& word) {
         constexpr double kDegree = 3.14159265358979 / 180;
         char text[80];
-        std::snprintf(text, sizeof text, "infra-red word %d from %.0f deg, %.1f cm", int{word.data},
+        std::snprintf(text, sizeof text, "infra-red word 0x%02x from %.0f deg, %.1f cm", int{word.data},
                       word.bearing / kDegree, word.range_cm);
         log(text);
     };
@@ -125,7 +125,9 @@ int drive(const Options& options) {
     }
     if (interrupted()) log("ended by a signal");
     report(session.counters(), ground.get(), rab.get());
-    if (spots) std::printf("camera frames %lu, lost %lu\n", spots->camera().frames(), spots->camera().lost());
+    if (spots)
+        std::printf("camera pictures looked at %lu; %lu came in between, which were not needed\n",
+                    spots->camera().frames(), spots->camera().unused());
     if (!reached) std::fprintf(stderr, "puckloop-control: the PIC does not answer\n");
     return reached ? 0 : 1;
 }

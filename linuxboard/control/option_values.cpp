@@ -40,4 +40,13 @@ int whole(const char* option, const char* text, int low, int high) {
     return static_cast<int>(value);
 }
 
+int byte(const char* option, const char* text) {
+    const bool hexadecimal = text[0] == '0' && (text[1] == 'x' || text[1] == 'X');
+    char* end = nullptr;
+    const long value = std::strtol(text, &end, hexadecimal ? 16 : 10);
+    if (end == text || *end != '\0' || value < 0 || value > 0xFF)
+        wrong_value(option, text, "a byte, 0 to 255 or 0x00 to 0xff");
+    return static_cast<int>(value);
+}
+
 }  // namespace puckloop::control

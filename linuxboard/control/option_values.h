@@ -14,5 +14,7 @@ double number(const char* option, const char* text, const std::string& expected,
 /// At least `least` seconds.
 double seconds(const char* option, const char* text, double least = 0.0);
 int whole(const char* option, const char* text, int low, int high);
+/// A byte: 0 to 255, or 0x00 to 0xff.
+int byte(const char* option, const char* text);
 
 }  // namespace puckloop::control

@@ -29,7 +29,9 @@ const char kUsage[] =
     "  --start-wait S     wait so long for the PIC at the start (60)\n"
     "  --give-up S        end with status 1 after so long without the PIC in mid-session (60)\n"
     "  --camera DEVICE    the omnidirectional camera, such as /dev/video1: lets serve see which TAM shines\n"
-    "  --ircom-send W     send the word W, 0 to 255, by IRcom; words that come are printed in any case\n"
+    "  --ircom-send W     send the word W, 0 to 255 or 0x00 to 0xff, by IRcom; seek and serve send it "
+    "inside\n"
+    "                     a booth only; words that come are printed in any case\n"
     "  --ircom-every S    between two words; 0: in every step (0)\n"
     "range-and-bearing board:\n"
     "  --rab              use it if it is there (aggregate and follow do so anyway)\n"
@@ -117,7 +119,7 @@ void take(Options& options, int choice, const char* name) {
         options.loop.give_up = seconds(name, optarg);
         break;
     case kIrcomSend:
-        options.loop.word = whole(name, optarg, 0, 255);
+        options.loop.word = byte(name, optarg);
         break;
     case kIrcomEvery:
         options.loop.word_every = seconds(name, optarg);

@@ -21,7 +21,8 @@ constexpr double kAlign = 3.0;        // s, of it
 constexpr double kStraight = 0.08;    // difference of the two front sensors, as a logarithm: a degree
 constexpr double kPause = 5.0;        // s
 constexpr double kPatience = 2.0;     // s before something that is no booth
-constexpr double kLongestWay = 15.0;  // s
+constexpr double kLongestWay = 15.0;  // s, without a camera
+constexpr double kLongestIn = 8.0;    // s, with one: it was seen from near
 constexpr double kAlongside = 60.0;   // counts: a side of the booth, 15 mm away
 constexpr double kAtBack = 900.0;     // counts: the booth's back, about 8 mm ahead
 constexpr double kNear = 120.0;       // counts: something about 5 cm away
@@ -61,7 +62,9 @@ Actuators Serve::approach(const Sensors& sensors, double t) {
     const bool touching = !between() && std::max(right, left) > kTouching;
     if (!blocked && !touching) blocked_since_ = -1;
     if ((blocked || touching) && blocked_since_ < 0) blocked_since_ = t;
-    const bool stuck = t - since_ > kLongestWay;  // at a bumper's end, which is too low to be seen
+    const bool stuck =
+        t - since_ >
+        (sensors.spots ? kLongestIn : kLongestWay);  // at a bumper's end, which is too low to be seen
     if (stuck || (blocked_since_ >= 0 && t - blocked_since_ > kPatience)) {
         enter(State::Leave, t);
         bend_ = right > left ? kBend : -kBend;
@@ -71,7 +74,8 @@ Actuators Serve::approach(const Sensors& sensors, double t) {
     const bool open = std::max({above_[1], above_[2], above_[5], above_[6]}) < kAlongside;
     if (sensors.spots && open) {
         const std::optional<Actuators> way = towards_light(sensors);
-        if (!way) since_ = t;  // it waits: that is not being stuck
+        waiting_ = !way;
+        if (waiting_) since_ = t;  // that is not being stuck
         return way.value_or(Actuators{});
     }
     const double turn =
@@ -104,6 +108,7 @@ Actuators Serve::align() const {
 
 Actuators Serve::step(const Sensors& sensors, double t) {
     above_ = baseline_.above_offset(sensors.proximity);
+    waiting_ = false;
     // Between the sides these are what the rear sensors see.
     const double behind = between() ? 0.0 : std::max(above_[3], above_[4]);
     Actuators out;

@@ -14,6 +14,10 @@ class Serve : public Behaviour {
     unsigned visits() const { return visits_; }
     /// It has backed out, or has found no way in, and waits before it comes again.
     bool pausing() const { return state_ == State::Pause; }
+    /// Before the booth, and none offers a task any more.
+    bool waiting() const { return waiting_; }
+    /// It stands inside.
+    bool may_send() const override { return state_ == State::Stay; }
 
   private:
     enum class State { Approach, Stay, Leave, Pause };
@@ -31,8 +35,9 @@ class Serve : public Behaviour {
     State state_ = State::Approach;
     double since_ = 0;           // of the state
     double blocked_since_ = -1;  // something ahead that is no booth; < 0: nothing
-    double lit_ = 0;             // when the booth around it was last seen to shine
-    double bend_ = 0;            // mm/s, of the way back
+    bool waiting_ = false;
+    double lit_ = 0;   // when the booth around it was last seen to shine
+    double bend_ = 0;  // mm/s, of the way back
     unsigned visits_ = 0;
 };
 

@@ -104,7 +104,7 @@ std::span<const std::uint8_t> VideoCamera::newest() {
         if (held_ >= 0) give_back(static_cast<unsigned>(held_));
         held_ = static_cast<int>(buffer.index);
         ++frames_;
-        if (last_sequence_ >= 0) lost_ += static_cast<unsigned long>(buffer.sequence - last_sequence_ - 1);
+        if (last_sequence_ >= 0) unused_ += static_cast<unsigned long>(buffer.sequence - last_sequence_ - 1);
         last_sequence_ = buffer.sequence;
     }
     if (held_ < 0) return {};

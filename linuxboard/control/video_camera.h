@@ -23,9 +23,9 @@ class VideoCamera {
     std::span<const std::uint8_t> newest();
     std::size_t width() const { return width_; }
     std::size_t height() const { return height_; }
-    /// Frames taken, and those that the driver lost, so far.
+    /// Frames taken, and those that came while both buffers were full, so far.
     unsigned long frames() const { return frames_; }
-    unsigned long lost() const { return lost_; }
+    unsigned long unused() const { return unused_; }
 
   private:
     struct Buffer {
@@ -41,7 +41,7 @@ class VideoCamera {
     std::size_t width_, height_;
     std::vector<Buffer> buffers_;
     int held_ = -1;  // buffer of the newest frame
-    unsigned long frames_ = 0, lost_ = 0;
+    unsigned long frames_ = 0, unused_ = 0;
     long last_sequence_ = -1;
 };
 

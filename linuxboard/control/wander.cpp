@@ -12,7 +12,6 @@ constexpr double kTurn = 40.0;         // mm/s, both wheels, opposite: 1.5 rad/s
 constexpr double kNear = 120.0;        // counts: a wall about 5 cm ahead
 constexpr double kClear = 60.0;        // counts: turn until less than this
 constexpr double kShortestTurn = 0.3;  // s
-constexpr double kTurnSpread = 0.8;    // s: turns differ in length, so that the robot does not shuttle
 constexpr double kGoldenRatio = 0.6180339887;
 
 }  // namespace
@@ -35,7 +34,7 @@ Actuators Wander::step(const Sensors& sensors, double t) {
     if (turning_ == 0 && std::max(left, right) > kNear) {
         turning_ = left > right ? -1 : 1;
         ++turns_;
-        turn_at_least_ = t + kShortestTurn + kTurnSpread * std::fmod(kGoldenRatio * turns_, 1.0);
+        turn_at_least_ = t + kShortestTurn + turn_spread_ * std::fmod(kGoldenRatio * turns_, 1.0);
     } else if (turning_ != 0 && t >= turn_at_least_ && std::max(left, right) < kClear) {
         turning_ = 0;
     }

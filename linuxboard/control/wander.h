@@ -17,6 +17,8 @@ class ProximityBaseline {
 
 class Wander : public Behaviour {
   public:
+    /// Turns differ in length by up to `turn_spread` s, so that the robot does not shuttle.
+    explicit Wander(double turn_spread = 0.8) : turn_spread_(turn_spread) {}
     Actuators step(const Sensors& sensors, double t) override;
     /// True while it turns away from an obstacle.
     bool avoiding() const { return turning_ != 0; }
@@ -26,6 +28,7 @@ class Wander : public Behaviour {
   private:
     ProximityBaseline baseline_;
     std::array<double, 8> above_{};
+    double turn_spread_;
     int turning_ = 0;           // -1 clockwise, +1 counter-clockwise, 0 not
     double turn_at_least_ = 0;  // time until which a begun turn goes on
     unsigned turns_ = 0;

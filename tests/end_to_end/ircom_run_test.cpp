@@ -20,9 +20,9 @@ const std::string kScenario = PUCKLOOP_SOURCE "/scenarios/ircom.toml";
 std::vector<int> words_of(const Workbench& bench, const std::string& run, int robot) {
     const std::string log = text_of(bench.out(run) / ("robot" + std::to_string(robot) + ".linux.log"));
     std::vector<int> words;
-    const std::regex line("infra-red word ([0-9]+) from");
+    const std::regex line("infra-red word 0x([0-9a-f]{2}) from");
     for (std::sregex_iterator match(log.begin(), log.end(), line), end; match != end; ++match)
-        words.push_back(std::stoi((*match)[1]));
+        words.push_back(std::stoi((*match)[1], nullptr, 16));
     return words;
 }
 
@@ -36,12 +36,12 @@ TEST_CASE("robots hear each other's words, and one the TAM's, in the shipped sce
     // Half duplex: a word that falls into one's own is lost, and so are few more.
     const auto first = words_of(bench, "o", 0), second = words_of(bench, "o", 1),
                third = words_of(bench, "o", 2);
-    CHECK(std::count(first.begin(), first.end(), 34) >= 6);
-    CHECK(std::count(second.begin(), second.end(), 17) >= 4);
+    CHECK(std::count(first.begin(), first.end(), 0x22) >= 6);
+    CHECK(std::count(second.begin(), second.end(), 0x11) >= 4);
     CHECK(std::count(third.begin(), third.end(), 0) >=
           10);  // the own TAM firmware sends 0 until it has another
-    CHECK(std::count(first.begin(), first.end(), 34) + 1 >= static_cast<long>(first.size()));
-    CHECK(std::count(second.begin(), second.end(), 17) + 1 >= static_cast<long>(second.size()));
+    CHECK(std::count(first.begin(), first.end(), 0x22) + 1 >= static_cast<long>(first.size()));
+    CHECK(std::count(second.begin(), second.end(), 0x11) + 1 >= static_cast<long>(second.size()));
     std::map<std::string, std::set<std::string>> sent;
     int reached = 0;
     for (const Row& row : bench.csv("o", "ircom.csv")) {

@@ -6,13 +6,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 using namespace puckloop::control;
 using Colour = ColouredSpot::Colour;
 
 namespace {
 
-/// A robot in the plane before a booth whose light is at the origin and whose opening looks along +x.
+/// The three lights of a booth in a row, at this bearing (rad) and distance (cm), seen from the axis.
+std::vector<ColouredSpot> row_of_lights(Colour colour, double bearing, double distance) {
+    const double aside = std::atan(2.5 / distance), farther = std::hypot(2.5, distance);
+    return {{colour, bearing, distance, 40},
+            {colour, bearing + aside, farther, 40},
+            {colour, bearing - aside, farther, 40}};
+}
+
+/// A robot in the plane before a booth whose lights are at the origin and whose opening looks along +x.
 struct Plane {
     double x = 500, y = 120, heading = 3.0;  // mm, rad
     bool lit = true;
@@ -20,9 +29,13 @@ struct Plane {
     Sensors sensors() const {
         Sensors seen;
         seen.spots.emplace();
-        const double distance = std::hypot(x, y);
-        const double bearing = std::remainder(std::atan2(-y, -x) - heading, 2 * 3.14159265358979);
-        if (lit && x > 30) seen.spots->push_back({Colour::Green, bearing, distance / 10, 60});
+        for (const double light : {-25.0, 0.0, 25.0}) {
+            // Between the edges of its sides, 95 mm before the lights.
+            const bool open = x < 95 || std::abs(light + (y - light) * 95 / x) < 45;
+            const double bearing = std::remainder(std::atan2(light - y, -x) - heading, 2 * std::numbers::pi);
+            if (lit && x > 30 && open)
+                seen.spots->push_back({Colour::Green, bearing, std::hypot(x, y - light) / 10, 20});
+        }
         seen.spots->push_back({Colour::Red, 2.0, 40, 30});  // somebody works elsewhere
         const bool inside = x < 120 && std::abs(y) < 30;
         const double gap = std::max(0.0, x - 45);
@@ -74,12 +87,17 @@ TEST_CASE("it aims between the lights of one booth") {
 }
 
 TEST_CASE("it drives to a booth, serves while it shines, leaves and turns away") {
+    const double aside = GENERATE(120.0, -200.0, 250.0, -310.0);  // up to where one light alone is seen
+    CAPTURE(aside);
     Seek seek;
     Plane plane;
+    plane.y = aside;
     double entered = -1, nearest = 1e9, farthest_after = 0, turned_after = 0;
+    double offset = 0;  // from the axis, at the mouth
     for (double t = 0; t < 60; t += 0.1) {
         const Actuators out = seek.step(plane.sensors(), t);
         if (entered < 0 && plane.x < 60) entered = t;
+        if (entered < 0 && plane.x < 130) offset = plane.y;
         if (entered >= 0 && t > entered + 8) plane.lit = false;
         const double before = plane.heading;
         plane.drive(out);
@@ -90,6 +108,7 @@ TEST_CASE("it drives to a booth, serves while it shines, leaves and turns away")
         }
     }
     CHECK(entered > 0);
+    CHECK(std::abs(offset) < 12);
     CHECK(entered < 30);
     CHECK(nearest < 60);
     CHECK(seek.visits() == 1);
@@ -104,7 +123,7 @@ TEST_CASE("a side that was in its way it avoids the next time") {
         bool backed = false;
         for (double t = 0; t < 20 && turned == 0; t += 0.1) {
             Sensors seen;
-            seen.spots = {{Colour::Green, 0.0, 15, 60}};
+            seen.spots = row_of_lights(Colour::Green, 0.0, 15);
             if (t > 1) seen.proximity[on_right ? 1 : 6] = 1500;
             const Actuators out = seek.step(seen, t);
             backed |= out.left_mm_s < 0 && out.right_mm_s < 0;

@@ -10,6 +10,7 @@ constexpr Parameter kParameters[] = {
     {"tasks", "green,blue", "names of the tasks, drawn with equal chances"},
     {"colors", "001900,000019", "of the LEDs while a task is offered, rrggbb, one per task"},
     {"durations", "5,20", "s of work, one per task"},
+    {"words", "none", "bytes, 0 to 255, one per task: sent by infra-red to the robot that works; or none"},
     {"busy-color", "190000", "of the LEDs while a robot works"},
     {"dead-time", "10", "s dark behind a task"},
     {"seed", "1", "of the draws; each TAM draws for itself"},
@@ -56,7 +57,10 @@ class RandomTaskController : public Controller {
     void enter(Activity activity, double now, Color color) {
         since_ = now;
         state_ = {std::string(name_of(activity)), activity};
-        if (activity == Activity::Working) state_.name = "work on " + task_->name;
+        if (activity == Activity::Working) {
+            state_.name = "work on " + task_->name;
+            if (task_->word) tam_.write_robot(*task_->word);
+        }
         tam_.set_leds(color);
     }
 
@@ -86,6 +90,16 @@ RandomTaskSettings read_random_task(const Parameters& parameters) {
         parameters.fail("durations", "has " + std::to_string(durations.size()) + " values", expected);
     for (std::size_t i = 0; i < names.size(); ++i)
         settings.tasks.push_back({names[i], colors[i], durations[i]});
+    if (parameters.list("words") != std::vector<std::string>{"none"}) {
+        const std::vector<double> words = parameters.numbers("words", 0, 255);
+        if (words.size() != names.size())
+            parameters.fail("words", "has " + std::to_string(words.size()) + " values", expected);
+        for (std::size_t i = 0; i < words.size(); ++i) {
+            settings.tasks[i].word = static_cast<std::uint8_t>(words[i]);
+            if (*settings.tasks[i].word != words[i])
+                parameters.fail("words", "has a fraction", "whole numbers, 0 to 255");
+        }
+    }
     settings.busy = parameters.color("busy-color");
     settings.dead_time = parameters.number("dead-time", 0.0, kLongest);
     settings.seed = parameters.whole("seed");

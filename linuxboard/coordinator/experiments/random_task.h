@@ -6,6 +6,7 @@
 #include "linuxboard/coordinator/controller.h"
 #include "linuxboard/coordinator/parameters.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +18,8 @@ struct RandomTaskSettings {
     struct Task {
         std::string name;
         Color color;
-        double duration = 0;  ///< s
+        double duration = 0;                 ///< s
+        std::optional<std::uint8_t> word{};  ///< to the robot that works
     };
     std::vector<Task> tasks;
     Color busy;            ///< while a robot works
