@@ -44,7 +44,7 @@ bool in_range(const ParameterInfo& parameter, double value) {
 const std::vector<KindInfo>& all_kinds() {
     static const std::vector<KindInfo> kinds = [] {
         std::vector<KindInfo> all;
-        for (auto family : {uart_kinds, radio_kinds, i2c_kinds, linux_kinds}) {
+        for (auto family : {uart_kinds, radio_kinds, i2c_kinds, linux_kinds, board_kinds}) {
             std::vector<KindInfo> some = family();
             std::move(some.begin(), some.end(), std::back_inserter(all));
         }

@@ -61,6 +61,7 @@ std::vector<KindInfo> uart_kinds();
 std::vector<KindInfo> radio_kinds();
 std::vector<KindInfo> i2c_kinds();
 std::vector<KindInfo> linux_kinds();
+std::vector<KindInfo> board_kinds();
 void check_uart_fault(const FaultSpec& spec, const KindInfo& kind);
 
 }  // namespace puckloop::cosim

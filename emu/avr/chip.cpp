@@ -448,6 +448,19 @@ void Chip::settle() {
     parts_->eeprom.settle();
 }
 
+Chip::Inside Chip::inside() {
+    Parts& p = *parts_;
+    p.at_present();
+    return {p.device, p.core, p.io, p.interrupts, p.clock, p.eeprom};
+}
+
+void Chip::set_stops(const std::vector<std::uint32_t>& addresses) {
+    parts_->stops.clear();
+    for (const std::uint32_t pc : addresses)
+        parts_->stops.push_back(static_cast<std::uint16_t>(pc / 2));
+    parts_->core.set_stops(parts_->stops);
+}
+
 void Chip::set_skipping(bool on) {
     parts_->core.set_skip_idle(on);
 }

@@ -26,6 +26,8 @@ class StateWriter;
 
 namespace puckloop::avr {
 
+class Eeprom;
+
 struct ChipOptions {
     double oscillator_hertz = 16e6;  ///< of the crystal or resonator
     double ppm = 0.0;                ///< its error, + is fast
@@ -149,6 +151,20 @@ class Chip {
     void mark();
     void rewind();
     void settle();
+
+    /// What faults reach into (chip_faults.h), between two run_until().
+    struct Inside {
+        const DeviceInfo& device;
+        Core& core;
+        IoSpace& io;
+        InterruptController& interrupts;
+        cosim::ClockDomain& clock;
+        Eeprom& eeprom;
+    };
+    /// What is done next happens at now().
+    Inside inside();
+    /// Replaces the stop addresses. Unlike stop_at(), allowed while a mark is set.
+    void set_stops(const std::vector<std::uint32_t>& addresses);
 
     /// Busy-wait loops are skipped forward (default); off, every turn of them is executed.
     void set_skipping(bool on);

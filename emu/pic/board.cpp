@@ -58,13 +58,15 @@ Board::Board(const BoardParameters& parameters, BoardListener& listener)
       motors_{motor(StepSense::LeftMotor, parameters), motor(StepSense::RightMotor, parameters)} {
     for (SignalId id = 0; id < kSignalCount; ++id)
         values_[id].value = values_[id].before = signals()[id].initial;
+    battery_ = values_[kBatteryVoltage].value;
     values_[kSelector].value = clipped(kSelector, parameters.selector);
     place_levels();
 }
 
 std::optional<dspic::PortLetter> Board::set_signal(SignalId id, double value, dspic::Cycle now) {
     if (id >= kSignalCount || signals()[id].direction != cosim::SignalDirection::Input) return std::nullopt;
-    const double wanted = clipped(id, value);
+    if (id == kBatteryVoltage) battery_ = value;
+    const double wanted = clipped(id, id == kBatteryVoltage ? value - sag_ : value);
     Input& input = values_[canonical(id)];
     input.before = input.at(now);
     input.value = wanted;
@@ -77,6 +79,17 @@ std::optional<dspic::PortLetter> Board::set_signal(SignalId id, double value, ds
     for (std::size_t port = 0; port < kPorts; ++port)
         if (levels_[port] != before[port]) return static_cast<dspic::PortLetter>(port);
     return std::nullopt;
+}
+
+std::optional<dspic::PortLetter> Board::set_sag(double volts, dspic::Cycle now) {
+    if (volts == sag_) return std::nullopt;
+    sag_ = volts;
+    return set_signal(kBatteryVoltage, battery_, now);
+}
+
+void Board::set_held(int motor, bool held, dspic::Cycle now) {
+    if (now > 0) settle(now - 1);
+    motors_[static_cast<std::size_t>(motor)].set_held(held);
 }
 
 double Board::signal(SignalId id) const {
@@ -145,7 +158,11 @@ void Board::settle(dspic::Cycle now) {
         const std::size_t first = motors_[1].due() < motors_[0].due() ? 1 : 0;
         const dspic::Cycle due = motors_[first].due();
         if (due > now) return;
-        if (!motors_[first].settle(due)) continue;
+        const std::uint64_t lost = motors_[first].lost();
+        if (!motors_[first].settle(due)) {
+            if (motors_[first].lost() != lost) listener_.step_lost(static_cast<int>(first), due);
+            continue;
+        }
         const SignalId id = first == 0 ? kWheelLeft : kWheelRight;
         values_[id].value = static_cast<double>(motors_[first].steps());
         listener_.signal_changed(id, values_[id].value, due);
@@ -182,7 +199,8 @@ double Board::analog(int channel, dspic::Cycle now) {
     const double clipped = counts > 0.0 ? counts : 0.0;
     constexpr double kWhole = 0x1.0p52;  // from here on doubles are whole: to the nearest, to even between
     const double code = clipped < kFullScale ? (clipped + kWhole) - kWhole : kFullScale;
-    return (code + kInsideCode) / kSpan;
+    const double reading = (code + kInsideCode) / kSpan;
+    return analog_faults_.any() ? analog_faults_.apply(channel, reading, now) : reading;
 }
 
 }  // namespace puckloop::pic

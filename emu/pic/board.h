@@ -11,6 +11,7 @@
 // 3. The microphones and the accelerometer have no bandwidth of their own.
 
 #include "base/random.h"
+#include "emu/chip/faults/analog_faults.h"
 #include "emu/dspic/peripherals/pins.h"
 #include "emu/pic/emitter.h"
 #include "emu/pic/light_input.h"
@@ -54,6 +55,8 @@ class BoardListener {
     virtual void signal_changed(SignalId id, double value, dspic::Cycle now) = 0;
     virtual void uart_sent(int unit, const cosim::UartFrame& frame) = 0;
     virtual void i2c_phase(int unit, const cosim::I2cPhase& phase) = 0;
+    /// A fault kept motor 0 (left) or 1 from making a step that was due at `now`.
+    virtual void step_lost(int /*motor*/, dspic::Cycle /*now*/) {}
 };
 
 class Board : public dspic::Pins {
@@ -70,10 +73,19 @@ class Board : public dspic::Pins {
     /// passed `now`.
     void settle(dspic::Cycle now);
 
+    // Faults.
+    chip::AnalogFaults& analog_faults() { return analog_faults_; }
+    /// The battery's voltage is lower by so much from `now` on. Returns as set_signal() does.
+    std::optional<dspic::PortLetter> set_sag(double volts, dspic::Cycle now);
+    /// The wheel of motor 0 (left) or 1 does not turn from `now` on.
+    void set_held(int motor, bool held, dspic::Cycle now);
+
     /// Positions of all signals, lights, motors and noise; the parameters are each board's own.
     template <class Archive>
     void state(Archive& archive) {
-        archive(noise_, values_, emitters_, lights_, microphones_, motors_, outputs_);
+        archive(noise_, values_, emitters_, lights_, microphones_, motors_, outputs_, analog_faults_);
+        archive.bounded(sag_, 0.0, 1e3);
+        archive.bounded(battery_, -1e15, 1e15);
         if constexpr (Archive::kLoads) check_loaded();
     }
     /// Noise begins anew, by this board's own name and seed.
@@ -123,6 +135,8 @@ class Board : public dspic::Pins {
     std::array<StepperDecoder, 2> motors_;
     std::array<std::uint16_t, kPorts> outputs_{};  ///< pins that are driven high
     std::array<std::uint16_t, kPorts> levels_{};   ///< what the board puts on the pins
+    chip::AnalogFaults analog_faults_;
+    double sag_ = 0.0, battery_ = 0.0;  ///< volts; the battery's without the sag
 };
 
 }  // namespace puckloop::pic

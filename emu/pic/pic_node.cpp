@@ -1,6 +1,7 @@
 #include "emu/pic/pic_node.h"
 
 #include "emu/board/chip_json.h"
+#include "emu/board/fault_parts.h"
 #include "protocols/uart_sampling.h"
 
 #include <nlohmann/json.hpp>
@@ -36,6 +37,13 @@ PicNode::PicNode(const image::Image& image, const PicNodeOptions& options)
     chip_->set_skipping(options.skip_idle);
     chip_->load(image);
     chip_->power_on();
+    if (options.faults.empty()) return;
+    chip_faults_.emplace(*chip_);
+    board::FaultParts parts = board::fault_parts(options.faults);
+    board_.analog_faults().begin(std::move(parts.analog), chip_->clock());
+    faults_ = std::make_unique<chip::BoardFaults>(std::move(parts.others), *chip_faults_,
+                                                  static_cast<chip::BoardAccess&>(*this),
+                                                  board::symbols_of(image), options.board.crystal_ppm);
 }
 
 void PicNode::advance(cosim::Time until, std::span<const cosim::Message> inbox,
@@ -43,11 +51,13 @@ void PicNode::advance(cosim::Time until, std::span<const cosim::Message> inbox,
     outbox_ = &outbox;
     for (const cosim::Message& message : inbox) {
         press_reset(message.time, true);
+        run_faults(message.time, true);
         run_until(message.time);
         receive(message);
     }
     // A press at `until` itself belongs to the next grant: what this one tells must not depend on the cut.
     press_reset(until, false);
+    run_faults(until, false);
     run_until(until);
     settle(until);
     granted_ = until;
@@ -64,9 +74,19 @@ void PicNode::press_reset(cosim::Time until, bool inclusive) {
     while (next_reset_ < options_.resets.size()) {
         const cosim::Time time = options_.resets[next_reset_];
         if (time > until || (time == until && !inclusive)) return;
+        run_faults(time, false);
         run_until(time);
         chip_->mclr();
         ++next_reset_;
+    }
+}
+
+void PicNode::run_faults(cosim::Time until, bool inclusive) {
+    if (!faults_) return;
+    while (faults_->due(until, inclusive)) {
+        const cosim::Time time = faults_->next();
+        run_until(time);
+        faults_->act(time);
     }
 }
 
@@ -81,13 +101,13 @@ void PicNode::run_until(cosim::Time until) {
 
 void PicNode::run_chip(cosim::Time until) {
     if (options_.i2c_linked) {
-        chip_->run_until(until);
+        board::run_past_faults(*chip_, faults_.get(), until);
         return;
     }
     while (chip_->now() < until) {
         cosim::Time step = std::min(until, chip_->now() + EmptyBus::kStep);
         step = std::min(step, std::max(bus_.due(), chip_->now()));
-        if (step > chip_->now()) chip_->run_until(step);
+        if (step > chip_->now()) board::run_past_faults(*chip_, faults_.get(), step);
         if (bus_.due() <= step) chip_->i2c_answer(kI2cUnit, bus_.take());
     }
 }
@@ -107,7 +127,10 @@ void PicNode::receive(const cosim::Message& message) {
 }
 
 cosim::Time PicNode::earliest_output(cosim::PortIndex port) const {
-    if (port == kI2c) return std::max(granted_, chip_->earliest_i2c(kI2cUnit));
+    if (port == kI2c) {
+        const cosim::Time earliest = chip_->earliest_i2c(kI2cUnit);
+        return std::max(granted_, faults_ ? std::min(earliest, faults_->earliest(granted_)) : earliest);
+    }
     return granted_;
 }
 
@@ -127,19 +150,33 @@ void PicNode::signal_changed(SignalId id, double value, dspic::Cycle now) {
 void PicNode::uart_sent(int unit, const cosim::UartFrame& frame) {
     const cosim::Time stop_bit = protocols::stop_bit_start(frame);
     log_.sent(unit, frame, stop_bit);
-    outbox_->push_back({stop_bit, unit == 1 ? kUart1 : kUart2, frame});
+    const cosim::Time time = board::reached(*chip_, faults_.get(), stop_bit);
+    outbox_->push_back({time, unit == 1 ? kUart1 : kUart2, frame});
 }
 
 void PicNode::i2c_phase(int unit, const cosim::I2cPhase& phase) {
     if (unit != kI2cUnit) return;
     if (options_.i2c_linked)
-        outbox_->push_back({phase.start, kI2c, phase});
+        outbox_->push_back({board::reached(*chip_, faults_.get(), phase.start), kI2c, phase});
     else
         bus_.phase(phase);
 }
 
+void PicNode::step_lost(int motor, dspic::Cycle now) {
+    if (faults_) faults_->lost_step(motor, chip_->clock().time_of(now));
+}
+
+void PicNode::set_sag(double volts) {
+    if (const auto port = board_.set_sag(volts, message_cycle())) chip_->pins_changed(*port);
+}
+
+void PicNode::set_motor(int motor, std::uint8_t open, bool stalled) {
+    board_.set_held(motor, open != 0 || stalled, message_cycle());
+}
+
 void PicNode::state(StateWriter& archive) const {
     board::save_node(archive, granted_, bus_, board_, *chip_, log_);
+    board::save_faults(archive, faults_.get());
 }
 
 void PicNode::state(StateReader& archive) {
@@ -147,15 +184,18 @@ void PicNode::state(StateReader& archive) {
     // A press at the very time of the state is still to come.
     const auto next = std::lower_bound(options_.resets.begin(), options_.resets.end(), granted_);
     next_reset_ = static_cast<std::size_t>(next - options_.resets.begin());
+    board::load_faults(archive, faults_.get(), granted_);
 }
 
 void PicNode::state(CheckpointWriter& archive) const {
     board::save_node(archive, granted_, bus_, board_, *chip_, log_);
     archive(next_reset_);
+    if (faults_) archive(*faults_);
 }
 
 void PicNode::state(CheckpointReader& archive) {
     archive(granted_, bus_, board_, *chip_, log_, next_reset_);
+    if (faults_) archive(*faults_);
 }
 
 std::string PicNode::finish() {
@@ -168,6 +208,7 @@ std::string PicNode::finish() {
         board_.left_motor().illegal_patterns() + board_.right_motor().illegal_patterns();
     json["uart1"] = board::uart_json(chip_->uart_counters(1));
     json["uart2"] = board::uart_json(chip_->uart_counters(2));
+    if (faults_) json["faults"] = board::fault_report(*faults_, board_.analog_faults(), granted_);
     return json.dump();
 }
 

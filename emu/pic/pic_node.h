@@ -4,7 +4,8 @@
 #include "cosim/core/stateful_node.h"
 #include "emu/board/node_state.h"
 #include "emu/board/nvm_file.h"
-#include "emu/dspic/chip/chip.h"
+#include "emu/chip/faults/board_faults.h"
+#include "emu/dspic/chip/chip_faults.h"
 #include "emu/image/image.h"
 #include "emu/pic/board.h"
 #include "emu/pic/empty_bus.h"
@@ -19,7 +20,7 @@
 namespace puckloop::pic {
 
 struct PicNodeOptions {
-    BoardParameters board;   ///< its name is the node's name
+    BoardParameters board;  ///< its name is the node's name
     /// The board has the port "ir", as IRcom's medium (physics/ircom) needs it.
     bool ircom = false;
     bool i2c_linked = true;  ///< false: nobody else is on the bus, and the node answers the master itself
@@ -28,11 +29,12 @@ struct PicNodeOptions {
     /// Configuration word in force on the robot, as its bootloader left it: XT with PLL x8.
     std::uint16_t fosc = kFoscXtPll8;
     static constexpr std::uint16_t kFoscXtPll8 = 0xC706;
-    std::string log{};                      ///< file for the board's log; empty: none
-    std::shared_ptr<board::NvmFile> nvm{};  ///< keeps flash and EEPROM at the end; null: nothing does
+    std::string log{};                          ///< file for the board's log; empty: none
+    std::shared_ptr<board::NvmFile> nvm{};      ///< keeps flash and EEPROM at the end; null: nothing does
+    std::vector<cosim::CarriedFault> faults{};  ///< of this board
 };
 
-class PicNode : public cosim::StatefulNode, private BoardListener {
+class PicNode : public cosim::StatefulNode, private BoardListener, private chip::BoardAccess {
   public:
     static constexpr cosim::PortIndex kUart1 = 0;
     static constexpr cosim::PortIndex kUart2 = 1;
@@ -40,7 +42,7 @@ class PicNode : public cosim::StatefulNode, private BoardListener {
     static constexpr cosim::PortIndex kWorld = 3;
     static constexpr cosim::PortIndex kIr = 4;  ///< if `ircom`: pulses out, ir_light in
 
-    /// Throws InputError if the image does not fit the chip.
+    /// Throws InputError if the image does not fit the chip, or a fault neither.
     PicNode(const image::Image& image, const PicNodeOptions& options);
 
     std::string_view name() const override { return options_.board.name; }
@@ -69,11 +71,17 @@ class PicNode : public cosim::StatefulNode, private BoardListener {
     void settle(cosim::Time until);
     /// Presses the reset button where it is due before (or at) `until`.
     void press_reset(cosim::Time until, bool inclusive);
+    /// Lets the faults act that are due before (or at) `until`.
+    void run_faults(cosim::Time until, bool inclusive);
     void receive(const cosim::Message& message);
 
     void signal_changed(SignalId id, double value, dspic::Cycle now) override;
     void uart_sent(int unit, const cosim::UartFrame& frame) override;
     void i2c_phase(int unit, const cosim::I2cPhase& phase) override;
+    void step_lost(int motor, dspic::Cycle now) override;
+    void set_sag(double volts) override;
+    void set_motor(int motor, std::uint8_t open, bool stalled) override;
+    dspic::Cycle message_cycle() const { return chip_->clock().first_cycle_at(chip_->now()); }
 
     PicNodeOptions options_;
     std::vector<cosim::Port> ports_;
@@ -81,6 +89,8 @@ class PicNode : public cosim::StatefulNode, private BoardListener {
     std::unique_ptr<dspic::Chip> chip_;
     EmptyBus bus_;
     PicLog log_;
+    std::optional<dspic::ChipFaults> chip_faults_;
+    std::unique_ptr<chip::BoardFaults> faults_;  ///< null: none was asked for
     board::NodeMark<PicNode, dspic::Chip, PicLog> mark_{*this, chip_, log_};
     std::vector<cosim::Message>* outbox_ = nullptr;
     cosim::Time granted_ = 0;

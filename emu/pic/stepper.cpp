@@ -48,6 +48,10 @@ bool StepperDecoder::settle(dspic::Cycle now) {
         ++jumps_;
         return false;
     }
+    if (held_) {
+        ++lost_;
+        return false;
+    }
     const int along = distance == 1 ? 1 : -1;
     steps_ += along * static_cast<int>(sense_);
     return true;

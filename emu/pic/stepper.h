@@ -8,7 +8,10 @@
 // Deviations:
 // 1. A motor never loses a step, whatever speed or load is asked of it.
 // 2. At power-up the rotor stands at phase 0, where every known firmware's own phase counter starts.
-// 3. A jump of two phases moves nothing (on a robot either direction may win).
+// 3. While a fault holds the wheel its rotor follows the coils without turning: once free it goes on from
+// there
+//    (a real one snaps back by up to two steps).
+// 4. A jump of two phases moves nothing (on a robot either direction may win).
 
 #include "emu/dspic/core/event_queue.h"
 
@@ -31,6 +34,10 @@ class StepperDecoder {
     /// Takes the pending pattern if it is due at or before `now`; true if the wheel moved.
     bool settle(dspic::Cycle now);
 
+    /// A fault keeps the wheel from turning, from what is settled later on.
+    void set_held(bool held) { held_ = held; }
+    std::uint64_t lost() const { return lost_; }  ///< steps that it kept from being made
+
     std::int64_t steps() const { return steps_; }                ///< + is forward
     std::uint8_t pattern() const { return pattern_; }            ///< coils as they stand
     std::uint64_t illegal_patterns() const { return illegal_; }  ///< stable, but neither off nor in the table
@@ -41,6 +48,7 @@ class StepperDecoder {
         archive(due_, steps_, illegal_, jumps_);
         archive.bounded(pattern_, 0, 15);
         archive.bounded(phase_, 0, 3);
+        archive(held_, lost_);
     }
 
   private:
@@ -52,6 +60,8 @@ class StepperDecoder {
     std::uint64_t jumps_ = 0;
     std::uint8_t pattern_ = 0;
     std::uint8_t phase_ = 0;
+    bool held_ = false;
+    std::uint64_t lost_ = 0;
 };
 
 }  // namespace puckloop::pic

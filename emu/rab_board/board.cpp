@@ -138,7 +138,8 @@ double Board::analog(int channel, dspic::Cycle now) {
     const double clipped = counts > 0.0 ? counts : 0.0;
     constexpr double kWhole = 0x1.0p52;  // from here on doubles are whole: to the nearest, to even between
     const double code = clipped < kFullScale ? (clipped + kWhole) - kWhole : kFullScale;
-    return (code + kInsideCode) / kSpan;
+    const double reading = (code + kInsideCode) / kSpan;
+    return analog_faults_.any() ? analog_faults_.apply(channel, reading, now) : reading;
 }
 
 void Board::i2c_slave_answer(int unit, const cosim::I2cPhase& answer) {

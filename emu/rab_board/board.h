@@ -9,6 +9,7 @@
 // 3. The emitters' supply needs no time to rise when RF12 switches it on.
 
 #include "base/random.h"
+#include "emu/chip/faults/analog_faults.h"
 #include "emu/dspic/chip/chip.h"
 #include "emu/dspic/peripherals/pins.h"
 #include "emu/rab_board/peak_detector.h"
@@ -68,10 +69,13 @@ class Board : public dspic::Pins {
     /// passed `now`.
     void settle(cosim::Time now);
 
+    chip::AnalogFaults& analog_faults() { return analog_faults_; }
+
     /// Signals, detectors, potentiometer, pins and noise; the parameters are each board's own.
     template <class Archive>
     void state(Archive& archive) {
-        archive(noise_, potentiometer_, peaks_, low_, outputs_, levels_, gates_, emitters_, supply_);
+        archive(noise_, potentiometer_, peaks_, low_, outputs_, levels_, gates_, emitters_, supply_,
+                analog_faults_);
         for (double& value : values_)
             archive.bounded(value, -1e15, 1e15);
     }
@@ -110,6 +114,7 @@ class Board : public dspic::Pins {
     std::uint16_t gates_ = 0;
     std::uint16_t emitters_ = 0;
     bool supply_ = false;
+    chip::AnalogFaults analog_faults_;
 };
 
 }  // namespace puckloop::rab

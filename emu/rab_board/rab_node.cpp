@@ -1,5 +1,6 @@
 #include "emu/rab_board/rab_node.h"
 
+#include "emu/board/fault_parts.h"
 #include "emu/rab_board/rab_json.h"
 #include "protocols/uart_sampling.h"
 
@@ -38,15 +39,24 @@ RabNode::RabNode(const image::Image& image, const RabNodeOptions& options)
     chip_->set_skipping(options.skip_idle);
     chip_->load(image);
     chip_->power_on();
+    if (options.faults.empty()) return;
+    chip_faults_.emplace(*chip_);
+    board::FaultParts parts = board::fault_parts(options.faults);
+    board_.analog_faults().begin(std::move(parts.analog), chip_->clock());
+    faults_ = std::make_unique<chip::BoardFaults>(std::move(parts.others), *chip_faults_,
+                                                  static_cast<chip::BoardAccess&>(*this),
+                                                  board::symbols_of(image), options.board.crystal_ppm);
 }
 
 void RabNode::advance(cosim::Time until, std::span<const cosim::Message> inbox,
                       std::vector<cosim::Message>& outbox) {
     outbox_ = &outbox;
     for (const cosim::Message& message : inbox) {
+        run_faults(message.time, true);
         run_until(message.time);
         receive(message);
     }
+    run_faults(until, false);
     run_until(until);
     settle(until);
     granted_ = until;
@@ -58,13 +68,22 @@ void RabNode::settle(cosim::Time until) {
     if (until > 0) board_.settle(until - 1);
 }
 
+void RabNode::run_faults(cosim::Time until, bool inclusive) {
+    if (!faults_) return;
+    while (faults_->due(until, inclusive)) {
+        const cosim::Time time = faults_->next();
+        run_until(time);
+        faults_->act(time);
+    }
+}
+
 void RabNode::run_until(cosim::Time until) {
     while (log_.next_look() <= until) {
-        chip_->run_until(log_.next_look());
+        board::run_past_faults(*chip_, faults_.get(), log_.next_look());
         settle(log_.next_look());
         log_.look(*chip_);
     }
-    chip_->run_until(until);
+    board::run_past_faults(*chip_, faults_.get(), until);
 }
 
 void RabNode::receive(const cosim::Message& message) {
@@ -75,9 +94,29 @@ void RabNode::receive(const cosim::Message& message) {
     } else if (const auto* phase = std::get_if<cosim::I2cPhase>(&message.payload)) {
         begin_i2c(*phase, message.time);
     } else if (const auto* signal = std::get_if<cosim::Signal>(&message.payload)) {
-        if (const auto port = board_.set_signal(signal->id, signal->value, message.time))
+        const int receiver = signal->id - kDemodulator;
+        if (faults_ && receiver >= 0 && receiver < kSensorCount) {
+            const auto bit = static_cast<std::uint16_t>(1u << receiver);
+            const bool begins =
+                signal->value != 0.0 && !faults_->loses_burst(false, receiver + 1, message.time);
+            own_.seen = static_cast<std::uint16_t>(begins ? own_.seen | bit : own_.seen & ~bit);
+            show_carrier(receiver, message.time);
+        } else if (const auto port = board_.set_signal(signal->id, signal->value, message.time)) {
             chip_->pins_changed(*port);
+        }
     }
+}
+
+void RabNode::set_carrier(std::uint16_t receivers) {
+    own_.foreign = receivers;
+    for (int receiver = 0; receiver < kSensorCount; ++receiver)
+        show_carrier(receiver, chip_->now());
+}
+
+void RabNode::show_carrier(int receiver, cosim::Time now) {
+    const bool lit = (own_.seen | own_.foreign) >> receiver & 1;
+    const auto id = static_cast<SignalId>(kDemodulator + receiver);
+    if (const auto port = board_.set_signal(id, lit ? 1.0 : 0.0, now)) chip_->pins_changed(*port);
 }
 
 /// Holds what lookahead() guarantees: no answer before that long after the phase came in. A bus that passes a
@@ -98,7 +137,12 @@ cosim::Time RabNode::lookahead_when_idle() const {
 }
 
 cosim::Time RabNode::earliest_output(cosim::PortIndex port) const {
-    if (port == kI2c) return std::max(granted_, chip_->earliest_i2c_slave_answer(kI2cUnit));
+    if (port == kI2c) {
+        const cosim::Time earliest = chip_->earliest_i2c_slave_answer(kI2cUnit);
+        return std::max(granted_, faults_ && earliest != cosim::kNever
+                                      ? std::min(earliest, faults_->earliest(granted_))
+                                      : earliest);
+    }
     return granted_;
 }
 
@@ -114,46 +158,55 @@ std::optional<cosim::Time> RabNode::begun(cosim::PortIndex port) const {
 
 void RabNode::signal_changed(SignalId id, double value, cosim::Time now) {
     log_.signal_changed(id, value, now);
+    const int emitter = id - kEmitter;
+    const bool begins = faults_ && emitter >= 0 && emitter < kSensorCount && value != 0.0;
+    if (begins && faults_->loses_burst(true, emitter + 1, now)) return;
     if (id < kPeakReset) outbox_->push_back({now, kIr, cosim::Signal{id, value}});
 }
 
 void RabNode::uart_sent(int unit, const cosim::UartFrame& frame) {
     const cosim::Time stop_bit = protocols::stop_bit_start(frame);
     log_.sent(unit, frame, stop_bit);
-    outbox_->push_back({stop_bit, unit == 1 ? kUart1 : kUart2, frame});
+    const cosim::Time time = board::reached(*chip_, faults_.get(), stop_bit);
+    outbox_->push_back({time, unit == 1 ? kUart1 : kUart2, frame});
 }
 
 void RabNode::i2c_answer(const cosim::I2cPhase& answer, cosim::Time now) {
     log_.i2c_answer(answer, now);
-    outbox_->push_back({now, kI2c, answer});
+    outbox_->push_back({board::reached(*chip_, faults_.get(), now), kI2c, answer});
 }
 
 /// A device port cannot carry it: the firmware waits for an answer for ever, and the report says so.
 void RabNode::i2c_phase(int /*unit*/, const cosim::I2cPhase& /*phase*/) {
-    ++master_phases_;
+    ++own_.master_phases;
 }
 
 void RabNode::state(StateWriter& archive) const {
-    board::save_node(archive, granted_, master_phases_, board_, *chip_, log_);
+    board::save_node(archive, granted_, own_, board_, *chip_, log_);
+    board::save_faults(archive, faults_.get());
 }
 
 void RabNode::state(StateReader& archive) {
-    board::load_node(archive, granted_, master_phases_, board_, *chip_, log_);
+    board::load_node(archive, granted_, own_, board_, *chip_, log_);
+    board::load_faults(archive, faults_.get(), granted_);
 }
 
 void RabNode::state(CheckpointWriter& archive) const {
-    board::save_node(archive, granted_, master_phases_, board_, *chip_, log_);
+    board::save_node(archive, granted_, own_, board_, *chip_, log_);
+    if (faults_) archive(*faults_);
 }
 
 void RabNode::state(CheckpointReader& archive) {
-    archive(granted_, master_phases_, board_, *chip_, log_);
+    archive(granted_, own_, board_, *chip_, log_);
+    if (faults_) archive(*faults_);
 }
 
 std::string RabNode::finish() {
     log_.end(granted_, *chip_);
     if (options_.nvm) options_.nvm->save(chip_->memory());
     nlohmann::ordered_json json = rab_json(*chip_, board_, log_);
-    json["i2c"]["master_phases"] = master_phases_;
+    json["i2c"]["master_phases"] = own_.master_phases;
+    if (faults_) json["faults"] = board::fault_report(*faults_, board_.analog_faults(), granted_);
     return json.dump();
 }
 

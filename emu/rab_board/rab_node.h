@@ -4,7 +4,9 @@
 #include "cosim/core/stateful_node.h"
 #include "emu/board/node_state.h"
 #include "emu/board/nvm_file.h"
+#include "emu/chip/faults/board_faults.h"
 #include "emu/dspic/chip/chip.h"
+#include "emu/dspic/chip/chip_faults.h"
 #include "emu/image/image.h"
 #include "emu/rab_board/board.h"
 #include "emu/rab_board/rab_log.h"
@@ -22,18 +24,19 @@ struct RabNodeOptions {
     /// No master on the bus is faster; one that is gets its answers as if it were not. The slower this is,
     /// the further ahead the bus may run.
     double fastest_i2c_hertz = 400e3;
-    std::string log{};                      ///< file for the board's log; empty: none
-    std::shared_ptr<board::NvmFile> nvm{};  ///< keeps flash and EEPROM at the end; null: nothing does
+    std::string log{};                          ///< file for the board's log; empty: none
+    std::shared_ptr<board::NvmFile> nvm{};      ///< keeps flash and EEPROM at the end; null: nothing does
+    std::vector<cosim::CarriedFault> faults{};  ///< of this board
 };
 
-class RabNode : public cosim::StatefulNode, private BoardListener {
+class RabNode : public cosim::StatefulNode, private BoardListener, private chip::BoardAccess {
   public:
     static constexpr cosim::PortIndex kUart1 = 0;
     static constexpr cosim::PortIndex kUart2 = 1;
     static constexpr cosim::PortIndex kI2c = 2;  ///< a device port of cosim/i2c/i2c_bus.h
     static constexpr cosim::PortIndex kIr = 3;   ///< signals
 
-    /// Throws InputError if the image does not fit the chip.
+    /// Throws InputError if the image does not fit the chip, or a fault neither.
     RabNode(const image::Image& image, const RabNodeOptions& options);
 
     std::string_view name() const override { return options_.board.name; }
@@ -59,7 +62,11 @@ class RabNode : public cosim::StatefulNode, private BoardListener {
 
   private:
     void run_until(cosim::Time until);
+    void run_faults(cosim::Time until, bool inclusive);
     void settle(cosim::Time until);
+    void set_carrier(std::uint16_t receivers) override;
+    /// The demodulator sees a carrier of the medium's, or one of a fault.
+    void show_carrier(int receiver, cosim::Time now);
     void receive(const cosim::Message& message);
     void begin_i2c(cosim::I2cPhase phase, cosim::Time now);
     cosim::Time lookahead_when_idle() const;
@@ -76,10 +83,22 @@ class RabNode : public cosim::StatefulNode, private BoardListener {
     Board board_;
     std::unique_ptr<dspic::Chip> chip_;
     RabLog log_;
+    std::optional<dspic::ChipFaults> chip_faults_;
+    std::unique_ptr<chip::BoardFaults> faults_;  ///< null: none was asked for
     board::NodeMark<RabNode, dspic::Chip, RabLog> mark_{*this, chip_, log_};
     std::vector<cosim::Message>* outbox_ = nullptr;
     cosim::Time granted_ = 0;
-    std::uint64_t master_phases_ = 0;
+    struct Own {
+        std::uint64_t master_phases = 0;
+        // Only kept while there are faults; bit 0 is receiver 1.
+        std::uint16_t seen = 0;     ///< receivers at which the medium has a carrier
+        std::uint16_t foreign = 0;  ///< at which a fault has one
+
+        template <class Archive>
+        void state(Archive& archive) {
+            archive(master_phases, seen, foreign);
+        }
+    } own_;
 };
 
 }  // namespace puckloop::rab

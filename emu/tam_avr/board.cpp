@@ -34,6 +34,7 @@ Board::Board(const BoardParameters& parameters, BoardListener& listener)
       chip_(avr::atmega1284p(), *this, chip_options(parameters)) {
     for (SignalId id = 0; id < kSignalCount; ++id)
         values_[id] = signals()[id].initial;
+    battery_ = values_[kBattery];
     for (int i = 0; i < kBarriers; ++i)
         barriers_[static_cast<std::size_t>(i)].set_ambient(values_[static_cast<std::size_t>(kAmbient + i)]);
 }
@@ -68,6 +69,7 @@ void Board::run_until(Time until) {
 void Board::set_signal(SignalId id, double value) {
     if (id >= kSignalCount || signals()[id].direction != cosim::SignalDirection::Input) return;
     const cosim::SignalInfo& info = signals()[id];
+    if (id == kBattery) value = (battery_ = value) - sag_;
     values_[id] = value > info.min ? std::min(value, info.max) : info.min;
     if (id < kAmbient)
         barriers_[id - kBarrier].set_interrupted(values_[id], now_);
@@ -76,6 +78,11 @@ void Board::set_signal(SignalId id, double value) {
     if (!powered()) return;
     for (const PinUse& pin : wiring::kPins)
         if (pin.role == Role::Input && pin.signal == id) chip_.pins_changed(pin.port);
+}
+
+void Board::set_sag(double volts) {
+    sag_ = volts;
+    set_signal(kBattery, battery_);
 }
 
 void Board::uart_receive(int unit, const cosim::UartFrame& frame) {
@@ -130,7 +137,9 @@ double Board::analog(int channel, avr::Cycle now) {
         volts = values_[kBattery] * kBatteryDivider;
     if (parameters_.adc_noise_counts > 0)
         volts += parameters_.adc_noise_counts * noise_.normal() * kSupplyVolts / kFullScale;
-    return std::clamp(volts, 0.0, kSupplyVolts);
+    volts = std::clamp(volts, 0.0, kSupplyVolts);
+    return analog_faults_.any() ? analog_faults_.apply(channel, volts / kSupplyVolts, now) * kSupplyVolts
+                                : volts;
 }
 
 void Board::twi_phase(const cosim::I2cPhase& phase) {

@@ -14,6 +14,7 @@
 #include "base/random.h"
 #include "emu/avr/chip.h"
 #include "emu/avr/pins.h"
+#include "emu/chip/faults/analog_faults.h"
 #include "emu/tam_avr/led_driver.h"
 #include "emu/tam_avr/light_barrier.h"
 #include "emu/tam_avr/pin_table.h"
@@ -81,11 +82,17 @@ class Board : private avr::Pins {
     const avr::Chip& chip() const { return chip_; }
     const LedDriver& leds() const { return leds_; }
 
+    chip::AnalogFaults& analog_faults() { return analog_faults_; }
+    /// The battery's voltage is lower by so much.
+    void set_sag(double volts);
+
     /// Everything that time changes; the parameters are each board's own. Throws StateError.
     template <class Archive>
     void state(Archive& archive) {
         constexpr double kHighestSignal = 5.0;
-        archive(noise_, leds_, barriers_, addressed_);
+        archive(noise_, leds_, barriers_, addressed_, analog_faults_);
+        archive.bounded(sag_, 0.0, 1e3);
+        archive.bounded(battery_, -1e15, 1e15);
         for (double& value : values_)
             archive.bounded(value, 0.0, kHighestSignal);
         archive.bounded(now_, 0, cosim::kNever);
@@ -120,6 +127,8 @@ class Board : private avr::Pins {
     std::array<double, kSignalCount> values_{};
     bool addressed_ = false;  ///< the LED driver acknowledged its address
     cosim::Time now_ = 0;
+    chip::AnalogFaults analog_faults_;
+    double sag_ = 0.0, battery_ = 0.0;    ///< volts; the battery's without the sag
     cosim::Time off_at_ = cosim::kNever;  ///< when the supply goes
     avr::Chip chip_;                      ///< last: it looks at the rest when it is made
 };

@@ -1,5 +1,6 @@
 #include "emu/tam_avr/tam_node.h"
 
+#include "emu/board/fault_parts.h"
 #include "emu/tam_avr/fuse_check.h"
 #include "emu/tam_avr/tam_json.h"
 #include "protocols/uart_sampling.h"
@@ -46,6 +47,13 @@ TamNode::TamNode(const image::AvrImage& image, const TamNodeOptions& options)
     board_->set_signal(kNetworkSwitch + 1, options.network & 1 ? 1.0 : 0.0);
     board_->load(image);
     warnings_ = fuse_warnings(board_->chip().fuses(), image);
+    if (options.faults.empty()) return;
+    chip_faults_.emplace(board_->chip());
+    board::FaultParts parts = board::fault_parts(options.faults);
+    board_->analog_faults().begin(std::move(parts.analog), board_->chip().clock(), options.start);
+    faults_ = std::make_unique<chip::BoardFaults>(
+        std::move(parts.others), *chip_faults_, static_cast<chip::BoardAccess&>(*this),
+        board::symbols_of(image), options.board.resonator_ppm, options.start);
 }
 
 void TamNode::advance(Time until, std::span<const cosim::Message> inbox,
@@ -53,11 +61,13 @@ void TamNode::advance(Time until, std::span<const cosim::Message> inbox,
     outbox_ = &outbox;
     for (const cosim::Message& message : inbox) {
         press_reset(message.time, true);
+        run_faults(message.time, true);
         run_until(message.time);
         receive(message);
     }
     // A press at `until` itself belongs to the next grant: what this one sends must not depend on the cut.
     press_reset(until, false);
+    run_faults(until, false);
     run_until(until);
     granted_ = until;
     outbox_ = nullptr;
@@ -67,18 +77,37 @@ void TamNode::press_reset(Time until, bool inclusive) {
     while (next_reset_ < options_.resets.size()) {
         const Time time = options_.resets[next_reset_];
         if (time > until || (time == until && !inclusive)) return;
+        run_faults(time, false);
         run_until(time);
         board_->reset_button();
         ++next_reset_;
     }
 }
 
+void TamNode::run_faults(Time until, bool inclusive) {
+    if (!faults_) return;
+    while (faults_->due(until, inclusive)) {
+        const Time time = faults_->next();
+        run_until(time);
+        faults_->act(time);
+    }
+}
+
+void TamNode::run_board(Time until) {
+    board_->run_until(until);
+    if (!faults_) return;
+    while (board_->powered() && board_->chip().stopped_at()) {
+        faults_->arrived(from_board(board_->now()));
+        board_->run_until(until);
+    }
+}
+
 void TamNode::run_until(Time until) {
     while (log_.next_look() <= until) {
-        board_->run_until(to_board(log_.next_look()));
+        run_board(to_board(log_.next_look()));
         log_.look(board_->chip());
     }
-    board_->run_until(to_board(until));
+    run_board(to_board(until));
 }
 
 void TamNode::receive(const cosim::Message& message) {
@@ -100,6 +129,7 @@ Time TamNode::earliest_output(cosim::PortIndex /*port*/) const {
     Time next = std::max(options_.start, cosim::later(board_->wakes(), options_.start));
     if (board_->powered() && next_reset_ < options_.resets.size())
         next = std::min(next, options_.resets[next_reset_]);
+    if (board_->powered() && faults_) next = std::min(next, faults_->earliest(granted_));
     return std::max(granted_, next);
 }
 
@@ -128,13 +158,17 @@ void TamNode::uart_sent(int unit, const cosim::UartFrame& frame) {
     moved.start = from_board(frame.start);
     const Time stop_bit = protocols::stop_bit_start(moved);
     log_.sent(unit, moved, stop_bit);
-    outbox_->push_back({stop_bit, unit == kConsoleUnit ? kConsole : kXBee, moved});
+    Time time = stop_bit;
+    if (faults_ && faults_->changes_clock())
+        time = std::max(time, from_board(board_->chip().clock().time_of(board_->chip().cycle())));
+    outbox_->push_back({time, unit == kConsoleUnit ? kConsole : kXBee, moved});
 }
 
 void TamNode::state(StateWriter& archive) const {
     archive(granted_);
     archive.part("board", *board_);
     archive.part("log", log_);
+    board::save_faults(archive, faults_.get());
 }
 
 void TamNode::state(StateReader& archive) {
@@ -146,19 +180,24 @@ void TamNode::state(StateReader& archive) {
     // A press at the very time of the state is still to come.
     const auto next = std::lower_bound(options_.resets.begin(), options_.resets.end(), granted_);
     next_reset_ = static_cast<std::size_t>(next - options_.resets.begin());
+    board::load_faults(archive, faults_.get(), granted_);
 }
 
 void TamNode::state(CheckpointWriter& archive) const {
     archive(granted_, *board_, log_, next_reset_);
+    if (faults_) archive(*faults_);
 }
 
 void TamNode::state(CheckpointReader& archive) {
     archive(granted_, *board_, log_, next_reset_);
+    if (faults_) archive(*faults_);
 }
 
 std::string TamNode::finish() {
     log_.end(granted_, *board_);
-    return tam_json(*board_, log_, warnings_, options_.start).dump();
+    nlohmann::ordered_json json = tam_json(*board_, log_, warnings_, options_.start);
+    if (faults_) json["faults"] = board::fault_report(*faults_, board_->analog_faults(), granted_);
+    return json.dump();
 }
 
 }  // namespace puckloop::tam

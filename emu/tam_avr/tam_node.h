@@ -9,7 +9,9 @@
 //   ir       out: proximity_emit; in: proximity_sense
 
 #include "cosim/core/stateful_node.h"
+#include "emu/avr/chip_faults.h"
 #include "emu/board/node_state.h"
+#include "emu/chip/faults/board_faults.h"
 #include "emu/image/avr_image.h"
 #include "emu/tam_avr/board.h"
 #include "emu/tam_avr/tam_log.h"
@@ -22,18 +24,19 @@
 namespace puckloop::tam {
 
 struct TamNodeOptions {
-    BoardParameters board;              ///< its name is the node's name
-    int network = 3;                    ///< DIP switches, 0..3: the network is 01B2 + this
-    double battery = 3.7;               ///< volts
-    cosim::Time start = 0;              ///< switched on
-    bool skip_idle = true;              ///< busy-wait loops are skipped forward
-    std::vector<cosim::Time> resets{};  ///< the reset button, rising times after `start`
-    std::string log{};                  ///< file for the board's log; empty: none
-    bool pins_linked = true;            ///< false: there is no radio module to hear of the pins
-    bool ir_linked = true;              ///< false: nobody sees the transceiver
+    BoardParameters board;                      ///< its name is the node's name
+    int network = 3;                            ///< DIP switches, 0..3: the network is 01B2 + this
+    double battery = 3.7;                       ///< volts
+    cosim::Time start = 0;                      ///< switched on
+    bool skip_idle = true;                      ///< busy-wait loops are skipped forward
+    std::vector<cosim::Time> resets{};          ///< the reset button, rising times after `start`
+    std::string log{};                          ///< file for the board's log; empty: none
+    bool pins_linked = true;                    ///< false: there is no radio module to hear of the pins
+    bool ir_linked = true;                      ///< false: nobody sees the transceiver
+    std::vector<cosim::CarriedFault> faults{};  ///< of this board
 };
 
-class TamNode : public cosim::StatefulNode, private BoardListener {
+class TamNode : public cosim::StatefulNode, private BoardListener, private chip::BoardAccess {
   public:
     static constexpr cosim::PortIndex kConsole = 0, kXBee = 1, kPins = 2, kWorld = 3, kIr = 4;
 
@@ -68,16 +71,23 @@ class TamNode : public cosim::StatefulNode, private BoardListener {
     void run_until(cosim::Time until);
     /// Presses the reset button where it is due before (or at) `until`.
     void press_reset(cosim::Time until, bool inclusive);
+    void run_faults(cosim::Time until, bool inclusive);
+    /// The board to `until` in its own time; faults that wait for the program act on the way.
+    void run_board(cosim::Time until);
     void receive(const cosim::Message& message);
 
     void signal_changed(SignalId id, double value, cosim::Time now) override;
     void uart_sent(int unit, const cosim::UartFrame& frame) override;
+    bool powered() const override { return board_->powered(); }
+    void set_sag(double volts) override { board_->set_sag(volts); }
 
     TamNodeOptions options_;
     std::vector<cosim::Port> ports_;
     std::vector<std::string> warnings_;  // of the image
     TamLog log_;
     std::unique_ptr<Board> board_;
+    std::optional<avr::ChipFaults> chip_faults_;
+    std::unique_ptr<chip::BoardFaults> faults_;  ///< null: none was asked for
     board::NodeMark<TamNode, Board, TamLog> mark_{*this, board_, log_};
     std::vector<cosim::Message>* outbox_ = nullptr;
     cosim::Time granted_ = 0;

@@ -4,6 +4,7 @@
 
 #include "emu/pic/pic_node.h"
 #include "emu/rab_board/rab_node.h"
+#include "tests/board_faults.h"
 #include "tests/node_under_test.h"
 #include "tests/scratch.h"
 #include "tests/state/board_runs.h"
@@ -166,6 +167,51 @@ TEST_CASE("random programs go back") {
                .ahead = 3 * cosim::kMillisecond,
                .rab = family_33f},
               "random program " + std::to_string(seed));
+    }
+}
+
+TEST_CASE("boards with faults go back") {
+    for (int seed = 0; seed < 24; ++seed) {
+        RandomStream random(static_cast<std::uint64_t>(seed), "faults that go back");
+        const bool rab_board = seed % 3 == 2;
+        std::vector<cosim::CarriedFault> faults;
+        const auto add = [&](cosim::FaultSpec spec) {
+            spec.name += std::to_string(faults.size());
+            spec.begin = within(random, 30 * cosim::kMillisecond);
+            if (random.below(2) == 0) spec.end = spec.begin + within(random, 60 * cosim::kMillisecond);
+            spec.period = within(random, 5 * cosim::kMillisecond);
+            spec.probability = 0.7;
+            faults.push_back(carried(spec, faults.size()));
+        };
+        add(board_fault("flip"));
+        add(board_fault("flip").set("space", "flash"));
+        add(board_fault("reset").set("cause", "software"));
+        add(board_fault("hang").set("duration", 1e-3 * random.uniform()));
+        add(board_fault("hang").set("duration", 1e-5).set("pc", "0x108").set("nth", 2));
+        add(board_fault("clock").set("ppm", 1e3 * random.uniform()).set("drift", 100));
+        add(board_fault("adc_noise").set("channel", 8).set("sigma", 0.1));
+        add(board_fault("interrupt").set("vector", "T1"));
+        const image::Image image = seed < 12   ? random_program(random, rab_board)
+                                   : rab_board ? own_rab_image()
+                                               : own_pic_image();
+        const MakeLogged make = [=](const std::string& log) -> std::unique_ptr<cosim::StatefulNode> {
+            if (rab_board) {
+                rab::RabNodeOptions options;
+                options.log = log;
+                options.faults = faults;
+                return std::make_unique<rab::RabNode>(image, options);
+            }
+            pic::PicNodeOptions options;
+            options.log = log;
+            options.faults = faults;
+            return std::make_unique<pic::PicNode>(image, options);
+        };
+        check(make,
+              {.marks = 30,
+               .between = 3 * cosim::kMillisecond,
+               .ahead = 3 * cosim::kMillisecond,
+               .rab = rab_board},
+              "faults " + std::to_string(seed));
     }
 }
 

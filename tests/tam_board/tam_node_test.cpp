@@ -4,6 +4,7 @@
 #include "base/random.h"
 #include "emu/avr/assembler/assembler.h"
 #include "emu/tam_avr/tam_node.h"
+#include "tests/board_faults.h"
 #include "tests/scratch.h"
 #include "tests/state/board_runs.h"
 #include "tests/tam_board/rig.h"
@@ -12,7 +13,9 @@
 #include <nlohmann/json.hpp>
 
 #include <array>
+#include <cstdlib>
 #include <fstream>
+#include <map>
 #include <sstream>
 
 using namespace puckloop;
@@ -225,4 +228,79 @@ TEST_CASE("wrong fuses are named") {
                Catch::Contains("nothing is at 0x1FC00"));
     TamNode good(own_image(), options());
     CHECK(nlohmann::json::parse(good.finish())["warnings"].empty());
+}
+
+TEST_CASE("faults of the board come at their time, whatever the cuts") {
+    RandomStream random(9, "TAM faults");
+    const image::AvrImage image = test::assembled(kProgram);
+    const std::map<std::string, unsigned> causes{
+        {"power_on", 0x01}, {"mclr", 0x02}, {"brown_out", 0x04}, {"watchdog", 0x08}};
+    for (const auto& [cause, flag] : causes) {
+        INFO(cause);
+        TamNodeOptions with = options();
+        with.start = 5 * kMs;
+        cosim::FaultSpec reset = tests::board_fault("reset").set("cause", cause);
+        reset.begin = 6 * kMs + static_cast<Time>(random.below(20 * kMs));
+        with.faults = {tests::carried(reset)};
+        TamNode node(image, with);
+        std::vector<Message> out;
+        node.advance(reset.begin, {}, out);
+        CHECK(node.board().chip().report().resets.size() == 1);
+        node.advance(reset.begin + kMs, {}, out);
+        const auto resets = node.board().chip().report().resets;
+        REQUIRE(resets.size() == 2);
+        const Time at = with.start + node.board().chip().clock().time_of(resets[1].cycle);
+        CHECK(std::abs(at - reset.begin) < 2 * cosim::kMicrosecond);
+        CHECK((node.board().chip().peek("MCUSR") & flag) == flag);
+        CHECK(nlohmann::json::parse(node.finish()).at("faults").at(0).at("fired") == 1);
+    }
+    for (int i = 0; i < 8; ++i) {
+        std::vector<cosim::FaultSpec> specs;
+        const auto add = [&](cosim::FaultSpec spec) {
+            spec.name += std::to_string(specs.size());
+            spec.begin = static_cast<Time>(random.below(50 * kMs));
+            spec.period = 1 + static_cast<Time>(random.below(20 * kMs));
+            spec.probability = 0.6;
+            specs.push_back(spec);
+        };
+        add(tests::board_fault("reset").set("cause", "watchdog"));
+        add(tests::board_fault("hang").set("duration", 5e-3 * random.uniform()));
+        add(tests::board_fault("hang").set("duration", 1e-4).set("pc", "0x100").set("nth", 2));
+        add(tests::board_fault("flip"));
+        add(tests::board_fault("flip").set("space", "eeprom"));
+        add(tests::board_fault("clock").set("ppm", 4e4 * (random.uniform() - 0.5)).set("drift", 100));
+        TamNodeOptions with = options();
+        for (std::size_t k = 0; k < specs.size(); ++k)
+            with.faults.push_back(tests::carried(specs[k], k));
+        const std::string whole_log = tests::scratch_path("whole.log").string();
+        const std::string cut_log = tests::scratch_path("cut.log").string();
+        const Time end = 120 * kMs;
+        with.log = whole_log;
+        TamNode whole(image, with);
+        with.log = cut_log;
+        with.skip_idle = false;
+        TamNode cut(image, with);
+        std::vector<Message> once, parts;
+        whole.advance(end, {}, once);
+        cosim::Rewindable& back = *cut.rewindable();
+        for (Time now = 0; now < end;) {
+            const Time until = std::min(end, now + 1 + static_cast<Time>(random.below(4 * kMs)));
+            if (random.below(3) == 0) {  // run ahead, and go back
+                std::vector<Message> lost;
+                back.mark();
+                cut.advance(until + static_cast<Time>(random.below(9 * kMs)), {}, lost);
+                back.rewind();
+                back.settle();
+            }
+            cut.advance(until, {}, parts);
+            now = until;
+        }
+        const auto by_port = [](const Message& a, const Message& b) { return a.port < b.port; };
+        std::stable_sort(once.begin(), once.end(), by_port);
+        std::stable_sort(parts.begin(), parts.end(), by_port);
+        const bool same = once == parts;
+        CHECK(same);
+        CHECK(nlohmann::json::parse(whole.finish()).at("faults") ==
+              nlohmann::json::parse(cut.finish()).at("faults"));
+    }
 }

@@ -1,6 +1,7 @@
 #include "tools/run/node_factory.h"
 
 #include "base/error.h"
+#include "cosim/faults/fault_json.h"
 #include "emu/avr/device.h"
 #include "emu/i2c_devices/bus_node.h"
 #include "emu/image/avr_image.h"
@@ -40,6 +41,12 @@ image::Image board_image(const json& spec, std::string_view chip, std::shared_pt
     return image;
 }
 
+/// The faults that the node carries out.
+std::vector<cosim::CarriedFault> faults_of(const json& spec) {
+    if (!spec.contains("faults")) return {};
+    return cosim::faults_from_json(spec["faults"]);
+}
+
 std::unique_ptr<cosim::StatefulNode> make_pic(const json& spec) {
     pic::PicNodeOptions options;
     options.board.name = spec.at("name");
@@ -53,6 +60,7 @@ std::unique_ptr<cosim::StatefulNode> make_pic(const json& spec) {
     options.log = spec.value("log", "");
     for (const double seconds : spec.at("resets").get<std::vector<double>>())
         options.resets.push_back(cosim::from_seconds(seconds));
+    options.faults = faults_of(spec);
     const image::Image image = board_image(spec, dspic::dspic30f6014a().name, options.nvm);
     return std::make_unique<pic::PicNode>(image, options);
 }
@@ -65,6 +73,7 @@ std::unique_ptr<cosim::StatefulNode> make_rab(const json& spec) {
     options.board.adc_noise_counts = spec.at("adc_noise");
     options.fastest_i2c_hertz = spec.at("i2c_hertz");
     options.log = spec.value("log", "");
+    options.faults = faults_of(spec);
     const image::Image image = board_image(spec, dspic::dspic33fj256gp710().name, options.nvm);
     return std::make_unique<rab::RabNode>(image, options);
 }
@@ -96,6 +105,7 @@ std::unique_ptr<cosim::StatefulNode> make_tam(const json& spec) {
     options.ir_linked = spec.value("ir_linked", false);
     for (const double seconds : spec.at("resets").get<std::vector<double>>())
         options.resets.push_back(cosim::from_seconds(seconds));
+    options.faults = faults_of(spec);
     return std::make_unique<tam::TamNode>(tam_image(spec), options);
 }
 

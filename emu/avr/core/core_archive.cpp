@@ -3,6 +3,8 @@
 
 #include "emu/avr/core/machine.h"
 
+#include <algorithm>
+
 #include "base/archive.h"
 #include "base/checkpoint.h"
 
@@ -37,6 +39,20 @@ void list(Archive& archive, Machine& m) {
         archive.grows(m.warned);
     else
         archive(m.warned);
+    std::vector<std::uint16_t> stops = m.stops;  // a bench's, but what a mark is set over may change them
+    if constexpr (Archive::kRaw) archive(stops);
+    archive(m.pass_pc);
+    if constexpr (Archive::kLoads) {
+        if (stops != m.stops) {
+            m.stops.swap(stops);
+            for (const std::vector<std::uint16_t>& list : {stops, m.stops})
+                for (const std::uint16_t stop : list)
+                    forget(m, stop);
+        }
+        const bool stops_there =
+            m.pass_pc && std::find(m.stops.begin(), m.stops.end(), *m.pass_pc) != m.stops.end();
+        if (!stops_there) m.pass_pc.reset();
+    }
 }
 
 }  // namespace
@@ -51,7 +67,6 @@ void Core::state(StateReader& archive) {
     for (std::uint32_t i = 0; i < m.device.flash_words; ++i)
         forget(m, i);
     m.stopped = m.end_requested = false;
-    m.pass_pc.reset();
 }
 
 void Core::state(CheckpointWriter& archive) const {
@@ -63,7 +78,6 @@ void Core::state(CheckpointReader& archive) {
     list(archive, m);
     m.limit = 0;
     m.stopped = m.end_requested = false;
-    m.pass_pc.reset();
 }
 
 void Core::mark() {

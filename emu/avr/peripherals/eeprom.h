@@ -20,6 +20,11 @@ class Eeprom {
 
     void reset();
     std::vector<std::uint8_t>& bytes() { return bytes_; }
+    /// Another byte in a cell, by no programming.
+    void poke(std::size_t cell, std::uint8_t byte) {
+        undo_.note(static_cast<std::uint32_t>(cell), bytes_[cell]);
+        bytes_[cell] = byte;
+    }
     bool busy() const { return around_.now < state_.busy_until; }
 
     template <class Archive>

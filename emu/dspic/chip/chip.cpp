@@ -583,6 +583,16 @@ void Chip::settle() {
     parts_->core.settle();
 }
 
+Chip::Inside Chip::inside() {
+    Parts& parts = *parts_;
+    return {parts.device, parts.core, parts.sfr, parts.interrupts, parts.clock};
+}
+
+void Chip::set_stops(const std::vector<std::uint32_t>& addresses) {
+    parts_->stops = addresses;
+    parts_->core.set_stops(parts_->stops);
+}
+
 void Chip::set_skipping(bool on) {
     parts_->core.set_skip_idle(on);
     parts_->interrupts.set_resting(on);

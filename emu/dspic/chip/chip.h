@@ -27,6 +27,10 @@ struct Image;
 
 namespace puckloop::dspic {
 
+class Core;
+class InterruptController;
+class SfrSpace;
+
 struct ChipOptions {
     double crystal_hertz = 7'372'800.0;  ///< what the board solders to OSC1/OSC2
     double ppm = 0.0;                    ///< the crystal's error, + is fast
@@ -197,6 +201,18 @@ class Chip {
 
     /// Busy-wait loops are skipped forward (default); off, every cycle of them is executed.
     void set_skipping(bool on);
+
+    /// What faults reach into (chip_faults.h), between two run_until().
+    struct Inside {
+        const DeviceInfo& device;
+        Core& core;
+        SfrSpace& sfr;
+        InterruptController& interrupts;
+        cosim::ClockDomain& clock;
+    };
+    Inside inside();
+    /// Replaces the stop addresses. Unlike stop_at(), allowed while a mark is set.
+    void set_stops(const std::vector<std::uint32_t>& addresses);
 
   private:
     struct Parts;

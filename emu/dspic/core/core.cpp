@@ -120,6 +120,7 @@ void Core::step() {
 void Core::set_stops(std::span<const std::uint32_t> addresses) {
     Machine& m = *machine_;
     for (const std::uint32_t pc : m.stops) {
+        if (m.program_undo.on()) m.program_undo.note_operation(m, pc >> 1);
         m.code[pc >> 1].marks &= static_cast<std::uint8_t>(~kStop);
         invalidate(m, pc);
     }

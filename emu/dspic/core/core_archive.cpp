@@ -109,7 +109,7 @@ void list_waits(Archive& archive, Machine& m) {
 template <class Archive>
 void list_raw(Archive& archive, Machine& m) {
     list(archive, m);
-    archive(m.current, m.outside_pc, m.special, m.stack_span, m.pass_pc);
+    archive(m.current, m.outside_pc, m.special, m.stack_span, m.pass_pc, m.stops);
     list_waits(archive, m);
 }
 
@@ -120,6 +120,7 @@ void Core::state(StateWriter& archive) const {
     archive(pc);
     list(archive, *machine_);
     list_waits(archive, *machine_);
+    archive(machine_->pass_pc);
 }
 
 void Core::state(StateReader& archive) {
@@ -131,12 +132,14 @@ void Core::state(StateReader& archive) {
     m.current = at(m, pc & kProgramSpace);
     m.limit = 0;
     m.stopped = m.end_requested = false;
-    m.pass_pc.reset();
     // Where a loop ends the operation carries a mark: the present loop and the one in the shadow.
     dspic::mark(m, m.st.loop.doend, kLoopEnd);
     dspic::mark(m, m.st.loop_shadow.doend, kLoopEnd);
     update_pointer_rules(m);
     list_waits(archive, m);  // whatever changes code forgets them
+    archive(m.pass_pc);
+    if (m.pass_pc && std::find(m.stops.begin(), m.stops.end(), *m.pass_pc) == m.stops.end())
+        m.pass_pc.reset();
 }
 
 void Core::state(CheckpointWriter& archive) const {

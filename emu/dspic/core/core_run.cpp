@@ -108,6 +108,7 @@ void pass_stop(Machine& m) {
     const std::uint32_t pc = *m.pass_pc;
     m.pass_pc.reset();
     Op& op = m.code[pc >> 1];
+    if (m.program_undo.on()) m.program_undo.note_operation(m, pc >> 1);
     op.marks &= static_cast<std::uint8_t>(~kStop);
     forget_loops(m);
     decode(m, op);

@@ -1,0 +1,76 @@
+#include "emu/board/fault_parts.h"
+
+#include "emu/image/avr_image.h"
+#include "emu/image/image.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cstdint>
+#include <iterator>
+#include <map>
+#include <string>
+
+namespace puckloop::board {
+
+namespace {
+
+/// Of data symbols; functions go through find_code().
+std::function<std::optional<std::uint32_t>(const std::string&)>
+data_of(std::map<std::string, image::Symbol> symbols) {
+    return [symbols = std::move(symbols)](const std::string& name) -> std::optional<std::uint32_t> {
+        for (const std::string& spelling : {name, "_" + name})
+            if (const auto found = symbols.find(spelling);
+                found != symbols.end() && found->second.space == image::Space::Data)
+                return found->second.address;
+        return std::nullopt;
+    };
+}
+
+template <class Image>
+chip::Symbols symbols_in(const Image& image) {
+    return {[image](const std::string& name) { return image.find_code(name); }, data_of(image.symbols)};
+}
+
+}  // namespace
+
+FaultParts fault_parts(const std::vector<cosim::CarriedFault>& faults) {
+    FaultParts parts;
+    for (const cosim::CarriedFault& fault : faults)
+        (chip::AnalogFaults::takes(fault.spec.kind) ? parts.analog : parts.others).push_back(fault);
+    return parts;
+}
+
+chip::Symbols symbols_of(const image::Image& image) {
+    return symbols_in(image);
+}
+chip::Symbols symbols_of(const image::AvrImage& image) {
+    return symbols_in(image);
+}
+
+nlohmann::ordered_json fault_report(const chip::BoardFaults& faults, const chip::AnalogFaults& analog,
+                                    cosim::Time end) {
+    std::vector<cosim::CarriedFault> all = faults.faults();
+    all.insert(all.end(), analog.faults().begin(), analog.faults().end());
+    return cosim::fault_results(all, end);
+}
+
+void save_faults(StateWriter& archive, chip::BoardFaults* faults) {
+    std::vector<std::uint8_t> bytes;
+    StateWriter writer(bytes);
+    if (faults != nullptr) writer(*faults);
+    archive(bytes);
+}
+
+void load_faults(StateReader& archive, chip::BoardFaults* faults, cosim::Time now) {
+    std::vector<std::uint8_t> bytes;
+    archive(bytes);
+    if (faults == nullptr) return;
+    if (!bytes.empty()) {
+        StateReader reader(bytes);
+        reader(*faults);
+        reader.end();
+    }
+    faults->loaded(now);
+}
+
+}  // namespace puckloop::board
