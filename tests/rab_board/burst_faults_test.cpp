@@ -93,7 +93,7 @@ TEST_CASE("an emitter misses its bursts") {
             CHECK(sent[emitter].contains(begin) == !hit);
             lost += hit;
         }
-    CHECK(fired(*dead) == lost);
+    CHECK(fired(*dead) == static_cast<double>(lost));
     // Single chips of all twelve, which share each other's fate.
     cosim::FaultSpec chips = board_fault("emitter_dead").set("emitter", 0.0);
     chips.probability = 0.3;
@@ -104,7 +104,7 @@ TEST_CASE("an emitter misses its bursts") {
     const double share = 1 - static_cast<double>(sent[1].size()) / static_cast<double>(sound[1].size());
     CHECK(share > 0.1);
     CHECK(share < 0.5);
-    CHECK(fired(*weak) == sound[1].size() - sent[1].size());
+    CHECK(fired(*weak) == static_cast<double>(sound[1].size() - sent[1].size()));
 }
 
 TEST_CASE("a demodulator misses bursts, or sees a foreign carrier") {
