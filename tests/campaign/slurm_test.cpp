@@ -48,7 +48,7 @@ TEST_CASE("a job array makes the table of one worker, after a kill, too") {
     CHECK(table_of(bench, "slurm") == table);
 }
 
-TEST_CASE("--slurm where there is no Slurm is refused in one line") {
+TEST_CASE("a cluster where there is no Slurm is refused in one line") {
     const Workbench bench;
     const auto file = small_campaign(bench);
     const std::string path = std::getenv("PATH");

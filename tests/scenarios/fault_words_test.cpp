@@ -52,6 +52,12 @@ FaultSpec from_toml(const std::string& keys) {
     return read_fault("f.toml", 0, table, scenario);
 }
 
+/// A text that the parameter takes: its first choice, any word where it has none.
+std::string_view first_choice(const cosim::ParameterInfo& parameter) {
+    if (parameter.choices.empty()) return "T1Interrupt";
+    return parameter.choices.substr(0, parameter.choices.find('|'));
+}
+
 }  // namespace
 
 TEST_CASE("words and a table give the same fault") {
@@ -117,8 +123,13 @@ TEST_CASE("every kind of every place takes its own parameters") {
             if (kind.mark == cosim::FaultKind::Baud) words += " offset=2%";
             for (const cosim::ParameterInfo& parameter : kind.parameters) {
                 if (!parameter.required) continue;
+                if (parameter.unit == cosim::Unit::Text) {
+                    words += fmt::format(" {}=\"{}\"", parameter.key, first_choice(parameter));
+                    continue;
+                }
                 words += fmt::format(" {}={:.9f}", parameter.key, parameter.low);
                 if (parameter.unit == cosim::Unit::Time) words += "s";
+                if (parameter.unit == cosim::Unit::Voltage) words += "V";
                 if (parameter.unit == cosim::Unit::Integer || parameter.unit == cosim::Unit::Byte)
                     words.erase(words.find('.', words.rfind('=')));
             }

@@ -25,19 +25,20 @@ inline constexpr Time kMs = cosim::kMillisecond;
 inline constexpr Time kBit = cosim::kSecond / 9600, kByteTime = 10 * kBit;
 inline constexpr Time kStep = kMs / 10;
 
-/// Edges of an IRcom word after its begin, the first one rising: 12 symbols, MARK (0) ten half periods of
-/// 260 us, SPACE (1) five of 520 us; two MARKs, eight bits, two check bits.
+/// Edges of an IRcom word, the first one rising and at time 0: each of the 12 symbols' half periods ends with
+/// an edge, the first one in the dark. MARK (0) is ten half periods of 260 us, SPACE (1) five of 520 us; two
+/// MARKs, eight bits, two check bits (facts: tam, section 8).
 inline std::vector<Time> ircom_edges(std::uint8_t word) {
     const unsigned check = (4 - static_cast<unsigned>(std::popcount(word)) % 4) % 4;
     const unsigned symbols = static_cast<unsigned>(word) << 2 | check;
-    std::vector<Time> edges{0};
+    std::vector<Time> edges;
+    Time end = -260 * cosim::kMicrosecond;
     for (int symbol = 11; symbol >= 0; --symbol) {
         const bool space = symbols >> symbol & 1u;
         for (int half = 0; half < (space ? 5 : 10); ++half)
-            edges.push_back(edges.back() + (space ? 520 : 260) * cosim::kMicrosecond);
+            edges.push_back(end += (space ? 520 : 260) * cosim::kMicrosecond);
     }
-    edges.pop_back();                             // the line is low again behind the last half period:
-    if (edges.size() % 2 != 0) edges.pop_back();  // it was forced low, so that an odd last edge is lost
+    if (edges.size() % 2 != 0) edges.pop_back();  // forced low in the end: an odd last edge is lost
     return edges;
 }
 
