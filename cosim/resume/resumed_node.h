@@ -49,6 +49,8 @@ class ResumedNode : public Node {
     std::optional<Stop> stop() const override;
     /// None while it replays or records.
     Rewindable* rewindable() override { return replaying_ || recording_ ? nullptr : inner_->rewindable(); }
+    /// The board itself; at power-up until its saved state's time has come.
+    StatefulNode& board() { return *inner_; }
     /// The board's report, with "resumed" (from, at_s, skipped, what differed) added.
     std::string finish() override;
 

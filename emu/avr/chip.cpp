@@ -414,6 +414,10 @@ std::uint8_t Chip::peek(std::string_view register_name) const {
     if (!info) throw std::out_of_range("no register " + std::string(register_name));
     return parts_->io.raw(info->address);
 }
+std::uint8_t Chip::look(std::uint16_t address) const {
+    parts_->at_present();
+    return parts_->io.quiet_read(address);
+}
 std::uint8_t Chip::peek_data(std::uint16_t address) const {
     const DeviceInfo& device = parts_->device;
     if (address < device.ram_start || address >= device.ram_end()) throw std::out_of_range("no RAM there");

@@ -133,6 +133,8 @@ class Chip {
     cosim::Time wakes() const;
     /// A register's stored value by data-sheet name. Throws std::out_of_range if there is none.
     std::uint8_t peek(std::string_view register_name) const;
+    /// A register as the program would read it now, without side effects.
+    std::uint8_t look(std::uint16_t address) const;
     /// A byte of RAM. Throws std::out_of_range elsewhere.
     std::uint8_t peek_data(std::uint16_t address) const;
     ChipReport report() const;

@@ -124,12 +124,11 @@ std::uint32_t ChipFaults::read(const MemoryPlace& place) const {
         break;
     }
     if (place.address < kWorking) return in.core.read_data(address);
-    const CoreState state = in.core.state();
     const std::string_view register_name = name(place);
-    if (register_name == "SREG") return state.sreg;
-    if (register_name == "SPL") return state.sp & kByte;
-    if (register_name == "SPH") return state.sp >> 8;
-    return in.io.raw(address);
+    if (register_name == "SREG") return in.core.state().sreg;
+    if (register_name == "SPL") return in.core.state().sp & kByte;
+    if (register_name == "SPH") return in.core.state().sp >> 8;
+    return chip_.look(address);
 }
 
 void ChipFaults::flip(const MemoryPlace& place, std::uint32_t mask) {

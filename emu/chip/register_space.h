@@ -55,6 +55,15 @@ class RegisterSpace {
         cell.behaviour = Behaviour::Modelled;
     }
 
+    /// What a read would give, without its side effects, for whoever looks on; programs do not come here.
+    void hook_quiet(std::uint16_t address, ReadHook quiet) { at(address).quiet = quiet; }
+    /// By that hook, or the read hook where that has no side effects; else what is stored.
+    Word quiet_read(std::uint16_t address) {
+        const Cell& cell = at(address);
+        if (cell.quiet) return cell.quiet(cell.owner, address);
+        return cell.read && cell.steady ? cell.read(cell.owner, address) : raw(address);
+    }
+
     /// Called at the first touch of each Unmodelled or Absent register: name (or empty), address, true for a
     /// write.
     std::function<void(std::string_view name, std::uint16_t address, bool write)> on_first_touch;
@@ -131,6 +140,7 @@ class RegisterSpace {
         ReadHook read = nullptr;
         WriteHook write = nullptr;
         FollowHook follow = nullptr;
+        ReadHook quiet = nullptr;
         void* owner = nullptr;
         const Info* info = nullptr;
         Behaviour behaviour = Behaviour::Absent;

@@ -145,4 +145,21 @@ void ElfFile::read_symbols(std::map<std::string, Symbol>& symbols, const SpaceOf
     }
 }
 
+std::map<std::string, std::uint32_t> ElfFile::object_sizes() const {
+    std::map<std::string, std::uint32_t> global, local;
+    for (const Elf32_Shdr& header : sections()) {
+        if (header.sh_type != SHT_SYMTAB) continue;
+        const std::string_view table = reader_.slice(header.sh_offset, header.sh_size, "the symbol table");
+        for (std::size_t at = 0; at + sizeof(Elf32_Sym) <= table.size(); at += sizeof(Elf32_Sym)) {
+            Elf32_Sym entry;
+            std::memcpy(&entry, table.data() + at, sizeof entry);
+            const char* name = elf_strptr(elf_.get(), header.sh_link, entry.st_name);
+            if (ELF32_ST_TYPE(entry.st_info) != STT_OBJECT || entry.st_size == 0 || name == nullptr) continue;
+            (ELF32_ST_BIND(entry.st_info) == STB_LOCAL ? local : global).emplace(name, entry.st_size);
+        }
+    }
+    global.merge(local);
+    return global;
+}
+
 }  // namespace puckloop::image

@@ -45,6 +45,8 @@ class ElfFile {
     using SpaceOf = std::function<Symbol(const Elf32_Shdr* section, std::uint32_t value)>;
     void read_symbols(std::map<std::string, Symbol>& symbols, const SpaceOf& space_of,
                       const std::function<void(std::string_view name)>& on_absolute = nullptr) const;
+    /// Bytes of each variable that the symbol table knows the size of; a global one wins over a local one.
+    std::map<std::string, std::uint32_t> object_sizes() const;
 
   private:
     struct CloseElf {

@@ -6,23 +6,32 @@
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
 #include "tools/commands.h"
+#include "tools/replay/dump.h"
 #include "tools/run/node_factory.h"
 #include "tools/run/setup.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 namespace puckloop::tools {
 
 namespace {
 
+constexpr double kLongest = 9e6;  // s
+
 struct Options {
     RunRequest request;
-    std::string folder, node;
-    double until = 9e6;
+    std::string folder, node, linux_program;
+    std::vector<std::string> linux_args;
+    double from = 0.0, until = kLongest;
+    std::string vcd;
+    std::vector<std::string> registers;
+    bool list_registers = false;
 };
 
 const cosim::NodeSpec& find_node(const RunSetup& setup, const std::string& name) {
@@ -35,32 +44,115 @@ const cosim::NodeSpec& find_node(const RunSetup& setup, const std::string& name)
                      fmt::format("one of {}", fmt::join(names, ", ")));
 }
 
+void check(const Options& options) {
+    if (options.vcd.empty() && !options.registers.empty())
+        throw InputError("", "--registers", "there is no --vcd to write them to", "--vcd FILE");
+    if (options.vcd.empty() && options.from > 0)
+        throw InputError("", "--from", "a replay begins where the run began; without --vcd nothing begins at "
+                                       "another time",
+                         "--vcd FILE, or --from-state FILE");
+    if (options.until <= options.from)
+        throw InputError("", "--to", fmt::format("{} s is not after --from", options.until),
+                         fmt::format("more than {} s", options.from));
+}
+
+/// The node's links of which something was recorded, within the time that the dump is of.
+TraceSelection lines_of(const Options& options, const RunSetup& setup, const ReplayResult& result) {
+    TraceSelection selection;
+    for (const cosim::LinkSpec& link : setup.links)
+        if ((link.a.node == options.node || link.b.node == options.node) && result.links.contains(link.name))
+            selection.links.push_back(link.name);
+    selection.from_s = options.from;
+    selection.until_s = std::min(options.until, cosim::to_seconds(result.until + cosim::kNanosecond));
+    return selection;
+}
+
+/// A dump cannot replace what it is made from.
+void check_output(const std::string& vcd, const std::filesystem::path& record) {
+    std::error_code error;
+    if (vcd != "-" && std::filesystem::equivalent(record, vcd, error))
+        throw InputError(vcd, "--vcd", "is the record itself", "another file");
+}
+
 int run(Options& options) {
+    check(options);
+    RunRequest& request = options.request;
+    if (!options.linux_program.empty()) {
+        request.linux_command = {options.linux_program};
+        request.linux_command.insert(request.linux_command.end(), options.linux_args.begin(),
+                                     options.linux_args.end());
+    }
     const std::filesystem::path file = std::filesystem::path(options.folder) / "record.csv";
     if (!std::filesystem::exists(file))
         throw InputError(file.string(), "", "no such file", "the results folder of a run with --record");
+    check_output(options.vcd, file);
     TraceSelection selection;
     selection.until_s = options.until;
     const RecordedTrace record(file, selection);
-    if (options.request.out.empty()) options.request.out = std::filesystem::path(options.folder) / "replay";
-    const RunSetup setup = set_up(options.request);
+    if (request.out.empty()) request.out = std::filesystem::path(options.folder) / "replay";
+    const RunSetup setup = set_up(request);
     const cosim::NodeSpec& spec = find_node(setup, options.node);
     std::filesystem::create_directories(setup.out);
     const auto node = make_node(spec.json);
-    const ReplayResult result = replay(*node, setup.links, record);
-    node->finish();
-    const std::string counts = fmt::format("{} messages in, {} out as recorded, until {:.6f} s",
-                                           result.received, result.equal, cosim::to_seconds(result.until));
-    if (!result.difference) {
-        fmt::print("{}: {}\n", options.node, counts);
+    const nlohmann::json description = nlohmann::json::parse(spec.json);
+    if (options.list_registers) {
+        fmt::print("{}", list_of(view_of(description, *node)));
         return 0;
     }
+    std::optional<Watch> watch;
+    ReplayWatch looks;
+    if (!options.registers.empty()) {
+        watch.emplace(view_of(description, *node), options.registers);
+        looks.from = cosim::from_seconds(options.from);
+        looks.next = [&](cosim::Time now) { return watch->next(now); };
+        looks.look = [&](cosim::Time now) { watch->sample(now); };
+    }
+    const ReplayResult result = replay(*node, setup.links, record, watch ? &looks : nullptr);
+    if (!options.vcd.empty()) {
+        if (cosim::to_seconds(result.until) <= options.from)
+            throw InputError(file.string(), "--from",
+                             fmt::format("the replay ended at {:.6f} s", cosim::to_seconds(result.until)),
+                             "an earlier time");
+        const RecordedTrace lines(file, lines_of(options, setup, result));
+        write_dump(options.vcd, lines, options.node, watch ? &*watch : nullptr);
+    }
+    node->finish();
+    std::FILE* out = options.vcd == "-" ? stderr : stdout;
+    const std::string counts = fmt::format("{} messages in, {} out as recorded, until {:.6f} s",
+                                           result.received, result.equal, cosim::to_seconds(result.until));
+    fmt::print(out, "{}: {}\n", options.node, counts);
+    if (watch) fmt::print(out, "{} changes of {} values in {}\n", watch->log().size(),
+                          watch->values().size(), options.vcd);
+    if (!result.difference) return 0;
     const ReplayDifference& first = *result.difference;
     const auto shown = [](const std::string& row) { return row.empty() ? std::string("no message") : row; };
-    fmt::print("{}: {}\nfirst difference at {} s, message {} on {}\n  recorded: {}\n  replayed: {}\n",
-               options.node, counts, cosim::format_seconds(first.time), first.message, first.link,
-               shown(first.recorded), shown(first.replayed));
+    fmt::print(out, "first difference at {} s, message {} on {}\n  recorded: {}\n  replayed: {}\n",
+               cosim::format_seconds(first.time), first.message, first.link, shown(first.recorded),
+               shown(first.replayed));
     return 1;
+}
+
+/// What the run was given has to be given again.
+void declare_run_options(Command& command, Options& options) {
+    RunRequest& request = options.request;
+    command.add_option("--firmware", request.firmware, "as of `run`: BOARD=IMAGE")->type_name("BOARD=IMAGE");
+    command.add_option("--linux", options.linux_program, "as of `run`")->type_name("PROGRAM [ARG]...");
+    command.add_option("--linux-arg", options.linux_args)->group("");
+    command.add_option("--fault", request.faults, "as of `run`; repeatable")
+        ->type_name("\"KIND KEY=VALUE...\"")
+        ->allow_extra_args(false);
+    command.add_option("--events", request.events, "as of `run`")->type_name("FILE");
+    command.add_option("--seed", request.seed, "as of `run`")
+        ->check(count_up_to(~std::uint64_t{0}))
+        ->type_name("N");
+    command.add_option("--model", request.overlay, "as of `run`: overlay of physical parameters")
+        ->type_name("OVERLAY");
+    command
+        .add_option("--from-state", request.from_state,
+                    "a file of `run --save-state`: the board takes its state over, and nothing before that is "
+                    "executed")
+        ->check(not_empty())
+        ->type_name("FILE");
 }
 
 }  // namespace
@@ -78,16 +170,26 @@ void declare_replay(Command& app, int& status) {
     command->add_option("--node", options->node, "the node, such as robot0.pic")
         ->required()
         ->type_name("NAME");
-    command->add_option("--firmware", options->request.firmware, "as of `run`: BOARD=IMAGE")
-        ->type_name("BOARD=IMAGE");
-    command->add_option("--seed", options->request.seed, "as of `run`")
-        ->check(count_up_to(~std::uint64_t{0}))
-        ->type_name("N");
-    command->add_option("--model", options->request.overlay, "as of `run`: overlay of physical parameters")
-        ->type_name("OVERLAY");
+    declare_run_options(*command, *options);
     command->add_option("--to", options->until, "simulated seconds; else all that was recorded")
-        ->check(number_between(1e-9, 9e6))
+        ->check(number_between(1e-9, kLongest))
         ->type_name("S");
+    command
+        ->add_option("--vcd", options->vcd,
+                     "write the node's lines, signals and --registers for GTKWave; - is the standard output")
+        ->type_name("FILE");
+    command
+        ->add_option("--registers", options->registers,
+                     "registers and variables in the dump, every change to the cycle: PORTB,U1STA,PC,counter,"
+                     "buffer+4:2,0x0850 (docs/traces.md); repeatable")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->type_name("NAME,...");
+    command->add_option("--from", options->from, "where the dump begins, simulated seconds")
+        ->check(number_between(0.0, kLongest))
+        ->type_name("S");
+    command->add_flag("--list-registers", options->list_registers,
+                      "print what --registers takes for this node and its firmware");
     command->add_option("--out", options->request.out, "folder for the node's log (default: DIR/replay)")
         ->type_name("DIR");
     command->callback([options, &status] { status = run(*options); });

@@ -99,10 +99,11 @@ int run(Options& options) {
         setup, request, [&](const cosim::Progress& progress) { status_line.show(progress); }, &interrupt);
     status_line.clear();
     export_trace(setup.out, request.trace_formats);
+    std::FILE* said = request.live == "-" ? stderr : stdout;  // the trace's own
     if (options.json)
-        fmt::print("{}\n", (setup.out / "report.json").string());
+        fmt::print(said, "{}\n", (setup.out / "report.json").string());
     else
-        fmt::print("{}\n", summary(setup, outcome));
+        fmt::print(said, "{}\n", summary(setup, outcome));
     const int status = status_of(outcome, *interrupt.flag());
     if (status != 0) fmt::print(stderr, "puckloop: {}\n", outcome.text);
     return status;
@@ -163,6 +164,12 @@ void declare_run(Command& app, int& status) {
                      "write the trace also as sr (sigrok), pcapng or vcd when the run ends (repeatable)")
         ->allow_extra_args(false)
         ->check(one_of({"sr", "pcapng", "vcd"}));
+    command
+        ->add_option("--live", request.live,
+                     "write the trace as pcapng while the run goes on: to a named pipe that Wireshark reads, "
+                     "to - (the standard output) or a file")
+        ->check(not_empty())
+        ->type_name("FILE");
     command->add_flag("--record", request.record, "write every message to record.csv, for `puckloop replay`");
     command->add_option("--model", request.overlay, "overlay of physical parameters")->type_name("OVERLAY");
     command->add_option("--out", request.out, "folder for the results (default: out/<scenario>)")

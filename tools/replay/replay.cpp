@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <map>
+#include <span>
+#include <utility>
 
 namespace puckloop::tools {
 
@@ -27,8 +29,8 @@ struct Attached {
 
 class Replay {
   public:
-    Replay(cosim::Node& node, const std::vector<LinkSpec>& links)
-        : node_(node), by_port_(node.ports().size()) {
+    Replay(cosim::Node& node, const std::vector<LinkSpec>& links, const ReplayWatch* watch)
+        : node_(node), by_port_(node.ports().size()), watch_(watch) {
         const auto ports = node.ports();
         for (const LinkSpec& link : links)
             for (const cosim::PortRef* end : {&link.a, &link.b}) {
@@ -49,6 +51,7 @@ class Replay {
         const auto found = by_link_.find(row.link);
         if (found == by_link_.end()) return;
         ++rows_;
+        if (row.link != last_link_) result_.links.insert(last_link_ = row.link);
         if (result_.difference) return;
         if (row.from == node_.name())
             sent_.recorded(row);
@@ -59,15 +62,17 @@ class Replay {
     void advance(Time until) {
         if (result_.difference) return;
         result_.received += inbox_.size();
-        outbox_.clear();
-        node_.advance(until, inbox_, outbox_);
-        inbox_.clear();
-        now_ = until;
-        for (const Message& message : outbox_) {
-            const Attached& out = by_port_[message.port];
-            if (out.link == nullptr) continue;
-            sent_.replayed(row_of(message, out));
+        if (watch_ != nullptr && until >= watch_->from) {
+            if (now_ < watch_->from) step(watch_->from);
+            if (!std::exchange(looked_, true)) watch_->look(now_);
+            while (now_ < until) {
+                step(std::min(until, watch_->next(now_)));
+                watch_->look(now_);
+            }
         }
+        if (now_ < until) step(until);
+        inbox_.clear();
+        handed_in_ = 0;
         result_.difference = sent_.check(until);
     }
 
@@ -83,6 +88,21 @@ class Replay {
     std::uint64_t rows() const { return rows_; }
 
   private:
+    void step(Time until) {
+        std::size_t end = handed_in_;
+        while (end < inbox_.size() && inbox_[end].time < until)
+            ++end;
+        outbox_.clear();
+        node_.advance(until, std::span(inbox_).subspan(handed_in_, end - handed_in_), outbox_);
+        handed_in_ = end;
+        now_ = until;
+        for (const Message& message : outbox_) {
+            const Attached& out = by_port_[message.port];
+            if (out.link == nullptr) continue;
+            sent_.replayed(row_of(message, out));
+        }
+    }
+
     static cosim::Payload payload_of(const TraceRow& row, const LinkSpec& link) {
         const auto* signal = std::get_if<cosim::Signal>(&row.payload);
         if (signal == nullptr || row.signal.empty()) return row.payload;
@@ -110,16 +130,21 @@ class Replay {
     std::map<std::string, Attached> by_link_;
     std::vector<Attached> by_port_;
     SentComparison sent_;
+    const ReplayWatch* watch_;
+    bool looked_ = false;
     std::vector<Message> inbox_, outbox_;
+    std::size_t handed_in_ = 0;  // of inbox_
     Time now_ = 0, last_ = 0;
     std::uint64_t rows_ = 0;
+    std::string last_link_;
     ReplayResult result_;
 };
 
 }  // namespace
 
-ReplayResult replay(cosim::Node& node, const std::vector<LinkSpec>& links, const RecordedTrace& record) {
-    Replay run(node, links);
+ReplayResult replay(cosim::Node& node, const std::vector<LinkSpec>& links, const RecordedTrace& record,
+                    const ReplayWatch* watch) {
+    Replay run(node, links, watch);
     RecordedTrace::Cursor cursor(record);
     // One row of the node is wanted before a difference counts: the record may be another scenario's.
     while (const auto row = cursor.next()) {

@@ -7,7 +7,10 @@
 #include "tools/replay/comparison.h"
 #include "tools/trace/recorded_trace.h"
 
+#include <functional>
 #include <optional>
+#include <set>
+#include <string>
 #include <vector>
 
 namespace puckloop::tools {
@@ -17,11 +20,21 @@ struct ReplayResult {
     std::uint64_t equal = 0;                     ///< messages sent as recorded
     cosim::Time until = 0;                       ///< how far the node was executed
     std::optional<ReplayDifference> difference;  ///< where it ended, if there was one
+    std::set<std::string> links;                 ///< those of the node of which the record has rows
+};
+
+/// What happens to be looked at while the node is executed, from `from` on.
+struct ReplayWatch {
+    cosim::Time from = 0;
+    /// When the node is to stand still next, after `now`.
+    std::function<cosim::Time(cosim::Time now)> next;
+    /// It stands still: all before `now` has happened.
+    std::function<void(cosim::Time now)> look;
 };
 
 /// `record` must hold every message of the node's links (a run's record.csv). Throws InputError for a record
 /// that cannot be read or holds nothing of the node.
 ReplayResult replay(cosim::Node& node, const std::vector<cosim::LinkSpec>& links,
-                    const RecordedTrace& record);
+                    const RecordedTrace& record, const ReplayWatch* watch = nullptr);
 
 }  // namespace puckloop::tools

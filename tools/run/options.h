@@ -30,6 +30,7 @@ struct RunRequest {
     double stall_seconds = 10.0;
     bool record = false;                     ///< record.csv: every message, for `puckloop replay`
     std::vector<std::string> trace_formats;  ///< forms of the trace beside trace.csv: sr, pcapng, vcd
+    std::string live;                        ///< pcapng while the run goes on; "-": standard output
     bool strict = false;                     ///< a run with warnings has failed
 };
 

@@ -5,6 +5,7 @@
 #include "physics/trajectory_svg.h"
 #include "tools/run/control/control_place.h"
 #include "tools/run/fault_results.h"
+#include "tools/run/live_trace.h"
 #include "tools/run/node_factory.h"
 #include "tools/run/preflight.h"
 #include "tools/run/report.h"
@@ -98,6 +99,15 @@ std::vector<std::string> result_files(const RunSetup& setup) {
     return names;
 }
 
+void end_live(LiveTrace& live, cosim::Outcome& outcome) {
+    try {
+        live.end();
+    } catch (const RunError& error) {
+        if (outcome.success) outcome.text = error.what();
+        outcome.success = false;
+    }
+}
+
 /// With fewer boards there is too little to do side by side.
 unsigned threads_for(const RunSetup& setup, const RunRequest& request) {
     constexpr unsigned kBoardsOfThread = 4, kMost = 4;
@@ -142,6 +152,9 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
         diary.progress(now);
         if (progress) progress(now);
     };
+    // Before anything is started: a named pipe may have to wait for its reader.
+    std::optional<LiveTrace> live;
+    if (!request.live.empty()) live.emplace(request.live, options.interrupted);
     cosim::Conductor conductor(setup.nodes, setup.links, setup.scenario.faults, options, make_node);
     cosim::TraceCsvSink trace((setup.out / "trace.csv").string());
     conductor.add_sink(trace);
@@ -150,8 +163,10 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
         record.emplace((setup.out / "record.csv").string(), cosim::TraceCsvSink::Rows::All);
         conductor.add_sink(*record);
     }
+    if (live) conductor.add_sink(*live);
     diary.started(conductor);
     cosim::Outcome outcome = conductor.run();
+    if (live) end_live(*live, outcome);
     if (outcome.reason == cosim::EndReason::Interrupted) {
         outcome.success = false;
         outcome.text =

@@ -4,17 +4,39 @@
 #include "tools/trace/recorded_trace.h"
 
 #include <cstdint>
+#include <optional>
 #include <ostream>
 #include <string>
+#include <vector>
 
 namespace puckloop::tools {
 
 /// Rows as they were, wanted ones only.
 void export_csv(const RecordedTrace& trace, std::ostream& out);
 
+/// Values of another source, such as registers, beside the lines of a value change dump.
+class VcdValues {
+  public:
+    struct Variable {
+        std::string scope, name;
+        unsigned bits = 1;
+    };
+    struct Change {
+        cosim::Time time = 0;
+        std::size_t variable = 0;
+        std::uint64_t value = 0;
+    };
+    virtual ~VcdValues() = default;
+    virtual std::vector<Variable> variables() const = 0;
+    /// In the order of time.
+    virtual std::optional<Change> next() = 0;
+};
+
 /// Value change dump (IEEE 1364), for GTKWave and its like: the lines of lines.h, and beside them `byte` of a
 /// UART while a frame lasts, `phase` and `byte` of I2C, `octets` of a radio and the value of each signal.
 void export_vcd(const RecordedTrace& trace, std::ostream& out);
+/// `values`, if not null, go into the same dump.
+void export_vcd_with(const RecordedTrace& trace, std::ostream& out, VcdValues* values);
 
 /// pcapng for Wireshark, times in nanoseconds, one interface for each sender on each link (I2C: for each
 /// bus).

@@ -4,12 +4,15 @@
 #include "protocols/uart_sampling.h"
 #include "tools/trace/export.h"
 #include "tools/trace/i2c_transfers.h"
+#include "tools/trace/pcapng_stream.h"
+#include "tools/trace/received.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace puckloop::tools {
@@ -22,7 +25,7 @@ using Bytes = std::vector<std::uint8_t>;
 enum class LinkType : std::uint16_t { Radio = 195, I2c = 209, Uart = 250 };
 enum : std::uint32_t { kSection = 0x0A0D0D0A, kInterface = 1, kPacket = 6 };
 enum : std::uint16_t { kEnd = 0, kComment = 1, kName = 2, kResolution = 9 };
-enum : std::uint8_t { kDataSent = 1, kParityError = 8, kBreak = 9 };  // events of LINKTYPE_RTAC_SERIAL
+enum : std::uint8_t { kDataSent = 1, kFramingError = 7, kParityError = 8, kBreak = 9 };  // events of LINKTYPE_RTAC_SERIAL
 
 constexpr Time kNanosecond = 1000;
 constexpr std::size_t kMostInPacket = 256;
@@ -116,50 +119,71 @@ std::string fault_text(cosim::FaultKind fault) {
 class Serial {
   public:
     void add(Writer& out, const cosim::TraceRow& row, const cosim::UartFrame& frame) {
-        const bool wrong_parity = is_parity_wrong(frame);
-        const bool apart = frame.is_break || wrong_parity || row.fault != cosim::FaultKind::None;
-        if (apart || frame.start > pause_from_ || data_.size() == kMostInPacket) flush(out);
-        if (data_.empty()) {
+        if (keeps_from_arriving(row.fault)) return alone(out, row, frame, static_cast<std::uint8_t>(frame.data), kDataSent);
+        const auto characters = receiver_.take(row, frame);
+        if (characters.empty()) return alone(out, row, frame, std::nullopt, kDataSent);
+        for (const protocols::ReceivedCharacter& one : characters) {
+            const auto byte = static_cast<std::uint8_t>(one.data);
+            if (one.is_break) {
+                alone(out, row, frame, std::nullopt, kBreak);
+            } else if (row.fault != cosim::FaultKind::None || one.framing_error || one.parity_error) {
+                alone(out, row, frame, byte,
+                      one.framing_error  ? kFramingError
+                      : one.parity_error ? kParityError
+                                         : kDataSent);
+            } else {
+                if (frame.start > pause_from_ || data_.size() == kMostInPacket) flush(out);
+                begin(out, row, frame);
+                data_.push_back(byte);
+            }
+        }
+    }
+
+    /// Nothing can follow without a pause any more.
+    bool rests(Time now) const { return empty_ || now > settled_; }
+
+    void flush(Writer& out) {
+        if (empty_) return;
+        Bytes packet;
+        big(packet, static_cast<std::uint64_t>(start_ / cosim::kSecond), 4);
+        big(packet, static_cast<std::uint64_t>(start_ % cosim::kSecond / cosim::kMicrosecond), 4);
+        packet.insert(packet.end(), {event_, 0, 0, 0});
+        packet.insert(packet.end(), data_.begin(), data_.end());
+        out.packet(interface_, start_, packet, comment_);
+        data_.clear();
+        comment_.clear();
+        event_ = kDataSent;
+        empty_ = true;
+    }
+
+  private:
+    void begin(Writer& out, const cosim::TraceRow& row, const cosim::UartFrame& frame) {
+        if (std::exchange(empty_, false)) {
             start_ = frame.start;
             interface_ = out.interface(fmt::format("{} {}", row.link, row.from), LinkType::Uart);
         }
-        data_.push_back(static_cast<std::uint8_t>(frame.data));
         pause_from_ = protocols::frame_end(frame) + frame.bit_period;
-        if (!apart) return;
-        event_ = frame.is_break ? kBreak : wrong_parity ? kParityError : kDataSent;
-        if (frame.is_break) data_.clear(), empty_ = true;
+        settled_ = pause_from_ + kSlackBits * frame.bit_period;
+    }
+    /// In a packet of its own.
+    void alone(Writer& out, const cosim::TraceRow& row, const cosim::UartFrame& frame,
+               std::optional<std::uint8_t> byte, std::uint8_t event) {
+        flush(out);
+        begin(out, row, frame);
+        if (byte) data_.push_back(*byte);
+        event_ = event;
         comment_ = fault_text(row.fault);
         flush(out);
     }
 
-    void flush(Writer& out) {
-        if (!data_.empty() || empty_) {
-            constexpr Time kSecond = cosim::kSecond;
-            Bytes packet;
-            big(packet, static_cast<std::uint64_t>(start_ / kSecond), 4);
-            big(packet, static_cast<std::uint64_t>(start_ % kSecond / cosim::kMicrosecond), 4);
-            packet.insert(packet.end(), {event_, 0, 0, 0});
-            packet.insert(packet.end(), data_.begin(), data_.end());
-            out.packet(interface_, start_, packet, comment_);
-        }
-        data_.clear();
-        comment_.clear();
-        event_ = kDataSent;
-        empty_ = false;
-    }
+    static constexpr Time kSlackBits = 24;  // a frame is recorded when it ends, and later where it was late
 
-  private:
-    static bool is_parity_wrong(const cosim::UartFrame& frame) {
-        if (frame.parity == 0 || frame.is_break) return false;
-        const bool odd = (__builtin_popcount(frame.data) + frame.parity_bit) % 2 != 0;
-        return odd != (frame.parity == 1);
-    }
-
+    LineReceiver receiver_;
     Bytes data_;
-    bool empty_ = false;
+    bool empty_ = true;
     std::uint8_t event_ = kDataSent;
     std::string comment_;
-    Time start_ = 0, pause_from_ = 0;
+    Time start_ = 0, pause_from_ = 0, settled_ = 0;
     std::uint32_t interface_ = 0;
 };
 
@@ -213,19 +237,28 @@ class Segment {
 
 }  // namespace
 
-void export_pcapng(const RecordedTrace& trace, std::ostream& out) {
-    Writer writer(out);
-    std::map<std::pair<std::string, std::string>, Serial> serial;
-    std::map<std::string, Segment> segments;
-    std::map<std::string, std::uint8_t> buses;
-    I2cTransfers transfers([&](const I2cStep& step) {
-        constexpr std::size_t kMostBuses = 128;
-        const auto bus = buses.try_emplace(step.bus, buses.size() % kMostBuses).first->second;
-        segments[step.link].add(writer, step, bus);
-    });
-    trace.for_each_checked([&](const cosim::TraceRow& row) {
+struct PcapngStream::Parts {
+    explicit Parts(std::ostream& out)
+        : writer(out), transfers([this](const I2cStep& step) {
+              constexpr std::size_t kMostBuses = 128;
+              const auto bus = buses.try_emplace(step.bus, buses.size() % kMostBuses).first->second;
+              segments[step.link].add(writer, step, bus);
+          }) {}
+
+    void add(const cosim::TraceRow& row) {
+        // Bursts that have ended, first: packets come in the order in which they were complete.
+        for (auto one = open.begin(); one != open.end();) {
+            if (!(*one)->rests(row.time)) {
+                ++one;
+                continue;
+            }
+            (*one)->flush(writer);
+            one = open.erase(one);
+        }
         if (const auto* frame = std::get_if<cosim::UartFrame>(&row.payload)) {
-            serial[{row.link, row.from}].add(writer, row, *frame);
+            Serial& sender = serial[{row.link, row.from}];
+            sender.add(writer, row, *frame);
+            if (std::find(open.begin(), open.end(), &sender) == open.end()) open.push_back(&sender);
         } else if (const auto* phase = std::get_if<cosim::I2cPhase>(&row.payload)) {
             transfers.add(row, *phase);
         } else if (const auto* radio = std::get_if<cosim::RadioFrame>(&row.payload)) {
@@ -233,12 +266,39 @@ void export_pcapng(const RecordedTrace& trace, std::ostream& out) {
             writer.packet(writer.interface(fmt::format("{} {}", row.link, row.from), LinkType::Radio),
                           radio->start, {octets.begin(), octets.end()}, fault_text(row.fault));
         }
-    });
-    transfers.end();
-    for (auto& [link, segment] : segments)
-        segment.flush(writer);
-    for (auto& [sender, one] : serial)
-        one.flush(writer);
+    }
+
+    void end() {
+        for (Serial* one : open)
+            one->flush(writer);
+        open.clear();
+        transfers.end();
+        for (auto& [link, segment] : segments)
+            segment.flush(writer);
+    }
+
+    Writer writer;
+    std::map<std::pair<std::string, std::string>, Serial> serial;
+    std::vector<Serial*> open;
+    std::map<std::string, Segment> segments;
+    std::map<std::string, std::uint8_t> buses;
+    I2cTransfers transfers;
+};
+
+PcapngStream::PcapngStream(std::ostream& out) : parts_(std::make_unique<Parts>(out)) {}
+PcapngStream::~PcapngStream() = default;
+
+void PcapngStream::add(const cosim::TraceRow& row) {
+    parts_->add(row);
+}
+void PcapngStream::end() {
+    parts_->end();
+}
+
+void export_pcapng(const RecordedTrace& trace, std::ostream& out) {
+    PcapngStream stream(out);
+    trace.for_each_checked([&](const cosim::TraceRow& row) { stream.add(row); });
+    stream.end();
 }
 
 }  // namespace puckloop::tools

@@ -37,7 +37,7 @@ std::string word(const std::string& name) {
     return text;
 }
 
-std::string binary(unsigned value) {
+std::string binary(std::uint64_t value) {
     return fmt::format("b{:b} ", value);
 }
 
@@ -135,6 +135,10 @@ struct Change {
 }  // namespace
 
 void export_vcd(const RecordedTrace& trace, std::ostream& out) {
+    export_vcd_with(trace, out, nullptr);
+}
+
+void export_vcd_with(const RecordedTrace& trace, std::ostream& out, VcdValues* others) {
     // First pass: which variables there are, and how late their changes become known.
     Time now = 0, late = 0;
     Values found([&](Time time, std::size_t, const std::string&) { late = std::max(late, now - time); });
@@ -151,6 +155,10 @@ void export_vcd(const RecordedTrace& trace, std::ostream& out) {
         variables.push_back({line.scope, line.from, line.name, "wire", 1, line.rests_high() ? "1" : "0"});
     const std::size_t values_from = variables.size();
     variables.insert(variables.end(), found.variables().begin(), found.variables().end());
+    const std::size_t others_from = variables.size();
+    if (others != nullptr)
+        for (const VcdValues::Variable& one : others->variables())
+            variables.push_back({one.scope, "", one.name, one.bits == 1 ? "wire" : "reg", one.bits, "bx "});
     // Pins have their signal's variable; theirs is not declared.
     std::vector<Variable> declared;
     std::vector<std::size_t> place(variables.size());
@@ -174,6 +182,16 @@ void export_vcd(const RecordedTrace& trace, std::ostream& out) {
     Values values([&](Time time, std::size_t variable, std::string value) {
         buffer.push(std::max<Time>(time, 0), {values_from + variable, std::move(value)});
     });
+    std::optional<VcdValues::Change> other = others != nullptr ? others->next() : std::nullopt;
+    const auto others_until = [&](Time end) {
+        // Piece by piece: in a long silence of the lines there may be millions.
+        while (other && other->time < end) {
+            const Time piece = std::min(end, other->time + cosim::kMillisecond);
+            for (; other && other->time < piece; other = others->next())
+                buffer.push(other->time, {others_from + other->variable, binary(other->value)});
+            write_until(piece);
+        }
+    };
     EdgeStream edges(trace, surveyed);
     std::optional<Edges> next = edges.next();
     const auto edges_until = [&](Time end) {
@@ -185,9 +203,11 @@ void export_vcd(const RecordedTrace& trace, std::ostream& out) {
     while (const auto row = cursor.next()) {
         values.add(*row);
         edges_until(row->time - late);
+        others_until(row->time - late);
         write_until(row->time - late);
     }
     edges_until(cosim::kNever);
+    others_until(cosim::kNever);
     write_until(cosim::kNever);
 }
 

@@ -42,6 +42,8 @@ Adc::Adc(const Surroundings& around, Pins& pins, const References& references)
     : around_(around), pins_(pins), references_(references), slot_(around.events.add(this, &due)) {
     around_.io.hook(kAdcl, this, &read_result, &write_result);
     around_.io.hook(kAdch, this, &read_result, &write_result);
+    around_.io.hook_quiet(kAdcl, &look_at_result);
+    around_.io.hook_quiet(kAdch, &look_at_result);
     around_.io.hook(kAdcsra, this, nullptr, &write_control);
     around_.io.claim(kAdcsrb);
     around_.io.claim(kAdmux);
@@ -128,10 +130,13 @@ void Adc::trigger(unsigned number) {
 }
 
 std::uint8_t Adc::read_result(void* owner, std::uint16_t address) {
-    auto& self = *static_cast<Adc*>(owner);
+    static_cast<Adc*>(owner)->state_.locked = address == kAdcl;
+    return look_at_result(owner, address);
+}
+std::uint8_t Adc::look_at_result(void* owner, std::uint16_t address) {
+    const auto& self = *static_cast<Adc*>(owner);
     const bool left = self.around_.io.raw(kAdmux) & kAdlar;
     const unsigned value = left ? self.state_.result << 6u : self.state_.result;
-    self.state_.locked = address == kAdcl;
     return static_cast<std::uint8_t>(address == kAdcl ? value : value >> 8);
 }
 void Adc::write_result(void*, std::uint16_t, std::uint8_t, std::uint8_t) {}  // read only

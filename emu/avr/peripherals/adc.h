@@ -58,6 +58,7 @@ class Adc {
 
     static void due(void* owner, Cycle cycle);
     static std::uint8_t read_result(void* owner, std::uint16_t address);
+    static std::uint8_t look_at_result(void* owner, std::uint16_t address);
     static void write_result(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);
     static void write_control(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);
     static void acknowledge(void* owner, int vector);

@@ -20,6 +20,7 @@ Eeprom::Eeprom(const Surroundings& around, Core& core, const cosim::ClockDomain&
       bytes_(bytes, kErased),
       slot_(around.events.add(this, &due)) {
     around_.io.hook(kEecr, this, &read_control, &write_control);
+    around_.io.hook_quiet(kEecr, &read_control);
     for (const std::uint16_t address : {kEedr, kEearl, kEearh})
         around_.io.claim(address);
     around_.interrupts.connect(kVector, this, nullptr);

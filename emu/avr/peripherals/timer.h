@@ -108,6 +108,7 @@ class Timer {
     static void write_control(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);
     static void write_force(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);
     static std::uint8_t read_value(void* owner, std::uint16_t address);
+    static std::uint8_t look_at_value(void* owner, std::uint16_t address);
     static void write_value(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);
     std::uint16_t read_wide(std::uint16_t low_address);
     void write_wide(std::uint16_t low_address, std::uint16_t value);

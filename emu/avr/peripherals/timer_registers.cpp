@@ -19,7 +19,10 @@ Timer::Timer(const Surroundings& around, const Setup& setup, Prescaler& prescale
     for (const std::uint16_t low : {setup.count, setup.compare_a, setup.compare_b, setup.capture}) {
         if (!low) continue;
         io.hook(low, this, &read_value, &write_value);
-        if (setup.wide) io.hook(static_cast<std::uint16_t>(low + 1), this, &read_value, &write_value);
+        io.hook_quiet(low, &look_at_value);
+        if (!setup.wide) continue;
+        io.hook(static_cast<std::uint16_t>(low + 1), this, &read_value, &write_value);
+        io.hook_quiet(static_cast<std::uint16_t>(low + 1), &look_at_value);
     }
     if (!setup.wide) io.set_follow(setup.count, &follow_count);
     flags_.follow(&flags_change);
@@ -89,6 +92,15 @@ std::uint8_t Timer::read_value(void* owner, std::uint16_t address) {
     if (address != low) return compare ? static_cast<std::uint8_t>(value >> 8) : self.state_.temp;
     if (!compare) self.state_.temp = static_cast<std::uint8_t>(value >> 8);
     return static_cast<std::uint8_t>(value);
+}
+
+/// Both bytes as they are now: TEMP stays.
+std::uint8_t Timer::look_at_value(void* owner, std::uint16_t address) {
+    auto& self = *static_cast<Timer*>(owner);
+    self.synchronise();
+    if (!self.setup_.wide) return static_cast<std::uint8_t>(self.read_wide(address));
+    const std::uint16_t value = self.read_wide(static_cast<std::uint16_t>(address & ~1u));
+    return static_cast<std::uint8_t>(address % 2 == 0 ? value : value >> 8);
 }
 
 /// Up to the end of the counter's way; 16-bit counters have TEMP as a side effect.

@@ -1,0 +1,32 @@
+#pragma once
+// What a receiver makes of the recorded frames of one UART line: bytes and errors.
+//
+// The receiver is set as the line's sender is: bit time and format of the newest frame that no fault harmed.
+// A frame that a fault harmed is sampled as a receiver samples it, in the middle of its own bits; others are
+// taken as they were sent. Deviation: each frame is sampled as if the line rested behind it.
+
+#include "cosim/trace/trace_row.h"
+#include "protocols/uart_sampling.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace puckloop::tools {
+
+class LineReceiver {
+  public:
+    /// The characters of one frame, in the order of the trace: none of a frame that did not arrive, or whose
+    /// start bit is too short; several of one that is much slower than the receiver.
+    std::vector<protocols::ReceivedCharacter> take(const cosim::TraceRow& row, const cosim::UartFrame& frame);
+
+  private:
+    std::optional<protocols::UartReceiver> receiver_;
+    cosim::Time ready_ = 0;
+};
+
+/// "break", "framing error", "wrong parity"; empty: nothing is wrong.
+std::string line_error(const protocols::ReceivedCharacter& character);
+
+}  // namespace puckloop::tools
