@@ -75,6 +75,9 @@ class LiveTrace::Pipe : public std::streambuf {
     Pipe(const Pipe&) = delete;
     Pipe& operator=(const Pipe&) = delete;
 
+    /// Reported already, or nobody reads any more.
+    bool gone() const { return gone_; }
+
   protected:
     int overflow(int c) override {
         sync();
@@ -108,8 +111,7 @@ class LiveTrace::Pipe : public std::streambuf {
     void fail() {
         const int cause = errno;
         gone_ = true;
-        if (cause != EPIPE)
-            throw RunError(fmt::format("{}: cannot write: {}", path_, std::strerror(cause)));
+        if (cause != EPIPE) throw RunError(fmt::format("{}: cannot write: {}", path_, std::strerror(cause)));
         std::fprintf(stderr, "puckloop: %s: its reader has gone; the run goes on without it\n",
                      path_.c_str());
     }
@@ -135,18 +137,19 @@ void LiveTrace::begin(const std::vector<cosim::LinkSpec>& links) {
 }
 
 void LiveTrace::record(const cosim::TraceRecord& record) {
+    if (pipe_->gone()) return;
     const cosim::LinkSpec& link = links_[record.link];
     if (record.direction == cosim::Direction::FromA ? link.record_from_a : link.record_from_b)
         stream_->add(cosim::to_row(record, links_));
 }
 
 void LiveTrace::flush() {
-    out_->flush();
+    if (!pipe_->gone()) out_->flush();
 }
 
 void LiveTrace::end() {
-    if (stream_) stream_->end();
-    out_->flush();
+    if (stream_ && !pipe_->gone()) stream_->end();
+    flush();
 }
 
 }  // namespace puckloop::tools

@@ -1,6 +1,6 @@
 #pragma once
-// The trace as pcapng while the run goes on: into a named pipe that Wireshark reads, the standard output, or a
-// file. The run waits for a slow reader; one that goes away ends the stream, not the run.
+// The trace as pcapng while the run goes on: into a named pipe that Wireshark reads, the standard output, or
+// a file. The run waits for a slow reader; one that goes away ends the stream, not the run.
 
 #include "cosim/trace/trace.h"
 #include "tools/trace/pcapng_stream.h"
@@ -15,8 +15,8 @@ namespace puckloop::tools {
 
 class LiveTrace : public cosim::TraceSink {
   public:
-    /// "-" is the standard output. Opens the file; waits for the reader of a named pipe. `interrupted`, if not
-    /// null, ends every wait once it is set. Throws InputError for what cannot be written, RunError when
+    /// "-" is the standard output. Opens the file; waits for the reader of a named pipe. `interrupted`, if
+    /// not null, ends every wait once it is set. Throws InputError for what cannot be written, RunError when
     /// interrupted.
     LiveTrace(const std::string& path, const volatile std::sig_atomic_t* interrupted);
     ~LiveTrace() override;
