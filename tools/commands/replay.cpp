@@ -48,8 +48,9 @@ void check(const Options& options) {
     if (options.vcd.empty() && !options.registers.empty())
         throw InputError("", "--registers", "there is no --vcd to write them to", "--vcd FILE");
     if (options.vcd.empty() && options.from > 0)
-        throw InputError("", "--from", "a replay begins where the run began; without --vcd nothing begins at "
-                                       "another time",
+        throw InputError("", "--from",
+                         "a replay begins where the run began; without --vcd nothing begins at "
+                         "another time",
                          "--vcd FILE, or --from-state FILE");
     if (options.until <= options.from)
         throw InputError("", "--to", fmt::format("{} s is not after --from", options.until),
@@ -121,8 +122,9 @@ int run(Options& options) {
     const std::string counts = fmt::format("{} messages in, {} out as recorded, until {:.6f} s",
                                            result.received, result.equal, cosim::to_seconds(result.until));
     fmt::print(out, "{}: {}\n", options.node, counts);
-    if (watch) fmt::print(out, "{} changes of {} values in {}\n", watch->log().size(),
-                          watch->values().size(), options.vcd);
+    if (watch)
+        fmt::print(out, "{} changes of {} values in {}\n", watch->log().size(), watch->values().size(),
+                   options.vcd);
     if (!result.difference) return 0;
     const ReplayDifference& first = *result.difference;
     const auto shown = [](const std::string& row) { return row.empty() ? std::string("no message") : row; };
@@ -148,9 +150,10 @@ void declare_run_options(Command& command, Options& options) {
     command.add_option("--model", request.overlay, "as of `run`: overlay of physical parameters")
         ->type_name("OVERLAY");
     command
-        .add_option("--from-state", request.from_state,
-                    "a file of `run --save-state`: the board takes its state over, and nothing before that is "
-                    "executed")
+        .add_option(
+            "--from-state", request.from_state,
+            "a file of `run --save-state`: the board takes its state over, and nothing before that is "
+            "executed")
         ->check(not_empty())
         ->type_name("FILE");
 }

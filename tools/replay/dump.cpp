@@ -8,7 +8,9 @@ namespace {
 
 class WatchedValues : public VcdValues {
   public:
-    WatchedValues(const std::string& node, Watch& watch) : node_(node), watch_(watch) { watch.log().rewind(); }
+    WatchedValues(const std::string& node, Watch& watch) : node_(node), watch_(watch) {
+        watch.log().rewind();
+    }
 
     std::vector<Variable> variables() const override {
         std::vector<Variable> variables;

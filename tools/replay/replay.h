@@ -34,7 +34,7 @@ struct ReplayWatch {
 
 /// `record` must hold every message of the node's links (a run's record.csv). Throws InputError for a record
 /// that cannot be read or holds nothing of the node.
-ReplayResult replay(cosim::Node& node, const std::vector<cosim::LinkSpec>& links,
-                    const RecordedTrace& record, const ReplayWatch* watch = nullptr);
+ReplayResult replay(cosim::Node& node, const std::vector<cosim::LinkSpec>& links, const RecordedTrace& record,
+                    const ReplayWatch* watch = nullptr);
 
 }  // namespace puckloop::tools

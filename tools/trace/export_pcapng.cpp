@@ -25,7 +25,12 @@ using Bytes = std::vector<std::uint8_t>;
 enum class LinkType : std::uint16_t { Radio = 195, I2c = 209, Uart = 250 };
 enum : std::uint32_t { kSection = 0x0A0D0D0A, kInterface = 1, kPacket = 6 };
 enum : std::uint16_t { kEnd = 0, kComment = 1, kName = 2, kResolution = 9 };
-enum : std::uint8_t { kDataSent = 1, kFramingError = 7, kParityError = 8, kBreak = 9 };  // events of LINKTYPE_RTAC_SERIAL
+enum : std::uint8_t {
+    kDataSent = 1,
+    kFramingError = 7,
+    kParityError = 8,
+    kBreak = 9
+};  // events of LINKTYPE_RTAC_SERIAL
 
 constexpr Time kNanosecond = 1000;
 constexpr std::size_t kMostInPacket = 256;
@@ -119,7 +124,8 @@ std::string fault_text(cosim::FaultKind fault) {
 class Serial {
   public:
     void add(Writer& out, const cosim::TraceRow& row, const cosim::UartFrame& frame) {
-        if (keeps_from_arriving(row.fault)) return alone(out, row, frame, static_cast<std::uint8_t>(frame.data), kDataSent);
+        if (keeps_from_arriving(row.fault))
+            return alone(out, row, frame, static_cast<std::uint8_t>(frame.data), kDataSent);
         const auto characters = receiver_.take(row, frame);
         if (characters.empty()) return alone(out, row, frame, std::nullopt, kDataSent);
         for (const protocols::ReceivedCharacter& one : characters) {
