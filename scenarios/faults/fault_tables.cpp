@@ -136,6 +136,7 @@ FaultSpec read_fault(Reader& reader, const Scenario& scenario) {
     cosim::complete(fault, kind);
     try {
         cosim::check_fault(fault, kind);
+        if (place.kind == cosim::PlaceKind::I2c) cosim::read_i2c_fault(fault);
     } catch (const InputError& error) {
         reader.fail("kind", error.what());
     }

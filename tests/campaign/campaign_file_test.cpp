@@ -4,12 +4,16 @@
 #include "base/random.h"
 #include "tests/scratch.h"
 #include "tools/faults/campaign_file.h"
-#include "tools/faults/case.h"
+#include "tools/faults/case_run.h"
+#include "tools/faults/plan.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
+#include <cstdlib>
 #include <fstream>
+
+#include <unistd.h>
 
 using namespace puckloop;
 using namespace puckloop::faults;
@@ -106,6 +110,23 @@ TEST_CASE("a fault's table survives the way to a worker and is a [[fault]] table
     const Case back = case_from_json(nlohmann::json::parse(to_json(one).dump()));
     CHECK(to_json(back) == to_json(one));
     CHECK(back.seed == ~0ull);
+}
+
+TEST_CASE("the campaigns that ship can be run") {
+    ::setenv("PUCKLOOP_ARGOS", "/nowhere", 1);
+    ::setenv("PUCKLOOP_IMAGES", PUCKLOOP_SOURCE "/firmware/epuck", 1);
+    std::size_t count = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(PUCKLOOP_SOURCE "/campaigns")) {
+        CAPTURE(entry.path().string());
+        Campaign campaign = read_campaign(entry.path());
+        campaign.firmware.clear();  // not everybody has the original one
+        const auto scenario = scenario_of(campaign);
+        const auto folder = std::filesystem::temp_directory_path() / fmt::format("check-{}", ::getpid());
+        for (const Sweep& sweep : campaign.sweeps)
+            check_sweep(campaign, scenario, sweep, folder);
+        ++count;
+    }
+    CHECK(count >= 3);
 }
 
 TEST_CASE("whatever is wrong in a campaign file is an InputError") {

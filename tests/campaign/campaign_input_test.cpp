@@ -5,6 +5,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <cstdlib>
+
 using namespace puckloop::tests;
 
 TEST_CASE("a campaign that cannot be is refused in one line before its first run") {
@@ -23,9 +25,17 @@ TEST_CASE("a campaign that cannot be is refused in one line before its first run
          {"robot = \"robot0\"", "robot = \"robot9\"", {"small.toml", "metric 'path'"}},
          {"[[metric]]", "[[metrik]]", {"small.toml", "metrik"}},
          {"pairs = 3", "pairs = [", {"small.toml"}},
-         {"duration = \"2.6 s\"",
-          "firmware = [\"robot0.pic=$NOT_SET_ANYWHERE/a.hex\"]",
-          {"NOT_SET_ANYWHERE"}}}));
+         // What only the board or the bus can know.
+         {"[[sweep]]\nname = \"cable\"",
+          "[[sweep]]\nfault = { node = \"robot0.pic\", kind = \"flip\", space = \"register\", at = \"2 s\" "
+          "}\n"
+          "over = { symbol = [\"U2BRG\", \"U9BRG\"] }\n[[sweep]]\nname = \"cable\"",
+          {"small.toml", "line 28", "U9BRG"}},
+         {"[[sweep]]\nname = \"cable\"",
+          "[[sweep]]\nfault = { link = \"robot0.i2c\", kind = \"nack\", phase = \"read\" }\n"
+          "[[sweep]]\nname = \"cable\"",
+          {"small.toml", "line 28", "acknowledged by its master"}},
+         {"$PUCKLOOP_TEST_IMAGES", "$NOT_SET_ANYWHERE", {"NOT_SET_ANYWHERE"}}}));
     const auto place = good.find(from);
     REQUIRE(place != std::string::npos);
     const auto file = bench.file("small.toml", good.replace(place, from.size(), to));
@@ -36,6 +46,15 @@ TEST_CASE("a campaign that cannot be is refused in one line before its first run
     else
         check_one_line(ended, 2, words);
     CHECK(!std::filesystem::exists(bench.out("bad") / "results.csv"));
+}
+
+TEST_CASE("a campaign whose cases would not be independent is refused") {
+    const Workbench bench;
+    const auto file = small_campaign(bench);
+    std::string scenario = text_of(bench.folder() / "hello.toml");
+    scenario.insert(scenario.find("[robot.linux]"), "nvm = \"robot0.nvm\"\n");
+    bench.file("hello.toml", scenario);
+    check_one_line(bench.puckloop(campaign_words(bench, file, "bad")), 2, {"hello.toml", "robot0", "nvm"});
 }
 
 TEST_CASE("files that are no campaign and folders that hold none are refused") {
@@ -57,6 +76,17 @@ TEST_CASE("a folder with another campaign's results is not mixed up") {
     bench.file("small.toml", other);
     check_one_line(bench.puckloop(campaign_words(bench, file, "reference")), 2,
                    {"another campaign", "--fresh"});
+    bench.file("small.toml", text_of(file).substr(0, other.size() - 11));
+    // So is one whose images have other contents at the same place.
+    const auto images = bench.out("images");
+    std::filesystem::create_directory(images);
+    ::setenv(kImages, images.c_str(), 1);
+    const std::string image = text_of(PUCKLOOP_SOURCE "/firmware/epuck/epuck.hex");
+    bench.file("images/epuck.hex", image);
+    CHECK(bench.puckloop(campaign_words(bench, file, "reference", {"--fresh"})).status == 0);
+    bench.file("images/epuck.hex", image + "\n");
+    check_one_line(bench.puckloop(campaign_words(bench, file, "reference")), 2,
+                   {"another campaign", "an image or program"});
     CHECK(table_of(bench, "reference") == table);
     CHECK(bench.puckloop(campaign_words(bench, file, "reference", {"--fresh"})).status == 0);
     CHECK(table_of(bench, "reference") == table);

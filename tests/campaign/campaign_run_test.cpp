@@ -41,28 +41,7 @@ std::size_t rows_of(const std::string& table) {
     return static_cast<std::size_t>(std::count(table.begin(), table.end(), '\n')) - 1;
 }
 
-}  // namespace
-
-TEST_CASE("a small campaign has every outcome that its faults must have") {
-    const Workbench bench;
-    const auto file = small_campaign(bench);
-    const std::string table = reference_table(bench, file);
-    INFO(table);
-    // Byte 500 of a record is nowhere in the nominal run.
-    CHECK_THAT(table, Contains(",byte 500,") && Contains("pruned"));
-    // A cable that is pulled for good silences the board; one that comes back does not.
-    CHECK_THAT(table, Contains("end=9s,1,hang"));
-    CHECK_THAT(table, !Contains("end=1.6s,1,hang"));
-    CHECK_THAT(table, Contains("pair"));
-    const std::string report = text_of(bench.out("reference") / "report.html");
-    CHECK_THAT(report, Contains("class=heat") && Contains("faults replay") && Contains("</html>") &&
-                           !Contains("<script"));
-}
-
-TEST_CASE("two workers make the table of one") {
-    const Workbench bench;
-    const auto file = small_campaign(bench);
-    const std::string table = reference_table(bench, file);
+void two_workers(const Workbench& bench, const std::filesystem::path& file, const std::string& table) {
     REQUIRE(bench.puckloop(campaign_words(bench, file, "two", {"--jobs", "2"})).status == 0);
     CHECK(table_of(bench, "two") == table);
     // Once more in the same folder: nothing is left to run.
@@ -72,10 +51,8 @@ TEST_CASE("two workers make the table of one") {
     CHECK(table_of(bench, "two") == table);
 }
 
-TEST_CASE("a campaign that is killed goes on without losing or repeating a case") {
-    const Workbench bench;
-    const auto file = small_campaign(bench);
-    const std::string table = reference_table(bench, file);
+/// It goes on without losing or repeating a case.
+void killed(const Workbench& bench, const std::filesystem::path& file, const std::string& table) {
     RandomStream random(static_cast<std::uint64_t>(::getpid()), "campaign kill");
     const std::size_t after = 1 + random.below(7);
     CAPTURE(after);
@@ -103,10 +80,8 @@ TEST_CASE("a campaign that is killed goes on without losing or repeating a case"
     CHECK(rows_of(table) == results_in(bench.out("killed")) + 2);  // and two that were pruned
 }
 
-TEST_CASE("a worker that dies is replaced and its case run again") {
-    const Workbench bench;
-    const auto file = small_campaign(bench);
-    const std::string table = reference_table(bench, file);
+/// They are replaced and their cases run again.
+void workers_die(const Workbench& bench, const std::filesystem::path& file, const std::string& table) {
     const auto campaign = bench.start(campaign_words(bench, file, "lost", {"--jobs", "2"}));
     REQUIRE(wait_for_results(*campaign, bench.out("lost"), 1));
     const std::vector<pid_t> workers = campaign->children();
@@ -120,10 +95,8 @@ TEST_CASE("a worker that dies is replaced and its case run again") {
     CHECK(table_of(bench, "lost") == table);
 }
 
-TEST_CASE("a full disk stops a campaign, and the rest is run when there is room") {
-    const Workbench bench;
-    const auto file = small_campaign(bench);
-    const std::string table = reference_table(bench, file);
+/// It stops the campaign, and the rest is run when there is room.
+void full_disk(const Workbench& bench, const std::filesystem::path& file, const std::string& table) {
     const auto disk = bench.out("disk");
     std::filesystem::create_directory(disk);
     if (::geteuid() != 0 || ::mount("tmpfs", disk.c_str(), "tmpfs", 0, "size=900k") != 0) {
@@ -143,10 +116,7 @@ TEST_CASE("a full disk stops a campaign, and the rest is run when there is room"
     REQUIRE(::umount(disk.c_str()) == 0);
 }
 
-TEST_CASE("a case is replayed with all files of a run") {
-    const Workbench bench;
-    const auto file = small_campaign(bench);
-    const std::string table = reference_table(bench, file);
+void replay(const Workbench& bench, const std::string& table) {
     const std::string out = bench.out("reference").string();
     // The finding's own command, from the summary.
     const Ended shown = bench.puckloop({"faults", "show", out});
@@ -176,4 +146,50 @@ TEST_CASE("a case is replayed with all files of a run") {
     std::filesystem::remove(bench.out("reference") / "results.csv");
     CHECK(bench.puckloop({"faults", "report", out}).status == 0);
     CHECK(table_of(bench, "reference") == table);
+}
+
+/// As the report has it, in a shell of another folder and without the campaign's environment.
+void replay_from_report(const Workbench& bench) {
+    const std::string html = text_of(bench.out("reference") / "report.html");
+    const std::string mark = "<code class=copy>";
+    const auto place = html.find(mark);
+    REQUIRE(place != std::string::npos);
+    const std::string command =
+        html.substr(place + mark.size(), html.find("</code>", place) - place - mark.size());
+    INFO(command);
+    Process shell({"/bin/sh", "-c", "unset PUCKLOOP_TEST_IMAGES; " + command}, "/");
+    const Ended ended = shell.wait();
+    INFO(ended.out << ended.err);
+    CHECK(ended.status == 0);
+    CHECK_THAT(ended.out, Contains("replayed: "));
+}
+
+}  // namespace
+
+TEST_CASE("a small campaign has every outcome that its faults must have") {
+    const Workbench bench;
+    const auto file = small_campaign(bench);
+    const std::string table = reference_table(bench, file);
+    INFO(table);
+    // Byte 500 of a record is nowhere in the nominal run.
+    CHECK_THAT(table, Contains(",byte 500,") && Contains("pruned"));
+    // A cable that is pulled for good silences the board; one that comes back does not.
+    CHECK_THAT(table, Contains("end=9s,1,hang"));
+    CHECK_THAT(table, !Contains("end=1.6s,1,hang"));
+    CHECK_THAT(table, Contains("pair"));
+    const std::string report = text_of(bench.out("reference") / "report.html");
+    CHECK_THAT(report, Contains("class=heat") && Contains("faults replay") && Contains("</html>") &&
+                           !Contains("<script"));
+    replay(bench, table);
+    replay_from_report(bench);
+}
+
+TEST_CASE("a campaign's table is the same with more workers, after a kill, lost workers and a full disk") {
+    const Workbench bench;
+    const auto file = small_campaign(bench);
+    const std::string table = reference_table(bench, file);
+    two_workers(bench, file, table);
+    killed(bench, file, table);
+    workers_die(bench, file, table);
+    full_disk(bench, file, table);
 }

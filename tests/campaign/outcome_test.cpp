@@ -85,9 +85,12 @@ TEST_CASE("each outcome is what its definition says, wherever the fault strikes"
     }
     SECTION("crash") {
         run.report["success"] = false;
-        run.report["ended_why"] = "node r.linux: ended by SIGSEGV";
+        run.report["ended_why"] = "node r.linux: /some/where/control: ended by SIGSEGV";
         cut_times(run, kProgram, at, 20);
-        CHECK(outcome() == Outcome::Crash);
+        const Verdict verdict = judge(campaign, nominal, run, 1);
+        CHECK(verdict.outcome == Outcome::Crash);
+        // The same wherever the program lies.
+        CHECK(verdict.symptoms.at(0) == "node r.linux: control: ended by SIGSEGV");
     }
     SECTION("a program that computes for ever hangs and does not crash") {
         run.report["success"] = false;

@@ -2,9 +2,11 @@
 
 #include "base/random.h"
 #include "tools/faults/case_run.h"
+#include "tools/faults/findings.h"
 #include "tools/faults/positions.h"
 
 #include <catch2/catch.hpp>
+#include <fmt/format.h>
 
 #include <set>
 
@@ -154,4 +156,42 @@ TEST_CASE("pairs are made of survivors alone, and not more than asked for") {
     CHECK(different.size() == pairs.size());
     campaign.pairs = 0;
     CHECK(plan_pairs(campaign, singles, 100).empty());
+}
+
+TEST_CASE("the smallest count that shows a finding is found, whatever it is") {
+    RandomStream random(GENERATE(1, 2, 3, 4, 5, 6, 7, 8), "fewer");
+    const Campaign campaign = hello_campaign();
+    const auto scenario = scenario_of(campaign);
+    const std::uint64_t least = 1 + random.below(64), given = least + random.below(40);
+    const bool limited = random.below(2) == 0;  // by its count, or by how often it could fire
+    CAPTURE(least, given, limited);
+    const auto verdict = [&](std::uint64_t count) {
+        Verdict one;
+        one.outcome = count >= least ? Outcome::Hang : Outcome::Masked;
+        one.fired = {count};
+        return one;
+    };
+    json fault = {{"kind", "drop"}, {"link", "robot0.uart"}, {"from", "robot0.pic"}};
+    if (limited) fault["count"] = given;
+    Case single;
+    single.id = 1;
+    single.phase = "single";
+    single.faults = {fault};
+    std::vector<CaseResult> results{{single, verdict(given)}};
+    for (int round = 1;; ++round) {
+        REQUIRE(round < 10);
+        const std::string phase = round == 1 ? "fewer" : fmt::format("fewer {}", round);
+        const auto cases =
+            plan_fewer(campaign, scenario, results, static_cast<int>(results.size()) + 1, phase);
+        if (cases.empty()) break;
+        for (const Case& one : cases) {
+            CHECK(one.phase == phase);
+            CHECK(one.of == 1);
+            results.push_back({one, verdict(one.faults[0].at("count"))});
+        }
+    }
+    const auto findings = findings_of(results);
+    REQUIRE(findings.size() == 1);
+    CHECK(findings[0].smallest->verdict.fired == std::vector<std::uint64_t>{least});
+    CHECK(results.size() < 20);
 }

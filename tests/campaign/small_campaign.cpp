@@ -2,12 +2,16 @@
 
 #include <catch2/catch.hpp>
 
+#include <cstdlib>
+
 namespace puckloop::tests {
 
 std::filesystem::path small_campaign(const Workbench& bench) {
     bench.hello();
+    ::setenv(kImages, PUCKLOOP_SOURCE "/firmware/epuck", 1);
     return bench.file("small.toml", R"([campaign]
 scenario = "hello.toml"
+firmware = ["robot0.pic=$PUCKLOOP_TEST_IMAGES/epuck.hex"]
 duration = "2.6 s"
 pairs = 3
 

@@ -8,7 +8,10 @@
 
 namespace puckloop::tests {
 
-/// Ten single cases and three pairs over the robot of Workbench::hello(), 2.6 s each.
+/// The variable that the small campaign takes the folder of its image from.
+inline constexpr const char* kImages = "PUCKLOOP_TEST_IMAGES";
+
+/// Ten single cases and three pairs over the robot of Workbench::hello(), 2.6 s each. Sets kImages.
 std::filesystem::path small_campaign(const Workbench& bench);
 
 /// `puckloop faults campaign FILE --out NAME` and further words.

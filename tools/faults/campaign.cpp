@@ -4,6 +4,7 @@
 #include "cosim/interrupt.h"
 #include "tools/faults/case_run.h"
 #include "tools/faults/html.h"
+#include "tools/faults/identity.h"
 #include "tools/faults/pool.h"
 #include "tools/faults/slurm.h"
 #include "tools/faults/table.h"
@@ -14,6 +15,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <cstdlib>
 #include <cstring>
 #include <thread>
 
@@ -59,8 +61,9 @@ class Conduct {
         options_.file = fs::absolute(options.file);
         campaign_.file = options_.file;
         if (options.slurm) check_slurm();
+        check_independence();
         for (const Sweep& sweep : campaign_.sweeps)
-            check_sweep(campaign_, scenario_, sweep);
+            check_sweep(campaign_, scenario_, sweep, work_folder(out_) / "check");
         if (options.fresh) drop();
         store_.emplace(out_ / "campaign.db", Store::Access::Write);
         claim();
@@ -72,7 +75,10 @@ class Conduct {
         for (const std::uint64_t seed : campaign_.seeds)
             run_nominal(seed);
         phase("single", [&](int) { return plan_singles(campaign_, scenario_, nominals_); });
-        phase("fewer", [&](int first) { return plan_fewer(campaign_, scenario_, store_->results(), first); });
+        for (int round = 1; round == 1 || !store_->cases(fewer_name(round - 1)).empty(); ++round)
+            phase(fewer_name(round), [&](int first) {
+                return plan_fewer(campaign_, scenario_, store_->results(), first, fewer_name(round));
+            });
         phase("pair", [&](int first) { return plan_pairs(campaign_, store_->results(), first); });
         remove(work_folder(out_));
         const Results results{campaign_, out_, store_->results(), store_->pruned()};
@@ -82,6 +88,18 @@ class Conduct {
     }
 
   private:
+    static std::string fewer_name(int round) { return round == 1 ? "fewer" : fmt::format("fewer {}", round); }
+
+    /// Cases run side by side and in any order: none may leave anything to the next.
+    void check_independence() const {
+        for (const scenarios::RobotBoards& robot : scenario_.robots)
+            if (!robot.pic.nvm.empty() || (robot.rab && !robot.rab->nvm.empty()))
+                throw InputError(campaign_.scenario.string(), robot.name,
+                                 "'nvm' keeps a board's flash from one run to the next: cases of a campaign "
+                                 "have to be independent",
+                                 "a scenario without it");
+    }
+
     /// Only what a campaign writes.
     void drop() {
         for (const char* name : {"campaign.db", "campaign.db-journal", "nominal", "boots", "slurm", "work",
@@ -97,15 +115,17 @@ class Conduct {
 
     void claim() {
         const auto before = store_->note("identity");
-        if (before && *before != campaign_.identity)
+        const std::string now = identity_of(campaign_, scenario_);
+        if (before && *before != now)
             throw InputError(
                 out_.string(), "",
-                "has results of another campaign: the campaign file, its scenario or this build of "
-                "puckloop has changed",
+                "has results of another campaign: the campaign file, its scenario, an image or program of "
+                "it, or this build of puckloop has changed",
                 "--fresh to drop them, or --out with another folder");
         if (before) return;
         store_->set_note("campaign", options_.file.string());
-        store_->set_note("identity", campaign_.identity);
+        store_->set_note("environment", nlohmann::json(campaign_.environment).dump());
+        store_->set_note("identity", now);
     }
 
     void run_nominal(std::uint64_t seed) {
@@ -133,7 +153,7 @@ class Conduct {
 
     template <typename Plan>
     void phase(const std::string& name, Plan plan) {
-        if (!store_->planned(name)) store_->plan(name, plan(next_id_()));
+        if (!store_->planned(name)) store_->plan(name, plan(store_->last_id() + 1));
         const std::vector<Case> cases = store_->cases(name), pending = store_->pending(name);
         const auto pruned =
             std::count_if(cases.begin(), cases.end(), [](const Case& one) { return !one.pruned.empty(); });
@@ -148,14 +168,6 @@ class Conduct {
         fmt::print(stderr, "{}: {} cases, {} pruned, {} run now", name, cases.size(), pruned, pending.size());
         if (!pending.empty()) fmt::print(stderr, " ({:.0f} a minute)", double(pending.size()) / minutes);
         fmt::print(stderr, "\n");
-    }
-
-    int next_id_() const {
-        int last = 0;
-        for (const char* name : {"single", "fewer", "pair"})
-            for (const Case& one : store_->cases(name))
-                last = std::max(last, one.id);
-        return last + 1;
     }
 
     TakeVerdict take() {
@@ -187,12 +199,23 @@ Results read_results(const fs::path& out) {
     const Store store(out / "campaign.db", Store::Access::Read);
     const auto file = store.note("campaign");
     if (!file) throw InputError(out.string(), "", "the campaign was ended before it began", "start it again");
+    // What its file names from the environment is as it was: a replay is typed in some other shell.
+    const nlohmann::json environment = nlohmann::json::parse(store.note("environment").value_or("{}"));
+    for (const auto& [name, value] : environment.items())
+        ::setenv(name.c_str(), value.get<std::string>().c_str(), 1);
     Results results{read_campaign(*file), fs::absolute(out), store.results(), store.pruned()};
-    if (store.note("identity") != results.campaign.identity)
-        fmt::print(
-            stderr,
-            "puckloop: {}: the campaign file, its scenario or this build of puckloop has changed since\n",
-            out.string());
+    const auto now = [&]() -> std::optional<std::string> {
+        try {
+            return identity_of(results.campaign, scenario_of(results.campaign));
+        } catch (const InputError&) {
+            return std::nullopt;  // what is there can be shown all the same
+        }
+    };
+    if (store.note("identity") != now())
+        fmt::print(stderr,
+                   "puckloop: {}: the campaign file, its scenario, an image or program of it, or this build "
+                   "of puckloop has changed since\n",
+                   out.string());
     return results;
 }
 

@@ -1,15 +1,12 @@
 #include "tools/faults/campaign_file.h"
 
 #include "base/error.h"
-#include "cosim/resume/state_file.h"
 #include "scenarios/reader.h"
 
 #include <fmt/format.h>
 
 #include <cstdlib>
-#include <fstream>
 #include <set>
-#include <sstream>
 
 namespace puckloop::faults {
 
@@ -51,7 +48,7 @@ std::optional<std::vector<std::int64_t>> numbers(Reader& reader, const TomlValue
 
 /// `$NAME/rest` from the environment; paths with a slash relative to `folder`.
 std::string resolved(Reader& reader, std::string_view key, std::string text,
-                     const std::filesystem::path& folder) {
+                     const std::filesystem::path& folder, Campaign& campaign) {
     if (text.starts_with("$")) {
         const auto slash = std::min(text.find('/'), text.size());
         const std::string name = text.substr(1, slash - 1);
@@ -59,6 +56,7 @@ std::string resolved(Reader& reader, std::string_view key, std::string text,
         if (value == nullptr)
             reader.fail(key, fmt::format("the environment has no {}", name),
                         fmt::format("{} set to a folder or file", name));
+        campaign.environment[name] = value;
         return value + text.substr(slash);
     }
     if (text.find('/') == std::string::npos || text.starts_with("/")) return text;
@@ -76,12 +74,13 @@ void read_head(Reader& reader, const TomlValue& table, Campaign& campaign) {
             const auto equals = text.find('=');
             if (equals == std::string::npos)
                 reader.fail("firmware", fmt::format("'{}' is not an assignment", text), "BOARD=IMAGE");
-            campaign.firmware.push_back(text.substr(0, equals + 1) +
-                                        resolved(reader, "firmware", text.substr(equals + 1), folder));
+            campaign.firmware.push_back(text.substr(0, equals + 1) + resolved(reader, "firmware",
+                                                                              text.substr(equals + 1), folder,
+                                                                              campaign));
         }
     if (reader.has("program"))
         for (const std::string& text : reader.texts("program"))
-            campaign.program.push_back(resolved(reader, "program", text, folder));
+            campaign.program.push_back(resolved(reader, "program", text, folder, campaign));
     campaign.seeds = {1};
     if (const auto seeds = numbers(reader, table, "seeds", 0, std::int64_t{1} << 62))
         campaign.seeds.assign(seeds->begin(), seeds->end());
@@ -194,13 +193,6 @@ Sweep read_sweep(const std::string& file, std::size_t index, const TomlValue& ta
     return sweep;
 }
 
-std::string content_of(const std::filesystem::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    std::ostringstream text;
-    text << in.rdbuf();
-    return text.str();
-}
-
 }  // namespace
 
 json to_json(const TomlValue& value) {
@@ -264,12 +256,6 @@ Campaign read_campaign(const std::filesystem::path& file) {
         campaign.sweeps.push_back(read_sweep(file.string(), campaign.sweeps.size(), *table));
     reader.finish();
     if (campaign.sweeps.empty()) reader.fail("sweep", "there is no [[sweep]]", "at least one grid of faults");
-    json identity{{"campaign", content_of(file)},
-                  {"scenario", content_of(campaign.scenario)},
-                  {"firmware", campaign.firmware},
-                  {"program", campaign.program},
-                  {"build", cosim::build_id()}};
-    campaign.identity = identity.dump(-1, ' ', true, json::error_handler_t::replace);
     return campaign;
 }
 

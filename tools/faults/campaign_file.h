@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -57,7 +58,7 @@ struct Campaign {
     Limits limits;
     std::vector<Metric> metrics;
     std::vector<Sweep> sweeps;
-    std::string identity;  ///< text that changes when the campaign, its scenario or this build does
+    std::map<std::string, std::string> environment;  ///< the variables that it names
 };
 
 /// Throws InputError with file and line.

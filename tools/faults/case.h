@@ -11,12 +11,12 @@ namespace puckloop::faults {
 
 struct Case {
     int id = 0;         ///< from 1, in the order of the campaign; 0: the nominal run
-    std::string phase;  ///< "single", "fewer" or "pair"
+    std::string phase;  ///< "single", "fewer", "fewer 2" ... or "pair"
     std::string sweep;
     std::string place;  ///< column of the heat map: "byte 12", "3.5 s"; empty: none
     std::uint64_t seed = 1;
     std::vector<nlohmann::json> faults;  ///< [[fault]] tables
-    int of = 0;                          ///< fewer: the single case that it is made from
+    int of = 0;                          ///< fewer: the case with the count that it came with
     std::string pruned;                  ///< why it is not run; empty: it is
 };
 

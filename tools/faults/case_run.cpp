@@ -2,12 +2,15 @@
 
 #include "base/error.h"
 #include "scenarios/faults/fault_tables.h"
+#include "tools/run/node_factory.h"
 #include "tools/run/overrides.h"
 #include "tools/run/run_scenario.h"
 #include "tools/run/setup.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
@@ -87,6 +90,37 @@ scenarios::Scenario scenario_of(const Campaign& campaign) {
 void check_fault(const Campaign& campaign, const scenarios::Scenario& scenario, const nlohmann::json& fault,
                  int line) {
     scenarios::read_fault(campaign.file.string(), 0, to_toml(fault, line), scenario);
+}
+
+void check_faults_of_nodes(const Campaign& campaign,
+                           const std::vector<std::pair<nlohmann::json, int>>& faults,
+                           const std::filesystem::path& folder) {
+    std::error_code error;
+    std::filesystem::create_directories(folder, error);
+    if (error) throw RunError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
+    constexpr std::size_t kAtOnce = 256;
+    for (std::size_t from = 0; from < faults.size(); from += kAtOnce) {
+        tools::RunRequest request = request_of(campaign);
+        request.cache = false;
+        request.out = folder;
+        for (std::size_t i = from; i < std::min(faults.size(), from + kAtOnce); ++i) {
+            nlohmann::json fault = faults[i].first;
+            fault["name"] = fmt::format("{} (line {}; {})", value_text(fault.value("kind", "drop")),
+                                        faults[i].second, i + 1);
+            request.faults.push_back(as_words(fault));
+        }
+        try {
+            for (const cosim::NodeSpec& node : tools::set_up(request).nodes) {
+                const nlohmann::json spec = nlohmann::json::parse(node.json);
+                if (!spec.contains("faults")) continue;
+                const std::string kind = spec.at("kind");
+                if (kind == "pic" || kind == "rab" || kind == "tam") tools::make_board(spec);
+            }
+        } catch (const InputError& refused) {
+            throw InputError(campaign.file.string(), "", refused.what());
+        }
+    }
+    std::filesystem::remove_all(folder, error);
 }
 
 void execute(const Campaign& campaign, const Case& one, const std::filesystem::path& folder,

@@ -6,6 +6,8 @@
 #include "tools/faults/outcome.h"
 
 #include <filesystem>
+#include <utility>
+#include <vector>
 
 namespace puckloop::faults {
 
@@ -15,6 +17,13 @@ scenarios::Scenario scenario_of(const Campaign& campaign);
 /// Throws InputError, with the campaign's file and `line`, if the scenario cannot have this fault.
 void check_fault(const Campaign& campaign, const scenarios::Scenario& scenario, const nlohmann::json& fault,
                  int line);
+
+/// The same for what only a node itself can refuse (a register that its chip has not, a symbol that its
+/// firmware has not): makes boards with such faults, with logs in `folder`, and runs nothing. Each fault with
+/// its line.
+void check_faults_of_nodes(const Campaign& campaign,
+                           const std::vector<std::pair<nlohmann::json, int>>& faults,
+                           const std::filesystem::path& folder);
 
 /// Runs it with all results in `folder`, which it replaces. `boots`: where boots of boards are kept from one
 /// run to the next. Throws RunError if the run could not be made (disk full, puckloop itself died).

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <regex>
 
 namespace puckloop::faults {
 
@@ -63,6 +64,12 @@ bool is_stall(const std::string& why) {
            why.find("has not answered for") != std::string::npos;
 }
 
+/// Paths by their last part alone: where a program lies is no symptom.
+std::string without_folders(const std::string& text) {
+    static const std::regex kFolders("/[^ ,:;]*/");
+    return std::regex_replace(text, kFolders, "");
+}
+
 struct Judge {
     const Campaign& campaign;
     const Profile& nominal;
@@ -80,7 +87,7 @@ struct Judge {
         if (success || !nominal.report.value("success", false)) return false;
         // A program that computes for ever without a call stalls simulated time: no crash.
         if (is_stall(why) || why.find("never fired") != std::string::npos) return false;
-        note(shape_of(why), fmt::format(" ({})", why));
+        note(shape_of(without_folders(why)), fmt::format(" ({})", why));
         return true;
     }
 

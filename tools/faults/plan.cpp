@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "cosim/faults/kind_table.h"
 #include "tools/faults/case_run.h"
 #include "tools/faults/findings.h"
 #include "tools/faults/positions.h"
@@ -76,13 +77,19 @@ std::vector<std::size_t> sample(std::size_t from, std::size_t budget, std::uint6
 
 }  // namespace
 
-void check_sweep(const Campaign& campaign, const scenarios::Scenario& scenario, const Sweep& sweep) {
+void check_sweep(const Campaign& campaign, const scenarios::Scenario& scenario, const Sweep& sweep,
+                 const std::filesystem::path& folder) {
+    std::vector<std::pair<json, int>> of_nodes;
     for (const json& fault : combinations(sweep)) {
         check_fault(campaign, scenario, fault, sweep.line);
         if (sweep.positions && (!fault.contains("link") || !fault.contains("from")))
             throw InputError(campaign.file.string(), fmt::format("line {}", sweep.line),
                              "byte positions of nobody's records", "a fault with 'link' and 'from'");
+        if (!fault.contains("node")) continue;
+        of_nodes.emplace_back(fault, sweep.line);
+        if (!sweep.times.empty()) of_nodes.back().first["begin"] = sweep.times.front();
     }
+    if (!of_nodes.empty()) check_faults_of_nodes(campaign, of_nodes, folder);
 }
 
 std::vector<Case> plan_singles(const Campaign& campaign, const scenarios::Scenario& scenario,
@@ -120,23 +127,67 @@ std::vector<Case> plan_singles(const Campaign& campaign, const scenarios::Scenar
     return cases;
 }
 
+namespace {
+
+/// How often a case's fault may fire.
+std::uint64_t allowed(const Case& one) {
+    const auto count = one.faults[0].find("count");
+    return count != one.faults[0].end() && count->is_number_integer() ? count->get<std::uint64_t>()
+                                                                      : UINT64_MAX;
+}
+
+/// What holds at a board during a window does so however often it is seen to.
+bool is_counted(const json& fault) {
+    if (!fault.contains("node")) return true;
+    const std::string kind = value_text(fault.value("kind", json("drop")));
+    const auto& kinds = cosim::all_kinds();
+    return std::none_of(kinds.begin(), kinds.end(), [&](const cosim::KindInfo& info) {
+        return info.name == kind && info.style == cosim::Style::Hold;
+    });
+}
+
+/// Counts to try between what shows the finding and what does not.
+std::vector<std::uint64_t> fewer_counts(const CaseResult& found, const std::vector<CaseResult>& results) {
+    const int origin = found.one.of != 0 ? found.one.of : found.one.id;
+    const std::uint64_t most =
+        std::min(allowed(found.one), found.verdict.fired.empty() ? 0 : found.verdict.fired[0]);
+    std::uint64_t below = 0;
+    bool tried = false;
+    for (const CaseResult& result : results)
+        if (result.one.of == origin) {
+            tried = true;
+            if (allowed(result.one) < most) below = std::max(below, allowed(result.one));
+        }
+    std::vector<std::uint64_t> counts;
+    if (!tried)
+        for (std::uint64_t count = 1; count < most; count *= 2)
+            counts.push_back(count);
+    else if (most - below > 1)
+        counts.push_back(below + (most - below) / 2);
+    return counts;
+}
+
+}  // namespace
+
 std::vector<Case> plan_fewer(const Campaign& campaign, const scenarios::Scenario& scenario,
-                             const std::vector<CaseResult>& singles, int first_id) {
+                             const std::vector<CaseResult>& results, int first_id, const std::string& phase) {
     std::vector<Case> cases;
-    for (const Finding& finding : findings_of(singles)) {
+    std::set<std::string> known;
+    for (const Finding& finding : findings_of(results)) {
         const CaseResult& found = *finding.smallest;
-        if (found.one.phase != "single" || found.verdict.fired.empty()) continue;
-        for (std::uint64_t count = 1; count < found.verdict.fired[0]; count *= 2) {
+        if (found.one.faults.size() != 1 || !is_counted(found.one.faults[0])) continue;
+        for (const std::uint64_t count : fewer_counts(found, results)) {
             Case one = found.one;
             one.id = first_id + static_cast<int>(cases.size());
-            one.phase = "fewer";
-            one.of = found.one.id;
+            one.phase = phase;
+            one.of = found.one.of != 0 ? found.one.of : found.one.id;
             one.faults[0]["count"] = count;
             try {
                 check_fault(campaign, scenario, one.faults[0], 0);
             } catch (const InputError&) {
                 break;  // a kind that does not count
             }
+            if (!known.insert(fmt::format("{} {}", one.seed, one.faults[0].dump())).second) continue;
             cases.push_back(std::move(one));
         }
     }

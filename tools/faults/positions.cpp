@@ -17,9 +17,9 @@ namespace {
 constexpr double kPause = 2.0;  ///< byte times between two records
 
 /// Kinds that do something to a frame and nothing where there is none.
-constexpr std::array kOnFrames{"drop",   "loss",    "flip", "corrupt",  "duplicate", "insert",
-                               "swap",   "reorder", "cut",  "truncate", "parity",    "stop",
-                               "glitch", "delay",   "rate", "baud",     "batch",     "throttle"};
+constexpr std::array kOnFrames{"drop",  "loss",    "flip", "corrupt",  "duplicate", "insert",
+                               "swap",  "reorder", "cut",  "truncate", "parity",    "stop",
+                               "delay", "rate",    "baud", "batch",    "throttle"};
 
 double seconds(const json& fault, const char* key, double fallback) {
     if (!fault.contains(key) || !fault.at(key).is_string()) return fallback;

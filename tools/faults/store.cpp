@@ -110,6 +110,12 @@ bool Store::planned(const std::string& phase) const {
     return Statement(*this, "select 1 from phases where phase = ?").bind(phase).next();
 }
 
+int Store::last_id() const {
+    Statement select(*this, "select coalesce(max(id), 0) from cases");
+    select.next();
+    return std::stoi(select.text(0));
+}
+
 void Store::plan(const std::string& phase, const std::vector<Case>& cases) {
     execute("begin immediate");
     try {

@@ -27,6 +27,8 @@ class Store {
     void set_note(const std::string& key, const std::string& value);
 
     bool planned(const std::string& phase) const;
+    /// The highest number of a case; 0: there is none.
+    int last_id() const;
     /// All of a phase at once or, after a kill, none.
     void plan(const std::string& phase, const std::vector<Case>& cases);
     std::vector<Case> cases(const std::string& phase) const;

@@ -103,7 +103,13 @@ void write_table(const Results& results) {
 std::string replay_command(const Results& results, int id) {
     const fs::path relative = results.out.lexically_proximate(fs::current_path());
     const bool outside = relative.string().starts_with("..");
-    return fmt::format("puckloop faults replay {} {}", (outside ? results.out : relative).string(), id);
+    return fmt::format("puckloop faults replay {} {}",
+                       shell_word((outside ? results.out : relative).string()), id);
+}
+
+std::string replay_command_anywhere(const Results& results, int id) {
+    return fmt::format("{} faults replay {} {}", shell_word(fs::read_symlink("/proc/self/exe").string()),
+                       shell_word(results.out.lexically_normal().string()), id);
 }
 
 std::string run_command(const Results& results, int id) {

@@ -19,6 +19,8 @@ std::string case_text(const Results& results, int id);
 
 /// "puckloop faults replay out/hello 17"
 std::string replay_command(const Results& results, int id);
+/// The same with whole paths, for a shell in any folder.
+std::string replay_command_anywhere(const Results& results, int id);
 
 /// The same case without its campaign, for a shell: "puckloop run hello.toml --seed 1 --fault '...'"
 std::string run_command(const Results& results, int id);
