@@ -44,7 +44,8 @@ bool in_range(const ParameterInfo& parameter, double value) {
 const std::vector<KindInfo>& all_kinds() {
     static const std::vector<KindInfo> kinds = [] {
         std::vector<KindInfo> all;
-        for (auto family : {uart_kinds, radio_kinds, i2c_kinds, linux_kinds, board_kinds}) {
+        for (auto family :
+             {uart_kinds, radio_kinds, xbee_kinds, ircom_kinds, i2c_kinds, linux_kinds, board_kinds}) {
             std::vector<KindInfo> some = family();
             std::move(some.begin(), some.end(), std::back_inserter(all));
         }
@@ -118,6 +119,13 @@ void check_fault(const FaultSpec& spec, const KindInfo& kind) {
     for (const auto& [key, value] : spec.parameters.texts)
         if (!belongs(key)) refuse(fmt::format("{} has no {}", kind.name, key), "one of its own parameters");
     if (kind.place == PlaceKind::Uart) check_uart_fault(spec, kind);
+    if (kind.place == PlaceKind::Radio && spec.parameters.number("jitter") > spec.parameters.number("delay"))
+        refuse("the jitter is larger than the delay", "frames that are not early");
+    if (kind.place == PlaceKind::Ircom && kind.name == "flip") {
+        constexpr double kBits = 10;
+        if (spec.parameters.number("bit") + spec.parameters.number("bits") > kBits)
+            refuse("no word has so many bits", "bit + bits of at most 10");
+    }
 }
 
 }  // namespace puckloop::cosim

@@ -39,7 +39,8 @@ bool from_module(protocols::MeshKind kind) {
 EtherNode::EtherNode(const EtherSpec& spec)
     : spec_(spec),
       medium_(spec.propagation, positions_of(spec)),
-      mesh_(medium_, names_of(spec), spec.seed, spec.processing, *this) {
+      faults_(spec.faults, names_of(spec)),
+      mesh_(medium_, names_of(spec), spec.seed, spec.processing, faults_, *this) {
     const Propagation& air = spec.propagation;
     const auto refuse = [&](const char* what, const char* expected) {
         throw InputError("", "radio medium " + spec.name, what, expected);
@@ -146,7 +147,10 @@ std::string EtherNode::finish() {
                                       {"while_sending", mac.while_sending},
                                       {"dropped", mac.dropped}}}};
     }
-    return json{{"stations", std::move(stations)}, {"hops", mesh_.hops()}, {"warnings", warnings_}}.dump();
+    json report{{"stations", std::move(stations)}, {"hops", mesh_.hops()}, {"warnings", warnings_}};
+    if (!faults_.empty())
+        report["faults"] = json::parse(cosim::fault_results(faults_.carried(), granted_).dump());
+    return report.dump();
 }
 
 std::unique_ptr<cosim::Node> make_ether_node(std::string_view text) {
@@ -161,6 +165,8 @@ std::unique_ptr<cosim::Node> make_ether_node(std::string_view text) {
         spec.processing = cosim::from_seconds(json.value("processing_s", cosim::to_seconds(spec.processing)));
         for (const auto& station : json.at("stations"))
             spec.stations.push_back({station.at("name"), station.at("at").get<Position>()});
+        if (json.contains("faults"))
+            spec.faults = cosim::faults_from_json(nlohmann::ordered_json::parse(json["faults"].dump()));
     } catch (const nlohmann::json::exception& error) {
         throw InputError("", "radio medium description", error.what());
     }

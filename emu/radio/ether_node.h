@@ -26,6 +26,7 @@ struct EtherSpec {
     Propagation propagation{};
     cosim::Time processing = cosim::kMillisecond;  ///< between hearing a frame and handing it on, > 0
     std::vector<EtherStation> stations{};
+    std::vector<cosim::CarriedFault> faults{};
 };
 
 class EtherNode : public cosim::Node, private MeshUser {
@@ -39,7 +40,8 @@ class EtherNode : public cosim::Node, private MeshUser {
                  std::vector<cosim::Message>& outbox) override;
     cosim::Time earliest_output(cosim::PortIndex port) const override;
     cosim::Time lookahead(cosim::PortIndex /*port*/) const override { return Mesh::lookahead(); }
-    /// JSON: "stations": {name: counters}, "hops", "warnings".
+    /// JSON: "stations": {name: counters}, "hops", "warnings"; with faults "faults"
+    /// (cosim/faults/fault_json.h).
     std::string finish() override;
 
     const Mesh& mesh() const { return mesh_; }
@@ -53,6 +55,7 @@ class EtherNode : public cosim::Node, private MeshUser {
     EtherSpec spec_;
     std::vector<cosim::Port> ports_;
     Medium medium_;
+    AirFaults faults_;
     Mesh mesh_;
     std::vector<cosim::Message>* outbox_ = nullptr;
     cosim::Time granted_ = 0;
@@ -60,7 +63,7 @@ class EtherNode : public cosim::Node, private MeshUser {
 };
 
 /// From JSON: {"name", "seed", "range_m", "exponent", "loss", "processing_s", "stations": [{"name", "at"}]},
-/// all but a station's fields optional. Throws InputError.
+/// "faults": [...], all but a station's fields optional. Throws InputError.
 std::unique_ptr<cosim::Node> make_ether_node(std::string_view json);
 
 }  // namespace puckloop::radio

@@ -21,8 +21,8 @@ constexpr Time kLongestFrame = air_time(127);
 }  // namespace
 
 Mac::Mac(Medium& medium, Agenda& agenda, const std::vector<std::string>& names, std::uint64_t seed,
-         MacUser& user)
-    : medium_(medium), agenda_(agenda), user_(user) {
+         AirFaults& faults, MacUser& user)
+    : medium_(medium), agenda_(agenda), faults_(faults), user_(user) {
     for (const std::string& name : names)
         stations_.emplace_back(RandomStream(seed, "radio/backoff/" + name),
                                RandomStream(seed, "radio/noise/" + name));
@@ -106,8 +106,7 @@ void Mac::access(std::size_t station, Time now) {
         agenda_.add({own, EventKind::Access, station, ++it.turn});
         return;
     }
-    if (it.settings.cca != 0 &&
-        medium_.busy(station, it.settings.channel, -static_cast<double>(it.settings.cca), now)) {
+    if (it.settings.cca != 0 && finds_busy(station, now)) {
         if (++it.backoffs > kMostBackoffs) {
             ++it.counts.channel_busy;
             // As late as the shortest frame would have ended: nothing that a frame leads to comes earlier.
@@ -142,22 +141,35 @@ void Mac::transmit(std::size_t station, Time start) {
     flying_.emplace(flying.transmission.id, std::move(flying));
 }
 
-bool Mac::reads(std::size_t station, const Transmission& transmission) {
+bool Mac::finds_busy(std::size_t station, Time now) {
+    const Station& it = stations_[station];
+    if (!faults_.empty()) faults_.advance(medium_, now + 1);
+    const Transmission* const other =
+        medium_.busy(station, it.settings.channel, -static_cast<double>(it.settings.cca), now);
+    if (other != nullptr && other->foreign()) faults_.kept_waiting(*other, station, now);
+    return other != nullptr;
+}
+
+bool Mac::reads(std::size_t station, const Transmission& transmission, std::optional<MeshFrame>& frame) {
     Station& it = stations_[station];
-    switch (medium_.obstacle(transmission, station)) {
+    if (!faults_.empty()) faults_.advance(medium_, transmission.end);
+    const Transmission* foreign = nullptr;
+    switch (medium_.obstacle(transmission, station, &foreign)) {
     case Obstacle::Weak:
         return false;
     case Obstacle::Busy:
         ++it.counts.while_sending;
         return false;
     case Obstacle::Collision:
+        if (foreign != nullptr) faults_.spoilt(*foreign, transmission, station);
         ++it.counts.collisions;
         return false;
     case Obstacle::None:
         break;
     }
     const double loss = medium_.propagation().frame_loss(medium_.received_dbm(transmission, station));
-    if (it.noise.uniform() >= loss) return true;
+    const bool clear = it.noise.uniform() >= loss;
+    if (clear && (faults_.empty() || faults_.read(transmission, frame, station))) return true;
     ++it.counts.noise;
     return false;
 }
@@ -169,13 +181,19 @@ void Mac::frame_end(std::uint64_t id, Time now) {
     const MeshFrame& frame = flying.frame;
     const bool to_all = frame.hop_to == protocols::kXBeeBroadcast;
     // Acknowledgements first, then what the frame causes: nobody sends in between.
-    std::vector<std::size_t> readers;
+    struct Reader {
+        std::size_t station;
+        std::optional<MeshFrame> frame;  ///< if a fault has changed what it reads
+    };
+    std::vector<Reader> readers;
     for (std::size_t s = 0; s < stations_.size(); ++s) {
         const RadioSettings& settings = stations_[s].settings;
         if (s == sent.station || !settings.on || settings.channel != sent.channel) continue;
         if (settings.pan != frame.pan || !(to_all || settings.address == frame.hop_to)) continue;
-        if (!reads(s, sent)) continue;
-        readers.push_back(s);
+        std::optional<MeshFrame> as_read;
+        if (!faults_.empty()) as_read = frame;
+        if (!reads(s, sent, as_read)) continue;
+        readers.push_back({s, std::move(as_read)});
         if (frame.asks_ack) acknowledge(s, flying, now);
     }
     Station& sender = stations_[sent.station];
@@ -185,16 +203,18 @@ void Mac::frame_end(std::uint64_t id, Time now) {
         else
             finish(sent.station, true, false, now);
     }
-    for (const std::size_t s : readers) {
+    for (const Reader& reader : readers) {
+        const std::size_t s = reader.station;
+        const MeshFrame& heard = reader.frame ? *reader.frame : frame;
         Station& it = stations_[s];
         ++it.counts.received;
-        const auto [last, is_new] = it.last_heard.try_emplace(frame.hop_from, frame.mac_sequence);
-        const bool again = !is_new && last->second == frame.mac_sequence;
-        last->second = frame.mac_sequence;
+        const auto [last, is_new] = it.last_heard.try_emplace(heard.hop_from, heard.mac_sequence);
+        const bool again = !is_new && last->second == heard.mac_sequence;
+        last->second = heard.mac_sequence;
         if (again)
             ++it.counts.duplicates;
         else
-            user_.received(s, frame, {medium_.received_dbm(sent, s), sent.start, now});
+            user_.received(s, heard, {medium_.received_dbm(sent, s), sent.start, now});
     }
 }
 
@@ -220,7 +240,8 @@ void Mac::ack_end(std::uint64_t id, Time now) {
     const auto to = static_cast<std::size_t>(ack.frame.hop_to);
     const Station& it = stations_[to];
     if (!it.settings.on || it.settings.channel != ack.transmission.channel || it.turn != ack.turn) return;
-    if (reads(to, ack.transmission)) finish(to, true, false, now);
+    std::optional<MeshFrame> no_frame;
+    if (reads(to, ack.transmission, no_frame)) finish(to, true, false, now);
 }
 
 void Mac::failed_attempt(std::size_t station, bool busy, Time now) {

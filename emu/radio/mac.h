@@ -10,6 +10,7 @@
 #include "base/random.h"
 #include "cosim/core/time.h"
 #include "emu/radio/agenda.h"
+#include "emu/radio/air_faults.h"
 #include "emu/radio/control.h"
 #include "emu/radio/medium.h"
 #include "protocols/mesh_frame.h"
@@ -17,6 +18,7 @@
 #include <cstdint>
 #include <deque>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -67,7 +69,7 @@ class MacUser {
 class Mac {
   public:
     Mac(Medium& medium, Agenda& agenda, const std::vector<std::string>& names, std::uint64_t seed,
-        MacUser& user);
+        AirFaults& faults, MacUser& user);
     Mac(const Mac&) = delete;
     Mac& operator=(const Mac&) = delete;
 
@@ -116,11 +118,16 @@ class Mac {
     void failed_attempt(std::size_t station, bool busy, cosim::Time now);
     void finish(std::size_t station, bool delivered, bool busy, cosim::Time now);
     void acknowledge(std::size_t station, const Flying& flying, cosim::Time now);
-    /// True if the station reads the transmission that ends now.
-    bool reads(std::size_t station, const Transmission& transmission);
+    /// True if the station reads the transmission that ends now. A fault may change `frame`, which is empty
+    /// for an acknowledgement.
+    bool reads(std::size_t station, const Transmission& transmission,
+               std::optional<protocols::MeshFrame>& frame);
+    /// Whether it finds the channel busy.
+    bool finds_busy(std::size_t station, cosim::Time now);
 
     Medium& medium_;
     Agenda& agenda_;
+    AirFaults& faults_;
     MacUser& user_;
     std::vector<Station> stations_;
     std::map<std::uint64_t, Flying> flying_;

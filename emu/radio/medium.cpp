@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace puckloop::radio {
 
@@ -34,30 +35,47 @@ void Medium::forget_before(cosim::Time time) {
 }
 
 double Medium::received_dbm(const Transmission& transmission, std::size_t receiver) const {
+    if (transmission.foreign())
+        return transmission.only.value_or(receiver) == receiver ? transmission.dbm
+                                                                : -std::numeric_limits<double>::infinity();
     return propagation_.received_dbm(transmission.dbm,
                                      distance(positions_[transmission.station], positions_[receiver]));
 }
 
-Obstacle Medium::obstacle(const Transmission& transmission, std::size_t receiver) const {
+Obstacle Medium::obstacle(const Transmission& transmission, std::size_t receiver,
+                          const Transmission** foreign) const {
     const double dbm = received_dbm(transmission, receiver);
     if (propagation_.frame_loss(dbm) >= 1.0) return Obstacle::Weak;
     Obstacle found = Obstacle::None;
+    const Transmission* outsider = nullptr;
+    bool by_module = false;
     for (const Transmission& other : on_air_) {
         if (other.id == transmission.id || other.channel != transmission.channel) continue;
         if (other.end <= transmission.start || other.start >= transmission.end) continue;
         if (other.station == receiver) return Obstacle::Busy;
         // Two modules with one address acknowledge a frame with the same octets at the same time.
         if (other.answers != 0 && other.answers == transmission.answers) continue;
-        if (received_dbm(other, receiver) > dbm - kCaptureDb) found = Obstacle::Collision;
+        if (received_dbm(other, receiver) <= dbm - kCaptureDb) continue;
+        found = Obstacle::Collision;
+        if (other.foreign())
+            outsider = &other;
+        else
+            by_module = true;
     }
+    if (foreign != nullptr) *foreign = by_module ? nullptr : outsider;
     return found;
 }
 
-bool Medium::busy(std::size_t station, std::uint8_t channel, double threshold_dbm, cosim::Time now) const {
-    return std::any_of(on_air_.begin(), on_air_.end(), [&](const Transmission& one) {
-        return one.station != station && one.channel == channel && one.start <= now && now < one.end &&
-               received_dbm(one, station) > threshold_dbm;
-    });
+const Transmission* Medium::busy(std::size_t station, std::uint8_t channel, double threshold_dbm,
+                                 cosim::Time now) const {
+    const Transmission* found = nullptr;
+    for (const Transmission& one : on_air_) {
+        if (one.station == station || one.channel != channel || one.start > now || now >= one.end) continue;
+        if (received_dbm(one, station) <= threshold_dbm) continue;
+        found = &one;
+        if (!one.foreign()) break;
+    }
+    return found;
 }
 
 cosim::Time Medium::own_until(std::size_t station, cosim::Time start, cosim::Time end) const {

@@ -14,6 +14,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace puckloop::radio {
@@ -35,6 +36,9 @@ inline constexpr double kFullPowerDbm = 1.42;  ///< PL = 4
 using Position = std::array<double, 3>;  ///< metres
 double distance(const Position& a, const Position& b);
 
+/// Stations from here on are of foreign networks (a fault); all receive them with the power they send with.
+inline constexpr std::size_t kForeignStation = 1'000'000;
+
 /// One frame on air.
 struct Transmission {
     std::uint64_t id = 0;
@@ -42,7 +46,10 @@ struct Transmission {
     std::uint8_t channel = 0;
     double dbm = 0.0;
     cosim::Time start = 0, end = 0;
-    std::uint64_t answers = 0;  ///< an acknowledgement: id of the frame that it is for, else 0
+    std::uint64_t answers = 0;          ///< an acknowledgement: id of the frame that it is for, else 0
+    std::optional<std::size_t> only{};  ///< of a foreign network: who alone receives it
+
+    bool foreign() const { return station >= kForeignStation; }
 };
 
 /// What keeps a frame from a receiver.
@@ -63,10 +70,12 @@ class Medium {
     void forget_before(cosim::Time time);
 
     double received_dbm(const Transmission& transmission, std::size_t receiver) const;
-    /// To be asked when the transmission ends.
-    Obstacle obstacle(const Transmission& transmission, std::size_t receiver) const;
-    /// Something on the channel is stronger than `threshold_dbm` at the station.
-    bool busy(std::size_t station, std::uint8_t channel, double threshold_dbm, cosim::Time now) const;
+    /// To be asked when the transmission ends. `foreign`: the foreign frame that alone makes the collision.
+    Obstacle obstacle(const Transmission& transmission, std::size_t receiver,
+                      const Transmission** foreign = nullptr) const;
+    /// Something on the channel that is stronger than `threshold_dbm` at the station, a module's first.
+    const Transmission* busy(std::size_t station, std::uint8_t channel, double threshold_dbm,
+                             cosim::Time now) const;
     /// End of the station's own transmission that overlaps [start, end), or 0.
     cosim::Time own_until(std::size_t station, cosim::Time start, cosim::Time end) const;
     const Propagation& propagation() const { return propagation_; }

@@ -33,8 +33,8 @@ Time known_route_time(const RadioSettings& settings) {
 }
 
 Mesh::Mesh(Medium& medium, const std::vector<std::string>& names, std::uint64_t seed, Time processing,
-           MeshUser& user)
-    : processing_(processing), user_(user), mac_(medium, agenda_, names, seed, *this) {
+           AirFaults& faults, MeshUser& user)
+    : processing_(processing), user_(user), mac_(medium, agenda_, names, seed, faults, *this) {
     for (const std::string& name : names)
         stations_.emplace_back(RandomStream(seed, "radio/delays/" + name));
 }

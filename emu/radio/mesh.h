@@ -48,7 +48,7 @@ class Mesh : private MacUser {
   public:
     /// `processing`: what a module needs to look at a frame, s > 0.
     Mesh(Medium& medium, const std::vector<std::string>& names, std::uint64_t seed, cosim::Time processing,
-         MeshUser& user);
+         AirFaults& faults, MeshUser& user);
 
     void set(std::size_t station, const RadioSettings& settings, cosim::Time now);
     /// A module's own frame; report() follows for those whose fate is known to it.

@@ -4,6 +4,25 @@ namespace puckloop::scenarios {
 
 using cosim::PlaceKind;
 
+namespace {
+
+/// What carries radio frames and words of light; a fault may be for those from or to one of its devices.
+void add_media(const Scenario& scenario, std::vector<FaultPlace>& places) {
+    FaultPlace ether{"ether", PlaceKind::Xbee, {}, "ether", true},
+        ircom{"ircom", PlaceKind::Ircom, {}, "ircom", true};
+    if (scenario.coordinator) ether.ends.emplace_back("coordinator");
+    for (const RobotBoards& robot : scenario.robots)
+        ircom.ends.push_back(robot.name);
+    for (const TamBoard& tam : scenario.tams) {
+        if (tam.xbee.fitted) ether.ends.push_back(tam.name);
+        ircom.ends.push_back(tam.name);
+    }
+    if (!ether.ends.empty()) places.push_back(std::move(ether));
+    if (scenario.world.ircom) places.push_back(std::move(ircom));
+}
+
+}  // namespace
+
 std::vector<FaultPlace> fault_places(const Scenario& scenario) {
     std::vector<FaultPlace> places;
     const auto add_board = [&](const std::string& node, PlaceKind kind) {
@@ -36,6 +55,7 @@ std::vector<FaultPlace> fault_places(const Scenario& scenario) {
                 {"coordinator.uart", PlaceKind::Uart, {"coordinator.linux", "coordinator.xbee"}});
         places.push_back({"coordinator.radio", PlaceKind::Radio, {"coordinator.xbee", "ether"}});
     }
+    add_media(scenario, places);
     return places;
 }
 

@@ -98,15 +98,30 @@ FaultPlace find_place(Reader& reader, const Scenario& scenario) {
                 known.empty() ? "a robot with a [robot.linux] program" : known);
 }
 
+void check_end(Reader& reader, const char* key, const std::string& name, const FaultPlace& place) {
+    if (std::find(place.ends.begin(), place.ends.end(), name) == place.ends.end())
+        reader.fail(key, fmt::format("'{}' is at no end of {}", name, place.name),
+                    fmt::format("{}", fmt::join(place.ends, " or ")));
+}
+
 void read_from(Reader& reader, const FaultPlace& place, const KindInfo& kind, FaultSpec& fault) {
     if (place.ends.empty() || !reader.has("from")) return;
     fault.from = reader.text("from", "");
     if (fault.from.empty()) return;
     if (kind.mark == cosim::FaultKind::SwappedWires)
         reader.fail("from", "swapped wires have no direction", "no 'from'");
-    if (std::find(place.ends.begin(), place.ends.end(), fault.from) == place.ends.end())
-        reader.fail("from", fmt::format("'{}' is at no end of {}", fault.from, place.name),
-                    fmt::format("{}", fmt::join(place.ends, " or ")));
+    if (kind.place == cosim::PlaceKind::Xbee && kind.name == "clash")
+        reader.fail("from", "a clash comes from outside, from no module", "no 'from'");
+    check_end(reader, "from", fault.from, place);
+}
+
+/// Of a medium: who receives.
+void check_receiver(Reader& reader, const FaultPlace& place, const FaultSpec& fault) {
+    const std::string to = fault.parameters.text("to");
+    if (to.empty() || place.ends.empty()) return;
+    check_end(reader, "to", to, place);
+    if (to == fault.from)
+        reader.fail("to", fmt::format("'{}' receives nothing of its own", to), "another one");
 }
 
 const KindInfo& find_kind(Reader& reader, const FaultPlace& place) {
@@ -128,6 +143,7 @@ FaultSpec read_fault(Reader& reader, const Scenario& scenario) {
     read_match(reader, kind, fault);
     for (const ParameterInfo& parameter : kind.parameters)
         read_parameter(reader, parameter, fault);
+    check_receiver(reader, place, fault);
     fault.name = reader.text("name", "");
     if (fault.name.find_first_of(",\n\"") != std::string::npos)
         reader.fail("name", "a name holds a comma, a quote or a line's end", "a plain name");

@@ -126,7 +126,8 @@ void read_when(Reader& reader, const KindInfo& kind, FaultSpec& fault) {
 void read_match(Reader& reader, const KindInfo& kind, FaultSpec& fault) {
     if (kind.style == Style::Times || kind.mark == cosim::FaultKind::Cut) return;
     const bool uart = kind.place == cosim::PlaceKind::Uart;
-    if (!uart && kind.place != cosim::PlaceKind::Radio) return;
+    const bool air = kind.place == cosim::PlaceKind::Radio || kind.place == cosim::PlaceKind::Xbee;
+    if (!uart && !air) return;
     if (uart && reader.has("bytes")) fault.bytes = read_bytes(reader);
     if (kind.mark == cosim::FaultKind::Truncate || kind.style == Style::Hold) return;
     if (uart && reader.has("position"))

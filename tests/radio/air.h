@@ -39,8 +39,9 @@ class Air {
         RadioOutcome outcome;
     };
 
-    explicit Air(std::vector<Position> places, double range = 30.0, double loss = 0.0, std::uint64_t seed = 1)
-        : node(spec(places, range, loss, seed)), settings(places.size()) {
+    explicit Air(std::vector<Position> places, double range = 30.0, double loss = 0.0, std::uint64_t seed = 1,
+                 std::vector<cosim::CarriedFault> faults = {})
+        : node(spec(places, range, loss, seed, std::move(faults))), settings(places.size()) {
         for (std::size_t i = 0; i < places.size(); ++i) {
             settings[i].on = true;
             settings[i].pan = 0x01B5;
@@ -100,9 +101,10 @@ class Air {
     std::vector<Fate> fates;
 
   private:
-    static EtherSpec spec(const std::vector<Position>& places, double range, double loss,
-                          std::uint64_t seed) {
+    static EtherSpec spec(const std::vector<Position>& places, double range, double loss, std::uint64_t seed,
+                          std::vector<cosim::CarriedFault> faults) {
         EtherSpec spec;
+        spec.faults = std::move(faults);
         spec.seed = seed;
         spec.propagation.range_m = range;
         spec.propagation.loss = loss;
