@@ -32,6 +32,11 @@ constexpr std::array kTable{
     AtParameter{"D6", 1, 0, 5, 0},                 // 1: RTS
     AtParameter{"D7", 1, 0, 7, 1},                 // 1: CTS
     AtParameter{"SM", 1, 0, 8, 0},
+    AtParameter{"CC", 1, 0, kAny8, 0x2B},
+    AtParameter{"CT", 2, 2, 0x1770, 0x64},         // 100 ms
+    AtParameter{"GT", 2, 1, 0x0CE4, 0x3E8},        // ms
+    AtParameter{"SP", 2, 1, kAny16, 0xC8},         // 10 ms
+    AtParameter{"ST", 2, 1, 0x36EE, 0x7D0},        // ms
     // Kept and given back; nothing in the model looks at them.
     AtParameter{"NP", 2, 0, 0, 73, true},
     AtParameter{"HV", 2, 0, 0, 0x1744, true},
@@ -44,12 +49,7 @@ constexpr std::array kTable{
     AtParameter{"SE", 1, 0, kAny8, 0xE8},
     AtParameter{"DD", 4, 0, kAny32, 0x00010000},
     AtParameter{"NB", 1, 0, 0, 0},                 // parity: none only
-    AtParameter{"CC", 1, 0, kAny8, 0x2B},
-    AtParameter{"CT", 2, 2, 0x1770, 0x64},
-    AtParameter{"GT", 2, 1, 0x0CE4, 0x3E8},
     AtParameter{"EE", 1, 0, 0, 0},                 // encryption: off only
-    AtParameter{"ST", 2, 1, 0x36EE, 0x7D0},
-    AtParameter{"SP", 2, 1, kAny16, 0xC8},
     AtParameter{"SO", 2, 0, kAny16, 2},
     AtParameter{"D0", 1, 0, 5, 1},
     AtParameter{"D1", 1, 0, 5, 0},
@@ -65,7 +65,8 @@ constexpr std::array kTable{
 // clang-format on
 
 static_assert(kTable[kDH].command == "DH" && kTable[kID].command == "ID" && kTable[kMR].command == "MR" &&
-              kTable[kAP].command == "AP" && kTable[kSM].command == "SM");
+              kTable[kAP].command == "AP" && kTable[kSM].command == "SM" && kTable[kGT].command == "GT" &&
+              kTable[kST].command == "ST");
 
 }  // namespace
 

@@ -42,7 +42,12 @@ enum At : std::size_t {
     kAP,
     kD6,
     kD7,
-    kSM
+    kSM,
+    kCC,
+    kCT,
+    kGT,
+    kSP,
+    kST
 };
 
 /// The places above first.

@@ -82,7 +82,8 @@ void Module::rts(bool level, Time now) {
 void Module::forget_everything() {
     // Bytes that are being received are lost by being down; that the radio goes off must still be said.
     std::erase_if(tasks_, [](const auto& one) {
-        return one.second.kind != TaskKind::RadioOff && one.second.kind != TaskKind::Rts;
+        return one.second.kind != TaskKind::RadioOff && one.second.kind != TaskKind::Rts &&
+               one.second.kind != TaskKind::SleepPin;
     });
     up_ = false;
     out_.clear();
@@ -90,6 +91,11 @@ void Module::forget_everything() {
     waiting_bytes_ = partial_bytes_ = 0;
     input_scheduled_ = false;
     plain_.clear();
+    plus_ = 0;
+    command_mode_ = asleep_ = false;
+    line_.clear();
+    lines_.clear();
+    heard_meanwhile_.clear();
     packets_.clear();
     discoveries_.clear();
     remotes_.clear();
@@ -146,7 +152,8 @@ void Module::apply(Time now) {
     }
     if (const auto mode = api_mode(); mode != reader_mode_) new_reader(mode);
     out_.hold(rts_ && settings_[kD6] == 1, now);
-    tell_radio(true, now);
+    tell_radio(!asleep_, now);
+    consider_sleep(now);
 }
 
 // Tasks ----------------------------------------------------------------------------------------------------
@@ -198,7 +205,9 @@ void Module::happen(const Task& task, Time now) {
         for (auto it = discoveries_.begin(); it != discoveries_.end(); ++it)
             if (it->sequence == task.value) {
                 // ND has said all it found; DN found nobody.
-                if (it->single && it->id != 0)
+                if (it->text)
+                    discovery_over_in_command_mode(*it, now);
+                else if (it->single && it->id != 0)
                     to_host(protocols::XBeeAtResponse{it->id, {'D', 'N'}, kAtError, {}}, now);
                 discoveries_.erase(it);
                 break;
@@ -243,6 +252,27 @@ void Module::happen(const Task& task, Time now) {
         break;
     case TaskKind::Fate:
         fate(task.fate, now);
+        break;
+    case TaskKind::Guard:
+        if (task.value == last_byte_) guard_over(now);
+        break;
+    case TaskKind::CommandLine: {
+        const std::string line = std::move(lines_.front());
+        lines_.pop_front();
+        command_line(line, now);
+        break;
+    }
+    case TaskKind::CommandTimeout:
+        if (task.value == command_turn_) leave_command_mode(now);
+        break;
+    case TaskKind::SleepPin:
+        consider_sleep(now);
+        break;
+    case TaskKind::Sleep:
+        if (task.value == sleep_turn_ && !asleep_ && wants_sleep()) fall_asleep(now);
+        break;
+    case TaskKind::Wake:
+        if (task.value == sleep_turn_ && asleep_) wake_up(now);
         break;
     case TaskKind::RadioOff:
         if (!up_) tell_radio(false, now);

@@ -8,11 +8,14 @@
 // Deviations:
 // 1. A command or frame takes a fixed time (`processing`), the start after reset another (`boot`); the manual
 //    gives neither.
-// 2. Frames 11 (explicit addressing) and 95 (node identification) are not there; sleep (SM), encryption (EE),
-//    analog and digital lines, command mode ("+++") have no effect. Asking for them is answered and counted.
+// 2. Frames 11 (explicit addressing) and 95 (node identification) are not there; synchronised sleep (SM = 7,
+// 8), encryption
+//    (EE), analog and digital lines have no effect. Asking for them is answered and counted.
 // 3. At most four packets wait for their fate; then the serial line waits.
 // 4. DN is answered with the status 0x40 that the TAM's firmware needs, as is ND.
 // 5. FR resets 100 ms after its answer, with modem status 1.
+// 6. A module that wakes up hears at once, and has forgotten its routes.
+// 7. In command mode data from the air waits, as far as it fits into the buffer, until the host leaves.
 
 #include "base/random.h"
 #include "cosim/core/message.h"
@@ -29,6 +32,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -72,6 +76,9 @@ class Module {
     /// The level of RTS: high holds DOUT back where D6 = 1.
     void rts(bool level, cosim::Time now);
 
+    /// The level of SLEEP_RQ (pin 9).
+    void sleep_request(bool level, cosim::Time now);
+
     /// Everything that is due until then, inclusive.
     void run_until(cosim::Time until);
     cosim::Time next_task() const { return tasks_.empty() ? cosim::kNever : tasks_.begin()->first; }
@@ -103,7 +110,13 @@ class Module {
         RadioOff,
         Heard,
         Fate,
-        Baud
+        Baud,
+        Guard,
+        CommandLine,
+        CommandTimeout,
+        SleepPin,
+        Sleep,
+        Wake
     };
     struct Task {
         TaskKind kind = TaskKind::Byte;
@@ -116,6 +129,7 @@ class Module {
         std::uint16_t sequence = 0;
         std::uint8_t id = 0;
         bool single = false;  ///< DN
+        bool text = false;    ///< asked in command mode
     };
     struct Packet {
         std::uint8_t id = 0;
@@ -157,6 +171,28 @@ class Module {
                  cosim::Time now, bool& known);
     void discover(bool single, const protocols::XBeeBytes& identifier, std::uint8_t id, cosim::Time now);
 
+    // Command mode (module_command.cpp).
+    void text_to_host(std::string_view text, cosim::Time now);
+    bool guarded(std::uint8_t value, cosim::Time now);
+    void guard_over(cosim::Time now);
+    void stay_in_command_mode(cosim::Time now);
+    void leave_command_mode(cosim::Time now);
+    void keep_for_later(const protocols::XBeeBytes& data);
+    void command_byte(std::uint8_t value, cosim::Time now);
+    void command_line(const std::string& line, cosim::Time now);
+    void command(std::string_view words, cosim::Time now);
+    void discovered_in_command_mode(const Discovery& discovery, std::uint64_t address,
+                                    const std::string& identifier, cosim::Time now);
+    void discovery_over_in_command_mode(const Discovery& discovery, cosim::Time now);
+
+    // Sleep (module_sleep.cpp).
+    bool sleeps_cyclically() const;
+    bool wants_sleep() const;
+    void consider_sleep(cosim::Time now);
+    void stay_awake(cosim::Time now);
+    void fall_asleep(cosim::Time now);
+    void wake_up(cosim::Time now);
+
     // Air side (module_air.cpp).
     std::uint16_t send(protocols::MeshKind kind, std::uint64_t to, std::uint8_t options, std::uint8_t radius,
                        protocols::XBeeBytes data, cosim::Time now);
@@ -181,6 +217,8 @@ class Module {
     std::multimap<cosim::Time, Task> tasks_;
     bool powered_ = false, in_reset_ = false, up_ = false;
     bool cts_ = false, rts_ = false;
+    bool asleep_ = false, sleep_request_ = false;
+    std::uint64_t sleep_turn_ = 0;  ///< Sleep and Wake tasks of an earlier one are void
 
     std::optional<radio::RadioSettings> told_;  ///< what the medium knows
     protocols::XBeeApiMode reader_mode_ = protocols::XBeeApiMode::Plain;
@@ -189,8 +227,15 @@ class Module {
     std::size_t waiting_bytes_ = 0;  ///< in the serial receive buffer: of frames that are not handled
     std::deque<std::pair<protocols::XBeeMessage, std::size_t>> waiting_;  ///< with their bytes on the line
     bool input_scheduled_ = false;
-    protocols::XBeeBytes plain_;   ///< transparent data
-    std::uint64_t last_byte_ = 0;  ///< counts bytes: a Quiet task of an earlier one is void
+    protocols::XBeeBytes plain_;    ///< transparent data
+    std::uint64_t last_byte_ = 0;   ///< counts bytes: a Quiet or Guard task of an earlier one is void
+    cosim::Time last_byte_at_ = 0;  ///< its end; the silence before "+++"
+    int plus_ = 0;                  ///< characters of what may be "+++", not yet data
+    bool command_mode_ = false;
+    std::string line_;                                   ///< that is coming in
+    std::deque<std::string> lines_;                      ///< of CommandLine tasks
+    std::uint64_t command_turn_ = 0;                     ///< a CommandTimeout of an earlier command is void
+    std::vector<protocols::XBeeBytes> heard_meanwhile_;  ///< data from the air; the host gets it afterwards
 
     std::uint16_t sequence_ = 0;  ///< 15 bits; goes on after a reset
     std::map<std::uint16_t, Packet> packets_;

@@ -60,7 +60,7 @@ void Module::transmit(const protocols::XBeeTx& tx, Time now) {
 }
 
 void Module::radio_received(const cosim::RadioFrame& frame, Time now) {
-    if (!up_) return;
+    if (!up_ || asleep_) return;
     if (frame.duration == 0) {
         if (const auto fate = radio::decode_outcome(frame.octets.view())) outcome(*fate, now);
         return;
@@ -75,6 +75,7 @@ void Module::radio_received(const cosim::RadioFrame& frame, Time now) {
         ++counts_.not_for_us;
         return;
     }
+    stay_awake(now);
     frame_received(reading.frame, now + options_.processing);
 }
 
@@ -111,7 +112,9 @@ void Module::heard(const MeshFrame& frame, Time now) {
     case MeshKind::Data: {
         ++counts_.received;
         const std::uint8_t options = frame.broadcast() ? kWasBroadcast : kAcknowledged;
-        if (settings_[kAP] != 0)
+        if (command_mode_ && settings_[kAP] == 0)
+            keep_for_later(frame.data);
+        else if (settings_[kAP] != 0)
             to_host(protocols::XBeeRx{frame.origin, protocols::kXBeeUnknownNet, options, frame.data}, now);
         else if (!out_.put(frame.data, now))
             ++counts_.dropped_out;
@@ -176,6 +179,10 @@ void Module::discovered(const MeshFrame& frame, Time now) {
     const Discovery discovery = *asked;
     if (discovery.single) discoveries_.erase(asked);
     if (discovery.id == 0) return;
+    if (discovery.text) {
+        if (command_mode_) discovered_in_command_mode(discovery, frame.origin, identifier, now);
+        return;
+    }
     protocols::XBeeAtResponse response{
         discovery.id, {'N', 'D'}, kAtFromAir | kAtOk, description(frame.origin, identifier)};
     if (discovery.single) {

@@ -37,10 +37,11 @@ Module::AtResult Module::at(const protocols::XBeeCommand& name, const XBeeBytes&
             result.status = settings_.write_identifier(value);
     } else if (const auto place = find_parameter(command)) {
         if (value.empty())
-            result.value = settings_.read(*place);
+            result.value = settings_.read(*place, command_mode_);
         else
             result.status = settings_.write(*place, value);
-        if (*place == kSM && !value.empty() && value.back() != 0 && result.status == kAtOk)
+        constexpr std::uint8_t kFirstSynchronised = 7;
+        if (*place == kSM && !value.empty() && value.back() >= kFirstSynchronised && result.status == kAtOk)
             ++counts_.without_effect;
     } else {
         const bool room =
@@ -99,11 +100,11 @@ void Module::discover(bool single, const XBeeBytes& identifier, std::uint8_t id,
     data.insert(data.end(), identifier.begin(), identifier.end());
     const std::uint16_t sequence =
         send(protocols::MeshKind::Discover, protocols::kXBeeBroadcast, 0, 0, std::move(data), now);
-    discoveries_.push_back({sequence, id, single});
+    discoveries_.push_back({sequence, id, single, command_mode_});
     constexpr Time kUnit = 100 * cosim::kMillisecond;
     add(now + static_cast<Time>(settings_[kNT]) * kUnit, {TaskKind::DiscoveryEnd, sequence});
     // NO, bit 1: the module shows itself as well.
-    if (!single && (settings_[kNO] & 2) != 0 && id != 0)
+    if (!single && (settings_[kNO] & 2) != 0 && id != 0 && !command_mode_)
         to_host(
             protocols::XBeeAtResponse{
                 id, {'N', 'D'}, kAtOk, description(options_.address, settings_.node_identifier())},

@@ -23,7 +23,10 @@ struct ModuleCounts {
     std::uint64_t at_commands = 0;
     std::uint64_t bad_values = 0;
     std::map<std::string, std::uint64_t> unknown_at;
-    std::uint64_t without_effect = 0;  ///< sleep modes asked for
+    std::uint64_t command_modes = 0;   ///< "+++"
+    std::uint64_t without_effect = 0;  ///< sleep modes asked for that it has not
+    std::uint64_t sleeps = 0;
+    std::uint64_t while_asleep = 0;  ///< bytes that came then
     // Air.
     std::uint64_t sent = 0;  ///< packets handed to the network layer
     std::uint64_t too_long = 0;

@@ -60,6 +60,7 @@ void ModuleNode::receive(const cosim::Message& message) {
         const bool level = signal->value >= 0.5;
         if (is("xbee_reset")) module_.reset_pin(level, message.time);
         if (is("xbee_rts")) module_.rts(level, message.time);
+        if (is("xbee_wake")) module_.sleep_request(level, message.time);
         if (is("power")) module_.power(level, message.time);
     }
 }

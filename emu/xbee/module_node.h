@@ -2,9 +2,10 @@
 // A radio module as a node: its serial line, the pins that its socket wires, and the air.
 //
 // Pins carry the signals of the board that the module is plugged into; which of them lead where is by name:
-//   in:  xbee_reset (1: held in reset), xbee_rts (level), power (1: it has supply)
+//   in:  xbee_reset (1: held in reset), xbee_rts (level), xbee_wake (level of pin 9, SLEEP_RQ), power (1: it
+//        has supply)
 //   out: xbee_cts (level), only if the board has it
-// xbee_wake (pin 9, SLEEP_RQ) has no effect, as no sleep mode has.
+// ON/SLEEP (pin 13) leads nowhere on the boards that there are.
 
 #include "cosim/core/node.h"
 #include "emu/xbee/module.h"

@@ -29,7 +29,14 @@ void Module::byte(std::uint8_t value, Time now) {
         ++counts_.while_down;
         return;
     }
-    if (settings_[kAP] == kTransparent) {
+    if (asleep_) {
+        ++counts_.while_asleep;
+        return;
+    }
+    stay_awake(now);
+    if (settings_[kAP] == kTransparent || command_mode_) {
+        if (command_mode_) return command_byte(value, now);
+        if (guarded(value, now)) return;
         if (plain_.size() >= kReceiveRoom) {
             ++counts_.overflow;
             return;
@@ -75,7 +82,7 @@ void Module::schedule_input(Time now) {
 }
 
 void Module::update_cts(Time now) {
-    if (settings_[kD7] != 1) return;
+    if (settings_[kD7] != 1 || asleep_) return;
     const std::size_t threshold = settings_[kFT];
     const bool level = cts_ ? waiting_bytes_ + kFtHysteresis >= threshold : waiting_bytes_ >= threshold;
     if (level != cts_) air_.cts_changed(cts_ = level, now);

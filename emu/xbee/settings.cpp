@@ -14,10 +14,11 @@ Settings::Values Settings::factory() {
     return values;
 }
 
-XBeeBytes Settings::read(std::size_t place) const {
+XBeeBytes Settings::read(std::size_t place, bool queued) const {
+    const std::uint32_t number = (queued ? queued_ : now_).numbers[place];
     XBeeBytes value;
     for (int octet = at_table()[place].octets - 1; octet >= 0; --octet)
-        value.push_back(static_cast<std::uint8_t>(now_.numbers[place] >> 8 * octet));
+        value.push_back(static_cast<std::uint8_t>(number >> 8 * octet));
     return value;
 }
 

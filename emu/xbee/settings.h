@@ -18,8 +18,8 @@ class Settings {
     const std::string& node_identifier() const { return now_.identifier; }
     std::uint64_t destination() const { return std::uint64_t{now_.numbers[kDH]} << 32 | now_.numbers[kDL]; }
 
-    /// An answer's value: the parameter in force, high octet first. `place` is in the table.
-    protocols::XBeeBytes read(std::size_t place) const;
+    /// An answer's value: the parameter in force, or as queued, high octet first. `place` is in the table.
+    protocols::XBeeBytes read(std::size_t place, bool queued = false) const;
     /// Queues a value; returns an AT status. A number may have fewer octets than the parameter.
     std::uint8_t write(std::size_t place, const protocols::XBeeBytes& value);
     std::uint8_t write_identifier(const protocols::XBeeBytes& value);

@@ -126,10 +126,17 @@ TEST_CASE("random bytes, frames, pins and air: no promise broken, the same howev
             XBeeBytes data(1 + random.below(12));
             for (std::uint8_t& byte : data)
                 byte = static_cast<std::uint8_t>(random.next());
-            constexpr std::array<const char*, 14> kCommands{"BD", "AP", "RO", "WR", "RE", "FR", "AC",
-                                                            "ND", "DN", "NI", "D6", "FT", "CH", "NT"};
+            constexpr std::array<const char*, 18> kCommands{"BD", "AP", "RO", "WR", "RE", "FR",
+                                                            "AC", "ND", "DN", "NI", "D6", "FT",
+                                                            "CH", "NT", "GT", "SM", "SP", "ST"};
             const char* command = kCommands[random.below(kCommands.size())];
-            switch (random.below(8)) {
+            switch (random.below(9)) {
+            case 8: {
+                const std::string text = random.below(2) == 0 ? "+++" : std::string("AT") + command + "\r";
+                host.say_bytes(XBeeBytes(text.begin(), text.end()));
+                if (random.below(2) == 0) host.run(1100 * kMs, step);
+                break;
+            }
             case 0:
                 host.say_bytes(data);
                 break;
@@ -161,7 +168,7 @@ TEST_CASE("random bytes, frames, pins and air: no promise broken, the same howev
                 host.fate({static_cast<std::uint16_t>(random.below(8)), 0, 0, 0});
                 break;
             default:
-                host.pin(static_cast<std::uint16_t>(random.below(5)), random.below(3) == 0 ? 1.0 : 0.0);
+                host.pin(static_cast<std::uint16_t>(random.below(6)), random.below(3) == 0 ? 1.0 : 0.0);
             }
             host.reader = XBeeReader(XBeeApiMode::Plain);
             host.run(static_cast<Time>(random.below(60'000)) * kUs, step);

@@ -35,7 +35,8 @@ inline ModuleOptions escaped(std::string identifier = "TAM07") {
 class Host {
   public:
     explicit Host(const ModuleOptions& options = escaped())
-        : node(options, {{"xbee_reset", 1}, {"xbee_rts", 2}, {"power", 3}, {"xbee_cts", 4}}) {}
+        : node(options,
+               {{"xbee_reset", 1}, {"xbee_rts", 2}, {"power", 3}, {"xbee_cts", 4}, {"xbee_wake", 5}}) {}
 
     void say_bytes(std::span<const std::uint8_t> bytes, Time bit = kBit) {
         Time start = std::max(now_, line_free_);
