@@ -44,6 +44,14 @@ std::string nearest_option(const CLI::App& command, const std::string& word) {
     return option && !meant.empty() ? "--" + meant : meant;
 }
 
+/// "decode, export and rab": what can stand in a command's first place.
+std::string parts_of(const CLI::App& command) {
+    std::vector<std::string> names;
+    for (const CLI::App* part : command.get_subcommands([](const CLI::App*) { return true; }))
+        if (!part->get_name().empty()) names.push_back(part->get_name());
+    return fmt::format("{}", fmt::join(names, ", "));
+}
+
 /// The word that nobody asked for: an option before the values that may belong to it.
 std::string unexpected_word(const CLI::App& app) {
     const std::vector<std::string> words = app.remaining(true);
@@ -67,7 +75,10 @@ std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
     if (!word.empty() && (no_command || code == static_cast<int>(CLI::ExitCodes::ExtrasError))) {
         const char* kind = word.starts_with("-") ? "option" : in_command ? "argument" : "command";
         problem = fmt::format("unknown {} '{}'", kind, word);
-        if (const std::string meant = nearest_option(command, word); !meant.empty())
+        const std::string parts = in_command ? parts_of(command) : std::string();
+        if (!word.starts_with("-") && !parts.empty())
+            help = fmt::format("its parts are {}; {}", parts, help);
+        else if (const std::string meant = nearest_option(command, word); !meant.empty())
             help = fmt::format("perhaps {}; {}", meant, help);
     } else if (no_command) {
         problem = "no command given";
