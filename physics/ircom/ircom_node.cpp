@@ -3,6 +3,7 @@
 #include "base/checkpoint.h"
 #include "base/error.h"
 #include "physics/ircom/comparator.h"
+#include "physics/ircom/faults.h"
 #include "physics/ircom/words.h"
 
 #include <nlohmann/json.hpp>
@@ -48,7 +49,8 @@ struct IrcomNode::Impl : cosim::Rewindable {
     void settle() override;
     template <class Archive>
     void state(Archive& archive) {
-        archive(medium, words, comparators);
+        archive(medium, words, comparators, granted);
+        if (!faults.empty()) archive(faults);
         for (auto& queue : outputs)
             archive(queue);
     }
@@ -56,11 +58,13 @@ struct IrcomNode::Impl : cosim::Rewindable {
     IrcomNodeOptions options;
     std::vector<cosim::Port> ports;
     IrcomMedium medium;
+    IrcomFaults faults;
     IrcomWords words;
     std::vector<IrcomComparator> comparators;  // of the booths
     std::vector<std::deque<Output>> outputs;   // by port
     std::vector<Time> delays;
     std::size_t first_booth = 0;
+    Time granted = 0;
     std::vector<std::uint8_t> was_lit;  // scratch of one instant, like these
     std::vector<std::size_t> switched;
     std::vector<IrcomLight> changed;
@@ -68,7 +72,10 @@ struct IrcomNode::Impl : cosim::Rewindable {
 };
 
 IrcomNode::Impl::Impl(const World& world, const IrcomNodeOptions& given)
-    : options(given), medium(checked(world), given.changes), words(medium, given.words_csv) {
+    : options(given),
+      medium(checked(world), given.changes),
+      faults(given.faults, medium),
+      words(medium, given.words_csv) {
     const IrcomScene& scene = medium.scene();
     for (std::size_t d = 0; d < scene.device_count(); ++d) {
         const IrcomParameters& parameters = scene.parameters(d);
@@ -129,8 +136,10 @@ void IrcomNode::Impl::apply(Time now) {
         const bool lit = medium.lit(device);
         if (lit != (was_lit[device] != 0)) words.edge(now, device, lit);
         if (lit) words.seen(device);
+        if (!faults.empty()) faults.switched(now, device, medium.lines(device));
     }
-    if (switched.empty() && !(moved && medium.any_lit())) return;
+    const bool copied = !faults.empty() && faults.apply(now);
+    if (switched.empty() && !copied && !(moved && medium.any_lit())) return;
     switched.clear();
     changed.clear();
     medium.update(changed);
@@ -177,13 +186,14 @@ void IrcomNode::advance(Time until, std::span<const Message> inbox, std::vector<
     auto next = inbox.begin();
     while (true) {
         const Time message = next == inbox.end() ? kNever : next->time;
-        const Time now = std::min(message, ir.medium.scene().next_change());
+        const Time now = std::min({message, ir.medium.scene().next_change(), ir.faults.next()});
         if (now >= until) break;
         for (; next != inbox.end() && next->time == now; ++next)
             ir.take(*next);
         ir.apply(now);
     }
     ir.run_to(until - 1);
+    ir.granted = until;
     for (std::size_t d = 0; d < ir.outputs.size(); ++d)
         for (auto& queue = ir.outputs[d]; !queue.empty() && queue.front().time < until; queue.pop_front())
             outbox.push_back({queue.front().time, static_cast<PortIndex>(d),
@@ -196,6 +206,7 @@ Time IrcomNode::earliest_output(PortIndex port) const {
     if (!ir.outputs[port].empty()) return ir.outputs[port].front().time;
     Time first = kNever;
     if (ir.medium.any_lit()) first = ir.medium.scene().next_change();
+    first = std::min(first, ir.faults.next());
     if (port >= ir.first_booth) first = std::min(first, ir.comparators[port - ir.first_booth].crossing());
     return cosim::later(first, ir.delays[port]);
 }
@@ -211,7 +222,10 @@ cosim::Rewindable* IrcomNode::rewindable() {
 }
 
 std::string IrcomNode::finish() {
-    return R"({"devices":)" + impl_->words.finish() + "}";
+    std::string report = R"({"devices":)" + impl_->words.finish();
+    if (!impl_->faults.empty())
+        report += R"(,"faults":)" + cosim::fault_results(impl_->faults.carried(), impl_->granted).dump();
+    return report + "}";
 }
 
 std::unique_ptr<cosim::Node> make_ircom_node(std::string_view json) {
@@ -225,6 +239,8 @@ std::unique_ptr<cosim::Node> make_ircom_node(std::string_view json) {
         spec.at("sense").get_to(options.ids.sense);
         options.words_csv = spec.value("csv", "");
         options.changes = spec.value("changes", false);
+        if (spec.contains("faults"))
+            options.faults = cosim::faults_from_json(nlohmann::ordered_json::parse(spec["faults"].dump()));
         return std::make_unique<IrcomNode>(from_json(spec.at("world").dump()), options);
     } catch (const nlohmann::json::exception& error) {
         throw InputError("", "IRcom's medium", error.what());

@@ -12,12 +12,14 @@
 // it need not wait for the others' every instruction.
 
 #include "cosim/core/node.h"
+#include "cosim/faults/fault_json.h"
 #include "physics/description.h"
 
 #include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace puckloop::physics {
 
@@ -33,6 +35,7 @@ struct IrcomNodeOptions {
     IrcomIds ids{};
     std::string words_csv{};  ///< file for the words that were sent (physics/ircom/words.h); empty: none
     bool changes = false;     ///< events change the world: the port "world" has more than poses
+    std::vector<cosim::CarriedFault> faults{};
 };
 
 class IrcomNode final : public cosim::Node {
@@ -48,7 +51,7 @@ class IrcomNode final : public cosim::Node {
     cosim::Time earliest_output(cosim::PortIndex port) const override;
     cosim::Time lookahead(cosim::PortIndex port) const override;
     cosim::Rewindable* rewindable() override;
-    /// {"devices": [...]}: words that each device sent.
+    /// {"devices": [...]}: words that each device sent; with faults "faults" (cosim/faults/fault_json.h).
     std::string finish() override;
 
   private:
@@ -57,7 +60,7 @@ class IrcomNode final : public cosim::Node {
 };
 
 /// {"kind": "ircom", "name", "world": as to_json(World) writes it, "pulse": [4 ids], "light": [8], "emit",
-/// "sense", "csv": file or "", "changes": bool}.
+/// "sense", "csv": file or "", "changes": bool, "faults": [...]}.
 std::unique_ptr<cosim::Node> make_ircom_node(std::string_view json);
 
 }  // namespace puckloop::physics

@@ -17,7 +17,18 @@ void IrcomMedium::set(std::size_t device, std::size_t line, bool lit) {
 }
 
 bool IrcomMedium::any_lit() const {
-    return std::any_of(lit_.begin(), lit_.end(), [](std::uint8_t lines) { return lines != 0; });
+    return std::any_of(lit_.begin(), lit_.end(), [](std::uint8_t lines) { return lines != 0; }) ||
+           std::any_of(copies_.begin(), copies_.end(), [](const IrcomCopy& one) { return one.lines != 0; });
+}
+
+void IrcomMedium::expect_faults(std::vector<IrcomCopy> copies) {
+    copies_ = std::move(copies);
+    blocks_.assign(lit_.size() * lit_.size(), 0);
+}
+
+void IrcomMedium::block(std::size_t sender, std::size_t receiver, bool on) {
+    std::uint16_t& count = blocks_[sender * lit_.size() + receiver];
+    count = static_cast<std::uint16_t>(count + (on ? 1 : -1));
 }
 
 double IrcomMedium::brightest(std::size_t device) const {
@@ -41,7 +52,15 @@ void IrcomMedium::update(std::vector<IrcomLight>& changed) {
         for (std::size_t line = 0; lit_[d] >> line != 0; ++line) {
             if ((lit_[d] >> line & 1U) == 0) continue;
             for (const IrcomShare& share : scene_.light_of(d, line))
-                sum_[share.device * kProximitySensors + share.sensor] += share.counts;
+                if (!blocked(d, share.device))
+                    sum_[share.device * kProximitySensors + share.sensor] += share.counts;
+        }
+    for (const IrcomCopy& copy : copies_)
+        for (std::size_t line = 0; copy.lines >> line != 0; ++line) {
+            if ((copy.lines >> line & 1U) == 0) continue;
+            for (const IrcomShare& share : scene_.light_of(copy.device, line))
+                if (copy.to.value_or(share.device) == share.device)
+                    sum_[share.device * kProximitySensors + share.sensor] += share.counts;
         }
     for (std::size_t i = 0; i < sum_.size(); ++i) {
         if (sum_[i] == light_[i]) continue;

@@ -5,6 +5,7 @@
 #include "physics/ircom/scene.h"
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace puckloop::physics {
@@ -13,6 +14,13 @@ namespace puckloop::physics {
 struct IrcomLight {
     std::size_t device = 0, sensor = 0;
     double counts = 0.0;
+};
+
+/// A fault lights the lines of a device once more, for all others or one.
+struct IrcomCopy {
+    std::size_t device = 0;
+    std::uint8_t lines = 0;  ///< bit by line
+    std::optional<std::size_t> to{};
 };
 
 class IrcomMedium {
@@ -25,7 +33,14 @@ class IrcomMedium {
     /// Takes effect with the next update().
     void set(std::size_t device, std::size_t line, bool lit);
     bool lit(std::size_t device) const { return lit_[device] != 0; }
+    std::uint8_t lines(std::size_t device) const { return lit_[device]; }
     bool any_lit() const;
+
+    // For faults (physics/ircom/faults.h); like set(), they take effect with the next update().
+    void expect_faults(std::vector<IrcomCopy> copies);
+    IrcomCopy& copy(std::size_t number) { return copies_[number]; }
+    /// A sender's own light does not reach a receiver as long as any block is on.
+    void block(std::size_t sender, std::size_t receiver, bool on);
     /// Light as it is now at `device`'s sensor.
     double light(std::size_t device, std::size_t sensor) const {
         return light_[device * kProximitySensors + sensor];
@@ -40,14 +55,22 @@ class IrcomMedium {
 
     template <class Archive>
     void state(Archive& archive) {
-        archive(scene_, lit_, light_);
+        archive(scene_, lit_, light_, blocks_);
+        for (IrcomCopy& copy : copies_)
+            archive(copy.lines);
     }
 
   private:
+    bool blocked(std::size_t sender, std::size_t receiver) const {
+        return !blocks_.empty() && blocks_[sender * lit_.size() + receiver] != 0;
+    }
+
     IrcomScene scene_;
-    std::vector<std::uint8_t> lit_;  ///< bit by line
-    std::vector<double> light_;      ///< [device][sensor]
-    std::vector<double> sum_;        ///< scratch
+    std::vector<std::uint8_t> lit_;      ///< bit by line
+    std::vector<double> light_;          ///< [device][sensor]
+    std::vector<double> sum_;            ///< scratch
+    std::vector<std::uint16_t> blocks_;  ///< [sender][receiver]: so many; empty without faults
+    std::vector<IrcomCopy> copies_;
 };
 
 }  // namespace puckloop::physics

@@ -5,7 +5,7 @@
 #include "physics/ircom/ircom_node.h"
 #include "physics/pose_signals.h"
 #include "protocols/ircom.h"
-#include "tests/ircom/worlds.h"
+#include "tests/ircom/faults.h"
 #include "tests/scratch.h"
 
 #include <catch2/catch.hpp>
@@ -87,6 +87,19 @@ std::vector<Message> random_inbox(RandomStream& random, Time from, Time until, b
     return inbox;
 }
 
+/// Each kind, for some of the words.
+std::vector<cosim::CarriedFault> every_fault() {
+    std::vector<cosim::FaultSpec> specs;
+    for (const cosim::KindInfo& kind : cosim::all_kinds()) {
+        if (kind.place != cosim::PlaceKind::Ircom) continue;
+        specs.push_back(ircom_fault(std::string(kind.name)));
+        if (kind.name == "jitter") specs.back().set("jitter", 30e-6);
+        if (kind.name == "delay") specs.back().set("delay", 0.05);
+        specs.back().probability = 0.4;
+    }
+    return carried(specs);
+}
+
 std::string text_of(const std::string& file) {
     std::ostringstream text;
     text << std::ifstream(file).rdbuf();
@@ -96,73 +109,81 @@ std::string text_of(const std::string& file) {
 }  // namespace
 
 TEST_CASE("IRcom's medium goes back, and keeps what it promised of its ports") {
-    for (const bool scene : {false, true}) {
-        INFO((scene ? "a changing scene" : "a fixed scene"));
-        RandomStream random(3, scene ? "scene" : "fixed");
-        const std::string file = puckloop::tests::scratch_path("ircom.csv").string();
-        const std::string twin_file = puckloop::tests::scratch_path("twin.csv").string();
-        IrcomNode node(lively_world(), {"ircom", kIds, file, scene});
-        IrcomNode twin(lively_world(), {"ircom", kIds, twin_file, scene});
-        cosim::Rewindable& back = *node.rewindable();
-        const auto longest = [&] { return Time{1} + static_cast<Time>(random.below(40'000'000'000)); };
-        std::size_t sent_in_all = 0;
-        Time now = 0;
-        for (int i = 0; i < 300; ++i) {
-            INFO("mark " << i);
-            back.mark();
-            for (std::uint64_t times = random.below(3); times > 0; --times) {
-                Time ahead = now;
-                for (std::uint64_t steps = 1 + random.below(3); steps > 0; --steps) {
-                    const Time until = ahead + longest();
-                    std::vector<Message> wasted;
-                    node.advance(until, random_inbox(random, ahead, until, scene), wasted);
-                    ahead = until;
+    for (const bool faults : {false, true})
+        for (const bool scene : {false, true}) {
+            INFO((scene ? "a changing scene" : "a fixed scene") << (faults ? ", faults" : ""));
+            RandomStream random(3, scene ? "scene" : "fixed");
+            const std::string file = puckloop::tests::scratch_path("ircom.csv").string();
+            const std::string twin_file = puckloop::tests::scratch_path("twin.csv").string();
+            IrcomNode node(lively_world(),
+                           {"ircom", kIds, file, scene, faults ? every_fault() : decltype(every_fault()){}});
+            IrcomNode twin(lively_world(), {"ircom", kIds, twin_file, scene,
+                                            faults ? every_fault() : decltype(every_fault()){}});
+            cosim::Rewindable& back = *node.rewindable();
+            const auto longest = [&] { return Time{1} + static_cast<Time>(random.below(40'000'000'000)); };
+            std::size_t sent_in_all = 0;
+            Time now = 0;
+            for (int i = 0; i < 300; ++i) {
+                INFO("mark " << i);
+                back.mark();
+                for (std::uint64_t times = random.below(3); times > 0; --times) {
+                    Time ahead = now;
+                    for (std::uint64_t steps = 1 + random.below(3); steps > 0; --steps) {
+                        const Time until = ahead + longest();
+                        std::vector<Message> wasted;
+                        node.advance(until, random_inbox(random, ahead, until, scene), wasted);
+                        ahead = until;
+                    }
+                    back.rewind();
                 }
-                back.rewind();
+                const Time until = now + longest();
+                const auto inbox = random_inbox(random, now, until, scene);
+                // What was promised before: nothing sooner than EOT, or than a message in and the lookahead.
+                std::vector<Time> earliest, lookahead;
+                for (PortIndex port = 0; port < kDevices; ++port) {
+                    earliest.push_back(twin.earliest_output(port));
+                    lookahead.push_back(twin.lookahead(port));
+                }
+                std::vector<Message> sent, expected;
+                if (!inbox.empty()) {
+                    // Up to the first message only: lookaheads change with each.
+                    const Time first = inbox.front().time;
+                    std::vector<Message> head;
+                    std::copy_if(inbox.begin(), inbox.end(), std::back_inserter(head),
+                                 [&](const Message& m) { return m.time == first; });
+                    twin.advance(first + 1, head, expected);
+                    twin.advance(until, std::span(inbox).subspan(head.size()), expected);
+                    for (const Message& message : expected)
+                        CHECK(message.time >=
+                              std::min(earliest[message.port], cosim::later(first, lookahead[message.port])));
+                } else {
+                    twin.advance(until, inbox, expected);
+                    for (const Message& message : expected)
+                        CHECK(message.time >= earliest[message.port]);
+                }
+                node.advance(until, inbox, sent);
+                const auto order = [](const Message& a, const Message& b) {
+                    return std::pair(a.time, a.port) < std::pair(b.time, b.port);
+                };
+                std::stable_sort(sent.begin(), sent.end(), order);
+                std::stable_sort(expected.begin(), expected.end(), order);
+                REQUIRE(sent == expected);
+                for (PortIndex port = 0; port < kDevices; ++port) {
+                    REQUIRE(node.earliest_output(port) == twin.earliest_output(port));
+                    REQUIRE(node.lookahead(port) == twin.lookahead(port));
+                }
+                sent_in_all += sent.size();
+                now = until;
             }
-            const Time until = now + longest();
-            const auto inbox = random_inbox(random, now, until, scene);
-            // What was promised before: nothing sooner than EOT, or than a message in and the lookahead.
-            std::vector<Time> earliest, lookahead;
-            for (PortIndex port = 0; port < kDevices; ++port) {
-                earliest.push_back(twin.earliest_output(port));
-                lookahead.push_back(twin.lookahead(port));
-            }
-            std::vector<Message> sent, expected;
-            if (!inbox.empty()) {
-                // Up to the first message only: lookaheads change with each.
-                const Time first = inbox.front().time;
-                std::vector<Message> head;
-                std::copy_if(inbox.begin(), inbox.end(), std::back_inserter(head),
-                             [&](const Message& m) { return m.time == first; });
-                twin.advance(first + 1, head, expected);
-                twin.advance(until, std::span(inbox).subspan(head.size()), expected);
-                for (const Message& message : expected)
-                    CHECK(message.time >=
-                          std::min(earliest[message.port], cosim::later(first, lookahead[message.port])));
-            } else {
-                twin.advance(until, inbox, expected);
-                for (const Message& message : expected)
-                    CHECK(message.time >= earliest[message.port]);
-            }
-            node.advance(until, inbox, sent);
-            const auto order = [](const Message& a, const Message& b) {
-                return std::pair(a.time, a.port) < std::pair(b.time, b.port);
-            };
-            std::stable_sort(sent.begin(), sent.end(), order);
-            std::stable_sort(expected.begin(), expected.end(), order);
-            REQUIRE(sent == expected);
-            for (PortIndex port = 0; port < kDevices; ++port) {
-                REQUIRE(node.earliest_output(port) == twin.earliest_output(port));
-                REQUIRE(node.lookahead(port) == twin.lookahead(port));
-            }
-            sent_in_all += sent.size();
-            now = until;
+            back.settle();
+            CHECK(sent_in_all > 1000);
+            CHECK(node.finish() == twin.finish());
+            CHECK(text_of(file) == text_of(twin_file));
+            CHECK(text_of(file).size() > 200);
+            const auto report = nlohmann::json::parse(twin.finish());
+            int fired = 0;
+            for (std::size_t f = 0; faults && f < report["faults"].size(); ++f)
+                fired += report["faults"][f]["fired"].get<int>();
+            CHECK((fired > 5) == faults);
         }
-        back.settle();
-        CHECK(sent_in_all > 1000);
-        CHECK(node.finish() == twin.finish());
-        CHECK(text_of(file) == text_of(twin_file));
-        CHECK(text_of(file).size() > 200);
-    }
 }

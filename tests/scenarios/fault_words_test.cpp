@@ -25,6 +25,7 @@ Scenario with_links() {
     scenario.robots[0].linux_board.emplace();
     scenario.tams.emplace_back().name = "tam0";
     scenario.tams[0].xbee.fitted = true;
+    scenario.world.ircom = true;
     return scenario;
 }
 
@@ -86,7 +87,21 @@ TEST_CASE("what a fault cannot be is refused by name") {
     said("drop node=robot0.pic2", "there is no node");
     said("drop link=robot0.uart node=x", "both a link and a node");
     said("dorp link=robot0.uart", "cannot suffer 'dorp' (expected one of drop");
-    said("swap link=tam0.radio", "cannot suffer 'swap'");
+    said("stuck link=tam0.radio", "cannot suffer 'stuck'");
+    said("delay link=tam0.radio delay=1ms jitter=2ms", "jitter is larger than the delay");
+    said("drop node=ether from=tam7", "'tam7' is at no end of ether");
+    said("loss node=ether to=coordinator", "'coordinator' is at no end of ether (expected tam0");
+    said("loss node=ether frame=beacon", "expected one of any, data, acknowledge");
+    said("clash node=ether from=tam0", "comes from outside");
+    said("clash node=ether load=0", "load is out of range");
+    said("clash node=ether every=2", "unknown key 'every'");
+    said("loss node=ether match=0", "match is no pattern");
+    said("loss node=ircom from=robot1", "'robot1' is at no end of ircom (expected robot0 or tam0");
+    said("loss node=ircom from=robot0 to=robot0", "receives nothing of its own");
+    said("delay node=ircom", "'delay' is missing");
+    said("delay node=ircom delay=1ms", "delay is out of range (expected 0.04 to 10 s)");
+    said("flip node=ircom bit=9 bits=2", "no word has so many bits");
+    said("stuck node=ircom", "cannot suffer 'stuck'");
     said("drop link=robot0.uart factor=2", "unknown key 'factor'");
     said("drop link=robot0.uart probabilty=2", "perhaps 'probability'");
     said("drop link=robot0.uart at=1s begin=2s", "both at and begin");
