@@ -88,6 +88,20 @@ TEST_CASE("faults on what the nominal run never sent are pruned") {
     // The line itself suffers: frames or none.
     CHECK(with({{"kind", "stuck"}, {"begin", "4 s"}}).empty());
     CHECK(with({{"kind", "a kind of tomorrow"}, {"begin", "4 s"}}).empty());
+    // A bus: one master, transfers with one device for two seconds.
+    nominal.senders["robot0.i2c.linux from robot0.linux"] = records(1.0, 20, 3);
+    nominal.senders["robot0.i2c.linux from robot0.linux"].addresses = {"40", "41"};
+    const auto on_bus = [&](json more) {
+        more["link"] = "robot0.i2c";
+        return useless(more, nominal).empty();
+    };
+    CHECK(on_bus({{"kind", "nack"}}));
+    CHECK(on_bus({{"kind", "nack"}, {"address", 0x20}, {"from", "robot0.linux"}, {"begin", "2 s"}}));
+    CHECK(!on_bus({{"kind", "nack"}, {"address", 0x21}}));
+    CHECK(!on_bus({{"kind", "nack"}, {"from", "robot0.pic"}}));
+    CHECK(!on_bus({{"kind", "flip"}, {"begin", "4 s"}}));
+    CHECK(!on_bus({{"kind", "stretch"}, {"begin", "200 ms"}, {"for", "500 ms"}}));
+    CHECK(on_bus({{"kind", "sda"}, {"begin", "200 ms"}, {"for", "500 ms"}}));
 }
 
 TEST_CASE("a sweep is every combination, and a budget is a sample that stays the same") {

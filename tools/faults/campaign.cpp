@@ -165,7 +165,8 @@ class Conduct {
             run_local({options_.file, out_, jobs(), interrupt_.flag()}, pending, take());
         const double minutes =
             std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count() / 60;
-        fmt::print(stderr, "{}: {} cases, {} pruned, {} run now", name, cases.size(), pruned, pending.size());
+        fmt::print(stderr, "{}: {} case{}, {} pruned, {} run now", name, cases.size(),
+                   cases.size() == 1 ? "" : "s", pruned, pending.size());
         if (!pending.empty()) fmt::print(stderr, " ({:.0f} a minute)", double(pending.size()) / minutes);
         fmt::print(stderr, "\n");
     }

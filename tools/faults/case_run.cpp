@@ -42,6 +42,22 @@ tools::RunRequest request_of(const Campaign& campaign) {
     return request;
 }
 
+/// Of a node that could not write: what it says is no outcome.
+bool names_disk(const std::string& text) {
+    constexpr std::array kErrors{ENOSPC, EDQUOT};
+    return std::any_of(kErrors.begin(), kErrors.end(),
+                       [&](int error) { return text.find(std::strerror(error)) != std::string::npos; });
+}
+
+/// A program may have met a full disk without a word of ours; empty if there is room.
+std::string full_disk(const std::filesystem::path& folder) {
+    constexpr std::uintmax_t kLeast = 64 * 1024;  // bytes
+    std::error_code error;
+    const auto space = std::filesystem::space(folder, error);
+    if (error || space.available >= kLeast) return {};
+    return fmt::format("{}: the disk is full ({} KiB are left)", folder.string(), space.available / 1024);
+}
+
 /// In the child: never returns.
 [[noreturn]] void run_here(const Campaign& campaign, const Case& one, const std::filesystem::path& folder,
                            int message) {
@@ -57,8 +73,10 @@ tools::RunRequest request_of(const Campaign& campaign) {
         }
         const tools::RunSetup setup = tools::set_up(request);
         const cosim::Outcome outcome = tools::run_scenario(setup, request, {}, nullptr);
-        if (!outcome.success && outcome.reason == cosim::EndReason::Failed && outcome.node.empty())
-            problem = outcome.text;  // no node's fault: the disk is full, say
+        // No fault of the case's: results that cannot be written, say.
+        const bool ours = outcome.node.empty() && outcome.text.find("never fired") == std::string::npos;
+        if (!outcome.success && (ours || names_disk(outcome.text))) problem = outcome.text;
+        if (problem.empty()) problem = full_disk(folder);
     } catch (const std::exception& error) {
         problem = error.what();
     }

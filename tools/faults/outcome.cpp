@@ -241,8 +241,11 @@ Verdict judge(const Campaign& campaign, const Profile& nominal, const Profile& r
         verdict.outcome = Outcome::Recovered;
     else if (reported)
         verdict.outcome = Outcome::Detected;
-    else if (verdict.departure_m > campaign.limits.departure)
+    else if (verdict.departure_m > campaign.limits.departure) {
         verdict.outcome = Outcome::SilentCorruption;
+        verdict.detail =
+            fmt::format("up to {:.1f} cm from where the nominal run's robot was", 100 * verdict.departure_m);
+    }
     if (verdict.outcome != Outcome::Recovered) verdict.recovery_s.reset();
     return verdict;
 }

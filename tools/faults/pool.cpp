@@ -175,9 +175,9 @@ class Pool {
             fmt::print(stderr, "puckloop: case {}: {}: it is run again\n", one.id, why);
             waiting_.push_front(one);
         } else if (problem_.empty()) {
-            problem_ =
-                fmt::format("case {}: {}, {} times; the results so far are kept, the same command goes on",
-                            one.id, why, kTries);
+            problem_ = fmt::format(
+                "case {} failed {} times: {}; the results so far are kept, the same command goes on", one.id,
+                kTries, why);
         }
     }
 

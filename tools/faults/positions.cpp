@@ -96,11 +96,26 @@ std::vector<Position> positions_of(const Sweep& sweep, const json& fault, const 
 
 namespace {
 
-/// Of a bus: transfers with a device that nobody addresses, or none at all.
+/// From when to when a fault may act, s.
+std::pair<double, double> window_of(const json& fault) {
+    const double begin = seconds(fault, fault.contains("at") ? "at" : "begin", 0);
+    return {begin, fault.contains("for") ? begin + seconds(fault, "for", 1e9) : seconds(fault, "end", 1e9)};
+}
+
+/// Kinds that do something to a byte on a bus and nothing where there is none; others last.
+constexpr std::array kOnBytes{"nack", "flip", "start", "stop", "stretch", "lose_arbitration", "slow_rise"};
+
+/// Of a bus: transfers with a device that nobody addresses, by a master that makes none then, or none at all.
 std::string useless_on_bus(const std::string& bus, const json& fault, const Profile& nominal) {
-    bool any = false, meant = !fault.contains("address");
+    bool any = false, meant = !fault.contains("address"), then = false;
+    const auto [begin, end] = window_of(fault);
+    const std::string from = fault.contains("from") ? " from " + value_text(fault["from"]) : "";
     for (const auto& [name, sender] : nominal.senders) {
         if (!name.starts_with(bus + ".")) continue;
+        if (name.ends_with(from)) {
+            const auto first = std::lower_bound(sender.times.begin(), sender.times.end(), begin);
+            then = then || (first != sender.times.end() && *first < end);
+        }
         for (const std::string& first : sender.addresses) {
             any = true;
             if (!meant && byte_value("0x" + first) >> 1 == byte_value(value_text(fault["address"])))
@@ -108,6 +123,9 @@ std::string useless_on_bus(const std::string& bus, const json& fault, const Prof
         }
     }
     if (!any) return fmt::format("no transfer on {}", bus);
+    const std::string kind = value_text(fault.value("kind", json("drop")));
+    if (!then && std::find(kOnBytes.begin(), kOnBytes.end(), kind) != kOnBytes.end())
+        return fmt::format("no transfer on {}{} in this window", bus, from);
     return meant ? std::string()
                  : fmt::format("nobody addresses {} on {}", value_text(fault["address"]), bus);
 }
@@ -121,9 +139,7 @@ std::string useless(const json& fault, const Profile& nominal) {
     if (!fault.contains("link") || std::find(kOnFrames.begin(), kOnFrames.end(), kind) == kOnFrames.end())
         return {};
     const std::string link = value_text(fault["link"]);
-    const double begin = seconds(fault, fault.contains("at") ? "at" : "begin", 0),
-                 end =
-                     fault.contains("for") ? begin + seconds(fault, "for", 1e9) : seconds(fault, "end", 1e9);
+    const auto [begin, end] = window_of(fault);
     bool any = false, value = !fault.contains("bytes");
     for (const auto& [name, sender] : nominal.senders) {
         const bool meant = fault.contains("from") ? name == sender_name(link, value_text(fault["from"]))
