@@ -27,7 +27,10 @@ namespace puckloop::avr {
 namespace {
 
 constexpr std::size_t kMostRecords = 1000;
-constexpr std::uint16_t kAssr = 0xB6, kGtccr = 0x43, kPrr0 = 0x64, kPrr1 = 0x65;
+constexpr std::uint16_t kAcsr = 0x50, kMcusr = 0x54, kAssr = 0xB6, kGtccr = 0x43, kPrr0 = 0x64, kPrr1 = 0x65;
+/// The supply below which nothing runs, and how much more ends a reset (data sheet, "System and Reset
+/// Characteristics", typical).
+constexpr double kPowerOnVolts = 1.3, kHysteresisVolts = 0.05;
 
 using P = PortLetter;
 constexpr std::array<std::uint16_t, 8> kSynchronousDividers = {0, 1, 8, 64, 256, 1024, 0, 0};
@@ -74,7 +77,10 @@ const Timer::Setup kTimer2{false,
                            std::nullopt,
                            std::nullopt,
                            kPrr0,
-                           bit(6)};
+                           bit(6),
+                           kAssr,
+                           Pin{P::C, 6},
+                           Pin{P::C, 7}};
 const Timer::Setup kTimer3{true,
                            0x90,
                            0x94,
@@ -89,8 +95,8 @@ const Timer::Setup kTimer3{true,
                            Pin{P::B, 5},
                            kPrr1,
                            bit(0)};
-constexpr Usart::Setup kUsart0{0, 0xC0, 20, Pin{P::D, 0}, Pin{P::D, 1}, bit(1)};
-constexpr Usart::Setup kUsart1{1, 0xC8, 28, Pin{P::D, 2}, Pin{P::D, 3}, bit(4)};
+constexpr Usart::Setup kUsart0{0, 0xC0, 20, Pin{P::D, 0}, Pin{P::D, 1}, Pin{P::B, 0}, bit(1)};
+constexpr Usart::Setup kUsart1{1, 0xC8, 28, Pin{P::D, 2}, Pin{P::D, 3}, Pin{P::D, 4}, bit(4)};
 
 template <class Record>
 void keep(std::vector<Record>& records, Record record) {
@@ -109,6 +115,7 @@ struct Chip::Parts {
     InterruptController interrupts;
     Core core;
     Surroundings around;
+    WatchClock watch;
     Prescaler synchronous, asynchronous;
     SystemControl system;
     Ports ports;
@@ -125,6 +132,8 @@ struct Chip::Parts {
     std::vector<std::uint16_t> stops;
     bool stopped = false;
     cosim::Time now = 0;
+    double supply;
+    bool held_in_reset = false;  ///< by the supply
     ChipReport report;
 
     Parts(const DeviceInfo& info, Pins& pins, const ChipOptions& chosen)
@@ -134,24 +143,26 @@ struct Chip::Parts {
           clock(chosen.oscillator_hertz, chosen.ppm),
           core(info, described(io, info), events, interrupts),
           around{io, events, interrupts, core.now()},
+          watch(clock, chosen.watch_hertz),
+          asynchronous(&watch),
           system(around, core, clock, fuses, chosen.oscillator_hertz),
           ports(around, pins),
           external(around, ports),
           timer0(around, kTimer0, synchronous, ports),
           timer1(around, kTimer1, synchronous, ports),
-          timer2(around, kTimer2, asynchronous, ports),
+          timer2(around, kTimer2, asynchronous, ports, &watch),
           timer3(around, kTimer3, synchronous, ports),
           usart0(around, kUsart0, clock, ports, pins),
           usart1(around, kUsart1, clock, ports, pins),
           twi(around, clock, ports, pins),
-          spi(around, pins),
+          spi(around, ports, pins),
           adc(around, pins, {chosen.avcc, chosen.aref}),
           comparator(around, pins, timer1, adc),
           eeprom(around, core, clock, info.eeprom_bytes),
           watchdog(around, core, clock),
-          programming(around, core, clock, fuses, system) {
+          programming(around, core, clock, fuses, system),
+          supply(chosen.avcc) {
         io.hook(kGtccr, this, nullptr, &write_gtccr);
-        io.hook(kAssr, this, nullptr, &write_assr);
         connect_hooks();
         connect_reports();
     }
@@ -177,16 +188,76 @@ struct Chip::Parts {
             return programming.load(address, value);
         };
         system.synchronise = [this] { synchronise_timers(); };
-        system.stop_clocks = [this](bool stopped) {
+        system.stop_clocks = [this](bool stopped, bool timer2_too) {
             synchronise_timers();
             synchronous.stop(stopped);
-            asynchronous.stop(stopped);
+            if (timer2_too) asynchronous.stop(stopped);
             synchronise_timers();
         };
+        system.jtag_changed = [this] { lend_to_jtag(); };
+        system.pull_ups_changed = [this] { ports.refresh(); };
+        system.quiet_conversion = [this] { adc.quiet(); };
+        system.rate_changes = [this](bool changed) {
+            synchronise_timers();
+            watchdog.rate_changes(changed);
+            eeprom.rate_changes(changed);
+            programming.rate_changes(changed);
+        };
+        watch.missing = [this] {
+            keep(report.warnings,
+                 {"ASSR.AS2 is set, but there is no crystal at TOSC1: timer 2 stands still", 2u * core.pc()});
+        };
+        adc.source_changed = [this] { watch_triggers(true); };
+        adc.source_set = [this](unsigned number) {
+            const Trigger* trigger = trigger_of(number);
+            if (!trigger) return number == 1 && (io.raw(kAcsr) & bit(4));
+            return (trigger->flags->flags() & trigger->mask) != 0;
+        };
+        adc.input_changed = [this] { comparator.update(); };
         ports.listen(this, [](void* owner, PortLetter, std::uint8_t, std::uint8_t, Cycle) {
             static_cast<Parts*>(owner)->comparator.update();
         });
     }
+    /// PC2 to PC5 are TCK, TMS, TDO and TDI.
+    void lend_to_jtag() {
+        constexpr std::uint8_t kPins = 0x3C;
+        ports.lend(PortLetter::C, kPins, system.jtag());
+    }
+
+    // Sources of the ADC's trigger by ADTS2:0; the comparator (1) calls by itself.
+    struct Trigger {
+        unsigned number;
+        InterruptFlags* flags;
+        std::uint8_t mask;
+    };
+    std::array<Trigger, 6> triggers() {
+        constexpr std::uint8_t kTov = bit(0), kOcfA = bit(1), kOcfB = bit(2), kIcf = bit(5), kIntf0 = bit(0);
+        return {{{2, &external.edges(), kIntf0},
+                 {3, &timer0.flags(), kOcfA},
+                 {4, &timer0.flags(), kTov},
+                 {5, &timer1.flags(), kOcfB},
+                 {6, &timer1.flags(), kTov},
+                 {7, &timer1.flags(), kIcf}}};
+    }
+    const Trigger* trigger_of(unsigned number) {
+        sources = triggers();
+        const auto found = std::find_if(sources.begin(), sources.end(),
+                                        [&](const Trigger& trigger) { return trigger.number == number; });
+        return found == sources.end() ? nullptr : &*found;
+    }
+    void watch_triggers(bool plan) {
+        const Trigger* wanted = trigger_of(adc.trigger_source());
+        for (InterruptFlags* flags : {&external.edges(), &timer0.flags(), &timer1.flags()})
+            flags->watch(
+                wanted && wanted->flags == flags ? wanted->mask : std::uint8_t{0}, this,
+                [](void* owner) {
+                    auto& self = *static_cast<Parts*>(owner);
+                    self.adc.trigger(self.adc.trigger_source());
+                },
+                plan);
+    }
+    std::array<Trigger, 6> sources{};
+
     void connect_reports() {
         io.on_first_touch = [this](std::string_view name, std::uint16_t address, bool write) {
             keep(report.unmodelled, {std::string(name), address, write, 2u * core.pc()});
@@ -195,14 +266,14 @@ struct Chip::Parts {
             keep(report.warnings, {std::string(text), 2u * pc});
         };
         core.observer().on_reset = [this](ResetCause cause, std::uint16_t pc, Cycle cycle) {
-            keep(report.resets, {cause, 2u * pc, cycle});
+            if (!held_in_reset) keep(report.resets, {cause, 2u * pc, cycle});
         };
     }
 
     void reset(ResetCause cause) {
-        const std::uint8_t flags = io.raw(0x54);  // MCUSR outlives a reset
+        const std::uint8_t flags = io.raw(kMcusr);  // MCUSR outlives a reset
         io.reset_values();
-        io.raw(0x54) = flags;
+        io.raw(kMcusr) = flags;
         system.reset(cause);
         ports.reset();
         for (Timer* timer : {&timer0, &timer1, &timer2, &timer3})
@@ -218,16 +289,28 @@ struct Chip::Parts {
         adc.reset();
         comparator.reset();
         eeprom.reset();
-        watchdog.reset(fuses.watchdog_always(), cause == ResetCause::Watchdog);
+        watchdog.reset(fuses.watchdog_always());
         programming.reset();
+        lend_to_jtag();
     }
 
-    // Timer 2's own crystal is not modelled.
-    static void write_assr(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask) {
-        auto& self = *static_cast<Parts*>(owner);
-        constexpr std::uint8_t kExclk = bit(6), kAs2 = bit(5);
-        self.io.store(address, value, mask & (kExclk | kAs2));
-        if (value & mask & kAs2) self.io.report_unmodelled(address, "ASSR.AS2", true);
+    void set_supply(double volts) {
+        const double before = supply;
+        supply = volts;
+        adc.set_avcc(volts);
+        const double level = system.brown_out_off() ? 0.0 : fuses.brown_out_volts();
+        const double lowest = std::max(level, kPowerOnVolts);
+        const ResetCause cause = volts < kPowerOnVolts || !level ? ResetCause::PowerOn : ResetCause::BrownOut;
+        if (!held_in_reset && volts < lowest && before >= lowest) {
+            core.reset(cause);
+            held_in_reset = true;
+            core.stall_until(kNoCycle);
+        } else if (held_in_reset) {
+            if (volts < kPowerOnVolts) io.raw(kMcusr) = bit(0);  // PORF: the flags are lost
+            if (volts < lowest + kHysteresisVolts) return;
+            core.reset(io.raw(kMcusr) & bit(0) ? ResetCause::PowerOn : ResetCause::BrownOut);
+            held_in_reset = false;
+        }
     }
 
     // PSRSYNC, PSRASY: the prescaler starts again; with TSM it stays at 0.
@@ -259,6 +342,7 @@ struct Chip::Parts {
         archive.part("system", system);
         archive.part("prescaler", synchronous);
         archive.part("prescaler2", asynchronous);
+        archive.part("watch", watch);
         archive.part("ports", ports);
         archive.part("timer0", timer0);
         archive.part("timer1", timer1);
@@ -273,6 +357,12 @@ struct Chip::Parts {
         archive.part("watchdog", watchdog);
         archive.part("programming", programming);
         archive.bounded(now, 0, cosim::kNever);
+        archive.bounded(supply, 0.0, 1e3);
+        archive(held_in_reset);
+        if constexpr (Archive::kLoads) {
+            adc.set_avcc(supply);
+            watch_triggers(false);
+        }
         if constexpr (Archive::kRaw)
             archive.grows(report.resets, report.unmodelled, report.warnings);
         else
@@ -315,12 +405,21 @@ const Fuses& Chip::fuses() const {
     return parts_->fuses;
 }
 
+void Chip::set_fuses(const Fuses& fuses) {
+    parts_->fuses = fuses;
+}
+
 void Chip::power_on() {
     parts_->core.reset(ResetCause::PowerOn);
 }
 void Chip::external_reset() {
     parts_->at_present();
     parts_->core.request_reset(ResetCause::External);
+}
+
+void Chip::set_supply(double volts) {
+    parts_->at_present();
+    parts_->set_supply(volts);
 }
 
 void Chip::run_until(cosim::Time until) {
@@ -368,9 +467,10 @@ void Chip::pins_changed(PortLetter port) {
     parts_->ports.pins_changed(port);
     parts_->comparator.update();
 }
-std::uint8_t Chip::spi_slave_exchange(std::uint8_t received) {
-    parts_->at_present();
-    return parts_->spi.slave_exchange(received);
+cosim::Time Chip::earliest_twi_slave_answer() const {
+    const Parts& p = *parts_;
+    const Cycle cycle = p.twi.earliest_slave_answer(std::max(p.core.cycle(), p.clock.first_cycle_at(p.now)));
+    return cycle == kNoCycle ? cosim::kNever : p.clock.time_of(cycle);
 }
 
 std::optional<cosim::Time> Chip::uart_begun(int unit) const {

@@ -31,9 +31,11 @@ class Eeprom;
 struct ChipOptions {
     double oscillator_hertz = 16e6;  ///< of the crystal or resonator
     double ppm = 0.0;                ///< its error, + is fast
-    /// In force where the image brings none: full-swing crystal, no division, reset at 0.
-    Fuses fuses{0xFF, 0x99, 0xFD, 0xFF};
+    /// In force where the image brings none: full-swing crystal, no division, no JTAG, reset at 0.
+    Fuses fuses{0xFF, 0xD9, 0xFD, 0xFF};
     double avcc = 5.0, aref = 5.0;  ///< volts
+    /// Of the watch crystal at TOSC1 and TOSC2 (PC6, PC7); 0: none is fitted.
+    std::uint32_t watch_hertz = 0;
 };
 
 struct ResetRecord {
@@ -88,10 +90,16 @@ class Chip {
     void load(const image::AvrImage& image);
     std::vector<std::uint8_t>& eeprom();
     const Fuses& fuses() const;
+    /// For the next power_on(): what a programmer would set.
+    void set_fuses(const Fuses& fuses);
 
     void power_on();
     /// A pulse on the reset pin now.
     void external_reset();
+    /// The supply (VCC and AVCC) from now on. Below the brown-out level of the fuses, or 1.3 V without one,
+    /// the chip is held in reset until the supply is back (50 mV higher). A chip begins with its options'
+    /// avcc.
+    void set_supply(double volts);
 
     /// Runs everything that starts strictly before `until`. Returns early only at a stop address.
     void run_until(cosim::Time until);
@@ -111,9 +119,10 @@ class Chip {
     /// A phase that a bus master begins now; see Pins::twi_slave_answer().
     void twi_slave_phase(const cosim::I2cPhase& phase);
     /// Levels that Pins::levels() reports for this port, or analog inputs of the comparator, changed now.
+    /// SPI slaves, and USARTs that are clocked from outside, live on these.
     void pins_changed(PortLetter port);
-    /// A master elsewhere clocked a byte into the SPI slave; returns what came out.
-    std::uint8_t spi_slave_exchange(std::uint8_t received);
+    /// The answer to the phase that twi_slave_phase() began comes no earlier; kNever while none is awaited.
+    cosim::Time earliest_twi_slave_answer() const;
 
     /// Start of the frame that USART `unit` is shifting out and has not yet handed to Pins::uart_sent().
     std::optional<cosim::Time> uart_begun(int unit) const;

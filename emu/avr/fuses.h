@@ -17,6 +17,12 @@ struct Fuses {
     /// BOOTSZ: 512, 1024, 2048 or 4096 words at the end of the flash.
     constexpr std::uint32_t boot_words() const { return 4096u >> (high >> 1 & 3u); }
 
+    /// BODLEVEL: the supply below which the brown-out detector holds the chip in reset; 0 volts: it is off.
+    constexpr double brown_out_volts() const {
+        constexpr double kVolts[] = {0, 0, 0, 0, 4.3, 2.7, 1.8, 0};  // 000 to 011 are reserved
+        return kVolts[extended & 7u];
+    }
+
     template <class Archive>
     void state(Archive& archive) {
         archive(low, high, extended, lock);

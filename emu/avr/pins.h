@@ -5,6 +5,7 @@
 #include "emu/avr/device.h"
 
 #include <cstdint>
+#include <optional>
 
 namespace puckloop::avr {
 
@@ -39,8 +40,10 @@ class Pins {
     virtual void twi_phase(const cosim::I2cPhase& phase);
     /// The chip, as slave, answers the phase handed to Chip::twi_slave_phase().
     virtual void twi_slave_answer(const cosim::I2cPhase& answer);
-    /// The SPI master shifted out a byte, the last clock edge being now: what came in meanwhile.
-    virtual std::uint8_t spi_exchange(std::uint8_t sent, Cycle now);
+    /// The SPI master shifted out `sent` (as written to SPDR), the last clock edge being now: what came in
+    /// meanwhile (as read from SPDR), of a board that answers byte by byte. Without a value the bits are
+    /// those that stood at MISO; driven() shows SCK and MOSI either way.
+    virtual std::optional<std::uint8_t> spi_exchange(std::uint8_t sent, Cycle now);
 };
 
 inline void Pins::driven(PortLetter, std::uint8_t, std::uint8_t, Cycle) {}
@@ -56,8 +59,8 @@ inline double Pins::comparator(bool, Cycle) {
 inline void Pins::uart_sent(int, const cosim::UartFrame&) {}
 inline void Pins::twi_phase(const cosim::I2cPhase&) {}
 inline void Pins::twi_slave_answer(const cosim::I2cPhase&) {}
-inline std::uint8_t Pins::spi_exchange(std::uint8_t, Cycle) {
-    return 0xFF;
+inline std::optional<std::uint8_t> Pins::spi_exchange(std::uint8_t, Cycle) {
+    return std::nullopt;
 }
 
 }  // namespace puckloop::avr

@@ -63,8 +63,9 @@ class Rig : public Pins {
     void uart_sent(int unit, const cosim::UartFrame& frame) override { frames.emplace_back(unit, frame); }
     void twi_phase(const cosim::I2cPhase& phase) override { phases.push_back(phase); }
     void twi_slave_answer(const cosim::I2cPhase& answer) override { answers.push_back(answer); }
-    std::uint8_t spi_exchange(std::uint8_t sent, Cycle now) override {
+    std::optional<std::uint8_t> spi_exchange(std::uint8_t sent, Cycle now) override {
         exchanges.emplace_back(sent, now);
+        if (spi_at_pins) return std::nullopt;
         return static_cast<std::uint8_t>(~sent);
     }
 
@@ -76,6 +77,7 @@ class Rig : public Pins {
     std::vector<std::pair<int, cosim::UartFrame>> frames;
     std::vector<cosim::I2cPhase> phases, answers;
     std::vector<std::pair<std::uint8_t, Cycle>> exchanges;
+    bool spi_at_pins = false;  ///< what comes in stands at MISO, bit by bit
     Chip chip;
 };
 

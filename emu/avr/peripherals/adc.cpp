@@ -45,14 +45,34 @@ Adc::Adc(const Surroundings& around, Pins& pins, const References& references)
     around_.io.hook_quiet(kAdcl, &look_at_result);
     around_.io.hook_quiet(kAdch, &look_at_result);
     around_.io.hook(kAdcsra, this, nullptr, &write_control);
-    around_.io.claim(kAdcsrb);
-    around_.io.claim(kAdmux);
+    around_.io.hook(kAdcsrb, this, nullptr, &write_source);
+    around_.io.hook(kAdmux, this, nullptr, &write_mux);
     around_.interrupts.connect(kVector, this, &acknowledge);
 }
 
 void Adc::reset() {
     state_ = {};
     around_.events.cancel(slot_);
+    if (source_changed) source_changed();
+}
+
+unsigned Adc::trigger_source() const {
+    constexpr std::uint8_t kBoth = kAden | kAdate;
+    return (control() & kBoth) == kBoth ? field(around_.io.raw(kAdcsrb), 2, 0) : kFreeRunning;
+}
+
+// A source that is chosen while its flag is set has an edge (data sheet, "Starting a Conversion").
+void Adc::update_source() {
+    const unsigned source = trigger_source();
+    if (source == state_.source) return;
+    state_.source = source;
+    if (source_changed) source_changed();
+    if (source != kFreeRunning && source_set && source_set(source)) trigger(source);
+}
+
+void Adc::quiet() {
+    const bool powered = !(around_.io.raw(kPrr0) & kPradc);
+    if ((control() & kAden) && powered && !state_.converting) start(around_.now + 1, false);
 }
 
 Cycle Adc::clocks_per_tick() const {
@@ -77,6 +97,8 @@ void Adc::start(Cycle now, bool triggered) {
     const Cycle begin = now + (tick - (now - state_.phase) % tick) % tick;
     const Cycle sample = state_.first ? kFirstSample : triggered ? kTriggeredSample : kSample;
     const Cycle end = state_.first ? kFirstEnd : triggered ? kTriggeredEnd : kEnd;
+    state_.begin = begin;
+    state_.mux = around_.io.raw(kAdmux);
     state_.converting = true;
     state_.sampled = false;
     state_.first = false;
@@ -86,7 +108,7 @@ void Adc::start(Cycle now, bool triggered) {
 }
 
 std::uint16_t Adc::convert(Cycle now) const {
-    const std::uint8_t mux = around_.io.raw(kAdmux);
+    const std::uint8_t mux = state_.mux;
     const double references[] = {references_.aref, references_.avcc, kBandgap, kInternalReference};
     const double reference = references[field(mux, 7, 6)];
     const unsigned channel = field(mux, 4, 0);
@@ -159,6 +181,24 @@ void Adc::write_control(void* owner, std::uint16_t, std::uint8_t value, std::uin
         if ((value & mask & kAdsc) && !self.state_.converting) self.start(self.around_.now + 1, false);
     }
     self.update_request();
+    self.update_source();
+    if (((old ^ self.control()) & kAden) && self.input_changed) self.input_changed();
+}
+
+// Channel and reference follow the register until the conversion begins, with the ADC's clock.
+void Adc::write_mux(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask) {
+    auto& self = *static_cast<Adc*>(owner);
+    self.around_.io.store(address, value, mask);
+    if (self.state_.converting && self.around_.now < self.state_.begin)
+        self.state_.mux = self.around_.io.raw(address);
+    if (self.input_changed) self.input_changed();
+}
+
+void Adc::write_source(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask) {
+    auto& self = *static_cast<Adc*>(owner);
+    self.around_.io.store(address, value, mask);
+    self.update_source();
+    if (self.input_changed) self.input_changed();
 }
 
 }  // namespace puckloop::avr

@@ -11,6 +11,7 @@
 #include "emu/avr/pins.h"
 
 #include <cstdint>
+#include <functional>
 
 namespace puckloop::avr {
 
@@ -26,6 +27,18 @@ class Adc {
     void reset();
     /// The source of auto-triggering `number` (ADTS2:0) had its edge.
     void trigger(unsigned number);
+    /// The source that is waited for; 0: none.
+    unsigned trigger_source() const;
+    /// Called when trigger_source() may have changed.
+    std::function<void()> source_changed;
+    /// The flag of the source is set already: whether choosing it is an edge.
+    std::function<bool(unsigned number)> source_set;
+    /// Called when the multiplexer or its enable changed, which the comparator may use.
+    std::function<void()> input_changed;
+    /// The CPU halts in a mode in which a conversion begins by itself.
+    void quiet();
+    /// Volts of AVCC from now on.
+    void set_avcc(double volts) { references_.avcc = volts; }
     bool converting() const { return state_.converting; }
 
     template <class Archive>
@@ -43,10 +56,13 @@ class Adc {
         std::uint16_t held = 0;
         std::uint16_t result = 0;
         bool locked = false;  ///< ADCL was read: the result stays until ADCH is
+        Cycle begin = 0;      ///< of the conversion: its channel and reference stay from here on
+        std::uint8_t mux = 0;
+        unsigned source = 0;  ///< trigger_source() as it was last
 
         template <class Archive>
         void state(Archive& archive) {
-            archive(converting, sampled, first, phase, end, held, result, locked);
+            archive(converting, sampled, first, phase, end, held, result, locked, begin, mux, source);
         }
     };
     std::uint8_t& control() const { return around_.io.raw(0x7A); }
@@ -61,7 +77,10 @@ class Adc {
     static std::uint8_t look_at_result(void* owner, std::uint16_t address);
     static void write_result(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);
     static void write_control(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);
+    static void write_mux(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);
+    static void write_source(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);
     static void acknowledge(void* owner, int vector);
+    void update_source();
 
     Surroundings around_;
     Pins& pins_;

@@ -31,6 +31,17 @@ void Eeprom::reset() {
     around_.events.cancel(slot_);
 }
 
+void Eeprom::rate_changes(bool changed) {
+    const Cycle due = around_.events.due(slot_);
+    if (due == kNoCycle) return;
+    if (!changed) {
+        kept_ = clock_.time_of(due);
+        return;
+    }
+    state_.busy_until = clock_.first_cycle_at(kept_);
+    around_.events.schedule(slot_, state_.busy_until);
+}
+
 std::size_t Eeprom::address() const {
     return static_cast<std::size_t>(around_.io.raw(kEearh) << 8 | around_.io.raw(kEearl)) % bytes_.size();
 }

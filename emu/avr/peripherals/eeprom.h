@@ -19,6 +19,8 @@ class Eeprom {
     Eeprom(const Surroundings& around, Core& core, const cosim::ClockDomain& clock, std::size_t bytes);
 
     void reset();
+    /// Before and after a change of the CPU's clock, which does not time the programming.
+    void rate_changes(bool changed);
     std::vector<std::uint8_t>& bytes() { return bytes_; }
     /// Another byte in a cell, by no programming.
     void poke(std::size_t cell, std::uint8_t byte) {
@@ -63,6 +65,7 @@ class Eeprom {
     std::vector<std::uint8_t> bytes_;
     MemoryUndo<std::uint8_t> undo_;
     State state_;
+    cosim::Time kept_ = 0;  ///< when the event is due, while the clock's rate changes
     EventQueue::Slot slot_;
 };
 

@@ -13,6 +13,8 @@ namespace puckloop::avr {
 class ExternalInterrupts {
   public:
     ExternalInterrupts(const Surroundings& around, Ports& ports);
+    /// EIFR and EIMSK.
+    InterruptFlags& edges() { return edges_; }
 
   private:
     static constexpr int kCount = 3;

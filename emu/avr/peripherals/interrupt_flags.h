@@ -40,9 +40,23 @@ class InterruptFlags {
 
     std::uint8_t flags() const { return around_.io.raw(setup_.flags); }
     std::uint8_t masks() const { return around_.io.raw(setup_.masks); }
+    /// Flags whose rising somebody waits for, enabled as interrupts or not.
+    std::uint8_t watched() const { return watched_; }
+    /// `rose` is called when one of these rises; the owner is touched, and plans accordingly (unless a saved
+    /// state was loaded that has it planned).
+    void watch(std::uint8_t bits, void* watcher, void (*rose)(void* watcher), bool plan) {
+        if (bits == watched_) return;
+        if (plan) touch();
+        watched_ = bits;
+        watcher_ = watcher;
+        rose_ = rose;
+        if (plan) touch();
+    }
     void raise(std::uint8_t bits) {
+        const auto rising = static_cast<std::uint8_t>(bits & ~flags());
         around_.io.raw(setup_.flags) |= bits;
         update();
+        if (rising & watched_) rose_(watcher_);
     }
     void clear(std::uint8_t bits) {
         around_.io.raw(setup_.flags) &= static_cast<std::uint8_t>(~bits);
@@ -99,6 +113,9 @@ class InterruptFlags {
     void* owner_;
     Touched touched_;
     Cycle (*next_change_)(void*) = nullptr;
+    std::uint8_t watched_ = 0;
+    void* watcher_ = nullptr;
+    void (*rose_)(void*) = nullptr;
 };
 
 }  // namespace puckloop::avr

@@ -38,6 +38,15 @@ void SelfProgramming::reset() {
     around_.events.cancel(slot_);
 }
 
+void SelfProgramming::rate_changes(bool changed) {
+    const Cycle due = around_.events.due(slot_);
+    if (due == kNoCycle) return;
+    if (changed)
+        around_.events.schedule(slot_, clock_.first_cycle_at(kept_));
+    else
+        kept_ = clock_.time_of(due);
+}
+
 bool SelfProgramming::in_rww(std::uint32_t word) const {
     return word < core_.device().flash_words - kNoReadWhileWriteWords;
 }

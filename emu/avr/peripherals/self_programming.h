@@ -24,6 +24,8 @@ class SelfProgramming {
                     const SystemControl& system);
 
     void reset();
+    /// Before and after a change of the CPU's clock, which does not time the programming.
+    void rate_changes(bool changed);
     /// SPM with Z (RAMPZ in front) and R1:R0.
     void spm(std::uint32_t address, std::uint16_t word);
     /// LPM: true and a value where the flash does not answer.
@@ -54,6 +56,7 @@ class SelfProgramming {
     std::vector<std::uint16_t> buffer_;
     Cycle armed_until_ = 0;
     bool busy_ = false;
+    cosim::Time kept_ = 0;  ///< when the event is due, while the clock's rate changes
     EventQueue::Slot slot_;
 };
 

@@ -6,11 +6,14 @@ namespace puckloop::avr {
 
 namespace {
 constexpr std::uint16_t kOcdr = 0x51, kSmcr = 0x53, kMcusr = 0x54, kMcucr = 0x55, kClkpr = 0x61, kPrr0 = 0x64,
-                        kPrr1 = 0x65, kOsccal = 0x66;
+                        kPrr1 = 0x65, kOsccal = 0x66, kAssr = 0xB6;
 constexpr std::uint8_t kSe = bit(0);                                                     // SMCR
 constexpr std::uint8_t kPorf = bit(0), kExtrf = bit(1), kBorf = bit(2), kWdrf = bit(3);  // MCUSR
-constexpr std::uint8_t kIvsel = bit(1), kIvce = bit(0);                                  // MCUCR
-constexpr std::uint8_t kClkpce = bit(7);                                                 // CLKPR
+constexpr std::uint8_t kJtd = bit(7), kBods = bit(6), kBodse = bit(5), kPud = bit(4), kIvsel = bit(1),
+                       kIvce = bit(0);    // MCUCR
+constexpr std::uint8_t kAs2 = bit(5);     // ASSR
+constexpr Cycle kBrownOutSleep = 3;       ///< clocks in which SLEEP must follow BODS
+constexpr std::uint8_t kClkpce = bit(7);  // CLKPR
 constexpr Cycle kChangeable = 4;
 constexpr unsigned kSlowest = 8, kByEight = 3;  // CLKPS
 }  // namespace
@@ -19,12 +22,32 @@ SystemControl::SystemControl(const Surroundings& around, Core& core, cosim::Cloc
                              const Fuses& fuses, double oscillator_hertz)
     : around_(around), core_(core), clock_(clock), fuses_(fuses), oscillator_hertz_(oscillator_hertz) {
     around_.io.hook(kMcusr, this, nullptr, &write_flags);
-    around_.io.hook(kMcucr, this, nullptr, &write_mcucr);
+    around_.io.hook(kMcucr, this, &read_mcucr, &write_mcucr);
     around_.io.hook(kClkpr, this, nullptr, &write_prescaler);
     around_.io.hook(kPrr0, this, nullptr, &write_power);
     around_.io.hook(kPrr1, this, nullptr, &write_power);
-    for (const std::uint16_t address : {kSmcr, kOsccal, kOcdr})
-        around_.io.claim(address);
+    around_.io.hook(kOsccal, this, nullptr, &write_reported);
+    around_.io.hook(kOcdr, this, nullptr, &write_reported);
+    around_.io.claim(kSmcr);
+}
+
+void SystemControl::write_reported(void* owner, std::uint16_t address, std::uint8_t value,
+                                   std::uint8_t mask) {
+    auto& self = *static_cast<SystemControl*>(owner);
+    self.around_.io.store(address, value, mask);
+    self.around_.io.report_unmodelled(address, address == kOsccal ? "OSCCAL" : "OCDR", true);
+}
+
+// CKSEL3:0 (data sheet, "Clock Sources"): whatever is not internal is what is connected.
+double SystemControl::source_hertz() const {
+    constexpr unsigned kInternalRc = 2, kInternal128k = 3;
+    constexpr double kRcHertz = 8e6, kSlowHertz = 128e3;
+    const unsigned select = field(fuses_.low, 3, 0);
+    return select == kInternalRc ? kRcHertz : select == kInternal128k ? kSlowHertz : oscillator_hertz_;
+}
+
+bool SystemControl::jtag() const {
+    return fuses_.jtag() && !(around_.io.raw(kMcucr) & kJtd);
 }
 
 void SystemControl::reset(ResetCause cause) {
@@ -43,7 +66,9 @@ void SystemControl::reset(ResetCause cause) {
         flags |= kWdrf;
         break;
     }
-    changeable_until_ = vectors_changeable_until_ = 0;
+    changeable_until_ = vectors_changeable_until_ = jtag_until_ = 0;
+    brown_out_from_ = brown_out_until_ = 0;
+    brown_out_off_ = false;
     set_divider(fuses_.divide_clock() ? kByEight : 0);
 }
 
@@ -58,36 +83,50 @@ std::uint16_t SystemControl::reset_pc() const {
 }
 
 // Data sheet, "Power Management and Sleep Modes", table 10-1: which vectors wake. Timer 2 does from the
-// deeper modes only with its own crystal, which is not modelled.
+// deeper modes only with its own clock, and only from those in which its oscillator runs.
 void SystemControl::sleep() {
     const unsigned control = around_.io.raw(kSmcr);
     if (!(control & kSe)) return;
+    brown_out_off_ = around_.now < brown_out_until_;
     const auto vectors = [](int first, int last) {
         return (std::uint64_t{2} << last) - (std::uint64_t{1} << first);
     };
-    constexpr int kInt0 = 1, kWatchdog = 8, kAdcReady = 24, kEeprom = 25, kTwi = 26, kSpm = 27;
+    constexpr int kInt0 = 1, kWatchdog = 8, kTimer2 = 9, kTimer2Overflow = 11, kAdcReady = 24, kEeprom = 25,
+                  kTwi = 26, kSpm = 27;
+    const bool own_clock = around_.io.raw(kAssr) & kAs2;
+    const std::uint64_t timer2 = own_clock ? vectors(kTimer2, kTimer2Overflow) : 0;
     const std::uint64_t deep = vectors(kInt0, kWatchdog) | vectors(kTwi, kTwi);
     enum Mode : unsigned { kIdle, kNoiseReduction, kPowerDown, kPowerSave, kStandby = 6, kExtendedStandby };
     constexpr std::uint32_t kStandbyStartUp = 6;
+    const auto stop = [&](bool timer2_too) {
+        if (stop_clocks) stop_clocks(true, timer2_too || !own_clock);
+    };
     switch (field(control, 3, 1)) {
     case kNoiseReduction:
-        if (stop_clocks) stop_clocks(true);
-        return core_.sleep(deep | vectors(kAdcReady, kEeprom) | vectors(kSpm, kSpm), 0);
+        stop(false);
+        core_.sleep(deep | timer2 | vectors(kAdcReady, kEeprom) | vectors(kSpm, kSpm), 0);
+        if (quiet_conversion) quiet_conversion();
+        return;
     case kPowerDown:
-    case kPowerSave:
-        if (stop_clocks) stop_clocks(true);
+        stop(true);
         return core_.sleep(deep, start_up_clocks());
+    case kPowerSave:
+        stop(false);
+        return core_.sleep(deep | timer2, start_up_clocks());
     case kStandby:
-    case kExtendedStandby:
-        if (stop_clocks) stop_clocks(true);
+        stop(true);
         return core_.sleep(deep, kStandbyStartUp);
+    case kExtendedStandby:
+        stop(false);
+        return core_.sleep(deep | timer2, kStandbyStartUp);
     default:
         return core_.sleep(~std::uint64_t{0}, 0);
     }
 }
 
 void SystemControl::wake() {
-    if (stop_clocks) stop_clocks(false);
+    brown_out_off_ = false;
+    if (stop_clocks) stop_clocks(false, true);
 }
 
 // From power-down and power-save, by CKSEL3:0 and SUT1:0 (data sheet, tables 9-2 to 9-13).
@@ -107,21 +146,51 @@ void SystemControl::write_flags(void* owner, std::uint16_t address, std::uint8_t
     self.around_.io.raw(address) &= static_cast<std::uint8_t>(value | ~mask);
 }
 
-// IVSEL changes within four clocks after IVCE was set.
+// BODS is set for three clocks.
+std::uint8_t SystemControl::read_mcucr(void* owner, std::uint16_t address) {
+    const auto& self = *static_cast<SystemControl*>(owner);
+    std::uint8_t value = self.around_.io.raw(address);
+    assign(value, kBods, self.around_.now < self.brown_out_until_);
+    return value;
+}
+
+// IVSEL changes within four clocks after IVCE was set, JTD when it is written twice within four, BODS within
+// four after BODS and BODSE were set.
 void SystemControl::write_mcucr(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask) {
     auto& self = *static_cast<SystemControl*>(owner);
     const Cycle now = self.around_.now;
-    const bool changeable = now < self.vectors_changeable_until_;
-    constexpr std::uint8_t kPlain = static_cast<std::uint8_t>(~(kIvsel | kIvce));
-    self.around_.io.store(address, value, mask & (changeable ? kPlain | kIvsel : kPlain));
-    self.vectors_changeable_until_ = value & mask & kIvce ? now + 1 + kChangeable : 0;
+    const auto written = static_cast<std::uint8_t>(value & mask);
+    const std::uint8_t old = self.around_.io.raw(address);
+    const auto changeable = static_cast<std::uint8_t>(now < self.vectors_changeable_until_ ? kIvsel : 0);
+    self.vectors_changeable_until_ = written & kIvce ? now + 1 + kChangeable : 0;
+
+    std::uint8_t jtd = 0;
+    if (mask & kJtd) {
+        const bool wanted = value & kJtd;
+        if (now < self.jtag_until_ && wanted == self.jtag_wanted_)
+            jtd = kJtd;
+        else
+            self.jtag_until_ = now + 1 + kChangeable;
+        self.jtag_wanted_ = wanted;
+    }
+    if ((written & kBods) && (written & kBodse))
+        self.brown_out_from_ = now + 1 + kChangeable;
+    else if ((written & kBods) && now < self.brown_out_from_)
+        self.brown_out_until_ = now + 1 + kBrownOutSleep;
+    self.around_.io.store(address, value, mask & (kPud | changeable | jtd));
+
+    const auto changed = static_cast<std::uint8_t>(old ^ self.around_.io.raw(address));
+    if ((changed & kJtd) && self.jtag_changed) self.jtag_changed();
+    if ((changed & kPud) && self.pull_ups_changed) self.pull_ups_changed();
 }
 
 void SystemControl::set_divider(unsigned select) {
     around_.io.raw(kClkpr) = static_cast<std::uint8_t>(select);
-    const double hertz = oscillator_hertz_ / (1u << std::min(select, kSlowest));
+    const double hertz = source_hertz() / (1u << std::min(select, kSlowest));
     if (hertz == clock_.hertz()) return;
+    if (rate_changes) rate_changes(false);
     clock_.change_rate(around_.now + 1, hertz);
+    if (rate_changes) rate_changes(true);
     core_.end_run();
 }
 

@@ -5,9 +5,11 @@
 //
 // Deviations
 //  1. In the deeper sleep modes timers stand still (and their prescalers run on unseen); a transfer of a
-//  USART, of
-//     the SPI, of the two-wire interface or of the ADC that is under way goes on.
-//  2. OSCCAL is stored; JTAG (MCUCR.JTD, OCDR) and the brown-out switch (BODS) have no effect.
+//     USART, of the SPI, of the two-wire interface or of the ADC that is under way goes on.
+//  2. The internal oscillators run at exactly 8 MHz and 128 kHz; OSCCAL is stored, a write of it is reported.
+//  3. JTAG takes its pins and does nothing with them; OCDR is stored and reported.
+//  4. The program begins in the clock of the reset: start-up delays (SUT) are those of waking up only.
+//  5. Entering idle mode starts no conversion of an enabled ADC; entering ADC noise reduction mode does.
 
 #include "cosim/core/clock.h"
 #include "emu/avr/core/core.h"
@@ -24,6 +26,10 @@ class SystemControl {
                   double oscillator_hertz);
 
     void reset(ResetCause cause);
+    /// The fuse JTAGEN is programmed and MCUCR.JTD is not set: PC2 to PC5 are the debugger's.
+    bool jtag() const;
+    /// The brown-out detector was switched off for the sleep that lasts.
+    bool brown_out_off() const { return brown_out_off_; }
     /// SLEEP.
     void sleep();
     void wake();
@@ -35,16 +41,29 @@ class SystemControl {
 
     /// Called before and after PRRn changes: modules bring themselves up to date.
     std::function<void()> synchronise;
-    /// The clock of timers and USARTs stands still, or runs again.
-    std::function<void(bool stopped)> stop_clocks;
+    /// The clock of timers and USARTs stands still, or runs again; that of timer 2's own only if
+    /// `timer2_too`.
+    std::function<void(bool stopped, bool timer2_too)> stop_clocks;
+    /// jtag() may have changed.
+    std::function<void()> jtag_changed;
+    /// The pull-ups may have changed.
+    std::function<void()> pull_ups_changed;
+    /// The ADC begins a conversion because the CPU halts.
+    std::function<void()> quiet_conversion;
+    /// Called before and after the rate of the clock changes: what lasts a time keeps lasting it.
+    std::function<void(bool changed)> rate_changes;
 
     template <class Archive>
     void state(Archive& archive) {
-        archive(changeable_until_, vectors_changeable_until_);
+        archive(changeable_until_, vectors_changeable_until_, jtag_until_, jtag_wanted_, brown_out_from_,
+                brown_out_until_, brown_out_off_);
     }
 
   private:
     void set_divider(unsigned select);
+    double source_hertz() const;
+    static std::uint8_t read_mcucr(void* owner, std::uint16_t address);
+    static void write_reported(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);
     std::uint32_t start_up_clocks() const;
     static void write_flags(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);
     static void write_mcucr(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);
@@ -58,6 +77,11 @@ class SystemControl {
     double oscillator_hertz_;
     Cycle changeable_until_ = 0;          ///< CLKPR
     Cycle vectors_changeable_until_ = 0;  ///< IVSEL
+    Cycle jtag_until_ = 0;                ///< the second write of JTD counts
+    bool jtag_wanted_ = false;
+    Cycle brown_out_from_ = 0;   ///< BODS may be set up to here, BODSE having been
+    Cycle brown_out_until_ = 0;  ///< BODS is set up to here
+    bool brown_out_off_ = false;
 };
 
 }  // namespace puckloop::avr

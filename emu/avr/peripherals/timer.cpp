@@ -109,7 +109,7 @@ std::uint64_t Timer::next_tick(std::uint8_t masks) const {
 
 void Timer::plan() {
     const std::uint32_t division = divider();
-    const std::uint64_t tick = division ? next_tick(flags_.masks()) : kNoTick;
+    const std::uint64_t tick = division ? next_tick(flags_.masks() | flags_.watched()) : kNoTick;
     around_.events.schedule(slot_, tick == kNoTick ? kNoCycle : prescaler_.tick(state_.at, tick, division));
 }
 
@@ -203,7 +203,8 @@ void Timer::set_output(int channel, bool level) {
     const auto index = static_cast<std::size_t>(channel);
     if (state_.output[index] == level) return;
     state_.output[index] = level;
-    if (output_mode(channel) != kDisconnected) ports_.override_value(setup_.outputs[index], level);
+    if (output_mode(channel) != kDisconnected)
+        ports_.override_value(setup_.outputs[index], level, PinUser::Compare);
 }
 
 void Timer::connect_outputs() {
@@ -214,9 +215,9 @@ void Timer::connect_outputs() {
         const bool idle_toggle =
             mode == kToggle && wave.buffered() && (channel == 1 || wave.top == Top::Fixed);
         if (mode == kDisconnected || idle_toggle)
-            ports_.release_value(setup_.outputs[index]);
+            ports_.release_value(setup_.outputs[index], PinUser::Compare);
         else
-            ports_.override_value(setup_.outputs[index], state_.output[index]);
+            ports_.override_value(setup_.outputs[index], state_.output[index], PinUser::Compare);
     }
 }
 
@@ -279,6 +280,9 @@ void Timer::pins_changed(void* owner, PortLetter port, std::uint8_t before, std:
             self.pass(1);
         }
     }
+    if (self.asynchronous() && self.watch_->uses_pin() && edge(self.setup_.watch_in) &&
+        (after & self.setup_.watch_in.mask()))
+        self.watch_edge();
     if (edge(self.setup_.capture_pin) && !self.state_.capture_by_comparator)
         self.capture_edge(after & self.setup_.capture_pin->mask());
 }

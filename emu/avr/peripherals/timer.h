@@ -5,10 +5,11 @@
 // 8272, chapters "8-bit Timer/Counter0", "16-bit Timer/Counter1 and 3", "Timer/Counter2".
 //
 // Deviations
-//  1. Timer 2's asynchronous clock (ASSR.AS2) is not modelled: the register is stored and reported, the
-//  timer runs from the CPU clock.
-//  2. A counter above the top of a dual-slope mode turns at once.
-//  3. An external clock edge counts in the clock in which the pin changes, not up to 3.5 clocks later.
+//  1. A counter above the top of a dual-slope mode turns at once.
+//  2. An external clock edge counts in the clock in which the pin changes, not up to 3.5 clocks later.
+//  3. Of timer 2 with a watch clock: compare matches go on while OCR2x or TCNT2 waits to be updated; TCNT2 is
+//  right as soon as the CPU wakes; sleeping again within one cycle of the watch clock is safe; a write to a
+//  register whose update flag is set replaces the one that waits.
 
 #include "emu/avr/peripherals/interrupt_flags.h"
 #include "emu/avr/peripherals/ports.h"
@@ -38,8 +39,12 @@ class Timer {
         std::optional<Pin> capture_pin{};         ///< ICPn
         std::uint16_t power = 0;                  ///< PRRn
         std::uint8_t power_bit = 0;               ///< stops the clock
+        std::uint16_t status = 0;                 ///< ASSR, of a timer that may have a clock of its own
+        Pin watch_in{}, watch_out{};              ///< TOSC1 and TOSC2
     };
-    Timer(const Surroundings& around, const Setup& setup, Prescaler& prescaler, Ports& ports);
+    /// `watch`: of a timer with Setup::status.
+    Timer(const Surroundings& around, const Setup& setup, Prescaler& prescaler, Ports& ports,
+          WatchClock* watch = nullptr);
 
     void reset();
     /// Brings counter and flags up to the present clock and plans the next event: before the prescaler or the
@@ -48,6 +53,7 @@ class Timer {
     /// The comparator takes the capture pin's place (ACIC).
     void capture_edge(bool rising);
     void use_comparator(bool on) { state_.capture_by_comparator = on; }
+    InterruptFlags& flags() { return flags_; }
 
     template <class Archive>
     void state(Archive& archive) {
@@ -55,6 +61,18 @@ class Timer {
     }
 
   private:
+    /// A register of an asynchronous timer that takes its new value two edges of the watch clock later.
+    struct Update {
+        bool waits = false;
+        std::uint8_t value = 0;
+        std::uint64_t edge = 0;
+
+        template <class Archive>
+        void state(Archive& archive) {
+            archive(waits, value, edge);
+        }
+    };
+    static constexpr int kUpdates = 5;  ///< TCCR2B, TCCR2A, OCR2B, OCR2A, TCNT2: as their bits in ASSR
     struct State {
         Counter counter;
         Cycle at = 0;                             ///< the clock that `counter` belongs to
@@ -66,12 +84,13 @@ class Timer {
         std::array<bool, 2> output{};
         bool capture_by_comparator = false;
         bool capture_rising = false;  ///< the edge that waits for the noise canceler
+        std::array<Update, kUpdates> updates{};
 
         template <class Archive>
         void state(Archive& archive) {
             archive.bounded(counter.count, 0, 0xFFFF);
             archive(counter.down, at, blocked, compare, buffered, capture, temp, output,
-                    capture_by_comparator, capture_rising);
+                    capture_by_comparator, capture_rising, updates);
         }
     };
 
@@ -96,6 +115,18 @@ class Timer {
     void connect_outputs();
     void do_capture(Cycle now);
     void set_compare(int channel, std::uint16_t value);
+    void set_control(std::uint16_t address, std::uint8_t value, std::uint8_t mask);
+
+    bool asynchronous() const { return watch_ && prescaler_.asynchronous(); }
+    std::uint16_t update_address(int update) const;
+    int update_of(std::uint16_t address) const;
+    void write_later(std::uint16_t address, std::uint8_t value);
+    void plan_updates();
+    void take_updates(Cycle now);
+    void watch_edge();
+    static std::uint8_t read_control(void* owner, std::uint16_t address);
+    static void write_status(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);
+    static void update_due(void* owner, Cycle cycle);
 
     static std::size_t follow_count(void* owner, std::uint16_t address, Cycle first, Cycle period,
                                     std::span<std::uint8_t> values);
@@ -117,10 +148,12 @@ class Timer {
     Setup setup_;
     Prescaler& prescaler_;
     Ports& ports_;
+    WatchClock* watch_;
     InterruptFlags flags_;
     State state_;
     EventQueue::Slot slot_;
     EventQueue::Slot noise_slot_;
+    EventQueue::Slot update_slot_;
 };
 
 }  // namespace puckloop::avr

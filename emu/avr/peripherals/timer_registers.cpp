@@ -4,17 +4,22 @@
 
 namespace puckloop::avr {
 
-Timer::Timer(const Surroundings& around, const Setup& setup, Prescaler& prescaler, Ports& ports)
+Timer::Timer(const Surroundings& around, const Setup& setup, Prescaler& prescaler, Ports& ports,
+             WatchClock* watch)
     : around_(around),
       setup_(setup),
       prescaler_(prescaler),
       ports_(ports),
+      watch_(watch),
       flags_(around, setup.interrupts, this, &touched),
       slot_(around.events.add(this, &due)),
-      noise_slot_(around.events.add(this, &noise_over)) {
+      noise_slot_(around.events.add(this, &noise_over)),
+      update_slot_(around.events.add(this, &update_due)) {
     IoSpace& io = around_.io;
-    io.hook(setup.control_a, this, nullptr, &write_control);
-    io.hook(static_cast<std::uint16_t>(setup.control_a + 1), this, nullptr, &write_control);
+    const auto read = setup.status ? &read_control : nullptr;
+    io.hook(setup.control_a, this, read, &write_control);
+    io.hook(static_cast<std::uint16_t>(setup.control_a + 1), this, read, &write_control);
+    if (setup.status) io.hook(setup.status, this, nullptr, &write_status);
     if (setup.control_c) io.hook(setup.control_c, this, nullptr, &write_force);
     for (const std::uint16_t low : {setup.count, setup.compare_a, setup.compare_b, setup.capture}) {
         if (!low) continue;
@@ -34,19 +39,30 @@ void Timer::reset() {
     state_.at = around_.now;
     around_.events.cancel(slot_);
     around_.events.cancel(noise_slot_);
+    around_.events.cancel(update_slot_);
+    if (!watch_) return;
+    watch_->use_pin(false);
+    prescaler_.use_watch(false, around_.now);
 }
 
 void Timer::write_control(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask) {
     auto& self = *static_cast<Timer*>(owner);
-    self.settle(self.around_.now);
+    if (self.asynchronous())
+        self.write_later(address, merged(read_control(owner, address), value, mask));
+    else
+        self.set_control(address, value, mask);
+}
+
+void Timer::set_control(std::uint16_t address, std::uint8_t value, std::uint8_t mask) {
+    settle(around_.now);
     constexpr std::uint8_t kForceBits = 0xC0;  // FOCnA, FOCnB of the 8-bit timers' TCCRnB
-    const bool force = !self.setup_.wide && address != self.setup_.control_a;
-    self.around_.io.store(address, value, force ? mask & static_cast<std::uint8_t>(~kForceBits) : mask);
-    if (!self.waveform().buffered()) self.state_.compare = self.state_.buffered;
-    if (!self.waveform().dual_slope()) self.state_.counter.down = false;
-    if (force) write_force(owner, 0, value, mask);
-    self.connect_outputs();
-    self.plan();
+    const bool force = !setup_.wide && address != setup_.control_a;
+    around_.io.store(address, value, force ? mask & static_cast<std::uint8_t>(~kForceBits) : mask);
+    if (!waveform().buffered()) state_.compare = state_.buffered;
+    if (!waveform().dual_slope()) state_.counter.down = false;
+    if (force) write_force(this, 0, value, mask);
+    connect_outputs();
+    plan();
 }
 
 // FOCnx: an immediate compare match at the pin, without a flag; reads as 0.
@@ -85,6 +101,9 @@ void Timer::write_wide(std::uint16_t low_address, std::uint16_t value) {
 std::uint8_t Timer::read_value(void* owner, std::uint16_t address) {
     auto& self = *static_cast<Timer*>(owner);
     self.synchronise();
+    if (self.asynchronous() && address != self.setup_.count)
+        if (const Update& u = self.state_.updates[static_cast<std::size_t>(self.update_of(address))]; u.waits)
+            return u.value;
     if (!self.setup_.wide) return static_cast<std::uint8_t>(self.read_wide(address));
     const auto low = static_cast<std::uint16_t>(address & ~1u);
     const std::uint16_t value = self.read_wide(low);
@@ -107,7 +126,7 @@ std::uint8_t Timer::look_at_value(void* owner, std::uint16_t address) {
 std::size_t Timer::follow_count(void* owner, std::uint16_t, Cycle first, Cycle period,
                                 std::span<std::uint8_t> values) {
     const auto& self = *static_cast<Timer*>(owner);
-    if (self.waveform().dual_slope() || first < self.state_.at) return 0;
+    if (self.waveform().dual_slope() || first < self.state_.at || self.asynchronous()) return 0;
     const std::uint32_t count = self.state_.counter.count, end = self.top();
     const std::uint64_t room = (count > end ? self.max() : end) - count;
     const Cycle division = self.divider();
@@ -138,6 +157,7 @@ Cycle Timer::flags_change(void* owner) {
 
 void Timer::write_value(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t) {
     auto& self = *static_cast<Timer*>(owner);
+    if (self.asynchronous()) return self.write_later(address, value);
     self.settle(self.around_.now);
     if (!self.setup_.wide)
         self.write_wide(address, value);

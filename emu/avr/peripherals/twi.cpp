@@ -7,7 +7,9 @@ namespace {
 using Kind = cosim::I2cPhaseKind;
 
 constexpr int kVector = 26;
-constexpr std::uint16_t kTwbr = 0xB8, kTwsr = 0xB9, kTwar = 0xBA, kTwdr = 0xBB, kTwcr = 0xBC, kTwamr = 0xBD;
+constexpr std::uint16_t kTwbr = 0xB8, kTwsr = 0xB9, kTwar = 0xBA, kTwdr = 0xBB, kTwcr = 0xBC, kTwamr = 0xBD,
+                        kPrr0 = 0x64;
+constexpr std::uint8_t kPrtwi = bit(7);  // PRR0
 constexpr std::uint8_t kTwint = bit(7), kTwea = bit(6), kTwsta = bit(5), kTwsto = bit(4), kTwwc = bit(3),
                        kTwen = bit(2), kTwie = bit(0);
 constexpr std::uint8_t kTwps = 0x03, kTwgce = bit(0), kRead = bit(0);
@@ -20,6 +22,8 @@ constexpr std::uint8_t kMrAddressAck = 0x40, kMrAddressNack = 0x48, kMrDataAck =
 constexpr std::uint8_t kSrAddress = 0x60, kSrGeneral = 0x70, kSrDataAck = 0x80, kSrDataNack = 0x88,
                        kSrGeneralAck = 0x90, kSrGeneralNack = 0x98, kSrStop = 0xA0;
 constexpr std::uint8_t kStAddress = 0xA8, kStDataAck = 0xB8, kStDataNack = 0xC0, kStLastAck = 0xC8;
+/// Addressed after arbitration was lost; a bus error.
+constexpr std::uint8_t kLostSrAddress = 0x68, kLostSrGeneral = 0x78, kLostStAddress = 0xB0, kBusError = 0x00;
 constexpr int kAnswerClocks = 8;
 
 }  // namespace
@@ -76,6 +80,7 @@ void Twi::write_data(void* owner, std::uint16_t, std::uint8_t value, std::uint8_
 
 void Twi::write_control(void* owner, std::uint16_t, std::uint8_t value, std::uint8_t) {
     auto& self = *static_cast<Twi*>(owner);
+    if (!self.powered()) return;
     const std::uint8_t old = self.control();
     constexpr std::uint8_t kKept = kTwwc;
     const bool cleared = value & kTwint;
@@ -84,13 +89,20 @@ void Twi::write_control(void* owner, std::uint16_t, std::uint8_t value, std::uin
     if (cleared) assign(self.control(), kTwwc, false);
     if ((old ^ value) & kTwen) {
         if (value & kTwen) {
-            self.ports_.override_value(kScl, true);
-            self.ports_.override_value(kSda, true);
+            self.ports_.override_value(kScl, true, PinUser::Serial);
+            self.ports_.override_value(kSda, true, PinUser::Serial);
+            // Open drain: the lines are the bus's.
+            self.ports_.override_direction(kScl, false);
+            self.ports_.override_direction(kSda, false);
         } else {  // whatever was going on is given up
-            self.ports_.release_value(kScl);
-            self.ports_.release_value(kSda);
+            self.ports_.release_value(kScl, PinUser::Serial);
+            self.ports_.release_value(kSda, PinUser::Serial);
+            self.ports_.release_direction(kScl);
+            self.ports_.release_direction(kSda);
             if (self.state_.owner) self.begin_phase(Kind::Stop, 0, false);
+            const bool taken = self.state_.bus_taken;
             self.reset();
+            self.state_.bus_taken = taken;
             self.status() = static_cast<std::uint8_t>((self.status() & kTwps) | kIdle);
         }
     }
@@ -114,6 +126,25 @@ void Twi::begin_phase(Kind kind, std::uint8_t byte, bool acknowledge) {
     pins_.twi_phase(phase);
 }
 
+bool Twi::powered() const {
+    return !(around_.io.raw(kPrr0) & kPrtwi);
+}
+
+// START once the bus is free; a repeated one at once.
+void Twi::start(bool repeated, Cycle now) {
+    state_.next_status = repeated ? kRepeated : kStarted;
+    state_.start_waits = state_.bus_taken && !repeated;
+    if (!state_.start_waits) plan(Step::StartSent, now + period());
+}
+
+// Another master sent STOP: who waited for the bus may have it half a period later.
+void Twi::bus_free() {
+    state_.bus_taken = false;
+    if (!state_.start_waits) return;
+    state_.start_waits = false;
+    start(false, around_.now + period() / 2);
+}
+
 void Twi::go_on() {
     if (state_.stop_waits) {
         state_.stop_waits = false;
@@ -126,13 +157,12 @@ void Twi::go_on() {
     if (state_.awaiting || state_.step != Step::None) return;  // an operation is under way
     const Cycle next = around_.now + 1;
     if (control() & kTwsto) {
+        if (state_code() == kBusError) state_.owner = false;  // the lines are released, without a STOP
         if (state_.owner) begin_phase(Kind::Stop, 0, false);
         return plan(Step::StopSent, next + period());
     }
-    if (control() & kTwsta) {
-        state_.next_status = state_.owner ? kRepeated : kStarted;
-        return plan(Step::StartSent, next + period());
-    }
+    if (control() & kTwsta) return start(state_.owner, next);
+    state_.start_waits = false;
     if (!state_.owner) return;
     switch (state_code()) {
     case kStarted:
@@ -193,15 +223,16 @@ void Twi::due(void* owner, Cycle cycle) {
         st.owner = false;
         assign(self.control(), kTwsto, false);
         self.status() = static_cast<std::uint8_t>((self.status() & kTwps) | kIdle);
-        if (self.control() & kTwsta) {
-            st.next_status = kStarted;
-            self.plan(Step::StartSent, cycle + self.period());
-        }
+        if (self.control() & kTwsta) self.start(false, cycle);
         break;
     case Step::SlaveAnswer:
         self.finish_slave_phase(cycle);
         break;
     case Step::SlavePhaseOver:
+        // Who did not acknowledge, or sent his last byte, is no longer addressed.
+        if (st.next_status == kSrDataNack || st.next_status == kSrGeneralNack ||
+            st.next_status == kStDataNack || st.next_status == kStLastAck)
+            st.slave = false;
         self.interrupt(st.next_status);
         break;
     case Step::Answer:
@@ -227,15 +258,37 @@ Cycle Twi::slave_clocks(int clocks) const {
 }
 
 void Twi::slave_phase(const cosim::I2cPhase& phase) {
+    if (state_.step == Step::SlavePhaseOver) {  // it ends in this clock
+        around_.events.cancel(slot_);
+        due(this, around_.now);
+    }
     const bool was_slave = state_.slave;
+    const bool ends = phase.kind == Kind::Stop || phase.kind == Kind::Start;
+    state_.lost = false;
+    if (state_.awaiting && ends) {
+        state_.awaiting = state_.owner = false;
+        around_.events.cancel(slot_);
+        state_.step = Step::None;
+        state_.lost = phase.kind == Kind::Start && state_.phase.kind == Kind::Start;
+        if (!state_.lost) interrupt(kBusError);
+    }
+    if (phase.kind == Kind::Start) {
+        state_.bus_taken = true;
+        if (state_.step == Step::StartSent && !state_.owner) {  // the other was quicker
+            state_.step = Step::None;
+            around_.events.cancel(slot_);
+            state_.start_waits = true;
+        }
+    }
     if (phase.kind == Kind::Stop || phase.kind == Kind::Start) {
         state_.slave = state_.slave_waits = false;
         const bool hears_stop =
             was_slave && state_code() < kStAddress;  // a receiver does, repeated START too
         state_.stop_waits = hears_stop && (control() & kTwint);
         if (hears_stop && !state_.stop_waits) interrupt(kSrStop);
-        if (phase.kind == Kind::Stop) return;
+        if (phase.kind == Kind::Stop) return bus_free();
         state_.slave = addressed(phase.byte, state_.general_call);
+        if (state_.lost && !state_.slave) interrupt(kLost);
     }
     state_.phase = phase;
     if (!state_.slave) {
@@ -249,6 +302,13 @@ void Twi::slave_phase(const cosim::I2cPhase& phase) {
     // SCL is held low as long as TWINT is set.
     state_.slave_waits = control() & kTwint;
     if (!state_.slave_waits) begin_slave_phase();
+}
+
+Cycle Twi::earliest_slave_answer(Cycle now) const {
+    if (state_.step == Step::SlaveAnswer) return around_.events.due(slot_);
+    if (!state_.slave_waits) return kNoCycle;
+    const cosim::Time span = kAnswerClocks * state_.phase.clock_period;
+    return clock_.first_cycle_at(clock_.time_of(now) + span);
 }
 
 void Twi::begin_slave_phase() {
@@ -268,6 +328,10 @@ void Twi::finish_slave_phase(Cycle now) {
         state_.next_status = state_.general_call           ? kSrGeneral
                              : (state_.phase.byte & kRead) ? kStAddress
                                                            : kSrAddress;
+        if (state_.lost)
+            state_.next_status = state_.general_call           ? kLostSrGeneral
+                                 : (state_.phase.byte & kRead) ? kLostStAddress
+                                                               : kLostSrAddress;
         break;
     case Kind::Write:
         answer.ack = control() & kTwea ? 1 : 0;

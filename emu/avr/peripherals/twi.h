@@ -4,8 +4,10 @@
 //
 // Deviations
 //  1. START and STOP take one SCL period each; a repeated START too.
-//  2. Arbitration is the bus's: a lost one comes back as BusLost (status 0x38).
-//  3. A slave that loses its address match by TWEA = 0 in the middle of a transfer goes on with the transfer.
+//  2. Arbitration is the bus's, and decided phase by phase: a lost one comes back as BusLost (status 0x38).
+//     Lost in the address, the winner's START comes in by slave_phase() first: the unit may be who it speaks
+//     to (0x68, 0x78, 0xB0).
+//  3. A STOP or START of another master in the middle of a phase of ours is a bus error (0x00) at once.
 
 #include "cosim/core/clock.h"
 #include "cosim/core/message.h"
@@ -32,7 +34,12 @@ class Twi {
     void slave_phase(const cosim::I2cPhase& phase);
 
     /// TWINT will not rise by itself: nothing was begun, and no bus master was heard.
-    bool idle() const { return !state_.awaiting && state_.step == Step::None && !state_.slave; }
+    bool idle() const {
+        return !state_.awaiting && state_.step == Step::None && !state_.slave && !state_.bus_taken;
+    }
+    /// The acknowledge or data of a phase that a master awaits comes no earlier than this cycle; kNoCycle
+    /// while none is awaited.
+    Cycle earliest_slave_answer(Cycle now) const;
 
     template <class Archive>
     void state(Archive& archive) {
@@ -53,12 +60,15 @@ class Twi {
         bool general_call = false;
         bool slave_waits = false;  ///< the master's phase waits for TWINT to be cleared
         bool stop_waits = false;   ///< so does its STOP or repeated START
+        bool bus_taken = false;    ///< another master is between START and STOP
+        bool start_waits = false;  ///< for the bus to be free
+        bool lost = false;         ///< arbitration, to the master that now speaks to us
 
         template <class Archive>
         void state(Archive& archive) {
             archive.bounded(step, Step::None, Step::Answer);
-            archive(owner, awaiting, next_status, phase, answer, slave, general_call, slave_waits,
-                    stop_waits);
+            archive(owner, awaiting, next_status, phase, answer, slave, general_call, slave_waits, stop_waits,
+                    bus_taken, start_waits, lost);
         }
     };
     std::uint8_t& control() const { return around_.io.raw(0xBC); }
@@ -70,6 +80,9 @@ class Twi {
     void interrupt(std::uint8_t code);
     void update_request();
     void go_on();
+    void start(bool repeated, Cycle now);
+    void bus_free();
+    bool powered() const;
     void begin_phase(cosim::I2cPhaseKind kind, std::uint8_t byte, bool acknowledge);
     bool addressed(std::uint8_t address_byte, bool& general_call) const;
     void begin_slave_phase();

@@ -16,7 +16,8 @@ constexpr std::uint8_t kErrors = kFe | kDor | kUpe;
 constexpr std::uint8_t kRxcie = bit(7), kTxcie = bit(6), kUdrie = bit(5), kRxen = bit(4), kTxen = bit(3),
                        kUcsz2 = bit(2), kRxb8 = bit(1), kTxb8 = bit(0);
 // UCSRnC
-constexpr std::uint8_t kUsbs = bit(3);
+constexpr std::uint8_t kUsbs = bit(3), kUdord = bit(2), kUcpha = bit(1), kUcpol = bit(0);
+enum Mode : unsigned { kAsynchronous, kSynchronous, kReserved, kSpiMaster };  // UMSELn
 
 constexpr std::uint16_t kPrr0 = 0x64;
 constexpr std::uint16_t kNinthBit = bit(7) << 1;
@@ -32,6 +33,7 @@ Usart::Usart(const Surroundings& around, const Setup& setup, const cosim::ClockD
       ports_(ports),
       pins_(pins),
       receiver_(clock),
+      clocked_(around, clock, ports, *this, setup.xck, setup.rxd, setup.txd),
       transmit_slot_(around.events.add(this, &transmit_due)),
       receive_slot_(around.events.add(this, &receive_due)) {
     const auto at = [&](int offset) { return static_cast<std::uint16_t>(setup_.base + offset); };
@@ -39,7 +41,7 @@ Usart::Usart(const Surroundings& around, const Setup& setup, const cosim::ClockD
     around_.io.hook(at(1), this, nullptr, &write_b);
     around_.io.hook(at(2), this, nullptr, &write_c);
     around_.io.hook(at(4), this, nullptr, &write_baud);
-    around_.io.claim(at(5));
+    around_.io.hook(at(5), this, nullptr, &write_baud);
     around_.io.hook(at(6), this, &read_data, &write_data);
     around_.interrupts.connect(setup_.receive_vector, this, nullptr);
     around_.interrupts.connect(setup_.receive_vector + 1, this, nullptr);
@@ -51,6 +53,61 @@ void Usart::reset() {
     state_.phase = around_.now;
     around_.events.cancel(transmit_slot_);
     around_.events.cancel(receive_slot_);
+    clocked_.reset();
+}
+
+unsigned Usart::mode() const {
+    return field(c(), 7, 6);
+}
+bool Usart::clocked() const {
+    return mode() == kSynchronous || mode() == kSpiMaster;
+}
+
+void Usart::configure_clocked() {
+    using Clocked = ClockedUsart;
+    Clocked::Format format;
+    if (mode() == kSynchronous)
+        format = {Clocked::Mode::Synchronous,
+                  static_cast<std::uint8_t>(data_bits()),
+                  static_cast<std::uint8_t>(parity()),
+                  static_cast<std::uint8_t>(c() & kUsbs ? 2 : 1),
+                  static_cast<bool>(c() & kUcpol),
+                  false,
+                  false,
+                  divisor()};
+    else if (mode() == kSpiMaster)
+        format = {Clocked::Mode::SpiMaster,
+                  8,
+                  0,
+                  1,
+                  static_cast<bool>(c() & kUcpol),
+                  static_cast<bool>(c() & kUcpha),
+                  static_cast<bool>(c() & kUdord),
+                  divisor()};
+    clocked_.configure(format);
+}
+
+std::optional<std::uint16_t> Usart::take_word() {
+    const std::optional<std::uint16_t> word = state_.buffer;
+    state_.buffer.reset();
+    if (word) a() |= kUdre;
+    update_requests();
+    return word;
+}
+
+void Usart::frame_out(const cosim::UartFrame& frame) {
+    ++counters_.sent;
+    pins_.uart_sent(setup_.unit, frame);
+}
+
+void Usart::all_out() {
+    a() |= kTxc;
+    update_requests();
+    if (!(b() & kTxen)) enable_transmitter(false);
+}
+
+void Usart::word_in(Cycle now, std::uint16_t word, bool framing_error, bool parity_error) {
+    deliver({now, word, framing_error, parity_error});
 }
 
 std::uint32_t Usart::ticks_per_bit() const {
@@ -72,6 +129,7 @@ bool Usart::receiving() const {
     return (b() & kRxen) && powered();
 }
 std::optional<cosim::UartFrame> Usart::begun() const {
+    if (clocked()) return clocked_.begun();
     if (!state_.shifting || state_.stop_begun) return std::nullopt;
     return state_.frame;
 }
@@ -138,10 +196,10 @@ void Usart::transmit_due(void* owner, Cycle due) {
 
 void Usart::enable_transmitter(bool on) {
     if (on) {
-        ports_.override_value(setup_.txd, true);
+        ports_.override_value(setup_.txd, true, PinUser::Serial);
         ports_.override_direction(setup_.txd, true);
-    } else if (!state_.shifting && !state_.buffer) {  // else once what was written is out
-        ports_.release_value(setup_.txd);
+    } else if (!state_.shifting && !state_.buffer && !clocked_.busy()) {  // else once what was written is out
+        ports_.release_value(setup_.txd, PinUser::Serial);
         ports_.release_direction(setup_.txd);
     }
 }
@@ -152,14 +210,18 @@ void Usart::write_data(void* owner, std::uint16_t, std::uint8_t value, std::uint
     self.state_.buffer = static_cast<std::uint16_t>(value | (self.b() & kTxb8 ? kNinthBit : 0));
     assign(self.a(), kUdre, false);
     self.update_requests();
-    if (!self.state_.shifting) self.begin_frame(self.around_.now + 1);
+    if (self.clocked())
+        self.clocked_.kick();
+    else if (!self.state_.shifting)
+        self.begin_frame(self.around_.now + 1);
 }
 
 // ---- receiver
 
 void Usart::receive(const cosim::UartFrame& frame, Cycle at) {
     receiver_.frame(frame);
-    if (receiving())
+    const bool heard = mode() == kSynchronous ? clocked_.sampling_phase().has_value() : !clocked();
+    if (receiving() && heard)
         sample(at);
     else
         receiver_.pass(at);
@@ -167,7 +229,12 @@ void Usart::receive(const cosim::UartFrame& frame, Cycle at) {
 
 // Takes characters off the line as far as they are complete at `now`, and plans the next one.
 void Usart::sample(Cycle now) {
-    const chip::UartReceiver::Format format{divisor(), data_bits(), parity(), state_.phase, ticks_per_bit()};
+    chip::UartReceiver::Format format{divisor(), data_bits(), parity(), state_.phase, ticks_per_bit()};
+    if (const auto phase = clocked_.sampling_phase()) {  // XCK samples once a bit
+        format.divisor = 2 * divisor();
+        format.phase = *phase;
+        format.ticks = 1;
+    }
     while (!state_.sampled || state_.sampled->done <= now) {
         if (state_.sampled) {
             const auto character = *state_.sampled;
@@ -190,7 +257,10 @@ void Usart::deliver(const chip::UartReceiver::Character& character) {
     ++counters_.received;
     counters_.framing_errors += character.framing_error;
     counters_.parity_errors += character.parity_error;
-    if ((a() & kMpcm) && data_bits() == 9 && !(character.data & kNinthBit)) return;
+    // Multi-processor mode: frames without the address mark are dropped. The mark is the ninth bit, or with
+    // fewer the first stop bit.
+    const bool marked = data_bits() == 9 ? character.data & kNinthBit : !character.framing_error;
+    if ((a() & kMpcm) && mode() != kSpiMaster && !marked) return;
     Received received{character.data, static_cast<std::uint8_t>((character.framing_error ? kFe : 0) |
                                                                 (character.parity_error ? kUpe : 0))};
     if (state_.fifo.size() > kFifo) {
@@ -198,6 +268,7 @@ void Usart::deliver(const chip::UartReceiver::Character& character) {
         state_.fifo.pop_back();
         received.errors |= kDor;
     }
+    if (mode() == kSpiMaster) received.errors = 0;
     state_.fifo.push_back(received);
     show_receiver();
 }
@@ -221,6 +292,7 @@ std::uint8_t Usart::read_data(void* owner, std::uint16_t address) {
 }
 
 void Usart::enable_receiver(bool on) {
+    clocked_.restart_receiver();
     if (on) {
         receiver_.start(around_.now + 1);
         ports_.override_direction(setup_.rxd, false);
@@ -250,23 +322,25 @@ void Usart::write_b(void* owner, std::uint16_t, std::uint8_t value, std::uint8_t
     const auto changed = static_cast<std::uint8_t>(old ^ self.b());
     if (changed & kRxen) self.enable_receiver(self.b() & kRxen);
     if (changed & kTxen) self.enable_transmitter(self.b() & kTxen);
+    if (changed & kUcsz2) self.configure_clocked();
     self.update_requests();
 }
 
 void Usart::write_c(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask) {
     auto& self = *static_cast<Usart*>(owner);
-    constexpr std::uint8_t kUmsel = bit(7) | bit(6);
     self.around_.io.store(address, value, mask);
-    if (value & mask & kUmsel)
+    if (self.mode() == kReserved)
         self.around_.io.report_unmodelled(address, self.setup_.unit ? "UCSR1C.UMSEL1" : "UCSR0C.UMSEL0",
                                           true);
+    self.configure_clocked();
 }
 
 // Writing the low byte restarts the generator.
 void Usart::write_baud(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask) {
     auto& self = *static_cast<Usart*>(owner);
     self.around_.io.store(address, value, mask);
-    self.state_.phase = self.around_.now + 1;
+    if (address == self.setup_.base + 4) self.state_.phase = self.around_.now + 1;
+    self.configure_clocked();
 }
 
 }  // namespace puckloop::avr

@@ -1,16 +1,20 @@
 #pragma once
-// USART0 and USART1, asynchronous: baud rate generator, transmit buffer and shift register, two-deep receive
-// FIFO with its errors, 5 to 9 data bits. Source: data sheet 8272, "USART".
+// USART0 and USART1: baud rate generator, transmit buffer and shift register, two-deep receive FIFO with its
+// errors, 5 to 9 data bits, multi-processor mode. What has a clock line is ClockedUsart's. Source: data sheet
+// 8272, "USART".
 //
 // Deviations
-//  1. UMSELn other than 0 (synchronous, SPI master) is stored and reported; the unit stays asynchronous.
-//  2. Between frames and in them the TXD pin is shown high: the line's waveform is in the frame.
+//  1. UMSELn = 2, which is reserved, is reported and counts as asynchronous. Frames on a link reach a
+//     synchronous receiver only if XCK is its own; a slave of XCK hears the pin.
+//  2. Asynchronous: between frames and in them the TXD pin is shown high: the line's waveform is in the
+//  frame.
 //  3. A frame begins at the next tick of the baud rate generator's 16x (8x) clock.
 //  4. The majority of three samples is taken as the middle one.
 
 #include "cosim/core/clock.h"
 #include "cosim/core/message.h"
 #include "cosim/core/message_state.h"
+#include "emu/avr/peripherals/clocked_usart.h"
 #include "emu/avr/peripherals/ports.h"
 #include "emu/avr/peripherals/surroundings.h"
 #include "emu/chip/uart_counters.h"
@@ -22,13 +26,13 @@
 
 namespace puckloop::avr {
 
-class Usart {
+class Usart final : private ClockedUsart::Owner {
   public:
     struct Setup {
         int unit = 0;
         std::uint16_t base = 0;  ///< UCSRnA; UCSRnB, UCSRnC, UBRRnL, UBRRnH, UDRn at +1, +2, +4, +5, +6
         int receive_vector = 0;  ///< USARTn_RX; UDRE and TX follow
-        Pin rxd{}, txd{};
+        Pin rxd{}, txd{}, xck{};
         std::uint8_t power_bit = 0;  ///< of PRR0
     };
     Usart(const Surroundings& around, const Setup& setup, const cosim::ClockDomain& clock, Ports& ports,
@@ -44,7 +48,7 @@ class Usart {
 
     template <class Archive>
     void state(Archive& archive) {
-        archive(state_, counters_, receiver_);
+        archive(state_, counters_, receiver_, clocked_);
         archive.check(!state_.shifting || state_.frame.bit_period > 0, "a frame without a bit period");
         archive.check(state_.fifo.size() <= 3, "more characters than a USART holds");
     }
@@ -83,6 +87,9 @@ class Usart {
     std::uint8_t& b() const { return reg(1); }
     std::uint8_t& c() const { return reg(2); }
     std::uint32_t divisor() const { return static_cast<std::uint32_t>(reg(5) << 8 | reg(4)) + 1; }
+    unsigned mode() const;
+    bool clocked() const;
+    void configure_clocked();
     std::uint32_t ticks_per_bit() const;
     int data_bits() const;
     int parity() const;
@@ -94,6 +101,13 @@ class Usart {
     void deliver(const chip::UartReceiver::Character& character);
     void enable_receiver(bool on);
     void enable_transmitter(bool on);
+
+    std::optional<std::uint16_t> take_word() override;
+    void frame_out(const cosim::UartFrame& frame) override;
+    void word_out() override { ++counters_.sent; }
+    void all_out() override;
+    void word_in(Cycle now, std::uint16_t word, bool framing_error, bool parity_error) override;
+    bool listens() const override { return receiving(); }
 
     static std::uint8_t read_data(void* owner, std::uint16_t address);
     static void write_data(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);
@@ -113,6 +127,7 @@ class Usart {
     chip::UartReceiver receiver_;
     State state_;
     chip::UartCounters counters_;
+    ClockedUsart clocked_;
     EventQueue::Slot transmit_slot_;
     EventQueue::Slot receive_slot_;
 };

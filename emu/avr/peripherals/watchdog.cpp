@@ -20,11 +20,20 @@ Watchdog::Watchdog(const Surroundings& around, Core& core, const cosim::ClockDom
     around_.interrupts.connect(kVector, this, &acknowledge);
 }
 
-void Watchdog::reset(bool always_on, bool caused) {
+void Watchdog::reset(bool always_on) {
     always_on_ = always_on;
     changeable_until_ = 0;
-    control() = always_on || caused ? kWde : 0;
+    control() = always_on || (around_.io.raw(kMcusr) & kWdrf) ? kWde : 0;
     plan(around_.now);
+}
+
+void Watchdog::rate_changes(bool changed) {
+    const Cycle due = around_.events.due(slot_);
+    if (due == kNoCycle) return;
+    if (changed)
+        around_.events.schedule(slot_, clock_.first_cycle_at(kept_));
+    else
+        kept_ = clock_.time_of(due);
 }
 
 void Watchdog::restart() {
@@ -62,7 +71,7 @@ void Watchdog::due(void* owner, Cycle cycle) {
 }
 
 // WDE and the prescaler only change within four clocks after WDCE and WDE were written together. WDE cannot
-// be cleared while MCUSR.WDRF is set, nor with the fuse WDTON.
+// be cleared while MCUSR.WDRF is set; with the fuse WDTON neither it nor WDIE changes.
 void Watchdog::write_control(void* owner, std::uint16_t, std::uint8_t value, std::uint8_t mask) {
     auto& self = *static_cast<Watchdog*>(owner);
     const std::uint8_t old = self.control();
@@ -74,6 +83,7 @@ void Watchdog::write_control(void* owner, std::uint16_t, std::uint8_t value, std
     else
         next |= value & mask & kWde;  // setting it needs no sequence
     if (self.always_on_ || (self.around_.io.raw(kMcusr) & kWdrf)) next |= kWde;
+    if (self.always_on_) assign(next, kWdie, false);
     if ((value & mask & kWdce) && (value & mask & kWde)) self.changeable_until_ = now + 1 + kChangeable;
     self.control() = static_cast<std::uint8_t>(next & ~kWdce);
     if ((old ^ self.control()) & (kWde | kWdie | kWdp)) self.plan(now + 1);

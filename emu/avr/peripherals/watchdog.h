@@ -15,8 +15,10 @@ class Watchdog {
   public:
     Watchdog(const Surroundings& around, Core& core, const cosim::ClockDomain& clock);
 
-    /// `always_on`: fuse WDTON. `caused`: the watchdog made this reset, and stays on (WDRF overrides WDE).
-    void reset(bool always_on, bool caused);
+    /// `always_on`: fuse WDTON. MCUSR.WDRF keeps it on as well.
+    void reset(bool always_on);
+    /// Before and after a change of the CPU's clock, which is not the watchdog's.
+    void rate_changes(bool changed);
     /// WDR.
     void restart();
 
@@ -38,6 +40,7 @@ class Watchdog {
     const cosim::ClockDomain& clock_;
     Cycle changeable_until_ = 0;  ///< of the timed sequence
     bool always_on_ = false;
+    cosim::Time kept_ = 0;  ///< when the event is due, while the clock's rate changes
     EventQueue::Slot slot_;
 };
 

@@ -98,6 +98,7 @@ const Op* BREAK(Machine&, const Op* op) {
 const Op* SLEEP(Machine& m, const Op* op) {
     m.current = op;
     m.now = m.cycle;
+    m.now = m.cycle;
     if (m.hooks.sleep) m.hooks.sleep();
     constexpr std::uint32_t kForGood = 0x30001;  // key of the warning
     if (m.asleep && !(m.sreg & sreg::I))
