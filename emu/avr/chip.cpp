@@ -134,6 +134,7 @@ struct Chip::Parts {
     cosim::Time now = 0;
     double supply;
     bool held_in_reset = false;  ///< by the supply
+    ResetCause hold_cause{};
     ChipReport report;
 
     Parts(const DeviceInfo& info, Pins& pins, const ChipOptions& chosen)
@@ -300,15 +301,16 @@ struct Chip::Parts {
         adc.set_avcc(volts);
         const double level = system.brown_out_off() ? 0.0 : fuses.brown_out_volts();
         const double lowest = std::max(level, kPowerOnVolts);
-        const ResetCause cause = volts < kPowerOnVolts || !level ? ResetCause::PowerOn : ResetCause::BrownOut;
         if (!held_in_reset && volts < lowest && before >= lowest) {
-            core.reset(cause);
+            hold_cause = level > 0 ? ResetCause::BrownOut : ResetCause::PowerOn;
+            if (volts < kPowerOnVolts) hold_cause = ResetCause::PowerOn;
+            core.reset(hold_cause);
             held_in_reset = true;
             core.stall_until(kNoCycle);
         } else if (held_in_reset) {
-            if (volts < kPowerOnVolts) io.raw(kMcusr) = bit(0);  // PORF: the flags are lost
+            if (volts < kPowerOnVolts) hold_cause = ResetCause::PowerOn;
             if (volts < lowest + kHysteresisVolts) return;
-            core.reset(io.raw(kMcusr) & bit(0) ? ResetCause::PowerOn : ResetCause::BrownOut);
+            core.reset(hold_cause);  // once more, and it runs
             held_in_reset = false;
         }
     }
@@ -359,6 +361,7 @@ struct Chip::Parts {
         archive.bounded(now, 0, cosim::kNever);
         archive.bounded(supply, 0.0, 1e3);
         archive(held_in_reset);
+        archive.bounded(hold_cause, ResetCause::PowerOn, ResetCause::Watchdog);
         if constexpr (Archive::kLoads) {
             adc.set_avcc(supply);
             watch_triggers(false);

@@ -601,25 +601,23 @@ loop:   sleep
     }
 }
 
-TEST_CASE("a mode that no model is behind is reported by name, once") {
+TEST_CASE("what no model is behind is reported by name, once") {
     Rig rig(R"(
-        ldi r16, 0xC6
-        sts UCSR0C, r16     ; SPI master
+        ldi r16, 0x86
+        sts UCSR0C, r16     ; a reserved mode
         sts UCSR0C, r16
-        ldi r16, 0x46
-        sts UCSR1C, r16     ; synchronous
-        ldi r16, 0x20
-        sts ASSR, r16
-        ldi r16, 0x06
-        sts UCSR1C, r16
+        sts OSCCAL, r16
+        out OCDR, r16
+        sts 0x67, r16       ; no register
 end:    rjmp end
 )");
     rig.run(100);
     const ChipReport report = rig.chip.report();
-    REQUIRE(report.unmodelled.size() == 3);
+    REQUIRE(report.unmodelled.size() == 4);
     CHECK(report.unmodelled[0].name == "UCSR0C.UMSEL0");
     CHECK(report.unmodelled[0].write);
-    CHECK(report.unmodelled[1].name == "UCSR1C.UMSEL1");
-    CHECK(report.unmodelled[2].name == "ASSR.AS2");
-    CHECK(rig.chip.peek("UCSR0C") == 0xC6);
+    CHECK(report.unmodelled[1].name == "OSCCAL");
+    CHECK(report.unmodelled[2].name == "OCDR");
+    CHECK(report.unmodelled[3].name.empty());
+    CHECK(report.unmodelled[3].address == 0x67);
 }
