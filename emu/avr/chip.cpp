@@ -401,6 +401,22 @@ void Chip::load(const image::AvrImage& image) {
     if (image.lock_bits) fuses.lock = *image.lock_bits;
 }
 
+image::AvrImage Chip::memory() const {
+    image::AvrImage image;
+    image::ByteSegment flash;
+    for (std::uint32_t word = 0; word < parts_->device.flash_words; ++word) {
+        const std::uint16_t value = parts_->core.program(word);
+        flash.bytes.push_back(static_cast<std::uint8_t>(value));
+        flash.bytes.push_back(static_cast<std::uint8_t>(value >> 8));
+    }
+    image.flash.push_back(std::move(flash));
+    image.eeprom.push_back({0, parts_->eeprom.bytes()});
+    const Fuses& fuses = parts_->fuses;
+    image.fuses = {fuses.low, fuses.high, fuses.extended};
+    image.lock_bits = fuses.lock;
+    return image;
+}
+
 std::vector<std::uint8_t>& Chip::eeprom() {
     return parts_->eeprom.bytes();
 }

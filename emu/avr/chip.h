@@ -88,6 +88,8 @@ class Chip {
 
     /// Flash, EEPROM, fuses and lock bits of an image. The image was checked against the device.
     void load(const image::AvrImage& image);
+    /// What its memories hold now, as an image that load() takes.
+    image::AvrImage memory() const;
     std::vector<std::uint8_t>& eeprom();
     const Fuses& fuses() const;
     /// For the next power_on(): what a programmer would set.

@@ -66,7 +66,7 @@ NvmFile::NvmFile(std::string path, std::string_view chip, const image::Image& be
                                          begins_with.file, of_image.substr(0, kShownOfHash),
                                          image_.substr(0, kShownOfHash)),
                              "that image; or remove the file, and the board begins with this one");
-        kept_ = image::parse_image(rest, path_);
+        contents_ = std::string(rest);
     } catch (...) {
         ::close(descriptor_);
         ::unlink(part_.c_str());
@@ -92,16 +92,20 @@ void NvmFile::take() {
 }
 
 image::Image NvmFile::over(image::Image image) const {
-    if (!kept_) return image;
-    image.program = kept_->program;
-    image.eeprom = kept_->eeprom;
-    image.config = kept_->config;
-    image.other = kept_->other;
+    if (!contents_) return image;
+    const image::Image kept = image::parse_image(*contents_, path_);
+    image.program = kept.program;
+    image.eeprom = kept.eeprom;
+    image.config = kept.config;
+    image.other = kept.other;
     return image;
 }
 
 void NvmFile::save(const image::Words& words) {
-    const std::string contents = image::write_dspic_hex(words);
+    save_contents(image::write_dspic_hex(words));
+}
+
+void NvmFile::save_contents(const std::string& contents) {
     const std::string text = fmt::format("{}\nchip: {}\nimage: {}\ncontents: {}\n{}", kTitle, chip_, image_,
                                          image::sha256_of(contents), contents);
     const auto require = [&](bool done) {

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace puckloop::image {
 
 namespace {
@@ -66,6 +68,37 @@ void read_avr_elf(std::string_view bytes, AvrImage& image, const AvrPart& part, 
     image.lines = read_lines(elf);
 }
 
+/// Pieces of a HEX file go to the memories that their addresses mean.
+void read_avr_hex(std::string_view bytes, AvrImage& image, ByteSegments& eeprom) {
+    for (ByteSegment& segment : parse_intel_hex(bytes, image.file)) {
+        const std::uint64_t address = segment.address;
+        const std::string place = fmt::format("address 0x{:x}", address);
+        if (address >= kEeprom && address < kFuses)
+            eeprom.add(address - kEeprom, std::move(segment.bytes), place);
+        else if (address == kFuses)
+            image.fuses = std::move(segment.bytes);
+        else if (address == kLock)
+            image.lock_bits = segment.bytes[0];
+        else
+            image.flash.push_back(std::move(segment));
+    }
+}
+
+/// The bytes that are not erased, in rows of 16.
+void add_written(std::vector<ByteSegment>& all, const std::vector<ByteSegment>& segments,
+                 std::uint64_t base) {
+    constexpr std::size_t kRow = 16;
+    constexpr std::uint8_t kErased = 0xFF;
+    for (const ByteSegment& segment : segments)
+        for (std::size_t at = 0; at < segment.bytes.size(); at += kRow) {
+            const auto from = segment.bytes.begin() + static_cast<std::ptrdiff_t>(at);
+            const auto to = segment.bytes.begin() +
+                            static_cast<std::ptrdiff_t>(std::min(at + kRow, segment.bytes.size()));
+            if (std::any_of(from, to, [](std::uint8_t byte) { return byte != kErased; }))
+                all.push_back({base + segment.address + at, {from, to}});
+        }
+}
+
 void check_fits(const std::vector<ByteSegment>& segments, std::uint32_t size, std::string_view what,
                 const AvrImage& image, const AvrPart& part) {
     for (const ByteSegment& segment : segments)
@@ -101,7 +134,8 @@ AvrImage parse_avr_image(std::string_view bytes, const std::string& file, const 
         image.flash = flash.joined();
         image.eeprom = eeprom.joined();
     } else if (looks_like_hex(bytes)) {
-        image.flash = parse_intel_hex(bytes, file);
+        read_avr_hex(bytes, image, eeprom);
+        image.eeprom = eeprom.joined();
     } else {
         throw InputError(file, "offset 0x0", "is in no known image format",
                          "Intel HEX (':' first) or ELF32 of avr-gcc");
@@ -112,6 +146,15 @@ AvrImage parse_avr_image(std::string_view bytes, const std::string& file, const 
     check_fits(image.flash, part.flash_bytes, "flash", image, part);
     check_fits(image.eeprom, part.eeprom_bytes, "EEPROM", image, part);
     return image;
+}
+
+std::string write_avr_hex(const AvrImage& image) {
+    std::vector<ByteSegment> all;
+    add_written(all, image.flash, 0);
+    add_written(all, image.eeprom, kEeprom);
+    if (!image.fuses.empty()) all.push_back({kFuses, image.fuses});
+    if (image.lock_bits) all.push_back({kLock, {*image.lock_bits}});
+    return write_intel_hex(all);
 }
 
 AvrImage load_avr_image(const std::string& path, const AvrPart& part) {

@@ -1,8 +1,9 @@
 #pragma once
-// An AVR firmware image: bytes of flash, EEPROM and fuses by byte address, from Intel HEX or from the ELF
-// that avr-gcc writes. Source: avr-libc's linker scripts (flash at 0, RAM at 0x800000, EEPROM at 0x810000,
-// fuses at 0x820000, lock bits at 0x830000, signature at 0x840000), binutils' elf/avr.h and gcc's device
-// information note.
+// An AVR firmware image: bytes of flash, EEPROM and fuses by byte address, from Intel HEX (where other
+// memories than the flash have the addresses that avr-objcopy gives them) or from the ELF that avr-gcc
+// writes. Source: avr-libc's linker scripts (flash at 0, RAM at 0x800000, EEPROM at 0x810000, fuses at
+// 0x820000, lock bits at 0x830000, signature at 0x840000), binutils' elf/avr.h and gcc's device information
+// note.
 
 #include "emu/image/byte_segments.h"
 #include "emu/image/image.h"
@@ -47,5 +48,7 @@ struct AvrPart {
 AvrImage load_avr_image(const std::string& path, const AvrPart& part);
 /// The same for bytes already in memory; `file` is the name for messages.
 AvrImage parse_avr_image(std::string_view bytes, const std::string& file, const AvrPart& part);
+/// Flash, EEPROM, fuses and lock bits as Intel HEX; erased bytes are left out.
+std::string write_avr_hex(const AvrImage& image);
 
 }  // namespace puckloop::image

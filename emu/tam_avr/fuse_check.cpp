@@ -9,7 +9,7 @@ namespace puckloop::tam {
 namespace {
 
 constexpr std::uint32_t kFlashBytes = 128 * 1024;
-constexpr unsigned kClockSelect = 0x0F, kLowestCrystal = 0x03;  // below: RC oscillators, external clock
+constexpr unsigned kClockSelect = 0x0F, kLowestCrystal = 0x04;  // below: RC oscillators, external clock
 constexpr unsigned kClockOutput = 0x40;                         // CKOUT, programmed = 0
 constexpr unsigned kSpiEnable = 0x20;                           // SPIEN
 constexpr unsigned kBrownOut = 0x07, kNoBrownOut = 0x07, kBrownOut4V3 = 0x04;

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <memory>
 
@@ -39,9 +40,32 @@ std::optional<std::uint16_t> fosc_word(const std::string& text, std::optional<st
                      "robot, image or 0xWORD");
 }
 
+/// "0xFF,0xD9,0xFD" or with the lock byte behind.
+std::vector<std::uint8_t> fuse_bytes(const std::string& text) {
+    constexpr std::size_t kFewest = 3, kMost = 4;
+    std::vector<std::uint8_t> bytes;
+    const auto wrong = [&] {
+        return InputError("", "--fuses", fmt::format("'{}' are no fuse bytes", text),
+                          "0xLOW,0xHIGH,0xEXTENDED, perhaps ,0xLOCK behind");
+    };
+    for (std::size_t at = 0; at <= text.size();) {
+        const std::size_t end = std::min(text.find(',', at), text.size());
+        const std::string word = text.substr(at, end - at);
+        std::uint8_t byte = 0;
+        const char* const last = word.data() + word.size();
+        if (!word.starts_with("0x") || word.size() == 2) throw wrong();
+        const auto [stop, error] = std::from_chars(word.data() + 2, last, byte, 16);
+        if (error != std::errc{} || stop != last) throw wrong();
+        bytes.push_back(byte);
+        at = end + 1;
+    }
+    if (bytes.size() < kFewest || bytes.size() > kMost) throw wrong();
+    return bytes;
+}
+
 struct Arguments {
     exec::ExecOptions options;
-    std::string fosc = "robot";
+    std::string fosc = "robot", fuses;
     std::optional<double> crystal_hertz, baud;
     std::array<std::optional<double>, 2> uart_baud;
     LogOptions log;
@@ -86,7 +110,8 @@ void describe(Command& app, Arguments& a) {
            "been on for 3 s without a reset")
         ->check(number_between(0.0, kLongestRun));
     app.add_option("--i2c", o.i2c,
-                   "script:FILE, a bus master for I2C module 1 of targets that are slaves: lines `<time_s> w "
+                   "script:FILE, a bus master for I2C module 1 of targets that are slaves (an AVR alone is "
+                   "one): lines `<time_s> w "
                    "<0xADDR> <hex bytes>` or `<time_s> r <0xADDR> <register or -> <count>`");
     app.add_option("--i2c-device", o.i2c_devices,
                    "on the bus of a target that is its master, repeatable: ground (0x60), turret (0x61) or "
@@ -139,6 +164,9 @@ void describe(Command& app, Arguments& a) {
                    "image, or "
                    "0xWORD")
         ->capture_default_str();
+    app.add_option("--fuses", a.fuses,
+                   "fuse bytes of an AVR, 0xLOW,0xHIGH,0xEXTENDED[,0xLOCK], in place of the image's")
+        ->type_name("BYTES");
     auto* realtime =
         app.add_flag("--realtime", a.realtime,
                      "pace by the wall clock (default if a pty, TCP or a terminal is at an end)");
@@ -168,6 +196,12 @@ void declare_exec(Command& app, int& status) {
                              "--board pic");
         const exec::TargetDefaults defaults = exec::defaults_of(bench.mcu, bench.board);
         bench.target.chip.crystal_hertz = a.crystal_hertz.value_or(defaults.crystal_hertz);
+        const bool is_avr = defaults.mcu.starts_with("atmega");
+        if (!is_avr && !a.fuses.empty())
+            throw InputError("", "--fuses", fmt::format("the {} has none", defaults.mcu), "an AVR");
+        if (is_avr && command->count("--fosc") > 0)
+            throw InputError("", "--fosc", fmt::format("the {} has no such word", defaults.mcu), "--fuses");
+        if (!a.fuses.empty()) bench.target.fuses = fuse_bytes(a.fuses);
         bench.target.chip.fosc = fosc_word(a.fosc, defaults.fosc);
         for (std::size_t unit = 0; unit < bench.baud.size(); ++unit)
             bench.baud[unit] = a.uart_baud[unit].value_or(a.baud.value_or(defaults.baud[unit]));

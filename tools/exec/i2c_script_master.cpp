@@ -58,7 +58,7 @@ Time I2cScriptMaster::due() const {
 Time I2cScriptMaster::limit() const {
     if (!open_) return next_;
     // An answer that comes at t lets the next phase begin one clock later.
-    const Time now = target_.chip().now();
+    const Time now = target_.now();
     const Time answer = target_.earliest_i2c_answer();
     return (answer == cosim::kNever ? now : std::max(answer, now)) + clock_;
 }

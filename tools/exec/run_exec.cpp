@@ -84,9 +84,9 @@ BenchOptions bench_options(const ExecOptions& options) {
     if (bench.board == "rab")
         throw InputError("", "--i2c-device", "the rab board is a slave of its bus, not its master",
                          "a board that is an I2C master, or --i2c script:FILE");
-    if (bench.mcu.starts_with("atmega") || bench.board == "tam")
-        throw InputError("", "--i2c-device", "devices cannot be put on the two-wire bus of an AVR",
-                         "a dsPIC that is an I2C master");
+    if (bench.board == "tam")
+        throw InputError("", "--i2c-device", "the tam board's bus has its LED driver and nothing else",
+                         "a chip or board with an open bus");
     if (!options.i2c.empty())
         throw InputError("", "--i2c-device", "an --i2c script speaks to the target on the same bus",
                          "one of the two");
@@ -174,11 +174,12 @@ int run_exec(const ExecOptions& options) {
         resets.push_back({cosim::from_seconds(seconds), StimulusLine::kReset, 1.0});
     bench.stimulate(resets);
     std::optional<board::NvmFile> nvm;
-    if (!options.nvm.empty() && !bench.target().keeps_memory())
-        throw InputError("", "--nvm", "this chip's memory cannot be kept in a file", "a dsPIC");
     if (!options.nvm.empty())
         nvm.emplace(options.nvm, defaults_of(options.bench.mcu, options.bench.board).mcu, image);
-    bench.target().load(nvm ? nvm->over(image) : image);
+    if (nvm)
+        bench.target().load_kept(image, *nvm);
+    else
+        bench.target().load(image);
 
     std::signal(SIGINT, on_interrupt);
     std::signal(SIGTERM, on_interrupt);
@@ -203,7 +204,7 @@ int run_exec(const ExecOptions& options) {
     outcome.end = bench.run_until(budget);
     const bool stuck = bench.master() != nullptr && bench.master()->report().stuck_since;
     bench.finish();
-    if (nvm) nvm->save(bench.chip().memory());
+    if (nvm) bench.target().save_memory(*nvm);
     outcome.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     outcome.pc = bench.target().pc();
     outcome.symbol = symbol_at(image, outcome.pc);

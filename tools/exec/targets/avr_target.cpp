@@ -1,5 +1,7 @@
 #include "tools/exec/targets/avr_target.h"
 
+#include "emu/board/nvm_file.h"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -18,6 +20,7 @@ std::string hexadecimal(std::uint32_t address) {
 
 image::Image AvrTarget::read_image(const std::string& file, std::string_view) {
     firmware_ = image::load_avr_image(file, device_.image_part());
+    use_fuses();
     image::Image image;
     image.file = firmware_.file;
     image.format = firmware_.format;
@@ -25,6 +28,29 @@ image::Image AvrTarget::read_image(const std::string& file, std::string_view) {
     image.chip = firmware_.chip;
     image.symbols = firmware_.symbols;
     return image;
+}
+
+void AvrTarget::use_fuses() {
+    constexpr std::size_t kFuses = 3;
+    if (fuses_.empty()) return;
+    firmware_.fuses.assign(fuses_.begin(), fuses_.begin() + kFuses);
+    if (fuses_.size() > kFuses) firmware_.lock_bits = fuses_[kFuses];
+}
+
+void AvrTarget::load_kept(const image::Image& image, const board::NvmFile& nvm) {
+    if (nvm.contents()) {
+        image::AvrImage kept = image::parse_avr_image(*nvm.contents(), nvm.path(), device_.image_part());
+        firmware_.flash = std::move(kept.flash);
+        firmware_.eeprom = std::move(kept.eeprom);
+        firmware_.fuses = std::move(kept.fuses);
+        firmware_.lock_bits = kept.lock_bits;
+        use_fuses();
+    }
+    load(image);
+}
+
+void AvrTarget::save_memory(board::NvmFile& nvm) {
+    nvm.save_contents(image::write_avr_hex(avr().memory()));
 }
 
 std::string AvrTarget::place(std::uint32_t pc) const {

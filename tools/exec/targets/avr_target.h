@@ -12,8 +12,9 @@ namespace puckloop::exec {
 
 class AvrTarget : public Target {
   public:
-    AvrTarget(const avr::DeviceInfo& device, TargetListener& listener)
-        : device_(device), listener_(listener) {}
+    /// `fuses`: as TargetOptions has them.
+    AvrTarget(const avr::DeviceInfo& device, const std::vector<std::uint8_t>& fuses, TargetListener& listener)
+        : device_(device), fuses_(fuses), listener_(listener) {}
 
     image::Image read_image(const std::string& file, std::string_view mcu) override;
     void uart_receive(int unit, const cosim::UartFrame& frame) override {
@@ -40,7 +41,8 @@ class AvrTarget : public Target {
         return firmware_.lines.addresses(file, line);
     }
     void reset_button() override { avr().external_reset(); }
-    bool keeps_memory() const override { return false; }
+    void load_kept(const image::Image& image, const board::NvmFile& nvm) override;
+    void save_memory(board::NvmFile& nvm) override;
 
   protected:
     virtual avr::Chip& avr() = 0;
@@ -58,7 +60,10 @@ class AvrTarget : public Target {
     std::string place(std::uint32_t pc) const;
     double seconds(avr::Cycle cycle);
 
+    void use_fuses();
+
     const avr::DeviceInfo& device_;
+    std::vector<std::uint8_t> fuses_;
     TargetListener& listener_;
     std::array<std::pair<std::uint8_t, std::uint8_t>, kPorts> shown_{};  ///< levels, driven
     image::AvrImage firmware_;

@@ -2,6 +2,7 @@
 // the debug console, uart2 the socket of the radio module.
 
 #include "emu/tam_avr/board.h"
+#include "emu/tam_avr/fuse_check.h"
 #include "tools/exec/targets/avr_target.h"
 
 #include <nlohmann/json.hpp>
@@ -13,7 +14,7 @@ namespace {
 class TamTarget final : public AvrTarget, private tam::BoardListener {
   public:
     TamTarget(const TargetOptions& options, TargetListener& listener)
-        : AvrTarget(avr::atmega1284p(), listener), board_(parameters(options), *this) {
+        : AvrTarget(avr::atmega1284p(), options.fuses, listener), board_(parameters(options), *this) {
         board_.chip().set_skipping(options.skip_idle);
     }
 
@@ -28,6 +29,12 @@ class TamTarget final : public AvrTarget, private tam::BoardListener {
         board_.uart_receive(unit - 1, frame);
     }
     void reset_button() override { board_.reset_button(); }
+    std::vector<std::string> warnings() override {
+        std::vector<std::string> lines = AvrTarget::warnings();
+        for (std::string& line : tam::fuse_warnings(board_.chip().fuses(), firmware()))
+            lines.push_back(std::move(line));
+        return lines;
+    }
     std::string report() const override {
         nlohmann::ordered_json json;
         json["powered"] = board_.powered();

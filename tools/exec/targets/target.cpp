@@ -4,6 +4,7 @@
 
 #include "emu/board/chip_json.h"
 #include "emu/board/chip_warnings.h"
+#include "emu/board/nvm_file.h"
 #include "emu/image/device.h"
 
 #include <fmt/format.h>
@@ -25,6 +26,14 @@ image::Image Target::read_image(const std::string& file, std::string_view mcu) {
     image::Image image = image::load_image(file);
     image::check_fits(image, image::find_device(mcu));
     return image;
+}
+
+void Target::load_kept(const image::Image& image, const board::NvmFile& nvm) {
+    load(nvm.over(image));
+}
+
+void Target::save_memory(board::NvmFile& nvm) {
+    nvm.save(chip().memory());
 }
 
 std::string Target::chip_json() {

@@ -18,6 +18,10 @@
 #include <string_view>
 #include <vector>
 
+namespace puckloop::board {
+class NvmFile;
+}
+
 namespace puckloop::exec {
 
 /// The I2C module that an `--i2c` script speaks to.
@@ -51,6 +55,7 @@ struct TargetOptions {
     bool skip_idle = true;                     ///< busy-wait loops are skipped forward
     std::string log{};                         ///< file for the board's log, where it keeps one; empty: none
     std::vector<I2cDeviceSpec> i2c_devices{};  ///< on the bus of a target that is a master
+    std::vector<std::uint8_t> fuses{};  ///< of an AVR: low, high, extended, perhaps lock; empty: the image's
     std::string rab_log{};  ///< file for the log of a range-and-bearing board among them; empty: none
 };
 
@@ -112,8 +117,10 @@ class Target {
     }
     /// A pulse on the reset pin now.
     virtual void reset_button() { chip().mclr(); }
-    /// `--nvm` can keep what this chip's memories hold.
-    virtual bool keeps_memory() const { return true; }
+    /// load() with what `nvm` kept in place of the image's own, if it kept anything. Throws InputError.
+    virtual void load_kept(const image::Image& image, const board::NvmFile& nvm);
+    /// What the memories hold now goes to the file. Throws RunError.
+    virtual void save_memory(board::NvmFile& nvm);
 };
 
 /// `mcu` as --mcu takes it; the chip alone, nothing connected. Throws InputError for an unknown name.
