@@ -98,10 +98,145 @@ TEST_CASE("exec runs a program with its USART at a script's end, and stops where
     const Result budget = run_puckloop("exec" + kMcu + hex + " --stop-at 0x22 --seconds 0.1");
     CHECK(budget.status == 1);
     CHECK_THAT(budget.output, Contains("work: 1600"));
-    CHECK(run_puckloop("exec" + kMcu + hex + " --nvm x.nvm --seconds 0.1").status == 2);
     CHECK(
         run_puckloop("exec" + kMcu + hex + " --reset-at 0.05 --seconds 0.1 --json").output.find("external") !=
         std::string::npos);
+}
+
+TEST_CASE("exec: what an AVR's memories hold lasts from run to run") {
+    const Folder folder;
+    const std::string hex = folder.file("count.hex"), nvm = folder.file("count.nvm"),
+                      logs = folder.file("logs");
+    // Counts its starts in the EEPROM and sends the count.
+    const std::string source = folder.file("count.s", R"(
+        sbi  EECR, 0
+        in   r16, EEDR
+        inc  r16
+        out  EEDR, r16
+        sbi  EECR, 2
+        sbi  EECR, 1
+        ldi  r17, 8
+        sts  UBRR0L, r17
+        ldi  r17, 0x08
+        sts  UCSR0B, r17
+        sts  UDR0, r16
+end:    rjmp end
+)");
+    REQUIRE(run_puckloop("asm" + kMcu + source + " -o " + hex).status == 0);
+    const std::string command = "exec" + kMcu + hex + " --seconds 0.01 --log " + logs + " --nvm " + nvm;
+    for (const char* count : {",tx,00,", ",tx,01,", ",tx,02,"}) {
+        REQUIRE(run_puckloop(command + " --fuses 0xFF,0xD9,0xFD,0x3F").status == 0);
+        CHECK_THAT(content_of(logs + "/uart1.csv"), Contains(count));
+    }
+    const std::string kept = content_of(nvm);
+    CHECK_THAT(kept, Contains("chip: atmega1284p") && Contains(":03000000FFD9FD") && Contains(":010000003F"));
+    // Without its four lines it is an image.
+    const std::string image = folder.file("kept.hex", kept.substr(kept.find("\n:") + 1));
+    REQUIRE(run_puckloop("exec" + kMcu + image + " --seconds 0.01 --log " + logs).status == 0);
+    CHECK_THAT(content_of(logs + "/uart1.csv"), Contains(",tx,03,"));
+    std::string damaged = kept;
+    damaged[damaged.size() - 20] ^= 1;
+    folder.file("count.nvm", damaged);
+    const Result refused = run_puckloop(command);
+    CHECK(refused.status == 2);
+    CHECK_THAT(refused.output, Contains("is damaged"));
+}
+
+TEST_CASE("exec: fuses, supply and what no model is behind, of an AVR") {
+    const Folder folder;
+    const std::string hex = folder.file("a.hex");
+    const std::string source = folder.file("a.s", "ldi r16, 1\n sts OSCCAL, r16\nend: rjmp end\n");
+    REQUIRE(run_puckloop("asm" + kMcu + source + " -o " + hex).status == 0);
+    const auto run = [&](const std::string& options) {
+        return run_puckloop("exec" + kMcu + hex + " --seconds 0.01 " + options);
+    };
+    CHECK_THAT(run("--fuses 0x62,0xD9,0xFF").output, Contains("work: 1000"));
+    for (const char* wrong : {"--fuses 0x62", "--fuses 0x62,0xD9,0x1FF", "--fuses 62,D9,FF", "--fosc 0xFF"}) {
+        const Result result = run(wrong);
+        CHECK(result.status == 2);
+        CHECK(std::count(result.output.begin(), result.output.end(), '\n') == 1);
+    }
+    CHECK(run_puckloop("exec --mcu dspic30f6014a " + hex + " --fuses 0xFF,0xD9,0xFD").status == 2);
+    const Result strict = run("--strict");
+    CHECK(strict.status == 1);
+    CHECK_THAT(strict.output, Contains("writes OSCCAL, which no model is behind"));
+    const std::string stimulus =
+        folder.file("supply.txt", "0.002 vcc 2\n0.003 vcc 5\n0.005 vcc 0\n0.006 vcc 3.3\n");
+    const Result supply = run("--json --stimulus " + stimulus);
+    CHECK_THAT(supply.output, Contains("\"time_s\":0.0020000625,\"cause\":\"brown-out\"") &&
+                                  Contains("\"time_s\":0.0050000625,\"cause\":\"power-on\""));
+}
+
+TEST_CASE("exec: an AVR as master of devices, and as slave of a script") {
+    const Folder folder;
+    const std::string hex = folder.file("master.hex"), logs = folder.file("logs");
+    // Addresses 0x62 and 0x60, then reads two bytes of 0x60; what TWSR said goes out by USART0.
+    const std::string source = folder.file("master.s", R"(
+        ldi  r17, 8
+        sts  UBRR0L, r17
+        ldi  r17, 0x08
+        sts  UCSR0B, r17
+        ldi  r17, 72
+        sts  TWBR, r17
+        ldi  r18, 0xC4
+        rcall address
+        rcall stop
+        ldi  r18, 0xC0
+        rcall address
+        rcall stop
+        ldi  r18, 0xC1
+        rcall address
+        ldi  r16, 0xC4
+        rcall go
+        ldi  r16, 0x84
+        rcall go
+        rcall stop
+end:    rjmp end
+address: ldi r16, 0xA4
+        rcall go
+        sts  TWDR, r18
+        ldi  r16, 0x84
+go:     sts  TWCR, r16
+wait:   lds  r17, TWCR
+        sbrs r17, 7
+        rjmp wait
+        lds  r17, TWSR
+send:   lds  r19, UCSR0A
+        sbrs r19, 5
+        rjmp send
+        sts  UDR0, r17
+        ret
+stop:   ldi  r16, 0x94
+        sts  TWCR, r16
+over:   lds  r17, TWCR
+        sbrc r17, 4
+        rjmp over
+        ret
+)");
+    REQUIRE(run_puckloop("asm" + kMcu + source + " -o " + hex).status == 0);
+    const Result run =
+        run_puckloop("exec" + kMcu + hex + " --seconds 0.02 --i2c-device ground --json --log " + logs);
+    INFO(run.output);
+    CHECK(run.status == 0);
+    CHECK_THAT(run.output,
+               Contains("\"i2c_bus\"") && Contains("\"bytes_read\":2") && Contains("\"not_acknowledged\":1"));
+    std::string said;
+    const std::string log = content_of(logs + "/uart1.csv");
+    for (std::size_t at = log.find(",tx,"); at != std::string::npos; at = log.find(",tx,", at + 1))
+        said += log.substr(at + 4, 2) + " ";
+    CHECK(said == "08 20 08 18 08 40 50 58 ");
+    CHECK_THAT(run_puckloop("exec --board tam " + hex + " --i2c-device ground").output,
+               Contains("LED driver"));
+#ifdef AVR_PROGRAMS
+    const std::string script =
+        folder.file("script.txt", "0.001 w 0x00 03 a1 b2 c3\n0.005 r 0x00 3 3\n0.01 w 0x11 01\n");
+    const Result slave = run_puckloop("exec" + kMcu + AVR_PROGRAMS +
+                                      "/twi_slave.elf --seconds 0.02 --json --i2c script:" + script);
+    INFO(slave.output);
+    CHECK(slave.status == 0);
+    CHECK_THAT(slave.output, Contains("\"bytes\":\"a1 b2 c3\"") && Contains("\"addresses_refused\":1") &&
+                                 Contains("\"played\":3"));
+#endif
 }
 
 TEST_CASE("an image for another chip, cut short or past the flash is refused in one line") {
