@@ -7,6 +7,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <bit>
+
 using namespace puckloop;
 using namespace puckloop::avr;
 using test::DriverBench;
@@ -307,5 +309,88 @@ next:   sts TWCR, r16
         CHECK((rig.chip.peek("TWCR") & 0x10) == 0);
         CHECK((rig.chip.peek("TWSR") & 0xF8) == 0xF8);
         CHECK(rig.phases.size() == 1);  // without a STOP of ours
+    }
+}
+
+TEST_CASE(
+    "USART1 by interrupts, double speed, even parity: an echo, and each error in its character's place") {
+    RandomStream random(20261123, "echo");
+    DriverBench bench("echo");
+    bench.start();
+    bench.chip.run_until(200 * cosim::kMicrosecond);
+    std::vector<std::uint8_t> good;
+    for (int i = 0; i < 12; ++i) {
+        cosim::UartFrame frame;
+        frame.start = bench.chip.now() + 3 * cosim::kMicrosecond;
+        frame.bit_period = 8'500'000;  // 8 * 17 clocks
+        frame.data = drawn(random);
+        frame.parity = 2;
+        frame.stop_bits = 2;
+        const bool odd = std::popcount(frame.data) % 2;
+        const bool wrong_parity = i == 4, is_break = i == 8;
+        frame.parity_bit = odd != wrong_parity;
+        frame.is_break = is_break;
+        if (!wrong_parity && !is_break) good.push_back(static_cast<std::uint8_t>(frame.data));
+        bench.chip.run_until(frame.start + 10 * frame.bit_period);
+        bench.chip.uart_receive(1, frame);
+        bench.chip.run_until(frame.start + 13 * frame.bit_period);
+    }
+    bench.chip.run_until(bench.chip.now() + cosim::kMillisecond);
+    CHECK(bench.result(0) == 0x04);           // UPE
+    CHECK((bench.result(1) & 0x10) == 0x10);  // FE
+    REQUIRE(bench.frames.size() == good.size());
+    for (std::size_t i = 0; i < good.size(); ++i) {
+        const cosim::UartFrame& frame = bench.frames[i].second;
+        CHECK(frame.data == static_cast<std::uint8_t>(~good[i]));
+        CHECK(frame.parity == 2);
+        CHECK(frame.parity_bit == std::popcount(frame.data) % 2);
+        CHECK(frame.stop_bits == 2);
+        CHECK(frame.bit_period == 8'500'000);
+    }
+}
+
+TEST_CASE("the two-wire master of util/twi.h: write, repeated START, read; every status code") {
+    RandomStream random(20261123, "twi");
+    DriverBench bench("twi_master");
+    const auto address = static_cast<std::uint8_t>(8 + random.below(100));
+    const std::uint8_t place = drawn(random), value = drawn(random), read[] = {drawn(random), drawn(random)};
+    bench.put(0, address);
+    bench.put(1, place);
+    bench.put(2, value);
+    bench.start();
+    std::size_t answered = 0, reads = 0;
+    while (bench.chip.now() < cosim::kMillisecond && !bench.chip.stopped_at()) {
+        bench.chip.run_until(bench.chip.now() + cosim::kMicrosecond);
+        if (bench.phases.size() == answered) continue;
+        cosim::I2cPhase answer = bench.phases[answered++];
+        if (answer.kind == Kind::Stop) continue;
+        bench.chip.run_until(answer.start + 9 * answer.clock_period);
+        const bool data = answer.kind == Kind::Read;
+        answer.kind = data ? Kind::Data : Kind::Acknowledge;
+        if (data)
+            answer.byte = read[reads++];
+        else
+            answer.ack = 1;
+        bench.chip.twi_answer(answer);
+    }
+    REQUIRE(bench.chip.stopped_at());
+    const std::uint8_t codes[] = {0x08, 0x18, 0x28, 0x28, 0x10, 0x40, 0x50, 0x58};
+    for (std::size_t i = 0; i < std::size(codes); ++i)
+        CHECK(bench.result(i) == codes[i]);
+    CHECK(bench.result(32) == read[0]);
+    CHECK(bench.result(33) == read[1]);
+    CHECK(bench.result(34) == 0xF8);
+    const std::pair<Kind, int> sent[] = {{Kind::Start, address << 1},
+                                         {Kind::Write, place},
+                                         {Kind::Write, value},
+                                         {Kind::Start, address << 1 | 1},
+                                         {Kind::Read, 1},
+                                         {Kind::Read, 0},
+                                         {Kind::Stop, 0}};
+    REQUIRE(bench.phases.size() == std::size(sent));
+    for (std::size_t i = 0; i < std::size(sent); ++i) {
+        CHECK(bench.phases[i].kind == sent[i].first);
+        CHECK((sent[i].first == Kind::Read ? bench.phases[i].ack : bench.phases[i].byte) == sent[i].second);
+        CHECK(bench.phases[i].clock_period == (16 + 2 * 12) * cosim::kSecond / 16'000'000);
     }
 }

@@ -8,6 +8,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <bit>
 #include <cmath>
 
 using namespace puckloop;
@@ -299,4 +300,72 @@ TEST_CASE("fuses choose the clock, keep the watchdog on, and set the supply belo
     REQUIRE(report.resets.size() == 3);
     CHECK(report.resets[1].cause == ResetCause::BrownOut);
     CHECK(report.resets[2].cause == ResetCause::PowerOn);
+}
+
+TEST_CASE("PWM at the pins, capture through the noise canceler and edges at T0, as a program sets them up") {
+    RandomStream random(20261123, "timers");
+    DriverBench bench("timers");
+    std::array<unsigned, 4> duty{};
+    for (std::size_t i = 0; i < duty.size(); ++i)
+        bench.put(i, static_cast<std::uint8_t>(duty[i] = static_cast<unsigned>(20 + random.below(200))));
+    bench.set_pin({P::B, 5}, false);
+    bench.set_pin({P::B, 0}, false);
+    bench.start();
+    bench.chip.run_until(cosim::kMillisecond);
+    std::vector<Cycle> moved;
+    for (int i = 0; i < 6; ++i) {
+        // A spike of three clocks is no edge.
+        bench.set_pin({P::B, 5}, i % 2 == 0);
+        bench.chip.run_until(bench.chip.clock().time_of(bench.chip.cycle() + 2));
+        bench.set_pin({P::B, 5}, i % 2 != 0);
+        bench.chip.run_until(bench.chip.now() + 20 * cosim::kMicrosecond);
+        moved.push_back(bench.chip.clock().first_cycle_at(bench.chip.now()));
+        bench.set_pin({P::B, 5}, i % 2 == 0);
+        bench.chip.run_until(bench.chip.now() +
+                             static_cast<cosim::Time>(50 + random.below(100)) * cosim::kMicrosecond);
+    }
+    for (std::size_t i = 1; i < 6; ++i)
+        CHECK(((bench.stamp(i) - bench.stamp(i - 1)) & 0xFFFF) == ((moved[i] - moved[i - 1]) & 0xFFFF));
+    // From rising edge to falling edge, and from one rising edge to the next.
+    const auto pulse = [&](Pin pin) {
+        const auto edges = bench.edges_of(pin);
+        REQUIRE(edges.size() > 8);
+        const std::size_t up = edges[4].level ? 4 : 5;
+        return std::pair(edges[up + 1].at - edges[up].at, edges[up + 2].at - edges[up].at);
+    };
+    CHECK(pulse({P::B, 3}) == std::pair<Cycle, Cycle>(duty[0] + 1, 256));
+    CHECK(pulse({P::B, 4}) == std::pair<Cycle, Cycle>(256 - duty[1] - 1, 256));
+    CHECK(pulse({P::D, 7}) == std::pair<Cycle, Cycle>(2 * duty[2], 510));
+    CHECK(pulse({P::D, 5}) == std::pair<Cycle, Cycle>(501 + duty[3], 2000));
+    REQUIRE(bench.chip.peek("GPIOR0") == 1);
+    for (int i = 0; i < 6; ++i) {
+        CHECK_FALSE(bench.chip.stopped_at());
+        bench.set_pin({P::B, 0}, true);
+        bench.chip.run_until(bench.chip.now() + 10 * cosim::kMicrosecond);
+        if (i < 5) bench.set_pin({P::B, 0}, false);
+    }
+    REQUIRE(bench.chip.stopped_at());
+    CHECK(bench.result(0) == 0);
+}
+
+TEST_CASE("external interrupts by edge and level wait for SEI and come by their numbers") {
+    DriverBench bench("external");
+    bench.set_pin({P::D, 3}, false);
+    bench.start();
+    while (bench.chip.peek("GPIOR0") != 1)
+        bench.chip.run_until(bench.chip.now() + cosim::kMicrosecond);
+    bench.set_pin({P::B, 2}, false);
+    bench.set_pin({P::D, 3}, true);
+    bench.set_pin({P::D, 2}, false);
+    bench.set_pin({P::D, 2}, true);
+    bench.chip.run_until(bench.chip.now() + cosim::kMillisecond);
+    CHECK(bench.result(0) == 0x10);
+    CHECK(bench.result(1) == 0x11);
+    CHECK(bench.result(2) == 0x12);
+    bench.set_pin({P::D, 3}, false);  // not INT1's edge
+    bench.chip.run_until(bench.chip.now() + cosim::kMillisecond);
+    CHECK(bench.result(3) == 0);
+    bench.set_pin({P::D, 2}, false);
+    REQUIRE(bench.finish(cosim::kMillisecond));
+    CHECK(bench.result(3) == 0x10);
 }
