@@ -51,6 +51,7 @@ class ResumedNode : public Node {
     Rewindable* rewindable() override { return replaying_ || recording_ ? nullptr : inner_->rewindable(); }
     /// The board itself; at power-up until its saved state's time has come.
     StatefulNode& board() { return *inner_; }
+    Time lives_from() const { return options_.from ? options_.from->time : 0; }
     /// The board's report, with "resumed" (from, at_s, skipped, what differed) added.
     std::string finish() override;
 

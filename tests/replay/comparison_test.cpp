@@ -60,3 +60,28 @@ TEST_CASE("what a fault did to a message is no difference of its sender") {
     twice.replayed(row(1000, 7));
     CHECK_FALSE(twice.check(3000));
 }
+
+TEST_CASE("on a link with faults messages may be late, behind others, and none may be missing") {
+    SentComparison sent({"wire"});
+    for (int i = 1; i <= 5; ++i)
+        sent.replayed(row(1000 * i, static_cast<std::uint16_t>(i)));
+    // The second one is recorded behind the fourth, the fifth not at all: the record ends before.
+    sent.recorded(row(1000, 1));
+    sent.recorded(row(3000, 3));
+    sent.recorded(row(4000, 4));
+    CHECK_FALSE(sent.check(5000));
+    sent.recorded(row(4900, 2, FaultKind::Delay));
+    CHECK_FALSE(sent.check(6000));
+    CHECK_FALSE(sent.finish(6000));
+    CHECK(sent.equal() == 3);
+    // What never comes was never sent.
+    const auto missing = sent.finish(5000 + 2 * kSecond);
+    REQUIRE(missing);
+    CHECK(missing->time == 5000);
+    // What was sent otherwise is found as ever.
+    SentComparison other({"wire"});
+    other.replayed(row(1000, 7));
+    other.recorded(row(1000, 8));
+    REQUIRE(other.check(2000));
+    CHECK(other.check(2000)->time == 1000);
+}

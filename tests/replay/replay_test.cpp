@@ -106,6 +106,81 @@ TEST_CASE("boards, buses and worlds of a recorded run replay bit for bit") {
     }
 }
 
+TEST_CASE("every node of runs with faults replays bit for bit, Linux programs to their end") {
+    const unsigned seed = Catch::rngSeed() != 0 ? Catch::rngSeed() : std::random_device{}();
+    std::mt19937 random{seed};
+    INFO("--rng-seed " << seed);
+    const auto share = [&](double low, double high) {
+        return low + (high - low) * static_cast<double>(random() % 1000) / 1000.0;
+    };
+    const std::string faults = fmt::format(
+        " --seed {} --fault 'drop link=robot0.uart from=robot0.pic probability={:.4f}'"
+        " --fault 'flip link=robot0.uart at={:.4f}s may_not_fire=true'"
+        " --fault 'break link=robot0.uart from=robot0.linux at={:.4f}s'"
+        " --fault 'delay link=robot0.uart from=robot0.linux delay=3ms probability=0.05 may_not_fire=true'"
+        " --fault 'nack link=robot0.i2c probability={:.3f} may_not_fire=true'"
+        " --fault 'flip node=robot0.pic at={:.4f}s space=ram'"
+        " --fault 'clock node=robot0.pic ppm={} begin={:.4f}s'",
+        random() % 1000, share(0.002, 0.03), share(0.4, 1.0), share(0.4, 1.0), share(0.01, 0.2),
+        share(0.3, 1.0), random() % 6000, share(0.3, 1.0));
+    const std::string hello = record("hello", 1.2, faults, "hello");
+    for (const char* node : {"robot0.pic", "robot0.linux", "robot0.i2c", "world"}) {
+        const Called called =
+            call(fmt::format("replay {} {} --node {}{}", scenario("hello"), hello, node, faults));
+        INFO(faults << "\n" << called.out);
+        CHECK(called.status == 0);
+    }
+    const std::string tams = record("tam", 2.2, "", "tam_all");
+    for (const char* node : {"coordinator.linux", "coordinator.xbee", "ircom", "robot0.pic", "world"}) {
+        const Called called = call(fmt::format("replay {} {} --node {}", scenario("tam"), tams, node));
+        INFO(called.out);
+        CHECK(called.status == 0);
+    }
+    const std::string swarm = record("swarm", 0.25, "", "swarm");
+    const std::string robot = fmt::format("robot{}", random() % 8);
+    for (const char* part : {".pic", ".rab", ".i2c"}) {
+        const Called called =
+            call(fmt::format("replay {} {} --node {}{}", scenario("swarm"), swarm, robot, part));
+        INFO(called.out);
+        CHECK(called.status == 0);
+    }
+    const std::string own = record("own_rab", 0.4, "", "own_rab");
+    for (const char* node : {"robot0.pic", "robot1.rab"}) {
+        const Called called = call(fmt::format("replay {} {} --node {}", scenario("own_rab"), own, node));
+        INFO(called.out);
+        CHECK(called.status == 0);
+    }
+}
+
+TEST_CASE("a board replays from a state saved in the middle of the run, and shows its registers from there") {
+    const std::string state = (tests::scratch_path("puckloop_replay") / "middle.state").string();
+    std::filesystem::create_directories(std::filesystem::path(state).parent_path());
+    const std::string out =
+        record("rab_pair", 0.8, fmt::format("--save-state {} --at 0.45s", state), "middle");
+    for (const char* node : {"leader.pic", "follower.rab"}) {
+        const std::string dump = state + ".vcd";
+        const Called called = call(fmt::format(
+            "replay {} {} --node {} --from-state {} --vcd {} --registers PC --from 0.4 --to 0.4502",
+            scenario("rab_pair"), out, node, state, dump));
+        INFO(called.out);
+        CHECK(called.status == 0);
+        CHECK_THAT(called.out, !Catch::Contains(" 0 out"));
+        // The first value of the program counter stands at the state's time.
+        std::string first;
+        for (const std::string& line : lines_of(dump)) {
+            if (line.starts_with("#")) first = line;
+            if (line.starts_with("b") && !line.starts_with("bx") && first.size() > 1 && line.size() > 12)
+                break;
+        }
+        CHECK(first.substr(1, 3) == "450");
+        const Called whole = call(
+            fmt::format("replay {} {} --node {} --from-state {}", scenario("rab_pair"), out, node, state));
+        INFO(whole.out);
+        CHECK(whole.status == 0);
+        CHECK_THAT(whole.out, Catch::Contains("until 0.8"));
+    }
+}
+
 TEST_CASE("a record without the wanted rows says so, and the trace does not change by recording") {
     const std::string out = record("rab_pair", 0.3);
     const std::vector<std::string> all = lines_of(out + "/record.csv"), some = lines_of(out + "/trace.csv");

@@ -8,6 +8,7 @@
 #include "tools/commands.h"
 #include "tools/replay/dump.h"
 #include "tools/run/node_factory.h"
+#include "tools/run/run_scenario.h"
 #include "tools/run/setup.h"
 
 #include <fmt/format.h>
@@ -15,6 +16,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <optional>
 
@@ -68,6 +70,18 @@ TraceSelection lines_of(const Options& options, const RunSetup& setup, const Rep
     return selection;
 }
 
+/// When the run asked its programs to end; nothing if its report does not say.
+std::optional<cosim::Time> wind_up_of(const std::filesystem::path& folder) {
+    std::ifstream in(folder / "report.json");
+    const auto report = nlohmann::json::parse(in, nullptr, false);
+    if (!report.is_object()) return std::nullopt;
+    const auto found = report.find("programs_asked_to_end_s");
+    if (found == report.end() || !found->is_number()) return std::nullopt;
+    const double seconds = *found;
+    if (!(seconds > 0 && seconds < kLongest)) return std::nullopt;
+    return cosim::from_seconds(seconds);
+}
+
 /// A dump cannot replace what it is made from.
 void check_output(const std::string& vcd, const std::filesystem::path& record) {
     std::error_code error;
@@ -94,6 +108,7 @@ int run(Options& options) {
     const RunSetup setup = set_up(request);
     const cosim::NodeSpec& spec = find_node(setup, options.node);
     std::filesystem::create_directories(setup.out);
+    make_work_folders(setup);
     const auto node = make_node(spec.json);
     const nlohmann::json description = nlohmann::json::parse(spec.json);
     if (options.list_registers) {
@@ -104,11 +119,14 @@ int run(Options& options) {
     ReplayWatch looks;
     if (!options.registers.empty()) {
         watch.emplace(view_of(description, *node), options.registers);
-        looks.from = cosim::from_seconds(options.from);
+        looks.from = std::max(cosim::from_seconds(options.from), watch->first());
         looks.next = [&](cosim::Time now) { return watch->next(now); };
         looks.look = [&](cosim::Time now) { watch->sample(now); };
     }
-    const ReplayResult result = replay(*node, setup.links, record, watch ? &looks : nullptr);
+    ReplayOptions how{wind_up_of(options.folder), watch ? &looks : nullptr};
+    for (const cosim::FaultSpec& fault : setup.scenario.faults)
+        how.links_with_faults.insert(fault.link);
+    const ReplayResult result = replay(*node, setup.links, record, how);
     if (!options.vcd.empty()) {
         if (cosim::to_seconds(result.until) <= options.from)
             throw InputError(file.string(), "--from",

@@ -42,8 +42,12 @@ std::map<std::string, Variable> variables_of(const std::map<std::string, Symbol>
 }  // namespace
 
 ChipView view_of(const nlohmann::json& spec, cosim::Node& node) {
+    if (auto* resumed = dynamic_cast<cosim::ResumedNode*>(&node)) {
+        ChipView view = view_of(spec, resumed->board());
+        view.lives_from = resumed->lives_from();
+        return view;
+    }
     cosim::Node* inner = &node;
-    if (auto* resumed = dynamic_cast<cosim::ResumedNode*>(inner)) inner = &resumed->board();
     const std::string file = spec.value("firmware", "");
     if (auto* pic = dynamic_cast<pic::PicNode*>(inner)) {
         ChipView view = dspic_view(pic->chip());

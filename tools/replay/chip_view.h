@@ -24,6 +24,7 @@ struct ChipView {
     std::unique_ptr<chip::ChipAccess> chip;
     const cosim::ClockDomain* clock = nullptr;  ///< instruction cycles
     cosim::Time origin = 0;                     ///< of the chip's time in the run's
+    cosim::Time lives_from = 0;                 ///< the time of its saved state, if it begins with one
     std::uint32_t cell_bytes = 2;               ///< of a register or a cell of RAM
     std::string_view name;                      ///< of the chip
     std::map<std::string, Variable> variables;  ///< of the firmware

@@ -1,5 +1,7 @@
 #include "tools/replay/comparison.h"
 
+#include <algorithm>
+
 namespace puckloop::tools {
 
 using cosim::FaultKind;
@@ -30,14 +32,31 @@ bool shows_a_message(const TraceRow& recorded, const TraceRow& replayed) {
     }
 }
 
+/// But for when it was on the line.
+bool same_content(const TraceRow& recorded, const TraceRow& replayed) {
+    const auto* then = std::get_if<cosim::UartFrame>(&recorded.payload);
+    const auto* now = std::get_if<cosim::UartFrame>(&replayed.payload);
+    if (then == nullptr || now == nullptr) return recorded.payload == replayed.payload;
+    return then->data == now->data && then->is_break == now->is_break && then->data_bits == now->data_bits;
+}
+
+// A fault that delays longer than this is one that loses.
+constexpr cosim::Time kLongestDelay = cosim::kSecond;
+
 }  // namespace
 
+SentComparison::Link& SentComparison::link(const std::string& name) {
+    const auto [found, is_new] = links_.try_emplace(name);
+    if (is_new) found->second.faults = with_faults_.contains(name);
+    return found->second;
+}
+
 void SentComparison::recorded(const TraceRow& row) {
-    links_[row.link].recorded.push_back(row);
+    link(row.link).recorded.push_back(row);
 }
 
 void SentComparison::replayed(const TraceRow& row) {
-    links_[row.link].replayed.push_back(row);
+    link(row.link).replayed.push_back(row);
 }
 
 std::optional<ReplayDifference> SentComparison::check(cosim::Time end) {
@@ -49,37 +68,75 @@ std::optional<ReplayDifference> SentComparison::check(cosim::Time end) {
     return first;
 }
 
-std::optional<ReplayDifference> SentComparison::check(const std::string& name, Link& link, cosim::Time end) {
-    while (!link.recorded.empty() && !link.replayed.empty()) {
-        const TraceRow& then = link.recorded.front();
-        const TraceRow& now = link.replayed.front();
-        if (then.fault != FaultKind::None) {
-            const bool message = shows_a_message(then, now);
-            link.recorded.pop_front();
-            if (message) {
-                link.replayed.pop_front();
-                ++link.messages;
-            }
-            continue;
-        }
+/// A row that a fault harmed: what is owed first, then what was sent last.
+void SentComparison::take_harmed(Link& link) {
+    const TraceRow then = link.recorded.front();
+    const auto owed = std::find_if(link.owed.begin(), link.owed.end(),
+                                   [&](const TraceRow& row) { return same_content(then, row); });
+    const bool is_owed =
+        owed != link.owed.end() && (link.replayed.empty() || !same_content(then, link.replayed.front()) ||
+                                    owed->time < link.replayed.front().time);
+    if (is_owed) {
+        link.owed.erase(owed);
         ++link.messages;
-        const std::string was = text_of(then), is = text_of(now);
-        if (was != is) return ReplayDifference{std::min(then.time, now.time), name, link.messages, was, is};
-        ++equal_;
-        link.recorded.pop_front();
+    } else if (!link.replayed.empty() && shows_a_message(then, link.replayed.front())) {
         link.replayed.pop_front();
+        ++link.messages;
     }
-    // A row that the fault itself made has no message.
-    while (!link.recorded.empty() && link.recorded.front().fault != FaultKind::None &&
-           link.replayed.empty() && link.recorded.front().time < end)
-        link.recorded.pop_front();
+    link.recorded.pop_front();
+}
+
+/// False: the first row that no fault harmed is not what was sent. On a link with faults what was sent before
+/// it may be late.
+bool SentComparison::take_sound(Link& link) {
+    const std::string was = text_of(link.recorded.front());
+    const auto found =
+        std::find_if(link.replayed.begin(), link.faults ? link.replayed.end() : link.replayed.begin() + 1,
+                     [&](const TraceRow& row) { return text_of(row) == was; });
+    if (found == link.replayed.end() || text_of(*found) != was) return false;
+    link.owed.insert(link.owed.end(), link.replayed.begin(), found);
+    link.replayed.erase(link.replayed.begin(), found + 1);
+    link.recorded.pop_front();
+    ++link.messages;
+    ++equal_;
+    return true;
+}
+
+std::optional<ReplayDifference> SentComparison::check(const std::string& name, Link& link, cosim::Time end) {
+    const auto harmed = [&] {
+        return !link.recorded.empty() && link.recorded.front().fault != FaultKind::None;
+    };
+    while (!link.recorded.empty() && !link.replayed.empty()) {
+        if (harmed()) {
+            take_harmed(link);
+        } else if (!take_sound(link)) {
+            const TraceRow& then = link.recorded.front();
+            const TraceRow& now = link.replayed.front();
+            if (link.faults && then.time >= end) return std::nullopt;  // not sent yet
+            return ReplayDifference{std::min(then.time, now.time), name, link.messages + 1, text_of(then),
+                                    text_of(now)};
+        }
+    }
+    // Late ones, and rows that the fault itself made, which have no message.
+    while (harmed() && link.recorded.front().time < end)
+        take_harmed(link);
     if (!link.recorded.empty() && link.recorded.front().time < end)
         return ReplayDifference{
             link.recorded.front().time, name, link.messages + 1, text_of(link.recorded.front()), {}};
-    if (!link.replayed.empty() && link.replayed.front().time < end)
+    if (!link.faults && !link.replayed.empty() && link.replayed.front().time < end)
         return ReplayDifference{
             link.replayed.front().time, name, link.messages + 1, {}, text_of(link.replayed.front())};
     return std::nullopt;
+}
+
+std::optional<ReplayDifference> SentComparison::finish(cosim::Time end) const {
+    std::optional<ReplayDifference> first;
+    for (const auto& [name, link] : links_)
+        for (const auto* rows : {&link.owed, &link.replayed})
+            if (!rows->empty() && rows->front().time < end - kLongestDelay &&
+                (!first || rows->front().time < first->time))
+                first = {rows->front().time, name, link.messages + 1, {}, text_of(rows->front())};
+    return first;
 }
 
 }  // namespace puckloop::tools

@@ -29,8 +29,12 @@ struct Attached {
 
 class Replay {
   public:
-    Replay(cosim::Node& node, const std::vector<LinkSpec>& links, const ReplayWatch* watch)
-        : node_(node), by_port_(node.ports().size()), watch_(watch) {
+    Replay(cosim::Node& node, const std::vector<LinkSpec>& links, const ReplayOptions& options)
+        : node_(node),
+          by_port_(node.ports().size()),
+          sent_(options.links_with_faults),
+          watch_(options.watch),
+          wind_up_(options.wind_up.value_or(cosim::kNever)) {
         const auto ports = node.ports();
         for (const LinkSpec& link : links)
             for (const cosim::PortRef* end : {&link.a, &link.b}) {
@@ -80,6 +84,7 @@ class Replay {
         if (!inbox_.empty() && inbox_.back().time == last_)
             std::erase_if(inbox_, [this](const Message& message) { return message.time == last_; });
         if (last_ > now_) advance(last_);
+        if (!result_.difference) result_.difference = sent_.finish(last_);
         result_.equal = sent_.equal();
         result_.until = now_;
         return result_;
@@ -89,6 +94,14 @@ class Replay {
 
   private:
     void step(Time until) {
+        if (now_ < wind_up_ && until >= wind_up_) {
+            step_to(wind_up_);
+            node_.wind_up(wind_up_, 0);
+        }
+        if (now_ < until) step_to(until);
+    }
+
+    void step_to(Time until) {
         std::size_t end = handed_in_;
         while (end < inbox_.size() && inbox_[end].time < until)
             ++end;
@@ -131,6 +144,7 @@ class Replay {
     std::vector<Attached> by_port_;
     SentComparison sent_;
     const ReplayWatch* watch_;
+    Time wind_up_;
     bool looked_ = false;
     std::vector<Message> inbox_, outbox_;
     std::size_t handed_in_ = 0;  // of inbox_
@@ -143,8 +157,8 @@ class Replay {
 }  // namespace
 
 ReplayResult replay(cosim::Node& node, const std::vector<LinkSpec>& links, const RecordedTrace& record,
-                    const ReplayWatch* watch) {
-    Replay run(node, links, watch);
+                    const ReplayOptions& options) {
+    Replay run(node, links, options);
     RecordedTrace::Cursor cursor(record);
     // One row of the node is wanted before a difference counts: the record may be another scenario's.
     while (const auto row = cursor.next()) {

@@ -32,9 +32,17 @@ struct ReplayWatch {
     std::function<void(cosim::Time now)> look;
 };
 
+/// How the recorded run went on beside its messages, and what is looked at.
+struct ReplayOptions {
+    /// When its nodes were asked to end (Node::wind_up), if they were.
+    std::optional<cosim::Time> wind_up{};
+    const ReplayWatch* watch = nullptr;
+    std::set<std::string> links_with_faults{};  ///< on which the record may have messages late
+};
+
 /// `record` must hold every message of the node's links (a run's record.csv). Throws InputError for a record
 /// that cannot be read or holds nothing of the node.
 ReplayResult replay(cosim::Node& node, const std::vector<cosim::LinkSpec>& links, const RecordedTrace& record,
-                    const ReplayWatch* watch = nullptr);
+                    const ReplayOptions& options = {});
 
 }  // namespace puckloop::tools

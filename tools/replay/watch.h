@@ -26,6 +26,8 @@ class Watch {
     Watch(ChipView view, const std::vector<std::string>& names);
 
     const std::vector<Value>& values() const { return values_; }
+    /// Before this the chip's values mean nothing.
+    cosim::Time first() const { return view_.lives_from; }
     /// Start of the chip's next instruction cycle, in the run's time.
     cosim::Time next(cosim::Time now) const;
     void sample(cosim::Time now);

@@ -60,21 +60,6 @@ void write_results(const RunSetup& setup, cosim::Outcome& outcome, ReservedFile&
     guarded([&] { write_report(setup, outcome, report); });
 }
 
-void make_work_folders(const RunSetup& setup) {
-    std::vector<std::string> names;
-    for (const auto& robot : setup.scenario.robots)
-        if (robot.linux_board) names.push_back(robot.linux_board->folder);
-    if (const auto& place = setup.scenario.coordinator; place && place->program)
-        names.push_back(place->program->folder);
-    for (const std::string& name : names) {
-        if (name.empty()) continue;
-        const auto folder = setup.out / name;
-        std::error_code error;
-        std::filesystem::create_directories(folder, error);
-        if (error) throw InputError(folder.string(), "", "cannot be made a folder: " + error.message());
-    }
-}
-
 /// Robots in one process take some six descriptors each; the usual soft limit of 1024 is not meant for them.
 void raise_descriptor_limit() {
     rlimit limit{};
@@ -122,6 +107,21 @@ unsigned threads_for(const RunSetup& setup, const RunRequest& request) {
 }
 
 }  // namespace
+
+void make_work_folders(const RunSetup& setup) {
+    std::vector<std::string> names;
+    for (const auto& robot : setup.scenario.robots)
+        if (robot.linux_board) names.push_back(robot.linux_board->folder);
+    if (const auto& place = setup.scenario.coordinator; place && place->program)
+        names.push_back(place->program->folder);
+    for (const std::string& name : names) {
+        if (name.empty()) continue;
+        const auto folder = setup.out / name;
+        std::error_code error;
+        std::filesystem::create_directories(folder, error);
+        if (error) throw InputError(folder.string(), "", "cannot be made a folder: " + error.message());
+    }
+}
 
 cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
                             const std::function<void(const cosim::Progress&)>& progress,

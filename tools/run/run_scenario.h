@@ -9,6 +9,9 @@
 
 namespace puckloop::tools {
 
+/// The folders below the results that programs work in. Throws InputError.
+void make_work_folders(const RunSetup& setup);
+
 /// Runs, records trace.csv in the run's folder (made if absent), writes report.json and draws trajectory.svg.
 /// Throws InputError before the run; what happens during it is in the outcome. `interrupt` may be null.
 cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
