@@ -90,10 +90,10 @@ void SentComparison::take_harmed(Link& link) {
 /// it may be late.
 bool SentComparison::take_sound(Link& link) {
     const std::string was = text_of(link.recorded.front());
+    const auto last = link.faults ? link.replayed.end() : link.replayed.begin() + 1;
     const auto found =
-        std::find_if(link.replayed.begin(), link.faults ? link.replayed.end() : link.replayed.begin() + 1,
-                     [&](const TraceRow& row) { return text_of(row) == was; });
-    if (found == link.replayed.end() || text_of(*found) != was) return false;
+        std::find_if(link.replayed.begin(), last, [&](const TraceRow& row) { return text_of(row) == was; });
+    if (found == last) return false;
     link.owed.insert(link.owed.end(), link.replayed.begin(), found);
     link.replayed.erase(link.replayed.begin(), found + 1);
     link.recorded.pop_front();

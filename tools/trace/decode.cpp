@@ -43,6 +43,7 @@ void decode_trace(const RecordedTrace& trace, const TakeFrame& take) {
         uarts[link] = decoder_for(of, take);
     I2cDecoder i2c(take);
     RabDecoder rab(take);
+    IrcomDecoder ircom(take);
     RecordedTrace::Cursor cursor(trace);
     while (const auto row = cursor.next()) {
         if (const auto* frame = std::get_if<cosim::UartFrame>(&row->payload))
@@ -50,7 +51,7 @@ void decode_trace(const RecordedTrace& trace, const TakeFrame& take) {
         else if (const auto* phase = std::get_if<cosim::I2cPhase>(&row->payload))
             i2c.add(*row, *phase);
         else if (const auto* signal = std::get_if<cosim::Signal>(&row->payload))
-            rab.add(*row, *signal);
+            static_cast<void>(rab.add(*row, *signal) || ircom.add(*row, *signal));
         else
             decode_radio(*row, std::get<cosim::RadioFrame>(row->payload), take);
     }
@@ -58,6 +59,7 @@ void decode_trace(const RecordedTrace& trace, const TakeFrame& take) {
         uart->end();
     i2c.end();
     rab.end();
+    ircom.end();
 }
 
 std::string to_text(const DecodedFrame& frame) {

@@ -123,24 +123,24 @@ void EpuckDecoder::add(const cosim::TraceRow& row, const cosim::UartFrame& frame
         if (!board_.empty() && frame.start > board_.end + kLongestPause)
             give_rest(board_, board_name_,
                       fmt::format("{} of {} bytes, then silence", board_.bytes.size(), kEpuckSensorBytes));
-        board_.add(row, frame);
+        board_.add(row, frame, from_board_line_.take(row, frame));
         from_board(row.from);
     } else {
         linux_name_ = row.from;
-        linux_.add(row, frame);
+        linux_.add(row, frame, from_linux_line_.take(row, frame));
         from_linux(row.from);
     }
 }
 
 void EpuckDecoder::from_board(const std::string& from) {
-    if (board_.bytes.size() == kEpuckSensorBytes) give(board_, from, sensors(board_));
+    if (board_.bytes.size() >= kEpuckSensorBytes) give(board_, from, sensors(board_));
 }
 
 void EpuckDecoder::from_linux(const std::string& from) {
-    if (expect_ == Expect::Session && linux_.bytes.size() == kSessionBytes) {
+    if (expect_ == Expect::Session && linux_.bytes.size() >= kSessionBytes) {
         give(linux_, from, session(linux_));
         expect_ = Expect::Actuators;
-    } else if (expect_ == Expect::Actuators && linux_.bytes.size() == kEpuckActuatorBytes) {
+    } else if (expect_ == Expect::Actuators && linux_.bytes.size() >= kEpuckActuatorBytes) {
         const DecodedFrame frame = actuators(linux_);
         if (frame.fields.at("reset") == kEpuckEnd) expect_ = Expect::Session;
         give(linux_, from, frame);

@@ -12,19 +12,6 @@ using cosim::TraceRow;
 using cosim::UartFrame;
 using nlohmann::ordered_json;
 
-std::string character_error(const TraceRow& row, const UartFrame& frame) {
-    std::string text;
-    if (frame.is_break) {
-        text = "break";
-    } else if (frame.parity != 0) {
-        const bool odd = (__builtin_popcount(frame.data) + frame.parity_bit) % 2 != 0;
-        if (odd != (frame.parity == 1)) text = "wrong parity";
-    }
-    if (row.fault == cosim::FaultKind::None) return text;
-    return fmt::format("{}{}fault {}{}", text, text.empty() ? "" : ", ", fault_name(row.fault),
-                       keeps_from_arriving(row.fault) ? ": lost" : "");
-}
-
 std::string hex_bytes(const std::vector<std::uint8_t>& bytes) {
     std::string text;
     for (const std::uint8_t byte : bytes)
@@ -32,14 +19,25 @@ std::string hex_bytes(const std::vector<std::uint8_t>& bytes) {
     return text;
 }
 
-void ByteRun::add(const TraceRow& row, const UartFrame& frame) {
+void ByteRun::add(const TraceRow& row, const UartFrame& frame,
+                  const std::vector<protocols::ReceivedCharacter>& characters) {
     if (empty()) begin = frame.start;
     end = protocols::frame_end(frame);
-    const std::string error = character_error(row, frame);
-    if (!error.empty())
-        errors.push_back(fmt::format("byte {} ({:02x} at {} s): {}", bytes.size() + 1, frame.data,
-                                     cosim::format_seconds(frame.start), error));
-    if (!keeps_from_arriving(row.fault)) bytes.push_back(static_cast<std::uint8_t>(frame.data));
+    const auto note = [&](unsigned data, std::string what) {
+        if (row.fault != cosim::FaultKind::None)
+            what += fmt::format("{}fault {}{}", what.empty() ? "" : ", ", fault_name(row.fault),
+                                keeps_from_arriving(row.fault) ? ": lost"
+                                : characters.empty()           ? ": no character"
+                                                               : "");
+        if (!what.empty())
+            errors.push_back(fmt::format("byte {} ({:02x} at {} s): {}", bytes.size() + 1, data,
+                                         cosim::format_seconds(frame.start), what));
+    };
+    if (characters.empty()) note(frame.data, "");
+    for (const protocols::ReceivedCharacter& character : characters) {
+        note(character.data, line_error(character));
+        bytes.push_back(static_cast<std::uint8_t>(character.data));
+    }
 }
 
 void BytesDecoder::add(const TraceRow& row, const UartFrame& frame) {
@@ -47,14 +45,36 @@ void BytesDecoder::add(const TraceRow& row, const UartFrame& frame) {
     link_ = row.link;
     ByteRun& run = runs_[row.from];
     if (run.bytes.size() >= kMost || frame.start > run.end + 2 * frame.bit_period) hand_over(row.from);
-    run.add(row, frame);
+    run.add(row, frame, receivers_[row.from].take(row, frame));
 }
+
+namespace {
+
+/// What a terminal would show; empty where that is not all of it.
+std::string printable(const std::vector<std::uint8_t>& bytes) {
+    std::string text;
+    for (const std::uint8_t byte : bytes) {
+        if (byte == '\r' || byte == '\n')
+            text += byte == '\r' ? "\\r" : "\\n";
+        else if (byte >= ' ' && byte <= '~')
+            text += static_cast<char>(byte);
+        else
+            return {};
+    }
+    return text;
+}
+
+}  // namespace
 
 void BytesDecoder::hand_over(const std::string& from) {
     ByteRun& run = runs_[from];
     if (run.empty()) return;
     DecodedFrame frame{run.begin, run.end, link_, from, "bytes", hex_bytes(run.bytes), run.errors};
     frame.fields["bytes"] = frame.text;
+    if (const std::string text = printable(run.bytes); !text.empty()) {
+        frame.fields["text"] = text;
+        frame.text += fmt::format(" \"{}\"", text);
+    }
     run = {};
     take_(frame);
 }
@@ -109,21 +129,28 @@ void XBeeDecoder::give(const std::string& from, Side& side, const protocols::XBe
 void XBeeDecoder::add(const TraceRow& row, const UartFrame& frame) {
     link_ = row.link;
     Side& side = sides_[row.from];
-    // The first start delimiter ends noise, and a frame that another begins in: those give the reading of
-    // what was before.
-    side.run.add(row, frame);
-    if (keeps_from_arriving(row.fault)) return;
-    const auto reading = side.reader.take(static_cast<std::uint8_t>(frame.data));
+    const auto characters = side.line.take(row, frame);
+    if (characters.empty()) side.run.add(row, frame, characters);
+    for (const protocols::ReceivedCharacter& character : characters)
+        take(row.from, side, row, frame, character);
+}
+
+/// The first start delimiter ends noise, and a frame that another begins in: those give the reading of what
+/// was before.
+void XBeeDecoder::take(const std::string& from, Side& side, const TraceRow& row, const UartFrame& frame,
+                       const protocols::ReceivedCharacter& character) {
+    side.run.add(row, frame, {character});
+    const auto reading = side.reader.take(static_cast<std::uint8_t>(character.data));
     if (!reading) return;
     const bool begins_next =
         (reading->fault == protocols::XBeeFault::Noise || reading->fault == protocols::XBeeFault::Restart) &&
-        frame.data == protocols::kXBeeStart;
+        character.data == protocols::kXBeeStart;
     if (begins_next) side.run.bytes.pop_back();
-    give(row.from, side, *reading);
+    give(from, side, *reading);
     if (begins_next) {
         TraceRow sound = row;
         sound.fault = cosim::FaultKind::None;
-        side.run.add(sound, frame);
+        side.run.add(sound, frame, {character});
     }
 }
 

@@ -2,9 +2,11 @@
 // One class for each protocol that decode.h knows. All take rows in the order of the trace.
 
 #include "cosim/trace/trace_row.h"
+#include "protocols/ircom.h"
 #include "protocols/xbee_frame.h"
 #include "tools/trace/decode.h"
 #include "tools/trace/i2c_transfers.h"
+#include "tools/trace/received.h"
 
 #include <array>
 #include <cstdint>
@@ -22,18 +24,17 @@ class UartDecoder {
     virtual void end() = 0;
 };
 
-/// What is wrong with a single character, apart from its data: break, parity, fault. Empty: nothing.
-std::string character_error(const cosim::TraceRow& row, const cosim::UartFrame& frame);
 std::string hex_bytes(const std::vector<std::uint8_t>& bytes);
 
-/// Bytes of one sender that belong together, as they arrived.
+/// Bytes of one sender that belong together, as a receiver takes them (received.h).
 struct ByteRun {
     std::vector<std::uint8_t> bytes;
     std::vector<std::string> errors;  ///< with the place in the run: "byte 3: fault flip"
     cosim::Time begin = 0, end = 0;
     bool empty() const { return bytes.empty() && errors.empty(); }
-    /// Lost characters leave their error only.
-    void add(const cosim::TraceRow& row, const cosim::UartFrame& frame);
+    /// `characters`: what the receiver made of the frame; without any it leaves its error only.
+    void add(const cosim::TraceRow& row, const cosim::UartFrame& frame,
+             const std::vector<protocols::ReceivedCharacter>& characters);
 };
 
 class BytesDecoder : public UartDecoder {
@@ -47,6 +48,7 @@ class BytesDecoder : public UartDecoder {
     TakeFrame take_;
     std::string link_;
     std::map<std::string, ByteRun> runs_;
+    std::map<std::string, LineReceiver> receivers_;
 };
 
 /// Records between a robot's Linux board and its main board. They have neither header nor check: a record is
@@ -68,6 +70,7 @@ class EpuckDecoder : public UartDecoder {
     TakeFrame take_;
     std::string link_, linux_name_ = "?", board_name_ = "?";
     ByteRun linux_, board_;
+    LineReceiver from_linux_line_, from_board_line_;
     Expect expect_ = Expect::Session;
 };
 
@@ -81,7 +84,10 @@ class XBeeDecoder : public UartDecoder {
     struct Side {
         protocols::XBeeReader reader{protocols::XBeeApiMode::Escaped};
         ByteRun run;
+        LineReceiver line;
     };
+    void take(const std::string& from, Side& side, const cosim::TraceRow& row, const cosim::UartFrame& frame,
+              const protocols::ReceivedCharacter& character);
     void give(const std::string& from, Side& side, const protocols::XBeeReading& reading);
     TakeFrame take_;
     std::string link_;
@@ -134,6 +140,25 @@ class RabDecoder {
     void close(const std::string& link, const std::string& from, Board& board, cosim::Time now);
     TakeFrame take_;
     std::map<std::pair<std::string, std::string>, Board> boards_;
+};
+
+/// IRcom: words of light that main boards and TAMs send, where the scenario records them.
+class IrcomDecoder {
+  public:
+    explicit IrcomDecoder(TakeFrame take) : take_(std::move(take)) {}
+    /// True if the row is a sender's light.
+    bool add(const cosim::TraceRow& row, const cosim::Signal& signal);
+    void end();
+
+  private:
+    struct Sender {
+        std::map<std::string, bool> lit;  ///< by emitter; each lights the whole
+        cosim::Time last = 0;
+        protocols::IrcomReader reader;
+    };
+    void give(const std::string& link, const std::string& from, const protocols::IrcomReading& reading);
+    TakeFrame take_;
+    std::map<std::pair<std::string, std::string>, Sender> senders_;
 };
 
 void decode_radio(const cosim::TraceRow& row, const cosim::RadioFrame& frame, const TakeFrame& take);
