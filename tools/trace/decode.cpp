@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 
 namespace puckloop::tools {
 
@@ -13,6 +14,7 @@ namespace {
 /// Names of the links that have an end of a kind, found before anything is decoded.
 struct Ends {
     bool xbee = false, board = false;
+    std::optional<protocols::UartReceiver> setting;  ///< the first that either end shows
 };
 
 std::unique_ptr<UartDecoder> decoder_for(const Ends& ends, const TakeFrame& take) {
@@ -31,16 +33,20 @@ double seconds(cosim::Time time) {
 void decode_trace(const RecordedTrace& trace, const TakeFrame& take) {
     std::map<std::string, Ends> ends;
     trace.for_each_checked([&](const cosim::TraceRow& row) {
-        if (!std::holds_alternative<cosim::UartFrame>(row.payload)) return;
+        const auto* frame = std::get_if<cosim::UartFrame>(&row.payload);
+        if (frame == nullptr) return;
         Ends& of = ends[row.link];
+        if (!of.setting) of.setting = setting_of(row, *frame);
         of.xbee = of.xbee || row.from.ends_with(".xbee");
         // A board that never answered is known by its link's name.
         of.board = of.board || ((row.from.ends_with(".pic") || row.from.ends_with(".linux")) &&
                                 row.link.ends_with(".uart"));
     });
     std::map<std::string, std::unique_ptr<UartDecoder>> uarts;
-    for (const auto& [link, of] : ends)
+    for (const auto& [link, of] : ends) {
         uarts[link] = decoder_for(of, take);
+        if (of.setting) uarts[link]->assume(*of.setting);
+    }
     I2cDecoder i2c(take);
     RabDecoder rab(take);
     IrcomDecoder ircom(take);

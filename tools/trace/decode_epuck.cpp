@@ -123,11 +123,11 @@ void EpuckDecoder::add(const cosim::TraceRow& row, const cosim::UartFrame& frame
         if (!board_.empty() && frame.start > board_.end + kLongestPause)
             give_rest(board_, board_name_,
                       fmt::format("{} of {} bytes, then silence", board_.bytes.size(), kEpuckSensorBytes));
-        board_.add(row, frame, from_board_line_.take(row, frame));
+        board_.add(row, frame, receive(from_board_line_, row, frame));
         from_board(row.from);
     } else {
         linux_name_ = row.from;
-        linux_.add(row, frame, from_linux_line_.take(row, frame));
+        linux_.add(row, frame, receive(from_linux_line_, row, frame));
         from_linux(row.from);
     }
 }

@@ -45,7 +45,7 @@ void BytesDecoder::add(const TraceRow& row, const UartFrame& frame) {
     link_ = row.link;
     ByteRun& run = runs_[row.from];
     if (run.bytes.size() >= kMost || frame.start > run.end + 2 * frame.bit_period) hand_over(row.from);
-    run.add(row, frame, receivers_[row.from].take(row, frame));
+    run.add(row, frame, receive(receivers_[row.from], row, frame));
 }
 
 namespace {
@@ -129,7 +129,7 @@ void XBeeDecoder::give(const std::string& from, Side& side, const protocols::XBe
 void XBeeDecoder::add(const TraceRow& row, const UartFrame& frame) {
     link_ = row.link;
     Side& side = sides_[row.from];
-    const auto characters = side.line.take(row, frame);
+    const auto characters = receive(side.line, row, frame);
     if (characters.empty()) side.run.add(row, frame, characters);
     for (const protocols::ReceivedCharacter& character : characters)
         take(row.from, side, row, frame, character);

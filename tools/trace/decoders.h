@@ -22,6 +22,18 @@ class UartDecoder {
     virtual ~UartDecoder() = default;
     virtual void add(const cosim::TraceRow& row, const cosim::UartFrame& frame) = 0;
     virtual void end() = 0;
+    /// How the receivers of both ends are set, until frames say otherwise.
+    void assume(const protocols::UartReceiver& receiver) { assumed_ = receiver; }
+
+  protected:
+    std::vector<protocols::ReceivedCharacter> receive(LineReceiver& line, const cosim::TraceRow& row,
+                                                      const cosim::UartFrame& frame) const {
+        if (assumed_) line.assume(*assumed_);
+        return line.take(row, frame);
+    }
+
+  private:
+    std::optional<protocols::UartReceiver> assumed_;
 };
 
 std::string hex_bytes(const std::vector<std::uint8_t>& bytes);

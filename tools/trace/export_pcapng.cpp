@@ -145,6 +145,7 @@ class Serial {
         }
     }
 
+    LineReceiver& receiver() { return receiver_; }
     /// Nothing can follow without a pause any more.
     bool rests(Time now) const { return empty_ || now > settled_; }
 
@@ -263,6 +264,9 @@ struct PcapngStream::Parts {
         }
         if (const auto* frame = std::get_if<cosim::UartFrame>(&row.payload)) {
             Serial& sender = serial[{row.link, row.from}];
+            if (const auto setting = setting_of(row, *frame)) settings.insert_or_assign(row.link, *setting);
+            if (const auto known = settings.find(row.link); known != settings.end())
+                sender.receiver().assume(known->second);
             sender.add(writer, row, *frame);
             if (std::find(open.begin(), open.end(), &sender) == open.end()) open.push_back(&sender);
         } else if (const auto* phase = std::get_if<cosim::I2cPhase>(&row.payload)) {
@@ -286,6 +290,7 @@ struct PcapngStream::Parts {
     Writer writer;
     std::map<std::pair<std::string, std::string>, Serial> serial;
     std::vector<Serial*> open;
+    std::map<std::string, protocols::UartReceiver> settings;  // of links, by either end
     std::map<std::string, Segment> segments;
     std::map<std::string, std::uint8_t> buses;
     I2cTransfers transfers;

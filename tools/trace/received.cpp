@@ -31,16 +31,25 @@ ReceivedCharacter as_sent(const cosim::UartFrame& frame) {
 
 }  // namespace
 
+std::optional<protocols::UartReceiver> setting_of(const cosim::TraceRow& row, const cosim::UartFrame& frame) {
+    if (row.fault != cosim::FaultKind::None || frame.is_break != 0 || frame.bit_period <= 0)
+        return std::nullopt;
+    return protocols::UartReceiver{frame.bit_period, frame.data_bits, frame.parity};
+}
+
 std::vector<ReceivedCharacter> LineReceiver::take(const cosim::TraceRow& row, const cosim::UartFrame& frame) {
     if (keeps_from_arriving(row.fault)) return {};
-    const bool sound = row.fault == cosim::FaultKind::None && frame.is_break == 0;
-    if (sound) receiver_ = {frame.bit_period, frame.data_bits, frame.parity};
+    const auto setting = setting_of(row, frame);
+    if (setting) receiver_ = setting;
+    if (!receiver_ && row.fault == cosim::FaultKind::FalseStart) return {};
+    constexpr std::uint8_t kUsualBits = 8;
+    const protocols::UartReceiver receiver =
+        receiver_.value_or(protocols::UartReceiver{frame.bit_period, kUsualBits, frame.parity});
     std::vector<ReceivedCharacter> characters;
-    if (sound || !receiver_ || receiver_->bit_period <= 0 || frame.bit_period <= 0 ||
-        frame.bit_period / kSlowest > receiver_->bit_period)
+    if (setting || frame.bit_period <= 0 || frame.bit_period / kSlowest > receiver.bit_period)
         characters.push_back(as_sent(frame));
     else
-        characters = protocols::sample_frame(frame, *receiver_, ready_);
+        characters = protocols::sample_frame(frame, receiver, ready_);
     if (!characters.empty()) ready_ = characters.back().time;
     return characters;
 }

@@ -1,7 +1,8 @@
 #pragma once
 // What a receiver makes of the recorded frames of one UART line: bytes and errors.
 //
-// The receiver is set as the line's sender is: bit time and format of the newest frame that no fault harmed.
+// The receiver is set as the line's sender is: bit time and format of the newest frame that no fault harmed;
+// before the first such frame as is assumed, or else by the frame itself with eight data bits.
 // A frame that a fault harmed is sampled as a receiver samples it, in the middle of its own bits; others are
 // taken as they were sent. Deviation: each frame is sampled as if the line rested behind it.
 
@@ -21,10 +22,18 @@ class LineReceiver {
     /// start bit is too short; several of one that is much slower than the receiver.
     std::vector<protocols::ReceivedCharacter> take(const cosim::TraceRow& row, const cosim::UartFrame& frame);
 
+    /// Until a frame says otherwise.
+    void assume(const protocols::UartReceiver& receiver) {
+        if (!receiver_) receiver_ = receiver;
+    }
+
   private:
     std::optional<protocols::UartReceiver> receiver_;
     cosim::Time ready_ = 0;
 };
+
+/// How a receiver of this sender is set; nothing for a frame that says nothing of it.
+std::optional<protocols::UartReceiver> setting_of(const cosim::TraceRow& row, const cosim::UartFrame& frame);
 
 /// "break", "framing error", "wrong parity"; empty: nothing is wrong.
 std::string line_error(const protocols::ReceivedCharacter& character);
