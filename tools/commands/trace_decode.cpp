@@ -41,12 +41,17 @@ void declare_trace_decode(Command& trace) {
     command->add_flag("--json", options->json, "one JSON object per line");
     add_selection(*command, options->selection);
     command->callback([options] {
+        // What a node's frames are depends on the answers of others: the frames are chosen, not the rows.
+        options->selection.nodes_only_named = true;
+        const auto& nodes = options->selection.nodes;
         const RecordedTrace recorded(options->trace, options->selection);
         write_output("-", [&](std::ostream& out) {
             decode_trace(recorded, [&](const DecodedFrame& frame) {
                 const auto& wanted = options->protocols;
                 if (!wanted.empty() &&
                     std::find(wanted.begin(), wanted.end(), frame.protocol) == wanted.end())
+                    return;
+                if (!nodes.empty() && std::find(nodes.begin(), nodes.end(), frame.from) == nodes.end())
                     return;
                 if (options->errors_only && frame.errors.empty()) return;
                 out << (options->json ? to_json(frame) : to_text(frame)) << '\n';

@@ -82,9 +82,11 @@ void I2cDecoder::step(const I2cStep& step) {
     }
     open.frame.end = step.known;
     const auto wrong = [&](const std::string& what) {
-        open.frame.errors.push_back(step.kind == Kind::Start
-                                        ? fmt::format("address 0x{:02x} {}", open.address, what)
-                                        : fmt::format("byte {} {}", open.bytes.size() + 1, what));
+        const std::size_t part = open.frame.fields["parts"].size();
+        const std::string where = part > 1 ? fmt::format("part {}: ", part) : "";
+        open.frame.errors.push_back(where + (step.kind == Kind::Start
+                                                 ? fmt::format("address 0x{:02x} {}", open.address, what)
+                                                 : fmt::format("byte {} {}", open.bytes.size() + 1, what)));
     };
     if (step.fault != cosim::FaultKind::None) wrong(fmt::format("fault {}", fault_name(step.fault)));
     if (step.end == I2cStep::End::Lost) {

@@ -35,7 +35,8 @@ bool TraceSelection::wanted(const cosim::TraceRow& row) const {
         return list.empty() || std::find(list.begin(), list.end(), name) != list.end();
     };
     return row.time >= cosim::from_seconds(from_s) && row.time < cosim::from_seconds(until_s) &&
-           among(links, row.link) && among(nodes, row.from) && among(kinds, kind_of(row));
+           among(links, row.link) && (nodes_only_named || among(nodes, row.from)) &&
+           among(kinds, kind_of(row));
 }
 
 RecordedTrace::RecordedTrace(const std::filesystem::path& place, TraceSelection selection)

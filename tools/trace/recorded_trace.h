@@ -17,6 +17,8 @@ struct TraceSelection {
     std::vector<std::string> links, nodes, kinds;
     double from_s = 0.0;
     double until_s = 9e6;
+    /// `nodes` must occur, but whatever the others sent is wanted too.
+    bool nodes_only_named = false;
 
     bool wanted(const cosim::TraceRow& row) const;
 };

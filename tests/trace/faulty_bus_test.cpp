@@ -1,0 +1,114 @@
+// A run with a fault of every kind on an I2C bus, at times drawn at random, exported: sigrok's i2c decoder
+// reads the bytes and missing acknowledges that `trace decode` reads.
+
+#include "foreign_tools.h"
+
+#include <catch2/catch.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <random>
+#include <sstream>
+
+using namespace puckloop;
+using namespace puckloop::tests;
+
+namespace {
+
+/// START, address and direction, bytes; "!" behind what was not acknowledged, but for the last byte read.
+std::vector<std::string> ours(const std::string& out, const std::string& master, std::size_t& lost) {
+    std::vector<std::string> words;
+    const Called called = puckloop::tests::puckloop(
+        fmt::format("trace decode {} --json --protocol i2c --from-node {}", out, master));
+    REQUIRE(called.status == 0);
+    for (const std::string& line : lines_of(called.out)) {
+        const auto frame = nlohmann::json::parse(line);
+        const std::vector<std::string> errors = frame.at("errors");
+        const auto has = [&](const std::string& text) {
+            return std::find(errors.begin(), errors.end(), text) != errors.end();
+        };
+        const auto& parts = frame.at("parts");
+        for (std::size_t p = 0; p < parts.size(); ++p) {
+            const int address = parts[p].at("address");
+            const std::string part = p == 0 ? "" : fmt::format("part {}: ", p + 1);
+            const std::string start = fmt::format("{}address 0x{:02x} ", part, address);
+            if (has(start + "lost the bus")) {
+                ++lost;
+                continue;
+            }
+            words.push_back(fmt::format("a{:02X}{}", address, has(start + "not acknowledged") ? "!" : ""));
+            std::istringstream bytes(parts[p].at("bytes").get<std::string>());
+            int number = 0;
+            for (std::string byte; bytes >> byte;) {
+                const bool read = parts[p].at("read");
+                const bool refused = !read && has(fmt::format("{}byte {} not acknowledged", part, ++number));
+                words.push_back(fmt::format("{}{:02X}{}", read ? 'R' : 'W', std::stoi(byte, nullptr, 16),
+                                            refused ? "!" : ""));
+            }
+        }
+    }
+    return words;
+}
+
+std::vector<std::string> sigroks(const std::string& sr, const std::string& bus) {
+    std::vector<std::string> words;
+    for (const std::string& word : sigrok_i2c(sr, bus)) {
+        if (word == "S" || word == "P" || word == "A") continue;
+        if (word != "N")
+            words.push_back(word);
+        else if (words.back()[0] != 'R')
+            words.back() += "!";
+    }
+    return words;
+}
+
+}  // namespace
+
+TEST_CASE("sigrok reads a bus with every kind of fault as decode does") {
+    const unsigned seed = Catch::rngSeed() != 0 ? Catch::rngSeed() : std::random_device{}();
+    std::mt19937 random{seed};
+    INFO("--rng-seed " << seed);
+    const char* kKinds[] = {"nack phase=address count=2",
+                            "nack phase=write count=2",
+                            "flip count=2",
+                            "flip phase=read count=2",
+                            "stretch time=200us count=2",
+                            "sda time=300us count=1",
+                            "scl time=300us count=1",
+                            "lose_arbitration time=200us count=2",
+                            "start count=1",
+                            "stop count=1",
+                            "slave_reset time=1ms count=1",
+                            "clash address=0x20 value=0x5a count=3",
+                            "slow_rise time=2us count=20"};
+    std::string faults;
+    double at = 0.25;
+    for (const char* kind : kKinds) {
+        const std::string text = kind;
+        const std::size_t blank = text.find(' ');
+        faults +=
+            fmt::format(" --fault '{} link=leader.i2c from=leader.linux begin={:.5f}s {} may_not_fire=true'",
+                        text.substr(0, blank), at, text.substr(blank + 1));
+        at += 0.02 + static_cast<double>(random() % 2000) / 1e5;
+    }
+    const std::string out = scratch("faulty_bus");
+    const Called run = puckloop::tests::puckloop(
+        fmt::format("run {}/scenarios/rab_pair.toml --in-process --duration {:.3f} --seed {} --out {}{}",
+                    PUCKLOOP_SOURCE, at + 0.1, random() % 1000, out, faults));
+    INFO(faults << "\n" << run.out);
+    REQUIRE(run.status <= 1);
+    const std::string sr = out + "/trace.sr";
+    REQUIRE(puckloop::tests::puckloop(fmt::format("trace export {} -o {} --kind i2c", out, sr)).status == 0);
+    std::size_t lost = 0;
+    const std::vector<std::string> mine = ours(out, "leader.linux", lost);
+    CHECK(mine.size() > 200);
+    INFO(lost << " times the bus was lost");
+    CHECK(std::count_if(mine.begin(), mine.end(), [](const auto& word) { return word.back() == '!'; }) >= 2);
+    if (!installed("sigrok-cli")) return;
+    const std::vector<std::string> theirs = sigroks(sr, "leader.i2c");
+    for (std::size_t i = 0; i < std::min(mine.size(), theirs.size()); ++i) {
+        INFO("word " << i << " of " << mine.size() << " and " << theirs.size());
+        REQUIRE(mine[i] == theirs[i]);
+    }
+    CHECK(mine.size() == theirs.size());
+}
