@@ -1,6 +1,6 @@
 // An overlay (`puckloop run --model`): what a verdict found, for any scenario.
 
-#include "physics/description.h"
+#include "physics/description/description.h"
 #include "scenarios/reader.h"
 #include "scenarios/linux_keys.h"
 #include "scenarios/scenario.h"

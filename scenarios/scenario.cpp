@@ -1,7 +1,7 @@
 #include "scenarios/scenario.h"
 
 #include "base/error.h"
-#include "physics/parameters.h"
+#include "physics/description/parameters.h"
 #include "scenarios/events/event_tables.h"
 #include "scenarios/faults/fault_tables.h"
 #include "scenarios/radio_tables.h"

@@ -2,7 +2,7 @@
 // One thing in the world from its table: [[wall]], [[box]], [[cylinder]], [[lamp]], [[speaker]],
 // [[floor_patch]], or what an event adds. Names and places are the caller's.
 
-#include "physics/description.h"
+#include "physics/description/description.h"
 #include "scenarios/reader.h"
 
 namespace puckloop::scenarios {

@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/suggest.h"
-#include "physics/parameters.h"
+#include "physics/description/parameters.h"
 #include "scenarios/thing_tables.h"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 #pragma once
 // The tables of a scenario that describe the world: arena, things, lamps, floor, parameters.
 
-#include "physics/description.h"
+#include "physics/description/description.h"
 #include "scenarios/reader.h"
 
 #include <map>

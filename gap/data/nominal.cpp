@@ -1,7 +1,7 @@
 #include "gap/data/nominal.h"
 
 #include "base/error.h"
-#include "physics/parameters.h"
+#include "physics/description/parameters.h"
 
 #include <fmt/format.h>
 

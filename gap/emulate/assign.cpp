@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "gap/emulate/record.h"
-#include "physics/parameters.h"
+#include "physics/description/parameters.h"
 
 #include <fmt/format.h>
 

@@ -5,7 +5,7 @@
 #include "gap/emulate/plans_sensors.h"
 #include "gap/emulate/wave_floor.h"
 #include "gap/selftest/design_motion.h"
-#include "physics/parameters.h"
+#include "physics/description/parameters.h"
 
 #include <fmt/format.h>
 

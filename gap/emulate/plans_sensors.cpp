@@ -2,7 +2,7 @@
 
 #include "base/random.h"
 #include "gap/emulate/plans.h"
-#include "physics/parameters.h"
+#include "physics/description/parameters.h"
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 #include "gap/emulate/plans.h"
 #include "gap/emulate/reacts_sensors.h"
 #include "gap/emulate/surroundings.h"
-#include "physics/parameters.h"
+#include "physics/description/parameters.h"
 
 #include <fmt/format.h>
 

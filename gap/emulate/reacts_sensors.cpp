@@ -1,7 +1,7 @@
 #include "gap/emulate/reacts_sensors.h"
 
 #include "gap/emulate/plans_sensors.h"
-#include "physics/parameters.h"
+#include "physics/description/parameters.h"
 
 #include <fmt/format.h>
 

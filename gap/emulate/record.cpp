@@ -7,7 +7,7 @@
 #include "gap/emulate/record_serial.h"
 #include "gap/emulate/surroundings.h"
 #include "gap/emulate/wave_floor.h"
-#include "physics/parameters.h"
+#include "physics/description/parameters.h"
 
 #include <fmt/format.h>
 

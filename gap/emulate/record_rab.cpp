@@ -1,6 +1,6 @@
 #include "gap/emulate/record_rab.h"
 
-#include "physics/parameters.h"
+#include "physics/description/parameters.h"
 #include "tools/rab/measure.h"
 
 #include <fmt/format.h>

@@ -4,7 +4,7 @@
 #include "gap/emulate/reacts.h"
 #include "gap/emulate/rerun_rab.h"
 #include "gap/overlay/overlay_sensors.h"
-#include "physics/parameters.h"
+#include "physics/description/parameters.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #include "gap/emulate/rerun_rab.h"
 
 #include "gap/emulate/record_rab.h"
-#include "physics/parameters.h"
+#include "physics/description/parameters.h"
 #include "scenarios/scenario.h"
 #include "tools/rab/measure.h"
 

@@ -1,6 +1,6 @@
 #include "gap/emulate/surroundings.h"
 
-#include "physics/parameters.h"
+#include "physics/description/parameters.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "gap/emulate/wave_floor.h"
 
-#include "physics/parameters.h"
+#include "physics/description/parameters.h"
 
 #include <fmt/format.h>
 

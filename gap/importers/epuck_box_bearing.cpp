@@ -10,7 +10,7 @@
 #include "base/error.h"
 #include "gap/importers/importers.h"
 #include "gap/importers/text_table.h"
-#include "physics/parameters.h"
+#include "physics/description/parameters.h"
 
 #include <fmt/format.h>
 

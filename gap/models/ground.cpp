@@ -7,7 +7,7 @@
 
 #include "gap/models/model.h"
 #include "gap/models/rows.h"
-#include "physics/parameters.h"
+#include "physics/description/parameters.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 // The level of a microphone before a loudspeaker: the stated level at 0.1 m, falling with the distance.
 //
-// The law is the simulator's (physics/sound.h). With "microphone.gaussian" = 1 the sound is known to be
+// The law is the simulator's (physics/sensors/sound.h). With "microphone.gaussian" = 1 the sound is known to be
 // Gaussian noise, as the simulator's loudspeakers make it: a level then falls with lost samples as the range
 // of so many normal samples, and scatters as that range.
 //

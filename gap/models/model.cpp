@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "base/suggest.h"
 #include "gap/overlay/overlay_names.h"
-#include "physics/parameters.h"
+#include "physics/description/parameters.h"
 
 #include <fmt/format.h>
 

@@ -12,7 +12,7 @@
 #include "gap/models/motion_path.h"
 #include "gap/models/rows.h"
 #include "gap/models/steadied_heading.h"
-#include "physics/parameters.h"
+#include "physics/description/parameters.h"
 
 #include <algorithm>
 #include <array>

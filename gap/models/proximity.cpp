@@ -6,7 +6,7 @@
 // readings less their idle ones, with the gains and the noise that are in them. 3. Emitter rise, sampling
 // pairs and calibration are the firmware's and the board's; the reading is taken as they leave it.
 
-#include "physics/proximity.h"
+#include "physics/sensors/proximity.h"
 #include "gap/models/keyed_cache.h"
 #include "gap/models/model.h"
 #include "gap/models/rows.h"

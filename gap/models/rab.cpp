@@ -12,7 +12,7 @@
 #include "gap/models/rab_ring.h"
 #include "gap/models/rab_table.h"
 #include "gap/models/rows.h"
-#include "physics/parameters.h"
+#include "physics/description/parameters.h"
 
 #include <fmt/format.h>
 

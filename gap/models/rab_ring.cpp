@@ -1,7 +1,7 @@
 #include "gap/models/rab_ring.h"
 
 #include "base/random.h"
-#include "physics/parameters.h"
+#include "physics/description/parameters.h"
 
 #include <algorithm>
 #include <map>

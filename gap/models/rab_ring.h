@@ -8,7 +8,7 @@
 // curve's reference.
 
 #include "gap/models/keyed_cache.h"
-#include "physics/ir_coupling.h"
+#include "physics/ir/ir_coupling.h"
 
 #include <array>
 #include <cmath>

@@ -6,7 +6,7 @@
 #include "gap/overlay/overlay_rab.h"
 #include "gap/overlay/overlay_sensors.h"
 #include "gap/pipeline/analyse.h"
-#include "physics/parameters.h"
+#include "physics/description/parameters.h"
 #include "scenarios/world_tables.h"
 
 #include <fmt/format.h>

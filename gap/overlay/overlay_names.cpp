@@ -1,6 +1,6 @@
 #include "gap/overlay/overlay_names.h"
 
-#include "physics/parameters.h"
+#include "physics/description/parameters.h"
 
 #include <algorithm>
 #include <array>

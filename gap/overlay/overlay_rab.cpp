@@ -6,7 +6,7 @@
 #include "gap/overlay/overlay_rab.h"
 
 #include "gap/models/rab_table.h"
-#include "physics/parameters.h"
+#include "physics/description/parameters.h"
 
 #include <fmt/format.h>
 

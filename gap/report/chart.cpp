@@ -1,7 +1,7 @@
 #include "gap/report/chart.h"
 
 #include "gap/stats/robust.h"
-#include "physics/svg_canvas.h"
+#include "physics/render/svg_canvas.h"
 
 #include <fmt/format.h>
 

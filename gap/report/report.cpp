@@ -4,7 +4,7 @@
 #include "gap/report/pictures.h"
 #include "gap/report/sections.h"
 #include "gap/report/style.h"
-#include "physics/svg_canvas.h"
+#include "physics/render/svg_canvas.h"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 
 #include "gap/report/pictures.h"
 #include "gap/report/table.h"
-#include "physics/svg_canvas.h"
+#include "physics/render/svg_canvas.h"
 
 #include <fmt/format.h>
 

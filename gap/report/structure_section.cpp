@@ -5,7 +5,7 @@
 #include "gap/report/table.h"
 #include "gap/stats/noise_floor.h"
 #include "gap/stats/robust.h"
-#include "physics/svg_canvas.h"
+#include "physics/render/svg_canvas.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,7 @@
 #include "gap/report/table.h"
 
 #include "gap/stats/profile.h"
-#include "physics/svg_canvas.h"
+#include "physics/render/svg_canvas.h"
 
 #include <fmt/format.h>
 

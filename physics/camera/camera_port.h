@@ -3,7 +3,7 @@
 
 #include "cosim/core/message.h"
 #include "physics/camera/camera_signals.h"
-#include "physics/world_model.h"
+#include "physics/world/world_model.h"
 
 #include <map>
 #include <vector>

@@ -1,7 +1,7 @@
 #include "physics/camera/camera_scene.h"
 
-#include "physics/booth.h"
-#include "physics/robot_parameters.h"
+#include "physics/description/booth.h"
+#include "physics/description/robot_parameters.h"
 
 #include <cmath>
 #include <numbers>

@@ -2,8 +2,8 @@
 // What cameras see, at one instant: kept up to date by the signals of the world's camera port.
 
 #include "physics/camera/camera_signals.h"
-#include "physics/parameters.h"
-#include "physics/plan.h"
+#include "physics/description/parameters.h"
+#include "physics/description/plan.h"
 
 #include <array>
 #include <vector>

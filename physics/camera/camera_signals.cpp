@@ -1,6 +1,6 @@
 #include "physics/camera/camera_signals.h"
 
-#include "physics/booth.h"
+#include "physics/description/booth.h"
 
 namespace puckloop::physics {
 

@@ -5,8 +5,8 @@
 // Deviation: lamps that are moved or added during a run stay where they were, or are not seen.
 
 #include "cosim/core/time.h"
-#include "physics/description.h"
-#include "physics/pose_signals.h"
+#include "physics/description/description.h"
+#include "physics/world/pose_signals.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -35,7 +35,7 @@ class CameraSignals {
         return turret_ + robot * kTurretColours + colour;
     }
     std::size_t lamp(std::size_t lamp) const { return lamps_ + lamp; }
-    /// Red, green or blue (0..2) of light number `light` of all booths, kLights each (physics/booth.h).
+    /// Red, green or blue (0..2) of light number `light` of all booths, kLights each (physics/description/booth.h).
     std::size_t booth_light(std::size_t light, std::size_t colour) const {
         return lights_ + 3 * light + colour;
     }

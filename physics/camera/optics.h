@@ -11,7 +11,7 @@
 // length is what makes the mirror's rim look up by the given angle. As ARGoS has it, ahead is to the left in
 // the image and left is up.
 
-#include "physics/parameters.h"
+#include "physics/description/parameters.h"
 
 #include <cstdint>
 #include <optional>

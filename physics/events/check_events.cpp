@@ -2,10 +2,10 @@
 
 #include "base/error.h"
 #include "base/suggest.h"
-#include "physics/booth.h"
+#include "physics/description/booth.h"
 #include "physics/events/new_thing.h"
-#include "physics/plan.h"
-#include "physics/robot_parameters.h"
+#include "physics/description/plan.h"
+#include "physics/description/robot_parameters.h"
 #include "protocols/rc5.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 // Hands that reach into the world between two steps: bodies placed, held, added and taken away.
 
-#include "physics/dynamics_bodies.h"
+#include "physics/dynamics/dynamics_bodies.h"
 
 #include <array>
 #include <cmath>

@@ -1,10 +1,10 @@
 #pragma once
 // What happens to a world while it runs: an action, and when. Plain data: written by a scenario or sent to a
 // running world, checked by check_events(), carried between processes as JSON text. SI units as in
-// physics/description.h; times are whole microseconds.
+// physics/description/description.h; times are whole microseconds.
 
 #include "cosim/core/time.h"
-#include "physics/description.h"
+#include "physics/description/description.h"
 
 #include <optional>
 

@@ -1,7 +1,7 @@
 // Plans as JSON text: how they reach the world's process.
 
 #include "base/error.h"
-#include "physics/description_fields.h"
+#include "physics/description/description_fields.h"
 #include "physics/events/event.h"
 
 namespace nlohmann {

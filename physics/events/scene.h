@@ -3,7 +3,7 @@
 // What cannot be done is refused with a reason and changes nothing.
 
 #include "physics/events/event.h"
-#include "physics/world_model.h"
+#include "physics/world/world_model.h"
 
 #include <map>
 #include <set>

@@ -1,7 +1,7 @@
 // Where things are, and where they can be.
 
 #include "base/suggest.h"
-#include "physics/booth.h"
+#include "physics/description/booth.h"
 #include "physics/events/scene.h"
 
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 // IRcom's infra-red medium as a node: which diodes are lit goes in, the light at phototransistors comes out.
 //
 // Ports: "<robot>.ircom" for each robot of the description, then "<booth>.ircom" for each booth, then "world"
-// with the poses (physics/pose_signals.h). Ids come from IrcomIds: of a robot "pulse0".."3" in and
+// with the poses (physics/world/pose_signals.h). Ids come from IrcomIds: of a robot "pulse0".."3" in and
 // "ir_light0".."7" (counts) out; of a booth "proximity_emit" in and "proximity_sense" (the comparator) out.
 // Light comes ircom.delay after its cause; a robot's board adds its phototransistors' time constant, the
 // booth's comparator switches where its input crosses the threshold (physics/ircom/comparator.h), to the
@@ -13,7 +13,7 @@
 
 #include "cosim/core/node.h"
 #include "cosim/faults/fault_json.h"
-#include "physics/description.h"
+#include "physics/description/description.h"
 
 #include <array>
 #include <cstdint>

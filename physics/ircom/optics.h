@@ -11,8 +11,8 @@
 // the robots' parameters ircom.power and ircom.gain. 4. Phototransistors neither saturate nor slow down with
 // the light (the converter clips).
 
-#include "physics/parameters.h"
-#include "physics/plan.h"
+#include "physics/description/parameters.h"
+#include "physics/description/plan.h"
 
 #include <array>
 #include <span>

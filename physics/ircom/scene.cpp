@@ -1,8 +1,8 @@
 #include "physics/ircom/scene.h"
 
-#include "physics/booth.h"
-#include "physics/pose_signals.h"
-#include "physics/robot_parameters.h"
+#include "physics/description/booth.h"
+#include "physics/world/pose_signals.h"
+#include "physics/description/robot_parameters.h"
 
 #include <algorithm>
 #include <array>

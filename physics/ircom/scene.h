@@ -1,6 +1,6 @@
 #pragma once
 // Where everything is that has to do with IRcom: the devices, which are the robots in the description's order
-// and then the booths, and what can shade them. It follows the world's poses (physics/pose_signals.h).
+// and then the booths, and what can shade them. It follows the world's poses (physics/world/pose_signals.h).
 //
 // A robot has four lines of two diodes each (sensors i and i + 4) and eight phototransistors, a booth one of
 // each. A pose takes effect a millisecond after it was known: so no light comes sooner to a device that is

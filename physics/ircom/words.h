@@ -8,7 +8,7 @@
 // receiver itself sent then. Light of fewer than twenty edges is no word: a robot measures proximity.
 
 #include "physics/ircom/medium.h"
-#include "physics/recorder.h"
+#include "physics/world/recorder.h"
 #include "protocols/ircom.h"
 
 #include <memory>

@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "emu/i2c_devices/bus_node.h"
 #include "emu/i2c_devices/signals.h"
-#include "physics/channels.h"
+#include "physics/description/channels.h"
 #include "tests/scratch.h"
 
 #include <catch2/catch.hpp>

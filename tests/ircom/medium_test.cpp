@@ -3,7 +3,7 @@
 #include "base/random.h"
 #include "physics/ircom/ircom_node.h"
 #include "physics/ircom/scene.h"
-#include "physics/pose_signals.h"
+#include "physics/world/pose_signals.h"
 #include "protocols/ircom.h"
 #include "tests/ircom/worlds.h"
 #include "tests/scratch.h"

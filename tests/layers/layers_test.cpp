@@ -46,7 +46,17 @@ const std::vector<std::string> kFolders = {
     "emu/pic",
     "emu/rab_board",
     "emu/tam_avr",
-    "physics",
+    "physics/description",
+    "physics/dynamics",
+    "physics/sensors",
+    "physics/robot",
+    "physics/world",
+    "physics/events",
+    "physics/camera",
+    "physics/ir",
+    "physics/ircom",
+    "physics/node",
+    "physics/render",
     "scenarios",
 };
 

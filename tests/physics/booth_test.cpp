@@ -2,9 +2,9 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "physics/booth.h"
-#include "physics/booth_record.h"
-#include "physics/world_node.h"
+#include "physics/description/booth.h"
+#include "physics/world/booth_record.h"
+#include "physics/node/world_node.h"
 #include "tests/physics/worlds.h"
 #include "tests/scratch.h"
 

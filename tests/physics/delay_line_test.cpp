@@ -1,4 +1,4 @@
-#include "physics/delay_line.h"
+#include "physics/robot/delay_line.h"
 
 #include <catch2/catch.hpp>
 

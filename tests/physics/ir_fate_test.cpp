@@ -1,7 +1,7 @@
 // What becomes of single bursts: shares, spells and reflections are those that were asked for.
 
-#include "physics/ir_fate.h"
-#include "physics/ir_medium.h"
+#include "physics/ir/ir_fate.h"
+#include "physics/ir/ir_medium.h"
 #include "tests/physics/ir_worlds.h"
 
 #include <catch2/catch.hpp>

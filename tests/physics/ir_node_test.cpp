@@ -1,9 +1,9 @@
 // The medium as a node: times, EOTs, grants cut anyhow, frames as they were on the air.
 
 #include "base/error.h"
-#include "physics/ir_node.h"
-#include "physics/pose_signals.h"
-#include "physics/world_node.h"
+#include "physics/ir/ir_node.h"
+#include "physics/world/pose_signals.h"
+#include "physics/node/world_node.h"
 #include "tests/physics/ir_worlds.h"
 #include "tests/scratch.h"
 

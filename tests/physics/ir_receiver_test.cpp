@@ -1,6 +1,6 @@
 // Receivers in time: delays, bursts and gaps that are too short, levels that hold.
 
-#include "physics/ir_receiver.h"
+#include "physics/ir/ir_receiver.h"
 
 #include <catch2/catch.hpp>
 

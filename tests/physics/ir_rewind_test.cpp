@@ -2,8 +2,8 @@
 // frames and its report. Boards that shine at random, bodies that move, are lifted and change their shape; a
 // twin is never marked.
 
-#include "physics/ir_node.h"
-#include "physics/pose_signals.h"
+#include "physics/ir/ir_node.h"
+#include "physics/world/pose_signals.h"
 #include "tests/physics/ir_worlds.h"
 #include "tests/scratch.h"
 

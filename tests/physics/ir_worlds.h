@@ -1,7 +1,7 @@
 #pragma once
 // Small worlds of range-and-bearing boards, and their links' signal ids.
 
-#include "physics/ir_medium.h"
+#include "physics/ir/ir_medium.h"
 #include "tests/physics/worlds.h"
 
 #include <algorithm>

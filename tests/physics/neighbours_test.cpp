@@ -1,7 +1,7 @@
 // The lists of what is near, and the plan's short cuts for rays and distances, against looking at everything.
 
 #include "base/random.h"
-#include "physics/neighbours.h"
+#include "physics/dynamics/neighbours.h"
 #include "tests/physics/random_world.h"
 
 #include <catch2/catch.hpp>

@@ -2,7 +2,7 @@
 // What the sensors of a world see, worked out plainly: everything against everything, nothing kept from one
 // step to the next. The reference for WorldModel, which looks only where something changed.
 
-#include "physics/world_model.h"
+#include "physics/world/world_model.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // Plane geometry: rays, touches, overlaps, polygons.
 
-#include "physics/plan.h"
+#include "physics/description/plan.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,7 +1,7 @@
 #pragma once
 // Small worlds and driving helpers shared by the physics tests.
 
-#include "physics/world_model.h"
+#include "physics/world/world_model.h"
 
 #include <cmath>
 #include <string>

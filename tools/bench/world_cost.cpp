@@ -3,8 +3,8 @@
 #include "base/random.h"
 #include "emu/i2c_devices/signals.h"
 #include "emu/pic/signals.h"
-#include "physics/channels.h"
-#include "physics/world_node.h"
+#include "physics/description/channels.h"
+#include "physics/node/world_node.h"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 // What a millisecond of the physical world costs, part by part, without boards: robots that wander are driven
 // by step counts as their motors' firmware would make them.
 
-#include "physics/step_observer.h"
+#include "physics/dynamics/step_observer.h"
 
 #include <array>
 

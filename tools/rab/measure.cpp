@@ -4,7 +4,7 @@
 #include "cosim/conductor.h"
 #include "emu/image/image.h"
 #include "emu/rab_board/rab_node.h"
-#include "physics/ir_node.h"
+#include "physics/ir/ir_node.h"
 
 #include <fmt/format.h>
 

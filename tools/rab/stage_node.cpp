@@ -1,7 +1,7 @@
 #include "tools/rab/stage_node.h"
 
-#include "physics/parameters.h"
-#include "physics/pose_signals.h"
+#include "physics/description/parameters.h"
+#include "physics/world/pose_signals.h"
 
 #include <algorithm>
 #include <cmath>

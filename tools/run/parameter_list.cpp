@@ -1,6 +1,6 @@
 #include "tools/run/parameter_list.h"
 
-#include "physics/parameters.h"
+#include "physics/description/parameters.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "cosim/trace/trace_csv.h"
-#include "physics/trajectory_svg.h"
+#include "physics/render/trajectory_svg.h"
 #include "tools/run/control/control_place.h"
 #include "tools/run/fault_results.h"
 #include "tools/run/live_trace.h"

@@ -6,7 +6,7 @@
 #include "gap/emulate/secrets.h"
 #include "gap/emulate/wave_floor.h"
 #include "gap/pipeline/analyse.h"
-#include "physics/ground.h"
+#include "physics/sensors/ground.h"
 #include "tests/scratch.h"
 
 #include <catch2/catch.hpp>

@@ -3,7 +3,7 @@
 #include "gap/effects/effect.h"
 #include "gap/overlay/overlay_names.h"
 #include "gap/pipeline/analyse.h"
-#include "physics/parameters.h"
+#include "physics/description/parameters.h"
 #include "scenarios/scenario.h"
 #include "tests/scratch.h"
 

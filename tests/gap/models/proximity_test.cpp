@@ -1,6 +1,6 @@
 // The proximity model against the simulator's own sensors: one robot, its right-hand sensor before a wall.
 
-#include "physics/world_model.h"
+#include "physics/world/world_model.h"
 #include "tests/gap/models/made_table.h"
 #include "tests/physics/worlds.h"
 

@@ -1,8 +1,8 @@
 // Light between range-and-bearing boards in a world that changes.
 
-#include "physics/ir_medium.h"
-#include "physics/ir_node.h"
-#include "physics/pose_signals.h"
+#include "physics/ir/ir_medium.h"
+#include "physics/ir/ir_node.h"
+#include "physics/world/pose_signals.h"
 #include "tests/physics/events/plans.h"
 #include "tests/physics/ir_worlds.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 // Plans, and nodes that carry them out, for the tests of physics/events.
 
-#include "physics/world_node.h"
+#include "physics/node/world_node.h"
 #include "tests/physics/worlds.h"
 
 #include <nlohmann/json.hpp>

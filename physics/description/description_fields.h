@@ -1,0 +1,28 @@
+#pragma once
+// The fields of the description's structs as JSON. Only files that write or read JSON include this.
+
+#include "physics/description/description.h"
+
+#include <nlohmann/json.hpp>
+
+namespace puckloop::physics {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Point, x, y)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Arena, corners, walls, wall_height, wall_thickness, reflectivity,
+                                   floor_grey, place)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Wall, name, from, to, thickness, height, reflectivity, place)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Box, name, x, y, heading, length, width, height, movable, mass,
+                                   reflectivity, place)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Cylinder, name, x, y, radius, height, movable, mass, reflectivity, place)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Lamp, name, x, y, height, intensity, place)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Speaker, name, x, y, height, level, on, off, place)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Patch, name, shape, x, y, heading, length, width, radius, grey, place)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Booth, name, x, y, heading, reflectivity, signals, place)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Robot, name, x, y, heading, parameters, board_signals, ground_signals, rab,
+                                   camera, rab_signals, place)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Recording, directory, period, log)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(World, node_name, file, seed, ambient_light, arena, walls, boxes,
+                                   cylinders, lamps, speakers, patches, robots, booths, parameters, ircom,
+                                   recording)
+
+}  // namespace puckloop::physics

@@ -1,0 +1,21 @@
+// The world as JSON text: how a node's description reaches its process.
+
+#include "base/error.h"
+#include "physics/description/description_fields.h"
+
+namespace puckloop::physics {
+
+std::string to_json(const World& world) {
+    return nlohmann::json(world).dump();
+}
+
+World from_json(std::string_view text) {
+    try {
+        return nlohmann::json::parse(text).get<World>();
+    } catch (const nlohmann::json::exception& error) {
+        throw InputError("", "", std::string("world description: ") + error.what(),
+                         "JSON as to_json writes it");
+    }
+}
+
+}  // namespace puckloop::physics

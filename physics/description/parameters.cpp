@@ -1,0 +1,108 @@
+// Parameters by name: look-up, range check, nearest name for a typing error.
+
+#include "physics/description/parameters.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+namespace puckloop::physics {
+
+namespace {
+
+/// Levenshtein distance.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        std::size_t diagonal = row[0];
+        row[0] = i + 1;
+        for (std::size_t j = 0; j < b.size(); ++j) {
+            const std::size_t above = row[j + 1];
+            row[j + 1] = std::min({above + 1, row[j] + 1, diagonal + (a[i] == b[j] ? 0U : 1U)});
+            diagonal = above;
+        }
+    }
+    return row.back();
+}
+
+std::string_view nearest_name(std::string_view name) {
+    std::string_view best;
+    std::size_t best_distance = 0;
+    for (const auto& info : parameter_table()) {
+        const auto distance = edit_distance(name, info.name);
+        if (best.empty() || distance < best_distance) {
+            best = info.name;
+            best_distance = distance;
+        }
+    }
+    return best;
+}
+
+const ParameterInfo& require(std::string_view name, int& index) {
+    const auto* info = find_parameter(name, index);
+    if (info == nullptr)
+        throw std::invalid_argument(
+            fmt::format("unknown parameter \"{}\"; did you mean \"{}\"?", name, nearest_name(name)));
+    return *info;
+}
+
+}  // namespace
+
+bool ParameterInfo::of_robot() const {
+    const std::string_view text = name;
+    return !text.starts_with("contact.") && !text.starts_with("world.");
+}
+
+const ParameterInfo* find_parameter(std::string_view name, int& index) {
+    index = -1;
+    for (const auto& info : parameter_table()) {
+        const std::string_view base = info.name;
+        if (name == base) return &info;
+        if (info.count < 2 || !name.starts_with(base)) continue;
+        const auto digits = name.substr(base.size());
+        int number = -1;
+        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+        const bool plain = digits.size() == 1 || (digits.size() == 2 && digits[0] != '0');
+        if (error == std::errc() && end == digits.data() + digits.size() && plain && number >= 0 &&
+            number < info.count) {
+            index = number;
+            return &info;
+        }
+    }
+    return nullptr;
+}
+
+Parameters::Parameters() {
+    for (const auto& info : parameter_table()) {
+        double* first = info.place(*this);
+        for (int i = 0; i < info.count; ++i)
+            first[i] = info.defaults.size() == 1 ? info.defaults[0] : info.defaults[static_cast<size_t>(i)];
+    }
+}
+
+void Parameters::set(std::string_view name, double value) {
+    int index = -1;
+    const auto& info = require(name, index);
+    if (!std::isfinite(value) || value < info.min || value > info.max)
+        throw std::invalid_argument(fmt::format("parameter {} = {} is out of range ({} to {} {})", name,
+                                                value, info.min, info.max, info.unit));
+    double* first = info.place(*this);
+    if (index >= 0)
+        first[index] = value;
+    else
+        std::fill(first, first + info.count, value);
+}
+
+double Parameters::get(std::string_view name) const {
+    int index = -1;
+    const auto& info = require(name, index);
+    Parameters copy = *this;
+    return info.place(copy)[std::max(index, 0)];
+}
+
+}  // namespace puckloop::physics

@@ -1,0 +1,26 @@
+#include "physics/render/trajectory_svg.h"
+
+#include "base/error.h"
+#include "physics/render/run_picture.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+namespace puckloop::physics {
+
+void write_trajectory_svg(const World& world, const std::filesystem::path& directory) {
+    const Paths robots = read_paths(directory / "trajectory.csv");
+    const auto objects_file = directory / "objects.csv";
+    const Paths objects = std::filesystem::exists(objects_file) ? read_paths(objects_file) : Paths{};
+    const auto booths =
+        world.booths.empty() ? std::vector<BoothColours>{} : read_booth_colours(directory / "tams.csv");
+    const std::string document = Picture(world, robots, objects, booths).draw();
+    const auto file = directory / "trajectory.svg";
+    std::FILE* out = std::fopen(file.c_str(), "w");
+    const bool written = out != nullptr && std::fputs(document.c_str(), out) >= 0;
+    const bool closed = out != nullptr && std::fclose(out) == 0;
+    if (!written || !closed) throw RunError(fmt::format("cannot write {}", file.string()));
+}
+
+}  // namespace puckloop::physics

@@ -1,0 +1,96 @@
+#pragma once
+// One e-puck in the world: its drives, its sensors, its battery, and what they last said.
+
+#include "physics/sensors/accelerometer.h"
+#include "physics/robot/battery.h"
+#include "physics/description/channels.h"
+#include "physics/robot/delay_line.h"
+#include "physics/dynamics/floor_motion.h"
+#include "physics/sensors/ground.h"
+#include "physics/sensors/light.h"
+#include "physics/sensors/proximity.h"
+#include "physics/sensors/proximity_noise.h"
+#include "physics/sensors/sound.h"
+#include "physics/robot/wheel_drive.h"
+
+#include <array>
+
+namespace puckloop::physics {
+
+enum class Side : std::uint8_t { Left, Right };
+
+class RobotModel {
+  public:
+    /// `world` must outlive the model; `parameters` are the world's with the robot's own over them.
+    RobotModel(const World& world, const Robot& robot, const Parameters& parameters);
+
+    WheelDrive& drive(Side side) { return drives_[static_cast<std::size_t>(side)]; }
+    const WheelDrive& drive(Side side) const { return drives_[static_cast<std::size_t>(side)]; }
+
+    /// Wheel speed (rad/s) to ask for in the step that ends at `seconds`, from where the wheel is now.
+    double wheel_speed(Side side, double seconds, double wheel_angle);
+
+    const FloorMotion& floor_motion() const { return floor_motion_; }
+    /// How the floor moves under the robot in the step that ends at `seconds`; not asked for where it is
+    /// still.
+    FloorVelocity floor_velocity(const RobotState& state, double seconds);
+
+    /// These three when something moved: what the sensors look at is another.
+    void look_around(const SensorView& view);
+    void sense_light(const SensorView& view);
+    void look_down(const RobotState& state);
+    /// What the sensors say of it, and what changes by itself; once a step, after the others.
+    void sense_each_step(const RobotState& state, double seconds);
+
+    /// The world's lamps, floor, loudspeakers or room light changed.
+    void scene_changed(const World& world);
+    /// Held in the air: nothing is under it or around it.
+    void set_lifted(bool lifted) { lifted_ = lifted; }
+    bool lifted() const { return lifted_; }
+    void set_charge(double charge) { battery_.set_charge(charge); }
+
+    const ProximityRing& proximity() const { return proximity_; }
+    const LightRing& light() const { return light_; }
+    double sensor_height() const { return parameters_.proximity.height; }
+    const BodyParameters& body() const { return parameters_.robot; }
+    const Channels& channels() const { return channels_; }
+    /// What the readings are made of: own light that comes back, grey under the ground sensors.
+    const std::array<double, kProximitySensors>& reflected() const { return reflected_; }
+    const std::array<double, kGroundSensors>& greys() const { return greys_; }
+
+  private:
+    int motors_running(double seconds) const;
+    Surroundings surroundings(double seconds) const;
+    void sense_proximity(const Surroundings& now);
+    void light_the_floor();
+    void sample_ground(double seconds);
+    template <std::size_t N>
+    void store(std::size_t channel, const std::array<double, N>& values);
+
+    Parameters parameters_;
+    double ambient_light_;
+    std::array<WheelDrive, 2> drives_;
+    std::array<double, 2> asked_angle_{};
+    FloorMotion floor_motion_;
+    std::array<double, 2> rolled_{};  // rad, when the floor's motion was last asked for
+    ProximityRing proximity_;
+    ProximityNoise proximity_noise_;
+    std::array<double, kProximitySensors> reflected_{};
+    DelayLine<kProximitySensors> late_reflected_;
+    bool looked_around_ = true;  // what is seen, or the room light, is another since the last reading
+    bool lifted_ = false;
+    LightRing light_;
+    GroundRow ground_;
+    RobotState over_ground_;  // when it last looked
+    std::array<double, kGroundSensors> greys_{}, greys_to_sample_{};
+    DelayLine<kGroundSensors> late_greys_;
+    DelayLine<1> late_speed_;
+    double acceleration_ = 0.0;  // m/s2 forward, over the control period; kept where it tilts the ground row
+    RandomStream ground_noise_;
+    Accelerometer accelerometer_;
+    Ears ears_;
+    Battery battery_;
+    Channels channels_{};
+};
+
+}  // namespace puckloop::physics

@@ -1,0 +1,39 @@
+#pragma once
+// The analogue three-axis accelerometer: acceleration and gravity as counts. Source: e-puck facts 5.4.
+//
+// Deviations: 1. it sits in the body's centre of mass. 2. A first-order low pass stands for its bandwidth.
+// 3. Vibration is white noise behind the low pass, drawn anew each physics step, so that each sample of a
+// firmware has its own.
+
+#include "base/random.h"
+#include "physics/description/parameters.h"
+#include "physics/sensors/sensor_view.h"
+
+#include <array>
+#include <string>
+
+namespace puckloop::physics {
+
+class Accelerometer {
+  public:
+    /// `seed` and the robot's name make its streams, which change nothing with neutral parameters.
+    Accelerometer(const AccelerometerParameters& parameters, const SimulationParameters& world,
+                  std::uint64_t seed, const std::string& robot);
+
+    /// Once a physics step. Counts for x (right), y (rear), z (up), 0..4095.
+    std::array<double, 3> sense(const RobotState& robot, const Surroundings& now);
+
+  private:
+    AccelerometerParameters parameters_;
+    RandomStream vibration_;
+    double one_g_;
+    double share_;  // of a new value that passes the low pass in one step
+    double turn_cosine_, turn_sine_;
+    std::array<double, 3> zero_;  // counts, this session's
+    std::array<double, 3> gravity_;
+    std::array<double, 3> last_velocity_{};
+    std::array<double, 3> filtered_{};  // m/s2 forward, left, up
+    bool first_ = true;
+};
+
+}  // namespace puckloop::physics

@@ -1,0 +1,125 @@
+#include "physics/world/recorder.h"
+
+#include "base/error.h"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+namespace puckloop::physics {
+
+namespace {
+
+std::string in_directory(const WorldModel& world, const char* name) {
+    return world.description().recording.directory + "/" + name;
+}
+
+std::string sensors_header() {
+    std::string header = "t_s,robot";
+    for (std::size_t i = 0; i < kChannelCount; ++i)
+        header += "," + std::string(channel_name(i));
+    return header + ",steps_left,steps_right";
+}
+
+/// No "-0.000000".
+double tidy(double value) {
+    return std::abs(value) < 5e-7 ? 0.0 : value;
+}
+
+}  // namespace
+
+CsvFile::CsvFile(std::string path, const std::string& header)
+    : path_(std::move(path)), file_(std::fopen(path_.c_str(), "w")) {
+    if (file_ == nullptr) fail();
+    row(header);
+    flush();
+}
+
+void CsvFile::fail() const {
+    throw RunError(fmt::format("cannot write {}: {}", path_, std::strerror(errno)));
+}
+
+void CsvFile::mark() {
+    settle();
+    marked_ = true;
+}
+
+void CsvFile::settle() {
+    marked_ = false;
+    if (kept_back_.empty()) return;
+    const std::string rows = std::exchange(kept_back_, {});
+    if (std::fwrite(rows.data(), 1, rows.size(), file_.get()) != rows.size()) fail();
+    flush();
+}
+
+void CsvFile::row(const std::string& text) {
+    if (marked_) {
+        kept_back_ += text + '\n';
+        return;
+    }
+    if (std::fputs(text.c_str(), file_.get()) < 0 || std::fputc('\n', file_.get()) == EOF) fail();
+}
+
+void CsvFile::flush() {
+    if (std::fflush(file_.get()) != 0) fail();
+}
+
+Recorder::Recorder(const WorldModel& world)
+    : period_steps_(
+          static_cast<std::uint64_t>(std::llround(world.description().recording.period / kStepSeconds))),
+      trajectory_(in_directory(world, "trajectory.csv"), "t_s,robot,x_m,y_m,theta_rad"),
+      sensors_(in_directory(world, "sensors.csv"), sensors_header()) {
+    std::remove(in_directory(world, "objects.csv").c_str());  // of an earlier run
+    write(world);
+}
+
+void Recorder::after_step(const WorldModel& world) {
+    if (world.steps_done() % period_steps_ == 0) write(world);
+}
+
+void Recorder::write(const WorldModel& world) {
+    const double t = world.seconds();
+    for (std::size_t i = 0; i < world.robot_count(); ++i) {
+        const auto& name = world.description().robots[i].name;
+        const auto& s = world.state(i);
+        trajectory_.row(
+            fmt::format("{:.3f},{},{:.6f},{:.6f},{:.6f}", t, name, tidy(s.x), tidy(s.y), tidy(s.heading)));
+        std::string line = fmt::format("{:.3f},{}", t, name);
+        for (const double value : world.robot(i).channels())
+            line += fmt::format(",{:.3f}", tidy(value));
+        for (const Side side : {Side::Left, Side::Right})
+            line += fmt::format(",{:.0f}", world.robot(i).drive(side).steps());
+        sensors_.row(line);
+    }
+    write_objects(world);
+    trajectory_.flush();
+    sensors_.flush();
+    if (objects_) objects_->flush();
+}
+
+/// Movable things, and fixed ones that have been moved or added by hand; none that was taken away.
+void Recorder::write_objects(const WorldModel& world) {
+    for (std::size_t i = 0; i < world.object_names().size(); ++i)
+        if (world.object_shape(i).height > 0.0)
+            object_row(world, world.object_names()[i], world.object(i).x, world.object(i).y,
+                       world.object(i).heading);
+    for (const std::size_t i : world.fixed_by_hand()) {
+        const Shape& shape = world.fixed(i);
+        if (shape.height > 0.0)
+            object_row(world, world.fixed_names()[i], shape.x, shape.y, std::atan2(shape.sine, shape.cosine));
+    }
+}
+
+void Recorder::object_row(const WorldModel& world, const std::string& name, double x, double y,
+                          double heading) {
+    if (!objects_)
+        objects_ =
+            std::make_unique<CsvFile>(in_directory(world, "objects.csv"), "t_s,object,x_m,y_m,theta_rad");
+    objects_->row(fmt::format("{:.3f},{},{:.6f},{:.6f},{:.6f}", world.seconds(), name, tidy(x), tidy(y),
+                              tidy(heading)));
+}
+
+}  // namespace puckloop::physics
