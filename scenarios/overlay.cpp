@@ -1,8 +1,8 @@
 // An overlay (`puckloop run --model`): what a verdict found, for any scenario.
 
 #include "physics/description/description.h"
-#include "scenarios/reader.h"
 #include "scenarios/linux_keys.h"
+#include "scenarios/reader.h"
 #include "scenarios/scenario.h"
 #include "scenarios/world_tables.h"
 

@@ -1,8 +1,8 @@
 // The level of a microphone before a loudspeaker: the stated level at 0.1 m, falling with the distance.
 //
-// The law is the simulator's (physics/sensors/sound.h). With "microphone.gaussian" = 1 the sound is known to be
-// Gaussian noise, as the simulator's loudspeakers make it: a level then falls with lost samples as the range
-// of so many normal samples, and scatters as that range.
+// The law is the simulator's (physics/sensors/sound.h). With "microphone.gaussian" = 1 the sound is known to
+// be Gaussian noise, as the simulator's loudspeakers make it: a level then falls with lost samples as the
+// range of so many normal samples, and scatters as that range.
 //
 // Deviations: 1. the converter's own noise is left out (in a run it adds to the sound's as powers). 2. Level
 // is taken as the firmware reports it (largest minus smallest of a window).

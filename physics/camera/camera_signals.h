@@ -35,7 +35,8 @@ class CameraSignals {
         return turret_ + robot * kTurretColours + colour;
     }
     std::size_t lamp(std::size_t lamp) const { return lamps_ + lamp; }
-    /// Red, green or blue (0..2) of light number `light` of all booths, kLights each (physics/description/booth.h).
+    /// Red, green or blue (0..2) of light number `light` of all booths, kLights each
+    /// (physics/description/booth.h).
     std::size_t booth_light(std::size_t light, std::size_t colour) const {
         return lights_ + 3 * light + colour;
     }

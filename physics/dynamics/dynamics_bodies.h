@@ -1,11 +1,11 @@
 #pragma once
 // The ODE objects behind Dynamics: bodies and contacts. Only the dynamics' own files include this.
 
+#include "physics/description/parameters.h"
 #include "physics/dynamics/dynamics.h"
 #include "physics/dynamics/floor_motion.h"
 #include "physics/dynamics/neighbours.h"
 #include "physics/dynamics/ode_library.h"
-#include "physics/description/parameters.h"
 #include "physics/dynamics/step_observer.h"
 
 #include <ode/ode.h>

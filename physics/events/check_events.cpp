@@ -3,9 +3,9 @@
 #include "base/error.h"
 #include "base/suggest.h"
 #include "physics/description/booth.h"
-#include "physics/events/new_thing.h"
 #include "physics/description/plan.h"
 #include "physics/description/robot_parameters.h"
+#include "physics/events/new_thing.h"
 #include "protocols/rc5.h"
 
 #include <fmt/format.h>

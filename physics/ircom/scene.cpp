@@ -1,8 +1,8 @@
 #include "physics/ircom/scene.h"
 
 #include "physics/description/booth.h"
-#include "physics/world/pose_signals.h"
 #include "physics/description/robot_parameters.h"
+#include "physics/world/pose_signals.h"
 
 #include <algorithm>
 #include <array>

@@ -1,12 +1,12 @@
 #include "physics/node/world_node.h"
 
-#include "physics/node/booth_link.h"
-#include "physics/world/booth_record.h"
 #include "physics/camera/camera_port.h"
 #include "physics/events/timeline.h"
+#include "physics/node/booth_link.h"
+#include "physics/node/robot_links.h"
+#include "physics/world/booth_record.h"
 #include "physics/world/pose_signals.h"
 #include "physics/world/recorder.h"
-#include "physics/node/robot_links.h"
 #include "physics/world/world_log.h"
 
 #include <nlohmann/json.hpp>

@@ -1,9 +1,9 @@
 #pragma once
 // The picture of one run, drawn from back to front. Only its own files include this.
 
-#include "physics/world/booth_record.h"
 #include "physics/render/path_file.h"
 #include "physics/render/svg_canvas.h"
+#include "physics/world/booth_record.h"
 
 #include <array>
 #include <string>

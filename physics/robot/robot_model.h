@@ -1,17 +1,17 @@
 #pragma once
 // One e-puck in the world: its drives, its sensors, its battery, and what they last said.
 
-#include "physics/sensors/accelerometer.h"
-#include "physics/robot/battery.h"
 #include "physics/description/channels.h"
-#include "physics/robot/delay_line.h"
 #include "physics/dynamics/floor_motion.h"
+#include "physics/robot/battery.h"
+#include "physics/robot/delay_line.h"
+#include "physics/robot/wheel_drive.h"
+#include "physics/sensors/accelerometer.h"
 #include "physics/sensors/ground.h"
 #include "physics/sensors/light.h"
 #include "physics/sensors/proximity.h"
 #include "physics/sensors/proximity_noise.h"
 #include "physics/sensors/sound.h"
-#include "physics/robot/wheel_drive.h"
 
 #include <array>
 

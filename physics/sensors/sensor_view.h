@@ -1,8 +1,8 @@
 #pragma once
 // What the sensor models of one robot look at.
 
-#include "physics/dynamics/dynamics.h"
 #include "physics/description/plan.h"
+#include "physics/dynamics/dynamics.h"
 
 #include <cmath>
 #include <span>

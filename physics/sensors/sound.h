@@ -7,8 +7,8 @@
 // shades or reflects it; microphone.exponent stands for a room. 3. Directions count in plan.
 
 #include "physics/description/description.h"
-#include "physics/dynamics/dynamics.h"
 #include "physics/description/parameters.h"
+#include "physics/dynamics/dynamics.h"
 
 #include <array>
 #include <span>

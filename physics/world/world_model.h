@@ -3,8 +3,8 @@
 
 #include "physics/description/booth.h"
 #include "physics/dynamics/neighbours.h"
-#include "physics/robot/robot_model.h"
 #include "physics/dynamics/step_observer.h"
+#include "physics/robot/robot_model.h"
 
 #include <cstdint>
 #include <deque>

@@ -62,7 +62,8 @@ const std::vector<std::string> kFolders = {
 
 /// Includes that go up, each with its reason. One that is no longer there has to leave this list.
 const std::set<std::string> kUpward = {
-    // The machine holds the state of what watches, shortens and translates its loops; Core makes and saves it.
+    // The machine holds the state of what watches, shortens and translates its loops; Core makes and saves
+    // it.
     "emu/dspic/core/machine.h emu/dspic/fast/isr_summary.h",
     "emu/dspic/core/machine.h emu/dspic/translate/translation.h",
     "emu/dspic/core/machine.h emu/dspic/waits/wait_watch.h",

@@ -3,8 +3,8 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "physics/description/booth.h"
-#include "physics/world/booth_record.h"
 #include "physics/node/world_node.h"
+#include "physics/world/booth_record.h"
 #include "tests/physics/worlds.h"
 #include "tests/scratch.h"
 

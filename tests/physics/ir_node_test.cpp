@@ -2,8 +2,8 @@
 
 #include "base/error.h"
 #include "physics/ir/ir_node.h"
-#include "physics/world/pose_signals.h"
 #include "physics/node/world_node.h"
+#include "physics/world/pose_signals.h"
 #include "tests/physics/ir_worlds.h"
 #include "tests/scratch.h"
 

@@ -1,8 +1,8 @@
 // The world as a node: times, grants cut anyhow, determinism, recordings.
 
 #include "base/error.h"
-#include "physics/world/world_log.h"
 #include "physics/node/world_node.h"
+#include "physics/world/world_log.h"
 #include "tests/physics/worlds.h"
 #include "tests/scratch.h"
 

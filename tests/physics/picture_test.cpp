@@ -1,10 +1,10 @@
 // The picture of a run, drawn from its recordings.
 
 #include "base/error.h"
-#include "physics/world/booth_record.h"
 #include "physics/render/path_file.h"
-#include "physics/world/recorder.h"
 #include "physics/render/trajectory_svg.h"
+#include "physics/world/booth_record.h"
+#include "physics/world/recorder.h"
 #include "tests/physics/worlds.h"
 #include "tests/scratch.h"
 

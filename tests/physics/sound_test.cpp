@@ -1,8 +1,8 @@
 // Loudspeakers at a robot's microphones: the law, powers, the robot's own noise, and silence.
 
 #include "base/error.h"
-#include "physics/sensors/sound.h"
 #include "physics/node/world_node.h"
+#include "physics/sensors/sound.h"
 #include "tests/physics/worlds.h"
 
 #include <catch2/catch.hpp>
