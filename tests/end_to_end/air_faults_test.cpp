@@ -142,3 +142,43 @@ TEST_CASE("a fault of the air that never fires fails the run, unless it may; one
     CHECK(std::count(refused.err.begin(), refused.err.end(), '\n') == 1);
     CHECK_THAT(refused.err, Contains("'tam7' is at no end of ether (expected coordinator or tam0)"));
 }
+
+TEST_CASE("a campaign sweeps faults of the air as it does those of lines, and prunes what meets no frame") {
+    const Workbench bench;
+    bench.file("air.toml", scenario());
+    const auto file = bench.file("campaign.toml", R"([campaign]
+scenario = "air.toml"
+duration = "3 s"
+
+[[sweep]]
+name = "air"
+fault = { node = "ether", from = "tam0", begin = "0.2 s", count = 1 }
+over = { kind = ["loss", "corrupt"] }
+
+[[sweep]]
+name = "light"
+fault = { node = "ircom", begin = "0.3 s", count = 1 }
+over = { kind = ["duplicate"], to = ["tam0"] }
+
+[[sweep]]
+name = "module"
+fault = { link = "tam0.radio", kind = "swap", begin = "20 s" }
+)");
+    const Ended ended = bench.puckloop({"faults", "campaign", file, "--out", bench.out("c").string()});
+    INFO(ended.err);
+    REQUIRE(ended.status == 0);
+    const auto rows = bench.csv("c", "results.csv");
+    REQUIRE(rows.size() == 4);
+    for (const Row& row : rows) {
+        CAPTURE(row.at("faults"), row.at("outcome"));
+        if (row.at("sweep") == "module") {
+            CHECK(row.at("outcome") == "pruned");
+            continue;
+        }
+        CHECK(row.at("outcome") != "not fired");
+        CHECK(row.at("fired") == "1");
+    }
+    // One frame lost on air is sent again, and somebody counts it.
+    CHECK(rows[0].at("outcome") == "detected");
+    CHECK_THAT(rows[0].at("symptoms"), Contains("mac.retries"));
+}
