@@ -218,3 +218,35 @@ TEST_CASE("faults on the air: what is lost is tried again, what is flipped is fo
     // The report of the one that is cut off never arrives, and the firmware goes on.
     CHECK(report["nodes"]["coordinator.xbee"]["air"]["received"] >= 1);
 }
+
+TEST_CASE(
+    "an image that is not the board's, and one that a reset does not find: said, counted, over at once") {
+    const Workbench bench;
+    // An ELF file of an ATmega328P: machine 83, architecture avr5, one empty section.
+    std::string elf(92, '\0');
+    const auto put = [&elf](std::size_t at, int value) { elf[at] = static_cast<char>(value); };
+    elf.replace(0, 7,
+                "\x7f"
+                "ELF\x01\x01\x01",
+                7);
+    for (const auto& [at, value] : std::map<std::size_t, int>{
+             {16, 2}, {18, 83}, {20, 1}, {32, 52}, {36, 5}, {40, 52}, {42, 32}, {46, 40}, {48, 1}})
+        put(at, value);
+    const auto with = [&](const std::string& image) {
+        return bench.file("bad.toml",
+                          "[run]\nduration = \"0.3 s\"\n[arena]\nsize = [\"1 m\", \"1 m\"]\n[[tam]]\n"
+                          "position = [\"0 cm\", \"0 cm\"]\nfirmware = \"" +
+                              image + "\"\n");
+    };
+    bench.file("other.elf", elf);
+    const Ended other = bench.run("o", {with("other.elf"), "--in-process"});
+    INFO(other.err);
+    CHECK(other.status == 2);
+    CHECK(std::count(other.err.begin(), other.err.end(), '\n') == 1);
+    CHECK_THAT(other.err, Contains("other.elf: offset 0x24: is for another AVR, architecture avr5"));
+    // Not where fuses send a reset: a warning, as wrong fuses are.
+    bench.file("nowhere.hex", ":02100000FFCF20\n:00000001FF\n");
+    REQUIRE(bench.run("n", {with("nowhere.hex"), "--in-process"}).status == 0);
+    const auto warnings = bench.report("n")["warnings"].dump();
+    CHECK_THAT(warnings, Contains("nothing is at 0x00000, where a reset leads with fuse high 0xDF"));
+}
