@@ -194,7 +194,8 @@ Time ResumedNode::earliest_output(PortIndex port) const {
     if (!replaying_) return inner_->earliest_output(port);
     Time first = options_.from->time;
     if (options_.fall_back && next_received_ < options_.from->received.size())
-        first = std::min(first, options_.from->received[next_received_].time);
+        // Just behind it: whoever sends it at that very time can only be granted if this node lets it pass.
+        first = std::min(first, options_.from->received[next_received_].time + 1);
     if (const Message* next = next_sent(port)) first = std::min(first, next->time);
     return std::max(first, granted_);
 }

@@ -6,6 +6,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <cstdlib>
 #include <regex>
 #include <set>
 
@@ -74,6 +75,29 @@ TEST_CASE("a run with IRcom is the same with any number of threads and with a pr
     check_same_run(bench, "one", "four");
     run("own", {});
     check_same_run(bench, "one", "own");
+}
+
+TEST_CASE("boards whose boot is skipped see the light of their boot again, and the run is the same") {
+    const Workbench bench;
+    std::string text = text_of(kScenario);
+    const std::string own = "firmware = \"../firmware/epuck/epuck_ircom.hex\"\n";
+    for (std::size_t at = 0; (at = text.find(own, at)) != std::string::npos; at += 1)
+        text.replace(at, own.size(),
+                     "firmware = \"" PUCKLOOP_SOURCE
+                     "/firmware/epuck/epuck_ircom.hex\"\nboot = \"900 ms\"\n");
+    const auto file = bench.file("boot.toml", text);
+    ::setenv("PUCKLOOP_CACHE", (bench.folder() / "cache").c_str(), 1);
+    // The second resumes what the first has saved.
+    const Words words{file, "--in-process", "--duration", "1.6"};
+    const Ended first = bench.run("first", words), second = bench.run("second", words);
+    ::setenv("PUCKLOOP_CACHE", "off", 1);
+    INFO(first.err << second.err);
+    REQUIRE(first.status == 0);
+    REQUIRE(second.status == 0);
+    CHECK(bench.report("first")["trace_sha256"] == bench.report("second")["trace_sha256"]);
+    CHECK_FALSE(bench.report("first")["nodes"]["robot2.pic"].contains("resumed"));
+    for (const char* board : {"robot0.pic", "robot1.pic", "robot2.pic"})
+        CHECK(bench.report("second")["nodes"][board]["resumed"]["skipped"] == true);
 }
 
 TEST_CASE("without [ircom] and without TAMs there is no medium") {
