@@ -181,6 +181,7 @@ struct Chip::Parts {
         hooks.reset = [this](ResetCause cause) { reset(cause); };
         hooks.reset_pc = [this] { return system.reset_pc(); };
         hooks.vector_base = [this] { return system.vector_base(); };
+        hooks.interrupts_locked = [this] { return programming.interrupts_locked(); };
         hooks.sleep = [this] { system.sleep(); };
         hooks.wake = [this] { system.wake(); };
         hooks.watchdog_reset = [this] { watchdog.restart(); };
@@ -429,6 +430,10 @@ void Chip::set_fuses(const Fuses& fuses) {
 }
 
 void Chip::power_on() {
+    Parts& p = *parts_;
+    constexpr std::uint8_t kClockOut = bit(6);  // CKOUT, programmed = 0
+    if (!(p.fuses.low & kClockOut))
+        keep(p.report.warnings, {"fuse CKOUT is programmed: the clock at PB1 has no model", 0});
     parts_->core.reset(ResetCause::PowerOn);
 }
 void Chip::external_reset() {

@@ -601,6 +601,27 @@ loop:   sleep
     }
 }
 
+TEST_CASE(
+    "a model is behind every register of the data sheet's summary, and reserved addresses are reported") {
+    Rig rig("end: rjmp end\n");
+    rig.run(10);
+    std::array<bool, 0x100> known{};
+    for (const RegisterInfo& info : atmega1284p().registers) {
+        known[info.address] = true;
+        rig.chip.inside().core.read_data(info.address);
+        const std::size_t before = rig.chip.report().unmodelled.size();
+        INFO(info.name);
+        CHECK(before == 0);
+    }
+    std::size_t reserved = 0;
+    for (std::uint16_t address = 0x20; address < 0x100; ++address)
+        if (!known[address]) {
+            ++reserved;
+            rig.chip.inside().core.read_data(address);
+        }
+    CHECK(rig.chip.report().unmodelled.size() == reserved);
+}
+
 TEST_CASE("what no model is behind is reported by name, once") {
     Rig rig(R"(
         ldi r16, 0x86

@@ -257,6 +257,41 @@ TEST_CASE("a boot loader writes the application, which is unreadable meanwhile, 
     CHECK(bench.result(6) == 0xEF);
 }
 
+TEST_CASE("lock bits keep interrupts off where their vectors may not be read from") {
+    // INT0 is pending; the program enables interrupts in the application, and in the boot section.
+    const std::string source = R"(
+        jmp start
+        ldi r20, 1
+        sts 0x100, r20
+        cbi EIMSK, 0
+        reti
+        .org 0x100
+start:  sbi EIMSK, 0
+        jmp 0x1E000
+back:   ldi r21, 7
+        sts 0x102, r21
+        nop
+end:    rjmp end
+        .org 0x1E000
+        sei
+        nop
+        nop
+        lds r21, 0x100
+        sts 0x101, r21
+        jmp back
+)";
+    for (const bool locked : {false, true}) {
+        ChipOptions options;
+        options.fuses = {0xFF, 0xD9, 0xFD, static_cast<std::uint8_t>(locked ? 0xCF : 0xFF)};
+        test::Rig rig(source, options);
+        rig.set_pin({P::D, 2}, false);
+        rig.run(200);
+        CHECK(rig.ram(0x101) == !locked);
+        CHECK(rig.ram(0x100) == 1);
+        CHECK(rig.ram(0x102) == 7);
+    }
+}
+
 TEST_CASE("fuses choose the clock, keep the watchdog on, and set the supply below which nothing runs") {
     const std::string blink = "sbi DDRA, 0\nloop: sbi PINA, 0\n rjmp loop\n";
     for (const auto& [low, hertz] :

@@ -48,6 +48,7 @@ struct CoreHooks {
     std::function<void(ResetCause)> reset;       ///< before the core resets: everything else resets
     std::function<std::uint16_t()> reset_pc;     ///< word address of the reset vector; 0 without it
     std::function<std::uint16_t()> vector_base;  ///< word address of vector 0; 0 without it
+    std::function<bool()> interrupts_locked;     ///< the next instruction is where no interrupt is taken
     std::function<void()> sleep;                 ///< SLEEP: may call Core::sleep()
     std::function<void()> wake;                  ///< clocks that stood still run again from now() on
     std::function<void()> watchdog_reset;        ///< WDR

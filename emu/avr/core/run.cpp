@@ -94,7 +94,8 @@ Core::Outcome run_until(Machine& m, Cycle until) {
             m.cycle = std::min(quiet, m.stall_end);
             continue;
         }
-        if (m.may_interrupt() && m.cycle != m.hold_at) {
+        if (m.may_interrupt() && m.cycle != m.hold_at &&
+            !(m.hooks.interrupts_locked && m.hooks.interrupts_locked())) {
             enter_interrupt(m);
             continue;
         }

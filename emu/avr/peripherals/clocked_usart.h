@@ -35,7 +35,11 @@ class ClockedUsart {
         template <class Archive>
         void state(Archive& archive) {
             archive.bounded(mode, Mode::Off, Mode::SpiMaster);
-            archive(data_bits, parity, stop_bits, polarity, late, lowest_first, half);
+            archive.bounded(data_bits, 5, 9);
+            archive.bounded(parity, 0, 2);
+            archive.bounded(stop_bits, 1, 2);
+            archive(polarity, late, lowest_first);
+            archive.bounded(half, 1, 0x1000);
         }
     };
     /// The USART around it.
@@ -99,9 +103,13 @@ class ClockedUsart {
 
         template <class Archive>
         void state(Archive& archive) {
-            archive(format, master, level, origin, busy, out, left, started, frame);
+            archive(format, master, level, origin, busy, out);
+            archive.bounded(left, 0, 13);
+            archive(started, frame);
             archive.bounded(edges, 0, 16);
-            archive(shift, incoming, in_frame, count, in, ones_odd, parity_error);
+            archive(shift, incoming, in_frame);
+            archive.bounded(count, 0, 12);
+            archive(in, ones_odd, parity_error);
         }
     };
     void load(std::uint16_t word);

@@ -14,17 +14,19 @@ class Prescaler {
 
     /// Ticks of the clock divided by `divider` in the clocks after `from`, up to and including `to`.
     Cycle ticks(Cycle from, Cycle to, Cycle divider) const {
-        if (held_ && divider > 1) return 0;
-        if (asynchronous_) {
-            from = watch_->edges(from);
-            to = watch_->edges(to);
+        if (!plain_) {
+            if (held_ && divider > 1) return 0;
+            if (asynchronous_) {
+                from = watch_->edges(from);
+                to = watch_->edges(to);
+            }
         }
         return (to - phase_) / divider - (from - phase_) / divider;
     }
     /// The clock of the `n`th tick after `from`, n >= 1; kNoCycle if it is not known.
     Cycle tick(Cycle from, Cycle n, Cycle divider) const {
-        if (held_ && divider > 1) return kNoCycle;
-        if (asynchronous_)
+        if (!plain_ && held_ && divider > 1) return kNoCycle;
+        if (!plain_ && asynchronous_)
             return watch_->edge(phase_ + ((watch_->edges(from) - phase_) / divider + n) * divider);
         return phase_ + ((from - phase_) / divider + n) * divider;
     }
@@ -45,6 +47,7 @@ class Prescaler {
     void reset(Cycle now, bool held) {
         phase_ = asynchronous_ ? watch_->edges(now) : now;
         held_ = held;
+        plain_ = !held_ && !asynchronous_;
     }
     /// It divides the watch clock (ASSR.AS2), or the CPU's.
     bool asynchronous() const { return asynchronous_; }
@@ -57,6 +60,7 @@ class Prescaler {
     void state(Archive& archive) {
         archive(phase_, held_, stopped_, asynchronous_);
         archive.check(!asynchronous_ || watch_, "a prescaler without a watch clock");
+        if constexpr (Archive::kLoads) plain_ = !held_ && !asynchronous_;
     }
 
   private:
@@ -65,6 +69,7 @@ class Prescaler {
     bool held_ = false;
     bool stopped_ = false;
     bool asynchronous_ = false;
+    bool plain_ = true;  ///< neither held nor asynchronous
 };
 
 }  // namespace puckloop::avr

@@ -62,6 +62,12 @@ bool SelfProgramming::readable(std::uint32_t word) const {
     return fuses_.lock & (boot ? kBlb12 : kBlb02);
 }
 
+bool SelfProgramming::interrupts_locked() const {
+    const bool boot = core_.pc() >= system_.boot_start();
+    const bool vectors_in_boot = system_.vector_base() != 0;
+    return boot != vectors_in_boot && !(fuses_.lock & (boot ? kBlb12 : kBlb02));
+}
+
 // SPM_READY requests while no operation is under way.
 void SelfProgramming::update_request() {
     around_.interrupts.request(kVector, (control() & kSpmie) && !busy_ && around_.now >= armed_until_);

@@ -5,8 +5,7 @@
 // Deviations
 //  1. Erasing and writing a page take 3.7 ms, the data sheet's minimum.
 //  2. A byte that boot lock bits keep from being read is 0xFF, a page that they protect stays as it is: the
-//  data sheet only says
-//     that it is not allowed. They do not keep interrupts off (tables 25-2 and 25-3, modes 3 and 4).
+//     data sheet only says that it is not allowed.
 
 #include "cosim/core/clock.h"
 #include "emu/avr/core/core.h"
@@ -28,6 +27,9 @@ class SelfProgramming {
     void rate_changes(bool changed);
     /// SPM with Z (RAMPZ in front) and R1:R0.
     void spm(std::uint32_t address, std::uint16_t word);
+    /// Lock bits keep interrupts off here: their vectors are in a section that may not be read from the one
+    /// in which the program runs (tables 25-2 and 25-3, modes 3 and 4).
+    bool interrupts_locked() const;
     /// LPM: true and a value where the flash does not answer.
     bool load(std::uint32_t address, std::uint8_t& value) const;
 

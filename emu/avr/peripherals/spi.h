@@ -44,6 +44,7 @@ class Spi {
             archive(shifting, status_read, received, shift, sent, incoming);
             archive.bounded(edges, 0, 16);
             archive(slave, selected, half);
+            archive.check(!shifting || half > 0, "an SPI clock without a period");
         }
     };
     std::uint8_t& control() const { return around_.io.raw(0x4C); }
