@@ -176,6 +176,15 @@ class Parser {
         return negative ? -value : value;
     }
 
+    /// How long something lasts: whatever is added to a time stays one.
+    Time span(std::size_t field) const {
+        constexpr Time kLongest = 10'000 * kSecond;
+        const Time value = time(field);
+        if (value < 0 || value > kLongest)
+            fail(fmt::format("\"{}\" is no duration", fields_[field]), "0 to 10000 s");
+        return value;
+    }
+
     unsigned hex(std::size_t field, unsigned most) const {
         const std::string& text = fields_[field];
         unsigned value = 0;
@@ -205,7 +214,7 @@ UartFrame parse_frame(const Parser& in) {
     frame.stop_bits = static_cast<std::uint8_t>(format[2] - '0');
     frame.parity_bit = has_parity_bit && format[5] == '1';
     frame.start = in.time(6);
-    frame.bit_period = in.time(7);
+    frame.bit_period = in.span(7);
     frame.is_break = in[3] == "break";
     if (!frame.is_break) frame.data = static_cast<std::uint16_t>(in.hex(4, 0x1ff));
     return frame;
@@ -215,8 +224,8 @@ I2cPhase parse_phase(const Parser& in) {
     I2cPhase phase;
     phase.byte = static_cast<std::uint8_t>(in.hex(4, 0xff));
     phase.start = in.time(6);
-    phase.clock_period = in.time(7);
-    phase.stretch = in.time(8);
+    phase.clock_period = in.span(7);
+    phase.stretch = in.span(8);
     const std::string& text = in[5];
     const auto* named = std::find(kPhases.begin(), kPhases.end(), text);
     if (text == "ack" || text == "nack") {
@@ -271,7 +280,7 @@ RadioFrame parse_radio(const Parser& in) {
     if (!shaped || to_radio_detail(frame) != detail)
         in.fail(fmt::format("\"{}\" is no channel and power", detail), "ch12 -60dBm, ...");
     frame.start = in.time(6);
-    frame.duration = in.time(7);
+    frame.duration = in.span(7);
     return frame;
 }
 

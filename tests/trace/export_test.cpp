@@ -2,6 +2,9 @@
 
 #include "trace_kit.h"
 
+#include "base/error.h"
+#include "tools/trace/export.h"
+
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
@@ -67,6 +70,71 @@ TEST_CASE("the same trace gives the same files") {
               text_of(fmt::format("{}.b.{}", trace, format)));
     }
     CHECK(text_of(trace + ".a.csv") == text_of(trace));
+}
+
+TEST_CASE("no field of a trace, however damaged, brings an exporter down") {
+    const unsigned seed = Catch::rngSeed() != 0 ? Catch::rngSeed() : std::random_device{}();
+    std::mt19937 random{seed};
+    INFO("--rng-seed " << seed);
+    std::vector<TraceRow> rows = some_rows();
+    for (int i = 0; i < 10; ++i) {
+        rows.push_back(uart_row("wire", "left", {3 * kMillisecond + i * kMillisecond, kSecond / 9600, 0x31}));
+        rows.back().fault = i % 2 == 0 ? FaultKind::Stop : FaultKind::None;
+    }
+    const std::string whole = text_of(write_trace("whole.csv", rows));
+    const std::string file = scratch("damaged_export.csv");
+    int refused = 0;
+    for (int i = 0; i < 400; ++i) {
+        std::string text = whole;
+        for (std::size_t n = 1 + random() % 4; n > 0; --n) {
+            const std::size_t at =
+                cosim::kTraceColumns.size() + 1 + random() % (text.size() - cosim::kTraceColumns.size() - 1);
+            if (random() % 3 != 0)
+                text[at] = "0123456789,.:abcdef\n\"-"[random() % 22];
+            else
+                text.erase(at, 1 + random() % 150);
+            if (text.size() < cosim::kTraceColumns.size() + 10) break;
+        }
+        std::ofstream(file, std::ios::binary) << text;
+        try {
+            const tools::RecordedTrace trace(file, {});
+            std::ostringstream out;
+            switch (random() % 3) {
+            case 0:
+                tools::export_vcd(trace, out);
+                break;
+            case 1:
+                tools::export_pcapng(trace, out);
+                break;
+            default:
+                tools::export_sr(trace, file + ".sr", 100'000);
+            }
+        } catch (const InputError& error) {
+            ++refused;
+            CHECK_THAT(error.what(), Catch::Contains(file + ": line ") || Catch::Contains("are too many") ||
+                                         Catch::Contains("no line to draw"));
+        }
+    }
+    CHECK(refused > 50);
+}
+
+TEST_CASE("files that are no traces are refused in one line, whatever is asked of them") {
+    const std::string trace = write_trace("good.csv", some_rows());
+    REQUIRE(tests::puckloop("trace export " + trace + " -o " + trace + ".pcapng").status == 0);
+    const std::string empty = scratch("empty.csv"), endless = scratch("endless.csv");
+    std::ofstream{empty};
+    std::ofstream(endless) << kTraceColumns << '\n' << std::string(3'000'000, '1');
+    for (const std::string& file : {trace + ".pcapng", empty, endless, std::string(PUCKLOOP_PROGRAM),
+                                    std::string("/dev/zero"), std::string("/proc/self/mem")})
+        for (const char* what :
+             {"trace {}", "trace decode {}", "trace export {} --format vcd -o -",
+              "trace export {} --format pcapng -o -", "trace export {} --format csv -o -"}) {
+            const Called called = tests::puckloop(fmt::format(fmt::runtime(what), file));
+            INFO(what << " " << file << "\n" << called.out.substr(0, 300));
+            CHECK(called.status == 2);
+            CHECK(lines_of(called.out).size() == 1);
+            CHECK_THAT(called.out, Catch::StartsWith("puckloop: "));
+        }
 }
 
 TEST_CASE("what cannot be exported is reported in one line") {

@@ -15,6 +15,9 @@ namespace puckloop::tools {
 
 namespace {
 
+// A row of a radio frame has some 400.
+constexpr std::size_t kLongestLine = 4096;
+
 void check_known(const char* option, const std::vector<std::string>& asked,
                  const std::set<std::string>& known) {
     for (const std::string& name : asked)
@@ -56,16 +59,28 @@ RecordedTrace::RecordedTrace(const std::filesystem::path& place, TraceSelection 
 }
 
 RecordedTrace::Cursor::Cursor(const RecordedTrace& trace)
-    : trace_(trace), in_(trace.file_, std::ios::binary) {
+    : trace_(trace), in_(trace.file_, std::ios::binary), buffer_(kLongestLine) {
     const std::string file = trace.file_.string();
     if (!in_) throw InputError(file, "", std::strerror(errno), "a trace.csv that a run recorded");
-    if (!std::getline(in_, line_) || line_ != cosim::kTraceColumns)
+    if (!read_line() || line_ != cosim::kTraceColumns)
         throw InputError(file, "line 1", "no recorded trace", std::string(cosim::kTraceColumns));
 }
 
-std::optional<cosim::TraceRow> RecordedTrace::Cursor::next_of_all() {
-    if (!whole_ || !std::getline(in_, line_)) return std::nullopt;
+bool RecordedTrace::Cursor::read_line() {
+    in_.getline(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
+    const auto count = static_cast<std::size_t>(in_.gcount());
     ++number_;
+    if (in_.fail() && count + 1 == buffer_.size())
+        throw InputError(trace_.file_.string(), fmt::format("line {}", number_),
+                         fmt::format("longer than {} characters", count),
+                         number_ == 1 ? std::string(cosim::kTraceColumns) : "a row of a recorded trace");
+    if (!in_) return false;
+    line_ = std::string_view(buffer_.data(), in_.eof() ? count : count - 1);
+    return true;
+}
+
+std::optional<cosim::TraceRow> RecordedTrace::Cursor::next_of_all() {
+    if (!whole_ || !read_line()) return std::nullopt;
     if (in_.eof()) {
         whole_ = false;
         return std::nullopt;

@@ -8,6 +8,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace puckloop::tools {
@@ -47,10 +48,14 @@ class RecordedTrace {
         bool whole() const { return whole_; }
 
       private:
+        /// False at the end of the file. Throws InputError for a line that nobody writes.
+        bool read_line();
+
         const RecordedTrace& trace_;
         std::ifstream in_;
-        std::string line_;
-        std::size_t number_ = 1;
+        std::vector<char> buffer_;
+        std::string_view line_;
+        std::size_t number_ = 0;
         bool whole_ = true;
     };
 
