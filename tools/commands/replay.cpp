@@ -70,12 +70,12 @@ TraceSelection lines_of(const Options& options, const RunSetup& setup, const Rep
     return selection;
 }
 
-/// When the run asked its programs to end; nothing if its report does not say.
-std::optional<cosim::Time> wind_up_of(const std::filesystem::path& folder) {
+/// A time of the run's report, in seconds; nothing if there is none.
+std::optional<cosim::Time> reported(const std::filesystem::path& folder, const char* key) {
     std::ifstream in(folder / "report.json");
     const auto report = nlohmann::json::parse(in, nullptr, false);
     if (!report.is_object()) return std::nullopt;
-    const auto found = report.find("programs_asked_to_end_s");
+    const auto found = report.find(key);
     if (found == report.end() || !found->is_number()) return std::nullopt;
     const double seconds = *found;
     if (!(seconds > 0 && seconds < kLongest)) return std::nullopt;
@@ -123,7 +123,10 @@ int run(Options& options) {
         looks.next = [&](cosim::Time now) { return watch->next(now); };
         looks.look = [&](cosim::Time now) { watch->sample(now); };
     }
-    ReplayOptions how{wind_up_of(options.folder), watch ? &looks : nullptr};
+    ReplayOptions how;
+    how.wind_up = reported(options.folder, "programs_asked_to_end_s");
+    how.watch = watch ? &looks : nullptr;
+    how.end = reported(options.folder, "simulated_s").value_or(cosim::kNever);
     for (const cosim::FaultSpec& fault : setup.scenario.faults)
         how.links_with_faults.insert(fault.link);
     const ReplayResult result = replay(*node, setup.links, record, how);

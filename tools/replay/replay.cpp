@@ -118,11 +118,14 @@ class Replay {
 
     static cosim::Payload payload_of(const TraceRow& row, const LinkSpec& link) {
         const auto* signal = std::get_if<cosim::Signal>(&row.payload);
-        if (signal == nullptr || row.signal.empty()) return row.payload;
+        if (signal == nullptr) return row.payload;
         const auto& names = link.signal_names;
+        if (row.signal.empty() && (names.empty() || signal->id < names.size())) return row.payload;
         const auto found = std::find(names.begin(), names.end(), row.signal);
         if (found == names.end())
-            throw InputError("", link.name, fmt::format("the record has a signal '{}'", row.signal),
+            throw InputError("", link.name,
+                             fmt::format("the record has a signal '{}'",
+                                         row.signal.empty() ? fmt::format("#{}", signal->id) : row.signal),
                              "a record of this scenario");
         return cosim::Signal{static_cast<std::uint16_t>(found - names.begin()), signal->value};
     }
@@ -161,9 +164,19 @@ ReplayResult replay(cosim::Node& node, const std::vector<LinkSpec>& links, const
     Replay run(node, links, options);
     RecordedTrace::Cursor cursor(record);
     // One row of the node is wanted before a difference counts: the record may be another scenario's.
-    while (const auto row = cursor.next()) {
+    const auto refuse = [&](const TraceRow& row, const char* why) {
+        throw InputError(record.file().string(), "",
+                         fmt::format("the message at {} s {}", cosim::format_seconds(row.time), why),
+                         "a record as the run left it");
+    };
+    std::optional<TraceRow> row = cursor.next();
+    while (row) {
+        std::optional<TraceRow> following = cursor.next();
+        if (row->time < 0 || row->time > options.end) refuse(*row, "is later than the run's end");
+        if (following && following->time < row->time) refuse(*following, "stands behind a later one");
         run.take(*row);
         if (run.done() && run.rows() > 0) break;
+        row = std::move(following);
     }
     if (run.rows() == 0)
         throw InputError(record.file().string(), "", fmt::format("holds no message of {}", node.name()),

@@ -37,6 +37,8 @@ struct ReplayOptions {
     /// When its nodes were asked to end (Node::wind_up), if they were.
     std::optional<cosim::Time> wind_up{};
     const ReplayWatch* watch = nullptr;
+    /// No message can be later: the run had ended.
+    cosim::Time end = cosim::kNever;
     std::set<std::string> links_with_faults{};  ///< on which the record may have messages late
 };
 
