@@ -17,7 +17,7 @@ constexpr const char* kHead = R"(<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>Fault campaign {}</title><style>
 body{{font:14px/1.4 system-ui,sans-serif;margin:2em;color:#222}} h2{{margin-top:1.6em}} h3{{margin:1.4em 0 .4em}}
 table{{border-collapse:collapse}} td,th{{border:1px solid #ccc;padding:2px 6px;text-align:left;vertical-align:top}}
-code{{background:#f3f3f3;padding:1px 3px;overflow-wrap:anywhere}} .copy{{user-select:all}} .wide{{overflow-x:auto}}
+code{{background:#f3f3f3;padding:1px 3px;overflow-wrap:anywhere}} .copy{{user-select:all;display:inline-block;min-width:24em}} .wide{{overflow-x:auto}}
 .heat td{{padding:0;text-align:center;font-size:12px}} .heat td a{{display:block;min-width:22px;line-height:22px;color:inherit;text-decoration:none}}
 .heat th{{font-weight:normal;font-size:12px;white-space:nowrap}} .heat thead th{{writing-mode:vertical-rl}}
 tr:target{{outline:3px solid #1565c0}}
