@@ -2,6 +2,7 @@
 // Every kind fires, does what it says, and is the same however the run is executed.
 
 #include "tests/end_to_end/same_run.h"
+#include "tests/end_to_end/tam_visits.h"
 #include "tests/end_to_end/workbench.h"
 
 #include <catch2/catch.hpp>
@@ -141,6 +142,26 @@ TEST_CASE("a fault of the air that never fires fails the run, unless it may; one
     CHECK(refused.status == 2);
     CHECK(std::count(refused.err.begin(), refused.err.end(), '\n') == 1);
     CHECK_THAT(refused.err, Contains("'tam7' is at no end of ether (expected coordinator or tam0)"));
+}
+
+TEST_CASE("the TAM hears nothing of lost words, and takes one in which two errors leave the check right") {
+    const Workbench bench;
+    const auto file = bench.file("air.toml", scenario());
+    const auto heard = [&](const std::string& fault) {
+        const Ended ended = bench.run("o", with_faults(file, {fault}, {"--duration", "5", "--threads", "1"}));
+        INFO(ended.err);
+        REQUIRE(ended.status == 0);
+        std::set<std::string> words;
+        for (const auto& [tam, values] : values_of(bench, "o", "heard"))
+            words.insert(values.begin(), values.end());
+        words.erase("00");  // nothing yet, or nothing new
+        return words;
+    };
+    CHECK(heard("loss node=ircom to=robot0") == std::set<std::string>{"33"});
+    CHECK(heard("loss node=ircom to=tam0").empty());
+    CHECK(heard("flip node=ircom to=tam0 bit=9").empty());
+    // 0x33 = 00110011: its second and third bit change places.
+    CHECK(heard("flip node=ircom to=tam0 bit=1 bits=2") == std::set<std::string>{"53"});
 }
 
 TEST_CASE("a campaign sweeps faults of the air as it does those of lines, and prunes what meets no frame") {
