@@ -1,5 +1,7 @@
 #include "linuxboard/control/control_loop.h"
 
+#include "linuxboard/control/record_vote.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -12,7 +14,8 @@ using namespace protocols;
 namespace {
 
 constexpr double kDarkest = 4095;  // raw light value in the dark; the sensor gives less where it is brighter
-constexpr double kLastTry = 1.0;   // s to get the robot to rest when the last record went unanswered
+constexpr double kLateTurn = 0.004;  // s: an exchange of a step that would begin later than this is left out
+constexpr double kLastTry = 1.0;     // s to get the robot to rest when the last record went unanswered
 
 std::int16_t to_steps(double mm_s) {
     const double clamped = std::clamp(mm_s, -kMaximumSpeed, kMaximumSpeed);
@@ -71,12 +74,13 @@ bool run_control_loop(Session& session, Transport& transport, Behaviour& behavio
     WordFilter words;
     std::optional<InfraredWord> word;
     double next_word = 0;
+    std::vector<EpuckSensors> heard;  // in the last step
     for (long step = 0; steps == 0 || step < steps;) {
         const double t = transport.now() - begun;
         const bool last = interrupted() || step + 1 == steps;
         EpuckActuators record;  // at rest
         if (!last && session.newest() && transport.now() - session.newest_time() < settings.stale_after) {
-            Sensors sensors = to_sensors(*session.newest());
+            Sensors sensors = to_sensors(heard.empty() ? *session.newest() : median_of(heard));
             if (surroundings.ground) sensors.ground = surroundings.ground();
             if (surroundings.neighbours) sensors.neighbours = surroundings.neighbours();
             if (surroundings.spots) sensors.spots = surroundings.spots();
@@ -89,13 +93,26 @@ bool run_control_loop(Session& session, Transport& transport, Behaviour& behavio
             if (surroundings.say) surroundings.say(actuators.say);
             record = to_record(actuators);
         }
-        if (const auto answer = session.exchange(record)) {
-            word = words.take(*answer, record.ircom_enabled != 0);
-            if (word && surroundings.heard) surroundings.heard(*word);
+        heard.clear();
+        for (int turn = 0; turn < (last ? 1 : settings.exchanges); ++turn) {
+            if (turn > 0) {
+                const double share = static_cast<double>(turn) / settings.exchanges;
+                const double at = begun + (static_cast<double>(step) + share) * settings.period;
+                if (transport.now() > at + kLateTurn || interrupted()) break;
+                transport.sleep_until(at);
+                record.ircom_enabled = 0;  // a word is sent once
+            }
+            if (const auto answer = session.exchange(record)) {
+                heard.push_back(*answer);
+                const auto came = words.take(*answer, record.ircom_enabled != 0);
+                if (came && surroundings.heard) surroundings.heard(*came);
+                if (came || turn == 0) word = came;
+            }
+            // A last record that went unanswered may not have been obeyed: get the robot to rest before the
+            // end.
+            const double give_up = transport.now() + (last ? kLastTry : settings.give_up);
+            if (session.lost() && !session.resync(give_up) && !interrupted()) return false;
         }
-        // A last record that went unanswered may not have been obeyed: get the robot to rest before the end.
-        const double give_up = transport.now() + (last ? kLastTry : settings.give_up);
-        if (session.lost() && !session.resync(give_up) && !interrupted()) return false;
         if (last) break;
         const long late = static_cast<long>(std::ceil((transport.now() - begun) / settings.period));
         step = std::max(step + 1, late);

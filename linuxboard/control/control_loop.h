@@ -17,7 +17,13 @@ struct LoopSettings {
     int word = -1;           ///< 0..255: sent by IRcom when the behaviour has none of its own
     double word_every = 0;   ///< s between two of those, 0: every step
     double stale_after = 0.3;  ///< s: the robot stands still while its newest sensors are older
+    /// Exchanges of records in a step, evenly spread, 1 to kMostExchanges: a speed that was garbled on its
+    /// way is driven until the next one, and of three or more the sensors' medians count (record_vote.h).
+    int exchanges = 1;
 };
+
+/// One takes some 13 ms.
+inline constexpr int kMostExchanges = 5;
 
 /// What else the robot carries; empty functions for what it does not.
 struct Surroundings {

@@ -27,6 +27,8 @@ const char kUsage[] =
     "  --i2c DEVICE       bus of the sensor boards; without the option /dev/i2c-3 is used if it is there\n"
     "  --no-ground        do not use the ground sensors\n"
     "  --start-wait S     wait so long for the PIC at the start (60)\n"
+    "  --exchanges N      records exchanged with the PIC in each step, 1 to 5 (1): they have no check, and\n"
+    "                     with N a garbled speed lasts 0.1 s / N; from 3 on the sensors' medians count\n"
     "  --give-up S        end with status 1 after so long without the PIC in mid-session (60)\n"
     "  --camera DEVICE    the omnidirectional camera, such as /dev/video1: lets serve see which TAM shines\n"
     "  --ircom-send W     send the word W, 0 to 255 or 0x00 to 0xff, by IRcom; seek and serve send it "
@@ -57,6 +59,7 @@ enum {
     kNoGround,
     kStartWait,
     kGiveUp,
+    kExchanges,
     kIrcomSend,
     kIrcomEvery,
     kRab,
@@ -79,6 +82,7 @@ const option kTable[] = {{"behaviour", required_argument, nullptr, kBehaviour},
                          {"no-ground", no_argument, nullptr, kNoGround},
                          {"start-wait", required_argument, nullptr, kStartWait},
                          {"give-up", required_argument, nullptr, kGiveUp},
+                         {"exchanges", required_argument, nullptr, kExchanges},
                          {"ircom-send", required_argument, nullptr, kIrcomSend},
                          {"ircom-every", required_argument, nullptr, kIrcomEvery},
                          {"rab", no_argument, nullptr, kRab},
@@ -117,6 +121,9 @@ void take(Options& options, int choice, const char* name) {
         break;
     case kGiveUp:
         options.loop.give_up = seconds(name, optarg);
+        break;
+    case kExchanges:
+        options.loop.exchanges = whole(name, optarg, 1, kMostExchanges);
         break;
     case kIrcomSend:
         options.loop.word = byte(name, optarg);

@@ -35,18 +35,41 @@ class Drawn : public control::Behaviour {
         for (double& sign : signs_)
             sign = random_.below(2) ? 1 : -1;
     }
-    control::Actuators step(const control::Sensors&, double) override {
+    control::Actuators step(const control::Sensors& sensors, double) override {
+        seen_.push_back(sensors);
         const double left = signs_[0] * draw(), right = signs_[1] * draw();
         return {.left_mm_s = left * control::kMillimetresPerStep,
                 .right_mm_s = right * control::kMillimetresPerStep,
                 .ring_leds = static_cast<std::uint8_t>(random_.below(256))};
     }
     const std::array<double, 2>& signs() const { return signs_; }
+    /// Steps with a value far from what the robot, which sees the same all the time, usually has.
+    int seen_wrong() const {
+        constexpr double kFar = 48;  // counts of the converter
+        int wrong = 0;
+        for (const control::Sensors& sensors : seen_) {
+            bool far = false;
+            for (std::size_t i = 0; i < sensors.proximity.size(); ++i) {
+                far = far || std::abs(sensors.proximity[i] - usual(&control::Sensors::proximity, i)) > kFar;
+                far = far || std::abs(sensors.light[i] - usual(&control::Sensors::light, i)) > kFar;
+            }
+            wrong += far;
+        }
+        return wrong;
+    }
 
   private:
+    double usual(std::array<double, 8> control::Sensors::*values, std::size_t i) const {
+        std::vector<double> all;
+        for (const control::Sensors& sensors : seen_)
+            all.push_back((sensors.*values)[i]);
+        std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2), all.end());
+        return all[all.size() / 2];
+    }
     double draw() { return 60 + static_cast<double>(random_.below(800)); }
     RandomStream random_;
     std::array<double, 2> signs_{};
+    std::vector<control::Sensors> seen_;
 };
 
 /// The wheels against the actuator records that the program meant to send.
@@ -168,13 +191,14 @@ RecordBench::RecordBench(const std::string& image, double ready) : rig_("pic", i
     rig_.run_to(ready);
 }
 
-RecordRun RecordBench::run(const RecordFault& fault, std::uint64_t seed, int records) {
+RecordRun RecordBench::run(const RecordFault& fault, std::uint64_t seed, int steps, int exchanges) {
     RecordRun out;
     Drawn behaviour(seed);
     Watch watch(rig_, behaviour.signs());
     control::LoopSettings settings;
     settings.period = kPeriod;
-    settings.duration = records * kPeriod;
+    settings.duration = steps * kPeriod;
+    settings.exchanges = exchanges;
     settings.give_up = settings.start_wait = 5;
     {
         FaultyLine line(rig_, watch, fault);
@@ -195,6 +219,7 @@ RecordRun RecordBench::run(const RecordFault& fault, std::uint64_t seed, int rec
         note();
         out.fired = line.fired_at >= 0;
         out.counters = session.counters();
+        out.seen_wrong = behaviour.seen_wrong();
         // The end record has no answer: nothing is to be recovered after it.
         if (out.fired && !recovered) out.recovery = line.now() - line.fired_at;
         line.sleep_until(line.now() + 0.5);

@@ -29,6 +29,7 @@ struct RecordRun {
     double recovery = 0;  ///< from the fault to the next good sensor record
     double garbage = 0;   ///< longest time a wheel turned at a speed that none of the last two commands had
     double stale = 0;     ///< longest time a wheel turned beyond its command's own period and a margin
+    int seen_wrong = 0;   ///< steps in which the behaviour saw a proximity or light value that no sensor had
     bool came_to_rest = false;  ///< wheels at rest half a second after the end
     bool next_session = false;  ///< the program, started again, gets its first record at once
     control::SessionCounters counters;
@@ -38,8 +39,8 @@ struct RecordRun {
 class RecordBench {
   public:
     RecordBench(const std::string& image, double ready);
-    /// `records` actuator records of drawn speeds with one fault.
-    RecordRun run(const RecordFault& fault, std::uint64_t seed, int records = 12);
+    /// `steps` of drawn speeds with one fault, with so many exchanges of records in each.
+    RecordRun run(const RecordFault& fault, std::uint64_t seed, int steps = 12, int exchanges = 1);
     double now_s() const { return rig_.now_s(); }
 
   private:

@@ -22,8 +22,9 @@ namespace {
 constexpr int kRecords = 12;    // the last one with the wheels at rest, then the end record
 constexpr double kBound = 0.3;  // s, three control periods
 
-constexpr double kOwnGarbage = 0.105;  // s: until the next record, since none has a check
-constexpr double kStartBound = 0.5;    // s, for the hello
+constexpr double kOwnGarbage = 0.105;   // s: until the next record, since none has a check
+constexpr double kShareOfStep = 0.026;  // s: a fifth of a step and the record's own time
+constexpr double kStartBound = 0.5;     // s, for the hello
 
 constexpr unsigned long kHello = 1 + kEpuckConfigurationBytes;
 
@@ -152,6 +153,56 @@ TEST_CASE("records: single faults drawn at random, own program and firmware") {
 TEST_CASE("records: single faults drawn at random, own program and firmware with IRcom") {
     RecordBench bench(kFolder + "epuck_ircom.hex", kOwnReady);
     sweep(bench, drawn_faults(16), 2000, "records_ircom_sample.csv");
+}
+
+TEST_CASE(
+    "records: with several exchanges in a step a garbled speed is short and a garbled reading outvoted") {
+    RecordBench bench(kFolder + "epuck.hex", kOwnReady);
+    RandomStream random(42, "record exchanges");
+    constexpr unsigned long kProximity = 8, kLight = 40;  // places in the record
+    int seen_once = 0;
+    double longest_once = 0;
+    Tally tally;
+    for (int i = 0; i < 24; ++i) {
+        // A bit of a speed, or one of a proximity or light reading that is worth 64 counts or more; every
+        // fourth byte is lost or doubled.
+        const bool to_pic = i % 2 == 0;
+        const int step = 3 + static_cast<int>(random.below(5));
+        const unsigned long value_bit = to_pic ? random.below(32) : 6 + random.below(5);
+        const unsigned long reading = (random.below(2) ? kProximity : kLight) + 2 * random.below(8);
+        const unsigned long byte = (to_pic ? 0 : reading) + value_bit / 8;
+        const int bit = static_cast<int>(value_bit % 8);
+        const ByteFault kind = i % 8 < 6    ? ByteFault::Flipped
+                               : i % 8 == 6 ? ByteFault::Lost
+                                            : ByteFault::Doubled;
+        const auto run = [&](int exchanges, int turn) {
+            const int record = step * exchanges + turn + (to_pic ? 0 : 1);
+            const RecordFault fault{to_pic, first_byte(to_pic, record) + byte, kind, bit};
+            const RecordRun done =
+                bench.run(fault, 7000 + static_cast<std::uint64_t>(i), kRecords, exchanges);
+            INFO(fault.text() << " of " << exchanges << " exchanges: garbage " << done.garbage << " recovery "
+                              << done.recovery << " wrong " << done.seen_wrong);
+            CHECK(done.fired);
+            CHECK(done.reached);
+            CHECK(done.recovery <= kBound);
+            CHECK(done.stale <= kBound);
+            CHECK(done.came_to_rest);
+            CHECK(done.next_session);
+            if (exchanges > 1) CHECK(done.garbage <= kShareOfStep);
+            if (exchanges > 1) CHECK(done.seen_wrong == 0);
+            return done;
+        };
+        const RecordRun once = run(1, 0);
+        seen_once += once.seen_wrong;
+        longest_once = std::max(longest_once, once.garbage);
+        count(tally, run(5, static_cast<int>(random.below(5))));
+    }
+    CHECK(seen_once >= 3);
+    CHECK(longest_once > 0.08);
+    CHECK(tally.garbage > 0.005);
+    INFO("one exchange: " << longest_once << " s, " << seen_once << " steps; five: " << tally.garbage
+                          << " s");
+    CHECK(tally.recovery <= kBound);
 }
 
 TEST_CASE("records: every byte lost, doubled and with each bit flipped, own program and firmware",
