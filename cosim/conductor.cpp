@@ -14,7 +14,7 @@ namespace puckloop::cosim {
 namespace {
 
 // Rounds between two plans.
-constexpr int kMostFollowing = 8;
+constexpr int kMostFollowing = 32;
 constexpr double kProgressSeconds = 0.2;
 // What is recorded is on disk after so long, should this very process be killed.
 constexpr double kFlushSeconds = 1.0;
@@ -75,8 +75,10 @@ Outcome Conductor::State::run() {
             network_->update(n, handles_[n]->state(), 0, kNever);
         network_->preset(deliveries_, changes_);
         take_deliveries(kNobody);
-        for (std::size_t n = 0; n < handles_.size(); ++n)
-            times_[n].runs_ahead = handles_[n]->state().runs_ahead;
+        for (std::size_t n = 0; n < handles_.size(); ++n) {
+            times_[n].runs_ahead = may_run_ahead(n);
+            times_[n].horizon = handles_[n]->state().horizon;
+        }
         loop();
         wind_up();
         current_ = kNobody;
@@ -116,6 +118,7 @@ void Conductor::State::loop() {
     while (true) {
         take_interrupt();
         surprised_.clear();
+        said_.clear();
         plan_begun_ = WallClock::now();
         plan();
         if (schedule_.complete()) return;
@@ -136,23 +139,36 @@ void Conductor::State::loop() {
     }
 }
 
-/// Grants the nodes that were taken by surprise since the plan. Bounds need not be known for that: it only
-/// makes clear what there is to be foreseen. False: there is none.
+/// Grants the nodes that were taken by surprise since the plan, and those of a bus whose turn it is. Bounds
+/// need not be known for that: it only makes clear what there is to be foreseen. False: there is none.
 bool Conductor::State::follow_up() {
-    if (surprised_.empty()) return false;
-    bool any = false;
     following_.swap(surprised_);
     surprised_.clear();
+    take_turns();
+    bool any = false;
     for (const std::size_t n : following_) {
         const NodeTimes& node = times_[n];
-        if (node.busy || !node.runs_ahead || node.surprise >= node.ahead) continue;
-        if (node.ahead > end_ || !schedule_.follow(n, times_)) continue;
+        if (node.busy || !node.runs_ahead || node.ahead > end_ || !schedule_.follow(n, times_)) continue;
         Time until = schedule_.target(n), ahead = schedule_.ahead(n);
         if (chop_) chop(n, until, ahead);
         grant(n, until, ahead);
         any = true;
     }
     return any;
+}
+
+/// Adds to following_ the nodes of those buses of which one has replied.
+void Conductor::State::take_turns() {
+    for (const std::size_t n : said_) {
+        const std::size_t group = schedule_.chats().group_of(n);
+        if (group == kNobody) continue;
+        for (const std::size_t other : schedule_.chats().nodes(group))
+            if (!times_[other].busy && slots_[other].stale) find_unknown(other);
+        schedule_.listen(group, times_);
+        const auto& nodes = schedule_.chats().nodes(group);
+        following_.insert(following_.end(), nodes.begin(), nodes.end());
+    }
+    said_.clear();
 }
 
 void Conductor::State::chop(std::size_t n, Time& until, Time& ahead) {
@@ -181,10 +197,7 @@ void Conductor::State::plan() {
     pending_.resize(slots_.size());
     for (std::size_t n = 0; n < slots_.size(); ++n) {
         Slot& slot = slots_[n];
-        if (slot.stale && !times_[n].busy) {
-            slot.unknown = first_unknown(n);
-            slot.stale = false;
-        }
+        if (slot.stale && !times_[n].busy) find_unknown(n);
         pending_[n] = std::min(slot.unknown, slot.changed);
     }
     ScheduleLimits limits{end_, kNever, options_.stop_latency};

@@ -16,12 +16,17 @@ bool after(const TraceRecord& a, const TraceRecord& b) {
 }  // namespace
 
 /// The first message that node `n` has neither handled nor foreseen as it is now.
-Time Conductor::State::first_unknown(std::size_t n) const {
-    const NodeTimes& node = times_[n];
-    Time first = std::min(node.surprise, network_->first_foreseen(n, node.ahead));
-    for (const TraceRecord& record : slots_[n].queue)
-        if (record.time >= node.ahead) first = std::min(first, record.time);
-    return first;
+void Conductor::State::find_unknown(std::size_t n) {
+    NodeTimes& node = times_[n];
+    Slot& slot = slots_[n];
+    node.heard = node.surprise;
+    slot.unknown = std::min(node.surprise, network_->first_foreseen(n, node.ahead, node.heard));
+    for (const TraceRecord& record : slot.queue) {
+        if (record.time < node.ahead) continue;
+        slot.unknown = std::min(slot.unknown, record.time);
+        if (network_->chats(record)) node.heard = std::min(node.heard, record.time);
+    }
+    slot.stale = false;
 }
 
 /// With what comes in for node `n` before `until`, foreseen messages among it.
@@ -48,9 +53,9 @@ void Conductor::State::fill_inbox(std::size_t n, Time until) {
 
 void Conductor::State::grant(std::size_t n, Time until, Time ahead) {
     Slot& slot = slots_[n];
-    if (slot.stale) slot.unknown = first_unknown(n);  // faults may have acted since the plan
-    slot.stale = false;
-    fill_inbox(n, ahead);
+    if (slot.stale) find_unknown(n);  // faults may have acted since the plan
+    // Where nothing differs after all it stays where it is: it must see all that is known up to there.
+    fill_inbox(n, std::max(ahead, times_[n].ahead));
     slot.asked = until;
     slot.asked_ahead = ahead;
     slot.span = ahead - std::min(ahead, std::min(times_[n].surprise, times_[n].ahead));
@@ -66,12 +71,23 @@ void Conductor::State::grant(std::size_t n, Time until, Time ahead) {
     if (!handles_[n]->elsewhere()) here_.push_back(n);
 }
 
+/// Whether node `n` can go back. One that can only while its program waits does so beside others that can:
+/// among those that cannot its stretches would end at once.
+bool Conductor::State::may_run_ahead(std::size_t n) {
+    const NodeState& state = handles_[n]->state();
+    if (state.runs_ahead && !state.bounded) others_run_ahead_ = true;
+    return state.runs_ahead && (!state.bounded || others_run_ahead_);
+}
+
 void Conductor::State::take_reply(std::size_t n) {
     Slot& slot = slots_[n];
     NodeTimes& node = times_[n];
     const Time before = node.granted;
     const Advanced& done = handles_[n]->advanced();
-    const bool ran_ahead = std::exchange(node.runs_ahead, handles_[n]->state().runs_ahead);
+    const NodeState& state = handles_[n]->state();
+    const bool ran_ahead = std::exchange(node.runs_ahead, may_run_ahead(n));
+    node.horizon = state.horizon;
+    said_.push_back(n);
     slot.asked = done.reached;
     slot.asked_ahead = done.ahead;
     Time first_in = slot.unknown < done.ahead ? slot.unknown : kNever;
@@ -94,7 +110,7 @@ void Conductor::State::take_reply(std::size_t n) {
     if (slot.changed < done.ahead) surprise(slot.changed_by, n, slot.changed);
     slot.changed = kNever;
     slot.stale = true;
-    network_->update(n, handles_[n]->state(), done.ahead, first_in);
+    network_->update(n, state, done.ahead, first_in);
     take_deliveries(n);
     take_stop(n, before);
     take_wound_up(n, before);

@@ -84,7 +84,9 @@ class Conductor::State {
     void take_reply(std::size_t n);
     void take_stop(std::size_t n, Time before);
     void end_with(const Stop& stop, std::size_t n);
-    Time first_unknown(std::size_t n) const;
+    bool may_run_ahead(std::size_t n);
+    void find_unknown(std::size_t n);
+    void take_turns();
     void fill_inbox(std::size_t n, Time until);
     void take_deliveries(std::size_t sender);
     void take_changes();
@@ -123,6 +125,8 @@ class Conductor::State {
     std::vector<LinkStats> stats_;        ///< one a wire
     std::vector<std::size_t> surprised_;  ///< since the plan
     std::vector<std::size_t> following_;
+    std::vector<std::size_t> said_;  ///< nodes that have replied since the plan or the last look
+    bool others_run_ahead_ = false;  ///< some node has that may go as far as it likes
     TraceMerger merger_;
     TraceHash hash_;
     std::vector<TraceRecord> batch_;    ///< being written by whatever thread

@@ -57,6 +57,8 @@ void write_state(ByteWriter& writer, const NodeState& state) {
     }
     writer.time(state.wound_up);
     writer.u8(state.runs_ahead);
+    writer.u8(state.bounded);
+    writer.time(state.horizon);
 }
 
 void read_state(ByteReader& reader, NodeState& state) {
@@ -78,6 +80,8 @@ void read_state(ByteReader& reader, NodeState& state) {
     }
     state.wound_up = reader.time();
     state.runs_ahead = reader.boolean();
+    state.bounded = reader.boolean();
+    state.horizon = reader.time();
 }
 
 void write_messages(ByteWriter& writer, const std::vector<Message>& messages) {

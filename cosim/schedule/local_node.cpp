@@ -20,6 +20,8 @@ void read_state(const Node& node, NodeState& state) {
     state.stop = node.stop();
     state.wound_up = node.wound_up();
     state.runs_ahead = false;
+    state.bounded = false;
+    state.horizon = kNever;
 }
 
 namespace {

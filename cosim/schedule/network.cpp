@@ -68,8 +68,9 @@ void Network::attach(const LinkSpec& spec, std::uint16_t link) {
                          "one for UART links, and for no others");
     if (spec.latency < 0) throw InputError("", place, "negative latency");
     const Time flight = flight_time(spec);
-    wires_.push_back({link, Direction::FromA, a, port_a, b, port_b, is_uart, flight, spec.latency});
-    wires_.push_back({link, Direction::FromB, b, port_b, a, port_a, is_uart, flight, spec.latency});
+    const bool is_i2c = kind == PortKind::I2c;
+    wires_.push_back({link, Direction::FromA, a, port_a, b, port_b, is_uart, flight, spec.latency, is_i2c});
+    wires_.push_back({link, Direction::FromB, b, port_b, a, port_a, is_uart, flight, spec.latency, is_i2c});
     for (const std::size_t w : {wires_.size() - 2, wires_.size() - 1}) {
         std::size_t& slot = port_wire_[wires_[w].from][wires_[w].from_port];
         if (slot != kNobody)
@@ -117,7 +118,7 @@ void Network::update(std::size_t n, const NodeState& state, Time reached, Time f
         const Time said_before = std::min({wire.base, later(first_in, channel.lookahead), sent.first_change});
         const Time base = std::max(said_before, later(std::max(port.earliest_output, begun), wire.latency));
         judge_punctuality(channel, base, sent);
-        if (state.runs_ahead) channel.punctual = 0;
+        if (state.runs_ahead && !state.bounded) channel.punctual = 0;
         wire.base = base;
         update_channel(port_wire_[n][p]);
         const Time lookahead = later(std::max(port.lookahead, wire.flight), wire.latency);

@@ -24,6 +24,7 @@ struct Wire {
     bool is_uart = false;
     Time flight = 0;
     Time latency = 0;
+    bool is_i2c = false;
     std::uint64_t sequence = 0;
     std::uint64_t sent = 0;  ///< messages that are final
     std::vector<LinkFault*> faults{};
@@ -70,8 +71,12 @@ class Network {
     Time after_settled() const;
     /// Appends what is foreseen for node `n` before `until`, in the order of the trace.
     void foreseen(std::size_t n, Time until, std::vector<TraceRecord>& inbox) const;
-    /// The first message foreseen for node `n` from `from` on.
-    Time first_foreseen(std::size_t n, Time from) const;
+    /// The first message foreseen for node `n` from `from` on; `heard` is lowered to the first by a wire of a
+    /// bus (Channel::chats).
+    Time first_foreseen(std::size_t n, Time from, Time& heard) const;
+    bool chats(const TraceRecord& record) const {
+        return channels_[record.link * 2u + static_cast<unsigned>(record.direction)].chats;
+    }
     /// What faults put on the lines by themselves.
     void preset(std::vector<TraceRecord>& deliveries, std::vector<Change>& changes);
 

@@ -32,6 +32,8 @@ struct NodeState {
     std::optional<Stop> stop;
     Time wound_up = 0;        ///< Node::wound_up
     bool runs_ahead = false;  ///< it can go back (Node::rewindable())
+    bool bounded = false;     ///< it can go back from before `horizon` only (BoundedRewindable)
+    Time horizon = kNever;
 };
 
 /// What came of one grant.

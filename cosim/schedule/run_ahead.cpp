@@ -24,19 +24,30 @@ std::span<const Message> take_before(Time until, std::span<const Message>& inbox
 
 Advanced RunAhead::advance(const Reach& reach, std::span<const Message> inbox,
                            const std::vector<PortEcho>& echoes, std::vector<Message>& outbox) {
+    std::optional<Advanced> done = begin(reach, inbox, echoes, outbox);
+    while (!done)
+        done = resume(true, outbox);
+    return *done;
+}
+
+std::optional<Advanced> RunAhead::begin(const Reach& reach, std::span<const Message> inbox,
+                                        const std::vector<PortEcho>& echoes, std::vector<Message>& outbox) {
     outbox.clear();
-    if (!marked_ && node_->rewindable() == nullptr) {
+    reach_ = reach;
+    sent_before_.clear();
+    wrong_ = kNever;
+    if (goes_in_strides(echoes) &&
+        (node_->suspendable() == nullptr || !echoes.empty() || reach.until <= reached_)) {
         reached_ = ahead_ = advance_in_strides(*node_, reached_, reach, inbox, echoes, outbox);
-        return {reached_, ahead_, outbox.size()};
+        return Advanced{reached_, ahead_, outbox.size()};
     }
-    const Time until = reach.until;
-    if (until < reached_) throw RunError("was granted time that it had passed");
-    Time wrong = first_difference(inbox);
-    if (reach.ahead <= until) wrong = std::min(wrong, until);
-    std::vector<Message> again, sent_before;
-    const bool back = wrong < ahead_;
+    if (reach.until < reached_) throw RunError("was granted time that it had passed");
+    wrong_ = first_difference(inbox);
+    if (reach.ahead <= reach.until) wrong_ = std::min(wrong_, reach.until);
+    std::vector<Message> again;
+    const bool back = wrong_ < ahead_;
     if (back) {
-        sent_before = sent_;
+        sent_before_ = sent_;
         // From the mark, with what was final already and what is known now.
         again = used_before_reached();
         again.insert(again.end(), inbox.begin(), inbox.end());
@@ -45,40 +56,63 @@ Advanced RunAhead::advance(const Reach& reach, std::span<const Message> inbox,
     } else {
         take_before(ahead_, inbox);
     }
-    if (back && ahead_ == until && reach.ahead > until) {
+    if (back && ahead_ == reach.until && reach.ahead > reach.until) {
         forget_lookaheads();  // nothing more is sure: the mark stays good
-    } else if (ahead_ <= until) {
-        if (ahead_ < until) execute(until, inbox);
-        if (marked_) node_->rewindable()->settle();
-        marked_ = false;
-        used_.clear();
-        outbox.swap(sent_);
+    } else if (ahead_ <= reach.until) {
+        if (!begin_sure(inbox)) {
+            rest_.assign(inbox.begin(), inbox.end());
+            return std::nullopt;
+        }
+        end_sure(outbox);
     }
-    const std::size_t sure = outbox.size();
-    reached_ = until;
-    if (reach.ahead > std::max(ahead_, no_further_)) run_on(reach.ahead, inbox);
-    outbox.insert(outbox.end(), sent_.begin(), sent_.end());
-    check_same(sent_before, outbox, wrong);
-    return {reached_, ahead_, sure};
+    return go_ahead(inbox, outbox);
 }
 
-std::optional<Advanced> RunAhead::begin(const Reach& reach, std::span<const Message> inbox,
-                                        const std::vector<PortEcho>& echoes, std::vector<Message>& outbox) {
-    Suspendable* const node = node_->suspendable();
-    if (node == nullptr || marked_ || node_->rewindable() != nullptr || !echoes.empty() ||
-        reach.until <= reached_)
-        return advance(reach, inbox, echoes, outbox);
-    outbox.clear();
-    begun_ = reach.until;
-    if (!node->begin(begun_, take_before(begun_, inbox), outbox)) return std::nullopt;
-    reached_ = ahead_ = begun_;
-    return Advanced{reached_, ahead_, outbox.size()};
-}
-
-std::optional<Advanced> RunAhead::resume(bool wait, const std::vector<Message>& outbox) {
+std::optional<Advanced> RunAhead::resume(bool wait, std::vector<Message>& outbox) {
     if (!node_->suspendable()->resume(wait)) return std::nullopt;
-    reached_ = ahead_ = begun_;
-    return Advanced{reached_, ahead_, outbox.size()};
+    ahead_ = reach_.until;
+    end_sure(outbox);
+    return go_ahead(rest_, outbox);
+}
+
+/// One that is granted on its own echo's account is not run ahead, even if it could be.
+bool RunAhead::goes_in_strides(const std::vector<PortEcho>& echoes) const {
+    return !marked_ && (!echoes.empty() || node_->rewindable() == nullptr);
+}
+
+/// Up to where everything is final; false if the node has left that for now.
+bool RunAhead::begin_sure(std::span<const Message>& inbox) {
+    if (ahead_ == reach_.until) return true;
+    // What now happens may be what cannot be taken back.
+    if (marked_ && bounded_ != nullptr) {
+        node_->rewindable()->settle();
+        marked_ = false;
+    }
+    if (node_->suspendable() == nullptr) {
+        execute(reach_.until, inbox);
+        return true;
+    }
+    if (!node_->suspendable()->begin(reach_.until, take_before(reach_.until, inbox), sent_)) return false;
+    ahead_ = reach_.until;
+    return true;
+}
+
+void RunAhead::end_sure(std::vector<Message>& outbox) {
+    if (marked_) node_->rewindable()->settle();
+    marked_ = false;
+    used_.clear();
+    outbox.swap(sent_);
+}
+
+/// Everything before reach_.until is final, and in the outbox where it was not before.
+Advanced RunAhead::go_ahead(std::span<const Message> inbox, std::vector<Message>& outbox) {
+    const std::size_t sure = outbox.size();
+    reached_ = reach_.until;
+    if (reach_.ahead > std::max(ahead_, no_further_)) run_on(reach_.ahead, inbox);
+    stopped_at_ = bounded_ != nullptr && ahead_ < reach_.ahead ? ahead_ : kNever;
+    outbox.insert(outbox.end(), sent_.begin(), sent_.end());
+    check_same(sent_before_, outbox, wrong_);
+    return {reached_, ahead_, sure};
 }
 
 /// What was sent before the inbox differed must come again.
@@ -143,9 +177,18 @@ void RunAhead::execute(Time until, std::span<const Message>& inbox) {
     ahead_ = until;
 }
 
+/// At most `until`, but no further than the node can come back from.
+Time RunAhead::may_reach(Time until, std::span<const Message> inbox) const {
+    if (bounded_ == nullptr) return until;
+    const auto end = std::find_if(inbox.begin(), inbox.end(),
+                                  [&](const Message& m) { return m.time > inbox.front().time; });
+    return std::min(until, bounded_->horizon({inbox.begin(), end}));
+}
+
 /// Beyond what is final. The node is cut at each message, since what it claims of its lookaheads holds until
 /// the next one comes in.
 void RunAhead::run_on(Time until, std::span<const Message>& inbox) {
+    if (may_reach(until, inbox) <= ahead_) return;
     if (!marked_) {
         node_->rewindable()->mark();
         marked_ = true;
@@ -153,9 +196,9 @@ void RunAhead::run_on(Time until, std::span<const Message>& inbox) {
         forget_lookaheads();
     }
     try {
-        while (ahead_ < until) {
-            if (inbox.empty() || inbox.front().time >= until || !answers_late()) {
-                execute(until, inbox);
+        for (Time end = until; (end = may_reach(until, inbox)) > ahead_;) {
+            if (inbox.empty() || inbox.front().time >= end || (bounded_ == nullptr && !answers_late())) {
+                execute(end, inbox);
             } else {
                 take_in(inbox);
             }
@@ -215,6 +258,8 @@ void RunAhead::sample_lookaheads() {
 void RunAhead::read_state(NodeState& state) const {
     cosim::read_state(*node_, state);
     state.runs_ahead = marked_ || node_->rewindable() != nullptr;
+    state.bounded = bounded_ != nullptr;
+    state.horizon = bounded_ == nullptr ? kNever : std::min(stopped_at_, bounded_->horizon({}));
     if (marked_)
         for (std::size_t p = 0; p < lookaheads_.size(); ++p)
             state.ports[p].lookahead = std::min(state.ports[p].lookahead, lookaheads_[p]);
@@ -225,6 +270,9 @@ void RunAhead::read_state(NodeState& state) const {
 
 void RunAhead::wind_up(int signal) {
     if (ahead_ != reached_) throw RunError("is to end while it runs ahead");
+    if (marked_) node_->rewindable()->settle();
+    marked_ = false;
+    used_.clear();
     node_->wind_up(reached_, signal);
 }
 

@@ -8,6 +8,7 @@
 // a later grant brings the same inbox, nothing is executed again; if not, the node goes back to its mark.
 // Only what truly comes in decides what becomes final, so no trace depends on how far a node ran ahead.
 
+#include "cosim/core/bounded_rewindable.h"
 #include "cosim/core/message.h"
 #include "cosim/core/node.h"
 #include "cosim/schedule/node_handle.h"
@@ -23,7 +24,8 @@ namespace puckloop::cosim {
 
 class RunAhead {
   public:
-    explicit RunAhead(std::unique_ptr<Node> node) : node_(std::move(node)) {}
+    explicit RunAhead(std::unique_ptr<Node> node)
+        : node_(std::move(node)), bounded_(dynamic_cast<const BoundedRewindable*>(node_->rewindable())) {}
 
     const Node& node() const { return *node_; }
     Time reached() const { return reached_; }
@@ -36,11 +38,11 @@ class RunAhead {
                      std::vector<Message>& outbox);
 
     /// As advance(), but nothing where the node would wait for something outside of simulated time
-    /// (Suspendable): resume() then goes on, with what the outbox holds.
+    /// (Suspendable): resume() then goes on. The inbox may go, the outbox must stay.
     std::optional<Advanced> begin(const Reach& reach, std::span<const Message> inbox,
                                   const std::vector<PortEcho>& echoes, std::vector<Message>& outbox);
     /// After begin() gave nothing. `wait`: lets the node wait for some milliseconds.
-    std::optional<Advanced> resume(bool wait, const std::vector<Message>& outbox);
+    std::optional<Advanced> resume(bool wait, std::vector<Message>& outbox);
 
     /// What the node says of its future, having run ahead: its EOTs are beyond what is foreseen, its
     /// lookaheads hold for whatever else comes in from the time reached on.
@@ -52,6 +54,11 @@ class RunAhead {
     std::string finish();
 
   private:
+    bool goes_in_strides(const std::vector<PortEcho>& echoes) const;
+    bool begin_sure(std::span<const Message>& inbox);
+    void end_sure(std::vector<Message>& outbox);
+    Advanced go_ahead(std::span<const Message> inbox, std::vector<Message>& outbox);
+    Time may_reach(Time until, std::span<const Message> inbox) const;
     Time first_difference(std::span<const Message> inbox) const;
     std::vector<Message> used_before_reached() const;
     void check_same(const std::vector<Message>& before, const std::vector<Message>& now, Time differs) const;
@@ -66,14 +73,20 @@ class RunAhead {
     void forget_lookaheads();
 
     std::unique_ptr<Node> node_;
+    const BoundedRewindable* bounded_;  ///< the node, if it is one
     Time reached_ = 0;
     Time ahead_ = 0;  ///< the node stands there
     Time mark_ = 0;   ///< of the node, while marked_
     bool marked_ = false;
-    Time begun_ = 0;             ///< the node was last begun to advance to there
     Time no_further_ = 0;        ///< what was tried up to there ended in an exception
+    Time stopped_at_ = kNever;   ///< as far as a node that is bounded came last, if it was to go further
     std::vector<Message> used_;  ///< what came in since the mark
     std::vector<Message> sent_;  ///< what was sent since the mark
+    // Of the grant under way.
+    Reach reach_;
+    Time wrong_ = kNever;               ///< the inbox is another one from there on
+    std::vector<Message> sent_before_;  ///< what the node has to send again up to there
+    std::vector<Message> rest_;         ///< of the inbox, while the node has left its advance()
     std::vector<Time>
         earliest_outputs_;          ///< by port, where the lookahead is not zero: before a message came in
     std::vector<Time> lookaheads_;  ///< by port, the shortest since the mark

@@ -17,6 +17,8 @@ constexpr Time kLongEnough = 200 * kMicrosecond;
 // A stretch that was right makes the next one longer by this part: it stays a fraction of the time since the
 // last surprise.
 constexpr Time kGrowth = 3;
+// One that takes turns on a bus goes on from its mark for so long, beyond what is sure.
+constexpr Time kTurns = 400 * kMicrosecond;
 // Stretches without surprise after which a node no longer waits for the one that caused the last.
 constexpr int kCalm = 16;
 }  // namespace
@@ -61,6 +63,9 @@ void Schedule::plan(const std::vector<Channel>& channels, const std::vector<Time
     pending_ = &pending;
     bounds_.compute(channels, pending);
     find_next(nodes, limits.end);
+    chats_.update(channels, nodes.size());
+    for (std::size_t group = 0; group < chats_.count(); ++group)
+        listen(group, nodes);
     const std::size_t count = nodes.size();
     reached_ = limits.end;
     for (const NodeTimes& node : nodes)
@@ -91,6 +96,38 @@ Time Schedule::stretch_end(Time from, Time length) {
     return length < 2 * kTogether ? end : end - end % kTogether;
 }
 
+void Schedule::listen(std::size_t group, const std::vector<NodeTimes>& nodes) {
+    heard_.resize(nodes.size());
+    for (const std::size_t n : chats_.nodes(group))
+        heard_[n] = nodes[n].heard;
+    chats_.compute(group, *channels_, heard_);
+}
+
+/// How far node `n` may well go for its bus: what it hears or says itself there it does, be it answered at
+/// the same time.
+Time Schedule::turn_end(std::size_t n) const {
+    if (chats_.group_of(n) == kNobody) return kNever;
+    const Time limit = chats_.limit(n), first = std::min(heard_[n], chats_.says(n));
+    return first == limit ? later(first, 1) : limit;
+}
+
+/// How far node `n` may well run ahead from there on.
+Time Schedule::worth_going(std::size_t n, Time from) const {
+    return std::min({ceiling_, expected_[n], stretch_end(from, stretches_[n].length), turn_end(n)});
+}
+
+/// Whether node `n`, which nothing took by surprise, goes on because something is to be said or heard on its
+/// bus, although nothing more is sure.
+bool Schedule::takes_turn(std::size_t n, const NodeTimes& node) {
+    if (chats_.group_of(n) == kNobody) return false;
+    const Time reach =
+        std::min({ceiling_, expected_[n], node.horizon, later(node.granted, kTurns), turn_end(n)});
+    if (std::min(node.heard, chats_.says(n)) >= reach || reach <= node.ahead) return false;
+    target_[n] = node.granted;
+    ahead_[n] = reach;
+    return true;
+}
+
 /// Whether node `n`, which can go back, has something to do, and how far it is to go.
 bool Schedule::aims_ahead(std::size_t n, const NodeTimes& node, const ScheduleLimits& limits) {
     const Time end = limits.end;
@@ -100,15 +137,17 @@ bool Schedule::aims_ahead(std::size_t n, const NodeTimes& node, const ScheduleLi
         return true;
     }
     const Time from = std::min(node.surprise, node.ahead);
-    const Time reach = std::min({ceiling_, expected_[n], stretch_end(from, stretches_[n].length)});
+    const Time reach = worth_going(n, from);
     if (node.surprise < node.ahead) {
         target_[n] = std::max(node.granted, std::min(sure, std::max(reach, from)));
         ahead_[n] = std::max(target_[n], reach);
         return ahead_[n] > from;
     }
-    if (sure < node.ahead) return false;  // the mark would stay behind
+    if (sure < node.ahead) return takes_turn(n, node);  // else the mark would stay behind for nothing
     target_[n] = std::max(node.ahead, std::min(sure, ceiling_));
-    ahead_[n] = target_[n] - node.ahead >= kLongEnough ? target_[n] : std::max(target_[n], reach);
+    ahead_[n] = target_[n];
+    if (target_[n] - node.ahead < kLongEnough)
+        ahead_[n] = std::max(target_[n], std::min(reach, node.horizon));
     if (node.granted < node.ahead && (node.ahead == end || node.granted == reached_)) return true;
     // One that would only wait, and is known to, need not: it limits nobody.
     const bool serves = next_[n] < ahead_[n] || target_[n] >= end ||
@@ -139,10 +178,11 @@ void Schedule::plan_ahead(const std::vector<NodeTimes>& nodes, const ScheduleLim
 
 bool Schedule::follow(std::size_t n, const std::vector<NodeTimes>& nodes) {
     const NodeTimes& node = nodes[n];
+    if (node.surprise >= node.ahead) return takes_turn(n, node);
     Stretch& stretch = stretches_[n];
     const std::size_t first = stretch.waits_for;
     if (first != kNobody && (nodes[first].busy || nodes[first].surprise < nodes[first].ahead)) return false;
-    const Time reach = std::min({ceiling_, expected_[n], stretch_end(node.surprise, stretch.length)});
+    const Time reach = worth_going(n, node.surprise);
     if (reach <= node.surprise) return false;
     target_[n] = node.granted;
     ahead_[n] = reach;

@@ -3,6 +3,7 @@
 
 #include "cosim/core/time.h"
 #include "cosim/schedule/bounds.h"
+#include "cosim/schedule/chat.h"
 
 #include <cstddef>
 #include <vector>
@@ -16,6 +17,8 @@ struct NodeTimes {
     Time ahead = 0;           ///< executed so far on what was foreseen; >= granted
     Time surprise = kNever;   ///< from there on something else comes in than was foreseen, if before `ahead`
     bool runs_ahead = false;  ///< it can go back
+    Time horizon = kNever;    ///< from here on not, as far as is known
+    Time heard = kNever;      ///< the first message of its I2C bus from `ahead` or a surprise on
 };
 
 struct ScheduleLimits {
@@ -38,9 +41,13 @@ class Schedule {
     void plan(const std::vector<Channel>& channels, const std::vector<Time>& pending,
               const std::vector<NodeTimes>& nodes, const ScheduleLimits& limits);
     const Bounds& bounds() const { return bounds_; }
-    /// Between two plans: whether node `n`, taken by surprise, is to go again at once on what is foreseen;
-    /// then target(n) and ahead(n) say how far. Nothing more is sure than before.
+    /// Between two plans: whether node `n`, taken by surprise, is to go again at once on what is foreseen, or
+    /// one that takes turns on a bus is to go on; then target(n) and ahead(n) say how far. Nothing more is
+    /// sure than before.
     bool follow(std::size_t n, const std::vector<NodeTimes>& nodes);
+    /// Takes over what the nodes of a bus have said since the plan, and when each hears something next.
+    void listen(std::size_t group, const std::vector<NodeTimes>& nodes);
+    const Chats& chats() const { return chats_; }
 
     /// How far node `n` may go, in strides where that is beyond bounds().limit(n): there only the echo of
     /// what it says itself limits it. At most its present time if it may not go.
@@ -68,12 +75,17 @@ class Schedule {
     Time limit_if_silent(std::size_t n);
     void plan_ahead(const std::vector<NodeTimes>& nodes, const ScheduleLimits& limits);
     bool aims_ahead(std::size_t n, const NodeTimes& node, const ScheduleLimits& limits);
+    bool takes_turn(std::size_t n, const NodeTimes& node);
+    Time turn_end(std::size_t n) const;
+    Time worth_going(std::size_t n, Time from) const;
     void choose_plain(const std::vector<NodeTimes>& nodes, const ScheduleLimits& limits);
     void choose_any(const std::vector<NodeTimes>& nodes);
     void find_next(const std::vector<NodeTimes>& nodes, Time end);
 
     Bounds bounds_;
     Bounds alone_;
+    Chats chats_;
+    std::vector<Time> heard_;
     const std::vector<Channel>* channels_ = nullptr;
     const std::vector<Time>* pending_ = nullptr;
     std::vector<Time> target_;

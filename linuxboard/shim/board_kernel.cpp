@@ -366,25 +366,39 @@ Time BoardKernel::next_event() const {
 
 Time BoardKernel::next_completion(Time message) const {
     Time next = waiting_.empty() ? kNever : message;
-    for (const auto& [thread, waiting] : waiting_) {
-        next = std::min(next, wake_time(waiting));
-        switch (waiting.request.op) {
-        case Op::Read:
-            next = std::min(next, tty_.next_input());
-            break;
-        case Op::Transfer:
-            next = std::min(next, adapter_.next_event());
-            break;
-        case Op::Ioctl:
-        case Op::VideoRead:
-            next = std::min(next, next_frame());
-            break;
-        default:  // what goes out may end it as well
-            next = std::min(next, asks_for_input_only(waiting) ? tty_.next_input() : tty_.next_event());
-            next = std::min(next, next_frame());
-        }
-    }
+    for (const auto& [thread, waiting] : waiting_)
+        next = std::min(next, device_completion(waiting, adapter_.next_event()));
     return next;
+}
+
+Time BoardKernel::next_wake(std::span<const cosim::Message> next) const {
+    Time wake = kNever;
+    for (const auto& [thread, waiting] : waiting_)
+        wake = std::min(wake, device_completion(waiting, adapter_.next_completion()));
+    if (waiting_.empty()) return wake;
+    for (const cosim::Message& message : next) {
+        const auto* frame = std::get_if<cosim::UartFrame>(&message.payload);
+        const auto* phase = std::get_if<cosim::I2cPhase>(&message.payload);
+        if (frame != nullptr ? tty_.fills(*frame) : phase != nullptr && adapter_.ends_with(*phase))
+            wake = std::min(wake, message.time);
+    }
+    return wake;
+}
+
+Time BoardKernel::device_completion(const Waiting& waiting, Time transfers_end) const {
+    const Time next = wake_time(waiting);
+    switch (waiting.request.op) {
+    case Op::Read:
+        return std::min(next, tty_.next_input());
+    case Op::Transfer:
+        return std::min(next, transfers_end);
+    case Op::Ioctl:
+    case Op::VideoRead:
+        return std::min(next, next_frame());
+    default:  // what goes out may end it as well
+        return std::min(
+            {next, asks_for_input_only(waiting) ? tty_.next_input() : tty_.next_event(), next_frame()});
+    }
 }
 
 bool BoardKernel::asks_for_input_only(const Waiting& waiting) {

@@ -14,6 +14,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -58,6 +59,23 @@ class BoardKernel {
     cosim::Time next_event() const;
     /// When a call that waits may end at the earliest, if nothing comes in before `message`.
     cosim::Time next_completion(cosim::Time message) const;
+    /// When a call that waits may end at the earliest, if what comes in next is `next`, all of one time, and
+    /// nothing else does before. As next_completion(), but it looks at what comes in.
+    cosim::Time next_wake(std::span<const cosim::Message> next) const;
+    /// Serial port and I2C adapter: all that changes while no call begins or ends.
+    struct Devices {
+        TtyPort tty{};
+        I2cAdapter adapter{0, 0};
+    };
+    void copy_devices(std::optional<Devices>& copy) const {
+        if (!copy) copy.emplace();
+        copy->tty = tty_;  // into what it has allocated
+        copy->adapter = adapter_;
+    }
+    void put_back(const Devices& devices) {
+        tty_ = devices.tty;
+        adapter_ = devices.adapter;
+    }
     /// The library may answer reads and writes by itself.
     bool lets_library_answer() const { return !faults_.watches_calls(); }
     /// A read and a write that ended at once at `now`, to which the kernel has been advanced.
@@ -120,6 +138,9 @@ class BoardKernel {
     cosim::Time wake_time(const Waiting& waiting) const;
     std::int16_t tty_events() const;
     static bool asks_for_input_only(const Waiting& waiting);
+    /// When the devices by themselves may end the call at the earliest; `transfers_end`: one that waits for a
+    /// transfer.
+    cosim::Time device_completion(const Waiting& waiting, cosim::Time transfers_end) const;
 
     LinuxFaults& faults_;
     TtyPort tty_;

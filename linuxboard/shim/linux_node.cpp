@@ -42,6 +42,7 @@ LinuxNode::LinuxNode(LinuxSpec spec, std::unique_ptr<Scenery> scenery)
     for (std::size_t i = 0; i < spec_.cameras.size(); ++i)
         kernel_.add_camera(std::make_unique<VideoDevice>(
             spec_.cameras[i], i, cosim::from_seconds(spec_.uptime_s), *scenery_, launcher_->video_memory(i)));
+    if (can_foresee()) foresight_.emplace(*this);
     if (spec_.start == 0) {
         start_program();
     } else {
@@ -122,6 +123,7 @@ Time LinuxNode::next_scheduled() const {
 }
 
 void LinuxNode::run_scheduled(Time now) {
+    must_be_final();
     if (faults_.next() <= now) suffer(now);
     if (next_hangup_ < spec_.hangups.size() && spec_.hangups[next_hangup_] <= now) {
         ++next_hangup_;

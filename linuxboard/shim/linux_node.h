@@ -12,6 +12,7 @@
 // (wire::Charges). 2. One thread runs at a time, as on a board with one processor.
 // 3. Real-time mode adds the wall clock to the program's time and holds grants back to it.
 
+#include "cosim/core/bounded_rewindable.h"
 #include "cosim/core/node.h"
 #include "linuxboard/shim/board_kernel.h"
 #include "linuxboard/shim/launcher.h"
@@ -50,6 +51,7 @@ class LinuxNode : public cosim::Node, public cosim::Suspendable {
     bool resume(bool wait) override;
     cosim::Time earliest_output(cosim::PortIndex port) const override;
     cosim::Time lookahead(cosim::PortIndex port) const override;
+    cosim::Rewindable* rewindable() override { return foresight_ ? &*foresight_ : nullptr; }
     std::optional<cosim::Stop> stop() const override { return stop_; }
     /// The program gets `signal`, or the scenario's, and SIGKILL once the grace period is over. One that
     /// would die of the signal without a word does so now.
@@ -68,6 +70,24 @@ class LinuxNode : public cosim::Node, public cosim::Suspendable {
     std::uint64_t requests() const { return requests_; }
 
   private:
+    /// While the program waits, the node is its devices, which can go back (linux_node_foresight.cpp).
+    class Foresight : public cosim::BoundedRewindable {
+      public:
+        explicit Foresight(LinuxNode& node) : node_(node) {}
+        void mark() override;
+        void rewind() override;
+        void settle() override { marked_ = false; }
+        cosim::Time horizon(std::span<const cosim::Message> next) const override;
+        bool marked() const { return marked_; }
+
+      private:
+        LinuxNode& node_;
+        bool marked_ = false;
+        std::optional<BoardKernel::Devices> devices_;  ///< as they were at the mark
+        cosim::Time until_ = 0;
+        std::uint64_t messages_in_ = 0;
+    };
+
     /// One process of the program.
     struct Client {
         enum class State {
@@ -106,6 +126,11 @@ class LinuxNode : public cosim::Node, public cosim::Suspendable {
     cosim::Time next_action() const;
     void collect(std::vector<cosim::Message>& outbox);
     void pace(cosim::Time time);
+
+    // linux_node_foresight.cpp
+    bool can_foresee() const;
+    /// What follows cannot be taken back.
+    void must_be_final() const;
 
     // linux_node_turns.cpp: the program's turns and the node's
     bool step();
@@ -163,6 +188,7 @@ class LinuxNode : public cosim::Node, public cosim::Suspendable {
     std::vector<std::unique_ptr<Client>> clients_;  ///< by age
     std::int32_t last_number_ = 0;
     cosim::Time until_ = 0;
+    std::optional<Foresight> foresight_;
     std::optional<cosim::Time> waking_at_;  ///< instant of the last step: its processes are being woken
     cosim::Time start_at_ = cosim::kNever;
     std::size_t next_restart_ = 0;

@@ -74,6 +74,7 @@ bool LinuxNode::step() {
 }
 
 void LinuxNode::handle_request(Client& client) {
+    must_be_final();
     client.request.now = std::max(client.request.now, paused_until_);
     const Time now = client.request.now;
     run_devices(now);
@@ -103,6 +104,7 @@ void LinuxNode::handle_request(Client& client) {
 }
 
 void LinuxNode::answer(Client& client, Time now) {
+    must_be_final();
     wire::Reply reply;
     reply.now = now;
     show_ahead(client, reply);

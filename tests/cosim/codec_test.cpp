@@ -24,7 +24,12 @@ std::vector<Message> some_messages() {
 }
 
 NodeState some_state() {
-    return {{{5, 6, std::nullopt}, {kNever, 0, Time{4}}}, Stop{99, false, "the program exited"}};
+    return {{{5, 6, std::nullopt}, {kNever, 0, Time{4}}},
+            Stop{99, false, "the program exited"},
+            7,
+            true,
+            true,
+            123};
 }
 
 std::vector<PortEcho> some_echoes() {

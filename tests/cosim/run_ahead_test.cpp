@@ -210,6 +210,79 @@ TEST_CASE("what a foreseen message takes away may come, should the message not")
     CHECK(state.ports[0].lookahead == 50);
 }
 
+namespace {
+
+/// A counter that cannot go back from beyond `gate`, nor from behind a message of number 9.
+class Gated final : public Node, public BoundedRewindable {
+  public:
+    std::string_view name() const override { return "gated"; }
+    std::span<const Port> ports() const override { return ports_; }
+    Time earliest_output(PortIndex) const override { return kNever; }
+    Time lookahead(PortIndex) const override { return 0; }
+    Rewindable* rewindable() override { return this; }
+    void advance(Time until, std::span<const Message> inbox, std::vector<Message>& outbox) override {
+        CHECK((!marked_ || until <= horizon(inbox)));
+        for (const Message& message : inbox)
+            outbox.push_back(said(message.time, std::get<Signal>(message.payload).id));
+        now_ = until;
+    }
+    void mark() override {
+        marked_ = true;
+        saved_ = now_;
+    }
+    void rewind() override { now_ = saved_; }
+    void settle() override { marked_ = false; }
+    Time horizon(std::span<const Message> next) const override {
+        Time first = now_ <= gate ? gate : kNever;
+        for (const Message& message : next)
+            if (std::get<Signal>(message.payload).id == 9) first = std::min(first, message.time);
+        return std::max(first, now_);
+    }
+    Time gate = kNever;
+
+  private:
+    std::vector<Port> ports_{{"signals", PortKind::Signals}};
+    Time now_ = 0, saved_ = 0;
+    bool marked_ = false;
+};
+
+}  // namespace
+
+TEST_CASE("a node runs ahead no further than it can come back from") {
+    auto* gated = new Gated;
+    RunAhead node{std::unique_ptr<Node>(gated)};
+    std::vector<Message> outbox;
+    NodeState state;
+    const auto horizon = [&] {
+        node.read_state(state);
+        CHECK(state.bounded);
+        return state.horizon;
+    };
+    gated->gate = 400;
+    Advanced done = node.advance({100, 100, 900}, std::vector<Message>{said(200, 1)}, kNoEchoes, outbox);
+    CHECK(done.ahead == 400);
+    CHECK(done.sure == 0);
+    CHECK(outbox == std::vector<Message>{said(200, 1)});
+    CHECK(horizon() == 400);
+    // Asked once more: nothing to do. Granted for sure it goes beyond, and ahead from there, up to the 9,
+    // even where another message comes at the same time.
+    done = node.advance({100, 100, 900}, std::vector<Message>{said(200, 1)}, kNoEchoes, outbox);
+    CHECK(done.ahead == 400);
+    const std::vector<Message> inbox{said(200, 1), said(450, 2), said(700, 3), said(700, 9)};
+    done = node.advance({500, 500, 900}, inbox, kNoEchoes, outbox);
+    CHECK(done.reached == 500);
+    CHECK(done.ahead == 700);
+    CHECK(done.sure == 2);
+    CHECK(horizon() == 700);
+    // The 9 does not come after all.
+    done = node.advance({600, 600, 900}, std::vector<Message>{said(700, 3)}, kNoEchoes, outbox);
+    CHECK(done.ahead == 900);
+    CHECK(horizon() == kNever);
+    done = node.advance({900, 900, 900}, std::vector<Message>{said(700, 3)}, kNoEchoes, outbox);
+    CHECK(done.sure == 1);
+    CHECK(outbox == std::vector<Message>{said(700, 3)});
+}
+
 TEST_CASE("a wish to stop is known when its time is final") {
     Fixture f;
     f.counter->stop_at = 200;
@@ -254,10 +327,12 @@ TEST_CASE("what comes of any sequence of grants is what one grant makes of it") 
 
 namespace {
 
-/// The same network, its nodes with bit n of `subset` able to go back.
-Run with_ahead(Run run, unsigned subset) {
-    for (std::size_t n = 0; n < run.nodes.size(); ++n)
+/// The same network, its nodes with bit n of `subset` able to go back, those of `bounded` from some places.
+Run with_ahead(Run run, unsigned subset, unsigned bounded = 0) {
+    for (std::size_t n = 0; n < run.nodes.size(); ++n) {
         if ((subset >> n & 1) != 0) run.nodes[n].json += " ahead=1";
+        if ((bounded >> n & 1) != 0) run.nodes[n].json += " bounded=1";
+    }
     return run;
 }
 
@@ -280,10 +355,11 @@ TEST_CASE("no trace shows that nodes ran ahead") {
         INFO(expected.text);
         REQUIRE(expected.reason == EndReason::Duration);
         RandomStream random(seed, "subset");
-        for (int variant = 0; variant < 4; ++variant) {
+        for (int variant = 0; variant < 6; ++variant) {
             const unsigned subset = variant == 0 ? ~0u : static_cast<unsigned>(random.below(1u << count));
-            Run ahead = with_ahead(run, subset);
-            if (variant >= 2) ahead.options.chop_seed = seed;
+            const unsigned bounded = variant < 4 ? 0u : static_cast<unsigned>(random.below(1u << count));
+            Run ahead = with_ahead(run, subset | bounded, bounded);
+            if (variant == 2 || variant == 3 || variant == 5) ahead.options.chop_seed = seed;
             if (variant == 3) ahead.options.threads = 2;
             if (variant == 3)
                 for (NodeSpec& node : ahead.nodes)
@@ -299,7 +375,7 @@ TEST_CASE("no trace shows that nodes ran ahead") {
 
 TEST_CASE("nodes run ahead in processes of their own, too") {
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-        Run run = with_ahead(toy::random_chatter(seed, 4), seed == 1 ? ~0u : 5u);
+        Run run = with_ahead(toy::random_chatter(seed, 4), seed == 1 ? ~0u : 5u, seed == 3 ? 4u : 0u);
         run.options.duration = 10 * kMillisecond;
         const Outcome here = run();
         REQUIRE(here.reason == EndReason::Duration);

@@ -37,6 +37,7 @@ class Slow : public Node, public Suspendable {
     std::optional<Time> begun(PortIndex port) const override { return node_->begun(port); }
     std::optional<Stop> stop() const override { return node_->stop(); }
     std::string finish() override { return node_->finish(); }
+    Rewindable* rewindable() override { return node_->rewindable(); }
 
     Suspendable* suspendable() override { return this; }
     bool begin(Time until, std::span<const Message> inbox, std::vector<Message>& outbox) override {
@@ -67,12 +68,12 @@ class Slow : public Node, public Suspendable {
     std::uint64_t left_ = 0;
 };
 
-/// The run with every second node slow; nodes of bit `ahead` run ahead.
+/// The run with every second node slow; nodes of bit `ahead` run ahead, slow ones as far as they can.
 Outcome run_slowly(Run run, unsigned ahead, unsigned threads, Suspended& suspended, Recorder& recorder) {
     for (std::size_t n = 0; n < run.nodes.size(); ++n)
-        if (n % 2 == 1 && (ahead >> n & 1) != 0) {
-            run.nodes[n].json += " ahead=1";
-            run.nodes[n].any_thread = true;
+        if ((ahead >> n & 1) != 0) {
+            run.nodes[n].json += n % 2 == 1 ? " ahead=1" : " ahead=1 bounded=1";
+            run.nodes[n].any_thread = n % 2 == 1;
         }
     run.options.threads = threads;
     std::uint64_t made = 0;

@@ -1,5 +1,7 @@
 #include "toy_nodes.h"
 
+#include "cosim/core/bounded_rewindable.h"
+
 #include "base/error.h"
 #include "base/random.h"
 
@@ -300,8 +302,45 @@ class GoesBack final : public Toy, public Rewindable {
     std::unique_ptr<Toy> marked_;
 };
 
+/// The same, but each 150 us, and where something comes in in certain microseconds, it does what it cannot
+/// take back. One that is made to do so before that is sure ends the program.
+template <class Toy>
+class GoesBackSometimes final : public Toy, public BoundedRewindable {
+  public:
+    using Toy::Toy;
+    Rewindable* rewindable() override { return this; }
+    void advance(Time until, std::span<const Message> inbox, std::vector<Message>& outbox) override {
+        if (marked_)
+            for (const Message& message : inbox)
+                if (until > horizon({&message, 1})) std::abort();
+        if (marked_ && until > horizon({})) std::abort();
+        Toy::advance(until, inbox, outbox);
+        at_ = until;
+    }
+    void mark() override {
+        marked_ = std::make_unique<Toy>(*this);
+        marked_at_ = at_;
+    }
+    void rewind() override {
+        static_cast<Toy&>(*this) = *marked_;
+        at_ = marked_at_;
+    }
+    void settle() override { marked_.reset(); }
+    Time horizon(std::span<const Message> next) const override {
+        constexpr Time kAct = 150 * kMicrosecond;
+        const Time acts = (at_ + kAct - 1) / kAct * kAct;
+        const bool stirs = !next.empty() && next.front().time / kMicrosecond % 3 == 0;
+        return stirs ? std::min(acts, std::max(at_, next.front().time)) : acts;
+    }
+
+  private:
+    std::unique_ptr<Toy> marked_;
+    Time at_ = 0, marked_at_ = 0;
+};
+
 template <class Toy>
 std::unique_ptr<Node> make_ahead(const Settings& settings) {
+    if (settings.get("bounded", 0) != 0) return std::make_unique<GoesBackSometimes<Toy>>(settings);
     return std::make_unique<GoesBack<Toy>>(settings);
 }
 

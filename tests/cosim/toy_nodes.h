@@ -19,7 +19,8 @@ namespace puckloop::cosim::toy {
 ///   turncoat promises silence, then nothing, and speaks 20 ms after `at_us`
 ///   mutual   promises nothing beyond its own time and answers at once: deadlocks with another one
 ///   refuser  cannot be made (InputError)
-/// With ahead=1, chatter, echo, idle and those that act at `at_us` can go back (cosim/core/node.h).
+/// With ahead=1, chatter, echo, idle and those that act at `at_us` can go back (cosim/core/node.h),
+/// with bounded=1 too only from here and there (cosim/core/bounded_rewindable.h).
 std::unique_ptr<Node> make(const std::string& line);
 
 }  // namespace puckloop::cosim::toy

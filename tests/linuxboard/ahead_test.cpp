@@ -30,7 +30,7 @@ struct Ran {
     std::uint64_t requests = 0;
 };
 
-Ran run(const Case& with, bool ask_always, Time slice) {
+Ran run(const Case& with, bool ask_always, Time slice, bool makes_up = false) {
     std::vector<std::string> args{std::to_string(with.seed), "150", with.kind};
     if (with.i2c) args.emplace_back("i2c");
     linuxboard::LinuxSpec spec = spec_for("jumble", args);
@@ -43,6 +43,7 @@ Ran run(const Case& with, bool ask_always, Time slice) {
     }
     if (with.hang_up) spec.hangups = {static_cast<Time>(random.below(60)) * kMillisecond};
     Bench bench(std::move(spec), slice);
+    if (makes_up) bench.make_up(static_cast<std::uint64_t>(with.seed));
     bench.add_device(0x60, {{0, 1}, {1, 2}, {2, 3}, {3, 4}, {4, 5}, {5, 6}});
     for (Time time = kMillisecond; time < kSecond;
          time += static_cast<Time>(random.below(5'000)) * kMicrosecond) {
@@ -80,7 +81,8 @@ std::pair<std::uint64_t, std::uint64_t> check(const Case& with) {
     for (const Time slice : {70 * kMicrosecond, 13 * kMicrosecond, 3 * kMillisecond}) {
         if (with.i2c && slice > 70 * kMicrosecond) continue;  // devices answer between two grants
         CAPTURE(slice);
-        const Ran ran = run(with, false, slice);
+        // In short steps the node runs ahead now and then on what does not come, too.
+        const Ran ran = run(with, false, slice, slice < 70 * kMicrosecond);
         CHECK(difference(asked.log, ran.log) == "");
         CHECK(difference(asked.trace, ran.trace) == "");
         CHECK(ran.reason == asked.reason);

@@ -1,12 +1,14 @@
 #pragma once
 // One Linux node on a bench: the test plays the other ends of its serial port and its I2C bus.
 
+#include "base/random.h"
 #include "linuxboard/shim/linux_node.h"
 
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,6 +39,9 @@ class Bench {
     /// Called for every byte that the program sends.
     std::function<void(cosim::Time, std::uint8_t)> on_byte;
 
+    /// Before each step the node runs ahead on what it makes up, as far as it can, and goes back.
+    void make_up(std::uint64_t seed) { made_up_.emplace(seed, "made up"); }
+
     /// Runs until `end` or until the node wants the run to end; with `past_stop` even then.
     void run(cosim::Time end, bool past_stop = false);
 
@@ -50,6 +55,7 @@ class Bench {
   private:
     void answer_i2c(const cosim::I2cPhase& phase);
     void queue(cosim::Message message);
+    void run_ahead_in_vain();
 
     linuxboard::LinuxSpec spec_;
     linuxboard::LinuxNode node_;
@@ -57,6 +63,7 @@ class Bench {
     cosim::Time now_ = 0;
     std::vector<cosim::Message> pending_;
     std::map<std::uint8_t, std::map<std::uint8_t, std::uint8_t>> devices_;
+    std::optional<RandomStream> made_up_;
     std::uint8_t address_ = 0;
     std::uint8_t register_ = 0;
     bool register_set_ = false;

@@ -150,6 +150,22 @@ Time I2cAdapter::next_event() const {
     return next_;
 }
 
+Time I2cAdapter::next_completion() const {
+    switch (step_) {
+    case Step::Stop:
+        return cosim::later(next_, period_);
+    case Step::Start:  // it then waits for an answer
+        return cosim::later(next_, queue_.front().timeout);
+    case Step::Byte:
+        return gives_up_;
+    case Step::Idle:
+    case Step::Finish:
+    case Step::Waiting:
+        break;
+    }
+    return next_;
+}
+
 std::vector<I2cResult> I2cAdapter::take_results() {
     return std::exchange(results_, {});
 }

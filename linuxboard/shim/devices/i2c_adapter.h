@@ -58,6 +58,12 @@ class I2cAdapter {
     cosim::Time next_event() const;
     /// Start of the next phase if no answer comes in before; kNever if that depends on an answer.
     cosim::Time next_phase() const { return step_ == Step::Waiting ? cosim::kNever : next_; }
+    /// When a transfer may end at the earliest, if no answer comes in before.
+    cosim::Time next_completion() const;
+    /// Whether this answer would end a transfer at once.
+    bool ends_with(const cosim::I2cPhase& answer) const {
+        return step_ == Step::Waiting && answer.kind == cosim::I2cPhaseKind::BusLost;
+    }
     std::vector<I2cResult> take_results();
 
     std::uint64_t transfers() const { return transfers_; }

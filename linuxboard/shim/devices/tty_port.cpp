@@ -38,10 +38,20 @@ void TtyPort::hang_up() {
     output_.clear();
 }
 
-void TtyPort::deliver(const UartFrame& frame, Time delivered) {
-    if (!is_open() || hung_up_ || (settings_.c_cflag & CREAD) == 0) return;
+bool TtyPort::hears(const protocols::UartReceiver& receiver) const {
+    return is_open() && !hung_up_ && (settings_.c_cflag & CREAD) != 0 && receiver.bit_period != 0;
+}
+
+bool TtyPort::fills(const UartFrame& frame) const {
     const protocols::UartReceiver receiver = receiver_of(settings_, rate_ppm_);
-    if (receiver.bit_period == 0) return;
+    if (!hears(receiver)) return false;
+    const std::size_t characters = protocols::sample_frame(frame, receiver, receiver_ready_).size();
+    return arriving_.size() + characters >= static_cast<std::size_t>(trigger_);
+}
+
+void TtyPort::deliver(const UartFrame& frame, Time delivered) {
+    const protocols::UartReceiver receiver = receiver_of(settings_, rate_ppm_);
+    if (!hears(receiver)) return;
     for (const auto& character : protocols::sample_frame(frame, receiver, receiver_ready_)) {
         receiver_ready_ = character.time;
         arriving_.push_back({std::max(character.time, delivered), character});

@@ -48,6 +48,8 @@ class TtyPort {
 
     /// A frame that was delivered at `delivered`.
     void deliver(const cosim::UartFrame& frame, cosim::Time delivered);
+    /// Whether this frame would bring the FIFO to its level, so that it may be handed on at once.
+    bool fills(const cosim::UartFrame& frame) const;
     /// Handles everything up to and including `now`; frames begun go to `sent`.
     void advance(cosim::Time now, std::vector<cosim::UartFrame>& sent);
     /// When advance() next has something to do.
@@ -95,6 +97,8 @@ class TtyPort {
     wire::TtyCounters counters() const;
 
   private:
+    /// Something may come in, and `receiver` would hear it.
+    bool hears(const protocols::UartReceiver& receiver) const;
     /// When the characters in the FIFO go to the line discipline, as far as those known tell.
     cosim::Time fifo_due() const;
     /// The driver's first tick at or after `time`.
