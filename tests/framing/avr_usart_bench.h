@@ -62,7 +62,11 @@ struct AvrUsartBench {
     AvrPins pins;
     avr::Ports ports{around, pins};
     avr::Usart usart{
-        around, {1, kBase, 28, {avr::PortLetter::D, 2}, {avr::PortLetter::D, 3}, 0x10}, clock, ports, pins};
+        around,
+        {1, kBase, 28, {avr::PortLetter::D, 2}, {avr::PortLetter::D, 3}, {avr::PortLetter::D, 4}, 0x10},
+        clock,
+        ports,
+        pins};
 
   private:
     std::uint8_t read(int offset) { return io.read(static_cast<std::uint16_t>(kBase + offset)); }
