@@ -43,4 +43,9 @@ void ClockDomain::change_rate(std::uint64_t cycle, double hertz) {
     hertz_ = hertz;
 }
 
+void ClockDomain::change_ppm(std::uint64_t cycle, double ppm) {
+    ppm_ = ppm;
+    change_rate(cycle, hertz_);
+}
+
 }  // namespace puckloop::cosim

@@ -21,6 +21,8 @@ class ClockDomain {
     std::uint64_t first_cycle_at(Time time) const;
     /// From cycle `cycle` on the domain runs at `hertz` (PLL, clock switch); `ppm` of the crystal stays.
     void change_rate(std::uint64_t cycle, double hertz);
+    /// From cycle `cycle` on its error is `ppm`; the nominal rate stays.
+    void change_ppm(std::uint64_t cycle, double ppm);
 
     double hertz() const { return hertz_; }
     double ppm() const { return ppm_; }

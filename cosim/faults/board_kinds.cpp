@@ -1,13 +1,14 @@
 // What can happen to boards and their chips; emu/chip/faults carries it out.
 
 #include "cosim/faults/kind_table.h"
+#include "cosim/faults/profile.h"
 
 namespace puckloop::cosim {
 
 namespace {
 
 constexpr double kLongest = 1e6, kMostArrivals = 1e9, kMostPpm = 90'000.0, kHighestAddress = 0xFFFFFF;
-constexpr double kHighestBit = 23, kChannels = 16;
+constexpr double kHighestBit = 23, kChannels = 16, kMostVolts = 10;
 
 /// Kinds that happen at instants may wait for the program instead.
 std::vector<ParameterInfo> at_program(std::vector<ParameterInfo> parameters) {
@@ -51,15 +52,28 @@ std::vector<KindInfo> of_chip(PlaceKind place) {
         {"adc_gain", place, Style::Each, FaultKind::None, {channel, number("factor", 0, 1000)}},
         {"adc_noise", place, Style::Each, FaultKind::None, {channel, number("sigma", 0, 1)}},
     };
-    if (!avr)
-        kinds.push_back({"interrupt", place, Style::Times, FaultKind::None,
-                         at_program({{.key = "vector", .unit = Unit::Text, .required = true}})});
-    if (place != PlaceKind::Rab)
-        kinds.push_back({"sag",
+    const ParameterInfo vector{.key = "vector", .unit = Unit::Text, .required = true};
+    const ParameterInfo delay{
+        .key = "delay", .unit = Unit::Time, .low = 0, .high = kLongest, .required = true};
+    const ParameterInfo jitter{
+        .key = "jitter", .unit = Unit::Time, .low = 0, .high = kLongest, .fallback = 0.0};
+    kinds.push_back(
+        {"interrupt", place, Style::Times, FaultKind::None, at_program({vector}), "spurious_interrupt"});
+    kinds.push_back({"lost_interrupt", place, Style::Each, FaultKind::None, {vector}});
+    kinds.push_back({"late_interrupt", place, Style::Each, FaultKind::None, {vector, delay, jitter}});
+    if (place != PlaceKind::Rab) {
+        kinds.push_back({"battery",
                          place,
                          Style::Hold,
                          FaultKind::None,
-                         {{.key = "volts", .unit = Unit::Voltage, .low = 0, .high = 10, .required = true}}});
+                         {{.key = "profile", .unit = Unit::Text, .required = true}}});
+        kinds.push_back(
+            {"sag",
+             place,
+             Style::Hold,
+             FaultKind::None,
+             {{.key = "volts", .unit = Unit::Voltage, .low = 0, .high = kMostVolts, .required = true}}});
+    }
     return kinds;
 }
 
@@ -71,9 +85,8 @@ std::vector<KindInfo> board_kinds() {
         std::vector<KindInfo> some = of_chip(place);
         kinds.insert(kinds.end(), some.begin(), some.end());
     }
-    const auto part = [](std::string_view key) {
-        constexpr double kParts = 12;
-        return ParameterInfo{.key = key, .unit = Unit::Integer, .low = 0, .high = kParts, .fallback = 0.0};
+    const auto part = [](std::string_view key, double parts = 12) {
+        return ParameterInfo{.key = key, .unit = Unit::Integer, .low = 0, .high = parts, .fallback = 0.0};
     };
     for (const char* key : {"emitter", "receiver"})
         kinds.push_back({key == std::string_view("emitter") ? "emitter_dead" : "receiver_dead",
@@ -85,9 +98,20 @@ std::vector<KindInfo> board_kinds() {
     const ParameterInfo motor{.key = "motor", .unit = Unit::Text, .choices = "left|right"};
     const ParameterInfo winding{
         .key = "winding", .unit = Unit::Integer, .low = 1, .high = 2, .fallback = 1.0};
+    constexpr double kProximity = 8;
+    kinds.push_back({"ambient_burst",
+                     PlaceKind::Pic,
+                     Style::Hold,
+                     FaultKind::None,
+                     {part("sensor", kProximity),
+                      {.key = "strength", .unit = Unit::Ratio, .low = 0, .high = 1, .fallback = 1.0}}});
     kinds.push_back({"phase_open", PlaceKind::Pic, Style::Hold, FaultKind::None, {motor, winding}});
     kinds.push_back({"wheel_stall", PlaceKind::Pic, Style::Hold, FaultKind::None, {motor}});
     return kinds;
+}
+
+void check_board_fault(const FaultSpec& spec, const KindInfo& kind) {
+    if (kind.name == "battery") voltage_profile(spec.parameters.text("profile"), kMostVolts);
 }
 
 }  // namespace puckloop::cosim

@@ -39,13 +39,19 @@ bool in_range(const ParameterInfo& parameter, double value) {
     }
 }
 
+/// Nodes whose faults that hold do so for everything; on lines and in the air each frame is a candidate.
+bool carries_out_by_window(PlaceKind place) {
+    return place == PlaceKind::Pic || place == PlaceKind::Rab || place == PlaceKind::Tam ||
+           place == PlaceKind::InfraRed || place == PlaceKind::Linux;
+}
+
 }  // namespace
 
 const std::vector<KindInfo>& all_kinds() {
     static const std::vector<KindInfo> kinds = [] {
         std::vector<KindInfo> all;
-        for (auto family :
-             {uart_kinds, radio_kinds, xbee_kinds, ircom_kinds, i2c_kinds, linux_kinds, board_kinds}) {
+        for (auto family : {uart_kinds, radio_kinds, xbee_kinds, ircom_kinds, i2c_kinds, linux_kinds,
+                            board_kinds, infrared_kinds}) {
             std::vector<KindInfo> some = family();
             std::move(some.begin(), some.end(), std::back_inserter(all));
         }
@@ -126,6 +132,10 @@ void check_fault(const FaultSpec& spec, const KindInfo& kind) {
         if (spec.parameters.number("bit") + spec.parameters.number("bits") > kBits)
             refuse("no word has so many bits", "bit + bits of at most 10");
     }
+    if (kind.style == Style::Hold && carries_out_by_window(kind.place) &&
+        (spec.probability != 1.0 || spec.count != ~0ull))
+        refuse(fmt::format("{} holds during its whole window", kind.name), "neither probability nor count");
+    check_board_fault(spec, kind);
 }
 
 }  // namespace puckloop::cosim

@@ -64,6 +64,9 @@ std::vector<KindInfo> xbee_kinds();
 std::vector<KindInfo> ircom_kinds();
 std::vector<KindInfo> linux_kinds();
 std::vector<KindInfo> board_kinds();
+std::vector<KindInfo> infrared_kinds();
+/// Throws InputError, without a place.
+void check_board_fault(const FaultSpec& spec, const KindInfo& kind);
 void check_uart_fault(const FaultSpec& spec, const KindInfo& kind);
 
 }  // namespace puckloop::cosim

@@ -129,6 +129,7 @@ struct Chip::Parts {
     Eeprom eeprom;
     Watchdog watchdog;
     SelfProgramming programming;
+    chip::HeldInterrupts held;  ///< its slot is the last: the others keep theirs
     std::vector<std::uint16_t> stops;
     bool stopped = false;
     cosim::Time now = 0;
@@ -162,6 +163,10 @@ struct Chip::Parts {
           eeprom(around, core, clock, info.eeprom_bytes),
           watchdog(around, core, clock),
           programming(around, core, clock, fuses, system),
+          held(events, &interrupts, [](void* owner, int vector, bool lost, Cycle) {
+              auto& controller = *static_cast<InterruptController*>(owner);
+              lost ? controller.lose(vector) : controller.release(vector);
+          }),
           supply(chosen.avcc) {
         io.hook(kGtccr, this, nullptr, &write_gtccr);
         connect_hooks();
@@ -294,6 +299,7 @@ struct Chip::Parts {
         watchdog.reset(fuses.watchdog_always());
         programming.reset();
         lend_to_jtag();
+        held.reset();
     }
 
     void set_supply(double volts) {
@@ -359,6 +365,7 @@ struct Chip::Parts {
         archive.part("eeprom", eeprom);
         archive.part("watchdog", watchdog);
         archive.part("programming", programming);
+        archive.part("held interrupts", held);
         archive.bounded(now, 0, cosim::kNever);
         archive.bounded(supply, 0.0, 1e3);
         archive(held_in_reset);
@@ -579,7 +586,7 @@ void Chip::settle() {
 Chip::Inside Chip::inside() {
     Parts& p = *parts_;
     p.at_present();
-    return {p.device, p.core, p.io, p.interrupts, p.clock, p.eeprom};
+    return {p.device, p.core, p.io, p.interrupts, p.clock, p.eeprom, p.held};
 }
 
 void Chip::set_stops(const std::vector<std::uint32_t>& addresses) {

@@ -7,6 +7,7 @@
 #include "emu/avr/core/core.h"
 #include "emu/avr/fuses.h"
 #include "emu/avr/pins.h"
+#include "emu/chip/held_interrupts.h"
 #include "emu/chip/uart_counters.h"
 #include "emu/image/avr_image.h"
 
@@ -173,6 +174,7 @@ class Chip {
         InterruptController& interrupts;
         cosim::ClockDomain& clock;
         Eeprom& eeprom;
+        chip::HeldInterrupts& held;
     };
     /// What is done next happens at now().
     Inside inside();

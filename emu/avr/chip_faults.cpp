@@ -2,7 +2,6 @@
 
 #include "emu/avr/core/core.h"
 #include "emu/avr/peripherals/eeprom.h"
-#include "emu/chip/faults/clock_error.h"
 
 #include <algorithm>
 #include <array>
@@ -20,6 +19,31 @@ constexpr std::array<std::string_view, 32> kR{"R0",  "R1",  "R2",  "R3",  "R4", 
                                               "R16", "R17", "R18", "R19", "R20", "R21", "R22", "R23",
                                               "R24", "R25", "R26", "R27", "R28", "R29", "R30", "R31"};
 constexpr std::uint32_t kWorking = 32;
+
+/// Where a source is enabled.
+struct Enable {
+    std::string_view source, mask;  ///< data-sheet names; the mask register's
+    int bit;
+};
+constexpr std::array<Enable, 34> kEnables{{
+    {"INT0", "EIMSK", 0},          {"INT1", "EIMSK", 1},
+    {"INT2", "EIMSK", 2},          {"PCINT0", "PCICR", 0},
+    {"PCINT1", "PCICR", 1},        {"PCINT2", "PCICR", 2},
+    {"PCINT3", "PCICR", 3},        {"WDT", "WDTCSR", 6},
+    {"TIMER2_COMPA", "TIMSK2", 1}, {"TIMER2_COMPB", "TIMSK2", 2},
+    {"TIMER2_OVF", "TIMSK2", 0},   {"TIMER1_CAPT", "TIMSK1", 5},
+    {"TIMER1_COMPA", "TIMSK1", 1}, {"TIMER1_COMPB", "TIMSK1", 2},
+    {"TIMER1_OVF", "TIMSK1", 0},   {"TIMER0_COMPA", "TIMSK0", 1},
+    {"TIMER0_COMPB", "TIMSK0", 2}, {"TIMER0_OVF", "TIMSK0", 0},
+    {"SPI_STC", "SPCR", 7},        {"USART0_RX", "UCSR0B", 7},
+    {"USART0_UDRE", "UCSR0B", 5},  {"USART0_TX", "UCSR0B", 6},
+    {"ANALOG_COMP", "ACSR", 3},    {"ADC", "ADCSRA", 3},
+    {"EE_READY", "EECR", 3},       {"TWI", "TWCR", 0},
+    {"SPM_READY", "SPMCSR", 7},    {"USART1_RX", "UCSR1B", 7},
+    {"USART1_UDRE", "UCSR1B", 5},  {"USART1_TX", "UCSR1B", 6},
+    {"TIMER3_CAPT", "TIMSK3", 5},  {"TIMER3_COMPA", "TIMSK3", 1},
+    {"TIMER3_COMPB", "TIMSK3", 2}, {"TIMER3_OVF", "TIMSK3", 0},
+}};
 
 /// A write to these does something whatever is written: only what is stored there flips.
 bool acts_on_write(std::string_view name) {
@@ -51,7 +75,7 @@ void ChipFaults::hang(cosim::Time until) {
 void ChipFaults::set_ppm(double ppm) {
     Chip::Inside in = chip_.inside();
     if (ppm == in.clock.ppm()) return;
-    chip::change_ppm(in.clock, std::max(in.core.cycle(), in.clock.first_cycle_at(chip_.now())), ppm);
+    in.clock.change_ppm(std::max(in.core.cycle(), in.clock.first_cycle_at(chip_.now())), ppm);
 }
 
 std::uint32_t ChipFaults::cells(MemorySpace space) const {
@@ -161,6 +185,46 @@ std::string_view ChipFaults::name(const MemoryPlace& place) const {
     if (place.address < kWorking) return kR[place.address];
     const RegisterInfo* info = chip_.inside().io.info(static_cast<std::uint16_t>(place.address));
     return info ? info->name : std::string_view{};
+}
+
+std::optional<int> ChipFaults::vector(std::string_view source) const {
+    const std::span<const VectorInfo> vectors = chip_.inside().device.vectors;
+    const auto found = std::find_if(vectors.begin(), vectors.end(), [&](const VectorInfo& info) {
+        return info.name == source && info.number != 0;
+    });
+    if (found == vectors.end()) return std::nullopt;
+    return found->number;
+}
+
+bool ChipFaults::interrupt(int vector) {
+    Chip::Inside in = chip_.inside();
+    const std::string_view source = in.device.vector_name(vector);
+    const auto* const enable = std::find_if(kEnables.begin(), kEnables.end(),
+                                            [&](const Enable& one) { return one.source == source; });
+    if (enable == kEnables.end()) return false;
+    const RegisterInfo* const mask = in.io.find(enable->mask);
+    if (mask == nullptr || !(in.io.raw(mask->address) & bit(enable->bit))) return false;
+    in.interrupts.force(vector);
+    return true;
+}
+
+void ChipFaults::watch_interrupts(std::span<const int> vectors, chip::InterruptTime when) {
+    when_ = std::move(when);
+    std::uint64_t mask = 0;
+    for (const int vector : vectors)
+        mask |= std::uint64_t{1} << vector;
+    chip_.inside().interrupts.set_gate(this, &passes, mask);
+}
+
+bool ChipFaults::passes(void* owner, int vector) {
+    const auto& self = *static_cast<const ChipFaults*>(owner);
+    Chip::Inside in = self.chip_.inside();
+    const cosim::Time time = in.clock.time_of(in.core.now());
+    const cosim::Time when = self.when_(vector, time);
+    if (when <= time) return true;
+    const bool lost = when == cosim::kNever;
+    in.held.hold(vector, lost, lost ? in.core.now() : in.clock.first_cycle_at(when));
+    return false;
 }
 
 }  // namespace puckloop::avr

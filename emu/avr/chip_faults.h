@@ -1,9 +1,15 @@
 #pragma once
-// What faults do to an AVR: resets, hangs, another clock, flipped bits.
+// What faults do to an AVR: resets, hangs, another clock, flipped bits, interrupts lost, late and out of
+// nowhere.
 //
 // Deviations
-//  1. No interrupt out of nowhere: a source requests as long as its flag and its enable bit are set; flip the
-//     flag's bit.
+//  1. An interrupt out of nowhere is a request without its flag. It comes to nothing where the source's
+//  enable
+//     bit is clear.
+//  2. A lost interrupt is one that began to request: its flag, which the routine's entry would clear, is
+//  clear
+//     again. Where the routine itself ends the request (received data, an empty transmit buffer, the two-wire
+//     interface) the flag stays, and nothing comes of it until the next event of the source.
 
 #include "emu/avr/chip.h"
 #include "emu/chip/faults/chip_access.h"
@@ -32,11 +38,15 @@ class ChipFaults : public chip::ChipAccess {
     void flip(const chip::MemoryPlace& place, std::uint32_t mask) override;
     std::string_view name(const chip::MemoryPlace& place) const override;
 
-    std::optional<int> vector(std::string_view) const override { return std::nullopt; }
-    void interrupt(int) override {}
+    std::optional<int> vector(std::string_view source) const override;
+    bool interrupt(int vector) override;
+    void watch_interrupts(std::span<const int> vectors, chip::InterruptTime when) override;
 
   private:
+    static bool passes(void* owner, int vector);
+
     Chip& chip_;
+    chip::InterruptTime when_;
 };
 
 }  // namespace puckloop::avr

@@ -66,7 +66,7 @@ Board::Board(const BoardParameters& parameters, BoardListener& listener)
 std::optional<dspic::PortLetter> Board::set_signal(SignalId id, double value, dspic::Cycle now) {
     if (id >= kSignalCount || signals()[id].direction != cosim::SignalDirection::Input) return std::nullopt;
     if (id == kBatteryVoltage) battery_ = value;
-    const double wanted = clipped(id, id == kBatteryVoltage ? value - sag_ : value);
+    const double wanted = clipped(id, id == kBatteryVoltage ? profile_.value_or(value) - sag_ : value);
     Input& input = values_[canonical(id)];
     input.before = input.at(now);
     input.value = wanted;
@@ -84,6 +84,12 @@ std::optional<dspic::PortLetter> Board::set_signal(SignalId id, double value, ds
 std::optional<dspic::PortLetter> Board::set_sag(double volts, dspic::Cycle now) {
     if (volts == sag_) return std::nullopt;
     sag_ = volts;
+    return set_signal(kBatteryVoltage, battery_, now);
+}
+
+std::optional<dspic::PortLetter> Board::set_battery(std::optional<double> volts, dspic::Cycle now) {
+    if (volts == profile_) return std::nullopt;
+    profile_ = volts;
     return set_signal(kBatteryVoltage, battery_, now);
 }
 
@@ -187,6 +193,7 @@ double Board::analog(int channel, dspic::Cycle now) {
         const Emitter& emitter = emitters_[static_cast<std::size_t>(sensor % kPulseCount)];
         counts -= values_[static_cast<std::size_t>(kProximity + sensor)].at(now) * emitter.intensity(now);
         counts -= lights_[static_cast<std::size_t>(sensor)].counts_at(now);
+        counts *= 1.0 - dazzle_[static_cast<std::size_t>(sensor)];
     }
     if (channel >= kFirstMicrophoneChannel && channel < kFirstMicrophoneChannel + kMicrophoneCount) {
         const auto i = static_cast<std::size_t>(channel - kFirstMicrophoneChannel);

@@ -11,6 +11,7 @@
 // 3. The microphones and the accelerometer have no bandwidth of their own.
 
 #include "base/random.h"
+#include "emu/chip/faults/ambient_shares.h"
 #include "emu/chip/faults/analog_faults.h"
 #include "emu/dspic/peripherals/pins.h"
 #include "emu/pic/emitter.h"
@@ -77,6 +78,10 @@ class Board : public dspic::Pins {
     chip::AnalogFaults& analog_faults() { return analog_faults_; }
     /// The battery's voltage is lower by so much from `now` on. Returns as set_signal() does.
     std::optional<dspic::PortLetter> set_sag(double volts, dspic::Cycle now);
+    /// It has this voltage, before any sag, whatever set_signal() says; nullopt: what that says.
+    std::optional<dspic::PortLetter> set_battery(std::optional<double> volts, dspic::Cycle now);
+    /// Light that swallows this share of each proximity sensor's signal.
+    void set_ambient(const chip::AmbientShares& shares) { dazzle_ = shares; }
     /// The wheel of motor 0 (left) or 1 does not turn from `now` on.
     void set_held(int motor, bool held, dspic::Cycle now);
 
@@ -86,6 +91,9 @@ class Board : public dspic::Pins {
         archive(noise_, values_, emitters_, lights_, microphones_, motors_, outputs_, analog_faults_);
         archive.bounded(sag_, 0.0, 1e3);
         archive.bounded(battery_, -1e15, 1e15);
+        archive(profile_);
+        for (double& share : dazzle_)
+            archive.bounded(share, 0.0, 1.0);
         if constexpr (Archive::kLoads) check_loaded();
     }
     /// Noise begins anew, by this board's own name and seed.
@@ -137,6 +145,8 @@ class Board : public dspic::Pins {
     std::array<std::uint16_t, kPorts> levels_{};   ///< what the board puts on the pins
     chip::AnalogFaults analog_faults_;
     double sag_ = 0.0, battery_ = 0.0;  ///< volts; the battery's without the sag
+    std::optional<double> profile_;     ///< in place of the battery's
+    chip::AmbientShares dazzle_{};
 };
 
 }  // namespace puckloop::pic

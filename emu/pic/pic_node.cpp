@@ -170,6 +170,10 @@ void PicNode::set_sag(double volts) {
     if (const auto port = board_.set_sag(volts, message_cycle())) chip_->pins_changed(*port);
 }
 
+void PicNode::set_battery(std::optional<double> volts) {
+    if (const auto port = board_.set_battery(volts, message_cycle())) chip_->pins_changed(*port);
+}
+
 void PicNode::set_motor(int motor, std::uint8_t open, bool stalled) {
     board_.set_held(motor, open != 0 || stalled, message_cycle());
 }

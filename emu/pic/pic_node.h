@@ -80,6 +80,8 @@ class PicNode : public cosim::StatefulNode, private BoardListener, private chip:
     void i2c_phase(int unit, const cosim::I2cPhase& phase) override;
     void step_lost(int motor, dspic::Cycle now) override;
     void set_sag(double volts) override;
+    void set_battery(std::optional<double> volts) override;
+    void set_ambient(const chip::AmbientShares& shares) override { board_.set_ambient(shares); }
     void set_motor(int motor, std::uint8_t open, bool stalled) override;
     dspic::Cycle message_cycle() const { return chip_->clock().first_cycle_at(chip_->now()); }
 

@@ -69,7 +69,7 @@ void Board::run_until(Time until) {
 void Board::set_signal(SignalId id, double value) {
     if (id >= kSignalCount || signals()[id].direction != cosim::SignalDirection::Input) return;
     const cosim::SignalInfo& info = signals()[id];
-    if (id == kBattery) value = (battery_ = value) - sag_;
+    if (id == kBattery) value = profile_.value_or(battery_ = value) - sag_;
     values_[id] = value > info.min ? std::min(value, info.max) : info.min;
     if (id < kAmbient)
         barriers_[id - kBarrier].set_interrupted(values_[id], now_);
@@ -82,6 +82,12 @@ void Board::set_signal(SignalId id, double value) {
 
 void Board::set_sag(double volts) {
     sag_ = volts;
+    set_signal(kBattery, battery_);
+}
+
+void Board::set_battery(std::optional<double> volts) {
+    if (volts == profile_) return;
+    profile_ = volts;
     set_signal(kBattery, battery_);
 }
 

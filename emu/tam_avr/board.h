@@ -22,6 +22,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <string>
 
 namespace puckloop::tam {
@@ -85,6 +86,8 @@ class Board : private avr::Pins {
     chip::AnalogFaults& analog_faults() { return analog_faults_; }
     /// The battery's voltage is lower by so much.
     void set_sag(double volts);
+    /// It has this voltage, before any sag, whatever set_signal() says; nullopt: what that says.
+    void set_battery(std::optional<double> volts);
 
     /// Everything that time changes; the parameters are each board's own. Throws StateError.
     template <class Archive>
@@ -93,6 +96,7 @@ class Board : private avr::Pins {
         archive(noise_, leds_, barriers_, addressed_, analog_faults_);
         archive.bounded(sag_, 0.0, 1e3);
         archive.bounded(battery_, -1e15, 1e15);
+        archive(profile_);
         for (double& value : values_)
             archive.bounded(value, 0.0, kHighestSignal);
         archive.bounded(now_, 0, cosim::kNever);
@@ -129,6 +133,7 @@ class Board : private avr::Pins {
     cosim::Time now_ = 0;
     chip::AnalogFaults analog_faults_;
     double sag_ = 0.0, battery_ = 0.0;    ///< volts; the battery's without the sag
+    std::optional<double> profile_;       ///< in place of the battery's
     cosim::Time off_at_ = cosim::kNever;  ///< when the supply goes
     avr::Chip chip_;                      ///< last: it looks at the rest when it is made
 };

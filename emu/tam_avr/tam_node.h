@@ -80,6 +80,7 @@ class TamNode : public cosim::StatefulNode, private BoardListener, private chip:
     void uart_sent(int unit, const cosim::UartFrame& frame) override;
     bool powered() const override { return board_->powered(); }
     void set_sag(double volts) override { board_->set_sag(volts); }
+    void set_battery(std::optional<double> volts) override { board_->set_battery(volts); }
 
     TamNodeOptions options_;
     std::vector<cosim::Port> ports_;

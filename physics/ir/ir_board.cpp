@@ -54,6 +54,7 @@ IrBoard::IrBoard(const IrParameters& parameters, std::uint64_t seed, std::string
 void IrBoard::place(double x, double y, double heading) {
     x_ = x;
     y_ = y;
+    heading_ = heading;
     const double cosine = std::cos(heading);
     const double sine = std::sin(heading);
     const auto put = [&](const Part& own) {

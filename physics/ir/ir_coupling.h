@@ -32,6 +32,7 @@ class IrBoard {
     void place(double x, double y, double heading);
     double x() const { return x_; }
     double y() const { return y_; }
+    double heading() const { return heading_; }
     const IrParameters& parameters() const { return parameters_; }
 
     /// A part in the world's plan: place and outward direction.
@@ -54,7 +55,7 @@ class IrBoard {
   private:
     IrParameters parameters_;
     std::array<double, kIrCurvePoints> log_level_{};
-    double x_ = 0.0, y_ = 0.0;
+    double x_ = 0.0, y_ = 0.0, heading_ = 0.0;
     IrArray<Part> own_emitters_, own_receivers_;  // in the board's frame
     IrArray<Part> emitters_, receivers_;
 };

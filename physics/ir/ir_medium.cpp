@@ -111,6 +111,12 @@ double IrMedium::distance(std::size_t a, std::size_t b) const {
            moving_[boards_[b].robot].radius;
 }
 
+double IrMedium::bearing(std::size_t from, std::size_t to) const {
+    const IrBoard& a = boards_[from].model;
+    const IrBoard& b = boards_[to].model;
+    return std::atan2(b.y() - a.y(), b.x() - a.x()) - a.heading();
+}
+
 std::vector<const Shape*> IrMedium::between(const Board& a, const Board& b) const {
     const double height = std::min(a.model.parameters().height, b.model.parameters().height);
     const bool mirrors = b.model.parameters().reflection > 0.0;
@@ -189,10 +195,31 @@ bool IrMedium::refresh(std::size_t board) {
     return true;
 }
 
+template <bool kHarmed>
+void IrMedium::light(Path& to, std::uint16_t mask, const IrHarm::Factors* harm) const {
+    to.light = {};
+    if (!to.coupling.any) return;
+    for (std::size_t e = 0; e < kIrSensors; ++e) {
+        if ((mask >> e & 1U) == 0) continue;
+        for (std::size_t k = 0; k < kIrSensors; ++k) {
+            const float share = kHarmed ? harm->emitter[e] : 1.0F;
+            to.light.carrier[k] += share * to.coupling.carrier[e][k];
+            to.light.level[k] += share * to.coupling.level[e][k];
+        }
+    }
+    const auto turn = static_cast<std::ptrdiff_t>(kIrSensors - to.turn) % kIrSensors;
+    std::rotate(to.light.carrier.begin(), to.light.carrier.begin() + turn, to.light.carrier.end());
+    std::rotate(to.light.level.begin(), to.light.level.begin() + turn, to.light.level.end());
+    for (std::size_t k = 0; k < kIrSensors; ++k) {
+        to.light.carrier[k] *= to.factor.carrier[k] * (kHarmed ? harm->carrier[k] : 1.0F);
+        to.light.level[k] *= to.factor.level[k] * (kHarmed ? harm->level[k] : 1.0F);
+    }
+}
+
 bool IrMedium::relight(std::size_t board) {
     Board& from = boards_[board];
-    if (from.mask == 0) return false;
-    const bool anew = from.coupled_at == 0;
+    if (from.mask == 0 && harm_ == nullptr) return false;  // nobody looks at its light
+    const bool anew = from.mask != 0 && from.coupled_at == 0;
     if (anew) {
         note_row(board);
         couple_row(board);
@@ -202,31 +229,37 @@ bool IrMedium::relight(std::size_t board) {
     from.lit_mask = from.mask;
     for (std::size_t r = 0; r < boards_.size(); ++r) {
         Path& to = path(board, r);
-        to.light = {};
-        if (!to.coupling.any) continue;
-        for (std::size_t e = 0; e < kIrSensors; ++e) {
-            if ((from.mask >> e & 1U) == 0) continue;
-            for (std::size_t k = 0; k < kIrSensors; ++k) {
-                to.light.carrier[k] += to.coupling.carrier[e][k];
-                to.light.level[k] += to.coupling.level[e][k];
-            }
+        if (harm_ == nullptr) {
+            light<false>(to, from.mask);
+            continue;
         }
-        const auto turn = static_cast<std::ptrdiff_t>(kIrSensors - to.turn) % kIrSensors;
-        std::rotate(to.light.carrier.begin(), to.light.carrier.begin() + turn, to.light.carrier.end());
-        std::rotate(to.light.level.begin(), to.light.level.begin() + turn, to.light.level.end());
-        for (std::size_t k = 0; k < kIrSensors; ++k) {
-            to.light.carrier[k] *= to.factor.carrier[k];
-            to.light.level[k] *= to.factor.level[k];
-        }
+        const std::uint16_t mask = harm_->lit(board, r, from.mask);
+        IrHarm::Factors factors;
+        if (harm_->weakens(board, r, factors))
+            light<true>(to, mask, &factors);
+        else
+            light<false>(to, mask);
     }
     return anew;
+}
+
+void IrMedium::relight_anew(std::size_t board) {
+    note_light(board);
+    boards_[board].lit_mask = static_cast<std::uint16_t>(~boards_[board].mask);
+    relight(board);
+}
+
+IrArray<float> IrMedium::unharmed(std::size_t sender, std::size_t receiver) const {
+    Path copy = path(sender, receiver);
+    light<false>(copy, boards_[sender].mask);
+    return copy.light.carrier;
 }
 
 IrLight IrMedium::at(std::size_t receiver) const {
     IrLight sum;
     sum.level = dark_level_[receiver];
     for (std::size_t s = 0; s < boards_.size(); ++s) {
-        if (boards_[s].mask == 0) continue;
+        if (boards_[s].mask == 0 && harm_ == nullptr) continue;
         const Path& to = path(s, receiver);
         if (!to.coupling.any) continue;
         for (std::size_t k = 0; k < kIrSensors; ++k) {
@@ -234,6 +267,7 @@ IrLight IrMedium::at(std::size_t receiver) const {
             sum.level[k] += to.light.level[k];
         }
     }
+    if (harm_ != nullptr) harm_->add_ambient(receiver, sum.level);
     return sum;
 }
 

@@ -11,6 +11,7 @@
 #include "base/random.h"
 #include "physics/ir/ir_coupling.h"
 #include "physics/ir/ir_fate.h"
+#include "physics/ir/ir_harm.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -60,6 +61,8 @@ class IrMedium {
     void begin_burst(std::size_t board, double seconds);
     /// Emitters, power or carrier changed within the burst. True: what it reaches may have changed.
     bool relight(std::size_t board);
+    /// What it reaches is to be worked out again: what faults do to it has changed.
+    void relight_anew(std::size_t board);
     /// Couples the board anew if anything moved since; true if so.
     bool refresh(std::size_t board);
 
@@ -75,6 +78,13 @@ class IrMedium {
     IrLight at(std::size_t receiver) const;
     /// Between the robots' bodies, m.
     double distance(std::size_t a, std::size_t b) const;
+    /// Of board `to` from the front of `from`, counter-clockwise, rad.
+    double bearing(std::size_t from, std::size_t to) const;
+
+    /// Faults; `harm` stays. Nullptr: none.
+    void set_harm(const IrHarm* harm) { harm_ = harm; }
+    /// The carrier of `sender` at `receiver` if there were no faults.
+    IrArray<float> unharmed(std::size_t sender, std::size_t receiver) const;
 
     /// What boards are set to, for a checkpoint. Paths, places and shapes, which are many and of which few
     /// change in a short time, stay out of it: from mark() on they are noted before they change, rewind(),
@@ -152,6 +162,9 @@ class IrMedium {
     }
     void couple_row(std::size_t sender);
     void draw_noise(std::size_t sender, double seconds);
+    /// By the present coupling, from the emitters in `mask`.
+    template <bool kHarmed>
+    void light(Path& to, std::uint16_t mask, const IrHarm::Factors* harm = nullptr) const;
     /// What stands around and is high enough to shade the two boards.
     std::vector<const Shape*> between(const Board& a, const Board& b) const;
 
@@ -168,6 +181,7 @@ class IrMedium {
     std::vector<std::size_t> board_of_;  // of each moving body; board_count() for none
     std::uint64_t changes_ = 1;
     Undo undo_;
+    const IrHarm* harm_ = nullptr;
 };
 
 }  // namespace puckloop::physics

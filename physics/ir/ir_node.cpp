@@ -2,6 +2,7 @@
 
 #include "base/checkpoint.h"
 #include "base/error.h"
+#include "physics/ir/ir_faults.h"
 #include "physics/ir/ir_frames.h"
 #include "physics/ir/ir_receiver.h"
 #include "physics/world/pose_signals.h"
@@ -74,6 +75,8 @@ struct IrNode::Impl : cosim::Rewindable {
     void apply(Time now);
     /// The sender's light has changed; `everywhere`: at boards that it no longer reaches, too.
     void reach(std::size_t sender, bool everywhere);
+    /// Lights again what faults have changed.
+    void show_faults();
     void release(Time until, std::vector<Message>& outbox);
 
     void mark() override;
@@ -85,7 +88,8 @@ struct IrNode::Impl : cosim::Rewindable {
         archive(medium, frames);
         for (IrReceiver& receiver : receivers)
             archive(receiver);
-        archive(looked, poses, masks);
+        archive(looked, poses, masks, granted);
+        if (faults) archive(*faults);
     }
 
     World world;
@@ -101,6 +105,8 @@ struct IrNode::Impl : cosim::Rewindable {
     std::vector<bool> reached;         ///< boards at which the light changed with them
     std::vector<std::uint16_t> masks;
     std::vector<IrOutput> released;
+    std::unique_ptr<IrFaults> faults;  ///< null: none was asked for
+    Time granted = 0;
     bool any_moved = false;
     std::map<std::size_t, ShapeValues> shapes;  ///< by number of the first signal
     std::set<std::size_t> altered;              ///< of those, by the messages of one instant
@@ -136,6 +142,10 @@ IrNode::Impl::Impl(const World& description, const IrNodeOptions& options)
     reached.resize(receivers.size());
     masks.resize(receivers.size());
     looked.resize(receivers.size());
+    if (!options.faults.empty()) {
+        faults = std::make_unique<IrFaults>(options.faults, medium);
+        medium.set_harm(faults.get());
+    }
     for (std::size_t r = 0; r < receivers.size(); ++r)
         receivers[r].see(0, medium.at(r));
 }
@@ -187,10 +197,24 @@ void IrNode::Impl::reach(std::size_t sender, bool everywhere) {
         if (everywhere || medium.coupled(sender, r)) reached[r] = true;
 }
 
+void IrNode::Impl::show_faults() {
+    for (std::size_t s = 0; s < receivers.size(); ++s) {
+        if (!faults->again(s)) continue;
+        medium.relight_anew(s);
+        reach(s, true);
+    }
+    for (std::size_t r = 0; r < receivers.size(); ++r)
+        if (faults->shone(r)) reached[r] = true;
+}
+
 void IrNode::Impl::apply(Time now) {
     frames.close_until(now);
     for (auto& receiver : receivers)
         receiver.run_to(now);
+    if (faults && faults->next() <= now) {
+        faults->act(now);
+        show_faults();
+    }
     if (any_moved) {
         for (std::size_t i = 0; i < poses.size(); ++i)
             if (moved[i]) medium.move(i, poses[i][0], poses[i][1], poses[i][2]);
@@ -211,11 +235,16 @@ void IrNode::Impl::apply(Time now) {
         touched[s] = false;
         medium.set_emitters(s, masks[s]);
         bool everywhere = false;
-        if (frames.edge(now, s, masks[s] != 0)) {
+        const bool begins = frames.edge(now, s, masks[s] != 0);
+        if (begins) {
             medium.begin_burst(s, cosim::to_seconds(now));
             looked[s] = now;
         } else {
             everywhere = medium.relight(s);
+        }
+        if (faults) {
+            faults->emits(now, s, masks[s], begins);
+            show_faults();
         }
         if (masks[s] != 0) frames.seen(s);
         reach(s, everywhere);
@@ -284,18 +313,24 @@ std::span<const cosim::Port> IrNode::ports() const {
 
 void IrNode::advance(Time until, std::span<const Message> inbox, std::vector<Message>& outbox) {
     auto& ir = *impl_;
-    for (auto next = inbox.begin(); next != inbox.end();) {
-        const Time now = next->time;
+    for (auto next = inbox.begin();;) {
+        Time now = next != inbox.end() ? next->time : kNever;
+        const Time due = ir.faults ? ir.faults->next() : kNever;
+        if (due < until || (next != inbox.end() && due < now)) now = std::min(now, due);
+        if (now == kNever) break;
         for (; next != inbox.end() && next->time == now; ++next)
             ir.take(*next);
         ir.apply(now);
     }
     ir.release(until, outbox);
+    ir.granted = until;
 }
 
 Time IrNode::earliest_output(PortIndex port) const {
     if (port >= impl_->receivers.size()) return kNever;
-    return impl_->receivers[port].next_output();
+    const IrReceiver& receiver = impl_->receivers[port];
+    if (!impl_->faults) return receiver.next_output();
+    return std::min(receiver.next_output(), cosim::later(impl_->faults->next(), receiver.lookahead()));
 }
 
 Time IrNode::lookahead(PortIndex port) const {
@@ -308,7 +343,10 @@ cosim::Rewindable* IrNode::rewindable() {
 }
 
 std::string IrNode::finish() {
-    return R"({"boards":)" + impl_->frames.finish() + "}";
+    std::string json = R"({"boards":)" + impl_->frames.finish();
+    if (impl_->faults)
+        json += R"(,"faults":)" + cosim::fault_results(impl_->faults->faults(), impl_->granted).dump();
+    return json + "}";
 }
 
 std::unique_ptr<cosim::Node> make_ir_node(std::string_view json) {
@@ -316,7 +354,9 @@ std::unique_ptr<cosim::Node> make_ir_node(std::string_view json) {
         const auto spec = nlohmann::json::parse(json);
         return std::make_unique<IrNode>(
             from_json(spec.at("world").dump()),
-            IrNodeOptions{spec.value("name", "ir"), spec.value("csv", ""), spec.value("changes", false)});
+            IrNodeOptions{spec.value("name", "ir"), spec.value("csv", ""), spec.value("changes", false),
+                          spec.contains("faults") ? cosim::faults_from_json(spec["faults"])
+                                                  : std::vector<cosim::CarriedFault>{}});
     } catch (const nlohmann::json::exception& error) {
         throw InputError("", "infra-red medium", error.what());
     }

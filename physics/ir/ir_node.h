@@ -10,6 +10,7 @@
 // a burst begins.
 
 #include "cosim/core/node.h"
+#include "cosim/faults/fault_json.h"
 #include "physics/description/description.h"
 
 #include <memory>
@@ -20,6 +21,7 @@ struct IrNodeOptions {
     std::string name = "ir";
     std::string frames_csv{};  ///< file for what was on the air (physics/ir/ir_frames.h); empty: none
     bool changes = false;      ///< events change the world: the port "world" has more than poses
+    std::vector<cosim::CarriedFault> faults{};  ///< of the light (physics/ir/ir_faults.h)
 };
 
 class IrNode final : public cosim::Node {
@@ -36,7 +38,7 @@ class IrNode final : public cosim::Node {
     cosim::Time earliest_output(cosim::PortIndex port) const override;
     cosim::Time lookahead(cosim::PortIndex port) const override;
     cosim::Rewindable* rewindable() override;
-    /// {"boards": [...]}: frames on the air as each board could hear them.
+    /// {"boards": [...], "faults": [...]}: frames on the air as each board could hear them.
     std::string finish() override;
 
   private:
@@ -44,7 +46,8 @@ class IrNode final : public cosim::Node {
     std::unique_ptr<Impl> impl_;
 };
 
-/// {"kind": "ir", "name", "world": as to_json(World) writes it, "csv": file or "", "changes": bool}.
+/// {"kind": "ir", "name", "world": as to_json(World) writes it, "csv": file or "", "changes": bool,
+/// "faults": list or none}.
 std::unique_ptr<cosim::Node> make_ir_node(std::string_view json);
 
 }  // namespace puckloop::physics

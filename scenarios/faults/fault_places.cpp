@@ -36,7 +36,9 @@ std::vector<FaultPlace> fault_places(const Scenario& scenario) {
         places.push_back({robot.name + ".i2c", PlaceKind::I2c, masters, robot.name + ".i2c"});
         if (robot.linux_board) places.push_back({program, PlaceKind::Linux, {}, program, true});
         add_board(pic, PlaceKind::Pic);
-        if (robot.rab) add_board(robot.name + ".rab", PlaceKind::Rab);
+        if (!robot.rab) continue;
+        add_board(robot.name + ".rab", PlaceKind::Rab);
+        places.push_back({robot.name + ".ir", PlaceKind::InfraRed, {robot.name + ".rab", "ir"}, "ir"});
     }
     for (const TamBoard& tam : scenario.tams)
         add_board(tam.name + ".avr", PlaceKind::Tam);

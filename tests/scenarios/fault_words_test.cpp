@@ -23,6 +23,7 @@ Scenario with_links() {
     Scenario scenario;
     scenario.robots.emplace_back().name = "robot0";
     scenario.robots[0].linux_board.emplace();
+    scenario.robots[0].rab.emplace();
     scenario.tams.emplace_back().name = "tam0";
     scenario.tams[0].xbee.fitted = true;
     scenario.world.ircom = true;
@@ -55,6 +56,7 @@ FaultSpec from_toml(const std::string& keys) {
 
 /// A text that the parameter takes: its first choice, any word where it has none.
 std::string_view first_choice(const cosim::ParameterInfo& parameter) {
+    if (parameter.key == "profile") return "0 s 4.1 V, 10 s 3.6 V";
     if (parameter.choices.empty()) return "T1Interrupt";
     return parameter.choices.substr(0, parameter.choices.find('|'));
 }
@@ -83,7 +85,7 @@ TEST_CASE("what a fault cannot be is refused by name") {
     };
     said("drop", "'link' is missing");
     said("drop link=robot1.uart", "there is no link 'robot1.uart' that can suffer a fault (expected "
-                                  "robot0.uart, robot0.i2c, tam0.xbee, tam0.radio)");
+                                  "robot0.uart, robot0.i2c, robot0.ir, tam0.xbee, tam0.radio)");
     said("drop node=robot0.pic2", "there is no node");
     said("drop link=robot0.uart node=x", "both a link and a node");
     said("dorp link=robot0.uart", "cannot suffer 'dorp' (expected one of drop");
@@ -123,6 +125,21 @@ TEST_CASE("what a fault cannot be is refused by name") {
     said("insert link=robot0.uart value=0x3g", "not a byte");
     said("parity link=robot0.uart mode=odd", "one of wrong, mark, space");
     said("drop link=robot0.uart name=\"a,b\"", "comma");
+    for (const char* held : {"sag node=robot0.pic volts=1V", "clock node=robot0.rab ppm=3",
+                             "phase_open node=robot0.pic", "foreign_carrier node=robot0.rab",
+                             "ambient_burst link=robot0.ir", "starve node=robot0.linux factor=3"})
+        for (const char* more : {" probability=0.5", " count=2"})
+            said(std::string(held) + more, "holds during its whole window (expected neither probability");
+    said("battery node=robot0.pic", "'profile' is missing");
+    said("battery node=robot0.pic profile=\"0 s 4.1 V 3\"", "profile: what is '3' (expected times and volts");
+    said("battery node=robot0.pic profile=\"1 s 4 V, 1 s 3 V\"", "times do not rise");
+    said("battery node=tam0.avr profile=\"1 s 40 V\"", "a voltage of 40 V");
+    said("lost_interrupt node=robot0.pic", "'vector' is missing");
+    said("late_interrupt node=robot0.pic vector=T1", "'delay' is missing");
+    said("occlusion link=robot0.ir width=400", "width is out of range");
+    said("chip_flip link=robot0.ir from=robot0.pic", "at no end of robot0.ir");
+    said("chip_jitter link=robot0.ir jitter=2ms", "jitter is out of range");
+    said("weak_emitter link=robot0.ir emitter=13 gain=0.5", "emitter is out of range");
     said("drop link=robot0.uart \"", "a quote is open");
     said("drop link=robot0.uart link=x", "given twice");
 }
@@ -177,4 +194,27 @@ TEST_CASE("random words are read or refused in one line") {
     }
     CHECK(accepted > 50);
     CHECK(accepted < 3000);
+}
+
+TEST_CASE("random profiles are read or refused in one line") {
+    RandomStream random(22, "profiles");
+    const std::vector<std::string> pieces{"0",   "1.5", "4.1",    "s", "ms",      "min",         "V",
+                                          "mV",  ",",   ";",      " ", " ",       "-1",          "nan",
+                                          "inf", "1e9", "1e-400", "x", "0 s 4 V", "10 s 3.6 V, "};
+    int accepted = 0;
+    for (int round = 0; round < 4000; ++round) {
+        std::string text = round % 2 ? "0 s 4 V" : "";
+        for (std::uint64_t n = random.below(8); n > 0; --n)
+            text += pieces[random.below(pieces.size())];
+        if (random.below(4) == 0 && !text.empty())
+            text[random.below(text.size())] = static_cast<char>(random.next());
+        std::erase(text, '"');
+        const std::string said = problem("battery node=robot0.pic profile=\"" + text + "\"");
+        accepted += said == "accepted";
+        if (text.find('\n') == std::string::npos) CHECK(said.find('\n') == std::string::npos);
+    }
+    CHECK(accepted > 50);
+    CHECK(accepted < 2500);
+    CHECK(one("battery node=robot0.pic profile=\"0 4.1;500ms 3600 mV, 1 min 3 V\"")
+              .parameters.text("profile") == "0 4.1;500ms 3600 mV, 1 min 3 V");
 }

@@ -191,6 +191,8 @@ TEST_CASE("boards with faults go back") {
         add(board_fault("clock").set("ppm", 1e3 * random.uniform()).set("drift", 100));
         add(board_fault("adc_noise").set("channel", 8).set("sigma", 0.1));
         add(board_fault("interrupt").set("vector", "T1"));
+        add(board_fault("lost_interrupt").set("vector", rab_board ? "T3" : "U2RX"));
+        add(board_fault("late_interrupt").set("vector", "T1").set("delay", 1e-4).set("jitter", 1e-4));
         const image::Image image = seed < 12   ? random_program(random, rab_board)
                                    : rab_board ? own_rab_image()
                                                : own_pic_image();

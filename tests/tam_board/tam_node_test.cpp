@@ -230,6 +230,126 @@ TEST_CASE("wrong fuses are named") {
     CHECK(nlohmann::json::parse(good.finish())["warnings"].empty());
 }
 
+TEST_CASE("interrupts of the board are lost, late, or come out of nowhere") {
+    const image::AvrImage image = test::assembled(kProgram);
+    const auto sent = [&](const cosim::FaultSpec& spec, nlohmann::json* evidence = nullptr) {
+        TamNodeOptions with = options();
+        with.faults = {tests::carried(spec)};
+        TamNode node(image, with);
+        std::vector<Message> out;
+        node.advance(60 * kMs, {}, out);
+        if (evidence != nullptr) *evidence = nlohmann::json::parse(node.finish()).at("faults").at(0);
+        std::vector<Time> starts;
+        for (const Message& message : out)
+            if (const auto* frame = std::get_if<cosim::UartFrame>(&message.payload))
+                starts.push_back(frame->start);
+        return starts;
+    };
+    RandomStream random(10, "TAM interrupts");
+    cosim::FaultSpec none = tests::board_fault("hang");
+    none.begin = kMs * 1000;
+    const std::vector<Time> sound = sent(none);
+    REQUIRE(sound.size() > 55);
+    for (int i = 0; i < 5; ++i) {
+        cosim::FaultSpec spec = tests::board_fault("lost_interrupt").set("vector", "TIMER0_OVF");
+        spec.skip = random.below(10);
+        spec.every = 1 + random.below(5);
+        spec.count = 1 + random.below(5);
+        std::vector<Time> left;
+        std::size_t lost = 0;
+        for (std::size_t n = 0; n < sound.size(); ++n)
+            if (n >= spec.skip && (n - spec.skip) % spec.every == 0 && lost < spec.count)
+                ++lost;
+            else
+                left.push_back(sound[n]);
+        nlohmann::json evidence;
+        CHECK(sent(spec, &evidence) == left);
+        CHECK(evidence.at("fired") == lost);
+        const Time delay = 1 + static_cast<Time>(random.below(900)) * cosim::kMicrosecond;
+        const std::vector<Time> late = sent(tests::board_fault("late_interrupt")
+                                                .set("vector", "TIMER0_OVF")
+                                                .set("delay", cosim::to_seconds(delay))
+                                                .set("jitter", 0.0));
+        REQUIRE(late.size() + 1 >= sound.size());
+        for (std::size_t n = 0; n < late.size(); ++n)  // the transmitter begins at ticks of its own
+            CHECK(std::abs(late[n] - sound[n] - delay) < 3 * cosim::kMicrosecond);
+        cosim::FaultSpec nowhere = tests::board_fault("interrupt").set("vector", "TIMER0_OVF");
+        nowhere.begin = sound[20] + 600 * cosim::kMicrosecond;
+        const std::vector<Time> more = sent(nowhere, &evidence);
+        REQUIRE(more.size() == sound.size() + 1);
+        CHECK(std::abs(more[21] - nowhere.begin) < 5 * cosim::kMicrosecond);
+        CHECK(evidence.at("fired") == 1);
+        sent(nowhere.set("vector", "USART0_RX"), &evidence);  // is not enabled
+        CHECK(evidence.at("fired") == 0);
+    }
+    cosim::FaultSpec unknown = tests::board_fault("lost_interrupt").set("vector", "U2RX");
+    CHECK_THROWS_WITH(sent(unknown), Catch::Contains("no interrupt source 'U2RX'"));
+}
+
+TEST_CASE("what a receiver's lost interrupts leave behind") {
+    // Sends back what it receives, by interrupt.
+    const image::AvrImage image = test::assembled(R"(
+        .org 0
+        jmp main
+        .org 0x50
+        jmp received
+        .org 0x100
+main:   ldi r16, 0x40
+        out 0x3e, r16
+        ldi r16, 0xff
+        out 0x3d, r16
+        ldi r16, 16
+        sts 0xc4, r16
+        ldi r16, 0x98
+        sts 0xc1, r16
+        sei
+loop:   rjmp loop
+received:
+        lds r17, 0xc6
+        sts 0xc6, r17
+        reti
+)");
+    const auto echoes = [&](std::uint64_t lost, nlohmann::json& report) {
+        TamNodeOptions with = options();
+        with.board.resonator_ppm = 0;
+        cosim::FaultSpec spec = tests::board_fault("lost_interrupt").set("vector", "USART0_RX");
+        spec.skip = 4;
+        spec.count = lost;
+        with.faults = {tests::carried(spec)};
+        TamNode node(image, with);
+        std::vector<Message> in, out;
+        for (int i = 0; i < 12; ++i) {
+            cosim::UartFrame frame;
+            frame.start = (2 + i) * 2 * kMs;
+            frame.bit_period = 17 * cosim::kMicrosecond;
+            frame.data = static_cast<std::uint16_t>(i + 1);
+            in.push_back({frame.start + 9 * frame.bit_period, TamNode::kConsole, frame});
+        }
+        node.advance(40 * kMs, in, out);
+        report = nlohmann::json::parse(node.finish());
+        std::vector<std::pair<int, Time>> bytes;
+        for (const Message& message : out)
+            if (const auto* frame = std::get_if<cosim::UartFrame>(&message.payload))
+                bytes.emplace_back(frame->data, frame->start);
+        return bytes;
+    };
+    nlohmann::json report;
+    const auto one = echoes(1, report);
+    REQUIRE(one.size() == 12);
+    for (int i = 0; i < 12; ++i)
+        CHECK(one[static_cast<std::size_t>(i)].first == i + 1);
+    CHECK(one[4].second > 14 * kMs);  // only the sixth byte brought the fifth
+    CHECK(one[3].second < 11 * kMs);
+    // Two bytes have room, and a third in the shift register; each one more takes the third's place. The
+    // echo of the third finds the transmitter's buffer full.
+    const auto five = echoes(5, report);
+    std::vector<int> bytes;
+    for (const auto& [byte, start] : five)
+        bytes.push_back(byte);
+    CHECK(bytes == std::vector{1, 2, 3, 4, 5, 6, 11, 12});
+    CHECK(report.dump().find("\"overruns\":3") != std::string::npos);
+}
+
 TEST_CASE("faults of the board come at their time, whatever the cuts") {
     RandomStream random(9, "TAM faults");
     const image::AvrImage image = test::assembled(kProgram);
@@ -269,6 +389,12 @@ TEST_CASE("faults of the board come at their time, whatever the cuts") {
         add(tests::board_fault("flip"));
         add(tests::board_fault("flip").set("space", "eeprom"));
         add(tests::board_fault("clock").set("ppm", 4e4 * (random.uniform() - 0.5)).set("drift", 100));
+        add(tests::board_fault("interrupt").set("vector", "TIMER0_OVF"));
+        add(tests::board_fault("lost_interrupt").set("vector", "TIMER0_OVF"));
+        add(tests::board_fault("late_interrupt")
+                .set("vector", "TIMER0_OVF")
+                .set("delay", 3e-3 * random.uniform())
+                .set("jitter", 1e-3));
         TamNodeOptions with = options();
         for (std::size_t k = 0; k < specs.size(); ++k)
             with.faults.push_back(tests::carried(specs[k], k));

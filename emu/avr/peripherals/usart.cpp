@@ -269,8 +269,10 @@ void Usart::deliver(const chip::UartReceiver::Character& character) {
         received.errors |= kDor;
     }
     if (mode() == kSpiMaster) received.errors = 0;
+    const bool waited = !state_.fifo.empty();
     state_.fifo.push_back(received);
     show_receiver();
+    if (waited) around_.interrupts.again(setup_.receive_vector);
 }
 
 void Usart::show_receiver() {

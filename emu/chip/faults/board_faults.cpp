@@ -1,7 +1,5 @@
 #include "emu/chip/faults/board_faults.h"
 
-#include "base/error.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,31 +15,16 @@ using cosim::FaultSpec;
 using cosim::kNever;
 using cosim::Time;
 
-// A drift is a staircase: the clock's rate changes so often.
-constexpr Time kDriftStep = 10 * cosim::kMillisecond;
-constexpr double kMostPpm = 90'000.0;
-constexpr std::array<std::string_view, 12> kKinds{
-    "reset",      "hang",        "brown_out",       "flip",         "interrupt",    "clock", "sag",
-    "phase_open", "wheel_stall", "foreign_carrier", "emitter_dead", "receiver_dead"};
+// A drift or a profile is a staircase: rate or voltage change so often.
+constexpr Time kStep = 10 * cosim::kMillisecond;
+constexpr double kMostPpm = 90'000.0, kMostVolts = 10.0;
 
-[[noreturn]] void refuse(const FaultSpec& spec, const std::string& what, const std::string& expected) {
-    throw InputError("", fmt::format("fault {} on {}", spec.name, spec.node), what, expected);
+std::vector<cosim::ProfilePoint> profile_of(const FaultSpec& spec) {
+    return cosim::voltage_profile(spec.parameters.text("profile"), kMostVolts);
 }
 
 int motor_of(const FaultSpec& spec) {
     return spec.parameters.text("motor") == "right" ? 1 : 0;
-}
-
-/// A number as the firmware's listing has it: decimal or 0x.
-std::optional<std::uint32_t> number_of(const std::string& text) {
-    try {
-        std::size_t end = 0;
-        const unsigned long value = std::stoul(text, &end, 0);
-        if (end == text.size() && text[0] != '-' && value <= 0xFFFFFF)
-            return static_cast<std::uint32_t>(value);
-    } catch (const std::exception&) {
-    }
-    return std::nullopt;
 }
 
 }  // namespace
@@ -54,80 +37,17 @@ BoardFaults::BoardFaults(std::vector<CarriedFault> faults, ChipAccess& chip, Boa
         changes_clock_ |= plans_.back().kind == Kind::Clock;
         shines_ |= plans_.back().kind == Kind::ForeignCarrier;
         sags_ |= plans_.back().kind == Kind::Sag;
+        drains_ |= plans_.back().kind == Kind::Battery;
+        dazzles_ |= plans_.back().kind == Kind::AmbientBurst;
+        profiles_.push_back(plans_.back().kind == Kind::Battery ? profile_of(fault.spec)
+                                                                : std::vector<cosim::ProfilePoint>{});
         harms_motors_ |= plans_.back().kind == Kind::PhaseOpen || plans_.back().kind == Kind::WheelStall;
     }
     for (std::size_t i = 0; i < plans_.size(); ++i)
         plan_next(i, 0);
     settle_next();
     watch();
-}
-
-BoardFaults::Plan BoardFaults::plan_of(const CarriedFault& fault, const Symbols& symbols) const {
-    const FaultSpec& spec = fault.spec;
-    const auto found = std::find(kKinds.begin(), kKinds.end(), spec.kind);
-    if (found == kKinds.end()) refuse(spec, fmt::format("a board knows no {}", spec.kind), "another kind");
-    Plan plan;
-    plan.kind = static_cast<Kind>(found - kKinds.begin());
-    plan.holds = plan.kind >= Kind::Clock && plan.kind <= Kind::ForeignCarrier;
-    if (const std::string pc = spec.parameters.text("pc"); !pc.empty()) {
-        std::optional<std::uint32_t> address = symbols.code(pc);
-        if (!address) address = number_of(pc);
-        if (!address || chip_.bits({MemorySpace::Flash, *address}) == 0)
-            refuse(spec, fmt::format("no program at pc = '{}'", pc),
-                   "a function of the firmware, if its file has symbols, or an even address");
-        plan.by_pc = true;
-        plan.pc = *address;
-    }
-    if (plan.kind == Kind::Reset) {
-        plan.cause = reset_cause_of_name(spec.parameters.text("cause", "mclr")).value_or(plan.cause);
-        if (!chip_.knows(plan.cause))
-            refuse(spec, fmt::format("this chip has no reset by {}", spec.parameters.text("cause")),
-                   "power_on, brown_out, mclr or watchdog");
-    }
-    if (plan.kind == Kind::Interrupt) {
-        const std::string source = spec.parameters.text("vector");
-        const std::optional<int> vector = chip_.vector(source);
-        if (!vector)
-            refuse(spec, fmt::format("no interrupt source '{}' that a fault can raise", source),
-                   "a name of the data sheet's vector table of a dsPIC, as U2RX or T1");
-        plan.vector = *vector;
-    }
-    if (plan.kind == Kind::Flip) plan_flip(plan, fault, symbols);
-    return plan;
-}
-
-void BoardFaults::plan_flip(Plan& plan, const CarriedFault& fault, const Symbols& symbols) const {
-    const FaultSpec& spec = fault.spec;
-    plan.space = memory_space_of_name(spec.parameters.text("space", "ram")).value_or(MemorySpace::Ram);
-    if (chip_.cells(plan.space) == 0) refuse(spec, "this chip has no such memory", "another space");
-    const std::string symbol = spec.parameters.text("symbol");
-    std::optional<std::uint32_t> address;
-    if (spec.parameters.has("address"))
-        address = static_cast<std::uint32_t>(spec.parameters.number("address"));
-    if (!symbol.empty()) {
-        if (plan.space == MemorySpace::Register) {
-            plan.place = chip_.find_register(symbol);
-            if (!plan.place)
-                refuse(spec, fmt::format("no register '{}' that is modelled", symbol), "a data-sheet name");
-        } else {
-            const auto base = (plan.space == MemorySpace::Flash ? symbols.code : symbols.data)(symbol);
-            if (!base)
-                refuse(spec, fmt::format("no symbol '{}'", symbol),
-                       "a name of the firmware's, if its file has symbols");
-            address = *base + address.value_or(0);
-        }
-    }
-    if (!plan.place && address) plan.place = MemoryPlace{plan.space, *address};
-    if (plan.place && chip_.bits(*plan.place) == 0)
-        refuse(spec,
-               fmt::format("no cell of the {} at 0x{:X}", spec.parameters.text("space", "ram"),
-                           plan.place->address),
-               "an address that the chip has");
-    if (!spec.parameters.has("bit")) return;
-    plan.bit = static_cast<int>(spec.parameters.number("bit"));
-    const std::uint32_t bits = plan.place ? chip_.bits(*plan.place) : chip_.bits(chip_.cell(plan.space, 0));
-    if ((plan.place || plan.space != MemorySpace::Register) && !(bits >> plan.bit & 1))
-        refuse(spec, fmt::format("no bit {} there", plan.bit), fmt::format("one of the bits 0x{:X}", bits));
+    watch_interrupts();
 }
 
 void BoardFaults::plan_next(std::size_t i, Time from) {
@@ -135,8 +55,8 @@ void BoardFaults::plan_next(std::size_t i, Time from) {
     Plan& plan = plans_[i];
     const cosim::Trigger& trigger = fault.trigger;
     if (!plan.holds) {
-        const bool by_burst = plan.kind == Kind::EmitterDead || plan.kind == Kind::ReceiverDead;
-        plan.due = plan.by_pc || by_burst || trigger.spent() ? kNever : trigger.instant(from);
+        const bool comes = plan.by_pc || plan.candidates;
+        plan.due = comes || trigger.spent() ? kNever : trigger.instant(from);
         return;
     }
     if (from <= trigger.begin())
@@ -145,11 +65,19 @@ void BoardFaults::plan_next(std::size_t i, Time from) {
         plan.due = kNever;
     else
         plan.due = trigger.end();
-    if (plan.kind == Kind::Clock && fault.spec.parameters.number("drift") != 0.0 && from > trigger.begin() &&
-        trigger.open(from)) {
-        const Time steps = (from - trigger.begin() + kDriftStep - 1) / kDriftStep;
-        plan.due = std::min(plan.due, cosim::later(trigger.begin(), steps * kDriftStep));
-    }
+    if (from > trigger.begin() && trigger.open(from)) plan.due = std::min(plan.due, next_step(i, from));
+}
+
+/// Of a staircase, at or after `from`.
+Time BoardFaults::next_step(std::size_t i, Time from) const {
+    const Time begin = faults_[i].trigger.begin();
+    const Time step = cosim::later(begin, (from - begin + kStep - 1) / kStep * kStep);
+    if (plans_[i].kind == Kind::Clock)
+        return faults_[i].spec.parameters.number("drift") != 0.0 ? step : kNever;
+    if (plans_[i].kind != Kind::Battery || from - begin > profiles_[i].back().time) return kNever;
+    const auto point = std::find_if(profiles_[i].begin(), profiles_[i].end(),
+                                    [&](const cosim::ProfilePoint& one) { return begin + one.time >= from; });
+    return std::min(step, begin + point->time);
 }
 
 void BoardFaults::settle_next() {
@@ -225,7 +153,7 @@ void BoardFaults::fire(std::size_t i, Time now) {
         break;
     case Kind::Interrupt:
         what = spec.parameters.text("vector");
-        chip_.interrupt(plans_[i].vector);
+        if (!chip_.interrupt(plans_[i].vector)) return;  // nothing happened: no evidence
         break;
     default:
         break;
@@ -266,6 +194,8 @@ void BoardFaults::hold(Time now) {
     std::array<std::uint8_t, 2> open{};
     std::array<bool, 2> stalled{};
     std::uint16_t lit = 0;
+    std::optional<double> supply;
+    AmbientShares ambient{};
     for (std::size_t i = 0; i < plans_.size(); ++i) {
         CarriedFault& fault = faults_[i];
         const FaultSpec& spec = fault.spec;
@@ -274,11 +204,26 @@ void BoardFaults::hold(Time now) {
         std::string what;
         switch (plans_[i].kind) {
         case Kind::Clock: {
-            const double more =
-                spec.parameters.number("ppm") +
-                spec.parameters.number("drift") * cosim::to_seconds(now - fault.trigger.begin());
-            ppm += more;
-            what = fmt::format("{:g} ppm", more);
+            // The rate in the step's middle: at its end the phase is the drift's own.
+            const Time since = now - fault.trigger.begin();
+            const Time step = since - since % kStep;
+            const Time end = std::min(step + kStep, fault.trigger.end() - fault.trigger.begin());
+            const double seconds = (cosim::to_seconds(step) + cosim::to_seconds(end)) / 2;
+            const double offset = spec.parameters.number("ppm"), drift = spec.parameters.number("drift");
+            ppm += offset + (drift == 0.0 ? 0.0 : drift * seconds);
+            what = fmt::format("{:g} ppm", offset);
+            break;
+        }
+        case Kind::Battery:
+            supply = cosim::value_at(profiles_[i], now - fault.trigger.begin());
+            show_profile(i, now);
+            continue;
+        case Kind::AmbientBurst: {
+            const auto sensor = static_cast<std::size_t>(spec.parameters.number("sensor"));
+            const double share = spec.parameters.number("strength", 1.0);
+            for (std::size_t k = 0; k < ambient.size(); ++k)
+                if (sensor == 0 || sensor == k + 1) ambient[k] = std::max(ambient[k], share);
+            what = sensor == 0 ? "all sensors" : fmt::format("sensor {}", sensor);
             break;
         }
         case Kind::Sag:
@@ -302,11 +247,26 @@ void BoardFaults::hold(Time now) {
         if (fault.trigger.fired() == 0 && live(now) && fault.trigger.fires(now)) fault.fired(now, 0, what);
     }
     if (changes_clock_) chip_.set_ppm(std::clamp(ppm, -kMostPpm, kMostPpm));
+    if (drains_) board_.set_battery(supply);
     if (sags_) board_.set_sag(volts);
+    if (dazzles_) board_.set_ambient(ambient);
     if (shines_) board_.set_carrier(lit);
     if (harms_motors_)
         for (std::size_t motor = 0; motor < 2; ++motor)
             board_.set_motor(static_cast<int>(motor), open[motor], stalled[motor]);
+}
+
+/// The points that have been reached, each once.
+void BoardFaults::show_profile(std::size_t i, Time now) {
+    CarriedFault& fault = faults_[i];
+    const auto& points = profiles_[i];
+    const auto reached = std::count_if(points.begin(), points.end(), [&](const cosim::ProfilePoint& point) {
+        return fault.trigger.begin() + point.time <= now;
+    });
+    const auto wanted = static_cast<std::uint64_t>(std::max<std::ptrdiff_t>(reached, 1));
+    while (fault.trigger.fired() < wanted && live(now) && fault.trigger.fires(now))
+        fault.fired(now, fault.trigger.fired() - 1,
+                    fmt::format("{:g} V", cosim::value_at(points, now - fault.trigger.begin())));
 }
 
 void BoardFaults::lost_step(int motor, Time now) {
@@ -336,6 +296,43 @@ bool BoardFaults::loses_burst(bool emitter, int number, Time now) {
         lost |= plan.burst_lost;
     }
     return lost;
+}
+
+void BoardFaults::watch_interrupts() {
+    std::vector<int> vectors;
+    for (const Plan& plan : plans_)
+        if (plan.kind == Kind::LostInterrupt || plan.kind == Kind::LateInterrupt)
+            vectors.push_back(plan.vector);
+    if (vectors.empty()) return;
+    chip_.watch_interrupts(vectors, [this](int vector, Time now) { return interrupt_time(vector, now); });
+}
+
+/// Of an interrupt at `now` of the chip's time; every fault of its source looks at it.
+Time BoardFaults::interrupt_time(int vector, Time now) {
+    const Time time = cosim::later(now, origin_);
+    Time when = now;
+    for (std::size_t i = 0; i < plans_.size(); ++i) {
+        Plan& plan = plans_[i];
+        const bool late = plan.kind == Kind::LateInterrupt;
+        if (plan.vector != vector || (!late && plan.kind != Kind::LostInterrupt)) continue;
+        CarriedFault& fault = faults_[i];
+        const std::uint64_t number = plan.arrivals++;
+        if (!fault.trigger.fires(time)) continue;
+        const cosim::FaultParameters& parameters = fault.spec.parameters;
+        if (!late) {
+            when = kNever;
+            fault.fired(time, number, parameters.text("vector") + " lost");
+            continue;
+        }
+        const double jitter = parameters.number("jitter");
+        const double seconds = parameters.number("delay") +
+                               (jitter > 0 ? jitter * (2 * fault.trigger.random().uniform() - 1) : 0.0);
+        const Time delay = std::max<Time>(cosim::from_seconds(std::max(seconds, 0.0)), 1);
+        when = std::max(when, cosim::later(now, delay));
+        fault.fired(time, number,
+                    fmt::format("{} late by {:g} s", parameters.text("vector"), cosim::to_seconds(delay)));
+    }
+    return when;
 }
 
 void BoardFaults::loaded(Time now) {

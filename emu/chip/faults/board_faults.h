@@ -4,10 +4,14 @@
 //
 //   reset `cause`; hang `duration`; brown_out `duration`; flip `space` `symbol` `address` `bit`;
 //   interrupt `vector`                    at instants, or with `pc` and `nth` where the program arrives
-//   clock `ppm` `drift`; sag `volts`      during the window
+//   clock `ppm` `drift`; sag `volts`; battery `profile`  during the window
 //   phase_open `motor` `winding`; wheel_stall `motor`; foreign_carrier `receiver`
+//   ambient_burst `sensor` `strength`
 //   emitter_dead `emitter`, receiver_dead `receiver`     burst by burst
+//   lost_interrupt `vector`; late_interrupt `vector` `delay` `jitter`    interrupt by interrupt
 
+#include "cosim/faults/profile.h"
+#include "emu/chip/faults/ambient_shares.h"
 #include "emu/chip/faults/carried.h"
 #include "emu/chip/faults/chip_access.h"
 
@@ -28,9 +32,13 @@ class BoardAccess {
     virtual bool powered() const { return true; }
     /// The battery's voltage is lower by so much.
     virtual void set_sag(double /*volts*/) {}
-    /// `open`: bit 0 winding 1, bit 1 winding 2; motor 0 left, 1 right.
+    /// The battery has this voltage, before any sag, whatever the world says; nullopt: what the world says.
+    virtual void set_battery(std::optional<double> /*volts*/) {}
+    /// Light that swallows this share of each proximity sensor's signal, 0 to 1.
+    virtual void set_ambient(const AmbientShares& /*shares*/) {}
     /// Receivers that see another's carrier all the time: bit 0 is receiver 1.
     virtual void set_carrier(std::uint16_t /*receivers*/) {}
+    /// `open`: bit 0 winding 1, bit 1 winding 2; motor 0 left, 1 right.
     virtual void set_motor(int /*motor*/, std::uint8_t /*open*/, bool /*stalled*/) {}
 };
 
@@ -90,19 +98,25 @@ class BoardFaults {
         Interrupt,
         Clock,
         Sag,
+        Battery,
+        AmbientBurst,
         PhaseOpen,
         WheelStall,
         ForeignCarrier,
         EmitterDead,
-        ReceiverDead
+        ReceiverDead,
+        LostInterrupt,
+        LateInterrupt
     };
+    static std::optional<Kind> kind_of(std::string_view name);
     struct Plan {
         Kind kind = Kind::Reset;
-        bool holds = false;  ///< acts during the window, not at instants
+        bool holds = false;       ///< acts during the window, not at instants
+        bool candidates = false;  ///< acts on bursts or interrupts, which come to it
         bool by_pc = false;
         std::uint32_t pc = 0;
-        std::uint64_t arrivals = 0;
-        cosim::Time burst = -1;  ///< the newest that was looked at: its parts share one fate
+        std::uint64_t arrivals = 0;  ///< at `pc`; or interrupts of the source so far
+        cosim::Time burst = -1;      ///< the newest that was looked at: its parts share one fate
         bool burst_lost = false;
         cosim::Time due = cosim::kNever;
         FaultReset cause = FaultReset::External;
@@ -121,6 +135,10 @@ class BoardFaults {
     void fire(std::size_t i, cosim::Time now);
     std::string flip(std::size_t i);
     void hold(cosim::Time now);
+    void show_profile(std::size_t i, cosim::Time now);
+    cosim::Time next_step(std::size_t i, cosim::Time from) const;
+    void watch_interrupts();
+    cosim::Time interrupt_time(int vector, cosim::Time now);
 
     std::vector<cosim::CarriedFault> faults_;
     ChipAccess& chip_;
@@ -128,9 +146,11 @@ class BoardFaults {
     double ppm_;
     cosim::Time origin_;
     std::vector<Plan> plans_;
+    std::vector<std::vector<cosim::ProfilePoint>> profiles_;  ///< of `battery`; empty for the others
     std::vector<std::uint32_t> stops_;
     cosim::Time next_ = cosim::kNever;
-    bool changes_clock_ = false, sags_ = false, harms_motors_ = false, shines_ = false;
+    bool changes_clock_ = false, sags_ = false, drains_ = false, harms_motors_ = false, shines_ = false,
+         dazzles_ = false;
 };
 
 }  // namespace puckloop::chip

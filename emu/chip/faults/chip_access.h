@@ -5,6 +5,7 @@
 #include "cosim/core/time.h"
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -36,6 +37,9 @@ struct MemoryPlace {
     std::uint32_t address =
         0;  ///< data address; program address (AVR: in bytes); EEPROM as the family counts
 };
+/// When an interrupt comes whose event is at `now`: then, later, or (kNever) not at all.
+using InterruptTime = std::function<cosim::Time(int vector, cosim::Time now)>;
+
 class ChipAccess {
   public:
     virtual ~ChipAccess() = default;
@@ -69,8 +73,11 @@ class ChipAccess {
 
     /// By the data sheet's name of its source: "U2RX", "TIMER0_OVF".
     virtual std::optional<int> vector(std::string_view source) const = 0;
-    /// The source's flag is set, as if it had something to report.
-    virtual void interrupt(int vector) = 0;
+    /// The source requests, as if it had something to report. False: it cannot now, nothing happens.
+    virtual bool interrupt(int vector) = 0;
+    /// From now on `when` is asked at every event of these sources that would begin a request; for the
+    /// chip's life.
+    virtual void watch_interrupts(std::span<const int> vectors, InterruptTime when) = 0;
 };
 
 }  // namespace puckloop::chip

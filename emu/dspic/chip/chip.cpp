@@ -91,6 +91,7 @@ struct Chip::Parts {
     std::deque<Spi> spis;
     std::optional<OutputCompare> output_compare;
     std::optional<Dma> dma;
+    chip::HeldInterrupts held;  ///< its slot is the last: the others keep theirs
 
     ChipReport report;
     std::vector<std::uint32_t> stops;
@@ -111,7 +112,10 @@ struct Chip::Parts {
           around{sfr, events, core.cycle_counter(), interrupts},
           oscillator(make_oscillator()),
           ports(around, layout.ports, pins),
-          external(around, ports, layout.external_irqs) {
+          external(around, ports, layout.external_irqs),
+          held(events, &interrupts, [](void* owner, int irq, bool, Cycle due) {
+              static_cast<InterruptController*>(owner)->set_flag(irq, due);
+          }) {
         Timer* before = nullptr;
         for (const TimerPlace& place : layout.timers) {
             Timer* upper = place.setup.hold ? before : nullptr;
@@ -255,6 +259,7 @@ struct Chip::Parts {
         if (output_compare) output_compare->reset();
         if (dma) dma->reset();
         interrupts.reset();
+        held.reset();
     }
 
     // Sleep stops every module that needs the instruction clock, Idle those whose xSIDL bit says so.
@@ -328,6 +333,7 @@ struct Chip::Parts {
         archive(asleep_since);
         if constexpr (Archive::kLoads) holding = true;
         if constexpr (!Archive::kRaw) check_report(archive);
+        archive.part("held interrupts", held);
         archive.part("events", events);
         if constexpr (Archive::kLoads)
             for (Timer& timer : timers)
@@ -585,7 +591,7 @@ void Chip::settle() {
 
 Chip::Inside Chip::inside() {
     Parts& parts = *parts_;
-    return {parts.device, parts.core, parts.sfr, parts.interrupts, parts.clock};
+    return {parts.device, parts.core, parts.sfr, parts.interrupts, parts.clock, parts.held};
 }
 
 void Chip::set_stops(const std::vector<std::uint32_t>& addresses) {

@@ -7,6 +7,7 @@
 #include "cosim/core/clock.h"
 #include "cosim/core/message.h"
 #include "cosim/core/time.h"
+#include "emu/chip/held_interrupts.h"
 #include "emu/dspic/core/event_queue.h"
 #include "emu/dspic/devices/device.h"
 #include "emu/dspic/peripherals/output_compare_state.h"
@@ -209,6 +210,7 @@ class Chip {
         SfrSpace& sfr;
         InterruptController& interrupts;
         cosim::ClockDomain& clock;
+        chip::HeldInterrupts& held;
     };
     Inside inside();
     /// Replaces the stop addresses. Unlike stop_at(), allowed while a mark is set.

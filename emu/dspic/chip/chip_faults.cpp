@@ -1,6 +1,5 @@
 #include "emu/dspic/chip/chip_faults.h"
 
-#include "emu/chip/faults/clock_error.h"
 #include "emu/dspic/core/core.h"
 #include "emu/dspic/core/memory_map.h"
 
@@ -63,7 +62,7 @@ void ChipFaults::hang(cosim::Time until) {
 void ChipFaults::set_ppm(double ppm) {
     Chip::Inside in = chip_.inside();
     if (ppm == in.clock.ppm()) return;
-    chip::change_ppm(in.clock, std::max(in.core.cycle(), in.clock.first_cycle_at(chip_.now())), ppm);
+    in.clock.change_ppm(std::max(in.core.cycle(), in.clock.first_cycle_at(chip_.now())), ppm);
 }
 
 std::uint32_t ChipFaults::cells(MemorySpace space) const {
@@ -197,9 +196,29 @@ std::optional<int> ChipFaults::vector(std::string_view source) const {
     return chip_.inside().device.irq(source);
 }
 
-void ChipFaults::interrupt(int vector) {
+bool ChipFaults::interrupt(int vector) {
     Chip::Inside in = chip_.inside();
-    in.interrupts.raise(vector, in.core.cycle());
+    in.interrupts.request(vector, in.core.cycle());
+    in.interrupts.set_flag(vector, in.core.cycle());
+    return true;
+}
+
+void ChipFaults::watch_interrupts(std::span<const int> vectors, chip::InterruptTime when) {
+    when_ = std::move(when);
+    std::array<std::uint64_t, 2> irqs{};
+    for (const int irq : vectors)
+        irqs[static_cast<std::size_t>(irq) / 64] |= std::uint64_t{1} << (irq % 64);
+    chip_.inside().interrupts.set_gate(this, &passes, irqs);
+}
+
+bool ChipFaults::passes(void* owner, int irq, Cycle now) {
+    const auto& self = *static_cast<const ChipFaults*>(owner);
+    Chip::Inside in = self.chip_.inside();
+    const cosim::Time time = in.clock.time_of(now);
+    const cosim::Time when = self.when_(irq, time);
+    if (when <= time) return true;
+    if (when != cosim::kNever) in.held.hold(irq, false, in.clock.first_cycle_at(when));
+    return false;
 }
 
 }  // namespace puckloop::dspic

@@ -29,12 +29,15 @@ class ChipFaults : public chip::ChipAccess {
     std::string_view name(const chip::MemoryPlace& place) const override;
 
     std::optional<int> vector(std::string_view source) const override;
-    void interrupt(int vector) override;
+    bool interrupt(int vector) override;
+    void watch_interrupts(std::span<const int> vectors, chip::InterruptTime when) override;
 
   private:
+    static bool passes(void* owner, int irq, Cycle now);
     void flip_register(std::uint16_t address, std::uint16_t mask);
 
     Chip& chip_;
+    chip::InterruptTime when_;
 };
 
 }  // namespace puckloop::dspic

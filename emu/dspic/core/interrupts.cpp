@@ -89,6 +89,13 @@ void InterruptController::set_tap(void* owner, void (*served)(void* owner, int i
         wake_hearing(i);
 }
 
+void InterruptController::set_gate(void* owner, bool (*passes)(void* owner, int irq, Cycle now),
+                                   const std::array<std::uint64_t, 2>& irqs) {
+    gate_owner_ = owner;
+    gate_ = passes;
+    gated_ = irqs;
+}
+
 void InterruptController::rest(int irq, void* owner, void (*wake)(void* owner, Cycle passed)) {
     resters_[static_cast<std::size_t>(irq)] = {owner, wake};
     resting_[static_cast<std::size_t>(irq) / 16] |= bit_of(irq);
@@ -116,6 +123,13 @@ void InterruptController::wake_hearing(int word) {
 
 void InterruptController::raise(int irq, Cycle now) {
     request(irq, now);
+    if (gated(irq)) [[unlikely]] {
+        if (flag(irq) || !gate_(gate_owner_, irq, now)) return;
+    }
+    set_flag(irq, now);
+}
+
+void InterruptController::set_flag(int irq, Cycle now) {
     std::uint16_t& flags = sfr_.raw(word_of(device_.ifs, irq));
     if (flags & bit_of(irq)) return;
     flags |= bit_of(irq);

@@ -50,6 +50,13 @@ class InterruptController {
     void set_tap(void* owner, void (*served)(void* owner, int irq, Cycle now),
                  const std::array<std::uint64_t, 2>& irqs);
 
+    /// Asks `passes` at every event of the sources in `irqs` that would set the flag; false: it stays clear.
+    void set_gate(void* owner, bool (*passes)(void* owner, int irq, Cycle now),
+                  const std::array<std::uint64_t, 2>& irqs);
+    bool gated(int irq) const { return gated_[static_cast<std::size_t>(irq) / 64] >> (irq % 64) & 1; }
+    /// raise() past gate and tap.
+    void set_flag(int irq, Cycle now);
+
     /// Until somebody clears its flag, enables it or taps it, raise() of this source changes nothing.
     bool is_deaf(int irq) const { return !enabled(irq) && rests_ && flag(irq) && !tapped(irq); }
     /// The source stops raising while is_deaf(). `wake` is called once, with the cycle up to which raising
@@ -125,6 +132,9 @@ class InterruptController {
     std::array<std::uint64_t, 2> tapped_{};
     void* tap_owner_ = nullptr;
     void (*tap_)(void*, int, Cycle) = nullptr;
+    std::array<std::uint64_t, 2> gated_{};
+    void* gate_owner_ = nullptr;
+    bool (*gate_)(void*, int, Cycle) = nullptr;
     bool rests_ = true;
     std::array<std::uint16_t, 8> resting_{};  ///< by IFS word
     std::array<Rester, 128> resters_{};

@@ -74,7 +74,7 @@ bool prepare(Machine& m, IdleLoops::Branch& known, Leap& leap) {
     leap.due = m.events.next();
     leap.steady = m.events.steady(leap.slot);
     const int irq = leap.steady.irq;
-    if (leap.due == kNoCycle || irq < 0 || m.irq.tapped(irq) || !m.irq.enabled(irq) ||
+    if (leap.due == kNoCycle || irq < 0 || m.irq.tapped(irq) || m.irq.gated(irq) || !m.irq.enabled(irq) ||
         m.irq.priority(irq) <= cpu_level(m))
         return false;
     if (m.irq.first().level != 0 || m.irq.any_enabled_flag()) return false;
@@ -157,7 +157,7 @@ void push_at(Machine& m, const LoopTrace& trace, const IsrSummary& summary, cons
 
 bool steady_event_next(Machine& m) {
     const int irq = m.events.steady(m.events.next_slot()).irq;
-    return irq >= 0 && m.irq.enabled(irq) && isr_summary(m, irq + kTrapVectors);
+    return irq >= 0 && !m.irq.gated(irq) && m.irq.enabled(irq) && isr_summary(m, irq + kTrapVectors);
 }
 
 std::uint64_t fast_forward_arrival(Machine& m, IdleLoops::Branch& known, std::uint64_t arrival,

@@ -1,0 +1,177 @@
+// Faults of boards and of the light between them in whole runs of the project's firmware: what they do, the
+// evidence, and that all of it is the same in one process and in many.
+
+#include "tests/end_to_end/same_run.h"
+#include "tests/end_to_end/workbench.h"
+
+#include <catch2/catch.hpp>
+#include <fmt/format.h>
+
+#include <fstream>
+
+using namespace puckloop::tests;
+using Catch::Contains;
+
+namespace {
+
+const std::string kSource = PUCKLOOP_SOURCE;
+
+/// Address of the routine behind vector `number` (0 is INT0) of the main board's firmware.
+std::string routine(int number) {
+    std::ifstream file(kSource + "/firmware/epuck/epuck.hex");
+    const std::size_t wanted = 2 * (0x14 + 2 * static_cast<std::size_t>(number));
+    std::size_t high = 0;
+    for (std::string line; std::getline(file, line);) {
+        const auto hex = [&](std::size_t at, std::size_t digits) {
+            return std::stoul(line.substr(1 + at, digits), nullptr, 16);
+        };
+        const std::size_t count = hex(0, 2), address = hex(2, 4);
+        if (hex(6, 2) == 4) high = hex(8, 4) << 16;
+        if (hex(6, 2) != 0 || wanted < high + address || wanted >= high + address + count) continue;
+        const std::size_t at = 8 + 2 * (wanted - high - address);
+        return fmt::format("0x{:X}", hex(at, 2) | hex(at + 2, 2) << 8);
+    }
+    FAIL("no vector " << number);
+    return {};
+}
+
+const nlohmann::json& fault_named(const nlohmann::json& report, const std::string& name) {
+    for (const auto& fault : report.at("faults"))
+        if (fault.at("name") == name) return fault;
+    FAIL("no fault " << name);
+    return report;
+}
+
+}  // namespace
+
+TEST_CASE("faults of a main board in a run: their effects and their evidence") {
+    const Workbench bench;
+    constexpr int kTimer1 = 3;
+    const std::string pc = routine(kTimer1);
+    Words words{bench.hello(), "--duration", "4"};
+    for (const std::string& fault :
+         {"hang name=hang node=robot0.pic pc=" + pc + " nth=500 begin=1.5s duration=300us",
+          std::string("lost_interrupt name=lost node=robot0.pic vector=U2RX at=2s count=6"),
+          std::string("late_interrupt name=late node=robot0.pic vector=T1 every=50 delay=100us jitter=50us"),
+          std::string("spurious_interrupt name=nowhere node=robot0.pic vector=T1 at=2500ms"),
+          std::string("battery name=battery node=robot0.pic profile=\"0 s 4 V, 2 s 3 V, 3 s 3.9\" begin=1s"),
+          std::string("ambient_burst name=light node=robot0.pic at=1200ms for=500ms")})
+        words.insert(words.end(), {"--fault", fault});
+    REQUIRE(bench.run("many", words).status == 0);
+    words.emplace_back("--in-process");
+    REQUIRE(bench.run("one", words).status == 0);
+    check_same_run(bench, "one", "many");
+    const auto report = bench.report("one");
+    CHECK(report["faults"] == bench.report("many")["faults"]);
+    CHECK(text_of(bench.out("one") / "faults.csv") == text_of(bench.out("many") / "faults.csv"));
+
+    const auto& hang = fault_named(report, "hang");
+    CHECK(hang["fired"] == 1);
+    CHECK_THAT(hang["firings"][0]["what"].get<std::string>(), Contains("pc " + pc));
+    CHECK(hang["first_s"].get<double>() == Approx(2.0).margin(0.01));  // the timer's period is 1 ms
+    const auto& lost = fault_named(report, "lost");
+    CHECK(lost["fired"] == 6);
+    CHECK(lost["first_s"].get<double>() >= 2.0);
+    for (int i = 1; i < 6; ++i)
+        CHECK(lost["firings"][i]["index"].get<int>() == lost["firings"][0]["index"].get<int>() + i);
+    // Four bytes have room: the receiver overran, the firmware noticed, and the robot goes on.
+    CHECK(report["nodes"]["robot0.pic"]["uart2"]["overruns"].get<int>() > 0);
+    CHECK(journey(bench.csv("one", "trajectory.csv"), 3.0).length > 0.02);
+    CHECK(fault_named(report, "late")["fired"].get<int>() == Approx(80).margin(4));
+    CHECK_THAT(fault_named(report, "nowhere")["firings"][0]["what"].get<std::string>(), Contains("T1 at pc"));
+    CHECK(fault_named(report, "battery")["fired"] == 3);
+    CHECK(fault_named(report, "light")["first_s"] == 1.2);
+}
+
+TEST_CASE("what a node's fault cannot be ends the run in one line") {
+    const Workbench bench;
+    const std::string plain = bench.hello();
+    const std::vector<std::pair<std::string, std::string>> cases{
+        {"flip node=robot0.pic space=ram address=0x100 at=1s", "no cell of the ram at 0x100"},
+        {"flip node=robot0.pic space=ram address=0x2800 at=1s", "no cell of the ram at 0x2800"},
+        {"flip node=robot0.pic space=flash address=0x18000 at=1s", "no cell of the flash at 0x18000"},
+        {"flip node=robot0.pic space=eeprom address=0 at=1s", "no cell of the eeprom at 0x0"},
+        {"flip node=robot0.pic space=ram address=0x901 at=1s", "no cell of the ram at 0x901"},
+        {"flip node=robot0.pic space=ram address=0x900 bit=16 at=1s", "no bit 16 there"},
+        {"flip node=robot0.pic address=0x1000000 at=1s", "address is out of range"},
+        {"flip node=robot0.pic space=register symbol=U9STA at=1s", "no register 'U9STA'"},
+        {"lost_interrupt node=robot0.pic vector=U9RX", "no interrupt source 'U9RX'"},
+        {"reset node=robot0.pic pc=0x101", "no program at pc = '0x101'"},
+        {"sag node=robot0.pic volts=1V probability=0.5", "sag holds during its whole window"},
+        {"battery node=robot0.pic profile=\"4 V\"", "no number at 'V'"}};
+    bool in_process = false;
+    for (const auto& [fault, part] : cases) {
+        INFO(fault);
+        Words words{plain, "--duration", "2", "--fault", fault};
+        if ((in_process = !in_process)) words.emplace_back("--in-process");
+        const Ended ended = bench.run("x", words);
+        CHECK(ended.status == 2);
+        CHECK_THAT(ended.err, Contains(part) && Contains("(expected "));
+        CHECK(ended.error_lines() == 1);
+    }
+    const Ended never = bench.run("never", {plain, "--duration", "1", "--in-process", "--fault",
+                                            "lost_interrupt node=robot0.pic vector=INT0"});
+    CHECK(never.status == 1);
+    CHECK_THAT(never.err, Contains("fault robot0.pic.lost_interrupt never fired"));
+}
+
+TEST_CASE("chips, shade and daylight between two robots' boards") {
+    const Workbench bench;
+    Words words{kSource + "/scenarios/rab_pair.toml", "--duration", "1.4"};
+    for (const char* fault :
+         {"chip_flip name=flip link=leader.ir from=ir chip=20 begin=400ms",
+          "chip_jitter name=jitter link=follower.ir from=follower.rab jitter=2us end=300ms",
+          "occlusion name=shade link=follower.ir from=follower.rab other=leader begin=800ms end=1s",
+          "weak_emitter name=weak link=leader.ir gain=1e-6 begin=800ms end=1s",
+          "ambient_burst name=sun link=leader.ir begin=1.1s end=1.3s"})
+        words.insert(words.end(), {"--fault", fault});
+    REQUIRE(bench.run("many", words).status == 0);
+    words.emplace_back("--in-process");
+    REQUIRE(bench.run("one", words).status == 0);
+    check_same_run(bench, "one", "many");
+    const auto report = bench.report("one");
+    CHECK(report["faults"] == bench.report("many")["faults"]);
+    for (const auto& fault : report["faults"]) {
+        INFO(fault["name"]);
+        CHECK(fault["fired"].get<int>() > 1);
+    }
+    CHECK_THAT(fault_named(report, "flip")["firings"][0]["what"].get<std::string>(),
+               Contains("follower to leader chip 20"));
+
+    // Frames with a wrong chip could be heard, and the firmware's check let none of them pass.
+    for (const char* begin : {"0", "0.4"}) {
+        const Ended ended = bench.puckloop({"trace", "rab", bench.out("one"), "--json", "--from", begin});
+        INFO(ended.err);
+        REQUIRE(ended.status == 0);
+        const auto losses = nlohmann::json::parse(ended.out);
+        INFO(losses["groups"].dump());
+        for (const auto& group : losses["groups"]) {
+            const bool flipped = begin == std::string("0.4");
+            if (group["group"] == "leader -> follower") CHECK(group["delivered"] > 10);
+            if (group["group"] != "follower -> leader") continue;
+            CHECK(group["frames"] > 10);
+            if (flipped)
+                CHECK(group["delivered"] == 0);
+            else
+                CHECK(group["delivered"] > 2);
+            if (flipped)
+                CHECK(group["lost"]["other"].get<int>() + group["lost"]["after_error"].get<int>() > 5);
+        }
+        CHECK(losses["boards"]["leader"]["unexplained_messages"] == 0);
+    }
+    int sent = 0;
+    for (const Row& row : bench.csv("one", "ir.csv")) {
+        const double time = std::stod(row.at("t_s"));
+        const bool leader_hears = row.at("receiver") == "leader";
+        const bool shaded = time >= 0.8 && time < 1.0;
+        const bool dazzled = leader_hears && time >= 1.1 && std::stod(row.at("end_s")) < 1.3;
+        INFO(time << " " << row.at("receiver"));
+        if (shaded || dazzled)
+            CHECK(row.at("heard") == "0");
+        else if (time < 1.09)
+            CHECK(row.at("heard") == "1");
+        sent += leader_hears && time >= 0.4;
+    }
+    CHECK(sent > 10);
+    CHECK(fault_named(report, "flip")["fired"] == sent);
+}
