@@ -3,6 +3,8 @@
 #include "cosim/faults/kind_table.h"
 #include "cosim/faults/profile.h"
 
+#include <utility>
+
 namespace puckloop::cosim {
 
 namespace {
@@ -98,13 +100,13 @@ std::vector<KindInfo> board_kinds() {
     const ParameterInfo motor{.key = "motor", .unit = Unit::Text, .choices = "left|right"};
     const ParameterInfo winding{
         .key = "winding", .unit = Unit::Integer, .low = 1, .high = 2, .fallback = 1.0};
-    constexpr double kProximity = 8;
-    kinds.push_back({"ambient_burst",
-                     PlaceKind::Pic,
-                     Style::Hold,
-                     FaultKind::None,
-                     {part("sensor", kProximity),
-                      {.key = "strength", .unit = Unit::Ratio, .low = 0, .high = 1, .fallback = 1.0}}});
+    for (const auto& [place, sensors] : {std::pair{PlaceKind::Pic, 8.0}, std::pair{PlaceKind::Tam, 2.0}})
+        kinds.push_back({"ambient_burst",
+                         place,
+                         Style::Hold,
+                         FaultKind::None,
+                         {part("sensor", sensors),
+                          {.key = "strength", .unit = Unit::Ratio, .low = 0, .high = 1, .fallback = 1.0}}});
     kinds.push_back({"phase_open", PlaceKind::Pic, Style::Hold, FaultKind::None, {motor, winding}});
     kinds.push_back({"wheel_stall", PlaceKind::Pic, Style::Hold, FaultKind::None, {motor}});
     return kinds;

@@ -91,6 +91,11 @@ void Board::set_battery(std::optional<double> volts) {
     set_signal(kBattery, battery_);
 }
 
+void Board::set_ambient(const chip::AmbientShares& shares) {
+    for (std::size_t i = 0; i < barriers_.size(); ++i)
+        barriers_[i].set_glare(shares[i]);
+}
+
 void Board::uart_receive(int unit, const cosim::UartFrame& frame) {
     if (powered()) chip_.uart_receive(unit, frame);
 }

@@ -14,6 +14,7 @@
 #include "base/random.h"
 #include "emu/avr/chip.h"
 #include "emu/avr/pins.h"
+#include "emu/chip/faults/ambient_shares.h"
 #include "emu/chip/faults/analog_faults.h"
 #include "emu/tam_avr/led_driver.h"
 #include "emu/tam_avr/light_barrier.h"
@@ -88,6 +89,8 @@ class Board : private avr::Pins {
     void set_sag(double volts);
     /// It has this voltage, before any sag, whatever set_signal() says; nullopt: what that says.
     void set_battery(std::optional<double> volts);
+    /// Light on each barrier's sensor, as a share of the supply.
+    void set_ambient(const chip::AmbientShares& shares);
 
     /// Everything that time changes; the parameters are each board's own. Throws StateError.
     template <class Archive>

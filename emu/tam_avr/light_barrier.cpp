@@ -25,7 +25,7 @@ void LightBarrier::set_duty(double duty, cosim::Time now) {
 }
 
 double LightBarrier::volts(cosim::Time now) const {
-    return std::clamp(ambient_ + beam(now), 0.0, kSupplyVolts);
+    return std::clamp(ambient_ + glare_ * kSupplyVolts + beam(now), 0.0, kSupplyVolts);
 }
 
 }  // namespace puckloop::tam

@@ -25,6 +25,8 @@ class LightBarrier {
     explicit LightBarrier(const LightBarrierParameters& parameters) : parameters_(parameters) {}
 
     void set_ambient(double volts) { ambient_ = volts; }
+    /// A fault's light, as a share of the supply.
+    void set_glare(double share) { glare_ = share; }
     /// Part of the beam that is interrupted, 0..1.
     void set_interrupted(double part, cosim::Time now);
     /// Share of the time that the LED is on, 0..1.
@@ -35,6 +37,7 @@ class LightBarrier {
     template <class Archive>
     void state(Archive& archive) {
         archive.bounded(ambient_, 0.0, 5.0);
+        archive.bounded(glare_, 0.0, 1.0);
         archive.bounded(interrupted_, 0.0, 1.0);
         archive.bounded(duty_, 0.0, 1.0);
         archive.bounded(at_edge_, 0.0, 100.0);
@@ -46,7 +49,7 @@ class LightBarrier {
     double settled() const { return parameters_.lit_volts / kFirmwareDuty * duty_ * (1.0 - interrupted_); }
 
     LightBarrierParameters parameters_;
-    double ambient_ = 0.0, interrupted_ = 0.0, duty_ = 0.0;
+    double ambient_ = 0.0, glare_ = 0.0, interrupted_ = 0.0, duty_ = 0.0;
     double at_edge_ = 0.0;  ///< volts of the beam when it last changed
     cosim::Time edge_ = 0;
 };

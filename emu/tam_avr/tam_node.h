@@ -81,6 +81,7 @@ class TamNode : public cosim::StatefulNode, private BoardListener, private chip:
     bool powered() const override { return board_->powered(); }
     void set_sag(double volts) override { board_->set_sag(volts); }
     void set_battery(std::optional<double> volts) override { board_->set_battery(volts); }
+    void set_ambient(const chip::AmbientShares& shares) override { board_->set_ambient(shares); }
 
     TamNodeOptions options_;
     std::vector<cosim::Port> ports_;

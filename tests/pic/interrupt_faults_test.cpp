@@ -1,6 +1,7 @@
 // Interrupts that are lost or late, a battery's profile and dazzled proximity sensors, on a small firmware: a
 // timer toggles an LED each millisecond, UART2 sends back each byte that it interrupts for.
 
+#include "base/archive.h"
 #include "base/random.h"
 #include "emu/chip/translation_switch.h"
 #include "emu/pic/pic_node.h"
@@ -203,7 +204,7 @@ TEST_CASE("lost interrupts of a receiver leave bytes behind, then it overruns") 
     CHECK(five.echoes().size() < 16);
 }
 
-TEST_CASE("interrupt faults do not depend on cuts, skipping, translation or going back") {
+TEST_CASE("interrupt faults do not depend on cuts, skipping, translation, going back or saved states") {
     RandomStream random(3, "interrupt cuts");
     for (int i = 0; i < 8; ++i) {
         std::vector<FaultSpec> specs;
@@ -227,11 +228,21 @@ TEST_CASE("interrupt faults do not depend on cuts, skipping, translation or goin
         const auto run = [&](bool skip, bool cut) {
             Bench bench(specs, skip);
             if (!cut) bench.node->advance(kEnd, {}, bench.out);
-            cosim::Rewindable& back = *bench.node->rewindable();
             for (const Time until :
                  cut ? tests::random_cuts(random, 2 * kMillisecond, kEnd) : std::vector<Time>{}) {
+                if (random.below(6) == 0) {  // saved, and loaded into another
+                    std::vector<std::uint8_t> bytes;
+                    StateWriter writer(bytes);
+                    bench.node->state(writer);
+                    Bench other(specs, skip);
+                    StateReader reader(bytes);
+                    other.node->state(reader);
+                    reader.end();
+                    bench.node = std::move(other.node);
+                }
                 if (random.below(3) == 0) {
                     std::vector<Message> nobody;
+                    cosim::Rewindable& back = *bench.node->rewindable();
                     back.mark();
                     bench.node->advance(until + static_cast<Time>(random.below(5 * kMillisecond)), {},
                                         nobody);

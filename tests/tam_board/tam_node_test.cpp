@@ -286,6 +286,38 @@ TEST_CASE("interrupts of the board are lost, late, or come out of nowhere") {
     CHECK_THROWS_WITH(sent(unknown), Catch::Contains("no interrupt source 'U2RX'"));
 }
 
+TEST_CASE("a battery's profile and ambient light reach the converter") {
+    const image::AvrImage image = test::assembled(kProgram);
+    cosim::FaultSpec battery = tests::board_fault("battery", "battery").set("profile", "0 s 4 V, 20 ms 3 V");
+    battery.begin = 5 * kMs;
+    battery.end = 40 * kMs;
+    cosim::FaultSpec light = tests::board_fault("ambient_burst", "light").set("sensor", 2).set("strength", 1);
+    light.begin = 10 * kMs;
+    light.end = 20 * kMs;
+    TamNodeOptions with = options();
+    with.faults = {tests::carried(battery, 0), tests::carried(light, 1)};
+    TamNode node(image, with);
+    std::vector<Message> out;
+    const auto at = [&](Time time) {
+        node.advance(time, {}, out);
+        return node.board().signal(kBattery);
+    };
+    const double before = at(4 * kMs);
+    CHECK(at(6 * kMs) == Approx(4.0));
+    CHECK(at(16 * kMs) == Approx(3.5));
+    CHECK(at(30 * kMs) == Approx(3.0));
+    CHECK(at(45 * kMs) == Approx(before));
+    const auto faults = nlohmann::json::parse(node.finish()).at("faults");
+    CHECK(faults.at(0).at("fired") == 2);
+    CHECK(faults.at(1).at("fired") == 1);
+    CHECK(faults.at(1).at("firings").at(0).at(2) == "sensor 2");
+    LightBarrier barrier{LightBarrierParameters{}};
+    barrier.set_interrupted(1.0, 0);
+    CHECK(barrier.volts(kMs) == Approx(0.0));
+    barrier.set_glare(0.5);
+    CHECK(barrier.volts(kMs) == Approx(1.65));
+}
+
 TEST_CASE("what a receiver's lost interrupts leave behind") {
     // Sends back what it receives, by interrupt.
     const image::AvrImage image = test::assembled(R"(

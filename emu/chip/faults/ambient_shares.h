@@ -1,11 +1,11 @@
 #pragma once
-// How much of each proximity sensor's signal a burst of ambient light swallows.
+// How much of the range of each sensor of light a burst of ambient light takes.
 
 #include <array>
 
 namespace puckloop::chip {
 
-/// By proximity sensor, 0 to 1.
+/// By proximity sensor of an e-puck, or light barrier of a TAM; 0 to 1.
 using AmbientShares = std::array<double, 8>;
 
 }  // namespace puckloop::chip

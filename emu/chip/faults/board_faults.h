@@ -34,7 +34,7 @@ class BoardAccess {
     virtual void set_sag(double /*volts*/) {}
     /// The battery has this voltage, before any sag, whatever the world says; nullopt: what the world says.
     virtual void set_battery(std::optional<double> /*volts*/) {}
-    /// Light that swallows this share of each proximity sensor's signal, 0 to 1.
+    /// A burst of ambient light on each proximity sensor, or light barrier, 0 to 1.
     virtual void set_ambient(const AmbientShares& /*shares*/) {}
     /// Receivers that see another's carrier all the time: bit 0 is receiver 1.
     virtual void set_carrier(std::uint16_t /*receivers*/) {}
