@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <vector>
 
 namespace puckloop::scenarios {
@@ -26,6 +27,17 @@ std::string range_of(const ParameterInfo& parameter) {
                        parameter.unit == Unit::Time ? " s" : "");
 }
 
+/// "0x1A2B", as on the command line; what is none is refused.
+double read_address(Reader& reader, const ParameterInfo& parameter) {
+    const std::string text = reader.text(parameter.key);
+    std::uint64_t value = 0;
+    const char* const last = text.data() + text.size();
+    const bool hexadecimal = text.starts_with("0x") || text.starts_with("0X");
+    if (!hexadecimal || std::from_chars(text.data() + 2, last, value, 16).ptr != last || text.size() < 3)
+        reader.fail(parameter.key, fmt::format("'{}' is no whole number", text), range_of(parameter));
+    return static_cast<double>(value);
+}
+
 double read_number(Reader& reader, const ParameterInfo& parameter) {
     switch (parameter.unit) {
     case Unit::Time:
@@ -37,6 +49,7 @@ double read_number(Reader& reader, const ParameterInfo& parameter) {
     case Unit::Frequency:
         return reader.quantity(parameter.key, Dimension::Frequency);
     case Unit::Integer:
+        if (reader.is_text(parameter.key)) return read_address(reader, parameter);
         return static_cast<double>(reader.integer(parameter.key, 0, static_cast<std::int64_t>(parameter.low),
                                                   static_cast<std::int64_t>(parameter.high)));
     case Unit::Flag:
