@@ -1,5 +1,6 @@
 #include "protocols/uart_sampling.h"
 
+#include <algorithm>
 #include <bit>
 
 namespace puckloop::protocols {
@@ -8,15 +9,34 @@ using cosim::Time;
 using cosim::UartFrame;
 
 namespace {
-/// The next instant at or after `from` at which the frame's line is low, or kNever. Level changes happen on
-/// the sender's bit boundaries only.
+/// A glitch's edge that a rounding to whole nanoseconds took from a bit's boundary is there.
+Time edge_of(const UartFrame& frame, Time since_start) {
+    const Time off = (since_start + frame.bit_period / 2) % frame.bit_period - frame.bit_period / 2;
+    return frame.start + since_start - (off > -cosim::kNanosecond && off < cosim::kNanosecond ? off : 0);
+}
+Time glitch_start(const UartFrame& frame) {
+    return edge_of(frame, Time{frame.glitch_at} * cosim::kNanosecond);
+}
+Time glitch_end(const UartFrame& frame) {
+    return edge_of(frame, (Time{frame.glitch_at} + frame.glitch_width) * cosim::kNanosecond);
+}
+bool in_glitch(const UartFrame& frame, Time time) {
+    return frame.glitch_width != 0 && time >= glitch_start(frame) && time < glitch_end(frame);
+}
+
+/// As the sender meant it; bit 0 is the start bit.
+bool bit_is_mark(const UartFrame& frame, Time bit) {
+    if (frame.is_break != 0 || bit == 0) return false;
+    if (bit <= frame.data_bits) return (frame.data >> (bit - 1) & 1u) != 0;
+    if (frame.parity != 0 && bit == frame.data_bits + 1) return frame.parity_bit != 0;
+    return true;
+}
+
+/// The next instant at or after `from` at which the frame's line is low, or kNever.
 Time next_low(const UartFrame& frame, Time from) {
     const Time end = frame_end(frame);
-    if (from < frame.start) from = frame.start;
-    while (from < end) {
+    for (from = std::max(from, frame.start); from < end; from = next_change(frame, from))
         if (!line_is_mark(frame, from)) return from;
-        from = frame.start + ((from - frame.start) / frame.bit_period + 1) * frame.bit_period;
-    }
     return cosim::kNever;
 }
 
@@ -25,35 +45,11 @@ Time next_falling_edge(const UartFrame& frame, Time from) {
     const Time end = frame_end(frame);
     if (from > frame.start) {
         while (from < end && !line_is_mark(frame, from))
-            from = frame.start + ((from - frame.start) / frame.bit_period + 1) * frame.bit_period;
+            from = next_change(frame, from);
     }
     return next_low(frame, from);
 }
 
-ReceivedCharacter take_character(const UartFrame& frame, const UartReceiver& receiver, Time edge) {
-    ReceivedCharacter character;
-    character.start = edge;
-    bool all_low = true;
-    int bit = 1;
-    const auto sample = [&] {
-        const Time middle = edge + receiver.bit_period * bit + receiver.bit_period / 2;
-        ++bit;
-        character.time = middle;
-        const bool mark = line_is_mark(frame, middle);
-        all_low = all_low && !mark;
-        return mark;
-    };
-    for (int i = 0; i < receiver.data_bits; ++i) {
-        if (sample()) character.data = static_cast<std::uint16_t>(character.data | (1u << i));
-    }
-    if (receiver.parity != 0) {
-        const int ones = std::popcount(character.data) + (sample() ? 1 : 0);
-        character.parity_error = (ones % 2 == 1) != (receiver.parity == 1);
-    }
-    character.framing_error = !sample();
-    character.is_break = all_low;
-    return character;
-}
 }  // namespace
 
 int bits_before_stop(const UartFrame& frame) {
@@ -69,13 +65,48 @@ Time frame_end(const UartFrame& frame) {
 }
 
 bool line_is_mark(const UartFrame& frame, Time time) {
-    if (time < frame.start || time >= frame_end(frame)) return true;
-    if (frame.is_break != 0) return false;
-    const Time index = (time - frame.start) / frame.bit_period;
-    if (index == 0) return false;
-    if (index <= frame.data_bits) return (frame.data >> (index - 1) & 1u) != 0;
-    if (frame.parity != 0 && index == frame.data_bits + 1) return frame.parity_bit != 0;
-    return true;
+    if (time < frame.start) return true;
+    if (time >= frame_end(frame)) return (frame.line & cosim::kLineRestsLow) == 0;
+    const bool meant = bit_is_mark(frame, (time - frame.start) / frame.bit_period);
+    const bool inverted = (frame.line & cosim::kLineInverted) != 0;
+    return (meant != inverted) != in_glitch(frame, time);
+}
+
+Time next_change(const UartFrame& frame, Time time) {
+    if (time < frame.start) return frame.start;
+    const Time end = frame_end(frame);
+    if (time >= end) return cosim::kNever;
+    Time next = frame.start + ((time - frame.start) / frame.bit_period + 1) * frame.bit_period;
+    if (frame.glitch_width != 0)
+        for (const Time edge : {glitch_start(frame), glitch_end(frame)})
+            if (edge > time) next = std::min(next, edge);
+    return std::min(next, end);
+}
+
+ReceivedCharacter take_character(const std::function<bool(Time)>& level, const UartReceiver& receiver,
+                                 Time edge) {
+    ReceivedCharacter character;
+    character.start = edge;
+    bool all_low = true;
+    int bit = 1;
+    const auto sample = [&] {
+        const Time middle = edge + receiver.bit_period * bit + receiver.bit_period / 2;
+        ++bit;
+        character.time = middle;
+        const bool mark = level(middle);
+        all_low = all_low && !mark;
+        return mark;
+    };
+    for (int i = 0; i < receiver.data_bits; ++i) {
+        if (sample()) character.data = static_cast<std::uint16_t>(character.data | (1u << i));
+    }
+    if (receiver.parity != 0) {
+        const int ones = std::popcount(character.data) + (sample() ? 1 : 0);
+        character.parity_error = (ones % 2 == 1) != (receiver.parity == 1);
+    }
+    character.framing_error = !sample();
+    character.is_break = all_low;
+    return character;
 }
 
 std::vector<ReceivedCharacter> sample_frame(const UartFrame& frame, const UartReceiver& receiver,
@@ -88,7 +119,8 @@ std::vector<ReceivedCharacter> sample_frame(const UartFrame& frame, const UartRe
             edge = next_falling_edge(frame, middle);
             continue;
         }
-        characters.push_back(take_character(frame, receiver, edge));
+        characters.push_back(
+            take_character([&](Time time) { return line_is_mark(frame, time); }, receiver, edge));
         edge = next_falling_edge(frame, characters.back().time);
     }
     return characters;

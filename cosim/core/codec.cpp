@@ -30,7 +30,11 @@ void ByteWriter::payload(const Payload& payload) {
         u8(frame->parity);
         u8(frame->stop_bits);
         u8(frame->parity_bit);
-        u8(frame->is_break);
+        u8(uart_flags(*frame));
+        if (frame->glitch_width != 0) {
+            u32(frame->glitch_at);
+            u32(frame->glitch_width);
+        }
     } else if (const auto* phase = std::get_if<I2cPhase>(&payload)) {
         u8(static_cast<std::uint8_t>(PayloadTag::I2c));
         u8(static_cast<std::uint8_t>(phase->kind));
@@ -105,9 +109,15 @@ Payload ByteReader::payload() {
         frame.parity = u8();
         frame.stop_bits = u8();
         frame.parity_bit = u8();
-        frame.is_break = u8();
+        const std::uint8_t flags = u8();
+        set_uart_flags(frame, flags);
+        if (flags & kFlagGlitch) {
+            frame.glitch_at = u32();
+            frame.glitch_width = u32();
+        }
         if (frame.data_bits < 5 || frame.data_bits > 9 || frame.parity > 2 || frame.stop_bits < 1 ||
-            frame.stop_bits > 2 || frame.parity_bit > 1 || frame.is_break > 1 || frame.bit_period <= 0)
+            frame.stop_bits > 2 || frame.parity_bit > 1 || flags > kMostUartFlags ||
+            uart_flags(frame) != flags || frame.bit_period <= 0)
             fail("UART frame with values out of range");
         return frame;
     }

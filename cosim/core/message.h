@@ -24,9 +24,29 @@ struct UartFrame {
     std::uint8_t stop_bits = 1;   ///< 1 or 2
     std::uint8_t parity_bit = 0;  ///< level of the parity bit on the wire, if any
     std::uint8_t is_break = 0;    ///< 1: the line was low for the whole frame, stop bits included
+    // What only a damaged line does; levels in protocols/uart_sampling.h.
+    std::uint8_t line = 0;           ///< of kLineInverted and kLineRestsLow
+    std::uint32_t glitch_at = 0;     ///< ns from `start`: the level is the other one from there on ...
+    std::uint32_t glitch_width = 0;  ///< ... for so many ns; 0: no glitch
 
     friend bool operator==(const UartFrame&, const UartFrame&) = default;
 };
+inline constexpr std::uint8_t kLineInverted = 1;  ///< every level of the frame is the other one
+inline constexpr std::uint8_t kLineRestsLow = 2;  ///< the line stays low behind the frame, until the next
+/// How the three are written: a byte, and the glitch if there is one. 0 for what a sound line carries.
+inline constexpr std::uint8_t kFlagBreak = 1, kFlagGlitch = 8, kMostUartFlags = 15;
+constexpr std::uint8_t uart_flags(const UartFrame& frame) {
+    return static_cast<std::uint8_t>(frame.is_break | frame.line << 1 |
+                                     (frame.glitch_width != 0 ? kFlagGlitch : 0));
+}
+constexpr void set_uart_flags(UartFrame& frame, std::uint8_t flags) {
+    frame.is_break = flags & kFlagBreak;
+    frame.line = flags >> 1 & (kLineInverted | kLineRestsLow);
+}
+/// Levels that a frame or a break of a sound line has.
+constexpr bool is_sound(const UartFrame& frame) {
+    return frame.line == 0 && frame.glitch_width == 0;
+}
 
 /// One phase of an I2C transfer on the shared bus.
 enum class I2cPhaseKind : std::uint8_t {

@@ -16,7 +16,12 @@ void state(Archive& archive, UartFrame& frame) {
     archive.bounded(frame.parity, 0, 2);
     archive.bounded(frame.stop_bits, 1, 2);
     archive.bounded(frame.parity_bit, 0, 1);
-    archive.bounded(frame.is_break, 0, 1);
+    std::uint8_t flags = uart_flags(frame);
+    archive.bounded(flags, 0, kMostUartFlags);
+    if constexpr (Archive::kLoads) set_uart_flags(frame, flags);
+    if ((flags & kFlagGlitch) == 0) return;
+    archive(frame.glitch_at, frame.glitch_width);
+    archive.check(frame.glitch_width != 0, "a glitch without a width");
 }
 
 template <class Archive>

@@ -6,13 +6,13 @@
 namespace puckloop::cosim {
 
 namespace {
-constexpr std::array<std::string_view, 28> kNames{
+constexpr std::array<std::string_view, 29> kNames{
     "",         "drop",   "flip", "delay",         "duplicate",   "disconnect",
     "stuck",    "rate",   "cut",  "insert",        "held",        "swap",
     "truncate", "parity", "stop", "glitch",        "false_start", "break",
     "invert",   "unplug", "torn", "swapped_wires", "batch",       "throttle",
-    "overflow", "stall",  "late", "baud"};
-static_assert(kNames.size() == static_cast<std::size_t>(FaultKind::Baud) + 1);
+    "overflow", "stall",  "late", "baud",          "loopback"};
+static_assert(kNames.size() == static_cast<std::size_t>(FaultKind::Loopback) + 1);
 }  // namespace
 
 std::string_view fault_name(FaultKind kind) {

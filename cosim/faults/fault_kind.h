@@ -38,6 +38,7 @@ enum class FaultKind : std::uint8_t {
     Stall,         ///< waits for the end of the window
     Late,          ///< pushed back by another message that a fault made late
     Baud,          ///< the sender's clock is off
+    Loopback,      ///< comes back to its sender: shown on the line into it
 };
 
 /// "drop", "flip", ...; empty for None.

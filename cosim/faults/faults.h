@@ -21,6 +21,7 @@ namespace puckloop::cosim {
 struct Delivery {
     Message message;
     FaultKind fault = FaultKind::None;
+    bool back = false;  ///< arrives at its own sender; only on links with a loopback() fault
 };
 
 /// The message as its sender sent it.
@@ -53,6 +54,9 @@ struct WireSite {
     PlaceKind place = PlaceKind::Uart;
     std::string sender{};  ///< the node's name
 };
+
+/// Whether the fault may bring messages back to their senders.
+bool loops_back(const FaultSpec& spec);
 
 /// `index` is the fault's place in the list (names its random stream). Throws InputError for a kind that
 /// such a link cannot suffer and for parameters out of range.

@@ -80,6 +80,7 @@ class QueuedFault : public FrameFault {
 std::unique_ptr<LinkFault> make_byte_fault(const FaultPlan& plan);
 std::unique_ptr<LinkFault> make_record_fault(const FaultPlan& plan);
 std::unique_ptr<LinkFault> make_level_fault(const FaultPlan& plan);
+std::unique_ptr<LinkFault> make_invert_fault(const FaultPlan& plan);
 std::unique_ptr<LinkFault> make_timing_fault(const FaultPlan& plan);
 std::unique_ptr<LinkFault> make_wiring_fault(const FaultPlan& plan);
 std::unique_ptr<LinkFault> make_radio_fault(const FaultPlan& plan);

@@ -15,6 +15,7 @@ constexpr double kLongest = 1e6;  // seconds
 // A bit slower than 1/64 or faster than 64 times the sender's is no clock error but a mistake.
 constexpr double kMostFactor = 64.0;
 constexpr double kMostFrames = 1e6;
+constexpr double kMostBitsOfFrame = 13;  // start, 9 data, parity, 2 stop
 
 ParameterInfo required(std::string_view key, Unit unit, double low, double high) {
     return {key, unit, low, high, {}, true};
@@ -78,7 +79,9 @@ std::vector<KindInfo> uart_kinds() {
         kind("truncate", Style::Each, FaultKind::Truncate, {required("keep", Unit::Integer, 0, 1e6)}),
         // Levels
         kind("parity", Style::Each, FaultKind::Parity, {choice("mode", "wrong|mark|space")}),
-        kind("stop", Style::Each, FaultKind::Stop),
+        kind("stop", Style::Each, FaultKind::Stop, {{"length", Unit::Ratio, 0, 0.99, 0}}),
+        kind("glitch", Style::Each, FaultKind::Glitch,
+             {required("width", Unit::Time, 1e-9, 1), optional("bit", Unit::Number, 0, kMostBitsOfFrame)}),
         kind("false_start", Style::Times, FaultKind::FalseStart, {required("width", Unit::Time, 1e-9, 1)}),
         kind("break", Style::Times, FaultKind::Break, {optional("length", Unit::Time, 1e-6, 10)}),
         kind("stuck", Style::Hold, FaultKind::Stuck, {choice("level", "low|high")}),
@@ -98,6 +101,7 @@ std::vector<KindInfo> uart_kinds() {
         kind("disconnect", Style::Hold, FaultKind::Disconnect),
         kind("unplug", Style::Hold, FaultKind::Unplug),
         kind("swapped_wires", Style::Hold, FaultKind::SwappedWires),
+        kind("loopback", Style::Hold, FaultKind::Loopback, {{"through", Unit::Flag, 0, 1, 0}}),
     };
 }
 

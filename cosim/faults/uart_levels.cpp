@@ -3,15 +3,14 @@
 #include "cosim/faults/frame_fault.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 namespace puckloop::cosim {
 
 namespace {
 
-constexpr std::uint16_t kAllHigh = 0xFF;
 constexpr std::uint8_t kMostDataBits = 9;
+constexpr double kRounding = 2e-9;  // s
 
 class Parity : public FrameFault {
   public:
@@ -29,20 +28,58 @@ class Parity : public FrameFault {
     }
 };
 
-/// The stop bit is low: on the line, one more data bit before the line goes high.
-class NoStop : public FrameFault {
+/// A time within a frame in whole nanoseconds, as frames have them.
+std::uint32_t nanoseconds(double seconds) {
+    constexpr double kMost = 4e9;
+    return static_cast<std::uint32_t>(std::lround(std::clamp(seconds * 1e9, 0.0, kMost)));
+}
+
+void put_glitch(UartFrame& frame, double first_bit, double seconds) {
+    frame.glitch_at = nanoseconds(first_bit * to_seconds(frame.bit_period));
+    frame.glitch_width = std::max<std::uint32_t>(1, nanoseconds(seconds));
+}
+
+/// The stop bit is low, or goes low before its time. A missing one is written as one more data bit if the
+/// frame has room for it.
+class StopLow : public FrameFault {
   public:
     using FrameFault::FrameFault;
 
   protected:
     bool can_suffer(const Payload& payload) const override {
         const auto* frame = std::get_if<UartFrame>(&payload);
-        return frame && frame->parity == 0 && frame->data_bits < kMostDataBits && !frame->is_break;
+        return frame && is_sound(*frame) && !frame->is_break;
     }
     void harm(std::size_t i, std::vector<Delivery>& batch) override {
         UartFrame& frame = std::get<UartFrame>(batch[i].message.payload);
-        ++frame.data_bits;
-        batch[i].message.time = later(batch[i].message.time, frame.bit_period);
+        const double length = spec().parameters.number("length"), bit = to_seconds(frame.bit_period);
+        if (length == 0 && frame.parity == 0 && frame.data_bits < kMostDataBits) {
+            ++frame.data_bits;
+            batch[i].message.time = later(batch[i].message.time, frame.bit_period);
+            return;
+        }
+        const int before = bits_of(frame) - frame.stop_bits;
+        // Of two missing stop bits the first; else up to the frame's end, whatever is rounded.
+        const bool one_of_two = length == 0 && frame.stop_bits == 2;
+        put_glitch(frame, before + length, one_of_two ? bit : (frame.stop_bits - length) * bit + kRounding);
+    }
+};
+
+/// The level is the other one for a while within the frame.
+class Glitch : public FrameFault {
+  public:
+    using FrameFault::FrameFault;
+
+  protected:
+    bool can_suffer(const Payload& payload) const override {
+        const auto* frame = std::get_if<UartFrame>(&payload);
+        return frame && frame->glitch_width == 0 && spec().parameters.number("bit") < bits_of(*frame);
+    }
+    void harm(std::size_t i, std::vector<Delivery>& batch) override {
+        UartFrame& frame = std::get<UartFrame>(batch[i].message.payload);
+        const double bit = spec().parameters.has("bit") ? spec().parameters.number("bit")
+                                                        : random().uniform() * bits_of(frame);
+        put_glitch(frame, bit, spec().parameters.number("width"));
     }
 };
 
@@ -78,8 +115,12 @@ class FalseStart : public Pulses {
 
   protected:
     void draw(UartFrame& frame) const override {
-        frame.bit_period = std::max<Time>(1, spec().parameters.time("width"));
-        frame.data = kAllHigh;
+        // A stretch of high line with a pulse in it: no frame of a sender, which may begin one at any time.
+        const Time width = std::max<Time>(1, spec().parameters.time("width"));
+        frame.is_break = 1;
+        frame.line = kLineInverted;
+        frame.bit_period = std::max(bit_time(), width / bits_of(frame) + 1);
+        put_glitch(frame, 0, to_seconds(width));
     }
     FaultKind site_mark() const override { return FaultKind::FalseStart; }
 };
@@ -118,37 +159,6 @@ class Stuck : public FrameFault {
     void harm(std::size_t, std::vector<Delivery>&) override {}
 };
 
-/// Every level is the other one. What a receiver takes for a start bit is the first low level after the
-/// sender's start bit, now high; behind the last data bit the line is low.
-class Invert : public FrameFault {
-  public:
-    using FrameFault::FrameFault;
-
-    std::vector<Delivery> preset() override {
-        UartFrame low;
-        low.start = spec().begin;
-        low.bit_period = bit_time();
-        low.is_break = 1;
-        return {own(low, FaultKind::Invert)};
-    }
-
-  protected:
-    void harm(std::size_t i, std::vector<Delivery>& batch) override {
-        UartFrame& frame = std::get<UartFrame>(batch[i].message.payload);
-        const int bits = bits_of(frame) - frame.stop_bits;
-        unsigned levels = (frame.data << 1 | frame.parity_bit << (1 + frame.data_bits)) & ((1u << bits) - 1);
-        if (frame.is_break != 0) levels = 0;
-        levels = ~levels & ((1u << bits) - 1);  // bit 0 is the start bit
-        const int start = std::countr_one(levels);
-        frame.start += frame.bit_period * start;
-        frame.data = static_cast<std::uint16_t>(levels >> (start + 1));
-        frame.data_bits = kMostDataBits;
-        frame.parity = frame.parity_bit = frame.is_break = 0;
-        const Time sent = frame.start + frame.bit_period * (1 + frame.data_bits);
-        batch[i].message.time = std::max(batch[i].message.time, later(sent, site().latency));
-    }
-};
-
 }  // namespace
 
 std::unique_ptr<LinkFault> make_level_fault(const FaultPlan& plan) {
@@ -162,9 +172,9 @@ std::unique_ptr<LinkFault> make_level_fault(const FaultPlan& plan) {
     case FaultKind::Stuck:
         return std::make_unique<Stuck>(plan);
     case FaultKind::Stop:
-        return std::make_unique<NoStop>(plan);
-    case FaultKind::Invert:
-        return std::make_unique<Invert>(plan);
+        return std::make_unique<StopLow>(plan);
+    case FaultKind::Glitch:
+        return std::make_unique<Glitch>(plan);
     default:
         return nullptr;
     }

@@ -71,7 +71,45 @@ class Unplug : public LinkFault {
     std::string sender_;
 };
 
+/// A plug that puts the transmitter on the receiver of the same end.
+class Loopback : public LinkFault {
+  public:
+    explicit Loopback(const FaultPlan& plan)
+        : begin_(plan.spec.begin),
+          end_(plan.spec.end),
+          sender_(plan.site.sender),
+          hears_itself_(plan.spec.from.empty() || plan.spec.from == sender_),
+          through_(plan.spec.parameters.number("through") != 0) {}
+
+    void apply(std::vector<Delivery>& batch, const Sending& sending) override {
+        const std::size_t count = batch.size();
+        for (std::size_t i = 0; i < count; ++i) {
+            const auto* frame = std::get_if<UartFrame>(&batch[i].message.payload);
+            if (!frame || batch[i].back || keeps_from_arriving(batch[i].fault)) continue;
+            if (frame->start < begin_ || frame->start >= end_ || (through_ && !hears_itself_)) continue;
+            evidence_.fire({frame->start, sending.index, sender_, text_of(batch[i].message.payload)},
+                           sending.delivery);
+            Delivery back = batch[i];
+            if (!through_) batch[i].fault = FaultKind::Disconnect;
+            if (!hears_itself_) continue;
+            back.fault = FaultKind::Loopback;
+            back.back = true;
+            batch.push_back(back);
+        }
+    }
+
+  private:
+    Time begin_, end_;
+    std::string sender_;
+    bool hears_itself_, through_;
+};
+
 }  // namespace
+
+bool loops_back(const FaultSpec& spec) {
+    const KindInfo* kind = find_kind(spec.kind, PlaceKind::Uart);
+    return kind && kind->mark == FaultKind::Loopback;
+}
 
 std::unique_ptr<LinkFault> make_wiring_fault(const FaultPlan& plan) {
     switch (plan.kind.mark) {
@@ -80,6 +118,8 @@ std::unique_ptr<LinkFault> make_wiring_fault(const FaultPlan& plan) {
         return std::make_unique<Open>(plan);
     case FaultKind::Unplug:
         return std::make_unique<Unplug>(plan);
+    case FaultKind::Loopback:
+        return std::make_unique<Loopback>(plan);
     default:
         return nullptr;
     }

@@ -92,8 +92,15 @@ void Network::attach_fault(const FaultSpec& spec, std::size_t index, std::uint64
         const bool is_radio = nodes_[wire.from]->ports()[wire.from_port].kind == PortKind::Radio;
         if (!wire.is_uart && !is_radio)
             throw InputError("", place, "the link is no UART and no radio", "a UART or radio link");
-        if (!spec.from.empty() && nodes_[wire.from]->name() != spec.from) continue;
-        found_wire = true;
+        const bool loops = loops_back(spec),
+                   meant = spec.from.empty() || nodes_[wire.from]->name() == spec.from;
+        found_wire = found_wire || meant;
+        // One end that hears itself is cut off from the other, which does not hear it any more either.
+        if (!meant && !loops) continue;
+        if (loops && meant && wire.loop == kNobody) {
+            wire.loop = channels_.size();
+            channels_.push_back({wire.from, wire.from, 0, 0});
+        }
         const PlaceKind kind = is_radio ? PlaceKind::Radio : PlaceKind::Uart;
         const WireSite site{wire.direction, wire.flight, wire.latency, kind,
                             std::string(nodes_[wire.from]->name())};
@@ -125,6 +132,7 @@ void Network::update(std::size_t n, const NodeState& state, Time reached, Time f
         if (lookahead != channel.lookahead) ++lookaheads_;
         channel.lookahead = lookahead;
         channel.instant = port.lookahead == 0;
+        update_loop(port_wire_[n][p]);
         sent = {std::move(sent.messages)};
     }
 }
@@ -159,7 +167,7 @@ void Network::echoes(std::size_t n, std::vector<PortEcho>& echoes) {
     for (std::size_t p = 0; p < echoes.size(); ++p) {
         if (port_wire_[n][p] == kNobody) continue;
         const Wire& wire = wires_[port_wire_[n][p]];
-        echoes[p] = {wire.flight, wire.latency, back[wire.to], wire.is_uart};
+        echoes[p] = {wire.flight, wire.latency, wire.loop == kNobody ? back[wire.to] : 0, wire.is_uart};
     }
 }
 

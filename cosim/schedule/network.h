@@ -33,6 +33,9 @@ struct Wire {
     std::vector<Message> foreseen{};
     std::size_t settled = 0;
     Time base = 0;  ///< nothing but what is foreseen is delivered before, as the sender reported
+    /// The channel on which faults bring messages back to the sender, and how many they brought.
+    std::size_t loop = kNobody;
+    std::uint64_t brought_back = 0;
 };
 
 /// What a node is to receive became another from `time` on, by what `from` sent.
@@ -55,6 +58,7 @@ class Network {
     /// Takes over what node `n` says of its future after it was asked to wind up at `now`, which all nodes
     /// have reached: what it said before holds no more.
     void renew(std::size_t n, const NodeState& state, Time now);
+    /// One for each wire, by its index, then those that lead back to their senders.
     const std::vector<Channel>& channels() const { return channels_; }
     /// What comes back of what node `n` says on each port, as the others stand now.
     void echoes(std::size_t n, std::vector<PortEcho>& echoes);
@@ -113,6 +117,7 @@ class Network {
     void send(Wire& wire, const Message& message, std::vector<TraceRecord>& deliveries,
               std::vector<Change>& changes);
     void update_channel(std::size_t w);
+    void update_loop(std::size_t w);
     void judge_punctuality(Channel& channel, Time base, const Sent& sent) const;
     const std::vector<Time>& distances_to_node(std::size_t n);
     void deliver(Wire& wire, std::vector<TraceRecord>& deliveries, std::vector<Change>& changes);
@@ -120,7 +125,7 @@ class Network {
     const std::vector<std::unique_ptr<NodeHandle>>& nodes_;
     const std::vector<LinkSpec>& links_;
     std::vector<Wire> wires_;
-    std::vector<Channel> channels_;    ///< one a wire, same index
+    std::vector<Channel> channels_;
     std::vector<bool> has_unsettled_;  ///< whether something foreseen on a wire is not final
     std::uint64_t lookaheads_ = 1;     ///< how often one changed
     std::vector<WaysBack> ways_back_;

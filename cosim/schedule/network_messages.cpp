@@ -104,10 +104,20 @@ void Network::update_channel(std::size_t w) {
         const Time delivery = delivery_time(wire.foreseen[i], wire.flight, wire.latency);
         if (!wire.faults.empty()) {
             channel.base = std::min(channel.base, delivery);
-            return;
+            break;
         }
         channel.foreseen.push_back({wire.foreseen[i].time, delivery});
     }
+    update_loop(w);
+}
+
+/// What is sent on the wire may come back at the time at which it comes out at the far end.
+void Network::update_loop(std::size_t w) {
+    if (wires_[w].loop == kNobody) return;
+    Channel& back = channels_[wires_[w].loop];
+    const std::size_t sender = back.from;
+    back = channels_[w];
+    back.from = back.to = sender;
 }
 
 void Network::settle(const Bounds& bounds, std::vector<TraceRecord>& deliveries,
@@ -174,11 +184,16 @@ void Network::preset(std::vector<TraceRecord>& deliveries, std::vector<Change>& 
 }
 
 void Network::deliver(Wire& wire, std::vector<TraceRecord>& deliveries, std::vector<Change>& changes) {
+    // Apart from the other end's own, whose order among them is open.
+    constexpr std::uint64_t kBroughtBack = std::uint64_t{1} << 63;
     for (const Delivery& delivery : batch_) {
-        deliveries.push_back({delivery.message.time, wire.link, wire.direction, wire.sequence++,
+        const bool back = delivery.back;
+        const Direction other = wire.direction == Direction::FromA ? Direction::FromB : Direction::FromA;
+        const std::uint64_t sequence = back ? kBroughtBack | wire.brought_back++ : wire.sequence++;
+        deliveries.push_back({delivery.message.time, wire.link, back ? other : wire.direction, sequence,
                               delivery.fault, delivery.message.payload});
         if (!wire.faults.empty() && !lost(deliveries.back()))
-            changes.push_back({wire.from, wire.to, delivery.message.time});
+            changes.push_back({wire.from, back ? wire.from : wire.to, delivery.message.time});
     }
 }
 

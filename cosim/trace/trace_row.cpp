@@ -84,6 +84,16 @@ void put_phase(std::string& out, const I2cPhase& phase) {
     if (phase.kind == I2cPhaseKind::Read) out += phase.ack ? "+ack" : "+nack";
 }
 
+constexpr std::string_view kGlitch = " glitch ", kRestsLow = " low", kInverted = " inverted";
+
+/// What a damaged line did to a frame.
+void put_line(std::string& out, const UartFrame& frame) {
+    if (frame.line & kLineInverted) out += kInverted;
+    if (frame.line & kLineRestsLow) out += kRestsLow;
+    if (frame.glitch_width != 0)
+        out += fmt::format("{}{}+{}ns", kGlitch, frame.glitch_at, frame.glitch_width);
+}
+
 void put_payload(std::string& out, const UartFrame& frame) {
     if (frame.is_break) {
         out += "break,,";
@@ -96,6 +106,7 @@ void put_payload(std::string& out, const UartFrame& frame) {
     out += kParityLetters[frame.parity % kParityLetters.size()];
     put_number(out, frame.stop_bits);
     if (frame.parity != 0) out += frame.parity_bit ? " p1" : " p0";
+    if (!is_sound(frame)) put_line(out, frame);
     out += ',';
     put_seconds(out, frame.start);
     out += ',';
@@ -200,15 +211,35 @@ class Parser {
     std::vector<std::string> fields_;
 };
 
+/// Takes what a damaged line did off the end of a frame's format; leaves there what it does not understand.
+void take_line(std::string& format, UartFrame& frame) {
+    if (const std::size_t at = format.find(kGlitch); at != std::string::npos) {
+        const char* const end = format.data() + format.size();
+        const char* next = std::from_chars(format.data() + at + kGlitch.size(), end, frame.glitch_at).ptr;
+        if (next == end || *next != '+') return;
+        next = std::from_chars(next + 1, end, frame.glitch_width).ptr;
+        if (std::string_view(next, end) != "ns" || frame.glitch_width == 0) return;
+        format.resize(at);
+    }
+    const auto take = [&](std::string_view word, std::uint8_t flag) {
+        if (!format.ends_with(word)) return;
+        format.resize(format.size() - word.size());
+        frame.line |= flag;
+    };
+    take(kRestsLow, kLineRestsLow);
+    take(kInverted, kLineInverted);
+}
+
 UartFrame parse_frame(const Parser& in) {
     UartFrame frame;
-    const std::string& format = in[5];
+    std::string format = in[5];
+    take_line(format, frame);
     const std::size_t parity = format.size() < 3 ? std::string::npos : kParityLetters.find(format[1]);
     const bool has_parity_bit =
         format.size() == 6 && format.substr(3, 2) == " p" && (format[5] == '0' || format[5] == '1');
     if (parity == std::string::npos || format[0] < '5' || format[0] > '9' || format[2] < '1' ||
         format[2] > '2' || has_parity_bit != (parity != 0) || (format.size() != 3 && !has_parity_bit))
-        in.fail(fmt::format("\"{}\" is no frame format", format), "8N1, 9E2 p1, ...");
+        in.fail(fmt::format("\"{}\" is no frame format", in[5]), "8N1, 9E2 p1, ...");
     frame.data_bits = static_cast<std::uint8_t>(format[0] - '0');
     frame.parity = static_cast<std::uint8_t>(parity);
     frame.stop_bits = static_cast<std::uint8_t>(format[2] - '0');

@@ -1,11 +1,15 @@
 #pragma once
 // The serial line as a UART's receiver sees it: it looks for a start bit with its own 16x (4x) clock and
 // samples the sender's waveform at its own bit centres, so a baud mismatch gives the garbage that it gives in
-// silicon. Source: dsPIC30F Family Reference Manual, section 19; fact sheet peripherals.md section 1.
+// silicon. With 16 and 8 clocks a bit the majority of three samples in its middle counts, with 4 one sample;
+// a start bit is one if it is low there, and seen only if a sample falls into it. Sources: dsPIC30F Family
+// Reference Manual, section 19; dsPIC33 manual on the UART, DS70000582, section 6 (samples 7, 8 and 9; one
+// with 4 clocks); ATmega1284P data sheet 8272, "Asynchronous Data Reception" (samples 8, 9 and 10, or 4, 5
+// and 6, counted from the first low one).
 //
 // Deviations
-//  1. The majority of three samples is taken as the middle one: the waveform has no glitches shorter than a
-//     sample.
+//  1. Where no level lasts less than three sampling clocks the middle one of three samples is taken, which is
+//     their majority then.
 //  2. A character is known only once its frame was handed in, when the sender's stop bit begins: what a
 //     faster receiver samples before that instant is delivered at that instant.
 //  3. A receiver that still samples after the end of all known frames waits until a next frame could no
@@ -16,9 +20,9 @@
 #include "cosim/core/message.h"
 #include "cosim/core/message_state.h"
 #include "emu/chip/event_queue.h"
+#include "protocols/uart_line.h"
 
 #include <cstdint>
-#include <deque>
 #include <optional>
 
 namespace puckloop::chip {
@@ -52,7 +56,7 @@ class UartReceiver {
     /// A frame on the line; frames come in order of their starts.
     void frame(const cosim::UartFrame& frame);
     /// Nobody listens at cycle `at`: what has passed by then is of no use.
-    void pass(Cycle at) { forget_before(clock_.time_of(at)); }
+    void pass(Cycle at) { line_.forget_before(clock_.time_of(at)); }
     /// The next character, if all that it depends on is known at cycle `now`.
     std::optional<Character> next(const Format& format, Cycle now);
     /// When next() is worth asking again although no frame came; kNoCycle if only a frame can help.
@@ -60,20 +64,17 @@ class UartReceiver {
 
     template <class Archive>
     void state(Archive& archive) {
-        archive(frames_, ask_again_);
+        archive(line_, ask_again_);
         archive.bounded(listening_from_, 0, cosim::kNever);
-        for (const cosim::UartFrame& frame : frames_)
-            archive.check(frame.bit_period > 0, "a frame without a bit period");
     }
 
   private:
-    bool level(cosim::Time time) const;
-    std::optional<cosim::Time> falling_edge(cosim::Time from) const;
-    cosim::Time first_high(cosim::Time from) const;
-    void forget_before(cosim::Time time);
+    /// What it samples in the bit whose middle is at this cycle.
+    bool sample(const Format& format, Cycle middle, bool exact) const;
+    bool may_change(cosim::Time time, Cycle now, cosim::Time own_flight, bool exact);
 
     const cosim::ClockDomain& clock_;
-    std::deque<cosim::UartFrame> frames_;
+    protocols::UartLine line_;
     cosim::Time listening_from_ = 0;
     Cycle ask_again_ = kNoCycle;
 };

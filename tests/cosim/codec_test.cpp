@@ -20,7 +20,15 @@ RadioFrame some_radio_frame() {
 std::vector<Message> some_messages() {
     UartFrame frame{123456789, 8680555, 0x1a5, 9, 2, 2, 1, 0};
     I2cPhase phase{I2cPhaseKind::Data, 0xc0, 1, -5, 2500000, 7};
-    return {{1, 0, frame}, {2, 65535, phase}, {kNever, 3, Signal{7, -0.25}}, {9, 1, some_radio_frame()}};
+    UartFrame damaged{frame};
+    damaged.line = kLineInverted | kLineRestsLow;
+    damaged.glitch_at = 4'000'000'000;
+    damaged.glitch_width = 1;
+    return {{1, 0, frame},
+            {1, 1, damaged},
+            {2, 65535, phase},
+            {kNever, 3, Signal{7, -0.25}},
+            {9, 1, some_radio_frame()}};
 }
 
 NodeState some_state() {

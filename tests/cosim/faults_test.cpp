@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <bit>
 
 using namespace puckloop;
@@ -128,6 +129,38 @@ TEST_CASE("stuck: one break when the line goes low, then nothing until it is let
         }
     CHECK(breaks == 1);
     CHECK(pair.outcome.links[0].from_a.uart_breaks == 1);
+}
+
+TEST_CASE(
+    "loopback: within the window the sender hears itself, and the other end nothing but with `through`") {
+    for (const bool through : {false, true}) {
+        FaultSpec fault{"", "", "loopback"};
+        fault.begin = 20 * kMs;
+        fault.end = 70 * kMs;
+        if (through) fault.set("through", 1);
+        Recorder recorder;
+        const Outcome outcome = talk(fault)(&recorder);
+        REQUIRE(outcome.reason == EndReason::Duration);
+        std::uint64_t back = 0;
+        for (const TraceRecord& record : recorder.records) {
+            if (record.direction == Direction::FromB) {
+                ++back;
+                CHECK(record.fault == FaultKind::Loopback);
+                continue;
+            }
+            const Time start = frame(record).start;
+            const bool within = start >= fault.begin && start < fault.end;
+            CHECK(record.fault == (within && !through ? FaultKind::Disconnect : FaultKind::None));
+            const auto heard =
+                std::find_if(recorder.records.begin(), recorder.records.end(), [&](const TraceRecord& other) {
+                    return other.direction == Direction::FromB && other.time == record.time &&
+                           other.payload == record.payload;
+                });
+            CHECK((heard != recorder.records.end()) == within);
+        }
+        CHECK(back > 50);
+        CHECK(outcome.faults.at(0).fired == back);
+    }
 }
 
 TEST_CASE("rate: the receiver sees another bit time, the statistics count it") {

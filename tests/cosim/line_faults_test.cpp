@@ -2,11 +2,13 @@
 
 #include "fault_line.h"
 
-#include "protocols/uart_sampling.h"
+#include "protocols/uart_line.h"
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <bit>
+#include <cstdlib>
 
 using namespace puckloop;
 using namespace puckloop::cosim;
@@ -42,26 +44,88 @@ TEST_CASE("stop: the data as sent, and a framing error") {
     }
 }
 
-TEST_CASE("invert: a receiver reads what it finds behind the first falling edge") {
-    FaultSpec spec = fault("invert");
-    spec.end = kSecond;
-    for (unsigned data = 0; data < 256; ++data) {
-        const UartFrame frame = harmed(spec, data);
-        // The line as it is: high for the start bit, the other data bits, low from the stop bit on.
-        const auto inverted = [data](int bit) {
-            return bit == 0 || (bit <= 8 && (data >> (bit - 1) & 1) == 0);
-        };
-        int edge = 1;
-        while (inverted(edge))
-            ++edge;
-        CHECK(frame.start == kMillisecond + edge * kBit);
-        const auto got = sample_frame(frame, {kBit}, 0);
+TEST_CASE("stop: frames with a parity bit and of nine data bits lose theirs too, and nothing else") {
+    for (const UartFrame& like : {UartFrame{.parity = 2}, UartFrame{.parity = 1, .stop_bits = 2},
+                                  UartFrame{.data_bits = 9}, UartFrame{.data_bits = 9, .parity = 1}})
+        for (unsigned data = 0; data < 256; data += 3) {
+            FaultLine line(fault("stop"));
+            UartFrame sent = like;
+            const bool odd = std::popcount(data) % 2 == 1;
+            sent.parity_bit = like.parity != 0 && odd == (like.parity == 2);
+            line.send(kMillisecond, data, sent);
+            const auto got = sample_frame(line.arrived()[0], {kBit, like.data_bits, like.parity}, 0);
+            REQUIRE(got.size() == 1);
+            CHECK(got[0].data == data);
+            CHECK(got[0].framing_error);
+            CHECK_FALSE(got[0].parity_error);
+        }
+}
+
+TEST_CASE("stop: a short one is an error if it ends before its middle") {
+    for (const double length : {0.05, 0.3, 0.48, 0.52, 0.8, 0.97}) {
+        const auto got = sample_frame(harmed(fault("stop").set("length", length), 0xA5), {kBit}, 0);
         REQUIRE(got.size() == 1);
-        unsigned expected = 0;
-        for (int bit = 0; bit < 8; ++bit)
-            expected |= inverted(edge + 1 + bit) ? 1u << bit : 0u;
-        CHECK(got[0].data == expected);
-        CHECK(got[0].framing_error);
+        CHECK(got[0].data == 0xA5);
+        CHECK(got[0].framing_error == (length < 0.5));
+    }
+}
+
+TEST_CASE("glitch: only the levels within the pulse are others") {
+    RandomStream random(35, "glitch");
+    for (int round = 0; round < 200; ++round) {
+        const double bit = 9.9 * random.uniform(), width = 3 * to_seconds(kBit) * random.uniform();
+        FaultLine line(fault("glitch").set("bit", bit).set("width", width));
+        const UartFrame was = line.send(kMillisecond, static_cast<unsigned>(random.below(256)));
+        const UartFrame is = line.arrived()[0];
+        const Time begin = was.start + static_cast<Time>(bit * static_cast<double>(kBit));
+        const Time end = begin + static_cast<Time>(width * 1e12);
+        for (int look = 0; look < 60; ++look) {
+            const Time time = was.start + static_cast<Time>(random.below(11 * kBit));
+            if (std::abs(time - begin) <= kNanosecond || std::abs(time - end) <= kNanosecond) continue;
+            const bool within = time >= begin && time < end && time < frame_end(was);
+            CHECK(line_is_mark(is, time) == (line_is_mark(was, time) != within));
+        }
+    }
+}
+
+TEST_CASE("glitch: drawn anywhere in the frame, differently with each seed") {
+    std::vector<int> bits(10);
+    std::vector<std::uint32_t> first;
+    for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+        const UartFrame frame = harmed(fault("glitch").set("width", 1e-6), 0x42, seed);
+        ++bits.at(frame.glitch_at * kNanosecond / kBit);
+        first.push_back(frame.glitch_at);
+        CHECK(frame.glitch_width == 1000);
+        CHECK(harmed(fault("glitch").set("width", 1e-6), 0x42, seed) == frame);
+    }
+    for (const int count : bits)
+        CHECK(count > 10);
+    std::sort(first.begin(), first.end());
+    CHECK(std::unique(first.begin(), first.end()) - first.begin() > 280);
+}
+
+TEST_CASE("invert: every level of the window is the other one, at rest too") {
+    RandomStream random(36, "invert");
+    for (int round = 0; round < 60; ++round) {
+        FaultSpec spec = fault("invert");
+        spec.begin = kMillisecond - kByte + static_cast<Time>(random.below(4 * kByte));
+        spec.end = spec.begin + static_cast<Time>(random.below(8 * kByte));
+        FaultLine line(spec);
+        UartLine sound, damaged;
+        Time at = kMillisecond;
+        for (int i = 0; i < 6; ++i) {
+            sound.add(line.send(at, static_cast<unsigned>(random.below(256))));
+            at += kByte + static_cast<Time>(random.below(2) * random.below(kByte));
+        }
+        for (const UartFrame& frame : line.arrived())
+            damaged.add(frame);
+        for (int look = 0; look < 300; ++look) {
+            const Time time = kMillisecond - 2 * kByte + static_cast<Time>(random.below(16 * kByte));
+            if (std::abs(time - spec.begin) <= 1 || std::abs(time - spec.end) <= 1) continue;
+            const bool within = time >= spec.begin && time < spec.end;
+            REQUIRE(damaged.level(time) == (sound.level(time) != within));
+        }
+        CHECK_FALSE(line.early);
     }
 }
 

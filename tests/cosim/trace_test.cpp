@@ -238,6 +238,10 @@ std::string plain_row(const TraceRow& row) {
         text += frame->is_break ? "break,," : fmt::format("uart,{:02x},", frame->data);
         text += fmt::format("{}{}{}", frame->data_bits, "NOE"[frame->parity], frame -> stop_bits);
         if (frame->parity != 0) text += frame->parity_bit ? " p1" : " p0";
+        if (frame->line & 1) text += " inverted";
+        if (frame->line & 2) text += " low";
+        if (frame->glitch_width != 0)
+            text += fmt::format(" glitch {}+{}ns", frame->glitch_at, frame->glitch_width);
         text += fmt::format(",{},{},", seconds(frame->start), seconds(frame->bit_period));
     } else if (const auto* phase = std::get_if<I2cPhase>(&row.payload)) {
         const char* const kinds[] = {
@@ -288,6 +292,11 @@ Payload random_payload(RandomStream& chance) {
         frame.stop_bits = static_cast<std::uint8_t>(1 + bit());
         frame.parity_bit = bit();
         frame.is_break = bit();
+        if (bit()) frame.line = static_cast<std::uint8_t>(chance.below(4));
+        if (bit()) {
+            frame.glitch_at = static_cast<std::uint32_t>(chance.below(1ull << 32));
+            frame.glitch_width = static_cast<std::uint32_t>(1 + chance.below(100'000));
+        }
         return frame;
     }
     case 1:

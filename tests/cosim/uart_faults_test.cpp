@@ -2,11 +2,14 @@
 
 #include "fault_line.h"
 
+#include "protocols/uart_sampling.h"
+
 #include "base/error.h"
 
 #include <catch2/catch.hpp>
 
 #include <bit>
+#include <cmath>
 
 using namespace puckloop;
 using namespace puckloop::cosim;
@@ -306,9 +309,10 @@ TEST_CASE("breaks and false starts come at their instants") {
         REQUIRE(got.size() == spec.count);
         for (std::size_t i = 0; i < got.size(); ++i) {
             CHECK(got[i].start == spec.begin + static_cast<Time>(i) * spec.period);
-            const Time low = (round % 2 ? 10 : 1) * got[i].bit_period;
-            CHECK(to_seconds(low) == Approx(width).margin(1e-11));
-            CHECK(got[i].is_break == round % 2);
+            const Time low = std::llround(width * 1e12);
+            CHECK_FALSE(protocols::line_is_mark(got[i], got[i].start));
+            CHECK_FALSE(protocols::line_is_mark(got[i], got[i].start + low - 20));
+            CHECK(protocols::line_is_mark(got[i], got[i].start + low + 20));
             CHECK(line.all[i].message.time >= got[i].start + 9 * kBit);
         }
         CHECK(line.evidence().fired() == spec.count);

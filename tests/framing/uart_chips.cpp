@@ -18,8 +18,8 @@ class Dspic : public UartChip {
         bench_.enable(format, divisor, high_speed_);
         phase_ = bench_.now + 1;
     }
-    void receive(const cosim::UartFrame& frame) override {
-        bench_.go(bench_.clock.first_cycle_at(protocols::stop_bit_start(frame)));
+    void deliver(const cosim::UartFrame& frame, cosim::Time at) override {
+        bench_.go(bench_.clock.first_cycle_at(at));
         bench_.uart.receive(frame, bench_.now);
     }
     void run_to(cosim::Time time) override { bench_.go(bench_.clock.first_cycle_at(time)); }
@@ -48,8 +48,8 @@ class Avr : public UartChip {
         divisor_ = divisor;
         phase_ = bench_.enable(format, divisor, double_speed_);
     }
-    void receive(const cosim::UartFrame& frame) override {
-        bench_.go(bench_.clock.first_cycle_at(protocols::stop_bit_start(frame)));
+    void deliver(const cosim::UartFrame& frame, cosim::Time at) override {
+        bench_.go(bench_.clock.first_cycle_at(at));
         bench_.usart.receive(frame, bench_.now);
     }
     void run_to(cosim::Time time) override { bench_.go(bench_.clock.first_cycle_at(time)); }
@@ -80,6 +80,10 @@ std::unique_ptr<UartChip> avr(double ppm) {
 }
 
 }  // namespace
+
+void UartChip::receive(const cosim::UartFrame& frame) {
+    deliver(frame, protocols::stop_bit_start(frame));
+}
 
 const std::vector<ChipKind>& chip_kinds() {
     static const std::vector<Format> dspic_formats{{8, 0}, {8, 1}, {8, 2}, {9, 0}, {8, 0, 2}, {8, 2, 2}};

@@ -17,7 +17,9 @@ class UartChip {
     /// Switches the unit on, with `divisor` chip clocks a tick. Once only.
     virtual void set(const Format& format, std::uint32_t divisor) = 0;
     /// A frame on the receiver's line, handed in when its stop bit begins; time goes on to there.
-    virtual void receive(const cosim::UartFrame& frame) = 0;
+    void receive(const cosim::UartFrame& frame);
+    /// The same, handed in later.
+    virtual void deliver(const cosim::UartFrame& frame, cosim::Time at) = 0;
     virtual void run_to(cosim::Time time) = 0;
     /// Everything in the receive buffer, with the flags that the driver reads beside each character.
     virtual std::vector<Character> take() = 0;

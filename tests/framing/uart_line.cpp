@@ -41,10 +41,15 @@ bool level_at(const std::vector<UartFrame>& line, Time time) {
 
 std::vector<Character> listen(const std::vector<UartFrame>& line, const Format& format, int ticks,
                               const std::function<Time(std::int64_t)>& tick) {
+    if (line.empty()) return {};
+    return listen([&](Time time) { return level_at(line, time); },
+                  line.back().start + 32 * line.back().bit_period, format, ticks, tick);
+}
+
+std::vector<Character> listen(const std::function<bool(Time)>& level_of, Time end, const Format& format,
+                              int ticks, const std::function<Time(std::int64_t)>& tick) {
     std::vector<Character> heard;
-    if (line.empty()) return heard;
-    const Time end = line.back().start + 32 * line.back().bit_period;
-    const auto level = [&](std::int64_t n) { return level_at(line, tick(n)); };
+    const auto level = [&](std::int64_t n) { return level_of(tick(n)); };
     const auto vote = [&](std::int64_t middle) {
         if (ticks < 8) return level(middle);
         return level(middle - 1) + level(middle) + level(middle + 1) >= 2;
@@ -52,7 +57,10 @@ std::vector<Character> listen(const std::vector<UartFrame>& line, const Format& 
     for (std::int64_t n = 1; tick(n) < end; ++n) {
         if (!level(n - 1) || level(n)) continue;
         const std::int64_t middle = n + ticks / 2;  // of the start bit
-        if (vote(middle)) continue;                 // too short for one
+        if (vote(middle)) {                         // too short for one
+            n = middle;
+            continue;
+        }
         Character character;
         int bit = 1;
         const auto next = [&] { return vote(middle + ticks * bit++); };

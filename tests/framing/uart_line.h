@@ -36,6 +36,10 @@ cosim::UartFrame frame_of(const Format& format, std::uint16_t data, cosim::Time 
 /// Level of the line at `time`: `line` in order of starts, without overlaps; high between frames.
 bool level_at(const std::vector<cosim::UartFrame>& line, cosim::Time time);
 
+/// What the reference receiver takes off a line with these levels up to `end`.
+std::vector<Character> listen(const std::function<bool(cosim::Time)>& level, cosim::Time end,
+                              const Format& format, int ticks,
+                              const std::function<cosim::Time(std::int64_t)>& tick);
 /// What the reference receiver takes off the line up to its end. `tick(n)`: time of tick n >= 0.
 std::vector<Character> listen(const std::vector<cosim::UartFrame>& line, const Format& format, int ticks,
                               const std::function<cosim::Time(std::int64_t)>& tick);

@@ -41,6 +41,17 @@ TEST_CASE("a UART frame is drawn bit by bit") {
     CHECK(changes({uart_row("wire", "left", low)}, "wire/left") == std::vector<Time>{1000, 2000});
 }
 
+TEST_CASE("a damaged UART line is drawn as it is") {
+    // 0x4e inverted, with a pulse in the fifth bit; low behind it up to the next frame, which is sound.
+    UartFrame frame{100'000, 100'000, 0x4e};
+    frame.line = cosim::kLineInverted | cosim::kLineRestsLow;
+    frame.glitch_at = 440;
+    frame.glitch_width = 20;
+    CHECK(changes({uart_row("wire", "left", frame), uart_row("wire", "left", {2'000'000, 100'000, 0xff})},
+                  "wire/left") ==
+          std::vector<Time>{300'000, 540'000, 560'000, 600'000, 800'000, 900'000, 1'000'000, 2'100'000});
+}
+
 TEST_CASE("an I2C byte is drawn in sixteenths of its clock") {
     std::vector<TraceRow> rows;
     I2cScript script(rows, 1600);

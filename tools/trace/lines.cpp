@@ -72,6 +72,9 @@ void LineRenderer::add(const cosim::TraceRow& row) {
 
 void LineRenderer::end() {
     transfers_.end();
+    for (const auto& [wire, since] : low_since_)
+        event(std::max(since, last_), wire, -1);
+    low_since_.clear();
 }
 
 void LineRenderer::uart(const cosim::TraceRow& row, const cosim::UartFrame& frame) {
@@ -82,19 +85,22 @@ void LineRenderer::uart(const cosim::TraceRow& row, const cosim::UartFrame& fram
                protocols::frame_end(frame));
     if (keeps_from_arriving(row.fault)) return;
     shortest_ = std::min(shortest_, frame.bit_period);
-    const int bits = protocols::bits_before_stop(frame) + frame.stop_bits;
-    const auto mark = [&](int bit) {
-        if (frame.is_break || bit == 0) return false;
-        if (bit <= frame.data_bits) return (frame.data >> (bit - 1) & 1) != 0;
-        return bit > frame.data_bits + (frame.parity != 0 ? 1 : 0) || frame.parity_bit != 0;
-    };
-    for (int bit = 0; bit < bits;) {
-        const int begin = bit;
-        while (bit < bits && !mark(bit))
-            ++bit;
-        active(wire, frame.start + begin * frame.bit_period, frame.start + bit * frame.bit_period);
-        while (bit < bits && mark(bit))
-            ++bit;
+    const Time end = protocols::frame_end(frame);
+    if (const auto low = low_since_.find(wire); low != low_since_.end()) {
+        event(std::max(frame.start, low->second), wire, -1);
+        low_since_.erase(low);
+    }
+    if ((frame.line & cosim::kLineRestsLow) != 0) {
+        event(end, wire, 1);
+        low_since_[wire] = end;
+    }
+    for (Time time = frame.start; time < end;) {
+        const Time begin = time;
+        while (time < end && !protocols::line_is_mark(frame, time))
+            time = protocols::next_change(frame, time);
+        active(wire, begin, time);
+        while (time < end && protocols::line_is_mark(frame, time))
+            time = protocols::next_change(frame, time);
     }
 }
 

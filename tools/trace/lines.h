@@ -80,7 +80,8 @@ class LineRenderer {
     std::vector<Line> lines_;
     std::map<std::string, std::size_t, std::less<>> index_;
     std::map<std::string, Wires> buses_;
-    std::vector<bool> level_;  // of pins
+    std::vector<bool> level_;                         // of pins
+    std::map<std::size_t, cosim::Time> low_since_{};  // UART lines that rest low
     cosim::Time now_ = 0, late_ = 0, last_ = 0, shortest_ = cosim::kNever;
 };
 

@@ -20,6 +20,7 @@ void TtyPort::open() {
         stopped_ = false;
         discipline_.discard();
         arriving_.clear();
+        listener_.reset();
         last_input_ = kNever;
     }
 }
@@ -28,6 +29,7 @@ void TtyPort::close() {
     if (opens_ > 0 && --opens_ == 0) {
         discipline_.discard();
         arriving_.clear();
+        listener_.reset();
     }
 }
 
@@ -35,6 +37,7 @@ void TtyPort::hang_up() {
     hung_up_ = true;
     discipline_.discard();
     arriving_.clear();
+    listener_.reset();
     output_.clear();
 }
 
@@ -45,17 +48,20 @@ bool TtyPort::hears(const protocols::UartReceiver& receiver) const {
 bool TtyPort::fills(const UartFrame& frame) const {
     const protocols::UartReceiver receiver = receiver_of(settings_, rate_ppm_);
     if (!hears(receiver)) return false;
-    const std::size_t characters = protocols::sample_frame(frame, receiver, receiver_ready_).size();
+    if (!listener_.samples_alone(frame)) return true;  // it may
+    const std::size_t characters = protocols::sample_frame(frame, receiver, listener_.ready()).size();
     return arriving_.size() + characters >= static_cast<std::size_t>(trigger_);
 }
 
 void TtyPort::deliver(const UartFrame& frame, Time delivered) {
     const protocols::UartReceiver receiver = receiver_of(settings_, rate_ppm_);
     if (!hears(receiver)) return;
-    for (const auto& character : protocols::sample_frame(frame, receiver, receiver_ready_)) {
-        receiver_ready_ = character.time;
-        arriving_.push_back({std::max(character.time, delivered), character});
-    }
+    arrive(listener_.add(frame, receiver, delivered), delivered);
+}
+
+void TtyPort::arrive(const std::vector<protocols::ReceivedCharacter>& characters, Time known) {
+    for (const auto& character : characters)
+        arriving_.push_back({std::max(character.time, known), character});
 }
 
 void TtyPort::take(const protocols::ReceivedCharacter& character) {
@@ -78,6 +84,8 @@ void TtyPort::take(const protocols::ReceivedCharacter& character) {
 }
 
 void TtyPort::advance(Time now, std::vector<UartFrame>& sent) {
+    if (const Time certain = listener_.ask_again(); certain <= now)
+        arrive(listener_.pass(receiver_of(settings_, rate_ppm_), certain), certain);
     for (Time due = fifo_due(); due <= now; due = fifo_due()) {
         last_input_ = due;
         while (!arriving_.empty() && arriving_.front().time <= due) {
@@ -137,8 +145,7 @@ Time TtyPort::next_frame(Time now) const {
 }
 
 Time TtyPort::next_event() const {
-    Time next = next_frame(0);
-    return std::min(next, fifo_due());
+    return std::min({next_frame(0), fifo_due(), listener_.ask_again()});
 }
 
 bool TtyPort::echoes() const {

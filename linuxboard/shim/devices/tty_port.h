@@ -17,7 +17,9 @@
 #include "linuxboard/shim/devices/line_discipline.h"
 #include "linuxboard/shim/devices/tty_settings.h"
 #include "linuxboard/shim/wire.h"
+#include "protocols/uart_line.h"
 
+#include <algorithm>
 #include <deque>
 #include <optional>
 #include <string>
@@ -55,7 +57,7 @@ class TtyPort {
     /// When advance() next has something to do.
     cosim::Time next_event() const;
     /// When a program next sees something come in, as far as the characters known so far tell.
-    cosim::Time next_input() const { return fifo_due(); }
+    cosim::Time next_input() const { return std::min(fifo_due(), next_tick(listener_.ask_again())); }
     /// What a program sees of the port, but for `valid_until`.
     void show(wire::TtyView& view) const;
     /// Start of the next frame if nothing changes: at or after `now`; kNever if none is queued.
@@ -103,6 +105,7 @@ class TtyPort {
     cosim::Time fifo_due() const;
     /// The driver's first tick at or after `time`.
     cosim::Time next_tick(cosim::Time time) const;
+    void arrive(const std::vector<protocols::ReceivedCharacter>& characters, cosim::Time known);
     void take(const protocols::ReceivedCharacter& character);
     bool can_send() const { return !output_.empty() && !stopped_ && bit_period(settings_, rate_ppm_) != 0; }
 
@@ -124,7 +127,7 @@ class TtyPort {
     LineDiscipline discipline_;
     std::deque<Arrival> arriving_;
     std::deque<Output> output_;
-    cosim::Time receiver_ready_ = 0;
+    protocols::UartListener listener_;
     cosim::Time line_free_ = 0;
     cosim::Time released_ = 0;
     cosim::Time last_input_ = cosim::kNever;
