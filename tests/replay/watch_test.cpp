@@ -74,6 +74,22 @@ std::map<std::string, Changes> dump_of(const std::string& file) {
     return dump;
 }
 
+/// The recorded run of one robot, r, whose main board executes `source`: its folder, beside watch.toml.
+std::string recorded(const std::string& source) {
+    write(scratch("watch.s"), source);
+    const Called assembled = call(fmt::format("asm {} -o {}", scratch("watch.s"), scratch("watch.hex")));
+    INFO(assembled.out);
+    REQUIRE(assembled.status == 0);
+    write(scratch("watch.toml"),
+          "[run]\nduration = \"20 ms\"\n[arena]\nsize = [\"1 m\", \"1 m\"]\n[[robot]]\n"
+          "name = \"r\"\nposition = [\"0 m\", \"0 m\"]\n[robot.pic]\nfirmware = \"watch.hex\"\n");
+    const std::string out = scratch("out");
+    const Called run = call(fmt::format("run {} --record --no-cache --out {}", scratch("watch.toml"), out));
+    INFO(run.out);
+    REQUIRE(run.status == 0);
+    return out;
+}
+
 }  // namespace
 
 TEST_CASE("a dsPIC's registers and RAM change in the dump where its program changes them, to the cycle") {
@@ -91,17 +107,7 @@ TEST_CASE("a dsPIC's registers and RAM change in the dump where its program chan
                               delays.back());
     }
     source += "forever: bra forever\n";
-    write(scratch("watch.s"), source);
-    const Called assembled = call(fmt::format("asm {} -o {}", scratch("watch.s"), scratch("watch.hex")));
-    INFO(assembled.out);
-    REQUIRE(assembled.status == 0);
-    write(scratch("watch.toml"),
-          "[run]\nduration = \"20 ms\"\n[arena]\nsize = [\"1 m\", \"1 m\"]\n[[robot]]\n"
-          "name = \"r\"\nposition = [\"0 m\", \"0 m\"]\n[robot.pic]\nfirmware = \"watch.hex\"\n");
-    const std::string out = scratch("out");
-    const Called run = call(fmt::format("run {} --record --no-cache --out {}", scratch("watch.toml"), out));
-    INFO(run.out);
-    REQUIRE(run.status == 0);
+    const std::string out = recorded(source);
     const Called replay =
         call(fmt::format("replay {} {} --node r.pic --vcd {} --registers LATB,W0 --registers 0x0850,PC",
                          scratch("watch.toml"), out, scratch("watch.vcd")));
@@ -195,9 +201,10 @@ TEST_CASE("an AVR's timer counts in the dump, its pairs of registers are one val
 }
 
 TEST_CASE("what cannot be watched is said in one line") {
-    const auto fails = [](const std::string& options, const std::string& text) {
+    const std::string out = recorded(".org 0\nforever: bra forever\n");
+    const auto fails = [&](const std::string& options, const std::string& text) {
         const Called called =
-            call(fmt::format("replay {} {} --node r.pic {}", scratch("watch.toml"), scratch("out"), options));
+            call(fmt::format("replay {} {} --node r.pic {}", scratch("watch.toml"), out, options));
         INFO(options << "\n" << called.out);
         CHECK(called.status == 2);
         CHECK(std::count(called.out.begin(), called.out.end(), '\n') == 1);
@@ -211,6 +218,6 @@ TEST_CASE("what cannot be watched is said in one line") {
     fails(vcd + " --registers 0x0010:1", "there is no RAM at 0x0010");
     fails("--from 0.01", "without --vcd");
     fails(vcd + " --from 0.01 --to 0.005", "not after --from");
-    fails("--vcd " + scratch("out/record.csv"), "is the record itself");
+    fails("--vcd " + out + "/record.csv", "is the record itself");
     CHECK_FALSE(std::filesystem::exists(scratch("never.vcd")));
 }
