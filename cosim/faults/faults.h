@@ -55,6 +55,9 @@ struct WireSite {
     std::string sender{};  ///< the node's name
 };
 
+/// What is brought back arrives this much behind its time at the far end. A sender that heard itself at the
+/// very instant at which it sends would wait for itself.
+inline constexpr Time kTurnRound = kNanosecond;
 /// Whether the fault may bring messages back to their senders.
 bool loops_back(const FaultSpec& spec);
 

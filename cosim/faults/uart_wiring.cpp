@@ -94,6 +94,7 @@ class Loopback : public LinkFault {
             if (!hears_itself_) continue;
             back.fault = FaultKind::Loopback;
             back.back = true;
+            back.message.time = later(back.message.time, kTurnRound);
             batch.push_back(back);
         }
     }

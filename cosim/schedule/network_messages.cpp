@@ -111,13 +111,17 @@ void Network::update_channel(std::size_t w) {
     update_loop(w);
 }
 
-/// What is sent on the wire may come back at the time at which it comes out at the far end.
+/// What is sent on the wire may come back shortly after it comes out at the far end.
 void Network::update_loop(std::size_t w) {
     if (wires_[w].loop == kNobody) return;
     Channel& back = channels_[wires_[w].loop];
     const std::size_t sender = back.from;
     back = channels_[w];
     back.from = back.to = sender;
+    back.base = later(back.base, kTurnRound);
+    back.lookahead = later(back.lookahead, kTurnRound);
+    for (auto& foreseen : back.foreseen)
+        foreseen.delivery = later(foreseen.delivery, kTurnRound);
 }
 
 void Network::settle(const Bounds& bounds, std::vector<TraceRecord>& deliveries,

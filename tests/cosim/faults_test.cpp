@@ -153,7 +153,7 @@ TEST_CASE(
             CHECK(record.fault == (within && !through ? FaultKind::Disconnect : FaultKind::None));
             const auto heard =
                 std::find_if(recorder.records.begin(), recorder.records.end(), [&](const TraceRecord& other) {
-                    return other.direction == Direction::FromB && other.time == record.time &&
+                    return other.direction == Direction::FromB && other.time == record.time + kTurnRound &&
                            other.payload == record.payload;
                 });
             CHECK((heard != recorder.records.end()) == within);

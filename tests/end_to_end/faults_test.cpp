@@ -195,3 +195,24 @@ TEST_CASE("with the original firmware the session recovers too") {
     CHECK(journey(rest, 115.0).length > 0.2);         // after the PIC's restart
     CHECK_THAT(log_of(bench, "o"), Contains("re-synchronising") && Contains("in step again"));
 }
+
+TEST_CASE("ends that hear themselves to the very end of a run make one trace in every placement") {
+    // A board that waited for its own character at the instant of sending it once stood still, now and then.
+    const Workbench bench;
+    const Words words{
+        bench.hello(), "--duration", "3", "--fault", "loopback link=robot0.uart at=2s for=1s through=true",
+        "--no-cache"};
+    const auto trace = [&](const std::string& name, const Words& more) {
+        Words all = words;
+        all.insert(all.end(), more.begin(), more.end());
+        const Ended ended = bench.run(name, all);
+        INFO(ended.err);
+        REQUIRE(ended.status == 0);
+        const auto report = bench.report(name);
+        CHECK(report["faults"][0]["fired"] > 100);
+        return report["trace_sha256"].get<std::string>();
+    };
+    const std::string one = trace("one", {"--in-process"});
+    for (const std::string name : {"many1", "many2", "many3"})
+        CHECK(trace(name, {}) == one);
+}
