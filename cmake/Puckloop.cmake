@@ -26,10 +26,10 @@ function(puckloop_library name)
   target_link_libraries(${name} PUBLIC puckloop_options ${ARG_LINK})
 endfunction()
 
-# puckloop_test(NAME SOURCES a_test.cpp [LINK libraries...] [LABELS ...])
-# One executable an area; every Catch2 case becomes a CTest case carrying the labels.
+# puckloop_test(NAME SOURCES a_test.cpp [LINK libraries...] [LABELS ...] [ALONE])
+# One executable an area; every Catch2 case becomes a CTest case carrying the labels. ALONE: no other test runs beside.
 function(puckloop_test name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINK;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "ALONE" "" "SOURCES;LINK;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE puckloop_test_main ${ARG_LINK})
   # Tests spend their time in the libraries; compiled with less effort they are built a fifth faster.
@@ -37,6 +37,9 @@ function(puckloop_test name)
   # A test that lacks what it needs (real images, a tool) says "skipped: reason" or "reason: skipped", and CTest counts it
   # so. The bare word is not enough: it occurs in names of tests and in results, and would hide their failures.
   set(properties PROPERTIES SKIP_REGULAR_EXPRESSION "skipped: |: +skipped|:. +skipped")
+  if(ARG_ALONE)
+    list(APPEND properties RUN_SERIAL TRUE)
+  endif()
   if(ARG_LABELS)
     list(JOIN ARG_LABELS "-" labels)  # one word: ctest -L takes a pattern, so each label still selects
     list(APPEND properties LABELS "${labels}")
