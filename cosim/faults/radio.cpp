@@ -1,11 +1,10 @@
 // Faults of radio frames between a module and the air, other than those that bytes suffer in the same way.
 
-#include "cosim/faults/frame_fault.h"
+#include "cosim/faults/reordered_frames.h"
 
 #include <algorithm>
 #include <optional>
 #include <set>
-#include <utility>
 
 namespace puckloop::cosim {
 
@@ -32,50 +31,19 @@ class FlipRadio : public FrameFault {
     }
 };
 
-/// Late by delay +- jitter, evenly: frames may pass one another.
-class JitterRadio : public FrameFault {
+/// Frames may pass one another.
+using JitterRadio = JitterFrames<FrameFault>;
+
+class SwapRadio : public SwapFrames<FrameFault> {
   public:
-    using FrameFault::FrameFault;
+    using SwapFrames::SwapFrames;
 
   protected:
-    void harm(std::size_t i, std::vector<Delivery>& batch) override {
-        const double delay = spec().parameters.number("delay"), jitter = spec().parameters.number("jitter");
-        shift(batch[i].message,
-              from_seconds(std::max(0.0, delay + jitter * (2.0 * random().uniform() - 1.0))));
+    std::optional<Behind> behind(const Delivery& passing) const override {
+        const auto* frame = std::get_if<RadioFrame>(&passing.message.payload);
+        if (!frame || frame->duration == 0) return std::nullopt;
+        return Behind{frame->start + frame->duration, passing.message.time + frame_time(*frame)};
     }
-};
-
-/// Held until the next frame has passed.
-class SwapRadio : public FrameFault {
-  public:
-    using FrameFault::FrameFault;
-
-  protected:
-    bool can_suffer(const Payload&) const override { return !waiting_ && !taken_; }
-
-    void harm(std::size_t i, std::vector<Delivery>& batch) override {
-        taken_ = batch[i];
-        batch[i].fault = FaultKind::Held;
-    }
-
-    void after(std::vector<Delivery>& batch) override {
-        for (std::size_t i = 0; waiting_ && i < batch.size(); ++i) {
-            const auto* passed = std::get_if<RadioFrame>(&batch[i].message.payload);
-            if (!passed || passed->duration == 0 || keeps_from_arriving(batch[i].fault)) continue;
-            Delivery behind = *waiting_;
-            const Time arrival = batch[i].message.time + frame_time(*passed);
-            shift(behind.message, passed->start + passed->duration - start_of(behind.message.payload));
-            behind.message.time = std::max(behind.message.time, arrival);
-            behind.fault = FaultKind::Swap;
-            batch.insert(batch.begin() + static_cast<std::ptrdiff_t>(i) + 1, behind);
-            waiting_.reset();
-        }
-        if (taken_) waiting_ = std::exchange(taken_, std::nullopt);
-    }
-
-  private:
-    std::optional<Delivery> taken_;    // in this batch
-    std::optional<Delivery> waiting_;  // for the next one
 };
 
 }  // namespace

@@ -1,10 +1,9 @@
 // Faults of UART frames that lose, change, repeat, add or exchange bytes.
 
-#include "cosim/faults/frame_fault.h"
+#include "cosim/faults/reordered_frames.h"
 
 #include <array>
 #include <optional>
-#include <utility>
 
 namespace puckloop::cosim {
 
@@ -96,38 +95,16 @@ class Insert : public QueuedFault {
     }
 };
 
-/// Two neighbours change places: the first waits until the second has passed.
-class Swap : public QueuedFault {
+class Swap : public SwapFrames<QueuedFault> {
   public:
-    using QueuedFault::QueuedFault;
+    using SwapFrames::SwapFrames;
 
   protected:
-    bool can_suffer(const Payload&) const override { return !waiting_ && !taken_; }
-
-    void harm(std::size_t i, std::vector<Delivery>& batch) override {
-        taken_ = batch[i];
-        batch[i].fault = FaultKind::Held;
+    std::optional<Behind> behind(const Delivery& passing) const override {
+        const auto* frame = std::get_if<UartFrame>(&passing.message.payload);
+        if (!frame) return std::nullopt;
+        return Behind{frame->start + frame_time(*frame), passing.message.time};
     }
-
-    void after(std::vector<Delivery>& batch) override {
-        for (std::size_t i = 0; waiting_ && i < batch.size(); ++i) {
-            const auto* passed = std::get_if<UartFrame>(&batch[i].message.payload);
-            if (!passed || keeps_from_arriving(batch[i].fault)) continue;
-            Delivery behind = *waiting_;
-            const Time start = passed->start + frame_time(*passed);
-            shift(behind.message, start - start_of(behind.message.payload));
-            behind.message.time = std::max(behind.message.time, batch[i].message.time);
-            behind.fault = FaultKind::Swap;
-            batch.insert(batch.begin() + static_cast<std::ptrdiff_t>(i) + 1, behind);
-            waiting_.reset();
-        }
-        if (taken_) waiting_ = std::exchange(taken_, std::nullopt);
-        QueuedFault::after(batch);
-    }
-
-  private:
-    std::optional<Delivery> taken_;    // in this batch
-    std::optional<Delivery> waiting_;  // for the next one
 };
 
 }  // namespace

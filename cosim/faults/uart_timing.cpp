@@ -1,6 +1,6 @@
 // Faults of UART frames that change when they come or how fast they are.
 
-#include "cosim/faults/frame_fault.h"
+#include "cosim/faults/reordered_frames.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,18 +31,8 @@ class Delay : public FrameFault {
     }
 };
 
-/// Late by delay +- jitter, evenly; in order.
-class Jitter : public QueuedFault {
-  public:
-    using QueuedFault::QueuedFault;
-
-  protected:
-    void harm(std::size_t i, std::vector<Delivery>& batch) override {
-        const double delay = spec().parameters.number("delay"), jitter = spec().parameters.number("jitter");
-        shift(batch[i].message,
-              from_seconds(std::max(0.0, delay + jitter * (2.0 * random().uniform() - 1.0))));
-    }
-};
+/// In order.
+using Jitter = JitterFrames<QueuedFault>;
 
 class Rate : public FrameFault {
   public:
