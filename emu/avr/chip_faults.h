@@ -4,12 +4,10 @@
 //
 // Deviations
 //  1. An interrupt out of nowhere is a request without its flag. It comes to nothing where the source's
-//  enable
-//     bit is clear.
+//     enable bit is clear.
 //  2. A lost interrupt is one that began to request: its flag, which the routine's entry would clear, is
-//  clear
-//     again. Where the routine itself ends the request (received data, an empty transmit buffer, the two-wire
-//     interface) the flag stays, and nothing comes of it until the next event of the source.
+//     clear again. Where the routine itself ends the request (received data, an empty transmit buffer, the
+//     two-wire interface) the flag stays, and nothing comes of it until the next event of the source.
 
 #include "emu/avr/chip.h"
 #include "emu/chip/faults/chip_access.h"

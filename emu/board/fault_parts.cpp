@@ -9,6 +9,7 @@
 #include <iterator>
 #include <map>
 #include <string>
+#include <utility>
 
 namespace puckloop::board {
 
@@ -33,18 +34,21 @@ chip::Symbols symbols_in(const Image& image) {
 
 }  // namespace
 
-FaultParts fault_parts(const std::vector<cosim::CarriedFault>& faults) {
-    FaultParts parts;
-    for (const cosim::CarriedFault& fault : faults)
-        (chip::AnalogFaults::takes(fault.spec.kind) ? parts.analog : parts.others).push_back(fault);
-    return parts;
-}
-
 chip::Symbols symbols_of(const image::Image& image) {
     return symbols_in(image);
 }
 chip::Symbols symbols_of(const image::AvrImage& image) {
     return symbols_in(image);
+}
+
+std::unique_ptr<chip::BoardFaults> make_faults(const std::vector<cosim::CarriedFault>& faults,
+                                               const FaultSites& sites, const chip::Symbols& symbols) {
+    std::vector<cosim::CarriedFault> analog, others;
+    for (const cosim::CarriedFault& fault : faults)
+        (chip::AnalogFaults::takes(fault.spec.kind) ? analog : others).push_back(fault);
+    sites.analog.begin(std::move(analog), sites.clock, sites.origin);
+    return std::make_unique<chip::BoardFaults>(std::move(others), sites.chip, sites.board, symbols, sites.ppm,
+                                               sites.origin);
 }
 
 nlohmann::ordered_json fault_report(const chip::BoardFaults& faults, const chip::AnalogFaults& analog,

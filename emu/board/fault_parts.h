@@ -9,6 +9,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include <algorithm>
+#include <memory>
 #include <vector>
 
 namespace puckloop::image {
@@ -18,15 +19,33 @@ struct Image;
 
 namespace puckloop::board {
 
-/// Faults of analog inputs, and all others.
-struct FaultParts {
-    std::vector<cosim::CarriedFault> analog, others;
-};
-FaultParts fault_parts(const std::vector<cosim::CarriedFault>& faults);
-
 /// Names as in C, with or without the compiler's underscore.
 chip::Symbols symbols_of(const image::Image& image);
 chip::Symbols symbols_of(const image::AvrImage& image);
+
+/// Where a board's faults act, and by which clock: its cycles begin at `origin` in the run's time, off by
+/// `ppm`.
+struct FaultSites {
+    chip::ChipAccess& chip;
+    chip::BoardAccess& board;
+    chip::AnalogFaults& analog;
+    const cosim::ClockDomain& clock;
+    double ppm = 0;
+    cosim::Time origin = 0;
+};
+/// Gives those of analog inputs to `sites.analog`; the result has all others.
+std::unique_ptr<chip::BoardFaults> make_faults(const std::vector<cosim::CarriedFault>& faults,
+                                               const FaultSites& sites, const chip::Symbols& symbols);
+
+/// Carries out what is due before `until` (and at it, if inclusive), the board being run to each by
+/// `run_until`.
+void act_until(chip::BoardFaults* faults, cosim::Time until, bool inclusive, auto run_until) {
+    while (faults != nullptr && faults->due(until, inclusive)) {
+        const cosim::Time time = faults->next();
+        run_until(time);
+        faults->act(time);
+    }
+}
 
 /// For "faults" in the node's report.
 nlohmann::ordered_json fault_report(const chip::BoardFaults& faults, const chip::AnalogFaults& analog,

@@ -39,11 +39,10 @@ PicNode::PicNode(const image::Image& image, const PicNodeOptions& options)
     chip_->power_on();
     if (options.faults.empty()) return;
     chip_faults_.emplace(*chip_);
-    board::FaultParts parts = board::fault_parts(options.faults);
-    board_.analog_faults().begin(std::move(parts.analog), chip_->clock());
-    faults_ = std::make_unique<chip::BoardFaults>(std::move(parts.others), *chip_faults_,
-                                                  static_cast<chip::BoardAccess&>(*this),
-                                                  board::symbols_of(image), options.board.crystal_ppm);
+    faults_ = board::make_faults(options.faults,
+                                 {*chip_faults_, static_cast<chip::BoardAccess&>(*this),
+                                  board_.analog_faults(), chip_->clock(), options.board.crystal_ppm},
+                                 board::symbols_of(image));
 }
 
 void PicNode::advance(cosim::Time until, std::span<const cosim::Message> inbox,
@@ -82,12 +81,7 @@ void PicNode::press_reset(cosim::Time until, bool inclusive) {
 }
 
 void PicNode::run_faults(cosim::Time until, bool inclusive) {
-    if (!faults_) return;
-    while (faults_->due(until, inclusive)) {
-        const cosim::Time time = faults_->next();
-        run_until(time);
-        faults_->act(time);
-    }
+    board::act_until(faults_.get(), until, inclusive, [this](cosim::Time time) { run_until(time); });
 }
 
 void PicNode::run_until(cosim::Time until) {

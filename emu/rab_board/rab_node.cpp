@@ -41,11 +41,10 @@ RabNode::RabNode(const image::Image& image, const RabNodeOptions& options)
     chip_->power_on();
     if (options.faults.empty()) return;
     chip_faults_.emplace(*chip_);
-    board::FaultParts parts = board::fault_parts(options.faults);
-    board_.analog_faults().begin(std::move(parts.analog), chip_->clock());
-    faults_ = std::make_unique<chip::BoardFaults>(std::move(parts.others), *chip_faults_,
-                                                  static_cast<chip::BoardAccess&>(*this),
-                                                  board::symbols_of(image), options.board.crystal_ppm);
+    faults_ = board::make_faults(options.faults,
+                                 {*chip_faults_, static_cast<chip::BoardAccess&>(*this),
+                                  board_.analog_faults(), chip_->clock(), options.board.crystal_ppm},
+                                 board::symbols_of(image));
 }
 
 void RabNode::advance(cosim::Time until, std::span<const cosim::Message> inbox,
@@ -69,12 +68,7 @@ void RabNode::settle(cosim::Time until) {
 }
 
 void RabNode::run_faults(cosim::Time until, bool inclusive) {
-    if (!faults_) return;
-    while (faults_->due(until, inclusive)) {
-        const cosim::Time time = faults_->next();
-        run_until(time);
-        faults_->act(time);
-    }
+    board::act_until(faults_.get(), until, inclusive, [this](cosim::Time time) { run_until(time); });
 }
 
 void RabNode::run_until(cosim::Time until) {

@@ -49,11 +49,11 @@ TamNode::TamNode(const image::AvrImage& image, const TamNodeOptions& options)
     warnings_ = fuse_warnings(board_->chip().fuses(), image);
     if (options.faults.empty()) return;
     chip_faults_.emplace(board_->chip());
-    board::FaultParts parts = board::fault_parts(options.faults);
-    board_->analog_faults().begin(std::move(parts.analog), board_->chip().clock(), options.start);
-    faults_ = std::make_unique<chip::BoardFaults>(
-        std::move(parts.others), *chip_faults_, static_cast<chip::BoardAccess&>(*this),
-        board::symbols_of(image), options.board.resonator_ppm, options.start);
+    faults_ =
+        board::make_faults(options.faults,
+                           {*chip_faults_, static_cast<chip::BoardAccess&>(*this), board_->analog_faults(),
+                            board_->chip().clock(), options.board.resonator_ppm, options.start},
+                           board::symbols_of(image));
 }
 
 void TamNode::advance(Time until, std::span<const cosim::Message> inbox,
@@ -85,12 +85,7 @@ void TamNode::press_reset(Time until, bool inclusive) {
 }
 
 void TamNode::run_faults(Time until, bool inclusive) {
-    if (!faults_) return;
-    while (faults_->due(until, inclusive)) {
-        const Time time = faults_->next();
-        run_until(time);
-        faults_->act(time);
-    }
+    board::act_until(faults_.get(), until, inclusive, [this](Time time) { run_until(time); });
 }
 
 void TamNode::run_board(Time until) {
