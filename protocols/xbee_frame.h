@@ -58,6 +58,8 @@ class XBeeReader {
 
     /// A frame, or a fault, once `byte` completes it.
     std::optional<XBeeReading> take(std::uint8_t byte);
+    /// No frame is under way.
+    bool idle() const { return state_ == State::Idle; }
     /// The line ends here: what is left of a frame, or noise, if anything is.
     std::optional<XBeeReading> end();
 

@@ -163,10 +163,11 @@ struct Chip::Parts {
           eeprom(around, core, clock, info.eeprom_bytes),
           watchdog(around, core, clock),
           programming(around, core, clock, fuses, system),
-          held(events, &interrupts, [](void* owner, int vector, bool lost, Cycle) {
-              auto& controller = *static_cast<InterruptController*>(owner);
-              lost ? controller.lose(vector) : controller.release(vector);
-          }),
+          held(events, &interrupts,
+               [](void* owner, int vector, bool lost, Cycle) {
+                   auto& controller = *static_cast<InterruptController*>(owner);
+                   lost ? controller.lose(vector) : controller.release(vector);
+               }),
           supply(chosen.avcc) {
         io.hook(kGtccr, this, nullptr, &write_gtccr);
         connect_hooks();
@@ -186,7 +187,9 @@ struct Chip::Parts {
         hooks.reset = [this](ResetCause cause) { reset(cause); };
         hooks.reset_pc = [this] { return system.reset_pc(); };
         hooks.vector_base = [this] { return system.vector_base(); };
-        hooks.interrupts_locked = [this] { return programming.interrupts_locked(); };
+        hooks.interrupts_locked = [this] {
+            return system.interrupts_held() || programming.interrupts_locked();
+        };
         hooks.sleep = [this] { system.sleep(); };
         hooks.wake = [this] { system.wake(); };
         hooks.watchdog_reset = [this] { watchdog.restart(); };
@@ -204,6 +207,9 @@ struct Chip::Parts {
         system.jtag_changed = [this] { lend_to_jtag(); };
         system.pull_ups_changed = [this] { ports.refresh(); };
         system.quiet_conversion = [this] { adc.quiet(); };
+        system.brown_out_on = [this] {
+            if (supply < lowest_supply()) core.request_reset(ResetCause::BrownOut);
+        };
         system.rate_changes = [this](bool changed) {
             synchronise_timers();
             watchdog.rate_changes(changed);
@@ -300,26 +306,41 @@ struct Chip::Parts {
         programming.reset();
         lend_to_jtag();
         held.reset();
+        hold_without_supply(cause);
+    }
+
+    /// Below it the chip is held in reset.
+    double lowest_supply() const {
+        return std::max(system.brown_out_off() ? 0.0 : fuses.brown_out_volts(), kPowerOnVolts);
+    }
+    ResetCause supply_reset() const {
+        return supply < kPowerOnVolts || fuses.brown_out_volts() == 0 ? ResetCause::PowerOn
+                                                                      : ResetCause::BrownOut;
     }
 
     void set_supply(double volts) {
         const double before = supply;
         supply = volts;
         adc.set_avcc(volts);
-        const double level = system.brown_out_off() ? 0.0 : fuses.brown_out_volts();
-        const double lowest = std::max(level, kPowerOnVolts);
-        if (!held_in_reset && volts < lowest && before >= lowest) {
-            hold_cause = level > 0 ? ResetCause::BrownOut : ResetCause::PowerOn;
+        if (held_in_reset) {
             if (volts < kPowerOnVolts) hold_cause = ResetCause::PowerOn;
-            core.reset(hold_cause);
-            held_in_reset = true;
-            core.stall_until(kNoCycle);
-        } else if (held_in_reset) {
-            if (volts < kPowerOnVolts) hold_cause = ResetCause::PowerOn;
-            if (volts < lowest + kHysteresisVolts) return;
-            core.reset(hold_cause);  // once more, and it runs
-            held_in_reset = false;
+            if (volts >= lowest_supply() + kHysteresisVolts)
+                core.reset(hold_cause);  // once more, and it runs
+        } else if (volts < lowest_supply() && before >= lowest_supply()) {
+            core.reset(supply_reset());
         }
+    }
+
+    // After any reset: without enough supply the chip stays in it.
+    void hold_without_supply(ResetCause cause) {
+        const double enough = lowest_supply() + (held_in_reset ? kHysteresisVolts : 0.0);
+        if (supply >= enough) {
+            held_in_reset = false;
+            return;
+        }
+        if (!held_in_reset) hold_cause = cause;
+        held_in_reset = true;
+        core.stall_until(kNoCycle);
     }
 
     // PSRSYNC, PSRASY: the prescaler starts again; with TSM it stays at 0.
@@ -633,7 +654,19 @@ ChipReport Chip::report() const {
     report.instructions = parts_->core.instructions();
     report.cycles = parts_->core.cycle();
     report.skipped = parts_->core.skipped();
+    report.refused_addresses = parts_->twi.refused();
     return report;
+}
+
+std::optional<std::string> refused_text(const ChipReport& report) {
+    const auto& addresses = report.refused_addresses;
+    constexpr std::size_t kFew = 4;
+    if (addresses.empty()) return std::nullopt;
+    if (addresses.size() > kFew)
+        return fmt::format("addressed {} addresses on the two-wire bus that nobody acknowledged",
+                           addresses.size());
+    return fmt::format("addressed 0x{:02x} on the two-wire bus, and nobody acknowledged",
+                       fmt::join(addresses, ", 0x"));
 }
 
 }  // namespace puckloop::avr

@@ -74,10 +74,14 @@ struct ChipReport {
     std::vector<ResetRecord> resets;          ///< the first 1000, power-on included
     std::vector<UnmodelledTouch> unmodelled;  ///< first touch of each register
     std::vector<ChipWarning> warnings;
+    std::vector<std::uint8_t> refused_addresses;  ///< on the two-wire bus, that nobody acknowledged
     std::uint64_t instructions = 0;
     Cycle cycles = 0;
     Cycle skipped = 0;  ///< cycles in idle loops that this process did not execute one by one
 };
+
+/// One line about refused_addresses; nullopt if there are none.
+std::optional<std::string> refused_text(const ChipReport& report);
 
 /// Use: construct, load, power_on(), then run_until() in rising steps, handing in what arrives in between.
 class Chip {

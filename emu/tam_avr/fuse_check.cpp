@@ -9,9 +9,10 @@ namespace puckloop::tam {
 namespace {
 
 constexpr std::uint32_t kFlashBytes = 128 * 1024;
-constexpr unsigned kClockSelect = 0x0F, kLowestCrystal = 0x04;  // below: RC oscillators, external clock
-constexpr unsigned kClockOutput = 0x40;                         // CKOUT, programmed = 0
-constexpr unsigned kSpiEnable = 0x20;                           // SPIEN
+constexpr unsigned kClockSelect = 0x0F,
+                   kLowestCrystal = 0x06;  // below: RC oscillators, external clock, watch crystal
+constexpr unsigned kClockOutput = 0x40;    // CKOUT, programmed = 0
+constexpr unsigned kSpiEnable = 0x20;      // SPIEN
 constexpr unsigned kBrownOut = 0x07, kNoBrownOut = 0x07, kBrownOut4V3 = 0x04;
 
 }  // namespace
@@ -36,7 +37,8 @@ std::vector<std::string> fuse_warnings(const avr::Fuses& fuses, const image::Avr
     if ((fuses.extended & kBrownOut) == kNoBrownOut)
         wrong("extended", fuses.extended, kExtended, "the brown-out detector is off");
     if ((fuses.extended & kBrownOut) == kBrownOut4V3)
-        wrong("extended", fuses.extended, kExtended, "the brown-out level of 4.3 V is above the supply");
+        wrong("extended", fuses.extended, kExtended,
+              "the brown-out level of 4.3 V is above the supply, which holds the board in reset");
     const std::uint32_t reset = fuses.boot_reset() ? kFlashBytes - 2 * fuses.boot_words() : 0;
     const bool something =
         std::any_of(image.flash.begin(), image.flash.end(), [&](const image::ByteSegment& segment) {

@@ -44,6 +44,8 @@ nlohmann::ordered_json tam_json(const Board& board, const TamLog& log,
                                     touch.name.empty() ? hexadecimal(touch.address) : touch.name,
                                     hexadecimal(touch.pc)));
     }
+    if (const auto hang = chip.hang()) lines.push_back(*hang);
+    if (const auto refused = avr::refused_text(report)) lines.push_back(*refused);
     for (const avr::ChipWarning& warning : report.warnings)
         lines.push_back(fmt::format("{} (pc {})", warning.text, hexadecimal(warning.pc)));
     json["warnings"] = lines;

@@ -16,6 +16,7 @@ struct ModuleCounts {
     std::uint64_t while_down = 0;  ///< bytes that came while the module was off, in reset or starting
     std::uint64_t frames_in = 0;   ///< whole API frames
     std::array<std::uint64_t, 6> bad_frames{};  ///< by protocols::XBeeFault
+    std::uint64_t between_frames = 0;           ///< bytes of no frame
     std::uint64_t odd_frames = 0;               ///< of a type that this module does not take from its host
     std::uint64_t frames_out = 0;
     std::uint64_t dropped_out = 0;  ///< frames or packets that the serial transmit buffer had no room for

@@ -61,7 +61,10 @@ void Module::byte(std::uint8_t value, Time now) {
 void Module::api_byte(std::uint8_t value, Time now) {
     ++partial_bytes_;
     const auto reading = reader_.take(value);
-    if (!reading) return;
+    if (!reading) {
+        if (reader_.idle()) ++counts_.between_frames;
+        return;
+    }
     if (!reading->ok()) {
         ++counts_.bad_frames.at(static_cast<std::size_t>(reading->fault));
         // A delimiter that ended one frame began the next.

@@ -32,10 +32,13 @@ static u16 convert(u8 channel) {
     return ADC;
 }
 
+/* On only while something is measured: each SLEEP would begin a conversion of whatever channel was last. */
+static void converter(u8 on) {
+    ADCSRA = on ? ADEN | ADPS_128 : 0; /* 125 kHz; the first conversion takes 200 us */
+}
+
 void booth_start(void) {
     DIDR0 = 1 << FRONT_SENSE | 1 << BATTERY_SENSE | 1 << BACK_SENSE;
-    ADCSRA = ADEN | ADPS_128; /* 125 kHz */
-    convert(BATTERY_SENSE);   /* the first one after ADEN is less exact */
     cycle_start = clock_ms();
 }
 
@@ -53,19 +56,23 @@ static void read_battery(void) {
 void booth_step(void) {
     u8 i;
     if (lit && clock_passed(cycle_start, LIT_MS)) {
+        converter(1);
         for (i = 0; i < BARRIERS; ++i) {
             const u16 level = convert(kChannel[i]);
             const u16 beam = level > dark[i] ? level - dark[i] : dark[i] - level;
             history[i] = (u8)(history[i] << 1 | (beam < LEAST_BEAM));
         }
+        converter(0);
         leds_infrared(0);
         lit = 0;
         judge();
     } else if (!lit && clock_passed(cycle_start, CYCLE_MS)) {
         cycle_start += CYCLE_MS;
+        converter(1);
         read_battery();
         for (i = 0; i < BARRIERS; ++i)
             dark[i] = convert(kChannel[i]);
+        converter(0);
         leds_infrared(1);
         lit = 1;
     }

@@ -220,6 +220,12 @@ over:   lds  r17, TWCR
     CHECK(run.status == 0);
     CHECK_THAT(run.output,
                Contains("\"i2c_bus\"") && Contains("\"bytes_read\":2") && Contains("\"not_acknowledged\":1"));
+    CHECK(run_puckloop("exec" + kMcu + hex +
+                       " --seconds 0.02 --i2c-device turret@0x60 --i2c-device ground@0x62 --strict")
+              .status == 0);
+    const Result strict = run_puckloop("exec" + kMcu + hex + " --seconds 0.02 --i2c-device ground --strict");
+    CHECK(strict.status == 1);
+    CHECK_THAT(strict.output, Contains("addressed 0x62 on the two-wire bus, and nobody acknowledged"));
     std::string said;
     const std::string log = content_of(logs + "/uart1.csv");
     for (std::size_t at = log.find(",tx,"); at != std::string::npos; at = log.find(",tx,", at + 1))

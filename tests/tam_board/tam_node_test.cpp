@@ -226,6 +226,14 @@ TEST_CASE("wrong fuses are named") {
     TamNode other(image, options());
     CHECK_THAT(nlohmann::json::parse(other.finish())["warnings"].dump(),
                Catch::Contains("nothing is at 0x1FC00"));
+    image.fuses = {0xF4, 0xDF, 0xFC};  // the supply is not enough, the crystal another one
+    TamNode held(image, options());
+    std::vector<cosim::Message> outbox;
+    held.advance(100 * cosim::kMillisecond, {}, outbox);
+    const auto report = nlohmann::json::parse(held.finish());
+    CHECK_THAT(report["warnings"].dump(),
+               Catch::Contains("holds the board in reset") && Catch::Contains("CKSEL"));
+    CHECK(report["instructions"] == 0);
     TamNode good(own_image(), options());
     CHECK(nlohmann::json::parse(good.finish())["warnings"].empty());
 }

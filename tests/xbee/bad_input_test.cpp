@@ -21,6 +21,7 @@ TEST_CASE("bad frames are counted by kind, and the next good one is answered") {
     const auto uart = host.report()["uart"];
     CHECK(uart["bad_frames"] == nlohmann::json{{"noise", 1}, {"restart", 1}, {"check", 1}, {"length", 1}});
     CHECK(uart["unknown_frames"] == 1);
+    CHECK(uart["between_frames"] == 2);
 }
 
 TEST_CASE("garbage of any kind and length: the next command is answered") {
@@ -58,6 +59,17 @@ TEST_CASE("another baud rate: framing errors or bad frames, no answer, and back 
     host.say_bytes(XBeeBytes{0, 0}, kBit);
     host.run(100 * kMs);
     CHECK(host.ask("NI").status == kAtOk);
+    CHECK_FALSE(host.report().contains("warnings"));
+
+    Host fast;  // twelve times too fast: whole characters pass within a bit
+    fast.boot();
+    fast.say_bytes(XBeeBytes(100, 0xFF), kBit / 12);
+    fast.run(100 * kMs);
+    CHECK(fast.report()["uart"]["between_frames"].get<int>() +
+              fast.report()["uart"]["framing_errors"].get<int>() >
+          50);
+    CHECK_THAT(fast.report()["warnings"][0].get<std::string>(),
+               Catch::Contains("no API frame (expected the rate of BD = 3"));
 }
 
 TEST_CASE("a flood of packets: four are under way, CTS rises at FT, the buffer overflows, all is counted") {

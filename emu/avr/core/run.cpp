@@ -66,6 +66,7 @@ void perform_reset(Machine& m, ResetCause cause) {
     m.reset_request.reset();
     m.now = m.cycle;
     if (m.observer.on_reset) m.observer.on_reset(cause, m.pc_of(m.current), m.cycle);
+    m.stall_end = 0;  // the hook may halt it anew
     if (m.hooks.reset) m.hooks.reset(cause);
     m.irq.reset();
     m.sreg = 0;
@@ -73,7 +74,6 @@ void perform_reset(Machine& m, ResetCause cause) {
     m.sp = static_cast<std::uint16_t>(m.device.ram_end() - 1);
     m.asleep = m.stopped = m.started = false;
     m.last_vector = -1;
-    m.stall_end = 0;
     m.hold_at = kNoCycle;
     m.limit = 0;
     m.pass_pc.reset();

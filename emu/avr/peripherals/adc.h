@@ -4,7 +4,7 @@
 //
 // Deviations
 //  1. The gain stage and the internal 1.1 V and 0 V channels are ideal: no offset, no bandwidth, no noise.
-//  2. ADC noise reduction mode has no effect on the result.
+//  2. Sleep has no effect on the result.
 //  3. A trigger resets the ADC's prescaler in the clock of the trigger.
 
 #include "emu/avr/peripherals/surroundings.h"

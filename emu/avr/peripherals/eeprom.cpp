@@ -5,6 +5,7 @@ namespace puckloop::avr {
 namespace {
 constexpr int kVector = 25;
 constexpr std::uint16_t kEecr = 0x3F, kEedr = 0x40, kEearl = 0x41, kEearh = 0x42;
+constexpr std::uint8_t kMode = bit(5) | bit(4);  // EEPM, which cannot change while a byte is programmed
 constexpr std::uint8_t kEerie = bit(3), kEempe = bit(2), kEepe = bit(1), kEere = bit(0);
 constexpr std::uint8_t kErased = 0xFF;
 constexpr Cycle kArmed = 4, kReadHalt = 4, kWriteHalt = 2;
@@ -64,7 +65,8 @@ void Eeprom::write_control(void* owner, std::uint16_t address, std::uint8_t valu
     const auto written = static_cast<std::uint8_t>(value & mask);
     const bool armed = self.around_.now < self.state_.armed_until;
     constexpr std::uint8_t kActions = kEempe | kEepe | kEere;
-    self.around_.io.store(address, value, mask & static_cast<std::uint8_t>(~kActions));
+    const auto fixed = static_cast<std::uint8_t>(kActions | (self.busy() ? kMode : 0));
+    self.around_.io.store(address, value, mask & static_cast<std::uint8_t>(~fixed));
     if ((written & kEepe) && armed && !self.busy()) {
         self.program();
     } else if (written & kEempe) {

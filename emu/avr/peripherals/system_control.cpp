@@ -1,6 +1,7 @@
 #include "emu/avr/peripherals/system_control.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace puckloop::avr {
 
@@ -10,9 +11,10 @@ constexpr std::uint16_t kOcdr = 0x51, kSmcr = 0x53, kMcusr = 0x54, kMcucr = 0x55
 constexpr std::uint8_t kSe = bit(0);                                                     // SMCR
 constexpr std::uint8_t kPorf = bit(0), kExtrf = bit(1), kBorf = bit(2), kWdrf = bit(3);  // MCUSR
 constexpr std::uint8_t kJtd = bit(7), kBods = bit(6), kBodse = bit(5), kPud = bit(4), kIvsel = bit(1),
-                       kIvce = bit(0);    // MCUCR
-constexpr std::uint8_t kAs2 = bit(5);     // ASSR
-constexpr Cycle kBrownOutSleep = 3;       ///< clocks in which SLEEP must follow BODS
+                       kIvce = bit(0);  // MCUCR
+constexpr std::uint8_t kAs2 = bit(5);   // ASSR
+constexpr Cycle kBrownOutSleep = 3;     ///< clocks in which SLEEP must follow BODS
+constexpr double kBrownOutStartUp = 60e-6;
 constexpr std::uint8_t kClkpce = bit(7);  // CLKPR
 constexpr Cycle kChangeable = 4;
 constexpr unsigned kSlowest = 8, kByEight = 3;  // CLKPS
@@ -69,6 +71,7 @@ void SystemControl::reset(ResetCause cause) {
     changeable_until_ = vectors_changeable_until_ = jtag_until_ = 0;
     brown_out_from_ = brown_out_until_ = 0;
     brown_out_off_ = false;
+    interrupts_held_until_ = 0;
     set_divider(fuses_.divide_clock() ? kByEight : 0);
 }
 
@@ -87,7 +90,6 @@ std::uint16_t SystemControl::reset_pc() const {
 void SystemControl::sleep() {
     const unsigned control = around_.io.raw(kSmcr);
     if (!(control & kSe)) return;
-    brown_out_off_ = around_.now < brown_out_until_;
     const auto vectors = [](int first, int last) {
         return (std::uint64_t{2} << last) - (std::uint64_t{1} << first);
     };
@@ -101,7 +103,11 @@ void SystemControl::sleep() {
     const auto stop = [&](bool timer2_too) {
         if (stop_clocks) stop_clocks(true, timer2_too || !own_clock);
     };
-    switch (field(control, 3, 1)) {
+    const unsigned mode = field(control, 3, 1);
+    const bool deeper =
+        mode == kPowerDown || mode == kPowerSave || mode == kStandby || mode == kExtendedStandby;
+    brown_out_off_ = deeper && around_.now < brown_out_until_;
+    switch (mode) {
     case kNoiseReduction:
         stop(false);
         core_.sleep(deep | timer2 | vectors(kAdcReady, kEeprom) | vectors(kSpm, kSpm), 0);
@@ -109,24 +115,34 @@ void SystemControl::sleep() {
         return;
     case kPowerDown:
         stop(true);
-        return core_.sleep(deep, start_up_clocks());
+        return core_.sleep(deep, brown_out_start_up(start_up_clocks()));
     case kPowerSave:
         stop(false);
-        return core_.sleep(deep | timer2, start_up_clocks());
+        return core_.sleep(deep | timer2, brown_out_start_up(start_up_clocks()));
     case kStandby:
         stop(true);
-        return core_.sleep(deep, kStandbyStartUp);
+        return core_.sleep(deep, brown_out_start_up(kStandbyStartUp));
     case kExtendedStandby:
         stop(false);
-        return core_.sleep(deep | timer2, kStandbyStartUp);
+        return core_.sleep(deep | timer2, brown_out_start_up(kStandbyStartUp));
     default:
-        return core_.sleep(~std::uint64_t{0}, 0);
+        core_.sleep(~std::uint64_t{0}, 0);
+        if (quiet_conversion) quiet_conversion();
+        return;
     }
 }
 
 void SystemControl::wake() {
-    brown_out_off_ = false;
+    const bool on_again = std::exchange(brown_out_off_, false);
     if (stop_clocks) stop_clocks(false, true);
+    if (on_again && brown_out_on) brown_out_on();
+}
+
+// Where it was off, waking takes at least so long that the brown-out detector works (data sheet, "BOD
+// Disable").
+std::uint32_t SystemControl::brown_out_start_up(std::uint32_t clocks) const {
+    if (!brown_out_off_ || fuses_.brown_out_volts() == 0) return clocks;
+    return std::max(clocks, static_cast<std::uint32_t>(kBrownOutStartUp * clock_.hertz()));
 }
 
 // From power-down and power-save, by CKSEL3:0 and SUT1:0 (data sheet, tables 9-2 to 9-13).
@@ -154,7 +170,8 @@ std::uint8_t SystemControl::read_mcucr(void* owner, std::uint16_t address) {
     return value;
 }
 
-// IVSEL changes within four clocks after IVCE was set, JTD when it is written twice within four, BODS within
+// IVSEL changes within four clocks after IVCE was set, with interrupts held back for as long, or up to the
+// instruction behind the change; JTD when it is written twice within four, BODS within
 // four after BODS and BODSE were set.
 void SystemControl::write_mcucr(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask) {
     auto& self = *static_cast<SystemControl*>(owner);
@@ -163,6 +180,10 @@ void SystemControl::write_mcucr(void* owner, std::uint16_t address, std::uint8_t
     const std::uint8_t old = self.around_.io.raw(address);
     const auto changeable = static_cast<std::uint8_t>(now < self.vectors_changeable_until_ ? kIvsel : 0);
     self.vectors_changeable_until_ = written & kIvce ? now + 1 + kChangeable : 0;
+    if (written & kIvce)
+        self.interrupts_held_until_ = now + 1 + kChangeable;
+    else if (changeable)
+        self.interrupts_held_until_ = now + 2;
 
     std::uint8_t jtd = 0;
     if (mask & kJtd) {

@@ -9,7 +9,6 @@
 //  2. The internal oscillators run at exactly 8 MHz and 128 kHz; OSCCAL is stored, a write of it is reported.
 //  3. JTAG takes its pins and does nothing with them; OCDR is stored and reported.
 //  4. The program begins in the clock of the reset: start-up delays (SUT) are those of waking up only.
-//  5. Entering idle mode starts no conversion of an enabled ADC; entering ADC noise reduction mode does.
 
 #include "cosim/core/clock.h"
 #include "emu/avr/core/core.h"
@@ -30,6 +29,8 @@ class SystemControl {
     bool jtag() const;
     /// The brown-out detector was switched off for the sleep that lasts.
     bool brown_out_off() const { return brown_out_off_; }
+    /// The timed sequence that moves the vectors (IVCE, IVSEL) is under way: no interrupt is taken.
+    bool interrupts_held() const { return core_.cycle() < interrupts_held_until_; }
     /// SLEEP.
     void sleep();
     void wake();
@@ -48,6 +49,8 @@ class SystemControl {
     std::function<void()> jtag_changed;
     /// The pull-ups may have changed.
     std::function<void()> pull_ups_changed;
+    /// Awake again with the brown-out detector, which had been off.
+    std::function<void()> brown_out_on;
     /// The ADC begins a conversion because the CPU halts.
     std::function<void()> quiet_conversion;
     /// Called before and after the rate of the clock changes: what lasts a time keeps lasting it.
@@ -56,7 +59,7 @@ class SystemControl {
     template <class Archive>
     void state(Archive& archive) {
         archive(changeable_until_, vectors_changeable_until_, jtag_until_, jtag_wanted_, brown_out_from_,
-                brown_out_until_, brown_out_off_);
+                brown_out_until_, brown_out_off_, interrupts_held_until_);
     }
 
   private:
@@ -65,6 +68,7 @@ class SystemControl {
     static std::uint8_t read_mcucr(void* owner, std::uint16_t address);
     static void write_reported(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);
     std::uint32_t start_up_clocks() const;
+    std::uint32_t brown_out_start_up(std::uint32_t clocks) const;
     static void write_flags(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);
     static void write_mcucr(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);
     static void write_prescaler(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);
@@ -82,6 +86,7 @@ class SystemControl {
     Cycle brown_out_from_ = 0;   ///< BODS may be set up to here, BODSE having been
     Cycle brown_out_until_ = 0;  ///< BODS is set up to here
     bool brown_out_off_ = false;
+    Cycle interrupts_held_until_ = 0;
 };
 
 }  // namespace puckloop::avr

@@ -25,6 +25,7 @@ constexpr std::uint8_t kStAddress = 0xA8, kStDataAck = 0xB8, kStDataNack = 0xC0,
 /// Addressed after arbitration was lost; a bus error.
 constexpr std::uint8_t kLostSrAddress = 0x68, kLostSrGeneral = 0x78, kLostStAddress = 0xB0, kBusError = 0x00;
 constexpr int kAnswerClocks = 8;
+constexpr unsigned kAddresses = 128;
 
 }  // namespace
 
@@ -187,6 +188,10 @@ void Twi::answer(const cosim::I2cPhase& phase) {
     const bool reads = state_.phase.byte & kRead;
     switch (state_.phase.kind) {
     case Kind::Start:
+        if (!phase.ack && phase.kind != Kind::BusLost) {
+            const unsigned address = state_.phase.byte >> 1;
+            refused_[address / 64] |= std::uint64_t{1} << address % 64;
+        }
         state_.next_status = reads ? (phase.ack ? kMrAddressAck : kMrAddressNack)
                                    : (phase.ack ? kMtAddressAck : kMtAddressNack);
         break;
@@ -201,6 +206,14 @@ void Twi::answer(const cosim::I2cPhase& phase) {
     if (phase.kind == Kind::BusLost) state_.next_status = kLost;
     if (state_.next_status == kLost) state_.owner = false;
     interrupt(state_.next_status);
+}
+
+std::vector<std::uint8_t> Twi::refused() const {
+    std::vector<std::uint8_t> addresses;
+    for (unsigned address = 0; address < kAddresses; ++address)
+        if (refused_[address / 64] >> address % 64 & 1u)
+            addresses.push_back(static_cast<std::uint8_t>(address));
+    return addresses;
 }
 
 void Twi::answer_at(const cosim::I2cPhase& phase, Cycle at) {

@@ -15,8 +15,10 @@
 #include "emu/avr/peripherals/ports.h"
 #include "emu/avr/peripherals/surroundings.h"
 
+#include <array>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 namespace puckloop::avr {
 
@@ -41,9 +43,12 @@ class Twi {
     /// while none is awaited.
     Cycle earliest_slave_answer(Cycle now) const;
 
+    /// Addresses of slaves that did not acknowledge, rising; resets do not clear them.
+    std::vector<std::uint8_t> refused() const;
+
     template <class Archive>
     void state(Archive& archive) {
-        archive(state_);
+        archive(state_, refused_);
     }
 
   private:
@@ -99,6 +104,7 @@ class Twi {
     Ports& ports_;
     Pins& pins_;
     State state_;
+    std::array<std::uint64_t, 2> refused_{};  ///< by address, a bit each; resets do not clear them
     EventQueue::Slot slot_;
 };
 

@@ -40,18 +40,31 @@ void Watchdog::restart() {
     plan(around_.now + 1);
 }
 
+Cycle Watchdog::period(std::uint8_t control) const {
+    const unsigned select = std::min(field(control, 2, 0) | field(control, 5, 5) << 3, kLongestSelect);
+    const double seconds = static_cast<double>(kShortest << select) / kOscillator;
+    return static_cast<Cycle>(seconds * clock_.hertz());
+}
+
 void Watchdog::plan(Cycle from) {
     if (!(control() & (kWde | kWdie))) return around_.events.cancel(slot_);
-    const unsigned select = std::min(field(control(), 2, 0) | field(control(), 5, 5) << 3, kLongestSelect);
-    const double seconds = static_cast<double>(kShortest << select) / kOscillator;
-    around_.events.schedule(slot_, from + static_cast<Cycle>(seconds * clock_.hertz()));
+    around_.events.schedule(slot_, from + period(control()));
+}
+
+// Only WDR, a time-out and a reset set the counter to 0: with another period it goes on from where it is, and
+// one that is past the new period is a time-out.
+void Watchdog::change_period(std::uint8_t old, Cycle now) {
+    const Cycle due = around_.events.due(slot_);
+    const bool ran = (old & (kWde | kWdie)) != 0 && due != kNoCycle;
+    if (!ran || !(control() & (kWde | kWdie))) return plan(now);
+    around_.events.schedule(slot_, std::max(now, due + period(control()) - period(old)));
 }
 
 void Watchdog::update_request() {
     around_.interrupts.request(kVector, (control() & kWdif) && (control() & kWdie));
 }
 
-// With both modes on, the routine's entry leaves the reset mode: the next time-out resets.
+// With both modes on, the routine's entry leaves the interrupt mode: the next time-out resets.
 void Watchdog::acknowledge(void* owner, int) {
     auto& self = *static_cast<Watchdog*>(owner);
     assign(self.control(), kWdif, false);
@@ -61,7 +74,8 @@ void Watchdog::acknowledge(void* owner, int) {
 
 void Watchdog::due(void* owner, Cycle cycle) {
     auto& self = *static_cast<Watchdog*>(owner);
-    if (self.control() & kWdie) {
+    constexpr std::uint8_t kUnserved = kWde | kWdif;  // both modes, and the routine has not run since
+    if ((self.control() & kWdie) && (self.control() & kUnserved) != kUnserved) {
         self.control() |= kWdif;
         self.update_request();
         self.plan(cycle);
@@ -86,7 +100,7 @@ void Watchdog::write_control(void* owner, std::uint16_t, std::uint8_t value, std
     if (self.always_on_) assign(next, kWdie, false);
     if ((value & mask & kWdce) && (value & mask & kWde)) self.changeable_until_ = now + 1 + kChangeable;
     self.control() = static_cast<std::uint8_t>(next & ~kWdce);
-    if ((old ^ self.control()) & (kWde | kWdie | kWdp)) self.plan(now + 1);
+    if ((old ^ self.control()) & (kWde | kWdie | kWdp)) self.change_period(old, now + 1);
     self.update_request();
 }
 

@@ -29,7 +29,10 @@ class Watchdog {
 
   private:
     std::uint8_t& control() const { return around_.io.raw(0x60); }
+    /// In cycles, as this value of WDTCSR has it.
+    Cycle period(std::uint8_t control) const;
     void plan(Cycle from);
+    void change_period(std::uint8_t old, Cycle now);
     void update_request();
     static void write_control(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);
     static void due(void* owner, Cycle cycle);

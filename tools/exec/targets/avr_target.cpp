@@ -116,6 +116,7 @@ std::vector<std::string> AvrTarget::warnings() {
         lines.push_back(
             fmt::format("{} {}, which no model is behind, at pc {}", touch.write ? "writes" : "reads",
                         touch.name.empty() ? hexadecimal(touch.address) : touch.name, place(touch.pc)));
+    if (const auto refused = avr::refused_text(report)) lines.push_back(*refused);
     for (const avr::ChipWarning& warning : report.warnings)
         lines.push_back(fmt::format("{}, at pc {}", warning.text, place(warning.pc)));
     return lines;
