@@ -262,7 +262,7 @@ TEST_CASE("no interrupt comes between IVCE and IVSEL") {
         jmp  start
         .org 0x48
         sts  0x100, r20
-        reti
+stay:   rjmp stay
         .org 0x100
 start:  ldi  r16, 1
         sts  TIMSK0, r16
@@ -288,7 +288,7 @@ fill:   dec  r18
 end:    rjmp end
         .org 0x1E048
         sts  0x100, r20
-        reti
+stays:  rjmp stays
 )");
         rig.run(1000);
         return static_cast<int>(rig.ram(0x100));
