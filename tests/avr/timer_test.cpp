@@ -145,6 +145,25 @@ loop:   rjmp loop
     CHECK(edges[1] - edges[0] != 0);
 }
 
+TEST_CASE("fast PWM: a compare value at the top makes a steady level") {
+    for (const auto& [control, changes] :
+         {std::pair{0x83, 1u}, {0xC3, 0u}}) {  // high from the first BOTTOM on; low
+        Rig rig(R"(
+        sbi DDRD, 7
+        ldi r16, 255
+        sts OCR2A, r16
+        ldi r16, )" +
+                std::to_string(control) + R"(
+        sts TCCR2A, r16
+        ldi r16, 1
+        sts TCCR2B, r16
+loop:   rjmp loop
+)");
+        rig.run(5000);
+        CHECK(rig.changes({PortLetter::D, 7}).size() == changes);
+    }
+}
+
 TEST_CASE("phase correct PWM: 510 counts a period, 2 OCR high, symmetric") {
     Rig rig(R"(
         sbi DDRB, 3

@@ -150,6 +150,10 @@ void Timer::pass(std::uint64_t ticks) {
 
     for (int channel = 0; channel < 2; ++channel)
         if (matched[static_cast<std::size_t>(channel)] && output_mode(channel) != kDisconnected) {
+            const bool hidden = wave.kind == Kind::Fast && at_bottom &&  // a match at the top changes nothing
+                                state_.compare[static_cast<std::size_t>(channel)] == end &&
+                                output_mode(channel) != kToggle;
+            if (hidden) continue;
             if (!wave.dual_slope()) {
                 match(channel);
             } else {  // on the way up, or down: the top counts as down, the bottom as up
