@@ -70,10 +70,12 @@ void add_linux_warnings(const std::string& name, const ordered_json& node,
         return found == node.end() ? 0 : found->value(what, std::uint64_t{0});
     };
     if (count("uart", "sent") > 0 && count("uart", "received") == 0)
-        warnings.push_back(
-            fmt::format("{}: sent {} bytes and never received one: was the PIC ready when the program "
-                        "began to speak ('start' in the scenario)?",
-                        name, count("uart", "sent")));
+        warnings.push_back(fmt::format("{}: sent {} bytes and never received one: was {} when the program "
+                                       "began to speak ('start' in the scenario)?",
+                                       name, count("uart", "sent"),
+                                       name == "coordinator.linux"
+                                           ? "the radio module ready, its rate that of the port"
+                                           : "the PIC ready"));
     if (const auto failed = count("i2c", "failed"); failed > 0)
         warnings.push_back(
             fmt::format("{}: {} of {} I2C transfers failed (the bus's log tells the addresses)", name, failed,
