@@ -71,14 +71,14 @@ std::string with_timer(const std::string& work, const std::string& loop) {
 TEST_CASE("a bit that no model drives is named, with the loop and how long it has run") {
     Bench bench(kMain + R"(
         bset RCON, #12
-wait:   btss RCON, #13
+wait:   btss INTCON1, #1
         bra wait
 )");
     const WaitReport wait = bench.after(2.0);
     CHECK(wait.hung);
     CHECK(wait.first == 0x108);
     CHECK(wait.last == 0x10A);
-    CHECK(wait.text == "reading RCON, bit BGST, which no model drives");
+    CHECK(wait.text == "reading INTCON1, bit OSCFAIL, which no model drives");
     CHECK(bench.chip.clock().time_of(wait.since) < cosim::kMillisecond);
 }
 
@@ -88,14 +88,14 @@ wait:   rcall look
         cp0 w0
         bra z, wait
         bra main
-look:   mov RCON, w0
-        mov #0x2000, w1
+look:   mov INTCON1, w0
+        mov #2, w1
         and w0, w1, w0
         return
 )");
     const WaitReport wait = bench.after(1.0);
     CHECK(wait.hung);
-    CHECK(wait.text == "reading RCON, bit BGST, which no model drives");
+    CHECK(wait.text == "reading INTCON1, bit OSCFAIL, which no model drives");
 }
 
 TEST_CASE("a register without a model hangs its reader, interrupts or not") {
@@ -111,7 +111,7 @@ wait:   btss SPI1STAT, #0
 TEST_CASE("a wait with a time-out is no hang, and the missing bit is reported all the same") {
     Bench bench(kMain + R"(
         mov #20000, w2
-wait:   btsc RCON, #13
+wait:   btsc INTCON1, #1
         bra done
         dec w2, w2
         bra nz, wait
@@ -123,7 +123,7 @@ done:   btss U2STA, #0
     CHECK(wait.text == "reading U2STA, bit URXDA");
     const ChipReport report = bench.chip.report();
     REQUIRE(report.missing_bits.size() == 1);
-    CHECK(report.missing_bits[0].bits == "RCON, bit BGST");
+    CHECK(report.missing_bits[0].bits == "INTCON1, bit OSCFAIL");
 }
 
 TEST_CASE("waiting for a character is no hang, however long") {
@@ -244,7 +244,7 @@ TEST_CASE("sleep without anything enabled is for ever") {
 }
 
 TEST_CASE("what a program waits for is the same with every turn of its loop executed") {
-    const std::string source = kMain + "        bset RCON, #12\nwait:   btss RCON, #13\n        bra wait\n";
+    const std::string source = kMain + "        bset RCON, #12\nwait:   btss INTCON1, #1\n        bra wait\n";
     Bench skipping(source), executing(source);
     executing.chip.set_skipping(false);
     const WaitReport a = skipping.after(0.3), b = executing.after(0.3);

@@ -12,10 +12,10 @@ using Catch::Contains;
 
 namespace {
 
-/// Switches the low-voltage detector on and waits for its reference, as boots of some firmware do.
+/// Waits for a failure of the oscillator, which no model makes.
 const std::string kWaitsForReference = kMain + R"(
         bset    RCON, #12
-wait:   btss    RCON, #13
+wait:   btss    INTCON1, #1
         bra     wait
         bra     wait
 )";
@@ -58,8 +58,8 @@ std::string scenario(const Workbench& bench, const std::string& hex) {
 TEST_CASE("exec names the bit that hangs the program, and --strict makes it status 1", "[hung]") {
     const Workbench bench;
     const std::string hex = image(bench, "bgst", kWaitsForReference);
-    const std::string line =
-        "warning: has run 3.0 s in the loop 0x0108..0x010a reading RCON, bit BGST, which no model drives\n";
+    const std::string line = "warning: has run 3.0 s in the loop 0x0108..0x010a reading INTCON1, bit "
+                             "OSCFAIL, which no model drives\n";
     const Ended plain = bench.puckloop({"exec", "--board", "pic", hex, "--seconds", "3"});
     CHECK(plain.status == 0);
     CHECK_THAT(plain.out, Contains(line));
@@ -70,7 +70,7 @@ TEST_CASE("exec names the bit that hangs the program, and --strict makes it stat
     // Somebody at a live end is not kept waiting for the summary.
     const Ended live = bench.puckloop({"exec", "--board", "pic", hex, "--seconds", "2.2", "--realtime"});
     CHECK_THAT(live.err,
-               Contains("warning: has run 2.0 s in the loop 0x0108..0x010a reading RCON, bit BGST"));
+               Contains("warning: has run 2.0 s in the loop 0x0108..0x010a reading INTCON1, bit OSCFAIL"));
     const Ended json = bench.puckloop({"exec", "--board", "pic", hex, "--seconds", "3", "--json"});
     const auto report = nlohmann::json::parse(json.out);
     CHECK(report["waiting"]["hung"] == true);
@@ -82,8 +82,8 @@ TEST_CASE("run names the robot that hangs, in both placements alike", "[hung]") 
     const Workbench bench;
     const std::string file = scenario(bench, image(bench, "bgst", kWaitsForReference));
     const std::string line =
-        "warning: robot0.pic: has run 2.0 s in the loop 0x0108..0x010a reading RCON, bit "
-        "BGST, which no model drives\n";
+        "warning: robot0.pic: has run 2.0 s in the loop 0x0108..0x010a reading INTCON1, bit "
+        "OSCFAIL, which no model drives\n";
     for (const char* placement : {"--threads=1", "--in-process"}) {
         const Ended ended = bench.run("o", {file, placement});
         CHECK(ended.status == 0);

@@ -6,8 +6,10 @@
 #include "emu/dspic/devices/dspic30f6014a_sfr.h"
 #include "emu/dspic/devices/register_bits.h"
 #include "emu/dspic/peripherals/adc12.h"
+#include "emu/dspic/peripherals/dci.h"
 #include "emu/dspic/peripherals/external_interrupts.h"
 #include "emu/dspic/peripherals/i2c_slave.h"
+#include "emu/dspic/peripherals/low_voltage.h"
 #include "emu/dspic/peripherals/oscillator.h"
 #include "emu/dspic/peripherals/oscillator_33f.h"
 #include "emu/dspic/waits/judge.h"
@@ -91,6 +93,8 @@ struct Chip::Parts {
     std::deque<Spi> spis;
     std::optional<OutputCompare> output_compare;
     std::optional<Dma> dma;
+    std::optional<Dci> dci;
+    std::optional<LowVoltage> low_voltage;
     chip::HeldInterrupts held;  ///< its slot is the last: the others keep theirs
 
     ChipReport report;
@@ -138,6 +142,8 @@ struct Chip::Parts {
                                    pins);
         if (layout.dma.con)
             dma.emplace(around, layout.dma, core.ram().subspan((layout.dma.ram - device.ram_start) / 2u));
+        if (layout.dci.con1) dci.emplace(around, layout.dci, ports, pins);
+        if (layout.low_voltage_irq) low_voltage.emplace(around, layout.low_voltage_irq, pins);
         for (const std::uint16_t address : layout.stored)
             sfr.claim(address);
         list_idle_controls();
@@ -154,6 +160,7 @@ struct Chip::Parts {
             idle_controls.push_back(setup.con1);
         for (const Spi::Setup& setup : layout.spis)
             idle_controls.push_back(setup.stat);
+        if (dci) idle_controls.push_back(layout.dci.con1);
     }
 
     SfrSpace& described() {
@@ -208,6 +215,7 @@ struct Chip::Parts {
         };
         core.set_cycle_rate(clock.hertz());
         core.set_reset_hook([this](ResetCause cause) { reset(cause); });
+        if (low_voltage) core.set_rcon_hook([this] { low_voltage->changed(clock.hertz()); });
         core.set_power_hook([this](PowerMode mode) { set_power(mode); });
         core.observer().on_reset = [this](ResetCause cause, std::uint32_t pc, Cycle at) {
             if (report.resets.size() < kRecords)
@@ -229,6 +237,13 @@ struct Chip::Parts {
     static void wire_converter(Timer* source, void* converter, void (*trigger)(void* owner, Cycle at)) {
         source->on_match_owner = converter;
         source->on_match = trigger;
+    }
+
+    /// BOREN: the brown-out detector is on.
+    bool brown_out() const {
+        constexpr std::uint32_t kFborpor30F = 0xF80004;
+        constexpr std::uint32_t kBoren = 1u << 7;
+        return !device.family_33f && (core.config(kFborpor30F) & kBoren) != 0;
     }
 
     ClockConfiguration clock_words() const {
@@ -258,6 +273,8 @@ struct Chip::Parts {
         reset_all(spis);
         if (output_compare) output_compare->reset();
         if (dma) dma->reset();
+        if (dci) dci->reset();
+        if (low_voltage) low_voltage->reset(brown_out());
         interrupts.reset();
         held.reset();
     }
@@ -288,6 +305,7 @@ struct Chip::Parts {
             adcs[i].hold(stops(layout.adcs[i].con1) && !(sleeps && adcs[i].runs_in_sleep()));
         for (std::size_t i = 0; i < spis.size(); ++i)
             spis[i].hold(stops(layout.spis[i].stat));
+        if (dci) dci->hold(stops(layout.dci.con1));
     }
 
     Uart& uart(int unit) { return uarts[static_cast<std::size_t>(unit - 1)]; }
@@ -329,6 +347,8 @@ struct Chip::Parts {
         parts_of("spi", spis);
         if (output_compare) archive.part("output compare", *output_compare);
         if (dma) archive.part("dma", *dma);
+        if (dci) archive.part("dci", *dci);
+        if (low_voltage) archive.part("low voltage", *low_voltage);
         archive.part("report", report);
         archive(asleep_since);
         if constexpr (Archive::kLoads) holding = true;
@@ -454,6 +474,10 @@ void Chip::i2c_slave_phase(int unit, const cosim::I2cPhase& phase) {
 
 void Chip::pins_changed(PortLetter port) {
     parts_->ports.outside_changed(port, parts_->message_cycle());
+}
+
+void Chip::supply_changed() {
+    if (parts_->low_voltage) parts_->low_voltage->supply_changed(parts_->message_cycle());
 }
 
 Time Chip::earliest_uart_send(int unit, Time nominal_bit) const {

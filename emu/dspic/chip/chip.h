@@ -151,6 +151,8 @@ class Chip {
     /// Levels that Pins::levels() reports for this port changed now: edges for INTx, CN, timer clocks and
     /// gates.
     void pins_changed(PortLetter port);
+    /// Pins::supply() is another one now.
+    void supply_changed();
 
     /// Lookahead for the conductor: no uart_sent() call for `unit` carries a stop bit that begins before
     /// this. `nominal_bit` is the link's nominal bit period; faster senders must be stamped as on that

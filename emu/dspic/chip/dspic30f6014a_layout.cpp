@@ -46,6 +46,8 @@ constexpr Layout kLayout = {
     .i2cs = kI2cs,
     .adc12 = true,
     .adc_timers = {3, 0},
+    .dci = {sfr::DCICON1, irq::DCI, 0, G, 12, 13, 14, 15},
+    .low_voltage_irq = irq::LVD,
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
 // The modules of the dsPIC33FJ256GP710 (100 pins) and their pins. Source: DS70286, pin diagram and tables.
-// Not modelled: input capture, DCI, CAN1, CAN2, CRC; their registers are reported when touched.
+// Not modelled: input capture, CAN1, CAN2, CRC; their registers are reported when touched.
 
 #include "emu/dspic/chip/layout.h"
 #include "emu/dspic/devices/dspic33fj256gp710_irq.h"
@@ -91,6 +91,7 @@ constexpr Layout kLayout = {
             sfr::DMACS0,
             {irq::DMA0, irq::DMA1, irq::DMA2, irq::DMA3, irq::DMA4, irq::DMA5, irq::DMA6, irq::DMA7},
             0x7800},
+    .dci = {sfr::DCICON1, irq::DCI, irq::DCIE, G, 12, 13, 14, 15},
     .stored = kStored,
 };
 

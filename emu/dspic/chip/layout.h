@@ -4,6 +4,7 @@
 
 #include "emu/dspic/devices/device.h"
 #include "emu/dspic/peripherals/adc_33f.h"
+#include "emu/dspic/peripherals/dci.h"
 #include "emu/dspic/peripherals/dma.h"
 #include "emu/dspic/peripherals/i2c_master.h"
 #include "emu/dspic/peripherals/output_compare.h"
@@ -38,6 +39,8 @@ struct Layout {
     std::span<const Spi::Setup> spis{};
     std::span<const OutputCompare::Unit> output_compares{};
     Dma::Setup dma{};
+    Dci::Setup dci{};
+    std::uint8_t low_voltage_irq = 0;  ///< 0: the part has no low-voltage detector
     std::span<const std::uint16_t> stored{};  ///< registers that hold what is written and do no more
 };
 

@@ -219,6 +219,9 @@ void Core::set_reset_hook(std::function<void(ResetCause)> hook) {
 void Core::set_power_hook(std::function<void(PowerMode)> hook) {
     machine_->power_hook = std::move(hook);
 }
+void Core::set_rcon_hook(std::function<void()> hook) {
+    machine_->rcon_hook = std::move(hook);
+}
 void Core::set_cycle_rate(double hertz) {
     machine_->cycle_rate = hertz;
     note_rate(*machine_);

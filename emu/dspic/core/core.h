@@ -142,6 +142,8 @@ class Core {
     void set_reset_hook(std::function<void(ResetCause)> hook);
     /// Called when PWRSAV and wake-up change the mode.
     void set_power_hook(std::function<void(PowerMode)> hook);
+    /// Called after each write of RCON and once a reset has set it.
+    void set_rcon_hook(std::function<void()> hook);
     /// Instruction rate in hertz: the watchdog and flash timing need it. Call at each clock change.
     void set_cycle_rate(double hertz);
     CoreObserver& observer();

@@ -189,6 +189,7 @@ void perform_reset(Machine& m, ResetCause cause) {
         break;
     }
     rcon_register(m) = static_cast<std::uint16_t>(value);
+    if (m.rcon_hook) m.rcon_hook();
     if (m.mode != PowerMode::Run) leave_power_save(m);
     clear_watchdog(m);
     m.eligible = m.disi_waits = m.stopped = false;

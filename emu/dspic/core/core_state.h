@@ -28,7 +28,7 @@ inline constexpr int kDlShift = 8;
 /// Bits of RCON.
 namespace rcon {
 inline constexpr std::uint16_t POR = 1u << 0, BOR = 1u << 1, IDLE = 1u << 2, SLEEP = 1u << 3, WDTO = 1u << 4,
-                               SWDTEN = 1u << 5, SWR = 1u << 6, EXTR = 1u << 7, IOPUWR = 1u << 14,
+                               SWDTEN = 1u << 5, SWR = 1u << 6, EXTR = 1u << 7, BGST = 1u << 13, IOPUWR = 1u << 14,
                                TRAPR = 1u << 15;
 }  // namespace rcon
 

@@ -130,6 +130,7 @@ struct Machine {
 
     std::function<void(ResetCause)> reset_hook;
     std::function<void(PowerMode)> power_hook;
+    std::function<void()> rcon_hook;
     CoreObserver observer;
     std::vector<std::uint32_t> warned;
     bool skip_idle = true;

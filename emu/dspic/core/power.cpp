@@ -47,8 +47,10 @@ void write_rcon(void* owner, std::uint16_t address, std::uint16_t value, std::ui
     auto& m = *static_cast<Machine*>(owner);
     std::uint16_t& stored = m.sfr.raw(address);
     const std::uint16_t before = stored;
-    stored = static_cast<std::uint16_t>((stored & ~mask) | (value & mask));
+    const unsigned writable = mask & ~std::uint32_t{rcon::BGST};
+    stored = static_cast<std::uint16_t>((stored & ~writable) | (value & writable));
     if ((before ^ stored) & rcon::SWDTEN) clear_watchdog(m);
+    if (m.rcon_hook) m.rcon_hook();
 }
 
 void set_mode(Machine& m, PowerMode mode) {

@@ -15,6 +15,16 @@ struct OutsidePin {
     std::string_view function{};  ///< the board's name for it, or empty
 };
 
+/// What the DCI shifts out in one slot of a frame, MSB first and left justified.
+struct DciWord {
+    std::uint8_t slot = 0;   ///< 0..15; 0 begins at (or one bit behind) the frame sync
+    std::uint8_t bits = 16;  ///< that are transferred
+    bool driven = false;     ///< the slot is one that the chip transmits in; else `value` is 0
+    std::uint16_t value = 0;
+    Cycle frame = 0;               ///< first bit of slot 0 of this frame
+    std::uint32_t bit_cycles = 2;  ///< bit clock, cycles
+};
+
 /// Ports A..G as on the package; H and above do not exist on these parts.
 enum class PortLetter : std::uint8_t { A, B, C, D, E, F, G };
 
@@ -45,6 +55,11 @@ class Pins {
     /// Master of SPI module `unit` shifted out `bits` (8 or 16) bits, the last clock edge being now: what
     /// came in meanwhile. The chip select is an ordinary port pin. Without a board the line rests high.
     virtual std::uint16_t spi_exchange(int unit, std::uint16_t sent, int bits, Cycle now);
+    /// The DCI's last bit of `word` is over, in a slot enabled for either direction: what came in meanwhile,
+    /// left justified. Without a board the line rests low.
+    virtual std::uint16_t dci_exchange(const DciWord& word, Cycle now);
+    /// Voltage at VDD, as the low-voltage detector sees it; a change is told by Chip::supply_changed().
+    virtual double supply() const;
     /// Bit 0..15 of a port. Unless a board knows better, anything may change.
     virtual OutsidePin outside(PortLetter port, int bit) const;
     /// Chip::output_compare(unit) changed at cycle `now`.
@@ -60,6 +75,12 @@ constexpr cosim::Time i2c_answer_time(const cosim::I2cPhase& answer) {
 inline void Pins::i2c_slave_answer(int, const cosim::I2cPhase&) {}
 inline std::uint16_t Pins::spi_exchange(int, std::uint16_t, int bits, Cycle) {
     return static_cast<std::uint16_t>((1u << bits) - 1u);
+}
+inline std::uint16_t Pins::dci_exchange(const DciWord&, Cycle) {
+    return 0;
+}
+inline double Pins::supply() const {
+    return 3.3;
 }
 inline OutsidePin Pins::outside(PortLetter, int) const {
     return {};
