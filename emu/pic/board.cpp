@@ -2,6 +2,7 @@
 
 #include "emu/pic/pin_table.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace puckloop::pic {
@@ -12,7 +13,8 @@ constexpr double kFullScale = 4095.0;
 constexpr double kSpan = 4096.0;
 // Where inside its code a value is put, so that neither truncation nor rounding moves it to the next one.
 constexpr double kInsideCode = 0.25;
-constexpr double kPllOverCycle = 2.0;  // PLL x8, four oscillator periods a cycle
+constexpr double kRegulated = 3.3, kDropout = 0.1;  // V, of the board's supply (an assumption)
+constexpr double kPllOverCycle = 2.0;               // PLL x8, four oscillator periods a cycle
 
 double cycles(double seconds, const BoardParameters& parameters) {
     return seconds * parameters.crystal_hertz * kPllOverCycle;
@@ -55,6 +57,8 @@ Board::Board(const BoardParameters& parameters, BoardListener& listener)
       microphones_{Microphone{parameters.seed, parameters.name + "/mic0"},
                    Microphone{parameters.seed, parameters.name + "/mic1"},
                    Microphone{parameters.seed, parameters.name + "/mic2"}},
+      sounds_{SoundInput{cycles(kSoundPeriod, parameters)}, SoundInput{cycles(kSoundPeriod, parameters)},
+              SoundInput{cycles(kSoundPeriod, parameters)}},
       motors_{motor(StepSense::LeftMotor, parameters), motor(StepSense::RightMotor, parameters)} {
     for (SignalId id = 0; id < kSignalCount; ++id)
         values_[id].value = values_[id].before = signals()[id].initial;
@@ -73,6 +77,8 @@ std::optional<dspic::PortLetter> Board::set_signal(SignalId id, double value, ds
     input.since = now;
     if (id >= kInfraredLight && id < kInfraredLight + kProximityCount)
         lights_[static_cast<std::size_t>(id - kInfraredLight)].set(wanted, now);
+    if (id >= kSound && id < kSound + kMicrophoneCount)
+        sounds_[static_cast<std::size_t>(id - kSound)].set(wanted, now);
     if (id == kBatteryVoltage) values_[kBatteryLow].value = wanted < parameters_.battery_low_volts ? 1 : 0;
     const std::array<std::uint16_t, kPorts> before = levels_;
     place_levels();
@@ -96,6 +102,10 @@ std::optional<dspic::PortLetter> Board::set_battery(std::optional<double> volts,
 void Board::set_held(int motor, bool held, dspic::Cycle now) {
     if (now > 0) settle(now - 1);
     motors_[static_cast<std::size_t>(motor)].set_held(held);
+}
+
+double Board::supply() const {
+    return std::min(kRegulated, values_[kBatteryVoltage].value - kDropout);
 }
 
 double Board::signal(SignalId id) const {
@@ -141,6 +151,23 @@ void Board::drive(SignalId id, bool level, dspic::Cycle now) {
         emitters_[static_cast<std::size_t>(id - kPulse)].set(level, now);
     values_[id].value = level ? 1.0 : 0.0;
     listener_.signal_changed(id, values_[id].value, now);
+    if (id != kAudioOn) return;
+    codec_.set_released(level);
+    show_speaker(now);
+}
+
+void Board::show_speaker(dspic::Cycle now) {
+    if (codec_.speaker() == values_[kSpeaker].value) return;
+    values_[kSpeaker].value = codec_.speaker();
+    listener_.signal_changed(kSpeaker, values_[kSpeaker].value, now);
+}
+
+std::uint16_t Board::dci_exchange(const dspic::DciWord& word, dspic::Cycle now) {
+    const std::uint64_t before = codec_.samples();
+    const std::uint16_t got = codec_.exchange(word, values_[kLineIn].at(now));
+    if (codec_.samples() != before) listener_.sound_sample(codec_.speaker(), now);
+    show_speaker(now);
+    return got;
 }
 
 /// Inputs stay within their ranges, whatever a state holds.
@@ -198,7 +225,8 @@ double Board::analog(int channel, dspic::Cycle now) {
     if (channel >= kFirstMicrophoneChannel && channel < kFirstMicrophoneChannel + kMicrophoneCount) {
         const auto i = static_cast<std::size_t>(channel - kFirstMicrophoneChannel);
         counts +=
-            microphones_[i].sample(values_[kMicrophoneLevel + i].at(now), values_[kMicrophoneLost].value);
+            microphones_[i].sample(values_[kMicrophoneLevel + i].at(now), values_[kMicrophoneLost].value) +
+            sounds_[i].at(now);
     }
     const double noise =
         channel >= kFirstProximityChannel ? phototransistor_noise_ : parameters_.adc_noise_counts;

@@ -17,7 +17,9 @@
 #include "emu/pic/emitter.h"
 #include "emu/pic/light_input.h"
 #include "emu/pic/microphone.h"
+#include "emu/pic/si3000.h"
 #include "emu/pic/signals.h"
+#include "emu/pic/sound_input.h"
 #include "emu/pic/stepper.h"
 
 #include <array>
@@ -55,6 +57,8 @@ class BoardListener {
     /// An output signal changed.
     virtual void signal_changed(SignalId id, double value, dspic::Cycle now) = 0;
     virtual void uart_sent(int unit, const cosim::UartFrame& frame) = 0;
+    /// The codec turned a sample into sound; `value` is that of the signal `speaker`.
+    virtual void sound_sample(double /*value*/, dspic::Cycle /*now*/) {}
     virtual void i2c_phase(int unit, const cosim::I2cPhase& phase) = 0;
     /// A fault kept motor 0 (left) or 1 from making a step that was due at `now`.
     virtual void step_lost(int /*motor*/, dspic::Cycle /*now*/) {}
@@ -85,10 +89,15 @@ class Board : public dspic::Pins {
     /// The wheel of motor 0 (left) or 1 does not turn from `now` on.
     void set_held(int motor, bool held, dspic::Cycle now);
 
+    /// VDD: the regulator's 3.3 V, less where the battery cannot hold them.
+    double supply() const override;
+    const Si3000& codec() const { return codec_; }
+
     /// Positions of all signals, lights, motors and noise; the parameters are each board's own.
     template <class Archive>
     void state(Archive& archive) {
-        archive(noise_, values_, emitters_, lights_, microphones_, motors_, outputs_, analog_faults_);
+        archive(noise_, values_, emitters_, lights_, microphones_, motors_, outputs_, analog_faults_, codec_,
+                sounds_);
         archive.bounded(sag_, 0.0, 1e3);
         archive.bounded(battery_, -1e15, 1e15);
         archive(profile_);
@@ -109,6 +118,7 @@ class Board : public dspic::Pins {
     double analog(int channel, dspic::Cycle now) override;
     void uart_sent(int unit, const cosim::UartFrame& frame) override { listener_.uart_sent(unit, frame); }
     void i2c_phase(int unit, const cosim::I2cPhase& phase) override { listener_.i2c_phase(unit, phase); }
+    std::uint16_t dci_exchange(const dspic::DciWord& word, dspic::Cycle now) override;
 
     dspic::OutsidePin outside(dspic::PortLetter port, int bit) const override;
 
@@ -131,6 +141,7 @@ class Board : public dspic::Pins {
     void check_loaded();
     void place_levels();
     void drive(SignalId id, bool level, dspic::Cycle now);
+    void show_speaker(dspic::Cycle now);
 
     BoardParameters parameters_;
     BoardListener& listener_;
@@ -140,7 +151,9 @@ class Board : public dspic::Pins {
     std::array<Emitter, kPulseCount> emitters_;
     std::array<LightInput, kProximityCount> lights_;
     std::array<Microphone, kMicrophoneCount> microphones_;
+    std::array<SoundInput, kMicrophoneCount> sounds_;
     std::array<StepperDecoder, 2> motors_;
+    Si3000 codec_;
     std::array<std::uint16_t, kPorts> outputs_{};  ///< pins that are driven high
     std::array<std::uint16_t, kPorts> levels_{};   ///< what the board puts on the pins
     chip::AnalogFaults analog_faults_;

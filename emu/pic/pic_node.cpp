@@ -117,6 +117,7 @@ void PicNode::receive(const cosim::Message& message) {
         const dspic::Cycle now = chip_->clock().first_cycle_at(message.time);
         if (signal->id == kResetButton && signal->value > board_.signal(kResetButton)) chip_->mclr();
         if (const auto port = board_.set_signal(signal->id, signal->value, now)) chip_->pins_changed(*port);
+        if (signal->id == kBatteryVoltage) chip_->supply_changed();
     }
 }
 
@@ -162,10 +163,12 @@ void PicNode::step_lost(int motor, dspic::Cycle now) {
 
 void PicNode::set_sag(double volts) {
     if (const auto port = board_.set_sag(volts, message_cycle())) chip_->pins_changed(*port);
+    chip_->supply_changed();
 }
 
 void PicNode::set_battery(std::optional<double> volts) {
     if (const auto port = board_.set_battery(volts, message_cycle())) chip_->pins_changed(*port);
+    chip_->supply_changed();
 }
 
 void PicNode::set_motor(int motor, std::uint8_t open, bool stalled) {

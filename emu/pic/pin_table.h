@@ -3,7 +3,7 @@
 // Source: e-puck fact sheet 3.2 (from the e-puck library's port headers and the camera and codec drivers).
 //
 // Deviations:
-// 1. No camera, codec or LIS turret is fitted: their inputs stand at the idle level given here.
+// 1. No camera or LIS turret is fitted: their inputs stand at the idle level given here.
 // 2. Board revision up to 1.2: AN7 is the accelerometer's z axis, not the battery of revision 1.3.
 
 #include "emu/dspic/peripherals/pins.h"
@@ -79,6 +79,9 @@ inline constexpr auto kPins = std::to_array<PinUse>({
     {G, 8, "selector2", Input, kSelector, 2},
     {G, 9, "selector3", Input, kSelector, 3},
     {G, 12, "codec_in", PulledLow},
+    {G, 13, "codec_out", PulledLow},
+    {G, 14, "codec_clock", PulledLow},
+    {G, 15, "codec_frame", PulledLow},
 });
 }  // namespace wiring
 

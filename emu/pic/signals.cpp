@@ -16,7 +16,7 @@ using cosim::SignalInfo;
 constexpr double kFullScale = 4095;
 constexpr double kRoomLight = 3800;  // ordinary room 3450..3860; dark ~4000
 constexpr double kMidScale = 2048;
-constexpr double kOneG = 800;  // counts for 1 g
+constexpr double kOneG = 800;       // counts for 1 g
 constexpr double kBrightest = 1e6;  // far beyond what the converter shows
 constexpr double kStepRange = 2147483647;
 
@@ -89,6 +89,11 @@ std::vector<SignalInfo> build() {
     for (int i = 0; i < kProximityCount; ++i)
         b.input(fmt::format("ir_light{}", i), "counts", 0, kBrightest, 0,
                 fmt::format("infra-red light of other robots and booths at AN{}, by which it drops", 8 + i));
+    b.output("speaker", "1", -1, 1, "what the codec drives the speaker with, 1 is full scale");
+    for (int i = 0; i < kMicrophoneCount; ++i)
+        b.input(fmt::format("sound{}", i), "counts", -kFullScale, kFullScale, 0,
+                fmt::format("sound wave about mic{}; joined by straight lines of 62.5 us", i));
+    b.input("line_in", "1", -1, 1, 0, "codec's line input, 1 is full scale; leads nowhere on the robot");
     return b.list;
 }
 

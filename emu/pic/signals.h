@@ -34,9 +34,12 @@ inline constexpr SignalId kCameraReset = 59;
 // Inputs that came later; ids of the others stay what they are in recorded runs.
 inline constexpr SignalId kMicrophoneLevel = 60;  ///< 3: volume of the sound at microphone i, counts
 inline constexpr SignalId kMicrophoneLost = 63;   ///< share of microphone samples that hold the one before
-inline constexpr SignalId kResetButton = 64;  ///< 1 = the reset button is pressed (MCLR), which resets once
+inline constexpr SignalId kResetButton = 64;    ///< 1 = the reset button is pressed (MCLR), which resets once
 inline constexpr SignalId kInfraredLight = 65;  ///< 8: counts by which others' infra-red light drops AN8+i
-inline constexpr SignalId kSignalCount = 73;
+inline constexpr SignalId kSpeaker = 73;        ///< output: what drives the speaker, -1..1
+inline constexpr SignalId kSound = 74;          ///< 3: waveform at microphone i, counts
+inline constexpr SignalId kLineIn = 77;         ///< at the codec's line input, -1..1
+inline constexpr SignalId kSignalCount = 78;
 
 inline constexpr int kProximityCount = 8;
 inline constexpr int kMicrophoneCount = 3;

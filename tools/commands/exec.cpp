@@ -139,7 +139,8 @@ void describe(Command& app, Arguments& a) {
         ->type_name("FILE");
     app.add_flag("--list-signals", o.list_signals, "name the signals with units and ranges, and end");
     app.add_option("--log", o.bench.log_folder,
-                   "folder for uart1.csv, uart2.csv, i2c.csv, pins.csv and board.log (rab)");
+                   "folder for uart1.csv, uart2.csv, i2c.csv, pins.csv, board.log (rab) and "
+                   "speaker.wav (pic)");
     app.add_flag("--json", o.json, "one JSON object on one line instead of text");
     app.add_flag("--strict", o.strict,
                  "status 1 if there is anything to warn of: a program that hangs, registers without a model, "

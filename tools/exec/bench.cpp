@@ -25,7 +25,9 @@ Bench::Bench(const BenchOptions& options)
       target_(options.mcu.empty() ? make_board(options.board, options.target, *this)
                                   : make_bare_chip(options.mcu, options.target, *this)),
       lines_{UartLine{1, options.baud[0], *target_, logs_.get()},
-             UartLine{2, options.baud[1], *target_, logs_.get()}} {}
+             UartLine{2, options.baud[1], *target_, logs_.get()}} {
+    if (logs_) speaker_.emplace(options.log_folder + "/speaker.wav");
+}
 
 void Bench::pace_by_wall_clock() {
     paced_ = true;
@@ -108,6 +110,7 @@ void Bench::finish() {
     }
     target_->finish();
     if (logs_) logs_->flush();
+    if (speaker_) speaker_->close();
 }
 
 void Bench::master(std::vector<I2cScriptLine> script, const I2cMasterOptions& options) {
@@ -130,6 +133,10 @@ void Bench::pin_changed(std::string_view pin, std::string_view function, std::op
                         cosim::Time time) {
     if (logs_) logs_->pin(time, pin, function, !level ? "z" : *level ? "1" : "0");
     if (on_change) on_change(pin, function, level.value_or(false) ? 1 : 0, time);
+}
+
+void Bench::sound_sample(double value, cosim::Time time) {
+    if (speaker_) speaker_->sample(value, time);
 }
 
 void Bench::signal_changed(std::string_view name, double value, cosim::Time time) {

@@ -7,6 +7,7 @@
 #include "tools/exec/scripts.h"
 #include "tools/exec/targets/target.h"
 #include "tools/exec/uart_line.h"
+#include "tools/exec/wav_file.h"
 
 #include <array>
 #include <functional>
@@ -64,11 +65,13 @@ class Bench : private TargetListener {
     void pin_changed(std::string_view pin, std::string_view function, std::optional<bool> level,
                      cosim::Time time) override;
     void signal_changed(std::string_view name, double value, cosim::Time time) override;
+    void sound_sample(double value, cosim::Time time) override;
     void apply_stimulus();
     void poll();
     void wait_for_wall_clock();
 
     std::unique_ptr<Logs> logs_;
+    std::optional<WavFile> speaker_;  ///< with recordings
     std::unique_ptr<Target> target_;
     std::array<UartLine, 2> lines_;
     std::optional<I2cScriptMaster> master_;

@@ -24,11 +24,15 @@ class PicTarget : public DspicTarget, private pic::BoardListener {
     void set_own_signal(std::uint16_t id, double value) override {
         if (id == pic::kResetButton && value > board_.signal(id)) chip().mclr();
         if (const auto port = board_.set_signal(id, value, chip().cycle())) chip().pins_changed(*port);
+        if (id == pic::kBatteryVoltage) chip().supply_changed();
     }
     void passed(dspic::Cycle now) override { board_.settle(now); }
     void signal_changed(pic::SignalId id, double value, dspic::Cycle now) override {
         if (id == pic::kWheelLeft || id == pic::kWheelRight)
             listener_.signal_changed(pic::signals()[id].name, value, chip().clock().time_of(now));
+    }
+    void sound_sample(double value, dspic::Cycle now) override {
+        listener_.sound_sample(value, chip().clock().time_of(now));
     }
     void uart_sent(int, const cosim::UartFrame&) override {}
     void i2c_phase(int unit, const cosim::I2cPhase& phase) override { on_bus(unit, phase); }

@@ -32,6 +32,10 @@ class PinTap : public dspic::Pins {
     std::uint16_t spi_exchange(int unit, std::uint16_t sent, int bits, dspic::Cycle now) override {
         return inner_.spi_exchange(unit, sent, bits, now);
     }
+    std::uint16_t dci_exchange(const dspic::DciWord& word, dspic::Cycle now) override {
+        return inner_.dci_exchange(word, now);
+    }
+    double supply() const override { return inner_.supply(); }
     dspic::OutsidePin outside(dspic::PortLetter port, int bit) const override {
         return inner_.outside(port, bit);
     }

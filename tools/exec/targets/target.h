@@ -45,6 +45,8 @@ class TargetListener {
                              cosim::Time time) = 0;
     /// An output signal that is no pin of its own (a wheel) changed.
     virtual void signal_changed(std::string_view name, double value, cosim::Time time) = 0;
+    /// A codec turned a sample into sound, -1..1 of full scale.
+    virtual void sound_sample(double /*value*/, cosim::Time /*time*/) {}
 };
 
 struct TargetOptions {
