@@ -4,6 +4,7 @@
 #include "physics/events/timeline.h"
 #include "physics/node/booth_link.h"
 #include "physics/node/robot_links.h"
+#include "physics/node/sound_link.h"
 #include "physics/world/booth_record.h"
 #include "physics/world/pose_signals.h"
 #include "physics/world/recorder.h"
@@ -54,6 +55,7 @@ struct WorldNode::Impl {
     std::vector<cosim::Port> ports;
     std::vector<RobotLinks> links;
     std::vector<BoothLink> booths;
+    SoundLink sound;
     cosim::PortIndex first_booth = 0xFFFF;
     std::vector<cosim::PortIndex> pose_ports;  // "ir", "ircom": whoever is told where everything is
     std::vector<double> poses;                 // as last published; empty without those
@@ -73,6 +75,7 @@ struct WorldNode::Impl {
 
 WorldNode::Impl::Impl(World description, EventPlan plan, std::unique_ptr<CommandSource> source)
     : model(std::move(description)),
+      sound(model.description(), kPortsOfRobot),
       log(model),
       commands(std::move(source)),
       timeline(model, std::move(plan), commands.get()) {
@@ -137,6 +140,7 @@ void WorldNode::Impl::take(const cosim::Message& message) {
     for (const Side side : {Side::Left, Side::Right})
         if (links[robot].wheel[static_cast<std::size_t>(side)] == signal->id)
             model.wheel(robot, side, signal->value, cosim::to_seconds(message.time));
+    sound.take(robot, signal->id, signal->value, cosim::to_seconds(message.time));
     if (timeline.active()) timeline.board_signal(robot, signal->id, signal->value);
 }
 
@@ -254,6 +258,7 @@ void WorldNode::advance(cosim::Time until, std::span<const cosim::Message> inbox
         w.publish(outbox);
         w.publish_poses(outbox);
         w.publish_scene(outbox);
+        w.sound.publish(w.model, w.next_step + kStep, outbox);
         if (w.cameras) w.cameras->publish(w.model, w.timeline.active(), w.next_step + kStep, outbox);
         w.model.done(StepPart::Publish);
     }
