@@ -64,14 +64,18 @@ class Conduct {
         check_independence();
         for (const Sweep& sweep : campaign_.sweeps)
             check_sweep(campaign_, scenario_, sweep, work_folder(out_) / "check");
-        if (options.fresh) drop();
+        if (options.fresh) {
+            end_tasks(slurm());
+            drop();
+        }
         store_.emplace(out_ / "campaign.db", Store::Access::Write);
         claim();
     }
 
     void run() {
-        remove(work_folder(out_));
+        // First: tasks of a campaign that was killed write there until they are ended.
         if (store_->planned("single")) resume_slurm(slurm(), take());
+        remove(work_folder(out_));
         for (const std::uint64_t seed : campaign_.seeds)
             run_nominal(seed);
         phase("single", [&](int) { return plan_singles(campaign_, scenario_, nominals_); });
@@ -107,9 +111,15 @@ class Conduct {
             remove(out_ / name);
     }
 
+    /// Workers of a campaign that was killed a moment ago may still write there: they end with it.
     void remove(const fs::path& path) {
+        constexpr int kTries = 50;
         std::error_code error;
-        fs::remove_all(path, error);
+        for (int tries = 0; tries < kTries; ++tries) {
+            fs::remove_all(path, error);
+            if (error != std::errc::directory_not_empty) break;
+            std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        }
         if (error) throw RunError(fmt::format("{}: cannot be removed: {}", path.string(), error.message()));
     }
 

@@ -11,6 +11,7 @@
 #include <fstream>
 #include <map>
 #include <set>
+#include <sstream>
 
 #include <spawn.h>
 #include <sys/wait.h>
@@ -24,6 +25,7 @@ namespace {
 
 constexpr int kRounds = 3;
 constexpr useconds_t kPoll = 500'000;  ///< us between questions to the controller
+constexpr int kPatience = 10;          ///< questions in a row without an answer
 
 struct Said {
     int status = 127;
@@ -81,10 +83,30 @@ fs::path folder_of(const SlurmOptions& options) {
     return options.out / "slurm";
 }
 
+/// A line a task that waits or runs: its state and why it waits. A controller that is too busy to answer is
+/// asked again.
+std::string tasks_left(const std::string& name) {
+    for (int tries = 1;; ++tries) {
+        const Said said = ask({"squeue", "--noheader", "--array", "--name", name, "--format", "%T %r"});
+        if (said.status == 0) return said.text;
+        if (tries == kPatience) throw RunError(fmt::format("squeue: {}", said.text));
+        ::usleep(kPoll);
+    }
+}
+
 bool any_left(const std::string& name) {
-    const Said said = ask({"squeue", "--noheader", "--name", name, "--format", "%i %T"});
-    if (said.status != 0) throw RunError(fmt::format("squeue: {}", said.text));
-    return !said.text.empty();
+    return !tasks_left(name).empty();
+}
+
+/// Why none of them will ever run by itself, such as "launch failed requeued held"; empty if that is not so.
+std::string held_back(const std::string& tasks) {
+    std::istringstream lines(tasks);
+    std::string line, why;
+    while (std::getline(lines, line)) {
+        if (!line.starts_with("PENDING") || line.find("eld") == std::string::npos) return {};
+        why = line.substr(line.find(' ') + 1);
+    }
+    return why;
 }
 
 void end_jobs(const std::string& name) {
@@ -165,11 +187,16 @@ void submit(const SlurmOptions& options, const std::vector<Case>& cases, int rou
                            quoted(fs::read_symlink("/proc/self/exe").string()),
                            quoted(options.campaign.string()), quoted(options.out.string()),
                            quoted(file.string()), quoted(folder.string()), round, tasks));
-    const Said said =
-        ask({"sbatch", "--parsable", "--job-name", job_name(options.out), "--array",
-             fmt::format("0-{}", tasks - 1), "--ntasks", "1", "--cpus-per-task", "1", "--output",
-             (folder / "%A_%a.log").string(), "--open-mode", "append", script.string()});
-    if (said.status != 0) throw RunError(fmt::format("sbatch: {}", said.text));
+    const std::string name = job_name(options.out);
+    for (int tries = 1;; ++tries) {
+        const Said said =
+            ask({"sbatch", "--parsable", "--job-name", name, "--array", fmt::format("0-{}", tasks - 1),
+                 "--ntasks", "1", "--cpus-per-task", "1", "--output", (folder / "%A_%a.log").string(),
+                 "--open-mode", "append", script.string()});
+        // An answer that came too late was none, but the tasks are there.
+        if (said.status == 0 || any_left(name)) return;
+        if (tries == kRounds) throw RunError(fmt::format("sbatch: {}", said.text));
+    }
 }
 
 }  // namespace
@@ -181,10 +208,15 @@ void check_slurm() {
                              "a machine that submits to a Slurm cluster (Debian: slurm-client)");
 }
 
-void resume_slurm(const SlurmOptions& options, const TakeVerdict& take) {
+void end_tasks(const SlurmOptions& options) {
     if (!fs::exists(folder_of(options))) return;
     check_slurm();
     end_jobs(job_name(options.out));
+}
+
+void resume_slurm(const SlurmOptions& options, const TakeVerdict& take) {
+    if (!fs::exists(folder_of(options))) return;
+    end_tasks(options);
     Collector(folder_of(options), take).collect();
 }
 
@@ -195,8 +227,16 @@ void run_slurm(const SlurmOptions& options, const std::vector<Case>& cases, cons
     std::vector<Case> left = cases;
     for (int round = 0; round < kRounds && !left.empty(); ++round) {
         submit(options, left, round);
-        while (any_left(name)) {
+        for (std::string tasks = tasks_left(name); !tasks.empty(); tasks = tasks_left(name)) {
             collector.collect();
+            if (const std::string why = held_back(tasks); !why.empty()) {
+                end_jobs(name);
+                collector.collect();
+                throw RunError(fmt::format(
+                    "the cluster holds the tasks back ({}); the results so far are kept, the same command "
+                    "goes on",
+                    why));
+            }
             if (options.interrupted != nullptr && *options.interrupted != 0) {
                 end_jobs(name);
                 collector.collect();

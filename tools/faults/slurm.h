@@ -21,11 +21,13 @@ using TakeVerdict = std::function<void(int id, const nlohmann::json& verdict)>;
 /// Throws InputError if sbatch, squeue or scancel is missing.
 void check_slurm();
 
-/// After a kill: ends tasks of this campaign that still run and hands over what tasks have left.
+/// After a kill: ends tasks of this campaign that still run. Until then they write below its folder.
+void end_tasks(const SlurmOptions& options);
+/// The same, and hands over what tasks have left.
 void resume_slurm(const SlurmOptions& options, const TakeVerdict& take);
 
 /// Runs the cases; what no task brought is submitted again, three times in all. RunError if cases are still
-/// missing then, or on a signal, after which the tasks are ended.
+/// missing then, if the cluster holds the tasks back for good, or on a signal; the tasks are ended then.
 void run_slurm(const SlurmOptions& options, const std::vector<Case>& cases, const TakeVerdict& take);
 
 }  // namespace puckloop::faults
