@@ -1,6 +1,7 @@
 // Outcomes of made-up runs whose fault, time and size are drawn.
 
 #include "base/random.h"
+#include "tests/scratch.h"
 #include "tools/faults/findings.h"
 #include "tools/faults/outcome.h"
 
@@ -8,6 +9,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <fstream>
+#include <vector>
 
 using namespace puckloop;
 using namespace puckloop::faults;
@@ -111,6 +114,16 @@ TEST_CASE("each outcome is what its definition says, wherever the fault strikes"
         CHECK(verdict.symptoms.at(0) == std::string(who) + " falls silent");
         CHECK(!verdict.recovery_s);
     }
+    SECTION("a program that ends itself early, with status 0, hangs") {
+        const double ended = at + 0.5;
+        run.report["simulated_s"] = ended;
+        run.report["programs_asked_to_end_s"] = nullptr;
+        for (const char* who : {kBoard, kProgram})
+            cut_times(run, who, ended, 20);
+        const Verdict verdict = judge(campaign, nominal, run, 1);
+        CHECK(verdict.outcome == Outcome::Hang);
+        CHECK(verdict.symptoms.at(0) == "the run ends early");
+    }
     SECTION("recovered, with its time") {
         const double silent = 0.3 + 0.5 * random.uniform();
         cut_times(run, kBoard, at, at + silent);
@@ -156,6 +169,22 @@ TEST_CASE("each outcome is what its definition says, wherever the fault strikes"
         CHECK(verdict.departure_m > campaign.limits.departure);
         CHECK(to_json(verdict_from_json(json::parse(to_json(verdict).dump()))) == to_json(verdict));
     }
+}
+
+TEST_CASE("what a fault puts on a line is no sign of life") {
+    const auto folder = tests::scratch_path("puckloop-profile");
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "report.json") << R"({"success": true, "nodes": {}})";
+    std::ofstream trace(folder / "trace.csv");
+    trace << "time_s,link,from,kind,value,detail,start_s,period_s,stretch_s,fault\n";
+    for (const char* fault : {"", "drop", "break", "false_start", "loopback", "late"})
+        trace << "1.5,r.uart,r.pic,uart,41,8N1,1.4,0.00001,," << fault << "\n";
+    trace.close();
+    const Profile profile = read_profile(folder);
+    std::filesystem::remove_all(folder);
+    REQUIRE(profile.senders.contains(kBoard));
+    CHECK(profile.senders.at(kBoard).times == std::vector<double>{1.4, 1.4, 1.4});
+    CHECK(profile.first_fault_s == 1.4);
 }
 
 TEST_CASE("a finding is shown by its smallest case") {

@@ -107,6 +107,11 @@ struct Judge {
     bool hung() {
         bool silent = false;
         const double end = std::min(end_of(nominal), end_of(run));
+        // All programs ended as they do when their work is done, and it was not.
+        if (run.report.value("success", false) && end < end_of(nominal) - campaign.limits.silence) {
+            note("the run ends early", fmt::format(" (at {:.6f} s)", end));
+            return true;
+        }
         for (const auto& [name, usual] : nominal.senders) {
             const double limit = std::max(campaign.limits.silence, 1.5 * longest_pause(usual, end));
             if (last_before(usual, end) < end - limit) continue;

@@ -37,6 +37,11 @@ double number(std::string_view text) {
     return value;
 }
 
+/// What a fault put on a line by itself says nothing of the node whose end it is on.
+bool nobody_sent(std::string_view fault) {
+    return fault == "break" || fault == "false_start" || fault == "loopback";
+}
+
 void read_trace(const std::filesystem::path& file, Profile& profile) {
     std::ifstream in(file, std::ios::binary);
     std::string line;
@@ -47,7 +52,7 @@ void read_trace(const std::filesystem::path& file, Profile& profile) {
         const double begin = number(start.empty() ? time : start);
         if (!fault.empty() && (!profile.first_fault_s || begin < *profile.first_fault_s))
             profile.first_fault_s = begin;
-        if (kind == "signal" || kind.empty()) continue;
+        if (kind == "signal" || kind.empty() || nobody_sent(fault)) continue;
         Sender& sender = profile.senders[sender_name(std::string(link), std::string(from))];
         sender.times.push_back(begin);
         sender.values.emplace_back(value);
