@@ -10,7 +10,9 @@ namespace puckloop::cosim {
 namespace {
 
 constexpr double kLongest = 1e6, kMostArrivals = 1e9, kMostPpm = 90'000.0, kHighestAddress = 0xFFFFFF;
-constexpr double kHighestBit = 23, kChannels = 16, kMostVolts = 10;
+constexpr double kHighestBit = 23, kMostVolts = 10;
+// Inputs of the converters. The range-and-bearing board's peak detectors are at AN20 to AN31.
+constexpr double kChannels = 16, kRabChannels = 32;
 
 /// Kinds that happen at instants may wait for the program instead.
 std::vector<ParameterInfo> at_program(std::vector<ParameterInfo> parameters) {
@@ -27,8 +29,11 @@ ParameterInfo number(std::string_view key, double low, double high) {
 std::vector<KindInfo> of_chip(PlaceKind place) {
     const bool avr = place == PlaceKind::Tam;
     const ParameterInfo duration{.key = "duration", .unit = Unit::Time, .low = 0, .high = kLongest};
-    const ParameterInfo channel{
-        .key = "channel", .unit = Unit::Integer, .low = 0, .high = kChannels - 1, .required = true};
+    const ParameterInfo channel{.key = "channel",
+                                .unit = Unit::Integer,
+                                .low = 0,
+                                .high = (place == PlaceKind::Rab ? kRabChannels : kChannels) - 1,
+                                .required = true};
     const ParameterInfo cause{.key = "cause",
                               .unit = Unit::Text,
                               .choices =

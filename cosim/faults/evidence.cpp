@@ -15,16 +15,23 @@ void Evidence::fire(Firing firing, Time known) {
     if (kept_.size() < kMostKept) kept_.push_back({std::move(firing), known});
 }
 
+void Evidence::foresee(Firing firing, Time known) {
+    foreseen_.push_back({std::move(firing), known});
+}
+
 std::uint64_t Evidence::fired(Time end) const {
     const auto beyond =
         std::count_if(late_.begin(), late_.end(), [end](const Late& one) { return one.known >= end; });
-    return fired_ - static_cast<std::uint64_t>(beyond);
+    const auto foreseen =
+        std::count_if(foreseen_.begin(), foreseen_.end(), [end](const Kept& one) { return one.known < end; });
+    return fired_ - static_cast<std::uint64_t>(beyond) + static_cast<std::uint64_t>(foreseen);
 }
 
 std::vector<Firing> Evidence::firings(Time end) const {
     std::vector<Firing> firings;
-    for (const Kept& one : kept_)
-        if (one.known < end) firings.push_back(one.firing);
+    for (const auto* list : {&foreseen_, &kept_})
+        for (const Kept& one : *list)
+            if (one.known < end) firings.push_back(one.firing);
     return firings;
 }
 
@@ -33,6 +40,8 @@ std::optional<Time> Evidence::last(Time end) const {
     Time last = last_;
     for (const Late& one : late_)
         if (one.known < end) last = std::max(last, one.time);
+    for (const Kept& one : foreseen_)
+        if (one.known < end) last = std::max(last, one.firing.time);
     return last;
 }
 

@@ -30,6 +30,8 @@ class Evidence {
     /// `known` is when, in simulated time, it is certain in every placement that it happened: for a message
     /// its delivery had there been no fault. Does not fall behind an earlier one by more than kMemory.
     void fire(Firing firing, Time known);
+    /// One that is certain from the beginning, however far ahead. Not part of a saved state.
+    void foresee(Firing firing, Time known);
 
     std::uint64_t fired(Time end = kNever) const;  ///< those known before `end`
     std::vector<Firing> firings(Time end = kNever) const;
@@ -63,6 +65,7 @@ class Evidence {
     Time last_ = 0;           ///< of those no longer in `late_`
     std::vector<Kept> kept_;  ///< the first
     std::deque<Late> late_;   ///< the newest, which may turn out to lie beyond the end of the run
+    std::vector<Kept> foreseen_;
 };
 
 /// What a run says of one fault.

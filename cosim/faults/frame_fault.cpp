@@ -64,7 +64,8 @@ Delivery FrameFault::own(const UartFrame& frame, FaultKind mark) {
     const int before_stop = bits_of(frame) - frame.stop_bits;
     const Time flight = std::max(plan_.site.flight, frame.bit_period * before_stop);
     const Time delivery = later(later(frame.start, flight), plan_.site.latency);
-    evidence_.fire({frame.start, 0, plan_.site.sender, std::string(fault_name(plan_.kind.mark))}, delivery);
+    evidence_.foresee({frame.start, 0, plan_.site.sender, std::string(fault_name(plan_.kind.mark))},
+                      delivery);
     return {Message{delivery, 0, frame}, mark};
 }
 

@@ -48,7 +48,8 @@ class FrameFault : public LinkFault {
     /// After each sent message.
     virtual void after(std::vector<Delivery>&) {}
 
-    /// Something that the fault itself puts on the line; fired, if it arrives before the end of the run.
+    /// Something that the fault itself will put on the line; fired, if it arrives before the end of the run.
+    /// Of preset() only.
     Delivery own(const UartFrame& frame, FaultKind mark);
 
     const FaultSpec& spec() const { return plan_.spec; }

@@ -39,10 +39,10 @@ bool in_range(const ParameterInfo& parameter, double value) {
     }
 }
 
-/// Nodes whose faults that hold do so for everything; on lines and in the air each frame is a candidate.
+/// Where faults that hold do so for everything; on lines each frame is a candidate.
 bool carries_out_by_window(PlaceKind place) {
     return place == PlaceKind::Pic || place == PlaceKind::Rab || place == PlaceKind::Tam ||
-           place == PlaceKind::InfraRed || place == PlaceKind::Linux;
+           place == PlaceKind::InfraRed || place == PlaceKind::Linux || place == PlaceKind::Xbee;
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ class Invert : public LinkFault {
             levels.push_back({Message{delivery, 0, frame}, FaultKind::Invert});
         };
         put(begin_, false);
-        evidence_.fire({begin_, 0, site_.sender, "invert"}, levels.front().message.time);
+        evidence_.foresee({begin_, 0, site_.sender, "invert"}, levels.front().message.time);
         if (end_ != kNever) put(end_, true);
         return levels;
     }

@@ -43,6 +43,11 @@ void check_uart_fault(const FaultSpec& spec, const KindInfo& kind) {
     };
     if (kind.mark == FaultKind::Stall && spec.end == kNever)
         refuse("a stall without an end", "'end' or 'for'");
+    const bool whole =
+        kind.mark == FaultKind::Unplug || kind.mark == FaultKind::Invert || kind.mark == FaultKind::Loopback;
+    if (whole && (spec.probability != 1.0 || spec.count != ~0ull || !spec.bytes.empty()))
+        refuse(fmt::format("{} holds during its whole window", kind.name),
+               "neither probability nor count nor bytes");
     if (kind.mark == FaultKind::SwappedWires && !spec.from.empty())
         refuse("swapped wires have no direction", "no 'from'");
     if (kind.mark == FaultKind::Baud && given.number("offset") == 0 && given.number("drift") == 0)

@@ -65,16 +65,19 @@ void save_faults(StateWriter& archive, chip::BoardFaults* faults) {
     archive(bytes);
 }
 
-void load_faults(StateReader& archive, chip::BoardFaults* faults, cosim::Time now) {
+void load_faults(StateReader& archive, chip::BoardFaults* faults, chip::BoardAccess& board, cosim::Time now) {
     std::vector<std::uint8_t> bytes;
     archive(bytes);
-    if (faults == nullptr) return;
+    if (faults == nullptr) {
+        if (!bytes.empty()) release(board);
+        return;
+    }
     if (!bytes.empty()) {
         StateReader reader(bytes);
         reader(*faults);
         reader.end();
     }
-    faults->loaded(now);
+    faults->loaded(now, !bytes.empty());
 }
 
 }  // namespace puckloop::board

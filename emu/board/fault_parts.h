@@ -65,12 +65,14 @@ void run_past_faults(Chip& chip, chip::BoardFaults* faults, cosim::Time until, c
 /// When something happens that was stamped `time` before the clock's rate may have changed.
 template <class Chip>
 cosim::Time reached(const Chip& chip, const chip::BoardFaults* faults, cosim::Time time) {
-    if (faults == nullptr || !faults->changes_clock()) return time;
+    if (faults == nullptr || !faults->clock_changed(time)) return time;
     return std::max(time, chip.clock().time_of(chip.cycle()));
 }
 
-/// In a saved state; a run with faults can go on from one without, and the other way.
+/// In a saved state; a run with faults can go on from one without, and the other way: what faults of the
+/// saved run did to the board's parts ends then, what they did to its chip (memory, registers, the clock's
+/// rate) stays.
 void save_faults(StateWriter& archive, chip::BoardFaults* faults);
-void load_faults(StateReader& archive, chip::BoardFaults* faults, cosim::Time now);
+void load_faults(StateReader& archive, chip::BoardFaults* faults, chip::BoardAccess& board, cosim::Time now);
 
 }  // namespace puckloop::board

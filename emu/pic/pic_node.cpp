@@ -185,7 +185,7 @@ void PicNode::state(StateReader& archive) {
     // A press at the very time of the state is still to come.
     const auto next = std::lower_bound(options_.resets.begin(), options_.resets.end(), granted_);
     next_reset_ = static_cast<std::size_t>(next - options_.resets.begin());
-    board::load_faults(archive, faults_.get(), granted_);
+    board::load_faults(archive, faults_.get(), *this, granted_);
 }
 
 void PicNode::state(CheckpointWriter& archive) const {

@@ -182,7 +182,7 @@ void RabNode::state(StateWriter& archive) const {
 
 void RabNode::state(StateReader& archive) {
     board::load_node(archive, granted_, own_, board_, *chip_, log_);
-    board::load_faults(archive, faults_.get(), granted_);
+    board::load_faults(archive, faults_.get(), *this, granted_);
 }
 
 void RabNode::state(CheckpointWriter& archive) const {

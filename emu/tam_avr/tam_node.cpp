@@ -154,7 +154,7 @@ void TamNode::uart_sent(int unit, const cosim::UartFrame& frame) {
     const Time stop_bit = protocols::stop_bit_start(moved);
     log_.sent(unit, moved, stop_bit);
     Time time = stop_bit;
-    if (faults_ && faults_->changes_clock())
+    if (faults_ && faults_->clock_changed(stop_bit))
         time = std::max(time, from_board(board_->chip().clock().time_of(board_->chip().cycle())));
     outbox_->push_back({time, unit == kConsoleUnit ? kConsole : kXBee, moved});
 }
@@ -175,7 +175,7 @@ void TamNode::state(StateReader& archive) {
     // A press at the very time of the state is still to come.
     const auto next = std::lower_bound(options_.resets.begin(), options_.resets.end(), granted_);
     next_reset_ = static_cast<std::size_t>(next - options_.resets.begin());
-    board::load_faults(archive, faults_.get(), granted_);
+    board::load_faults(archive, faults_.get(), *this, granted_);
 }
 
 void TamNode::state(CheckpointWriter& archive) const {

@@ -128,13 +128,17 @@ void read_match(Reader& reader, const KindInfo& kind, FaultSpec& fault) {
     const bool uart = kind.place == cosim::PlaceKind::Uart;
     const bool air = kind.place == cosim::PlaceKind::Radio || kind.place == cosim::PlaceKind::Xbee;
     if (!uart && !air) return;
+    if (kind.mark == cosim::FaultKind::Truncate) return;
     if (uart && reader.has("bytes")) fault.bytes = read_bytes(reader);
-    if (kind.mark == cosim::FaultKind::Truncate || kind.style == Style::Hold) return;
+    if (kind.style == Style::Hold) return;
     if (uart && reader.has("position"))
         fault.position = static_cast<std::uint32_t>(reader.integer("position", 0, 0, kMost));
     if (!reader.has("match")) return;
     fault.match = read_pattern(reader);
-    if (uart) fault.offset = static_cast<std::uint32_t>(reader.integer("offset", 0, 0, kMost));
+    // Of `baud`, which has an offset of its own, the frame that completes the pattern suffers.
+    const bool own_offset = std::any_of(kind.parameters.begin(), kind.parameters.end(),
+                                        [](const auto& parameter) { return parameter.key == "offset"; });
+    if (uart && !own_offset) fault.offset = static_cast<std::uint32_t>(reader.integer("offset", 0, 0, kMost));
 }
 
 }  // namespace puckloop::scenarios

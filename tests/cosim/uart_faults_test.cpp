@@ -316,6 +316,15 @@ TEST_CASE("breaks and false starts come at their instants") {
             CHECK(line.all[i].message.time >= got[i].start + 9 * kBit);
         }
         CHECK(line.evidence().fired() == spec.count);
+        // Of a run that ends before, only those that happened.
+        const Time end = spec.begin + static_cast<Time>(random.below(10 * kSecond));
+        std::uint64_t until = 0;
+        for (const Delivery& one : line.all)
+            until += one.message.time < end ? 1 : 0;
+        CHECK(line.evidence().fired(end) == until);
+        CHECK(line.evidence().firings(end).size() == until);
+        CHECK(line.evidence().last(end).value_or(-1) ==
+              (until == 0 ? -1 : spec.begin + static_cast<Time>(until - 1) * spec.period));
     }
     const FaultLine usual(fault("break"));
     REQUIRE(usual.arrived().size() == 1);
@@ -339,6 +348,18 @@ TEST_CASE("kinds refuse what they cannot do") {
     FaultSpec one_way = fault("swapped_wires");
     one_way.from = "sender";
     refused(one_way);
+    for (const char* kind : {"unplug", "invert", "loopback"}) {
+        FaultSpec some = fault(kind);
+        CHECK_NOTHROW(FaultLine(some));
+        some.count = 1;
+        refused(some);
+        some.count = ~0ull;
+        some.probability = 0.5;
+        refused(some);
+        some.probability = 1.0;
+        some.bytes = {0x41};
+        refused(some);
+    }
     FaultSpec never = fault("drop");
     never.every = 0;
     refused(never);

@@ -7,6 +7,7 @@
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 
 using namespace puckloop::tests;
@@ -185,4 +186,40 @@ TEST_CASE("chips, shade and daylight between two robots' boards") {
     CHECK(sent > 10);
     CHECK(heard > 40);
     CHECK(fault_named(report, "flip")["fired"] == sent);
+}
+
+TEST_CASE("until faults begin a run is the one without them, to the picosecond") {
+    const Workbench bench;
+    Words words{PUCKLOOP_SOURCE "/scenarios/rab_pair.toml", "--duration", "1.6", "--in-process"};
+    REQUIRE(bench.run("without", words).status == 0);
+    for (const char* fault :
+         {"clock node=follower.pic ppm=3000 begin=1.2s", "clock node=leader.rab drift=500 begin=1.2s",
+          "clock node=follower.rab ppm=-40000 begin=1.2s for=20ms",
+          "baud link=follower.uart match=\"00 00\" offset=2% begin=1.2s",
+          "stretch link=leader.i2c time=1ms at=1.2s",
+          "break link=leader.uart begin=1.2s period=90ms end=100s",
+          // The peak detectors of receivers 1 to 12 are at the converter's inputs 20 to 31.
+          "adc_stuck name=stuck node=follower.rab channel=22 value=0.25 begin=1.2s"})
+        words.insert(words.end(), {"--fault", fault});
+    REQUIRE(bench.run("with", words).status == 0);
+    const auto before = [&](const std::string& name) {
+        std::string rows;
+        std::ifstream file(bench.out(name) / "trace.csv");
+        std::string line;
+        for (std::getline(file, line); std::getline(file, line) && std::stod(line) < 1.2;)
+            rows += line + "\n";
+        return rows;
+    };
+    const std::string rows = before("without");
+    CHECK(std::count(rows.begin(), rows.end(), '\n') > 10'000);
+    CHECK((before("with") == rows));
+    const auto report = bench.report("with");
+    for (const auto& fault : report.at("faults")) {
+        INFO(fault.at("name"));
+        CHECK(fault.at("fired") > 0);
+        // Pulses of the line are planned long before: those beyond the run's end never happened.
+        CHECK(fault.at("last_ps").get<double>() * 1e-12 < report.at("simulated_s").get<double>());
+    }
+    CHECK_THAT(fault_named(report, "stuck").at("firings").at(0).at("what").get<std::string>(),
+               Contains("AN22 ") && Contains(" to 0.2500"));
 }

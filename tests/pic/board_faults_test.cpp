@@ -3,6 +3,7 @@
 
 #include "tests/board_faults.h"
 
+#include "base/archive.h"
 #include "base/random.h"
 #include "emu/chip/translation_switch.h"
 #include "emu/pic/pic_node.h"
@@ -408,6 +409,38 @@ TEST_CASE("a sagging battery is low") {
     bench.run(25 * kMillisecond);
     CHECK(bench.node->board().signal(pic::kBatteryVoltage) == Approx(3.9));
     CHECK(bench.node->board().signal(pic::kBatteryLow) == 0);
+}
+
+TEST_CASE("what held in the run of a saved state ends in a run without it, and goes on in one with it") {
+    FaultSpec sag = board_fault("sag").set("volts", 0.9);
+    sag.begin = 10 * kMillisecond;
+    sag.end = 20 * kMillisecond;
+    FaultSpec profile = board_fault("battery").set("profile", "0 s 3.6 V, 5 ms 3.5 V");
+    profile.begin = 5 * kMillisecond;
+    FaultSpec stall = board_fault("wheel_stall").set("motor", "left");
+    stall.begin = 12 * kMillisecond;
+    sag.name = "sag";
+    profile.name = "profile";
+    stall.name = "stall";
+    Bench bench({sag, profile, stall});
+    bench.run(15 * kMillisecond);
+    const double volts = bench.node->board().signal(pic::kBatteryVoltage);
+    CHECK(volts == Approx(2.6));
+    std::vector<std::uint8_t> bytes;
+    StateWriter writer(bytes);
+    bench.node->state(writer);
+    const auto loaded = [&](const std::vector<FaultSpec>& specs) {
+        Bench other(specs);
+        StateReader reader(bytes);
+        other.node->state(reader);
+        reader.end();
+        other.run(16 * kMillisecond);
+        return other.node->board().signal(pic::kBatteryVoltage);
+    };
+    CHECK(loaded({sag, profile, stall}) == Approx(2.6));
+    CHECK(loaded({}) == Approx(3.9));
+    CHECK(loaded({sag}) == Approx(3.0));
+    CHECK(loaded({stall}) == Approx(3.9));
 }
 
 TEST_CASE("an interrupt out of nowhere is served") {

@@ -34,7 +34,7 @@ BoardFaults::BoardFaults(std::vector<CarriedFault> faults, ChipAccess& chip, Boa
     : faults_(std::move(faults)), chip_(chip), board_(board), ppm_(ppm), origin_(origin) {
     for (const CarriedFault& fault : faults_) {
         plans_.push_back(plan_of(fault, symbols));
-        changes_clock_ |= plans_.back().kind == Kind::Clock;
+        if (plans_.back().kind == Kind::Clock) clock_from_ = std::min(clock_from_, fault.trigger.begin());
         shines_ |= plans_.back().kind == Kind::ForeignCarrier;
         sags_ |= plans_.back().kind == Kind::Sag;
         drains_ |= plans_.back().kind == Kind::Battery;
@@ -246,7 +246,7 @@ void BoardFaults::hold(Time now) {
         }
         if (fault.trigger.fired() == 0 && live(now) && fault.trigger.fires(now)) fault.fired(now, 0, what);
     }
-    if (changes_clock_) chip_.set_ppm(std::clamp(ppm, -kMostPpm, kMostPpm));
+    if (clock_from_ != kNever) chip_.set_ppm(std::clamp(ppm, -kMostPpm, kMostPpm));
     if (drains_) board_.set_battery(supply);
     if (sags_) board_.set_sag(volts);
     if (dazzles_) board_.set_ambient(ambient);
@@ -335,13 +335,23 @@ Time BoardFaults::interrupt_time(int vector, Time now) {
     return when;
 }
 
-void BoardFaults::loaded(Time now) {
+void BoardFaults::loaded(Time now, bool others) {
+    if (others) sags_ = drains_ = dazzles_ = shines_ = harms_motors_ = true;
     for (std::size_t i = 0; i < plans_.size(); ++i)
         plan_next(i, plans_[i].holds ? now + 1 : now);
     settle_next();
     stops_.clear();
     watch();
     hold(now);
+}
+
+void release(BoardAccess& board) {
+    board.set_battery(std::nullopt);
+    board.set_sag(0);
+    board.set_ambient({});
+    board.set_carrier(0);
+    for (const int motor : {0, 1})
+        board.set_motor(motor, 0, false);
 }
 
 }  // namespace puckloop::chip

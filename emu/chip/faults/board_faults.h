@@ -42,6 +42,9 @@ class BoardAccess {
     virtual void set_motor(int /*motor*/, std::uint8_t /*open*/, bool /*stalled*/) {}
 };
 
+/// Nothing of it suffers any more.
+void release(BoardAccess& board);
+
 /// Address of a function or a variable by name.
 struct Symbols {
     std::function<std::optional<std::uint32_t>(const std::string&)> code, data;
@@ -59,7 +62,8 @@ class BoardFaults {
     bool due(cosim::Time until, bool inclusive) const { return inclusive ? next_ <= until : next_ < until; }
     /// No fault acts before this: granted if one waits for the program.
     cosim::Time earliest(cosim::Time granted) const { return stops_.empty() ? next_ : granted; }
-    bool changes_clock() const { return changes_clock_; }
+    /// A fault may have changed the clock's rate by then.
+    bool clock_changed(cosim::Time time) const { return time >= clock_from_; }
 
     /// Does what is due at `now`, to which the chip has been run.
     void act(cosim::Time now);
@@ -69,8 +73,9 @@ class BoardFaults {
     void lost_step(int motor, cosim::Time now);
     /// A burst of emitter or receiver `number`, from 1, begins at `now`: true if a fault takes it away.
     bool loses_burst(bool emitter, int number, cosim::Time now);
-    /// A saved state of time `now` was loaded.
-    void loaded(cosim::Time now);
+    /// A saved state of time `now` was loaded; `others`: of a run with faults, whose effects on the board
+    /// end.
+    void loaded(cosim::Time now, bool others);
 
     const std::vector<cosim::CarriedFault>& faults() const { return faults_; }
 
@@ -149,8 +154,8 @@ class BoardFaults {
     std::vector<std::vector<cosim::ProfilePoint>> profiles_;  ///< of `battery`; empty for the others
     std::vector<std::uint32_t> stops_;
     cosim::Time next_ = cosim::kNever;
-    bool changes_clock_ = false, sags_ = false, drains_ = false, harms_motors_ = false, shines_ = false,
-         dazzles_ = false;
+    cosim::Time clock_from_ = cosim::kNever;  ///< the first begin of those that change the clock
+    bool sags_ = false, drains_ = false, harms_motors_ = false, shines_ = false, dazzles_ = false;
 };
 
 }  // namespace puckloop::chip
