@@ -233,6 +233,11 @@ void session_step(void) {
     while ((entry = uart_receive()) != UART_NOTHING)
         take(entry);
     if (part_is_late()) give_up_part();
-    if (!resting && clock_ticks() - last_record >= WATCHDOG_TICKS) rest();
+    if (!resting && clock_ticks() - last_record >= WATCHDOG_TICKS) {
+        rest();
+        uart_listen(); /* the silence may be a receiver's that is deaf */
+        resting = 0;   /* and again, as long as it lasts */
+        last_record = clock_ticks();
+    }
     if (state == WAITING) blink();
 }

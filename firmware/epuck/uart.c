@@ -62,6 +62,11 @@ u16 uart_receive(void) {
     return entry;
 }
 
+/* An overrun keeps the receiver from interrupting: the handler has to be sent for. */
+void uart_listen(void) {
+    if (U2STA & OERR) IFS1 |= U2RXIF;
+}
+
 u16 uart_last_byte(void) {
     return last_byte;
 }

@@ -10,6 +10,8 @@
 void uart_start(void);
 /* The next received byte (with UART_BAD if it cannot be trusted), or UART_NOTHING. */
 u16 uart_receive(void);
+/* A receiver whose FIFO filled up without an interrupt being served is deaf: it hears again. */
+void uart_listen(void);
 /* Clock tick at which the newest byte came. */
 u16 uart_last_byte(void);
 /* Sends `count` bytes, which must stay unchanged until uart_sending() is 0 again. */

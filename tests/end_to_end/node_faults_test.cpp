@@ -223,3 +223,38 @@ TEST_CASE("until faults begin a run is the one without them, to the picosecond")
     CHECK_THAT(fault_named(report, "stuck").at("firings").at(0).at("what").get<std::string>(),
                Contains("AN22 ") && Contains(" to 0.2500"));
 }
+
+TEST_CASE("a main board whose receiver overran unnoticed stops, hears again and goes on") {
+    const Workbench bench;
+    // Four characters that nobody fetches fill the FIFO; what is left of the faults does the same a second
+    // later.
+    const auto [count, at] = GENERATE(table<int, double>({{4, 1.5}, {7, 1.637}, {9, 1.71}}));
+    INFO(count << " lost");
+    REQUIRE(bench
+                .run("o", {bench.hello(), "--duration", "6", "--in-process", "--fault",
+                           fmt::format("lost_interrupt node=robot0.pic vector=U2RX begin={}s count={}", at,
+                                       count)})
+                .status == 0);
+    CHECK(bench.report("o").at("nodes").at("robot0.pic").at("uart2").at("overruns") > 0);
+    std::vector<double> records;
+    double before = 0;
+    for (const Row& row : bench.csv("o", "trace.csv")) {
+        const double time = std::stod(row.at("time_s"));
+        if (row.at("from") != "robot0.pic") continue;
+        if (row.at("link") == "robot0.uart") {
+            if (time - before > 0.01) records.push_back(time);
+            before = time;
+        }
+    }
+    const auto answered = [&](double from, double to) {
+        return std::count_if(records.begin(), records.end(),
+                             [=](double time) { return time > from && time < to; });
+    };
+    CHECK(answered(at + 0.3, at + 0.9) == 0);
+    CHECK(answered(5.0, 6.0) >= 9);
+    double first = records.back();
+    for (const double time : records)
+        if (time > at + 0.9) first = std::min(first, time);
+    CHECK(first < at + 1.6);
+    CHECK(journey(bench.csv("o", "trajectory.csv"), 4.8).length > 0.02);
+}
