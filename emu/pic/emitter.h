@@ -7,6 +7,8 @@
 
 #include "emu/dspic/core/event_queue.h"
 
+#include <cmath>
+
 namespace puckloop::pic {
 
 class Emitter {
@@ -17,7 +19,14 @@ class Emitter {
     void set(bool on, dspic::Cycle now);
     bool on() const { return on_; }
     /// Share of the reflected light that the receiver shows at `now`, 0..1.
-    double intensity(dspic::Cycle now) const;
+    double intensity(dspic::Cycle now) const {
+        const double target = on_ ? 1.0 : 0.0;
+        const double age = now > edge_ ? static_cast<double>(now - edge_) : 0.0;
+        // Less than 2e-35 is left, which moves no ADC code.
+        constexpr double kSettled = 80.0;
+        if (age > kSettled * time_constant_) return target;
+        return target + (at_edge_ - target) * std::exp(-age / time_constant_);
+    }
 
     template <class Archive>
     void state(Archive& archive) {

@@ -25,6 +25,11 @@ constexpr unsigned kFullScale = 4096;
 constexpr int kVrefPlusPin = 0;   // AN0
 constexpr int kVrefMinusPin = 1;  // AN1
 
+/// An input, as a fraction of the reference span, in counts; what is below a whole one does not count.
+unsigned counts_of(double value) {
+    return static_cast<unsigned>(std::clamp(value * kFullScale, 0.0, kFullScale - 1.0));
+}
+
 }  // namespace
 
 Adc12::Adc12(const Surroundings& around, const cosim::ClockDomain& clock, Pins& pins)
@@ -81,7 +86,7 @@ void Adc12::begin_sampling(HalfCycle at) {
 }
 
 void Adc12::end_sampling(HalfCycle at) {
-    state_.result = formatted(convert(at / 2));
+    state_.result = formatted(convert(at / 2), kADCON1["FORM"].of(around_.sfr.raw(sfr::ADCON1)));
     state_.phase = Phase::Converting;
     state_.timed = true;
     state_.phase_end = at + kConversionTads * tad();
@@ -90,8 +95,13 @@ void Adc12::end_sampling(HalfCycle at) {
 }
 
 // ADIF comes with this conversion.
-bool Adc12::last_of_group() const {
-    return state_.done >= kADCON2["SMPI"].of(around_.sfr.raw(sfr::ADCON2));
+void Adc12::end_group(HalfCycle at) {
+    std::uint16_t& adcon2 = around_.sfr.raw(sfr::ADCON2);
+    state_.done = 0;
+    state_.scanned = 0;
+    if (adcon2 & kADCON2["BUFM"]) adcon2 ^= kADCON2["BUFS"];
+    state_.next = adcon2 & kADCON2["BUFM"] && adcon2 & kADCON2["BUFS"] ? kHalfBuffer : 0;
+    around_.interrupts.raise(irq::ADC, (at + 1) / 2);
 }
 
 void Adc12::end_conversion(HalfCycle at) {
@@ -100,12 +110,8 @@ void Adc12::end_conversion(HalfCycle at) {
     around_.sfr.raw(static_cast<std::uint16_t>(sfr::ADCBUF0 + 2 * state_.next)) = state_.result;
     adcon1 |= kADCON1["DONE"];
     if (adcon2 & kADCON2["ALTS"]) state_.mux_b = !state_.mux_b;
-    if (last_of_group()) {
-        state_.done = 0;
-        state_.scanned = 0;
-        if (adcon2 & kADCON2["BUFM"]) adcon2 ^= kADCON2["BUFS"];
-        state_.next = adcon2 & kADCON2["BUFM"] && adcon2 & kADCON2["BUFS"] ? kHalfBuffer : 0;
-        around_.interrupts.raise(irq::ADC, (at + 1) / 2);
+    if (state_.done >= kADCON2["SMPI"].of(adcon2)) {
+        end_group(at);
     } else {
         ++state_.done;
         state_.next = static_cast<std::uint8_t>((state_.next + 1) % kInputs);
@@ -131,13 +137,11 @@ std::uint16_t Adc12::convert(Cycle at) const {
         const double low = vcfg & 2 ? pins_.analog(kVrefMinusPin, at) : 0.0;
         value = high > low ? (value - low) / (high - low) : 0.0;
     }
-    const double counts = std::clamp(value * kFullScale, 0.0, kFullScale - 1.0);
-    return static_cast<std::uint16_t>(static_cast<int>(counts));  // what is below a whole one does not count
+    return static_cast<std::uint16_t>(counts_of(value));
 }
 
 // FORM: integer, signed integer, fractional, signed fractional.
-std::uint16_t Adc12::formatted(unsigned counts) const {
-    const unsigned form = kADCON1["FORM"].of(around_.sfr.raw(sfr::ADCON1));
+std::uint16_t Adc12::formatted(unsigned counts, unsigned form) const {
     if (form & 1) counts -= kFullScale / 2;
     return static_cast<std::uint16_t>(form & 2 ? counts << 4 : counts);
 }
@@ -148,7 +152,56 @@ void Adc12::switch_off() {
     around_.sfr.raw(sfr::ADCON2) &= static_cast<std::uint16_t>(~kADCON2["BUFS"]);
 }
 
+// One conversion follows another, each of an input of MUX A against AVSS, scaled by the supply.
+bool Adc12::goes_on_by_itself() const {
+    const std::uint16_t adcon2 = around_.sfr.raw(sfr::ADCON2);
+    const unsigned vcfg = kADCON2["VCFG"].of(adcon2);
+    return (around_.sfr.raw(sfr::ADCON1) & kADCON1["ASAM"]) && source() == Trigger::Counter &&
+           !(adcon2 & kADCON2["ALTS"]) && !state_.mux_b && (vcfg == 0 || vcfg >= 4) &&
+           !(around_.sfr.raw(sfr::ADCHS) & kADCHS["CH0NA"]);
+}
+
+// end_sampling() and end_conversion() in turn up to `until`, with what the registers say looked up once: no
+// one writes them meanwhile.
+void Adc12::run_automatic(HalfCycle until) {
+    const std::uint16_t adchs = around_.sfr.raw(sfr::ADCHS), adcon3 = around_.sfr.raw(sfr::ADCON3);
+    std::uint16_t& adcon1 = around_.sfr.raw(sfr::ADCON1);
+    const std::uint16_t adcon2 = around_.sfr.raw(sfr::ADCON2);
+    std::uint16_t* const buffers = &around_.sfr.raw(sfr::ADCBUF0);
+    const auto analog =
+        static_cast<std::uint16_t>(~around_.sfr.raw(sfr::ADPCFG) & around_.sfr.raw(sfr::TRISB));
+    const unsigned form = kADCON1["FORM"].of(adcon1), last = kADCON2["SMPI"].of(adcon2);
+    const bool scans = adcon2 & kADCON2["CSCNA"];
+    const HalfCycle conversion = kConversionTads * tad(), sampling = kADCON3["SAMC"].of(adcon3) * tad();
+    while (state_.phase_end <= until) {
+        if (state_.phase == Phase::Sampling) {
+            const int channel = state_.channel;
+            const Cycle at = state_.phase_end / 2;
+            state_.result = formatted(
+                counts_of(analog >> channel & 1 ? pins_.analog(channel, at) : input(channel, at)), form);
+            state_.phase = Phase::Converting;
+            state_.phase_end += conversion;
+            adcon1 = static_cast<std::uint16_t>(adcon1 & ~(kADCON1["SAMP"] | kADCON1["DONE"]));
+            continue;
+        }
+        buffers[state_.next] = state_.result;
+        adcon1 |= kADCON1["DONE"];
+        if (state_.done >= last) {
+            end_group(state_.phase_end);
+        } else {
+            ++state_.done;
+            state_.next = static_cast<std::uint8_t>((state_.next + 1) % kInputs);
+        }
+        state_.channel = scans ? scan() : static_cast<std::uint8_t>(kADCHS["CH0SA"].of(adchs));
+        state_.phase = Phase::Sampling;
+        state_.phase_end += sampling;
+        adcon1 |= kADCON1["SAMP"];
+    }
+}
+
 void Adc12::catch_up(Cycle now) {
+    if (!state_.timed || state_.phase_end > 2 * now) return;
+    if (goes_on_by_itself()) return run_automatic(2 * now);
     while (state_.timed && state_.phase_end <= 2 * now) {
         state_.timed = false;
         if (state_.phase == Phase::Sampling)

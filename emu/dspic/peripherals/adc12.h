@@ -86,11 +86,13 @@ class Adc12 {
     void end_sampling(HalfCycle at);
     void end_conversion(HalfCycle at);
     void switch_off();
+    bool goes_on_by_itself() const;
+    void run_automatic(HalfCycle until);
     std::uint8_t scan();
     double input(int channel, Cycle at) const;
     std::uint16_t convert(Cycle at) const;
-    std::uint16_t formatted(unsigned counts) const;
-    bool last_of_group() const;
+    std::uint16_t formatted(unsigned counts, unsigned form) const;
+    void end_group(HalfCycle at);
     void plan();
 
     Surroundings around_;
