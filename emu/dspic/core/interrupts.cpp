@@ -3,6 +3,7 @@
 #include "emu/dspic/devices/register_bits.h"
 
 #include <bit>
+#include <cstring>
 #include <utility>
 
 namespace puckloop::dspic {
@@ -27,6 +28,23 @@ constexpr std::uint16_t word_of(std::uint16_t base, int irq) {
 }
 constexpr std::uint16_t bit_of(int irq) {
     return static_cast<std::uint16_t>(1u << (irq % 16));
+}
+
+/// Four registers one behind the other, the first one lowest.
+inline std::uint64_t four_words(const std::uint16_t* words) {
+    std::uint64_t four;
+    std::memcpy(&four, words, sizeof four);
+    return four;
+}
+constexpr int kFirstWords = 4;  // looked at together where the device has them
+
+/// Calls `see(word, pending)` for each IFS word in which a source is flagged and enabled.
+template <class See>
+inline void see_pending(const std::uint16_t* flags, const std::uint16_t* enables, int words, See see) {
+    int word = 0;
+    if (words >= kFirstWords && (four_words(flags) & four_words(enables)) == 0) word = kFirstWords;
+    for (; word < words; ++word)
+        if (const auto pending = static_cast<std::uint16_t>(flags[word] & enables[word])) see(word, pending);
 }
 
 }  // namespace
@@ -164,12 +182,9 @@ bool InterruptController::alternate_table() const {
 }
 
 bool InterruptController::any_enabled_flag() const {
-    const std::uint16_t* const flags = ifs();
-    const std::uint16_t* const enables = iec();
-    unsigned waiting = 0;
-    for (int i = 0; i < device_.ifs_words; ++i)
-        waiting |= static_cast<unsigned>(flags[i] & enables[i]);
-    return waiting != 0 || first_.level > 7;
+    bool waiting = first_.level > 7;
+    see_pending(ifs(), iec(), device_.ifs_words, [&](int, std::uint16_t) { waiting = true; });
+    return waiting;
 }
 
 bool InterruptController::waits_alone() const {
@@ -213,16 +228,13 @@ void InterruptController::find_first(Cycle now) {
             trap = static_cast<Trap>(static_cast<int>(trap) + 1);
         best = {trap_level(trap), static_cast<int>(trap)};
     } else {
-        const std::uint16_t* const flags = ifs();
-        const std::uint16_t* const enables = iec();
-        for (int i = 0; i < device_.ifs_words; ++i) {
-            std::uint32_t pending = static_cast<std::uint32_t>(flags[i] & enables[i]);
+        see_pending(ifs(), iec(), device_.ifs_words, [&](int word, unsigned pending) {
             for (; pending; pending &= pending - 1) {
-                const int irq = 16 * i + std::countr_zero(pending);
+                const int irq = 16 * word + std::countr_zero(pending);
                 const int level = priority(irq);
                 if (level > best.level) best = {level, kTrapVectors + irq};
             }
-        }
+        });
     }
     first_ = best;
     if (changed_) changed_(listener_, now);
