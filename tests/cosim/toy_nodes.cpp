@@ -37,14 +37,16 @@ struct Settings {
     std::map<std::string, long long> values;
 };
 
-/// Ports uart0.. then signals0..; an event queue; what came in is folded into a digest.
+/// Ports uart0.. then signals0.., which are I2C ports by their kind with bus=1; an event queue; what came in
+/// is folded into a digest.
 class ToyNode : public Node {
   public:
     explicit ToyNode(const Settings& settings) : settings_(settings), name_(settings.kind) {
         for (int i = 0; i < settings.get("uarts", 1); ++i)
             ports_.push_back({"uart" + std::to_string(i), PortKind::Uart});
         for (int i = 0; i < settings.get("signals", 0); ++i)
-            ports_.push_back({"signals" + std::to_string(i), PortKind::Signals});
+            ports_.push_back({"signals" + std::to_string(i),
+                              settings.get("bus", 0) != 0 ? PortKind::I2c : PortKind::Signals});
     }
 
     std::string_view name() const override { return name_; }
@@ -160,7 +162,7 @@ class Chatter : public ToyNode {
   private:
     void say(Time now, std::vector<Message>& outbox) {
         const auto port = static_cast<PortIndex>(random_.below(ports_.size()));
-        if (ports_[port].kind == PortKind::Signals) {
+        if (ports_[port].kind != PortKind::Uart) {
             outbox.push_back(
                 {now + fly_, port, Signal{static_cast<std::uint16_t>(random_.below(4)), random_.uniform()}});
             return;
