@@ -1,6 +1,8 @@
 // The data converter interface to the cycle: frames, slots, buffers and their shadows, status, interrupts;
 // and the low-voltage detector.
 
+#include "emu/dspic/devices/dspic33fj256gp710_irq.h"
+#include "emu/dspic/devices/dspic33fj256gp710_sfr.h"
 #include "emu/dspic/peripherals/dci.h"
 #include "emu/dspic/peripherals/low_voltage.h"
 
@@ -210,6 +212,29 @@ TEST_CASE("its four pins leave the port while it is on", "[dci]") {
     b.write(sfr::DCICON1, 0);
     CHECK(b.codec.drives.back().driven == 0xF000);
     CHECK(b.codec.drives.back().levels == 0xF000);
+}
+
+TEST_CASE("the 33FJ's tells of words lost by an interrupt of its own, once", "[dci]") {
+    Bench b(dspic33fj256gp710());
+    CodecPins codec;
+    Ports ports{b.around, layout_dspic33fj256gp710().ports, codec};
+    Dci dci{b.around, layout_dspic33fj256gp710().dci, ports, codec};
+    b.write(sfr33::TSCON, 1);
+    b.write(sfr33::RSCON, 1);
+    b.write(sfr33::DCICON2, 15);
+    b.write(sfr33::DCICON3, 1);
+    b.write(sfr33::TXBUF0, 0x1230);
+    b.write(sfr33::DCICON1, kEnable | kLoop | kDjst);
+    b.write(sfr33::TXBUF0, 0x4560);
+    CHECK(b.until_flag(irq33::DCI, 1000) == 65);
+    CHECK_FALSE(b.flag(irq33::DCIE));
+    CHECK(b.read(sfr33::RXBUF0) == 0x1230);
+    CHECK(b.until_flag(irq33::DCI, 1000) == 129);
+    CHECK(b.take(irq33::DCIE));  // TXBUF0 was not written
+    CHECK(b.until_flag(irq33::DCI, 1000) == 193);
+    CHECK(b.take(irq33::DCIE));  // RXBUF0 was not read
+    CHECK(b.until_flag(irq33::DCI, 1000) == 257);
+    CHECK_FALSE(b.flag(irq33::DCIE));
 }
 
 TEST_CASE("the band gap takes 40 us, and LVDIF comes when the supply falls below the trip point", "[lvd]") {

@@ -1,6 +1,8 @@
 // Robots that hear each other in a run: what one plays through its codec, others read at their microphones.
 
+#include "tests/dspic_pieces.h"
 #include "tests/end_to_end/workbench.h"
+#include "tests/sound_player.h"
 
 #include <catch2/catch.hpp>
 
@@ -17,73 +19,16 @@ using namespace puckloop::tests;
 
 namespace {
 
-const std::string kStart = R"(
-        goto main
-VECTOR
-        .org 0x0100
-main:   mov #0x0900, w15
-        mov #0x27f0, w0
-        mov w0, SPLIM
-)";
-
-/// Sets the codec up (PLL, speaker on) and plays two levels in turn, every HALF samples.
-const std::string kPlayer = R"(
-        bclr LATF, #0
-        bclr TRISF, #0
-        repeat #400
-        nop
-        bset LATF, #0
-        mov #0x04EF, w0
-        mov w0, DCICON2
-        mov #3, w0
-        mov w0, DCICON3
-        mov #1, w0
-        mov w0, TSCON
-        mov w0, RSCON
-        mov #0x0413, w1
-        rcall prime
-        bset DCICON1, #15
-        mov #0x0118, w1
-        rcall set
-        mov #0x075F, w1
-        rcall set
-        mov #0, w1
-        rcall set
-last:   btss DCISTAT, #0
-        bra last
-        bclr DCICON1, #15
-        mov #0x01EF, w0
-        mov w0, DCICON2
-        mov #LEVEL, w6
-        clr w5
-        bclr IFS2, #9
-        bset IEC2, #9
-        bset DCICON1, #15
-sleep:  pwrsav #1
-        bra sleep
-set:    btss DCISTAT, #0
-        bra set
-prime:  mov #0x7FFF, w0
-        cp0 w1
-        bra nz, wanted
-        clr w0
-wanted: mov w0, TXBUF0
-        mov w1, TXBUF1
-        return
-isr:    bclr IFS2, #9
-        inc w5, w5
-        mov #HALF, w4
-        cp w5, w4
-        bra ltu, same
-        clr w5
-        neg w6, w6
-same:   mov w6, TXBUF0
-        mov RXBUF0, w2
-        retfie
-)";
+/// Two levels in turn, every seven samples.
+std::string square(int level) {
+    return sound_player(
+        "        inc w5, w5\n        mov #7, w4\n        cp w5, w4\n        bra ltu, same\n        clr w5\n"
+        "        neg w6, w6\nsame:   mov w6, w3\n",
+        "        mov #" + std::to_string(level) + ", w6\n");
+}
 
 /// Sends largest minus smallest of 2000 conversions of AN2, AN3 and AN4 in turn: six bytes, low first.
-const std::string kListener = R"(
+const std::string kListener = kMain + R"(
         mov #7, w0
         mov w0, U1BRG
         bset U1MODE, #15
@@ -123,11 +68,6 @@ low:    dec w3, w3
         bra again
 )";
 
-std::string with(std::string text, const std::string& word, const std::string& value) {
-    text.replace(text.find(word), word.size(), value);
-    return text;
-}
-
 std::string image(const Workbench& bench, const std::string& name, const std::string& source) {
     const std::string hex = (bench.folder() / (name + ".hex")).string();
     const Ended ended = bench.puckloop({"asm", bench.file(name + ".s", source).string(), "-o", hex});
@@ -161,12 +101,8 @@ TEST_CASE("a robot's sound is read at others' microphones by the law of distance
                  far = 0.25 + 0.001 * static_cast<double>(random() % 150);
     const int level = 2 * static_cast<int>(4000 + random() % 6000u);
     CAPTURE(near, far, level);
-    const std::string player =
-        image(bench, "player",
-              with(with(with(kStart, "VECTOR", "        .org 0x0066\n        .pword isr") + kPlayer, "LEVEL",
-                        std::to_string(level)),
-                   "HALF", "7"));
-    const std::string listener = image(bench, "listener", with(kStart, "VECTOR", "") + kListener);
+    const std::string player = image(bench, "player", square(level));
+    const std::string listener = image(bench, "listener", kListener);
     std::string text = "[run]\nduration = \"0.5 s\"\n[arena]\nsize = [\"2 m\", \"2 m\"]\n";
     const std::string nothing = bench.file("nothing.txt", "").string();
     const auto robot = [&](const std::string& name, double x, const std::string& firmware) {
@@ -193,4 +129,86 @@ TEST_CASE("a robot's sound is read at others' microphones by the law of distance
     }
     REQUIRE(bench.run("b", {file, "--in-process", "--threads", "2"}).status == 0);
     CHECK(bench.report("a")["trace_sha256"] == bench.report("b")["trace_sha256"]);
+}
+
+namespace {
+
+/// A player at `x`, `y` and a robot in the middle with Demo.hex at `selector`; what its path and trace say.
+struct Heard {
+    double x = 0.0, y = 0.0, heading = 0.0;  ///< whole turns count
+};
+constexpr double kFullTurn = 2 * 3.14159265358979;
+Heard demo(const Workbench& bench, const std::filesystem::path& firmware, int selector, double x, double y,
+           const std::string& player, double seconds) {
+    const std::string text =
+        fmt::format("[run]\nduration = \"{} s\"\n[arena]\nsize = [\"2 m\", \"2 m\"]\n[[robot]]\nname = "
+                    "\"player\"\nposition = [\"{} m\", "
+                    "\"{} m\"]\n[robot.pic]\nfirmware = \"{}\"\n[[robot]]\nname = \"demo\"\nposition = [\"0 "
+                    "m\", \"0 m\"]\n[robot.pic]\n"
+                    "firmware = \"{}\"\nselector = {}\n",
+                    seconds, x, y, image(bench, "player", player), firmware.string(), selector);
+    REQUIRE(bench.run("demo", {bench.file("demo.toml", text).string(), "--in-process"}).status == 0);
+    Heard last;
+    for (const Row& row : bench.csv("demo", "trajectory.csv")) {
+        if (row.at("robot") != "demo") continue;
+        const double turned = std::remainder(std::stod(row.at("theta_rad")) - last.heading, kFullTurn);
+        last = {std::stod(row.at("x_m")), std::stod(row.at("y_m")), last.heading + turned};
+    }
+    return last;
+}
+
+}  // namespace
+
+// Demo.hex, selector 9 (runfftlistener.c): below 900 Hz it turns left, up to 1800 Hz it goes ahead, above it
+// turns right.
+TEST_CASE("Demo's FFT follows the tone that another robot plays", "[sound][images]") {
+    const auto firmware = outside("PUCKLOOP_IMAGES", "Demo.hex");
+    if (!firmware) return;
+    const Workbench bench;
+    const auto tone = [](double hertz) {  // a sine: the harmonics of a square wave would fold back
+        std::string table = "        bra over\ntable:\n";
+        constexpr int kWords = 32;
+        for (int i = 0; i < kWords; ++i)
+            table += fmt::format("        .pword {}\n",
+                                 std::lround(20000 * std::sin(kFullTurn * i / kWords)) & 0xFFFE);
+        return sound_player(
+            fmt::format("        mov #{}, w4\n        add w5, w4, w5\n        lsr w5, #11, w2\n"
+                        "        sl w2, #1, w2\n        mov #table, w3\n        add w2, w3, w2\n"
+                        "        tblrdl [w2], w3\n",
+                        std::lround(hertz * 65536 / 7200)),
+            table + "over:\n");
+    };
+    std::mt19937 random(std::random_device{}());
+    const double low = 500 + static_cast<double>(random() % 250u),
+                 middle = 1050 + static_cast<double>(random() % 600u),
+                 high = 2050 + static_cast<double>(random() % 900u);
+    CAPTURE(low, middle, high);
+    CHECK(demo(bench, *firmware, 9, -0.1, 0, tone(low), 3).heading > 0.15);
+    CHECK(demo(bench, *firmware, 9, -0.1, 0, tone(high), 3).heading < -0.15);
+    const Heard ahead = demo(bench, *firmware, 9, -0.1, 0, tone(middle), 3);
+    CHECK(std::abs(ahead.heading) < 0.02);
+    CHECK(ahead.x > 0.05);
+}
+
+// Selector 2 (runlocatesound.c): after a sound it turns to where the differences of arrival at its
+// microphones say.
+TEST_CASE("Demo turns to where another robot's burst of sound comes from", "[sound][images]") {
+    const auto firmware = outside("PUCKLOOP_IMAGES", "Demo.hex");
+    if (!firmware) return;
+    const Workbench bench;
+    std::mt19937 random(std::random_device{}());
+    const double bearing = static_cast<double>(random() % 628u) / 100.0;
+    CAPTURE(bearing);
+    // 60 samples of a loud 500 Hz at 3 s and every 3 s.
+    const std::string burst = sound_player(
+        "        inc w8, w8\n        mov #21600, w2\n        cp w8, w2\n        bra ltu, go\n        clr w8\n"
+        "go:     mov #60, w2\n        cp w8, w2\n        bra ltu, play\n        clr w3\n        clr w5\n     "
+        "   bra quiet\n"
+        "play:   mov #4551, w4\n        add w5, w4, w5\n        mov #32000, w3\n        btsc w5, #15\n       "
+        " neg w3, w3\nquiet:\n",
+        "        mov #100, w8\n");
+    const Heard turned =
+        demo(bench, *firmware, 2, 0.08 * std::cos(bearing), 0.08 * std::sin(bearing), burst, 8);
+    const double off = std::remainder(turned.heading - bearing, kFullTurn);
+    CHECK(std::abs(off) < 0.35);
 }

@@ -6,6 +6,7 @@
 #include "emu/dspic/chip/chip.h"
 #include "emu/pic/board.h"
 #include "tests/node_under_test.h"
+#include "tests/sound_player.h"
 
 #include <catch2/catch.hpp>
 
@@ -172,82 +173,17 @@ struct Ears : pic::BoardListener {
     std::vector<Heard> changes, samples;
 };
 
-/// Sets the codec up by secondary frames, then plays a counter by interrupts until RF0 falls.
-const std::string kPlayer = R"(
-        goto main
-        .org 0x0066
-        .pword isr
-        .org 0x0100
-main:   mov #0x0900, w15
-        mov #0x27f0, w0
-        mov w0, SPLIM
-        bclr LATF, #0
-        bclr TRISF, #0
-        repeat #400
-        nop
-        bset LATF, #0
-        mov #0x04EF, w0
-        mov w0, DCICON2
-        mov #3, w0
-        mov w0, DCICON3
-        mov #1, w0
-        mov w0, TSCON
-        mov w0, RSCON
-        mov #0x0300, w1
-        rcall prime
-        bset DCICON1, #15
-        mov #0x0413, w1
-        rcall set
-        mov #0x0118, w1
-        rcall set
-        mov #0x075F, w1
-        rcall set
-        mov #0, w1
-        rcall set
-last:   btss DCISTAT, #0
-        bra last
-        bclr DCICON1, #15
-        mov #0x01EF, w0
-        mov w0, DCICON2
-        clr w5
-        bclr IFS2, #9
-        bset IEC2, #9
-        bset DCICON1, #15
-sleep:  pwrsav #1
-        mov #3000, w0
-        cp w5, w0
-        bra ltu, sleep
-        bclr LATF, #0
-done:   bra done
-
-set:    btss DCISTAT, #0
-        bra set
-prime:  mov #0x7FFF, w0
-        cp0 w1
-        bra nz, wanted
-        clr w0
-wanted: mov w0, TXBUF0
-        mov w1, TXBUF1
-        return
-
-isr:    bclr IFS2, #9
-        inc2 w5, w5
-        mov #STEP, w4
-        mul.uu w5, w4, w2
-        bclr w2, #0
-        mov w2, TXBUF0
-        mov RXBUF0, w2
-        retfie
-)";
-
 }  // namespace
 
 TEST_CASE("an own program sets the codec up and plays from its interrupt, sample by sample", "[codec]") {
     std::random_device device;
     const unsigned step = 2 * (device() % 5000u) + 301;
     CAPTURE(step);
-    std::string source = kPlayer;
-    source.replace(source.find("#STEP"), 5, "#" + std::to_string(step));
+    // Two more for each sample, times the step; RF0 falls after 1500 of them.
+    const std::string source = tests::sound_player(
+        "        inc2 w5, w5\n        mov #" + std::to_string(step) +
+            ", w4\n        mul.uu w5, w4, w2\n        bclr w2, #0\n        mov w2, w3\n",
+        "", "        mov #3000, w4\n        cp w5, w4\n        bra ltu, sleep\n        bclr LATF, #0\n");
     const image::Image program = tests::assembled(dspic::dspic30f6014a(), source);
     Ears ears;
     pic::BoardParameters parameters;
