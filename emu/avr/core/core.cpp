@@ -4,6 +4,7 @@
 #include "emu/chip/translation_switch.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace puckloop::avr {
 
@@ -119,6 +120,19 @@ void Core::set_translate(bool on) {
     machine_->translated.on = on;
 }
 
+void Core::set_instrument(chip::Instrument* instrument, bool accesses) {
+    Machine& m = *machine_;
+    if (!m.instrument && instrument) {
+        m.kept_skip = std::exchange(m.skip_idle, false);
+        m.kept_translate = std::exchange(m.translated.on, false);
+    } else if (m.instrument && !instrument) {
+        m.skip_idle = m.kept_skip;
+        m.translated.on = m.kept_translate;
+    }
+    m.instrument = instrument;
+    m.ram_bytes = instrument && accesses ? 0 : m.device.ram_bytes;
+}
+
 void Core::stall_until(Cycle cycle) {
     machine_->stall_end = std::max(machine_->stall_end, cycle);
     machine_->limit = 0;
@@ -199,7 +213,7 @@ void Core::write_data(std::uint16_t address, std::uint8_t value) {
     store(*machine_, machine_->current, address, value);
 }
 std::span<std::uint8_t> Core::ram() {
-    return {machine_->data.data() + machine_->ram_start, machine_->ram_bytes};
+    return {machine_->data.data() + machine_->ram_start, machine_->device.ram_bytes};
 }
 CoreObserver& Core::observer() {
     return machine_->observer;

@@ -7,6 +7,7 @@
 #include "emu/avr/core/interrupts.h"
 #include "emu/avr/core/state.h"
 #include "emu/avr/device.h"
+#include "emu/chip/instrument.h"
 
 #include <cstdint>
 #include <functional>
@@ -94,6 +95,9 @@ class Core {
     /// Hot code is translated to the host's, where that is possible, without changing anything observable: by
     /// default as emu/chip/translation_switch.h says.
     void set_translate(bool on);
+    /// From now on `instrument` looks on, at data accesses too if `accesses`; null: nobody does. Between runs
+    /// only; set_skip_idle() and set_translate() are to be called without one.
+    void set_instrument(chip::Instrument* instrument, bool accesses = false);
     /// Keeps the CPU from executing until `cycle`; events go on.
     void stall_until(Cycle cycle);
     /// The CPU executes nothing until one of the vectors in `wakers` (bit n = vector n) requests and

@@ -27,7 +27,7 @@ void list(Archive& archive, Machine& m) {
     if constexpr (!Archive::kRaw) archive.fixed(m.program);  // see Core::mark()
     constexpr std::size_t kRegisters = 32;
     std::span<std::uint8_t> registers(m.data.data(), kRegisters);
-    std::span<std::uint8_t> ram(m.data.data() + m.ram_start, m.ram_bytes);
+    std::span<std::uint8_t> ram(m.data.data() + m.ram_start, m.device.ram_bytes);
     for (std::span<std::uint8_t>* bytes : {&registers, &ram}) {
         if constexpr (Archive::kRaw)
             archive.fixed(*bytes);

@@ -6,6 +6,7 @@
 #include "emu/avr/core/memory_undo.h"
 #include "emu/avr/isa/isa.h"
 #include "emu/avr/translate/translation.h"
+#include "emu/chip/instrument.h"
 
 #include <optional>
 #include <vector>
@@ -62,7 +63,7 @@ struct Machine {
     Cycle limit = 0;  ///< the inner loop leaves when `cycle` reaches this; 0 = leave now
     std::uint64_t instructions = 0;
     const Op* code = nullptr;
-    std::uint32_t ram_start = 0, ram_bytes = 0;
+    std::uint32_t ram_start = 0, ram_bytes = 0;  ///< no bytes while an instrument sees accesses
     std::array<std::uint8_t, 0x10000>
         data{};  ///< working registers and RAM; the registers between are in `io`
 
@@ -99,6 +100,8 @@ struct Machine {
     std::vector<std::uint32_t> warned;
     CoreObserver observer;
     CoreHooks hooks;
+    chip::Instrument* instrument = nullptr;
+    bool kept_skip = true, kept_translate = true;  ///< what holds again without an instrument
 
     std::uint16_t pc_of(const Op* op) const { return static_cast<std::uint16_t>(op - code); }
     bool may_interrupt() const { return (sreg & sreg::I) && (asleep ? irq.any(wakers) : irq.any()); }
@@ -131,6 +134,11 @@ std::uint8_t load_program(Machine& m, const Op* op, std::uint32_t address);
 void hook_core_registers(Machine& m);
 bool was_warned(const Machine& m, std::uint32_t key);
 void warn_once(Machine& m, const Op* op, std::uint32_t key, std::string_view text);
+
+/// Every access takes the slow path while an instrument wants to see it.
+inline bool shows_accesses(const Machine& m) {
+    return m.ram_bytes == 0;
+}
 
 inline std::uint8_t load(Machine& m, const Op* op, std::uint16_t address) {
     if (address - m.ram_start < m.ram_bytes) [[likely]]

@@ -77,6 +77,10 @@ void write_sreg(Machine& m, const Op* op, std::uint8_t value) {
 }
 
 std::uint8_t load_outside_ram(Machine& m, const Op* op, std::uint16_t address) {
+    if (shows_accesses(m)) {
+        m.instrument->access(address, 1, false);
+        if (address - m.ram_start < m.device.ram_bytes) return m.data[address];
+    }
     if (address < kIoStart) return m.data[address];
     if (address >= m.ram_start) {
         warn_once(m, op, 0x10000u | address,
@@ -91,7 +95,8 @@ std::uint8_t load_outside_ram(Machine& m, const Op* op, std::uint16_t address) {
 
 void store_outside_ram(Machine& m, const Op* op, std::uint16_t address, std::uint8_t value,
                        std::uint8_t mask) {
-    if (address < kIoStart) {
+    if (shows_accesses(m)) m.instrument->access(address, 1, true);
+    if (address < kIoStart || address - m.ram_start < m.device.ram_bytes) {
         m.data[address] = value;
     } else if (address >= m.ram_start) {
         warn_once(m, op, 0x20000u | address,

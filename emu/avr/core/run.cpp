@@ -18,8 +18,31 @@ constexpr Cycle kInterruptResponse = 4;
 constexpr Cycle kWakeUp = 4;
 constexpr std::uint16_t kWordsPerVector = 2;
 
+/// The interpreter with an instrument looking on.
+void execute_observed(Machine& m) {
+    const auto stops = [&m](std::uint16_t pc) {
+        return std::find(m.stops.begin(), m.stops.end(), pc) != m.stops.end();
+    };
+    do {
+        const Op* op = m.current;
+        const std::uint16_t pc = m.pc_of(op);
+        if (!stops(pc)) {
+            if (!m.instrument->instruction(pc * 2u, m.cycle)) {
+                m.stopped = true;
+                m.limit = 0;
+                return;
+            }
+            if (op->run == &decode_now) decode(m, m.code_store[static_cast<std::size_t>(op - m.code)]);
+        }
+        m.current = op->run(m, op);
+        m.cycle += op->cycles;
+        ++m.instructions;
+    } while (m.cycle < m.limit);
+}
+
 void execute(Machine& m) {
     m.quiet_since = m.cycle;
+    if (m.instrument) return execute_observed(m);
     if (m.translated.on && run_translated(m)) return;
     const Op* op = m.current;
     do {
@@ -51,6 +74,7 @@ void enter_interrupt(Machine& m) {
     m.last_vector = static_cast<std::int16_t>(vector);
     const std::uint16_t pc = m.pc_of(m.current);
     if (m.observer.on_interrupt) m.observer.on_interrupt(vector, pc, m.cycle);
+    if (m.instrument) m.instrument->interrupt(vector, pc * 2u, m.cycle);
     m.now = m.cycle;
     m.irq.acknowledge(vector);
     push_pc(m, m.current, pc);
@@ -67,6 +91,7 @@ void perform_reset(Machine& m, ResetCause cause) {
     m.now = m.cycle;
     if (m.observer.on_reset) m.observer.on_reset(cause, m.pc_of(m.current), m.cycle);
     m.stall_end = 0;  // the hook may halt it anew
+    if (m.instrument) m.instrument->reset(m.cycle);
     if (m.hooks.reset) m.hooks.reset(cause);
     m.irq.reset();
     m.sreg = 0;

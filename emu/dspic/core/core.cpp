@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace puckloop::dspic {
 
@@ -138,6 +139,18 @@ void Core::set_skip_idle(bool on) {
 }
 void Core::set_translate(bool on) {
     machine_->translated.on = on;
+}
+void Core::set_instrument(chip::Instrument* instrument, bool accesses) {
+    Machine& m = *machine_;
+    if (!m.instrument && instrument) {
+        m.kept_skip = std::exchange(m.skip_idle, false);
+        m.kept_translate = std::exchange(m.translated.on, false);
+    } else if (m.instrument && !instrument) {
+        m.skip_idle = m.kept_skip;
+        m.translated.on = m.kept_translate;
+    }
+    m.instrument = instrument;
+    m.ram_words = instrument && accesses ? std::uint16_t{0} : static_cast<std::uint16_t>(m.ram_store.size());
 }
 void Core::stall_until(Cycle cycle) {
     machine_->stall_end = std::max(machine_->stall_end, cycle);

@@ -6,6 +6,7 @@
 
 #include "base/archive.h"
 #include "base/checkpoint.h"
+#include "emu/chip/instrument.h"
 #include "emu/dspic/core/core_state.h"
 #include "emu/dspic/core/event_queue.h"
 #include "emu/dspic/core/interrupts.h"
@@ -89,6 +90,9 @@ class Core {
     /// Hot code is translated to the host's, where that is possible, without changing anything observable: by
     /// default as emu/chip/translation_switch.h says.
     void set_translate(bool on);
+    /// From now on `instrument` looks on, at data accesses too if `accesses`; null: nobody does. Between runs
+    /// only; set_skip_idle() and set_translate() are to be called without one.
+    void set_instrument(chip::Instrument* instrument, bool accesses = false);
     /// Keeps the CPU from executing until `cycle` (flash programming, oscillator start-up); events go on.
     void stall_until(Cycle cycle);
 

@@ -36,7 +36,7 @@ std::uint16_t read_aligned(Machine& m, std::uint16_t address) {
     if (address < kWEnd) return m.st.w[address >> 1];
     if (address < kRamStart) return read_sfr(m, address);
     const auto index = static_cast<std::uint16_t>((address - kRamStart) >> 1);
-    if (index < m.ram_words) return m.ram[index];
+    if (index < m.ram_store.size()) return m.ram[index];
     if (address >= kPsvStart && m.st.corcon & corcon::PSV) return read_psv(m, address);
     raise_trap(m, Trap::AddressError);
     return 0;
@@ -50,9 +50,16 @@ void write_masked(Machine& m, std::uint16_t address, std::uint16_t value, std::u
     } else if (address < kRamStart) {
         m.sfr.write(address, value, mask);
         m.bound_limit();
+    } else if (const std::uint32_t index = (address - kRamStart) / 2u; index < m.ram_store.size()) {
+        m.ram[index] = static_cast<std::uint16_t>((m.ram[index] & ~mask) | (value & mask));
     } else {
         raise_trap(m, Trap::AddressError);
     }
+}
+
+/// Every access takes the slow path while an instrument wants to see it.
+void show(const Machine& m, std::uint16_t address, int bytes, bool write) {
+    if (m.ram_words == 0) m.instrument->access(address, bytes, write);
 }
 
 /// Buffer bounds of the X or Y unit.
@@ -95,6 +102,7 @@ bool x_modulo(const Machine& m, int reg, bool write) {
 }  // namespace
 
 std::uint16_t read16_slow(Machine& m, std::uint16_t address) {
+    show(m, address, 2, false);
     if (address & 1) {
         // The read completes with undefined data (here: the aligned word of RAM or W, else 0).
         raise_trap(m, Trap::AddressError);
@@ -104,14 +112,17 @@ std::uint16_t read16_slow(Machine& m, std::uint16_t address) {
     return read_aligned(m, address & 0xFFFE);
 }
 std::uint16_t read8_slow(Machine& m, std::uint16_t address) {
+    show(m, address, 1, false);
     const std::uint16_t word = read_aligned(m, address & 0xFFFE);
     return address & 1 ? word >> 8 : word & 0xFF;
 }
 void write16_slow(Machine& m, std::uint16_t address, std::uint16_t value) {
+    show(m, address, 2, true);
     if (address & 1) return raise_trap(m, Trap::AddressError);  // the write is suppressed
     write_masked(m, address, value, 0xFFFF);
 }
 void write8_slow(Machine& m, std::uint16_t address, std::uint16_t value) {
+    show(m, address, 1, true);
     const bool high = address & 1;
     write_masked(m, address & 0xFFFE, static_cast<std::uint16_t>(high ? value << 8 : value & 0xFF),
                  high ? 0xFF00 : 0x00FF);

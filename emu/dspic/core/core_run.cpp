@@ -48,8 +48,32 @@ void run_repeated(Machine& m) {
     } while (m.st.cycle < m.limit);
 }
 
+/// The interpreter with an instrument looking on.
+void execute_observed(Machine& m) {
+    const auto looks = [&m] {
+        if (m.current->marks & kStop && m.current->run != m.current->base) return true;  // ends the run first
+        if (m.instrument->instruction(m.pc_of(m.current), m.st.cycle)) return true;
+        m.stopped = true;
+        m.limit = 0;
+        return false;
+    };
+    if (m.st.sr & sr::RA) {
+        if (!looks()) return;
+        m.limit = std::min(m.limit, m.st.cycle + 1);
+        return run_repeated(m);
+    }
+    do {
+        if (m.current->run == &decode_now) decode(m, m.code[m.current - m.code]);
+        if (!looks()) return;
+        m.current = execute_one(m, m.current);
+    } while (m.st.cycle < m.limit);
+    m.st.cycle += std::exchange(m.late, 0);
+}
+
 void execute(Machine& m) {
-    if (m.st.sr & sr::RA)
+    if (m.instrument)
+        execute_observed(m);
+    else if (m.st.sr & sr::RA)
         run_repeated(m);
     else if (m.translated.on)
         run_translated(m);
@@ -63,6 +87,7 @@ void enter_interrupt(Machine& m) {
     const std::uint32_t pc = m.pc_of(m.current);
     if (trap && m.observer.on_trap) m.observer.on_trap(static_cast<Trap>(taken.vector), pc, m.st.cycle);
     if (!trap && m.observer.on_interrupt) m.observer.on_interrupt(taken.vector, pc, m.st.cycle);
+    if (m.instrument) m.instrument->interrupt(taken.vector, pc, m.st.cycle);
     m.irq.acknowledge(taken, cpu_level(m));
 
     push(m, stacked_pc_low(pc));
@@ -107,13 +132,17 @@ bool pass_service(Machine& m, Cycle horizon) {
 void pass_stop(Machine& m) {
     const std::uint32_t pc = *m.pass_pc;
     m.pass_pc.reset();
+    if (pc >> 1 >= m.code_words || !(m.code[pc >> 1].marks & kStop)) return execute(m);  // by an instrument
     Op& op = m.code[pc >> 1];
     if (m.program_undo.on()) m.program_undo.note_operation(m, pc >> 1);
     op.marks &= static_cast<std::uint8_t>(~kStop);
     forget_loops(m);
     decode(m, op);
     m.limit = std::min(m.limit, m.st.cycle + 1);
-    m.st.sr& sr::RA ? run_repeated(m) : run_interpreted(m);
+    if (m.instrument)
+        execute_observed(m);
+    else
+        m.st.sr& sr::RA ? run_repeated(m) : run_interpreted(m);
     op.marks |= kStop;
     forget_loops(m);
     decode(m, op);
@@ -157,6 +186,7 @@ void perform_reset(Machine& m, ResetCause cause) {
     m.reset_request.reset();
     m.waits.forget();
     if (m.observer.on_reset) m.observer.on_reset(cause, m.fault_pc, m.st.cycle);
+    if (m.instrument) m.instrument->reset(m.st.cycle);
     const std::uint16_t old_rcon = rcon_register(m);
     if (m.reset_hook) m.reset_hook(cause);
     m.irq.reset();

@@ -2,6 +2,7 @@
 // The inside of Core: pre-decoded operations, the machine they run on, and the short inline paths that every
 // instruction uses (RAM, pointers, the W registers). Only the core's own files include this.
 
+#include "emu/chip/instrument.h"
 #include "emu/dspic/core/core.h"
 #include "emu/dspic/core/exception_frame.h"
 #include "emu/dspic/core/isa.h"
@@ -74,7 +75,7 @@ struct Machine {
     std::uint32_t watch = 0;      ///< low half: just written; high half: not written since reset
     std::uint16_t special = 0x8000;  ///< pointer registers that need special_ea(): W15, modulo, bit-reversed
     std::int32_t stack_span = 0xFFFF;  ///< highest legal stack address less kRamStart; below 0: none is
-    std::uint16_t ram_words = 0;
+    std::uint16_t ram_words = 0;  ///< 0 while an instrument sees accesses
     std::uint16_t* ram = nullptr;
     Op* code = nullptr;
     std::uint32_t code_words = 0;
@@ -132,6 +133,8 @@ struct Machine {
     std::function<void(PowerMode)> power_hook;
     std::function<void()> rcon_hook;
     CoreObserver observer;
+    chip::Instrument* instrument = nullptr;
+    bool kept_skip = true, kept_translate = true;  ///< what holds again without an instrument
     std::vector<std::uint32_t> warned;
     bool skip_idle = true;
     std::unique_ptr<IdleLoops> skip;
