@@ -95,6 +95,11 @@ void describe(Command& app, Arguments& a) {
                    "symbol, 0xPC or FILE:LINE (ELF of avr-gcc -g); status 0 when reached, 1 when the budget "
                    "ends first")
         ->allow_extra_args(false);
+    app.add_option("--gdb", o.gdb,
+                   "wait for GDB at :PORT (on 127.0.0.1; 0: a free one, named on standard error) or unix:PATH, "
+                   "with the chip at its first instruction; without --seconds the run has no end "
+                   "(docs/debugging.md)")
+        ->type_name("PLACE");
     app.add_option("--uart1", o.uart[0], "- (stdin and stdout), pty, tcp:PORT (on 127.0.0.1) or script:FILE");
     app.add_option("--uart2", o.uart[1], "the same for the second UART");
     app.add_option("--baud", a.baud,

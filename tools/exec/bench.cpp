@@ -1,5 +1,7 @@
 #include "tools/exec/bench.h"
 
+#include "tools/exec/history.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,11 +24,21 @@ std::int64_t wall_nanoseconds() {
 
 Bench::Bench(const BenchOptions& options)
     : logs_(options.log_folder.empty() ? nullptr : std::make_unique<Logs>(options.log_folder)),
-      target_(options.mcu.empty() ? make_board(options.board, options.target, *this)
-                                  : make_bare_chip(options.mcu, options.target, *this)),
+      target_(make(options)),
       lines_{UartLine{1, options.baud[0], *target_, logs_.get()},
              UartLine{2, options.baud[1], *target_, logs_.get()}} {
     if (logs_) speaker_.emplace(options.log_folder + "/speaker.wav");
+}
+
+std::unique_ptr<Target> Bench::make(const BenchOptions& options) {
+    const auto make = [&options](TargetListener& listener) {
+        return options.mcu.empty() ? make_board(options.board, options.target, listener)
+                                   : make_bare_chip(options.mcu, options.target, listener);
+    };
+    if (!options.record) return make(*this);
+    auto history = std::make_unique<History>(make, static_cast<TargetListener&>(*this));
+    history_ = history.get();
+    return history;
 }
 
 void Bench::pace_by_wall_clock() {

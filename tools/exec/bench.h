@@ -18,12 +18,15 @@
 
 namespace puckloop::exec {
 
+class History;
+
 struct BenchOptions {
     std::string mcu;  ///< one of these two
     std::string board;
     TargetOptions target;
     std::array<double, 2> baud{115200, 115200};  ///< of the bench's ends
     std::string log_folder;                      ///< empty: no recordings
+    bool record = false;  ///< keep a history, so that the target can be had as it was
 };
 
 class Bench : private TargetListener {
@@ -31,6 +34,8 @@ class Bench : private TargetListener {
     explicit Bench(const BenchOptions& options);
 
     Target& target() { return *target_; }
+    /// The target as History; null unless it keeps one.
+    History* history() { return history_; }
     dspic::Chip& chip() { return target_->chip(); }
     UartLine& uart(int unit) { return lines_[static_cast<std::size_t>(unit - 1)]; }
     /// Plays a script on the bus of a target that is a slave.
@@ -59,6 +64,7 @@ class Bench : private TargetListener {
     void finish();
 
   private:
+    std::unique_ptr<Target> make(const BenchOptions& options);
     void uart_sent(int unit, const cosim::UartFrame& frame) override;
     void i2c_phase(int unit, const cosim::I2cPhase& phase) override;
     void i2c_answered(const cosim::I2cPhase& answer, cosim::Time time) override;
@@ -72,6 +78,7 @@ class Bench : private TargetListener {
 
     std::unique_ptr<Logs> logs_;
     std::optional<WavFile> speaker_;  ///< with recordings
+    History* history_ = nullptr;
     std::unique_ptr<Target> target_;
     std::array<UartLine, 2> lines_;
     std::optional<I2cScriptMaster> master_;

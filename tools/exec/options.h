@@ -31,6 +31,7 @@ struct ExecOptions {
     bool json = false;
     std::string nvm;             ///< file that keeps flash and EEPROM, or empty
     std::vector<double> resets;  ///< seconds: the reset button is pressed
+    std::string gdb;             ///< where a debugger connects, or empty
     bool strict = false;         ///< what is worth a warning makes the run a failed one
 };
 

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "emu/board/nvm_file.h"
+#include "tools/exec/debug_run.h"
 #include "tools/exec/ends/script_end.h"
 #include "tools/exec/exec_report.h"
 #include "tools/exec/options.h"
@@ -79,6 +80,7 @@ std::vector<I2cScriptLine> i2c_script(const std::string& text, const Target& tar
 /// With the devices on the bus of the target, which must be its master.
 BenchOptions bench_options(const ExecOptions& options) {
     BenchOptions bench = options.bench;
+    bench.record = !options.gdb.empty();
     bench.target.i2c_devices = parse_i2c_devices(options.i2c_devices);
     if (bench.target.i2c_devices.empty()) return bench;
     if (bench.board == "rab")
@@ -144,7 +146,7 @@ int run_exec(const ExecOptions& options) {
     for (const std::string& text : options.stop_at) {
         for (const StopAddress& stop : resolve_stop(text, image, lines)) {
             stops.push_back(stop);
-            bench.target().stop_at(stop.pc);
+            if (options.gdb.empty()) bench.target().stop_at(stop.pc);
         }
     }
     if (!options.stimulus.empty())
@@ -195,13 +197,21 @@ int run_exec(const ExecOptions& options) {
         }
         return g_interrupted.load();
     };
-    const cosim::Time budget = budget_of(options, bench, live);
+    std::optional<DebugRun> debugger;
+    if (!options.gdb.empty()) {
+        debugger.emplace(bench, options.gdb);
+        for (const StopAddress& stop : stops)
+            debugger->end_at(stop.pc);
+        std::fprintf(stderr, "gdb: %s\n", debugger->address().c_str());
+        std::fflush(stderr);
+    }
+    const cosim::Time budget = budget_of(options, bench, live || debugger);
     log::info("target {}{}, budget {}", options.bench.board, options.bench.mcu,
               budget == cosim::kNever ? "none" : fmt::format("{:.6f} s", cosim::to_seconds(budget)));
     const auto began = std::chrono::steady_clock::now();
     if (paced) bench.pace_by_wall_clock();
     ExecOutcome outcome;
-    outcome.end = bench.run_until(budget);
+    outcome.end = debugger ? debugger->run(budget, paced) : bench.run_until(budget);
     const bool stuck = bench.master() != nullptr && bench.master()->report().stuck_since;
     bench.finish();
     if (nvm) bench.target().save_memory(*nvm);
@@ -222,6 +232,7 @@ int run_exec(const ExecOptions& options) {
         if (!warnings.empty()) outcome.failure = "with --strict a warning is a failure: " + warnings.front();
     }
 
+    if (debugger) debugger->over(outcome.success ? 0 : 1);
     // Standard output belongs to the UART when `-` stands there; JSON is then its last line.
     if (options.json)
         std::printf("%s%s\n", stdio ? "\n" : "", json_report(bench, image, outcome).c_str());

@@ -3,6 +3,7 @@
 // change any of it: `adc0 1.2`, `PD6 0`. The two-wire bus is empty, unless devices are put on it or a script
 // is its master.
 
+#include "base/archive.h"
 #include "tools/exec/bus/device_bus.h"
 #include "tools/exec/targets/avr_target.h"
 
@@ -89,6 +90,15 @@ class AvrChip final : public AvrTarget, private avr::Pins {
             if (chip_.stopped_at()) return;
             if (devices_->due() <= step) answer(devices_->take());
         }
+    }
+    bool saves() const override { return !devices_; }
+    void save_state(StateWriter& archive) override {
+        archive.part("chip", chip_);
+        archive(values_, levels_);
+    }
+    void restore_state(StateReader& archive) override {
+        archive.part("chip", chip_);
+        archive(values_, levels_);
     }
     bool is_i2c_slave() const override { return true; }
     void i2c_slave_phase(const cosim::I2cPhase& phase) override { chip_.twi_slave_phase(phase); }

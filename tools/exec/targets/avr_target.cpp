@@ -1,5 +1,7 @@
 #include "tools/exec/targets/avr_target.h"
 
+#include "tools/debug/debug_chip.h"
+
 #include "emu/board/nvm_file.h"
 
 #include <fmt/format.h>
@@ -75,6 +77,10 @@ void AvrTarget::show_pins(avr::PortLetter port, std::uint8_t levels, std::uint8_
         listener_.pin_changed(fmt::format("P{}{}", static_cast<char>('A' + static_cast<int>(port)), pin),
                               function_of(port, pin), level, now);
     }
+}
+
+std::unique_ptr<debug::DebugChip> AvrTarget::debug_chip() {
+    return debug::make_debug_chip(avr());
 }
 
 std::string AvrTarget::chip_json() {

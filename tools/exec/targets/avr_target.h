@@ -44,6 +44,8 @@ class AvrTarget : public Target {
     void load_kept(const image::Image& image, const board::NvmFile& nvm) override;
     void save_memory(board::NvmFile& nvm) override;
 
+    std::unique_ptr<debug::DebugChip> debug_chip() override;
+
   protected:
     virtual avr::Chip& avr() = 0;
     /// The image that read_image() read.

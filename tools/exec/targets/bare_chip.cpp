@@ -2,6 +2,7 @@
 // pull-up), every analog input stands at 3800 counts of 4095 (near the rail, like a light sensor in a dim
 // room), UART and I2C lines are at rest. The stimulus may change any of it: `adc8 1200`, `RF1 0`.
 
+#include "base/archive.h"
 #include "tools/exec/targets/dspic_target.h"
 
 #include <fmt/format.h>
@@ -60,6 +61,8 @@ class BareChip : public DspicTarget, private dspic::Pins {
             static_cast<std::uint16_t>(values_[id] >= 0.5 ? levels_[port] | mask : levels_[port] & ~mask);
         chip().pins_changed(static_cast<dspic::PortLetter>(port));
     }
+    void save_own(StateWriter& archive) override { archive(values_, levels_); }
+    void restore_own(StateReader& archive) override { archive(values_, levels_); }
     void add(cosim::SignalInfo info, std::size_t port, int bit) {
         values_.push_back(info.initial);
         places_.emplace_back(port, bit);

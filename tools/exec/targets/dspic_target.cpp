@@ -1,5 +1,8 @@
 #include "tools/exec/targets/dspic_target.h"
 
+#include "base/archive.h"
+#include "cosim/core/message_state.h"
+
 #include <algorithm>
 
 namespace puckloop::exec {
@@ -92,6 +95,20 @@ void DspicTarget::answer(int unit, const cosim::I2cPhase& phase) {
         listener_.i2c_phase(unit, over);
     }
     chip_->i2c_answer(unit, phase);
+}
+
+void DspicTarget::save_state(StateWriter& archive) {
+    archive.part("chip", *chip_);
+    for (Bus& bus : buses_)
+        archive(bus.nobody, bus.open);
+    save_own(archive);
+}
+
+void DspicTarget::restore_state(StateReader& archive) {
+    archive.part("chip", *chip_);
+    for (Bus& bus : buses_)
+        archive(bus.nobody, bus.open);
+    restore_own(archive);
 }
 
 void DspicTarget::finish() {

@@ -30,6 +30,9 @@ class DspicTarget : public Target {
     void set_signal(std::uint16_t id, double value) final;
     std::string i2c_devices_report() const override { return devices_report_; }
     void finish() override;
+    bool saves() const override { return !devices_; }
+    void save_state(StateWriter& archive) override;
+    void restore_state(StateReader& archive) override;
     dspic::Chip& chip() override { return *chip_; }
 
   protected:
@@ -46,6 +49,9 @@ class DspicTarget : public Target {
     virtual std::span<const cosim::SignalInfo> own_signals() const = 0;
     virtual double own_signal(std::uint16_t id) const = 0;
     virtual void set_own_signal(std::uint16_t id, double value) = 0;
+    /// The surroundings' part of save_state() and restore_state().
+    virtual void save_own(StateWriter& archive) = 0;
+    virtual void restore_own(StateReader& archive) = 0;
 
   private:
     struct Bus {

@@ -1,5 +1,6 @@
 // `--board pic`: the e-puck main board, alone: no Linux board, no camera, nobody on its I2C bus.
 
+#include "base/archive.h"
 #include "emu/pic/board.h"
 #include "emu/pic/pin_table.h"
 #include "tools/exec/targets/dspic_target.h"
@@ -26,6 +27,8 @@ class PicTarget : public DspicTarget, private pic::BoardListener {
         if (const auto port = board_.set_signal(id, value, chip().cycle())) chip().pins_changed(*port);
         if (id == pic::kBatteryVoltage) chip().supply_changed();
     }
+    void save_own(StateWriter& archive) override { archive(board_); }
+    void restore_own(StateReader& archive) override { archive(board_); }
     void passed(dspic::Cycle now) override { board_.settle(now); }
     void signal_changed(pic::SignalId id, double value, dspic::Cycle now) override {
         if (id == pic::kWheelLeft || id == pic::kWheelRight)

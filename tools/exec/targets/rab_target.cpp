@@ -1,6 +1,7 @@
 // `--board rab`: the range-and-bearing board, alone: what its receivers see is the stimulus's, and its bus
 // master the `--i2c` script.
 
+#include "base/archive.h"
 #include "emu/rab_board/board.h"
 #include "emu/rab_board/rab_json.h"
 #include "emu/rab_board/rab_log.h"
@@ -31,8 +32,9 @@ class RabTarget : public DspicTarget, private rab::BoardListener {
         log_.emplace(log_file_, image);
         DspicTarget::load(image);
     }
+    void repeat(bool on) override { repeats_ = on; }
     void run_until(cosim::Time until) override {
-        while (log_->next_look() <= until) {
+        while (!repeats_ && log_->next_look() <= until) {
             const cosim::Time look = log_->next_look();
             DspicTarget::run_until(look);
             if (chip().stopped_at()) return;
@@ -41,11 +43,11 @@ class RabTarget : public DspicTarget, private rab::BoardListener {
         DspicTarget::run_until(until);
     }
     void uart_receive(int unit, const cosim::UartFrame& frame) override {
-        log_->arrived(unit, frame, chip().now(), chip().uart_enabled(unit));
+        if (!repeats_) log_->arrived(unit, frame, chip().now(), chip().uart_enabled(unit));
         DspicTarget::uart_receive(unit, frame);
     }
     void i2c_slave_phase(const cosim::I2cPhase& phase) override {
-        log_->i2c_phase(phase, chip().now());
+        if (!repeats_) log_->i2c_phase(phase, chip().now());
         DspicTarget::i2c_slave_phase(phase);
     }
     std::string report() const override { return rab::activity_json(board_, *log_).dump(); }
@@ -60,24 +62,30 @@ class RabTarget : public DspicTarget, private rab::BoardListener {
     void set_own_signal(std::uint16_t id, double value) override {
         if (const auto port = board_.set_signal(id, value, chip().now())) chip().pins_changed(*port);
     }
+    void save_own(StateWriter& archive) override { archive(board_); }
+    void restore_own(StateReader& archive) override { archive(board_); }
     void passed(dspic::Cycle) override { board_.settle(chip().now()); }
     void signal_changed(rab::SignalId id, double value, cosim::Time now) override {
+        if (repeats_) return;
         log_->signal_changed(id, value, now);
         // The rest are pins of their own.
         if (id <= rab::kPower) listener_.signal_changed(rab::signals()[id].name, value, now);
     }
-    void emitters_changed(std::uint16_t on, cosim::Time now) override { log_->emitters(on, now); }
+    void emitters_changed(std::uint16_t on, cosim::Time now) override {
+        if (!repeats_) log_->emitters(on, now);
+    }
     void uart_sent(int unit, const cosim::UartFrame& frame) override {
-        log_->sent(unit, frame, protocols::stop_bit_start(frame));
+        if (!repeats_) log_->sent(unit, frame, protocols::stop_bit_start(frame));
     }
     void i2c_answer(const cosim::I2cPhase& answer, cosim::Time now) override {
-        log_->i2c_answer(answer, now);
+        if (!repeats_) log_->i2c_answer(answer, now);
     }
     void i2c_phase(int unit, const cosim::I2cPhase& phase) override { on_bus(unit, phase); }
 
     TargetListener& listener_;
     std::string log_file_;
     std::optional<rab::RabLog> log_;
+    bool repeats_ = false;  ///< the log knows all this
     rab::Board board_;
     PinTap tap_;
 };

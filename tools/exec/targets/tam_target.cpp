@@ -1,6 +1,7 @@
 // `--board tam`: the TAM, alone: who stands in it, its battery and its switches are the stimulus's. uart1 is
 // the debug console, uart2 the socket of the radio module.
 
+#include "base/archive.h"
 #include "emu/tam_avr/board.h"
 #include "emu/tam_avr/fuse_check.h"
 #include "tools/exec/targets/avr_target.h"
@@ -29,6 +30,9 @@ class TamTarget final : public AvrTarget, private tam::BoardListener {
         board_.uart_receive(unit - 1, frame);
     }
     void reset_button() override { board_.reset_button(); }
+    bool saves() const override { return true; }
+    void save_state(StateWriter& archive) override { archive(board_); }
+    void restore_state(StateReader& archive) override { archive(board_); }
     std::vector<std::string> warnings() override {
         std::vector<std::string> lines = AvrTarget::warnings();
         for (std::string& line : tam::fuse_warnings(board_.chip().fuses(), firmware()))

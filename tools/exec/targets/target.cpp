@@ -2,6 +2,8 @@
 
 #include "tools/exec/targets/target.h"
 
+#include "tools/debug/debug_chip.h"
+
 #include "emu/board/chip_json.h"
 #include "emu/board/chip_warnings.h"
 #include "emu/board/nvm_file.h"
@@ -44,6 +46,10 @@ std::optional<std::string> Target::hang() {
     const std::optional<dspic::WaitReport> wait = chip().waiting();
     if (!wait || !wait->hung) return std::nullopt;
     return board::waiting_text(chip(), wait);
+}
+
+std::unique_ptr<debug::DebugChip> Target::debug_chip() {
+    return debug::make_debug_chip(chip());
 }
 
 std::vector<std::string> Target::warnings() {

@@ -18,8 +18,15 @@
 #include <string_view>
 #include <vector>
 
+namespace puckloop {
+class StateReader;
+class StateWriter;
+}  // namespace puckloop
 namespace puckloop::board {
 class NvmFile;
+}
+namespace puckloop::debug {
+class DebugChip;
 }
 
 namespace puckloop::exec {
@@ -123,6 +130,17 @@ class Target {
     virtual void load_kept(const image::Image& image, const board::NvmFile& nvm);
     /// What the memories hold now goes to the file. Throws RunError.
     virtual void save_memory(board::NvmFile& nvm);
+
+    /// The chip as a debugger sees it.
+    virtual std::unique_ptr<debug::DebugChip> debug_chip();
+    /// Whether save_state() and restore_state() work: not with devices on the bus.
+    virtual bool saves() const { return false; }
+    /// Everything that time changes of chip and surroundings, logs and stop addresses apart; between two
+    /// run_until() of this very target.
+    virtual void save_state(StateWriter& /*archive*/) {}
+    virtual void restore_state(StateReader& /*archive*/) {}
+    /// What happens from now on (until repeat(false)) has happened before, and goes to no log.
+    virtual void repeat(bool /*on*/) {}
 };
 
 /// `mcu` as --mcu takes it; the chip alone, nothing connected. Throws InputError for an unknown name.
