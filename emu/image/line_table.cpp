@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "emu/image/elf_file.h"
+#include "emu/image/image_file.h"
 
 #include <algorithm>
 #include <array>
@@ -245,6 +246,19 @@ std::vector<std::uint32_t> LineTable::addresses(std::string_view file, std::uint
         inside = here;
     }
     return found;
+}
+
+std::vector<LineTable::Stretch> LineTable::stretches() const {
+    std::vector<Stretch> all;
+    for (const auto& [address, row] : rows_)
+        if (row.line != 0) all.push_back({address, files_[row.file], row.line});
+    return all;
+}
+
+LineTable source_lines(const std::string& path) {
+    const std::string bytes = read_image_file(path);
+    if (!is_elf(bytes)) return {};
+    return read_lines(ElfFile(bytes, path, elf_machine(bytes), "this chip's"));
 }
 
 LineTable read_lines(const ElfFile& elf) {

@@ -19,6 +19,14 @@ class LineTable {
     std::string at(std::uint32_t address) const;
     /// Lowest address of each stretch of code of this line, rising; `file` with or without its folder.
     std::vector<std::uint32_t> addresses(std::string_view file, std::uint32_t line) const;
+    /// Code of one line, up to where the next stretch begins.
+    struct Stretch {
+        std::uint32_t address = 0;
+        std::string_view file;  ///< without its folder; of this table
+        std::uint32_t line = 0;
+    };
+    /// By address; what belongs to no line is left out.
+    std::vector<Stretch> stretches() const;
 
   private:
     struct Row {
@@ -33,5 +41,8 @@ class ElfFile;
 /// What the sections .stab (gcc's default for the AVR) and .debug_line (DWARF 2 to 4) hold. Debug information
 /// is of no use to the chip: where it is damaged reading ends, and what was read so far stays.
 LineTable read_lines(const ElfFile& elf);
+/// The same of a file; empty for other formats. Throws InputError for a file that cannot be read or is
+/// damaged.
+LineTable source_lines(const std::string& path);
 
 }  // namespace puckloop::image

@@ -91,15 +91,45 @@ void describe(Command& app, Arguments& a) {
     app.add_option("--cycles", o.cycles, "budget in instruction cycles")
         ->check(count_up_to(kMostCycles))
         ->excludes(seconds);
-    app.add_option("--stop-at", o.stop_at,
-                   "symbol, 0xPC or FILE:LINE (ELF of avr-gcc -g); status 0 when reached, 1 when the budget "
-                   "ends first")
+    app.add_option(
+           "--stop-at", o.stop_at,
+           "symbol, 0xPC or FILE:LINE (ELF with debug information); status 0 when reached, 1 when the budget "
+           "ends first")
         ->allow_extra_args(false);
-    app.add_option("--gdb", o.gdb,
-                   "wait for GDB at :PORT (on 127.0.0.1; 0: a free one, named on standard error) or unix:PATH, "
-                   "with the chip at its first instruction; without --seconds the run has no end "
-                   "(docs/debugging.md)")
+    app.add_option(
+           "--gdb", o.gdb,
+           "wait for GDB at :PORT (on 127.0.0.1; 0: a free one, named on standard error) or unix:PATH, "
+           "with the chip at its first instruction; without --seconds the run has no end "
+           "(docs/debugging.md)")
         ->type_name("PLACE");
+    exec::InstrumentOptions& i = o.instruments;
+    app.add_option(
+           "--watch", i.watches,
+           "variable, register or 0xADDRESS of data space, perhaps :BYTES, perhaps /r, /w (default) or "
+           "/rw behind it: ends the run behind an instruction that touches it; repeatable, as --stop-at")
+        ->allow_extra_args(false);
+    app.add_option(
+           "--trace", i.trace,
+           "FILE that gets every instruction on a line: cycle, address, symbol, source line, text, and "
+           "what it changed")
+        ->type_name("FILE");
+    app.add_option("--trace-range", i.trace_ranges,
+                   "only instructions of this function, or of 0xFIRST..0xLAST; repeatable")
+        ->allow_extra_args(false);
+    app.add_option("--trace-from", i.trace_from, "only from this simulated second on")
+        ->check(number_between(0.0, kLongestRun));
+    app.add_option("--trace-to", i.trace_to, "only before this simulated second")
+        ->check(number_between(0.0, kLongestRun));
+    app.add_flag("--stats", i.stats,
+                 "cycles of each function, the deepest stack, and reads of RAM that nothing had written");
+    app.add_option(
+           "--callgrind", i.callgrind,
+           "FILE for cycles by instruction, line and call, as callgrind_annotate and KCachegrind read "
+           "them")
+        ->type_name("FILE");
+    app.add_option("--coverage", i.coverage, "FILE for the lines that ran, as genhtml (lcov) reads them")
+        ->type_name("FILE");
+    app.add_option("--sources", i.sources, "folder in which --coverage says the source files are");
     app.add_option("--uart1", o.uart[0], "- (stdin and stdout), pty, tcp:PORT (on 127.0.0.1) or script:FILE");
     app.add_option("--uart2", o.uart[1], "the same for the second UART");
     app.add_option("--baud", a.baud,

@@ -107,7 +107,7 @@ class AvrDebugChip final : public DebugChip {
 
     std::optional<Special> special(std::string_view name) const override {
         const auto place = faults_.find_register(name);
-        if (!place) return std::nullopt;
+        if (!place) return pair(std::string(name));
         Special found{faults_.read(*place), place->address, 8, {}};
         for (const avr::RegisterInfo& info : chip_.inside().device.registers)
             if (info.name == name) found.fields = fields_of(info.fields, found.value);
@@ -129,6 +129,12 @@ class AvrDebugChip final : public DebugChip {
 
   private:
     avr::Core& core() const { return chip_.inside().core; }
+    /// "TCNT1" is TCNT1H and TCNT1L.
+    std::optional<Special> pair(const std::string& name) const {
+        const auto low = faults_.find_register(name + "L"), high = faults_.find_register(name + "H");
+        if (!low || !high) return std::nullopt;
+        return Special{faults_.read(*high) << 8 | faults_.read(*low), low->address, 16, {}};
+    }
     std::optional<std::uint8_t> read_byte(std::uint32_t address) const {
         const avr::Chip::Inside in = chip_.inside();
         if (address < in.device.flash_bytes()) {

@@ -23,8 +23,8 @@ namespace puckloop::debug {
 
 struct RegisterInfo {
     std::string name;
-    int bits = 8;               ///< a multiple of 8, at most 64
-    std::string_view type{};    ///< as a target description takes it: "uint8", "code_ptr", "data_ptr"
+    int bits = 8;             ///< a multiple of 8, at most 64
+    std::string_view type{};  ///< as a target description takes it: "uint8", "code_ptr", "data_ptr"
 };
 
 enum class Flow : std::uint8_t { Other, Call, Return, InterruptReturn };
@@ -64,6 +64,8 @@ class DebugChip {
     /// First and behind the last data address of RAM.
     virtual std::uint32_t ram_start() const = 0;
     virtual std::uint32_t ram_end() const = 0;
+    /// Others than the program write this byte of RAM too (DMA).
+    virtual bool shared(std::uint16_t /*data*/) const { return false; }
     /// The stack grows to higher addresses (dsPIC), or to lower ones (AVR).
     virtual bool stack_grows_up() const = 0;
 

@@ -23,7 +23,7 @@ class Debuggee {
     /// `change` only, so that a run that goes back can do it again.
     virtual bool change(std::function<bool(DebugChip&)> change) = 0;
     /// A pulse on the reset pin, now.
-    virtual void reset() = 0;
+    virtual void press_reset() = 0;
     /// Simulated time in seconds.
     virtual double seconds() const = 0;
     /// What the run would report if it ended now.

@@ -23,10 +23,11 @@ namespace {
 constexpr std::uint32_t kData = 0x800000, kDataSpace = 0x10000, kWholeWords = 0x1000000;
 constexpr std::uint32_t kProgramSpace = 0x1000000;
 constexpr std::uint16_t kWEnd = 0x20;
+constexpr std::uint16_t kDmaRam = 0x7800;  ///< of the dsPIC33FJ256GP710, up to the end of its RAM
 constexpr std::size_t kPc = 16, kAccA = 17, kAccB = 18, kSpecials = 19;
 /// Behind PC and the accumulators; read and written by their data-sheet names.
-constexpr std::string_view kSpecialNames[] = {"SR",     "CORCON",  "SPLIM",  "RCOUNT", "DCOUNT",
-                                              "TBLPAG", "PSVPAG",  "MODCON", "XBREV",  "DISICNT"};
+constexpr std::string_view kSpecialNames[] = {"SR",     "CORCON", "SPLIM",  "RCOUNT", "DCOUNT",
+                                              "TBLPAG", "PSVPAG", "MODCON", "XBREV",  "DISICNT"};
 
 std::vector<RegisterInfo> dspic_registers() {
     std::vector<RegisterInfo> registers;
@@ -112,6 +113,7 @@ class DspicDebugChip final : public DebugChip {
     std::uint32_t address_of_data(std::uint16_t data) const override { return kData + data; }
     std::uint32_t ram_start() const override { return device().ram_start; }
     std::uint32_t ram_end() const override { return device().ram_end; }
+    bool shared(std::uint16_t data) const override { return device().family_33f && data >= kDmaRam; }
     bool stack_grows_up() const override { return true; }
 
     std::uint32_t pc() const override { return chip_.pc(); }

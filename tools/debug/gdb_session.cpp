@@ -243,9 +243,8 @@ std::string GdbSession::one_register(std::string_view packet, bool write) {
     const auto bytes = take_char(packet, '=') ? from_hex(packet) : std::nullopt;
     if (!bytes || bytes->size() != static_cast<std::size_t>(registers[index].bits) / 8)
         return std::string(kError);
-    return changed([index, value = number_of(*bytes)](DebugChip& chip) {
-        return chip.write_register(index, value);
-    });
+    return changed(
+        [index, value = number_of(*bytes)](DebugChip& chip) { return chip.write_register(index, value); });
 }
 
 std::string GdbSession::memory(std::string_view packet, bool write, bool binary) {
@@ -267,8 +266,7 @@ std::string GdbSession::memory(std::string_view packet, bool write, bool binary)
         bytes = from_hex(packet);
     if (!bytes || bytes->size() != *size) return std::string(kError);
     if (bytes->empty()) return std::string(kOk);
-    return changed(
-        [at = *address, bytes = *bytes](DebugChip& chip) { return chip.write_memory(at, bytes); });
+    return changed([at = *address, bytes = *bytes](DebugChip& chip) { return chip.write_memory(at, bytes); });
 }
 
 std::string GdbSession::point(std::string_view packet, bool insert) {
@@ -310,7 +308,8 @@ std::string GdbSession::resume(Resume how, std::string_view address) {
 }
 
 std::string target_description(const DebugChip& chip) {
-    std::string xml = "<?xml version=\"1.0\"?>\n<!DOCTYPE target SYSTEM \"gdb-target.dtd\">\n<target version=\"1.0\">\n";
+    std::string xml =
+        "<?xml version=\"1.0\"?>\n<!DOCTYPE target SYSTEM \"gdb-target.dtd\">\n<target version=\"1.0\">\n";
     if (!chip.architecture().empty()) {
         // GDB's own description of the family's registers holds.
         return xml + fmt::format("<architecture>{}</architecture>\n</target>\n", chip.architecture());

@@ -55,8 +55,7 @@ GdbSocket::GdbSocket(std::string_view option, const std::string& where) {
         // A socket that a run before left is in nobody's way; anything else stays.
         if (::lstat(path_.c_str(), &there) == 0 && S_ISSOCK(there.st_mode)) {
             const int probe = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
-            const bool answers =
-                ::connect(probe, reinterpret_cast<const sockaddr*>(&name), sizeof name) == 0;
+            const bool answers = ::connect(probe, reinterpret_cast<const sockaddr*>(&name), sizeof name) == 0;
             ::close(probe);
             if (!answers) ::unlink(path_.c_str());
         }

@@ -8,13 +8,14 @@ namespace puckloop::debug {
 
 namespace {
 
-constexpr std::string_view kHelp = "monitor reset          a pulse on the reset pin\n"
-                                   "monitor cycles         instruction cycles and instructions since power-up\n"
-                                   "monitor time           simulated time\n"
-                                   "monitor sfr NAME       a register by its data-sheet name, with its fields\n"
-                                   "monitor sfr            their names\n"
-                                   "monitor stats          resets, traps, warnings so far\n"
-                                   "monitor help           this text\n";
+constexpr std::string_view kHelp =
+    "monitor reset          a pulse on the reset pin\n"
+    "monitor cycles         instruction cycles and instructions since power-up\n"
+    "monitor time           simulated time\n"
+    "monitor sfr NAME       a register by its data-sheet name, with its fields\n"
+    "monitor sfr            their names\n"
+    "monitor stats          resets, traps, warnings so far\n"
+    "monitor help           this text\n";
 
 std::string special(const DebugChip& chip, std::string name) {
     for (char& c : name)
@@ -49,7 +50,7 @@ std::string monitor(Debuggee& debuggee, std::string_view text) {
     const DebugChip& chip = debuggee.chip();
     if (text == "reset") {
         if (const std::string why = debuggee.frozen(); !why.empty()) return why + "\n";
-        debuggee.reset();
+        debuggee.press_reset();
         return "reset\n";
     }
     if (text == "cycles")

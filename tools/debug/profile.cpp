@@ -128,7 +128,7 @@ void Profile::access(std::uint16_t address, int bytes, bool write) {
         if (at < chip_.ram_start() || at >= chip_.ram_end()) continue;
         if (write) {
             written_[at] = true;
-        } else if (!written_[at]) {
+        } else if (!written_[at] && !chip_.shared(at)) {
             ++unwritten_reads_;
             if (unwritten_.size() == kMostPlaces && !unwritten_.contains({pc_, at})) continue;
             Unwritten& found = unwritten_[{pc_, at}];
@@ -148,8 +148,8 @@ std::vector<Profile::Unwritten> Profile::unwritten() const {
     std::vector<Unwritten> list;
     for (const auto& [key, found] : unwritten_)
         list.push_back(found);
-    std::sort(list.begin(), list.end(),
-              [](const Unwritten& a, const Unwritten& b) { return a.cycle < b.cycle; });
+    std::stable_sort(list.begin(), list.end(),
+                     [](const Unwritten& a, const Unwritten& b) { return a.cycle < b.cycle; });
     return list;
 }
 

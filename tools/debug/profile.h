@@ -84,7 +84,7 @@ class Profile final : public chip::Instrument {
     };
     Slot& slot(std::uint32_t pc);
 
-    static constexpr std::size_t kDeepest = 4096;   ///< frames; older ones are given up
+    static constexpr std::size_t kDeepest = 4096;     ///< frames; older ones are given up
     static constexpr std::size_t kMostPlaces = 1000;  ///< of unwritten reads
 
     const DebugChip& chip_;

@@ -53,10 +53,10 @@ std::string callgrind_text(const Profile& profile, const Places& places, const s
         for (auto at = calls.lower_bound({pc, 0}); at != calls.end() && at->first.first == pc; ++at) {
             const std::uint32_t callee = at->first.second;
             const SourceLine target = line_at(places, callee);
-            text += fmt::format("cfi={}\ncfn={}\ncalls={} 0x{:x} {}\n0x{:x} {} {} {}\n", target.file,
-                                names.name_of(names.start_of(callee)), at->second.times, callee, target.line,
-                                pc, line.line, at->second.inclusive.cycles,
-                                at->second.inclusive.instructions);
+            text +=
+                fmt::format("cfi={}\ncfn={}\ncalls={} 0x{:x} {}\n0x{:x} {} {} {}\n", target.file,
+                            names.name_of(names.start_of(callee)), at->second.times, callee, target.line, pc,
+                            line.line, at->second.inclusive.cycles, at->second.inclusive.instructions);
         }
     }
     return text;
@@ -69,22 +69,22 @@ std::string lcov_text(const Profile& profile, const Places& places, const std::s
         return at == costs.end() ? std::uint64_t{0} : at->second.instructions;
     };
     struct File {
-        std::map<std::uint32_t, std::uint64_t> lines;                                     ///< executions
+        std::map<std::uint32_t, std::uint64_t> lines;                              ///< executions
         std::map<std::string, std::pair<std::uint32_t, std::uint64_t>> functions;  ///< line, calls
     };
     std::map<std::string, File> files;
     // A line is as often executed as the stretch of its code that is so most often.
     for (const image::LineTable::Stretch& stretch : places.lines().stretches()) {
-        std::uint64_t& times = files[stretch.file].lines[stretch.line];
+        std::uint64_t& times = files[std::string(stretch.file)].lines[stretch.line];
         times = std::max(times, executed(stretch.address));
     }
     for (const auto& [pc, name] : places.functions())
-        if (const SourceLine line = line_at(places, pc); line.line != 0 && places.lines().begins(pc))
+        if (const SourceLine line = line_at(places, pc); line.line != 0)
             files[line.file].functions[name] = {line.line, executed(pc)};
     std::string text;
     for (const auto& [name, file] : files) {
-        text += fmt::format("TN:\nSF:{}\n",
-                            folder.empty() || name.starts_with('/') ? name : folder + "/" + name);
+        text +=
+            fmt::format("TN:\nSF:{}\n", folder.empty() || name.starts_with('/') ? name : folder + "/" + name);
         std::size_t hit = 0;
         for (const auto& [function, entry] : file.functions)
             text += fmt::format("FN:{},{}\n", entry.first, function);

@@ -64,8 +64,8 @@ std::string profile_text(const Profile& profile, const Places& places) {
         return found;
     };
     if (const auto& stack = profile.stack())
-        text += fmt::format("stack: {} bytes at most, 0x{:04x} from 0x{:04x}, at {}\n", stack->bytes(), stack->peak,
-                            stack->base, place(stack->peak_pc));
+        text += fmt::format("stack: {} bytes at most, 0x{:04x} from 0x{:04x}, at {}\n", stack->bytes(),
+                            stack->peak, stack->base, place(stack->peak_pc));
     const auto unwritten = profile.unwritten();
     if (unwritten.empty()) return text + "no byte of RAM was read before it was written\n";
     text += fmt::format("{} reads of bytes of RAM that nothing had written, at {} places:\n",

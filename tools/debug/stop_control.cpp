@@ -33,6 +33,15 @@ void StopControl::begin(bool step) {
     }
 }
 
+void StopControl::begin_inside(bool step, bool inside) {
+    mode_ = Mode::Run;
+    step_ = step;
+    first_ = !inside;
+    begun_ = inside;
+    first_pc_ = chip_.pc();
+    stop_.reset();
+}
+
 void StopControl::begin_search(bool steps, std::uint64_t position) {
     mode_ = Mode::Search;
     step_ = steps;

@@ -32,8 +32,8 @@ struct Stop {
         End         ///< the run is over
     };
     Why why = Why::Step;
-    Watchpoint watch{};        ///< of Why::Watch
-    std::uint16_t touched = 0; ///< data address, of Why::Watch
+    Watchpoint watch{};         ///< of Why::Watch
+    std::uint16_t touched = 0;  ///< data address, of Why::Watch
 };
 
 class StopControl : private chip::Instrument {
@@ -56,6 +56,14 @@ class StopControl : private chip::Instrument {
     void begin_search(bool steps, std::uint64_t position);
     /// The chip goes on and stops before the first instruction that starts at `position` or later.
     void begin_seek(std::uint64_t position);
+    /// As begin() for whoever is the chip's instrument himself and asks instrument(); `inside`: from within
+    /// instrument().instruction(), whose instruction is executed next.
+    void begin_inside(bool step, bool inside);
+    chip::Instrument& instrument() { return *this; }
+    /// Why instrument().instruction() said no.
+    const std::optional<Stop>& stopped() const { return stop_; }
+    /// Accesses of the debugger's own count for nothing until the chip goes on.
+    void pause() { mode_ = Mode::Idle; }
     /// The chip stands: why it does, if it stopped by itself.
     std::optional<Stop> end();
 
@@ -80,8 +88,8 @@ class StopControl : private chip::Instrument {
     Mode mode_ = Mode::Idle;
     bool step_ = false;
     std::uint32_t first_pc_ = 0;
-    bool first_ = false;       ///< no instruction was begun yet
-    bool begun_ = false;       ///< the first one was
+    bool first_ = false;  ///< no instruction was begun yet
+    bool begun_ = false;  ///< the first one was
     std::uint64_t position_ = 0;
     std::uint64_t current_ = 0;  ///< where the present instruction starts
     std::optional<Stop> stop_;

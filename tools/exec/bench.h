@@ -26,7 +26,7 @@ struct BenchOptions {
     TargetOptions target;
     std::array<double, 2> baud{115200, 115200};  ///< of the bench's ends
     std::string log_folder;                      ///< empty: no recordings
-    bool record = false;  ///< keep a history, so that the target can be had as it was
+    bool record = false;                         ///< keep a history, so that the target can be had as it was
 };
 
 class Bench : private TargetListener {

@@ -29,7 +29,7 @@ class DebugRun final : private debug::Debuggee {
     bool reverses() const override { return bench_.target().saves(); }
     std::string frozen() const override;
     bool change(std::function<bool(debug::DebugChip&)> change) override;
-    void reset() override { bench_.press_reset(); }
+    void press_reset() override { bench_.press_reset(); }
     double seconds() const override { return cosim::to_seconds(bench_.target().now()); }
     std::string summary() override;
 

@@ -108,6 +108,7 @@ std::string json_report(Bench& bench, const image::Image& image, const ExecOutco
     if (const std::string board = bench.target().report(); !board.empty()) json["board"] = Json::parse(board);
     if (const std::string bus = bench.target().i2c_devices_report(); !bus.empty())
         json["i2c_bus"] = Json::parse(bus);
+    if (!outcome.stats_json.empty()) json["stats"] = Json::parse(outcome.stats_json);
     // Symbols of a damaged image may hold any byte: what is not UTF-8 is replaced.
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -139,7 +140,7 @@ std::string text_report(Bench& bench, const ExecOutcome& outcome) {
         text += fmt::format("uart{}: {} sent, {} received, {} framing errors, {} overruns\n", unit,
                             counters.sent, counters.received, counters.framing_errors, counters.overruns);
     }
-    return text;
+    return text + outcome.stats_text;
 }
 
 namespace {

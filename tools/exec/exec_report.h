@@ -17,7 +17,9 @@ struct ExecOutcome {
     std::string line{};    ///< "main.c:12", if the image has source lines
     double wall_s = 0.0;
     bool success = false;
-    std::string failure{};  ///< why not, where the rest of the report does not say it
+    std::string stats_text{};  ///< of --stats
+    std::string stats_json{};  ///< the same as a JSON object; empty: none
+    std::string failure{};     ///< why not, where the rest of the report does not say it
 };
 
 /// One JSON object on one line.

@@ -64,6 +64,7 @@ class History final : public Target, private TargetListener {
     std::vector<std::uint32_t> addresses_of(std::string_view file, std::uint32_t line) const override {
         return inner_->addresses_of(file, line);
     }
+    const image::LineTable& lines() const override { return inner_->lines(); }
     void reset_button() override;
     void load_kept(const image::Image& image, const board::NvmFile& nvm) override {
         inner_->load_kept(image, nvm);
@@ -100,8 +101,8 @@ class History final : public Target, private TargetListener {
     std::vector<Saved> states_;
     cosim::Time interval_ = 5 * cosim::kMillisecond;  ///< between states; grows as they are thinned out
     bool past_ = false;
-    std::size_t next_act_ = 0;      ///< while in the past
-    cosim::Time present_ = 0;       ///< while in the past
+    std::size_t next_act_ = 0;  ///< while in the past
+    cosim::Time present_ = 0;   ///< while in the past
 };
 
 }  // namespace puckloop::exec

@@ -2,6 +2,7 @@
 // The options of `puckloop exec`, checked and resolved.
 
 #include "tools/exec/bench.h"
+#include "tools/exec/bench_instruments.h"
 #include "tools/exec/ends/uart_spec.h"
 
 #include <array>
@@ -32,7 +33,8 @@ struct ExecOptions {
     std::string nvm;             ///< file that keeps flash and EEPROM, or empty
     std::vector<double> resets;  ///< seconds: the reset button is pressed
     std::string gdb;             ///< where a debugger connects, or empty
-    bool strict = false;         ///< what is worth a warning makes the run a failed one
+    InstrumentOptions instruments;
+    bool strict = false;  ///< what is worth a warning makes the run a failed one
 };
 
 /// Address to stop at, and what the user called it.

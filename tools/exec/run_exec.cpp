@@ -130,6 +130,9 @@ std::string symbol_at(const image::Image& image, std::uint32_t pc) {
 }  // namespace
 
 int run_exec(const ExecOptions& options) {
+    if (!options.gdb.empty() && options.instruments.any())
+        throw InputError("", "--gdb", "a debugger and --trace, --watch or --stats do not go together",
+                         "one of them");
     Bench bench(bench_options(options));
     if (options.list_signals) {
         const auto signals = bench.target().signals();
@@ -205,6 +208,8 @@ int run_exec(const ExecOptions& options) {
         std::fprintf(stderr, "gdb: %s\n", debugger->address().c_str());
         std::fflush(stderr);
     }
+    std::optional<BenchInstruments> instruments;
+    if (options.instruments.any()) instruments.emplace(options.instruments, bench.target(), image);
     const cosim::Time budget = budget_of(options, bench, live || debugger);
     log::info("target {}{}, budget {}", options.bench.board, options.bench.mcu,
               budget == cosim::kNever ? "none" : fmt::format("{:.6f} s", cosim::to_seconds(budget)));
@@ -220,12 +225,21 @@ int run_exec(const ExecOptions& options) {
     outcome.symbol = symbol_at(image, outcome.pc);
     outcome.line = bench.target().source_line(outcome.pc);
     outcome.stopped = outcome.end == Bench::End::Interrupted ? "interrupted" : "budget";
-    if (outcome.end == Bench::End::Address)
+    if (instruments) {
+        instruments->finish();
+        outcome.stats_text = instruments->text();
+        outcome.stats_json = instruments->json();
+    }
+    if (outcome.end == Bench::End::Address && instruments && !instruments->watched().empty())
+        outcome.stopped = instruments->watched();
+    else if (outcome.end == Bench::End::Address)
         for (const StopAddress& stop : stops)
             if (stop.pc == outcome.pc) outcome.stopped = stop.name;
     log::info("ended after {:.2f} s at pc {:#x}: {}", outcome.wall_s, outcome.pc, outcome.stopped);
-    outcome.success = !stuck && (outcome.end == Bench::End::Address ||
-                                 (outcome.end == Bench::End::Time && options.stop_at.empty()));
+    outcome.success =
+        !stuck &&
+        (outcome.end == Bench::End::Address ||
+         (outcome.end == Bench::End::Time && options.stop_at.empty() && options.instruments.watches.empty()));
     if (options.strict && outcome.success) {
         const std::vector<std::string> warnings = bench.target().warnings();
         outcome.success = warnings.empty();

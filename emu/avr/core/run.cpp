@@ -24,14 +24,15 @@ void execute_observed(Machine& m) {
         return std::find(m.stops.begin(), m.stops.end(), pc) != m.stops.end();
     };
     do {
-        const Op* op = m.current;
-        const std::uint16_t pc = m.pc_of(op);
-        if (!stops(pc)) {
-            if (!m.instrument->instruction(pc * 2u, m.cycle)) {
-                m.stopped = true;
-                m.limit = 0;
-                return;
-            }
+        const std::uint16_t pc = m.pc_of(m.current);
+        const bool stop = stops(pc);
+        if (!stop && !m.instrument->instruction(pc * 2u, m.cycle)) {
+            m.stopped = true;
+            m.limit = 0;
+            return;
+        }
+        const Op* op = m.current;  // a debugger may have changed it
+        if (!stop) {
             if (op->run == &decode_now) decode(m, m.code_store[static_cast<std::size_t>(op - m.code)]);
         }
         m.current = op->run(m, op);

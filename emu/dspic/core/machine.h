@@ -75,7 +75,7 @@ struct Machine {
     std::uint32_t watch = 0;      ///< low half: just written; high half: not written since reset
     std::uint16_t special = 0x8000;  ///< pointer registers that need special_ea(): W15, modulo, bit-reversed
     std::int32_t stack_span = 0xFFFF;  ///< highest legal stack address less kRamStart; below 0: none is
-    std::uint16_t ram_words = 0;  ///< 0 while an instrument sees accesses
+    std::uint16_t ram_words = 0;       ///< 0 while an instrument sees accesses
     std::uint16_t* ram = nullptr;
     Op* code = nullptr;
     std::uint32_t code_words = 0;

@@ -40,6 +40,7 @@ class AvrTarget : public Target {
     std::vector<std::uint32_t> addresses_of(std::string_view file, std::uint32_t line) const override {
         return firmware_.lines.addresses(file, line);
     }
+    const image::LineTable& lines() const override { return firmware_.lines; }
     void reset_button() override { avr().external_reset(); }
     void load_kept(const image::Image& image, const board::NvmFile& nvm) override;
     void save_memory(board::NvmFile& nvm) override;

@@ -38,6 +38,12 @@ void DspicTarget::set_signal(std::uint16_t id, double value) {
         devices_->set_signal(id - own, value, chip_->now());
 }
 
+image::Image DspicTarget::read_image(const std::string& file, std::string_view mcu) {
+    image::Image image = Target::read_image(file, mcu);
+    if (image.format == image::Format::Elf) lines_ = image::source_lines(file);
+    return image;
+}
+
 void DspicTarget::load(const image::Image& image) {
     chip_->load(image);
     chip_->power_on();

@@ -2,6 +2,7 @@
 // A dsPIC on the bench: the chip, what stands at its pins, and its I2C buses: with the devices that the user
 // put on module 1's, with nobody else otherwise.
 
+#include "emu/image/line_table.h"
 #include "emu/pic/empty_bus.h"
 #include "tools/exec/bus/device_bus.h"
 #include "tools/exec/targets/pin_tap.h"
@@ -14,6 +15,7 @@ namespace puckloop::exec {
 /// Shared by the bare chip and the boards; they add the surroundings and the signals.
 class DspicTarget : public Target {
   public:
+    image::Image read_image(const std::string& file, std::string_view mcu) override;
     void load(const image::Image& image) override;
     void run_until(cosim::Time until) override;
     void uart_receive(int unit, const cosim::UartFrame& frame) override { chip_->uart_receive(unit, frame); }
@@ -30,6 +32,11 @@ class DspicTarget : public Target {
     void set_signal(std::uint16_t id, double value) final;
     std::string i2c_devices_report() const override { return devices_report_; }
     void finish() override;
+    std::string source_line(std::uint32_t pc) const override { return lines_.at(pc); }
+    std::vector<std::uint32_t> addresses_of(std::string_view file, std::uint32_t line) const override {
+        return lines_.addresses(file, line);
+    }
+    const image::LineTable& lines() const override { return lines_; }
     bool saves() const override { return !devices_; }
     void save_state(StateWriter& archive) override;
     void restore_state(StateReader& archive) override;
@@ -71,6 +78,7 @@ class DspicTarget : public Target {
     std::unique_ptr<DeviceBus> devices_;  ///< on the bus of module kI2cDeviceUnit
     std::vector<cosim::SignalInfo> signals_;
     std::string devices_report_;
+    image::LineTable lines_;  ///< of the image, where it has them
 };
 
 /// What the parameters of all boards have in common.

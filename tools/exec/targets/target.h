@@ -25,6 +25,9 @@ class StateWriter;
 namespace puckloop::board {
 class NvmFile;
 }
+namespace puckloop::image {
+class LineTable;
+}
 namespace puckloop::debug {
 class DebugChip;
 }
@@ -124,6 +127,8 @@ class Target {
     virtual std::vector<std::uint32_t> addresses_of(std::string_view /*file*/, std::uint32_t /*line*/) const {
         return {};
     }
+    /// Source lines of the image that read_image() read; empty where it has none.
+    virtual const image::LineTable& lines() const = 0;
     /// A pulse on the reset pin now.
     virtual void reset_button() { chip().mclr(); }
     /// load() with what `nvm` kept in place of the image's own, if it kept anything. Throws InputError.
