@@ -179,6 +179,14 @@ void declare_run(Command& app, int& status) {
                      "wall-clock seconds after which a silent node ends the run")
         ->check(positive_number())
         ->type_name("S");
+    command
+        ->add_option(
+            "--gdb", request.gdb,
+            "NODE=PLACE: the run waits for GDB at PLACE, :PORT (on 127.0.0.1) or unix:PATH, and stands "
+            "still whenever that stops the board NODE (robot0.pic, tam0, ...); repeatable "
+            "(docs/debugging.md)")
+        ->allow_extra_args(false)
+        ->type_name("NODE=PLACE");
     command->add_flag("--strict", request.strict,
                       "status 1 if there is anything to warn of: firmware that hangs, registers without a "
                       "model, I2C addresses that nobody acknowledges, ...");

@@ -23,14 +23,15 @@ struct RunRequest {
     bool cache = false;                ///< boots are taken from the user's cache and kept there
     bool in_process = false;
     bool realtime = false;
-    bool paced = false;            ///< by the wall clock, with Linux programs in simulated time
-    std::filesystem::path events;  ///< [[event]] tables in place of the scenario's; empty: none
+    bool paced = false;               ///< by the wall clock, with Linux programs in simulated time
+    std::filesystem::path events;     ///< [[event]] tables in place of the scenario's; empty: none
     std::vector<std::string> faults;  ///< one line each: "drop link=robot0.uart at=2s"
-    unsigned threads = 0;          ///< of this process with in_process; 0: as many as serve
+    unsigned threads = 0;             ///< of this process with in_process; 0: as many as serve
     double stall_seconds = 10.0;
     bool record = false;                     ///< record.csv: every message, for `puckloop replay`
     std::vector<std::string> trace_formats;  ///< forms of the trace beside trace.csv: sr, pcapng, vcd
     std::string live;                        ///< pcapng while the run goes on; "-": standard output
+    std::vector<std::string> gdb;            ///< "NODE=PLACE": boards under a debugger
     bool strict = false;                     ///< a run with warnings has failed
 };
 

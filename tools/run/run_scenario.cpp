@@ -142,7 +142,8 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
     options.pace_from = setup.ready;
     options.threads = threads_for(setup, request);
     options.seed = setup.scenario.seed;
-    options.stall_seconds = request.stall_seconds;
+    constexpr double kPatience = 1e9;  // a board under a debugger is silent for as long as its user thinks
+    options.stall_seconds = request.gdb.empty() ? request.stall_seconds : kPatience;
     if (interrupt != nullptr) {
         options.interrupted = interrupt->flag();
         options.hurried = interrupt->again();

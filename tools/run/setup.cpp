@@ -165,6 +165,29 @@ void add_ir(RunSetup& setup, const json& world) {
     setup.links.push_back(poses);
 }
 
+/// "NODE=PLACE": the node is a board, in a process of its own, which stands still with its debugger. It
+/// begins at power-up.
+void debug_board(RunSetup& setup, const std::string& assignment) {
+    const std::size_t equals = std::min(assignment.find('='), assignment.size());
+    const std::string name = assignment.substr(0, equals);
+    std::string known;
+    for (cosim::NodeSpec& node : setup.nodes) {
+        json spec = json::parse(node.json);
+        const std::string kind = spec.at("kind");
+        if (kind != "pic" && kind != "rab" && kind != "tam") continue;
+        known += (known.empty() ? "" : ", ") + node.name;
+        if (node.name != name || equals == assignment.size()) continue;
+        spec["gdb"] = assignment.substr(equals + 1);
+        spec.erase("from_state");
+        spec.erase("save_state");
+        node.json = spec.dump();
+        node.in_process = false;
+        return;
+    }
+    throw InputError("", "--gdb", fmt::format("'{}' names no board of the scenario", assignment),
+                     "NODE=:PORT or NODE=unix:PATH, NODE one of " + known);
+}
+
 }  // namespace
 
 RunSetup set_up(const RunRequest& request) {
@@ -205,6 +228,10 @@ RunSetup set_up(const RunRequest& request) {
     name_linked_ports(setup);
     hand_out_faults(setup);
     plan_states(setup, request);
+    if (!request.gdb.empty() && (!request.from_state.empty() || !request.save_state.empty()))
+        throw InputError("", "--gdb", "saved states and a debugger do not go together", "one of them");
+    for (const std::string& assignment : request.gdb)
+        debug_board(setup, assignment);
     return setup;
 }
 
