@@ -1,0 +1,70 @@
+// avr-gdb as it is at an ATmega1284P: the session that docs/debugging.md shows, word for word.
+
+#include "tests/debug/gdb_client.h"
+#include "tests/exec/command.h"
+
+#include <catch2/catch.hpp>
+
+#include <cstdlib>
+#include <sstream>
+
+using namespace puckloop;
+using exec::text_of;
+using exec::Workbench;
+
+namespace {
+
+/// The block of docs/debugging.md that begins with "(gdb) target".
+std::string documented_session() {
+    const std::string text = text_of(std::string(PUCKLOOP_SOURCE) + "/docs/debugging.md");
+    const std::size_t begin = text.find("\n    (gdb) target");
+    REQUIRE(begin != std::string::npos);
+    std::istringstream lines(text.substr(begin + 1));
+    std::string session;
+    for (std::string line; std::getline(lines, line) && (line.empty() || line.starts_with("    "));)
+        session += (line.empty() ? line : line.substr(4)) + "\n";
+    return session;
+}
+
+/// Without empty lines and spaces at the end, which differ between a terminal and a batch.
+std::string condensed(const std::string& text) {
+    std::istringstream lines(text);
+    std::string kept;
+    for (std::string line; std::getline(lines, line);) {
+        line.erase(line.find_last_not_of(" \t\r") + 1);
+        if (!line.empty()) kept += line + "\n";
+    }
+    return kept;
+}
+
+}  // namespace
+
+TEST_CASE("the documented session with avr-gdb") {
+    const std::string lamp = PUCKLOOP_LAMP;
+    if (lamp.empty() || std::system("command -v avr-gdb >/dev/null") != 0) {
+        WARN("skipped: avr-gdb (package gdb-avr) or avr-gcc with avr-libc is not installed");
+        return;
+    }
+    const std::string session = documented_session();
+    const Workbench bench;
+    tests::GdbServer server(bench.folder, "--mcu atmega1284p " + lamp);
+    std::string script = "set pagination off\nset confirm off\nset width 0\n";
+    std::istringstream lines(session);
+    int commands = 0;
+    for (std::string line; std::getline(lines, line);) {
+        constexpr std::string_view kPrompt = "(gdb) ";
+        if (!line.starts_with(kPrompt)) continue;
+        const std::string command = line.substr(kPrompt.size());
+        script += "echo " + line + "\\n\n" +
+                  (command == "target remote :4242" ? "target remote " + server.socket() : command) + "\n";
+        ++commands;
+    }
+    REQUIRE(commands > 10);
+    const std::string out = bench.folder + "/gdb.out";
+    const std::string command =
+        "cd " + std::string(PUCKLOOP_SOURCE) + "/tests/debug/programs && timeout 120 avr-gdb -nx -batch -x " +
+        bench.file("session.gdb", script) + " " + lamp + " >" + out + " 2>&1 </dev/null";
+    CHECK(std::system(command.c_str()) == 0);
+    CHECK(condensed(text_of(out)) == condensed(session));
+    CHECK(server.wait() == 1);  // killed
+}
