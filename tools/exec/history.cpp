@@ -102,5 +102,8 @@ void History::pin_changed(std::string_view pin, std::string_view function, std::
 void History::signal_changed(std::string_view name, double value, cosim::Time time) {
     if (!past_) listener_.signal_changed(name, value, time);
 }
+void History::sound_sample(double value, cosim::Time time) {
+    if (!past_) listener_.sound_sample(value, time);
+}
 
 }  // namespace puckloop::exec

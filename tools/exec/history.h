@@ -80,6 +80,7 @@ class History final : public Target, private TargetListener {
     void pin_changed(std::string_view pin, std::string_view function, std::optional<bool> level,
                      cosim::Time time) override;
     void signal_changed(std::string_view name, double value, cosim::Time time) override;
+    void sound_sample(double value, cosim::Time time) override;
     void take();
 
     struct Act {
