@@ -123,6 +123,7 @@ std::optional<std::string> GdbClient::receive() {
         if (!next) return std::nullopt;
         reader.feed({&*next, 1});
         if (const auto event = reader.next()) {
+            if (event->kind == debug::RspEvent::Kind::Again) continue;  // of a packet that we damaged
             REQUIRE(event->kind == debug::RspEvent::Kind::Packet);
             // Whoever hangs up behind its answer needs none.
             (void)!::send(socket_, "+", 1, MSG_NOSIGNAL);
