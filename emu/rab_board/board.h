@@ -92,6 +92,7 @@ class Board : public dspic::Pins {
     void i2c_slave_answer(int unit, const cosim::I2cPhase& answer) override;
     std::uint16_t spi_exchange(int unit, std::uint16_t sent, int bits, dspic::Cycle now) override;
     void output_compare_changed(int unit, dspic::Cycle now) override;
+    bool wants_pwm_edges(int) const override { return false; }
 
     static constexpr int kPorts = 7;
 

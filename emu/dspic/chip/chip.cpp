@@ -92,6 +92,7 @@ struct Chip::Parts {
     std::deque<Adc33F> adcs;
     std::deque<Spi> spis;
     std::optional<OutputCompare> output_compare;
+    std::optional<InputCapture> input_capture;
     std::optional<Dma> dma;
     std::optional<Dci> dci;
     std::optional<LowVoltage> low_voltage;
@@ -137,9 +138,9 @@ struct Chip::Parts {
             adcs.emplace_back(around, setup, clock, ports, pins);
         for (const Spi::Setup& setup : layout.spis)
             spis.emplace_back(around, setup, ports, pins);
-        if (!layout.output_compares.empty())
-            output_compare.emplace(around, layout.output_compares, std::array{timer(2), timer(3)}, ports,
-                                   pins);
+        const std::array time_bases{timer(2), timer(3)};
+        output_compare.emplace(around, layout.output_compare, time_bases, ports, pins);
+        input_capture.emplace(around, layout.input_captures, time_bases, clock, ports);
         if (layout.dma.con)
             dma.emplace(around, layout.dma, core.ram().subspan((layout.dma.ram - device.ram_start) / 2u));
         if (layout.dci.con1) dci.emplace(around, layout.dci, ports, pins);
@@ -271,7 +272,8 @@ struct Chip::Parts {
         reset_all(slaves);
         reset_all(adcs);
         reset_all(spis);
-        if (output_compare) output_compare->reset();
+        output_compare->reset();
+        input_capture->reset();
         if (dma) dma->reset();
         if (dci) dci->reset();
         if (low_voltage) low_voltage->reset(brown_out());
@@ -283,6 +285,8 @@ struct Chip::Parts {
     void set_power(PowerMode mode) {
         asleep_since.reset();
         if (mode != PowerMode::Run) asleep_since = core.cycle();
+        output_compare->hold(mode == PowerMode::Sleep, mode == PowerMode::Idle);
+        input_capture->hold(mode == PowerMode::Sleep, mode == PowerMode::Idle);
         // Firmware that idles between interrupts comes by here twice for each of them.
         unsigned controls = 0;
         if (mode == PowerMode::Idle)
@@ -345,7 +349,8 @@ struct Chip::Parts {
         parts_of("i2c slave", slaves);
         parts_of("adc", adcs);
         parts_of("spi", spis);
-        if (output_compare) archive.part("output compare", *output_compare);
+        archive.part("output compare", *output_compare);
+        archive.part("input capture", *input_capture);
         if (dma) archive.part("dma", *dma);
         if (dci) archive.part("dci", *dci);
         if (low_voltage) archive.part("low voltage", *low_voltage);
@@ -512,7 +517,7 @@ Time Chip::earliest_i2c_slave_answer(int unit) const {
 }
 
 OutputCompareState Chip::output_compare(int unit) const {
-    return parts_->output_compare ? parts_->output_compare->present(unit) : OutputCompareState{};
+    return parts_->output_compare->present(unit);
 }
 
 const cosim::ClockDomain& Chip::clock() const {

@@ -37,6 +37,19 @@ constexpr I2cMaster::Setup kI2cs[] = {
     {1, sfr::I2CRCV, false, irq::MI2C, irq::SI2C, G, 2, 3, 1'111'111.0},
 };
 
+constexpr OutputCompare::Unit kOutputCompares[] = {
+    {sfr::OC1RS, irq::OC1, D, 0}, {sfr::OC2RS, irq::OC2, D, 1}, {sfr::OC3RS, irq::OC3, D, 2},
+    {sfr::OC4RS, irq::OC4, D, 3}, {sfr::OC5RS, irq::OC5, D, 4}, {sfr::OC6RS, irq::OC6, D, 5},
+    {sfr::OC7RS, irq::OC7, D, 6}, {sfr::OC8RS, irq::OC8, D, 7},
+};
+
+constexpr InputCapture::Unit kInputCaptures[] = {
+    {sfr::IC1BUF, irq::IC1, {D, 8}},  {sfr::IC2BUF, irq::IC2, {D, 9}},  {sfr::IC3BUF, irq::IC3, {D, 10}},
+    {sfr::IC4BUF, irq::IC4, {D, 11}}, {sfr::IC5BUF, irq::IC5, {D, 12}}, {sfr::IC6BUF, irq::IC6, {D, 13}},
+    {sfr::IC7BUF, irq::IC7, {D, 14}}, {sfr::IC8BUF, irq::IC8, {D, 15}},
+};
+constexpr Ports::Pin kOcfa{B, 6}, kOcfb{B, 15};
+
 constexpr Layout kLayout = {
     .ports =
         {kPorts, kAnalog, {sfr::ADPCFG, 0}, 0, {sfr::CNEN1, sfr::CNEN2}, {sfr::CNPU1, sfr::CNPU2}, irq::CN},
@@ -48,6 +61,9 @@ constexpr Layout kLayout = {
     .adc_timers = {3, 0},
     .dci = {sfr::DCICON1, irq::DCI, 0, G, 12, 13, 14, 15},
     .low_voltage_irq = irq::LVD,
+    // DS70061, figures 14-1 to 14-9: one cycle to the pin, two more to the flag.
+    .output_compare = {kOutputCompares, {kOcfa, kOcfb}, 1, 2},
+    .input_captures = kInputCaptures,
 };
 
 }  // namespace

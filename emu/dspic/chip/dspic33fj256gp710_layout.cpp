@@ -1,5 +1,5 @@
 // The modules of the dsPIC33FJ256GP710 (100 pins) and their pins. Source: DS70286, pin diagram and tables.
-// Not modelled: input capture, CAN1, CAN2, CRC; their registers are reported when touched.
+// Not modelled: CAN1, CAN2, CRC; their registers are reported when touched.
 
 #include "emu/dspic/chip/layout.h"
 #include "emu/dspic/devices/dspic33fj256gp710_irq.h"
@@ -69,6 +69,13 @@ constexpr OutputCompare::Unit kOutputCompares[] = {
     {sfr::OC7RS, irq::OC7, D, 6}, {sfr::OC8RS, irq::OC8, D, 7},
 };
 
+constexpr InputCapture::Unit kInputCaptures[] = {
+    {sfr::IC1BUF, irq::IC1, {D, 8}},  {sfr::IC2BUF, irq::IC2, {D, 9}},  {sfr::IC3BUF, irq::IC3, {D, 10}},
+    {sfr::IC4BUF, irq::IC4, {D, 11}}, {sfr::IC5BUF, irq::IC5, {D, 12}}, {sfr::IC6BUF, irq::IC6, {D, 13}},
+    {sfr::IC7BUF, irq::IC7, {D, 14}}, {sfr::IC8BUF, irq::IC8, {D, 15}},
+};
+constexpr Ports::Pin kOcfa{B, 6}, kOcfb{B, 15};
+
 constexpr std::uint16_t kStored[] = {sfr::PMD1, sfr::PMD2, sfr::PMD3, sfr::BSRAM, sfr::SSRAM};
 
 constexpr Layout kLayout = {
@@ -86,7 +93,8 @@ constexpr Layout kLayout = {
     .adcs = kAdcs,
     .adc_timers = {3, 5},
     .spis = kSpis,
-    .output_compares = kOutputCompares,
+    .output_compare = {kOutputCompares, {kOcfa, kOcfb}},
+    .input_captures = kInputCaptures,
     .dma = {sfr::DMA0CON,
             sfr::DMACS0,
             {irq::DMA0, irq::DMA1, irq::DMA2, irq::DMA3, irq::DMA4, irq::DMA5, irq::DMA6, irq::DMA7},

@@ -7,6 +7,7 @@
 #include "emu/dspic/peripherals/dci.h"
 #include "emu/dspic/peripherals/dma.h"
 #include "emu/dspic/peripherals/i2c_master.h"
+#include "emu/dspic/peripherals/input_capture.h"
 #include "emu/dspic/peripherals/output_compare.h"
 #include "emu/dspic/peripherals/ports.h"
 #include "emu/dspic/peripherals/spi.h"
@@ -37,7 +38,8 @@ struct Layout {
     std::span<const Adc33F::Setup> adcs{};  ///< the 33FJ's
     std::array<int, 2> adc_timers{};        ///< numbers of the timers that can start each converter
     std::span<const Spi::Setup> spis{};
-    std::span<const OutputCompare::Unit> output_compares{};
+    OutputCompare::Setup output_compare{};
+    std::span<const InputCapture::Unit> input_captures{};
     Dma::Setup dma{};
     Dci::Setup dci{};
     std::uint8_t low_voltage_irq = 0;  ///< 0: the part has no low-voltage detector

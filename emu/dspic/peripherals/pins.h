@@ -64,6 +64,9 @@ class Pins {
     virtual OutsidePin outside(PortLetter port, int bit) const;
     /// Chip::output_compare(unit) changed at cycle `now`.
     virtual void output_compare_changed(int unit, Cycle now);
+    /// PWM of module OC`unit` comes edge by edge through driven(). False: its pin rests low, and
+    /// output_compare_changed() is all that the board hears of it, which costs nothing per period.
+    virtual bool wants_pwm_edges(int unit) const;
 };
 
 /// When a slave's answer stands on the wire.
@@ -86,5 +89,8 @@ inline OutsidePin Pins::outside(PortLetter, int) const {
     return {};
 }
 inline void Pins::output_compare_changed(int, Cycle) {}
+inline bool Pins::wants_pwm_edges(int) const {
+    return true;
+}
 
 }  // namespace puckloop::dspic

@@ -109,13 +109,14 @@ void Ports::outside_changed(PortLetter port, Cycle when) {
     if (at(port).watched) look(static_cast<int>(port), when);
 }
 
-void Ports::lend(PortLetter letter, std::uint16_t mask, std::uint16_t output, std::uint16_t levels) {
+void Ports::lend(PortLetter letter, std::uint16_t mask, std::uint16_t output, std::uint16_t levels,
+                 Cycle when) {
     announce();
     Port& port = at(letter);
     port.lent |= mask;
     port.lent_output = static_cast<std::uint16_t>((port.lent_output & ~mask) | (output & mask));
     port.lent_levels = static_cast<std::uint16_t>((port.lent_levels & ~mask) | (levels & mask));
-    drive(static_cast<int>(letter), around_.now + 1);
+    drive(static_cast<int>(letter), when);
 }
 
 void Ports::give_back(PortLetter letter, std::uint16_t mask) {
@@ -127,7 +128,23 @@ void Ports::give_back(PortLetter letter, std::uint16_t mask) {
 
 void Ports::watch(PortLetter letter, int pin, void* owner, void (*changed)(void*, bool, Cycle)) {
     at(letter).watched |= bit(pin);
+    listen(letter, pin, owner, changed);
+}
+
+void Ports::listen(PortLetter letter, int pin, void* owner, void (*changed)(void*, bool, Cycle)) {
     watchers_.push_back({letter, bit(pin), owner, changed});
+}
+
+void Ports::attend(PortLetter letter, int pin) {
+    Port& port = at(letter);
+    if (port.watched & bit(pin)) return;
+    port.watched |= bit(pin);
+    port.seen |= static_cast<std::uint16_t>(level(letter, pin) ? bit(pin) : 0);
+}
+
+bool Ports::digital_level(PortLetter letter, int pin) const {
+    const int index = static_cast<int>(letter);
+    return (pin_levels(index, around_.now) & digital_pins(index)) >> pin & 1;
 }
 
 std::uint32_t Ports::pcfg() const {
@@ -215,14 +232,7 @@ void Ports::write_cn(void* owner, std::uint16_t address, std::uint16_t value, st
     std::uint32_t enabled = self.around_.sfr.raw(self.setup_.cnen[0]) |
                             static_cast<std::uint32_t>(self.around_.sfr.raw(self.setup_.cnen[1])) << 16;
     for (const Pin& pin : kChangePins) {
-        if (enabled & 1u) {
-            Port& port = self.at(pin.port);
-            if (!(port.watched & bit(pin.number))) {
-                port.watched |= bit(pin.number);
-                port.seen |=
-                    static_cast<std::uint16_t>(self.level(pin.port, pin.number) ? bit(pin.number) : 0);
-            }
-        }
+        if (enabled & 1u) self.attend(pin.port, pin.number);
         enabled >>= 1;
     }
 }

@@ -52,11 +52,20 @@ class Ports {
     /// The outside changed levels on `port` at cycle `at`.
     void outside_changed(PortLetter port, Cycle at);
     /// Takes pins away from LAT and TRIS: `output` of them are driven at `levels`, the rest are released.
-    void lend(PortLetter port, std::uint16_t mask, std::uint16_t output, std::uint16_t levels);
+    void lend(PortLetter port, std::uint16_t mask, std::uint16_t output, std::uint16_t levels) {
+        lend(port, mask, output, levels, around_.now + 1);
+    }
+    /// The same, from an event that was due at cycle `when`.
+    void lend(PortLetter port, std::uint16_t mask, std::uint16_t output, std::uint16_t levels, Cycle when);
     void give_back(PortLetter port, std::uint16_t mask);
     /// Calls `changed` with the pin's level at every edge, driven by whomever; at a reset with `at` =
     /// kNoCycle: there the level is just told.
     void watch(PortLetter port, int pin, void* owner, void (*changed)(void* owner, bool level, Cycle at));
+    /// As watch(), but edges are called out only after attend(); those of CN and other modules' pins may be,
+    /// too.
+    void listen(PortLetter port, int pin, void* owner, void (*changed)(void* owner, bool level, Cycle at));
+    /// From now on edges of this pin are looked for.
+    void attend(PortLetter port, int pin);
     /// Called before each write that can change what the pins do, with the last cycle before the change;
     /// may stay empty.
     void (*before_change)(void* owner, Cycle until) = nullptr;
@@ -67,6 +76,8 @@ class Ports {
     std::optional<bool> driven_level(int channel) const;
     /// The pin of AN`channel` is a digital one: cut off from the converters.
     bool digital(int channel) const;
+    /// What a module's digital input on the pin sees: 0 while the pin is an analog one.
+    bool digital_level(PortLetter port, int pin) const;
     /// Pins of the port that are inputs and whose level something outside may change.
     std::uint16_t changeable(PortLetter port) const;
     /// Puts the pin levels into PORTx's storage.

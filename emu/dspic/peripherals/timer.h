@@ -45,7 +45,11 @@ class Timer {
     void (*on_match)(void* owner, Cycle at) = nullptr;
     void* on_match_owner = nullptr;
 
-    // For the output compare modules, whose time base it is.
+    // For the modules whose time base it is.
+    /// TMRx at cycle `at`, now or to come, while nobody writes to the timer.
+    std::uint16_t value_at(Cycle at) const {
+        return static_cast<std::uint16_t>(ruled_by_lower() ? lower_->count_at(at) >> 16 : count_at(at));
+    }
     /// The internal clock is counted at present.
     bool counts() const { return running(); }
     /// Cycles between period matches.

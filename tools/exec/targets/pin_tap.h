@@ -42,6 +42,7 @@ class PinTap : public dspic::Pins {
     void output_compare_changed(int unit, dspic::Cycle now) override {
         inner_.output_compare_changed(unit, now);
     }
+    bool wants_pwm_edges(int unit) const override { return inner_.wants_pwm_edges(unit); }
 
   private:
     struct PortState {
