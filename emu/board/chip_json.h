@@ -7,7 +7,7 @@
 
 namespace puckloop::board {
 
-/// cycles, instructions, resets and traps (time_s, cause or name, pc), unmodelled (name, address, pc, access,
+/// cycles, instructions, resets and traps (time_s, cause or name, pc, symbol), unmodelled (name, address, pc, access,
 /// time_s), waiting (since_s, hung, loop, text) while the program does, refused_addresses (module, address,
 /// times), warnings (chip_warnings.h).
 nlohmann::ordered_json chip_json(const dspic::Chip& chip);

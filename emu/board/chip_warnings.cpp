@@ -19,12 +19,19 @@ double seconds(const dspic::Chip& chip, dspic::Cycle cycle) {
     return cosim::to_seconds(chip.clock().time_of(cycle));
 }
 
+/// "pc 0x01f2", with the symbol where the image has one: "pc 0x01f2 in main+0x12".
+std::string place(const dspic::Chip& chip, std::uint32_t pc) {
+    const std::string symbol = chip.symbol(pc);
+    return fmt::format("pc 0x{:04x}{}{}", pc, symbol.empty() ? "" : " in ", symbol);
+}
+
 /// Traps, and resets that no program asks for: the first of each with its place.
 void add_crashes(const dspic::Chip& chip, const dspic::ChipReport& report, std::vector<std::string>& lines) {
     if (!report.traps.empty()) {
         const dspic::TrapRecord& first = report.traps.front();
-        lines.push_back(fmt::format("took the {} trap {}, first at pc 0x{:04x} ({:.6f} s)", first.name,
-                                    times_text(report.traps.size()), first.pc, seconds(chip, first.cycle)));
+        lines.push_back(fmt::format("took the {} trap {}, first at {} ({:.6f} s)", first.name,
+                                    times_text(report.traps.size()), place(chip, first.pc),
+                                    seconds(chip, first.cycle)));
     }
     const dspic::ResetRecord* first = nullptr;
     std::uint64_t times = 0;
@@ -34,8 +41,8 @@ void add_crashes(const dspic::Chip& chip, const dspic::ChipReport& report, std::
         ++times;
     }
     if (first != nullptr)
-        lines.push_back(fmt::format("crashed into a reset ({}) {}, first at pc 0x{:04x} ({:.6f} s)",
-                                    first->cause, times_text(times), first->pc, seconds(chip, first->cycle)));
+        lines.push_back(fmt::format("crashed into a reset ({}) {}, first at {} ({:.6f} s)", first->cause,
+                                    times_text(times), place(chip, first->pc), seconds(chip, first->cycle)));
 }
 
 }  // namespace
@@ -62,10 +69,10 @@ std::vector<std::string> chip_warnings(const dspic::Chip& chip) {
     }
     for (const dspic::UnmodelledTouch& touch : report.unmodelled)
         lines.push_back(fmt::format(
-            "{} {} at pc 0x{:04x} ({:.6f} s)", touch.write ? "wrote" : "read",
+            "{} {} at {} ({:.6f} s)", touch.write ? "wrote" : "read",
             touch.name.empty() ? fmt::format("0x{:04x}, where the chip has no register,", touch.address)
                                : touch.name + ", which is not modelled,",
-            touch.pc, seconds(chip, touch.cycle)));
+            place(chip, touch.pc), seconds(chip, touch.cycle)));
     // A program that looks for boards asks at every address.
     if (report.refused_addresses.size() > kFewAddresses) {
         std::uint64_t times = 0;
@@ -79,7 +86,7 @@ std::vector<std::string> chip_warnings(const dspic::Chip& chip) {
                                         refused.address, times_text(refused.times)));
     }
     for (const dspic::ChipWarning& warning : report.warnings)
-        lines.push_back(fmt::format("{} (pc 0x{:04x})", warning.text, warning.pc));
+        lines.push_back(fmt::format("{} ({})", warning.text, place(chip, warning.pc)));
     return lines;
 }
 

@@ -237,3 +237,34 @@ spin:   bra spin
     CHECK(byte.ack == 0);
     CHECK(in_microseconds(byte.stretch) == Approx(1000 / 3.685).epsilon(0.05));
 }
+
+TEST_CASE("10-bit addresses: the second byte is the one that counts, a read repeats the first") {
+    Bus bus(program(0, 0x440));  // A10M, STREN; I2C1ADD = 0x020
+    constexpr int kTen = 0x0100;
+    // The right first byte is acknowledged without a sign, the wrong second one is not.
+    CHECK(bus.phase(I2cPhaseKind::Start, 0xF0).ack == 1);
+    CHECK(bus.phase(I2cPhaseKind::Write, 0x21).ack == 0);
+    CHECK(bus.phase(I2cPhaseKind::Write, 0x20).ack == 0);
+    bus.phase(I2cPhaseKind::Stop);
+    CHECK(bus.phase(I2cPhaseKind::Start, 0xF2).ack == 0);  // A8 = 1
+    CHECK(bus.phase(I2cPhaseKind::Start, 0x40).ack == 0);  // the same as a 7-bit address
+    CHECK(bus.phase(I2cPhaseKind::Start, 0xF1).ack == 0);  // nobody was addressed before
+    bus.phase(I2cPhaseKind::Stop);
+    CHECK(bus.word(kLog) == 0);
+
+    CHECK(bus.phase(I2cPhaseKind::Start, 0xF0).ack == 1);
+    CHECK(bus.word(kLog) == 0);
+    CHECK(bus.phase(I2cPhaseKind::Write, 0x20).ack == 1);
+    CHECK(bus.phase(I2cPhaseKind::Write, 0x77).ack == 1);
+    CHECK((bus.word(kLog) & (kTen | kDataReceived | kReads | kFull)) == (kTen | kFull));
+    CHECK(bus.word(kLog + 2) == 0x20);
+    CHECK((bus.word(kLog + 4) & (kTen | kDataReceived)) == (kTen | kDataReceived));
+    CHECK(bus.word(kLog + 6) == 0x77);
+    CHECK(bus.phase(I2cPhaseKind::Start, 0xF1).ack == 1);
+    CHECK(bus.phase(I2cPhaseKind::Read).byte == 0x5A);
+    CHECK((bus.word(kLog + 8) & (kTen | kReads)) == (kTen | kReads));
+    bus.phase(I2cPhaseKind::Stop);
+    bus.chip.run_until(bus.bus);
+    CHECK((bus.status() & kTen) == 0);
+    CHECK(bus.phase(I2cPhaseKind::Start, 0xF1).ack == 0);  // the stop ended it
+}

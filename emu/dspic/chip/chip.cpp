@@ -16,6 +16,7 @@
 #include "emu/dspic/waits/status_bits.h"
 #include "emu/image/device.h"
 #include "emu/image/image.h"
+#include "emu/image/symbol_table.h"
 #include "protocols/uart_sampling.h"
 
 #include <algorithm>
@@ -96,9 +97,11 @@ struct Chip::Parts {
     std::optional<Dma> dma;
     std::optional<Dci> dci;
     std::optional<LowVoltage> low_voltage;
+    std::deque<Can> cans;
     chip::HeldInterrupts held;  ///< its slot is the last: the others keep theirs
 
     ChipReport report;
+    std::optional<image::CodeSymbols> symbols;
     std::vector<std::uint32_t> stops;
     std::optional<std::uint32_t> stopped_at;
     Time now = 0;  ///< the last `until`
@@ -141,10 +144,15 @@ struct Chip::Parts {
         const std::array time_bases{timer(2), timer(3)};
         output_compare.emplace(around, layout.output_compare, time_bases, ports, pins);
         input_capture.emplace(around, layout.input_captures, time_bases, clock, ports);
+        if (!device.family_33f)
+            for (Uart& uart : uarts)
+                uart.attach(*input_capture);
         if (layout.dma.con)
             dma.emplace(around, layout.dma, core.ram().subspan((layout.dma.ram - device.ram_start) / 2u));
         if (layout.dci.con1) dci.emplace(around, layout.dci, ports, pins);
         if (layout.low_voltage_irq) low_voltage.emplace(around, layout.low_voltage_irq, pins);
+        for (const Can::Setup& setup : layout.cans)
+            cans.emplace_back(around, setup, ports, pins);
         for (const std::uint16_t address : layout.stored)
             sfr.claim(address);
         list_idle_controls();
@@ -162,6 +170,8 @@ struct Chip::Parts {
         for (const Spi::Setup& setup : layout.spis)
             idle_controls.push_back(setup.stat);
         if (dci) idle_controls.push_back(layout.dci.con1);
+        for (const Can::Setup& setup : layout.cans)
+            idle_controls.push_back(Can::control(setup));
     }
 
     SfrSpace& described() {
@@ -277,6 +287,7 @@ struct Chip::Parts {
         if (dma) dma->reset();
         if (dci) dci->reset();
         if (low_voltage) low_voltage->reset(brown_out());
+        reset_all(cans);
         interrupts.reset();
         held.reset();
     }
@@ -285,6 +296,7 @@ struct Chip::Parts {
     void set_power(PowerMode mode) {
         asleep_since.reset();
         if (mode != PowerMode::Run) asleep_since = core.cycle();
+        if (mode == PowerMode::Sleep) core.set_wake_time(oscillator->wake_seconds());
         output_compare->hold(mode == PowerMode::Sleep, mode == PowerMode::Idle);
         input_capture->hold(mode == PowerMode::Sleep, mode == PowerMode::Idle);
         // Firmware that idles between interrupts comes by here twice for each of them.
@@ -310,6 +322,8 @@ struct Chip::Parts {
         for (std::size_t i = 0; i < spis.size(); ++i)
             spis[i].hold(stops(layout.spis[i].stat));
         if (dci) dci->hold(stops(layout.dci.con1));
+        for (std::size_t i = 0; i < cans.size(); ++i)
+            cans[i].hold(stops(Can::control(layout.cans[i])));
     }
 
     Uart& uart(int unit) { return uarts[static_cast<std::size_t>(unit - 1)]; }
@@ -354,6 +368,7 @@ struct Chip::Parts {
         if (dma) archive.part("dma", *dma);
         if (dci) archive.part("dci", *dci);
         if (low_voltage) archive.part("low voltage", *low_voltage);
+        parts_of("can", cans);
         archive.part("report", report);
         archive(asleep_since);
         if constexpr (Archive::kLoads) holding = true;
@@ -403,6 +418,7 @@ Chip::~Chip() = default;
 
 void Chip::load(const image::Image& image) {
     image::check_fits(image, image::find_device(parts_->device.name));
+    parts_->symbols.emplace(image);
     std::vector<ProgramWord> words;
     for (const auto& [address, word] : image.all_words())
         words.push_back({address, word});
@@ -477,6 +493,18 @@ void Chip::i2c_slave_phase(int unit, const cosim::I2cPhase& phase) {
     parts_->slaves.at(static_cast<std::size_t>(unit - 1)).phase(phase, parts_->message_cycle());
 }
 
+void Chip::stop_crystal() {
+    Parts& parts = *parts_;
+    if (parts.oscillator->crystal_stopped(parts.message_cycle())) return;
+    parts.report.warnings.push_back(
+        {parts.core.cycle(), "its crystal stopped, and no monitor watches it", pc()});
+    parts.core.stall_until(kNoCycle);
+}
+
+bool Chip::can_receive(int unit, const CanFrame& frame) {
+    return parts_->cans.at(static_cast<std::size_t>(unit - 1)).receive(frame, parts_->message_cycle());
+}
+
 void Chip::pins_changed(PortLetter port) {
     parts_->ports.outside_changed(port, parts_->message_cycle());
 }
@@ -536,13 +564,17 @@ std::uint32_t Chip::pc() const {
     return parts_->core.pc();
 }
 
+std::string Chip::symbol(std::uint32_t address) const {
+    return parts_->symbols ? parts_->symbols->place(address) : std::string();
+}
+
 std::uint16_t Chip::peek(std::string_view register_name) const {
     const RegisterInfo* info = parts_->sfr.find(register_name);
     if (!info) throw std::out_of_range("no register " + std::string(register_name));
     parts_->ports.refresh();
     for (Timer& timer : parts_->timers)
         timer.refresh();
-    return parts_->sfr.raw(info->address);
+    return parts_->sfr.quiet_read(info->address);
 }
 
 std::uint16_t Chip::peek_data(std::uint16_t address) const {

@@ -148,6 +148,13 @@ class Chip {
     /// Each but Stop is answered through Pins::i2c_slave_answer(), with ack = 0 where the slave does not feel
     /// addressed.
     void i2c_slave_phase(int unit, const cosim::I2cPhase& phase);
+    /// A frame that somebody else sent to module CAN`unit` ends now. True: the module acknowledged it. A bus
+    /// asks before it calls the frame acknowledged to its sender; the answer does not change within a frame
+    /// unless the program changes the mode.
+    bool can_receive(int unit, const CanFrame& frame);
+    /// The crystal at OSC1 and OSC2 stops now, for good: the fail-safe clock monitor takes over, or the chip
+    /// stands still.
+    void stop_crystal();
     /// Levels that Pins::levels() reports for this port changed now: edges for INTx, CN, timer clocks and
     /// gates.
     void pins_changed(PortLetter port);
@@ -178,6 +185,8 @@ class Chip {
     cosim::Time now() const;
     Cycle cycle() const;
     std::uint32_t pc() const;
+    /// The symbol at or before a program address, "main+0x12", of the image loaded last; or empty.
+    std::string symbol(std::uint32_t address) const;
     /// A register's present value by data-sheet name, as the program would read it but without side
     /// effects. Throws std::out_of_range if the device has no such register.
     std::uint16_t peek(std::string_view register_name) const;

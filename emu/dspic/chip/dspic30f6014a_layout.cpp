@@ -37,6 +37,17 @@ constexpr I2cMaster::Setup kI2cs[] = {
     {1, sfr::I2CRCV, false, irq::MI2C, irq::SI2C, G, 2, 3, 1'111'111.0},
 };
 
+constexpr std::uint8_t kNoIrq = 255;
+constexpr Spi::Setup kSpis[] = {
+    {1, sfr::SPI1STAT, irq::SPI1, kNoIrq, F, 6, 7, 8, {B, 2}, 0, sfr::SPI1BUF},
+    {2, sfr::SPI2STAT, irq::SPI2, kNoIrq, G, 6, 7, 8, {G, 9}, 0, sfr::SPI2BUF},
+};
+
+constexpr Can::Setup kCans[] = {
+    {1, sfr::C1RXF0SID, irq::C1, F, 0, 1},
+    {2, sfr::C2RXF0SID, irq::C2, G, 0, 1},
+};
+
 constexpr OutputCompare::Unit kOutputCompares[] = {
     {sfr::OC1RS, irq::OC1, D, 0}, {sfr::OC2RS, irq::OC2, D, 1}, {sfr::OC3RS, irq::OC3, D, 2},
     {sfr::OC4RS, irq::OC4, D, 3}, {sfr::OC5RS, irq::OC5, D, 4}, {sfr::OC6RS, irq::OC6, D, 5},
@@ -59,11 +70,13 @@ constexpr Layout kLayout = {
     .i2cs = kI2cs,
     .adc12 = true,
     .adc_timers = {3, 0},
-    .dci = {sfr::DCICON1, irq::DCI, 0, G, 12, 13, 14, 15},
-    .low_voltage_irq = irq::LVD,
+    .spis = kSpis,
     // DS70061, figures 14-1 to 14-9: one cycle to the pin, two more to the flag.
     .output_compare = {kOutputCompares, {kOcfa, kOcfb}, 1, 2},
     .input_captures = kInputCaptures,
+    .cans = kCans,
+    .dci = {sfr::DCICON1, irq::DCI, 0, G, 12, 13, 14, 15},
+    .low_voltage_irq = irq::LVD,
 };
 
 }  // namespace

@@ -59,8 +59,8 @@ constexpr Adc33F::Setup kAdcs[] = {
 };
 
 constexpr Spi::Setup kSpis[] = {
-    {1, sfr::SPI1STAT, irq::SPI1, irq::SPI1E, F, 6, 7, 8},
-    {2, sfr::SPI2STAT, irq::SPI2, irq::SPI2E, G, 6, 7, 8},
+    {1, sfr::SPI1STAT, irq::SPI1, irq::SPI1E, F, 6, 7, 8, {B, 2}, sfr::SPI1CON2, sfr::SPI1BUF},
+    {2, sfr::SPI2STAT, irq::SPI2, irq::SPI2E, G, 6, 7, 8, {G, 9}, sfr::SPI2CON2, sfr::SPI2BUF},
 };
 
 constexpr OutputCompare::Unit kOutputCompares[] = {

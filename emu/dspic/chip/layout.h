@@ -5,6 +5,7 @@
 #include "emu/dspic/devices/device.h"
 #include "emu/dspic/peripherals/adc_33f.h"
 #include "emu/dspic/peripherals/dci.h"
+#include "emu/dspic/peripherals/can.h"
 #include "emu/dspic/peripherals/dma.h"
 #include "emu/dspic/peripherals/i2c_master.h"
 #include "emu/dspic/peripherals/input_capture.h"
@@ -40,6 +41,7 @@ struct Layout {
     std::span<const Spi::Setup> spis{};
     OutputCompare::Setup output_compare{};
     std::span<const InputCapture::Unit> input_captures{};
+    std::span<const Can::Setup> cans{};  ///< the 30F's
     Dma::Setup dma{};
     Dci::Setup dci{};
     std::uint8_t low_voltage_irq = 0;  ///< 0: the part has no low-voltage detector

@@ -240,6 +240,9 @@ void Core::set_cycle_rate(double hertz) {
     note_rate(*machine_);
     schedule_watchdog(*machine_);
 }
+void Core::set_wake_time(double seconds) {
+    machine_->wake_seconds = seconds;
+}
 CoreObserver& Core::observer() {
     return machine_->observer;
 }

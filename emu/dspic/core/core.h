@@ -150,6 +150,8 @@ class Core {
     void set_rcon_hook(std::function<void()> hook);
     /// Instruction rate in hertz: the watchdog and flash timing need it. Call at each clock change.
     void set_cycle_rate(double hertz);
+    /// What the oscillator takes after Sleep, from now on.
+    void set_wake_time(double seconds);
     CoreObserver& observer();
 
   private:

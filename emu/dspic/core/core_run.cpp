@@ -7,6 +7,7 @@
 #include "emu/dspic/core/machine.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace puckloop::dspic {
@@ -148,6 +149,14 @@ void pass_stop(Machine& m) {
     decode(m, op);
 }
 
+/// What ends Sleep has come: the clock needs its time first.
+bool starts_oscillator(Machine& m) {
+    if (m.mode != PowerMode::Sleep) return false;
+    if (m.wake_end == kNoCycle)
+        m.wake_end = m.st.cycle + static_cast<Cycle>(std::llround(m.wake_seconds * m.cycle_rate));
+    return m.wake_end > m.st.cycle;
+}
+
 }  // namespace
 
 void reconsider(Machine& m, Cycle now) {
@@ -245,6 +254,10 @@ Core::Outcome run_until(Machine& m, Cycle until) {
         if (m.mode != PowerMode::Run) {
             if (!m.irq.any_enabled_flag()) {
                 m.st.cycle = std::min(until, m.events.next());
+                continue;
+            }
+            if (starts_oscillator(m)) {
+                m.st.cycle = std::min(quiet, m.wake_end);
                 continue;
             }
             leave_power_save(m);

@@ -158,6 +158,10 @@ void write_register(void* owner, std::uint16_t address, std::uint16_t value, std
         const std::uint32_t next = merged(con) & 0xE17F;
         const bool go = next & kNVMCON["WR"] && next & kNVMCON["WREN"] && m.nvm.key_step == 2;
         con = static_cast<std::uint16_t>(next & ~std::uint32_t{kNVMCON["WR"]});
+        if (next & kNVMCON["WR"] && !go)
+            warn_once(m, sfr::NVMCON,
+                      m.nvm.key_step == 2 ? "set NVMCON<WR> without WREN: nothing is written"
+                                          : "set NVMCON<WR> without the unlock sequence: nothing is written");
         if (next & kNVMCON["WR"]) m.nvm.key_step = 0;
         if (go) start(m);
         break;

@@ -91,6 +91,7 @@ void enter_power_save(Machine& m, PowerMode mode) {
 }
 
 void leave_power_save(Machine& m) {
+    m.wake_end = kNoCycle;
     clear_watchdog(m);
     set_mode(m, PowerMode::Run);
 }

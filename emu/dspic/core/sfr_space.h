@@ -49,6 +49,12 @@ class SfrSpace {
         return words_[address >> 1].behaviour == Behaviour::Modelled;
     }
 
+    /// A model acts on accesses to the word, or changes it.
+    bool acts(std::uint16_t address) const {
+        const Word& word = words_[address >> 1];
+        return word.read || word.write;
+    }
+
     /// Writing the word the value that it holds does nothing, although a hook stands behind it.
     void mark_idempotent(std::uint16_t address) { words_[address >> 1].idempotent = true; }
     bool idempotent(std::uint16_t address) const {

@@ -59,11 +59,22 @@ class ClockControl {
     /// on parts that keep theirs over other resets.
     virtual void reset(bool power_on) = 0;
 
+    /// The crystal does not swing any more. What runs from it goes on with the internal oscillator if the
+    /// fail-safe monitor is on, CF set and the oscillator trap with it; false: the part stands still.
+    virtual bool crystal_stopped(Cycle at) = 0;
+    /// From what ends Sleep to the first instruction.
+    virtual double wake_seconds() const = 0;
+
     /// Called after each change of the instruction rate.
     void (*on_rate)(void* owner, double hertz) = nullptr;
     void* on_rate_owner = nullptr;
 
   protected:
+    /// What every wake-up from Sleep takes, the PLL's lock, and the monitor's wait: 30F data sheet, tables of
+    /// the AC characteristics (TPOR, TLOCK, TFSCM), typical.
+    static constexpr double kPowerOnSeconds = 10e-6, kLockSeconds30F = 20e-6, kMonitorSeconds = 100e-6;
+    static constexpr double kStartupPeriods = 1024.0;  ///< of a crystal (OST)
+
     void change_rate(cosim::ClockDomain& clock, Cycle at, double hertz) const {
         if (hertz == clock.hertz()) return;
         clock.change_rate(at, hertz);

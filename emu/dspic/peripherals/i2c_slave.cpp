@@ -55,9 +55,26 @@ bool I2cSlave::matches(std::uint8_t address_byte) const {
     if (!(con & kI2CxCON["I2CEN"])) return false;
     if (con & kI2CxCON["IPMIEN"]) return true;
     if (address_byte == 0) return con & kI2CxCON["GCEN"];
-    if (con & kI2CxCON["A10M"]) return false;
+    if (con & kI2CxCON["A10M"]) return matches_first_of_ten(address_byte);
     const unsigned mask = setup_.has_mask ? reg(kMsk) : 0u;
     return (((address_byte >> 1) ^ reg(kAdd)) & ~mask & 0x7F) == 0;
+}
+
+bool I2cSlave::ten_bits() const {
+    return (reg(kCon) & kI2CxCON["A10M"]) && !(reg(kCon) & kI2CxCON["IPMIEN"]);
+}
+
+// 11110 A9 A8 R/W; a read is for who was addressed by both bytes before.
+bool I2cSlave::matches_first_of_ten(std::uint8_t address_byte) const {
+    const unsigned mask = setup_.has_mask ? reg(kMsk) >> 8 & 3u : 0u;
+    if ((address_byte & 0xF8) != 0xF0 || (((address_byte >> 1) ^ (reg(kAdd) >> 8)) & ~mask & 3u))
+        return false;
+    return !(address_byte & 1) || state_.whole;
+}
+
+bool I2cSlave::matches_second_of_ten(std::uint8_t byte) const {
+    const unsigned mask = setup_.has_mask ? reg(kMsk) : 0u;
+    return ((byte ^ reg(kAdd)) & ~mask & 0xFFu) == 0;
 }
 
 void I2cSlave::phase(const I2cPhase& phase, Cycle at) {
@@ -101,8 +118,10 @@ void I2cSlave::start(const I2cPhase& phase) {
     state_.sends = phase.byte & 1;
     state_.byte_sent = false;
     state_.shown_due = kNoCycle;
+    state_.half = state_.addressed && ten_bits() && phase.byte != 0 && !state_.sends;
+    if (!state_.addressed || state_.half) state_.whole = false;
     open(phase);
-    if (!state_.addressed) return;
+    if (!state_.addressed || state_.half) return;
     state_.shown_due = clock_.first_cycle_at(phase.start + clocks(phase, kByteClocks));
     state_.shows_address = true;
     state_.shown = phase.byte;
@@ -130,7 +149,9 @@ void I2cSlave::stop() {
         assign(stat, kI2CxSTAT["S"], false);
         assign(stat, kI2CxSTAT["P"], true);
         assign(stat, kI2CxSTAT["GCSTAT"], false);
+        assign(stat, kI2CxSTAT["ADD10"], false);
     }
+    state_.half = state_.whole = false;
     if (transmitting()) assign(reg(kCon), kI2CxCON["SCLREL"], true);
     state_.addressed = false;
     state_.step = Step::None;
@@ -152,8 +173,9 @@ void I2cSlave::show(bool address, std::uint8_t byte, Cycle at) {
     }
     assign(stat, kI2CxSTAT["D_A"], !address);
     if (address) {
-        assign(stat, kI2CxSTAT["R_W"], byte & 1);
-        assign(stat, kI2CxSTAT["GCSTAT"], byte == 0);
+        assign(stat, kI2CxSTAT["R_W"], state_.sends);
+        assign(stat, kI2CxSTAT["GCSTAT"], byte == 0 && !state_.whole);
+        assign(stat, kI2CxSTAT["ADD10"], state_.whole);
         if (state_.sends && state_.addressed) hold_clock();
     }
     around_.interrupts.raise(setup_.slave_irq, at);
@@ -187,6 +209,17 @@ void I2cSlave::eighth_clock(Cycle at) {
     const bool is_data = state_.open.kind == I2cPhaseKind::Write && !state_.sends;
     const bool is_address = state_.open.kind == I2cPhaseKind::Start;
     state_.acknowledge = state_.addressed && (is_data || is_address) && !(reg(kStat) & kI2CxSTAT["RBF"]);
+    if (is_data && state_.half) {  // the rest of a 10-bit address
+        state_.half = false;
+        state_.whole = state_.acknowledge = state_.acknowledge && matches_second_of_ten(state_.open.byte);
+        state_.addressed = state_.whole;
+        if (state_.whole) {
+            state_.shown_due = clock_.first_cycle_at(state_.open.start + clocks(state_.open, kByteClocks));
+            state_.shows_address = true;
+            state_.shown = state_.open.byte;
+        }
+        return answer(late, state_.acknowledge, kIdleLine);
+    }
     if (state_.addressed && is_data) {
         if (state_.acknowledge && (reg(kCon) & kI2CxCON["STREN"])) {
             state_.step = Step::Stretch;

@@ -1,11 +1,13 @@
 #pragma once
-// The I2C module as a slave: 7-bit addresses with mask and general call, clock stretching, SI2CxIF. Phases
-// come in from the bus as they begin; each but Stop is answered through Pins::i2c_slave_answer() when eight
-// clocks have passed since SCL was let go. Source: dsPIC30F Family Reference Manual, section 21, and DS70286;
-// fact sheets peripherals.md section 4 and rab.md section 2.2.
+// The I2C module as a slave: 7-bit and 10-bit addresses with mask and general call, clock stretching,
+// SI2CxIF. Phases come in from the bus as they begin; each but Stop is answered through
+// Pins::i2c_slave_answer() when eight clocks have passed since SCL was let go. Source: dsPIC30F Family
+// Reference Manual, section 21, and DS70286; fact sheets peripherals.md section 4 and rab.md section 2.2.
 //
 //   address, R/W = 0   answer at the 8th clock, SI2CxIF at the 9th; SCL is not held
 //   address, R/W = 1   the same, and SCLREL = 0: SCL is held until the program sets it, TRN loaded
+//   10 bits            the first byte (11110, two bits, 0) is acknowledged without a sign; the second is the
+//                      address: ADD10 and SI2CxIF. A read begins again with the first byte, R/W = 1
 //   byte received      STREN = 0: answer at the 8th clock, SI2CxIF at the 9th; STREN = 1: deviation 1
 //   byte sent          TBF falls at the 8th clock; SI2CxIF and SCLREL = 0 when the master acknowledged
 //
@@ -15,7 +17,7 @@
 //     for SCLREL: the byte ends on the bus when it would in silicon, the program sees it one clock earlier.
 //  2. That the master acknowledged a byte is known by its next Read: the interrupt comes with that, at the
 //     start of the next byte. A stop or a start instead means not acknowledged: no interrupt.
-//  3. 10-bit addresses (A10M) are never matched; SMBus levels and slew rate (SMEN, DISSLW) are stored.
+//  3. SMBus levels and slew rate (SMEN, DISSLW) are stored.
 //  4. S and P follow what reaches the module: transfers to other devices do not.
 //  5. The slave goes on in Sleep and Idle.
 
@@ -63,6 +65,8 @@ class I2cSlave {
     };
     struct State {
         bool addressed = false;
+        bool half = false;       ///< 10 bits: the first byte fitted, the second is to come
+        bool whole = false;      ///< 10 bits: both fitted, until a stop or another address
         bool sends = false;      ///< R/W = 1
         bool byte_sent = false;  ///< since the address
         bool acknowledge = false;
@@ -76,7 +80,7 @@ class I2cSlave {
 
         template <class Archive>
         void state(Archive& archive) {
-            archive(addressed, sends, byte_sent, acknowledge);
+            archive(addressed, half, whole, sends, byte_sent, acknowledge);
             archive.bounded(step, Step::None, Step::Shift);
             archive(open, released, step_due, shown_due, shows_address, shown);
         }
@@ -93,6 +97,9 @@ class I2cSlave {
     void hold_clock();
     void shift(cosim::Time from);
     bool matches(std::uint8_t address_byte) const;
+    bool matches_first_of_ten(std::uint8_t address_byte) const;
+    bool matches_second_of_ten(std::uint8_t byte) const;
+    bool ten_bits() const;
     bool released() const;
     Cycle cycle_before(cosim::Time time) const;
     void plan();

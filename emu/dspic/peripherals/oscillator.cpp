@@ -22,9 +22,9 @@ constexpr RegisterBits kOSCCON{"OSCCON"};
 constexpr std::uint16_t kLowWritable = kOSCCON["POST"] | kOSCCON["LPOSCEN"] | kOSCCON["OSWEN"];
 constexpr std::uint16_t kHighWritable = kOSCCON["NOSC"];
 constexpr std::uint16_t kSwitchingOff = bit(15);  // FOSC<FCKSM1>
+constexpr std::uint16_t kMonitorOff = bit(14);    // FOSC<FCKSM0>
 
 constexpr Cycle kSwitchCycles = 10;
-constexpr double kStartupPeriods = 1024.0;
 
 }  // namespace
 
@@ -102,6 +102,36 @@ void Oscillator::select(std::uint8_t source, Cycle at) {
     change_rate(clock_, at, hertz);
 }
 
+// The PLL may run from the internal oscillator.
+bool Oscillator::needs_crystal(std::uint8_t source) const {
+    const unsigned fpr = field(fosc_, 4, 0);
+    return source == kPrimary || (source == kPll && fpr != 0b00001 && fpr != 0b01010 && fpr != 0b00011);
+}
+
+bool Oscillator::crystal_stopped(Cycle at) {
+    crystal_dead_ = true;
+    std::uint16_t& osccon = around_.sfr.raw(sfr::OSCCON);
+    if (!needs_crystal(static_cast<std::uint8_t>(kOSCCON["COSC"].of(osccon)))) return true;
+    if (fosc_ & (kSwitchingOff | kMonitorOff)) return false;
+    around_.events.cancel(slot_);
+    assign(osccon, kOSCCON["OSWEN"], false);
+    osccon |= kOSCCON["CF"];
+    select(kFrc, at);
+    around_.interrupts.raise_trap(Trap::OscillatorFail, at);
+    return true;
+}
+
+double Oscillator::wake_seconds() const {
+    const auto source = static_cast<std::uint8_t>(kOSCCON["COSC"].of(around_.sfr.raw(sfr::OSCCON)));
+    constexpr unsigned kExternalClock = 0b01;  // FPR<4:3>: nothing has to start
+    double seconds = kPowerOnSeconds;
+    if (needs_crystal(source) && field(fosc_, 4, 3) != kExternalClock)
+        seconds += kStartupPeriods / crystal_hertz_;
+    if (source == kPll) seconds += kLockSeconds30F;
+    if (!(fosc_ & (kSwitchingOff | kMonitorOff))) seconds += kMonitorSeconds;
+    return seconds;
+}
+
 void Oscillator::write_osccon(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask) {
     Oscillator& self = *static_cast<Oscillator*>(owner);
     std::uint16_t& osccon = self.around_.sfr.raw(address);
@@ -116,12 +146,14 @@ void Oscillator::write_osccon(void* owner, std::uint16_t address, std::uint16_t 
     if (!self.state_.low.opens(static_cast<std::uint8_t>(value), self.around_.now)) return;
     const std::uint16_t old = osccon;
     osccon = merge(osccon, value, kLowWritable);
+    if (!(value & kOSCCON["CF"])) assign(osccon, kOSCCON["CF"], false);
     const auto present = static_cast<std::uint8_t>(kOSCCON["COSC"].of(osccon));
     const auto wanted = static_cast<std::uint8_t>(kOSCCON["NOSC"].of(osccon));
     if (!(osccon & kOSCCON["OSWEN"]) || (self.fosc_ & kSwitchingOff) || wanted == present) {
         assign(osccon, kOSCCON["OSWEN"], false);
         self.around_.events.cancel(self.slot_);
     } else if (!(old & kOSCCON["OSWEN"])) {
+        if (self.crystal_dead_ && self.needs_crystal(wanted)) return;  // waits for it for ever
         double wait = 0.0;
         if (wanted == kPrimary || wanted == kPll)
             wait = kStartupPeriods / self.crystal_hertz_ * self.clock_.hertz();

@@ -6,9 +6,10 @@
 //
 // Deviations
 //  1. A reserved FOSC code runs as the crystal with the 8x PLL.
-//  2. The fail-safe clock monitor never sees a failure; OSCTUN and LPOSCEN are stored.
+//  2. The fail-safe clock monitor acts at once, not within 2 ms; OSCTUN and LPOSCEN are stored.
 //  3. A switch takes 10 old cycles, and 1024 crystal periods more towards the primary oscillator; PLL lock
-//     is at once.
+//     is at once. After Sleep the
+//     same oscillator starts: typical times (wake_seconds()).
 
 #include "emu/dspic/peripherals/clock_control.h"
 
@@ -29,10 +30,12 @@ class Oscillator : public ClockControl {
 
     void configure(const ClockConfiguration& words) override { fosc_ = words.fosc; }
     void reset(bool power_on) override;
+    bool crystal_stopped(Cycle at) override;
+    double wake_seconds() const override;
 
     template <class Archive>
     void state(Archive& archive) {
-        archive(fosc_, state_);
+        archive(fosc_, crystal_dead_, state_);
     }
 
   private:
@@ -50,11 +53,13 @@ class Oscillator : public ClockControl {
     static void switch_due(void* owner, Cycle due);
     void select(std::uint8_t source, Cycle at);
     double source_hertz(std::uint8_t source) const;
+    bool needs_crystal(std::uint8_t source) const;
 
     Surroundings around_;
     cosim::ClockDomain& clock_;
     double crystal_hertz_;
     std::uint16_t fosc_ = 0xFFFF;
+    bool crystal_dead_ = false;
     State state_;
     EventQueue::Slot slot_;
 };

@@ -40,7 +40,6 @@ constexpr double kFrcDivider[] = {1, 2, 4, 8, 16, 32, 64, 256};  // FRCDIV
 constexpr double kPllPost[] = {2, 4, 4, 8};                      // PLLPOST
 
 constexpr double kSwitchCycles = 10.0;
-constexpr double kStartupPeriods = 1024.0;
 constexpr double kLockSeconds = 1e-3;
 
 bool is_pll(std::uint8_t source) {
@@ -120,12 +119,35 @@ void Oscillator33F::begin_switch(std::uint8_t present, std::uint8_t wanted) {
     }
     osccon = static_cast<std::uint16_t>(osccon & ~(kOSCCON["LOCK"] | kOSCCON["CF"]));
     // Without an oscillator to switch to, the part waits for it for ever.
-    if (primary && field(words_.fosc, 1, 0) == kPrimaryDisabled) return;
+    if (primary && (crystal_dead_ || field(words_.fosc, 1, 0) == kPrimaryDisabled)) return;
     double seconds = kSwitchCycles * kClocksPerCycle / source_hertz(wanted);
     if (primary) seconds += kStartupPeriods / crystal_hertz_;
     if (is_pll(wanted)) seconds += kLockSeconds;
     const auto wait = static_cast<Cycle>(std::llround(seconds * clock_.hertz()));
     around_.events.schedule(slot_, around_.now + 1 + wait);
+}
+
+bool Oscillator33F::crystal_stopped(Cycle at) {
+    crystal_dead_ = true;
+    if (running_ != kPrimary && running_ != kPrimaryPll) return true;
+    if (words_.fosc & (kSwitchingOff | kMonitorOff)) return false;
+    around_.events.cancel(slot_);
+    std::uint16_t& osccon = around_.sfr.raw(sfr33::OSCCON);
+    assign(osccon, kOSCCON["OSWEN"], false);
+    osccon |= kOSCCON["CF"];
+    select(kFrc, at);
+    around_.interrupts.raise_trap(Trap::OscillatorFail, at);
+    return true;
+}
+
+double Oscillator33F::wake_seconds() const {
+    constexpr unsigned kExternalClock = 0;  // POSCMD: nothing has to start
+    double seconds = kPowerOnSeconds;
+    const bool primary = running_ == kPrimary || running_ == kPrimaryPll;
+    if (primary && field(words_.fosc, 1, 0) != kExternalClock) seconds += kStartupPeriods / crystal_hertz_;
+    if (is_pll(running_)) seconds += kLockSeconds;
+    if (!(words_.fosc & (kSwitchingOff | kMonitorOff))) seconds += kMonitorSeconds;
+    return seconds;
 }
 
 void Oscillator33F::write_osccon(void* owner, std::uint16_t address, std::uint16_t value,

@@ -9,7 +9,8 @@
 //  2. A switch between the two PLL modes, which the sheet forbids, is ignored.
 //  3. Writing CLKDIV or PLLFBD while the PLL runs changes the rate at once; PLLPOST 2 (reserved) divides
 //  by 4.
-//  4. DOZE is stored: the CPU is not slowed down. OSCTUN, LPOSCEN and the fail-safe monitor are stored, too.
+//  4. DOZE is stored: the CPU is not slowed down. OSCTUN and LPOSCEN are stored, too. The
+//     fail-safe monitor acts at once.
 
 #include "emu/dspic/peripherals/clock_control.h"
 
@@ -23,13 +24,15 @@ class Oscillator33F : public ClockControl {
 
     void configure(const ClockConfiguration& words) override { words_ = words; }
     void reset(bool power_on) override;
+    bool crystal_stopped(Cycle at) override;
+    double wake_seconds() const override;
 
     /// Instruction rate before any configuration word is known: the internal RC oscillator.
     static double start_hertz();
 
     template <class Archive>
     void state(Archive& archive) {
-        archive(words_, running_, state_);
+        archive(words_, running_, crystal_dead_, state_);
     }
 
   private:
@@ -56,6 +59,7 @@ class Oscillator33F : public ClockControl {
     double crystal_hertz_;
     ClockConfiguration words_;
     std::uint8_t running_ = 0;  ///< COSC, kept over resets other than power-on
+    bool crystal_dead_ = false;
     State state_;
     EventQueue::Slot slot_;
 };

@@ -3,6 +3,7 @@
 
 #include "cosim/core/message.h"
 #include "emu/dspic/core/event_queue.h"
+#include "emu/dspic/peripherals/can_frame.h"
 
 #include <cstdint>
 #include <string_view>
@@ -60,6 +61,9 @@ class Pins {
     virtual std::uint16_t dci_exchange(const DciWord& word, Cycle now);
     /// Voltage at VDD, as the low-voltage detector sees it; a change is told by Chip::supply_changed().
     virtual double supply() const;
+    /// Module CAN`unit` has sent a frame as far as the acknowledge slot, which began at cycle `now`: does
+    /// anybody take it? Without a board nobody does.
+    virtual CanOutcome can_sent(int unit, const CanFrame& frame, Cycle now);
     /// Bit 0..15 of a port. Unless a board knows better, anything may change.
     virtual OutsidePin outside(PortLetter port, int bit) const;
     /// Chip::output_compare(unit) changed at cycle `now`.
@@ -84,6 +88,9 @@ inline std::uint16_t Pins::dci_exchange(const DciWord&, Cycle) {
 }
 inline double Pins::supply() const {
     return 3.3;
+}
+inline CanOutcome Pins::can_sent(int, const CanFrame&, Cycle) {
+    return CanOutcome::NotAcknowledged;
 }
 inline OutsidePin Pins::outside(PortLetter, int) const {
     return {};

@@ -58,6 +58,8 @@ class Ports {
     /// The same, from an event that was due at cycle `when`.
     void lend(PortLetter port, std::uint16_t mask, std::uint16_t output, std::uint16_t levels, Cycle when);
     void give_back(PortLetter port, std::uint16_t mask);
+    /// Pins that are lent at present.
+    std::uint16_t lent(PortLetter port) const { return at(port).lent; }
     /// Calls `changed` with the pin's level at every edge, driven by whomever; at a reset with `at` =
     /// kNoCycle: there the level is just told.
     void watch(PortLetter port, int pin, void* owner, void (*changed)(void* owner, bool level, Cycle at));

@@ -1,6 +1,7 @@
 #include "emu/dspic/peripherals/uart.h"
 
 #include "emu/dspic/devices/register_bits.h"
+#include "emu/dspic/peripherals/input_capture.h"
 
 #include "protocols/uart_sampling.h"
 
@@ -202,22 +203,47 @@ void Uart::write_txreg(void* owner, std::uint16_t address, std::uint16_t value, 
 
 UartReceiver::Format Uart::format() const {
     const unsigned pdsel = kUxMODE["PDSEL"].of(mode());
-    return {divisor(), pdsel == 3 ? 9 : 8,
-            pdsel == 1   ? 2
-            : pdsel == 2 ? 1
-                         : 0,
-            state_.phase, ticks_per_bit(),
-            mode() & kUxMODE["STSEL"] ? 2 : 1};
+    return {divisor(),    pdsel == 3 ? 9 : 8, pdsel == 1 ? 2 : pdsel == 2 ? 1 : 0,
+            state_.phase, ticks_per_bit(),    mode() & kUxMODE["STSEL"] ? 2 : 1};
 }
 
 void Uart::receive(const cosim::UartFrame& frame, Cycle at) {
     if (enabled() && (mode() & kUxMODE["LPBACK"])) return;
+    if ((mode() & (kUxMODE["ABAUD"] | kUxMODE["WAKE"])) && consumed(frame, at)) return;
     if (state_.held) return;
     receiver_.frame(frame);
     if (enabled())
         sample(at);
     else
         receiver_.pass(at);
+}
+
+// Auto-baud and wake-up. True: the receiver hears nothing of the frame.
+bool Uart::consumed(const cosim::UartFrame& frame, Cycle at) {
+    if (capture_ && (mode() & kUxMODE["ABAUD"])) capture_->line_frame(setup_.unit, frame, at);
+    if (!enabled()) return false;
+    if (mode() & kUxMODE["WAKE"] && (state_.held || setup_.family_33f)) {
+        around_.interrupts.raise(setup_.rx_irq, at);
+        if (setup_.family_33f) assign(mode(), kUxMODE["WAKE"], false);
+        return true;
+    }
+    if (!setup_.family_33f || !(mode() & kUxMODE["ABAUD"]) || state_.held) return false;
+    measure(frame);
+    return true;
+}
+
+// The 33FJ counts from the first rising edge to the fifth: eight bits of 0x55.
+void Uart::measure(const cosim::UartFrame& frame) {
+    constexpr std::uint16_t kPattern = 0x55;
+    constexpr int kBits = 8;
+    if (frame.is_break || frame.data_bits != kBits || frame.parity || frame.data != kPattern) return;
+    const Cycle first = clock_.first_cycle_at(frame.start + frame.bit_period);
+    const Cycle fifth = clock_.first_cycle_at(frame.start + (kBits + 1) * frame.bit_period);
+    const Cycle ticks = (fifth - first) / (kBits * ticks_per_bit());
+    around_.sfr.raw(static_cast<std::uint16_t>(setup_.mode + 8)) =
+        static_cast<std::uint16_t>(ticks > 0 ? ticks - 1 : 0);
+    assign(mode(), kUxMODE["ABAUD"], false);
+    receiver_.start(fifth);
 }
 
 // Takes characters off the line as far as they are complete at `now`, and plans the next one.
@@ -291,6 +317,7 @@ void Uart::write_mode(void* owner, std::uint16_t address, std::uint16_t value, s
     Uart& self = *static_cast<Uart*>(owner);
     const bool was_enabled = self.enabled();
     self.around_.sfr.store(address, value, mask);
+    if (self.capture_) self.capture_->take_line(self.setup_.unit, self.mode() & kUxMODE["ABAUD"]);
     if (self.enabled() == was_enabled) return;
     self.lend_pins();
     if (self.enabled()) {

@@ -4,8 +4,10 @@
 //
 // Deviations
 //  1. RIDLE falls when a frame is handed in (at its stop bit), not at its start bit.
-//  2. ABAUD is stored; it needs input capture. WAKE is stored: Sleep ends by other sources. ALTIO does not
-//     move the pins.
+//  2. What happens at a start bit is known at its frame's stop bit: with WAKE Sleep ends a frame late. 30F:
+//     ABAUD leads the line to input capture (U1RX to IC1, U2RX to IC2), one frame late with exact intervals.
+//     33FJ: ABAUD measures one frame of 0x55 and is over at its stop bit; other frames do not count, none is
+//     received meanwhile. ALTIO does not move the pins.
 //  3. A word written to an idle transmitter moves to the shift register at once; its start bit begins at
 //     the next tick of the 16x clock.
 //  4. While UTXBRK is set the line is told to be low in whole frames, from the end of the frame in progress
@@ -27,6 +29,8 @@
 
 namespace puckloop::dspic {
 
+class InputCapture;
+
 class Uart {
   public:
     struct Setup {
@@ -43,6 +47,8 @@ class Uart {
     Uart(const Surroundings& around, const Setup& setup, const cosim::ClockDomain& clock, Ports& ports,
          Pins& pins);
 
+    /// 30F: what UxMODE<ABAUD> leads the line to.
+    void attach(InputCapture& capture) { capture_ = &capture; }
     void reset();
     /// A frame whose stop bit begins at cycle `at`.
     void receive(const cosim::UartFrame& frame, Cycle at);
@@ -128,6 +134,8 @@ class Uart {
         return around_.sfr.raw(static_cast<std::uint16_t>(setup_.mode + 8)) + 1u;
     }
     void clear();
+    bool consumed(const cosim::UartFrame& frame, Cycle at);
+    void measure(const cosim::UartFrame& frame);
     void lend_pins();
     void begin_frame(Cycle from);
     void stop_transmitter();
@@ -142,6 +150,7 @@ class Uart {
     const cosim::ClockDomain& clock_;
     Ports& ports_;
     Pins& pins_;
+    InputCapture* capture_ = nullptr;
     UartReceiver receiver_;
     State state_;
     UartCounters counters_;
