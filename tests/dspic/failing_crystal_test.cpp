@@ -12,7 +12,7 @@ using namespace puckloop::dspic::test;
 namespace {
 
 const std::string kProgram = R"(
-        .org 0x04
+        .org 0x06
         .pword trapped
         .org 0x1a
         .pword timer

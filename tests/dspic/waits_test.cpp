@@ -100,12 +100,12 @@ look:   mov INTCON1, w0
 
 TEST_CASE("a register without a model hangs its reader, interrupts or not") {
     Bench bench(with_timer("", R"(
-wait:   btss PMD1, #0
+wait:   btss BSRAM, #0
         bra wait
 )"));
     const WaitReport wait = bench.after(1.0);
     CHECK(wait.hung);
-    CHECK(wait.text == "reading PMD1, bit ADCMD, which no model drives");
+    CHECK(wait.text == "reading BSRAM, bit RL_BSR, which no model drives");
 }
 
 TEST_CASE("a wait with a time-out is no hang, and the missing bit is reported all the same") {

@@ -19,9 +19,9 @@ wait:   btss    INTCON1, #1
         bra     wait
         bra     wait
 )";
-/// Uses SPI1, which no model stands behind, and then waits for a character.
+/// Writes BSRAM, which no model stands behind, and then waits for a character.
 const std::string kWaitsForCharacter = kMain + R"(
-        mov     w0, SPI1CON
+        mov     w0, BSRAM
 )" + kWaitForCharacter;
 /// Asks address 0x33 on I2C once, and waits for a character.
 const std::string kAsksNobody = kMain + R"(
@@ -104,7 +104,7 @@ TEST_CASE("a robot that waits for a character is in order; a register without a 
     CHECK(ended.status == 0);
     CHECK_THAT(ended.out, !Contains("has run"));
     CHECK_THAT(ended.out,
-               Contains("warning: robot0.pic: wrote SPI1CON, which is not modelled, at pc 0x0106"));
+               Contains("warning: robot0.pic: wrote BSRAM, which is not modelled, at pc 0x0106"));
     CHECK(bench.run("o", {file, "--strict"}).status == 1);
     const auto waiting = bench.report("o")["nodes"]["robot0.pic"]["waiting"];
     CHECK(waiting["hung"] == false);

@@ -243,7 +243,7 @@ TEST_CASE("the log names resets, registers without a model and where in the prog
     image::Image image = assembled(R"(
         .org 0x100
 main:   mov #0x1000, w15
-        mov w0, SPI1CON
+        mov w0, BSRAM
         reset
 )");
     image.symbols["_main"] = {.address = 0x100};
@@ -255,9 +255,9 @@ main:   mov #0x1000, w15
     node.finish();
     const std::string log = contents(file);
     CHECK_THAT(log,
-               Catch::Contains("first write of SPI1CON, which is not modelled, at pc 0x0102 (_main+0x2)\n"));
+               Catch::Contains("first write of BSRAM, which is not modelled, at pc 0x0102 (_main+0x2)\n"));
     CHECK_THAT(log, Catch::Contains("reset SWR at pc 0x0104 (_main+0x4)\n"));
-    CHECK(log.find("SPI1CON") == log.rfind("SPI1CON"));
+    CHECK(log.find("BSRAM") == log.rfind("BSRAM"));
 }
 
 TEST_CASE("errors on the line are told when they first come and when they have doubled") {
@@ -321,7 +321,7 @@ TEST_CASE("the report of a node names what the chip went through") {
     pic::PicNode node(assembled(R"(
         .org 0x100
 main:   mov #0x1000, w15
-        mov w0, SPI1CON
+        mov w0, BSRAM
         reset
 )"),
                       quiet());
@@ -332,7 +332,7 @@ main:   mov #0x1000, w15
     CHECK(json["resets"][0]["cause"] == "POR");
     CHECK(json["resets"][1]["cause"] == "SWR");
     REQUIRE(json["unmodelled"].size() == 1);
-    CHECK(json["unmodelled"][0]["name"] == "SPI1CON");
+    CHECK(json["unmodelled"][0]["name"] == "BSRAM");
     CHECK(json["unmodelled"][0]["pc"] == "0x0102");
     CHECK(json["wheel_steps"]["left"] == 0);
     CHECK(json["uart2"]["overruns"] == 0);
