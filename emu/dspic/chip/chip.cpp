@@ -1,6 +1,7 @@
 #include "emu/dspic/chip/chip.h"
 
 #include "emu/dspic/chip/layout.h"
+#include "emu/dspic/chip/module_disable.h"
 #include "emu/dspic/core/core.h"
 #include "emu/dspic/core/interrupts.h"
 #include "emu/dspic/devices/dspic30f6014a_sfr.h"
@@ -98,6 +99,7 @@ struct Chip::Parts {
     std::optional<Dci> dci;
     std::optional<LowVoltage> low_voltage;
     std::deque<Can> cans;
+    std::optional<ModuleDisable> disable;
     chip::HeldInterrupts held;  ///< its slot is the last: the others keep theirs
 
     ChipReport report;
@@ -155,6 +157,11 @@ struct Chip::Parts {
             cans.emplace_back(around, setup, ports, pins);
         for (const std::uint16_t address : layout.stored)
             sfr.claim(address);
+        const auto address_of = [&](std::string_view name) {
+            const RegisterInfo* info = sfr.find(name);
+            return info ? info->address : std::uint16_t{0};
+        };
+        disable.emplace(sfr, layout, std::array{address_of("PMD1"), address_of("PMD2"), address_of("PMD3")});
         list_idle_controls();
         wire();
     }
@@ -267,6 +274,7 @@ struct Chip::Parts {
         const bool power_on = cause == ResetCause::PowerOn;
         const std::uint16_t rcon = sfr.raw(sfr::RCON);
         sfr.reset_values();
+        disable->restore();
         if (!power_on) sfr.raw(sfr::RCON) = rcon;
         oscillator->configure(clock_words());
         oscillator->reset(power_on || cause == ResetCause::BrownOut);
@@ -341,6 +349,7 @@ struct Chip::Parts {
         }
         archive.part("clock", clock);
         archive.part("registers", sfr);
+        if constexpr (Archive::kLoads) disable->restore();
         archive.part("core", core);
         if (device.family_33f)
             archive.part("oscillator", static_cast<Oscillator33F&>(*oscillator));

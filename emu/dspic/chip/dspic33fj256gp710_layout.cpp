@@ -76,7 +76,7 @@ constexpr InputCapture::Unit kInputCaptures[] = {
 };
 constexpr Ports::Pin kOcfa{B, 6}, kOcfb{B, 15};
 
-constexpr std::uint16_t kStored[] = {sfr::PMD1, sfr::PMD2, sfr::PMD3, sfr::BSRAM, sfr::SSRAM};
+constexpr std::uint16_t kStored[] = {sfr::BSRAM, sfr::SSRAM};
 
 constexpr Layout kLayout = {
     .ports = {kPorts,

@@ -24,6 +24,19 @@ void SfrSpace::hook(std::uint16_t address, void* owner, ReadHook read, WriteHook
     word.behaviour = Behaviour::Modelled;
 }
 
+void SfrSpace::set_off(std::uint16_t address, bool off) {
+    Word& word = words_[address >> 1];
+    if (off) {
+        if (!off_.emplace(address, word).second) return;
+        word.read = word.quiet = [](void*, std::uint16_t) -> std::uint16_t { return 0; };
+        word.write = [](void*, std::uint16_t, std::uint16_t, std::uint16_t) {};
+        word.behaviour = Behaviour::Modelled;
+    } else if (const auto old = off_.find(address); old != off_.end()) {
+        word = old->second;
+        off_.erase(old);
+    }
+}
+
 void SfrSpace::reset_values() {
     for (std::size_t i = 0; i < kWords; ++i)
         value_[i] = words_[i].info ? words_[i].info->reset : 0;

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <span>
 #include <string_view>
 
@@ -61,6 +62,9 @@ class SfrSpace {
         const Word& word = words_[address >> 1];
         return word.idempotent || (!word.write && word.behaviour == Behaviour::Modelled);
     }
+
+    /// Takes the word away from its model: it reads 0 and ignores writes. And gives it back.
+    void set_off(std::uint16_t address, bool off);
 
     /// Called at the first touch of each Unmodelled or Absent word: name (or empty), address, true for a
     /// write.
@@ -121,6 +125,7 @@ class SfrSpace {
     std::array<std::uint16_t, kWords> value_{};
     std::array<Word, kWords> words_{};
     std::array<bool, kWords> reported_{};
+    std::map<std::uint16_t, Word> off_;  ///< as they were, by address
 };
 
 }  // namespace puckloop::dspic

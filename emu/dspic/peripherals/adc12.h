@@ -26,6 +26,8 @@ class Adc12 {
     enum class Trigger : std::uint8_t { Software = 0, Int0 = 1, Timer3 = 2, Counter = 7 };
 
     static constexpr std::uint16_t kControl = 0x2A0;  ///< ADCON1
+    static constexpr std::uint16_t kFirst = 0x280;    ///< ADCBUF0 ...
+    static constexpr int kWords = 20;                 ///< ... to ADCHS
 
     Adc12(const Surroundings& around, const cosim::ClockDomain& clock, Pins& pins);
 

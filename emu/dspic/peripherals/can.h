@@ -34,6 +34,7 @@ class Can {
         PortLetter port{};
         std::uint8_t rx = 0, tx = 0;
     };
+    static constexpr int kWords = 78;  ///< from the first register to the last
     /// CxCTRL.
     static constexpr std::uint16_t control(const Setup& setup) {
         return static_cast<std::uint16_t>(setup.base + 0x90);
