@@ -31,6 +31,7 @@ class Slave : public exec::Target {
     std::span<const cosim::SignalInfo> signals() const override { return {}; }
     void set_signal(std::uint16_t, double) override {}
     double signal(std::uint16_t) const override { return 0; }
+    const image::LineTable& lines() const override { return chip_->lines(); }
     void load(const image::Image&) override {}
     void run_until(Time) override {}
     void uart_receive(int, const cosim::UartFrame&) override {}
