@@ -100,7 +100,8 @@ struct Chip::Parts {
     std::optional<LowVoltage> low_voltage;
     std::deque<Can> cans;
     std::optional<ModuleDisable> disable;
-    chip::HeldInterrupts held;  ///< its slot is the last: the others keep theirs
+    chip::HeldInterrupts held;
+    EventQueue::Slot edges;  ///< that the board makes by itself; the last: the others keep theirs
 
     ChipReport report;
     std::optional<image::CodeSymbols> symbols;
@@ -123,9 +124,15 @@ struct Chip::Parts {
           oscillator(make_oscillator()),
           ports(around, layout.ports, pins),
           external(around, ports, layout.external_irqs),
-          held(events, &interrupts, [](void* owner, int irq, bool, Cycle due) {
-              static_cast<InterruptController*>(owner)->set_flag(irq, due);
-          }) {
+          held(events, &interrupts,
+               [](void* owner, int irq, bool, Cycle due) {
+                   static_cast<InterruptController*>(owner)->set_flag(irq, due);
+               }),
+          edges(events.add(this, [](void* owner, Cycle due) {
+              Parts& parts = *static_cast<Parts*>(owner);
+              parts.ports.look_at_heeded(due);
+              parts.plan_edges(due);
+          })) {
         Timer* before = nullptr;
         for (const TimerPlace& place : layout.timers) {
             Timer* upper = place.setup.hold ? before : nullptr;
@@ -191,6 +198,8 @@ struct Chip::Parts {
         return std::make_unique<Oscillator>(around, clock, options.crystal_hertz);
     }
 
+    void plan_edges(Cycle after) { events.schedule(edges, ports.next_edge(after)); }
+
     /// By the data sheet's number; null if the part has no such timer.
     Timer* timer(int number) {
         for (std::size_t i = 0; i < timers.size(); ++i)
@@ -201,10 +210,15 @@ struct Chip::Parts {
     void wire() {
         for (std::size_t i = 0; i < timers.size(); ++i) {
             const Ports::Pin pin = layout.timers[i].clock;
-            ports.watch(pin.port, pin.number, &timers[i], [](void* owner, bool level, Cycle at) {
-                static_cast<Timer*>(owner)->clock_pin(level, at);
-            });
+            ports.watch(
+                pin.port, pin.number, &timers[i],
+                [](void* owner, bool level, Cycle at) { static_cast<Timer*>(owner)->clock_pin(level, at); },
+                [](const void* owner) { return static_cast<const Timer*>(owner)->heeds_clock_pin(); });
+            timers[i].on_heeding_owner = &ports;
+            timers[i].on_heeding = [](void* owner) { static_cast<Ports*>(owner)->heeding_changed(); };
         }
+        ports.on_heeding_owner = this;
+        ports.on_heeding = [](void* owner, Cycle at) { static_cast<Parts*>(owner)->plan_edges(at); };
         if (adc12)
             wire_converter(timer(layout.adc_timers[0]), &*adc12, [](void* owner, Cycle at) {
                 static_cast<Adc12*>(owner)->trigger(Adc12::Trigger::Timer3, at);
@@ -298,6 +312,7 @@ struct Chip::Parts {
         reset_all(cans);
         interrupts.reset();
         held.reset();
+        ports.heeding_changed();
     }
 
     // Sleep stops every module that needs the instruction clock, Idle those whose xSIDL bit says so.
@@ -496,6 +511,15 @@ void Chip::uart_receive(int unit, const cosim::UartFrame& frame) {
 
 void Chip::i2c_answer(int unit, const cosim::I2cPhase& phase) {
     parts_->masters.at(static_cast<std::size_t>(unit - 1)).answer(phase, parts_->message_cycle());
+}
+
+void Chip::i2c_answer_at(int unit, const cosim::I2cPhase& phase, Time time) {
+    const Cycle at = std::max(parts_->clock.first_cycle_at(time), parts_->core.cycle() + 1);
+    parts_->masters.at(static_cast<std::size_t>(unit - 1)).answer_at(phase, at);
+}
+
+void Chip::edges_moved(Cycle at) {
+    parts_->plan_edges(at == 0 ? 0 : at - 1);
 }
 
 void Chip::i2c_slave_phase(int unit, const cosim::I2cPhase& phase) {

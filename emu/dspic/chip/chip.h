@@ -144,6 +144,8 @@ class Chip {
     void uart_receive(int unit, const cosim::UartFrame& frame);
     /// The bus's answer (Acknowledge, Data or BusLost) to the last phase of I2C module `unit`, now.
     void i2c_answer(int unit, const cosim::I2cPhase& phase);
+    /// From within Pins::i2c_phase(): the answer to this phase, which is already known, comes at `time`.
+    void i2c_answer_at(int unit, const cosim::I2cPhase& phase, cosim::Time time);
     /// A phase that a bus master begins now reaches module `unit` as slave: Start, Write, Read or Stop.
     /// Each but Stop is answered through Pins::i2c_slave_answer(), with ack = 0 where the slave does not feel
     /// addressed.
@@ -160,6 +162,9 @@ class Chip {
     void pins_changed(PortLetter port);
     /// Pins::supply() is another one now.
     void supply_changed();
+
+    /// Pins::next_edge() says something else for edges from cycle `at` on. Allowed within calls of Pins.
+    void edges_moved(Cycle at);
 
     /// Lookahead for the conductor: no uart_sent() call for `unit` carries a stop bit that begins before
     /// this. `nominal_bit` is the link's nominal bit period; faster senders must be stamped as on that

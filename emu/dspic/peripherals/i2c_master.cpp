@@ -49,7 +49,7 @@ void I2cMaster::reset() {
     state_ = {};
     state_.awaits_answer = awaited;
     state_.stop_when_answered = awaited;
-    around_.events.cancel(slot_);
+    plan();
 }
 
 // FSCL = 1 / ((BRG + 1) / FCY + 1 / fixed_hertz)
@@ -113,6 +113,11 @@ void I2cMaster::complete(Cycle at) {
 
 void I2cMaster::due(void* owner, Cycle due) {
     I2cMaster& self = *static_cast<I2cMaster*>(owner);
+    if (self.known_at_ <= due) {
+        self.known_at_ = kNoCycle;
+        self.answer(self.known_, due);
+        return self.plan();
+    }
     if (self.state_.buffer_empty <= due) {  // the eighth falling edge of a byte sent
         self.state_.buffer_empty = kNoCycle;
         assign(self.reg(kStat), kI2CxSTAT["TBF"], false);
@@ -121,7 +126,13 @@ void I2cMaster::due(void* owner, Cycle due) {
         if (self.state_.activity == Activity::Transmit) self.reg(kStat) |= kI2CxSTAT["ACKSTAT"];
         self.complete(due);
     }
-    self.around_.events.schedule(self.slot_, std::min(self.state_.buffer_empty, self.state_.ends));
+    self.plan();
+}
+
+void I2cMaster::answer_at(const cosim::I2cPhase& phase, Cycle at) {
+    known_ = phase;
+    known_at_ = at;
+    plan();
 }
 
 void I2cMaster::answer(const cosim::I2cPhase& phase, Cycle at) {
@@ -151,7 +162,7 @@ void I2cMaster::answer(const cosim::I2cPhase& phase, Cycle at) {
 }
 
 Cycle I2cMaster::earliest(Cycle now) const {
-    if (state_.awaits_answer) return kNoCycle;
+    if (state_.awaits_answer) return known_at_ == kNoCycle ? kNoCycle : std::max(known_at_, now);
     if (state_.activity != Activity::Idle) return std::max(state_.ends, now + 1);
     if (state_.owns_bus) return now + 1;
     // A start condition, and with I2CBRG = 0 at that.
@@ -199,9 +210,9 @@ void I2cMaster::switch_off() {
     const bool owned = state_.owns_bus;
     const bool awaited = state_.awaits_answer;
     state_ = {};
-    around_.events.cancel(slot_);
     state_.awaits_answer = awaited;
     state_.stop_when_answered = awaited;
+    plan();
     if (owned && !awaited) send(I2cPhaseKind::Stop, 0, 0, clock_.time_of(around_.now + 1));
     std::uint16_t& con = reg(kCon);
     con = static_cast<std::uint16_t>(con & ~kOneAtATime);

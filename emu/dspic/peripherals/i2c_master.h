@@ -18,10 +18,12 @@
 
 #include "cosim/core/clock.h"
 #include "cosim/core/message.h"
+#include "cosim/core/message_state.h"
 #include "emu/dspic/peripherals/pins.h"
 #include "emu/dspic/peripherals/ports.h"
 #include "emu/dspic/peripherals/surroundings.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 
@@ -50,8 +52,10 @@ class I2cMaster {
     void reset();
     /// Acknowledge, Data or BusLost, at cycle `at`.
     void answer(const cosim::I2cPhase& phase, Cycle at);
-    /// No phase goes out before this cycle, unless an answer comes; kNoCycle while one is awaited. `now`:
-    /// the next instruction starts there.
+    /// The same for a later cycle, from within Pins::i2c_phase().
+    void answer_at(const cosim::I2cPhase& phase, Cycle at);
+    /// No phase goes out before this cycle, unless an answer comes; kNoCycle while one is awaited that is not
+    /// known yet. `now`: the next instruction starts there.
     Cycle earliest(Cycle now) const;
     int unit() const { return setup_.unit; }
     /// How often each 7-bit address was sent and not acknowledged.
@@ -59,7 +63,7 @@ class I2cMaster {
 
     template <class Archive>
     void state(Archive& archive) {
-        archive(state_, refused_, address_sent_);
+        archive(state_, refused_, address_sent_, known_, known_at_);
         archive.bounded(sent_address_, 0, 127);
     }
 
@@ -94,6 +98,7 @@ class I2cMaster {
     void complete(Cycle at);
     void stop_condition_seen(bool stopped);
     void switch_off();
+    void plan() { around_.events.schedule(slot_, std::min({state_.buffer_empty, state_.ends, known_at_})); }
 
     std::uint16_t& reg(int offset) const {
         return around_.sfr.raw(static_cast<std::uint16_t>(setup_.rcv + offset));
@@ -109,6 +114,8 @@ class I2cMaster {
     Pins& pins_;
     I2cSlave* slave_ = nullptr;
     State state_;
+    cosim::I2cPhase known_{};    ///< an answer that comes ...
+    Cycle known_at_ = kNoCycle;  ///< ... then
     EventQueue::Slot slot_;
 };
 

@@ -40,6 +40,12 @@ class Pins {
     /// Levels that the outside puts on the port's pins now (bits of driven pins are ignored). Pull-ups are
     /// the board's.
     virtual std::uint16_t levels(PortLetter port, Cycle now) = 0;
+    /// The same for who is no part of what is simulated (reports, watches): changes nothing.
+    virtual std::uint16_t quiet_levels(PortLetter port, Cycle now) { return levels(port, now); }
+    /// The next cycle after `after` at which the board, by itself, may change one of the pins `heeded`, whose
+    /// edges the chip notices; levels() then says how. Pins that nobody heeds may change between events:
+    /// levels() is asked where a program reads them. To be followed by Chip::edges_moved() when it changes.
+    virtual Cycle next_edge(PortLetter port, std::uint16_t heeded, Cycle after) const;
     /// Voltage on analog input AN`channel` at this instant, as a fraction of the ADC's reference span; the
     /// ADC clips. May be asked somewhat after that cycle, but always before anything that the chip drives
     /// changes and before its run_until() returns; calls come in time order among themselves.
@@ -73,6 +79,12 @@ class Pins {
     virtual bool wants_pwm_edges(int unit) const;
 };
 
+/// When the ninth clock of a phase ends, if nobody stretches: the earliest answer to a master.
+constexpr cosim::Time i2c_ninth_clock_end(const cosim::I2cPhase& phase) {
+    constexpr cosim::Time kClocks = 9;
+    return phase.start + kClocks * phase.clock_period;
+}
+
 /// When a slave's answer stands on the wire.
 constexpr cosim::Time i2c_answer_time(const cosim::I2cPhase& answer) {
     constexpr cosim::Time kClocksToAnswer = 8;
@@ -98,6 +110,9 @@ inline OutsidePin Pins::outside(PortLetter, int) const {
 inline void Pins::output_compare_changed(int, Cycle) {}
 inline bool Pins::wants_pwm_edges(int) const {
     return true;
+}
+inline Cycle Pins::next_edge(PortLetter, std::uint16_t, Cycle) const {
+    return kNoCycle;
 }
 
 }  // namespace puckloop::dspic

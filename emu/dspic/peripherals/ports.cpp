@@ -1,5 +1,7 @@
 #include "emu/dspic/peripherals/ports.h"
 
+#include <algorithm>
+
 namespace puckloop::dspic {
 
 namespace {
@@ -51,11 +53,58 @@ void Ports::reset() {
         watcher.changed(watcher.owner, at(watcher.port).seen & watcher.mask, kNoCycle);
 }
 
+// What a board changes by itself is looked at only while somebody heeds it, so a pin that was not heeded may
+// be at another level than when it was last seen: that is no edge.
+void Ports::heeding_changed() {
+    std::array<std::uint16_t, kPorts> heeded{};
+    for (const Watcher& watcher : watchers_)
+        if (!watcher.heeds || watcher.heeds(watcher.owner))
+            heeded[static_cast<std::size_t>(watcher.port)] |= watcher.mask;
+    bool other = false;
+    for (int i = 0; i < kPorts; ++i) {
+        Port& port = ports_[static_cast<std::size_t>(i)];
+        const auto now = static_cast<std::uint16_t>(heeded[static_cast<std::size_t>(i)] | change_enabled(i));
+        if (now == port.heeded) continue;
+        const auto fresh = static_cast<std::uint16_t>(now & ~port.heeded);
+        port.heeded = now;
+        other = true;
+        const auto moved = static_cast<std::uint16_t>((pin_levels(i, around_.now) ^ port.seen) & fresh);
+        if (!moved) continue;
+        port.seen ^= moved;
+        for (const Watcher& watcher : watchers_)
+            if (static_cast<int>(watcher.port) == i && (moved & watcher.mask))
+                watcher.changed(watcher.owner, port.seen & watcher.mask, kNoCycle);
+    }
+    if (other && on_heeding) on_heeding(on_heeding_owner, around_.now);
+}
+
+Cycle Ports::next_edge(Cycle after) const {
+    Cycle next = kNoCycle;
+    for (int i = 0; i < kPorts; ++i)
+        if (const std::uint16_t heeded = ports_[static_cast<std::size_t>(i)].heeded)
+            next = std::min(next, pins_.next_edge(static_cast<PortLetter>(i), heeded, after));
+    return next;
+}
+
+void Ports::look_at_heeded(Cycle at) {
+    for (int i = 0; i < kPorts; ++i)
+        if (ports_[static_cast<std::size_t>(i)].heeded) look(i, at);
+}
+
 // What the input buffers see, analog pins included.
 std::uint16_t Ports::pin_levels(int index, Cycle now) const {
     const Port& port = ports_[static_cast<std::size_t>(index)];
     const std::uint16_t outside =
         port.driven == port.implemented ? 0 : pins_.levels(static_cast<PortLetter>(index), now);
+    return seen_by_buffers(port, outside);
+}
+
+std::uint16_t Ports::quiet_levels(int index) const {
+    return seen_by_buffers(ports_[static_cast<std::size_t>(index)],
+                           pins_.quiet_levels(static_cast<PortLetter>(index), around_.now));
+}
+
+std::uint16_t Ports::seen_by_buffers(const Port& port, std::uint16_t outside) {
     return static_cast<std::uint16_t>(((outside & ~port.driven) | (port.levels & port.driven)) &
                                       port.implemented);
 }
@@ -126,13 +175,14 @@ void Ports::give_back(PortLetter letter, std::uint16_t mask) {
     drive(static_cast<int>(letter), around_.now + 1);
 }
 
-void Ports::watch(PortLetter letter, int pin, void* owner, void (*changed)(void*, bool, Cycle)) {
+void Ports::watch(PortLetter letter, int pin, void* owner, void (*changed)(void*, bool, Cycle),
+                  bool (*heeds)(const void*)) {
     at(letter).watched |= bit(pin);
-    listen(letter, pin, owner, changed);
+    watchers_.push_back({letter, bit(pin), owner, changed, heeds});
 }
 
 void Ports::listen(PortLetter letter, int pin, void* owner, void (*changed)(void*, bool, Cycle)) {
-    watchers_.push_back({letter, bit(pin), owner, changed});
+    watchers_.push_back({letter, bit(pin), owner, changed, nullptr});
 }
 
 void Ports::attend(PortLetter letter, int pin) {
@@ -140,6 +190,7 @@ void Ports::attend(PortLetter letter, int pin) {
     if (port.watched & bit(pin)) return;
     port.watched |= bit(pin);
     port.seen |= static_cast<std::uint16_t>(level(letter, pin) ? bit(pin) : 0);
+    heeding_changed();
 }
 
 bool Ports::digital_level(PortLetter letter, int pin) const {
@@ -184,7 +235,7 @@ void Ports::refresh() {
     for (int i = 0; i < kPorts; ++i) {
         const Port& port = ports_[static_cast<std::size_t>(i)];
         if (!port.tris) continue;
-        around_.sfr.raw(port.port) = pin_levels(i, around_.now) & digital_pins(i);
+        around_.sfr.raw(port.port) = quiet_levels(i) & digital_pins(i);
     }
 }
 
@@ -200,7 +251,7 @@ std::uint16_t Ports::changeable(PortLetter letter) const {
 std::uint16_t Ports::look_at_port(void* owner, std::uint16_t address) {
     const Ports& self = *static_cast<const Ports*>(owner);
     const int index = self.index_of(address);
-    return self.pin_levels(index, self.around_.now) & self.digital_pins(index);
+    return self.quiet_levels(index) & self.digital_pins(index);
 }
 
 std::uint16_t Ports::read_port(void* owner, std::uint16_t address) {
@@ -235,6 +286,7 @@ void Ports::write_cn(void* owner, std::uint16_t address, std::uint16_t value, st
         if (enabled & 1u) self.attend(pin.port, pin.number);
         enabled >>= 1;
     }
+    self.heeding_changed();
 }
 
 }  // namespace puckloop::dspic

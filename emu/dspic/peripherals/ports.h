@@ -60,9 +60,19 @@ class Ports {
     void give_back(PortLetter port, std::uint16_t mask);
     /// Pins that are lent at present.
     std::uint16_t lent(PortLetter port) const { return at(port).lent; }
-    /// Calls `changed` with the pin's level at every edge, driven by whomever; at a reset with `at` =
-    /// kNoCycle: there the level is just told.
-    void watch(PortLetter port, int pin, void* owner, void (*changed)(void* owner, bool level, Cycle at));
+    /// Calls `changed` with the pin's level at every edge, driven by whomever; at a reset, and where `heeds`
+    /// becomes true, with `at` = kNoCycle: there the level is just told. `heeds`: whether edges make a
+    /// difference just now, to be followed by heeding_changed() when that changes; without it they always do.
+    void watch(PortLetter port, int pin, void* owner, void (*changed)(void* owner, bool level, Cycle at),
+               bool (*heeds)(const void* owner) = nullptr);
+    void heeding_changed();
+    /// The next cycle after `after` at which the board itself may change a pin whose edges are heeded.
+    Cycle next_edge(Cycle after) const;
+    /// The board may have changed such pins at cycle `at`.
+    void look_at_heeded(Cycle at);
+    /// Called when heeding_changed() found other pins than before; may stay empty.
+    void (*on_heeding)(void* owner, Cycle at) = nullptr;
+    void* on_heeding_owner = nullptr;
     /// As watch(), but edges are called out only after attend(); those of CN and other modules' pins may be,
     /// too.
     void listen(PortLetter port, int pin, void* owner, void (*changed)(void* owner, bool level, Cycle at));
@@ -108,10 +118,11 @@ class Ports {
         std::uint16_t watched = 0;  ///< pins with a watcher or CN input
         std::uint16_t seen = 0;     ///< levels of the watched pins when last looked at
         std::uint16_t noticed = 0;  ///< pin levels at the last PORT read, what CN compares with
+        std::uint16_t heeded = 0;   ///< watched pins whose edges make a difference
 
         template <class Archive>
         void state(Archive& archive) {
-            archive(lent, lent_output, lent_levels, driven, levels, watched, seen, noticed);
+            archive(lent, lent_output, lent_levels, driven, levels, watched, seen, noticed, heeded);
         }
     };
     struct Watcher {
@@ -119,6 +130,7 @@ class Ports {
         std::uint16_t mask = 0;
         void* owner = nullptr;
         void (*changed)(void*, bool, Cycle) = nullptr;
+        bool (*heeds)(const void*) = nullptr;
     };
 
     static std::uint16_t look_at_port(void* owner, std::uint16_t address);
@@ -133,6 +145,8 @@ class Ports {
     std::uint16_t digital_pins(int index) const;
     std::uint32_t pcfg() const;
     std::uint16_t pin_levels(int index, Cycle now) const;
+    std::uint16_t quiet_levels(int index) const;
+    static std::uint16_t seen_by_buffers(const Port& port, std::uint16_t outside);
     void announce() const {
         if (before_change) before_change(before_change_owner, around_.now);
     }

@@ -46,6 +46,9 @@ bool Timer::synchronised() const {
 bool Timer::gated() const {
     return !external() && (con() & kTxCON["TGATE"]);
 }
+bool Timer::heeds_clock_pin() const {
+    return (con() & kTxCON["TON"]) && !ruled_by_lower() && (external() || gated());
+}
 bool Timer::running() const {
     return (con() & kTxCON["TON"]) && !state_.held && !ruled_by_lower() && !external() &&
            (!gated() || state_.pin);
@@ -264,6 +267,7 @@ void Timer::write_con(void* owner, std::uint16_t address, std::uint16_t value, s
     if (self.upper_) self.upper_->plan();
     self.changed(at);
     if (self.upper_) self.upper_->changed(at);
+    if (self.on_heeding) self.on_heeding(self.on_heeding_owner);
 }
 
 }  // namespace puckloop::dspic

@@ -35,6 +35,11 @@ class Timer {
     void reset();
     /// The TxCK pin changed to `level` at cycle `at`; kNoCycle: no edge, just the level after a reset.
     void clock_pin(bool level, Cycle at);
+    /// Edges on TxCK make a difference at present: it counts them, or they gate it.
+    bool heeds_clock_pin() const;
+    /// Called after every write that may have changed heeds_clock_pin(); may stay empty.
+    void (*on_heeding)(void* owner) = nullptr;
+    void* on_heeding_owner = nullptr;
     /// Sleep, or Idle with TSIDL set: the count stands still, but for edges counted without
     /// synchronisation.
     void hold(bool on);

@@ -25,6 +25,12 @@ class PinTap : public dspic::Pins {
     std::uint16_t levels(dspic::PortLetter port, dspic::Cycle now) override {
         return inner_.levels(port, now);
     }
+    std::uint16_t quiet_levels(dspic::PortLetter port, dspic::Cycle now) override {
+        return inner_.quiet_levels(port, now);
+    }
+    dspic::Cycle next_edge(dspic::PortLetter port, std::uint16_t heeded, dspic::Cycle after) const override {
+        return inner_.next_edge(port, heeded, after);
+    }
     double analog(int channel, dspic::Cycle now) override { return inner_.analog(channel, now); }
     void uart_sent(int unit, const cosim::UartFrame& frame) override;
     void i2c_phase(int unit, const cosim::I2cPhase& phase) override;
