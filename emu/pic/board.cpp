@@ -149,6 +149,10 @@ void Board::driven(dspic::PortLetter port, std::uint16_t levels, std::uint16_t d
 void Board::drive(SignalId id, bool level, dspic::Cycle now) {
     if (id >= kPulse && id < kPulse + kPulseCount)
         emitters_[static_cast<std::size_t>(id - kPulse)].set(level, now);
+    if (id == kCameraReset && camera_) {
+        camera_->set_reset(level, now);
+        listener_.edges_moved(now);
+    }
     values_[id].value = level ? 1.0 : 0.0;
     listener_.signal_changed(id, values_[id].value, now);
     if (id != kAudioOn) return;
@@ -202,14 +206,55 @@ void Board::settle(dspic::Cycle now) {
     }
 }
 
-std::uint16_t Board::levels(dspic::PortLetter port, dspic::Cycle /*now*/) {
-    return levels_[static_cast<std::size_t>(port)];
+std::uint16_t Board::levels(dspic::PortLetter port, dspic::Cycle now) {
+    if (camera_ && port == wiring::kCameraData)
+        return static_cast<std::uint16_t>(levels_[static_cast<std::size_t>(port)] |
+                                          camera_->data(now) << wiring::kFirstCameraData);
+    return quiet_levels(port, now);
+}
+
+std::uint16_t Board::quiet_levels(dspic::PortLetter port, dspic::Cycle now) {
+    unsigned levels = levels_[static_cast<std::size_t>(port)];
+    if (!camera_) return static_cast<std::uint16_t>(levels);
+    if (port == wiring::kCameraLines) {
+        if (camera_->href(now)) levels |= 1u << wiring::kCameraHref;
+        if (camera_->vsync(now)) levels |= 1u << wiring::kCameraVsync;
+        if (camera_->pclk(now)) levels |= 1u << wiring::kCameraPclk;
+    } else if (port == wiring::kCameraData) {
+        levels |= static_cast<unsigned>(camera_->quiet_data(now)) << wiring::kFirstCameraData;
+    }
+    return static_cast<std::uint16_t>(levels);
+}
+
+dspic::Cycle Board::next_edge(dspic::PortLetter port, std::uint16_t heeded, dspic::Cycle after) const {
+    dspic::Cycle next = dspic::kNoCycle;
+    if (!camera_ || !camera_->running()) return next;
+    const auto heeds = [&](dspic::PortLetter letter, unsigned pins) {
+        return port == letter && (heeded & pins) != 0;
+    };
+    if (heeds(wiring::kCameraLines, 1u << wiring::kCameraHref)) next = camera_->next_href(after);
+    if (heeds(wiring::kCameraLines, 1u << wiring::kCameraVsync))
+        next = std::min(next, camera_->next_vsync(after));
+    if (heeds(wiring::kCameraLines, 1u << wiring::kCameraPclk) ||
+        heeds(wiring::kCameraData, 0xFFu << wiring::kFirstCameraData))
+        next = std::min(next, camera_->next_byte(after));
+    return next;
+}
+
+Board::OwnPhase Board::own_i2c(const cosim::I2cPhase& phase, dspic::Cycle answered) {
+    if (!camera_) return {};
+    const bool stop = phase.kind == cosim::I2cPhaseKind::Stop && camera_->selected();
+    const std::optional<cosim::I2cPhase> answer = camera_->i2c(phase, answered);
+    if (camera_->edges_moved()) listener_.edges_moved(answered);
+    return {stop || answer.has_value(), answer};
 }
 
 dspic::OutsidePin Board::outside(dspic::PortLetter port, int bit) const {
     for (const PinUse& pin : wiring::kPins)
         if (pin.port == port && pin.bit == bit)
-            return {pin.role == Role::Input || pin.role == Role::InputLow, pin.function};
+            return {pin.role == Role::Input || pin.role == Role::InputLow ||
+                        (pin.role == Role::Camera && camera_.has_value()),
+                    pin.function};
     return {.changes = false};
 }
 

@@ -11,6 +11,7 @@
 // 3. The microphones and the accelerometer have no bandwidth of their own.
 
 #include "base/random.h"
+#include "emu/camera/camera.h"
 #include "emu/chip/faults/ambient_shares.h"
 #include "emu/chip/faults/analog_faults.h"
 #include "emu/dspic/peripherals/pins.h"
@@ -60,6 +61,8 @@ class BoardListener {
     /// The codec turned a sample into sound; `value` is that of the signal `speaker`.
     virtual void sound_sample(double /*value*/, dspic::Cycle /*now*/) {}
     virtual void i2c_phase(int unit, const cosim::I2cPhase& phase) = 0;
+    /// Edges that the board makes by itself moved, from cycle `at` on (Chip::edges_moved()).
+    virtual void edges_moved(dspic::Cycle /*at*/) {}
     /// A fault kept motor 0 (left) or 1 from making a step that was due at `now`.
     virtual void step_lost(int /*motor*/, dspic::Cycle /*now*/) {}
 };
@@ -77,6 +80,20 @@ class Board : public dspic::Pins {
     /// Reports every motor step that was due at or before `now`. To be called before time is said to have
     /// passed `now`.
     void settle(dspic::Cycle now);
+
+    /// Puts a camera on the board, before its chip runs; `scenery` outlives it.
+    void fit_camera(const camera::Fitting& fitting, camera::Scenery& scenery) {
+        camera_.emplace(fitting, scenery);
+    }
+    camera::Camera* camera() { return camera_ ? &*camera_ : nullptr; }
+    const camera::Camera* camera() const { return camera_ ? &*camera_ : nullptr; }
+    /// What becomes of a phase of the I2C master that the camera, soldered to the same board, takes part in.
+    struct OwnPhase {
+        bool ours = false;  ///< nobody else need hear of it
+        std::optional<cosim::I2cPhase> answer{};
+    };
+    /// `answered`: the cycle in which an answer is complete.
+    OwnPhase own_i2c(const cosim::I2cPhase& phase, dspic::Cycle answered);
 
     // Faults.
     chip::AnalogFaults& analog_faults() { return analog_faults_; }
@@ -103,6 +120,7 @@ class Board : public dspic::Pins {
         archive(profile_);
         for (double& share : dazzle_)
             archive.bounded(share, 0.0, 1.0);
+        if (camera_) archive(*camera_);
         if constexpr (Archive::kLoads) check_loaded();
     }
     /// Noise begins anew, by this board's own name and seed.
@@ -115,6 +133,8 @@ class Board : public dspic::Pins {
     void driven(dspic::PortLetter port, std::uint16_t levels, std::uint16_t driven,
                 dspic::Cycle now) override;
     std::uint16_t levels(dspic::PortLetter port, dspic::Cycle now) override;
+    std::uint16_t quiet_levels(dspic::PortLetter port, dspic::Cycle now) override;
+    dspic::Cycle next_edge(dspic::PortLetter port, std::uint16_t heeded, dspic::Cycle after) const override;
     double analog(int channel, dspic::Cycle now) override;
     void uart_sent(int unit, const cosim::UartFrame& frame) override { listener_.uart_sent(unit, frame); }
     void i2c_phase(int unit, const cosim::I2cPhase& phase) override { listener_.i2c_phase(unit, phase); }
@@ -160,6 +180,7 @@ class Board : public dspic::Pins {
     double sag_ = 0.0, battery_ = 0.0;  ///< volts; the battery's without the sag
     std::optional<double> profile_;     ///< in place of the battery's
     chip::AmbientShares dazzle_{};
+    std::optional<camera::Camera> camera_;
 };
 
 }  // namespace puckloop::pic

@@ -2,6 +2,7 @@
 
 #include "emu/board/chip_json.h"
 #include "emu/board/fault_parts.h"
+#include "emu/camera/frame_log.h"
 #include "protocols/uart_sampling.h"
 
 #include <nlohmann/json.hpp>
@@ -29,6 +30,11 @@ PicNode::PicNode(const image::Image& image, const PicNodeOptions& options)
       board_(options.board, *this),
       log_(options.log, image) {
     if (options.ircom) ports_.push_back({"ir", cosim::PortKind::Signals});
+    if (options.camera) {
+        ports_.push_back({"camera", cosim::PortKind::Signals});
+        board_.fit_camera(*options.camera, *options_.scenery);
+        followers_.scenery = options_.scenery.get();
+    }
     dspic::ChipOptions chip_options;
     chip_options.crystal_hertz = options.board.crystal_hertz;
     chip_options.ppm = options.board.crystal_ppm;
@@ -114,6 +120,8 @@ void PicNode::receive(const cosim::Message& message) {
     } else if (const auto* phase = std::get_if<cosim::I2cPhase>(&message.payload)) {
         chip_->i2c_answer(kI2cUnit, *phase);
     } else if (const auto* signal = std::get_if<cosim::Signal>(&message.payload)) {
+        if (options_.camera && message.port == camera_port())
+            return options_.scenery->change(signal->id, signal->value);
         const dspic::Cycle now = chip_->clock().first_cycle_at(message.time);
         if (signal->id == kResetButton && signal->value > board_.signal(kResetButton)) chip_->mclr();
         if (const auto port = board_.set_signal(signal->id, signal->value, now)) chip_->pins_changed(*port);
@@ -151,6 +159,10 @@ void PicNode::uart_sent(int unit, const cosim::UartFrame& frame) {
 
 void PicNode::i2c_phase(int unit, const cosim::I2cPhase& phase) {
     if (unit != kI2cUnit) return;
+    const cosim::Time answered = dspic::i2c_ninth_clock_end(phase);
+    const Board::OwnPhase own = board_.own_i2c(phase, chip_->clock().first_cycle_at(answered));
+    if (own.answer) chip_->i2c_answer_at(unit, *own.answer, answered);
+    if (own.ours) return;
     if (options_.i2c_linked)
         outbox_->push_back({board::reached(*chip_, faults_.get(), phase.start), kI2c, phase});
     else
@@ -202,6 +214,8 @@ void PicNode::state(CheckpointReader& archive) {
 std::string PicNode::finish() {
     log_.end(granted_, *chip_, board_);
     if (options_.nvm) options_.nvm->save(chip_->memory());
+    if (board_.camera() && !options_.camera_log.empty())
+        camera::write_frame_log(options_.camera_log, *board_.camera(), chip_->clock());
     nlohmann::ordered_json json = board::chip_json(*chip_);
     json["kind"] = "epuck board, dsPIC30F6014A";
     json["wheel_steps"] = {{"left", board_.left_motor().steps()}, {"right", board_.right_motor().steps()}};
@@ -209,6 +223,8 @@ std::string PicNode::finish() {
         board_.left_motor().illegal_patterns() + board_.right_motor().illegal_patterns();
     json["uart1"] = board::uart_json(chip_->uart_counters(1));
     json["uart2"] = board::uart_json(chip_->uart_counters(2));
+    if (board_.camera())
+        json["camera"] = nlohmann::ordered_json::parse(camera::report_json(*board_.camera()));
     if (faults_) json["faults"] = board::fault_report(*faults_, board_.analog_faults(), granted_);
     return json.dump();
 }

@@ -29,9 +29,12 @@ struct PicNodeOptions {
     /// Configuration word in force on the robot, as its bootloader left it: XT with PLL x8.
     std::uint16_t fosc = kFoscXtPll8;
     static constexpr std::uint16_t kFoscXtPll8 = 0xC706;
-    std::string log{};                          ///< file for the board's log; empty: none
-    std::shared_ptr<board::NvmFile> nvm{};      ///< keeps flash and EEPROM at the end; null: nothing does
-    std::vector<cosim::CarriedFault> faults{};  ///< of this board
+    std::string log{};                           ///< file for the board's log; empty: none
+    std::shared_ptr<board::NvmFile> nvm{};       ///< keeps flash and EEPROM at the end; null: nothing does
+    std::optional<camera::Fitting> camera{};     ///< on the board; it has the port "camera" then
+    std::shared_ptr<camera::Scenery> scenery{};  ///< what the camera looks at; the port's signals change it
+    std::string camera_log{};                    ///< file for a line per picture; empty: none
+    std::vector<cosim::CarriedFault> faults{};   ///< of this board
 };
 
 class PicNode : public cosim::StatefulNode, private BoardListener, private chip::BoardAccess {
@@ -41,6 +44,9 @@ class PicNode : public cosim::StatefulNode, private BoardListener, private chip:
     static constexpr cosim::PortIndex kI2c = 2;
     static constexpr cosim::PortIndex kWorld = 3;
     static constexpr cosim::PortIndex kIr = 4;  ///< if `ircom`: pulses out, ir_light in
+
+    /// The port "camera", behind all others.
+    cosim::PortIndex camera_port() const { return static_cast<cosim::PortIndex>(ports_.size() - 1); }
 
     /// Throws InputError if the image does not fit the chip, or a fault neither.
     PicNode(const image::Image& image, const PicNodeOptions& options);
@@ -79,6 +85,7 @@ class PicNode : public cosim::StatefulNode, private BoardListener, private chip:
     void uart_sent(int unit, const cosim::UartFrame& frame) override;
     void i2c_phase(int unit, const cosim::I2cPhase& phase) override;
     void step_lost(int motor, dspic::Cycle now) override;
+    void edges_moved(dspic::Cycle at) override { chip_->edges_moved(at); }
     void set_sag(double volts) override;
     void set_battery(std::optional<double> volts) override;
     void set_ambient(const chip::AmbientShares& shares) override { board_.set_ambient(shares); }
@@ -93,7 +100,25 @@ class PicNode : public cosim::StatefulNode, private BoardListener, private chip:
     PicLog log_;
     std::optional<dspic::ChipFaults> chip_faults_;
     std::unique_ptr<chip::BoardFaults> faults_;  ///< null: none was asked for
-    board::NodeMark<PicNode, dspic::Chip, PicLog> mark_{*this, chip_, log_};
+    /// What goes back beside chip and board.
+    struct Followers {
+        PicLog& log;
+        camera::Scenery* scenery = nullptr;
+        void mark() {
+            log.mark();
+            if (scenery) scenery->mark();
+        }
+        void rewind() {
+            log.rewind();
+            if (scenery) scenery->rewind();
+        }
+        void settle() {
+            log.settle();
+            if (scenery) scenery->settle();
+        }
+    };
+    Followers followers_{log_};
+    board::NodeMark<PicNode, dspic::Chip, Followers> mark_{*this, chip_, followers_};
     std::vector<cosim::Message>* outbox_ = nullptr;
     cosim::Time granted_ = 0;
     std::size_t next_reset_ = 0;

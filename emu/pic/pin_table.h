@@ -3,7 +3,7 @@
 // Source: e-puck fact sheet 3.2 (from the e-puck library's port headers and the camera and codec drivers).
 //
 // Deviations:
-// 1. No camera or LIS turret is fitted: their inputs stand at the idle level given here.
+// 1. No LIS turret is fitted: its inputs stand at the idle level given here.
 // 2. Board revision up to 1.2: AN7 is the accelerometer's z axis, not the battery of revision 1.3.
 
 #include "emu/dspic/peripherals/pins.h"
@@ -22,6 +22,7 @@ enum class Role : std::uint8_t {
     InputLow,    ///< the same, inverted: the pin is 0 while the signal is 1
     PulledHigh,  ///< idles at 1 (line with a pull-up, UART at rest)
     PulledLow,   ///< idles at 0
+    Camera,      ///< driven by the camera, where one is fitted; idles at 0
 };
 
 /// One pin: where, what stands there, which signal, which bit of it (a coil: 0 = A .. 3 = D).
@@ -49,10 +50,10 @@ inline constexpr auto kPins = std::to_array<PinUse>({
     {A, 15, "led7", Output, kLed + 7},
     {C, 1, "led_front", Output, kLedFront},
     {C, 2, "led_body", Output, kLedBody},
-    {C, 3, "camera_href", PulledLow},
-    {C, 4, "camera_vsync", PulledLow},
+    {C, 3, "camera_href", Camera},
+    {C, 4, "camera_vsync", Camera},
     {C, 13, "camera_reset", Output, kCameraReset},
-    {C, 14, "camera_pclk", PulledLow},
+    {C, 14, "camera_pclk", Camera},
     {D, 0, "left_coil_a", Coil, kWheelLeft, 0},
     {D, 1, "left_coil_b", Coil, kWheelLeft, 1},
     {D, 2, "left_coil_c", Coil, kWheelLeft, 2},
@@ -61,6 +62,14 @@ inline constexpr auto kPins = std::to_array<PinUse>({
     {D, 5, "right_coil_b", Coil, kWheelRight, 1},
     {D, 6, "right_coil_c", Coil, kWheelRight, 2},
     {D, 7, "right_coil_d", Coil, kWheelRight, 3},
+    {D, 8, "camera_data0", Camera},
+    {D, 9, "camera_data1", Camera},
+    {D, 10, "camera_data2", Camera},
+    {D, 11, "camera_data3", Camera},
+    {D, 12, "camera_data4", Camera},
+    {D, 13, "camera_data5", Camera},
+    {D, 14, "camera_data6", Camera},
+    {D, 15, "camera_data7", Camera},
     {F, 0, "audio_on", Output, kAudioOn},
     {F, 1, "battery_low", InputLow, kBatteryLow, 0},
     {F, 2, "uart1_rx", PulledHigh},
@@ -83,6 +92,11 @@ inline constexpr auto kPins = std::to_array<PinUse>({
     {G, 14, "codec_clock", PulledLow},
     {G, 15, "codec_frame", PulledLow},
 });
+
+// Where the camera's lines are.
+inline constexpr dspic::PortLetter kCameraLines = C, kCameraData = D;
+inline constexpr int kCameraHref = 3, kCameraVsync = 4, kCameraPclk = 14;
+inline constexpr int kFirstCameraData = 8;  ///< y0
 }  // namespace wiring
 
 /// Analog inputs, by ANn: the signal that stands there.

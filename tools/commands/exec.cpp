@@ -189,6 +189,14 @@ void describe(Command& app, Arguments& a) {
     app.add_option("--selector", t.selector, "initial position of the selector (pic)")
         ->check(whole_number_between(0, 15))
         ->capture_default_str();
+    app.add_option("--camera", t.camera_picture,
+                   "PGM or PPM picture that the camera looks at (pic; without it a test pattern)")
+        ->type_name("FILE");
+    app.add_option("--camera-model", t.camera, "camera on the board: po3030k, po6030k or none (pic)")
+        ->check(one_of({"po3030k", "po6030k", "none"}))
+        ->capture_default_str();
+    app.add_flag("--camera-turned", t.camera_turned,
+                 "the camera lies on its side, as the PO3030K of early boards (pic)");
     app.add_option("--crystal", a.crystal_hertz,
                    "in Hz (7372800; of the dsPIC33F 4000000, of the AVR 16000000)")
         ->check(number_between(kSlowestCrystal, kFastestCrystal));
@@ -230,6 +238,12 @@ void declare_exec(Command& app, int& status) {
             throw InputError("", "--selector",
                              fmt::format("{} has no selector", bench.board.empty() ? bench.mcu : bench.board),
                              "--board pic");
+        for (const char* option : {"--camera", "--camera-model", "--camera-turned"})
+            if (command->count(option) > 0 && bench.board != "pic")
+                throw InputError(
+                    "", option,
+                    fmt::format("{} has no camera", bench.board.empty() ? bench.mcu : bench.board),
+                    "--board pic");
         const exec::TargetDefaults defaults = exec::defaults_of(bench.mcu, bench.board);
         bench.target.chip.crystal_hertz = a.crystal_hertz.value_or(defaults.crystal_hertz);
         const bool is_avr = defaults.mcu.starts_with("atmega");
@@ -243,6 +257,7 @@ void declare_exec(Command& app, int& status) {
             bench.baud[unit] = a.uart_baud[unit].value_or(a.baud.value_or(defaults.baud[unit]));
         if (!bench.log_folder.empty()) {
             bench.target.log = bench.log_folder + "/board.log";
+            bench.target.camera_log = bench.log_folder + "/camera.csv";
             bench.target.rab_log = bench.log_folder + "/rab.log";
         }
         if (a.realtime || a.unpaced) a.options.realtime = a.realtime;

@@ -7,6 +7,19 @@
 
 namespace puckloop::exec {
 
+namespace {
+
+/// A phase with what was on the wires when it was over.
+cosim::I2cPhase over(cosim::I2cPhase phase, const cosim::I2cPhase& answer) {
+    phase.stretch = answer.stretch;
+    if (answer.kind == cosim::I2cPhaseKind::Acknowledge) phase.ack = answer.ack;
+    if (answer.kind == cosim::I2cPhaseKind::Data) phase.byte = answer.byte;
+    if (answer.kind == cosim::I2cPhaseKind::BusLost) phase.kind = answer.kind;
+    return phase;
+}
+
+}  // namespace
+
 void DspicTarget::build(PinTap& tap) {
     chip_ = std::make_unique<dspic::Chip>(device_, tap, options_.chip);
     chip_->set_skipping(options_.skip_idle);
@@ -80,6 +93,13 @@ void DspicTarget::on_bus(int unit, const cosim::I2cPhase& phase) {
     std::optional<cosim::I2cPhase>& open = bus(unit).open;
     if (open) listener_.i2c_phase(unit, *open);
     open.reset();
+    const cosim::Time answered = dspic::i2c_ninth_clock_end(phase);
+    const OwnPhase own = own_i2c(unit, phase, chip_->clock().first_cycle_at(answered));
+    if (own.answer) {
+        listener_.i2c_phase(unit, over(phase, *own.answer));
+        return chip_->i2c_answer_at(unit, *own.answer, answered);
+    }
+    if (own.ours) return listener_.i2c_phase(unit, phase);
     if (phase.kind == cosim::I2cPhaseKind::Stop)
         listener_.i2c_phase(unit, phase);
     else
@@ -92,13 +112,9 @@ void DspicTarget::on_bus(int unit, const cosim::I2cPhase& phase) {
 
 void DspicTarget::answer(int unit, const cosim::I2cPhase& phase) {
     if (std::optional<cosim::I2cPhase>& open = bus(unit).open) {
-        cosim::I2cPhase over = *open;
+        const cosim::I2cPhase begun = *open;
         open.reset();
-        over.stretch = phase.stretch;
-        if (phase.kind == cosim::I2cPhaseKind::Acknowledge) over.ack = phase.ack;
-        if (phase.kind == cosim::I2cPhaseKind::Data) over.byte = phase.byte;
-        if (phase.kind == cosim::I2cPhaseKind::BusLost) over.kind = phase.kind;
-        listener_.i2c_phase(unit, over);
+        listener_.i2c_phase(unit, over(begun, phase));
     }
     chip_->i2c_answer(unit, phase);
 }

@@ -50,6 +50,14 @@ class DspicTarget : public Target {
     void build(PinTap& tap);
     /// What the surroundings do about an I2C phase of the chip.
     void on_bus(int unit, const cosim::I2cPhase& phase);
+    /// Takes part in a phase in place of the bus: something that the board itself carries.
+    struct OwnPhase {
+        bool ours = false;  ///< the bus need not hear of it
+        std::optional<cosim::I2cPhase> answer{};
+    };
+    virtual OwnPhase own_i2c(int /*unit*/, const cosim::I2cPhase& /*phase*/, dspic::Cycle /*answered*/) {
+        return {};
+    }
     /// Called when every instruction before cycle `now` has run.
     virtual void passed(dspic::Cycle /*now*/) {}
 

@@ -1,9 +1,13 @@
-// `--board pic`: the e-puck main board, alone: no Linux board, no camera, nobody on its I2C bus.
+// `--board pic`: the e-puck main board, alone: no Linux board, nobody on its I2C bus but its camera.
 
 #include "base/archive.h"
+#include "emu/camera/frame_log.h"
+#include "emu/camera/pictures.h"
 #include "emu/pic/board.h"
 #include "emu/pic/pin_table.h"
 #include "tools/exec/targets/dspic_target.h"
+
+#include <fmt/format.h>
 
 namespace puckloop::exec {
 
@@ -15,11 +19,31 @@ class PicTarget : public DspicTarget, private pic::BoardListener {
         : DspicTarget(dspic::dspic30f6014a(), options, listener),
           listener_(listener),
           board_(parameters, *this),
-          tap_(board_, listener, pic::pin_function) {
+          tap_(board_, listener, pic::pin_function),
+          camera_log_(options.camera_log) {
+        if (const auto model = camera::model_of(options.camera)) {
+            scenery_ = options.camera_picture.empty() ? camera::make_test_pattern()
+                                                      : camera::make_picture(options.camera_picture);
+            board_.fit_camera({*model, options.camera_turned}, *scenery_);
+        }
         build(tap_);
+    }
+    std::string report() const override {
+        if (!board_.camera() || board_.camera()->frames().empty()) return {};
+        return fmt::format(R"({{"camera": {}}})", camera::report_json(*board_.camera()));
+    }
+    void finish() override {
+        DspicTarget::finish();
+        if (board_.camera() && !camera_log_.empty())
+            camera::write_frame_log(camera_log_, *board_.camera(), chip().clock());
     }
 
   private:
+    OwnPhase own_i2c(int, const cosim::I2cPhase& phase, dspic::Cycle answered) override {
+        const auto own = board_.own_i2c(phase, answered);
+        return {own.ours, own.answer};
+    }
+    void edges_moved(dspic::Cycle at) override { chip().edges_moved(at); }
     std::span<const cosim::SignalInfo> own_signals() const override { return pic::signals(); }
     double own_signal(std::uint16_t id) const override { return board_.signal(id); }
     void set_own_signal(std::uint16_t id, double value) override {
@@ -43,6 +67,8 @@ class PicTarget : public DspicTarget, private pic::BoardListener {
     TargetListener& listener_;
     pic::Board board_;
     PinTap tap_;
+    std::string camera_log_;
+    std::unique_ptr<camera::Scenery> scenery_;
 };
 
 }  // namespace

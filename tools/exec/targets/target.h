@@ -64,6 +64,10 @@ struct TargetOptions {
     std::uint64_t seed = 1;
     double adc_noise_counts = 0.0;
     int selector = 0;
+    std::string camera = "po3030k";            ///< of the e-puck main board, or "none"
+    bool camera_turned = false;                ///< it lies on its side, as on early boards
+    std::string camera_picture{};              ///< PGM or PPM file that it looks at; empty: a test pattern
+    std::string camera_log{};                  ///< file for a line per picture; empty: none
     bool skip_idle = true;                     ///< busy-wait loops are skipped forward
     std::string log{};                         ///< file for the board's log, where it keeps one; empty: none
     std::vector<I2cDeviceSpec> i2c_devices{};  ///< on the bus of a target that is a master
