@@ -1,5 +1,7 @@
 #include "scenarios/camera_keys.h"
 
+#include "emu/camera/model.h"
+
 #include <fmt/format.h>
 
 #include <cstddef>
@@ -51,6 +53,14 @@ void read_cameras(Reader& reader, LinuxBoard& board) {
     board.cameras = cameras_of(reader);
     constexpr std::int64_t kRarest = 1'000'000;
     if (!board.cameras.empty()) board.save_frames = reader.integer("save_frames", 0, 0, kRarest);
+}
+
+std::string read_board_camera(Reader& reader) {
+    const std::string name = reader.text("camera", "none");
+    if (name == "none") return {};
+    if (!camera::model_of(name))
+        reader.fail("camera", fmt::format("there is no camera '{}'", name), "po3030k, po6030k or none");
+    return name;
 }
 
 }  // namespace puckloop::scenarios

@@ -1,5 +1,5 @@
 #pragma once
-// The keys of [robot.linux] that are about cameras.
+// The keys of [robot.linux] and [robot.pic] that are about cameras.
 
 #include "scenarios/reader.h"
 #include "scenarios/scenario.h"
@@ -8,5 +8,8 @@ namespace puckloop::scenarios {
 
 /// `cameras`, `camera_devices`, `save_frames`. Throws InputError with file and line.
 void read_cameras(Reader& reader, LinuxBoard& board);
+
+/// `camera` of [robot.pic]: "po3030k", "po6030k", or empty where it says "none" or nothing.
+std::string read_board_camera(Reader& reader);
 
 }  // namespace puckloop::scenarios

@@ -49,6 +49,8 @@ PicBoard read_pic(const std::string& file, const std::string& where, const TomlV
             reader.fail("boot", "boot is out of range", "0 s to 720 h, such as \"40 s\"");
         pic.boot = boot;
     }
+    pic.camera = read_board_camera(reader);
+    pic.camera_turned = reader.flag("camera_turned", false);
     reader.finish();
     return pic;
 }
@@ -106,7 +108,11 @@ void read_robot(const std::string& file, const TomlValue& table, const std::file
         boards.rab = read_rab(file, boards.name + ".rab", *rab, folder, memories);
     if (const TomlValue* linux_table = reader.table("linux"))
         boards.linux_board = read_linux(file, boards.name + ".linux", *linux_table, boards.name);
-    body.camera = boards.linux_board && !boards.linux_board->cameras.empty();
+    const bool linux_cameras = boards.linux_board && !boards.linux_board->cameras.empty();
+    if (linux_cameras && !boards.pic.camera.empty())
+        reader.fail("linux", "the main board and the Linux board both have cameras",
+                    "camera in [robot.pic] or cameras in [robot.linux]");
+    body.camera = linux_cameras || !boards.pic.camera.empty();
     boards.ground_sensor = reader.flag("ground_sensor", true);
     boards.rgb_turret = reader.flag("rgb_turret", true);
     reader.finish();

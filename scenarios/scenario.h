@@ -25,6 +25,8 @@ struct PicBoard {
     std::vector<double> resets;    ///< s: the reset button (MCLR) is pressed, rising
     std::filesystem::path nvm{};   ///< file that keeps flash and EEPROM; empty: none
     std::optional<double> boot{};  ///< s: how long the firmware needs until it listens; none: not said
+    std::string camera{};          ///< on the board: "po3030k" or "po6030k"; empty: none
+    bool camera_turned = false;    ///< it lies on its side, as on early boards
 };
 
 /// The range-and-bearing board of a robot (e-RandB), on its I2C bus.

@@ -62,6 +62,13 @@ std::unique_ptr<cosim::StatefulNode> make_pic(const json& spec) {
     for (const double seconds : spec.at("resets").get<std::vector<double>>())
         options.resets.push_back(cosim::from_seconds(seconds));
     options.faults = faults_of(spec);
+    if (spec.contains("camera")) {
+        const json& camera = spec["camera"];
+        options.camera = camera::Fitting{*camera::model_of(camera.at("model").get<std::string>()),
+                                         camera.at("turned").get<bool>()};
+        options.camera_log = spec.at("camera_log");
+        options.scenery = make_board_scenery(camera);
+    }
     const image::Image image = board_image(spec, dspic::dspic30f6014a().name, options.nvm);
     return std::make_unique<pic::PicNode>(image, options);
 }

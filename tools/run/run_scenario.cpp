@@ -77,10 +77,13 @@ std::vector<std::string> result_files(const RunSetup& setup) {
     for (const cosim::NodeSpec& node : setup.nodes)
         for (const char* kind : {".log", ".received"})
             names.push_back(node.name + kind);
-    for (const scenarios::RobotBoards& robot : setup.scenario.robots)
+    for (const scenarios::RobotBoards& robot : setup.scenario.robots) {
+        for (const char* ending : {"csv", "ppm"})
+            names.push_back(robot.name + ".pic.camera." + ending);
         if (robot.linux_board)
             for (const scenarios::LinuxCamera& camera : robot.linux_board->cameras)
                 names.push_back(robot.name + "." + camera.kind + ".csv");
+    }
     return names;
 }
 

@@ -119,7 +119,9 @@ void add_robot(RunSetup& setup, std::size_t index, const json& described, const 
     const RobotBoards& robot = setup.scenario.robots[index];
     const std::string pic = robot.name + ".pic";
     const std::string bus = robot.name + ".i2c";
-    add_free(setup, pic, pic_spec(setup, robot));
+    json board = pic_spec(setup, robot);
+    add_board_camera(setup, index, described, board);
+    add_free(setup, pic, board);
     add_free(setup, bus, bus_spec(setup, robot));
     cosim::LinkSpec world{robot.name + ".world", {pic, "world"}, {"world", robot.name + ".board"}};
     world.signal_names = names_of(pic::signals());

@@ -63,7 +63,8 @@ void Ports::heeding_changed() {
     bool other = false;
     for (int i = 0; i < kPorts; ++i) {
         Port& port = ports_[static_cast<std::size_t>(i)];
-        const auto now = static_cast<std::uint16_t>(heeded[static_cast<std::size_t>(i)] | change_enabled(i));
+        const auto now = static_cast<std::uint16_t>(
+            (heeded[static_cast<std::size_t>(i)] | change_enabled(i)) & port.watched);
         if (now == port.heeded) continue;
         const auto fresh = static_cast<std::uint16_t>(now & ~port.heeded);
         port.heeded = now;

@@ -28,4 +28,21 @@ void add_cameras(const RunSetup& setup, std::size_t index, const nlohmann::json&
     spec["scenery"] = {{"world", world}, {"robot", index}, {"kinds", kinds}};
 }
 
+void add_board_camera(RunSetup& setup, std::size_t index, const nlohmann::json& world, nlohmann::json& spec) {
+    const scenarios::RobotBoards& robot = setup.scenario.robots[index];
+    if (robot.pic.camera.empty()) return;
+    // Where results go decides nothing of what is seen.
+    nlohmann::json there = world;
+    there["recording"]["directory"] = there["recording"]["log"] = "";
+    spec["camera"] = {{"model", robot.pic.camera},
+                      {"turned", robot.pic.camera_turned},
+                      {"world", std::move(there)},
+                      {"robot", index}};
+    spec["camera_log"] = (setup.out / (robot.name + ".pic.camera.csv")).string();
+    cosim::LinkSpec seen{
+        robot.name + ".camera", {robot.name + ".pic", "camera"}, {"world", robot.name + ".camera"}};
+    seen.record_from_b = false;
+    setup.links.push_back(seen);
+}
+
 }  // namespace puckloop::tools
