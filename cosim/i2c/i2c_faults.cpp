@@ -1,6 +1,7 @@
 #include "cosim/i2c/i2c_faults.h"
 
 #include "base/error.h"
+#include "cosim/trace/trace_row.h"
 
 #include <fmt/format.h>
 
@@ -123,6 +124,7 @@ void I2cFaults::harm(std::size_t index, PortIndex master, const I2cPhase& phase,
     const I2cFault& what = fault.what;
     RandomStream& random = carried_[index].trigger.random();
     int bit = -1;
+    std::string more;
     switch (what.kind) {
     case I2cFaultKind::Nack:
         damage.refused = true;
@@ -137,6 +139,7 @@ void I2cFaults::harm(std::size_t index, PortIndex master, const I2cPhase& phase,
         break;
     case I2cFaultKind::LoseArbitration:
         bit = lose_at_bit(index, phase, damage);
+        more = fmt::format(" until {}", format_seconds(damage.busy_until));
         break;
     case I2cFaultKind::Flip: {
         const bool address = phase.kind == I2cPhaseKind::Start;
@@ -172,7 +175,7 @@ void I2cFaults::harm(std::size_t index, PortIndex master, const I2cPhase& phase,
     case I2cFaultKind::IncompleteWriteByte:
         return;
     }
-    note(index, master, phase, bit);
+    note(index, master, phase, bit, more);
 }
 
 int I2cFaults::lose_at_bit(std::size_t index, const I2cPhase& phase, I2cDamage& damage) {

@@ -82,7 +82,8 @@ class I2cFaults {
     bool pull(const Fault& fault, const I2cPhase& phase, I2cDamage& damage) const;
     void pulled(std::size_t index, PortIndex master, const I2cPhase& phase);
     int lose_at_bit(std::size_t index, const I2cPhase& phase, I2cDamage& damage);
-    void note(std::size_t index, PortIndex master, const I2cPhase& phase, int bit = -1);
+    void note(std::size_t index, PortIndex master, const I2cPhase& phase, int bit = -1,
+              const std::string& more = {});
     std::optional<std::uint8_t> current_register() const;
     std::string describe(PortIndex master, const I2cPhase& phase, int bit) const;
 

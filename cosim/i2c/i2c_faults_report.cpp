@@ -2,12 +2,15 @@
 
 #include "cosim/i2c/i2c_faults.h"
 
+#include "cosim/trace/trace_row.h"
+
 #include <fmt/format.h>
 
 namespace puckloop::cosim {
 
-void I2cFaults::note(std::size_t index, PortIndex master, const I2cPhase& phase, int bit) {
-    carried_[index].fired(phase.start, phases_, describe(master, phase, bit));
+void I2cFaults::note(std::size_t index, PortIndex master, const I2cPhase& phase, int bit,
+                     const std::string& more) {
+    carried_[index].fired(phase.start, phases_, describe(master, phase, bit) + more);
 }
 
 /// A line that is low counts once, with the first byte that it spoils.
@@ -15,7 +18,9 @@ void I2cFaults::pulled(std::size_t index, PortIndex master, const I2cPhase& phas
     Fault& fault = faults_[index];
     if (fault.counted == fault.low_from) return;
     fault.counted = fault.low_from;
-    note(index, master, phase);
+    std::string more = fmt::format(" low from {}", format_seconds(fault.low_from));
+    if (fault.low_until != kNever) more += fmt::format(" until {}", format_seconds(fault.low_until));
+    note(index, master, phase, -1, more);
 }
 
 std::string I2cFaults::describe(PortIndex master, const I2cPhase& phase, int bit) const {

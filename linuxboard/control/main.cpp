@@ -13,6 +13,7 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <string>
 
 namespace {
 
@@ -116,19 +117,20 @@ int drive(const Options& options) {
     const std::unique_ptr<Behaviour> behaviour = make_behaviour(options.behaviour, options.rab_id);
     Session session(serial, log, interrupted);
     bool reached = false;
+    std::string problem = "the PIC does not answer";
     try {
         reached = run_control_loop(session, serial, *behaviour,
                                    surroundings_of(ground.get(), rab.get(), spots.get(), log), interrupted,
                                    options.loop);
     } catch (const LineError& error) {
-        std::fprintf(stderr, "puckloop-control: %s\n", error.what());
+        problem = error.what();
     }
     if (interrupted()) log("ended by a signal");
     report(session.counters(), ground.get(), rab.get());
     if (spots)
         std::printf("camera pictures looked at %lu; %lu came in between, which were not needed\n",
                     spots->camera().frames(), spots->camera().unused());
-    if (!reached) std::fprintf(stderr, "puckloop-control: the PIC does not answer\n");
+    if (!reached) std::fprintf(stderr, "puckloop-control: %s\n", problem.c_str());
     return reached ? 0 : 1;
 }
 

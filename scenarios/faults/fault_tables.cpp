@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <numbers>
 #include <vector>
 
 namespace puckloop::scenarios {
@@ -49,9 +50,14 @@ double read_number(Reader& reader, const ParameterInfo& parameter) {
     case Unit::Frequency:
         return reader.quantity(parameter.key, Dimension::Frequency);
     case Unit::Integer:
+        if (!reader.has(parameter.key))
+            reader.fail(parameter.key, fmt::format("'{}' is missing", parameter.key), range_of(parameter));
         if (reader.is_text(parameter.key)) return read_address(reader, parameter);
         return static_cast<double>(reader.integer(parameter.key, 0, static_cast<std::int64_t>(parameter.low),
                                                   static_cast<std::int64_t>(parameter.high)));
+    case Unit::Degrees:
+        if (!reader.is_text(parameter.key)) return reader.quantity(parameter.key, Dimension::Number);
+        return reader.quantity(parameter.key, Dimension::Angle) * 180.0 / std::numbers::pi;
     case Unit::Flag:
         return reader.flag(parameter.key, false) ? 1.0 : 0.0;
     default:

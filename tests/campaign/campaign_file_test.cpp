@@ -41,6 +41,12 @@ name = "steps"
 value = "/nodes/robot0.pic/wheel_steps/left"
 tolerance = 40
 
+[[metric]]
+name = "tasks"
+log = "coordinator.linux"
+lines = "task done"
+tolerance = 0
+
 [[sweep]]
 name = "one"
 fault = { link = "robot0.uart", from = "robot0.pic", count = 1 }
@@ -73,7 +79,9 @@ TEST_CASE("a campaign file says what it says") {
     CHECK(campaign.pairs == 5);
     CHECK(campaign.limits.silence == 2.0);
     CHECK(campaign.limits.departure == Approx(0.02));
-    REQUIRE(campaign.metrics.size() == 2);
+    REQUIRE(campaign.metrics.size() == 3);
+    CHECK(campaign.metrics[2].log == "coordinator.linux");
+    CHECK(campaign.metrics[2].lines == "task done");
     CHECK(campaign.metrics[0].relative);
     CHECK(campaign.metrics[0].tolerance == Approx(0.1));
     CHECK(!campaign.metrics[1].relative);

@@ -24,6 +24,9 @@ TEST_CASE("a campaign that cannot be is refused in one line before its first run
          {"scenario = \"hello.toml\"", "scenario = \"nowhere.toml\"", {"nowhere.toml"}},
          {"robot = \"robot0\"", "robot = \"robot9\"", {"small.toml", "metric 'path'"}},
          {"[[metric]]", "[[metrik]]", {"small.toml", "metrik"}},
+         {"robot = \"robot0\"", "log = \"robot0.linux\"", {"small.toml", "lines"}},
+         {"robot = \"robot0\"", "robot = \"robot0\"\nlog = \"robot0.linux\"\nlines = \"x\"", {"one of"}},
+         {"/epuck.hex", "/nothing.hex", {"nothing.hex", "no such file"}},
          {"pairs = 3", "pairs = [", {"small.toml"}},
          // What only the board or the bus can know.
          {"[[sweep]]\nname = \"cable\"",

@@ -63,6 +63,26 @@ void fire(Profile& run, double time) {
 
 }  // namespace
 
+TEST_CASE("a metric counts the lines of a program's log that hold its text") {
+    Campaign campaign = campaign_of();
+    Metric tasks;
+    tasks.name = "tasks";
+    tasks.log = "c.linux";
+    tasks.lines = "task done";
+    campaign.metrics = {tasks};
+    Profile nominal = nominal_run();
+    CHECK_FALSE(measure(tasks, nominal));
+    nominal.logs["c.linux"] = {"[1 s] task done blue", "[2 s] task aborted", "[3 s] task done green"};
+    CHECK(measure(tasks, nominal) == 2.0);
+    Profile run = nominal;
+    fire(run, 2.0);
+    CHECK(judge(campaign, nominal, run, 1).outcome == Outcome::Masked);
+    run.logs["c.linux"].pop_back();
+    const Verdict verdict = judge(campaign, nominal, run, 1);
+    CHECK(verdict.outcome == Outcome::Degraded);
+    CHECK(verdict.metrics[0].second == 1.0);
+}
+
 TEST_CASE("each outcome is what its definition says, wherever the fault strikes") {
     RandomStream random(GENERATE(11, 12, 13, 14, 15, 16), "outcomes");
     const Campaign campaign = campaign_of();

@@ -114,6 +114,16 @@ TEST_CASE(
     for (const Row& row : bench.csv("one", "faults.csv"))
         names.insert(row.at("fault"));
     CHECK(names.size() == kAir.size());
+    // What the trace cannot mark is read from there, one line a firing.
+    std::size_t unmarked = 0;
+    for (const Row& row : bench.csv("one", "faults.csv"))
+        unmarked += row.at("from").empty() ? 1 : 0;
+    const Ended decoded =
+        bench.puckloop({"trace", "decode", bench.out("one").string(), "--protocol", "fault", "--errors"});
+    CHECK(decoded.status == 0);
+    CHECK(static_cast<std::size_t>(std::count(decoded.out.begin(), decoded.out.end(), '\n')) == unmarked);
+    CHECK_THAT(decoded.out, Contains(" ether ether fault: loss: data from tam0 to coordinator") &&
+                                Contains(" ircom ircom fault: duplicate: a word from tam0"));
 
     const Ended four = bench.run("four", with_faults(file, kAir, {"--threads", "4"}));
     REQUIRE(four.status == 0);

@@ -75,7 +75,12 @@ TEST_CASE("a run whose fault never fired has failed, unless that is allowed") {
     const Ended ended = bench.run("o", {never, "--duration", "1", "--in-process"});
     CHECK(ended.status == 1);
     CHECK_THAT(ended.err, Contains("fault robot0.uart.drop never fired: drop on robot0.uart") &&
+                              Contains("its window begins at 3600.000 s and the run ended at 1.0") &&
                               Contains("may_not_fire"));
+    const Ended parity = bench.run("o", {bench.hello(fault("kind = \"parity\"\n")), "--duration", "1.2",
+                                         "--in-process"});
+    CHECK(parity.status == 1);
+    CHECK_THAT(parity.err, Contains("frames without a parity bit are no candidates"));
     CHECK(bench.report("o")["success"] == false);
     CHECK(bench.report("o")["faults"][0]["fired"] == 0);
     const std::string allowed = bench.hello(fault("begin = \"1 h\"\nmay_not_fire = true\nname = \"late\"\n"));
@@ -92,7 +97,9 @@ TEST_CASE("a fault of the command line is one of the scenario, with the same evi
                 .status == 0);
     const std::string table =
         bench.hello(fault("from = \"robot0.linux\"\nat = \"2 s\"\ncount = 3\nevery = 5\nskip = 7\n"));
-    REQUIRE(bench.run("table", {table, "--duration", "4", "--in-process"}).status == 0);
+    const Ended ended = bench.run("table", {table, "--duration", "4", "--in-process"});
+    REQUIRE(ended.status == 0);
+    CHECK_THAT(ended.out, Contains("fault robot0.uart.drop: fired 3 times, first at 2.") && Contains("(0x"));
     const auto a = bench.report("table"), b = bench.report("words");
     CHECK(a["trace_sha256"] == b["trace_sha256"]);
     CHECK(a["faults"] == b["faults"]);

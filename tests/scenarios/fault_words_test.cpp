@@ -75,6 +75,9 @@ TEST_CASE("words and a table give the same fault") {
             "name = \"a b\"\nmay_not_fire = true\n"));
     CHECK(one("corrupt link=tam0.radio at=2s") ==
           from_toml("kind = \"flip\"\nlink = \"tam0.radio\"\nbegin = \"2 s\"\ncount = 1\n"));
+    // Angles with their unit, or as plain degrees.
+    CHECK(one("occlusion link=robot0.ir bearing=\"90 deg\" width=30deg").parameters.number("bearing") ==
+          Approx(one("occlusion link=robot0.ir bearing=90 width=30").parameters.number("bearing")));
     CHECK(one("stall link=robot0.uart at=2s for=30ms") ==
           from_toml("kind = \"stall\"\nlink = \"robot0.uart\"\nbegin = \"2 s\"\nend = \"2.03 s\"\n"));
 }
@@ -116,6 +119,9 @@ TEST_CASE("what a fault cannot be is refused by name") {
     said("drop link=robot0.uart match=f2f", "match is no pattern");
     said("drop link=robot0.uart offset=3", "unknown key 'offset'");
     said("drop link=robot0.uart from=robot0.pick", "at no end of robot0.uart");
+    said("truncate link=robot0.uart", "'keep' is missing");
+    said("adc_stuck node=robot0.pic value=0.5", "'channel' is missing");
+    said("occlusion link=robot0.ir bearing=\"30 cm\"", "bearing");
     said("rate link=robot0.uart", "'factor' is missing");
     said("rate link=robot0.uart factor=100", "factor is out of range");
     said("stall link=robot0.uart", "a stall without an end");

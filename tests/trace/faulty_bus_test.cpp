@@ -62,6 +62,34 @@ std::vector<std::string> sigroks(const std::string& sr, const std::string& bus) 
     return words;
 }
 
+/// Each firing is marked on its transfer or has a line of its own, and is in the other exports too.
+void check_marks(const std::string& out) {
+    const auto firings = lines_of(shell("tail -n +2 " + out + "/faults.csv").out);
+    REQUIRE(firings.size() >= 15);
+    const Called decoded = puckloop::tests::puckloop("trace decode " + out + " --errors --link leader.i2c.linux");
+    REQUIRE(decoded.status == 0);
+    std::size_t on_transfers = 0;
+    for (const std::string& firing : firings) {
+        const std::size_t name = firing.find(','), kind = firing.find(',', name + 1);
+        const std::string mark = fmt::format("{}: {}", firing.substr(name + 1, kind - name - 1),
+                                             firing.substr(firing.rfind(',') + 1));
+        INFO(mark);
+        CHECK(decoded.out.find(mark) != std::string::npos);
+        on_transfers += decoded.out.find("!! fault " + mark) != std::string::npos ? 1 : 0;
+    }
+    CHECK(on_transfers + 6 >= firings.size());
+    REQUIRE(puckloop::tests::puckloop(fmt::format("trace export {0} -o {0}/m.pcapng", out)).status == 0);
+    REQUIRE(puckloop::tests::puckloop(fmt::format("trace export {0} -o {0}/m.vcd", out)).status == 0);
+    CHECK(shell(fmt::format("grep -c 'wire 1 .* fault .end' {}/m.vcd", out)).out == "1\n");
+    if (!installed("tshark")) return;
+    std::size_t comments = 0;
+    for (const std::string& row :
+         tests::tshark(out + "/m.pcapng", "frame.comment contains \"fault: \"", "-e frame.comment"))
+        for (std::size_t at = row.find("fault: "); at != std::string::npos; at = row.find("fault: ", at + 1))
+            ++comments;
+    CHECK(comments == firings.size());
+}
+
 }  // namespace
 
 TEST_CASE("sigrok reads a bus with every kind of fault as decode does") {
@@ -75,7 +103,10 @@ TEST_CASE("sigrok reads a bus with every kind of fault as decode does") {
                             "stretch time=200us count=2",
                             "sda time=300us count=1",
                             "scl time=300us count=1",
+                            "scl at=idle time=300us",
+                            "sda at=idle time=300us",
                             "lose_arbitration time=200us count=2",
+                            "lose_arbitration phase=write time=50us count=2",
                             "start count=1",
                             "stop count=1",
                             "slave_reset time=1ms count=1",
@@ -86,9 +117,11 @@ TEST_CASE("sigrok reads a bus with every kind of fault as decode does") {
     for (const char* kind : kKinds) {
         const std::string text = kind;
         const std::size_t blank = text.find(' ');
-        faults +=
-            fmt::format(" --fault '{} link=leader.i2c from=leader.linux begin={:.5f}s {} may_not_fire=true'",
-                        text.substr(0, blank), at, text.substr(blank + 1));
+        std::string keys = fmt::format("begin={:.5f}s {}", at, text.substr(blank + 1));
+        if (const std::size_t idle = keys.find("at=idle "); idle != std::string::npos)
+            keys = fmt::format("at={:.5f}s {}", at, keys.substr(idle + 8));
+        faults += fmt::format(" --fault '{} link=leader.i2c {}{} may_not_fire=true'", text.substr(0, blank),
+                              keys.starts_with("at=") ? "" : "from=leader.linux ", keys);
         at += 0.02 + static_cast<double>(random() % 2000) / 1e5;
     }
     const std::string out = scratch("faulty_bus");
@@ -99,6 +132,7 @@ TEST_CASE("sigrok reads a bus with every kind of fault as decode does") {
     REQUIRE(run.status <= 1);
     const std::string sr = out + "/trace.sr";
     REQUIRE(puckloop::tests::puckloop(fmt::format("trace export {} -o {} --kind i2c", out, sr)).status == 0);
+    check_marks(out);
     std::size_t lost = 0;
     const std::vector<std::string> mine = ours(out, "leader.linux", lost);
     CHECK(mine.size() > 200);

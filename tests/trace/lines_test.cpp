@@ -17,9 +17,10 @@ namespace {
 /// Times at which a line changes, the level it takes first given by its rest.
 std::vector<Time> changes(const std::vector<TraceRow>& rows, const std::string& name) {
     const RecordedTrace trace(write_trace("lines.csv", rows), {});
-    const LineSurvey found = survey(trace);
+    const LineSurvey found = survey(trace, FaultMarks());
     std::vector<Time> times;
-    EdgeStream edges(trace, found);
+    const FaultMarks none;
+    EdgeStream edges(trace, none, found);
     while (const auto next = edges.next())
         for (const auto& [line, level] : next->levels)
             if (found.lines[line].full_name() == name) times.push_back(next->time);
@@ -78,5 +79,5 @@ TEST_CASE("signals of 0 and 1 are lines, others are not") {
     };
     CHECK(changes({at(10, 1), at(20, 1), at(30, 0)}, "w/board/led") == std::vector<Time>{10, 30});
     const RecordedTrace trace(write_trace("pins.csv", {at(10, 1), at(20, 0.5)}), {});
-    CHECK_FALSE(survey(trace).lines.at(0).logic);
+    CHECK_FALSE(survey(trace, FaultMarks()).lines.at(0).logic);
 }

@@ -109,9 +109,11 @@ Metric read_metric(const std::string& file, std::size_t index, const TomlValue& 
     metric.name = reader.text("name");
     metric.robot = reader.text("robot", "");
     metric.value = reader.text("value", "");
-    if (metric.robot.empty() == metric.value.empty())
-        reader.fail("name", "a metric is either a robot's path or a value of the report",
-                    "robot = \"robot0\" or value = \"/nodes/...\"");
+    metric.log = reader.text("log", "");
+    if (!metric.log.empty()) metric.lines = reader.text("lines");
+    if (!metric.robot.empty() + !metric.value.empty() + !metric.log.empty() != 1)
+        reader.fail("name", "a metric is one of a robot's path, a value of the report and a log's lines",
+                    "robot = \"robot0\", value = \"/nodes/...\" or log = \"robot0.linux\" with lines");
     try {
         const json::json_pointer pointer(metric.value);
     } catch (const json::parse_error&) {

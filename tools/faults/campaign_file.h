@@ -18,10 +18,11 @@ namespace puckloop::faults {
 /// What counts as mission: the length of a robot's path, or a number of report.json.
 struct Metric {
     std::string name;
-    std::string robot;       ///< its path in m; empty: `value`
-    std::string value;       ///< JSON pointer into report.json
+    std::string robot;       ///< its path in m; empty: `value` or `log`
+    std::string value;       ///< JSON pointer into report.json; empty: `robot` or `log`
     double tolerance = 0.0;  ///< in the metric's unit, or a share of the nominal value
     bool relative = false;
+    std::string log{}, lines{};  ///< in place of both: lines of a program's log that hold this text
 };
 
 /// When a run is not like the nominal one. Times in s.

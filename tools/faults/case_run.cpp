@@ -29,6 +29,7 @@ namespace {
 
 constexpr double kStall = 60.0;  ///< s of wall time: a busy machine must not make a hang
 constexpr int kFailed = 3;       ///< status of a child that leaves a message
+constexpr int kRefused = 2;      ///< the same, of what the user gave
 
 tools::RunRequest request_of(const Campaign& campaign) {
     tools::RunRequest request;
@@ -62,6 +63,7 @@ std::string full_disk(const std::filesystem::path& folder) {
 [[noreturn]] void run_here(const Campaign& campaign, const Case& one, const std::filesystem::path& folder,
                            int message) {
     std::string problem;
+    int status = kFailed;
     try {
         tools::RunRequest request = request_of(campaign);
         request.out = folder;
@@ -77,12 +79,15 @@ std::string full_disk(const std::filesystem::path& folder) {
         const bool ours = outcome.node.empty() && outcome.text.find("never fired") == std::string::npos;
         if (!outcome.success && (ours || names_disk(outcome.text))) problem = outcome.text;
         if (problem.empty()) problem = full_disk(folder);
+    } catch (const InputError& error) {
+        problem = error.what();
+        status = kRefused;
     } catch (const std::exception& error) {
         problem = error.what();
     }
     if (problem.empty()) ::_exit(0);
     [[maybe_unused]] const auto written = ::write(message, problem.data(), problem.size());
-    ::_exit(kFailed);
+    ::_exit(status);
 }
 
 std::string read_all(int descriptor) {
@@ -174,6 +179,7 @@ void execute(const Campaign& campaign, const Case& one, const std::filesystem::p
     }
     if (WIFSIGNALED(status))
         throw RunError(fmt::format("puckloop itself was ended by SIG{}", sigabbrev_np(WTERMSIG(status))));
+    if (WEXITSTATUS(status) == kRefused) throw InputError("", "", problem);
     if (WEXITSTATUS(status) != 0)
         throw RunError(problem.empty() ? fmt::format("a run ended with status {}", WEXITSTATUS(status))
                                        : problem);

@@ -81,15 +81,18 @@ struct Spot {
     std::string pruned;
 };
 
-/// One sweep: kinds down, places across, in the order of the cases.
-std::string heat_map(const std::string& sweep, const Results& results) {
+/// One sweep: kinds and what else differs down, places across, in the order of the cases.
+std::string heat_map(const Sweep& plan, const Results& results) {
+    const std::string& sweep = plan.name;
+    const bool counts = std::any_of(plan.over.begin(), plan.over.end(),
+                                    [](const auto& key) { return key.first == "count"; });
     std::vector<std::string> rows, places;
     std::map<std::pair<std::string, std::string>, Spot> spots;
     const auto spot = [&](const Case& one) -> Spot& {
         std::string row = kind_and_link(one.faults[0]);
         for (const auto& [key, value] : one.faults[0].items())
             if (key != "kind" && key != "link" && key != "node" && key != "from" && key != "begin" &&
-                key != "count")
+                (key != "count" || counts))
                 row += fmt::format(" {}={}", key, value_text(value));
         if (std::find(rows.begin(), rows.end(), row) == rows.end()) rows.push_back(row);
         if (std::find(places.begin(), places.end(), one.place) == places.end()) places.push_back(one.place);
@@ -225,7 +228,7 @@ std::string html_text(const Results& results) {
                                      "or when across. A cell leads to "
                                      "its case.</p>\n";
     for (const Sweep& sweep : results.campaign.sweeps)
-        html += heat_map(sweep.name, results);
+        html += heat_map(sweep, results);
     return html + cases_html(results) + "</body></html>\n";
 }
 

@@ -118,10 +118,12 @@ void read_logs(const std::filesystem::path& folder, Profile& profile) {
     for (const auto& [node, content] : profile.report.at("nodes").items()) {
         if (!content.contains("program")) continue;
         std::ifstream in(folder / (node + ".log"), std::ios::binary);
+        std::vector<std::string>& lines = profile.logs[node];
         std::string line;
         while (std::getline(in, line)) {
             profile.log_shapes.insert(node + ": " + shape_of(line));
             count_in_line(node, line, profile);
+            lines.push_back(line);
         }
     }
 }

@@ -29,6 +29,7 @@ struct Profile {
     nlohmann::json report;
     std::map<std::string, Sender> senders;                     ///< by "link from node"
     std::map<std::string, std::map<std::string, Pose>> paths;  ///< by robot, then by time as written
+    std::map<std::string, std::vector<std::string>> logs;      ///< of programs, by node: the lines
     std::set<std::string> log_shapes;                          ///< "robot0.linux: line without digits"
     std::map<std::string, double> error_counters;              ///< of the report and of programs' logs
     std::optional<double> first_fault_s;                       ///< first frame that the trace marks

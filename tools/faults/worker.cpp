@@ -69,7 +69,7 @@ class Runner {
             const Verdict verdict =
                 judge(campaign_, nominal(one.seed), read_profile(folder_), one.faults.size());
             return {{"id", one.id}, {"verdict", to_json(verdict)}};
-        } catch (const RunError& error) {
+        } catch (const std::runtime_error& error) {
             return {{"id", one.id}, {"problem", error.what()}};
         }
     }

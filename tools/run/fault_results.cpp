@@ -11,6 +11,7 @@
 #include <fstream>
 #include <map>
 #include <string>
+#include <utility>
 
 namespace puckloop::tools {
 
@@ -19,6 +20,23 @@ using nlohmann::ordered_json;
 namespace {
 
 constexpr std::size_t kFiringsInReport = 10;
+constexpr std::size_t kFaultsInSummary = 5;
+
+/// What can be said of a fault that never fired from its own words; may be empty.
+std::string why_it_did_not(const RunSetup& setup, const cosim::FaultReport& report, cosim::Time end) {
+    const auto& faults = setup.scenario.faults;
+    const auto fault = std::find_if(faults.begin(), faults.end(),
+                                    [&](const cosim::FaultSpec& one) { return one.name == report.name; });
+    if (fault == faults.end()) return "";
+    if (fault->begin >= end)
+        return fmt::format("; its window begins at {:.3f} s and the run ended at {:.3f} s",
+                           cosim::to_seconds(fault->begin), cosim::to_seconds(end));
+    if (fault->kind == "parity") return "; frames without a parity bit are no candidates";
+    const bool chosen = !fault->match.empty() || !fault->bytes.empty() || fault->position || fault->skip > 0;
+    if (!fault->link.empty() && chosen)
+        return "; no frame in its window is one that match, bytes, position and skip choose";
+    return "";
+}
 
 /// A node's report, null if it could not give one.
 ordered_json report_of_node(const cosim::Outcome::NodeReport& node) {
@@ -52,7 +70,7 @@ void hand_out_faults(RunSetup& setup) {
     }
 }
 
-void take_fault_results(cosim::Outcome& outcome) {
+void take_fault_results(const RunSetup& setup, cosim::Outcome& outcome) {
     for (const auto& node : outcome.nodes) {
         const ordered_json report = report_of_node(node);
         if (!report.is_object() || !report.contains("faults")) continue;
@@ -61,13 +79,36 @@ void take_fault_results(cosim::Outcome& outcome) {
                 if (fault.name == result.value("name", "")) cosim::add_fault_result(fault, result);
     }
     if (!outcome.success) return;
+    std::size_t others = 0;
     for (const cosim::FaultReport& fault : outcome.faults) {
         if (!fault.failed_to_fire()) continue;
-        outcome.success = false;
-        outcome.text =
-            fmt::format("fault {} never fired: {} (may_not_fire = true allows that)", fault.name, fault.text);
-        return;
+        if (!std::exchange(outcome.success, false)) {
+            ++others;
+            continue;
+        }
+        outcome.text = fmt::format("fault {} never fired: {}{}", fault.name, fault.text,
+                                   why_it_did_not(setup, fault, outcome.simulated));
     }
+    if (outcome.success) return;
+    if (others > 0) outcome.text += fmt::format("; nor did {} more", others);
+    outcome.text += " (may_not_fire = true allows that)";
+}
+
+std::string faults_summary(const cosim::Outcome& outcome) {
+    std::string text;
+    std::size_t shown = 0, fired = 0;
+    for (const cosim::FaultReport& fault : outcome.faults) {
+        if (fault.fired == 0) continue;
+        if (++fired > kFaultsInSummary) continue;
+        ++shown;
+        text += fmt::format("\nfault {}: fired {}", fault.name,
+                            fault.fired == 1 ? std::string("once") : fmt::format("{} times", fault.fired));
+        if (!fault.firings.empty())
+            text += fmt::format(", first at {:.6f} s ({})", cosim::to_seconds(fault.firings[0].time),
+                                fault.firings[0].what);
+    }
+    if (fired > shown) text += fmt::format("\nand {} more faults fired: faults.csv", fired - shown);
+    return text;
 }
 
 ordered_json faults_json(const cosim::Outcome& outcome) {

@@ -78,7 +78,7 @@ void add_linux_warnings(const std::string& name, const ordered_json& node,
                                            : "the PIC ready"));
     if (const auto failed = count("i2c", "failed"); failed > 0)
         warnings.push_back(
-            fmt::format("{}: {} of {} I2C transfers failed (the bus's log tells the addresses)", name, failed,
+            fmt::format("{}: {} of {} I2C transfers failed (the bus's log has the addresses)", name, failed,
                         count("i2c", "transfers")));
 }
 
@@ -156,7 +156,7 @@ std::string summary(const RunSetup& setup, const cosim::Outcome& outcome) {
         fmt::format("{:.3f} s simulated in {:.1f} s ({:.1f}x real time)",
                     cosim::to_seconds(outcome.simulated), outcome.wall_s, real_time_factor(outcome));
     if (outcome.success && !outcome.text.empty()) text += fmt::format("\nended: {}", outcome.text);
-    text += states_summary(setup, outcome);
+    text += states_summary(setup, outcome) + faults_summary(outcome);
     const std::vector<std::string> warnings = warnings_of(setup, outcome);
     for (std::size_t i = 0; i < warnings.size() && i < kShown; ++i)
         text += fmt::format("\nwarning: {}", warnings[i]);

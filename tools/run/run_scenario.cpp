@@ -178,7 +178,7 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
                         cosim::to_seconds(outcome.stop_time.value_or(outcome.simulated)));
     }
     judge(outcome);
-    take_fault_results(outcome);
+    take_fault_results(setup, outcome);
     collect_states(setup, outcome);
     if (request.strict) judge_strictly(setup, outcome);
     diary.ended(outcome);

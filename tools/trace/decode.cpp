@@ -47,11 +47,15 @@ void decode_trace(const RecordedTrace& trace, const TakeFrame& take) {
         uarts[link] = decoder_for(of, take);
         if (of.setting) uarts[link]->assume(*of.setting);
     }
-    I2cDecoder i2c(take);
+    const FaultMarks marks(trace);
+    FaultMarkCursor faults(marks);
+    I2cDecoder i2c(marks, take);
     RabDecoder rab(take);
     IrcomDecoder ircom(take);
     RecordedTrace::Cursor cursor(trace);
     while (const auto row = cursor.next()) {
+        while (const FaultMark* mark = faults.next(row->time))
+            decode_mark(*mark, take);
         if (const auto* frame = std::get_if<cosim::UartFrame>(&row->payload))
             uarts[row->link]->add(*row, *frame);
         else if (const auto* phase = std::get_if<cosim::I2cPhase>(&row->payload))
@@ -66,6 +70,8 @@ void decode_trace(const RecordedTrace& trace, const TakeFrame& take) {
     i2c.end();
     rab.end();
     ircom.end();
+    while (const FaultMark* mark = faults.next(cosim::kNever))
+        decode_mark(*mark, take);
 }
 
 std::string to_text(const DecodedFrame& frame) {

@@ -92,6 +92,13 @@ void RabDecoder::end() {
     }
 }
 
+void decode_mark(const FaultMark& mark, const TakeFrame& take) {
+    DecodedFrame frame{mark.time, mark.time, mark.place, mark.place, "fault", mark.text(), {}};
+    frame.errors.push_back("fault " + mark.kind);
+    frame.fields = {{"kind", mark.kind}, {"what", mark.what}};
+    take(frame);
+}
+
 void decode_radio(const cosim::TraceRow& row, const cosim::RadioFrame& radio, const TakeFrame& take) {
     static constexpr std::string_view kKinds[] = {"data",        "acknowledge",     "route request",
                                                   "route reply", "discover",        "discovered",

@@ -52,8 +52,8 @@ std::string register_name(std::span<const Register> list, int number) {
 
 }  // namespace
 
-I2cDecoder::I2cDecoder(TakeFrame take)
-    : take_(std::move(take)), transfers_([this](const I2cStep& one) { step(one); }) {}
+I2cDecoder::I2cDecoder(const FaultMarks& marks, TakeFrame take)
+    : marks_(marks), take_(std::move(take)), transfers_([this](const I2cStep& one) { step(one); }) {}
 
 void I2cDecoder::step(const I2cStep& step) {
     using Kind = I2cStep::Kind;
@@ -89,6 +89,8 @@ void I2cDecoder::step(const I2cStep& step) {
                                                  : fmt::format("byte {} {}", open.bytes.size() + 1, what)));
     };
     if (step.fault != cosim::FaultKind::None) wrong(fmt::format("fault {}", fault_name(step.fault)));
+    for (const FaultMark* mark : marks_.of_byte(step.bus, step.start))
+        open.frame.errors.push_back("fault " + mark->text());
     if (step.end == I2cStep::End::Lost) {
         wrong("lost the bus");
         return give(open);

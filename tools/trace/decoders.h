@@ -5,6 +5,7 @@
 #include "protocols/ircom.h"
 #include "protocols/xbee_frame.h"
 #include "tools/trace/decode.h"
+#include "tools/trace/fault_marks.h"
 #include "tools/trace/i2c_transfers.h"
 #include "tools/trace/received.h"
 
@@ -109,7 +110,7 @@ class XBeeDecoder : public UartDecoder {
 /// START to STOP, repeated STARTs included, with the names of known devices and registers.
 class I2cDecoder {
   public:
-    explicit I2cDecoder(TakeFrame take);
+    I2cDecoder(const FaultMarks& marks, TakeFrame take);
     void add(const cosim::TraceRow& row, const cosim::I2cPhase& phase) { transfers_.add(row, phase); }
     void end();
 
@@ -125,6 +126,7 @@ class I2cDecoder {
     void step(const I2cStep& step);
     void end_part(Open& open);
     void give(Open& open);
+    const FaultMarks& marks_;
     TakeFrame take_;
     I2cTransfers transfers_;
     std::map<std::string, Open> links_;
@@ -172,6 +174,9 @@ class IrcomDecoder {
     TakeFrame take_;
     std::map<std::pair<std::string, std::string>, Sender> senders_;
 };
+
+/// A fault that is on no frame.
+void decode_mark(const FaultMark& mark, const TakeFrame& take);
 
 void decode_radio(const cosim::TraceRow& row, const cosim::RadioFrame& frame, const TakeFrame& take);
 

@@ -6,17 +6,17 @@ namespace puckloop::tools {
 
 using cosim::Time;
 
-LineSurvey survey(const RecordedTrace& trace) {
-    LineRenderer renderer([](Time, const LineEvent&) {});
+LineSurvey survey(const RecordedTrace& trace, const FaultMarks& marks) {
+    LineRenderer renderer([](Time, const LineEvent&) {}, marks);
     trace.for_each_checked([&](const cosim::TraceRow& row) { renderer.add(row); });
     renderer.end();
     return {renderer.lines(), renderer.how_late(), renderer.last(), renderer.shortest_bit()};
 }
 
-EdgeStream::EdgeStream(const RecordedTrace& trace, const LineSurvey& survey)
+EdgeStream::EdgeStream(const RecordedTrace& trace, const FaultMarks& marks, const LineSurvey& survey)
     : cursor_(trace),
       late_(survey.late),
-      renderer_([this](Time time, const LineEvent& event) { buffer_.push(time, event); }),
+      renderer_([this](Time time, const LineEvent& event) { buffer_.push(time, event); }, marks),
       reasons_(survey.lines.size()) {
     for (const Line& line : survey.lines)
         rests_high_.push_back(line.rests_high());

@@ -17,7 +17,7 @@ struct LineSurvey {
     cosim::Time late = 0, last = 0, shortest_bit = cosim::kNever;
 };
 
-LineSurvey survey(const RecordedTrace& trace);
+LineSurvey survey(const RecordedTrace& trace, const FaultMarks& marks);
 
 /// Levels that changed at one time.
 struct Edges {
@@ -27,7 +27,8 @@ struct Edges {
 
 class EdgeStream {
   public:
-    EdgeStream(const RecordedTrace& trace, const LineSurvey& survey);
+    /// `marks` must outlive it.
+    EdgeStream(const RecordedTrace& trace, const FaultMarks& marks, const LineSurvey& survey);
     EdgeStream(const EdgeStream&) = delete;
     EdgeStream& operator=(const EdgeStream&) = delete;
 

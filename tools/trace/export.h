@@ -44,6 +44,8 @@ void export_vcd_with(const RecordedTrace& trace, std::ostream& out, VcdValues* v
 ///          frame with a fault in a packet of their own
 ///   I2C    LINKTYPE_I2C_LINUX: what lies between a START and the next START or STOP in one packet
 ///   radio  LINKTYPE_IEEE802_15_4_WITHFCS
+///   faults that leave no mark in the trace (fault_marks.h), unless it is a byte's on a bus: one packet of
+///          text each, LINKTYPE_WIRESHARK_UPPER_PDU
 /// What a fault did, a missing acknowledge and a lost bus are in the packet's comment. Signals have no place.
 void export_pcapng(const RecordedTrace& trace, std::ostream& out);
 

@@ -115,12 +115,14 @@ class Serial {
 /// What lies between a START and the next START or STOP, on one bus.
 class Segment {
   public:
-    void add(Writer& out, const I2cStep& step, std::uint8_t bus) {
+    void add(Writer& out, const I2cStep& step, std::uint8_t bus, const std::vector<const FaultMark*>& marks) {
         using Kind = I2cStep::Kind;
         if (step.end == I2cStep::End::Lost) {
             flush(out);
             begin(out, step, bus);
             note("bus lost");
+            for (const FaultMark* mark : marks)
+                note("fault: " + mark->text());
             return flush(out);
         }
         if (step.kind == Kind::Start || step.kind == Kind::Stop) flush(out);
@@ -134,6 +136,8 @@ class Segment {
         else if (!step.acknowledged && step.kind == Kind::Write)
             note(fmt::format("byte {} not acknowledged", packet_.size() - kHeader - 1));
         if (step.fault != cosim::FaultKind::None) note(fault_text(step.fault));
+        for (const FaultMark* mark : marks)
+            note("fault: " + mark->text());
     }
 
     void flush(Writer& out) {
@@ -163,14 +167,17 @@ class Segment {
 }  // namespace
 
 struct PcapngStream::Parts {
-    explicit Parts(std::ostream& out)
-        : writer(out), transfers([this](const I2cStep& step) {
+    Parts(std::ostream& out, const FaultMarks* known)
+        : writer(out), marks(known != nullptr ? *known : kNoMarks), alone(marks),
+          transfers([this](const I2cStep& step) {
               constexpr std::size_t kMostBuses = 128;
               const auto bus = buses.try_emplace(step.bus, buses.size() % kMostBuses).first->second;
-              segments[step.link].add(writer, step, bus);
+              segments[step.link].add(writer, step, bus, marks.of_byte(step.bus, step.start));
           }) {}
 
     void add(const cosim::TraceRow& row) {
+        while (const FaultMark* mark = alone.next(row.time))
+            add(*mark);
         // Bursts that have ended, first: packets come in the order in which they were complete.
         for (auto one = open.begin(); one != open.end();) {
             if (!(*one)->rests(row.time)) {
@@ -201,11 +208,33 @@ struct PcapngStream::Parts {
             one->flush(writer);
         open.clear();
         transfers.end();
+        while (const FaultMark* mark = alone.next(cosim::kNever))
+            add(*mark);
         for (auto& [link, segment] : segments)
             segment.flush(writer);
     }
 
+    /// A packet of its own, as one of those that programs hand to Wireshark: the name of the dissector, text.
+    void add(const FaultMark& mark) {
+        constexpr std::string_view kDissector = "data-text-lines";
+        constexpr std::uint64_t kNameOfDissector = 12, kEndOfTags = 0;
+        const std::string text = mark.text();
+        Bytes packet;
+        big(packet, kNameOfDissector, 2);
+        const std::size_t padded = (kDissector.size() + 3) / 4 * 4;
+        big(packet, padded, 2);
+        packet.insert(packet.end(), kDissector.begin(), kDissector.end());
+        packet.resize(packet.size() + padded - kDissector.size());
+        big(packet, kEndOfTags, 4);
+        packet.insert(packet.end(), text.begin(), text.end());
+        writer.packet(writer.interface(mark.place + " faults", LinkType::Export), mark.time, packet,
+                      "fault: " + text);
+    }
+
+    static const FaultMarks kNoMarks;
     Writer writer;
+    const FaultMarks& marks;
+    FaultMarkCursor alone;
     std::map<std::pair<std::string, std::string>, Serial> serial;
     std::vector<Serial*> open;
     std::map<std::string, protocols::UartReceiver> settings;  // of links, by either end
@@ -214,7 +243,10 @@ struct PcapngStream::Parts {
     I2cTransfers transfers;
 };
 
-PcapngStream::PcapngStream(std::ostream& out) : parts_(std::make_unique<Parts>(out)) {}
+const FaultMarks PcapngStream::Parts::kNoMarks;
+
+PcapngStream::PcapngStream(std::ostream& out, const FaultMarks* marks)
+    : parts_(std::make_unique<Parts>(out, marks)) {}
 PcapngStream::~PcapngStream() = default;
 
 void PcapngStream::add(const cosim::TraceRow& row) {
@@ -225,7 +257,8 @@ void PcapngStream::end() {
 }
 
 void export_pcapng(const RecordedTrace& trace, std::ostream& out) {
-    PcapngStream stream(out);
+    const FaultMarks marks(trace);
+    PcapngStream stream(out, &marks);
     trace.for_each_checked([&](const cosim::TraceRow& row) { stream.add(row); });
     stream.end();
 }

@@ -50,9 +50,9 @@ std::uint64_t fitting_rate(Time shortest_bit) {
 /// All samples, one after the other.
 class Samples {
   public:
-    Samples(const RecordedTrace& trace, const LineSurvey& found, std::uint64_t rate, Time origin,
+    Samples(const RecordedTrace& trace, const FaultMarks& marks, const LineSurvey& found, std::uint64_t rate, Time origin,
             std::uint64_t count)
-        : edges_(trace, found), rate_(rate), origin_(origin), count_(count) {
+        : edges_(trace, marks, found), rate_(rate), origin_(origin), count_(count) {
         for (const Line& line : found.lines) {
             channel_.push_back(line.logic ? static_cast<int>(channels_++) : -1);
             if (!line.logic) continue;
@@ -231,7 +231,8 @@ std::string metadata(const LineSurvey& found, std::uint64_t rate) {
 void export_sr(const RecordedTrace& trace, const std::string& path, std::uint64_t rate) {
     if (path == "-")
         throw InputError("", "--output", "a sigrok session is a zip archive and needs a file", "-o FILE.sr");
-    const LineSurvey found = survey(trace);
+    const FaultMarks marks(trace);
+    const LineSurvey found = survey(trace, marks);
     const auto is_logic = [](const Line& line) { return line.logic; };
     if (std::none_of(found.lines.begin(), found.lines.end(), is_logic))
         throw InputError(trace.file().string(), "", "no line to draw is among the rows asked for",
@@ -239,7 +240,7 @@ void export_sr(const RecordedTrace& trace, const std::string& path, std::uint64_
     if (rate == 0) rate = fitting_rate(found.shortest_bit);
     const Time origin = cosim::from_seconds(trace.selection().from_s);
     const std::uint64_t count = sample_at(std::max<Time>(found.last - origin, 0), rate) + kSamplesOfBit;
-    Samples samples(trace, found, rate, origin, count);
+    Samples samples(trace, marks, found, rate, origin, count);
     if (count > kMostBytes / samples.unit())
         throw InputError("", "--rate",
                          fmt::format("{} samples of {} bytes are too many", count, samples.unit()),

@@ -75,6 +75,11 @@ class Values {
               fmt::format("s{} ", fault_name(row.fault)));
     }
 
+    void add(const FaultMark& mark) {
+        emit_(mark.time, variable(mark.place, "", "fault_kind", "string", 1, "s "),
+              fmt::format("s{} ", mark.kind));
+    }
+
     const std::vector<Variable>& variables() const { return variables_; }
 
   private:
@@ -91,9 +96,13 @@ class Values {
 
     std::size_t variable(const cosim::TraceRow& row, const std::string& name, const std::string& type,
                          unsigned width, const std::string& initial) {
+        return variable(row.link, row.from, name, type, width, initial);
+    }
+    std::size_t variable(const std::string& scope, const std::string& from, const std::string& name,
+                         const std::string& type, unsigned width, const std::string& initial) {
         const auto [found, is_new] =
-            index_.try_emplace(fmt::format("{}\n{}\n{}", row.link, row.from, name), variables_.size());
-        if (is_new) variables_.push_back({row.link, row.from, name, type, width, initial});
+            index_.try_emplace(fmt::format("{}\n{}\n{}", scope, from, name), variables_.size());
+        if (is_new) variables_.push_back({scope, from, name, type, width, initial});
         return found->second;
     }
 
@@ -142,12 +151,18 @@ void export_vcd_with(const RecordedTrace& trace, std::ostream& out, VcdValues* o
     // First pass: which variables there are, and how late their changes become known.
     Time now = 0, late = 0;
     Values found([&](Time time, std::size_t, const std::string&) { late = std::max(late, now - time); });
-    LineRenderer lines([](Time, const LineEvent&) {});
+    const FaultMarks marks(trace);
+    LineRenderer lines([](Time, const LineEvent&) {}, marks);
+    FaultMarkCursor surveyed_marks(marks, FaultMarkCursor::All);
     trace.for_each_checked([&](const cosim::TraceRow& row) {
+        while (const FaultMark* mark = surveyed_marks.next(row.time))
+            found.add(*mark);
         now = row.time;
         found.add(row);
         lines.add(row);
     });
+    while (const FaultMark* mark = surveyed_marks.next(cosim::kNever))
+        found.add(*mark);
     lines.end();
     const LineSurvey surveyed{lines.lines(), lines.how_late(), lines.last(), lines.shortest_bit()};
     std::vector<Variable> variables;
@@ -192,7 +207,7 @@ void export_vcd_with(const RecordedTrace& trace, std::ostream& out, VcdValues* o
             write_until(piece);
         }
     };
-    EdgeStream edges(trace, surveyed);
+    EdgeStream edges(trace, marks, surveyed);
     std::optional<Edges> next = edges.next();
     const auto edges_until = [&](Time end) {
         for (; next && next->time < end; next = edges.next())
@@ -200,12 +215,17 @@ void export_vcd_with(const RecordedTrace& trace, std::ostream& out, VcdValues* o
                 if (is_drawn(surveyed.lines[line])) buffer.push(next->time, {line, level ? "1" : "0"});
     };
     RecordedTrace::Cursor cursor(trace);
+    FaultMarkCursor next_mark(marks, FaultMarkCursor::All);
     while (const auto row = cursor.next()) {
+        while (const FaultMark* mark = next_mark.next(row->time))
+            values.add(*mark);
         values.add(*row);
         edges_until(row->time - late);
         others_until(row->time - late);
         write_until(row->time - late);
     }
+    while (const FaultMark* mark = next_mark.next(cosim::kNever))
+        values.add(*mark);
     edges_until(cosim::kNever);
     others_until(cosim::kNever);
     write_until(cosim::kNever);

@@ -9,11 +9,15 @@
 // high at 2, SDA low at 4 (the condition), SCL low at 6, first bit at 7. A STOP: SDA low at 4, SCL high at 8,
 // SDA high at 12. A device stretches the low half of the ninth clock, where it was written to, or of the
 // first, where it is read. Between the bytes of a transfer SCL is low. Deviations: a START that is repeated
-// takes longer on a real bus; who pulls the lines low is not drawn; what a master sent without the bus is not
-// drawn; of a byte without answer nine clocks, as far as the next START.
+// takes longer on a real bus; who pulls the lines low is not drawn; of a byte without answer nine clocks, as
+// far as the next START. Of a byte at which a fault took the bus from its master the bits up to the one that
+// was lost, and the line as it is held from then on; what a master lost to another one is that one's byte.
+// A fault that leaves no mark in the trace (fault_marks.h) is on a line of its place: for the byte that it
+// harmed, or for 10 us.
 // Signals with no other values than 0 and 1 are lines; a radio's line is high while it transmits.
 
 #include "cosim/trace/trace_row.h"
+#include "tools/trace/fault_marks.h"
 #include "tools/trace/i2c_transfers.h"
 
 #include <cstdint>
@@ -48,7 +52,8 @@ class LineRenderer {
   public:
     /// Times are not in order, but never before those of the rows by more than how_late().
     using Emit = std::function<void(cosim::Time, const LineEvent&)>;
-    explicit LineRenderer(Emit emit);
+    /// `marks` must outlive it.
+    explicit LineRenderer(Emit emit, const FaultMarks& marks = kNoMarks);
 
     void add(const cosim::TraceRow& row);
     void end();
@@ -72,10 +77,17 @@ class LineRenderer {
     void active(std::size_t line, cosim::Time begin, cosim::Time end);
     void uart(const cosim::TraceRow& row, const cosim::UartFrame& frame);
     void i2c(const I2cStep& step);
+    Wires& wires_of(const std::string& bus);
+    cosim::Time i2c_start(const Wires& wires, const I2cStep& step);
     void i2c_byte(Wires& wires, const I2cStep& step);
+    void i2c_lost(const I2cStep& step, const FaultMark& mark);
+    void mark(const FaultMark& mark);
     void signal(const cosim::TraceRow& row, const cosim::Signal& signal);
 
+    static const FaultMarks kNoMarks;
     Emit emit_;
+    const FaultMarks& marks_;
+    FaultMarkCursor alone_{marks_};
     I2cTransfers transfers_;
     std::vector<Line> lines_;
     std::map<std::string, std::size_t, std::less<>> index_;

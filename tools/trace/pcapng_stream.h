@@ -2,6 +2,7 @@
 // The pcapng form of a trace (export.h) while its rows come.
 
 #include "cosim/trace/trace_row.h"
+#include "tools/trace/fault_marks.h"
 
 #include <memory>
 #include <ostream>
@@ -11,7 +12,8 @@ namespace puckloop::tools {
 class PcapngStream {
   public:
     /// Writes the file's header.
-    explicit PcapngStream(std::ostream& out);
+    /// `marks`, which must outlive it, are known once the run has ended.
+    explicit PcapngStream(std::ostream& out, const FaultMarks* marks = nullptr);
     ~PcapngStream();
     PcapngStream(const PcapngStream&) = delete;
     PcapngStream& operator=(const PcapngStream&) = delete;
