@@ -17,7 +17,18 @@ namespace puckloop::cosim {
 /// What a fault sits on. Radio: a module's way to the air; Xbee: the air between modules.
 enum class PlaceKind : std::uint8_t { Uart, Radio, I2c, InfraRed, Pic, Rab, Tam, Linux, Xbee, Ircom };
 
-enum class Unit : std::uint8_t { Time, Ratio, Number, Integer, Voltage, Frequency, Degrees, Flag, Byte, Text };
+enum class Unit : std::uint8_t {
+    Time,
+    Ratio,
+    Number,
+    Integer,
+    Voltage,
+    Frequency,
+    Degrees,
+    Flag,
+    Byte,
+    Text
+};
 
 struct ParameterInfo {
     std::string_view key;

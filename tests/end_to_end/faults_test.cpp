@@ -77,8 +77,8 @@ TEST_CASE("a run whose fault never fired has failed, unless that is allowed") {
     CHECK_THAT(ended.err, Contains("fault robot0.uart.drop never fired: drop on robot0.uart") &&
                               Contains("its window begins at 3600.000 s and the run ended at 1.0") &&
                               Contains("may_not_fire"));
-    const Ended parity = bench.run("o", {bench.hello(fault("kind = \"parity\"\n")), "--duration", "1.2",
-                                         "--in-process"});
+    const Ended parity =
+        bench.run("o", {bench.hello(fault("kind = \"parity\"\n")), "--duration", "1.2", "--in-process"});
     CHECK(parity.status == 1);
     CHECK_THAT(parity.err, Contains("frames without a parity bit are no candidates"));
     CHECK(bench.report("o")["success"] == false);

@@ -86,8 +86,9 @@ TEST_CASE("a fault's line is high while its byte lasts, a line that is held is d
     const std::string bus = results.rows.at(0).link.substr(0, results.rows.at(0).link.rfind('.'));
     const Time held = 5 * kMillisecond, until = held + 300 * kMicrosecond;
     results.write(kHead + firing(bus, "nack", results.bytes[1], "m 0x20 byte 2 written 0x55") +
-                  firing(bus, "sda", held + 7, fmt::format("m finds the bus busy low from {} until {}",
-                                                           format_seconds(held), format_seconds(until))));
+                  firing(bus, "sda", held + 7,
+                         fmt::format("m finds the bus busy low from {} until {}", format_seconds(held),
+                                     format_seconds(until))));
     const RecordedTrace trace(results.folder, {});
     const FaultMarks marks(trace);
     const LineSurvey found = survey(trace, marks);
@@ -101,6 +102,42 @@ TEST_CASE("a fault's line is high while its byte lasts, a line that is held is d
     auto sda = changes[bus + "/sda"];
     REQUIRE(sda.size() > 2);
     CHECK(std::vector<Time>(sda.end() - 2, sda.end()) == std::vector<Time>{held, until});
+}
+
+TEST_CASE("of a byte at which a fault took the bus the bits before are drawn, then the line as it was held") {
+    Results results(kHead);
+    TraceRow request = results.rows.at(0), lost = request;
+    const std::string bus = request.link.substr(0, request.link.rfind('.'));
+    const Time us = kMicrosecond, start = 20 * kMillisecond, until = start + 300 * us;
+    request.time = start;
+    request.payload = I2cPhase{I2cPhaseKind::Start, 0xA5, 0, start, 10 * us, 0};  // 1010 0101
+    lost.from = bus;
+    lost.time = start + 90 * us;
+    lost.payload = I2cPhase{I2cPhaseKind::BusLost, 0xA5, 0, start, 10 * us, 0};
+    std::ofstream(results.folder + "/trace.csv", std::ios::app) << to_csv(request) << '\n'
+                                                                << to_csv(lost) << '\n';
+    const auto drawn = [&](const std::string& kind, const std::string& more) {
+        results.write(kHead + firing(bus, kind, start, "m 0x52 address byte 0xa5" + more));
+        const RecordedTrace trace(results.folder, {});
+        const FaultMarks marks(trace);
+        const LineSurvey found = survey(trace, marks);
+        std::map<std::string, std::vector<double>> changes;
+        EdgeStream edges(trace, marks, found);
+        while (const auto next = edges.next())
+            for (const auto& [line, level] : next->levels)
+                if (next->time >= start)
+                    changes[found.lines[line].name].push_back(static_cast<double>(next->time - start) / us);
+        return changes;
+    };
+    // Bits 1, 0, and another master's 0 in place of the second 1; its STOP when it lets go.
+    auto lines = drawn("lose_arbitration", fmt::format(" bit 5 until {}", format_seconds(until)));
+    CHECK(lines["sda"] == std::vector<double>{2.5, 4.375, 12.5, 297.5});
+    CHECK(lines["scl"] == std::vector<double>{3.75, 5, 10, 15, 20, 25, 30, 293.75});
+    // SDA low from behind the first bit: a 0 fits, at the next 1 the master lets go.
+    lines = drawn(
+        "sda", fmt::format(" low from {} until {}", format_seconds(start + 11 * us), format_seconds(until)));
+    CHECK(lines["sda"] == std::vector<double>{2.5, 4.375, 11, 300});
+    CHECK(lines["scl"] == std::vector<double>{3.75, 5, 10, 15, 20, 25});
 }
 
 TEST_CASE("a list of firings that nobody wrote is refused in one line, whatever is in it") {

@@ -66,7 +66,8 @@ std::vector<std::string> sigroks(const std::string& sr, const std::string& bus) 
 void check_marks(const std::string& out) {
     const auto firings = lines_of(shell("tail -n +2 " + out + "/faults.csv").out);
     REQUIRE(firings.size() >= 15);
-    const Called decoded = puckloop::tests::puckloop("trace decode " + out + " --errors --link leader.i2c.linux");
+    const Called decoded =
+        puckloop::tests::puckloop("trace decode " + out + " --errors --link leader.i2c.linux");
     REQUIRE(decoded.status == 0);
     std::size_t on_transfers = 0;
     for (const std::string& firing : firings) {
@@ -96,17 +97,18 @@ TEST_CASE("sigrok reads a bus with every kind of fault as decode does") {
     const unsigned seed = Catch::rngSeed() != 0 ? Catch::rngSeed() : std::random_device{}();
     std::mt19937 random{seed};
     INFO("--rng-seed " << seed);
+    // sigrok's decoder (0.5.3) takes no note of a STOP within an address byte, and shows a byte without its
+    // acknowledge: losses there are fault_marks_test's.
     const char* kKinds[] = {"nack phase=address count=2",
                             "nack phase=write count=2",
                             "flip count=2",
                             "flip phase=read count=2",
                             "stretch time=200us count=2",
-                            "sda time=300us count=1",
+                            "sda phase=write register=13 position=1 time=300us count=1",
                             "scl time=300us count=1",
                             "scl at=idle time=300us",
                             "sda at=idle time=300us",
-                            "lose_arbitration time=200us count=2",
-                            "lose_arbitration phase=write time=50us count=2",
+                            "lose_arbitration phase=write register=13 position=1 bit=3 time=200us count=2",
                             "start count=1",
                             "stop count=1",
                             "slave_reset time=1ms count=1",

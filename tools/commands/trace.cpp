@@ -5,11 +5,14 @@
 #include "tools/cli/command.h"
 #include "tools/commands/trace_parts.h"
 #include "tools/trace/export.h"
+#include "tools/trace/fault_marks.h"
 #include "tools/trace/recorded_trace.h"
 
 #include <fmt/format.h>
 
+#include <map>
 #include <memory>
+#include <string>
 
 namespace puckloop::tools {
 
@@ -22,6 +25,19 @@ struct Options {
     bool json = false;
 };
 
+/// What the table cannot count.
+std::string unmarked_faults(const RecordedTrace& trace) {
+    const FaultMarks marks(trace);
+    std::map<std::string, std::size_t> places;
+    FaultMarkCursor cursor(marks, FaultMarkCursor::All);
+    while (const FaultMark* mark = cursor.next(cosim::kNever))
+        ++places[mark->place];
+    std::string text;
+    for (const auto& [place, count] : places)
+        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", place, count);
+    return text.empty() ? "" : fmt::format("faults that are in no row (faults.csv): {}\n", text);
+}
+
 void run(const Options& options) {
     if (options.file.empty())
         throw InputError("", "trace", "no file given",
@@ -32,7 +48,7 @@ void run(const Options& options) {
     if (!options.csv.empty() || !options.vcd.empty()) return;
     cosim::TraceStats stats;
     trace.for_each_checked([&](const cosim::TraceRow& row) { stats.add(row); });
-    fmt::print("{}", options.json ? stats.json() : stats.text());
+    fmt::print("{}", options.json ? stats.json() : stats.text() + unmarked_faults(trace));
 }
 
 }  // namespace

@@ -154,7 +154,7 @@ class Conduct {
             if (!measure(metric, profile))
                 throw InputError(campaign_.file.string(), fmt::format("metric '{}'", metric.name),
                                  "the nominal run has no such number",
-                                 !metric.log.empty()     ? "the node of a program, such as robot0.linux"
+                                 !metric.log.empty()    ? "the node of a program, such as robot0.linux"
                                  : metric.robot.empty() ? "a number in report.json"
                                                         : "the name of a robot");
         store_->set_note(key, profile.report.value("trace_sha256", ""));

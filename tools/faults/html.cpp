@@ -84,8 +84,8 @@ struct Spot {
 /// One sweep: kinds and what else differs down, places across, in the order of the cases.
 std::string heat_map(const Sweep& plan, const Results& results) {
     const std::string& sweep = plan.name;
-    const bool counts = std::any_of(plan.over.begin(), plan.over.end(),
-                                    [](const auto& key) { return key.first == "count"; });
+    const bool counts =
+        std::any_of(plan.over.begin(), plan.over.end(), [](const auto& key) { return key.first == "count"; });
     std::vector<std::string> rows, places;
     std::map<std::pair<std::string, std::string>, Spot> spots;
     const auto spot = [&](const Case& one) -> Spot& {

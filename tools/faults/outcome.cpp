@@ -221,9 +221,9 @@ std::optional<double> measure(const Metric& metric, const Profile& run) {
     if (!metric.log.empty()) {
         const auto log = run.logs.find(metric.log);
         if (log == run.logs.end()) return std::nullopt;
-        return std::count_if(
-            log->second.begin(), log->second.end(),
-            [&](const std::string& line) { return line.find(metric.lines) != std::string::npos; });
+        return std::count_if(log->second.begin(), log->second.end(), [&](const std::string& line) {
+            return line.find(metric.lines) != std::string::npos;
+        });
     }
     const json::json_pointer place(metric.value);
     if (!run.report.contains(place) || !run.report.at(place).is_number()) return std::nullopt;

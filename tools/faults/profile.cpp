@@ -171,7 +171,7 @@ bool names_error(const std::string& name) {
         "refused", "wrong",       "bad",          "short",   "slip",
         "stray",   "synchron",    "invalid",      "timeout", "corrupt",
         "missed",  "implausible", "not answered", "stuck",   "breaks",
-        "dropped",     "rejected",     "retries"};
+        "dropped", "rejected",    "retries"};
     return std::any_of(kWords.begin(), kWords.end(),
                        [&](const char* word) { return name.find(word) != std::string::npos; });
 }

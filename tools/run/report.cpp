@@ -77,9 +77,8 @@ void add_linux_warnings(const std::string& name, const ordered_json& node,
                                            ? "the radio module ready, its rate that of the port"
                                            : "the PIC ready"));
     if (const auto failed = count("i2c", "failed"); failed > 0)
-        warnings.push_back(
-            fmt::format("{}: {} of {} I2C transfers failed (the bus's log has the addresses)", name, failed,
-                        count("i2c", "transfers")));
+        warnings.push_back(fmt::format("{}: {} of {} I2C transfers failed (the bus's log has the addresses)",
+                                       name, failed, count("i2c", "transfers")));
 }
 
 }  // namespace

@@ -168,7 +168,9 @@ class Segment {
 
 struct PcapngStream::Parts {
     Parts(std::ostream& out, const FaultMarks* known)
-        : writer(out), marks(known != nullptr ? *known : kNoMarks), alone(marks),
+        : writer(out),
+          marks(known != nullptr ? *known : kNoMarks),
+          alone(marks),
           transfers([this](const I2cStep& step) {
               constexpr std::size_t kMostBuses = 128;
               const auto bus = buses.try_emplace(step.bus, buses.size() % kMostBuses).first->second;

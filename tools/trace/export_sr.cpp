@@ -50,8 +50,8 @@ std::uint64_t fitting_rate(Time shortest_bit) {
 /// All samples, one after the other.
 class Samples {
   public:
-    Samples(const RecordedTrace& trace, const FaultMarks& marks, const LineSurvey& found, std::uint64_t rate, Time origin,
-            std::uint64_t count)
+    Samples(const RecordedTrace& trace, const FaultMarks& marks, const LineSurvey& found, std::uint64_t rate,
+            Time origin, std::uint64_t count)
         : edges_(trace, marks, found), rate_(rate), origin_(origin), count_(count) {
         for (const Line& line : found.lines) {
             channel_.push_back(line.logic ? static_cast<int>(channels_++) : -1);

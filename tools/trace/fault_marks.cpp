@@ -65,7 +65,8 @@ std::optional<FaultMark> mark_of(std::string_view line, const std::string& file,
     FaultMark mark{*time, std::string(columns[2]), std::string(columns[1]), std::string(columns[7])};
     int bit = 0;
     const std::string_view digits = word_behind(mark.what, " bit ");
-    if (!digits.empty() && std::from_chars(digits.data(), digits.data() + digits.size(), bit).ec == std::errc())
+    if (!digits.empty() &&
+        std::from_chars(digits.data(), digits.data() + digits.size(), bit).ec == std::errc())
         mark.bit = bit;
     mark.low_from = time_of(word_behind(mark.what, " low from "));
     mark.until = time_of(word_behind(mark.what, " until "));
@@ -87,9 +88,8 @@ bool is_wanted(const TraceSelection& selection, const FaultMark& mark) {
     };
     const bool bus = mark.place.ends_with(".i2c"), air = mark.place == "ether";
     return among(selection.links, is_here) && among(selection.nodes, is_here) &&
-           among(selection.kinds, [&](const std::string& kind) {
-               return (bus && kind == "i2c") || (air && kind == "radio");
-           });
+           among(selection.kinds,
+                 [&](const std::string& kind) { return (bus && kind == "i2c") || (air && kind == "radio"); });
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 #pragma once
 // Faults that leave no mark in a trace: those of I2C buses, of the air and the light between nodes, of boards
-// and programs. What they did is in the trace, that it was a fault only in faults.csv beside it. (Rows of UART
-// and radio links have a column for their own.)
+// and programs. What they did is in the trace, that it was a fault only in faults.csv beside it. (Rows of
+// UART and radio links have a column for their own.)
 //
 // faults.csv has the first 1000 firings of each fault.
 

@@ -1,5 +1,7 @@
 #include "tools/trace/i2c_transfers.h"
 
+#include <algorithm>
+
 namespace puckloop::tools {
 
 using cosim::I2cPhase;
@@ -75,6 +77,7 @@ void I2cTransfers::answer(Link& link, const TraceRow& row, const I2cPhase& phase
     step.bus = link.bus;
     step.known = row.time;
     if (row.fault != cosim::FaultKind::None) step.fault = row.fault;
+    step.start = std::max(step.start, phase.start);  // later where another transfer was waited for
     if (phase.kind == I2cPhaseKind::BusLost) return hand_over(link, I2cStep::End::Lost);
     step.start = phase.start;
     step.stretch = phase.stretch;

@@ -125,7 +125,7 @@ void LineRenderer::mark(const FaultMark& mark) {
     constexpr Time kShown = 10 * cosim::kMicrosecond;
     now_ = std::max(now_, mark.time);
     Time end = mark.time + kShown;
-    if (mark.low_from && mark.until && (mark.kind == "scl" || mark.kind == "sda")) {
+    if (mark.low_from && mark.until && mark.what.find("bus busy") != std::string::npos) {
         // The bus was at rest, and a master had to wait.
         const Wires& wires = wires_of(mark.place);
         active(mark.kind == "scl" ? wires.scl : wires.sda, *mark.low_from, *mark.until);
