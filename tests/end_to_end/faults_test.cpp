@@ -89,6 +89,14 @@ TEST_CASE("a run whose fault never fired has failed, unless that is allowed") {
     CHECK(bench.report("p")["warnings"].empty());
 }
 
+TEST_CASE("a program whose serial port fails says why it ends") {
+    const Workbench bench;
+    const Ended ended = bench.run("o", {bench.hello(), "--duration", "2.5", "--in-process", "--fault",
+                                        "write_error node=robot0.linux errno=EIO begin=2s count=1"});
+    CHECK(ended.status == 1);
+    CHECK_THAT(ended.err, Contains("/dev/ttyS0: Input/output error") && !Contains("does not answer"));
+}
+
 TEST_CASE("a fault of the command line is one of the scenario, with the same evidence") {
     const Workbench bench;
     REQUIRE(bench
