@@ -105,9 +105,9 @@ TEST_CASE("a fault of the command line is one of the scenario, with the same evi
                 .status == 0);
     const std::string table =
         bench.hello(fault("from = \"robot0.linux\"\nat = \"2 s\"\ncount = 3\nevery = 5\nskip = 7\n"));
-    const Ended ended = bench.run("table", {table, "--duration", "4", "--in-process"});
-    REQUIRE(ended.status == 0);
-    CHECK_THAT(ended.out, Contains("fault robot0.uart.drop: fired 3 times, first at 2.") && Contains("(0x"));
+    const Ended from_table = bench.run("table", {table, "--duration", "4", "--in-process"});
+    REQUIRE(from_table.status == 0);
+    CHECK_THAT(from_table.out, Contains("fault robot0.uart.drop: fired 3 times, first at 2.") && Contains("(0x"));
     const auto a = bench.report("table"), b = bench.report("words");
     CHECK(a["trace_sha256"] == b["trace_sha256"]);
     CHECK(a["faults"] == b["faults"]);
