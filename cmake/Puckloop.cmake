@@ -4,6 +4,8 @@ add_library(puckloop_options INTERFACE)
 target_include_directories(puckloop_options INTERFACE ${PROJECT_SOURCE_DIR})
 target_compile_options(puckloop_options INTERFACE -Wall -Wextra -Wpedantic $<$<CXX_COMPILER_ID:GNU>:-Wshadow=local> -Wconversion -Wnon-virtual-dtor
                                                   -Wold-style-cast -Woverloaded-virtual -Werror)
+# Everything is position independent for the preload library; nobody interposes our own functions, so those of one file may be inlined.
+target_compile_options(puckloop_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-fno-semantic-interposition>)
 
 option(PUCKLOOP_ASAN "Build with the address and undefined-behaviour sanitizers" OFF)
 if(PUCKLOOP_ASAN)
