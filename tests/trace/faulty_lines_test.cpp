@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <sstream>
@@ -100,12 +101,14 @@ TEST_CASE("sigrok and tshark find the errors of a line with every kind of fault 
     std::string faults;
     // The main board sends at the beginning of each tenth of a second. What a fault itself puts on the line
     // stands at rest; what it does to frames is done to one somewhere in a record, or from its first on.
-    double at = 1.05 + static_cast<double>(random() % 3000) / 1e5, inverted = 0.0, stuck = 0.0;
+    double at = 1.05 + static_cast<double>(random() % 3000) / 1e5, inverted = 0.0;
+    std::vector<double> cuts;
     for (const char* kind : kKinds) {
         const std::string text = fmt::format(fmt::runtime(kind), 20 + random() % 50);
         const std::size_t blank = text.find(' ');
         if (text.starts_with("invert")) inverted = at;
-        if (text.starts_with("stuck for")) stuck = at;
+        if (text.starts_with("stuck") || text.starts_with("unplug"))
+            cuts.insert(cuts.end(), {at, at + 0.052});
         const bool window = text.find("for=") != std::string::npos;
         faults += fmt::format(" --fault '{} link=robot0.uart{} {}={:.5f}s{}{} may_not_fire=true'",
                               text.substr(0, blank), text.starts_with("swapped") ? "" : " from=robot0.pic",
@@ -145,9 +148,12 @@ TEST_CASE("sigrok and tshark find the errors of a line with every kind of fault 
             INFO(one.what << " at " << one.time);
             CHECK(near(theirs, one.time, 1e-6, 1.5 * kFrame, {"break", "framing error"}));
         }
-        // A frame that is on the way when the line gets stuck is whole in the trace, and drawn with the low:
-        // sigrok may be out of step for the rest of that record.
-        const auto is_cut = [&](double time) { return time >= stuck - kFrame && time < stuck + 0.01; };
+        // A frame that is on the way when the line gets stuck or is unplugged, or comes back, is whole in the
+        // trace, and drawn with that level: sigrok may be out of step for the rest of that record.
+        const auto is_cut = [&](double time) {
+            return std::any_of(cuts.begin(), cuts.end(),
+                               [&](double cut) { return time >= cut - kFrame && time < cut + 0.01; });
+        };
         for (const Found& one : theirs) {
             if (is_inverted(one.time) || is_cut(one.time)) continue;
             INFO("sigrok: " << one.what << " at " << one.time);
