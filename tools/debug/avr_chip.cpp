@@ -15,8 +15,7 @@ namespace puckloop::debug {
 
 namespace {
 
-constexpr std::uint32_t kData = 0x800000, kEeprom = 0x810000, kFuses = 0x820000, kSignature = 0x840000;
-constexpr std::uint32_t kDataSpace = 0x10000;
+constexpr std::uint32_t kEeprom = 0x810000, kFuses = 0x820000, kSignature = 0x840000;
 constexpr std::uint16_t kWorking = 0x20;  ///< R0 to R31 lie below
 constexpr std::size_t kSreg = 32, kSp = 33, kPc = 34;
 constexpr std::uint16_t kRcallNext = 0xD000;  ///< a compiler's way to make room on the stack
@@ -73,11 +72,6 @@ class AvrDebugChip final : public DebugChip {
             if (!write_byte(address++, byte)) return false;
         return true;
     }
-    std::optional<std::uint16_t> data_address(std::uint32_t address) const override {
-        if (address < kData || address >= kData + kDataSpace) return std::nullopt;
-        return static_cast<std::uint16_t>(address - kData);
-    }
-    std::uint32_t address_of_data(std::uint16_t data) const override { return kData + data; }
     std::uint32_t ram_start() const override { return chip_.inside().device.ram_start; }
     std::uint32_t ram_end() const override { return chip_.inside().device.ram_end(); }
     bool stack_grows_up() const override { return false; }

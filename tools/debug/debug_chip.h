@@ -57,10 +57,14 @@ class DebugChip {
     virtual bool read_memory(std::uint32_t address, std::span<std::uint8_t> bytes) const = 0;
     /// Data registers have theirs, as if the program wrote. What exists before a wrong address is written.
     virtual bool write_memory(std::uint32_t address, std::span<const std::uint8_t> bytes) = 0;
-    /// The address in data space that a debugger's address is, if it is one.
-    virtual std::optional<std::uint16_t> data_address(std::uint32_t address) const = 0;
+    /// The address in data space that a debugger's address is, if it is one: from 0x800000 on, as avr-gdb has
+    /// it.
+    static std::optional<std::uint16_t> data_address(std::uint32_t address) {
+        if (address < kData || address >= kData + kDataSpace) return std::nullopt;
+        return static_cast<std::uint16_t>(address - kData);
+    }
     /// The other way round.
-    virtual std::uint32_t address_of_data(std::uint16_t data) const = 0;
+    static std::uint32_t address_of_data(std::uint16_t data) { return kData + data; }
     /// First and behind the last data address of RAM.
     virtual std::uint32_t ram_start() const = 0;
     virtual std::uint32_t ram_end() const = 0;
@@ -79,7 +83,7 @@ class DebugChip {
     virtual Instruction instruction(std::uint32_t pc) const = 0;
     /// Whether a breakpoint can stand there.
     virtual bool is_code(std::uint32_t pc) const = 0;
-    /// "0x1f48" style: how the family's tools write a program address.
+    /// The data sheet's name of what an interrupt vector serves.
     virtual std::string vector_name(int vector) const = 0;
 
     struct Field {
@@ -99,6 +103,9 @@ class DebugChip {
     /// Replaces the addresses at which a run ends early.
     virtual void set_stops(std::span<const std::uint32_t> addresses) = 0;
     virtual void set_instrument(chip::Instrument* instrument, bool accesses) = 0;
+
+  private:
+    static constexpr std::uint32_t kData = 0x800000, kDataSpace = 0x10000;
 };
 
 /// The chip must outlive it.

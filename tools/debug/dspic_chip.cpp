@@ -20,7 +20,7 @@ namespace puckloop::debug {
 
 namespace {
 
-constexpr std::uint32_t kData = 0x800000, kDataSpace = 0x10000, kWholeWords = 0x1000000;
+constexpr std::uint32_t kWholeWords = 0x1000000;
 constexpr std::uint32_t kProgramSpace = 0x1000000;
 constexpr std::uint16_t kWEnd = 0x20;
 constexpr std::uint16_t kDmaRam = 0x7800;  ///< of the dsPIC33FJ256GP710, up to the end of its RAM
@@ -106,11 +106,6 @@ class DspicDebugChip final : public DebugChip {
         }
         return true;
     }
-    std::optional<std::uint16_t> data_address(std::uint32_t address) const override {
-        if (address < kData || address >= kData + kDataSpace) return std::nullopt;
-        return static_cast<std::uint16_t>(address - kData);
-    }
-    std::uint32_t address_of_data(std::uint16_t data) const override { return kData + data; }
     std::uint32_t ram_start() const override { return device().ram_start; }
     std::uint32_t ram_end() const override { return device().ram_end; }
     bool shared(std::uint16_t data) const override { return device().family_33f && data >= kDmaRam; }
