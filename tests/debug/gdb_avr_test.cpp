@@ -45,6 +45,10 @@ TEST_CASE("the documented session with avr-gdb") {
         WARN("skipped: avr-gdb (package gdb-avr) or avr-gcc with avr-libc is not installed");
         return;
     }
+    if (std::system("avr-gdb -nx -batch -ex 'python import gdb' 2>&1 | grep -q Python") == 0) {
+        WARN("skipped: avr-gdb writes warnings for want of its Python files (package gdb)");
+        return;
+    }
     const std::string session = documented_session();
     const Workbench bench;
     tests::GdbServer server(bench.folder, "--mcu atmega1284p " + lamp);

@@ -89,22 +89,22 @@ Process::~Process() {
 }
 
 Ended Process::wait(double limit) {
-    Ended ended;
+    if (id_ < 0) return ended_;
     int status = 0;
     pid_t gone = 0;
     while ((gone = waitpid(id_, &status, WNOHANG)) == 0) {
-        if (wall_seconds() - begun_ > limit && !ended.timed_out) {
-            ended.timed_out = true;
+        if (wall_seconds() - begun_ > limit && !ended_.timed_out) {
+            ended_.timed_out = true;
             signal(SIGKILL);
         }
         std::this_thread::sleep_for(kPoll);
     }
     id_ = -1;
-    ended.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    ended.seconds = wall_seconds() - begun_;
-    ended.out = text_of(out_);
-    ended.err = text_of(err_);
-    return ended;
+    ended_.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    ended_.seconds = wall_seconds() - begun_;
+    ended_.out = text_of(out_);
+    ended_.err = text_of(err_);
+    return ended_;
 }
 
 void Process::signal(int number) const {

@@ -29,7 +29,7 @@ class Process {
     Process(const Process&) = delete;
     Process& operator=(const Process&) = delete;
 
-    /// Waits until it ends; after `limit` wall-clock seconds it is killed.
+    /// Waits until it ends; after `limit` wall-clock seconds it is killed. Asked again: the same answer.
     Ended wait(double limit = 120.0);
     void signal(int number) const;
     pid_t id() const { return id_; }
@@ -38,8 +38,9 @@ class Process {
 
   private:
     std::filesystem::path out_, err_;
-    pid_t id_ = -1;
+    pid_t id_ = -1;  ///< -1: it ended and was waited for
     double begun_ = 0;
+    Ended ended_;
 };
 
 /// Children of `parent` that run (zombies do not count).
