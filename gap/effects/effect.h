@@ -31,12 +31,12 @@ struct Effect {
     const char* equation;
     std::vector<Kind> kinds;
     std::vector<EffectParameter> parameters;
-    std::vector<const char*> needs;       ///< columns that must be there and vary; "a|b": one of them
-    const char* observables;              ///< what it touches
-    const char* enters;                   ///< where it enters the simulator
-    std::vector<const char*> confounded;  ///< names of effects that can look the same
-    const char* separated_by;             ///< the experiment that tells it from those
-    bool measuring_chain = false;         ///< of tracker, host or ruler, not of the robot
+    std::vector<const char*> needs{};       ///< columns that must be there and vary; "a|b": one of them
+    const char* observables;                ///< what it touches
+    const char* enters;                     ///< where it enters the simulator
+    std::vector<const char*> confounded{};  ///< names of effects that can look the same
+    const char* separated_by;               ///< the experiment that tells it from those
+    bool measuring_chain = false;           ///< of tracker, host or ruler, not of the robot
 };
 
 /// All of them, in the order of the sheet.

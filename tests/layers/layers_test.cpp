@@ -104,6 +104,22 @@ std::vector<std::string> includes_of(const fs::path& file) {
 
 }  // namespace
 
+TEST_CASE("the analysis of measured data includes no tool") {
+    const fs::path source = PUCKLOOP_SOURCE;
+    int files = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(source / "gap")) {
+        const std::string extension = entry.path().extension().string();
+        if (extension != ".h" && extension != ".cpp") continue;
+        ++files;
+        for (const std::string& included : includes_of(entry.path())) {
+            INFO(entry.path() << " includes " << included);
+            CHECK_FALSE(included.starts_with("tools/"));
+            CHECK_FALSE(included.starts_with("tests/"));
+        }
+    }
+    CHECK(files > 100);
+}
+
 TEST_CASE("folders depend downward only") {
     const fs::path source = PUCKLOOP_SOURCE;
     std::set<std::string> upward;

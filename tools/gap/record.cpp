@@ -1,6 +1,6 @@
 // puckloop gap record: an experiment performed on the emulator, firmware in the loop.
 
-#include "gap/emulate/record.h"
+#include "tools/gap/emulate/record.h"
 #include "base/error.h"
 #include "base/log.h"
 #include "tools/cli/check.h"

@@ -1,7 +1,7 @@
 #pragma once
 // `puckloop gap` and its subcommands, each in a file of its own.
 
-#include "gap/emulate/stage.h"
+#include "tools/gap/emulate/stage.h"
 
 namespace puckloop::tools {
 

@@ -2,9 +2,9 @@
 // instruments' noise: nothing changed, nothing seen.
 
 #include "gap/data/experiment.h"
-#include "gap/emulate/record.h"
 #include "gap/pipeline/analyse.h"
 #include "tests/scratch.h"
+#include "tools/gap/emulate/record.h"
 
 #include <catch2/catch.hpp>
 

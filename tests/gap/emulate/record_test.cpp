@@ -2,12 +2,12 @@
 
 #include "base/error.h"
 #include "gap/data/experiment.h"
-#include "gap/emulate/record.h"
-#include "gap/emulate/secrets.h"
-#include "gap/emulate/wave_floor.h"
 #include "gap/pipeline/analyse.h"
 #include "physics/sensors/ground.h"
 #include "tests/scratch.h"
+#include "tools/gap/emulate/record.h"
+#include "tools/gap/emulate/secrets.h"
+#include "tools/gap/emulate/wave_floor.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,0 +1,69 @@
+#include "tools/gap/emulate/record_serial.h"
+
+#include "base/error.h"
+#include "base/random.h"
+#include "protocols/epuck_serial.h"
+
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+namespace puckloop::gap::emulate {
+
+namespace {
+
+constexpr double kByte = 10.0 / 115200;  // s, by the board's clock
+constexpr double kAnalyserNoise = 1e-7;  // s
+constexpr double kApart = 1.5;           // bytes: more is the next answer
+constexpr std::size_t kAnswers = 24, kBriefAnswers = 8;
+constexpr double kSeconds = 4.0, kBriefSeconds = 1.5;
+
+/// Start bits on the main board's line, s.
+std::vector<double> start_bits(const std::filesystem::path& trace) {
+    std::ifstream in(trace);
+    std::string line;
+    std::vector<double> times;
+    while (std::getline(in, line)) {
+        if (line.find(",robot0.uart,robot0.pic,uart,") == std::string::npos) continue;
+        std::istringstream cells(line);
+        std::string cell;
+        for (int k = 0; k < 7; ++k)
+            std::getline(cells, cell, ',');
+        times.push_back(std::strtod(cell.c_str(), nullptr));
+    }
+    return times;
+}
+
+}  // namespace
+
+selftest::HiddenExperiment record_serial(const RecordOptions& options) {
+    Act act;
+    act.arena = "[arena]\nsize = [\"2 m\", \"2 m\"]\n";
+    act.commands = {{0, 0, 0}, {options.brief ? kBriefSeconds : kSeconds, 0, 0}};
+    (void)perform(options.robot, act, options.tools, options.seed, options.scratch);
+    const auto times = start_bits(options.scratch / "out" / "trace.csv");
+    const std::size_t wanted = options.brief ? kBriefAnswers : kAnswers;
+    RandomStream noise(options.seed, "logic analyser");
+    selftest::HiddenExperiment experiment;
+    experiment.kind = "timing";
+    for (std::size_t i = 0; i < times.size() && experiment.runs.size() < wanted;) {
+        std::size_t end = i + 1;
+        while (end < times.size() && times[end] - times[end - 1] < kApart * kByte)
+            ++end;
+        selftest::HiddenRun run;
+        for (std::size_t k = i; end - i == protocols::kEpuckSensorBytes && k < end; ++k) {
+            const auto number = static_cast<double>(k - i);
+            run.column("seq").values.push_back(number);
+            run.column("t_robot_s", "s").values.push_back(number * kByte);
+            run.column("t_host_s", "s")
+                .values.push_back(times[k] - times[i] + kAnalyserNoise * noise.normal());
+            run.column("nominal_period", "s").values.push_back(kByte);
+        }
+        if (run.rows() > 0) experiment.runs.push_back(std::move(run));
+        i = end;
+    }
+    if (experiment.runs.size() < wanted) throw RunError("too few whole answers on the serial line");
+    return experiment;
+}
+
+}  // namespace puckloop::gap::emulate

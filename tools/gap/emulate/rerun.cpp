@@ -1,0 +1,128 @@
+#include "tools/gap/emulate/rerun.h"
+
+#include "base/error.h"
+#include "gap/overlay/overlay_sensors.h"
+#include "physics/description/parameters.h"
+#include "tools/gap/emulate/reacts.h"
+#include "tools/gap/emulate/rerun_rab.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace puckloop::gap::emulate {
+
+namespace {
+
+/// What the experiment says of its robot, as far as the simulator has it.
+Robot nominal_robot(const Experiment& experiment, const RerunOptions& options) {
+    Robot robot;
+    robot.firmware = options.firmware;
+    for (const auto& [name, value] : experiment.nominal) {
+        int index = -1;
+        if (physics::find_parameter(name, index) != nullptr && !made_by_firmware(name))
+            robot.parameters[name] = value;
+    }
+    return robot;
+}
+
+/// What warms up is looked at as late as it was measured; else a moment tells all.
+double longest_stand(const Verdict& verdict) {
+    constexpr double kLongest = 20.0;  // s
+    for (const Cause& cause : verdict.causes)
+        for (const FittedParameter& parameter : cause.parameters)
+            if (parameter.name.find("warmup") != std::string::npos) return kLongest;
+    return 0.0;
+}
+
+/// Parameters that neither an overlay's run nor this one takes.
+std::vector<std::string> left_out(const Experiment& experiment, const Verdict& verdict) {
+    const std::string text = overlay_toml(experiment, verdict);
+    std::vector<std::string> names;
+    const auto measuring = text.find("\n[measurement]\n");
+    if (measuring == std::string::npos) return names;
+    for (std::size_t from = text.find('"', measuring); from != std::string::npos;) {
+        const std::size_t to = text.find('"', from + 1);
+        const std::string name = text.substr(from + 1, to - from - 1);
+        names.push_back(name);
+        from = text.find('"', to + 1);
+    }
+    return names;
+}
+
+Rerun not_done(const RerunOptions& options, const char* why) {
+    std::error_code ignored;
+    std::filesystem::remove_all(options.scratch, ignored);
+    Rerun result;
+    result.asked = true;
+    result.not_done = why;
+    return result;
+}
+
+/// As many as `longest` seconds allow, from all over; at least one.
+std::vector<React> chosen(const std::vector<React>& all, double longest) {
+    for (std::size_t count = all.size(); count > 0; --count) {
+        auto some = spread_of(all, count);
+        double seconds = 0.0;
+        for (const React& react : some)
+            seconds += react.act.commands.back().seconds;
+        if (longest <= 0 || seconds <= longest || count == 1) return some;
+    }
+    return all;
+}
+
+}  // namespace
+
+Rerun rerun(const Experiment& experiment, const Verdict& verdict, const RerunOptions& options) try {
+    Rerun result;
+    result.asked = true;
+    if (verdict.causes.empty()) {
+        result.not_done = "no cause was named, so there is nothing to add to the simulation";
+        return result;
+    }
+    if (experiment.kind == Kind::Motion && options.firmware.empty() &&
+        experiment.nominal_or("firmware.agenda", 1.0) != 0) {
+        result.not_done = "the robot ran another firmware than the project's own; name its image";
+        return result;
+    }
+    if (experiment.kind == Kind::Rab) {
+        result = rerun_rab(experiment, options);
+        result.left_out = left_out(experiment, verdict);
+        return result;
+    }
+    const auto all = reacts_of(experiment, longest_stand(verdict), result.not_done);
+    if (!result.not_done.empty()) return result;
+    const auto reacts = chosen(all, options.longest);
+    const auto names = compared(experiment.kind);
+    std::vector<ErrorSum> errors[2] = {std::vector<ErrorSum>(names.size()),
+                                       std::vector<ErrorSum>(names.size())};
+    std::size_t done = 0;
+    for (std::size_t k = 0; k < reacts.size(); ++k)
+        for (const int side : {0, 1}) {
+            Robot robot = nominal_robot(experiment, options);
+            robot.period = reacts[k].period;
+            if (side == 1) robot.overlay = options.overlay;
+            const auto rows = perform(robot, reacts[k].act, options.tools, options.seed + k, options.scratch);
+            add_errors(experiment, reacts[k], rows, errors[side]);
+            std::filesystem::remove_all(options.scratch);
+            if (options.done) options.done(++done, 2 * reacts.size());
+        }
+    result.runs = reacts.size();
+    result.of_runs = all.size();
+    result.rows = errors[0][0].rows;
+    for (std::size_t o = 0; o < names.size(); ++o) {
+        if (errors[0][o].rows == 0) continue;
+        const auto rms = [](const ErrorSum& sum) {
+            return std::sqrt(sum.squares / static_cast<double>(sum.rows));
+        };
+        result.observables.push_back({names[o].first, names[o].second, rms(errors[0][o]), rms(errors[1][o])});
+    }
+    result.left_out = left_out(experiment, verdict);
+    return result;
+} catch (const RunError& error) {  // an overlay may stop the robot's line altogether
+    return not_done(options, error.what());
+} catch (const InputError& error) {  // no tools, or what a run does not take
+    return not_done(options, error.what());
+}
+
+}  // namespace puckloop::gap::emulate

@@ -1,0 +1,196 @@
+#include "tools/gap/emulate/rerun_rab.h"
+
+#include "physics/description/parameters.h"
+#include "scenarios/scenario.h"
+#include "tools/gap/emulate/record_rab.h"
+#include "tools/rab/measure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <utility>
+
+namespace puckloop::gap::emulate {
+
+namespace {
+
+constexpr std::size_t kDistances = 12;  // at most so many are performed
+constexpr int kRepeats = 8;             // poses of a pair at a distance
+constexpr int kPairs = 24, kBriefPairs = 6;
+constexpr double kFine = 1e-3;  // m: closer distances are one
+
+struct Message {
+    double distance = 0.0;  // m
+    int receiver = 1;       // nearest to the sender's direction
+    bool received = false;
+    double strength = NAN, bearing_error = NAN;  // ln counts; rad
+};
+
+std::vector<Message> measured(const Experiment& experiment) {
+    std::vector<Message> messages;
+    for (const Run& run : experiment.runs) {
+        const auto cell = [&](const char* name, std::size_t row) {
+            const auto& column = run.column(name);
+            return column.empty() ? NAN : column[row];
+        };
+        for (std::size_t i = 0; i < run.rows; ++i) {
+            Message one;
+            one.distance = cell("distance_m", i);
+            if (std::isnan(one.distance) || cell("emitter", i) > 0) continue;
+            const double strength = cell("strength", i), truth = cell("true_bearing_rad", i),
+                         received = cell("received", i), nearest = cell("receiver", i);
+            one.received = std::isnan(received) ? !std::isnan(strength) : received > 0.5;
+            if (strength > 0) one.strength = std::log(strength);
+            one.bearing_error = std::remainder(cell("bearing_rad", i) - truth, 2 * std::numbers::pi);
+            one.receiver = !std::isnan(nearest) ? static_cast<int>(nearest)
+                           : std::isnan(truth)  ? 0
+                                                : nearest_receiver(truth);
+            messages.push_back(one);
+        }
+    }
+    return messages;
+}
+
+/// The distances of most messages, rising.
+std::vector<double> distances_of(const std::vector<Message>& messages) {
+    std::map<long, std::size_t> counts;
+    for (const Message& one : messages)
+        if (one.distance >= 0) ++counts[std::lround(one.distance / kFine)];
+    std::vector<std::pair<std::size_t, long>> most;
+    for (const auto& [place, count] : counts)
+        most.emplace_back(count, place);
+    std::sort(most.rbegin(), most.rend());
+    most.resize(std::min(most.size(), kDistances));
+    std::vector<double> distances;
+    for (const auto& [count, place] : most)
+        distances.push_back(static_cast<double>(place) * kFine);
+    std::sort(distances.begin(), distances.end());
+    return distances;
+}
+
+std::vector<Message> emulated(const tools::RabMeasurement& what) {
+    std::vector<Message> messages;
+    for (const tools::RabReadingRow& row : tools::measure_rab(
+                                               what, [](double) {}, nullptr)
+                                               .rows) {
+        Message one;
+        one.distance = what.distances[row.distance];
+        one.receiver = nearest_receiver(row.bearing_true);
+        one.received = row.received;
+        if (row.received && row.range > 0) one.strength = std::log(row.range);
+        if (row.received)
+            one.bearing_error = std::remainder(row.bearing - row.bearing_true, 2 * std::numbers::pi);
+        messages.push_back(one);
+    }
+    return messages;
+}
+
+struct Moments {
+    double sum = 0.0, squares = 0.0;
+    std::size_t rows = 0;
+    void add(double value) {
+        if (std::isnan(value)) return;
+        sum += value;
+        squares += value * value;
+        ++rows;
+    }
+    double mean() const { return sum / static_cast<double>(rows); }
+};
+using Groups = std::map<std::pair<long, int>, Moments>;
+
+/// Of messages: strength by distance and nearest receiver, bearing's error by receiver, share received.
+struct Seen {
+    Groups strength, bearing, received;
+};
+
+Seen seen_in(const std::vector<Message>& messages) {
+    Seen seen;
+    for (const Message& one : messages) {
+        seen.strength[{std::lround(one.distance / kFine), one.receiver}].add(one.strength);
+        seen.bearing[{0, one.receiver}].add(one.bearing_error);
+        seen.received[{0, 0}].add(one.received ? 1.0 : 0.0);
+    }
+    return seen;
+}
+
+/// Root mean square of the groups' differences, weighted by measured rows; rows 0: nothing to compare.
+std::pair<double, std::size_t> difference(const Groups& measured, const Groups& other) {
+    double squares = 0.0;
+    std::size_t rows = 0;
+    for (const auto& [group, own] : measured) {
+        const auto place = other.find(group);
+        if (own.rows == 0 || place == other.end() || place->second.rows == 0) continue;
+        squares += static_cast<double>(own.rows) * std::pow(own.mean() - place->second.mean(), 2);
+        rows += own.rows;
+    }
+    return {std::sqrt(squares / static_cast<double>(std::max<std::size_t>(rows, 1))), rows};
+}
+
+/// Standard deviation about the groups' means.
+double scatter(const Groups& groups) {
+    double squares = 0.0, free = 0.0;
+    for (const auto& [group, own] : groups)
+        if (own.rows > 1) {
+            squares += own.squares - own.sum * own.mean();
+            free += static_cast<double>(own.rows - 1);
+        }
+    return std::sqrt(std::max(squares, 0.0) / std::max(free, 1.0));
+}
+
+void compare(const char* name, const char* unit, Groups Seen::*part, const Seen& told,
+             const Seen (&performed)[2], Rerun& result) {
+    const auto [before, rows] = difference(told.*part, performed[0].*part);
+    if (rows == 0) return;
+    result.observables.push_back({name, unit, before, difference(told.*part, performed[1].*part).first});
+    result.rows = std::max(result.rows, rows);
+}
+
+void compare_scatter(const char* name, const char* unit, Groups Seen::*part, const Seen& told,
+                     const Seen (&performed)[2], Rerun& result) {
+    if ((told.*part).empty() || (performed[0].*part).empty()) return;
+    const double own = scatter(told.*part);
+    result.observables.push_back({name, unit, std::abs(own - scatter(performed[0].*part)),
+                                  std::abs(own - scatter(performed[1].*part))});
+}
+
+}  // namespace
+
+Rerun rerun_rab(const Experiment& experiment, const RerunOptions& options) {
+    Rerun result;
+    result.asked = true;
+    const auto messages = measured(experiment);
+    tools::RabMeasurement what;
+    what.firmware = options.tools.rab;
+    what.distances = distances_of(messages);
+    what.repeats = kRepeats;
+    what.pairs = options.longest > 0 ? kBriefPairs : kPairs;
+    what.seed = options.seed;
+    if (what.distances.empty()) {
+        result.not_done = "no row with a distance";
+        return result;
+    }
+    const Seen told = seen_in(messages);
+    Seen performed[2];
+    for (const int side : {0, 1}) {
+        scenarios::Scenario scenario;
+        scenario.world.arena = physics::rectangular_arena(4, 4);
+        for (const auto& [name, value] : experiment.nominal) {
+            int index = -1;
+            if (physics::find_parameter(name, index) != nullptr) scenario.world.parameters[name] = value;
+        }
+        if (side == 1) scenarios::apply_overlay(scenario, options.overlay);
+        what.parameters = scenario.world.parameters;
+        performed[side] = seen_in(emulated(what));
+        if (options.done) options.done(static_cast<std::size_t>(side) + 1, 2);
+    }
+    compare("strength", "ln counts", &Seen::strength, told, performed, result);
+    compare_scatter("strength scatter", "ln counts", &Seen::strength, told, performed, result);
+    compare("bearing", "rad", &Seen::bearing, told, performed, result);
+    compare_scatter("bearing scatter", "rad", &Seen::bearing, told, performed, result);
+    compare("received", "1", &Seen::received, told, performed, result);
+    result.runs = result.of_runs = static_cast<std::size_t>(what.pairs);
+    return result;
+}
+
+}  // namespace puckloop::gap::emulate

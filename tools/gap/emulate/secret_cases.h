@@ -1,0 +1,29 @@
+#pragma once
+// The self test on the emulator: a robot changed in secret, recorded with the firmware in the loop, analysed
+// against the unchanged model.
+
+#include "tools/gap/emulate/record.h"
+#include "tools/gap/emulate/secrets.h"
+
+#include <string>
+#include <vector>
+
+namespace puckloop::gap::emulate {
+
+struct SecretResult {
+    const Secret* secret = nullptr;
+    std::string decision, error;     ///< error: the recording or the analysis failed
+    std::vector<std::string> named;  ///< causes, the first one first
+    std::vector<std::string> told;   ///< the causes' parameters with intervals
+    bool found = false;              ///< the first cause is a right one; of nothing changed: no effect
+};
+
+/// Records and analyses one. Folders are made in `options.scratch` and, unless they are kept, removed.
+SecretResult try_secret(const Secret& secret, const RecordOptions& options);
+
+/// What was changed and what was said, with the first parameters; ends with a line feed.
+std::string secret_line(const SecretResult& result);
+/// A table for people.
+std::string secrets_text(const std::vector<SecretResult>& results);
+
+}  // namespace puckloop::gap::emulate
