@@ -1,6 +1,7 @@
 #include "gap/data/csv.h"
 
 #include "base/error.h"
+#include "gap/data/problems.h"
 
 #include <fmt/format.h>
 
@@ -71,7 +72,7 @@ bool parse(std::string_view cell, double& value) {
 
 }  // namespace
 
-CsvTable read_csv(const std::filesystem::path& file) {
+CsvTable read_csv(const std::filesystem::path& file, Problems* problems) {
     // Pipes and devices may never end.
     std::error_code failed;
     const auto type = std::filesystem::status(file, failed).type();
@@ -119,19 +120,24 @@ CsvTable read_csv(const std::filesystem::path& file) {
             continue;
         }
         const auto cells = cells_of(line, separator);
-        if (cells.size() != table.names.size())
-            throw InputError(file.string(), place, fmt::format("has {} cells", cells.size()),
-                             fmt::format("{}, as the header", table.names.size()));
+        const bool whole = attempt(problems, [&] {
+            if (cells.size() != table.names.size())
+                throw InputError(file.string(), place, fmt::format("has {} cells", cells.size()),
+                                 fmt::format("{}, as the header", table.names.size()));
+        });
+        if (!whole) continue;
         for (std::size_t i = 0; i < cells.size(); ++i) {
             double value = 0.0;
-            if (!parse(cells[i], value) || std::isinf(value))
-                throw InputError(file.string(), place,
-                                 fmt::format("\"{}\" in column \"{}\" is not a finite number",
-                                             readable(cells[i]), table.names[i]),
-                                 cells[i].find(',') != std::string_view::npos
-                                     ? "a decimal point, not a comma"
-                                     : "a number, or nothing where it is missing");
-            table.columns[i].push_back(value);
+            const bool number = attempt(problems, [&] {
+                if (!parse(cells[i], value) || std::isinf(value))
+                    throw InputError(file.string(), place,
+                                     fmt::format("\"{}\" in column \"{}\" is not a finite number",
+                                                 readable(cells[i]), table.names[i]),
+                                     cells[i].find(',') != std::string_view::npos
+                                         ? "a decimal point, not a comma"
+                                         : "a number, or nothing where it is missing");
+            });
+            table.columns[i].push_back(number ? value : std::numeric_limits<double>::quiet_NaN());
         }
         if (table.rows() > kMostRows)
             throw InputError(file.string(), place, "is too long", fmt::format("at most {} rows", kMostRows));

@@ -7,6 +7,8 @@
 
 namespace puckloop::gap {
 
+class Problems;
+
 struct CsvTable {
     std::vector<std::string> names;
     std::vector<std::vector<double>> columns;  ///< NaN where a cell is empty, "nan" or "NA"
@@ -15,6 +17,7 @@ struct CsvTable {
 
 /// Comma, semicolon or tab between cells (as the header has it); empty lines and lines that begin with '#'
 /// are passed over. Throws InputError with the line for text, infinities, and rows of another length.
-CsvTable read_csv(const std::filesystem::path& file);
+/// Where `problems` are gathered, bad rows are left out, bad cells are missing, and reading goes on.
+CsvTable read_csv(const std::filesystem::path& file, Problems* problems = nullptr);
 
 }  // namespace puckloop::gap

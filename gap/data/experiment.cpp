@@ -5,6 +5,8 @@
 #include "base/toml_file.h"
 #include "gap/data/columns.h"
 #include "gap/data/csv.h"
+#include "gap/data/problems.h"
+#include "gap/sync/frames.h"
 #include "gap/validate/check.h"
 #include "scenarios/reader.h"
 
@@ -149,7 +151,8 @@ void read_constants(Reader& reader, Kind kind, const TomlValue& table, Frame& fr
     }
 }
 
-Run read_run(const TomlValue& table, std::size_t index, Experiment& experiment, Frame& frame) {
+Run read_run(const TomlValue& table, std::size_t index, Experiment& experiment, Frame& frame,
+             Problems* problems) {
     Reader reader(frame.file, fmt::format("run {}", index + 1), table);
     Run run;
     run.file = reader.text("file");
@@ -157,7 +160,7 @@ Run read_run(const TomlValue& table, std::size_t index, Experiment& experiment, 
     run.conditions = frame.conditions;
     read_conditions(reader, run.conditions);
     const std::filesystem::path path = experiment.folder / run.file;
-    CsvTable csv = read_csv(path);
+    CsvTable csv = read_csv(path, problems);
     run.rows = csv.rows();
     std::map<std::string, std::string> used;  // CSV name: canonical name
     for (const ColumnInfo& info : columns_of(experiment.kind)) {
@@ -266,9 +269,7 @@ void read_assumed(Reader& top, Experiment& experiment) {
     }
 }
 
-}  // namespace
-
-Experiment read_experiment(const std::filesystem::path& folder) {
+Experiment read_folder(const std::filesystem::path& folder, Problems* problems) {
     std::error_code ignored;
     if (!std::filesystem::is_directory(folder, ignored))
         throw InputError(folder.string(), "", "is not a folder", "a folder with experiment.toml");
@@ -301,15 +302,33 @@ Experiment read_experiment(const std::filesystem::path& folder) {
     if (runs.empty()) top.fail("run", "no run", "at least one [[run]] with its file");
     top.finish();
     for (std::size_t i = 0; i < runs.size(); ++i)
-        experiment.runs.push_back(read_run(*runs[i], i, experiment, frame));
+        attempt(problems,
+                [&] { experiment.runs.push_back(read_run(*runs[i], i, experiment, frame, problems)); });
+    const bool whole = experiment.runs.size() == runs.size();
     for (const auto& [name, origin] : frame.origins)
-        if (!experiment.has(name))
-            throw InputError(
-                frame.file, fmt::format("line {}", origin.line),
-                fmt::format("{} is to be the column \"{}\", which no file has", name, origin.from),
-                "a column of the CSV files");
+        attempt(problems, [&] {
+            if (whole && !experiment.has(name))
+                throw InputError(
+                    frame.file, fmt::format("line {}", origin.line),
+                    fmt::format("{} is to be the column \"{}\", which no file has", name, origin.from),
+                    "a column of the CSV files");
+        });
     tidy(experiment.cautions);
+    return experiment;
+}
+
+}  // namespace
+
+Experiment read_experiment(const std::filesystem::path& folder) {
+    Experiment experiment = read_folder(folder, nullptr);
     check(experiment);
+    align_times(experiment);
+    return experiment;
+}
+
+Experiment survey_experiment(const std::filesystem::path& folder, Problems& problems) {
+    Experiment experiment = read_folder(folder, &problems);
+    if (!experiment.runs.empty()) check(experiment, &problems);
     return experiment;
 }
 

@@ -11,6 +11,8 @@
 
 namespace puckloop::gap {
 
+class Problems;
+
 enum class Kind { Proximity, Motion, Rab, Microphone, Ground, Accelerometer, Timing };
 
 /// One run: a table whose columns all have `rows` values; NaN = missing.
@@ -59,6 +61,10 @@ struct Experiment {
 /// used: wrong units, swapped columns, a clock that jumps, constant columns, missing truth, NaN, two robots
 /// mixed. What can be used with care becomes a caution. Throws InputError with file and line.
 Experiment read_experiment(const std::filesystem::path& folder);
+
+/// The same, but every problem found goes to `problems` and reading goes on behind it, as far as it makes
+/// sense; clocks are not synchronised, so that it is done at once. Throws where nothing can be read at all.
+Experiment survey_experiment(const std::filesystem::path& folder, Problems& problems);
 
 std::string_view kind_name(Kind kind);  ///< "proximity", ...
 /// Throws std::invalid_argument with one line and the nearest name.

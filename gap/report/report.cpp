@@ -59,6 +59,7 @@ std::string report_html(const Experiment& experiment, const Verdict& verdict) {
                                   "<body>\n",
                                   escaped(experiment.title), kStyle);
     out += header_section(experiment, verdict);
+    out += next_section(verdict);
     out += verdict_section(verdict);
     out += cautions_section(verdict);
     out += gain_section(verdict);

@@ -60,8 +60,6 @@ std::string verdict_section(const Verdict& verdict) {
         if (said.insert(cause.sentence).second) out += paragraph(cause.sentence);
     if (verdict.summary.find(verdict.heldout.sentence) == std::string::npos)
         out += paragraph(verdict.heldout.sentence);
-    if (!verdict.suggestions.empty())
-        out += paragraph("Next experiment: " + verdict.suggestions.front().what);
     return out + "</div>\n";
 }
 

@@ -9,6 +9,8 @@
 namespace puckloop::gap::report {
 
 std::string header_section(const Experiment& experiment, const Verdict& verdict);
+/// What to do next, in order: the first thing a reader needs.
+std::string next_section(const Verdict& verdict);
 std::string verdict_section(const Verdict& verdict);
 std::string cautions_section(const Verdict& verdict);
 std::string gain_section(const Verdict& verdict);

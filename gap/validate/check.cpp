@@ -6,7 +6,7 @@
 #include "gap/clean/missing_cells.h"
 #include "gap/data/columns.h"
 #include "gap/data/nominal.h"
-#include "gap/sync/frames.h"
+#include "gap/data/problems.h"
 #include "gap/validate/check_kinds.h"
 #include "gap/validate/check_mixed.h"
 
@@ -243,30 +243,33 @@ void check_runs(Experiment& experiment) {
 
 }  // namespace
 
-void check(Experiment& experiment) {
-    check_nominal(experiment);
+void check(Experiment& experiment, Problems* problems) {
+    const auto step = [&](const auto& what) { return attempt(problems, what); };
+    step([&] { check_nominal(experiment); });
     for (const ColumnInfo& info : columns_of(experiment.kind)) {
         if (!experiment.has(info.name)) continue;
         drop_empty(experiment, info);
         for (Run& run : experiment.runs)
             if (run.has(info.name)) {
-                check_range(experiment, run, info);
-                if (is_index(info)) check_index(experiment, run, info);
+                step([&] { check_range(experiment, run, info); });
+                if (is_index(info)) step([&] { check_index(experiment, run, info); });
             }
-        check_missing(experiment, info);
-        check_constant(experiment, info);
+        step([&] { check_missing(experiment, info); });
+        step([&] { check_constant(experiment, info); });
         check_hung(experiment, info);
-        check_clipped(experiment, info);
+        step([&] { check_clipped(experiment, info); });
     }
     for (const Run& run : experiment.runs)
         for (const char* clock : {"t_s", "t_host_s", "t_robot_s"})
-            if (run.has(clock)) check_clock(experiment, run, clock);
-    fill_missing(experiment);
-    drop_copies(experiment);
-    check_runs(experiment);
-    check_mixed(experiment);
-    check_kind(experiment);
-    align_times(experiment);
+            if (run.has(clock)) step([&] { check_clock(experiment, run, clock); });
+    if (problems != nullptr && !problems->empty()) return;
+    step([&] {
+        fill_missing(experiment);
+        drop_copies(experiment);
+        check_runs(experiment);
+        check_mixed(experiment);
+        check_kind(experiment);
+    });
 }
 
 }  // namespace puckloop::gap

@@ -7,6 +7,7 @@ namespace puckloop::gap {
 
 /// Throws InputError for what cannot be used; appends to `cautions` what can be used with care. May drop
 /// rows that no analysis can use (all truth missing) and says so.
-void check(Experiment& experiment);
+/// Where `problems` are gathered, every check is made; those that need sound columns only where all are.
+void check(Experiment& experiment, Problems* problems = nullptr);
 
 }  // namespace puckloop::gap

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/log.h"
 #include "emu/image/image.h"
+#include "gap/begin/expected_time.h"
 #include "gap/data/experiment.h"
 #include "gap/pipeline/analyse.h"
 #include "gap/report/report.h"
@@ -51,15 +52,21 @@ void tell_experiment(const gap::Experiment& experiment) {
 }
 
 /// The steps in the log if there is one; else one line that is written over, on a terminal only.
-std::function<void(const std::string&, double)> progress_line() {
+std::function<void(const std::string&, double)> progress_line(double expected) {
+    const auto begun = std::chrono::steady_clock::now();
+    const auto left = [begun, expected](double share) {
+        const double elapsed =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+        return gap::rough_time(gap::seconds_left(expected, elapsed, share));
+    };
     if (log::wants(log::Level::Info))
-        return [said = std::string()](const std::string& what, double share) mutable {
-            if (what != said) log::info("{:.0f} %: {}", 100 * share, what);
+        return [said = std::string(), left](const std::string& what, double share) mutable {
+            if (what != said) log::info("{:.0f} %: {}; {} left", 100 * share, what, left(share));
             said = what;
         };
     if (::isatty(STDERR_FILENO) == 0) return {};
-    return [](const std::string& what, double share) {
-        fmt::print(stderr, "\r\033[K{:3.0f} %  {}", 100 * share, what);
+    return [left](const std::string& what, double share) {
+        fmt::print(stderr, "\r\033[K{:3.0f} %, {} left: {}", 100 * share, left(share), what);
         std::fflush(stderr);
     };
 }
@@ -133,7 +140,8 @@ void analyse_folder(const Request& request) {
             if (std::filesystem::is_directory(file))
                 throw InputError(file.string(), "", "is a folder", "a file, or nothing yet");
     }
-    gap::Options options{request.seed, std::max(1U, std::thread::hardware_concurrency()), progress_line()};
+    const unsigned threads = std::max(1U, std::thread::hardware_concurrency());
+    gap::Options options{request.seed, threads, progress_line(gap::expected_seconds(experiment, threads))};
     const auto begun = std::chrono::steady_clock::now();
     gap::Verdict verdict = gap::analyse(experiment, options);
     verdict.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
@@ -178,6 +186,8 @@ void declare_gap(Command& app, int& status) {
         ->type_name("IMAGE");
     declare_log_options(*command, request->log);
     command->require_subcommand(0, 1);
+    declare_gap_new(*command, status);
+    declare_gap_check(*command, status);
     declare_gap_import(*command, status);
     declare_gap_record(*command, status);
     declare_gap_selftest(*command, status);

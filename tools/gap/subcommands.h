@@ -8,7 +8,9 @@ namespace puckloop::tools {
 class Command;
 
 void declare_gap(Command& app, int& status);
+void declare_gap_check(Command& gap, int& status);
 void declare_gap_import(Command& gap, int& status);
+void declare_gap_new(Command& gap, int& status);
 void declare_gap_record(Command& gap, int& status);
 void declare_gap_selftest(Command& gap, int& status);
 

@@ -121,3 +121,22 @@ TEST_CASE("a verdict without causes, series and observables still makes a page")
     CHECK(unclosed(html) == "");
     CHECK_THAT(html, Contains("No effect found") && Contains("none is claimed"));
 }
+
+TEST_CASE("every decision opens the page with what to do next") {
+    const Experiment experiment = made_experiment();
+    Verdict verdict = made_verdict(experiment);
+    const auto steps = [&](Decision decision) {
+        verdict.decision = decision;
+        const std::string html = report_html(experiment, verdict);
+        const auto begin = html.find("What to do next");
+        REQUIRE(begin < html.find("class=\"verdict"));
+        return html.substr(begin, html.find("</ol>", begin) - begin);
+    };
+    CHECK_THAT(steps(Decision::Named), Contains("--model overlay.toml") && Contains("no effect"));
+    CHECK_THAT(steps(Decision::NoEffect), !Contains("overlay.toml"));
+    CHECK_THAT(steps(Decision::Unexplained), Contains("Use no overlay"));
+    verdict.rivals = {{verdict.causes.front(), "", 2.0, "another <surface>"}};
+    CHECK_THAT(steps(Decision::CannotTell), Contains("another &lt;surface&gt;"));
+    verdict.suggestions = {{"ten more runs", 0.4, {}}};
+    CHECK_THAT(steps(Decision::NoEffect), Contains("Record next: ten more runs"));
+}

@@ -1,0 +1,113 @@
+// `puckloop gap check`: everything that is wrong is listed at once, with file, row, column and remedy.
+
+#include "gap/begin/expected_time.h"
+#include "gap/begin/readiness.h"
+#include "gap/data/problems.h"
+#include "tests/gap/bad_input/made_experiment.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <chrono>
+
+using namespace puckloop::gap;
+using namespace puckloop::gap::tests;
+using Catch::Matchers::Contains;
+
+namespace {
+
+bool any_holds(const std::vector<std::string>& lines, std::initializer_list<const char*> parts) {
+    return std::any_of(lines.begin(), lines.end(), [&](const std::string& line) {
+        return std::all_of(parts.begin(), parts.end(),
+                           [&](const char* part) { return line.find(part) != std::string::npos; });
+    });
+}
+
+}  // namespace
+
+TEST_CASE("every sound kind is ready, and says what can be found and how long it takes") {
+    for (const char* kind :
+         {"proximity", "motion", "ground", "accelerometer", "rab", "microphone", "timing"}) {
+        const Folder folder(clean(kind));
+        const auto begun = std::chrono::steady_clock::now();
+        const Readiness ready = readiness_of(folder.path(), 1);
+        const double seconds =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+        INFO(readiness_text(ready));
+        CHECK(ready.problems.empty());
+        CHECK(ready.kind == kind);
+        CHECK(ready.runs == 3);
+        CHECK_FALSE(ready.looked_for.empty());
+        CHECK(ready.seconds > 0);
+        CHECK(seconds < 5);  // a second on an idle machine
+        CHECK_THAT(readiness_text(ready), Contains("ready: a verdict takes"));
+    }
+}
+
+TEST_CASE("a cause that needs a column that is not there is listed with the column") {
+    const Folder folder(clean("proximity"));
+    const Readiness ready = readiness_of(folder.path(), 1);
+    const auto battery = std::find_if(ready.blind.begin(), ready.blind.end(),
+                                      [](const auto& blind) { return blind.name == "battery_droop"; });
+    REQUIRE(battery != ready.blind.end());
+    CHECK_THAT(battery->why, Contains("battery_v"));
+}
+
+TEST_CASE("all problems of all files are listed, not only the first") {
+    Made made = clean("proximity");
+    const Folder folder(made);
+    // run0: text in one cell, a row too short; run1: distance in mm; run2 has no readings.
+    made.rows[3][place_of(made, "reading")] = "lots";
+    made.rows[7].pop_back();
+    std::string csv = fmt::format("{}\n", fmt::join(made.names, ","));
+    for (const auto& cells : made.rows)
+        csv += fmt::format("{}\n", fmt::join(cells, ","));
+    write_file(folder.path() / "run0.csv", csv);
+    const Made wide = scaled(clean("proximity"), "distance_m", 1000);
+    csv = fmt::format("{}\n", fmt::join(wide.names, ","));
+    for (const auto& cells : wide.rows)
+        csv += fmt::format("{}\n", fmt::join(cells, ","));
+    write_file(folder.path() / "run1.csv", csv);
+    write_file(folder.path() / "run2.csv", "t_s,sensor,distance_m,angle_rad,raeding\n0,0,0.01,0,100\n");
+    const Readiness ready = readiness_of(folder.path(), 1);
+    INFO(readiness_text(ready));
+    CHECK(ready.problems.size() == 4);
+    CHECK(any_holds(ready.problems, {"run0.csv", "line 5", "\"lots\"", "column \"reading\"", "a number"}));
+    CHECK(any_holds(ready.problems, {"run0.csv", "line 9", "has 4 cells", "expected 5"}));
+    CHECK(any_holds(ready.problems, {"run1.csv", "row 1", "distance_m", "wrong unit", "expected"}));
+    CHECK(any_holds(ready.problems, {"run2.csv", "no column \"reading\"", "is it \"raeding\""}));
+    CHECK_THAT(readiness_text(ready), Contains("not ready: 4 things"));
+    // An analysis stops at the first of them.
+    CHECK_THAT(refusal(folder.path()), Contains("run0.csv: line 5"));
+}
+
+TEST_CASE("the same fault in every row does not bury the others") {
+    Made made = clean("ground");
+    for (auto& cells : made.rows)
+        cells[place_of(made, "reading")] = "x";
+    const Folder folder(made);
+    const Readiness ready = readiness_of(folder.path(), 1);
+    CHECK(ready.problems.size() <= 3 * (Problems::kMostOfAFile + 1));
+    CHECK(any_holds(ready.problems, {"run2.csv", "and", "more of this file"}));
+}
+
+TEST_CASE("what is read for a check is what is read for an analysis") {
+    for (const char* kind : {"proximity", "ground", "rab"}) {
+        const Folder folder(clean(kind));
+        Problems problems;
+        const Experiment surveyed = survey_experiment(folder.path(), problems);
+        const Experiment read = read_experiment(folder.path());
+        CHECK(problems.empty());
+        CHECK(surveyed.cautions == read.cautions);
+        REQUIRE(surveyed.rows() == read.rows());
+    }
+}
+
+TEST_CASE("the time left begins at the estimate and ends at nothing") {
+    CHECK(seconds_left(30, 0, 0) == Approx(30));
+    CHECK(seconds_left(30, 100, 1) == Approx(0));
+    // Half done after 100 s: what is left is nearer to 100 s than to half of the estimate.
+    CHECK(seconds_left(30, 100, 0.5) > 50);
+    CHECK(rough_time(0.2) == "about a second");
+    CHECK(rough_time(200) == "about 3 min");
+}
