@@ -128,7 +128,7 @@ CsvTable read_csv(const std::filesystem::path& file, Problems* problems) {
         if (!whole) continue;
         for (std::size_t i = 0; i < cells.size(); ++i) {
             double value = 0.0;
-            const bool number = attempt(problems, [&] {
+            const bool sound = attempt(problems, [&] {
                 if (!parse(cells[i], value) || std::isinf(value))
                     throw InputError(file.string(), place,
                                      fmt::format("\"{}\" in column \"{}\" is not a finite number",
@@ -137,7 +137,7 @@ CsvTable read_csv(const std::filesystem::path& file, Problems* problems) {
                                          ? "a decimal point, not a comma"
                                          : "a number, or nothing where it is missing");
             });
-            table.columns[i].push_back(number ? value : std::numeric_limits<double>::quiet_NaN());
+            table.columns[i].push_back(sound ? value : std::numeric_limits<double>::quiet_NaN());
         }
         if (table.rows() > kMostRows)
             throw InputError(file.string(), place, "is too long", fmt::format("at most {} rows", kMostRows));
