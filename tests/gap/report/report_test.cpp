@@ -123,8 +123,8 @@ TEST_CASE("a verdict without causes, series and observables still makes a page")
 }
 
 TEST_CASE("every decision opens the page with what to do next") {
-    const Experiment experiment = made_experiment();
-    Verdict verdict = made_verdict(experiment);
+    const Experiment experiment = tests::made_experiment();
+    Verdict verdict = tests::made_verdict(experiment);
     const auto steps = [&](Decision decision) {
         verdict.decision = decision;
         const std::string html = report_html(experiment, verdict);
