@@ -71,15 +71,12 @@ Outcome Conductor::State::run() {
     try {
         for (TraceSink* sink : sinks)
             sink->begin(links_);
-        for (std::size_t n = 0; n < handles_.size(); ++n)
-            network_->update(n, handles_[n]->state(), 0, kNever);
-        network_->preset(deliveries_, changes_);
-        take_deliveries(kNobody);
-        for (std::size_t n = 0; n < handles_.size(); ++n) {
-            times_[n].runs_ahead = may_run_ahead(n);
-            times_[n].horizon = handles_[n]->state().horizon;
-        }
-        loop();
+        if (!options_.save_at.empty()) keep_record();
+        if (options_.from)
+            go_on_from(*options_.from);
+        else
+            begin_anew();
+        run_and_save();
         wind_up();
         current_ = kNobody;
         finish_trace();
@@ -148,7 +145,8 @@ bool Conductor::State::follow_up() {
     bool any = false;
     for (const std::size_t n : following_) {
         const NodeTimes& node = times_[n];
-        if (node.busy || !node.runs_ahead || node.ahead > end_ || !schedule_.follow(n, times_)) continue;
+        if (node.busy || !node.runs_ahead || node.ahead > pause_or_end() || !schedule_.follow(n, times_))
+            continue;
         Time until = schedule_.target(n), ahead = schedule_.ahead(n);
         if (chop_) chop(n, until, ahead);
         grant(n, until, ahead);
@@ -200,7 +198,7 @@ void Conductor::State::plan() {
         if (slot.stale && !times_[n].busy) find_unknown(n);
         pending_[n] = std::min(slot.unknown, slot.changed);
     }
-    ScheduleLimits limits{end_, kNever, options_.stop_latency};
+    ScheduleLimits limits{pause_or_end(), kNever, options_.stop_latency};
     if (options_.realtime) {
         if (!paced_since_ && schedule_.reached() >= options_.pace_from) paced_since_ = WallClock::now();
         // Before that the wall clock limits nobody: a node that has to wait for it would not go back.

@@ -17,6 +17,8 @@
 
 namespace puckloop::cosim {
 
+struct RunSnapshot;  // cosim/resume/run_snapshot.h
+
 struct NodeSpec {
     std::string name;  ///< unique in the run: "robot0.pic"
     std::string json;  ///< what the factory makes the node from
@@ -24,6 +26,9 @@ struct NodeSpec {
     std::optional<bool> in_process{};
     /// Any thread may advance it: it has nothing to do with processes, signals or other nodes' state.
     bool any_thread = false;
+    /// It speaks for something that cannot be repeated. Where it is executed again (RunOptions::from), what
+    /// it sent then stands.
+    bool outside = false;
 };
 
 struct Progress {
@@ -47,6 +52,12 @@ struct RunOptions {
     std::vector<std::string> node_command{"/proc/self/exe"};
     /// Cuts grants at random places; the trace must not change (for tests).
     std::optional<std::uint64_t> chop_seed{};
+    /// When snapshots are taken, rising; `save` gets each, without build, origin and trace. A run that ends
+    /// before has none.
+    std::vector<Time> save_at{};
+    std::function<void(RunSnapshot&)> save{};
+    /// The run goes on from here, of the same nodes and links; faults may be others, if they begin later.
+    const RunSnapshot* from = nullptr;
     /// Called about five times a wall second.
     std::function<void(const Progress&)> progress{};
     /// Set by a signal handler to the signal's number: ends the run after the nodes wound up
@@ -67,6 +78,7 @@ struct Outcome {
     std::optional<Time> wind_up;    ///< when the nodes were asked to end, if any took time for it
     Time simulated = 0;             ///< reached by every node
     double wall_s = 0;
+    double restored_s = 0;     ///< of these: bringing the nodes to where the run goes on from
     std::uint64_t grants = 0;  ///< to all nodes together (differs with placement and load)
     std::string trace_sha256;
 
@@ -82,7 +94,7 @@ struct Outcome {
     };
     std::vector<NodeReport> nodes;
     std::vector<LinkReport> links;
-    std::vector<FaultReport> faults;  ///< in their order; of nodes' faults without what those have to say
+    std::vector<FaultReport> faults;    ///< in their order; of nodes' faults without what those have to say
     std::vector<std::string> warnings;  ///< messages by ports without a link
 };
 

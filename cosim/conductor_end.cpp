@@ -62,7 +62,7 @@ void Conductor::State::take_wound_up(std::size_t n, Time before) {
 }
 
 bool Conductor::State::stuck() const {
-    const Time ceiling = std::min(end_, later(schedule_.reached(), options_.stop_latency));
+    const Time ceiling = std::min(pause_or_end(), later(schedule_.reached(), options_.stop_latency));
     for (std::size_t n = 0; n < times_.size(); ++n)
         if (std::min(schedule_.bounds().limit(n), ceiling) > times_[n].granted) return false;
     return true;
@@ -128,6 +128,7 @@ void Conductor::State::finish(Outcome& outcome) {
 
 void Conductor::State::report(Outcome& outcome) {
     outcome.wall_s = seconds_since(start_);
+    outcome.restored_s = restored_s_;
     outcome.grants = grants_;
     outcome.trace_sha256 = hash_.finish();
     for (std::size_t l = 0; l < links_.size(); ++l) {

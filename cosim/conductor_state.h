@@ -1,7 +1,8 @@
 #pragma once
 // The conductor's state and the loop over it; private to its source files: conductor.cpp (the loop),
 // conductor_grants.cpp (what is granted, what is replied), conductor_work.cpp (who does the work),
-// conductor_trace.cpp (what becomes of the trace), conductor_end.cpp (how a run ends, what is told of it).
+// conductor_trace.cpp (what becomes of the trace), conductor_snapshot.cpp (a run saved, and gone on with),
+// conductor_end.cpp (how a run ends, what is told of it).
 
 #include "base/random.h"
 #include "cosim/conductor.h"
@@ -64,7 +65,17 @@ class Conductor::State {
         static constexpr double kPaceMemory = 8.0;
     };
 
+    /// To the end, or to where the run pauses if that is earlier.
     void loop();
+    Time pause_or_end() const { return std::min(end_, pause_); }
+    // conductor_snapshot.cpp
+    void begin_anew();
+    void run_and_save();
+    void keep_record();
+    void save(Time time);
+    void go_on_from(const RunSnapshot& from);
+    void execute_again(const RunSnapshot& from, const std::vector<TraceRecord>& arrived);
+    void take_stops(const RunSnapshot& from);
     void take_interrupt();
     void wind_up();
     void take_wound_up(std::size_t n, Time before);
@@ -144,6 +155,8 @@ class Conductor::State {
     std::vector<std::exception_ptr> failures_;  ///< of nodes, by index
 
     Time end_ = kNever;
+    Time pause_ = kNever;  ///< for a snapshot
+    double restored_s_ = 0;
     std::vector<std::pair<Stop, std::size_t>> stop_requests_;  ///< to stop together, and whose
     std::optional<Stop> stop_;
     std::size_t stop_requester_ = kNobody;

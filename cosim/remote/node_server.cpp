@@ -57,11 +57,18 @@ class Server {
         case protocol::Kind::WindUp:
             wind_up(body);
             return true;
+        case protocol::Kind::Save:
+            save();
+            return true;
+        case protocol::Kind::Load:
+            load(body);
+            return true;
         case protocol::Kind::Finish:
             finish();
             return false;
         case protocol::Kind::Ready:
         case protocol::Kind::Done:
+        case protocol::Kind::State:
         case protocol::Kind::Report:
         case protocol::Kind::Error:
             break;
@@ -78,6 +85,7 @@ class Server {
         ready.ports.assign(node->ports().begin(), node->ports().end());
         node_ = std::make_unique<RunAhead>(std::move(node));
         node_->read_state(ready.state);
+        ready.has_state = node_->has_state();
         protocol::write_ready(bytes_, ready);
     }
 
@@ -94,6 +102,21 @@ class Server {
         node_->wind_up(protocol::read_wind_up(body));
         outbox_.clear();
         advanced_.sure = 0;
+        node_->read_state(state_);
+        protocol::write_done(bytes_, advanced_, state_, outbox_);
+    }
+
+    void save() {
+        if (!node_) throw RunError("is to be saved before it was made");
+        protocol::write_state(bytes_, node_->save());
+    }
+
+    void load(std::span<const std::uint8_t> body) {
+        if (!node_) throw RunError("is to be loaded before it was made");
+        const protocol::Load load = protocol::read_load(body);
+        node_->load(load.time, load.state);
+        outbox_.clear();
+        advanced_ = {load.time, load.time, 0};
         node_->read_state(state_);
         protocol::write_done(bytes_, advanced_, state_, outbox_);
     }

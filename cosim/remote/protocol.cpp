@@ -115,6 +115,7 @@ void write_ready(Bytes& bytes, const Ready& ready) {
         frame.writer.u8(static_cast<std::uint8_t>(port.kind));
     }
     write_state(frame.writer, ready.state);
+    frame.writer.u8(ready.has_state);
 }
 
 void write_grant(Bytes& bytes, Reach reach, const std::vector<Message>& inbox,
@@ -146,6 +147,21 @@ void write_done(Bytes& bytes, const Advanced& advanced, const NodeState& state,
 void write_wind_up(Bytes& bytes, int signal) {
     Frame frame(bytes, Kind::WindUp);
     frame.writer.u8(static_cast<std::uint8_t>(signal));
+}
+
+void write_save(Bytes& bytes) {
+    Frame frame(bytes, Kind::Save);
+}
+
+void write_state(Bytes& bytes, const Bytes& state) {
+    Frame frame(bytes, Kind::State);
+    bytes.insert(bytes.end(), state.begin(), state.end());
+}
+
+void write_load(Bytes& bytes, Time time, const Bytes& state) {
+    Frame frame(bytes, Kind::Load);
+    frame.writer.time(time);
+    bytes.insert(bytes.end(), state.begin(), state.end());
 }
 
 void write_finish(Bytes& bytes) {
@@ -188,6 +204,7 @@ Ready read_ready(std::span<const std::uint8_t> body) {
         port.kind = reader.enumerator(PortKind::Radio);
     }
     read_state(reader, ready.state);
+    ready.has_state = reader.boolean();
     reader.end();
     if (ready.state.ports.size() != ready.ports.size()) throw CodecError("state of another number of ports");
     return ready;
@@ -230,6 +247,21 @@ Advanced read_done(std::span<const std::uint8_t> body, std::size_t ports, NodeSt
     if (advanced.ahead < advanced.reached || advanced.sure > outbox.size())
         throw CodecError("less than nothing foreseen");
     return advanced;
+}
+
+Bytes read_state(std::span<const std::uint8_t> body) {
+    const ByteReader reader = open(body, Kind::State);
+    const auto state = body.last(reader.left());
+    return {state.begin(), state.end()};
+}
+
+Load read_load(std::span<const std::uint8_t> body) {
+    ByteReader reader = open(body, Kind::Load);
+    Load load;
+    load.time = reader.time();
+    const auto state = body.last(reader.left());
+    load.state.assign(state.begin(), state.end());
+    return load;
 }
 
 std::string read_report(std::span<const std::uint8_t> body) {

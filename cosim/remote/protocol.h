@@ -12,7 +12,7 @@
 
 namespace puckloop::cosim::protocol {
 
-inline constexpr std::uint32_t kVersion = 3;
+inline constexpr std::uint32_t kVersion = 4;
 inline constexpr std::size_t kLengthBytes = 4;
 /// Longer messages are damage, not work: a millisecond of the busiest link is some kilobytes.
 inline constexpr std::uint32_t kLongest = 64u << 20;
@@ -22,10 +22,13 @@ inline constexpr int kDescriptor = 3;
 
 enum class Kind : std::uint8_t {
     Hello,   ///< to the node: version, name, description
-    Ready,   ///< from the node: ports, state
+    Ready,   ///< from the node: ports, state, whether it can be saved
     Grant,   ///< to the node: reach, inbox, echoes
     Done,    ///< from the node: how far it came, state, outbox
     WindUp,  ///< to the node: signal
+    Save,    ///< to the node: nothing
+    State,   ///< from the node: its whole state
+    Load,    ///< to the node: the time, its state then; answered by Done
     Finish,  ///< to the node: nothing
     Report,  ///< from the node: JSON text
     Error,   ///< from the node: whether the user's input is to blame, text
@@ -38,6 +41,11 @@ struct Hello {
 struct Ready {
     std::vector<Port> ports;
     NodeState state;
+    bool has_state = false;
+};
+struct Load {
+    Time time = 0;
+    Bytes state;
 };
 struct Grant {
     Reach reach;
@@ -57,6 +65,9 @@ void write_grant(Bytes& bytes, Reach reach, const std::vector<Message>& inbox,
 void write_done(Bytes& bytes, const Advanced& advanced, const NodeState& state,
                 const std::vector<Message>& outbox);
 void write_wind_up(Bytes& bytes, int signal);
+void write_save(Bytes& bytes);
+void write_state(Bytes& bytes, const Bytes& state);
+void write_load(Bytes& bytes, Time time, const Bytes& state);
 void write_finish(Bytes& bytes);
 void write_report(Bytes& bytes, const std::string& json);
 void write_error(Bytes& bytes, const Error& error);
@@ -71,6 +82,8 @@ int read_wind_up(std::span<const std::uint8_t> body);
 /// Into `state` and `outbox` (reused) of a node with `ports` ports.
 Advanced read_done(std::span<const std::uint8_t> body, std::size_t ports, NodeState& state,
                    std::vector<Message>& outbox);
+Bytes read_state(std::span<const std::uint8_t> body);
+Load read_load(std::span<const std::uint8_t> body);
 std::string read_report(std::span<const std::uint8_t> body);
 Error read_error(std::span<const std::uint8_t> body);
 

@@ -45,6 +45,7 @@ class RemoteNode : public NodeHandle {
             protocol::Ready ready = protocol::read_ready(body);
             ports_ = std::move(ready.ports);
             state_ = std::move(ready.state);
+            has_state_ = ready.has_state;
         });
     }
 
@@ -79,6 +80,29 @@ class RemoteNode : public NodeHandle {
             if (protocol::read_done(body, ports_.size(), state_, outbox_).reached != reached() ||
                 !outbox_.empty())
                 throw CodecError("more than it was asked for");
+        });
+    }
+
+    std::vector<std::uint8_t> save() override {
+        protocol::write_save(bytes_);
+        send();
+        while (!receive(true)) {
+        }
+        Bytes state;
+        decode(protocol::Kind::State, [&](auto body) { state = protocol::read_state(body); });
+        return state;
+    }
+
+    void load(Time time, const std::vector<std::uint8_t>& state) override {
+        protocol::write_load(bytes_, time, state);
+        send();
+        while (!receive(true)) {
+        }
+        decode(protocol::Kind::Done, [&](auto body) {
+            const Advanced done = protocol::read_done(body, ports_.size(), state_, outbox_);
+            if (done.reached != time || done.ahead != time || !outbox_.empty())
+                throw CodecError("another time than the one it was loaded at");
+            advanced_ = done;
         });
     }
 

@@ -36,6 +36,7 @@ class LocalNode : public NodeHandle {
         ports_.assign(node->ports().begin(), node->ports().end());
         node_ = std::make_unique<RunAhead>(std::move(node));
         node_->read_state(state_);
+        has_state_ = node_->has_state();
     }
 
     void await_ready() override {}
@@ -61,6 +62,18 @@ class LocalNode : public NodeHandle {
 
     void wind_up(int signal) override {
         guarded("could not wind up", [&] { node_->wind_up(signal); });
+        node_->read_state(state_);
+    }
+
+    std::vector<std::uint8_t> save() override {
+        std::vector<std::uint8_t> state;
+        guarded("could not be saved", [&] { state = node_->save(); });
+        return state;
+    }
+
+    void load(Time time, const std::vector<std::uint8_t>& state) override {
+        guarded("could not be loaded", [&] { node_->load(time, state); });
+        advanced_ = {time, time, 0};
         node_->read_state(state_);
     }
 

@@ -5,6 +5,7 @@
 #include "cosim/faults/faults.h"
 #include "cosim/schedule/bounds.h"
 #include "cosim/schedule/node_handle.h"
+#include "cosim/schedule/wire_record.h"
 #include "cosim/trace/trace.h"
 
 #include <memory>
@@ -36,7 +37,12 @@ struct Wire {
     /// The channel on which faults bring messages back to the sender, and how many they brought.
     std::size_t loop = kNobody;
     std::uint64_t brought_back = 0;
+    std::unique_ptr<WireState> record{};  ///< if the run is to be saved: what was sent, and what arrived
 };
+
+/// In the sequence of a message that was brought back to its sender: apart from the other end's own, whose
+/// order among them is open.
+inline constexpr std::uint64_t kBroughtBack = std::uint64_t{1} << 63;
 
 /// What a node is to receive became another from `time` on, by what `from` sent.
 struct Change {
@@ -84,6 +90,28 @@ class Network {
     /// What faults put on the lines by themselves.
     void preset(std::vector<TraceRecord>& deliveries, std::vector<Change>& changes);
 
+    /// For snapshots (network_snapshot.cpp). From now on keeps what they need, before anything is sent;
+    /// `has_state`: of each node, whether it can be saved.
+    void keep_record(const std::vector<bool>& has_state);
+    /// All wires as they are, in their order.
+    std::vector<WireState> save() const;
+    /// Brings the wires to where `saved` was saved, at `time`: what was sent goes through today's faults
+    /// again. `has_state`: as of the run that saved. Gives what arrived at nodes without a state before
+    /// `time`, and what is in flight then, of which `in_flight` is what the run that saved had. Throws
+    /// InputError if the links are others, or a fault makes another beginning.
+    struct Restored {
+        std::vector<TraceRecord> arrived;    ///< at nodes without a state, in the order of the trace
+        std::vector<TraceRecord> in_flight;  ///< lost messages too
+    };
+    Restored restore(const std::vector<WireState>& saved, const std::vector<TraceRecord>& in_flight,
+                     Time time, const std::vector<bool>& has_state, std::uint64_t unlinked);
+    std::size_t wire_count() const { return wires_.size(); }
+    /// Where what is sent by a port goes, or kNobody.
+    std::size_t wire_of(std::size_t n, PortIndex port) const { return port_wire_[n][port]; }
+    Time delivery(std::size_t w, const Message& message) const {
+        return delivery_time(message, wires_[w].flight, wires_[w].latency);
+    }
+
     const Wire& wire(const TraceRecord& record) const {
         return wires_[record.link * 2u + static_cast<unsigned>(record.direction)];
     }
@@ -120,7 +148,12 @@ class Network {
     void update_loop(std::size_t w);
     void judge_punctuality(Channel& channel, Time base, const Sent& sent) const;
     const std::vector<Time>& distances_to_node(std::size_t n);
+    void pass_on(Wire& wire, const Message& message, std::vector<TraceRecord>& deliveries,
+                 std::vector<Change>& changes);
     void deliver(Wire& wire, std::vector<TraceRecord>& deliveries, std::vector<Change>& changes);
+    std::vector<TraceRecord> send_again(Wire& wire, const SentRecord& sent);
+    std::size_t sender_of(const TraceRecord& record) const;
+    std::string faults_on(const Wire& wire) const;
 
     const std::vector<std::unique_ptr<NodeHandle>>& nodes_;
     const std::vector<LinkSpec>& links_;

@@ -172,8 +172,15 @@ Time Network::first_foreseen(std::size_t n, Time from, Time& heard) const {
 void Network::send(Wire& wire, const Message& message, std::vector<TraceRecord>& deliveries,
                    std::vector<Change>& changes) {
     const Time time = delivery_time(message, wire.flight, wire.latency);
-    batch_.assign(1, {Message{time, wire.to_port, message.payload}, FaultKind::None});
-    const Sending sending{time, wire.sent++};
+    pass_on(wire, {time, wire.to_port, message.payload}, deliveries, changes);
+}
+
+/// `message` carries the time at which it is delivered if there is no fault.
+void Network::pass_on(Wire& wire, const Message& message, std::vector<TraceRecord>& deliveries,
+                      std::vector<Change>& changes) {
+    if (wire.record) wire.record->sent.add(message.time, message.payload);
+    batch_.assign(1, {message, FaultKind::None});
+    const Sending sending{message.time, wire.sent++};
     for (LinkFault* fault : wire.faults)
         fault->apply(batch_, sending);
     deliver(wire, deliveries, changes);
@@ -188,15 +195,15 @@ void Network::preset(std::vector<TraceRecord>& deliveries, std::vector<Change>& 
 }
 
 void Network::deliver(Wire& wire, std::vector<TraceRecord>& deliveries, std::vector<Change>& changes) {
-    // Apart from the other end's own, whose order among them is open.
-    constexpr std::uint64_t kBroughtBack = std::uint64_t{1} << 63;
     for (const Delivery& delivery : batch_) {
         const bool back = delivery.back;
         const Direction other = wire.direction == Direction::FromA ? Direction::FromB : Direction::FromA;
         const std::uint64_t sequence = back ? kBroughtBack | wire.brought_back++ : wire.sequence++;
         deliveries.push_back({delivery.message.time, wire.link, back ? other : wire.direction, sequence,
                               delivery.fault, delivery.message.payload});
-        if (!wire.faults.empty() && !lost(deliveries.back()))
+        if (wire.faults.empty()) continue;
+        if (wire.record) wire.record->arrived.push_back(deliveries.back());
+        if (!lost(deliveries.back()))
             changes.push_back({wire.from, back ? wire.from : wire.to, delivery.message.time});
     }
 }

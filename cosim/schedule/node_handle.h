@@ -7,6 +7,7 @@
 #include "cosim/schedule/stride.h"
 
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -78,6 +79,13 @@ class NodeHandle {
     /// Asks the node, which is under no grant, to bring what it runs to an end (Node::wind_up); state() is
     /// then as of after that.
     virtual void wind_up(int signal) = 0;
+    /// The node's whole state can be saved and loaded (cosim/core/stateful_node.h).
+    bool has_state() const { return has_state_; }
+    /// Of a node with a state that is under no grant and has not run ahead: its state at reached().
+    virtual std::vector<std::uint8_t> save() = 0;
+    /// Into a node with a state that was never granted anything: it stands at `time` then, and state() is as
+    /// of there. Throws InputError if the state does not fit.
+    virtual void load(Time time, const std::vector<std::uint8_t>& state) = 0;
     /// Ends the node and returns its part of the report as JSON text; empty if it was lost before.
     virtual std::string finish() = 0;
     /// The process it lives in, 0 for this one.
@@ -89,6 +97,7 @@ class NodeHandle {
     NodeState state_;
     std::vector<Message> outbox_;
     Advanced advanced_;
+    bool has_state_ = false;
 };
 
 /// A node in this process.

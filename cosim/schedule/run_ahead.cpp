@@ -276,6 +276,31 @@ void RunAhead::wind_up(int signal) {
     node_->wind_up(reached_, signal);
 }
 
+std::vector<std::uint8_t> RunAhead::save() {
+    if (!stateful_ || ahead_ != reached_) throw RunError("is to be saved while it runs ahead");
+    if (marked_) node_->rewindable()->settle();
+    marked_ = false;
+    used_.clear();
+    std::vector<std::uint8_t> bytes;
+    StateWriter writer(bytes);
+    const StatefulNode& node = *stateful_;
+    node.state(writer);
+    return bytes;
+}
+
+void RunAhead::load(Time time, std::span<const std::uint8_t> state) {
+    if (!stateful_ || ahead_ != 0) throw RunError("is to be loaded where that cannot be");
+    try {
+        StateReader reader(state);
+        stateful_->state(reader);
+        reader.end();
+    } catch (const StateError& error) {
+        throw InputError("", std::string(node_->name()),
+                         std::string("its state does not fit: ") + error.what());
+    }
+    reached_ = ahead_ = time;
+}
+
 std::string RunAhead::finish() {
     if (ahead_ != reached_) back_to_reached();
     if (marked_) node_->rewindable()->settle();

@@ -11,6 +11,7 @@
 #include "cosim/core/bounded_rewindable.h"
 #include "cosim/core/message.h"
 #include "cosim/core/node.h"
+#include "cosim/core/stateful_node.h"
 #include "cosim/schedule/node_handle.h"
 #include "cosim/schedule/stride.h"
 
@@ -25,7 +26,9 @@ namespace puckloop::cosim {
 class RunAhead {
   public:
     explicit RunAhead(std::unique_ptr<Node> node)
-        : node_(std::move(node)), bounded_(dynamic_cast<const BoundedRewindable*>(node_->rewindable())) {}
+        : node_(std::move(node)),
+          stateful_(dynamic_cast<StatefulNode*>(node_.get())),
+          bounded_(dynamic_cast<const BoundedRewindable*>(node_->rewindable())) {}
 
     const Node& node() const { return *node_; }
     Time reached() const { return reached_; }
@@ -53,6 +56,14 @@ class RunAhead {
     /// What was run ahead is taken back.
     std::string finish();
 
+    /// The node's whole state can be saved and loaded.
+    bool has_state() const { return stateful_ != nullptr; }
+    /// Its state at the time reached; nothing may be foreseen.
+    std::vector<std::uint8_t> save();
+    /// Into a node that was never granted anything: it stands at `time` then. Throws InputError if the state
+    /// does not fit.
+    void load(Time time, std::span<const std::uint8_t> state);
+
   private:
     bool goes_in_strides(const std::vector<PortEcho>& echoes) const;
     bool begin_sure(std::span<const Message>& inbox);
@@ -73,6 +84,7 @@ class RunAhead {
     void forget_lookaheads();
 
     std::unique_ptr<Node> node_;
+    StatefulNode* stateful_;            ///< the node, if it is one
     const BoundedRewindable* bounded_;  ///< the node, if it is one
     Time reached_ = 0;
     Time ahead_ = 0;  ///< the node stands there

@@ -6,6 +6,8 @@
 
 #include <cerrno>
 #include <cstring>
+#include <fstream>
+#include <iterator>
 
 namespace puckloop::cosim {
 
@@ -41,7 +43,7 @@ void TraceCsvSink::begin(const std::vector<LinkSpec>& links) {
             for (Sender* one : {&senders_.back() - 1, &senders_.back()})
                 one->signals.push_back(signal_column(link.signal_names[id], static_cast<std::uint16_t>(id)));
     }
-    put(std::string(kTraceColumns) + "\n");
+    put(begin_with_.empty() ? std::string(kTraceColumns) + "\n" : std::exchange(begin_with_, {}));
 }
 
 void TraceCsvSink::record(const TraceRecord& record) {
@@ -61,6 +63,14 @@ void TraceCsvSink::record(const TraceRecord& record) {
 
 void TraceCsvSink::flush() {
     if (!failed_ && std::fflush(file_) != 0) fail();
+}
+
+std::string TraceCsvSink::written() {
+    flush();
+    std::ifstream in(path_, std::ios::binary);
+    std::string text{std::istreambuf_iterator<char>(in), {}};
+    if (failed_ || !in) throw RunError(fmt::format("{}: cannot be read again", path_));
+    return text;
 }
 
 TraceRow to_row(const TraceRecord& record, const std::vector<LinkSpec>& links) {

@@ -8,6 +8,7 @@
 #include <functional>
 #include <istream>
 #include <string>
+#include <utility>
 
 namespace puckloop::cosim {
 
@@ -21,6 +22,12 @@ class TraceCsvSink : public TraceSink {
     ~TraceCsvSink() override;
     TraceCsvSink(const TraceCsvSink&) = delete;
     TraceCsvSink& operator=(const TraceCsvSink&) = delete;
+
+    /// `text` takes the place of the line of column names: what the file of a run held from which this one
+    /// goes on. Before begin().
+    void begin_with(std::string text) { begin_with_ = std::move(text); }
+    /// What the file holds so far. Throws RunError.
+    std::string written();
 
     void begin(const std::vector<LinkSpec>& links) override;
     void record(const TraceRecord& record) override;
@@ -42,6 +49,7 @@ class TraceCsvSink : public TraceSink {
     };
     std::vector<Sender> senders_;  // by link, from a and from b
     std::string line_;             // scratch
+    std::string begin_with_;
 };
 
 /// What a record says, with names for numbers.

@@ -1,5 +1,7 @@
 #include "cosim/trace/trace_hash.h"
 
+#include "base/archive.h"
+
 #include <fmt/format.h>
 
 #include <array>
@@ -9,6 +11,16 @@ namespace puckloop::cosim {
 namespace {
 constexpr std::string_view kHead = "puckloop trace 1\n";
 constexpr std::size_t kChunk = 16384;
+
+template <class Archive>
+void list(Archive& archive, sha256_ctx& context) {
+    for (std::uint32_t& word : context.state)
+        archive(word);
+    archive(context.count);
+    archive.bounded(context.index, 0, SHA256_BLOCK_SIZE - 1);
+    for (std::uint8_t& byte : context.block)
+        archive(byte);
+}
 }  // namespace
 
 TraceHash::TraceHash() {
@@ -36,6 +48,21 @@ void TraceHash::record(const TraceRecord& record) {
 
 void TraceHash::drain() {
     sha256_update(&context_, buffer_.size(), buffer_.data());
+    buffer_.clear();
+}
+
+std::vector<std::uint8_t> TraceHash::save() {
+    drain();
+    std::vector<std::uint8_t> bytes;
+    StateWriter writer(bytes);
+    list(writer, context_);
+    return bytes;
+}
+
+void TraceHash::load(const std::vector<std::uint8_t>& saved) {
+    StateReader reader(saved);
+    list(reader, context_);
+    reader.end();
     buffer_.clear();
 }
 

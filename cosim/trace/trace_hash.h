@@ -21,6 +21,12 @@ class TraceHash : public TraceSink {
     /// 64 hex digits. Ends the hash; call once.
     std::string finish();
 
+    /// The hash so far, begin() included, for a snapshot of the run; loaded after begin() with the same
+    /// links.
+    std::vector<std::uint8_t> save();
+    /// Throws StateError.
+    void load(const std::vector<std::uint8_t>& saved);
+
   private:
     void drain();
 

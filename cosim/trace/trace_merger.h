@@ -12,6 +12,8 @@ class TraceMerger {
   public:
     void add(const TraceRecord& record) { waiting_.push_back(record); }
     std::size_t waiting() const { return waiting_.size(); }
+    /// What was not taken yet, in no order.
+    const std::vector<TraceRecord>& records() const { return waiting_; }
     /// Is a release worth its while? What had to wait then is not gone through again before as much has come.
     bool full() const { return waiting_.size() >= enough_; }
 

@@ -13,6 +13,7 @@
 #include "tools/run/report.h"
 #include "tools/run/run_scenario.h"
 #include "tools/run/setup.h"
+#include "tools/run/snapshots/snapshot_plan.h"
 #include "tools/run/status_line.h"
 #include "tools/trace/export.h"
 
@@ -32,6 +33,7 @@ struct Options {
     std::vector<std::string> linux_args;
     LogOptions log;
     std::string save_at;
+    std::vector<std::string> snapshot_at;
     bool no_cache = false;
     bool interpret = false;
     bool json = false;
@@ -46,7 +48,7 @@ int status_of(const cosim::Outcome& outcome, int signal) {
 }
 
 /// "40", "40s", "40 s" or "1500 ms", in seconds.
-double time_of(const std::string& text) {
+double time_of(const std::string& option, const std::string& text) {
     const bool bare = text.find_first_not_of("0123456789.") == std::string::npos;
     try {
         const double seconds =
@@ -54,7 +56,7 @@ double time_of(const std::string& text) {
         if (seconds > 0 && seconds <= kLongestRun) return seconds;
     } catch (const scenarios::QuantityError&) {
     }
-    throw InputError("", "--at", fmt::format("'{}' is no time within a run", text), "such as 40s");
+    throw InputError("", option, fmt::format("'{}' is no time within a run", text), "such as 40s");
 }
 
 void export_trace(const std::filesystem::path& out, const std::vector<std::string>& formats) {
@@ -77,7 +79,7 @@ int run(Options& options) {
         print_parameters();
         return 0;
     }
-    if (request.scenario.empty())
+    if (request.scenario.empty() && request.from.empty())
         throw InputError("", "run", "no scenario given", "a file such as scenarios/hello.toml");
     if (!options.linux_program.empty()) {
         request.linux_command = {options.linux_program};
@@ -87,8 +89,11 @@ int run(Options& options) {
     start_log("puckloop", options.log);
     if (!request.in_process) log::share_with_children();
     if (options.interpret) interpret_from_here(!request.in_process);
-    if (!options.save_at.empty()) request.save_at = time_of(options.save_at);
+    if (!options.save_at.empty()) request.save_at = time_of("--at", options.save_at);
+    for (const std::string& at : options.snapshot_at)
+        request.snapshot_at.push_back(time_of("--save-at", at));
     request.cache = !options.no_cache;
+    if (!request.from.empty()) request = going_on(request);
     const RunSetup setup = set_up(request);
     const cosim::InterruptGuard interrupt;
     if (setup.ready > 0)
@@ -103,7 +108,7 @@ int run(Options& options) {
     if (options.json)
         fmt::print(said, "{}\n", (setup.out / "report.json").string());
     else
-        fmt::print(said, "{}\n", summary(setup, outcome));
+        fmt::print(said, "{}{}\n", summary(setup, outcome), snapshots_summary(request, outcome));
     const int status = status_of(outcome, *interrupt.flag());
     if (status != 0) fmt::print(stderr, "puckloop: {}\n", outcome.text);
     return status;
@@ -202,6 +207,24 @@ void declare_run(Command& app, int& status) {
         ->add_option("--from-state", request.from_state,
                      "start the boards from a file of --save-state: until its time they send what was "
                      "recorded, without being executed")
+        ->check(not_empty())
+        ->type_name("FILE");
+    command
+        ->add_option("--save-at", options->snapshot_at,
+                     "simulated time at which the whole run is saved into --save, such as 10s; the run goes "
+                     "on; may be given several times (docs/snapshots.md)")
+        ->check(not_empty())
+        ->type_name("TIME")
+        ->allow_extra_args(false);
+    command
+        ->add_option("--save", request.save,
+                     "file of the snapshot; with several --save-at FILE-10s, FILE-20s, ...")
+        ->check(not_empty())
+        ->type_name("FILE");
+    command
+        ->add_option("--from", request.from,
+                     "go on from a snapshot, in place of a scenario: the trace is that of the whole run; "
+                     "--duration and faults that begin later may be others")
         ->check(not_empty())
         ->type_name("FILE");
     command->add_flag("--no-cache", options->no_cache,

@@ -23,7 +23,7 @@ using debug::Stop;
 /// Instructions between two looks at what the debugger sent.
 constexpr unsigned kLookEvery = 4096;
 
-class DebuggedNode final : public cosim::Node, private debug::Debuggee, private chip::Instrument {
+class DebuggedNode final : public cosim::StatefulNode, private debug::Debuggee, private chip::Instrument {
   public:
     DebuggedNode(std::unique_ptr<cosim::StatefulNode> board, const std::string& place)
         : board_(std::move(board)),
@@ -43,6 +43,12 @@ class DebuggedNode final : public cosim::Node, private debug::Debuggee, private 
     cosim::Time lookahead(cosim::PortIndex port) const override { return board_->lookahead(port); }
     std::optional<cosim::Time> begun(cosim::PortIndex port) const override { return board_->begun(port); }
     std::optional<cosim::Stop> stop() const override { return stop_; }
+    void state(StateWriter& archive) const override {
+        const cosim::StatefulNode& board = *board_;
+        board.state(archive);
+    }
+    void state(StateReader& archive) override { board_->state(archive); }
+    void renew_random_streams() override { board_->renew_random_streams(); }
     std::string finish() override {
         chip_->set_instrument(nullptr, false);
         session_.over(0);

@@ -3,9 +3,14 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
+
+namespace puckloop::cosim {
+struct RunSnapshot;
+}
 
 namespace puckloop::tools {
 
@@ -20,7 +25,11 @@ struct RunRequest {
     std::filesystem::path save_state;  ///< where the boards' states at `save_at` go; empty: nowhere
     std::optional<double> save_at;     ///< s
     std::filesystem::path from_state;  ///< what the boards start from; empty: power-up
-    bool cache = false;                ///< boots are taken from the user's cache and kept there
+    std::filesystem::path save;        ///< where snapshots of the whole run go; empty: nowhere
+    std::vector<double> snapshot_at;   ///< when they are taken, s
+    std::filesystem::path from;        ///< the snapshot that the run goes on from; empty: it begins anew
+    std::shared_ptr<const cosim::RunSnapshot> snapshot;  ///< what `from` holds
+    bool cache = false;  ///< boots are taken from the user's cache and kept there
     bool in_process = false;
     bool realtime = false;
     bool paced = false;               ///< by the wall clock, with Linux programs in simulated time

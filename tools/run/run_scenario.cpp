@@ -11,6 +11,7 @@
 #include "tools/run/report.h"
 #include "tools/run/results_folder.h"
 #include "tools/run/run_diary.h"
+#include "tools/run/snapshots/snapshot_plan.h"
 #include "tools/run/states/state_plan.h"
 
 #include <fmt/format.h>
@@ -159,8 +160,9 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
     // Before anything is started: a named pipe may have to wait for its reader.
     std::optional<LiveTrace> live;
     if (!request.live.empty()) live.emplace(request.live, options.interrupted);
-    cosim::Conductor conductor(setup.nodes, setup.links, setup.scenario.faults, options, make_node);
     cosim::TraceCsvSink trace((setup.out / "trace.csv").string());
+    use_snapshots(setup, request, trace, options);
+    cosim::Conductor conductor(setup.nodes, setup.links, setup.scenario.faults, options, make_node);
     conductor.add_sink(trace);
     std::optional<cosim::TraceCsvSink> record;
     if (request.record) {
@@ -180,6 +182,7 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
     judge(outcome);
     take_fault_results(setup, outcome);
     collect_states(setup, outcome);
+    judge_snapshots(request, outcome);
     if (request.strict) judge_strictly(setup, outcome);
     diary.ended(outcome);
     write_results(setup, outcome, report);

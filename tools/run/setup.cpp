@@ -15,6 +15,7 @@
 #include "tools/run/plan/radio_nodes.h"
 #include "tools/run/plan/tam_nodes.h"
 #include "tools/run/program_path.h"
+#include "tools/run/snapshots/snapshot_plan.h"
 #include "tools/run/states/state_plan.h"
 
 #include <fmt/format.h>
@@ -234,6 +235,7 @@ RunSetup set_up(const RunRequest& request) {
         throw InputError("", "--gdb", "saved states and a debugger do not go together", "one of them");
     for (const std::string& assignment : request.gdb)
         debug_board(setup, assignment);
+    plan_snapshots(setup, request);
     return setup;
 }
 

@@ -44,6 +44,7 @@ void add_outside(RunSetup& setup, const std::string& name, const std::string& en
                     {"end", end},        {"folder", folder.string()},
                     {"baud", baud},      {"record", (setup.out / (name + ".received")).string()}};
     setup.nodes.push_back({name, spec.dump()});
+    setup.nodes.back().outside = parsed.kind != exec::UartSpec::Kind::Script;
     setup.links.push_back({name, {name, "uart"}, board, nominal_baud});
 }
 

@@ -185,7 +185,8 @@ void use_cache(RunSetup& setup, const RunRequest& request) {
             setup.scenario.duration ? cosim::from_seconds(*setup.scenario.duration) : cosim::kNever;
         if (boot <= 0 || boot > end) continue;
         setup.ready = std::max(setup.ready, boot);
-        if (!folder || !request.cache) continue;
+        // In a run that is saved or goes on, every board is as it is.
+        if (!folder || !request.cache || !request.save.empty() || request.snapshot) continue;
         for (cosim::NodeSpec& node : setup.nodes) {
             if (node.name != robot.name + ".pic") continue;
             json spec = json::parse(node.json);
