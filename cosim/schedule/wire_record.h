@@ -15,7 +15,8 @@ namespace puckloop::cosim {
 class SentRecord {
   public:
     /// `keep`: the messages themselves, not their digest alone.
-    explicit SentRecord(bool keep = false) : keep_(keep) {}
+    explicit SentRecord(bool keep) : keep_(keep) {}
+    SentRecord() = default;
 
     void add(Time delivery, const Payload& payload);
 
@@ -34,7 +35,7 @@ class SentRecord {
   private:
     static constexpr std::uint64_t kOffset = 0xcbf29ce484222325, kPrime = 0x100000001b3;
 
-    bool keep_;
+    bool keep_ = false;
     std::uint64_t count_ = 0;
     std::uint64_t digest_ = kOffset;
     Bytes bytes_;  ///< of kept messages; of others the last one

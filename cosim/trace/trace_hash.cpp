@@ -4,7 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <iterator>
 
 namespace puckloop::cosim {
 
@@ -53,6 +55,8 @@ void TraceHash::drain() {
 
 std::vector<std::uint8_t> TraceHash::save() {
     drain();
+    std::fill(std::begin(context_.block) + context_.index, std::end(context_.block),
+              std::uint8_t{0});  // of old
     std::vector<std::uint8_t> bytes;
     StateWriter writer(bytes);
     list(writer, context_);

@@ -19,7 +19,6 @@ namespace puckloop::tools {
 namespace {
 
 using nlohmann::json;
-using nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
 /// Keys of node descriptions that decide nothing of what a node does, or are compared by themselves.
@@ -91,7 +90,7 @@ json run_of(const RunSetup& setup) {
 json faults_of(const RunSetup& setup) {
     json faults = json::array();
     for (std::size_t f = 0; f < setup.scenario.faults.size(); ++f)
-        faults.push_back(cosim::fault_to_json(setup.scenario.faults[f], setup.scenario.seed, f));
+        faults.push_back(json(cosim::fault_to_json(setup.scenario.faults[f], setup.scenario.seed, f)));
     return faults;
 }
 
