@@ -6,8 +6,8 @@
 
 namespace puckloop::tools {
 
-/// Firmware, Linux program, duration, seed, overlay, faults. Throws InputError for a board that is not there, a file
-/// that cannot be read.
+/// Firmware, Linux program, duration, seed, overlay, faults. Throws InputError for a board that is not there,
+/// a file that cannot be read.
 void apply(const RunRequest& request, scenarios::Scenario& scenario);
 
 }  // namespace puckloop::tools

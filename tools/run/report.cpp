@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+
 namespace puckloop::tools {
 
 namespace {
@@ -38,8 +40,9 @@ ordered_json seconds_or_null(const std::optional<cosim::Time>& time) {
     return time ? ordered_json(cosim::to_seconds(*time)) : ordered_json(nullptr);
 }
 
-double real_time_factor(const cosim::Outcome& outcome) {
-    return outcome.wall_s > 0 ? cosim::to_seconds(outcome.simulated) / outcome.wall_s : 0.0;
+double real_time_factor(const RunSetup& setup, const cosim::Outcome& outcome) {
+    const cosim::Time span = outcome.simulated - std::min(setup.from_time, outcome.simulated);
+    return outcome.wall_s > 0 ? cosim::to_seconds(span) / outcome.wall_s : 0.0;
 }
 
 /// Registers that firmware touched and no model stands behind, gathered from every node.
@@ -137,7 +140,7 @@ void write_report(const RunSetup& setup, const cosim::Outcome& outcome, Reserved
                         {"programs_asked_to_end_s", seconds_or_null(outcome.wind_up)},
                         {"simulated_s", cosim::to_seconds(outcome.simulated)},
                         {"wall_s", outcome.wall_s},
-                        {"real_time_factor", real_time_factor(outcome)},
+                        {"real_time_factor", real_time_factor(setup, outcome)},
                         {"trace_sha256", outcome.trace_sha256},
                         {"grants", outcome.grants},
                         {"nodes", nodes},
@@ -146,6 +149,10 @@ void write_report(const RunSetup& setup, const cosim::Outcome& outcome, Reserved
                         {"events", events_of(nodes)},
                         {"warnings", warnings_of(setup, outcome)},
                         {"unmodelled_registers", unmodelled_of(nodes)}};
+    if (!setup.from.empty())
+        report["from"] = {{"file", setup.from.string()},
+                          {"at_s", cosim::to_seconds(setup.from_time)},
+                          {"restored_s", outcome.restored_s}};
     if (!setup.cache_unused.empty()) report["cache_unused"] = setup.cache_unused;
     file.write(report.dump(2) + "\n");
 }
@@ -153,7 +160,7 @@ void write_report(const RunSetup& setup, const cosim::Outcome& outcome, Reserved
 std::string summary(const RunSetup& setup, const cosim::Outcome& outcome) {
     std::string text =
         fmt::format("{:.3f} s simulated in {:.1f} s ({:.1f}x real time)",
-                    cosim::to_seconds(outcome.simulated), outcome.wall_s, real_time_factor(outcome));
+                    cosim::to_seconds(outcome.simulated), outcome.wall_s, real_time_factor(setup, outcome));
     if (outcome.success && !outcome.text.empty()) text += fmt::format("\nended: {}", outcome.text);
     text += states_summary(setup, outcome) + faults_summary(outcome);
     const std::vector<std::string> warnings = warnings_of(setup, outcome);

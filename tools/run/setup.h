@@ -21,7 +21,9 @@ struct RunSetup {
     std::string cache_unused{};           ///< why no boot is taken from the cache; empty: no such reason
     std::filesystem::path save_state{};   ///< where the boards' states at `save_at` go; empty: nowhere
     cosim::Time save_at = 0;
-    cosim::Time ready = 0;  ///< in real time: the boards are ready, the wall clock counts from here
+    std::filesystem::path from{};  ///< snapshot that the run goes on from; empty: none
+    cosim::Time from_time = 0;     ///< of that
+    cosim::Time ready = 0;         ///< in real time: the boards are ready, the wall clock counts from here
 };
 
 /// Reads the scenario, applies the request's changes and plans nodes and links. Throws InputError for

@@ -37,10 +37,12 @@ std::string hash_of(const fs::path& path) {
     return fmt::format("{:02x}", fmt::join(digest, ""));
 }
 
-/// Node descriptions with the results folder as "<out>", and the files that they name.
+/// Node descriptions with the results folder as "<out>" and the scenario as "<scenario>", wherever they are,
+/// and the files that they name.
 class Descriptions {
   public:
-    explicit Descriptions(const fs::path& out) : out_(out.string()) {}
+    explicit Descriptions(const RunSetup& setup)
+        : out_(setup.out.string()), scenario_(setup.scenario.file.string()) {}
 
     json of(const cosim::NodeSpec& node) {
         json spec = json::parse(node.json);
@@ -61,13 +63,15 @@ class Descriptions {
         const auto text = value.get<std::string>();
         if (text == out_ || text.starts_with(out_ + "/")) {
             value = "<out>" + text.substr(out_.size());
+        } else if (text.starts_with(scenario_)) {
+            value = "<scenario>" + text.substr(scenario_.size());
         } else if (text.starts_with('/')) {
             std::error_code error;
             if (!files_.contains(text) && fs::is_regular_file(text, error)) files_[text] = hash_of(text);
         }
     }
 
-    std::string out_;
+    std::string out_, scenario_;
     std::map<std::string, std::string> files_;
 };
 
@@ -80,7 +84,7 @@ json links_of(const RunSetup& setup) {
 }
 
 json run_of(const RunSetup& setup) {
-    Descriptions descriptions(setup.out);
+    Descriptions descriptions(setup);
     json nodes = json::object();
     for (const cosim::NodeSpec& node : setup.nodes)
         nodes[node.name] = descriptions.of(node);

@@ -110,6 +110,8 @@ void plan_snapshots(RunSetup& setup, const RunRequest& request) {
     if (!request.save.empty()) plan_saving(setup, request);
     if (!request.snapshot) return;
     const std::string file = request.from.string();
+    setup.from = fs::absolute(request.from);
+    setup.from_time = request.snapshot->time;
     check_origin(request.snapshot->origin, setup, request.snapshot->time, file);
     if (setup.scenario.duration && cosim::from_seconds(*setup.scenario.duration) < request.snapshot->time)
         throw InputError("", "--duration",
