@@ -115,7 +115,7 @@ void ircom_scanned(void) {
     if (own != PROXIMITY_DARK) last_lit = newest;
     if (frozen) return;
     for (i = 0; i < SENSORS; ++i)
-        to[i] = (i & 3) == own ? before[i] : ANALOG(FIRST_PHOTOTRANSISTOR + i);
+        to[i] = (i & 3) == own ? (s16)before[i] : ANALOG(FIRST_PHOTOTRANSISTOR + i);
     if (receiving && newest - begin == WORD_SCANS) frozen = 1;
     ++newest;
 }

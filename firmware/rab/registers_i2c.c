@@ -96,7 +96,7 @@ static void write(u8 number, u8 value) {
         command_obey(SEND_ALL, high << 8 | value);
         break;
     default:
-        command_obey(number, number < SENSORS ? high << 8 | value : value);
+        command_obey(number, number < SENSORS ? high << 8 | value : (u32)value);
     }
 }
 

@@ -45,7 +45,7 @@ void serial_announce(void) {
 /* The bearing in rad as IEEE single. */
 static u32 ieee(s16 bearing) {
     const u32 sign = bearing < 0 ? 0x80000000UL : 0;
-    u32 numerator = bearing < 0 ? -(s32)bearing : bearing;
+    u32 numerator = bearing < 0 ? -(s32)bearing : (s32)bearing;
     u32 denominator = BEARING_UNITS;
     u16 exponent = EXPONENT_BIAS;
     if (numerator == 0) return 0;

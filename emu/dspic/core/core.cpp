@@ -215,6 +215,7 @@ void Core::set_w(int index, std::uint16_t value) {
 }
 void Core::set_pc(std::uint32_t pc) {
     machine_->current = at(*machine_, pc & kProgramSpace);
+    if (machine_->pass_pc != (pc & kProgramSpace)) machine_->pass_pc.reset();  // the stop reported there is left
 }
 std::uint16_t Core::read_data(std::uint16_t address) {
     return read16(*machine_, address & 0xFFFE);
