@@ -11,7 +11,8 @@ namespace {
 namespace avr = puckloop::avr;
 
 // What the chip's core executes. Word addresses and words (AVR Instruction Set Manual).
-constexpr std::uint16_t kJmp = 0x940C, kLoop = 0xCFFF, kNext = 0xC000, kReti = 0x9518, kSleep = 0x9588, kWdr = 0x95A8;
+constexpr std::uint16_t kJmp = 0x940C, kLoop = 0xCFFF, kNext = 0xC000, kReti = 0x9518, kSleep = 0x9588,
+                        kWdr = 0x95A8;
 constexpr std::uint16_t kMain = 0x100, kIdle = 0x102, kAwake = 0x103, kFeed = 0x106;
 constexpr std::uint16_t kRoutines = 0x200, kRoutineWords = 3;  // entry, loop, RETI
 constexpr int kVectors = 35;
@@ -58,7 +59,8 @@ std::uint8_t AvrHost::read_byte(std::uint16_t address) {
 void AvrHost::write_byte(std::uint16_t address, std::uint8_t value) {
     board_.chip().inside().core.write_data(address, value);
 }
-/// Sixteen bits go through the peripheral's own latch: the low byte is read first, the high one written first.
+/// Sixteen bits go through the peripheral's own latch: the low byte is read first, the high one written
+/// first.
 std::uint16_t AvrHost::read_word(std::uint16_t address) {
     const std::uint8_t low = read_byte(address);
     return static_cast<std::uint16_t>(low | read_byte(static_cast<std::uint16_t>(address + 1)) << 8);
@@ -70,9 +72,15 @@ void AvrHost::write_word(std::uint16_t address, std::uint16_t value) {
 
 void AvrHost::run_to(Cycle end) {
     board_.run_until(board_.chip().clock().time_of(end));
-    if (!board_.powered()) { throw InputEnds{};}
+    if (!board_.powered()) {
+        throw InputEnds{};
+    }
     // An interrupt that was entered in the last cycles is at its routine, too, though not stopped there.
-    const std::uint32_t pc = board_.chip().pc() / 2;
+    std::uint32_t pc = board_.chip().pc() / 2;
+    while (pc != 0 && pc < 2u * kVectors) {  // the jump to it is still to come
+        board_.run_until(board_.chip().clock().time_of(cycle() + 1));
+        pc = board_.chip().pc() / 2;
+    }
     if (pc == 0 || (pc >= kRoutines && (pc - kRoutines) % kRoutineWords == 0)) serve(pc);
 }
 

@@ -2,8 +2,8 @@
 // An AVR chip, on the TAM's board, beside firmware that runs on the host.
 
 #include "emu/tam_avr/board.h"
-#include "firmware/host/vector.h"
 #include "firmware/host/host.h"
+#include "firmware/host/vector.h"
 
 #include <span>
 #include <vector>

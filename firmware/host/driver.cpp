@@ -40,7 +40,8 @@ void run(const std::vector<std::uint8_t>& bytes, const std::string& name, bool a
     LLVMFuzzerTestOneInput(bytes.data(), bytes.size());
     const hosted::Seen first = hosted::seen();
     std::printf("%s: %016llx %llu characters %llu others\n", name.c_str(),
-                static_cast<unsigned long long>(first.hash), static_cast<unsigned long long>(first.bytes_sent),
+                static_cast<unsigned long long>(first.hash),
+                static_cast<unsigned long long>(first.bytes_sent),
                 static_cast<unsigned long long>(first.other));
     std::fflush(stdout);
     if (!again) return;
@@ -67,7 +68,7 @@ int main(int argc, char** argv) {
     for (const std::string& file : files) {
         std::ifstream in(file, std::ios::binary);
         if (!in) {
-            std::fprintf(stderr, "%s: cannot be read\n", file.c_str());
+            std::fprintf(stderr, "puckloop: %s: cannot be read\n", file.c_str());
             return 2;
         }
         const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(in), {}};

@@ -14,11 +14,11 @@ namespace dspic = puckloop::dspic;
 // What the chip's core executes. Program addresses and words (isa.csv).
 constexpr std::uint32_t kLoop = 0x37FFFF, kNext = 0x370000, kRetfie = 0x064000, kIdleWord = 0xFE4001,
                         kDisiWord = 0xFC0000, kMostDisi = 0x3FFF;
-constexpr std::uint32_t kMain = 0x200;                              // the loop of the main program
-constexpr std::uint32_t kIdle = 0x204, kAwake = 0x206;              // PWRSAV, and where it goes on
-constexpr std::uint32_t kDisi = 0x20C;                              // DISI #n, rewritten before each use
-constexpr std::uint32_t kAssembly = 0x280;                          // what assembly() runs
-constexpr std::uint32_t kRoutines = 0x400, kRoutineAddresses = 6;   // entry, loop, RETFIE
+constexpr std::uint32_t kMain = 0x200;                             // the loop of the main program
+constexpr std::uint32_t kIdle = 0x204, kAwake = 0x206;             // PWRSAV, and where it goes on
+constexpr std::uint32_t kDisi = 0x20C;                             // DISI #n, rewritten before each use
+constexpr std::uint32_t kAssembly = 0x280;                         // what assembly() runs
+constexpr std::uint32_t kRoutines = 0x400, kRoutineAddresses = 6;  // entry, loop, RETFIE
 constexpr std::uint32_t kVectorTable = 0x04;
 constexpr std::uint32_t kConfiguration = 0xF80000;
 
@@ -41,7 +41,8 @@ std::string instructions_of(const std::string& text) {
 
 DspicHost::DspicHost(const dspic::DeviceInfo& device, dspic::Pins& pins, const dspic::ChipOptions& options,
                      const std::string& image_file, std::span<const Vector> vectors)
-    : chip_(device, pins, options), routines_(static_cast<std::size_t>(dspic::kTrapVectors + device.irq_count)) {
+    : chip_(device, pins, options),
+      routines_(static_cast<std::size_t>(dspic::kTrapVectors + device.irq_count)) {
     for (const auto& [address, word] : puckloop::image::load_image(image_file).config)
         if (address >= kConfiguration) chip_.load_word(address, word);
     chip_.load_word(0, kLoop);

@@ -24,8 +24,8 @@ class DspicHost : public Host {
     void write_byte(std::uint16_t address, std::uint8_t value) override;
     void idle() override;
     void no_interrupts(unsigned cycles);
-    /// What stands behind `__asm__ volatile(`, as the preprocessor quotes it: assembled, and executed by the chip's
-    /// core.
+    /// What stands behind `__asm__ volatile(`, as the preprocessor quotes it: assembled, and executed by the
+    /// chip's core.
     void assembly(const std::string& text);
     Cycle cycle() const override { return chip_.cycle(); }
     puckloop::cosim::Time time() const { return chip_.clock().time_of(cycle()); }

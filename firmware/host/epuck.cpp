@@ -6,6 +6,7 @@
 #include "firmware/host/input.h"
 
 #include <algorithm>
+#include <utility>
 
 int firmware_main();
 void _T1Interrupt();
@@ -25,7 +26,8 @@ namespace {
 namespace pic = puckloop::pic;
 using puckloop::cosim::Time;
 
-constexpr Vector kRoutines[] = {{11, _T1Interrupt}, {19, _ADCInterrupt}, {29, _T4Interrupt},  {30, _T5Interrupt},
+constexpr Vector kRoutines[] = {{11, _T1Interrupt},   {19, _ADCInterrupt},
+                                {29, _T4Interrupt},   {30, _T5Interrupt},
 #ifdef IRCOM
                                 {14, _T2Interrupt},
 #endif
@@ -37,6 +39,7 @@ constexpr const char* kImage = PUCKLOOP_FIRMWARE "/epuck/epuck.hex";
 #endif
 constexpr Time kBit = 1'000'000'000'000 / 115'200;
 constexpr double kCharacter = 86.8;   // microseconds
+constexpr double kReady = 20e3;       // it has started
 constexpr double kTail = 30e3;        // what is under way at an input's end is seen through
 constexpr double kLongest = 600e3;    // simulated
 constexpr std::uint8_t kRecord = 12;  // bytes
@@ -87,6 +90,7 @@ class Epuck : public DspicHost {
             ending_ = true;
             return in(kTail);
         }
+        if (!std::exchange(begun_, true) && input_.byte() & 1) return in(kReady);
         return begin(input_.byte());
     }
 
@@ -163,7 +167,7 @@ class Epuck : public DspicHost {
     std::deque<double> halves_;
     std::uint16_t sensor_ = 0;
     double strength_ = 0.0;
-    bool lit_ = false, ending_ = false;
+    bool lit_ = false, ending_ = false, begun_ = false;
 };
 
 }  // namespace

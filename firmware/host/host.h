@@ -1,11 +1,13 @@
 #pragma once
-// What runs a firmware's C sources on the host against an emulated chip: the sources' accesses to registers and
-// volatile variables become accesses to the chip and let its time pass; the chip's own core, which executes a loop
-// of one branch meanwhile, takes the interrupts, with their priorities and latency, and the sources' routines are
-// called for them in between. So a routine can come between any two accesses, as on the robot.
+// What runs a firmware's C sources on the host against an emulated chip: the sources' accesses to registers
+// and volatile variables become accesses to the chip and let its time pass; the chip's own core, which
+// executes a loop of one branch meanwhile, takes the interrupts, with their priorities and latency, and the
+// sources' routines are called for them in between. So a routine can come between any two accesses, as on the
+// robot.
 //
 // Deviations:
-// 1. What lies between two accesses takes no time; an access takes `access_cycles`, which an input may choose.
+// 1. What lies between two accesses takes no time; an access takes `access_cycles`, which an input may
+// choose.
 // 2. A routine cannot come within an expression that has no volatile access.
 
 #include <cstdint>
@@ -48,8 +50,8 @@ class Host {
     void pass(Cycle cycles);
     /// Runs the chip up to cycle `end`, or the next interrupt, whose routine is run.
     virtual void run_to(Cycle end) = 0;
-    /// Hands in what is due now from outside. Returns the cycle of the next such, above the present one; throws
-    /// InputEnds.
+    /// Hands in what is due now from outside. Returns the cycle of the next such, above the present one;
+    /// throws InputEnds.
     virtual Cycle act() = 0;
     Cycle due() const { return due_; }
     /// act(), if it is time.

@@ -2,7 +2,8 @@
 
 namespace hosted {
 
-puckloop::cosim::UartFrame character(std::uint8_t data, puckloop::cosim::Time now, puckloop::cosim::Time bit) {
+puckloop::cosim::UartFrame character(std::uint8_t data, puckloop::cosim::Time now,
+                                     puckloop::cosim::Time bit) {
     puckloop::cosim::UartFrame frame;
     constexpr int kBitsBeforeStop = 9;
     frame.start = now - kBitsBeforeStop * bit;
@@ -24,8 +25,8 @@ std::vector<double> ircom_halves(std::uint16_t symbols, double scale) {
 }
 
 std::uint16_t ircom_symbols(std::uint8_t word) {
-    const auto check = static_cast<unsigned>(-__builtin_popcount(word)) & 3u;
-    return static_cast<std::uint16_t>(word << 2 | check);
+    const auto check = -static_cast<unsigned>(__builtin_popcount(word)) & 3u;
+    return static_cast<std::uint16_t>(static_cast<unsigned>(word) << 2 | check);
 }
 
 }  // namespace hosted

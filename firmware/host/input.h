@@ -29,8 +29,8 @@ class Input {
 /// A character 8N1 whose stop bit begins at `now`, of a sender whose bit time is `bit`.
 puckloop::cosim::UartFrame character(std::uint8_t data, puckloop::cosim::Time now, puckloop::cosim::Time bit);
 
-/// How long, in microseconds, each half period of an IRcom word is, light and dark in turn, the first one lit:
-/// twelve symbols, bit 11 first.
+/// How long, in microseconds, each half period of an IRcom word is, light and dark in turn, the first one
+/// lit: twelve symbols, bit 11 first.
 std::vector<double> ircom_halves(std::uint16_t symbols, double scale);
 /// The symbols of a word as it is sent.
 std::uint16_t ircom_symbols(std::uint8_t word);
@@ -42,9 +42,7 @@ struct Seen {
     std::uint64_t hash = 14695981039346656037ull;  ///< FNV-1a
     std::uint64_t bytes_sent = 0;                  ///< on its serial lines
     std::uint64_t other = 0;                       ///< I2C answers, changes of outputs
-    void add(std::uint64_t value) {
-        hash = (hash ^ value) * 1099511628211ull;
-    }
+    void add(std::uint64_t value) { hash = (hash ^ value) * 1099511628211ull; }
 };
 const Seen& seen();
 

@@ -1,11 +1,11 @@
 #pragma once
-// The integers of a compiler whose int has 16 bits, as C++ classes: the firmware's own C sources, compiled for the
-// host as C++ with these in place of types.h, calculate as on the robot. What C leaves undefined there (overflow of
-// a signed value, a shift too far, division by zero) is reported by fail(). Shifting a negative value left is not:
-// the firmware's compilers define it.
+// The integers of a compiler whose int has 16 bits, as C++ classes: the firmware's own C sources, compiled
+// for the host as C++ with these in place of types.h, calculate as on the robot. What C leaves undefined
+// there (overflow of a signed value, a shift too far, division by zero) is reported by fail(). Shifting a
+// negative value left is not: the firmware's compilers define it.
 //
-// A host's int in an expression is a literal or an enumerator: it counts as the target's int, or, from 0x8000 to
-// 0xFFFF beside an unsigned operand, as its unsigned int. One that fits neither is reported, too.
+// A host's int in an expression is a literal or an enumerator: it counts as the target's int, or, from 0x8000
+// to 0xFFFF beside an unsigned operand, as its unsigned int. One that fits neither is reported, too.
 
 #include <concepts>
 #include <cstddef>
@@ -54,10 +54,9 @@ using Promoted = std::conditional_t<sizeof(T) == 1, std::int16_t, T>;
 template <class A, class B>
 using Common = std::conditional_t<
     std::same_as<Promoted<A>, std::uint32_t> || std::same_as<Promoted<B>, std::uint32_t>, std::uint32_t,
-    std::conditional_t<
-        sizeof(A) == 4 || sizeof(B) == 4, std::int32_t,
-        std::conditional_t<std::same_as<A, std::uint16_t> || std::same_as<B, std::uint16_t>, std::uint16_t,
-                           std::int16_t>>>;
+    std::conditional_t<sizeof(A) == 4 || sizeof(B) == 4, std::int32_t,
+                       std::conditional_t<std::same_as<A, std::uint16_t> || std::same_as<B, std::uint16_t>,
+                                          std::uint16_t, std::int16_t>>>;
 
 /// The value of an operand; of a volatile one at a volatile access.
 template <AnOperand X>
@@ -91,7 +90,8 @@ constexpr C add(C a, C b) {
 template <class C>
 constexpr C subtract(C a, C b) {
     C difference{};
-    if (__builtin_sub_overflow(a, b, &difference) && std::is_signed_v<C>) fail("signed overflow: a - b", a, b);
+    if (__builtin_sub_overflow(a, b, &difference) && std::is_signed_v<C>)
+        fail("signed overflow: a - b", a, b);
     return difference;
 }
 template <class C>
@@ -113,14 +113,13 @@ constexpr int checked_shift(C a, long long count) {
 }
 
 // NOLINTBEGIN: macros write the operators, which are all alike.
-#define HOSTED_BINARY(op, expression)                                    \
-    template <AnOperand A, AnOperand B>                                  \
-        requires(AClass<A> || AClass<B>)                                 \
-    constexpr auto operator op(const A& left, const B& right) {          \
-        using C = Common<TargetType<A>, TargetType<B>>;                  \
-        const C a = as<C>(left);                                         \
-        const C b = as<C>(right);                                        \
-        return Int<C>(static_cast<C>(expression));                       \
+#define HOSTED_BINARY(op, expression)                                                                        \
+    template <AnOperand A, AnOperand B>                                                                      \
+    requires(AClass<A> || AClass<B>) constexpr auto operator op(const A& left, const B& right) {             \
+        using C = Common<TargetType<A>, TargetType<B>>;                                                      \
+        const C a = as<C>(left);                                                                             \
+        const C b = as<C>(right);                                                                            \
+        return Int<C>(static_cast<C>(expression));                                                           \
     }
 HOSTED_BINARY(+, add<C>(a, b))
 HOSTED_BINARY(-, subtract<C>(a, b))
@@ -132,14 +131,13 @@ HOSTED_BINARY(|, a | b)
 HOSTED_BINARY(^, a ^ b)
 #undef HOSTED_BINARY
 
-#define HOSTED_COMPARISON(op)                                            \
-    template <AnOperand A, AnOperand B>                                  \
-        requires(AClass<A> || AClass<B>)                                 \
-    constexpr bool operator op(const A& left, const B& right) {          \
-        using C = Common<TargetType<A>, TargetType<B>>;                  \
-        const C a = as<C>(left);                                         \
-        const C b = as<C>(right);                                        \
-        return a op b;                                                   \
+#define HOSTED_COMPARISON(op)                                                                                \
+    template <AnOperand A, AnOperand B>                                                                      \
+    requires(AClass<A> || AClass<B>) constexpr bool operator op(const A& left, const B& right) {             \
+        using C = Common<TargetType<A>, TargetType<B>>;                                                      \
+        const C a = as<C>(left);                                                                             \
+        const C b = as<C>(right);                                                                            \
+        return a op b;                                                                                       \
     }
 HOSTED_COMPARISON(==)
 HOSTED_COMPARISON(!=)
@@ -151,16 +149,14 @@ HOSTED_COMPARISON(>=)
 
 /// Shifts have the left operand's type.
 template <AnOperand A, AnOperand B>
-    requires(AClass<A> || AClass<B>)
-constexpr auto operator<<(const A& left, const B& right) {
+requires(AClass<A> || AClass<B>) constexpr auto operator<<(const A& left, const B& right) {
     using C = Promoted<TargetType<A>>;
     const C a = as<C>(left);
     const int count = checked_shift<C>(a, static_cast<long long>(get(right)));
     return Int<C>(static_cast<C>(static_cast<std::uint64_t>(static_cast<std::int64_t>(a)) << count));
 }
 template <AnOperand A, AnOperand B>
-    requires(AClass<A> || AClass<B>)
-constexpr auto operator>>(const A& left, const B& right) {
+requires(AClass<A> || AClass<B>) constexpr auto operator>>(const A& left, const B& right) {
     using C = Promoted<TargetType<A>>;
     const C a = as<C>(left);
     const int count = checked_shift<C>(a, static_cast<long long>(get(right)));
@@ -189,7 +185,7 @@ class Int {
     Int() = default;
     /// Any operand, truncated, as C converts. (What copies structures is the compiler's own.)
     template <class X>
-        requires AnOperand<std::remove_reference_t<X>>
+    requires AnOperand<std::remove_reference_t<X>>
     constexpr Int(X&& x) : value_(static_cast<T>(get(x))) {}
 
     constexpr T read() const { return value_; }
@@ -211,14 +207,14 @@ class Int {
         return Int(value);
     }
 
-#define HOSTED_ASSIGNMENT(op)                                             \
-    template <AnOperand X>                                                \
-    Int& operator op##=(const X& x) {                                     \
-        return *this = *this op x;                                        \
-    }                                                                     \
-    template <AnOperand X>                                                \
-    Int operator op##=(const X& x) volatile {                             \
-        return *this = *this op x;                                        \
+#define HOSTED_ASSIGNMENT(op)                                                                                \
+    template <AnOperand X>                                                                                   \
+    Int& operator op##=(const X& x) {                                                                        \
+        return *this = *this op x;                                                                           \
+    }                                                                                                        \
+    template <AnOperand X>                                                                                   \
+    Int operator op##=(const X& x) volatile {                                                                \
+        return *this = *this op x;                                                                           \
     }
     HOSTED_ASSIGNMENT(+)
     HOSTED_ASSIGNMENT(-)
@@ -232,29 +228,37 @@ class Int {
     HOSTED_ASSIGNMENT(>>)
 #undef HOSTED_ASSIGNMENT
 
-#define HOSTED_STEP(op, by)                                               \
-    Int& operator op() { return *this = *this by 1; }                     \
-    Int operator op() volatile { return *this = *this by 1; }             \
-    Int operator op(int) {                                                \
-        const Int was = *this;                                            \
-        *this = was by 1;                                                 \
-        return was;                                                       \
-    }                                                                     \
-    Int operator op(int) volatile {                                       \
-        const Int was = *this;                                            \
-        *this = was by 1;                                                 \
-        return was;                                                       \
+#define HOSTED_STEP(op, by)                                                                                  \
+    Int& operator op() {                                                                                     \
+        return *this = *this by 1;                                                                           \
+    }                                                                                                        \
+    Int operator op() volatile {                                                                             \
+        return *this = *this by 1;                                                                           \
+    }                                                                                                        \
+    Int operator op(int) {                                                                                   \
+        const Int was = *this;                                                                               \
+        *this = was by 1;                                                                                    \
+        return was;                                                                                          \
+    }                                                                                                        \
+    Int operator op(int) volatile {                                                                          \
+        const Int was = *this;                                                                               \
+        *this = was by 1;                                                                                    \
+        return was;                                                                                          \
     }
     HOSTED_STEP(++, +)
     HOSTED_STEP(--, -)
 #undef HOSTED_STEP
 
-    constexpr explicit operator bool() const { return value_ != 0; }
-    explicit operator bool() const volatile { return read() != 0; }
-    /// To long, which subscripts take, and to char, and only as a template: `condition ? Int : literal` stays an Int.
+    constexpr explicit operator bool() const {
+        return value_ != 0;
+    }
+    explicit operator bool() const volatile {
+        return read() != 0;
+    }
+    /// To long, which subscripts take, and to char, and only as a template: `condition ? Int : literal` stays
+    /// an Int.
     template <class L>
-        requires(std::same_as<L, long> || std::same_as<L, char>)
-    constexpr operator L() const {
+    requires(std::same_as<L, long> || std::same_as<L, char>) constexpr operator L() const {
         return static_cast<L>(value_);
     }
     template <std::same_as<long> L>
@@ -262,8 +266,9 @@ class Int {
         return static_cast<long>(read());
     }
     template <class U>
-        requires(std::is_arithmetic_v<U> && !std::same_as<U, bool> && !std::same_as<U, long> && !std::same_as<U, char>)
-    constexpr explicit operator U() const {
+    requires(std::is_arithmetic_v<U> && !std::same_as<U, bool> && !std::same_as<U, long> &&
+             !std::same_as<U, char>) constexpr explicit
+    operator U() const {
         return static_cast<U>(value_);
     }
 
@@ -278,8 +283,7 @@ constexpr long long switched(const A& x) {
     return get(x);
 }
 template <class E>
-    requires(!AClass<E>)
-constexpr E switched(E x) {
+requires(!AClass<E>) constexpr E switched(E x) {
     return x;
 }
 

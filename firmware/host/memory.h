@@ -1,6 +1,6 @@
 #pragma once
-// The firmware's variables, so that each input finds them as at power-up. They lie between two objects' because the
-// linker keeps the order of the objects within a section.
+// The firmware's variables, so that each input finds them as at power-up. They lie between two objects'
+// because the linker keeps the order of the objects within a section.
 
 namespace hosted {
 

@@ -8,6 +8,7 @@
 #include "firmware/host/register_objects.h"
 
 #include <algorithm>
+#include <utility>
 
 int firmware_main();
 void _T1Interrupt();
@@ -29,14 +30,15 @@ using puckloop::cosim::I2cPhase;
 using puckloop::cosim::I2cPhaseKind;
 using puckloop::cosim::Time;
 
-constexpr Vector kRoutines[] = {{11, _T1Interrupt},    {16, _T3Interrupt},   {19, _U1RXInterrupt},
-                                {20, _U1TXInterrupt},  {21, _ADC1Interrupt}, {24, _SI2C1Interrupt},
-                                {28, _INT1Interrupt},  {38, _U2RXInterrupt}, {39, _U2TXInterrupt}};
+constexpr Vector kRoutines[] = {{11, _T1Interrupt},   {16, _T3Interrupt},   {19, _U1RXInterrupt},
+                                {20, _U1TXInterrupt}, {21, _ADC1Interrupt}, {24, _SI2C1Interrupt},
+                                {28, _INT1Interrupt}, {38, _U2RXInterrupt}, {39, _U2TXInterrupt}};
 constexpr Time kMicrosecond = 1'000'000;
 constexpr Time kBit = 1'000'000'000'000 / 115'200;
 constexpr Time kClock = 10 * kMicrosecond;  // of I2C
 constexpr double kCharacter = 86.8;         // microseconds
 constexpr double kChip = 98.0;
+constexpr double kReady = 60e3;  // it has started
 constexpr double kTail = 20e3, kLongest = 250e3;
 constexpr std::uint8_t kAddress = 0x20;
 
@@ -55,7 +57,7 @@ class Watch : public rab::BoardListener {
         ++present.bytes_sent;
     }
     void i2c_answer(const I2cPhase& answer, Time) override {
-        present.add(answer.byte | answer.ack << 8);
+        present.add(static_cast<std::uint64_t>(answer.ack) << 8 | answer.byte);
         ++present.other;
         open = false;
         acknowledged = answer.ack != 0;
@@ -98,6 +100,7 @@ class Rab : public DspicHost {
             ending_ = true;
             return in(kTail);
         }
+        if (!std::exchange(begun_, true) && input_.byte() & 1) return in(kReady);
         return begin(input_.byte());
     }
 
@@ -171,7 +174,7 @@ class Rab : public DspicHost {
     /// Preamble of six chips, sixteen bits, four of check: a 1 is light and dark, a 0 dark and light.
     void frame(std::uint16_t sensors, std::uint32_t payload, int wrong, double scale) {
         constexpr int kBits = 16, kCheckBits = 4, kPreamble = 6;
-        const auto check = static_cast<unsigned>(-__builtin_popcount(payload)) & 0xFu;
+        const auto check = -static_cast<unsigned>(__builtin_popcount(payload)) & 0xFu;
         std::vector<bool> chips(kPreamble, true);
         const auto put = [&chips](bool bit) {
             chips.push_back(bit);
@@ -206,7 +209,7 @@ class Rab : public DspicHost {
     std::deque<I2cPhase> phases_;
     std::deque<Light> lights_;
     double waited_ = 0.0;
-    bool ending_ = false;
+    bool ending_ = false, begun_ = false;
 };
 
 }  // namespace

@@ -7,8 +7,8 @@
 
 namespace hosted {
 
-/// An access of the CPU to its data space, and the time it takes. Interrupts may come before it, and routines of the
-/// firmware's run then.
+/// An access of the CPU to its data space, and the time it takes. Interrupts may come before it, and routines
+/// of the firmware's run then.
 std::uint16_t read_word(std::uint16_t address);
 void write_word(std::uint16_t address, std::uint16_t value);
 std::uint8_t read_byte(std::uint16_t address);
@@ -63,14 +63,14 @@ class Register {
         return value;
     }
     Int<T> operator=(const Register& other) const volatile { return *this = Int<T>(other); }
-#define HOSTED_ASSIGNMENT(op)                                                       \
-    template <AnOperand X>                                                          \
-    Int<T> operator op##=(const X& x) const volatile {                              \
-        const auto right = get(x);                                                  \
-        Update update(address_);                                                    \
-        const Int<T> value = Int<T>(read()) op right;                               \
-        write_register<T>(address_, value.read());                                  \
-        return value;                                                               \
+#define HOSTED_ASSIGNMENT(op)                                                                                \
+    template <AnOperand X>                                                                                   \
+    Int<T> operator op##=(const X& x) const volatile {                                                       \
+        const auto right = get(x);                                                                           \
+        Update update(address_);                                                                             \
+        const Int<T> value = Int<T>(read()) op right;                                                        \
+        write_register<T>(address_, value.read());                                                           \
+        return value;                                                                                        \
     }
     HOSTED_ASSIGNMENT(+)
     HOSTED_ASSIGNMENT(-)
@@ -78,7 +78,9 @@ class Register {
     HOSTED_ASSIGNMENT(|)
     HOSTED_ASSIGNMENT(^)
 #undef HOSTED_ASSIGNMENT
-    explicit operator bool() const volatile { return read() != 0; }
+    explicit operator bool() const volatile {
+        return read() != 0;
+    }
     template <std::same_as<long> L>
     operator L() const volatile {
         return static_cast<long>(read());
@@ -86,8 +88,8 @@ class Register {
     // NOLINTEND
 
   private:
-    /// Read, change and write back. The dsPIC has instructions for it, on all that this firmware has to do with; the
-    /// AVR on its first 32 I/O registers.
+    /// Read, change and write back. The dsPIC has instructions for it, on all that this firmware has to do
+    /// with; the AVR on its first 32 I/O registers.
     class Update {
       public:
         explicit Update(std::uint16_t address) : whole_(sizeof(T) == 2 || address < kFirstWithout) {
@@ -111,7 +113,8 @@ Register<T> RegisterAddress<T>::operator[](long index) const {
     return Register<T>(static_cast<std::uint16_t>(address + index * static_cast<long>(sizeof(T))));
 }
 
-/// A register in an expression that may throw its value away, as `(void)SPI1BUF;` does: then it is read at the end.
+/// A register in an expression that may throw its value away, as `(void)SPI1BUF;` does: then it is read at
+/// the end.
 template <class T>
 class Discardable {
   public:

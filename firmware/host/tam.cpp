@@ -1,10 +1,12 @@
-// The TAM's firmware on the host: the radio module's serial line, the console, infra-red light and light barriers.
+// The TAM's firmware on the host: the radio module's serial line, the console, infra-red light and light
+// barriers.
 
 #include "firmware/host/avr_host.h"
 #include "firmware/host/input.h"
 #include "firmware/host/register_objects.h"
 
 #include <algorithm>
+#include <utility>
 
 int firmware_main();
 void __vector_9();
@@ -26,6 +28,7 @@ constexpr Vector kRoutines[] = {{9, __vector_9},   {12, __vector_12}, {16, __vec
                                 {21, __vector_21}, {28, __vector_28}, {29, __vector_29}};
 constexpr Time kRadioBit = 1'000'000'000'000 / 9615, kConsoleBit = 1'000'000'000'000 / 57'600;
 constexpr double kRadioCharacter = 1040.0, kConsoleCharacter = 174.0;  // microseconds
+constexpr double kReady = 200e3;                                       // it has started
 constexpr double kTail = 50e3, kLongest = 1.5e6;
 constexpr int kRadio = 1, kConsole = 0;
 constexpr std::uint16_t kStatus = 0x5F;  // SREG
@@ -70,6 +73,7 @@ class Tam : public AvrHost {
             ending_ = true;
             return in(kTail);
         }
+        if (!std::exchange(begun_, true) && input_.byte() & 1) return in(kReady);
         return begin(input_.byte());
     }
 
@@ -82,14 +86,15 @@ class Tam : public AvrHost {
         case 1:  // a frame of the radio module's with a good check
         case 2: {
             std::vector<std::uint8_t> data{kKinds[static_cast<std::size_t>(much & 3)]};
-            for (int i = 0; i < much + (operation & 2 ? 8 : 0); ++i)
+            for (int i = 0; i < much + (operation & 2 ? 16 : 0); ++i)
                 data.push_back(input_.byte());
             frame(data);
             return in(1.0);
         }
         case 3:  // the coordinator was found; then it commands
             frame({0x88, 1, 'D', 'N', 0, 0, 0, 1, 2, 3, 4, 5, 6, 7, 8});
-            frame({0x90, 1, 2, 3, 4, 5, 6, 7, 8, 0, 0, 1, input_.byte(), input_.byte(), input_.byte(), input_.byte()});
+            frame({0x90, 1, 2, 3, 4, 5, 6, 7, 8, 0, 0, 1, input_.byte(), input_.byte(), input_.byte(),
+                   input_.byte()});
             return in(1.0);
         case 4:
             return in(2000.0 * (much + 1));
@@ -160,7 +165,7 @@ class Tam : public AvrHost {
     Input input_;
     std::deque<std::uint8_t> characters_;
     std::deque<double> halves_;
-    bool lit_ = false, ending_ = false;
+    bool lit_ = false, ending_ = false, begun_ = false;
 };
 
 }  // namespace
