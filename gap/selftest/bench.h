@@ -42,6 +42,30 @@ class BenchOf : public Bench {
             list.push_back({effect.number, effect.label, effect.instead_of, effect.variant});
         return list;
     }
+    HiddenExperiment exact(std::uint64_t seed) const override { return rig_.exact(Knobs{}, seed, ""); }
+    void measure(HiddenExperiment& experiment, const NoiseStyle& style, std::uint64_t seed) const override {
+        rig_.measure(experiment, Knobs{}, style, seed);
+        RandomStream holes(seed, "holes");
+        for (HiddenRun& run : experiment.runs)
+            punch_holes(run, style, experiment.kind == "motion", holes);
+    }
+    std::vector<NoiseFloor> floor() const override { return rig_.floor; }
+    std::vector<HiddenExperiment> examples(std::size_t index, std::uint64_t seed) const override {
+        constexpr int kDraws = 9;  // as many as sensors, and one
+        std::vector<HiddenExperiment> list;
+        const auto& effect = effects_[index];
+        if (*effect.variant != '\0') return list;
+        for (int draw = 0; draw < kDraws; ++draw) {
+            Knobs knobs;
+            effect.hide(knobs, effect.most / 2, RandomStream(seed, fmt::format("example {}", draw)));
+            list.push_back(rig_.exact(knobs, seed, ""));
+            if (draw == 1 && distance_in_noise(list[0], list[1], rig_.floor) == 0.0) {
+                list.pop_back();
+                break;
+            }
+        }
+        return list;
+    }
     HiddenCase make(const CasePlan& plan) const override {
         HiddenCase made;
         made.kind = rig_.kind;
@@ -94,13 +118,13 @@ class BenchOf : public Bench {
                                          const HiddenExperiment& rest) const {
         RandomStream side(plan.seed, fmt::format("sign {}", effect.label));
         const double sign = effect.either_sign && side.uniform() < 0.5 ? -1.0 : 1.0;
-        if (effect.levels) {
+        if (effect.levels && plan.asked <= 0) {
             const double amount = (*effect.levels)[plan.strength == Strength::Low      ? 0
                                                    : plan.strength == Strength::Medium ? 1
                                                                                        : 2];
             return {sign * amount, ratio_at(effect, sign * amount, plan, variant, shape, rest)};
         }
-        const double asked = asked_ratio(plan.strength);
+        const double asked = plan.asked > 0 ? plan.asked : asked_ratio(plan.strength);
         double low = 0.0, high = effect.most;
         double reached = ratio_at(effect, sign * high, plan, variant, shape, rest);
         if (reached <= asked) return {sign * high, reached};

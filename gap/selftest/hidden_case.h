@@ -2,6 +2,7 @@
 // One case of the self test: what was hidden, how strongly, what the tool should say, and the experiment.
 
 #include "gap/selftest/hidden_table.h"
+#include "gap/selftest/noise.h"
 
 #include <cstdint>
 #include <memory>
@@ -50,6 +51,7 @@ struct CasePlan {
     Expect expect = Expect::NoEffect;
     std::uint64_t seed = 0;
     std::string variant{};  ///< of the experiment, where no effect asks for one
+    double asked = 0.0;     ///< ratio to the noise, where it is not the strength's; 0: the strength's
 };
 
 struct EffectInfo {
@@ -59,6 +61,13 @@ struct EffectInfo {
     std::string variant;  ///< of the experiment
 };
 
+/// Standard deviation of the noise of a measured column: the floor that strengths are told in. Of what
+/// happens or not it is 1, so that the strength is the root of the share of rows that turn out otherwise.
+struct NoiseFloor {
+    const char* column;
+    double sd;
+};
+
 /// All that can be hidden in one kind of experiment.
 class Bench {
   public:
@@ -66,6 +75,15 @@ class Bench {
     virtual const char* kind() const = 0;
     virtual std::vector<EffectInfo> effects() const = 0;
     virtual HiddenCase make(const CasePlan& plan) const = 0;
+
+    /// The exact tables with nothing wrong, for those who hide something of their own, and what instruments
+    /// then make of them.
+    virtual HiddenExperiment exact(std::uint64_t seed) const = 0;
+    virtual void measure(HiddenExperiment& experiment, const NoiseStyle& style, std::uint64_t seed) const = 0;
+    virtual std::vector<NoiseFloor> floor() const = 0;
+    /// The exact tables of one effect at half of its plausible range, for several draws of what it leaves open
+    /// (which sensor, which direction); one where it leaves nothing open. Empty for effects of another variant.
+    virtual std::vector<HiddenExperiment> examples(std::size_t effect, std::uint64_t seed) const = 0;
 };
 
 /// One for each kind of experiment, always in the same order.

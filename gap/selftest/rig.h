@@ -3,8 +3,7 @@
 // noise, then what the instruments make of it. Knob types and formulas are the plain_*.h models'.
 
 #include "base/random.h"
-#include "gap/selftest/hidden_table.h"
-#include "gap/selftest/noise.h"
+#include "gap/selftest/hidden_case.h"
 
 #include <cstdint>
 #include <functional>
@@ -12,13 +11,6 @@
 #include <vector>
 
 namespace puckloop::gap::selftest {
-
-/// Standard deviation of the noise of a measured column: the floor that strengths are told in. Of what
-/// happens or not it is 1, so that the strength is the root of the share of rows that turn out otherwise.
-struct NoiseFloor {
-    const char* column;
-    double sd;
-};
 
 /// Everything that one experiment needs: what is done is fixed by `seed` and `variant`.
 template <class Knobs>

@@ -25,12 +25,12 @@ constexpr std::uint64_t kMostCases = 100'000;
 constexpr double kMostWorkers = 256;
 
 struct Request {
-    std::uint64_t cases = 0, seed = 1;
+    std::uint64_t cases = 0, seed = 1, grammar = 0;
     std::vector<std::size_t> only;
     unsigned workers = 2;
     std::string kind;
-    bool quick = false, json = false, keep = false, emulator = false;
-    std::filesystem::path scratch;
+    bool quick = false, json = false, keep = false, emulator = false, seed_given = false;
+    std::filesystem::path scratch, svg;
 };
 
 struct Chosen {
@@ -96,6 +96,19 @@ int secret_test(const Request& request) {
 
 int self_test(const Request& request) {
     if (request.emulator) return secret_test(request);
+    if (request.grammar > 0) {
+        if (request.quick || request.cases > 0)
+            throw InputError("", "--grammar", "has a number of cases of its own", "no --cases, no --quick");
+        const bool own = request.scratch.empty();
+        const auto scratch = scratch_of(request);
+        const int status =
+            grammar_test({request.grammar, request.seed_given ? request.seed : 0, request.only,
+                          request.workers, request.kind, request.json, request.keep, scratch, request.svg});
+        if (own && !request.keep) std::filesystem::remove_all(scratch);
+        return status;
+    }
+    if (!request.svg.empty())
+        throw InputError("", "--svg", "draws the curves of --grammar only", "--grammar N");
     st::RunOptions options;
     const bool own = request.scratch.empty();
     options.scratch = scratch_of(request);
@@ -125,6 +138,17 @@ void declare_gap_selftest(Command& gap, int& status) {
     command->add_option("--cases", request->cases, "how many (default: all, over 300)")
         ->check(count_up_to(kMostCases))
         ->type_name("N");
+    command
+        ->add_option(
+            "--grammar", request->grammar,
+            "this many cases drawn at random from a grammar of effects: unknown ones, near misses, known "
+            "ones, nothing; with a fresh seed, which is reported, unless --seed is given")
+        ->check(count_up_to(kMostCases))
+        ->type_name("N");
+    command
+        ->add_option("--svg", request->svg, "of --grammar: sensitivity curves and calibration as a picture")
+        ->check(not_empty())
+        ->type_name("FILE");
     command->add_option("--seed", request->seed, "of everything made up")
         ->check(count_up_to(kLargestSeed))
         ->type_name("N");
@@ -143,7 +167,10 @@ void declare_gap_selftest(Command& gap, int& status) {
                       "robots changed in secret and recorded on the emulator, in place of made experiments");
     command->add_flag("--quick", request->quick, "a small sample");
     command->add_flag("--json", request->json, "the result for programs");
-    command->callback([request, &status] { status = self_test(*request); });
+    command->callback([command, request, &status] {
+        request->seed_given = command->count("--seed") > 0;
+        status = self_test(*request);
+    });
 }
 
 }  // namespace puckloop::tools

@@ -3,6 +3,11 @@
 
 #include "tools/gap/emulate/stage.h"
 
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
 namespace puckloop::tools {
 
 class Command;
@@ -12,6 +17,17 @@ void declare_gap_check(Command& gap, int& status);
 void declare_gap_import(Command& gap, int& status);
 void declare_gap_new(Command& gap, int& status);
 void declare_gap_record(Command& gap, int& status);
+/// `puckloop gap selftest --grammar`: randomly drawn cases. `seed` 0: a fresh one.
+struct GrammarRequest {
+    std::uint64_t cases = 0, seed = 0;
+    std::vector<std::size_t> only;
+    unsigned workers = 2;
+    std::string kind;
+    bool json = false, keep = false;
+    std::filesystem::path scratch, svg;
+};
+int grammar_test(const GrammarRequest& request);
+
 void declare_gap_selftest(Command& gap, int& status);
 
 /// The project's own firmware and recording program, as built.

@@ -1,0 +1,116 @@
+#include "gap/selftest/grammar/outcome.h"
+
+#include "gap/pipeline/analyse.h"
+#include "gap/selftest/case_list.h"
+#include "gap/selftest/grammar/families.h"
+#include "gap/selftest/score.h"
+#include "gap/stats/tails.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+namespace puckloop::gap::selftest::grammar {
+
+namespace {
+
+Outcome run_one(std::size_t number, const Drawing& drawing) {
+    const DrawnCase drawn = drawn_case(number, drawing.seed);
+    const auto folder = drawing.scratch / fmt::format("case{:04}", number);
+    write_folder(drawn.hidden.experiment, folder);
+    Outcome outcome;
+    try {
+        Options analysis;
+        analysis.seed = drawing.seed + number;
+        const auto begin = std::chrono::steady_clock::now();
+        outcome = outcome_of(drawn, analyse(read_experiment(folder), analysis));
+        outcome.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    } catch (const std::exception& error) {
+        outcome = outcome_of(drawn, Verdict{});
+        outcome.said = "error";
+        outcome.error = error.what();
+    }
+    outcome.number = number;
+    if (!drawing.keep) std::filesystem::remove_all(folder);
+    return outcome;
+}
+
+}  // namespace
+
+double rank_in(double truth, double value, double low, double high) {
+    constexpr double kHalf = 1.6449;  // sd from the middle to the end of a 90 % interval
+    const double sd = (truth > value ? high - value : value - low) / kHalf;
+    if (!(sd > 0)) return truth > value ? 1.0 : 0.0;
+    return 1.0 - stats::normal_tail((truth - value) / sd);
+}
+
+Outcome outcome_of(const DrawnCase& drawn, const Verdict& verdict) {
+    Outcome out;
+    out.of = drawn.of;
+    out.kind = drawn.hidden.kind;
+    out.text = drawn.text;
+    out.family = drawn.family;
+    out.asked = drawn.asked;
+    out.ratio = drawn.hidden.ratio;
+    out.likeness = drawn.likeness;
+    out.runs = drawn.runs;
+    out.redrawn = drawn.redrawn;
+    out.said = std::string(decision_name(verdict.decision));
+    for (const Cause& cause : verdict.causes)
+        out.names.push_back(cause.name);
+    const bool named = verdict.decision == Decision::Named && !out.names.empty();
+    if (drawn.of == Class::Known) {
+        const Judged judged = judge(drawn.hidden, verdict);
+        out.right = judged.first_right;
+        for (const Estimate& e : judged.estimates) {
+            out.ranks.push_back(rank_in(e.truth, e.value, e.low, e.high));
+            out.covered += e.covered() ? 1 : 0;
+        }
+    }
+    out.wrong_family = drawn.of == Class::NearMiss && named && family_of(out.names.front()) != drawn.family;
+    return out;
+}
+
+std::vector<Outcome> run_drawn(const Drawing& drawing) {
+    std::vector<std::size_t> numbers;
+    for (std::size_t n = 0; n < drawing.cases; ++n) {
+        const bool asked = drawing.only.empty() ||
+                           std::find(drawing.only.begin(), drawing.only.end(), n) != drawing.only.end();
+        if (asked && (drawing.kind.empty() || benches()[n % benches().size()]->kind() == drawing.kind))
+            numbers.push_back(n);
+    }
+    std::vector<Outcome> results(numbers.size());
+    std::atomic<std::size_t> next{0};
+    std::size_t finished = 0;
+    std::mutex mutex;
+    std::exception_ptr failure;
+    const auto work = [&] {
+        for (std::size_t k = next++; k < numbers.size(); k = next++) {
+            try {
+                results[k] = run_one(numbers[k], drawing);
+            } catch (...) {
+                const std::lock_guard lock(mutex);
+                failure = std::current_exception();
+                next = numbers.size();
+                return;
+            }
+            const std::lock_guard lock(mutex);
+            if (drawing.done) drawing.done(results[k], ++finished, numbers.size());
+        }
+    };
+    std::vector<std::thread> threads;
+    for (unsigned k = 1; k < drawing.workers; ++k)
+        threads.emplace_back(work);
+    work();
+    for (std::thread& thread : threads)
+        thread.join();
+    if (failure) std::rethrow_exception(failure);
+    return results;
+}
+
+}  // namespace puckloop::gap::selftest::grammar

@@ -1,0 +1,159 @@
+#include "gap/selftest/grammar/rates.h"
+
+#include "gap/report/chart.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace puckloop::gap::selftest::grammar {
+
+namespace {
+
+std::string rate_text(const Rate& rate) {
+    if (rate.of == 0) return "no case";
+    return fmt::format("{:5.1f} % ({:.1f}..{:.1f}, {} of {})", 100 * rate.share(), 100 * rate.low,
+                       100 * rate.high, rate.hits, rate.of);
+}
+
+constexpr Class kShown[] = {Class::Unknown, Class::NearMiss, Class::Known};
+
+std::string sensitivity(const std::vector<Outcome>& cases) {
+    std::string text = "\nrightly called, by strength over noise\n";
+    for (const Class of : kShown)
+        for (std::size_t band = 0; band + 1 < kBands.size(); ++band)
+            text += fmt::format("  {:<10} {:>4} to {:<4} {}\n", class_name(of), kBands[band],
+                                kBands[band + 1], rate_text(rightly_called(cases, of, band)));
+    return text;
+}
+
+/// Every class in every kind: what was said how often.
+std::string by_kind(const std::vector<Outcome>& cases) {
+    std::map<std::pair<std::string, Class>, std::map<std::string, int>> count;
+    for (const Outcome& one : cases)
+        ++count[{one.kind, one.of}][one.said];
+    std::string text = "\nwhat was said\n";
+    for (const auto& [key, said] : count) {
+        text += fmt::format("  {:<14}{:<10}", key.first, class_name(key.second));
+        for (const auto& [word, times] : said)
+            text += fmt::format(" {} {}", times, word);
+        text += "\n";
+    }
+    return text;
+}
+
+bool missed(const Outcome& one) {
+    switch (one.of) {
+    case Class::Null:
+        return one.said != "no_effect";
+    case Class::Known:
+        return !one.right && one.ratio >= 1;
+    case Class::NearMiss:
+        return one.wrong_family || one.said == "error";
+    default:
+        return one.ratio >= 1 && one.said != "unexplained" && one.said != "cannot_tell";
+    }
+}
+
+}  // namespace
+
+std::string outcome_line(const Outcome& one) {
+    return fmt::format("{:>4} {:<14}{:<10}{:>5.2f}  said {:<12}{:<28} {:5.1f} s  hidden: {}", one.number,
+                       one.kind, class_name(one.of), one.ratio, one.said,
+                       fmt::format("{}", fmt::join(one.names, ", ")), one.wall_s,
+                       one.error.empty() ? one.text : one.text + " | " + one.error);
+}
+
+std::string rates_text(const std::vector<Outcome>& cases, std::uint64_t seed) {
+    std::string text =
+        fmt::format("{} drawn cases, seed {}; 95 % binomial intervals\n\n", cases.size(), seed);
+    for (const Target& target : targets(cases))
+        text += fmt::format("{:<66} {:<36} {}\n", target.what, rate_text(target.rate),
+                            target.rate.of == 0 ? ""
+                            : target.met()      ? "met"
+                                                : "MISSED");
+    text += sensitivity(cases) + by_kind(cases);
+    const auto histogram = rank_histogram(cases);
+    text += fmt::format("\nranks of true parameters (uniform if honest): {}; p = {:.3g}\n",
+                        fmt::join(histogram, " "), uniformity(histogram));
+    int redrawn = 0;
+    for (const Outcome& one : cases)
+        redrawn += one.redrawn;
+    text +=
+        fmt::format("drawn again, because one effect of the catalogue could do more than half of it or the "
+                    "strength could not be had: {}\n",
+                    redrawn);
+    text += "\nmissed\n";
+    for (const Outcome& one : cases)
+        if (missed(one)) text += outcome_line(one) + "\n";
+    return text;
+}
+
+std::string rates_json(const std::vector<Outcome>& cases, std::uint64_t seed) {
+    using Json = nlohmann::ordered_json;
+    Json all = Json::array(), wanted = Json::array();
+    for (const Outcome& one : cases)
+        all.push_back({{"number", one.number},
+                       {"class", class_name(one.of)},
+                       {"kind", one.kind},
+                       {"hidden", one.text},
+                       {"family", one.family},
+                       {"asked", one.asked},
+                       {"strength", one.ratio},
+                       {"likeness", one.likeness},
+                       {"runs", one.runs},
+                       {"said", one.said},
+                       {"names", one.names},
+                       {"right", one.right},
+                       {"wrong_family", one.wrong_family},
+                       {"ranks", one.ranks},
+                       {"wall_s", one.wall_s},
+                       {"error", one.error}});
+    for (const Target& target : targets(cases))
+        wanted.push_back({{"what", target.what},
+                          {"share", target.rate.share()},
+                          {"low", target.rate.low},
+                          {"high", target.rate.high},
+                          {"cases", target.rate.of},
+                          {"met", target.met()}});
+    return Json{{"seed", seed}, {"targets", wanted}, {"ranks", rank_histogram(cases)}, {"cases", all}}.dump(
+        1);
+}
+
+std::string rates_svg(const std::vector<Outcome>& cases) {
+    constexpr double kWidth = 330, kHeight = 230;
+    constexpr const char* kColours[] = {"#b03a2e", "#b9770e", "#1f618d"};
+    report::Chart curves("rightly called", "strength over noise (log2)", "share of cases");
+    for (std::size_t c = 0; c < std::size(kShown); ++c) {
+        std::vector<double> x, y;
+        for (std::size_t band = 0; band + 1 < kBands.size(); ++band) {
+            const Rate rate = rightly_called(cases, kShown[c], band);
+            if (rate.of == 0) continue;
+            const double at = std::log2(kBands[band]) + 0.5 + 0.06 * (static_cast<double>(c) - 1);
+            x.push_back(at);
+            y.push_back(rate.share());
+            curves.interval(at, rate.share(), rate.low, rate.high, kColours[c]);
+        }
+        curves.line(x, y, kColours[c], class_name(kShown[c]));
+    }
+    curves.level(1.0);
+    report::Chart ranks("ranks of true parameters", "rank in what is said of them", "parameters");
+    const auto histogram = rank_histogram(cases);
+    double all = 0.0;
+    for (std::size_t bin = 0; bin < histogram.size(); ++bin) {
+        const double at = (static_cast<double>(bin) + 0.5) / 10;
+        ranks.interval(at, histogram[bin], 0, histogram[bin], kColours[2]);
+        all += histogram[bin];
+    }
+    ranks.level(all / 10, "honest");
+    return fmt::format(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} "
+        "{1}\">\n<g>{2}</g>\n<g transform=\"translate({3},0)\">{4}</g>\n</svg>\n",
+        2 * kWidth, kHeight, curves.svg(kWidth, kHeight), kWidth, ranks.svg(kWidth, kHeight));
+}
+
+}  // namespace puckloop::gap::selftest::grammar

@@ -1,0 +1,202 @@
+// Cases drawn from the grammar: what is drawn is what is said of it, and rates are counted right.
+
+#include "gap/effects/effect.h"
+#include "gap/selftest/case_list.h"
+#include "gap/selftest/grammar/families.h"
+#include "gap/selftest/grammar/laboratory.h"
+#include "gap/selftest/grammar/near_misses.h"
+#include "gap/selftest/grammar/rates.h"
+#include "gap/selftest/rig.h"
+#include "tests/scratch.h"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <set>
+
+using namespace puckloop;
+using namespace puckloop::gap::selftest;
+using namespace puckloop::gap::selftest::grammar;
+
+namespace {
+
+constexpr std::uint64_t kSeed = 470011;
+
+Outcome made(Class of, const char* said, double ratio, bool right = false) {
+    Outcome one;
+    one.of = of;
+    one.said = said;
+    one.ratio = ratio;
+    one.right = right;
+    return one;
+}
+
+}  // namespace
+
+TEST_CASE("an effect of no size changes nothing, wherever it enters") {
+    for (const auto& bench : benches()) {
+        const HiddenExperiment exact = bench->exact(kSeed);
+        RandomStream random(kSeed, "fields");
+        const Field field = drawn_field(exact, covariates_of(exact), random);
+        for (const Site& site : sites_of(exact.kind)) {
+            INFO(bench->kind() << ": " << site.text() << field.text << " seed " << kSeed);
+            const HiddenExperiment same = with_effect(exact, site, field, 0.0, RandomStream(1, "none"));
+            CHECK(distance_in_noise(same, exact, bench->floor()) < 1e-6);
+        }
+    }
+}
+
+TEST_CASE("fields are of size one and of every sort") {
+    const HiddenExperiment exact = benches()[1]->exact(kSeed);
+    const auto covariates = covariates_of(exact);
+    RandomStream random(kSeed, "sorts");
+    std::set<std::string> texts;
+    for (int k = 0; k < 40; ++k) {
+        const Field field = drawn_field(exact, covariates, random);
+        double sum = 0.0, rows = 0.0;
+        for (const auto& run : field.value)
+            for (const double v : run) {
+                sum += v * v;
+                rows += 1;
+            }
+        INFO(field.text << " seed " << kSeed);
+        CHECK(sum / rows == Approx(1.0));
+        texts.insert(field.text);
+    }
+    CHECK(texts.size() > 35);
+}
+
+TEST_CASE("cases of all classes and kinds are drawn as strong as asked, and the same again from their seed") {
+    std::set<std::pair<std::string, Class>> seen;
+    const std::size_t kinds = benches().size();
+    for (std::size_t n = 0; n < 4 * kinds; ++n) {
+        if (n % kinds == 0 && n / kinds % 4 == 2) continue;  // a known drive: minutes of bisection elsewhere
+        const DrawnCase drawn = drawn_case(n, kSeed);
+        INFO(n << " " << class_name(drawn.of) << " " << drawn.hidden.kind << ": " << drawn.text << " seed "
+               << kSeed);
+        seen.insert({drawn.hidden.kind, drawn.of});
+        CHECK(drawn.runs > 0);
+        if (drawn.of == Class::Unknown && drawn.redrawn < 200) {
+            CHECK(drawn.likeness <= kMostLikeness);
+            CHECK(drawn.hidden.ratio > 0.8 * drawn.asked);
+            CHECK(drawn.hidden.ratio < 1.3 * drawn.asked);
+        }
+        if (drawn.of == Class::NearMiss) CHECK_FALSE(drawn.family.empty());
+        if (drawn.of == Class::Known) CHECK(drawn.hidden.numbers.size() == 1);
+    }
+    CHECK(seen.size() == 4 * kinds - 1);
+    const DrawnCase one = drawn_case(1, kSeed), again = drawn_case(1, kSeed);
+    CHECK(one.text == again.text);
+    CHECK(distance_in_noise(one.hidden.experiment, again.hidden.experiment, benches()[1]->floor()) == 0.0);
+    CHECK(drawn_case(1, kSeed + 1).text != one.text);
+}
+
+TEST_CASE("an effect of the catalogue is wholly like itself, and another pattern is not") {
+    const auto& bench = *benches()[4];  // ground
+    const HiddenExperiment rest = bench.exact(5);
+    std::vector<std::vector<HiddenExperiment>> examples;
+    for (std::size_t e = 0; e < bench.effects().size(); ++e)
+        if (bench.effects()[e].number != 0 && bench.effects()[e].instead_of == 0)
+            examples.push_back(bench.examples(e, 5));
+    REQUIRE_FALSE(examples.empty());
+    CHECK(likeness_of(examples.front().front(), rest, examples, bench.floor()) == Approx(1.0).margin(1e-6));
+    HiddenExperiment striped = rest;
+    for (auto& run : striped.runs)
+        for (std::size_t k = 0; k < run.rows(); ++k)
+            run.column("reading").values[k] += k / 3 % 2 == 0 ? 20 : -20;
+    CHECK(likeness_of(striped, rest, examples, bench.floor()) < 0.1);
+}
+
+TEST_CASE("every effect has a family, every near miss one of them") {
+    for (const auto& effect : gap::catalogue()) {
+        INFO(effect.name);
+        CHECK_FALSE(family_of(effect.name).empty());
+    }
+    CHECK(family_of("no such effect").empty());
+    for (const auto& bench : benches()) {
+        const HiddenExperiment exact = bench->exact(3);
+        RandomStream random(kSeed, "near");
+        for (int k = 0; k < 10; ++k)
+            CHECK_FALSE(drawn_near_miss(exact, random).family.empty());
+    }
+}
+
+TEST_CASE("a laboratory rounds and leaves out, and never sends a clock back") {
+    HiddenExperiment experiment = benches()[0]->exact(7);
+    const std::size_t runs = experiment.runs.size();
+    Laboratory coarse;
+    coarse.clock = 1e-3;
+    coarse.coarse = true;
+    coarse.one_pass = true;
+    coarse.keep(experiment);
+    CHECK(experiment.runs.size() == runs / 2);
+    for (const HiddenRun& run : experiment.runs) {
+        const auto &t = run.find("t_s")->values, &x = run.find("x_m")->values;
+        for (std::size_t k = 1; k < t.size(); ++k)
+            REQUIRE(t[k] > t[k - 1]);
+        for (const double value : x)
+            REQUIRE(std::abs(value * 1e3 - std::round(value * 1e3)) < 1e-6);
+    }
+}
+
+TEST_CASE("binomial intervals are Clopper and Pearson's") {
+    CHECK(rate_of(0, 37).low == 0.0);
+    CHECK(rate_of(0, 37).high == Approx(1 - std::pow(0.025, 1.0 / 37)));
+    CHECK(rate_of(90, 100).low == Approx(0.8238).margin(5e-4));
+    CHECK(rate_of(90, 100).high == Approx(0.9510).margin(5e-4));
+    CHECK(rate_of(5, 5).high == 1.0);
+    CHECK(rate_of(0, 0).of == 0);
+}
+
+TEST_CASE("targets count what they say") {
+    std::vector<Outcome> cases{
+        made(Class::Unknown, "unexplained", 2), made(Class::Unknown, "named", 3),
+        made(Class::Unknown, "no_effect", 0.6), made(Class::Null, "no_effect", 0),
+        made(Class::Null, "named", 0),          made(Class::Known, "named", 1.5, true)};
+    cases.push_back(made(Class::NearMiss, "named", 1));
+    cases.back().wrong_family = true;
+    const auto list = targets(cases);
+    CHECK(list[0].rate.share() == Approx(0.5));  // of two that are strong enough
+    CHECK(list[1].rate.share() == Approx(0.5));
+    CHECK(list[2].rate.share() == Approx(1.0));
+    CHECK(list[3].rate.share() == Approx(0.5));
+    CHECK_FALSE(list[3].met());
+    CHECK(list[4].met());
+    CHECK(list[5].rate.of == 0);
+    // No false alarm in 20 is not enough: the interval reaches 17 %.
+    const std::vector<Outcome> few(20, made(Class::Null, "no_effect", 0));
+    CHECK_FALSE(targets(few)[3].met());
+    const std::vector<Outcome> many(60, made(Class::Null, "no_effect", 0));
+    CHECK(targets(many)[3].met());
+    for (const std::string& text : {rates_text(cases, 9), rates_json(cases, 9), rates_svg(cases)})
+        CHECK_FALSE(text.empty());
+}
+
+TEST_CASE("ranks of honest intervals are uniform, of too narrow ones not") {
+    CHECK(rank_in(1.0, 1.0, 0.5, 1.5) == Approx(0.5));
+    CHECK(rank_in(1.5, 1.0, 0.5, 1.5) == Approx(0.95).margin(1e-4));
+    CHECK(rank_in(0.5, 1.0, 0.5, 3.0) == Approx(0.05).margin(1e-4));
+    RandomStream random(4, "ranks");
+    std::vector<Outcome> honest(1), narrow(1);
+    for (int k = 0; k < 400; ++k) {
+        const double error = random.normal(), half = 1.6449;
+        honest[0].ranks.push_back(rank_in(0, error, error - half, error + half));
+        narrow[0].ranks.push_back(rank_in(0, error, error - half / 3, error + half / 3));
+    }
+    CHECK(uniformity(rank_histogram(honest)) > 0.01);
+    CHECK(uniformity(rank_histogram(narrow)) < 1e-6);
+}
+
+TEST_CASE("a drawn case is analysed and judged from its folder") {
+    Drawing drawing;
+    drawing.cases = 28;
+    drawing.seed = kSeed;
+    drawing.only = {24};  // microphone, nothing hidden
+    drawing.scratch = tests::scratch_path("gap_drawn");
+    const auto cases = run_drawn(drawing);
+    REQUIRE(cases.size() == 1);
+    CHECK(cases[0].of == Class::Null);
+    CHECK(cases[0].kind == "microphone");
+    CHECK(cases[0].error == "");
+    std::filesystem::remove_all(drawing.scratch);
+}

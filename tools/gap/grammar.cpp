@@ -1,0 +1,58 @@
+// puckloop gap selftest --grammar: cases drawn at random, with a seed that is new at each full run.
+
+#include "base/error.h"
+#include "gap/selftest/grammar/rates.h"
+#include "tools/gap/folders.h"
+#include "tools/gap/subcommands.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <random>
+
+namespace puckloop::tools {
+
+namespace {
+
+namespace gr = gap::selftest::grammar;
+
+std::uint64_t fresh_seed() {
+    constexpr std::uint64_t kReadable = 1'000'000'000;
+    std::random_device device;
+    return (static_cast<std::uint64_t>(device()) << 32U | device()) % kReadable + 1;
+}
+
+}  // namespace
+
+int grammar_test(const GrammarRequest& request) {
+    gr::Drawing drawing;
+    drawing.cases = request.cases;
+    drawing.seed = request.seed == 0 ? fresh_seed() : request.seed;
+    drawing.kind = request.kind;
+    drawing.only = request.only;
+    drawing.scratch = request.scratch;
+    drawing.workers = request.workers;
+    drawing.keep = request.keep;
+    for (std::size_t n = 0; n < drawing.cases; ++n)
+        refuse_foreign_files(drawing.scratch / fmt::format("case{:04}", n));
+    fmt::print(stderr, "seed {}\n", drawing.seed);
+    drawing.done = [](const gr::Outcome& outcome, std::size_t done, std::size_t all) {
+        fmt::print(stderr, "{:>4}/{} {}\n", done, all, gr::outcome_line(outcome));
+    };
+    const auto cases = gr::run_drawn(drawing);
+    if (cases.empty())
+        throw InputError("", "gap selftest", "no drawn case is of this kind and number",
+                         "--grammar 28 or more");
+    if (!request.svg.empty()) {
+        write_beside(request.svg, gr::rates_svg(cases));
+        put_in_place(request.svg);
+    }
+    fmt::print("{}\n",
+               request.json ? gr::rates_json(cases, drawing.seed) : gr::rates_text(cases, drawing.seed));
+    const auto wanted = gr::targets(cases);
+    return std::all_of(wanted.begin(), wanted.end(), [](const gr::Target& target) { return target.met(); })
+               ? 0
+               : 1;
+}
+
+}  // namespace puckloop::tools
