@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "cosim/conductor_state.h"
 
+#include <algorithm>
 #include <thread>
 #include <utility>
 
@@ -11,6 +12,8 @@ namespace puckloop::cosim {
 namespace {
 // Handing a piece of work over costs a good part of a microsecond, and one more look at the schedule.
 constexpr double kWorthSharing = 3000.0;  // ns
+// To wake a thread costs this one some 10 us where its core has gone to rest.
+constexpr double kWorthWaking = 15000.0;  // ns
 // The conductor works at least so many times as long as it planned while there is something to do.
 constexpr int kWorkByPlanning = 4;
 // Looks at several programs before one of them is waited for; some 20 us.
@@ -32,13 +35,18 @@ void Conductor::State::share_out() {
             here_[kept++] = n;
     }
     here_.resize(kept);
-    // One alone is not worth waking a thread for.
-    if (shared_.size() == 1 && workers_->awake() == 0) {
+    // A short one alone is not worth waking a thread for.
+    if (shared_.size() == 1 && workers_->awake() == 0 &&
+        slots_[shared_.front()].expected_ns() < kWorthWaking) {
         here_.push_back(shared_.front());
         shared_.clear();
     }
+    // What takes long goes first: it is the world, which all others wait for.
+    std::stable_sort(shared_.begin(), shared_.end(), [this](std::size_t a, std::size_t b) {
+        return slots_[a].expected_ns() > slots_[b].expected_ns();
+    });
     for (const std::size_t n : shared_)
-        workers_->submit(n, shared_.size() > 1);
+        workers_->submit(n, true);
 }
 
 /// One node's work on a grant, on any thread; false if it now waits for its program. `wait`: it may, for some

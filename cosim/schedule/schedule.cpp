@@ -44,10 +44,13 @@ void Schedule::find_next(const std::vector<NodeTimes>& nodes, Time end) {
     for (std::size_t n = 0; n < nodes.size(); ++n)
         next_[n] = nodes[n].runs_ahead ? (*pending_)[n] : kNever;
     expected_.assign(nodes.size(), kNever);
+    due_.assign(nodes.size(), kNever);
     for (const Channel& channel : *channels_) {
         Time& next = next_[channel.from];
         next = std::min(next, channel.base);
         if (!nodes[channel.from].runs_ahead) next = std::min(next, channel.answer((*pending_)[channel.from]));
+        if (channel.lookahead >= kLongEnough && channel.lookahead != kNever && channel.base != kNever)
+            due_[channel.from] = std::min(due_[channel.from], channel.base - channel.lookahead + 1);
         if (channel.punctual > 0) expected_[channel.to] = std::min(expected_[channel.to], channel.base);
     }
     // How far the first one may go: whatever happens within that time happens beside it.
@@ -84,7 +87,10 @@ void Schedule::plan(const std::vector<Channel>& channels, const std::vector<Time
     any_ahead_ = std::any_of(nodes.begin(), nodes.end(), [](const auto& n) { return n.runs_ahead; });
     chosen_.clear();
     plan_ahead(nodes, limits);
-    if (chosen_.empty()) choose_plain(nodes, limits);
+    if (chosen_.empty())
+        choose_plain(nodes, limits);
+    else
+        choose_due(nodes);
     const bool idle =
         chosen_.empty() && std::none_of(nodes.begin(), nodes.end(), [](const auto& n) { return n.busy; });
     if (idle && limits.pace > ceiling_) choose_any(nodes);
@@ -190,6 +196,18 @@ bool Schedule::follow(std::size_t n, const std::vector<NodeTimes>& nodes) {
     return true;
 }
 
+/// Whether node `n`, which cannot go back and answers late, may go as far as it takes for it to say what
+/// comes next: the world's step. Others then need not wait for it when they have come there.
+bool Schedule::is_due(std::size_t n, const NodeTimes& node) const {
+    return !node.runs_ahead && !node.busy && node.granted < due_[n] && due_[n] <= target_[n];
+}
+
+/// Such nodes, to work beside those that run ahead.
+void Schedule::choose_due(const std::vector<NodeTimes>& nodes) {
+    for (std::size_t n = 0; n < nodes.size(); ++n)
+        if (is_due(n, nodes[n])) chosen_.push_back(n);
+}
+
 /// Nodes that cannot go back, as far as that serves.
 void Schedule::choose_plain(const std::vector<NodeTimes>& nodes, const ScheduleLimits& limits) {
     bool last_holds_up = false;
@@ -197,7 +215,7 @@ void Schedule::choose_plain(const std::vector<NodeTimes>& nodes, const ScheduleL
         last_holds_up = last_holds_up || (nodes[n].granted < limits.end && bounds_.limit(n) > window_);
     for (std::size_t n = 0; n < nodes.size(); ++n) {
         if (nodes[n].runs_ahead || nodes[n].busy || target_[n] <= nodes[n].granted) continue;
-        if (next_[n] <= round_ || target_[n] == limits.end ||
+        if (next_[n] <= round_ || is_due(n, nodes[n]) || target_[n] == limits.end ||
             (last_holds_up && nodes[n].granted == reached_) ||
             target_[n] - nodes[n].granted >= limits.stop_latency / kStretchDivisor)
             chosen_.push_back(n);

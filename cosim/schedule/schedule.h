@@ -78,6 +78,8 @@ class Schedule {
     bool takes_turn(std::size_t n, const NodeTimes& node);
     Time turn_end(std::size_t n) const;
     Time worth_going(std::size_t n, Time from) const;
+    bool is_due(std::size_t n, const NodeTimes& node) const;
+    void choose_due(const std::vector<NodeTimes>& nodes);
     void choose_plain(const std::vector<NodeTimes>& nodes, const ScheduleLimits& limits);
     void choose_any(const std::vector<NodeTimes>& nodes);
     void find_next(const std::vector<NodeTimes>& nodes, Time end);
@@ -96,6 +98,7 @@ class Schedule {
     Time window_ = 0, ceiling_ = 0;
     bool any_ahead_ = false;
     std::vector<Time> next_;
+    std::vector<Time> due_;  ///< granted so far, a node with a long lookahead says what comes next
     Time round_ = 0;
     std::vector<std::size_t> chosen_;
     bool complete_ = false;

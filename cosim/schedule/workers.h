@@ -10,6 +10,7 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <thread>
 #include <vector>
@@ -45,7 +46,7 @@ class Workers {
     /// So many have been handed out and not been taken.
     std::size_t under_way() const { return under_way_; }
     /// So many helpers look for work.
-    unsigned awake() const { return helpers() - sleeping_.load(std::memory_order_relaxed); }
+    unsigned awake() const;
     /// False for a while after a helper was put aside.
     bool available() {
         if (alone_ > 0) --alone_;
@@ -55,7 +56,8 @@ class Workers {
   private:
     bool has_work() const;
     bool is_done() const;
-    void help();
+    void help(std::atomic<int>& asleep);
+    void wake_one();
 
     Work work_;
     std::vector<std::thread> threads_;
@@ -66,8 +68,7 @@ class Workers {
     std::atomic<std::uint32_t> finished_{0};
     std::uint32_t taken_ = 0;
     std::size_t under_way_ = 0;
-    std::atomic<unsigned> sleeping_{0};
-    std::atomic<std::uint32_t> calls_{0};  ///< to wake up
+    std::deque<std::atomic<int>> asleep_;  ///< by helper: 1 until it is woken
     std::atomic<bool> ending_{false};
     int alone_ = 0;  ///< calls of available() until helpers are tried again
 };

@@ -150,6 +150,7 @@ void add_world(RunSetup& setup, const json& world, const RunRequest& request) {
                     {"events", json::parse(physics::to_json(events))},
                     {"control", setup.control}};
     setup.nodes.push_back({"world", spec.dump()});
+    setup.nodes.back().any_thread = !events.live;
 }
 
 /// The infra-red medium, where any robot has a board that uses it.
@@ -163,6 +164,7 @@ void add_ir(RunSetup& setup, const json& world) {
                     {"csv", (setup.out / "ir.csv").string()},
                     {"changes", setup.scenario.events.any()}};
     setup.nodes.push_back({"ir", spec.dump()});
+    setup.nodes.back().any_thread = true;
     cosim::LinkSpec poses{"ir.world", {"ir", "world"}, {"world", "ir"}};
     poses.record_from_b = false;
     setup.links.push_back(poses);
