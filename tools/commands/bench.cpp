@@ -6,6 +6,7 @@
 #include "tools/cli/command.h"
 #include "tools/commands.h"
 #include "tools/commands/bench_rab.h"
+#include "tools/commands/bench_sound.h"
 
 #include <fmt/format.h>
 
@@ -83,6 +84,7 @@ void declare_bench(Command& app, int& status) {
         "this build interprets every instruction of the chips (default: hot code is translated)");
     command->add_flag("--json", options->json, "print JSON");
     declare_bench_rab(*command, status);
+    declare_bench_sound(*command, status);
     command->callback([options, command, &status] {
         if (command->subcommand_given()) return;
         run(*options);

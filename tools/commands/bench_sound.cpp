@@ -1,0 +1,137 @@
+// `puckloop bench sound`: published experiments with sound, repeated on emulated boards.
+
+#include "tools/commands/bench_sound.h"
+#include "base/error.h"
+#include "tools/cli/check.h"
+#include "tools/sound/pictures.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <memory>
+#include <numbers>
+
+namespace puckloop::tools {
+
+namespace {
+
+constexpr double kSquareCentimetres = 1e4, kDegrees = 180 / std::numbers::pi, kMillimetres = 1000;
+
+struct Options {
+    SoundOptions sound;
+    std::vector<std::string> experiments;
+    std::filesystem::path out = "out/sound";
+};
+
+void save(const std::filesystem::path& file, const std::string& text) {
+    std::ofstream stream(file);
+    stream << text;
+    stream.close();
+    if (!stream) throw RunError(fmt::format("cannot write {}", file.string()));
+}
+
+bool wanted(const Options& options, const char* name) {
+    return options.experiments.empty() || std::find(options.experiments.begin(), options.experiments.end(),
+                                                    name) != options.experiments.end();
+}
+
+std::string caption(const SoundOptions& sound) {
+    return fmt::format("{}, median and 80 % of {} trials", sound.firmware.filename().string(), sound.trials);
+}
+
+void print_bins(const Readings& readings, double width, double scale, const char* unit) {
+    for (const Bin& bin : binned(readings, width))
+        fmt::print("  {:6.0f} {}  {:5.0f}  ({:.0f} to {:.0f})\n", bin.at * scale, unit, bin.median, bin.p10,
+                   bin.p90);
+}
+
+void run_ears(const Options& options, const TrialProgress& progress) {
+    const Ears ears = ears_and_radio(options.sound, progress);
+    save(options.out / "ears.csv", heard_csv(ears));
+    std::vector<std::pair<double, double>> places;
+    for (const Heard& one : ears.heard)
+        places.emplace_back(one.x, one.y);
+    std::string shape = "too few for an ellipse";
+    if (const auto fit = fit_ellipse(places))
+        shape = fmt::format("ellipse of {:.0f} cm2, half axes {:.0f} and {:.0f} mm, at {:.0f} degrees",
+                            fit->area() * kSquareCentimetres, fit->major * kMillimetres,
+                            fit->minor * kMillimetres, fit->angle * kDegrees);
+    const std::string summary = fmt::format(
+        "heard {} times in {} calls (published: 58 on robots, 65 in Webots)", ears.heard.size(), ears.calls);
+    save(options.out / "ears.svg", ears_picture(ears, summary));
+    fmt::print("ears and radio, {:g} s: {}; {}\n", options.sound.walk_s, summary, shape);
+}
+
+void run(Options& options, int& status) {
+    SoundOptions& sound = options.sound;
+    if (sound.walker.empty()) sound.walker = sound.firmware;
+    std::error_code failed;
+    std::filesystem::create_directories(options.out, failed);
+    if (failed) throw RunError(fmt::format("cannot make {}: {}", options.out.string(), failed.message()));
+    sound.folder = options.out / "trials";
+    const bool terminal = ::isatty(STDERR_FILENO) == 1;
+    const TrialProgress progress = [terminal](int trial, int trials) {
+        if (terminal) fmt::print(stderr, "\rtrial {} of {} ", trial + 1, trials);
+    };
+    if (wanted(options, "distance")) {
+        const Readings readings = sound_against_distance(sound, progress);
+        save(options.out / "distance.csv", readings_csv(readings, "distance_m"));
+        save(options.out / "distance.svg", distance_picture(readings, caption(sound)));
+        fmt::print("sound 1 against distance (mean of three volumes, counts):\n");
+        print_bins(readings, 0.025, kMillimetres, "mm");
+    }
+    if (wanted(options, "calls")) {
+        const Readings readings = five_sounds(sound, progress);
+        save(options.out / "calls.csv", readings_csv(readings, "t_s"));
+        save(options.out / "calls.svg", calls_picture(readings, caption(sound)));
+        fmt::print("five sounds in a row, 10 cm apart: {}\n", (options.out / "calls.svg").string());
+    }
+    if (wanted(options, "ears")) run_ears(options, progress);
+    fmt::print("{}\n", options.out.string());
+    status = 0;
+}
+
+}  // namespace
+
+void declare_bench_sound(Command& bench, int& status) {
+    Command* command = bench.add_subcommand(
+        "sound", "published experiments with sound between robots, as pictures and tables (docs/sound.md)");
+    auto options = std::make_shared<Options>();
+    SoundOptions& sound = options->sound;
+    command
+        ->add_option("--firmware", sound.firmware,
+                     "image that answers BTcom's commands T, U and D on UART1, such as "
+                     "firmware/sound/sound.hex")
+        ->required()
+        ->type_name("IMAGE");
+    command
+        ->add_option("--walker", sound.walker,
+                     "of ears: image that at selector 2 walks and writes a line when it hears (default: "
+                     "--firmware)")
+        ->type_name("IMAGE");
+    command
+        ->add_option("--experiment", options->experiments,
+                     "distance, calls or ears (repeatable; default all)")
+        ->allow_extra_args(false)
+        ->check(one_of({"distance", "calls", "ears"}));
+    command->add_option("--trials", sound.trials, "of distance and calls (default 10)")
+        ->check(whole_number_between(1, 1000))
+        ->type_name("N");
+    command->add_option("--walk", sound.walk_s, "how long ears lasts (default 360)")
+        ->check(number_between(1, 36000))
+        ->type_name("S");
+    command->add_option("--seed", sound.seed, "of the trials (default 1)")
+        ->check(count_up_to(1'000'000'000))
+        ->type_name("N");
+    command
+        ->add_option("--overlay", sound.overlay,
+                     "physical parameters, such as \"microphone.motor_noise\" = 12 (docs/gap.md)")
+        ->type_name("OVERLAY");
+    command->add_option("--out", options->out, "folder for results (default out/sound)")->type_name("DIR");
+    command->callback([options, &status] { run(*options, status); });
+}
+
+}  // namespace puckloop::tools
