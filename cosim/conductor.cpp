@@ -21,6 +21,10 @@ constexpr double kFlushSeconds = 1.0;
 // With --realtime, how far ahead of the wall clock nodes are let.
 constexpr Time kPaceSlack = kMillisecond;
 
+// Helpers look for work on a core of their own, which must be worth it.
+constexpr Trial::Rule kThreadRule{
+    .slices = 8, .slice = 0.004, .margin = 1.1, .first_hold = 0.5, .longest_hold = 8.0};
+
 /// Thrown through the loop when the user ends the run.
 struct Interrupted {};
 
@@ -61,6 +65,7 @@ Conductor::State::State(std::vector<NodeSpec> nodes, std::vector<LinkSpec> links
                                              while (!work(piece, true)) {
                                              }
                                          });
+    if (options_.threads_if_faster && workers_->helpers() > 0) thread_trial_.emplace(kThreadRule);
     if (options_.chop_seed) chop_.emplace(*options_.chop_seed, "chop");
 }
 
@@ -212,6 +217,7 @@ void Conductor::State::plan() {
 void Conductor::State::report_progress() {
     const double wall = seconds_since(start_);
     if (processes_) processes_->cores().step(wall, schedule_.reached(), grants_);
+    if (thread_trial_) workers_->set_resting(!thread_trial_->step(wall, schedule_.reached(), grants_));
     if (wall - told_wall_ >= kProgressSeconds) {
         const Time time = schedule_.reached();
         if (options_.progress)

@@ -40,11 +40,12 @@ struct Progress {
 struct RunOptions {
     Time duration = kNever;
     bool in_process = false;
-    bool realtime = false;        ///< simulated time never runs ahead of the wall clock
-    Time pace_from = 0;           ///< with realtime: what lies before runs as fast as it can
-    std::uint64_t seed = 1;       ///< for the faults' random streams
-    unsigned threads = 1;         ///< of this process, for nodes that any thread may advance
-    double stall_seconds = 10.0;  ///< a node process that does not answer for so long ends the run
+    bool realtime = false;           ///< simulated time never runs ahead of the wall clock
+    Time pace_from = 0;              ///< with realtime: what lies before runs as fast as it can
+    std::uint64_t seed = 1;          ///< for the faults' random streams
+    unsigned threads = 1;            ///< of this process, for nodes that any thread may advance
+    bool threads_if_faster = false;  ///< more than one work only while that is faster
+    double stall_seconds = 10.0;     ///< a node process that does not answer for so long ends the run
     /// A node's wish to end the run (Node::stop) takes effect so much later; no node runs further ahead.
     Time stop_latency = 10 * kMillisecond;
     /// Starts a process that serves one node (cosim/remote/node_server.h) on descriptors 3 and 4; in place of

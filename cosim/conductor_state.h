@@ -9,6 +9,7 @@
 #include "cosim/remote/node_processes.h"
 #include "cosim/schedule/network.h"
 #include "cosim/schedule/schedule.h"
+#include "cosim/schedule/trial.h"
 #include "cosim/schedule/workers.h"
 #include "cosim/trace/trace_hash.h"
 #include "cosim/trace/trace_merger.h"
@@ -147,6 +148,7 @@ class Conductor::State {
     bool trace_ended_ = false;          ///< by a failure: what came after it would leave a gap
     std::optional<RandomStream> chop_;
     std::unique_ptr<Workers> workers_;
+    std::optional<Trial> thread_trial_;         ///< of whether helpers serve
     std::vector<std::size_t> here_;             ///< nodes of this process just granted, for this thread
     std::vector<std::size_t> suspended_;        ///< nodes of this process that wait for their programs
     std::vector<std::size_t> elsewhere_;        ///< nodes of other processes that are granted

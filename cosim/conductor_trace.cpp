@@ -19,7 +19,7 @@ void Conductor::State::release_trace(Time floor) {
 /// The same by a helper, if there is one, unless what it was given before is not written yet.
 void Conductor::State::release_trace_beside(Time floor) {
     if (writing_) return;
-    if (workers_->helpers() == 0) return release_trace(floor);
+    if (workers_->helpers() == 0 || workers_->resting()) return release_trace(floor);
     merger_.take(floor, batch_);
     writing_ = true;
     workers_->submit(trace_piece(), true);

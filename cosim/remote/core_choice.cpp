@@ -4,23 +4,13 @@
 
 #include <sched.h>
 
-#include <algorithm>
-
 namespace puckloop::cosim {
 
 namespace {
 
-// A trial: slices of wall seconds, on all cores and on one in turn as in A B B A.
-constexpr int kSlices = 16;
-constexpr double kSlice = 0.005;
-// What was chosen is held so long, and longer each time it is chosen again.
-constexpr double kFirstHold = 0.5, kLongestHold = 8.0;
-// One core must be better by so much: all of them are what the machine's own scheduler would take.
-constexpr double kMargin = 1.1;
-
-bool on_one_core_in_trial(int slice) {
-    return slice % 4 == 1 || slice % 4 == 2;
-}
+// All cores are what the machine's own scheduler would take.
+constexpr Trial::Rule kRule{
+    .slices = 16, .slice = 0.005, .margin = 1.1, .first_hold = 0.5, .longest_hold = 8.0};
 
 }  // namespace
 
@@ -35,13 +25,7 @@ void CoreFollower::move(std::uint32_t core) {
 }
 
 CoreChoice::CoreChoice(Busy& busy)
-    : busy_(busy), follower_(busy), worth_it_(usable_cores() > 1), slice_(kSlices) {}
-
-/// How fast it went. Where nodes chatter a grant takes little simulated and little wall time, where they work
-/// much of both: the product of the two rates does not depend on which stretch a slice met.
-double CoreChoice::Progress::rate() const {
-    return wall > 0 ? time * grants / (wall * wall) : 0;
-}
+    : busy_(busy), follower_(busy), worth_it_(usable_cores() > 1), trial_(kRule) {}
 
 void CoreChoice::use(bool one_core) {
     one_core_ = one_core;
@@ -51,33 +35,8 @@ void CoreChoice::use(bool one_core) {
 }
 
 void CoreChoice::step(double wall, Time time, std::uint64_t grants) {
-    if (!worth_it_ || wall < until_) return;
-    const Progress now{wall, to_seconds(time), static_cast<double>(grants)};
-    if (slice_ < kSlices) {
-        Progress& tried = tried_[one_core_];
-        tried.wall += now.wall - before_.wall;
-        tried.time += now.time - before_.time;
-        tried.grants += now.grants - before_.grants;
-        ++slice_;
-    } else {
-        slice_ = 0;
-        tried_[0] = tried_[1] = {};
-    }
-    before_ = now;
-    if (slice_ == kSlices) {
-        choose();
-        until_ = wall + hold_;
-    } else {
-        use(on_one_core_in_trial(slice_));
-        until_ = wall + kSlice;
-    }
-}
-
-void CoreChoice::choose() {
-    const bool better = tried_[1].rate() > kMargin * tried_[0].rate();
-    hold_ = better == chosen_ ? std::clamp(2 * hold_, kFirstHold, kLongestHold) : kFirstHold;
-    chosen_ = better;
-    use(better);
+    if (!worth_it_) return;
+    if (const bool one_core = trial_.step(wall, time, grants); one_core != one_core_) use(one_core);
 }
 
 }  // namespace puckloop::cosim

@@ -8,6 +8,7 @@
 
 #include "cosim/core/time.h"
 #include "cosim/remote/bell.h"
+#include "cosim/schedule/trial.h"
 
 #include <cstdint>
 
@@ -43,26 +44,13 @@ class CoreChoice {
     void step(double wall, Time time, std::uint64_t grants);
 
   private:
-    struct Progress {
-        double wall = 0;
-        double time = 0;
-        double grants = 0;
-        double rate() const;
-    };
-
     void use(bool one_core);
-    void choose();
 
     Busy& busy_;
     CoreFollower follower_;
     const bool worth_it_;
-    Progress before_;    ///< when the slice under way began
-    Progress tried_[2];  ///< on all cores, on one
-    int slice_;          ///< of a trial; the number of slices: none is under way
-    double until_ = 0;   ///< end of the slice, or of what was chosen
+    Trial trial_;
     bool one_core_ = false;
-    bool chosen_ = false;  ///< by the last trial: one core
-    double hold_ = 0;
 };
 
 }  // namespace puckloop::cosim

@@ -47,11 +47,14 @@ class Workers {
     std::size_t under_way() const { return under_way_; }
     /// So many helpers look for work.
     unsigned awake() const;
-    /// False for a while after a helper was put aside.
+    /// False for a while after a helper was put aside, and while they rest.
     bool available() {
         if (alone_ > 0) --alone_;
-        return !threads_.empty() && alone_ == 0;
+        return !threads_.empty() && alone_ == 0 && !resting_;
     }
+    /// Whether helpers are to be left alone for now, by whoever hands work out.
+    void set_resting(bool resting) { resting_ = resting; }
+    bool resting() const { return resting_; }
 
   private:
     bool has_work() const;
@@ -70,6 +73,7 @@ class Workers {
     std::size_t under_way_ = 0;
     std::deque<std::atomic<int>> asleep_;  ///< by helper: 1 until it is woken
     std::atomic<bool> ending_{false};
+    bool resting_ = false;
     int alone_ = 0;  ///< calls of available() until helpers are tried again
 };
 

@@ -97,17 +97,24 @@ void end_live(LiveTrace& live, cosim::Outcome& outcome) {
     }
 }
 
-/// With fewer boards there is too little to do side by side.
-unsigned threads_for(const RunSetup& setup, const RunRequest& request) {
+/// With few boards there is little to do side by side beside the world's step: whether that pays is tried.
+void set_threads(cosim::RunOptions& options, const RunSetup& setup, const RunRequest& request) {
     constexpr unsigned kBoardsOfThread = 4, kMost = 4;
-    if (!request.in_process) return 1;
-    if (request.threads != 0) return request.threads;
+    options.threads = 1;
+    if (!request.in_process) return;
     const auto& robots = setup.scenario.robots;
     const auto has_rab = [](const auto& robot) { return robot.rab.has_value(); };
     const auto boards = static_cast<unsigned>(robots.size() + setup.scenario.tams.size()) +
                         static_cast<unsigned>(std::count_if(robots.begin(), robots.end(), has_rab));
     const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
-    return std::clamp(boards / kBoardsOfThread, 1U, std::min(cores, kMost));
+    options.threads = std::clamp(boards / kBoardsOfThread, 1U, std::min(cores, kMost));
+    if (options.threads == 1 && cores > 1 && !options.realtime) {
+        options.threads = 2;
+        options.threads_if_faster = true;
+    }
+    if (request.threads == 0) return;
+    options.threads = request.threads;
+    options.threads_if_faster = false;
 }
 
 }  // namespace
@@ -144,7 +151,7 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
     options.in_process = request.in_process;
     options.realtime = request.realtime || request.paced;
     options.pace_from = setup.ready;
-    options.threads = threads_for(setup, request);
+    set_threads(options, setup, request);
     options.seed = setup.scenario.seed;
     constexpr double kPatience = 1e9;  // a board under a debugger is silent for as long as its user thinks
     options.stall_seconds = request.gdb.empty() ? request.stall_seconds : kPatience;
