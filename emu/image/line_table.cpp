@@ -21,8 +21,7 @@ std::string_view without_folder(std::string_view path) {
 /// The bytes of one section.
 class Section {
   public:
-    Section(const ElfFile& elf, const Elf32_Shdr& header)
-        : reader_(elf.data(header), "debug information"), end_(reader_.size()) {}
+    explicit Section(std::string_view bytes) : reader_(bytes, "debug information"), end_(reader_.size()) {}
     std::uint64_t at = 0;
     std::uint64_t end() const { return end_; }
     void end_at(std::uint64_t end) { end_ = std::min(end, reader_.size()); }
@@ -68,6 +67,18 @@ class Section {
     ByteReader reader_;
     std::uint64_t end_;
 };
+
+/// The dsPIC's assembler writes each byte of a debug section into a word of program memory, of whose upper half
+/// nothing is left but a zero. No other section has a zero in every second place: the versions, lengths and
+/// opcodes of DWARF stand there.
+std::string without_padding(std::string_view bytes) {
+    std::string kept;
+    for (std::size_t i = 0; i + 1 < bytes.size(); i += 2) {
+        if (bytes[i + 1] != 0) return std::string(bytes);
+        kept += bytes[i];
+    }
+    return kept;
+}
 
 /// Source: "The stabs debug format", sections "Line Numbers" and "Stab Section Basics".
 void read_stabs(Section stabs, const Section& names, LineTable& lines) {
@@ -271,13 +282,15 @@ LineTable read_lines(const ElfFile& elf) {
     const auto stab = find(".stab"), names = find(".stabstr"), dwarf = find(".debug_line");
     try {
         if (stab != sections.end() && names != sections.end())
-            read_stabs(Section(elf, *stab), Section(elf, *names), lines);
+            read_stabs(Section(elf.data(*stab)), Section(elf.data(*names)), lines);
     } catch (const InputError&) {
     }
     try {
-        if (dwarf != sections.end())
-            for (Section all(elf, *dwarf); all.at + 4 < all.end();)
+        if (dwarf != sections.end()) {
+            const std::string bytes = without_padding(elf.data(*dwarf));
+            for (Section all(bytes); all.at + 4 < all.end();)
                 run_line_program(all, lines);
+        }
     } catch (const InputError&) {
     }
     return lines;
