@@ -3,10 +3,10 @@
 // 40, symbol 18), with the dsPIC's conventions as seen in a real C30 image: two file bytes a program address,
 // long section names as "/offset" into the string table, .const sections placed at s_paddr and addressed
 // through PSV at s_vaddr.
-// 1. Line numbers and debugging symbols are skipped. 2. Relocations are an error: only linked images are
-// read.
+// 1. Debugging symbols are skipped. 2. Relocations are an error: only linked images are read.
 
 #include "emu/image/image.h"
+#include "emu/image/line_table.h"
 
 #include <string_view>
 
@@ -15,5 +15,7 @@ namespace puckloop::image {
 bool is_coff(std::string_view bytes);
 /// Adds words, symbols and the chip. Throws InputError naming the offset.
 void read_coff(std::string_view bytes, Image& image);
+/// Source lines; where these are damaged reading ends, and what was read so far stays.
+LineTable read_coff_lines(std::string_view bytes, const std::string& file);
 
 }  // namespace puckloop::image

@@ -1,6 +1,7 @@
 #include "emu/image/line_table.h"
 
 #include "base/error.h"
+#include "emu/image/coff.h"
 #include "emu/image/elf_file.h"
 #include "emu/image/image_file.h"
 
@@ -68,9 +69,9 @@ class Section {
     std::uint64_t end_;
 };
 
-/// The dsPIC's assembler writes each byte of a debug section into a word of program memory, of whose upper half
-/// nothing is left but a zero. No other section has a zero in every second place: the versions, lengths and
-/// opcodes of DWARF stand there.
+/// The dsPIC's assembler writes each byte of a debug section into a word of program memory, of whose upper
+/// half nothing is left but a zero. No other section has a zero in every second place: the versions, lengths
+/// and opcodes of DWARF stand there.
 std::string without_padding(std::string_view bytes) {
     std::string kept;
     for (std::size_t i = 0; i + 1 < bytes.size(); i += 2) {
@@ -268,6 +269,7 @@ std::vector<LineTable::Stretch> LineTable::stretches() const {
 
 LineTable source_lines(const std::string& path) {
     const std::string bytes = read_image_file(path);
+    if (is_coff(bytes)) return read_coff_lines(bytes, path);
     if (!is_elf(bytes)) return {};
     return read_lines(ElfFile(bytes, path, elf_machine(bytes), "this chip's"));
 }

@@ -38,8 +38,8 @@ class LineTable {
 };
 
 class ElfFile;
-/// What the sections .stab (gcc's default for the AVR) and .debug_line (DWARF 2 to 4; XC16's with a zero behind
-/// each byte) hold; addresses as the compiler counts them, on the dsPIC two a word. Debug information
+/// What the sections .stab (gcc's default for the AVR) and .debug_line (DWARF 2 to 4; XC16's with a zero
+/// behind each byte) hold; addresses as the compiler counts them, on the dsPIC two a word. Debug information
 /// is of no use to the chip: where it is damaged reading ends, and what was read so far stays.
 LineTable read_lines(const ElfFile& elf);
 /// The same of a file; empty for other formats. Throws InputError for a file that cannot be read or is

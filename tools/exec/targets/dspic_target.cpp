@@ -53,7 +53,7 @@ void DspicTarget::set_signal(std::uint16_t id, double value) {
 
 image::Image DspicTarget::read_image(const std::string& file, std::string_view mcu) {
     image::Image image = Target::read_image(file, mcu);
-    if (image.format == image::Format::Elf) lines_ = image::source_lines(file);
+    lines_ = image::source_lines(file);
     return image;
 }
 
