@@ -79,6 +79,7 @@ struct Outcome {
     std::optional<Time> wind_up;    ///< when the nodes were asked to end, if any took time for it
     Time simulated = 0;             ///< reached by every node
     double wall_s = 0;
+    bool went_on = false;      ///< from a snapshot
     double restored_s = 0;     ///< of these: bringing the nodes to where the run goes on from
     std::uint64_t grants = 0;  ///< to all nodes together (differs with placement and load)
     std::string trace_sha256;

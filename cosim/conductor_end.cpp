@@ -128,6 +128,7 @@ void Conductor::State::finish(Outcome& outcome) {
 
 void Conductor::State::report(Outcome& outcome) {
     outcome.wall_s = seconds_since(start_);
+    outcome.went_on = went_on_;
     outcome.restored_s = restored_s_;
     outcome.grants = grants_;
     outcome.trace_sha256 = hash_.finish();

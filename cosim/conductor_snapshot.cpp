@@ -150,6 +150,7 @@ void Conductor::State::go_on_from(const RunSnapshot& from) {
     deliveries_ = std::move(restored.in_flight);
     take_deliveries(kNobody);
     take_stops(from);
+    went_on_ = true;
     restored_s_ = seconds_since(begin);
 }
 

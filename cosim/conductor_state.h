@@ -158,6 +158,7 @@ class Conductor::State {
 
     Time end_ = kNever;
     Time pause_ = kNever;  ///< for a snapshot
+    bool went_on_ = false;
     double restored_s_ = 0;
     std::vector<std::pair<Stop, std::size_t>> stop_requests_;  ///< to stop together, and whose
     std::optional<Stop> stop_;

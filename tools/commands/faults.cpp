@@ -62,6 +62,9 @@ void declare_campaign(Command& faults, const std::shared_ptr<Options>& options) 
         ->check(whole_number_between(1, kMostTasks))
         ->type_name("N")
         ->capture_default_str();
+    command->add_flag(
+        "!--no-snapshots", campaign.snapshots,
+        "execute every case whole, none from a snapshot of the nominal run; the results are the same");
     command->add_flag("--fresh", campaign.fresh, "drop the results that are in the folder and begin anew");
     command->callback([options] {
         need(options->campaign.file, "faults campaign", "a campaign file");

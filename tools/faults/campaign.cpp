@@ -76,6 +76,7 @@ class Conduct {
         // First: tasks of a campaign that was killed write there until they are ended.
         if (store_->planned("single")) resume_slurm(slurm(), take());
         remove(work_folder(out_));
+        if (!options_.snapshots) remove(out_ / "snapshots");
         for (const std::uint64_t seed : campaign_.seeds)
             run_nominal(seed);
         phase("single", [&](int) { return plan_singles(campaign_, scenario_, nominals_); });
@@ -106,8 +107,8 @@ class Conduct {
 
     /// Only what a campaign writes.
     void drop() {
-        for (const char* name : {"campaign.db", "campaign.db-journal", "nominal", "boots", "slurm", "work",
-                                 "results.csv", "report.html"})
+        for (const char* name : {"campaign.db", "campaign.db-journal", "nominal", "boots", "snapshots",
+                                 "slurm", "work", "results.csv", "report.html"})
             remove(out_ / name);
     }
 
@@ -144,7 +145,7 @@ class Conduct {
         if (!store_->note(key)) {
             Case nominal;
             nominal.seed = seed;
-            execute(campaign_, nominal, folder, boots_folder(out_));
+            execute(campaign_, nominal, folder, {boots_folder(out_)});
         }
         Profile profile = read_profile(folder);
         if (!profile.report.value("success", false))
@@ -163,6 +164,38 @@ class Conduct {
         nominals_.emplace(seed, std::move(profile));
     }
 
+    /// Of the nominal runs, before the faults of these cases begin.
+    void save_prefixes(const std::vector<Case>& cases) {
+        // A snapshot costs as much as a case or two.
+        constexpr std::size_t kFewest = 4;
+        for (const std::uint64_t seed : campaign_.seeds) {
+            std::vector<cosim::Time> begins;
+            for (const Case& one : cases)
+                if (one.seed == seed) begins.push_back(first_begin(campaign_, scenario_, one));
+            if (begins.size() < kFewest) continue;
+            CaseStart start{boots_folder(out_)};
+            start.snapshots = snapshots_folder(out_, seed);
+            start.save_at = instants(start.snapshots, begins);
+            if (start.save_at.empty()) continue;
+            std::error_code error;
+            fs::create_directories(start.snapshots, error);
+            if (error)
+                throw RunError(
+                    fmt::format("{}: cannot be made: {}", start.snapshots.string(), error.message()));
+            Case nominal;
+            nominal.seed = seed;
+            try {
+                execute(campaign_, nominal, work_folder(out_) / "prefix", start);
+                fmt::print(stderr, "saved at {} instants from {:.3f} s on, seed {}\n", start.save_at.size(),
+                           cosim::to_seconds(start.save_at.front()), seed);
+            } catch (const std::runtime_error& problem) {
+                // Cases are executed whole; if the disk is full they will say so.
+                fmt::print(stderr, "no snapshots: {}\n", problem.what());
+                remove(start.snapshots);
+            }
+        }
+    }
+
     template <typename Plan>
     void phase(const std::string& name, Plan plan) {
         if (!store_->planned(name)) store_->plan(name, plan(store_->last_id() + 1));
@@ -170,6 +203,7 @@ class Conduct {
         const auto pruned =
             std::count_if(cases.begin(), cases.end(), [](const Case& one) { return !one.pruned.empty(); });
         if (cases.empty()) return;
+        if (options_.snapshots) save_prefixes(pending);
         const auto begun = std::chrono::steady_clock::now();
         if (options_.slurm && !pending.empty())
             run_slurm(slurm(), pending, take());
@@ -238,7 +272,8 @@ Verdict replay(const Results& results, int id, const fs::path& folder) {
     if (found == results.results.end())
         throw InputError(results.out.string(), fmt::format("case {}", id), "there is no result of it",
                          "a case of results.csv that was run");
-    execute(results.campaign, found->one, folder, boots_folder(results.out));
+    // Whole, not from a snapshot: a second opinion.
+    execute(results.campaign, found->one, folder, {boots_folder(results.out)});
     return judge(results.campaign, read_profile(nominal_folder(results.out, found->one.seed)),
                  read_profile(folder), found->one.faults.size());
 }

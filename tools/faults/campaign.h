@@ -14,6 +14,7 @@ struct CampaignOptions {
     int jobs = 0;               ///< 0: as many as there are cores
     bool slurm = false;
     int tasks = 8;       ///< of the job array
+    bool snapshots = true;  ///< cases go on from snapshots of what they share
     bool fresh = false;  ///< what is in the folder is dropped
 };
 

@@ -61,7 +61,7 @@ std::string full_disk(const std::filesystem::path& folder) {
 
 /// In the child: never returns.
 [[noreturn]] void run_here(const Campaign& campaign, const Case& one, const std::filesystem::path& folder,
-                           int message) {
+                           const CaseStart& start, int message) {
     std::string problem;
     int status = kFailed;
     try {
@@ -73,8 +73,22 @@ std::string full_disk(const std::filesystem::path& folder) {
             fault["may_not_fire"] = true;  // that is an outcome
             request.faults.push_back(as_words(fault));
         }
-        const tools::RunSetup setup = tools::set_up(request);
-        const cosim::Outcome outcome = tools::run_scenario(setup, request, {}, nullptr);
+        request.snapshot = start.snapshot;
+        request.same_origin = true;
+        for (const cosim::Time at : start.save_at)
+            request.snapshot_at.push_back(cosim::to_seconds(at));
+        if (!start.save_at.empty()) {
+            request.save = start.snapshots;
+            request.save_name = [&](double at) {
+                return snapshot_at(start.snapshots, cosim::from_seconds(at));
+            };
+        }
+        const auto run = [&] { return tools::run_scenario(tools::set_up(request), request, {}, nullptr); };
+        cosim::Outcome outcome = run();
+        if (start.snapshot && !outcome.went_on) {
+            request.snapshot = nullptr;
+            outcome = run();
+        }
         // No fault of the case's: results that cannot be written, say.
         const bool ours = outcome.node.empty() && outcome.text.find("never fired") == std::string::npos;
         if (!outcome.success && (ours || names_disk(outcome.text))) problem = outcome.text;
@@ -147,12 +161,12 @@ void check_faults_of_nodes(const Campaign& campaign,
 }
 
 void execute(const Campaign& campaign, const Case& one, const std::filesystem::path& folder,
-             const std::filesystem::path& boots) {
+             const CaseStart& start) {
     std::error_code error;
     std::filesystem::remove_all(folder, error);
     std::filesystem::create_directories(folder, error);
     if (error) throw RunError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
-    ::setenv("PUCKLOOP_CACHE", boots.c_str(), 1);
+    ::setenv("PUCKLOOP_CACHE", start.boots.c_str(), 1);
     std::array<int, 2> ends{};
     if (::pipe2(ends.data(), O_CLOEXEC) != 0)
         throw RunError(fmt::format("no pipe: {}", std::strerror(errno)));
@@ -165,7 +179,7 @@ void execute(const Campaign& campaign, const Case& one, const std::filesystem::p
         const int nothing = ::open("/dev/null", O_RDWR | O_CLOEXEC);
         for (int descriptor = 0; descriptor <= STDERR_FILENO; ++descriptor)
             ::dup2(nothing, descriptor);
-        run_here(campaign, one, folder, ends[1]);
+        run_here(campaign, one, folder, start, ends[1]);
     }
     ::close(ends[1]);
     if (child < 0) {

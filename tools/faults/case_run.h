@@ -4,8 +4,10 @@
 #include "scenarios/scenario.h"
 #include "tools/faults/case.h"
 #include "tools/faults/outcome.h"
+#include "tools/faults/prefixes.h"
 
 #include <filesystem>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -25,9 +27,18 @@ void check_faults_of_nodes(const Campaign& campaign,
                            const std::vector<std::pair<nlohmann::json, int>>& faults,
                            const std::filesystem::path& folder);
 
-/// Runs it with all results in `folder`, which it replaces. `boots`: where boots of boards are kept from one
-/// run to the next. Throws RunError if the run could not be made (disk full, puckloop itself died).
+/// Where a case begins, and what is kept of it for others.
+struct CaseStart {
+    std::filesystem::path boots;  ///< where boots of boards are kept from one run to the next
+    /// The nominal run before the case's first fault; null: the case is run whole.
+    std::shared_ptr<const cosim::RunSnapshot> snapshot{};
+    std::vector<cosim::Time> save_at{};  ///< the run is saved there, into
+    std::filesystem::path snapshots{};   ///< this folder (prefixes.h)
+};
+
+/// Runs it with all results in `folder`, which it replaces. Throws RunError if the run could not be made
+/// (disk full, puckloop itself died).
 void execute(const Campaign& campaign, const Case& one, const std::filesystem::path& folder,
-             const std::filesystem::path& boots);
+             const CaseStart& start);
 
 }  // namespace puckloop::faults

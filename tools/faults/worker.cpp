@@ -51,7 +51,11 @@ void write_line(int descriptor, std::string line) {
 
 class Runner {
   public:
-    explicit Runner(const WorkerTask& task) : task_(task), campaign_(read_campaign(task.campaign)) {
+    explicit Runner(const WorkerTask& task)
+        : task_(task),
+          campaign_(read_campaign(task.campaign)),
+          scenario_(scenario_of(campaign_)),
+          prefixes_(task.out) {
         char host[64] = "";
         ::gethostname(host, sizeof host - 1);  // nodes of a cluster share the folder, not process numbers
         folder_ = work_folder(task.out) / fmt::format("{}-{}", host, ::getpid());
@@ -65,7 +69,9 @@ class Runner {
 
     json result(const Case& one) {
         try {
-            execute(campaign_, one, folder_, boots_folder(task_.out));
+            CaseStart start{boots_folder(task_.out)};
+            start.snapshot = prefixes_.before(one.seed, first_begin(campaign_, scenario_, one));
+            execute(campaign_, one, folder_, start);
             const Verdict verdict =
                 judge(campaign_, nominal(one.seed), read_profile(folder_), one.faults.size());
             return {{"id", one.id}, {"verdict", to_json(verdict)}};
@@ -83,6 +89,8 @@ class Runner {
 
     WorkerTask task_;
     Campaign campaign_;
+    scenarios::Scenario scenario_;
+    Prefixes prefixes_;
     fs::path folder_;
     Nominals nominals_;
 };

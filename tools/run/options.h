@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -29,6 +30,9 @@ struct RunRequest {
     std::vector<double> snapshot_at;   ///< when they are taken, s
     std::filesystem::path from;        ///< the snapshot that the run goes on from; empty: it begins anew
     std::shared_ptr<const cosim::RunSnapshot> snapshot;  ///< what `from` holds
+    bool same_origin = false;  ///< the snapshot is of this very run: nothing is compared
+    /// File of the snapshot at a time, if not as `save` says.
+    std::function<std::filesystem::path(double)> save_name{};
     bool cache = false;  ///< boots are taken from the user's cache and kept there
     bool in_process = false;
     bool realtime = false;

@@ -186,6 +186,7 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
             fmt::format("interrupted (SIG{}) at {:.3f} s of simulated time", sigabbrev_np(*interrupt->flag()),
                         cosim::to_seconds(outcome.stop_time.value_or(outcome.simulated)));
     }
+    if (!request.from.empty() && !outcome.went_on) outcome.text = request.from.string() + ": " + outcome.text;
     judge(outcome);
     take_fault_results(setup, outcome);
     collect_states(setup, outcome);

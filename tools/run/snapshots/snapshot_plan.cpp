@@ -96,11 +96,12 @@ RunRequest going_on(const RunRequest& request) {
 }
 
 fs::path snapshot_file(const RunRequest& request, double time) {
+    if (request.save_name) return request.save_name(time);
     if (request.snapshot_at.size() == 1) return fs::absolute(request.save);
     fs::path file = request.save;
     const std::string ending = file.extension().string();
     file.replace_extension();
-    return fs::absolute(file.string() + fmt::format("-{:g}s", time) + ending);
+    return fs::absolute(file.string() + fmt::format("-{}s", time) + ending);
 }
 
 void plan_snapshots(RunSetup& setup, const RunRequest& request) {
@@ -110,9 +111,9 @@ void plan_snapshots(RunSetup& setup, const RunRequest& request) {
     if (!request.save.empty()) plan_saving(setup, request);
     if (!request.snapshot) return;
     const std::string file = request.from.string();
-    setup.from = fs::absolute(request.from);
+    if (!request.from.empty()) setup.from = fs::absolute(request.from);
     setup.from_time = request.snapshot->time;
-    check_origin(request.snapshot->origin, setup, request.snapshot->time, file);
+    if (!request.same_origin) check_origin(request.snapshot->origin, setup, request.snapshot->time, file);
     if (setup.scenario.duration && cosim::from_seconds(*setup.scenario.duration) < request.snapshot->time)
         throw InputError("", "--duration",
                          fmt::format("{:g} s is before the snapshot, {:g} s", *setup.scenario.duration,
@@ -133,7 +134,9 @@ void use_snapshots(const RunSetup& setup, const RunRequest& request, cosim::Trac
         snapshot.build = cosim::build_id();
         snapshot.origin = origin;
         snapshot.trace = trace.written();
-        cosim::write_snapshot(snapshot_file(request, cosim::to_seconds(snapshot.time)), snapshot);
+        const auto at = std::find_if(request.snapshot_at.begin(), request.snapshot_at.end(),
+                                     [&](double time) { return cosim::from_seconds(time) == snapshot.time; });
+        cosim::write_snapshot(snapshot_file(request, *at), snapshot);
     };
 }
 
