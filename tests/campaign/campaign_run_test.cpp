@@ -42,7 +42,12 @@ std::size_t rows_of(const std::string& table) {
 }
 
 void two_workers(const Workbench& bench, const std::filesystem::path& file, const std::string& table) {
-    REQUIRE(bench.puckloop(campaign_words(bench, file, "two", {"--jobs", "2"})).status == 0);
+    // Every case whole; the reference's went on from snapshots.
+    const Ended whole = bench.puckloop(campaign_words(bench, file, "two", {"--jobs", "2", "--no-snapshots"}));
+    REQUIRE(whole.status == 0);
+    CHECK_THAT(whole.err, !Contains("saved at"));
+    CHECK_FALSE(std::filesystem::exists(bench.out("two") / "snapshots"));
+    CHECK(std::filesystem::exists(bench.out("reference") / "snapshots"));
     CHECK(table_of(bench, "two") == table);
     // Once more in the same folder: nothing is left to run.
     const Ended again = bench.puckloop(campaign_words(bench, file, "two"));
