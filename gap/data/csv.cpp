@@ -1,11 +1,11 @@
 #include "gap/data/csv.h"
 
+#include "base/csv.h"
 #include "base/error.h"
 #include "gap/data/problems.h"
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <limits>
@@ -16,22 +16,6 @@ namespace puckloop::gap {
 namespace {
 
 constexpr std::size_t kMostRows = 5'000'000;
-
-std::string_view trimmed(std::string_view text) {
-    const auto first = text.find_first_not_of(" \t\r\"");
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(" \t\r\"") - first + 1);
-}
-
-std::vector<std::string_view> cells_of(std::string_view line, char separator) {
-    std::vector<std::string_view> cells;
-    for (;;) {
-        const auto end = line.find(separator);
-        cells.push_back(trimmed(line.substr(0, end)));
-        if (end == std::string_view::npos) return cells;
-        line.remove_prefix(end + 1);
-    }
-}
 
 /// The text with what is not UTF-8 as '?': files of another encoding are common, their numbers are fine.
 std::string readable(std::string_view text) {
@@ -65,9 +49,7 @@ std::string readable(std::string_view text) {
 bool parse(std::string_view cell, double& value) {
     value = std::numeric_limits<double>::quiet_NaN();
     if (cell.empty() || cell == "nan" || cell == "NaN" || cell == "NA" || cell == "null") return true;
-    if (cell.front() == '+') cell.remove_prefix(1);
-    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-    return error == std::errc() && end == cell.data() + cell.size();
+    return csv_number(cell, value);
 }
 
 }  // namespace
@@ -95,7 +77,7 @@ CsvTable read_csv(const std::filesystem::path& file, Problems* problems) {
         if (const auto inner = line.find('\r'); inner != std::string::npos && inner + 1 < line.size())
             throw InputError(file.string(), fmt::format("line {}", number),
                              "ends its lines with carriage returns only", "line feeds, with or without them");
-        const std::string_view text = trimmed(line);
+        const std::string_view text = csv_trimmed(line);
         if (text.empty() || text.front() == '#') continue;
         const std::string place = fmt::format("line {}", number);
         if (table.names.empty()) {
@@ -103,7 +85,7 @@ CsvTable read_csv(const std::filesystem::path& file, Problems* problems) {
                 separator = line.find(';') != std::string::npos    ? ';'
                             : line.find('\t') != std::string::npos ? '\t'
                                                                    : ',';
-            for (const auto cell : cells_of(line, separator)) {
+            for (const auto cell : csv_cells(line, separator)) {
                 double ignored = 0.0;
                 if (!cell.empty() && parse(cell, ignored))
                     throw InputError(file.string(), place,
@@ -119,7 +101,7 @@ CsvTable read_csv(const std::filesystem::path& file, Problems* problems) {
             table.columns.resize(table.names.size());
             continue;
         }
-        const auto cells = cells_of(line, separator);
+        const auto cells = csv_cells(line, separator);
         const bool whole = attempt(problems, [&] {
             if (cells.size() != table.names.size())
                 throw InputError(file.string(), place, fmt::format("has {} cells", cells.size()),

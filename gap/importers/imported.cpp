@@ -1,5 +1,6 @@
 #include "gap/importers/imported.h"
 
+#include "base/csv.h"
 #include "base/error.h"
 
 #include <fmt/format.h>
@@ -36,20 +37,10 @@ std::string toml_number(double value) {
 }
 
 std::string csv_of(const ImportedRun& run) {
-    std::string text;
+    std::vector<CsvColumn> columns;
     for (const auto& [name, values] : run.columns)
-        text += (text.empty() ? "" : ",") + name;
-    text += '\n';
-    const std::size_t rows = run.columns.empty() ? 0 : run.columns.front().second.size();
-    for (std::size_t i = 0; i < rows; ++i) {
-        for (std::size_t c = 0; c < run.columns.size(); ++c) {
-            if (c > 0) text += ',';
-            const double value = run.columns[c].second[i];
-            if (std::isfinite(value)) text += fmt::format("{}", value);
-        }
-        text += '\n';
-    }
-    return text;
+        columns.push_back({name, values});
+    return csv_text(columns);
 }
 
 std::string instrument_line(const ImportedInstrument& instrument) {

@@ -1,45 +1,15 @@
 #include "gap/importers/text_table.h"
 
+#include "base/csv.h"
 #include "base/error.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 
 namespace puckloop::gap::importers {
-
-namespace {
-
-constexpr std::string_view kBlank = " \t\r\n\"";
-
-std::string trimmed(std::string_view text) {
-    const auto first = text.find_first_not_of(kBlank);
-    if (first == std::string_view::npos) return {};
-    return std::string(text.substr(first, text.find_last_not_of(kBlank) - first + 1));
-}
-
-std::vector<std::string> cells_of(std::string_view line, char separator) {
-    std::vector<std::string> cells;
-    if (separator == ' ') {
-        for (std::size_t at = line.find_first_not_of(kBlank); at != std::string_view::npos;) {
-            const auto end = std::min(line.find_first_of(kBlank, at), line.size());
-            cells.emplace_back(line.substr(at, end - at));
-            at = line.find_first_not_of(kBlank, end);
-        }
-        return cells;
-    }
-    for (;;) {
-        const auto end = line.find(separator);
-        cells.push_back(trimmed(line.substr(0, end)));
-        if (end == std::string_view::npos) return cells;
-        line.remove_prefix(end + 1);
-    }
-}
-
-}  // namespace
 
 std::vector<TextRow> read_rows(const std::filesystem::path& file, char separator) {
     std::ifstream stream(file, std::ios::binary);
@@ -48,7 +18,8 @@ std::vector<TextRow> read_rows(const std::filesystem::path& file, char separator
     std::vector<TextRow> rows;
     std::string line;
     for (int number = 1; std::getline(stream, line); ++number) {
-        TextRow row{number, cells_of(line, separator)};
+        const auto cells = csv_cells(line, separator);
+        TextRow row{number, {cells.begin(), cells.end()}};
         if (std::any_of(row.cells.begin(), row.cells.end(), [](const auto& c) { return !c.empty(); }))
             rows.push_back(std::move(row));
     }
@@ -59,11 +30,7 @@ std::vector<TextRow> read_rows(const std::filesystem::path& file, char separator
 double number_in(const std::filesystem::path& file, const TextRow& row, std::size_t cell) {
     double value = 0.0;
     const std::string& text = cell < row.cells.size() ? row.cells[cell] : std::string();
-    std::string_view digits = text;
-    if (!digits.empty() && digits.front() == '+') digits.remove_prefix(1);
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (digits.empty() || error != std::errc() || end != digits.data() + digits.size() ||
-        !std::isfinite(value))
+    if (!csv_number(text, value) || !std::isfinite(value))
         throw InputError(file.string(), fmt::format("line {}", row.line),
                          fmt::format("has \"{}\" in column {}", text.substr(0, 40), cell + 1),
                          "a finite number");

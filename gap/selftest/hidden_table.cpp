@@ -1,10 +1,10 @@
 #include "gap/selftest/hidden_table.h"
 
+#include "base/csv.h"
 #include "base/error.h"
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <fstream>
 
 namespace puckloop::gap::selftest {
@@ -18,19 +18,10 @@ void write_text(const std::filesystem::path& file, const std::string& text) {
 }
 
 std::string csv_of(const HiddenRun& run) {
-    std::string text;
+    std::vector<CsvColumn> columns;
     for (const HiddenColumn& column : run.columns)
-        text += (text.empty() ? "" : ",") + column.name;
-    text += '\n';
-    for (std::size_t row = 0; row < run.rows(); ++row) {
-        for (std::size_t c = 0; c < run.columns.size(); ++c) {
-            const double value = run.columns[c].values[row];
-            if (c > 0) text += ',';
-            if (!std::isnan(value)) fmt::format_to(std::back_inserter(text), "{:.9g}", value);
-        }
-        text += '\n';
-    }
-    return text;
+        columns.push_back({column.name, column.values});
+    return csv_text(columns, 9);
 }
 
 }  // namespace

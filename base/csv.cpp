@@ -1,0 +1,69 @@
+#include "base/csv.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <iterator>
+
+namespace puckloop {
+
+namespace {
+
+constexpr std::string_view kBlank = " \t\r\n\"";
+
+}  // namespace
+
+std::string_view csv_trimmed(std::string_view text) {
+    const auto first = text.find_first_not_of(kBlank);
+    if (first == std::string_view::npos) return {};
+    return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
+}
+
+std::vector<std::string_view> csv_cells(std::string_view line, char separator) {
+    std::vector<std::string_view> cells;
+    if (separator == ' ') {
+        for (std::size_t at = line.find_first_not_of(kBlank); at != std::string_view::npos;) {
+            const auto end = std::min(line.find_first_of(kBlank, at), line.size());
+            cells.push_back(line.substr(at, end - at));
+            at = line.find_first_not_of(kBlank, end);
+        }
+        return cells;
+    }
+    for (;;) {
+        const auto end = line.find(separator);
+        cells.push_back(csv_trimmed(line.substr(0, end)));
+        if (end == std::string_view::npos) return cells;
+        line.remove_prefix(end + 1);
+    }
+}
+
+bool csv_number(std::string_view cell, double& value) {
+    if (!cell.empty() && cell.front() == '+') cell.remove_prefix(1);
+    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+    return !cell.empty() && error == std::errc() && end == cell.data() + cell.size();
+}
+
+std::string csv_text(std::span<const CsvColumn> columns, int digits) {
+    std::string text;
+    for (std::size_t c = 0; c < columns.size(); ++c)
+        text += fmt::format("{}{}", c == 0 ? "" : ",", columns[c].name);
+    text += '\n';
+    const std::size_t rows = columns.empty() ? 0 : columns.front().values.size();
+    for (std::size_t row = 0; row < rows; ++row) {
+        for (std::size_t c = 0; c < columns.size(); ++c) {
+            if (c > 0) text += ',';
+            const double value = columns[c].values[row];
+            if (std::isnan(value)) continue;
+            if (digits > 0)
+                fmt::format_to(std::back_inserter(text), "{:.{}g}", value, digits);
+            else
+                fmt::format_to(std::back_inserter(text), "{}", value);
+        }
+        text += '\n';
+    }
+    return text;
+}
+
+}  // namespace puckloop
