@@ -16,13 +16,13 @@ namespace {
 
 namespace gr = gap::selftest::grammar;
 
+}  // namespace
+
 std::uint64_t fresh_seed() {
     constexpr std::uint64_t kReadable = 1'000'000'000;
     std::random_device device;
     return (static_cast<std::uint64_t>(device()) << 32U | device()) % kReadable + 1;
 }
-
-}  // namespace
 
 int grammar_test(const GrammarRequest& request) {
     gr::Drawing drawing;

@@ -29,7 +29,7 @@ struct Request {
     std::vector<std::size_t> only;
     unsigned workers = 2;
     std::string kind;
-    bool quick = false, json = false, keep = false, emulator = false, seed_given = false;
+    bool quick = false, json = false, keep = false, emulator = false, closed_loop = false, seed_given = false;
     std::filesystem::path scratch, svg;
 };
 
@@ -72,19 +72,19 @@ int secret_test(const Request& request) {
     namespace em = gap::emulate;
     em::RecordOptions options;
     options.tools = emulation_tools();
-    options.seed = request.seed;
+    options.seed = request.seed_given || request.closed_loop ? request.seed : fresh_seed();
+    fmt::print(stderr, "seed {}\n", options.seed);
     options.brief = request.quick;
     options.keep = request.keep;
     std::vector<em::SecretResult> results;
     for (std::size_t k = 0; k < em::secrets().size(); ++k) {
-        const em::Secret& secret = em::secrets()[k];
-        if (!request.kind.empty() && request.kind != secret.kind) continue;
+        if (!request.kind.empty() && request.kind != em::secrets()[k].kind) continue;
         if (!request.only.empty() &&
             std::find(request.only.begin(), request.only.end(), k) == request.only.end())
             continue;
         options.scratch = scratch_of(request) / fmt::format("robot{:02}", k);
         refuse_foreign_files(options.scratch);
-        results.push_back(em::try_secret(secret, options));
+        results.push_back(em::try_secret(k, request.closed_loop, options));
         fmt::print(stderr, "{:>3} {}", k, em::secret_line(results.back()));
     }
     if (results.empty())
@@ -96,6 +96,7 @@ int secret_test(const Request& request) {
 
 int self_test(const Request& request) {
     if (request.emulator) return secret_test(request);
+    if (request.closed_loop) throw InputError("", "--closed-loop", "is for --emulator", "--emulator");
     if (request.grammar > 0) {
         if (request.quick || request.cases > 0)
             throw InputError("", "--grammar", "has a number of cases of its own", "no --cases, no --quick");
@@ -165,6 +166,10 @@ void declare_gap_selftest(Command& gap, int& status) {
     command->add_flag("--keep", request->keep, "leave the cases' folders");
     command->add_flag("--emulator", request->emulator,
                       "robots changed in secret and recorded on the emulator, in place of made experiments");
+    command->add_flag(
+        "--closed-loop", request->closed_loop,
+        "of --emulator: typed values and a recording no finer than the fitted model, in place of values "
+        "drawn from their published ranges with a fresh seed");
     command->add_flag("--quick", request->quick, "a small sample");
     command->add_flag("--json", request->json, "the result for programs");
     command->callback([command, request, &status] {

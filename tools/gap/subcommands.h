@@ -27,6 +27,8 @@ struct GrammarRequest {
     std::filesystem::path scratch, svg;
 };
 int grammar_test(const GrammarRequest& request);
+/// Another one each time, from the machine's own randomness; short enough to be typed.
+std::uint64_t fresh_seed();
 
 void declare_gap_selftest(Command& gap, int& status);
 

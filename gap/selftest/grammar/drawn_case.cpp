@@ -27,18 +27,26 @@ constexpr double kMostAmplitude = 50;
 
 using Examples = std::vector<std::vector<HiddenExperiment>>;
 
+/// Effects of the catalogue as the self test makes them in a design.
+struct Known {
+    std::vector<int> numbers;
+    Examples examples;
+};
+
 /// What the catalogue's effects do to a design; made when first asked for.
-std::shared_ptr<const Examples> examples_of(std::size_t bench, std::uint64_t design) {
+std::shared_ptr<const Known> examples_of(std::size_t bench, std::uint64_t design) {
     static std::mutex mutex;
-    static std::map<std::pair<std::size_t, std::uint64_t>, std::shared_ptr<const Examples>> known;
+    static std::map<std::pair<std::size_t, std::uint64_t>, std::shared_ptr<const Known>> known;
     const std::lock_guard lock(mutex);
     auto& place = known[{bench, design}];
     if (!place) {
-        auto made = std::make_shared<Examples>();
+        auto made = std::make_shared<Known>();
         const auto effects = benches()[bench]->effects();
         for (std::size_t e = 0; e < effects.size(); ++e)
-            if (effects[e].number != 0 && effects[e].instead_of == 0)
-                made->push_back(benches()[bench]->examples(e, design));
+            if (effects[e].number != 0 && effects[e].instead_of == 0) {
+                made->numbers.push_back(effects[e].number);
+                made->examples.push_back(benches()[bench]->examples(e, design));
+            }
         place = std::move(made);
     }
     return place;
@@ -46,21 +54,6 @@ std::shared_ptr<const Examples> examples_of(std::size_t bench, std::uint64_t des
 
 double drawn_strength(RandomStream& random) {
     return kWeakest * std::pow(kStrongest / kWeakest, random.uniform());
-}
-
-/// Amplitude that moves what is measured by `asked` times its noise, as nearly as it can be had.
-double amplitude_for(const HiddenExperiment& exact, const Site& site, const Field& field, double asked,
-                     const std::vector<NoiseFloor>& floor, const RandomStream& chance, double& reached) {
-    double a = 0.05;
-    constexpr int kSteps = 12;
-    for (int step = 0; step < kSteps; ++step) {
-        reached = distance_in_noise(with_effect(exact, site, field, a, chance), exact, floor);
-        if (!(reached > 0) || std::abs(reached - asked) < 0.02 * asked) break;
-        const double power =
-            site.how == Site::How::Lost ? 2.0 : 1.0;  // strength is the root of the share lost
-        a = std::min(a * std::pow(std::clamp(asked / reached, 0.1, 10.0), power), kMostAmplitude);
-    }
-    return a;
 }
 
 /// Losses at one rate in all rows are in the catalogue: their share of what a field does.
@@ -74,20 +67,33 @@ double evenness(const Field& field) {
     return std::pow(sum / count, 2);  // the mean square is 1
 }
 
+void note_likeness(DrawnCase& drawn, const HiddenExperiment& with, const HiddenExperiment& exact,
+                   const Known& known, const std::vector<NoiseFloor>& floor) {
+    const auto shares = likenesses_of(with, exact, known.examples, floor);
+    drawn.likeness = 0.0;
+    drawn.alike.clear();
+    for (std::size_t e = 0; e < shares.size(); ++e) {
+        drawn.likeness = std::max(drawn.likeness, shares[e]);
+        if (shares[e] > kMostLikeness) drawn.alike.push_back(known.numbers[e]);
+    }
+}
+
 void draw_unknown(DrawnCase& drawn, const HiddenExperiment& exact, std::size_t bench, std::uint64_t design,
                   RandomStream& random) {
     const auto covariates = covariates_of(exact);
     const auto sites = sites_of(exact.kind);
     const auto floor = benches()[bench]->floor();
-    const auto examples = examples_of(bench, design);
+    const auto known = examples_of(bench, design);
     for (;; ++drawn.redrawn) {
         const Site site = sites[random.below(sites.size())];
         const Field field = drawn_field(exact, covariates, random);
         const RandomStream chance(random.next(), "chance");
         const double a = amplitude_for(exact, site, field, drawn.asked, floor, chance, drawn.hidden.ratio);
         HiddenExperiment with = with_effect(exact, site, field, a, chance);
-        drawn.likeness =
-            site.how == Site::How::Lost ? evenness(field) : likeness_of(with, exact, *examples, floor);
+        if (site.how == Site::How::Lost)
+            drawn.likeness = evenness(field);
+        else
+            note_likeness(drawn, with, exact, *known, floor);
         const bool strong = drawn.hidden.ratio > 0.8 * drawn.asked;
         if ((strong && drawn.likeness <= kMostLikeness) || drawn.redrawn >= kMostDraws) {
             drawn.text = site.text() + field.text;
@@ -97,7 +103,7 @@ void draw_unknown(DrawnCase& drawn, const HiddenExperiment& exact, std::size_t b
     }
 }
 
-void draw_near_miss(DrawnCase& drawn, const HiddenExperiment& exact, std::size_t bench,
+void draw_near_miss(DrawnCase& drawn, const HiddenExperiment& exact, std::size_t bench, std::uint64_t design,
                     RandomStream& random) {
     for (;; ++drawn.redrawn) {
         const NearMiss miss = drawn_near_miss(exact, random);
@@ -108,6 +114,8 @@ void draw_near_miss(DrawnCase& drawn, const HiddenExperiment& exact, std::size_t
         drawn.text = miss.text;
         drawn.family = miss.family;
         drawn.hidden.experiment = with_effect(exact, miss.site, miss.field, a, chance);
+        note_likeness(drawn, drawn.hidden.experiment, exact, *examples_of(bench, design),
+                      benches()[bench]->floor());
         return;
     }
 }
@@ -131,8 +139,28 @@ const char* class_name(Class of) {
     return names[static_cast<int>(of)];
 }
 
-double likeness_of(const HiddenExperiment& with, const HiddenExperiment& rest, const Examples& examples,
-                   const std::vector<NoiseFloor>& floor) {
+std::vector<NoiseFloor> floor_of(const std::string& kind) {
+    for (const auto& bench : benches())
+        if (bench->kind() == kind) return bench->floor();
+    return {};
+}
+
+double amplitude_for(const HiddenExperiment& exact, const Site& site, const Field& field, double asked,
+                     const std::vector<NoiseFloor>& floor, const RandomStream& chance, double& reached) {
+    double a = 0.05;
+    constexpr int kSteps = 12;
+    for (int step = 0; step < kSteps; ++step) {
+        reached = distance_in_noise(with_effect(exact, site, field, a, chance), exact, floor);
+        if (!(reached > 0) || std::abs(reached - asked) < 0.02 * asked) break;
+        const double power =
+            site.how == Site::How::Lost ? 2.0 : 1.0;  // strength is the root of the share lost
+        a = std::min(a * std::pow(std::clamp(asked / reached, 0.1, 10.0), power), kMostAmplitude);
+    }
+    return a;
+}
+
+std::vector<double> likenesses_of(const HiddenExperiment& with, const HiddenExperiment& rest,
+                                  const Examples& examples, const std::vector<NoiseFloor>& floor) {
     const auto difference = [&](const HiddenExperiment& one) {
         std::vector<double> all;
         for (const NoiseFloor& noise : floor)
@@ -154,8 +182,8 @@ double likeness_of(const HiddenExperiment& with, const HiddenExperiment& rest, c
     };
     const std::vector<double> whole = difference(with);
     const double size = product(whole, whole);
-    if (!(size > 0)) return 1.0;
-    double most = 0.0;
+    if (!(size > 0)) return std::vector<double>(examples.size(), 1.0);
+    std::vector<double> shares;
     for (const auto& effect : examples) {
         std::vector<std::vector<double>> basis;  // orthonormal
         double made = 0.0;
@@ -174,9 +202,9 @@ double likeness_of(const HiddenExperiment& with, const HiddenExperiment& rest, c
             made += std::pow(product(whole, v), 2);
             basis.push_back(std::move(v));
         }
-        most = std::max(most, made / size);
+        shares.push_back(made / size);
     }
-    return most;
+    return shares;
 }
 
 DrawnCase drawn_case(std::size_t number, std::uint64_t seed) {
@@ -184,24 +212,26 @@ DrawnCase drawn_case(std::size_t number, std::uint64_t seed) {
     const std::size_t kinds = benches().size();
     const std::size_t bench = number % kinds;
     RandomStream random(seed, fmt::format("grammar case {}", number));
+    const Laboratory laboratory = Laboratory::draw(random);
     DrawnCase drawn;
     drawn.of = kTurns[number / kinds % kTurns.size()];
     drawn.asked = drawn.of == Class::Null ? 0.0 : drawn_strength(random);
     if (drawn.of == Class::Known) {
         draw_known(drawn, bench, random);
+        laboratory.plan(drawn.hidden.experiment);  // every pass has every condition
     } else {
         const std::uint64_t design =
             RandomStream(seed, fmt::format("design {} {}", bench, random.below(kDesigns))).next();
-        const HiddenExperiment exact = benches()[bench]->exact(design);
+        HiddenExperiment exact = benches()[bench]->exact(design);
+        laboratory.plan(exact);
         drawn.hidden.kind = benches()[bench]->kind();
         drawn.hidden.experiment = exact;
         if (drawn.of == Class::Unknown) draw_unknown(drawn, exact, bench, design, random);
-        if (drawn.of == Class::NearMiss) draw_near_miss(drawn, exact, bench, random);
+        if (drawn.of == Class::NearMiss) draw_near_miss(drawn, exact, bench, design, random);
         RandomStream style(seed, fmt::format("noise style {}", number));
         benches()[bench]->measure(drawn.hidden.experiment, NoiseStyle::draw(style), random.next());
         drawn.hidden.expect = drawn.of == Class::Null ? Expect::NoEffect : Expect::Unexplained;
     }
-    const Laboratory laboratory = Laboratory::draw(random);
     laboratory.keep(drawn.hidden.experiment);
     drawn.text += laboratory.text();
     drawn.runs = drawn.hidden.experiment.runs.size();

@@ -21,8 +21,9 @@ struct DrawnCase {
     std::string family;  ///< of a near miss: of the catalogue's effect that it resembles
     double asked = 0.0;  ///< strength over noise that was drawn; `hidden.ratio` was reached
     double likeness =
-        0.0;          ///< share of what it does (of the sum of squares) that one catalogue effect could do
-    int redrawn = 0;  ///< earlier draws that one catalogue effect could do most of
+        0.0;  ///< share of what it does (of the sum of squares) that one catalogue effect could do
+    std::vector<int> alike;  ///< numbers of catalogue effects that could do more than kMostLikeness of it
+    int redrawn = 0;         ///< earlier draws that one catalogue effect could do most of
     std::size_t runs = 0;
 };
 
@@ -33,9 +34,17 @@ inline constexpr double kMostLikeness = 0.5;
 /// Case `number` of a run with this seed. Kinds and classes take turns; everything else is drawn.
 DrawnCase drawn_case(std::size_t number, std::uint64_t seed);
 
-/// Largest share of what `with` does beside `rest` that a weighted sum of one effect's `examples` makes.
-double likeness_of(const HiddenExperiment& with, const HiddenExperiment& rest,
-                   const std::vector<std::vector<HiddenExperiment>>& examples,
-                   const std::vector<NoiseFloor>& floor);
+/// Noise of the measured columns of a kind, in the self test's experiments.
+std::vector<NoiseFloor> floor_of(const std::string& kind);
+/// Amplitude that moves what is measured by `asked` times its noise, as nearly as it can be had; `reached`
+/// says.
+double amplitude_for(const HiddenExperiment& exact, const Site& site, const Field& field, double asked,
+                     const std::vector<NoiseFloor>& floor, const RandomStream& chance, double& reached);
+
+/// Share of what `with` does beside `rest` that a weighted sum of an effect's `examples` makes, effect by
+/// effect.
+std::vector<double> likenesses_of(const HiddenExperiment& with, const HiddenExperiment& rest,
+                                  const std::vector<std::vector<HiddenExperiment>>& examples,
+                                  const std::vector<NoiseFloor>& floor);
 
 }  // namespace puckloop::gap::selftest::grammar

@@ -62,15 +62,16 @@ void add_drive(const HiddenExperiment& exact, std::vector<Covariate>& list) {
         const auto& run = exact.runs[r];
         const auto &x = run.find("x_m")->values, &y = run.find("y_m")->values,
                    &h = run.find("theta_rad")->values;
-        const auto &left = run.find("steps_left")->values, &right = run.find("steps_right")->values;
+        // Without counters the wheels' angles are not known.
+        const HiddenColumn *left = run.find("steps_left"), *right = run.find("steps_right");
         for (std::size_t k = 1; k < x.size(); ++k) {
             const double dx = x[k] - x[k - 1], dy = y[k] - y[k - 1];
             made[0].value[r][k] = dx * std::cos(h[k]) + dy * std::sin(h[k]);
             made[1].value[r][k] = h[k] - h[k - 1];
             made[2].value[r][k] = made[0].value[r][k] - made[0].value[r][k - 1];
             made[3].value[r][k] = made[3].value[r][k - 1] + std::hypot(dx, dy);
-            made[4].value[r][k] = std::remainder(left[k] / kStepsPerTurn, 1.0);
-            made[5].value[r][k] = std::remainder(right[k] / kStepsPerTurn, 1.0);
+            if (left != nullptr) made[4].value[r][k] = std::remainder(left->values[k] / kStepsPerTurn, 1.0);
+            if (right != nullptr) made[5].value[r][k] = std::remainder(right->values[k] / kStepsPerTurn, 1.0);
             made[6].value[r][k] = std::remainder(h[k], 2 * std::numbers::pi);
         }
     }

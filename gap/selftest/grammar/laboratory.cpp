@@ -31,8 +31,11 @@ Laboratory Laboratory::draw(RandomStream& random) {
     return lab;
 }
 
-void Laboratory::keep(HiddenExperiment& experiment) const {
+void Laboratory::plan(HiddenExperiment& experiment) const {
     if (one_pass) experiment.runs.resize((experiment.runs.size() + 1) / 2);
+}
+
+void Laboratory::keep(HiddenExperiment& experiment) const {
     const auto round_to = [&](HiddenRun& run, const char* name, double step) {
         if (run.find(name) == nullptr) return false;
         for (double& value : run.column(name).values)

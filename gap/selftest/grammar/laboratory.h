@@ -16,6 +16,10 @@ struct Laboratory {
     bool one_pass = false;  ///< every condition once, not twice
 
     static Laboratory draw(RandomStream& random);
+    /// Leaves out the runs that it does not do; before anything is hidden, or what is hidden might be in
+    /// these.
+    void plan(HiddenExperiment& experiment) const;
+    /// Rounds what was measured.
     void keep(HiddenExperiment& experiment) const;
     std::string text() const;
 };

@@ -1,5 +1,6 @@
 #include "gap/selftest/grammar/outcome.h"
 
+#include "gap/effects/effect.h"
 #include "gap/pipeline/analyse.h"
 #include "gap/selftest/case_list.h"
 #include "gap/selftest/grammar/families.h"
@@ -72,7 +73,17 @@ Outcome outcome_of(const DrawnCase& drawn, const Verdict& verdict) {
             out.covered += e.covered() ? 1 : 0;
         }
     }
-    out.wrong_family = drawn.of == Class::NearMiss && named && family_of(out.names.front()) != drawn.family;
+    if (drawn.of == Class::NearMiss && named) {
+        const std::string_view family = family_of(out.names.front());
+        out.other_family = family != drawn.family;
+        // With another covariate it may be what another effect of the catalogue does: that name is not wrong.
+        out.wrong_family =
+            out.other_family && std::none_of(drawn.alike.begin(), drawn.alike.end(), [&](int number) {
+                return std::any_of(catalogue().begin(), catalogue().end(), [&](const Effect& effect) {
+                    return effect.number == number && family_of(effect.name) == family;
+                });
+            });
+    }
     return out;
 }
 

@@ -23,7 +23,8 @@ struct Outcome {
     std::string error;
     std::vector<std::string> names;  ///< of the causes, first one first
     bool right = false;              ///< a known effect named first
-    bool wrong_family = false;       ///< "named", and the first cause is of another family than the near miss
+    bool other_family = false;       ///< "named", and the first cause is of another family than the near miss
+    bool wrong_family = false;       ///< and no effect of that family could do more than half of it
     std::vector<double> ranks;       ///< of true parameters in what is said of them: 0..1, uniform if honest
     int covered = 0;                 ///< of them within the 90 % interval
     double wall_s = 0.0;

@@ -80,6 +80,15 @@ std::string rates_text(const std::vector<Outcome>& cases, std::uint64_t seed) {
     const auto histogram = rank_histogram(cases);
     text += fmt::format("\nranks of true parameters (uniform if honest): {}; p = {:.3g}\n",
                         fmt::join(histogram, " "), uniformity(histogram));
+    int other = 0, near = 0;
+    for (const Outcome& one : cases) {
+        near += one.of == Class::NearMiss ? 1 : 0;
+        other += one.other_family ? 1 : 0;
+    }
+    text += fmt::format(
+        "near misses named of another family than the effect they were made from, whatever else could "
+        "do as much: {}\n",
+        rate_text(rate_of(other, near)));
     int redrawn = 0;
     for (const Outcome& one : cases)
         redrawn += one.redrawn;
@@ -110,6 +119,7 @@ std::string rates_json(const std::vector<Outcome>& cases, std::uint64_t seed) {
                        {"names", one.names},
                        {"right", one.right},
                        {"wrong_family", one.wrong_family},
+                       {"other_family", one.other_family},
                        {"ranks", one.ranks},
                        {"wall_s", one.wall_s},
                        {"error", one.error}});

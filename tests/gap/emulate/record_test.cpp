@@ -16,6 +16,7 @@
 #include <cstdio>
 #include <numbers>
 #include <regex>
+#include <set>
 #include <sys/wait.h>
 
 using namespace puckloop;
@@ -201,13 +202,32 @@ TEST_CASE("the recording program refuses a period that is none, in one line") {
 }
 
 TEST_CASE("every secret can be set, and at least twelve hide something") {
-    int changes = 0;
-    for (const auto& secret : emulate::secrets()) {
+    std::size_t changes = 0, unknown = 0;
+    for (std::size_t k = 0; k < emulate::secrets().size(); ++k) {
+        const auto& secret = emulate::secrets()[k];
+        INFO(secret.kind << ": " << secret.what);
+        std::set<std::string> drawn;
+        for (std::uint64_t seed = 0; seed < 20; ++seed) {
+            emulate::Robot robot;
+            for (const auto& assignment : emulate::drawn_assignments(secret, k, seed)) {
+                emulate::set_parameter(robot, assignment);
+                drawn.insert(assignment);
+            }
+        }
         emulate::Robot robot;
-        for (const auto& assignment : secret.assignments)
+        for (const auto& assignment : emulate::closed_assignments(secret))
             emulate::set_parameter(robot, assignment);
-        CHECK(secret.assignments.empty() == secret.names.empty());
+        CHECK(emulate::drawn_assignments(secret, k, 3) == emulate::drawn_assignments(secret, k, 3));
+        CHECK(secret.settings.empty() == secret.names.empty());
+        CHECK(drawn.size() >= 18 * secret.settings.size());
+        for (const auto& draw : secret.draws) {
+            CHECK(draw.low < draw.high);
+            CHECK(*draw.source != '\0');
+        }
         changes += secret.names.empty() ? 0 : 1;
+        unknown += secret.unknown ? 1 : 0;
     }
-    CHECK(changes >= 12);
+    CHECK(emulate::secrets().size() >= 60);
+    CHECK(changes >= 40);
+    CHECK(4 * unknown >= emulate::secrets().size());
 }

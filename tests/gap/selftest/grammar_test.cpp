@@ -99,12 +99,14 @@ TEST_CASE("an effect of the catalogue is wholly like itself, and another pattern
         if (bench.effects()[e].number != 0 && bench.effects()[e].instead_of == 0)
             examples.push_back(bench.examples(e, 5));
     REQUIRE_FALSE(examples.empty());
-    CHECK(likeness_of(examples.front().front(), rest, examples, bench.floor()) == Approx(1.0).margin(1e-6));
+    CHECK(likenesses_of(examples.front().front(), rest, examples, bench.floor()).front() ==
+          Approx(1.0).margin(1e-6));
     HiddenExperiment striped = rest;
     for (auto& run : striped.runs)
         for (std::size_t k = 0; k < run.rows(); ++k)
             run.column("reading").values[k] += k / 3 % 2 == 0 ? 20 : -20;
-    CHECK(likeness_of(striped, rest, examples, bench.floor()) < 0.1);
+    for (const double share : likenesses_of(striped, rest, examples, bench.floor()))
+        CHECK(share < 0.1);
 }
 
 TEST_CASE("every effect has a family, every near miss one of them") {
@@ -128,6 +130,7 @@ TEST_CASE("a laboratory rounds and leaves out, and never sends a clock back") {
     coarse.clock = 1e-3;
     coarse.coarse = true;
     coarse.one_pass = true;
+    coarse.plan(experiment);
     coarse.keep(experiment);
     CHECK(experiment.runs.size() == runs / 2);
     for (const HiddenRun& run : experiment.runs) {

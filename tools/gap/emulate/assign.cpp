@@ -26,8 +26,9 @@ void set_parameter(Robot& robot, const std::string& assignment) {
         double* place;
         double low, high;
     };
-    const std::array<Own, 13> own{{{"board.crystal_ppm", &robot.crystal_ppm, -1e4, 1e4},
+    const std::array<Own, 14> own{{{"board.crystal_ppm", &robot.crystal_ppm, -1e4, 1e4},
                                    {"host.period", &robot.period, 0.01, 10.0},
+                                   {"tracker.exposure", &robot.tracker_exposure, 0.0, 1.0},
                                    {"host.rab_poll", &robot.rab_poll, 0.0, 10.0},
                                    {"uart.factor", &robot.uart_factor, 0.5, 2.0},
                                    {"uart.loss", &robot.uart_loss, 0.0, 1.0},

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <numbers>
 #include <sstream>
 
 namespace puckloop::gap::emulate {
@@ -127,6 +128,23 @@ Pose pose_at(const std::vector<Pose>& path, double t) {
             a.theta + f * (after->theta - a.theta)};
 }
 
+/// Mean over an exposure around t, as a camera sees a marker that moves. Headings in the file are not wrapped
+/// within so short a time, or the mean would fall between two turns.
+Pose seen_at(const std::vector<Pose>& path, double t, double exposure) {
+    if (!(exposure > 0)) return pose_at(path, t);
+    constexpr int kLooks = 9;
+    const Pose middle = pose_at(path, t);
+    Pose mean{t, 0, 0, 0};
+    for (int look = 0; look < kLooks; ++look) {
+        const Pose pose = pose_at(path, t + exposure * (look / (kLooks - 1.0) - 0.5));
+        mean.x += pose.x / kLooks;
+        mean.y += pose.y / kLooks;
+        mean.theta += std::remainder(pose.theta - middle.theta, 2 * std::numbers::pi) / kLooks;
+    }
+    mean.theta += middle.theta;
+    return mean;
+}
+
 }  // namespace
 
 std::vector<Row> perform(const Robot& robot, const Act& act, const Tools& tools, std::uint64_t seed,
@@ -160,7 +178,7 @@ std::vector<Row> perform(const Robot& robot, const Act& act, const Tools& tools,
             begun = c[0];
             shift = std::floor(begun / 60.0) * 60.0;  // the board's clock stood at 60 s when power came
         }
-        const Pose pose = pose_at(path, c[0] - shift);
+        const Pose pose = seen_at(path, c[0] - shift, robot.tracker_exposure);
         Row row{c[0] - begun, c[3] - begun, c[1], c[2], pose.x, pose.y, pose.theta,
                 c[4] == 1.0,  {},           {},   {},   {},     {}};
         std::copy_n(c.begin() + 6, 8, row.ps);
