@@ -92,7 +92,7 @@ TEST_CASE("a whole run goes on from drawn instants, in every placement") {
     check_same_files(bench, "whole", "saving");
     for (std::size_t i = 0; i < times.size(); ++i) {
         INFO("from " << times[i]);
-        const fs::path file = bench.folder() / fmt::format("run-{:g}s.snap", std::stod(times[i]));
+        const fs::path file = bench.folder() / fmt::format("run-{}s.snap", std::stod(times[i]));
         Words on{"--from", file};
         if (i != 1) on.insert(on.end(), {"--in-process", "--threads", i == 0 ? "2" : "1"});
         const Ended ended = bench.run("on", on);
