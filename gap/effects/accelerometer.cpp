@@ -49,7 +49,7 @@ std::vector<Effect> accelerometer_effects() {
                             "accX -223 against -17, gyroX -41 against -577"}},
             .needs = {"session"},
             .observables = "each axis, constant inside a session",
-            .enters = "accelerometer.session_spread: each run draws its own zero; accelerometer.bias",
+            .enters = "measuring chain: the sessions; a scenario's run has their mean (accelerometer.bias)",
             .confounded = {"warm_up"},
             .separated_by = "switch the robot off and on where it stands",
         },

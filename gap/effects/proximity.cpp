@@ -327,7 +327,8 @@ std::vector<Effect> proximity_effects() {
                   "or after"}},
             .needs = {"order"},
             .observables = "all readings, run by run",
-            .enters = "proximity.order_drift; proximity.order is the run's place in a series",
+            .enters =
+                "measuring chain: the runs' order; a scenario's run is one in the middle (proximity.scale)",
             .confounded = {"warm_up", "battery_droop"},
             .separated_by = "random order over several days",
         },

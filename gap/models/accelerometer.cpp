@@ -7,6 +7,7 @@
 #include "gap/models/model.h"
 #include "gap/models/rows.h"
 #include "physics/description/parameters.h"
+#include "physics/description/robot_constants.h"
 
 #include <fmt/format.h>
 
@@ -19,7 +20,6 @@ namespace puckloop::gap {
 namespace {
 
 constexpr double kGravity = 9.81;
-constexpr double kSpeedUnit = 1000.0;  // steps/s
 constexpr const char* kAxes[] = {"ax", "ay", "az"};
 
 class AccelerometerModel final : public Model {
@@ -41,7 +41,7 @@ class AccelerometerModel final : public Model {
             }
             one.motor = column("motor_speed");
             for (double& speed : one.motor)
-                speed = std::abs(speed) / kSpeedUnit;
+                speed = std::abs(speed) / physics::kSpeedUnit;
             one.time = column("t_s");
             one.session = column("session");
         }

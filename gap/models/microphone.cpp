@@ -10,6 +10,7 @@
 #include "gap/models/model.h"
 #include "gap/models/rows.h"
 #include "gap/models/sample_range.h"
+#include "physics/description/robot_constants.h"
 
 #include <fmt/format.h>
 
@@ -21,10 +22,9 @@ namespace puckloop::gap {
 
 namespace {
 
-constexpr double kReference = 0.1;     // m
-constexpr double kSpeedUnit = 1000.0;  // steps/s
-constexpr double kLevel = 300.0;       // counts at the reference, where nothing is stated
-constexpr double kWindow = 100.0;      // samples of the firmware's buffer
+constexpr double kReference = 0.1;  // m
+constexpr double kLevel = 300.0;    // counts at the reference, where nothing is stated
+constexpr double kWindow = 100.0;   // samples of the firmware's buffer
 
 class MicrophoneModel final : public Model {
   public:
@@ -74,7 +74,7 @@ class MicrophoneModel final : public Model {
                      value(gain_[static_cast<std::size_t>(mic_[i])]);
             if (warm != 0.0)
                 level *= 1 + warm * (1 - std::exp(-std::max(time_[i], 0.0) / value(warmup_time_)));
-            level += value(self_noise_) + value(motor_noise_) * std::abs(motor_[i]) / kSpeedUnit;
+            level += value(self_noise_) + value(motor_noise_) * std::abs(motor_[i]) / physics::kSpeedUnit;
             if (gaussian) {
                 window.become(window_[i], lost);
                 level *= window.share;

@@ -11,6 +11,7 @@
 #include "gap/models/model.h"
 #include "gap/models/rows.h"
 #include "gap/models/spectrum.h"
+#include "physics/description/robot_constants.h"
 
 #include <fmt/format.h>
 
@@ -27,8 +28,6 @@ namespace {
 constexpr std::size_t kMostObjects = 8;   // stated reflectivities that count as objects
 constexpr double kHitSpread = 0.3;        // of a foreign pulse's counts, share
 constexpr double kGrazing = 0.02;         // cosine below which a wall is not met
-constexpr double kSpeedUnit = 1000.0;     // steps/s: motor noise is given at this speed
-constexpr double kSchedule = 63.015;      // Hz: each sensor is sampled anew so often (e-puck facts 5.1)
 constexpr int kPhases = 8;                // of the schedule against the log's clock that are tried
 constexpr double kClearlyStronger = 1.2;  // a line's power, to believe a phase
 
@@ -79,7 +78,7 @@ class ProximityModel final : public Model {
         }
         for (auto& speed : motor_) {
             stepping_.push_back(speed != 0.0 ? 1.0 : 0.0);
-            speed = std::abs(speed) / kSpeedUnit;
+            speed = std::abs(speed) / physics::kSpeedUnit;
         }
         others_ = exposed();
         declare(objects_of(experiment, column), experiment.nominal_or("proximity.curve", 0.0) == 0);
@@ -298,8 +297,9 @@ class ProximityModel final : public Model {
         for (int phase = 0; phase < kPhases; ++phase) {
             const double late = static_cast<double>(phase) / kPhases;
             for (std::size_t i = 0; i < logged.size(); ++i)
-                o.time[i] = (std::floor(logged[i] * kSchedule - late) + late) / kSchedule;
-            const Line line = strongest_line(o, prediction[0].mean, kSchedule / 2);
+                o.time[i] =
+                    (std::floor(logged[i] * physics::kProximityRate - late) + late) / physics::kProximityRate;
+            const Line line = strongest_line(o, prediction[0].mean, physics::kProximityRate / 2);
             if (line.power <= best.power) continue;
             best = line;
             best_time = o.time;

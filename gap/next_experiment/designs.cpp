@@ -2,6 +2,7 @@
 
 #include "gap/data/columns.h"
 #include "gap/models/wheel_curve.h"
+#include "physics/description/robot_constants.h"
 
 #include <cmath>
 #include <functional>
@@ -61,7 +62,7 @@ struct Leg {
 
 /// Rows each 0.1 s of a drive by nominal wheels.
 void drive(Table& table, const std::vector<Leg>& legs, double heading = 0.0, double load = 0.0) {
-    constexpr double kPeriod = 0.1, kMetre = 0.0205 * 2 * std::numbers::pi / 1000, kAxle = 0.053;
+    constexpr double kPeriod = 0.1, kMetre = physics::kMetresPerStep, kAxle = physics::kAxleLength;
     double t = 0, x = 0, y = 0, theta = heading, left = 0, right = 0;
     for (const Leg& leg : legs) {
         const double vl = agenda_speed(leg.left), vr = agenda_speed(leg.right);

@@ -1,13 +1,14 @@
 #include "gap/overlay/overlay_sensors.h"
 
 #include "gap/models/model.h"
+#include "physics/description/parameters.h"
+#include "physics/description/robot_constants.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <vector>
 
 namespace puckloop::gap {
 
@@ -21,8 +22,8 @@ struct Own {
     double seconds;
 };
 constexpr std::array<Own, 2> kOwn{{
-    {"proximity.age", 0.5 / 63.015},  // half a period of the library's sampling (e-puck facts 5.1)
-    {"ground.lag", 0.005},            // half of ground.period
+    {"proximity.age", 0.5 / physics::kProximityRate},  // half a period of the library's sampling
+    {"ground.lag", 0.005},                             // half of ground.period
 }};
 
 constexpr const char* kSession = "accelerometer.session_bias";
@@ -46,32 +47,25 @@ void ages(const Experiment& experiment, Values& fitted, Values& simulator) {
     }
 }
 
-/// The first session's zero is accelerometer.bias; the others are fitted as differences to it.
+/// The first session's zero is accelerometer.bias; the others are fitted as differences to it. A scenario's
+/// run has the mean; which session was how far off is the laboratory's.
 void sessions(const Experiment& experiment, Values& fitted, Values& simulator) {
-    std::array<std::vector<double>, kAxes> zeros;
-    for (auto place = fitted.lower_bound(kSession); place != fitted.end();) {
-        if (!place->first.starts_with(kSession)) break;
-        const auto axis = static_cast<std::size_t>(place->first.back() - '0');
-        if (axis < kAxes) zeros[axis].push_back(place->second);
-        place = fitted.erase(place);
-    }
     for (std::size_t axis = 0; axis < kAxes; ++axis) {
-        if (zeros[axis].empty()) continue;
-        zeros[axis].push_back(0.0);
-        const auto n = static_cast<double>(zeros[axis].size());
-        double mean = 0.0, squares = 0.0;
-        for (const double zero : zeros[axis])
-            mean += zero / n;
-        for (const double zero : zeros[axis])
-            squares += (zero - mean) * (zero - mean);
+        double sum = 0.0, count = 1.0;  // the first session's difference is 0
+        for (auto place = fitted.lower_bound(kSession);
+             place != fitted.end() && place->first.starts_with(kSession); ++place)
+            if (place->first.ends_with(static_cast<char>('0' + axis))) {
+                sum += place->second;
+                ++count;
+            }
+        if (sum == 0.0) continue;
         const std::string bias = fmt::format("accelerometer.bias{}", axis);
-        const double first = take(fitted, bias, experiment.nominal_or(bias, 0.0));
-        simulator[bias] = first + mean;
-        simulator[fmt::format("accelerometer.session_spread{}", axis)] = std::sqrt(squares / (n - 1));
+        simulator[bias] = take(fitted, bias, experiment.nominal_or(bias, 0.0)) + sum / count;
     }
 }
 
-/// A run in the middle of the measured ones stands this far from the run of which the simulator is right.
+/// A scenario's run is one in the middle of the measured ones: the drift up to there is its scale, the rest
+/// the laboratory's.
 void series(const Experiment& experiment, Values& fitted, Values& simulator) {
     if (!fitted.contains("proximity.order_zero")) return;
     double first = INFINITY, last = -INFINITY;
@@ -81,7 +75,10 @@ void series(const Experiment& experiment, Values& fitted, Values& simulator) {
             last = std::max(last, order);
         }
     const double half = last > first ? (last - first) / 2 : 0.0;
-    simulator["proximity.order"] = -take(fitted, "proximity.order_zero", 0.0) * half;
+    const std::string scale = "proximity.scale";
+    const double neutral = experiment.nominal_or(scale, physics::Parameters().proximity.scale);
+    const double middle = -fitted["proximity.order_zero"] * half;
+    simulator[scale] = take(fitted, scale, neutral) * (1 + fitted["proximity.order_drift"] * middle);
 }
 
 /// Which sensors the pulses reach the model sees in the data.

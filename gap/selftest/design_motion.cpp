@@ -1,5 +1,7 @@
 #include "gap/selftest/design_motion.h"
 
+#include "physics/description/robot_constants.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -8,11 +10,10 @@ namespace puckloop::gap::selftest {
 
 namespace {
 
-constexpr double kSend = 0.1;                   // s between two commands of the host
-constexpr double kMetresPerStep = 1.288053e-4;  // of a 41 mm wheel
-constexpr double kAxle = 0.053;                 // m
-constexpr double kLoad = 0.2;                   // kg, in one line
-constexpr double kRest = 0.5;                   // s before and after
+constexpr double kSend = 0.1;  // s between two commands of the host
+constexpr double kAxle = physics::kAxleLength;
+constexpr double kLoad = 0.2;  // kg, in one line
+constexpr double kRest = 0.5;  // s before and after
 
 /// A manoeuvre of constant speeds.
 struct Leg {
@@ -43,8 +44,8 @@ std::vector<Leg> rested(std::vector<Leg> legs) {
 std::vector<Leg> square(double sense) {
     constexpr double kSpeed = 500, kTurn = 250, kSide = 0.15;
     std::vector<Leg> legs;
-    const double side = kSide / (kSpeed * kMetresPerStep);
-    const double corner = std::numbers::pi / 2 * kAxle / 2 / (kTurn * kMetresPerStep);
+    const double side = kSide / (kSpeed * physics::kMetresPerStep);
+    const double corner = std::numbers::pi / 2 * kAxle / 2 / (kTurn * physics::kMetresPerStep);
     for (int k = 0; k < 4; ++k) {
         legs.push_back({side, kSpeed, kSpeed});
         legs.push_back({corner, -sense * kTurn, sense * kTurn});

@@ -1,4 +1,5 @@
 #include "gap/selftest/effect_lists.h"
+#include "physics/description/robot_constants.h"
 
 #include <cmath>
 #include <numbers>
@@ -7,7 +8,7 @@ namespace puckloop::gap::selftest {
 
 namespace {
 
-constexpr double kRadius = 0.0205, kAxle = 0.053;
+constexpr double kRadius = physics::kWheelRadius, kAxle = physics::kAxleLength;
 using Truths = std::vector<Truth>;
 using K = MotionKnobs;
 

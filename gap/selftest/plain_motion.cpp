@@ -1,5 +1,7 @@
 #include "gap/selftest/plain_motion.h"
 
+#include "physics/description/robot_constants.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -9,14 +11,13 @@ namespace puckloop::gap::selftest {
 
 namespace {
 
-constexpr double kTick = 1e-3;          // s
-constexpr double kRadius = 0.0205;      // m
-constexpr double kAxle = 0.053;         // m
-constexpr double kStepsPerTurn = 1000;  // 20 x 50:1
-constexpr double kGravity = 9.81;       // m/s2
-constexpr double kSlipGroup = 4.0;      // steps: the coils' pattern repeats
-constexpr double kPatchEdge = 0.15;     // m
-constexpr double kFullSpeed = 1000;     // steps/s: the firmware's clamp
+constexpr double kTick = 1e-3;  // s
+constexpr double kRadius = physics::kWheelRadius, kAxle = physics::kAxleLength;
+using physics::kStepsPerTurn;
+constexpr double kGravity = 9.81;    // m/s2
+constexpr double kSlipGroup = 4.0;   // steps: the coils' pattern repeats
+constexpr double kPatchEdge = 0.15;  // m
+constexpr double kFullSpeed = 1000;  // steps/s: the firmware's clamp
 
 /// A command on its way to the motors.
 struct Arrival {

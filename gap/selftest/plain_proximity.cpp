@@ -1,5 +1,7 @@
 #include "gap/selftest/plain_proximity.h"
 
+#include "physics/description/robot_constants.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -11,15 +13,15 @@ namespace {
 constexpr double kFullScale = 4095;
 constexpr double kReach = 0.12;  // m
 constexpr int kRays = 5;
-constexpr double kAperture = 0.1;             // rad, full
-constexpr double kFlickerHertz = 100;         // twice the mains
-constexpr double kSensorPeriod = 1 / 63.015;  // s between two samples of one sensor
-constexpr double kMotorReference = 800;       // steps/s
-constexpr double kDark = 4000;                // counts of the light channel without light
-constexpr double kRoom = 300;                 // counts lost at ambient level 1
-constexpr double kLawReference = 20;          // mm: where a changed exponent leaves the answer alone
-constexpr double kSpells = 11;                // a run, of loose and of good contact
-constexpr double kFringe = 6;                 // mm from ripple to ripple
+constexpr double kAperture = 0.1;                              // rad, full
+constexpr double kFlickerHertz = 100;                          // twice the mains
+constexpr double kSensorPeriod = 1 / physics::kProximityRate;  // s between two samples of one sensor
+constexpr double kMotorReference = 800;                        // steps/s
+constexpr double kDark = 4000;                                 // counts of the light channel without light
+constexpr double kRoom = 300;                                  // counts lost at ambient level 1
+constexpr double kLawReference = 20;  // mm: where a changed exponent leaves the answer alone
+constexpr double kSpells = 11;        // a run, of loose and of good contact
+constexpr double kFringe = 6;         // mm from ripple to ripple
 
 struct Place {
     double x, y, degrees, idle;

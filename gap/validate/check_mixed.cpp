@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "gap/data/columns.h"
+#include "physics/description/robot_constants.h"
 
 #include <fmt/format.h>
 
@@ -35,7 +36,7 @@ double middle_of(std::vector<double> values) {
 
 /// m/s that no robot here exceeds: by its commands, else by what is built.
 double fastest(const Experiment& experiment, const Run& run) {
-    constexpr double kAny = 1.0, kOver = 1.5, kDefaultRadius = 0.0205, kDefaultSteps = 1000;
+    constexpr double kAny = 1.0, kOver = 1.5;
     if (!run.has("cmd_left") || !run.has("cmd_right")) return kAny;
     const auto nominal = [&](const char* name, double fallback) {
         const auto place = experiment.nominal.find(name);
@@ -45,8 +46,8 @@ double fastest(const Experiment& experiment, const Run& run) {
     for (const char* name : {"cmd_left", "cmd_right"})
         for (const double value : run.column(name))
             if (!std::isnan(value)) steps = std::max(steps, std::abs(value));
-    return kOver * steps * 2 * std::numbers::pi * nominal("robot.wheel_radius_left", kDefaultRadius) /
-           nominal("robot.steps_per_turn", kDefaultSteps);
+    return kOver * steps * 2 * std::numbers::pi * nominal("robot.wheel_radius_left", physics::kWheelRadius) /
+           nominal("robot.steps_per_turn", physics::kStepsPerTurn);
 }
 
 /// Each row belongs to that of two paths whose end is nearer; the second begins with the first jump that no

@@ -1,6 +1,7 @@
 #include "gap/validate/check_motion.h"
 
 #include "base/error.h"
+#include "physics/description/robot_constants.h"
 
 #include <fmt/format.h>
 
@@ -195,10 +196,10 @@ void check_motion(Experiment& experiment) {
     double agree = 0.0, turned = 0.0;
     double driven = 0.0, tracked = 0.0, duration = 0.0;
     bool steps = false, heading_fixed = true;
-    const double axle = experiment.nominal_or("robot.axle_length", 0.053);
+    const double axle = experiment.nominal_or("robot.axle_length", physics::kAxleLength);
     const double metre_per_step = 2 * std::numbers::pi *
-                                  experiment.nominal_or("robot.wheel_radius_left", 0.0205) /
-                                  experiment.nominal_or("robot.steps_per_turn", 1000);
+                                  experiment.nominal_or("robot.wheel_radius_left", physics::kWheelRadius) /
+                                  experiment.nominal_or("robot.steps_per_turn", physics::kStepsPerTurn);
     for (const Run& run : experiment.runs) {
         const Path path = measure(run);
         tracked += path.length;

@@ -5,6 +5,7 @@
 // source found.
 
 #include "physics/description/parameters.h"
+#include "physics/description/robot_constants.h"
 
 namespace puckloop::physics {
 
@@ -21,7 +22,7 @@ std::vector<ParameterInfo> build_table() {
     // clang-format off
     return {
         // Body and drive.
-        {"robot.radius", "m", 1, {0.035}, 0.02, 0.06, AT(robot.radius), "[A]; bare robot with light ring 0.037 [W]"},
+        {"robot.radius", "m", 1, {kBodyRadius}, 0.02, 0.06, AT(robot.radius), "[A]; bare robot with light ring 0.037 [W]"},
         {"robot.height", "m", 1, {0.076}, 0.04, 0.2, AT(robot.height), "[A] with Linux board and turret; bare 0.045"},
         {"robot.mass", "kg", 1, {0.15}, 0.08, 0.8, AT(robot.mass), "[W]; 0.4 in ARGoS"},
         {"robot.com_x", "m", 1, {0.0}, -0.01, 0.01, AT(robot.com_x), "[W] centre of mass, forward of the axle"},
@@ -30,14 +31,14 @@ std::vector<ParameterInfo> build_table() {
         {"robot.inertia_y", "kg m2", 1, {8.64e-5}, 1e-5, 2e-3, AT(robot.inertia_y), "[W]"},
         {"robot.inertia_z", "kg m2", 1, {8.75e-5}, 1e-5, 2e-3, AT(robot.inertia_z), "[W]"},
         {"robot.reflectivity", "1", 1, {0.6}, 0.0, 2.0, AT(robot.reflectivity), "? translucent body as others see it"},
-        {"robot.wheel_radius_left", "m", 1, {0.0205}, 0.015, 0.026, AT(robot.wheel_radius_left), "[A,S] 41 mm diameter; 20.0 [W], wear +-0.3 mm ?"},
-        {"robot.wheel_radius_right", "m", 1, {0.0205}, 0.015, 0.026, AT(robot.wheel_radius_right), "as left"},
-        {"robot.axle_length", "m", 1, {0.053}, 0.045, 0.06, AT(robot.axle_length), "[A] contact to contact; 51 [E], 52 [W]"},
+        {"robot.wheel_radius_left", "m", 1, {kWheelRadius}, 0.015, 0.026, AT(robot.wheel_radius_left), "[A,S] 41 mm diameter; 20.0 [W], wear +-0.3 mm ?"},
+        {"robot.wheel_radius_right", "m", 1, {kWheelRadius}, 0.015, 0.026, AT(robot.wheel_radius_right), "as left"},
+        {"robot.axle_length", "m", 1, {kAxleLength}, 0.045, 0.06, AT(robot.axle_length), "[A] contact to contact; 51 [E], 52 [W]"},
         {"robot.wheel_mass", "kg", 1, {0.005}, 0.001, 0.02, AT(robot.wheel_mass), "[W]"},
         {"robot.skid_distance", "m", 1, {0.028}, 0.01, 0.05, AT(robot.skid_distance), "? body skids before and behind the axle"},
         {"robot.skid_clearance", "m", 1, {0.0002}, 0.0, 0.003, AT(robot.skid_clearance), "? skids above the floor when level"},
         {"robot.pitch_damping", "N m s", 1, {2e-3}, 0.0, 1e-2, AT(robot.pitch_damping), "? rocking dies within a swing"},
-        {"robot.steps_per_turn", "1", 1, {1000}, 100, 10000, AT(robot.steps_per_turn), "[L] 20 steps x 50:1 gear"},
+        {"robot.steps_per_turn", "1", 1, {kStepsPerTurn}, 100, 10000, AT(robot.steps_per_turn), "[L] 20 steps x 50:1 gear"},
         {"robot.stall_torque", "N m", 1, {0.02}, 0.001, 0.1, AT(robot.stall_torque), "? 0.005-0.02 at the wheel"},
         {"robot.drive_compliance", "s", 1, {0.004}, 0.001, 0.1, AT(robot.drive_compliance), "? time constant of wheel behind rotor"},
         {"robot.settle_time", "s", 1, {0.008}, 0.0005, 0.02, AT(robot.settle_time), "? duration of one single step: a small stepper swings at about 100 Hz, damped by the gear"},
@@ -90,8 +91,6 @@ std::vector<ParameterInfo> build_table() {
         {"proximity.battery_gain", "1/V", 1, {0.0}, -1.0, 1.0, AT(proximity.battery_gain), "? emitter power a volt of battery, about 3.7 V"},
         {"proximity.motor_sag", "1", 1, {0.0}, 0.0, 0.2, AT(proximity.motor_sag), "? share of the whole reading lost with both motors stepping (reference sag), 0-0.02"},
         {"proximity.age", "s", 1, {0.0}, 0.0, 0.5, AT(proximity.age), "what is reflected shows this much later, beside the firmware's own schedule (0-16 ms)"},
-        {"proximity.order", "1", 1, {0.0}, -1000, 1000, AT(proximity.order), "this run's place in a series, from the run whose readings are as simulated"},
-        {"proximity.order_drift", "1", 1, {0.0}, -0.2, 0.2, AT(proximity.order_drift), "? share that the answer gains from one run to the next: daylight, dust"},
         {"proximity.flicker", "counts", 1, {0.0}, 0.0, 300, AT(proximity.flicker), "amplitude on the reading at ambient level 1; [M] 2-30 counts"},
         {"proximity.flicker_frequency", "Hz", 1, {1.0}, 0.01, 400, AT(proximity.flicker_frequency), "of the lamp, or of the alias that the readings show; phases by the run's seed"},
         {"proximity.interference_rate", "1", 1, {0.0}, 0.0, 0.6, AT(proximity.interference_rate), "[M] share of samples that a foreign pulse hits, .02-.2"},
@@ -135,7 +134,6 @@ std::vector<ParameterInfo> build_table() {
         // Accelerometer.
         {"accelerometer.bias", "counts", 3, {0.0}, -500, 500, FIRST(accelerometer.bias), "zero 2048+-100"},
         {"accelerometer.scale", "1", 3, {1.0}, 0.5, 1.6, FIRST(accelerometer.scale), "of each axis, beside accelerometer.gain; [M] 744-800 counts a g"},
-        {"accelerometer.session_spread", "counts", 3, {0.0}, 0.0, 900, FIRST(accelerometer.session_spread), "sd of the zero from run to run, drawn once a run; [M] x -223 and -17 in two sessions"},
         {"accelerometer.zero", "counts", 1, {2048}, 0, 4095, AT(accelerometer.zero), "mid scale"},
         {"accelerometer.gain", "counts", 1, {800}, 100, 2000, AT(accelerometer.gain), "counts for 1 g, 744-800"},
         {"accelerometer.bandwidth", "Hz", 1, {150}, 1, 480, AT(accelerometer.bandwidth), "about 150 Hz"},

@@ -36,7 +36,7 @@ struct ProximityParameters {
     double pair_crosstalk, neighbour_crosstalk, warmup_gain, warmup_time;
     double compression, extra_exponent, distance_shift, threshold, ambient_offset, ambient_gain, battery_gain,
         motor_sag;
-    double age, order, order_drift, flicker, flicker_frequency, interference_rate, interference_size;
+    double age, flicker, flicker_frequency, interference_rate, interference_size;
     double still_noise, motor_noise, proportional_noise, ambient_noise;
 };
 
@@ -55,7 +55,7 @@ struct GroundParameters {
 
 /// Three-axis accelerometer; arrays are x (right), y (rear), z (up).
 struct AccelerometerParameters {
-    std::array<double, 3> bias, scale, session_spread;
+    std::array<double, 3> bias, scale;
     double zero, gain, bandwidth, turn, motor_sag, vibration, warmup, warmup_time;
 };
 

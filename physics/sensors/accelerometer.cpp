@@ -1,5 +1,7 @@
 #include "physics/sensors/accelerometer.h"
 
+#include "physics/description/robot_constants.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -8,7 +10,6 @@ namespace puckloop::physics {
 
 namespace {
 constexpr double kFullScale = 4095;
-constexpr double kSpeedUnit = 1000.0;  // steps/s at which accelerometer.vibration is given
 }  // namespace
 
 Accelerometer::Accelerometer(const AccelerometerParameters& parameters, const SimulationParameters& world,
@@ -19,10 +20,8 @@ Accelerometer::Accelerometer(const AccelerometerParameters& parameters, const Si
       share_(1.0 - std::exp(-2 * std::numbers::pi * parameters.bandwidth * kStepSeconds)),
       turn_cosine_(std::cos(parameters.turn)),
       turn_sine_(std::sin(parameters.turn)) {
-    RandomStream session(seed, "physics/" + robot + "/accelerometer_session");
     for (std::size_t axis = 0; axis < 3; ++axis)
-        zero_[axis] =
-            parameters.zero + parameters.bias[axis] + parameters.session_spread[axis] * session.normal();
+        zero_[axis] = parameters.zero + parameters.bias[axis];
     const double gx = std::sin(world.slope_x);
     const double gy = std::sin(world.slope_y);
     gravity_ = {world.gravity * gx, world.gravity * gy, world.gravity * std::sqrt(1 - gx * gx - gy * gy)};

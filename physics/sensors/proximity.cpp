@@ -113,7 +113,6 @@ ProximityRing::answer(const std::array<double, kProximitySensors>& reflected, co
     double scale = p.scale * (1.0 - p.ambient_gain * now.ambient);
     if (p.battery_gain != 0.0) scale *= 1.0 + p.battery_gain * (now.battery - kBatteryReference);
     if (p.warmup_gain != 0.0) scale *= 1.0 + p.warmup_gain * warmed_up(now.seconds, p.warmup_time);
-    if (p.order_drift != 0.0) scale *= 1.0 + p.order_drift * p.order;
     std::array<double, kProximitySensors> counts{};
     for (std::size_t i = 0; i < kProximitySensors; ++i) {
         const double pair = reflected[(i + 4) % kProximitySensors];

@@ -1,5 +1,7 @@
 #include "physics/sensors/proximity_noise.h"
 
+#include "physics/description/robot_constants.h"
+
 #include <cmath>
 #include <numbers>
 
@@ -7,8 +9,7 @@ namespace puckloop::physics {
 
 namespace {
 
-constexpr double kPulseSpread = 0.3;   // of a foreign pulse's counts, share
-constexpr double kSpeedUnit = 1000.0;  // steps/s at which motor_noise is given
+constexpr double kPulseSpread = 0.3;  // of a foreign pulse's counts, share
 
 RandomStream stream(std::uint64_t seed, const std::string& robot, const char* use) {
     return {seed, "physics/" + robot + "/" + use};

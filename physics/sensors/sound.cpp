@@ -1,5 +1,6 @@
 #include "physics/sensors/sound.h"
 
+#include "physics/description/robot_constants.h"
 #include "physics/sensors/sensor_view.h"
 
 #include <algorithm>
@@ -9,9 +10,8 @@ namespace puckloop::physics {
 
 namespace {
 constexpr double kFullScale = 4095;
-constexpr double kReference = 0.1;     // m, where a loudspeaker's level holds
-constexpr double kNearest = 1e-3;      // m
-constexpr double kSpeedUnit = 1000.0;  // steps/s
+constexpr double kReference = 0.1;  // m, where a loudspeaker's level holds
+constexpr double kNearest = 1e-3;   // m
 }  // namespace
 
 Ears::Ears(const MicrophoneParameters& parameters, std::span<const Speaker> speakers)

@@ -83,30 +83,3 @@ TEST_CASE("vibration has an sd in proportion to the motors' speed, each step ane
         difference(run(with(slope(), shaking), {0, 0, 0.5}), run(slope(), {0, 0, 0.5}), kAccelerationChannel);
     CHECK(rest == std::vector<double>(500, 0.0));
 }
-
-TEST_CASE("a session's zeros are drawn once a run, from its seed") {
-    const Parameters parameters = [] {
-        Parameters p;
-        p.set("accelerometer.session_spread0", 40);
-        p.set("accelerometer.session_spread1", 10);
-        return p;
-    }();
-    const auto zeros = [&](std::uint64_t seed, const char* robot) {
-        Accelerometer chip(parameters.accelerometer, parameters.world, seed, robot);
-        const auto first = chip.sense({}, {});
-        CHECK(chip.sense({}, {.seconds = 100}) == first);  // the same all through a run
-        return first;
-    };
-    std::array<std::vector<double>, 3> all;
-    for (std::uint64_t seed = 1; seed <= 2000; ++seed) {
-        const auto one = zeros(seed, "e1");
-        for (std::size_t i = 0; i < 3; ++i)
-            all[i].push_back(one[i]);
-    }
-    CHECK(mean_of(all[0]) == Approx(kZero).margin(4));
-    CHECK(sd_of(all[0]) == Approx(40).epsilon(0.07));
-    CHECK(sd_of(all[1]) == Approx(10).epsilon(0.07));
-    CHECK(sd_of(all[2]) == 0);
-    CHECK(zeros(1, "e1") == zeros(1, "e1"));
-    CHECK(zeros(1, "e1") != zeros(1, "e2"));
-}

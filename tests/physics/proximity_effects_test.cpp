@@ -42,7 +42,6 @@ TEST_CASE("neutral effects leave every channel as it is, bit by bit") {
                                       {"proximity.interference_size", 900},
                                       {"proximity.interference_share", 0.4},
                                       {"proximity.still_noise", 50},
-                                      {"proximity.order", 12},
                                       {"ground.warmup_time", 20},
                                       {"accelerometer.warmup_time", 20}});
     CHECK(run(shaped, drive) == plain);
@@ -175,11 +174,4 @@ TEST_CASE("an aged reading is that of a while ago, with the gains of now") {
     CHECK(plain[530 - 60 - 1][0] > 80);
     driver.drive(300, 300, 0.03);
     CHECK(model.robot(0).channels()[0] < 0.95 * plain[530 - 60 - 1][0]);
-}
-
-TEST_CASE("a drift over a series acts by the run's place in it") {
-    World world = before_wall();
-    const double plain = WorldModel(world).robot(0).channels()[kSide] - 60;
-    world = with(world, {{"proximity.order_drift", 0.02}, {"proximity.order", -3}});
-    CHECK(WorldModel(world).robot(0).channels()[kSide] - 60 == Approx(plain * 0.94));
 }

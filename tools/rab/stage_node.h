@@ -7,6 +7,7 @@
 
 #include "base/random.h"
 #include "cosim/core/node.h"
+#include "physics/description/robot_constants.h"
 #include "tools/rab/i2c_host.h"
 
 #include <array>
@@ -17,11 +18,11 @@
 namespace puckloop::tools {
 
 struct StagePlan {
-    std::vector<double> distances;  ///< between the bodies, m
-    int repeats = 20;               ///< poses at each distance, two frames each
-    int power = 115;                ///< potentiometer byte
-    double body_radius = 0.035;     ///< m
-    std::uint64_t seed = 1;         ///< of the headings
+    std::vector<double> distances;              ///< between the bodies, m
+    int repeats = 20;                           ///< poses at each distance, two frames each
+    int power = 115;                            ///< potentiometer byte
+    double body_radius = physics::kBodyRadius;  ///< m
+    std::uint64_t seed = 1;                     ///< of the headings
     /// Time from power-up until the boards are ready, s.
     double boot = 0.1;
     double turn = 0.024;       ///< s between two poses

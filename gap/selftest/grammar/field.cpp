@@ -1,5 +1,7 @@
 #include "gap/selftest/grammar/field.h"
 
+#include "physics/description/robot_constants.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,7 +19,6 @@ constexpr std::array<std::string_view, 7> kNumbering{"sensor", "mic",     "recei
 constexpr std::array<std::string_view, 14> kMeasured{
     "reading", "level",    "ax",       "ay",       "az",      "strength",        "bearing_rad",
     "light",   "received", "t_host_s", "frame_ok", "shifted", "ambient_reading", "neighbour_reading"};
-constexpr double kStepsPerTurn = 1000;
 constexpr double kLeastActive = 0.03;  // share of rows that an effect has to touch
 
 template <class Names>
@@ -70,8 +71,10 @@ void add_drive(const HiddenExperiment& exact, std::vector<Covariate>& list) {
             made[1].value[r][k] = h[k] - h[k - 1];
             made[2].value[r][k] = made[0].value[r][k] - made[0].value[r][k - 1];
             made[3].value[r][k] = made[3].value[r][k - 1] + std::hypot(dx, dy);
-            if (left != nullptr) made[4].value[r][k] = std::remainder(left->values[k] / kStepsPerTurn, 1.0);
-            if (right != nullptr) made[5].value[r][k] = std::remainder(right->values[k] / kStepsPerTurn, 1.0);
+            if (left != nullptr)
+                made[4].value[r][k] = std::remainder(left->values[k] / physics::kStepsPerTurn, 1.0);
+            if (right != nullptr)
+                made[5].value[r][k] = std::remainder(right->values[k] / physics::kStepsPerTurn, 1.0);
             made[6].value[r][k] = std::remainder(h[k], 2 * std::numbers::pi);
         }
     }

@@ -1,5 +1,7 @@
 #include "gap/selftest/grammar/site.h"
 
+#include "physics/description/robot_constants.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,7 +12,7 @@ namespace {
 
 using How = Site::How;
 
-constexpr double kAxle = 0.053;       // m
+constexpr double kAxle = physics::kAxleLength;
 constexpr double kSmallTurn = 0.01;   // rad a row, at field 1
 constexpr double kSmallSlide = 1e-3;  // m a row, at field 1
 constexpr double kStill = 1e-9;

@@ -126,7 +126,7 @@ TEST_CASE("an overlay moves the ground board and lifts it as the forward model d
           Approx(defaults.ground.height + 0.002));
 }
 
-TEST_CASE("zeros of several sessions become a bias and a spread for each run to draw from") {
+TEST_CASE("zeros of several sessions become their mean, and stay with the laboratory") {
     Experiment experiment;
     experiment.kind = Kind::Accelerometer;
     experiment.nominal = {{"accelerometer.bias0", 7}};
@@ -136,11 +136,10 @@ TEST_CASE("zeros of several sessions become a bias and a spread for each run to 
                                            {"accelerometer.session_bias22", 40},
                                            {"accelerometer.bias2", -5}});
     CHECK(drawn.accelerometer.bias[0] == Approx(7 - 10));
-    CHECK(drawn.accelerometer.session_spread[0] == Approx(std::sqrt((10 * 10 + 40 * 40 + 50 * 50) / 2.0)));
     CHECK(drawn.accelerometer.bias[1] == 0);
-    CHECK(drawn.accelerometer.session_spread[1] == 0);
     CHECK(drawn.accelerometer.bias[2] == Approx(-5 + 20));
-    CHECK(drawn.accelerometer.session_spread[2] == Approx(40 / std::sqrt(2.0)));
+    const std::string text = overlay_toml(experiment, said({{"accelerometer.session_bias20", 30}}));
+    CHECK(text.find("session_bias20", text.find("[measurement]")) != std::string::npos);
 }
 
 TEST_CASE("an overlay's age is what firmware and host do not make by themselves") {
@@ -183,10 +182,12 @@ TEST_CASE("a drift over a series leaves a run in its middle where the fit says")
         experiment.runs.back().rows = 1;
         experiment.runs.back().columns["order"] = {order};
     }
-    const auto drifted =
-        loaded(experiment, {{"proximity.order_drift", 0.02}, {"proximity.order_zero", -0.5}});
-    CHECK(drifted.proximity.order_drift == 0.02);
-    CHECK(drifted.proximity.order == Approx(0.5 * 4));
+    const std::map<std::string, double> drift{{"proximity.order_drift", 0.02},
+                                              {"proximity.order_zero", -0.5}};
+    CHECK(loaded(experiment, drift).proximity.scale == Approx(1 + 0.02 * 0.5 * 4));
+    CHECK(overlay_toml(experiment, said(drift)).find("order_drift", 0) != std::string::npos);
+    experiment.nominal = {{"proximity.scale", 1.5}};
+    CHECK(loaded(experiment, drift).proximity.scale == Approx(1.5 * 1.04));
 }
 
 TEST_CASE("an overlay's number that is none is refused in its own file") {

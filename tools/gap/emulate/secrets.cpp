@@ -1,6 +1,7 @@
 #include "tools/gap/emulate/secrets.h"
 
 #include "base/random.h"
+#include "physics/description/robot_constants.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +12,7 @@ namespace puckloop::gap::emulate {
 
 namespace {
 
-constexpr double kRadius = 0.0205, kAxle = 0.053;
+constexpr double kRadius = physics::kWheelRadius, kAxle = physics::kAxleLength;
 constexpr int kUnknownsOfAKind = 4;
 
 Secret nothing(const char* kind) {
