@@ -1,13 +1,14 @@
 // puckloop gap selftest --grammar: cases drawn at random, with a seed that is new at each full run.
 
 #include "base/error.h"
-#include "gap/selftest/grammar/rates.h"
+#include "gap/selftest/grammar/curves.h"
 #include "tools/gap/folders.h"
 #include "tools/gap/subcommands.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <random>
 
 namespace puckloop::tools {
@@ -15,6 +16,13 @@ namespace puckloop::tools {
 namespace {
 
 namespace gr = gap::selftest::grammar;
+
+std::optional<gr::Class> class_named(const std::string& name) {
+    if (name.empty()) return std::nullopt;
+    for (const gr::Class of : {gr::Class::Unknown, gr::Class::NearMiss, gr::Class::Known, gr::Class::Null})
+        if (name == gr::class_name(of) || (name == "near-miss" && of == gr::Class::NearMiss)) return of;
+    throw InputError("", "--class", fmt::format("no class '{}'", name), "unknown, near-miss, known or null");
+}
 
 }  // namespace
 
@@ -29,6 +37,8 @@ int grammar_test(const GrammarRequest& request) {
     drawing.cases = request.cases;
     drawing.seed = request.seed == 0 ? fresh_seed() : request.seed;
     drawing.kind = request.kind;
+    drawing.of = class_named(request.of);
+    drawing.draw_runs = request.draw_runs;
     drawing.only = request.only;
     drawing.scratch = request.scratch;
     drawing.workers = request.workers;
@@ -41,10 +51,10 @@ int grammar_test(const GrammarRequest& request) {
     };
     const auto cases = gr::run_drawn(drawing);
     if (cases.empty())
-        throw InputError("", "gap selftest", "no drawn case is of this kind and number",
-                         "--grammar 28 or more");
+        throw InputError("", "gap selftest", "no drawn case is of this kind, class and number",
+                         "--cases 28 or more");
     if (!request.svg.empty()) {
-        write_beside(request.svg, gr::rates_svg(cases));
+        write_beside(request.svg, gr::curves_svg(cases));
         put_in_place(request.svg);
     }
     fmt::print("{}\n",

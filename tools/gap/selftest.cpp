@@ -21,14 +21,16 @@ namespace {
 namespace st = gap::selftest;
 
 constexpr std::size_t kQuick = 24;
+constexpr std::size_t kDrawn = 56, kAllDrawn = 1120;  // two and forty of each kind and class
 constexpr std::uint64_t kMostCases = 100'000;
 constexpr double kMostWorkers = 256;
 
 struct Request {
-    std::uint64_t cases = 0, seed = 1, grammar = 0;
+    std::uint64_t cases = 0, seed = 1;
     std::vector<std::size_t> only;
     unsigned workers = 2;
-    std::string kind;
+    std::string kind, of;
+    bool grammar = false, full = false, draw_runs = false;
     bool quick = false, json = false, keep = false, emulator = false, closed_loop = false, seed_given = false;
     std::filesystem::path scratch, svg;
 };
@@ -97,19 +99,25 @@ int secret_test(const Request& request) {
 int self_test(const Request& request) {
     if (request.emulator) return secret_test(request);
     if (request.closed_loop) throw InputError("", "--closed-loop", "is for --emulator", "--emulator");
-    if (request.grammar > 0) {
-        if (request.quick || request.cases > 0)
-            throw InputError("", "--grammar", "has a number of cases of its own", "no --cases, no --quick");
+    if (request.grammar) {
+        if (request.quick) throw InputError("", "--quick", "is not for --grammar", "--cases N");
+        if (request.full && request.cases > 0)
+            throw InputError("", "--full", "is a number of cases, too", "no --cases");
+        const std::uint64_t cases = request.cases > 0 ? request.cases : request.full ? kAllDrawn : kDrawn;
         const bool own = request.scratch.empty();
         const auto scratch = scratch_of(request);
-        const int status =
-            grammar_test({request.grammar, request.seed_given ? request.seed : 0, request.only,
-                          request.workers, request.kind, request.json, request.keep, scratch, request.svg});
+        const int status = grammar_test({cases, request.seed_given ? request.seed : 0, request.only,
+                                         request.workers, request.kind, request.of, request.json,
+                                         request.keep, request.draw_runs, scratch, request.svg});
         if (own && !request.keep) std::filesystem::remove_all(scratch);
         return status;
     }
-    if (!request.svg.empty())
-        throw InputError("", "--svg", "draws the curves of --grammar only", "--grammar N");
+    const std::pair<const char*, bool> drawn[] = {{"--svg", !request.svg.empty()},
+                                                  {"--full", request.full},
+                                                  {"--class", !request.of.empty()},
+                                                  {"--draw-runs", request.draw_runs}};
+    for (const auto& [option, given] : drawn)
+        if (given) throw InputError("", option, "is for cases drawn from the grammar", "--grammar");
     st::RunOptions options;
     const bool own = request.scratch.empty();
     options.scratch = scratch_of(request);
@@ -136,16 +144,18 @@ void declare_gap_selftest(Command& gap, int& status) {
     Command* command = gap.add_subcommand("selftest", "Hide effects in made experiments and see what the "
                                                       "analysis says; status 1 when it misses its targets");
     auto request = std::make_shared<Request>();
-    command->add_option("--cases", request->cases, "how many (default: all, over 300)")
+    command->add_option("--cases", request->cases, "how many (default: all, over 300; of --grammar 56)")
         ->check(count_up_to(kMostCases))
         ->type_name("N");
-    command
-        ->add_option(
-            "--grammar", request->grammar,
-            "this many cases drawn at random from a grammar of effects: unknown ones, near misses, known "
-            "ones, nothing; with a fresh seed, which is reported, unless --seed is given")
-        ->check(count_up_to(kMostCases))
-        ->type_name("N");
+    command->add_flag(
+        "--grammar", request->grammar,
+        "cases drawn at random from a grammar of effects: unknown ones, near misses, known ones, nothing; "
+        "with a fresh seed, which is reported, unless --seed is given");
+    command->add_flag("--full", request->full, "of --grammar: 1120 cases, 280 of each class (hours)");
+    command->add_option("--class", request->of, "of --grammar: only these of its cases")
+        ->type_name("unknown|near-miss|known|null");
+    command->add_flag("--draw-runs", request->draw_runs,
+                      "of --grammar: how many runs an experiment has is drawn, too (power against runs)");
     command
         ->add_option("--svg", request->svg, "of --grammar: sensitivity curves and calibration as a picture")
         ->check(not_empty())

@@ -17,13 +17,13 @@ void declare_gap_check(Command& gap, int& status);
 void declare_gap_import(Command& gap, int& status);
 void declare_gap_new(Command& gap, int& status);
 void declare_gap_record(Command& gap, int& status);
-/// `puckloop gap selftest --grammar`: randomly drawn cases. `seed` 0: a fresh one.
+/// `puckloop gap selftest --grammar`: randomly drawn cases. `seed` 0: a fresh one; `of`: class, "" for all.
 struct GrammarRequest {
     std::uint64_t cases = 0, seed = 0;
     std::vector<std::size_t> only;
     unsigned workers = 2;
-    std::string kind;
-    bool json = false, keep = false;
+    std::string kind, of;
+    bool json = false, keep = false, draw_runs = false;
     std::filesystem::path scratch, svg;
 };
 int grammar_test(const GrammarRequest& request);

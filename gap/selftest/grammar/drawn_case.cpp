@@ -207,14 +207,18 @@ std::vector<double> likenesses_of(const HiddenExperiment& with, const HiddenExpe
     return shares;
 }
 
-DrawnCase drawn_case(std::size_t number, std::uint64_t seed) {
+Class class_of(std::size_t number) {
     constexpr std::array kTurns{Class::Unknown, Class::NearMiss, Class::Known, Class::Null};
-    const std::size_t kinds = benches().size();
-    const std::size_t bench = number % kinds;
+    return kTurns[number / benches().size() % kTurns.size()];
+}
+
+DrawnCase drawn_case(std::size_t number, std::uint64_t seed, bool draw_runs) {
+    const std::size_t bench = number % benches().size();
     RandomStream random(seed, fmt::format("grammar case {}", number));
-    const Laboratory laboratory = Laboratory::draw(random);
+    Laboratory laboratory = Laboratory::draw(random);
+    if (draw_runs) laboratory.fewer.emplace(seed, fmt::format("runs of case {}", number));
     DrawnCase drawn;
-    drawn.of = kTurns[number / kinds % kTurns.size()];
+    drawn.of = class_of(number);
     drawn.asked = drawn.of == Class::Null ? 0.0 : drawn_strength(random);
     if (drawn.of == Class::Known) {
         draw_known(drawn, bench, random);

@@ -31,8 +31,10 @@ struct DrawnCase {
 /// a name would not be wrong.
 inline constexpr double kMostLikeness = 0.5;
 
-/// Case `number` of a run with this seed. Kinds and classes take turns; everything else is drawn.
-DrawnCase drawn_case(std::size_t number, std::uint64_t seed);
+/// Case `number` of a run with this seed. Kinds and classes take turns; everything else is drawn, how many
+/// runs there are only with `draw_runs`.
+DrawnCase drawn_case(std::size_t number, std::uint64_t seed, bool draw_runs = false);
+Class class_of(std::size_t number);
 
 /// Noise of the measured columns of a kind, in the self test's experiments.
 std::vector<NoiseFloor> floor_of(const std::string& kind);

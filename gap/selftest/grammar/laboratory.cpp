@@ -32,7 +32,16 @@ Laboratory Laboratory::draw(RandomStream& random) {
 }
 
 void Laboratory::plan(HiddenExperiment& experiment) const {
-    if (one_pass) experiment.runs.resize((experiment.runs.size() + 1) / 2);
+    auto& runs = experiment.runs;
+    if (one_pass) runs.resize((runs.size() + 1) / 2);
+    constexpr double kFewest = 2;
+    if (!fewer || static_cast<double>(runs.size()) <= kFewest) return;
+    RandomStream random = *fewer;
+    const double all = static_cast<double>(runs.size());
+    const auto left =
+        static_cast<std::size_t>(std::lround(kFewest * std::pow(all / kFewest, random.uniform())));
+    while (runs.size() > left)
+        runs.erase(runs.begin() + static_cast<std::ptrdiff_t>(random.below(runs.size())));
 }
 
 void Laboratory::keep(HiddenExperiment& experiment) const {

@@ -21,7 +21,7 @@ namespace puckloop::gap::selftest::grammar {
 namespace {
 
 Outcome run_one(std::size_t number, const Drawing& drawing) {
-    const DrawnCase drawn = drawn_case(number, drawing.seed);
+    const DrawnCase drawn = drawn_case(number, drawing.seed, drawing.draw_runs);
     const auto folder = drawing.scratch / fmt::format("case{:04}", number);
     write_folder(drawn.hidden.experiment, folder);
     Outcome outcome;
@@ -56,6 +56,7 @@ Outcome outcome_of(const DrawnCase& drawn, const Verdict& verdict) {
     out.kind = drawn.hidden.kind;
     out.text = drawn.text;
     out.family = drawn.family;
+    if (!drawn.hidden.labels.empty()) out.effect = drawn.hidden.labels.front();
     out.asked = drawn.asked;
     out.ratio = drawn.hidden.ratio;
     out.likeness = drawn.likeness;
@@ -92,8 +93,8 @@ std::vector<Outcome> run_drawn(const Drawing& drawing) {
     for (std::size_t n = 0; n < drawing.cases; ++n) {
         const bool asked = drawing.only.empty() ||
                            std::find(drawing.only.begin(), drawing.only.end(), n) != drawing.only.end();
-        if (asked && (drawing.kind.empty() || benches()[n % benches().size()]->kind() == drawing.kind))
-            numbers.push_back(n);
+        const bool kind = drawing.kind.empty() || benches()[n % benches().size()]->kind() == drawing.kind;
+        if (asked && kind && (!drawing.of || class_of(n) == *drawing.of)) numbers.push_back(n);
     }
     std::vector<Outcome> results(numbers.size());
     std::atomic<std::size_t> next{0};

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,7 @@ struct Outcome {
     std::size_t number = 0;
     Class of = Class::Null;
     std::string kind, text, family;
+    std::string effect;  ///< of a known one
     double asked = 0.0, ratio = 0.0, likeness = 0.0;
     std::size_t runs = 0;
     int redrawn = 0;
@@ -39,6 +41,8 @@ struct Drawing {
     std::size_t cases = 0;
     std::uint64_t seed = 0;
     std::string kind;               ///< only this; "": all
+    std::optional<Class> of;        ///< only this
+    bool draw_runs = false;         ///< how many runs a case has is drawn, too
     std::vector<std::size_t> only;  ///< numbers; empty: all
     std::filesystem::path scratch;
     unsigned workers = 1;

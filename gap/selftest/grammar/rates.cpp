@@ -3,6 +3,7 @@
 #include "gap/stats/tails.h"
 
 #include <boost/math/distributions/binomial.hpp>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
@@ -72,25 +73,20 @@ std::vector<Target> targets(const std::vector<Outcome>& cases) {
     list.push_back(
         {"known, strength 4 and above: named first", counted(cases, band(4, 1e9), right), 0.97, 1});
     int covered = 0, all = 0;
+    std::map<std::string, std::pair<int, int>> by_kind;
     for (const Outcome& one : cases) {
+        if (one.ranks.empty()) continue;
+        const int parameters = static_cast<int>(one.ranks.size());
         covered += one.covered;
-        all += static_cast<int>(one.ranks.size());
+        all += parameters;
+        by_kind[one.kind].first += one.covered;
+        by_kind[one.kind].second += parameters;
     }
     list.push_back({"90 % intervals that hold the true parameter", rate_of(covered, all), 0.85, 0.95});
+    for (const auto& [kind, count] : by_kind)
+        list.push_back(
+            {fmt::format("90 % intervals of {}", kind), rate_of(count.first, count.second), 0.85, 0.95});
     return list;
-}
-
-Rate rightly_called(const std::vector<Outcome>& cases, Class of, std::size_t band) {
-    return counted(
-        cases,
-        [&](const Outcome& one) {
-            return one.of == of && one.ratio >= kBands[band] && one.ratio < kBands[band + 1];
-        },
-        [&](const Outcome& one) {
-            if (of == Class::Known) return one.right;
-            if (of == Class::NearMiss) return unexplained(one) || (one.said == "named" && !one.wrong_family);
-            return unexplained(one);
-        });
 }
 
 std::array<int, 10> rank_histogram(const std::vector<Outcome>& cases) {

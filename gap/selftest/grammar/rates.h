@@ -1,6 +1,5 @@
 #pragma once
-// Rates of verdicts over drawn cases with exact binomial intervals, sensitivity against strength, calibration
-// of intervals.
+// Rates of verdicts over drawn cases with exact binomial intervals, calibration of intervals.
 
 #include "gap/selftest/grammar/outcome.h"
 
@@ -27,12 +26,6 @@ struct Target {
 };
 std::vector<Target> targets(const std::vector<Outcome>& cases);
 
-/// Strength over noise: ends of the bands of sensitivity curves.
-inline constexpr std::array<double, 5> kBands{0.5, 1.0, 2.0, 4.0, 8.5};
-
-/// Share of the cases of a class in a band (0..3) that are called what they should be.
-Rate rightly_called(const std::vector<Outcome>& cases, Class of, std::size_t band);
-
 /// Ranks of true parameters, ten bins.
 std::array<int, 10> rank_histogram(const std::vector<Outcome>& cases);
 /// p value of a uniform histogram (chi squared).
@@ -42,7 +35,5 @@ double uniformity(const std::array<int, 10>& histogram);
 std::string outcome_line(const Outcome& outcome);
 std::string rates_text(const std::vector<Outcome>& cases, std::uint64_t seed);
 std::string rates_json(const std::vector<Outcome>& cases, std::uint64_t seed);
-/// Sensitivity curves and the rank histogram, as SVG.
-std::string rates_svg(const std::vector<Outcome>& cases);
 
 }  // namespace puckloop::gap::selftest::grammar

@@ -1,14 +1,11 @@
+#include "gap/selftest/grammar/curves.h"
 #include "gap/selftest/grammar/rates.h"
-
-#include "gap/report/chart.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include <cmath>
 #include <map>
-#include <set>
 
 namespace puckloop::gap::selftest::grammar {
 
@@ -18,17 +15,6 @@ std::string rate_text(const Rate& rate) {
     if (rate.of == 0) return "no case";
     return fmt::format("{:5.1f} % ({:.1f}..{:.1f}, {} of {})", 100 * rate.share(), 100 * rate.low,
                        100 * rate.high, rate.hits, rate.of);
-}
-
-constexpr Class kShown[] = {Class::Unknown, Class::NearMiss, Class::Known};
-
-std::string sensitivity(const std::vector<Outcome>& cases) {
-    std::string text = "\nrightly called, by strength over noise\n";
-    for (const Class of : kShown)
-        for (std::size_t band = 0; band + 1 < kBands.size(); ++band)
-            text += fmt::format("  {:<10} {:>4} to {:<4} {}\n", class_name(of), kBands[band],
-                                kBands[band + 1], rate_text(rightly_called(cases, of, band)));
-    return text;
 }
 
 /// Every class in every kind: what was said how often.
@@ -46,17 +32,10 @@ std::string by_kind(const std::vector<Outcome>& cases) {
     return text;
 }
 
+/// What the targets hold against the analysis; weaker effects may be passed over.
 bool missed(const Outcome& one) {
-    switch (one.of) {
-    case Class::Null:
-        return one.said != "no_effect";
-    case Class::Known:
-        return !one.right && one.ratio >= 1;
-    case Class::NearMiss:
-        return one.wrong_family || one.said == "error";
-    default:
-        return one.ratio >= 1 && one.said != "unexplained" && one.said != "cannot_tell";
-    }
+    if (one.of == Class::NearMiss) return one.wrong_family || said_of(one) == Said::Failed;
+    return !rightly(one) && (one.of == Class::Null || one.ratio >= 1);
 }
 
 }  // namespace
@@ -76,7 +55,7 @@ std::string rates_text(const std::vector<Outcome>& cases, std::uint64_t seed) {
                             target.rate.of == 0 ? ""
                             : target.met()      ? "met"
                                                 : "MISSED");
-    text += sensitivity(cases) + by_kind(cases);
+    text += curves_text(cases) + by_kind(cases);
     const auto histogram = rank_histogram(cases);
     text += fmt::format("\nranks of true parameters (uniform if honest): {}; p = {:.3g}\n",
                         fmt::join(histogram, " "), uniformity(histogram));
@@ -132,38 +111,6 @@ std::string rates_json(const std::vector<Outcome>& cases, std::uint64_t seed) {
                           {"met", target.met()}});
     return Json{{"seed", seed}, {"targets", wanted}, {"ranks", rank_histogram(cases)}, {"cases", all}}.dump(
         1);
-}
-
-std::string rates_svg(const std::vector<Outcome>& cases) {
-    constexpr double kWidth = 330, kHeight = 230;
-    constexpr const char* kColours[] = {"#b03a2e", "#b9770e", "#1f618d"};
-    report::Chart curves("rightly called", "strength over noise (log2)", "share of cases");
-    for (std::size_t c = 0; c < std::size(kShown); ++c) {
-        std::vector<double> x, y;
-        for (std::size_t band = 0; band + 1 < kBands.size(); ++band) {
-            const Rate rate = rightly_called(cases, kShown[c], band);
-            if (rate.of == 0) continue;
-            const double at = std::log2(kBands[band]) + 0.5 + 0.06 * (static_cast<double>(c) - 1);
-            x.push_back(at);
-            y.push_back(rate.share());
-            curves.interval(at, rate.share(), rate.low, rate.high, kColours[c]);
-        }
-        curves.line(x, y, kColours[c], class_name(kShown[c]));
-    }
-    curves.level(1.0);
-    report::Chart ranks("ranks of true parameters", "rank in what is said of them", "parameters");
-    const auto histogram = rank_histogram(cases);
-    double all = 0.0;
-    for (std::size_t bin = 0; bin < histogram.size(); ++bin) {
-        const double at = (static_cast<double>(bin) + 0.5) / 10;
-        ranks.interval(at, histogram[bin], 0, histogram[bin], kColours[2]);
-        all += histogram[bin];
-    }
-    ranks.level(all / 10, "honest");
-    return fmt::format(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} "
-        "{1}\">\n<g>{2}</g>\n<g transform=\"translate({3},0)\">{4}</g>\n</svg>\n",
-        2 * kWidth, kHeight, curves.svg(kWidth, kHeight), kWidth, ranks.svg(kWidth, kHeight));
 }
 
 }  // namespace puckloop::gap::selftest::grammar
