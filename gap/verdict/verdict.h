@@ -113,6 +113,7 @@ struct Suggestion {
 struct RerunObservable {
     std::string name, unit;
     double before = 0.0, after = 0.0;  ///< rms error; of what happens or not: difference of the shares
+    double floor = 0.0;  ///< with the true robot, where it is known (self test); not in gap.json
 };
 struct Rerun {
     bool asked = false;

@@ -8,8 +8,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <fstream>
 #include <optional>
 #include <random>
+#include <sstream>
 
 namespace puckloop::tools {
 
@@ -32,10 +34,12 @@ std::uint64_t fresh_seed() {
     return (static_cast<std::uint64_t>(device()) << 32U | device()) % kReadable + 1;
 }
 
-int grammar_test(const GrammarRequest& request) {
+namespace {
+
+std::vector<gr::Outcome> drawn(const GrammarRequest& request, std::uint64_t seed) {
     gr::Drawing drawing;
     drawing.cases = request.cases;
-    drawing.seed = request.seed == 0 ? fresh_seed() : request.seed;
+    drawing.seed = seed;
     drawing.kind = request.kind;
     drawing.of = class_named(request.of);
     drawing.draw_runs = request.draw_runs;
@@ -49,16 +53,38 @@ int grammar_test(const GrammarRequest& request) {
     drawing.done = [](const gr::Outcome& outcome, std::size_t done, std::size_t all) {
         fmt::print(stderr, "{:>4}/{} {}\n", done, all, gr::outcome_line(outcome));
     };
-    const auto cases = gr::run_drawn(drawing);
+    auto cases = gr::run_drawn(drawing);
     if (cases.empty())
         throw InputError("", "gap selftest", "no drawn case is of this kind, class and number",
                          "--cases 28 or more");
+    return cases;
+}
+
+std::vector<gr::Outcome> pooled(const std::vector<std::string>& files) {
+    std::vector<gr::Outcome> cases;
+    for (const std::string& file : files) {
+        std::ifstream in(file);
+        std::stringstream text;
+        text << in.rdbuf();
+        if (!in) throw InputError(file, "", "cannot be read", "a file");
+        for (gr::Outcome& one : gr::outcomes_from_json(text.str(), file))
+            cases.push_back(std::move(one));
+    }
+    return cases;
+}
+
+}  // namespace
+
+int grammar_test(const GrammarRequest& request) {
+    const std::uint64_t seed = request.seed == 0 ? fresh_seed() : request.seed;
+    const auto cases = request.pool.empty() ? drawn(request, seed) : pooled(request.pool);
     if (!request.svg.empty()) {
         write_beside(request.svg, gr::curves_svg(cases));
         put_in_place(request.svg);
     }
-    fmt::print("{}\n",
-               request.json ? gr::rates_json(cases, drawing.seed) : gr::rates_text(cases, drawing.seed));
+    fmt::print("{}\n", request.json ? gr::rates_json(cases, seed)
+                                    : gr::rates_text(cases, request.pool.empty() ? std::to_string(seed)
+                                                                                 : "of each file"));
     const auto wanted = gr::targets(cases);
     return std::all_of(wanted.begin(), wanted.end(), [](const gr::Target& target) { return target.met(); })
                ? 0

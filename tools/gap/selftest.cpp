@@ -33,6 +33,7 @@ struct Request {
     bool grammar = false, full = false, draw_runs = false;
     bool quick = false, json = false, keep = false, emulator = false, closed_loop = false, seed_given = false;
     std::filesystem::path scratch, svg;
+    std::vector<std::string> pool;
 };
 
 struct Chosen {
@@ -106,15 +107,16 @@ int self_test(const Request& request) {
         const std::uint64_t cases = request.cases > 0 ? request.cases : request.full ? kAllDrawn : kDrawn;
         const bool own = request.scratch.empty();
         const auto scratch = scratch_of(request);
-        const int status = grammar_test({cases, request.seed_given ? request.seed : 0, request.only,
-                                         request.workers, request.kind, request.of, request.json,
-                                         request.keep, request.draw_runs, scratch, request.svg});
+        const int status = grammar_test(
+            {cases, request.seed_given ? request.seed : 0, request.only, request.workers, request.kind,
+             request.of, request.json, request.keep, request.draw_runs, scratch, request.svg, request.pool});
         if (own && !request.keep) std::filesystem::remove_all(scratch);
         return status;
     }
     const std::pair<const char*, bool> drawn[] = {{"--svg", !request.svg.empty()},
                                                   {"--full", request.full},
                                                   {"--class", !request.of.empty()},
+                                                  {"--pool", !request.pool.empty()},
                                                   {"--draw-runs", request.draw_runs}};
     for (const auto& [option, given] : drawn)
         if (given) throw InputError("", option, "is for cases drawn from the grammar", "--grammar");
@@ -154,6 +156,12 @@ void declare_gap_selftest(Command& gap, int& status) {
     command->add_flag("--full", request->full, "of --grammar: 1120 cases, 280 of each class (hours)");
     command->add_option("--class", request->of, "of --grammar: only these of its cases")
         ->type_name("unknown|near-miss|known|null");
+    command
+        ->add_option("--pool", request->pool,
+                     "of --grammar: count the cases of this --json result of an earlier run, in place of new "
+                     "ones (may be repeated)")
+        ->check(not_empty())
+        ->type_name("FILE");
     command->add_flag("--draw-runs", request->draw_runs,
                       "of --grammar: how many runs an experiment has is drawn, too (power against runs)");
     command

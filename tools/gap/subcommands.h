@@ -25,6 +25,7 @@ struct GrammarRequest {
     std::string kind, of;
     bool json = false, keep = false, draw_runs = false;
     std::filesystem::path scratch, svg;
+    std::vector<std::string> pool;  ///< results of earlier runs, to be counted in place of new cases
 };
 int grammar_test(const GrammarRequest& request);
 /// Another one each time, from the machine's own randomness; short enough to be typed.

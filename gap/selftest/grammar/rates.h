@@ -33,7 +33,9 @@ double uniformity(const std::array<int, 10>& histogram);
 
 /// One case in one line.
 std::string outcome_line(const Outcome& outcome);
-std::string rates_text(const std::vector<Outcome>& cases, std::uint64_t seed);
+std::string rates_text(const std::vector<Outcome>& cases, const std::string& seeds);
 std::string rates_json(const std::vector<Outcome>& cases, std::uint64_t seed);
+/// The cases of such a text, to be counted together with others. Throws InputError, which names `file`.
+std::vector<Outcome> outcomes_from_json(const std::string& text, const std::string& file);
 
 }  // namespace puckloop::gap::selftest::grammar

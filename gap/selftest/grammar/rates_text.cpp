@@ -1,6 +1,8 @@
 #include "gap/selftest/grammar/curves.h"
 #include "gap/selftest/grammar/rates.h"
 
+#include "base/error.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
@@ -47,9 +49,9 @@ std::string outcome_line(const Outcome& one) {
                        one.error.empty() ? one.text : one.text + " | " + one.error);
 }
 
-std::string rates_text(const std::vector<Outcome>& cases, std::uint64_t seed) {
+std::string rates_text(const std::vector<Outcome>& cases, const std::string& seeds) {
     std::string text =
-        fmt::format("{} drawn cases, seed {}; 95 % binomial intervals\n\n", cases.size(), seed);
+        fmt::format("{} drawn cases, seed {}; 95 % binomial intervals\n\n", cases.size(), seeds);
     for (const Target& target : targets(cases))
         text += fmt::format("{:<66} {:<36} {}\n", target.what, rate_text(target.rate),
                             target.rate.of == 0 ? ""
@@ -89,17 +91,20 @@ std::string rates_json(const std::vector<Outcome>& cases, std::uint64_t seed) {
                        {"class", class_name(one.of)},
                        {"kind", one.kind},
                        {"hidden", one.text},
+                       {"effect", one.effect},
                        {"family", one.family},
                        {"asked", one.asked},
                        {"strength", one.ratio},
                        {"likeness", one.likeness},
                        {"runs", one.runs},
+                       {"redrawn", one.redrawn},
                        {"said", one.said},
                        {"names", one.names},
                        {"right", one.right},
                        {"wrong_family", one.wrong_family},
                        {"other_family", one.other_family},
                        {"ranks", one.ranks},
+                       {"covered", one.covered},
                        {"wall_s", one.wall_s},
                        {"error", one.error}});
     for (const Target& target : targets(cases))
@@ -111,6 +116,39 @@ std::string rates_json(const std::vector<Outcome>& cases, std::uint64_t seed) {
                           {"met", target.met()}});
     return Json{{"seed", seed}, {"targets", wanted}, {"ranks", rank_histogram(cases)}, {"cases", all}}.dump(
         1);
+}
+
+std::vector<Outcome> outcomes_from_json(const std::string& text, const std::string& file) try {
+    std::vector<Outcome> cases;
+    const auto result = nlohmann::json::parse(text);
+    for (const auto& one : result.at("cases")) {
+        Outcome out;
+        out.number = one.at("number");
+        for (const Class of : {Class::Null, Class::Known, Class::NearMiss, Class::Unknown})
+            if (one.at("class") == class_name(of)) out.of = of;
+        out.kind = one.at("kind");
+        out.text = one.at("hidden");
+        out.effect = one.at("effect");
+        out.family = one.at("family");
+        out.asked = one.at("asked");
+        out.ratio = one.at("strength");
+        out.likeness = one.at("likeness");
+        out.runs = one.at("runs");
+        out.redrawn = one.at("redrawn");
+        out.said = one.at("said");
+        out.names = one.at("names").get<std::vector<std::string>>();
+        out.right = one.at("right");
+        out.wrong_family = one.at("wrong_family");
+        out.other_family = one.at("other_family");
+        out.ranks = one.at("ranks").get<std::vector<double>>();
+        out.covered = one.at("covered");
+        out.wall_s = one.at("wall_s");
+        out.error = one.at("error");
+        cases.push_back(std::move(out));
+    }
+    return cases;
+} catch (const nlohmann::json::exception&) {
+    throw InputError(file, "", "is no result of drawn cases", "gap selftest --grammar --json");
 }
 
 }  // namespace puckloop::gap::selftest::grammar

@@ -1,5 +1,6 @@
 // Cases drawn from the grammar: what is drawn is what is said of it, and rates are counted right.
 
+#include "base/error.h"
 #include "gap/effects/effect.h"
 #include "gap/selftest/case_list.h"
 #include "gap/selftest/grammar/curves.h"
@@ -171,7 +172,7 @@ TEST_CASE("targets count what they say") {
     CHECK_FALSE(targets(few)[3].met());
     const std::vector<Outcome> many(60, made(Class::Null, "no_effect", 0));
     CHECK(targets(many)[3].met());
-    for (const std::string& text : {rates_text(cases, 9), rates_json(cases, 9), curves_svg(cases)})
+    for (const std::string& text : {rates_text(cases, "9"), rates_json(cases, 9), curves_svg(cases)})
         CHECK_FALSE(text.empty());
     // Intervals are held to 85 to 95 % in every kind, not only over all.
     cases = {made(Class::Known, "named", 1, true), made(Class::Known, "named", 1, true)};
@@ -186,6 +187,34 @@ TEST_CASE("targets count what they say") {
     CHECK(kinds[list.size() - 1].met());
     CHECK_FALSE(kinds[list.size()].met());
     CHECK_FALSE(kinds[list.size() + 1].met());
+}
+
+TEST_CASE("results are read back as they were written, and nothing else is read") {
+    std::vector<Outcome> cases{made(Class::Known, "named", 1.5, true),
+                               made(Class::NearMiss, "unexplained", 2), made(Class::Null, "no_effect", 0),
+                               made(Class::Unknown, "named", 3)};
+    cases[0].effect = "play";
+    cases[0].ranks = {0.2, 0.97};
+    cases[0].covered = 1;
+    cases[0].runs = 7;
+    cases[3].names = {"axle_length"};
+    const std::string text = rates_json(cases, 5);
+    const auto again = outcomes_from_json(text, "cases.json");
+    CHECK(rates_json(again, 5) == text);
+    RandomStream random(kSeed, "broken json");
+    for (int k = 0; k < 200; ++k) {
+        std::string broken = text;
+        if (k % 2 == 0)
+            broken.resize(random.below(text.size()));
+        else
+            broken[random.below(text.size())] = static_cast<char>(random.below(256));
+        try {
+            outcomes_from_json(broken, "cases.json");
+        } catch (const InputError& error) {
+            CHECK(std::string(error.what()).find("cases.json") != std::string::npos);
+        }
+    }
+    CHECK_THROWS_AS(outcomes_from_json("{}", "cases.json"), InputError);
 }
 
 TEST_CASE("curves count every case in its band, by what was said of it") {

@@ -94,18 +94,19 @@ Rerun rerun(const Experiment& experiment, const Verdict& verdict, const RerunOpt
     if (!result.not_done.empty()) return result;
     const auto reacts = chosen(all, options.longest);
     const auto names = compared(experiment.kind);
-    std::vector<ErrorSum> errors[2] = {std::vector<ErrorSum>(names.size()),
-                                       std::vector<ErrorSum>(names.size())};
+    std::vector<Robot> sides(2, nominal_robot(experiment, options));
+    sides[1].overlay = options.overlay;
+    if (options.truth) sides.push_back(*options.truth);
+    std::vector errors(sides.size(), std::vector<ErrorSum>(names.size()));
     std::size_t done = 0;
     for (std::size_t k = 0; k < reacts.size(); ++k)
-        for (const int side : {0, 1}) {
-            Robot robot = nominal_robot(experiment, options);
-            robot.period = reacts[k].period;
-            if (side == 1) robot.overlay = options.overlay;
+        for (std::size_t side = 0; side < sides.size(); ++side) {
+            Robot robot = sides[side];
+            if (robot.period == Robot().period) robot.period = reacts[k].period;
             const auto rows = perform(robot, reacts[k].act, options.tools, options.seed + k, options.scratch);
             add_errors(experiment, reacts[k], rows, errors[side]);
             std::filesystem::remove_all(options.scratch);
-            if (options.done) options.done(++done, 2 * reacts.size());
+            if (options.done) options.done(++done, sides.size() * reacts.size());
         }
     result.runs = reacts.size();
     result.of_runs = all.size();
@@ -115,7 +116,8 @@ Rerun rerun(const Experiment& experiment, const Verdict& verdict, const RerunOpt
         const auto rms = [](const ErrorSum& sum) {
             return std::sqrt(sum.squares / static_cast<double>(sum.rows));
         };
-        result.observables.push_back({names[o].first, names[o].second, rms(errors[0][o]), rms(errors[1][o])});
+        result.observables.push_back({names[o].first, names[o].second, rms(errors[0][o]), rms(errors[1][o]),
+                                      options.truth ? rms(errors[2][o]) : 0.0});
     }
     result.left_out = left_out(experiment, verdict);
     return result;

@@ -138,20 +138,32 @@ double scatter(const Groups& groups) {
     return std::sqrt(std::max(squares, 0.0) / std::max(free, 1.0));
 }
 
+/// As the simulator is, with the overlay and, where it is known, as the true robot.
+using Performed = std::vector<Seen>;
+
+template <class Error>
+void add_errors(const char* name, const char* unit, const Performed& performed, const Error& error,
+                Rerun& result) {
+    result.observables.push_back({name, unit, error(performed[0]), error(performed[1]),
+                                  performed.size() > 2 ? error(performed[2]) : 0.0});
+}
+
 void compare(const char* name, const char* unit, Groups Seen::*part, const Seen& told,
-             const Seen (&performed)[2], Rerun& result) {
-    const auto [before, rows] = difference(told.*part, performed[0].*part);
+             const Performed& performed, Rerun& result) {
+    const std::size_t rows = difference(told.*part, performed[0].*part).second;
     if (rows == 0) return;
-    result.observables.push_back({name, unit, before, difference(told.*part, performed[1].*part).first});
     result.rows = std::max(result.rows, rows);
+    add_errors(
+        name, unit, performed, [&](const Seen& seen) { return difference(told.*part, seen.*part).first; },
+        result);
 }
 
 void compare_scatter(const char* name, const char* unit, Groups Seen::*part, const Seen& told,
-                     const Seen (&performed)[2], Rerun& result) {
+                     const Performed& performed, Rerun& result) {
     if ((told.*part).empty() || (performed[0].*part).empty()) return;
     const double own = scatter(told.*part);
-    result.observables.push_back({name, unit, std::abs(own - scatter(performed[0].*part)),
-                                  std::abs(own - scatter(performed[1].*part))});
+    add_errors(
+        name, unit, performed, [&](const Seen& seen) { return std::abs(own - scatter(seen.*part)); }, result);
 }
 
 }  // namespace
@@ -171,8 +183,9 @@ Rerun rerun_rab(const Experiment& experiment, const RerunOptions& options) {
         return result;
     }
     const Seen told = seen_in(messages);
-    Seen performed[2];
-    for (const int side : {0, 1}) {
+    Performed performed;
+    const std::size_t sides = options.truth ? 3 : 2;
+    for (std::size_t side = 0; side < sides; ++side) {
         scenarios::Scenario scenario;
         scenario.world.arena = physics::rectangular_arena(4, 4);
         for (const auto& [name, value] : experiment.nominal) {
@@ -180,9 +193,10 @@ Rerun rerun_rab(const Experiment& experiment, const RerunOptions& options) {
             if (physics::find_parameter(name, index) != nullptr) scenario.world.parameters[name] = value;
         }
         if (side == 1) scenarios::apply_overlay(scenario, options.overlay);
-        what.parameters = scenario.world.parameters;
-        performed[side] = seen_in(emulated(what));
-        if (options.done) options.done(static_cast<std::size_t>(side) + 1, 2);
+        what.parameters = side == 2 ? options.truth->parameters : scenario.world.parameters;
+        what.poll_period = side == 2 ? options.truth->rab_poll : 0.0;
+        performed.push_back(seen_in(emulated(what)));
+        if (options.done) options.done(side + 1, sides);
     }
     compare("strength", "ln counts", &Seen::strength, told, performed, result);
     compare_scatter("strength scatter", "ln counts", &Seen::strength, told, performed, result);

@@ -3,12 +3,14 @@
 #include "base/random.h"
 #include "gap/pipeline/analyse.h"
 #include "gap/selftest/grammar/drawn_case.h"
+#include "tools/gap/emulate/rerun.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <fstream>
 
 namespace puckloop::gap::emulate {
 
@@ -38,6 +40,40 @@ std::string add_unknown(selftest::HiddenExperiment& recorded, RandomStream& rand
         gr::amplitude_for(recorded, site, field, strength, gr::floor_of(recorded.kind), chance, reached);
     recorded = gr::with_effect(recorded, site, field, a, chance);
     return fmt::format("{}{} ({:.1f} times the noise)", site.text(), field.text, reached);
+}
+
+/// With the overlay of what was named; the floor is what the true robot itself differs by.
+Rerun performed_again(const Experiment& measured, const Verdict& verdict, const RecordOptions& recorded) {
+    constexpr double kLongest = 20.0;  // s of simulated time for each
+    const auto file = recorded.scratch / "overlay.toml";
+    std::ofstream(file) << overlay_toml(measured, verdict);
+    RerunOptions how;
+    how.tools = recorded.tools;
+    how.overlay = file;
+    how.scratch = recorded.scratch / "again";
+    how.seed = recorded.seed + 1;
+    how.longest = kLongest;
+    how.truth = recorded.robot;
+    return rerun(measured, verdict, how);
+}
+
+/// Errors with the overlay are no more than this over those of the true robot.
+constexpr double kAboveFloor = 1.25;
+
+bool back_to_floor(const Rerun& again) {
+    return std::all_of(again.observables.begin(), again.observables.end(),
+                       [](const RerunObservable& o) { return o.after <= kAboveFloor * o.floor; });
+}
+
+std::string again_text(const Rerun& again) {
+    if (!again.asked) return {};
+    std::string text = fmt::format("{:>13}performed again", "");
+    if (!again.not_done.empty()) return text + ": not, " + again.not_done + "\n";
+    for (const RerunObservable& o : again.observables)
+        text += fmt::format("{} {} off by {:.3g} {} before, {:.3g} with the overlay, {:.3g} the true robot",
+                            &o == again.observables.data() ? ":" : ";", o.name, o.before, o.unit, o.after,
+                            o.floor);
+    return text + "\n";
 }
 
 std::string joined(const std::vector<std::string>& words) {
@@ -70,7 +106,8 @@ SecretResult try_secret(std::size_t number, bool closed_loop, const RecordOption
         selftest::write_folder(experiment, folder);
         Options analysis;
         analysis.seed = given.seed;
-        const Verdict verdict = analyse(read_experiment(folder), analysis);
+        const Experiment measured = read_experiment(folder);
+        const Verdict verdict = analyse(measured, analysis);
         result.decision = std::string(decision_name(verdict.decision));
         for (const Cause& cause : verdict.causes) {
             result.named.push_back(cause.name);
@@ -87,6 +124,7 @@ SecretResult try_secret(std::size_t number, bool closed_loop, const RecordOption
             result.found = verdict.decision == Decision::Named &&
                            std::find(secret.names.begin(), secret.names.end(), result.named.front()) !=
                                secret.names.end();
+        if (verdict.decision == Decision::Named) result.again = performed_again(measured, verdict, options);
     } catch (const std::exception& error) {
         result.decision = "error";
         result.error = error.what();
@@ -105,22 +143,27 @@ std::string secret_line(const SecretResult& r) {
     if (!r.changed.empty()) text += fmt::format("{:>13}{}\n", "", r.changed);
     for (std::size_t k = 0; k < std::min(r.told.size(), kMostTold); ++k)
         text += fmt::format("{:>13}{}\n", "", r.told[k]);
-    return text;
+    return text + again_text(r.again);
 }
 
 std::string secrets_text(const std::vector<SecretResult>& results) {
-    int changed = 0, found = 0, plain = 0, quiet = 0, beyond = 0, seen = 0;
+    int changed = 0, found = 0, plain = 0, quiet = 0, beyond = 0, seen = 0, again = 0, back = 0;
     std::string text;
     for (const SecretResult& r : results) {
         const bool hidden = !r.secret->names.empty(), unknown = r.secret->unknown;
         (unknown ? beyond : hidden ? changed : plain) += 1;
         (unknown ? seen : hidden ? found : quiet) += r.found ? 1 : 0;
         text += secret_line(r);
+        if (!hidden || !r.found || r.again.observables.empty()) continue;
+        ++again;
+        back += back_to_floor(r.again) ? 1 : 0;
     }
     return fmt::format(
         "secret changes found: {} of {}; changes beyond the catalogue called unexplained: {} of {}; "
-        "robots left alone called so: {} of {}\n\n{}",
-        found, changed, seen, beyond, quiet, plain, text);
+        "robots left alone called so: {} of {}; performed again with the overlay of a right name, every "
+        "error "
+        "within {:.0f} % of the true robot's: {} of {}\n\n{}",
+        found, changed, seen, beyond, quiet, plain, 100 * (kAboveFloor - 1), back, again, text);
 }
 
 }  // namespace puckloop::gap::emulate

@@ -2,6 +2,7 @@
 // The self test on the emulator: a robot changed in secret, recorded with the firmware in the loop, analysed
 // against the unchanged model.
 
+#include "gap/verdict/verdict.h"
 #include "tools/gap/emulate/record.h"
 #include "tools/gap/emulate/secrets.h"
 
@@ -17,6 +18,7 @@ struct SecretResult {
     std::vector<std::string> named;  ///< causes, the first one first
     std::vector<std::string> told;   ///< the causes' parameters with intervals
     bool found = false;              ///< the first cause is a right one; of nothing changed: no effect
+    Rerun again;                     ///< where a cause was named: with its overlay, beside the true robot
 };
 
 /// Records and analyses case `number`, drawn with the options' seed, or as the closed loop has it: typed
