@@ -263,7 +263,9 @@ double Board::analog(int channel, dspic::Cycle now) {
     if (channel >= kFirstProximityChannel) {
         const int sensor = channel - kFirstProximityChannel;
         const Emitter& emitter = emitters_[static_cast<std::size_t>(sensor % kPulseCount)];
-        counts -= values_[static_cast<std::size_t>(kProximity + sensor)].at(now) * emitter.intensity(now);
+        // Mostly nothing is near, which saves working out how far the emitter's light has risen.
+        const double reflected = values_[static_cast<std::size_t>(kProximity + sensor)].at(now);
+        if (reflected != 0.0) counts -= reflected * emitter.intensity(now);
         counts -= lights_[static_cast<std::size_t>(sensor)].counts_at(now);
         counts *= 1.0 - dazzle_[static_cast<std::size_t>(sensor)];
     }
