@@ -8,7 +8,7 @@
 #include "cosim/faults/evidence.h"
 #include "cosim/faults/fault_kind.h"
 #include "cosim/faults/fault_spec.h"
-#include "cosim/faults/kind_table.h"
+#include "cosim/faults/kinds/kind_table.h"
 
 #include <cstdint>
 #include <memory>

@@ -1,5 +1,6 @@
 #pragma once
-// A fault on an I2C bus, as its parameters (cosim/faults/i2c_kinds.cpp) ask for it: what, and on which bytes.
+// A fault on an I2C bus, as its parameters (cosim/faults/kinds/i2c_kinds.cpp) ask for it: what, and on which
+// bytes.
 
 #include "cosim/core/time.h"
 #include "cosim/faults/fault_spec.h"

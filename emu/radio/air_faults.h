@@ -1,6 +1,6 @@
 #pragma once
 // Faults of the air between modules: frames that a receiver does not read, or reads wrong, and frames of a
-// foreign network on the channel. Kinds and parameters: cosim/faults/air_kinds.cpp.
+// foreign network on the channel. Kinds and parameters: cosim/faults/kinds/air_kinds.cpp.
 
 #include "cosim/faults/fault_json.h"
 #include "emu/radio/medium.h"

@@ -1,7 +1,7 @@
 #pragma once
 // Sense, control, act, ten times a second, for a given time or until interrupted.
 
-#include "linuxboard/control/behaviour.h"
+#include "linuxboard/control/behaviours/behaviour.h"
 #include "linuxboard/control/session.h"
 
 #include <functional>

@@ -4,9 +4,9 @@
 // Exit status: 0 the session ran its time or was ended by a signal; 1 the PIC could not be reached or the
 // line failed; 2 wrong use, or a device that cannot be opened.
 
-#include "linuxboard/control/coloured_spots.h"
-#include "linuxboard/control/ground_sensor.h"
-#include "linuxboard/control/posix_serial.h"
+#include "linuxboard/control/behaviours/coloured_spots.h"
+#include "linuxboard/control/devices/ground_sensor.h"
+#include "linuxboard/control/devices/posix_serial.h"
 #include "linuxboard/control/rab_session.h"
 
 #include <csignal>

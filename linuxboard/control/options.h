@@ -3,7 +3,7 @@
 
 #include "linuxboard/control/control_loop.h"
 #include "linuxboard/control/option_values.h"
-#include "linuxboard/control/rab_link.h"
+#include "linuxboard/control/rab/rab_link.h"
 
 #include <string>
 

@@ -1,6 +1,6 @@
 #include "linuxboard/control/rab_session.h"
 
-#include "linuxboard/control/calibrate.h"
+#include "linuxboard/control/behaviours/calibrate.h"
 
 #include <cstdio>
 

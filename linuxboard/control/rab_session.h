@@ -1,9 +1,9 @@
 #pragma once
 // Everything puckloop-control does with a real range-and-bearing board, from its bus to the lines it prints.
 
-#include "linuxboard/control/neighbours.h"
+#include "linuxboard/control/behaviours/neighbours.h"
+#include "linuxboard/control/devices/posix_i2c.h"
 #include "linuxboard/control/options.h"
-#include "linuxboard/control/posix_i2c.h"
 
 namespace puckloop::control {
 

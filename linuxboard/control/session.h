@@ -15,7 +15,7 @@
 //  * Proof: after an answer to zeros, zeros are sent singly once more. Inside a session the PIC answers at
 //    once, so the byte it answers to is the last of its record, and both sides are aligned.
 
-#include "linuxboard/control/transport.h"
+#include "linuxboard/control/devices/transport.h"
 #include "protocols/epuck_serial.h"
 
 #include <functional>

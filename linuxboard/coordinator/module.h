@@ -1,7 +1,7 @@
 #pragma once
 // The XBee module at the serial port, as a host sees it: API frames, escaped (AP = 2), out and in.
 
-#include "linuxboard/control/transport.h"
+#include "linuxboard/control/devices/transport.h"
 #include "protocols/xbee_frame.h"
 #include "protocols/xbee_message.h"
 

@@ -2,7 +2,7 @@
 // The serial port of the XBee module: 9600 8N1, raw, no flow control, the system's monotonic clock. Nothing
 // here waits without a limit, whatever is at the other end.
 
-#include "linuxboard/control/transport.h"
+#include "linuxboard/control/devices/transport.h"
 
 #include <cstdint>
 #include <string>

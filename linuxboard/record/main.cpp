@@ -3,9 +3,9 @@
 //
 // Exit status: 0 the script is through; 1 the PIC could not be reached or the line failed; 2 wrong use.
 
-#include "linuxboard/control/ground_sensor.h"
+#include "linuxboard/control/devices/ground_sensor.h"
+#include "linuxboard/control/devices/posix_serial.h"
 #include "linuxboard/control/option_values.h"
-#include "linuxboard/control/posix_serial.h"
 #include "linuxboard/control/session.h"
 #include "linuxboard/record/command_script.h"
 

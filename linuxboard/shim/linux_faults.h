@@ -1,6 +1,6 @@
 #pragma once
 // The faults of one Linux program: in its calls on the serial port and the I2C adapter, and of its process.
-// Kinds and parameters: cosim/faults/linux_kinds.cpp.
+// Kinds and parameters: cosim/faults/kinds/linux_kinds.cpp.
 
 #include "cosim/core/time.h"
 #include "cosim/faults/fault_json.h"

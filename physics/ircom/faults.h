@@ -1,6 +1,6 @@
 #pragma once
 // Faults of IRcom's words on their way from a sender to a receiver: kinds ircom_kinds() of
-// cosim/faults/kind_table.h.
+// cosim/faults/kinds/kind_table.h.
 //
 // A word is known for one by its first kPreamble edges, all a MARK's half period apart; flashes of proximity
 // sensors never are that many. Up to there its light arrives in any case: no receiver has begun a word with

@@ -1,7 +1,7 @@
 #pragma once
 // What faults can sit on: the links and nodes of a scenario that have kinds of faults.
 
-#include "cosim/faults/kind_table.h"
+#include "cosim/faults/kinds/kind_table.h"
 #include "scenarios/scenario.h"
 
 #include <string>

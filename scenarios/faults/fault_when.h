@@ -1,7 +1,7 @@
 #pragma once
 // When a fault happens and to which of what comes by: the keys that all kinds of one style share.
 
-#include "cosim/faults/kind_table.h"
+#include "cosim/faults/kinds/kind_table.h"
 #include "scenarios/reader.h"
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 #pragma once
 // A serial line with a simulated clock, a simulated mesh at its other end.
 
-#include "linuxboard/control/transport.h"
+#include "linuxboard/control/devices/transport.h"
 #include "tests/coordinator/simulated_mesh.h"
 
 #include <algorithm>

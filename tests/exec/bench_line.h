@@ -2,7 +2,7 @@
 // The control program's serial line, tied to UART2 of an emulated board on the bench: the real session code
 // against real firmware, in simulated time. Bytes can be lost or doubled on their way.
 
-#include "linuxboard/control/transport.h"
+#include "linuxboard/control/devices/transport.h"
 #include "tests/exec/rig.h"
 
 #include <deque>

@@ -3,7 +3,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "cosim/faults/kind_table.h"
+#include "cosim/faults/kinds/kind_table.h"
 #include "cosim/i2c/i2c_fault.h"
 #include "shared_bus.h"
 

@@ -2,7 +2,7 @@
 // Faults of IRcom's medium as they come to the node: by its description.
 
 #include "cosim/faults/fault_json.h"
-#include "cosim/faults/kind_table.h"
+#include "cosim/faults/kinds/kind_table.h"
 #include "tests/ircom/worlds.h"
 
 #include <catch2/catch.hpp>

@@ -3,7 +3,7 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "cosim/faults/fault_json.h"
-#include "cosim/faults/kind_table.h"
+#include "cosim/faults/kinds/kind_table.h"
 #include "physics/ircom/ircom_node.h"
 #include "protocols/ircom.h"
 #include "tests/ircom/faults.h"

@@ -1,6 +1,6 @@
 // Coloured spots in pictures, found where they were drawn.
 
-#include "linuxboard/control/colour_blobs.h"
+#include "linuxboard/control/behaviours/colour_blobs.h"
 
 #include <catch2/catch.hpp>
 

@@ -1,7 +1,7 @@
 // The lights of a booth as one: where they are, and which way the booth opens.
 
 #include "base/random.h"
-#include "linuxboard/control/booth_lights.h"
+#include "linuxboard/control/behaviours/booth_lights.h"
 
 #include <catch2/catch.hpp>
 

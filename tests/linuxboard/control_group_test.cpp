@@ -1,9 +1,9 @@
 // Aggregation and follow-the-leader, step by step and as a small swarm of points that hear each other.
 
-#include "linuxboard/control/aggregate.h"
+#include "linuxboard/control/behaviours/aggregate.h"
+#include "linuxboard/control/behaviours/follow.h"
+#include "linuxboard/control/behaviours/steering.h"
 #include "linuxboard/control/control_loop.h"
-#include "linuxboard/control/follow.h"
-#include "linuxboard/control/steering.h"
 #include "tests/linuxboard/simulated_line.h"
 
 #include <catch2/catch.hpp>

@@ -1,7 +1,7 @@
 // From packets to neighbours: distance by the published curve, calibration, averaging, delivery report.
 
-#include "linuxboard/control/calibrate.h"
-#include "linuxboard/control/neighbours.h"
+#include "linuxboard/control/behaviours/calibrate.h"
+#include "linuxboard/control/behaviours/neighbours.h"
 #include "tests/linuxboard/simulated_rab.h"
 
 #include <catch2/catch.hpp>

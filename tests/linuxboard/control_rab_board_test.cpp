@@ -1,6 +1,6 @@
 // The driver of the range-and-bearing board against a model of its register map.
 
-#include "linuxboard/control/rab_board.h"
+#include "linuxboard/control/rab/rab_board.h"
 #include "tests/linuxboard/simulated_rab.h"
 
 #include <catch2/catch.hpp>

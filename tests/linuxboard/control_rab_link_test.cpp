@@ -1,6 +1,6 @@
 // Polling and sending in the background: the steps with a simulated clock, the threads with the real one.
 
-#include "linuxboard/control/rab_link.h"
+#include "linuxboard/control/rab/rab_link.h"
 #include "tests/linuxboard/simulated_rab.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // The behaviour that looks for a booth by its colour.
 
-#include "linuxboard/control/seek.h"
+#include "linuxboard/control/behaviours/seek.h"
 
 #include <catch2/catch.hpp>
 

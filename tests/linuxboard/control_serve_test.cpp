@@ -1,6 +1,6 @@
 // The behaviour that serves at a booth, on a track of one dimension.
 
-#include "linuxboard/control/serve.h"
+#include "linuxboard/control/behaviours/serve.h"
 
 #include <catch2/catch.hpp>
 

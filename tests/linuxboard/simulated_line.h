@@ -3,7 +3,7 @@
 // The model knows the two characters of firmware: the original (waits for ever, reacts slowly in its waiting
 // loop) and the project's own (drops partial records, boots at once). Faults are set byte by byte.
 
-#include "linuxboard/control/transport.h"
+#include "linuxboard/control/devices/transport.h"
 #include "protocols/epuck_serial.h"
 
 #include <cstdint>

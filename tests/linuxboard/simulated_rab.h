@@ -4,8 +4,8 @@
 // sheet, not from the driver. The map is the board's, with its oddities: the high part is never cleared, a
 // run of registers gives the first one twice, reading register 0 takes a message.
 
-#include "linuxboard/control/clock.h"
-#include "linuxboard/control/i2c_device.h"
+#include "linuxboard/control/devices/clock.h"
+#include "linuxboard/control/devices/i2c_device.h"
 
 #include <array>
 #include <cstdint>

@@ -1,7 +1,7 @@
 // Faults of the air between modules: what each does to frames, whom it leaves alone, what it says it did.
 
 #include "cosim/faults/fault_json.h"
-#include "cosim/faults/kind_table.h"
+#include "cosim/faults/kinds/kind_table.h"
 #include "tests/radio/air.h"
 
 #include "base/error.h"

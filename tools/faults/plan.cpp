@@ -2,7 +2,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "cosim/faults/kind_table.h"
+#include "cosim/faults/kinds/kind_table.h"
 #include "tools/faults/case_run.h"
 #include "tools/faults/findings.h"
 #include "tools/faults/positions.h"

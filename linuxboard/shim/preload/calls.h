@@ -1,7 +1,7 @@
 #pragma once
 // What the functions taken over share among themselves.
 
-#include "linuxboard/shim/preload/scheduler.h"
+#include "linuxboard/shim/preload/threads/scheduler.h"
 
 #include <stdio.h>
 #include <sys/select.h>

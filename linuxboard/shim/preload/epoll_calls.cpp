@@ -2,7 +2,7 @@
 // descriptor more. Edge-triggered devices behave as level-triggered ones.
 
 #include "linuxboard/shim/preload/calls.h"
-#include "linuxboard/shim/preload/open_file.h"
+#include "linuxboard/shim/preload/files/open_file.h"
 #include "linuxboard/shim/preload/real.h"
 
 #include <poll.h>

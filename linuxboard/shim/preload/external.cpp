@@ -2,7 +2,7 @@
 // while one thread blocked in the host no other could run. So they are looked at, not waited in.
 
 #include "linuxboard/shim/preload/calls.h"
-#include "linuxboard/shim/preload/open_file.h"
+#include "linuxboard/shim/preload/files/open_file.h"
 #include "linuxboard/shim/preload/real.h"
 
 #include <poll.h>

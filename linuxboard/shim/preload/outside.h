@@ -1,9 +1,9 @@
 #pragma once
 // A call on a descriptor that is no device: made at once where it cannot block, else once the host is ready.
 
-#include "linuxboard/shim/preload/open_file.h"
+#include "linuxboard/shim/preload/files/open_file.h"
 #include "linuxboard/shim/preload/real.h"
-#include "linuxboard/shim/preload/scheduler.h"
+#include "linuxboard/shim/preload/threads/scheduler.h"
 
 #include <fcntl.h>
 #include <poll.h>

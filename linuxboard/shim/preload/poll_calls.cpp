@@ -4,9 +4,9 @@
 // every millisecond of simulated time.
 
 #include "linuxboard/shim/preload/calls.h"
-#include "linuxboard/shim/preload/open_file.h"
+#include "linuxboard/shim/preload/files/open_file.h"
 #include "linuxboard/shim/preload/real.h"
-#include "linuxboard/shim/preload/timers.h"
+#include "linuxboard/shim/preload/time/timers.h"
 
 #include <poll.h>
 #include <signal.h>

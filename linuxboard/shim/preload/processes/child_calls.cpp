@@ -9,7 +9,7 @@
 #include "linuxboard/shim/preload/processes/inheritance.h"
 #include "linuxboard/shim/preload/processes/make_process.h"
 #include "linuxboard/shim/preload/real.h"
-#include "linuxboard/shim/preload/timers.h"
+#include "linuxboard/shim/preload/time/timers.h"
 
 #include <fcntl.h>
 #include <limits.h>

@@ -6,7 +6,7 @@
 #include "linuxboard/shim/preload/processes/inheritance.h"
 #include "linuxboard/shim/preload/processes/make_process.h"
 #include "linuxboard/shim/preload/real.h"
-#include "linuxboard/shim/preload/scheduler.h"
+#include "linuxboard/shim/preload/threads/scheduler.h"
 
 #include <dlfcn.h>
 #include <elf.h>

@@ -5,7 +5,7 @@
 #include "linuxboard/shim/preload/host.h"
 #include "linuxboard/shim/preload/link.h"
 #include "linuxboard/shim/preload/real.h"
-#include "linuxboard/shim/preload/scheduler.h"
+#include "linuxboard/shim/preload/threads/scheduler.h"
 
 #include <sched.h>
 #include <signal.h>

@@ -1,8 +1,8 @@
 #include "linuxboard/shim/preload/processes/inheritance.h"
 
-#include "linuxboard/shim/preload/open_file.h"
+#include "linuxboard/shim/preload/files/open_file.h"
 #include "linuxboard/shim/preload/real.h"
-#include "linuxboard/shim/preload/timers.h"
+#include "linuxboard/shim/preload/time/timers.h"
 
 #include <fcntl.h>
 

@@ -3,7 +3,7 @@
 #include "linuxboard/shim/preload/host.h"
 #include "linuxboard/shim/preload/link.h"
 #include "linuxboard/shim/preload/real.h"
-#include "linuxboard/shim/preload/scheduler.h"
+#include "linuxboard/shim/preload/threads/scheduler.h"
 
 #include <signal.h>
 #include <sys/syscall.h>

@@ -1,10 +1,10 @@
 // Waiting for children, in simulated time.
 
+#include "linuxboard/shim/preload/files/open_file.h"
 #include "linuxboard/shim/preload/link.h"
-#include "linuxboard/shim/preload/open_file.h"
 #include "linuxboard/shim/preload/processes/make_process.h"
 #include "linuxboard/shim/preload/real.h"
-#include "linuxboard/shim/preload/scheduler.h"
+#include "linuxboard/shim/preload/threads/scheduler.h"
 
 #include <pthread.h>
 #include <sys/resource.h>

@@ -1,0 +1,310 @@
+// open, close, read, write and their kin.
+
+#include "linuxboard/shim/preload/calls.h"
+#include "linuxboard/shim/preload/files/open_file.h"
+#include "linuxboard/shim/preload/files/video_names.h"
+#include "linuxboard/shim/preload/link.h"
+#include "linuxboard/shim/preload/outside.h"
+#include "linuxboard/shim/preload/real.h"
+#include "linuxboard/shim/preload/time/timers.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/uio.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <climits>
+#include <cstdarg>
+#include <cstdio>
+#include <cstring>
+
+using namespace puckloop::shim;
+
+extern "C" {
+int __open_2(const char*, int);
+int __open64_2(const char*, int);
+int __openat_2(int, const char*, int);
+int __openat64_2(int, const char*, int);
+ssize_t __read_chk(int, void*, size_t, size_t);
+}
+
+namespace {
+/// `copy` is now what `fd` is.
+void copied(int fd, int copy) {
+    if (fd == copy) return;
+    share_file(fd, copy);
+    const bool closed = is_internal(copy);
+    drop_timer(copy);
+    if (is_internal(fd)) {
+        mark_internal(copy);
+    } else {
+        forget_internal(copy);
+    }
+    if (closed) tell_others();
+}
+
+mode_t mode_argument(int flags, std::va_list arguments) {
+    return (flags & (O_CREAT | O_TMPFILE)) != 0 ? va_arg(arguments, mode_t) : 0;
+}
+
+/// open() of a named pipe waits in simulated time until somebody reads it. Deviation: for reading it does not
+/// wait for a writer, the first read() does.
+int open_named_pipe(const char* path, int flags) {
+    mark_call("open");
+    charge(page().charges.device);
+    while (true) {
+        const int fd = REAL(open)(path, flags | O_NONBLOCK);
+        if (fd >= 0) {
+            if ((flags & O_NONBLOCK) == 0) REAL(fcntl)(fd, F_SETFL, flags & O_ACCMODE);
+            mark_internal(fd);
+            tell_others();
+            return fd;
+        }
+        if (errno != ENXIO || (flags & O_NONBLOCK) != 0) return fd;
+        WaitOptions options;
+        options.deadline = time_after(kExternalPeriod);
+        options.interruptible = true;
+        options.cancellable = true;
+        if (park(external_key(), options) == Wake::Signal && !self()->restarts) {
+            errno = EINTR;
+            return -1;
+        }
+    }
+}
+
+/// A pipe opened anew by the name of its descriptor is still one of the program's own.
+int opened(const char* path, int fd) {
+    int named = -1;
+    if (fd < 0 || !active() || path == nullptr) return fd;
+    if (std::sscanf(path, "/dev/fd/%d", &named) != 1 && std::sscanf(path, "/proc/self/fd/%d", &named) != 1)
+        return fd;
+    if (is_internal(named)) mark_internal(fd);
+    return fd;
+}
+
+}  // namespace
+
+SHIM_EXPORT int open(const char* path, int flags, ...) {
+    std::va_list arguments;
+    va_start(arguments, flags);
+    const mode_t mode = mode_argument(flags, arguments);
+    va_end(arguments);
+    const int device = device_of(path);
+    if (const int uevent = open_video_uevent(path); uevent >= 0) return uevent;
+    if (device == kNoDevice && is_named_pipe(path)) return opened(path, open_named_pipe(path, flags));
+    return device == kNoDevice ? opened(path, REAL(open)(path, flags, mode)) : open_device(device, flags);
+}
+
+SHIM_EXPORT int open64(const char* path, int flags, ...) {
+    std::va_list arguments;
+    va_start(arguments, flags);
+    const mode_t mode = mode_argument(flags, arguments);
+    va_end(arguments);
+    const int device = device_of(path);
+    if (const int uevent = open_video_uevent(path); uevent >= 0) return uevent;
+    if (device == kNoDevice && is_named_pipe(path)) return opened(path, open_named_pipe(path, flags));
+    return device == kNoDevice ? opened(path, REAL(open64)(path, flags, mode)) : open_device(device, flags);
+}
+
+SHIM_EXPORT int openat(int folder, const char* path, int flags, ...) {
+    std::va_list arguments;
+    va_start(arguments, flags);
+    const mode_t mode = mode_argument(flags, arguments);
+    va_end(arguments);
+    const int device = device_of(path);
+    if (const int uevent = open_video_uevent(path); uevent >= 0) return uevent;
+    if (device == kNoDevice && (folder == AT_FDCWD || path[0] == '/') && is_named_pipe(path))
+        return opened(path, open_named_pipe(path, flags));
+    return device == kNoDevice ? opened(path, REAL(openat)(folder, path, flags, mode))
+                               : open_device(device, flags);
+}
+
+SHIM_EXPORT int openat64(int folder, const char* path, int flags, ...) {
+    std::va_list arguments;
+    va_start(arguments, flags);
+    const mode_t mode = mode_argument(flags, arguments);
+    va_end(arguments);
+    const int device = device_of(path);
+    if (const int uevent = open_video_uevent(path); uevent >= 0) return uevent;
+    if (device == kNoDevice && (folder == AT_FDCWD || path[0] == '/') && is_named_pipe(path))
+        return opened(path, open_named_pipe(path, flags));
+    return device == kNoDevice ? opened(path, REAL(openat64)(folder, path, flags, mode))
+                               : open_device(device, flags);
+}
+
+SHIM_EXPORT int __open_2(const char* path, int flags) {
+    return open(path, flags);
+}
+SHIM_EXPORT int __open64_2(const char* path, int flags) {
+    return open64(path, flags);
+}
+SHIM_EXPORT int __openat_2(int folder, const char* path, int flags) {
+    return openat(folder, path, flags);
+}
+SHIM_EXPORT int __openat64_2(int folder, const char* path, int flags) {
+    return openat64(folder, path, flags);
+}
+
+SHIM_EXPORT int creat(const char* path, mode_t mode) {
+    return open(path, O_CREAT | O_WRONLY | O_TRUNC, mode);
+}
+SHIM_EXPORT int creat64(const char* path, mode_t mode) {
+    return open64(path, O_CREAT | O_WRONLY | O_TRUNC, mode);
+}
+
+SHIM_EXPORT int close(int fd) {
+    if (active() && is_link_descriptor(fd)) {
+        errno = EBADF;
+        return -1;
+    }
+    if (open_file(fd) != nullptr) release_file(fd);
+    if (!active()) return REAL(close)(fd);
+    const bool was_internal = is_internal(fd);
+    drop_timer(fd);
+    forget_internal(fd);
+    const int result = REAL(close)(fd);
+    if (was_internal) tell_others();  // the last writer's close is the reader's end
+    return result;
+}
+
+SHIM_EXPORT void closefrom(int first) noexcept {
+    if (!active()) return REAL(closefrom)(first);
+    const auto last = static_cast<int>(sysconf(_SC_OPEN_MAX));
+    for (int fd = first; fd < std::min(last, 4096); ++fd)
+        close(fd);
+}
+
+SHIM_EXPORT int close_range(unsigned first, unsigned last, int flags) noexcept {
+    if (active() && flags != 0) {  // close-on-exec: the link's descriptors are to stay
+        for (unsigned fd = first; fd <= std::min(last, 4095u); ++fd)
+            if (!is_link_descriptor(static_cast<int>(fd))) REAL(close_range)(fd, fd, flags);
+        return 0;
+    }
+    if (!active()) return REAL(close_range)(first, last, flags);
+    for (unsigned fd = first; fd <= std::min(last, 4095u); ++fd)
+        close(static_cast<int>(fd));
+    return 0;
+}
+
+SHIM_EXPORT int dup(int fd) noexcept {
+    const int copy = REAL(dup)(fd);
+    if (copy >= 0 && active()) copied(fd, copy);
+    return copy;
+}
+
+SHIM_EXPORT int dup3(int fd, int copy, int flags) noexcept {
+    if (active() && is_link_descriptor(copy)) {
+        errno = EBUSY;
+        return -1;
+    }
+    const int result = REAL(dup3)(fd, copy, flags);
+    if (result >= 0 && active()) copied(fd, copy);
+    return result;
+}
+
+SHIM_EXPORT int dup2(int fd, int copy) noexcept {
+    if (active() && is_link_descriptor(copy)) {
+        errno = EBUSY;
+        return -1;
+    }
+    const int result = REAL(dup2)(fd, copy);
+    if (result >= 0 && active()) copied(fd, copy);
+    return result;
+}
+
+namespace {
+int control(int fd, int command, long argument, decltype(&::fcntl) real) {
+    if (command == F_SETFD && active() && is_link_descriptor(fd)) return 0;
+    OpenFile* file = open_file(fd);
+    if (file != nullptr && command == F_GETFL) return file->flags | O_LARGEFILE;
+    if (file != nullptr && command == F_SETFL) {
+        charge(page().charges.device);
+        if ((argument & O_ASYNC) != 0) note("%s: O_ASYNC (SIGIO) is not supported", file->path);
+        file->flags = (file->flags & O_ACCMODE) | static_cast<int>(argument & O_NONBLOCK);
+        return 0;
+    }
+    const int result = real(fd, command, argument);
+    if (active() && result >= 0 && (command == F_DUPFD || command == F_DUPFD_CLOEXEC)) copied(fd, result);
+    return result;
+}
+}  // namespace
+
+SHIM_EXPORT int fcntl(int fd, int command, ...) {
+    std::va_list arguments;
+    va_start(arguments, command);
+    const long argument = va_arg(arguments, long);
+    va_end(arguments);
+    return control(fd, command, argument, REAL(fcntl));
+}
+
+SHIM_EXPORT int fcntl64(int fd, int command, ...) {
+    std::va_list arguments;
+    va_start(arguments, command);
+    const long argument = va_arg(arguments, long);
+    va_end(arguments);
+    return control(fd, command, argument, REAL(fcntl64));
+}
+
+SHIM_EXPORT int flock(int fd, int operation) noexcept {
+    return open_file(fd) != nullptr ? 0 : REAL(flock)(fd, operation);
+}
+
+SHIM_EXPORT ssize_t read(int fd, void* buffer, size_t size) {
+    if (OpenFile* file = open_file(fd)) return read_device(*file, buffer, size);
+    return outside(fd, POLLIN, [&] { return REAL(read)(fd, buffer, size); });
+}
+
+SHIM_EXPORT ssize_t __read_chk(int fd, void* buffer, size_t size, size_t room) {
+    if (size > room) __builtin_trap();
+    return read(fd, buffer, size);
+}
+
+SHIM_EXPORT ssize_t write(int fd, const void* data, size_t size) {
+    if (OpenFile* file = open_file(fd)) return write_device(*file, data, size);
+    if (size <= PIPE_BUF || goes_straight(fd))
+        return outside(fd, POLLOUT, [&] { return REAL(write)(fd, data, size); });
+    // A pipe with room for something takes no more than that without blocking in the host.
+    ssize_t written = 0;
+    while (static_cast<size_t>(written) < size) {
+        const size_t part = std::min<size_t>(size - static_cast<size_t>(written), PIPE_BUF);
+        const char* from = static_cast<const char*>(data) + written;
+        const ssize_t result = outside(fd, POLLOUT, [&] { return REAL(write)(fd, from, part); });
+        if (result < 0) return written > 0 ? written : result;
+        written += result;
+    }
+    return written;
+}
+
+SHIM_EXPORT ssize_t readv(int fd, const iovec* parts, int count) {
+    OpenFile* file = open_file(fd);
+    if (file == nullptr) return outside(fd, POLLIN, [&] { return REAL(readv)(fd, parts, count); });
+    char data[wire::kMaximumData];
+    std::size_t size = 0;
+    for (int i = 0; i < count; ++i)
+        size += parts[i].iov_len;
+    const std::int64_t result = read_device(*file, data, std::min(size, sizeof data));
+    const char* cursor = data;
+    std::int64_t left = result;
+    for (int i = 0; i < count && left > 0; ++i) {
+        const auto part = std::min<std::size_t>(parts[i].iov_len, static_cast<std::size_t>(left));
+        std::memcpy(parts[i].iov_base, cursor, part);
+        cursor += part;
+        left -= static_cast<std::int64_t>(part);
+    }
+    return result;
+}
+
+SHIM_EXPORT ssize_t writev(int fd, const iovec* parts, int count) {
+    OpenFile* file = open_file(fd);
+    if (file == nullptr) return outside(fd, POLLOUT, [&] { return REAL(writev)(fd, parts, count); });
+    char data[wire::kMaximumData];
+    std::size_t size = 0;
+    for (int i = 0; i < count; ++i) {
+        const std::size_t part = std::min(parts[i].iov_len, sizeof data - size);
+        std::memcpy(data + size, parts[i].iov_base, part);
+        size += part;
+    }
+    return write_device(*file, data, size);
+}

@@ -1,0 +1,83 @@
+#pragma once
+// Descriptors of the program that stand for the node's devices. Behind each lies an open /dev/null, so that
+// its number, dup(), close-on-exec and the like are the host's business.
+
+#include "linuxboard/shim/preload/threads/scheduler.h"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace puckloop::shim {
+
+/// One open file description; several descriptors may share it.
+struct OpenFile {
+    enum class Kind { Tty, I2c, Random, Video };
+    Kind kind = Kind::Tty;
+    const char* path = "";
+    int handle = -1;
+    int references = 0;
+    int flags = 0;    ///< O_ACCMODE and O_NONBLOCK
+    int device = -1;  ///< index into the page's list; -1: none of the node's
+    // i2c-dev, per open file
+    std::uint16_t slave = 0;
+    std::uint32_t timeout_ms = 1000;
+};
+
+/// The device behind a descriptor, or nullptr. Always nullptr while nothing is conducted.
+OpenFile* open_file(int fd);
+/// The device a path names, or nullptr: index into the page's list, or kRandomDevice.
+inline constexpr int kNoDevice = -1;
+inline constexpr int kRandomDevice = -2;
+/// A device of the node, named by a process that is outside of simulated time.
+inline constexpr int kForbiddenDevice = -3;
+int device_of(const char* path);
+
+/// Opens a device; a descriptor, or -1 and errno.
+int open_device(int device, int flags);
+/// One descriptor as a program leaves it to its successor in the same process.
+struct FileEntry {
+    int fd = -1;
+    int same_as = -1;  ///< first descriptor of the same open file
+    OpenFile file;
+};
+/// Number of descriptors written to `list`.
+std::size_t open_files(FileEntry* list, std::size_t most);
+/// Takes over what open_files() gave, except what the host has closed since (FD_CLOEXEC).
+void take_over_files(FileEntry* list, std::size_t count);
+
+/// Another descriptor for the same open file.
+void share_file(int from, int to);
+/// Forgets the descriptor; the last one closes the device. False if it is none of ours.
+bool release_file(int fd);
+
+std::int64_t read_device(OpenFile& file, void* buffer, std::size_t size);
+std::int64_t write_device(OpenFile& file, const void* data, std::size_t size);
+/// One or several I2C messages, as struct i2c_msg; number of messages done, or -1 and errno.
+int transfer(OpenFile& file, void* messages, unsigned count);
+/// video_calls.cpp: a frame, or what is left of it, and the ioctls of a camera.
+std::int64_t read_video(OpenFile& file, void* buffer, std::size_t size);
+int video_ioctl(OpenFile& file, unsigned long request, void* argument);
+int device_ioctl(OpenFile& file, unsigned long request, void* argument, const void* caller);
+
+/// "program+0x1234" or "main" of an address in the program.
+const char* place_of(const void* address);
+
+/// Deterministic bytes instead of the host's random ones.
+void random_bytes(void* buffer, std::size_t size);
+
+// external.cpp: descriptors that are not devices (pipes, sockets) and may block the one running thread
+/// Waits until the host says that `fd` is ready for `events`; false if a signal came first.
+bool await_external(int fd, short events);
+/// Something was written or closed: those who wait outside look again.
+void external_changed();
+/// The same for the program's other processes, where it has some.
+void tell_others();
+void mark_internal(int fd);
+void forget_internal(int fd);
+bool is_internal(int fd);
+/// The key on which threads wait that watch outside descriptors.
+const void* external_key();
+/// How often outside descriptors are looked at, in simulated time.
+inline constexpr Time kExternalPeriod = kMillisecond;
+
+}  // namespace puckloop::shim

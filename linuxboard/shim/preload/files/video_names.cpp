@@ -1,0 +1,67 @@
+#include "linuxboard/shim/preload/files/video_names.h"
+
+#include "linuxboard/shim/preload/files/open_file.h"
+#include "linuxboard/shim/preload/real.h"
+
+#include <sys/mman.h>
+#include <sys/sysmacros.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+namespace puckloop::shim {
+
+int video_minor(const char* path) {
+    const int device = device_of(path);
+    if (device < 0 || page().devices[device].kind != wire::DeviceKind::Video) return -1;
+    const char* digits = path + std::strlen(path);
+    while (digits > path && digits[-1] >= '0' && digits[-1] <= '9')
+        --digits;
+    return *digits == '\0' ? device : std::atoi(digits);
+}
+
+int open_video_uevent(const char* path) {
+    constexpr char kStart[] = "/sys/dev/char/81:";
+    if (path == nullptr || std::strncmp(path, kStart, sizeof kStart - 1) != 0 || !is_linked()) return -1;
+    for (const wire::DeviceName& device : page().devices) {
+        if (device.kind != wire::DeviceKind::Video) continue;
+        const int number = video_minor(device.path);
+        char name[64];
+        std::snprintf(name, sizeof name, "%s%d/uevent", kStart, number);
+        if (number < 0 || std::strcmp(path, name) != 0) continue;
+        char text[160];
+        const int size = std::snprintf(text, sizeof text, "MAJOR=%d\nMINOR=%d\nDEVNAME=video%d\n",
+                                       kVideoMajor, number, number);
+        const int fd = memfd_create("uevent", MFD_CLOEXEC);
+        if (fd < 0) return -1;
+        const bool written = REAL(write)(fd, text, static_cast<std::size_t>(size)) == size;
+        lseek(fd, 0, SEEK_SET);
+        if (written) return fd;
+        REAL(close)(fd);
+        return -1;
+    }
+    return -1;
+}
+
+}  // namespace puckloop::shim
+
+using namespace puckloop::shim;
+
+namespace {
+template <typename Status>
+int as_camera(int fd, Status* status, int result) {
+    const OpenFile* file = result == 0 ? open_file(fd) : nullptr;
+    if (file != nullptr && file->kind == OpenFile::Kind::Video)
+        status->st_rdev = makedev(kVideoMajor, video_minor(file->path));
+    return result;
+}
+}  // namespace
+
+SHIM_EXPORT int fstat(int fd, struct stat* status) noexcept {
+    return as_camera(fd, status, REAL(fstat)(fd, status));
+}
+SHIM_EXPORT int fstat64(int fd, struct stat64* status) noexcept {
+    return as_camera(fd, status, REAL(fstat64)(fd, status));
+}

@@ -1,0 +1,160 @@
+// Semaphores, barriers, pthread_once. See lock_calls.cpp.
+
+#include "linuxboard/shim/preload/calls.h"
+#include "linuxboard/shim/preload/real.h"
+#include "linuxboard/shim/preload/threads/scheduler.h"
+
+#include <pthread.h>
+#include <semaphore.h>
+
+#include <cerrno>
+#include <climits>
+#include <cstdint>
+#include <cstring>
+
+using namespace puckloop::shim;
+
+namespace {
+/// The C library keeps this beside the count (struct new_sem).
+bool is_shared(const sem_t* semaphore) {
+    int shared = 0;
+    std::memcpy(&shared, semaphore->__size + sizeof(std::uint64_t), sizeof shared);
+    return shared != 0;
+}
+
+int wait_semaphore(sem_t* semaphore, Time deadline) {
+    mark_call("sem_wait");
+    pthread_testcancel();
+    charge(page().charges.sync);
+    while (REAL(sem_trywait)(semaphore) != 0) {
+        if (errno != EAGAIN) return -1;
+        if (deadline <= now()) {
+            errno = ETIMEDOUT;
+            return -1;
+        }
+        WaitOptions options;
+        options.deadline = deadline;
+        options.interruptible = true;
+        options.cancellable = true;
+        const Wake reason = park_shared(semaphore, options, is_shared(semaphore));
+        if (reason == Wake::Signal) {
+            errno = EINTR;
+            return -1;
+        }
+    }
+    return 0;
+}
+}  // namespace
+
+SHIM_EXPORT int sem_wait(sem_t* semaphore) {
+    return active() ? wait_semaphore(semaphore, kNever) : REAL(sem_wait)(semaphore);
+}
+
+SHIM_EXPORT int sem_clockwait(sem_t* semaphore, clockid_t clock, const timespec* limit) {
+    if (!active()) return REAL(sem_clockwait)(semaphore, clock, limit);
+    return wait_semaphore(semaphore, absolute_deadline(clock, *limit));
+}
+
+SHIM_EXPORT int sem_timedwait(sem_t* semaphore, const timespec* limit) {
+    if (!active()) return REAL(sem_timedwait)(semaphore, limit);
+    return sem_clockwait(semaphore, CLOCK_REALTIME, limit);
+}
+
+SHIM_EXPORT int sem_trywait(sem_t* semaphore) noexcept {
+    if (active()) charge(page().charges.sync);
+    return REAL(sem_trywait)(semaphore);
+}
+
+SHIM_EXPORT int sem_post(sem_t* semaphore) noexcept {
+    const int result = REAL(sem_post)(semaphore);
+    if (!active()) return result;
+    wake(semaphore, 1);
+    charge(page().charges.sync);
+    return result;
+}
+
+// Barriers and pthread_once: their state is ours while threads wait.
+
+namespace {
+struct Barrier {
+    pthread_barrier_t* object = nullptr;
+    unsigned needed = 0;
+    unsigned arrived = 0;
+    unsigned round = 0;
+};
+constexpr int kMostBarriers = 64;
+Barrier barriers[kMostBarriers];
+
+Barrier* find_barrier(const pthread_barrier_t* object) {
+    for (Barrier& barrier : barriers) {
+        if (barrier.object == object) return &barrier;
+    }
+    return nullptr;
+}
+
+struct OnceRun {
+    pthread_once_t* control = nullptr;
+    Thread* runner = nullptr;
+};
+constexpr int kMostOnceRuns = 64;
+OnceRun once_runs[kMostOnceRuns];
+
+OnceRun* find_once(const pthread_once_t* control) {
+    for (OnceRun& run : once_runs) {
+        if (run.control == control) return &run;
+    }
+    return nullptr;
+}
+}  // namespace
+
+SHIM_EXPORT int pthread_barrier_init(pthread_barrier_t* object, const pthread_barrierattr_t* attributes,
+                                     unsigned count) noexcept {
+    const int error = REAL(pthread_barrier_init)(object, attributes, count);
+    if (error != 0 || !active()) return error;
+    Barrier* barrier = find_barrier(object);
+    if (barrier == nullptr) barrier = find_barrier(nullptr);
+    if (barrier == nullptr) {
+        note("more than %d barriers are not supported", kMostBarriers);
+        return EAGAIN;
+    }
+    *barrier = {object, count, 0, 0};
+    return 0;
+}
+
+SHIM_EXPORT int pthread_barrier_destroy(pthread_barrier_t* object) noexcept {
+    if (Barrier* barrier = active() ? find_barrier(object) : nullptr) *barrier = {};
+    return REAL(pthread_barrier_destroy)(object);
+}
+
+SHIM_EXPORT int pthread_barrier_wait(pthread_barrier_t* object) noexcept {
+    Barrier* barrier = active() ? find_barrier(object) : nullptr;
+    if (barrier == nullptr) return REAL(pthread_barrier_wait)(object);
+    mark_call("pthread_barrier_wait");
+    charge(page().charges.sync);
+    if (++barrier->arrived == barrier->needed) {
+        barrier->arrived = 0;
+        ++barrier->round;
+        wake(barrier, INT_MAX);
+        return PTHREAD_BARRIER_SERIAL_THREAD;
+    }
+    for (const unsigned round = barrier->round; barrier->round == round;)
+        park(barrier);
+    return 0;
+}
+
+SHIM_EXPORT int pthread_once(pthread_once_t* control, void (*routine)()) {
+    constexpr int kDone = 2;
+    if (!active() || __atomic_load_n(control, __ATOMIC_ACQUIRE) == kDone)
+        return REAL(pthread_once)(control, routine);
+    while (const OnceRun* run = find_once(control)) {
+        if (run->runner == self()) break;  // a routine that calls itself: hangs in the C library, as it would
+        park(control);
+    }
+    OnceRun* run = find_once(nullptr);
+    if (run == nullptr) return REAL(pthread_once)(control, routine);
+    *run = {control, self()};
+    const int error = REAL(pthread_once)(control, routine);
+    *run = {};
+    wake(control, INT_MAX);
+    return error;
+}

@@ -1,0 +1,194 @@
+// Clocks and sleeping. Simulated time 0 stands at the node's epoch (wall clock) and uptime (monotonic
+// clocks).
+
+#include "base/random.h"
+#include "linuxboard/shim/preload/calls.h"
+#include "linuxboard/shim/preload/real.h"
+#include "linuxboard/shim/preload/threads/scheduler.h"
+
+#include <sys/time.h>
+#include <sys/timeb.h>
+#include <sys/times.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <climits>
+
+using namespace puckloop::shim;
+
+namespace puckloop::shim {
+
+namespace {
+constexpr std::int64_t kNanosecondsPerSecond = 1'000'000'000;
+}
+
+bool is_wall_clock(clockid_t clock) {
+    return clock == CLOCK_REALTIME || clock == CLOCK_REALTIME_COARSE || clock == CLOCK_REALTIME_ALARM ||
+           clock == CLOCK_TAI;
+}
+
+static std::int64_t clock_origin(clockid_t clock) {
+    return is_wall_clock(clock) ? page().epoch : page().uptime;
+}
+
+std::int64_t clock_nanoseconds(clockid_t clock) {
+    return clock_origin(clock) + now() / kNanosecond;
+}
+
+timespec timespec_of_nanoseconds(std::int64_t nanoseconds) {
+    timespec out{};
+    out.tv_sec = nanoseconds / kNanosecondsPerSecond;
+    out.tv_nsec = nanoseconds % kNanosecondsPerSecond;
+    return out;
+}
+
+Time from_timespec(const timespec& time) {
+    if (time.tv_sec > kNever / kSecond - 1) return kNever;
+    return time.tv_sec * kSecond + time.tv_nsec * kNanosecond;
+}
+
+timespec to_timespec(Time time) {
+    timespec out{};
+    out.tv_sec = time / kSecond;
+    out.tv_nsec = time % kSecond / kNanosecond;
+    return out;
+}
+
+Time time_after(Time duration) {
+    const Time start = now();
+    if (duration < 0) return start;
+    return start > kNever - duration ? kNever : start + duration;
+}
+
+Time absolute_deadline(clockid_t clock, const timespec& time) {
+    constexpr std::int64_t kLast = kNever / kNanosecond;
+    if (time.tv_sec >= INT64_MAX / kNanosecondsPerSecond) return kNever;
+    const std::int64_t relative = time.tv_sec * kNanosecondsPerSecond + time.tv_nsec - clock_origin(clock);
+    if (relative > kLast) return kNever;
+    return relative < 0 ? 0 : relative * kNanosecond;
+}
+
+bool is_valid(const timespec& time) {
+    return time.tv_nsec >= 0 && time.tv_nsec < kNanosecondsPerSecond;
+}
+
+/// When a sleep that was to end at `deadline` does. Nothing is drawn without jitter.
+static Time woken(Time deadline) {
+    const wire::Oversleep& late = page().oversleep;
+    Time more = late.mean;
+    if (late.jitter > 0) {
+        static RandomStream stream(page().seed, "oversleep");
+        more += static_cast<Time>(static_cast<double>(late.jitter) * stream.normal());
+    }
+    return more <= 0 || deadline > kNever - more ? deadline : deadline + more;
+}
+
+/// Sleeps; true if a signal cut it short. Even a sleep of nothing gives way once.
+bool sleep_until(Time deadline) {
+    mark_call("sleep");
+    charge(page().charges.yield);
+    deadline = woken(deadline);
+    if (deadline <= now()) {
+        yield_token();
+        return false;
+    }
+    static const char kSleepKey = 0;
+    WaitOptions options;
+    options.deadline = deadline;
+    options.interruptible = true;
+    options.cancellable = true;
+    return park(&kSleepKey, options) == Wake::Signal;
+}
+
+}  // namespace puckloop::shim
+
+SHIM_EXPORT int clock_gettime(clockid_t clock, timespec* time) noexcept {
+    if (!active()) return REAL(clock_gettime)(clock, time);
+    mark_call("clock_gettime");
+    charge(page().charges.clock);
+    // Processor time: what the calls of the program have cost is not kept apart from waiting.
+    *time = timespec_of_nanoseconds(clock_nanoseconds(clock));
+    return 0;
+}
+
+SHIM_EXPORT int clock_getres(clockid_t clock, timespec* resolution) noexcept {
+    if (!active()) return REAL(clock_getres)(clock, resolution);
+    if (resolution != nullptr) *resolution = timespec{0, 1};
+    return 0;
+}
+
+SHIM_EXPORT int gettimeofday(timeval* time, void* zone) noexcept {
+    if (!active()) return REAL(gettimeofday)(time, zone);
+    mark_call("gettimeofday");
+    charge(page().charges.clock);
+    if (time != nullptr) {
+        const timespec wall = timespec_of_nanoseconds(clock_nanoseconds(CLOCK_REALTIME));
+        time->tv_sec = wall.tv_sec;
+        time->tv_usec = wall.tv_nsec / 1000;
+    }
+    return 0;
+}
+
+SHIM_EXPORT time_t time(time_t* out) noexcept {
+    if (!active()) return REAL(time)(out);
+    mark_call("time");
+    charge(page().charges.clock);
+    const time_t seconds = clock_nanoseconds(CLOCK_REALTIME) / kNanosecondsPerSecond;
+    if (out != nullptr) *out = seconds;
+    return seconds;
+}
+
+SHIM_EXPORT int timespec_get(timespec* time, int base) noexcept {
+    if (!active()) return REAL(timespec_get)(time, base);
+    clock_gettime(CLOCK_REALTIME, time);
+    return base;
+}
+
+SHIM_EXPORT clock_t clock() noexcept {
+    if (!active()) return REAL(clock)();
+    charge(page().charges.clock);
+    return now() / (kSecond / CLOCKS_PER_SEC);
+}
+
+SHIM_EXPORT clock_t times(tms* buffer) noexcept {
+    if (!active()) return REAL(times)(buffer);
+    charge(page().charges.clock);
+    const clock_t ticks = clock_nanoseconds(CLOCK_MONOTONIC) / (kNanosecondsPerSecond / sysconf(_SC_CLK_TCK));
+    if (buffer != nullptr) *buffer = tms{ticks, 0, 0, 0};
+    return ticks;
+}
+
+SHIM_EXPORT int clock_nanosleep(clockid_t clock, int flags, const timespec* request, timespec* remain) {
+    if (!active()) return REAL(clock_nanosleep)(clock, flags, request, remain);
+    if (!is_valid(*request)) return EINVAL;
+    const bool is_absolute = (flags & TIMER_ABSTIME) != 0;
+    const Time deadline =
+        is_absolute ? absolute_deadline(clock, *request) : time_after(from_timespec(*request));
+    if (!sleep_until(deadline)) return 0;
+    if (!is_absolute && remain != nullptr) *remain = to_timespec(deadline > now() ? deadline - now() : 0);
+    return EINTR;
+}
+
+SHIM_EXPORT int nanosleep(const timespec* request, timespec* remain) {
+    if (!active()) return REAL(nanosleep)(request, remain);
+    const int error = clock_nanosleep(CLOCK_MONOTONIC, 0, request, remain);
+    if (error == 0) return 0;
+    errno = error;
+    return -1;
+}
+
+SHIM_EXPORT int usleep(useconds_t microseconds) {
+    if (!active()) return REAL(usleep)(microseconds);
+    if (!sleep_until(time_after(microseconds * kMicrosecond))) return 0;
+    errno = EINTR;
+    return -1;
+}
+
+SHIM_EXPORT unsigned sleep(unsigned seconds) {
+    if (!active()) return REAL(sleep)(seconds);
+    const Time deadline = time_after(seconds * kSecond);
+    if (!sleep_until(deadline)) return 0;
+    const Time left = deadline - now();
+    return left <= 0 ? 0 : static_cast<unsigned>((left + kSecond / 2) / kSecond);
+}

@@ -1,0 +1,232 @@
+// alarm, setitimer, timerfd, pause and waiting for signals.
+
+#include "linuxboard/shim/preload/calls.h"
+#include "linuxboard/shim/preload/files/open_file.h"
+#include "linuxboard/shim/preload/real.h"
+#include "linuxboard/shim/preload/time/timers.h"
+
+#include <signal.h>
+#include <sys/eventfd.h>
+#include <sys/time.h>
+#include <sys/timerfd.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <cerrno>
+
+using namespace puckloop::shim;
+
+namespace {
+Time from_timeval(const timeval& time) {
+    return time.tv_sec * kSecond + time.tv_usec * kMicrosecond;
+}
+timeval to_timeval(Time time) {
+    return {time / kSecond, time % kSecond / kMicrosecond};
+}
+Time left_of(const Timer& timer) {
+    return timer.deadline == kNever ? 0 : std::max<Time>(timer.deadline - now(), 1);
+}
+
+itimerspec read_timer(const Timer& timer) {
+    return {to_timespec(timer.interval), to_timespec(left_of(timer))};
+}
+void set_timer(Timer& timer, bool absolute, const itimerspec& value, itimerspec* old) {
+    if (old != nullptr) *old = read_timer(timer);
+    const Time first = from_timespec(value.it_value);
+    timer.interval = from_timespec(value.it_interval);
+    timer.deadline = first == 0 ? kNever
+                     : absolute ? absolute_deadline(timer.clock, value.it_value)
+                                : time_after(first);
+}
+
+/// Waits for one of `set`; the signal's number, or 0 at the deadline.
+int await_signal(const sigset_t* set, Time deadline) {
+    mark_call("sigwait");
+    pthread_testcancel();
+    charge(page().charges.sync);
+    Thread* me = self();
+    me->awaited_signals = set;
+    me->taken_signal = 0;
+    static const char key = 0;
+    WaitOptions options;
+    options.deadline = deadline;
+    options.cancellable = true;
+    park(&key, options);
+    me->awaited_signals = nullptr;
+    return me->taken_signal;
+}
+}  // namespace
+
+SHIM_EXPORT unsigned alarm(unsigned seconds) noexcept {
+    if (!active()) return REAL(alarm)(seconds);
+    charge(page().charges.clock);
+    Timer& timer = real_timer();
+    const Time left = left_of(timer);
+    timer.signal = SIGALRM;
+    timer.interval = 0;
+    timer.deadline = seconds == 0 ? kNever : time_after(seconds * kSecond);
+    return static_cast<unsigned>((left + kSecond - 1) / kSecond);
+}
+
+SHIM_EXPORT useconds_t ualarm(useconds_t microseconds, useconds_t interval) noexcept {
+    if (!active()) return REAL(ualarm)(microseconds, interval);
+    charge(page().charges.clock);
+    Timer& timer = real_timer();
+    const Time left = left_of(timer);
+    timer.signal = SIGALRM;
+    timer.interval = interval * kMicrosecond;
+    timer.deadline = microseconds == 0 ? kNever : time_after(microseconds * kMicrosecond);
+    return static_cast<useconds_t>(left / kMicrosecond);
+}
+
+SHIM_EXPORT int getitimer(__itimer_which_t which, itimerval* value) noexcept {
+    if (!active() || which != ITIMER_REAL) return REAL(getitimer)(which, value);
+    *value = {to_timeval(real_timer().interval), to_timeval(left_of(real_timer()))};
+    return 0;
+}
+
+SHIM_EXPORT int setitimer(__itimer_which_t which, const itimerval* value, itimerval* old) noexcept {
+    if (!active()) return REAL(setitimer)(which, value, old);
+    if (which != ITIMER_REAL) {
+        note("setitimer: timers of processor time are not supported");
+        errno = EINVAL;
+        return -1;
+    }
+    charge(page().charges.clock);
+    if (old != nullptr) getitimer(which, old);
+    Timer& timer = real_timer();
+    timer.signal = SIGALRM;
+    timer.interval = from_timeval(value->it_interval);
+    const Time first = from_timeval(value->it_value);
+    timer.deadline = first == 0 ? kNever : time_after(first);
+    return 0;
+}
+
+SHIM_EXPORT int timer_create(clockid_t clock, sigevent* event, timer_t* id) noexcept {
+    if (!active()) return REAL(timer_create)(clock, event, id);
+    charge(page().charges.clock);
+    if (event != nullptr && event->sigev_notify != SIGEV_SIGNAL && event->sigev_notify != SIGEV_NONE) {
+        note(
+            "timer_create: timers that start threads are not supported (signals, setitimer and timerfd are)");
+        errno = ENOTSUP;
+        return -1;
+    }
+    Timer* timer = new_timer(-1);
+    if (timer == nullptr) {
+        errno = EAGAIN;
+        return -1;
+    }
+    timer->clock = clock;
+    timer->signal = event == nullptr ? SIGALRM : event->sigev_notify == SIGEV_SIGNAL ? event->sigev_signo : 0;
+    *id = timer;
+    return 0;
+}
+
+SHIM_EXPORT int timer_settime(timer_t id, int flags, const itimerspec* value, itimerspec* old) noexcept {
+    if (!active()) return REAL(timer_settime)(id, flags, value, old);
+    charge(page().charges.clock);
+    set_timer(*static_cast<Timer*>(id), (flags & TIMER_ABSTIME) != 0, *value, old);
+    return 0;
+}
+
+SHIM_EXPORT int timer_gettime(timer_t id, itimerspec* value) noexcept {
+    if (!active()) return REAL(timer_gettime)(id, value);
+    *value = read_timer(*static_cast<const Timer*>(id));
+    return 0;
+}
+
+SHIM_EXPORT int timer_getoverrun(timer_t id) noexcept {
+    return active() ? 0 : REAL(timer_getoverrun)(id);
+}
+
+SHIM_EXPORT int timer_delete(timer_t id) noexcept {
+    if (!active()) return REAL(timer_delete)(id);
+    *static_cast<Timer*>(id) = {};
+    return 0;
+}
+
+SHIM_EXPORT int timerfd_create(clockid_t clock, int flags) noexcept {
+    if (!active()) return REAL(timerfd_create)(clock, flags);
+    charge(page().charges.device);
+    const int fd = REAL(eventfd)(0, ((flags & TFD_NONBLOCK) != 0 ? EFD_NONBLOCK : 0) |
+                                        ((flags & TFD_CLOEXEC) != 0 ? EFD_CLOEXEC : 0));
+    if (fd < 0) return fd;
+    mark_internal(fd);
+    Timer* timer = new_timer(fd);
+    if (timer == nullptr) {
+        REAL(close)(fd);
+        errno = EMFILE;
+        return -1;
+    }
+    timer->clock = clock;
+    return fd;
+}
+
+SHIM_EXPORT int timerfd_gettime(int fd, itimerspec* value) noexcept {
+    const Timer* timer = active() ? timer_of(fd) : nullptr;
+    if (timer == nullptr) return REAL(timerfd_gettime)(fd, value);
+    *value = read_timer(*timer);
+    return 0;
+}
+
+SHIM_EXPORT int timerfd_settime(int fd, int flags, const itimerspec* value, itimerspec* old) noexcept {
+    Timer* timer = active() ? timer_of(fd) : nullptr;
+    if (timer == nullptr) return REAL(timerfd_settime)(fd, flags, value, old);
+    charge(page().charges.device);
+    set_timer(*timer, (flags & TFD_TIMER_ABSTIME) != 0, *value, old);
+    return 0;
+}
+
+SHIM_EXPORT int pause() {
+    if (!active()) return REAL(pause)();
+    mark_call("pause");
+    static const char key = 0;
+    WaitOptions options;
+    options.interruptible = true;
+    options.cancellable = true;
+    while (park(&key, options) != Wake::Signal) {
+    }
+    errno = EINTR;
+    return -1;
+}
+
+SHIM_EXPORT int sigsuspend(const sigset_t* mask) {
+    if (!active()) return REAL(sigsuspend)(mask);
+    // One that came while it was blocked ends the wait at once.
+    sigset_t waiting;
+    sigpending(&waiting);
+    bool due = false;
+    for (int number = 1; number < NSIG; ++number)
+        due = due || (sigismember(&waiting, number) == 1 && sigismember(mask, number) == 0);
+    sigset_t before;
+    pthread_sigmask(SIG_SETMASK, mask, &before);
+    if (!due) pause();
+    pthread_sigmask(SIG_SETMASK, &before, nullptr);
+    errno = EINTR;
+    return -1;
+}
+
+SHIM_EXPORT int sigwait(const sigset_t* set, int* number) {
+    if (!active()) return REAL(sigwait)(set, number);
+    *number = await_signal(set, kNever);
+    return 0;
+}
+
+SHIM_EXPORT int sigtimedwait(const sigset_t* set, siginfo_t* info, const timespec* timeout) {
+    if (!active()) return REAL(sigtimedwait)(set, info, timeout);
+    const int number = await_signal(set, timeout == nullptr ? kNever : time_after(from_timespec(*timeout)));
+    if (number == 0) {
+        errno = EAGAIN;
+        return -1;
+    }
+    if (info != nullptr) {
+        *info = {};
+        info->si_signo = number;
+    }
+    return number;
+}
+
+SHIM_EXPORT int sigwaitinfo(const sigset_t* set, siginfo_t* info) {
+    if (!active()) return REAL(sigwaitinfo)(set, info);
+    return sigtimedwait(set, info, nullptr);
+}
