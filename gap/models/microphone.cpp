@@ -8,6 +8,7 @@
 // is taken as the firmware reports it (largest minus smallest of a window).
 
 #include "gap/models/model.h"
+#include "gap/models/model_of.h"
 #include "gap/models/rows.h"
 #include "gap/models/sample_range.h"
 #include "physics/description/robot_constants.h"
@@ -26,7 +27,12 @@ constexpr double kReference = 0.1;  // m
 constexpr double kLevel = 300.0;    // counts at the reference, where nothing is stated
 constexpr double kWindow = 100.0;   // samples of the firmware's buffer
 
-class MicrophoneModel final : public Model {
+struct Numbers {
+    double level = 0.0, exponent = 0.0, directivity = 0.0, self_noise = 0.0, motor_noise = 0.0,
+           window_lost = 0.0, gaussian = 0.0, warmup_gain = 0.0, warmup_time = 0.0;
+};
+
+class MicrophoneModel final : public ModelOf<Numbers> {
   public:
     explicit MicrophoneModel(const Experiment& experiment) {
         const Rows rows(experiment, "mic", {"distance_m", "level"});
@@ -43,15 +49,15 @@ class MicrophoneModel final : public Model {
         time_ = column("t_s", 0);
         for (const double mic : column("mic", 0))
             mic_.push_back(static_cast<int>(mic));
-        level_ = add("microphone.level", "counts", kLevel);
-        exponent_ = add("microphone.exponent", "1", 1.0);
-        directivity_ = add("microphone.directivity", "1", 0.0);
-        self_noise_ = add("microphone.self_noise", "counts", 0.0);
-        motor_noise_ = add("microphone.motor_noise", "counts", 0.0);
-        window_lost_ = add("microphone.window_lost", "1", 0.0);
-        gaussian_ = add("microphone.gaussian", "1", 0.0);
-        warmup_ = add("microphone.warmup_gain", "1", 0.0);
-        warmup_time_ = add("microphone.warmup_time", "s", 300.0);
+        number(&Numbers::level, "microphone.level", "counts", kLevel);
+        number(&Numbers::exponent, "microphone.exponent", "1", 1.0);
+        number(&Numbers::directivity, "microphone.directivity", "1", 0.0);
+        number(&Numbers::self_noise, "microphone.self_noise", "counts", 0.0);
+        number(&Numbers::motor_noise, "microphone.motor_noise", "counts", 0.0);
+        number(&Numbers::window_lost, "microphone.window_lost", "1", 0.0);
+        number(&Numbers::gaussian, "microphone.gaussian", "1", 0.0);
+        number(&Numbers::warmup_gain, "microphone.warmup_gain", "1", 0.0);
+        number(&Numbers::warmup_time, "microphone.warmup_time", "s", 300.0);
         for (const int mic : mic_)
             if (gain_[static_cast<std::size_t>(mic)] < 0)
                 gain_[static_cast<std::size_t>(mic)] = add(fmt::format("microphone.gain{}", mic), "1", 1.0);
@@ -63,18 +69,18 @@ class MicrophoneModel final : public Model {
         auto& mean = out[0].mean;
         mean.resize(distance_.size());
         const auto value = [&](int index) { return v[static_cast<std::size_t>(index)]; };
-        const double warm = value(warmup_), lost = value(window_lost_);
-        const bool gaussian = value(gaussian_) != 0.0;
+        const Numbers now = numbers(v);
+        const double warm = now.warmup_gain, lost = now.window_lost;
+        const bool gaussian = now.gaussian != 0.0;
         out[0].extra.assign(gaussian ? mean.size() : 0, 0.0);
         Window window{};
         for (std::size_t i = 0; i < mean.size(); ++i) {
-            double level = amplitude_[i] > 0 ? amplitude_[i] : value(level_);
-            level *= std::pow(kReference / std::max(distance_[i], 1e-3), value(exponent_));
-            level *= (1 + value(directivity_) * std::cos(angle_[i])) *
-                     value(gain_[static_cast<std::size_t>(mic_[i])]);
-            if (warm != 0.0)
-                level *= 1 + warm * (1 - std::exp(-std::max(time_[i], 0.0) / value(warmup_time_)));
-            level += value(self_noise_) + value(motor_noise_) * std::abs(motor_[i]) / physics::kSpeedUnit;
+            double level = amplitude_[i] > 0 ? amplitude_[i] : now.level;
+            level *= std::pow(kReference / std::max(distance_[i], 1e-3), now.exponent);
+            level *=
+                (1 + now.directivity * std::cos(angle_[i])) * value(gain_[static_cast<std::size_t>(mic_[i])]);
+            if (warm != 0.0) level *= 1 + warm * (1 - std::exp(-std::max(time_[i], 0.0) / now.warmup_time));
+            level += now.self_noise + now.motor_noise * std::abs(motor_[i]) / physics::kSpeedUnit;
             if (gaussian) {
                 window.become(window_[i], lost);
                 level *= window.share;
@@ -102,8 +108,6 @@ class MicrophoneModel final : public Model {
     std::vector<double> distance_, angle_, amplitude_, window_, motor_, time_;
     std::vector<int> mic_;
     std::array<int, 8> gain_{-1, -1, -1, -1, -1, -1, -1, -1};
-    int level_ = 0, exponent_ = 0, directivity_ = 0, self_noise_ = 0, motor_noise_ = 0, window_lost_ = 0,
-        warmup_ = 0, warmup_time_ = 0, gaussian_ = 0;
 };
 
 }  // namespace

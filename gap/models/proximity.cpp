@@ -9,8 +9,10 @@
 #include "physics/sensors/proximity.h"
 #include "gap/models/keyed_cache.h"
 #include "gap/models/model.h"
+#include "gap/models/model_of.h"
 #include "gap/models/rows.h"
 #include "gap/models/spectrum.h"
+#include "gap/stats/robust.h"
 #include "physics/description/robot_constants.h"
 
 #include <fmt/format.h>
@@ -31,9 +33,14 @@ constexpr double kGrazing = 0.02;         // cosine below which a wall is not me
 constexpr int kPhases = 8;                // of the schedule against the log's clock that are tried
 constexpr double kClearlyStronger = 1.2;  // a line's power, to believe a phase
 
-class ProximityModel final : public Model {
+/// The sensors' own, and how the laboratory's order acts.
+struct Numbers : physics::ProximityParameters {
+    double order_drift = 0.0, order_zero = 0.0;
+};
+
+class ProximityModel final : public ModelOf<Numbers> {
   public:
-    explicit ProximityModel(const Experiment& experiment) {
+    explicit ProximityModel(const Experiment& experiment) : ModelOf({physics::Parameters().proximity}) {
         const Rows rows(experiment, "sensor", {"distance_m", "reading"});
         std::vector<std::uint32_t> used;
         observables_.push_back(rows.observable("reading", NoiseKind::Carry, used));
@@ -99,43 +106,27 @@ class ProximityModel final : public Model {
         Predicted& p = out[0];
         const std::size_t n = distance_.size();
         p.mean.resize(n);
-        physics::ProximityParameters response = physics_;
+        const Numbers now = numbers(v);
         const auto value = [&](int index) { return v[static_cast<std::size_t>(index)]; };
-        response.curve = value(curve_);
-        response.amplitude = value(amplitude_);
-        response.origin = value(origin_);
-        response.exponent = value(exponent_);
-        response.saturation = value(saturation_);
-        response.reach = value(reach_);
-        response.compression = value(compression_);
-        response.extra_exponent = value(extra_exponent_);
-        const double shift = value(shift_);
-        const double scale = value(scale_), exponent = value(incidence_), pair = value(pair_crosstalk_),
-                     near = value(neighbour_crosstalk_);
-        const double warm = value(warmup_), warm_time = value(warmup_time_), sag = value(sag_),
-                     age = value(age_);
-        const double light_offset = value(ambient_offset_), light_gain = value(ambient_gain_),
-                     volt = value(per_volt_), drift = value(drift_), zero = value(drift_zero_);
         // What the curve says changes with few parameters: the rest reuse it. One sensor's direction moves
         // only that sensor's rows.
-        const std::vector<double> key{response.curve,
-                                      response.amplitude,
-                                      response.origin,
-                                      response.exponent,
-                                      response.saturation,
-                                      response.reach,
-                                      response.compression,
-                                      response.extra_exponent,
-                                      shift,
-                                      exponent,
-                                      age};
+        std::vector<double> key{now.curve,
+                                now.amplitude,
+                                now.origin,
+                                now.exponent,
+                                now.saturation,
+                                now.reach,
+                                now.compression,
+                                now.extra_exponent,
+                                now.distance_shift,
+                                now.incidence_exponent,
+                                now.age,
+                                0.0};
         for (std::size_t s = 0; s < rows_of_.size(); ++s) {
             if (rows_of_[s].empty()) continue;
             const double turned = value(first_of_.direction[s]) - angle0_[s];
-            auto own = key;
-            own.push_back(turned);
-            const auto seen =
-                seen_[s].get(own, [&] { return see(response, shift, exponent, age, s, turned); });
+            key.back() = turned;
+            const auto seen = seen_[s].get(key, [&] { return see(now, s, turned); });
             for (std::size_t k = 0; k < seen->size(); ++k)
                 p.mean[rows_of_[s][k]] = (*seen)[k];
         }
@@ -143,18 +134,20 @@ class ProximityModel final : public Model {
             const auto s = static_cast<std::size_t>(sensor_[i]);
             double seen = p.mean[i];
             if (!object_.empty()) seen *= value(object_parameter_[static_cast<std::size_t>(object_[i])]);
-            if (pair != 0.0) seen += pair * (pair_[i] - idle(v, s + kOpposite));
-            if (near != 0.0)
-                seen += near * (neighbour_[i] - idle(v, s + 1) - idle(v, s + physics::kProximitySensors - 1));
-            double gain = scale * value(first_of_.gain[s]) * (1 - light_gain * ambient_[i]);
-            if (warm != 0.0) gain *= 1 + warm * (1 - std::exp(-std::max(time_[i], 0.0) / warm_time));
-            if (!battery_.empty()) gain *= 1 + volt * battery_[i];
-            if (!order_.empty()) gain *= 1 + drift * (order_[i] - zero * half_order_);
-            p.mean[i] = (gain * seen + value(first_of_.offset[s]) + light_offset * ambient_[i]) *
-                        (1 - sag * stepping_[i]);
+            if (now.pair_crosstalk != 0.0) seen += now.pair_crosstalk * (pair_[i] - idle(v, s + kOpposite));
+            if (now.neighbour_crosstalk != 0.0)
+                seen += now.neighbour_crosstalk *
+                        (neighbour_[i] - idle(v, s + 1) - idle(v, s + physics::kProximitySensors - 1));
+            double gain = now.scale * value(first_of_.gain[s]) * (1 - now.ambient_gain * ambient_[i]);
+            if (now.warmup_gain != 0.0)
+                gain *= 1 + now.warmup_gain * (1 - std::exp(-std::max(time_[i], 0.0) / now.warmup_time));
+            if (!battery_.empty()) gain *= 1 + now.battery_gain * battery_[i];
+            if (!order_.empty()) gain *= 1 + now.order_drift * (order_[i] - now.order_zero * half_order_);
+            p.mean[i] = (gain * seen + value(first_of_.offset[s]) + now.ambient_offset * ambient_[i]) *
+                        (1 - now.motor_sag * stepping_[i]);
         }
-        p.floor = value(threshold_);
-        noise(v, p);
+        p.floor = now.threshold;
+        noise(now, p);
     }
 
     std::vector<double> starts(std::string_view parameter) const override {
@@ -184,7 +177,7 @@ class ProximityModel final : public Model {
         Prediction prediction;
         double best = 0.0, least = INFINITY;
         const auto look_at = [&](double age) {
-            values[static_cast<std::size_t>(age_)] = age;
+            values[static_cast<std::size_t>(find("proximity.age"))] = age;
             predict(values, prediction);
             double sum = 0.0;
             for (std::size_t i = 0; i < velocity_.size(); ++i)
@@ -229,7 +222,7 @@ class ProximityModel final : public Model {
     /// 1 for the rows of sensors that a foreign source may hit: those side by side on the ring whose repeats
     /// at one place jump clearly more often than the others', or all.
     std::vector<double> exposed() {
-        constexpr double kJump = 2.5, kMad = 1.4826;
+        constexpr double kJump = 2.5;
         constexpr double kBelieved = 10.0;  // log likelihood ratio, above the number of arcs that are tried
         constexpr int kRing = physics::kProximitySensors;
         std::vector<double> sizes;
@@ -242,9 +235,7 @@ class ProximityModel final : public Model {
             }
         std::vector<double> all = others_;
         if (sizes.size() < 2 * kRing) return all;
-        std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2),
-                         sizes.end());
-        const double limit = kJump * kMad * std::max(sizes[sizes.size() / 2], 1.0);
+        const double limit = kJump * stats::kMadToSigma * std::max(stats::upper_median(sizes), 1.0);
         std::vector<double> beyond;
         std::array<double, kRing> jumps{}, counts{};
         for (const auto& [sensor, size] : repeats) {
@@ -252,8 +243,7 @@ class ProximityModel final : public Model {
             jumps[static_cast<std::size_t>(sensor)] += size > limit ? 1 : 0;
             if (size > limit) beyond.push_back(size);
         }
-        std::sort(beyond.begin(), beyond.end());
-        if (!beyond.empty()) jump_size_ = beyond[beyond.size() / 2];
+        if (!beyond.empty()) jump_size_ = stats::upper_median(beyond);
         const auto fit = [](double yes, double of) {
             return yes <= 0 || yes >= of ? 0.0
                                          : yes * std::log(yes / of) + (of - yes) * std::log1p(-yes / of);
@@ -309,22 +299,22 @@ class ProximityModel final : public Model {
     }
 
     /// Reflected counts of a sensor's rows before gains: the part that costs time.
-    std::vector<double> see(const physics::ProximityParameters& response, double shift, double exponent,
-                            double age, std::size_t sensor, double turned) const {
+    std::vector<double> see(const Numbers& now, std::size_t sensor, double turned) const {
         std::vector<double> all;
         all.reserve(rows_of_[sensor].size());
         const double turned_cosine = std::cos(turned), turned_sine = std::sin(turned);
         for (const std::size_t i : rows_of_[sensor]) {
             const double normal =
-                (distance_[i] - age * velocity_[i]) * cosine_[i];  // from the sensor to the wall's plane
+                (distance_[i] - now.age * velocity_[i]) * cosine_[i];  // from the sensor to the wall's plane
             double seen = 0.0;
             for (std::size_t ray = i * spread_.size(); ray < (i + 1) * spread_.size(); ++ray) {
                 const double cosine = turned == 0.0
                                           ? ray_cosine_[ray]
                                           : ray_cosine_[ray] * turned_cosine + ray_sine_[ray] * turned_sine;
                 if (cosine < kGrazing) continue;
-                const double weight = exponent == 1.0 ? cosine : std::pow(cosine, exponent);
-                seen += weight * physics::proximity_response(response, normal / cosine + shift);
+                const double weight =
+                    now.incidence_exponent == 1.0 ? cosine : std::pow(cosine, now.incidence_exponent);
+                seen += weight * physics::proximity_response(now, normal / cosine + now.distance_shift);
             }
             all.push_back(seen * reflectivity_[i] / static_cast<double>(spread_.size()));
         }
@@ -368,44 +358,46 @@ class ProximityModel final : public Model {
 
     /// `table`: the measured curve, which has no law; a leading '-' hides what has no say.
     void declare(const std::vector<double>& objects, bool table) {
-        const physics::Parameters defaults;
-        physics_ = defaults.proximity;
-        curve_ = add("proximity.curve", "choice", physics_.curve);
-        amplitude_ =
-            add(table ? "-proximity.amplitude" : "proximity.amplitude", "counts", physics_.amplitude);
-        origin_ = add(table ? "-proximity.origin" : "proximity.origin", "m", physics_.origin);
-        exponent_ = add(table ? "-proximity.exponent" : "proximity.exponent", "1", physics_.exponent);
-        saturation_ =
-            add(table ? "-proximity.saturation" : "proximity.saturation", "counts", physics_.saturation);
-        reach_ = add("proximity.reach", "m", physics_.reach);
-        compression_ =
-            add(table ? "proximity.compression" : "-proximity.compression", "1/counts", physics_.compression);
-        extra_exponent_ = add(table ? "proximity.extra_exponent" : "-proximity.extra_exponent", "1",
-                              physics_.extra_exponent);
-        shift_ = add(table ? "proximity.distance_shift" : "-proximity.distance_shift", "m", 0.0);
-        scale_ = add("proximity.scale", "1", 1.0);
-        incidence_ = add("proximity.incidence_exponent", "1", physics_.incidence_exponent);
-        pair_crosstalk_ = add("proximity.pair_crosstalk", "1", 0.0);
-        neighbour_crosstalk_ = add("proximity.neighbour_crosstalk", "1", 0.0);
-        warmup_ = add("proximity.warmup_gain", "1", 0.0);
-        warmup_time_ = add("proximity.warmup_time", "s", physics_.warmup_time);
-        sag_ = add("proximity.motor_sag", "1", 0.0);
-        age_ = add("proximity.age", "s", 0.0);
-        ambient_offset_ = add("proximity.ambient_offset", "counts", 0.0);
-        ambient_gain_ = add("proximity.ambient_gain", "1", 0.0);
-        ambient_noise_ = add("proximity.ambient_noise", "counts", 0.0);
-        per_volt_ = add("proximity.battery_gain", "1/V", 0.0);
-        drift_ = add("proximity.order_drift", "1", 0.0);
+        number(&Numbers::curve, "proximity.curve", "choice", physics_.curve);
+        number(&Numbers::amplitude, table ? "-proximity.amplitude" : "proximity.amplitude", "counts",
+               physics_.amplitude);
+        number(&Numbers::origin, table ? "-proximity.origin" : "proximity.origin", "m", physics_.origin);
+        number(&Numbers::exponent, table ? "-proximity.exponent" : "proximity.exponent", "1",
+               physics_.exponent);
+        number(&Numbers::saturation, table ? "-proximity.saturation" : "proximity.saturation", "counts",
+               physics_.saturation);
+        number(&Numbers::reach, "proximity.reach", "m", physics_.reach);
+        number(&Numbers::compression, table ? "proximity.compression" : "-proximity.compression", "1/counts",
+               physics_.compression);
+        number(&Numbers::extra_exponent, table ? "proximity.extra_exponent" : "-proximity.extra_exponent",
+               "1", physics_.extra_exponent);
+        number(&Numbers::distance_shift, table ? "proximity.distance_shift" : "-proximity.distance_shift",
+               "m", 0.0);
+        number(&Numbers::scale, "proximity.scale", "1", 1.0);
+        number(&Numbers::incidence_exponent, "proximity.incidence_exponent", "1",
+               physics_.incidence_exponent);
+        number(&Numbers::pair_crosstalk, "proximity.pair_crosstalk", "1", 0.0);
+        number(&Numbers::neighbour_crosstalk, "proximity.neighbour_crosstalk", "1", 0.0);
+        number(&Numbers::warmup_gain, "proximity.warmup_gain", "1", 0.0);
+        number(&Numbers::warmup_time, "proximity.warmup_time", "s", physics_.warmup_time);
+        number(&Numbers::motor_sag, "proximity.motor_sag", "1", 0.0);
+        number(&Numbers::age, "proximity.age", "s", 0.0);
+        number(&Numbers::ambient_offset, "proximity.ambient_offset", "counts", 0.0);
+        number(&Numbers::ambient_gain, "proximity.ambient_gain", "1", 0.0);
+        number(&Numbers::ambient_noise, "proximity.ambient_noise", "counts", 0.0);
+        number(&Numbers::battery_gain, "proximity.battery_gain", "1/V", 0.0);
+        number(&Numbers::order_drift, "proximity.order_drift", "1", 0.0);
         // Inside a run the order goes with what was varied there, mostly the distance: with a zero of its own
         // a drift could take the place of any law.
-        drift_zero_ = add(half_order_ > 0 ? "proximity.order_zero" : "-proximity.order_zero", "1", 0.0);
-        motor_noise_ = add("proximity.motor_noise", "1", 0.0);
-        proportional_ = add("proximity.proportional_noise", "1", 0.0);
-        threshold_ = add("proximity.threshold", "counts", 0.0);
-        hit_rate_ = add("proximity.interference_rate", "1", 0.0);
-        hit_size_ = add("proximity.interference_size", "counts", 100.0);
-        line_ = add("proximity.flicker", "counts", 0.0);
-        line_frequency_ = add("proximity.flicker_frequency", "Hz", 1.0);
+        number(&Numbers::order_zero, half_order_ > 0 ? "proximity.order_zero" : "-proximity.order_zero", "1",
+               0.0);
+        number(&Numbers::motor_noise, "proximity.motor_noise", "1", 0.0);
+        number(&Numbers::proportional_noise, "proximity.proportional_noise", "1", 0.0);
+        number(&Numbers::threshold, "proximity.threshold", "counts", 0.0);
+        number(&Numbers::interference_rate, "proximity.interference_rate", "1", 0.0);
+        number(&Numbers::interference_size, "proximity.interference_size", "counts", 100.0);
+        number(&Numbers::flicker, "proximity.flicker", "counts", 0.0);
+        number(&Numbers::flicker_frequency, "proximity.flicker_frequency", "Hz", 1.0);
         first_of_.gain.fill(-1);
         first_of_.offset.fill(-1);
         first_of_.direction.fill(-1);
@@ -427,19 +419,17 @@ class ProximityModel final : public Model {
                 static_cast<int>(std::lower_bound(kinds.begin(), kinds.end(), object) - kinds.begin()));
     }
 
-    void noise(const std::vector<double>& v, Predicted& p) const {
-        const auto value = [&](int index) { return v[static_cast<std::size_t>(index)]; };
+    void noise(const Numbers& now, Predicted& p) const {
         const std::size_t n = p.mean.size();
-        const double motor = value(motor_noise_), share = value(proportional_), light = value(ambient_noise_),
-                     rate = value(hit_rate_);
+        const double share = now.proportional_noise, light = now.ambient_noise, rate = now.interference_rate;
         p.factor.clear();
         p.extra.clear();
         p.lapse.clear();
         p.lapse_scale.clear();
-        if (motor != 0.0) {
+        if (now.motor_noise != 0.0) {
             p.factor.resize(n);
             for (std::size_t i = 0; i < n; ++i)
-                p.factor[i] = 1 + motor * motor_[i];
+                p.factor[i] = 1 + now.motor_noise * motor_[i];
         }
         if (share != 0.0 || light != 0.0) {
             p.extra.resize(n);
@@ -448,17 +438,17 @@ class ProximityModel final : public Model {
         }
         if (rate != 0.0) {
             p.lapse.resize(n);
-            p.lapse_scale.assign(n, kHitSpread * value(hit_size_));
-            p.lapse_shift = value(hit_size_);
+            p.lapse_scale.assign(n, kHitSpread * now.interference_size);
+            p.lapse_shift = now.interference_size;
             p.lapse_both = true;
             for (std::size_t i = 0; i < n; ++i)
                 p.lapse[i] = std::min(rate * others_[i], 0.9);
         }
-        p.line_amplitude = value(line_);
-        p.line_frequency = value(line_frequency_);
+        p.line_amplitude = now.flicker;
+        p.line_frequency = now.flicker_frequency;
     }
 
-    physics::ProximityParameters physics_;
+    const physics::ProximityParameters physics_ = physics::Parameters().proximity;
     static constexpr std::size_t kOpposite = 4;  // places on the ring to the sensor lit by the same pulse
     double line_frequency_found_ = 0.0, jump_size_ = 0.0;
     double half_order_ = 0.0;  // half the range of the runs' `order`: the unit of the drift's zero
@@ -471,12 +461,6 @@ class ProximityModel final : public Model {
     std::array<bool, physics::kProximitySensors> sheltered_{};
     std::array<double, physics::kProximitySensors> angle0_{};
     PerSensor first_of_;
-    int compression_ = 0, extra_exponent_ = 0, shift_ = 0;
-    int curve_ = 0, amplitude_ = 0, origin_ = 0, exponent_ = 0, saturation_ = 0, reach_ = 0, scale_ = 0,
-        incidence_ = 0, pair_crosstalk_ = 0, neighbour_crosstalk_ = 0, warmup_ = 0, warmup_time_ = 0,
-        sag_ = 0, age_ = 0, ambient_offset_ = 0, ambient_gain_ = 0, ambient_noise_ = 0, per_volt_ = 0,
-        drift_ = 0, drift_zero_ = 0, motor_noise_ = 0, proportional_ = 0, threshold_ = 0, hit_rate_ = 0,
-        hit_size_ = 0, line_ = 0, line_frequency_ = 0;
 };
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "gap/models/keyed_cache.h"
 #include "gap/models/model.h"
+#include "gap/models/model_of.h"
 #include "gap/models/rab_ring.h"
 #include "gap/models/rab_table.h"
 #include "gap/models/rows.h"
@@ -43,7 +44,13 @@ double between(double RabMeasured::*what, double distance) {
     return kRabTable.back().*what;
 }
 
-class RabModel final : public Model {
+struct Numbers {
+    double strength_gain = 0.0, emitter_lobe = 0.0, receiver_lobe = 0.0, strength_spread = 0.0,
+           far_floor = 0.0, saturation = 0.0, multipath = 0.0, multipath_loss = 0.0, bearing_offset = 0.0,
+           collisions = 0.0, random_loss = 0.0, fetch_time = 0.0, beat = 0.0, beat_burst = 0.0;
+};
+
+class RabModel final : public ModelOf<Numbers> {
   public:
     explicit RabModel(const Experiment& experiment) {
         const Rows rows(experiment, "", {"distance_m"});
@@ -167,7 +174,7 @@ class RabModel final : public Model {
     }
 
     void declare() {
-        gain_ = add("rab.strength_gain", "1", 0.0);
+        number(&Numbers::strength_gain, "rab.strength_gain", "1", 0.0);
         receiver_place_ = places_of(receiver_);
         emitter_place_ = places_of(emitter_);
         for (const int r : distinct_of(receiver_))
@@ -178,22 +185,22 @@ class RabModel final : public Model {
         (void)add("rab.ring", "1", 0.0);  // 1: the simulator's boards; both are read before the fit
         (void)add("rab.carrier", "Hz", 0.0);
         if (ring_) {
-            emitter_lobe_ = add("rab.emitter_lobe", "1", ring_->neutral().emitter_lobe);
-            receiver_lobe_ = add("rab.receiver_lobe", "1", ring_->neutral().receiver_lobe);
+            number(&Numbers::emitter_lobe, "rab.emitter_lobe", "1", ring_->neutral().emitter_lobe);
+            number(&Numbers::receiver_lobe, "rab.receiver_lobe", "1", ring_->neutral().receiver_lobe);
         }
-        more_spread_ = add("rab.strength_spread", "1", 0.0);
-        far_floor_ = add("rab.far_floor", "counts", 0.0);
+        number(&Numbers::strength_spread, "rab.strength_spread", "1", 0.0);
+        number(&Numbers::far_floor, "rab.far_floor", "counts", 0.0);
         rail_ = rail_seen();
         // A rail that no strength lies at has no say.
-        saturation_ = add(rail_ > 0 ? "rab.saturation" : "-rab.saturation", "counts", kFullScale);
-        multipath_ = add("rab.multipath", "1", 0.0);
-        multipath_loss_ = add("rab.multipath_loss", "ln counts", 0.7);
-        offset_ = add("rab.bearing_offset", "rad", 0.0);
-        collisions_ = add("rab.collisions", "1", 0.0);
-        loss_ = add("rab.random_loss", "1", 0.0);
-        fetch_ = add("rab.fetch_time", "s", 0.0);
-        beat_ = add("rab.beat", "1", 0.0);
-        burst_ = add("rab.beat_burst", "s", 0.5);
+        number(&Numbers::saturation, rail_ > 0 ? "rab.saturation" : "-rab.saturation", "counts", kFullScale);
+        number(&Numbers::multipath, "rab.multipath", "1", 0.0);
+        number(&Numbers::multipath_loss, "rab.multipath_loss", "ln counts", 0.7);
+        number(&Numbers::bearing_offset, "rab.bearing_offset", "rad", 0.0);
+        number(&Numbers::collisions, "rab.collisions", "1", 0.0);
+        number(&Numbers::random_loss, "rab.random_loss", "1", 0.0);
+        number(&Numbers::fetch_time, "rab.fetch_time", "s", 0.0);
+        number(&Numbers::beat, "rab.beat", "1", 0.0);
+        number(&Numbers::beat_burst, "rab.beat_burst", "s", 0.5);
     }
 
     static std::vector<int> distinct_of(std::vector<int> values) {
@@ -227,6 +234,7 @@ class RabModel final : public Model {
     }
 
     std::shared_ptr<const std::vector<RabTold>> told(const std::vector<double>& v) const {
+        const Numbers now = numbers(v);
         RabParts parts = ring_->neutral();
         for (std::size_t k = 0; k < kReceivers; ++k) {
             const int number = static_cast<int>(k) + 1;
@@ -239,18 +247,19 @@ class RabModel final : public Model {
             mean += std::log(gain) / kReceivers;
         for (double& gain : parts.emitter)
             gain /= std::exp(mean);
-        parts.emitter_lobe = at(v, emitter_lobe_);
-        parts.receiver_lobe = at(v, receiver_lobe_);
+        parts.emitter_lobe = now.emitter_lobe;
+        parts.receiver_lobe = now.receiver_lobe;
         return ring_->told(parts);
     }
 
     void predict_strength(const std::vector<double>& v, Predicted& p) const {
+        const Numbers now = numbers(v);
         const std::size_t n = log_median_.size();
         p.mean.resize(n);
         p.factor = spread_;
-        const double more = 1 + at(v, more_spread_), gain = at(v, gain_), low = at(v, far_floor_),
-                     rail = at(v, saturation_);
-        const double other = at(v, multipath_);
+        const double more = 1 + now.strength_spread, gain = now.strength_gain, low = now.far_floor,
+                     rail = now.saturation;
+        const double other = now.multipath;
         const auto told_of_ring = ring_ ? told(v) : nullptr;
         const auto receivers = logs_of(receiver_gain_, v), emitters = logs_of(emitter_gain_, v);
         for (std::size_t i = 0; i < n; ++i) {
@@ -271,16 +280,17 @@ class RabModel final : public Model {
         p.pile = 1 / rail;
         p.lapse.assign(other > 0 ? n : 0, other);
         p.lapse_scale.assign(other > 0 ? n : 0, 0.3);
-        p.lapse_shift = other > 0 ? -at(v, multipath_loss_) : 0.0;
+        p.lapse_shift = other > 0 ? -now.multipath_loss : 0.0;
         if (other > 0 && std::any_of(occluded_.begin(), occluded_.end(), [](double o) { return o > 0; }))
             for (std::size_t i = 0; i < n; ++i)
                 p.lapse[i] = other * (occluded_[i] > 0 ? 1.0 : 0.05);
     }
 
     void predict_bearing(const std::vector<double>& v, Predicted& p) const {
+        const Numbers now = numbers(v);
         const std::size_t n = observables_[static_cast<std::size_t>(bearing_)].y.size();
-        const double other = at(v, multipath_);
-        p.mean.assign(n, at(v, offset_));
+        const double other = now.multipath;
+        p.mean.assign(n, now.bearing_offset);
         p.lapse.assign(other > 0 ? n : 0, other);
         p.lapse_scale.assign(other > 0 ? n : 0, 0.6);
         if (ring_) {
@@ -318,11 +328,12 @@ class RabModel final : public Model {
     }
 
     void predict_reception(const std::vector<double>& v, Predicted& p) const {
+        const Numbers now = numbers(v);
         const Observable& o = observables_[static_cast<std::size_t>(reception_)];
         const std::size_t n = o.y.size();
         p.mean.resize(n);
-        const double collisions = at(v, collisions_), kept = 1 - at(v, loss_), fetch = at(v, fetch_),
-                     beat = at(v, beat_), burst = at(v, burst_);
+        const double collisions = now.collisions, kept = 1 - now.random_loss, fetch = now.fetch_time,
+                     beat = now.beat, burst = now.beat_burst;
         for (std::size_t i = 0; i < n; ++i) {
             double arrives = kReception * kept *
                              std::exp(-2 * collisions * std::max(senders_[i] - 1, 0.0) * frame_[i] /
@@ -355,9 +366,6 @@ class RabModel final : public Model {
     std::vector<std::size_t> receiver_place_, emitter_place_;  // among the gains
     std::vector<std::pair<int, int>> receiver_gain_, emitter_gain_;
     int strength_ = -1, bearing_ = -1, reception_ = -1;
-    int gain_ = -1, more_spread_ = -1, far_floor_ = -1, saturation_ = -1, multipath_ = -1,
-        multipath_loss_ = -1, emitter_lobe_ = -1, receiver_lobe_ = -1, offset_ = -1, collisions_ = -1,
-        loss_ = -1, fetch_ = -1, beat_ = -1, burst_ = -1;
 };
 
 }  // namespace

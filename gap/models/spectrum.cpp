@@ -1,5 +1,7 @@
 #include "gap/models/spectrum.h"
 
+#include "gap/stats/robust.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -63,12 +65,8 @@ Line strongest_line(const Observable& o, const std::vector<double>& mean, double
         fresh = false;
     }
     if (differences.size() < 16) return {};
-    std::nth_element(spans.begin(), spans.begin() + static_cast<std::ptrdiff_t>(spans.size() / 2),
-                     spans.end());
-    std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2),
-                     sizes.end());
-    if (highest <= 0) highest = 0.5 / spans[spans.size() / 2];
-    const double limit = kClip * std::max(sizes[sizes.size() / 2], 1e-9);
+    if (highest <= 0) highest = 0.5 / stats::upper_median(spans);
+    const double limit = kClip * std::max(stats::upper_median(sizes), 1e-9);
     const auto count = std::min(kMostFrequencies, static_cast<std::size_t>(4 * longest * highest) + 8);
     double best = 0.0, best_power = -1.0;
     for (std::size_t k = 1; k <= count; ++k) {

@@ -128,9 +128,7 @@ double highest_line(const std::vector<double>& power, std::size_t& where) {
         const std::size_t first = k > kNeighbours ? k - kNeighbours : 0;
         for (std::size_t i = first; i < std::min(power.size(), k + kNeighbours + 1); ++i)
             if (i != k) around.push_back(power[i]);
-        std::nth_element(around.begin(), around.begin() + static_cast<std::ptrdiff_t>(around.size() / 2),
-                         around.end());
-        const double background = around.empty() ? 0.0 : around[around.size() / 2];
+        const double background = around.empty() ? 0.0 : upper_median(around);
         if (background > 0 && power[k] / background > best) best = power[k] / background, where = k;
     }
     return best;

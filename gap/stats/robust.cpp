@@ -10,7 +10,6 @@ namespace puckloop::gap::stats {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kMadToSigma = 1.4826;           // of a normal distribution
 constexpr double kFiveToNinetyFive = 2 * 1.645;  // the same, in standard deviations
 
 std::vector<double> finite(const std::vector<double>& values) {
@@ -55,6 +54,13 @@ double quantile(std::vector<double> values, double q) {
 
 double median(const std::vector<double>& values) {
     return quantile(values, 0.5);
+}
+
+double upper_median(std::vector<double> values) {
+    if (values.empty()) return NAN;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
 }
 
 double robust_scale(const std::vector<double>& values) {

@@ -12,6 +12,11 @@ double standard_deviation(const std::vector<double>& values);
 /// Quantile by linear interpolation between order statistics, 0 <= q <= 1; NaN when empty.
 double quantile(std::vector<double> values, double q);
 double median(const std::vector<double>& values);
+/// The order statistic at n / 2 (of an even number the upper one of the two in the middle), in linear time.
+/// No NaN allowed; NaN when empty.
+double upper_median(std::vector<double> values);
+/// A normal sample's standard deviation over its median absolute deviation.
+inline constexpr double kMadToSigma = 1.4826;
 
 /// Standard deviation that a normal sample would have: 1.4826 times the median absolute deviation. When more
 /// than half the values are equal (clipped, quantised), the 5-95 % range over 3.29, then the plain deviation.

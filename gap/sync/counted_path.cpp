@@ -1,5 +1,7 @@
 #include "gap/sync/counted_path.h"
 
+#include "gap/stats/robust.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -68,11 +70,8 @@ std::vector<CountedPath> counted_paths(const Experiment& experiment) {
     return paths;
 }
 
-double robust_sd(std::vector<double> sizes) {
-    if (sizes.empty()) return 1.0;
-    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-    std::nth_element(sizes.begin(), middle, sizes.end());
-    return std::max(1.4826 * *middle, 1e-9);
+double robust_sd(const std::vector<double>& sizes) {
+    return sizes.empty() ? 1.0 : std::max(stats::kMadToSigma * stats::upper_median(sizes), 1e-9);
 }
 
 }  // namespace puckloop::gap

@@ -33,6 +33,6 @@ struct CountedPath {
 std::vector<CountedPath> counted_paths(const Experiment& experiment);
 
 /// Standard deviation from the middle of errors' sizes: pushes and lost sight do not count. At least 1e-9.
-double robust_sd(std::vector<double> sizes);
+double robust_sd(const std::vector<double>& sizes);
 
 }  // namespace puckloop::gap

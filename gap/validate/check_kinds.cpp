@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "gap/data/columns.h"
+#include "gap/stats/robust.h"
 #include "gap/validate/check_motion.h"
 
 #include <fmt/format.h>
@@ -132,17 +133,12 @@ Pace pace(const std::vector<double>& times) {
     for (std::size_t i = 1; i < times.size(); ++i)
         if (!std::isnan(times[i] - times[i - 1])) steps.push_back(times[i] - times[i - 1]);
     if (steps.size() < 8) return {};
-    const auto median = [](std::vector<double> values) {
-        const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-        std::nth_element(values.begin(), middle, values.end());
-        return *middle;
-    };
-    Pace pace{median(steps), 0.0, 0.0};
+    Pace pace{stats::upper_median(steps), 0.0, 0.0};
     for (double& step : steps) {
         pace.mean += step / static_cast<double>(steps.size());
         step = std::abs(step - pace.median);
     }
-    pace.scatter = 1.4826 * median(steps);
+    pace.scatter = stats::kMadToSigma * stats::upper_median(steps);
     return pace;
 }
 

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "gap/data/columns.h"
+#include "gap/stats/robust.h"
 #include "physics/description/robot_constants.h"
 
 #include <fmt/format.h>
@@ -18,12 +19,6 @@ namespace {
 bool told_by_unit(const Run& run) {
     const auto& units = run.column("unit");
     return std::any_of(units.begin(), units.end(), [&](double unit) { return unit != units.front(); });
-}
-
-double middle_of(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 [[noreturn]] void refuse(const Experiment& experiment, const Run& run, std::size_t row,
@@ -86,7 +81,7 @@ void check_paths(const Experiment& experiment, const Run& run) {
     }
     const auto least = kLeastShare * static_cast<double>(count[0] + count[1]);
     if (shares.size() < kFewest || static_cast<double>(std::min(count[0], count[1])) < least) return;
-    if (middle_of(shares) > kOwn) return;
+    if (stats::upper_median(shares) > kOwn) return;
     refuse(
         experiment, run, first,
         fmt::format("the pose jumps to and fro between two paths, {} times and up to {:.2g} m: rows of two "

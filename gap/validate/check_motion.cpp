@@ -1,6 +1,7 @@
 #include "gap/validate/check_motion.h"
 
 #include "base/error.h"
+#include "gap/stats/robust.h"
 #include "physics/description/robot_constants.h"
 
 #include <fmt/format.h>
@@ -90,9 +91,7 @@ void check_commands(const Experiment& experiment, const Run& run) {
     for (std::size_t i = 1; i < run.rows; ++i)
         if (!std::isnan(time[i] - time[i - 1])) spans.push_back(time[i] - time[i - 1]);
     if (spans.empty()) return;
-    const auto usual = spans.begin() + static_cast<std::ptrdiff_t>(spans.size() / 2);
-    std::nth_element(spans.begin(), usual, spans.end());
-    const double longest = 10 * *usual;  // beyond is a gap in the record
+    const double longest = 10 * stats::upper_median(spans);  // beyond is a gap in the record
     for (std::size_t i = 1; i < run.rows; ++i) {
         const double span = time[i] - time[i - 1], l = left[i] - left[i - 1], r = right[i] - right[i - 1],
                      cl = cmd_left[i - 1] * span, cr = cmd_right[i - 1] * span;
@@ -161,17 +160,16 @@ void check_pose(const Experiment& experiment, const Run& run, double metre_per_s
         last = i;
     }
     if (turns.size() >= 8) {
-        const auto middle = turns.begin() + static_cast<std::ptrdiff_t>(turns.size() / 2);
-        std::nth_element(turns.begin(), middle, turns.end());
-        if (*middle > 10)
+        const double middle = stats::upper_median(turns);
+        if (middle > 10)
             refuse(experiment, run,
-                   fmt::format("theta_rad turns {:.3g} times as far as the wheels do: degrees?", *middle),
+                   fmt::format("theta_rad turns {:.3g} times as far as the wheels do: degrees?", middle),
                    "radians, or theta_rad = \"deg\" in [columns]");
-        if (*middle < kLeastTurned)
+        if (middle < kLeastTurned)
             refuse(experiment, run,
                    fmt::format("theta_rad turns {:.3g} times as far as the wheels do: wrong unit, or not the "
                                "heading",
-                               *middle),
+                               middle),
                    "radians; \"turn\" and \"deg\" are known in [columns]");
     }
     constexpr double kEnough = 0.1;  // m

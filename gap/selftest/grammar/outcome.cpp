@@ -1,6 +1,7 @@
 #include "gap/selftest/grammar/outcome.h"
 
 #include "gap/effects/effect.h"
+#include "gap/fit/parallel.h"
 #include "gap/pipeline/analyse.h"
 #include "gap/selftest/case_list.h"
 #include "gap/selftest/grammar/families.h"
@@ -10,11 +11,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <exception>
 #include <mutex>
-#include <thread>
 
 namespace puckloop::gap::selftest::grammar {
 
@@ -97,31 +96,13 @@ std::vector<Outcome> run_drawn(const Drawing& drawing) {
         if (asked && kind && (!drawing.of || class_of(n) == *drawing.of)) numbers.push_back(n);
     }
     std::vector<Outcome> results(numbers.size());
-    std::atomic<std::size_t> next{0};
     std::size_t finished = 0;
-    std::mutex mutex;
-    std::exception_ptr failure;
-    const auto work = [&] {
-        for (std::size_t k = next++; k < numbers.size(); k = next++) {
-            try {
-                results[k] = run_one(numbers[k], drawing);
-            } catch (...) {
-                const std::lock_guard lock(mutex);
-                failure = std::current_exception();
-                next = numbers.size();
-                return;
-            }
-            const std::lock_guard lock(mutex);
-            if (drawing.done) drawing.done(results[k], ++finished, numbers.size());
-        }
-    };
-    std::vector<std::thread> threads;
-    for (unsigned k = 1; k < drawing.workers; ++k)
-        threads.emplace_back(work);
-    work();
-    for (std::thread& thread : threads)
-        thread.join();
-    if (failure) std::rethrow_exception(failure);
+    std::mutex telling;
+    in_parallel(numbers.size(), drawing.workers, [&](std::size_t k) {
+        results[k] = run_one(numbers[k], drawing);
+        const std::lock_guard lock(telling);
+        if (drawing.done) drawing.done(results[k], ++finished, numbers.size());
+    });
     return results;
 }
 
