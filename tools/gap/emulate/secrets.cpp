@@ -79,7 +79,8 @@ std::vector<Secret> motion() {
          {{"push.rate", 0, 0, 1}, {"push.size", 1, 0, 1}},
          {"collision_push"}},
         one("motion", "commands late on the serial line", "uart.delay", 0, 1,
-            {0.04, 0.02, 0.09, false, "20..150 ms"}, {"command_latency"}),
+            {0.04, 0.015, 0.04, false, "20..150 ms; more and no exchange is done in time"},
+            {"command_latency"}),
     };
 }
 
