@@ -1,5 +1,6 @@
 #include "scenarios/robot_tables.h"
 
+#include "emu/pic/board_revision.h"
 #include "scenarios/board_keys.h"
 #include "scenarios/camera_keys.h"
 #include "scenarios/linux_keys.h"
@@ -30,6 +31,14 @@ std::filesystem::path read_nvm(Reader& reader, const std::filesystem::path& fold
     return file;
 }
 
+std::string read_revision(Reader& reader) {
+    std::string name = reader.text("board", std::string(pic::name_of(pic::Revision::Rev12)));
+    if (!pic::revision_of(name))
+        reader.fail("board", fmt::format("there is no revision '{}' of the main board", name),
+                    "\"1.2\" (analogue accelerometer) or \"1.3\" (LSM330)");
+    return name;
+}
+
 PicBoard read_pic(const std::string& file, const std::string& where, const TomlValue& table,
                   const std::filesystem::path& folder, const std::vector<std::filesystem::path>& others) {
     Reader reader(file, where, table);
@@ -51,6 +60,7 @@ PicBoard read_pic(const std::string& file, const std::string& where, const TomlV
     }
     pic.camera = read_board_camera(reader);
     pic.camera_turned = reader.flag("camera_turned", false);
+    pic.revision = read_revision(reader);
     reader.finish();
     return pic;
 }

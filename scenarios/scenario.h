@@ -27,6 +27,7 @@ struct PicBoard {
     std::optional<double> boot{};  ///< s: how long the firmware needs until it listens; none: not said
     std::string camera{};          ///< on the board: "po3030k" or "po6030k"; empty: none
     bool camera_turned = false;    ///< it lies on its side, as on early boards
+    std::string revision = "1.2";  ///< of the board: "1.2" or "1.3"
 };
 
 /// The range-and-bearing board of a robot (e-RandB), on its I2C bus.

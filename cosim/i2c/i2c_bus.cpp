@@ -103,7 +103,7 @@ Time I2cBusNode::next_event() const {
 void I2cBusNode::receive(const Message& message) {
     if (const auto* signal = std::get_if<Signal>(&message.payload)) {
         for (const auto& slave : slaves_)
-            slave->signal(signal->id, signal->value);
+            slave->signal_at(signal->id, signal->value, message.time);
     } else if (const auto* phase = std::get_if<I2cPhase>(&message.payload)) {
         if (is_master(message.port))
             phase_from(message.port, *phase);

@@ -45,6 +45,8 @@ class I2cSlave {
     virtual void reset(const Emit& /*emit*/) {}
     /// A signal came in by the bus node's `world` port.
     virtual void signal(std::uint16_t /*id*/, double /*value*/) {}
+    /// The same for a device to which it matters when.
+    virtual void signal_at(std::uint16_t id, double value, Time /*now*/) { signal(id, value); }
     /// As Node::rewindable(): with a device that cannot go back the bus cannot.
     virtual Rewindable* rewindable() { return nullptr; }
     /// The device's part of the bus's report, as JSON text.

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "cosim/i2c/i2c_bus.h"
 #include "emu/i2c_devices/ground_sensor.h"
+#include "emu/i2c_devices/lsm330.h"
 #include "emu/i2c_devices/rgb_turret.h"
 
 #include <fmt/format.h>
@@ -45,6 +46,9 @@ std::unique_ptr<cosim::Node> make_bus_node(const BusSpec& spec) {
     std::vector<std::unique_ptr<cosim::I2cSlave>> slaves;
     if (spec.ground_sensor) slaves.push_back(std::make_unique<GroundSensor>());
     if (spec.rgb_turret) slaves.push_back(std::make_unique<RgbTurret>());
+    if (spec.lsm330)
+        for (const auto die : {Lsm330::Die::Accelerometer, Lsm330::Die::Gyroscope})
+            slaves.push_back(std::make_unique<Lsm330>(die, spec.seed, spec.name));
     return std::make_unique<cosim::I2cBusNode>(std::move(options), std::move(slaves));
 }
 
@@ -55,6 +59,8 @@ std::unique_ptr<cosim::Node> make_bus_node(std::string_view text) {
         spec.name = json.value("name", spec.name);
         spec.ground_sensor = json.value("ground_sensor", spec.ground_sensor);
         spec.rgb_turret = json.value("rgb_turret", spec.rgb_turret);
+        spec.lsm330 = json.value("lsm330", spec.lsm330);
+        spec.seed = json.value("seed", spec.seed);
         spec.hertz = json.value("hertz", spec.hertz);
         spec.log = json.value("log", spec.log);
         if (json.contains("faults")) spec.faults = cosim::faults_from_json(json["faults"]);

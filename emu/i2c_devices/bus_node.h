@@ -23,6 +23,8 @@ struct BusSpec {
     std::string name = "i2c";
     bool ground_sensor = true;  ///< 0x60
     bool rgb_turret = true;     ///< 0x61
+    bool lsm330 = false;        ///< 0x1E and 0x6A: accelerometer and gyroscope of the main board
+    std::uint64_t seed = 1;     ///< of its noise
     /// The bus's nominal clock, Hz: the fastest master's. It is also the bus's lookahead.
     double hertz = 100e3;
     std::vector<BoardOnBus> boards{};
@@ -33,7 +35,7 @@ struct BusSpec {
 /// Ports: "pic" and "linux" (masters), the boards in their order, "world" (signals()).
 std::unique_ptr<cosim::Node> make_bus_node(const BusSpec& spec);
 
-/// The same from JSON: {"name", "ground_sensor", "rgb_turret", "hertz", "boards": [{"name",
+/// The same from JSON: {"name", "ground_sensor", "rgb_turret", "lsm330", "seed", "hertz", "boards": [{"name",
 /// "address"}], "log", "faults"}, all optional but a board's name. Throws InputError.
 std::unique_ptr<cosim::Node> make_bus_node(std::string_view json);
 

@@ -26,6 +26,15 @@ std::vector<SignalInfo> build() {
         for (const char* const colour : {"red", "green", "blue"})
             list.push_back({fmt::format("rgb{}_{}", led, colour), SignalDirection::Output, "level", 0, kByte,
                             fmt::format("RGB turret, LED {}", led), 0});
+    constexpr double kMostG = 24, kMostDegrees = 5000;
+    const char* const axes[] = {"x (forward)", "y (left)", "z (up)"};
+    for (int i = 0; i < 3; ++i)
+        list.push_back({fmt::format("lsm330_acc_{}", axes[i][0]), SignalDirection::Input, "g", -kMostG,
+                        kMostG, fmt::format("acceleration less gravity along {}; at rest z is 1", axes[i]),
+                        i == 2 ? 1.0 : 0.0});
+    for (int i = 0; i < 3; ++i)
+        list.push_back({fmt::format("lsm330_rate_{}", axes[i][0]), SignalDirection::Input, "deg/s",
+                        -kMostDegrees, kMostDegrees, fmt::format("turn rate about {}", axes[i]), 0});
     return list;
 }
 

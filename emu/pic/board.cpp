@@ -258,8 +258,17 @@ dspic::OutsidePin Board::outside(dspic::PortLetter port, int bit) const {
     return {.changes = false};
 }
 
+/// Counts of what stands at AN`channel`, before light, sound and noise.
+double Board::level_at(int channel, dspic::Cycle now) const {
+    if (parameters_.revision == Revision::Rev13 && channel >= kFirstAccelerationChannel) {
+        if (channel == kBatteryChannel) return battery_counts(values_[kBatteryVoltage].at(now));
+        if (channel < kBatteryChannel) return 0.0;
+    }
+    return values_[kAnalogWiring[static_cast<std::size_t>(channel)]].at(now);
+}
+
 double Board::analog(int channel, dspic::Cycle now) {
-    double counts = values_[kAnalogWiring[static_cast<std::size_t>(channel)]].at(now);
+    double counts = level_at(channel, now);
     if (channel >= kFirstProximityChannel) {
         const int sensor = channel - kFirstProximityChannel;
         const Emitter& emitter = emitters_[static_cast<std::size_t>(sensor % kPulseCount)];

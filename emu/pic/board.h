@@ -15,6 +15,7 @@
 #include "emu/chip/faults/ambient_shares.h"
 #include "emu/chip/faults/analog_faults.h"
 #include "emu/dspic/peripherals/pins.h"
+#include "emu/pic/board_revision.h"
 #include "emu/pic/emitter.h"
 #include "emu/pic/light_input.h"
 #include "emu/pic/microphone.h"
@@ -49,6 +50,7 @@ struct BoardParameters {
     double coil_settle_s = 2e-6;     ///< for how long a coil pattern must stand to be a step
     double battery_low_volts = 3.4;  ///< below this RF1 falls
     int selector = 0;                ///< initial position, 0..15
+    Revision revision = Revision::Rev12;
 };
 
 /// What leaves the board.
@@ -162,6 +164,7 @@ class Board : public dspic::Pins {
     void place_levels();
     void drive(SignalId id, bool level, dspic::Cycle now);
     void show_speaker(dspic::Cycle now);
+    double level_at(int channel, dspic::Cycle now) const;
 
     BoardParameters parameters_;
     BoardListener& listener_;

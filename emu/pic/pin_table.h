@@ -4,7 +4,7 @@
 //
 // Deviations:
 // 1. No LIS turret is fitted: its inputs stand at the idle level given here.
-// 2. Board revision up to 1.2: AN7 is the accelerometer's z axis, not the battery of revision 1.3.
+// 2. Of board revision 1.3 (board_revision.h) nothing stands at AN5 and AN6: they read 0.
 
 #include "emu/dspic/peripherals/pins.h"
 #include "emu/pic/signals.h"
@@ -108,6 +108,8 @@ inline constexpr std::array<SignalId, kAdcCount> kAnalogWiring{
 };
 /// First of the three microphones: AN2 is mic0.
 inline constexpr int kFirstMicrophoneChannel = 2;
+/// First of the accelerometer's three, and that at which revision 1.3 has the battery.
+inline constexpr int kFirstAccelerationChannel = 5, kBatteryChannel = 7;
 /// First of the eight proximity channels: AN8 is proximity0.
 inline constexpr int kFirstProximityChannel = 8;
 

@@ -19,7 +19,12 @@ inline constexpr std::size_t kGroundChannel = 21;          ///< 3: counts left, 
 inline constexpr std::size_t kGroundAmbientChannel = 24;   ///< 3: counts
 inline constexpr std::size_t kMicrophoneChannel = 27;      ///< 3: level, counts, right, left, rear
 inline constexpr std::size_t kMicrophoneLostChannel = 30;  ///< share of samples lost
-inline constexpr std::size_t kChannelCount = 31;
+/// Those in sensors.csv.
+inline constexpr std::size_t kRecordedChannels = 31;
+// Of robots whose board has an LSM330.
+inline constexpr std::size_t kForceChannel = 31;     ///< 3: g forward, left, up; acceleration less gravity
+inline constexpr std::size_t kTurnRateChannel = 34;  ///< 3: deg/s about the same axes
+inline constexpr std::size_t kChannelCount = 37;
 
 using Channels = std::array<double, kChannelCount>;
 
@@ -29,7 +34,8 @@ std::string_view channel_name(std::size_t channel);
 constexpr bool silent_at_zero(std::size_t channel) {
     return channel >= kMicrophoneChannel && channel <= kMicrophoneLostChannel;
 }
-/// What a published value is rounded to: counts by `count_quantum`, volts to a millivolt.
+/// What a published value is rounded to: counts by `count_quantum`, volts to a millivolt, forces to
+/// 50 ug, turn rates to 1 mdeg/s.
 double channel_quantum(std::size_t channel, double count_quantum);
 
 }  // namespace puckloop::physics

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace puckloop::physics {
 
@@ -31,6 +32,7 @@ RobotModel::RobotModel(const World& world, const Robot& robot, const Parameters&
       late_speed_(kAccelerationWindow),
       ground_noise_(world.seed, "physics/" + robot.name + "/ground_noise"),
       accelerometer_(parameters.accelerometer, parameters.world, world.seed, robot.name),
+      turns_(robot.ground_signals.contains(std::string(channel_name(kForceChannel)))),
       ears_(parameters.microphone, world.speakers),
       battery_(parameters.battery) {
     channels_[kMicrophoneLostChannel] = parameters.microphone.window_lost;
@@ -117,6 +119,19 @@ void RobotModel::sample_ground(double seconds) {
     store(kGroundChannel, counts);
 }
 
+/// What an LSM330 feels. Positive turns are counter-clockwise, seen from the axis's tip.
+void RobotModel::sense_turning(const RobotState& state) {
+    constexpr double kDegrees = 180.0 / std::numbers::pi;
+    store(kForceChannel, accelerometer_.in_g());
+    const std::array<double, 3> angles{state.roll, state.pitch, state.heading};
+    std::array<double, 3> rates{};
+    for (std::size_t i = 0; i < angles.size(); ++i)
+        rates[i] = std::remainder(angles[i] - last_angles_.value_or(angles)[i], 2 * std::numbers::pi) /
+                   kStepSeconds * kDegrees;
+    last_angles_ = angles;
+    store(kTurnRateChannel, rates);
+}
+
 void RobotModel::sense_each_step(const RobotState& state, double seconds) {
     const Surroundings now = surroundings(seconds);
     sense_proximity(now);
@@ -130,6 +145,7 @@ void RobotModel::sense_each_step(const RobotState& state, double seconds) {
     if (step % std::max(1L, std::lround(parameters_.ground.period / kStepSeconds)) == 0)
         sample_ground(seconds);
     store(kAccelerationChannel, accelerometer_.sense(state, now));
+    if (turns_) sense_turning(state);
     if (ears_.any()) store(kMicrophoneChannel, ears_.hear(state, seconds, now.motor_speed));
     channels_[kBatteryVoltageChannel] = battery_.draw(motors_running(seconds));
     channels_[kBatteryLowChannel] = battery_.low() ? 1.0 : 0.0;

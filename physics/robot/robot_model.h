@@ -14,6 +14,7 @@
 #include "physics/sensors/sound.h"
 
 #include <array>
+#include <optional>
 
 namespace puckloop::physics {
 
@@ -64,6 +65,7 @@ class RobotModel {
     void sense_proximity(const Surroundings& now);
     void light_the_floor();
     void sample_ground(double seconds);
+    void sense_turning(const RobotState& state);
     template <std::size_t N>
     void store(std::size_t channel, const std::array<double, N>& values);
 
@@ -88,6 +90,8 @@ class RobotModel {
     double acceleration_ = 0.0;  // m/s2 forward, over the control period; kept where it tilts the ground row
     RandomStream ground_noise_;
     Accelerometer accelerometer_;
+    bool turns_;                                        // an LSM330 asks
+    std::optional<std::array<double, 3>> last_angles_;  // rad: roll, pitch, heading
     Ears ears_;
     Battery battery_;
     Channels channels_{};

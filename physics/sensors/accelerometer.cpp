@@ -57,8 +57,10 @@ std::array<double, 3> Accelerometer::sense(const RobotState& robot, const Surrou
         counts[axis] = zero_[axis] + p.gain * p.scale[axis] * felt[axis] / one_g_ + drift;
         counts[axis] *= 1.0 - p.motor_sag * now.motors;
         if (shake > 0.0) counts[axis] += shake * vibration_.normal();
+        in_g_[axis] = (counts[axis] - p.zero) / p.gain;
         counts[axis] = std::clamp(counts[axis], 0.0, kFullScale);
     }
+    in_g_ = {-in_g_[1], -in_g_[0], in_g_[2]};
     return counts;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
-// The analogue three-axis accelerometer: acceleration and gravity as counts. Source: e-puck facts 5.4.
+// The three-axis accelerometer: acceleration and gravity, as the counts of the analogue one, and in g for an
+// LSM330, which stands at the same place. Source: e-puck facts 5.4.
 //
 // Deviations: 1. it sits in the body's centre of mass. 2. A first-order low pass stands for its bandwidth.
 // 3. Vibration is white noise behind the low pass, drawn anew each physics step, so that each sample of a
@@ -22,6 +23,9 @@ class Accelerometer {
 
     /// Once a physics step. Counts for x (right), y (rear), z (up), 0..4095.
     std::array<double, 3> sense(const RobotState& robot, const Surroundings& now);
+    /// What it sensed last, g forward, left, up, whatever the converter's range: the counts without their
+    /// zero, over the gain.
+    const std::array<double, 3>& in_g() const { return in_g_; }
 
   private:
     AccelerometerParameters parameters_;
@@ -33,6 +37,7 @@ class Accelerometer {
     std::array<double, 3> gravity_;
     std::array<double, 3> last_velocity_{};
     std::array<double, 3> filtered_{};  // m/s2 forward, left, up
+    std::array<double, 3> in_g_{};
     bool first_ = true;
 };
 

@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <span>
 #include <utility>
 
 namespace puckloop::physics {
@@ -19,7 +20,7 @@ std::string in_directory(const WorldModel& world, const char* name) {
 
 std::string sensors_header() {
     std::string header = "t_s,robot";
-    for (std::size_t i = 0; i < kChannelCount; ++i)
+    for (std::size_t i = 0; i < kRecordedChannels; ++i)
         header += "," + std::string(channel_name(i));
     return header + ",steps_left,steps_right";
 }
@@ -88,7 +89,7 @@ void Recorder::write(const WorldModel& world) {
         trajectory_.row(
             fmt::format("{:.3f},{},{:.6f},{:.6f},{:.6f}", t, name, tidy(s.x), tidy(s.y), tidy(s.heading)));
         std::string line = fmt::format("{:.3f},{}", t, name);
-        for (const double value : world.robot(i).channels())
+        for (const double value : std::span(world.robot(i).channels()).first<kRecordedChannels>())
             line += fmt::format(",{:.3f}", tidy(value));
         for (const Side side : {Side::Left, Side::Right})
             line += fmt::format(",{:.0f}", world.robot(i).drive(side).steps());

@@ -21,15 +21,18 @@ std::optional<std::string> real_image(const std::string& name) {
     return path;
 }
 
-Rig::Rig(const std::string& where, const std::string& image_file) {
+Rig::Rig(const std::string& where, const std::string& image_file, pic::Revision revision, double uart2_baud) {
     BenchOptions options;
     const bool board = where == "pic" || where == "rab" || where == "tam";
     (board ? options.board : options.mcu) = where;
     const TargetDefaults defaults = defaults_of(options.mcu, options.board);
     options.target.chip.crystal_hertz = defaults.crystal_hertz;
     options.target.chip.fosc = defaults.fosc;
+    options.target.revision = revision;
+    if (revision == pic::Revision::Rev13) options.target.i2c_devices = exec::parse_i2c_devices({"lsm330"});
     baud_ = defaults.baud[0];
     options.baud = defaults.baud;
+    if (uart2_baud > 0) options.baud[1] = uart2_baud;
     bench_ = std::make_unique<Bench>(options);
     bench_->on_change = [this](std::string_view pin, std::string_view signal, double value,
                                cosim::Time time) {

@@ -23,7 +23,10 @@ class Rig {
     };
 
     /// `where` is "pic" or "rab" (a board) or a chip's name (bare).
-    Rig(const std::string& where, const std::string& image_file);
+    /// `revision` is of the main board; 1.3 has its LSM330 on the bus. `uart2_baud`: of the bench's
+    /// end, 0 is the board's usual one.
+    Rig(const std::string& where, const std::string& image_file,
+        pic::Revision revision = pic::Revision::Rev12, double uart2_baud = 0.0);
 
     Bench& bench() { return *bench_; }
     dspic::Chip& chip() { return bench_->chip(); }

@@ -268,3 +268,31 @@ TEST_CASE("the battery sags under load, runs down and says when it is low") {
         small.step();
     CHECK(small.robot(0).channels()[kBatteryLowChannel] == 1);
 }
+
+TEST_CASE("an LSM330 feels what the analogue accelerometer feels, in g, and how fast the robot turns") {
+    World world = world_with_robot();
+    world.robots[0].ground_signals["lsm330_acc_x"] = 15;
+    WorldModel model(world);
+    Driver driver(model);
+    const auto& c = model.robot(0).channels();
+    for (const auto& [left, right] : {std::pair{0.0, 0.0}, {500.0, 500.0}, {-300.0, 300.0}, {400.0, 100.0}}) {
+        driver.drive(left, right, 0.5);
+        const double heading = model.state(0).heading;
+        double sum = 0;
+        for (int i = 0; i < 500; ++i) {
+            driver.feed(left, right);
+            model.step();
+            // Forward is -y, left is -x of the analogue one.
+            CHECK(c[kForceChannel] == Approx((2048 - c[kAccelerationChannel + 1]) / 800).margin(1e-9));
+            CHECK(c[kForceChannel + 1] == Approx((2048 - c[kAccelerationChannel]) / 800).margin(1e-9));
+            CHECK(c[kForceChannel + 2] == Approx((c[kAccelerationChannel + 2] - 2048) / 800).margin(1e-9));
+            sum += c[kTurnRateChannel + 2];
+        }
+        const double turned = std::remainder(model.state(0).heading - heading, 2 * std::acos(-1.0));
+        CHECK(sum * kStepSeconds == Approx(turned * 180 / std::acos(-1.0)).margin(1e-6));
+        CHECK((sum > 20) == (left < right));
+    }
+    WorldModel plain(world_with_robot());
+    plain.step();
+    CHECK(plain.robot(0).channels()[kForceChannel + 2] == 0);
+}

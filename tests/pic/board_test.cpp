@@ -192,3 +192,21 @@ TEST_CASE("coils that are not driven carry no current") {
     CHECK(heard.changes.empty());
     CHECK(board.left_motor().pattern() == 0);
 }
+
+TEST_CASE("the battery's voltage is at AN7 of board revision 1.3, and no accelerometer at AN5 to AN7") {
+    pic::BoardParameters parameters = quiet();
+    parameters.revision = pic::Revision::Rev13;
+    Heard heard;
+    pic::Board board(parameters, heard);
+    board.set_signal(pic::kAcceleration + 2, 1234, 5);
+    CHECK(counts(board, 5, 10) == 0);
+    CHECK(counts(board, 6, 10) == 0);
+    for (const auto& [volts, raw] : {std::pair{3.4, 2070}, {4.2, 2560}, {3.8, 2315}}) {
+        board.set_signal(pic::kBatteryVoltage, volts, 20);
+        CHECK(std::abs(counts(board, 7, 30) - raw) <= 1);
+    }
+    board.set_sag(0.5, 40);
+    CHECK(std::abs(counts(board, 7, 50) - (2315 - 306)) <= 1);
+    CHECK(board.signal(pic::kBatteryLow) == 1);
+    CHECK(counts(board, 2, 50) == 2048);
+}

@@ -65,7 +65,7 @@ std::vector<std::uint8_t> fuse_bytes(const std::string& text) {
 
 struct Arguments {
     exec::ExecOptions options;
-    std::string fosc = "robot", fuses;
+    std::string fosc = "robot", fuses, revision = "1.2";
     std::optional<double> crystal_hertz, baud;
     std::array<std::optional<double>, 2> uart_baud;
     LogOptions log;
@@ -197,6 +197,12 @@ void describe(Command& app, Arguments& a) {
         ->capture_default_str();
     app.add_flag("--camera-turned", t.camera_turned,
                  "the camera lies on its side, as the PO3030K of early boards (pic)");
+    app.add_option(
+           "--board-revision", a.revision,
+           "of the main board (pic): 1.2, analogue accelerometer, or 1.3, LSM330 on its bus, battery at "
+           "AN7")
+        ->check(one_of({"1.2", "1.3"}))
+        ->capture_default_str();
     app.add_option("--crystal", a.crystal_hertz,
                    "in Hz (7372800; of the dsPIC33F 4000000, of the AVR 16000000)")
         ->check(number_between(kSlowestCrystal, kFastestCrystal));
@@ -244,6 +250,12 @@ void declare_exec(Command& app, int& status) {
                     "", option,
                     fmt::format("{} has no camera", bench.board.empty() ? bench.mcu : bench.board),
                     "--board pic");
+        if (command->count("--board-revision") > 0 && bench.board != "pic")
+            throw InputError(
+                "", "--board-revision",
+                fmt::format("of {} there is one revision", bench.board.empty() ? bench.mcu : bench.board),
+                "--board pic");
+        bench.target.revision = *pic::revision_of(a.revision);
         const exec::TargetDefaults defaults = exec::defaults_of(bench.mcu, bench.board);
         bench.target.chip.crystal_hertz = a.crystal_hertz.value_or(defaults.crystal_hertz);
         const bool is_avr = defaults.mcu.starts_with("atmega");

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -81,7 +82,11 @@ std::vector<I2cScriptLine> i2c_script(const std::string& text, const Target& tar
 BenchOptions bench_options(const ExecOptions& options) {
     BenchOptions bench = options.bench;
     bench.record = !options.gdb.empty();
-    bench.target.i2c_devices = parse_i2c_devices(options.i2c_devices);
+    std::vector<std::string> devices = options.i2c_devices;
+    if (bench.target.revision == pic::Revision::Rev13 &&
+        std::ranges::find(devices, "lsm330") == devices.end())
+        devices.emplace_back("lsm330");
+    bench.target.i2c_devices = parse_i2c_devices(devices);
     if (bench.target.i2c_devices.empty()) return bench;
     if (bench.board == "rab")
         throw InputError("", "--i2c-device", "the rab board is a slave of its bus, not its master",

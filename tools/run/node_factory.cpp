@@ -57,6 +57,7 @@ std::unique_ptr<cosim::StatefulNode> make_pic(const json& spec) {
     if (spec.contains("phototransistor_noise"))
         options.board.phototransistor_noise_counts = spec.at("phototransistor_noise");
     options.board.selector = spec.at("selector");
+    if (spec.contains("board")) options.board.revision = *pic::revision_of(spec["board"].get<std::string>());
     options.ircom = spec.value("ircom", false);
     options.log = spec.value("log", "");
     for (const double seconds : spec.at("resets").get<std::vector<double>>())

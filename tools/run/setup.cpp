@@ -6,6 +6,7 @@
 #include "emu/pic/board.h"
 #include "emu/pic/signals.h"
 #include "emu/rab_board/signals.h"
+#include "physics/description/channels.h"
 #include "tools/run/control/control_place.h"
 #include "tools/run/overrides.h"
 #include "tools/run/plan/cameras.h"
@@ -31,6 +32,10 @@ using nlohmann::json;
 using scenarios::RobotBoards;
 using scenarios::Scenario;
 
+bool has_lsm330(const RobotBoards& robot) {
+    return robot.pic.revision == pic::name_of(pic::Revision::Rev13);
+}
+
 json pic_spec(const RunSetup& setup, const RobotBoards& robot) {
     const Scenario& scenario = setup.scenario;
     json spec{{"kind", "pic"},
@@ -43,6 +48,7 @@ json pic_spec(const RunSetup& setup, const RobotBoards& robot) {
               {"resets", robot.pic.resets},
               {"nvm", robot.pic.nvm.empty() ? "" : full_path(robot.pic.nvm).string()},
               {"log", log_of(setup, robot.name + ".pic")}};
+    if (has_lsm330(robot)) spec["board"] = robot.pic.revision;
     if (scenario.world.ircom) {
         spec["ircom"] = true;
         if (!robot.pic.adc_noise_given) spec["phototransistor_noise"] = pic::kPhototransistorNoise;
@@ -67,13 +73,18 @@ json bus_spec(const RunSetup& setup, const RobotBoards& robot) {
     json boards = json::array();
     // The board hears every START: its firmware decides which address is its own.
     if (robot.rab) boards.push_back({{"name", "rab"}});
-    return {{"kind", "i2c_bus"},
-            {"name", robot.name + ".i2c"},
-            {"hertz", setup.scenario.i2c_clock},
-            {"ground_sensor", robot.ground_sensor},
-            {"rgb_turret", robot.rgb_turret},
-            {"boards", std::move(boards)},
-            {"log", log_of(setup, robot.name + ".i2c")}};
+    json spec{{"kind", "i2c_bus"},
+              {"name", robot.name + ".i2c"},
+              {"hertz", setup.scenario.i2c_clock},
+              {"ground_sensor", robot.ground_sensor},
+              {"rgb_turret", robot.rgb_turret},
+              {"boards", std::move(boards)},
+              {"log", log_of(setup, robot.name + ".i2c")}};
+    if (has_lsm330(robot)) {
+        spec["lsm330"] = true;
+        spec["seed"] = setup.scenario.seed;
+    }
+    return spec;
 }
 
 /// What the scenario plugs into the board's UART1, if anything.
@@ -215,6 +226,17 @@ RunSetup set_up(const RunRequest& request) {
         physics::Robot& body = scenario.world.robots[i];
         body.board_signals = board_ids;
         body.ground_signals = ground_ids;
+        // The one accelerometer or the other.
+        const bool lsm330 = has_lsm330(scenario.robots[i]);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            if (lsm330) {
+                body.board_signals.erase(
+                    std::string(physics::channel_name(physics::kAccelerationChannel + axis)));
+                continue;
+            }
+            for (const std::size_t first : {physics::kForceChannel, physics::kTurnRateChannel})
+                body.ground_signals.erase(std::string(physics::channel_name(first + axis)));
+        }
         body.rab = scenario.robots[i].rab.has_value();
         if (body.rab) body.rab_signals = rab_ids;
     }

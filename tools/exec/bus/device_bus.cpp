@@ -2,6 +2,7 @@
 
 #include "cosim/i2c/i2c_bus.h"
 #include "emu/i2c_devices/ground_sensor.h"
+#include "emu/i2c_devices/lsm330.h"
 #include "emu/i2c_devices/rgb_turret.h"
 #include "emu/i2c_devices/signals.h"
 #include "emu/rab_board/rab_node.h"
@@ -23,7 +24,8 @@ constexpr std::size_t kBus = 0;           // in parts_
 constexpr std::size_t kTargetVertex = 0;  // of the graph that Bounds sees; part n is vertex n + 1
 constexpr PortIndex kMaster = 0;          // the bus's ports: the target, the boards, the world
 constexpr std::uint16_t kGroundSignals = i2c_devices::kRgb;
-constexpr std::uint16_t kTurretSignals = i2c_devices::kSignalCount - i2c_devices::kRgb;
+constexpr std::uint16_t kTurretSignals = i2c_devices::kAcceleration - i2c_devices::kRgb;
+constexpr std::uint16_t kLsm330Signals = i2c_devices::kSignalCount - i2c_devices::kAcceleration;
 
 }  // namespace
 
@@ -50,6 +52,11 @@ DeviceBus::DeviceBus(const std::vector<I2cDeviceSpec>& devices, const Options& o
             slaves.push_back(std::make_unique<i2c_devices::RgbTurret>(
                 spec.address.value_or(i2c_devices::kRgbTurretAddress)));
             add_signals(i2c_devices::signals(), kBus, world, i2c_devices::kRgb, kTurretSignals);
+        } else if (spec.kind == I2cDeviceSpec::Kind::Lsm330) {
+            using i2c_devices::Lsm330;
+            for (const auto die : {Lsm330::Die::Accelerometer, Lsm330::Die::Gyroscope})
+                slaves.push_back(std::make_unique<Lsm330>(die, options.seed, "i2c"));
+            add_signals(i2c_devices::signals(), kBus, world, i2c_devices::kAcceleration, kLsm330Signals);
         }
     }
     parts_[kBus].node = std::make_unique<cosim::I2cBusNode>(std::move(bus), std::move(slaves));

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "base/suggest.h"
 #include "emu/i2c_devices/ground_sensor.h"
+#include "emu/i2c_devices/lsm330.h"
 #include "emu/i2c_devices/rgb_turret.h"
 
 #include <fmt/format.h>
@@ -16,7 +17,8 @@ namespace {
 
 using Kind = I2cDeviceSpec::Kind;
 
-constexpr std::string_view kShape = "ground, turret or rab=IMAGE, with @0xADDRESS if it is not the usual one";
+constexpr std::string_view kShape =
+    "ground, turret, lsm330 or rab=IMAGE, with @0xADDRESS if it is not the usual one";
 constexpr std::uint8_t kLowest = 0x08, kHighest = 0x77;  // the others are reserved by the specification
 
 [[noreturn]] void fail(const std::string& problem, std::string_view expected) {
@@ -51,13 +53,17 @@ I2cDeviceSpec parse(const std::string& text) {
         spec.kind = Kind::Ground;
     else if (name == "turret")
         spec.kind = Kind::Turret;
+    else if (name == "lsm330")
+        spec.kind = Kind::Lsm330;
     else if (name == "rab")
         spec.kind = Kind::Rab;
     else {
-        const std::string near = nearest_name(name, {"ground", "turret", "rab"});
+        const std::string near = nearest_name(name, {"ground", "turret", "lsm330", "rab"});
         fail(fmt::format("no device '{}'", text),
              near.empty() ? std::string(kShape) : fmt::format("{}; did you mean {}?", kShape, near));
     }
+    if (spec.kind == Kind::Lsm330 && spec.address)
+        fail(fmt::format("'{}': the LSM330 has two addresses, 0x1e and 0x6a", text), "lsm330");
     if (spec.kind == Kind::Rab && spec.image.empty())
         fail(fmt::format("'{}' has no firmware", text), "rab=IMAGE, a HEX, ELF or COFF file");
     if (spec.kind != Kind::Rab && equals != std::string_view::npos)
@@ -65,10 +71,20 @@ I2cDeviceSpec parse(const std::string& text) {
     return spec;
 }
 
-/// The address it answers to, if it is known before its firmware has run.
-std::optional<std::uint8_t> address_of(const I2cDeviceSpec& spec) {
-    if (spec.address || spec.kind == Kind::Rab) return spec.address;
-    return spec.kind == Kind::Ground ? i2c_devices::kGroundSensorAddress : i2c_devices::kRgbTurretAddress;
+/// The addresses it answers to, as far as they are known before its firmware has run.
+std::vector<std::uint8_t> addresses_of(const I2cDeviceSpec& spec) {
+    if (spec.address) return {*spec.address};
+    switch (spec.kind) {
+    case Kind::Ground:
+        return {i2c_devices::kGroundSensorAddress};
+    case Kind::Turret:
+        return {i2c_devices::kRgbTurretAddress};
+    case Kind::Lsm330:
+        return {i2c_devices::Lsm330::kAccelerometerAddress, i2c_devices::Lsm330::kGyroscopeAddress};
+    case Kind::Rab:
+        return {};
+    }
+    return {};
 }
 
 }  // namespace
@@ -80,9 +96,11 @@ std::vector<I2cDeviceSpec> parse_i2c_devices(const std::vector<std::string>& tex
         for (const I2cDeviceSpec& other : devices) {
             if (other.kind == spec.kind)
                 fail(fmt::format("'{}' is the second of its kind", text), "one of each, as on a robot");
-            if (const auto address = address_of(spec); address && address == address_of(other))
-                fail(fmt::format("'{}' is the second device at 0x{:02x}", text, *address),
-                     "an address of its own");
+            const auto taken = addresses_of(other);
+            for (const std::uint8_t address : addresses_of(spec))
+                if (std::ranges::find(taken, address) != taken.end())
+                    fail(fmt::format("'{}' is the second device at 0x{:02x}", text, address),
+                         "an address of its own");
         }
         devices.push_back(spec);
     }

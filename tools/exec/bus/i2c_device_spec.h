@@ -1,6 +1,6 @@
 #pragma once
-// What the user wants on the bus of a target that is an I2C master: `ground`, `turret`, `rab=IMAGE`, each
-// with an address if it is not the usual one (`ground@0x61`).
+// What the user wants on the bus of a target that is an I2C master: `ground`, `turret`, `lsm330`,
+// `rab=IMAGE`, each but the LSM330 with an address if it is not the usual one (`ground@0x61`).
 
 #include <cstdint>
 #include <optional>
@@ -11,7 +11,7 @@
 namespace puckloop::exec {
 
 struct I2cDeviceSpec {
-    enum class Kind : std::uint8_t { Ground, Turret, Rab };
+    enum class Kind : std::uint8_t { Ground, Turret, Lsm330, Rab };
     Kind kind = Kind::Ground;
     /// 7 bits. Of a board: it hears this one only; without it its firmware decides.
     std::optional<std::uint8_t> address;

@@ -76,6 +76,7 @@ class PicTarget : public DspicTarget, private pic::BoardListener {
 std::unique_ptr<Target> make_pic_target(const TargetOptions& options, TargetListener& listener) {
     auto parameters = board_parameters<pic::BoardParameters>(options);
     parameters.selector = options.selector;
+    parameters.revision = options.revision;
     return std::make_unique<PicTarget>(parameters, options, listener);
 }
 

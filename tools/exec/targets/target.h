@@ -7,6 +7,7 @@
 #include "cosim/core/time.h"
 #include "emu/dspic/chip/chip.h"
 #include "emu/image/image.h"
+#include "emu/pic/board_revision.h"
 #include "tools/exec/bus/i2c_device_spec.h"
 
 #include <array>
@@ -64,8 +65,9 @@ struct TargetOptions {
     std::uint64_t seed = 1;
     double adc_noise_counts = 0.0;
     int selector = 0;
-    std::string camera = "po3030k";            ///< of the e-puck main board, or "none"
-    bool camera_turned = false;                ///< it lies on its side, as on early boards
+    pic::Revision revision = pic::Revision::Rev12;  ///< of the e-puck main board
+    std::string camera = "po3030k";                 ///< of the e-puck main board, or "none"
+    bool camera_turned = false;                     ///< it lies on its side, as on early boards
     std::string camera_picture{};              ///< PGM or PPM file that it looks at; empty: a test pattern
     std::string camera_log{};                  ///< file for a line per picture; empty: none
     bool skip_idle = true;                     ///< busy-wait loops are skipped forward
