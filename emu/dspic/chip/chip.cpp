@@ -99,6 +99,7 @@ struct Chip::Parts {
     std::optional<Dci> dci;
     std::optional<LowVoltage> low_voltage;
     std::deque<Can> cans;
+    std::deque<Ecan> ecans;
     std::optional<ModuleDisable> disable;
     chip::HeldInterrupts held;
     EventQueue::Slot edges;  ///< that the board makes by itself; the last: the others keep theirs
@@ -162,6 +163,8 @@ struct Chip::Parts {
         if (layout.low_voltage_irq) low_voltage.emplace(around, layout.low_voltage_irq, pins);
         for (const Can::Setup& setup : layout.cans)
             cans.emplace_back(around, setup, ports, pins);
+        for (const Ecan::Setup& setup : layout.ecans)
+            ecans.emplace_back(around, setup, ports, pins, *dma);
         for (const std::uint16_t address : layout.stored)
             sfr.claim(address);
         const auto address_of = [&](std::string_view name) {
@@ -186,6 +189,8 @@ struct Chip::Parts {
         if (dci) idle_controls.push_back(layout.dci.con1);
         for (const Can::Setup& setup : layout.cans)
             idle_controls.push_back(Can::control(setup));
+        for (const Ecan::Setup& setup : layout.ecans)
+            idle_controls.push_back(Ecan::control(setup));
     }
 
     SfrSpace& described() {
@@ -310,6 +315,7 @@ struct Chip::Parts {
         if (dci) dci->reset();
         if (low_voltage) low_voltage->reset(brown_out());
         reset_all(cans);
+        reset_all(ecans);
         interrupts.reset();
         held.reset();
         ports.heeding_changed();
@@ -347,6 +353,8 @@ struct Chip::Parts {
         if (dci) dci->hold(stops(layout.dci.con1));
         for (std::size_t i = 0; i < cans.size(); ++i)
             cans[i].hold(stops(Can::control(layout.cans[i])));
+        for (std::size_t i = 0; i < ecans.size(); ++i)
+            ecans[i].hold(stops(Ecan::control(layout.ecans[i])));
     }
 
     Uart& uart(int unit) { return uarts[static_cast<std::size_t>(unit - 1)]; }
@@ -393,6 +401,7 @@ struct Chip::Parts {
         if (dci) archive.part("dci", *dci);
         if (low_voltage) archive.part("low voltage", *low_voltage);
         parts_of("can", cans);
+        parts_of("ecan", ecans);
         archive.part("report", report);
         archive(asleep_since);
         if constexpr (Archive::kLoads) holding = true;
@@ -535,7 +544,9 @@ void Chip::stop_crystal() {
 }
 
 bool Chip::can_receive(int unit, const CanFrame& frame) {
-    return parts_->cans.at(static_cast<std::size_t>(unit - 1)).receive(frame, parts_->message_cycle());
+    const auto module = static_cast<std::size_t>(unit - 1);
+    if (!parts_->ecans.empty()) return parts_->ecans.at(module).receive(frame, parts_->message_cycle());
+    return parts_->cans.at(module).receive(frame, parts_->message_cycle());
 }
 
 void Chip::pins_changed(PortLetter port) {

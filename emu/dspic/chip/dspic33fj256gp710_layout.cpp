@@ -74,6 +74,11 @@ constexpr InputCapture::Unit kInputCaptures[] = {
     {sfr::IC4BUF, irq::IC4, {D, 11}}, {sfr::IC5BUF, irq::IC5, {D, 12}}, {sfr::IC6BUF, irq::IC6, {D, 13}},
     {sfr::IC7BUF, irq::IC7, {D, 14}}, {sfr::IC8BUF, irq::IC8, {D, 15}},
 };
+constexpr Ecan::Setup kEcans[] = {
+    {1, sfr::C1CTRL1, irq::C1, irq::C1RX, irq::C1TX, F, 0, 1},
+    {2, sfr::C2CTRL1, irq::C2, irq::C2RX, irq::C2TX, G, 0, 1},
+};
+
 constexpr Ports::Pin kOcfa{B, 6}, kOcfb{B, 15};
 
 constexpr std::uint16_t kStored[] = {sfr::BSRAM, sfr::SSRAM};
@@ -95,6 +100,7 @@ constexpr Layout kLayout = {
     .spis = kSpis,
     .output_compare = {kOutputCompares, {kOcfa, kOcfb}},
     .input_captures = kInputCaptures,
+    .ecans = kEcans,
     .dma = {sfr::DMA0CON,
             sfr::DMACS0,
             {irq::DMA0, irq::DMA1, irq::DMA2, irq::DMA3, irq::DMA4, irq::DMA5, irq::DMA6, irq::DMA7},

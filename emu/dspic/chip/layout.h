@@ -4,9 +4,10 @@
 
 #include "emu/dspic/devices/device.h"
 #include "emu/dspic/peripherals/adc_33f.h"
-#include "emu/dspic/peripherals/dci.h"
 #include "emu/dspic/peripherals/can.h"
+#include "emu/dspic/peripherals/dci.h"
 #include "emu/dspic/peripherals/dma.h"
+#include "emu/dspic/peripherals/ecan.h"
 #include "emu/dspic/peripherals/i2c_master.h"
 #include "emu/dspic/peripherals/input_capture.h"
 #include "emu/dspic/peripherals/output_compare.h"
@@ -41,10 +42,11 @@ struct Layout {
     std::span<const Spi::Setup> spis{};
     OutputCompare::Setup output_compare{};
     std::span<const InputCapture::Unit> input_captures{};
-    std::span<const Can::Setup> cans{};  ///< the 30F's
+    std::span<const Can::Setup> cans{};    ///< the 30F's
+    std::span<const Ecan::Setup> ecans{};  ///< the 33FJ's
     Dma::Setup dma{};
     Dci::Setup dci{};
-    std::uint8_t low_voltage_irq = 0;  ///< 0: the part has no low-voltage detector
+    std::uint8_t low_voltage_irq = 0;         ///< 0: the part has no low-voltage detector
     std::span<const std::uint16_t> stored{};  ///< registers that hold what is written and do no more
 };
 

@@ -38,6 +38,8 @@ ModuleDisable::ModuleDisable(SfrSpace& sfr, const Layout& layout,
         add(pmd1, kSpi + spi.unit - 1, spi.stat, range(spi.stat, (spi.buf - spi.stat) / 2 + 1));
     for (const Can::Setup& can : layout.cans)
         add(pmd1, kCan + can.unit - 1, Can::control(can), range(can.base, Can::kWords));
+    for (const Ecan::Setup& ecan : layout.ecans)
+        add(pmd1, kCan + ecan.unit - 1, Ecan::control(ecan), range(ecan.base, Ecan::kWords));
     for (const I2cMaster::Setup& i2c : layout.i2cs)
         add(i2c.unit == 1 ? pmd1 : pmd3, i2c.unit == 1 ? kI2c : kSecondI2c,
             static_cast<std::uint16_t>(i2c.rcv + 6), range(i2c.rcv, i2c.has_mask ? 7 : 6));

@@ -2,6 +2,8 @@
 
 #include "emu/dspic/devices/register_bits.h"
 
+#include <algorithm>
+
 namespace puckloop::dspic {
 
 namespace {
@@ -59,9 +61,31 @@ void Dma::requested(void* owner, int irq, Cycle at) {
     Dma& self = *static_cast<Dma*>(owner);
     for (int number = 0; number < kChannels; ++number)
         if ((self.reg(number, kCon) & kDMAxCON["CHEN"]) &&
-            kDMAxREQ["IRQSEL"].of(self.reg(number, kReq)) == static_cast<unsigned>(irq))
+            kDMAxREQ["IRQSEL"].of(self.reg(number, kReq)) == static_cast<unsigned>(irq) &&
+            std::ranges::find(self.blocks_, self.reg(number, kPad)) == self.blocks_.end())
             self.pending_ |= static_cast<std::uint8_t>(bit(number));
     if (self.pending_) self.around_.events.schedule(self.slot_, at + kLatency);
+}
+
+void Dma::block(int irq, std::uint16_t pad, unsigned offset, std::span<std::uint16_t> words, Cycle at) {
+    for (int number = 0; number < kChannels; ++number) {
+        const std::uint16_t con = reg(number, kCon);
+        if (!(con & kDMAxCON["CHEN"]) || reg(number, kPad) != pad ||
+            kDMAxREQ["IRQSEL"].of(reg(number, kReq)) != static_cast<unsigned>(irq))
+            continue;
+        Channel& channel = channels_[static_cast<std::size_t>(number)];
+        const unsigned block = reg(number, kCnt) + 1u;
+        const std::size_t first = (reg(number, channel.second ? kStb : kSta) + offset) / 2u;
+        for (std::size_t i = 0; i < words.size() && i < block; ++i) {
+            std::uint16_t& word = ram_[(first + i) % ram_.size()];
+            (con & kDMAxCON["DIR"] ? words[i] : word) = con & kDMAxCON["DIR"] ? word : words[i];
+            ++channel.done;
+            if ((con & kDMAxCON["HALF"]) && channel.done == block / 2)
+                around_.interrupts.raise(setup_.irqs[static_cast<std::size_t>(number)], at);
+        }
+        if (channel.done >= block) block_done(number, at);
+        return;
+    }
 }
 
 void Dma::due(void* owner, Cycle due) {

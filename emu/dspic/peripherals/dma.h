@@ -7,7 +7,8 @@
 //  1. A transfer takes place two cycles after its request; the bus is never busy, collisions (DMACS0,
 //  DMACERR)
 //     never happen.
-//  2. Peripheral indirect addressing (AMODE 1x) works as register indirect with post-increment.
+//  2. Peripheral indirect addressing (AMODE 1x) works as register indirect with post-increment but for ECAN,
+//     whose buffers move at once, all words of them.
 //  3. Addresses beyond the 2 KB of DMA RAM wrap.
 
 #include "emu/dspic/peripherals/surroundings.h"
@@ -31,6 +32,12 @@ class Dma {
     Dma(const Surroundings& around, const Setup& setup, std::span<std::uint16_t> ram);
 
     void reset();
+
+    /// The register at `pad` moves whole buffers: its channels wait for block().
+    void serve_blocks(std::uint16_t pad) { blocks_[block_count_++ % blocks_.size()] = pad; }
+    /// The channel of source `irq` and register `pad`, if one is enabled, moves `words` at `offset` bytes
+    /// from its start address, which the peripheral gives (peripheral indirect addressing).
+    void block(int irq, std::uint16_t pad, unsigned offset, std::span<std::uint16_t> words, Cycle at);
 
     /// After the registers.
     template <class Archive>
@@ -68,6 +75,8 @@ class Dma {
     std::span<std::uint16_t> ram_;
     std::array<Channel, kChannels> channels_{};
     std::uint8_t pending_ = 0;  ///< channels with a request
+    std::array<std::uint16_t, 4> blocks_{};
+    std::size_t block_count_ = 0;
     EventQueue::Slot slot_;
 };
 
