@@ -27,7 +27,8 @@ Verdict named(const std::string& cause, const std::string& parameter, double val
     return verdict;
 }
 
-Rerun again(const std::string& kind, const std::vector<std::string>& changes, const Verdict& verdict) {
+Rerun again(const std::string& kind, const std::vector<std::string>& changes, const Verdict& verdict,
+            bool floor = false) {
     const auto scratch = puckloop::tests::scratch_path("gap_rerun_" + kind);
     emulate::RecordOptions options;
     options.tools = {PUCKLOOP_RECORD, PUCKLOOP_FIRMWARE, PUCKLOOP_RAB_FIRMWARE};
@@ -42,6 +43,7 @@ Rerun again(const std::string& kind, const std::vector<std::string>& changes, co
     emulate::RerunOptions how;
     how.tools = options.tools;
     how.overlay = scratch / "overlay.toml";
+    if (floor) how.truth = options.robot;
     how.scratch = scratch / "again";
     if (kind == "rab") how.longest = 1;  // few pairs of boards
     const Rerun result = emulate::rerun(experiment, verdict, how);
@@ -56,8 +58,15 @@ Rerun again(const std::string& kind, const std::vector<std::string>& changes, co
 TEST_CASE("a wheel's size from an overlay drives the emulated robot as far as the measured one") {
     const Rerun result =
         again("motion", {"robot.wheel_radius_left=0.02112", "robot.wheel_radius_right=0.02112"},
-              named("wheel_scale", "wheel_scale", 0.0302, 0.0));
+              named("wheel_scale", "wheel_scale", 0.0302, 0.0), true);
     REQUIRE(result.observables.size() == 2);
+    // The robot that was recorded is off by its tracker's noise, and no less than with the overlay.
+    for (const RerunObservable& observable : result.observables) {
+        INFO(observable.name);
+        CHECK(observable.floor > 0);
+        CHECK(observable.after < 1.25 * observable.floor);
+        CHECK(observable.floor < 1.25 * observable.after);
+    }
     CHECK(result.observables[0].before > 0.003);  // 3 % of up to half a metre
     CHECK(result.observables[0].after < 0.0012);  // the tracker's 0.5 mm in x and y
     CHECK(result.observables[1].after < 0.005);   // its 0.2 degrees

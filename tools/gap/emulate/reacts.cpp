@@ -106,11 +106,12 @@ int reads_every(const Run& run) {
 }
 
 std::vector<React> timing(const Experiment& experiment, std::string& why) {
+    constexpr double kLeastPeriod = 0.01;  // s: an exchange takes 8 ms on the line
     std::vector<React> reacts;
     for (std::size_t r = 0; r < experiment.runs.size(); ++r) {
         const Run& run = experiment.runs[r];
         const double period = value_of(run, "nominal_period", 0, 0.1);
-        if (run.rows < 3 || !(period > 0)) continue;
+        if (run.rows < 3 || !(period >= kLeastPeriod)) continue;
         React react;
         react.run = r;
         react.period = period;
@@ -127,7 +128,7 @@ std::vector<React> timing(const Experiment& experiment, std::string& why) {
         reacts.push_back(std::move(react));
     }
     // The recording's own exchange is 84 bytes long and as fast as its firmware answers.
-    if (reacts.empty()) why = "no run with three frames";
+    if (reacts.empty()) why = "no run with three frames, 10 ms or more apart";
     return reacts;
 }
 
