@@ -1,6 +1,7 @@
 #include "tools/run/run_scenario.h"
 
 #include "base/error.h"
+#include "cosim/resume/run_snapshot.h"
 #include "cosim/trace/trace_csv.h"
 #include "physics/render/trajectory_svg.h"
 #include "tools/run/control/control_place.h"
@@ -167,10 +168,13 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
     // Before anything is started: a named pipe may have to wait for its reader.
     std::optional<LiveTrace> live;
     if (!request.live.empty()) live.emplace(request.live, options.interrupted);
-    cosim::TraceCsvSink trace((setup.out / "trace.csv").string());
+    std::optional<cosim::TraceCsvSink> trace;
     use_snapshots(setup, request, trace, options);
     cosim::Conductor conductor(setup.nodes, setup.links, setup.scenario.faults, options, make_node);
-    conductor.add_sink(trace);
+    // Only now: a run whose nodes do not start has recorded nothing.
+    trace.emplace((setup.out / "trace.csv").string());
+    if (request.snapshot) trace->begin_with(request.snapshot->trace);
+    conductor.add_sink(*trace);
     std::optional<cosim::TraceCsvSink> record;
     if (request.record) {
         record.emplace((setup.out / "record.csv").string(), cosim::TraceCsvSink::Rows::All);

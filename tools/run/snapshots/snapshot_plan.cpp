@@ -121,19 +121,18 @@ void plan_snapshots(RunSetup& setup, const RunRequest& request) {
     if (request.paced) quiet_outside(setup, request.snapshot->time);
 }
 
-void use_snapshots(const RunSetup& setup, const RunRequest& request, cosim::TraceCsvSink& trace,
-                   cosim::RunOptions& options) {
+void use_snapshots(const RunSetup& setup, const RunRequest& request,
+                   std::optional<cosim::TraceCsvSink>& trace, cosim::RunOptions& options) {
     for (const double at : request.snapshot_at)
         options.save_at.push_back(cosim::from_seconds(at));
     std::sort(options.save_at.begin(), options.save_at.end());
     options.from = request.snapshot.get();
-    if (request.snapshot) trace.begin_with(request.snapshot->trace);
     if (options.save_at.empty()) return;
     // Now, not when it is due: files may change under a run.
     options.save = [&request, &trace, origin = origin_of(setup, request)](cosim::RunSnapshot& snapshot) {
         snapshot.build = cosim::build_id();
         snapshot.origin = origin;
-        snapshot.trace = trace.written();
+        snapshot.trace = trace->written();
         const auto at = std::find_if(request.snapshot_at.begin(), request.snapshot_at.end(),
                                      [&](double time) { return cosim::from_seconds(time) == snapshot.time; });
         cosim::write_snapshot(snapshot_file(request, *at), snapshot);

@@ -7,6 +7,7 @@
 #include "tools/run/setup.h"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 namespace puckloop::tools {
@@ -22,9 +23,10 @@ std::filesystem::path snapshot_file(const RunRequest& request, double time);
 /// Checks times and files before the run, and that it is the run of its snapshot. Throws InputError.
 void plan_snapshots(RunSetup& setup, const RunRequest& request);
 
-/// Lets the conductor save and go on. `setup`, `request` and `trace`, which the run writes, must outlive it.
-void use_snapshots(const RunSetup& setup, const RunRequest& request, cosim::TraceCsvSink& trace,
-                   cosim::RunOptions& options);
+/// Lets the conductor save and go on. `setup`, `request` and `trace`, which the run begins later and writes,
+/// must outlive it.
+void use_snapshots(const RunSetup& setup, const RunRequest& request,
+                   std::optional<cosim::TraceCsvSink>& trace, cosim::RunOptions& options);
 
 /// After the run: one that ended before a snapshot was due has failed.
 void judge_snapshots(const RunRequest& request, cosim::Outcome& outcome);
