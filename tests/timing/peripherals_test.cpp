@@ -170,16 +170,19 @@ TEST_CASE(
         }
 }
 
-TEST_CASE("writing a row of flash stops the CPU for 2 ms, a word of EEPROM is written beside it") {
-    for (const bool eeprom : {false, true}) {
-        TimedChip run(dspic30f6014a(), fmt::format(R"(
+TEST_CASE(
+    "a row of flash stops the CPU, 2 ms or 11064 RC cycles (33FJ); a word of EEPROM is written beside it") {
+    for (const auto& [device, eeprom] :
+         {std::pair{kDevices[0], false}, {kDevices[0], true}, {kDevices[1], false}}) {
+        TimedChip run(
+            *device,
+            fmt::format(R"(
         goto    main
         .org    0x200
 main:   mov     #{0:#x}, w0
         mov     w0, TBLPAG
-        mov     w0, NVMADRU
         mov     #0xF000, w1
-        mov     w1, NVMADR
+{2}
         tblwtl  w2, [w1]
         mov     #{1:#x}, w3
         mov     w3, NVMCON
@@ -192,10 +195,11 @@ behind: btsc    NVMCON, #15
         bra     behind
 done:   bra     done
 )",
-                                                   eeprom ? 0x7F : 0, eeprom ? 0x4004 : 0x4001));
-        const double length = 2e-3 * run.chip.clock().hertz();
+                        eeprom ? 0x7F : 0, eeprom ? 0x4004 : 0x4001,
+                        device->family_33f ? "" : "        mov w0, NVMADRU\n        mov w1, NVMADR\n"));
+        const double length = (device->family_33f ? 11064 / 7.37e6 : 2e-3) * run.chip.clock().hertz();
         const Cycle write = run.run_to("write"), behind = run.run_to("behind"), done = run.run_to("done");
-        INFO((eeprom ? "EEPROM" : "flash"));
+        INFO(device->name << (eeprom ? ", EEPROM" : ", flash"));
         CHECK(static_cast<double>(behind - write) == Approx(eeprom ? 1 : 1 + length).margin(eeprom ? 0 : 2));
         CHECK(static_cast<double>(done - write) == Approx(length).margin(6));  // a round of the loop
     }

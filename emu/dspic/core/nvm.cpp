@@ -1,7 +1,7 @@
 // Self-programming: flash rows, EEPROM words and rows, configuration words.
 // Source: family reference manual, "Flash and EEPROM programming" (DS70052); fact sheet semantics section 15.
 // Deviations:
-//   1. every operation takes the typical 2 ms; contents change at its start.
+//   1. every operation takes the 30F's typical 2 ms, but for a 33FJ's row; contents change at its start.
 //   2. the key sequence must precede WR, but not in the very instruction before it.
 //   3. write protection by configuration words is not enforced.
 
@@ -19,6 +19,7 @@ constexpr RegisterBits kNVMCON{"NVMCON"};
 
 constexpr std::uint32_t kErased = 0xFFFFFF;
 constexpr double kDuration = 2e-3;             ///< seconds, typical
+constexpr double kRow33F = 11064 / 7.37e6;     ///< seconds: so many cycles of the RC oscillator (DS70286)
 constexpr Cycle kDurationUnknownRate = 29491;  ///< 2 ms at the e-puck's 14.7456 MHz
 constexpr std::uint32_t kEepromRow = 16;
 
@@ -122,8 +123,9 @@ void start(Machine& m) {
         return;
     }
     con = static_cast<std::uint16_t>((con | kNVMCON["WR"]) & ~kNVMCON["WRERR"]);
-    const Cycle length =
-        m.cycle_rate > 0 ? static_cast<Cycle>(kDuration * m.cycle_rate) : kDurationUnknownRate;
+    constexpr std::uint16_t kRow = 0x01;
+    const double seconds = m.device.family_33f && code == kRow ? kRow33F : kDuration;
+    const Cycle length = m.cycle_rate > 0 ? static_cast<Cycle>(seconds * m.cycle_rate) : kDurationUnknownRate;
     m.events.schedule(m.nvm.slot, m.st.cycle + length);
     if (!background) m.stall_end = m.st.cycle + length;
     m.limit = 0;
