@@ -92,6 +92,7 @@ std::vector<Row> btcom_rows() {
         row(kDefault, "D E S", "motors", drives),
         row(kDefault, "L F B", "LEDs", lights),
         answers(kDefault, "G", "remote control", "g IR check : 0x2, address : 0x0, data : 0x0\r\n"),
+        row(kDefault, "remote control", "its keys drive the robot, address 0 or 8", drives_by_remote),
         answers(kDefault, "H", "help", "\n\"A\"         Accelerometer\r\n"),
         answers(kDefault, "I", "camera's settings", "i,1,40,40,8,3200\r\n"),
         row(kDefault, "I, binary", "a picture", takes_picture),

@@ -220,6 +220,7 @@ std::vector<Row> demo_gctronic_rows() {
         row(1, "LED at the loudest microphone", loudest),
         row(2, "wall following", wall),
         row(3, "advanced sercom protocol at UART1", asercom),
+        row(3, "and keys of a remote control drive it", drives_by_remote),
         row(3, "the same: gyroscope, battery", asercom13, kNew),
         row(4, "drives a square, by steps", square_by_steps),
         row(4, "the same: its flag for the gyroscope is 0", square_by_steps, kNew),

@@ -78,7 +78,7 @@ std::string listens(Trial& trial) {
 
 std::vector<Row> demo_rows() {
     std::vector<Row> rows;
-    constexpr const char* kDemo = "Demo.hex";
+    constexpr const char *kDemo = "Demo.hex", *kOlder = "Demo-default.hex";
     rows.push_back(row(kDemo, 0, "shows the ground's direction", ground));
     rows.push_back(row(kDemo, 1, "shock detection with sounds", shocks));
     rows.push_back(row(kDemo, 2, "locates a sound", locates));
@@ -89,6 +89,12 @@ std::vector<Row> demo_rows() {
     rows.push_back(row(kDemo, 7, "follows the red ball", looks));
     rows.push_back(row(kDemo, 8, "follows the green ball", looks));
     rows.push_back(row(kDemo, 9, "9 to 15: commanded by sound", listens));
+    rows.push_back(row(kOlder, 0, "shows the ground's direction", ground));
+    rows.push_back(row(kOlder, 1, "shock detection with sounds", shocks));
+    rows.push_back(row(kOlder, 2, "locates a sound", locates));
+    rows.push_back(row(kOlder, 5, "avoids obstacles", drives));
+    rows.push_back(row(kOlder, 6, "follows all balls", looks));
+    rows.push_back(row(kOlder, 9, "9 to 15: commanded by sound", listens));
     return rows;
 }
 

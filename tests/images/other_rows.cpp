@@ -36,6 +36,14 @@ std::string mirrors(Trial& trial) {
     return "its menu at UART2";
 }
 
+/// What a loader answers to the byte that a computer begins with.
+std::string loads(Trial& trial, int unit) {
+    const std::string answer = trial.ask("\xC1", unit, 0.05);
+    expect(answer.size() >= 2 && answer.find('K') != std::string::npos,
+           fmt::format("{} bytes", answer.size()));
+    return "0xC1 is answered with its device's number and K";
+}
+
 std::string idles(Trial& trial) {
     trial.run(1.0);
     return "runs";
@@ -54,6 +62,13 @@ std::vector<Row> other_rows() {
         row("bluetoot_mirror.hex", "selector 0", "a menu at UART2 for the Bluetooth module", {}, mirrors),
         row("bluetoot_mirror.hex", "selector 1", "connects to another e-puck", {.selector = 1}, asks_module),
     };
+    const Trial::Setup reset{.boot = 0.02};
+    for (const char* const image : {"tinybld_ds6014A_7.37Mhz_115200uart1_8xPLL_with_LEDs.hex",
+                                    "tinybld_ds6014A_7.37Mhz_115200uart1_8xPLL_with_LEDs_helper.hex"})
+        rows.push_back(row(image, "after reset", "boot loader at UART1", reset,
+                           [](Trial& trial) { return loads(trial, 1); }));
+    rows.push_back(row("tinybld_ds6014A_7.37Mhz_115200uart2_8xPLL_with_LEDs.hex", "after reset",
+                       "boot loader at UART2", reset, [](Trial& trial) { return loads(trial, 2); }));
     for (const char* const image : {"randb.hex", "erab_1to4b.hex"})
         rows.push_back(row(image, "range-and-bearing board", "receives and sends (rab.md)", rab, idles));
     return rows;

@@ -1,5 +1,7 @@
 #include "tests/images/trial.h"
 
+#include "protocols/rc5.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,6 +20,17 @@ std::string Trial::ask(const std::string& text, int unit, double seconds) {
     rig_->send(unit, {text.begin(), text.end()});
     rig_->run_for(seconds);
     return rig_->take_text(unit);
+}
+
+void Trial::press(int key, int address) {
+    constexpr double kMicrosecond = 1e-6;
+    const double begin = rig_->now_s();
+    toggle_ = !toggle_;
+    for (const protocols::Rc5Edge& edge : protocols::rc5_frame(toggle_, address, key)) {
+        rig_->run_to(begin + edge.microseconds * kMicrosecond);
+        rig_->set("remote", edge.high ? 1 : 0);
+    }
+    rig_->run_to(begin + protocols::kRc5RepeatMicroseconds * kMicrosecond);
 }
 
 std::string Trial::leds() {
@@ -50,6 +63,26 @@ std::string Trial::troubles() {
         all += fmt::format(" {} at {:#x}", touch.name, touch.pc);
     if (!report.traps.empty()) all += fmt::format(" {} traps", report.traps.size());
     return all;
+}
+
+std::string drives_by_remote(Trial& trial) {
+    constexpr int kAddress = 8;  // 0 or 8 is heard
+    trial.press(2, kAddress);
+    const auto ahead = trial.drives(1.0);
+    expect(ahead[0] > 400 && std::abs(ahead[0] - ahead[1]) < 5,
+           fmt::format("key 2: {}, {}", ahead[0], ahead[1]));
+    trial.press(5, kAddress);
+    const auto rest = trial.drives(0.5);
+    expect(rest[0] == 0 && rest[1] == 0, "key 5: goes on");
+    trial.press(4, kAddress + 1);
+    const auto deaf = trial.drives(0.5);
+    expect(deaf[0] == 0 && deaf[1] == 0, "hears another address");
+    trial.press(4, kAddress);
+    const auto left = trial.drives(1.0);
+    expect(left[0] < -400 && std::abs(left[0] + left[1]) < 5, fmt::format("key 4: {}, {}", left[0], left[1]));
+    trial.press(0, kAddress);
+    expect(trial.plays(0.3) > 0.05, "key 0: no sound");
+    return "keys 2, 5, 4, 0: ahead, stop, left, a sound; another address is not heard";
 }
 
 void expect(bool right, const std::string& seen) {

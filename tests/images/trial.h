@@ -28,6 +28,8 @@ class Trial {
     void run(double seconds) { rig_->run_for(seconds); }
     /// What comes back at UART `unit` within `seconds` of `text`.
     std::string ask(const std::string& text, int unit = 1, double seconds = 0.15);
+    /// A key of a remote control, pressed once: one RC5 frame, and rest until the next could come.
+    void press(int key, int address);
     /// All that came at `unit` since the last call, that of the boot included.
     std::string heard(int unit = 1) { return rig_->take_text(unit); }
     /// "0 7 6": the ring's LEDs that are on.
@@ -41,6 +43,7 @@ class Trial {
 
   private:
     std::unique_ptr<exec::Rig> rig_;
+    bool toggle_ = false;  // of the remote control
 };
 
 struct Row {
@@ -57,6 +60,9 @@ struct Wrong {
 };
 /// Throws Wrong unless `right`.
 void expect(bool right, const std::string& seen);
+
+/// A remote control drives the robot: keys 2 (ahead), 5 (stop), 4 (left), 0 (a sound).
+std::string drives_by_remote(Trial& trial);
 
 std::vector<Row> demo_gctronic_rows();
 std::vector<Row> demo_rows();
