@@ -11,7 +11,10 @@ namespace puckloop::physics {
 namespace {
 constexpr std::array<double, kPoseSignals> kQuantum{1e-5, 1e-5, 1e-4};  // m, m, rad
 constexpr double kFullLevel = 255.0;                                    // of the turret's colours
-constexpr std::size_t kMostSignals = 0xFFFF;
+
+std::array<double, CameraSignals::kLampValues> values_of(const Lamp& lamp) {
+    return {lamp.x, lamp.y, lamp.height, lamp.intensity};
+}
 }  // namespace
 
 CameraPort::CameraPort(const WorldModel& model, std::vector<cosim::PortIndex> ports)
@@ -37,8 +40,12 @@ CameraPort::CameraPort(const WorldModel& model, std::vector<cosim::PortIndex> po
     // What cameras know from the start.
     last_[CameraSignals::kAmbient] = world.ambient_light;
     last_[CameraSignals::kFloorGrey] = world.arena.floor_grey;
+    lamps_ = std::min(world.lamps.size(), CameraSignals::kMostLamps);
     for (std::size_t i = 0; i < world.lamps.size(); ++i)
         last_[signals_.lamp(i)] = world.lamps[i].intensity;
+    for (std::size_t i = 0; i < lamps_; ++i)
+        for (std::size_t k = 0; k < CameraSignals::kLampValues; ++k)
+            last_[CameraSignals::lamp_place(i) + k] = values_of(world.lamps[i])[k];
     for (std::size_t i = 0; i < model.fixed_count(); ++i)
         for (std::size_t k = 0; k < kShapeSignals; ++k)
             last_[signals_.shape(true, i) + k] = values_of(model.fixed(i))[k];
@@ -54,7 +61,6 @@ void CameraPort::led(std::size_t robot, bool turret, std::uint16_t id, double va
 }
 
 void CameraPort::put(std::size_t id, double value) {
-    if (id > kMostSignals) return;  // some thousand things
     const auto [found, fresh] = last_.try_emplace(id, 0.0);
     if (found->second == value && !(fresh && id < signals_.out(0))) return;
     found->second = value;
@@ -63,6 +69,7 @@ void CameraPort::put(std::size_t id, double value) {
 }
 
 void CameraPort::put_shape(bool fixed, std::size_t index, const Shape& shape) {
+    if (signals_.shape(fixed, index) + kShapeSignals > CameraSignals::kFirstLampPlace) return;  // thousands
     const ShapeValues values = values_of(shape);
     for (std::size_t k = 0; k < kShapeSignals; ++k)
         put(signals_.shape(fixed, index) + k, values[k]);
@@ -75,6 +82,19 @@ void CameraPort::put_poses(const WorldModel& model) {
         const auto now = robot ? pose(model.state(i)) : pose(model.object(i - signals_.robots()));
         for (std::size_t k = 0; k < kPoseSignals; ++k)
             put(signals_.pose(i) + k, std::round(now[k] / kQuantum[k]) * kQuantum[k]);
+    }
+}
+
+/// Where lamps are now: one that goes away moves those behind it up.
+void CameraPort::put_lamps(const World& world) {
+    lamps_ = std::min(std::max(lamps_, world.lamps.size()), CameraSignals::kMostLamps);
+    for (std::size_t i = 0; i < lamps_; ++i) {
+        const bool there = i < world.lamps.size(), own = i < signals_.lamp_count();
+        const auto values = there ? values_of(world.lamps[i]) : decltype(values_of(Lamp{})){};
+        // The intensity of a lamp that was there from the start has a signal of its own.
+        for (std::size_t k = 0; k < CameraSignals::kLampValues - (own ? 1 : 0); ++k)
+            if (there || k == CameraSignals::kLampValues - 1)
+                put(CameraSignals::lamp_place(i) + k, values[k]);
     }
 }
 
@@ -98,8 +118,10 @@ void CameraPort::put_changes(const WorldModel& model) {
         put_shape(true, i, model.fixed(i));
     for (std::size_t i = 0; i < signals_.lamp_count(); ++i)
         put(signals_.lamp(i), i < world.lamps.size() ? world.lamps[i].intensity : 0.0);
+    put_lamps(world);
     patches_ = std::max(patches_, world.patches.size());
     for (std::size_t i = 0; i < patches_; ++i) {
+        if (signals_.patch(i) + kCameraPatchValues > CameraSignals::kFirstLampPlace) return;
         const auto values =
             i < world.patches.size() ? values_of(world.patches[i]) : std::array<double, kCameraPatchValues>{};
         for (std::size_t k = 0; k < kCameraPatchValues; ++k)

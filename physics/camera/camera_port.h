@@ -26,14 +26,15 @@ class CameraPort {
     void put(std::size_t id, double value);
     void put_shape(bool fixed, std::size_t index, const Shape& shape);
     void put_poses(const WorldModel& model);
+    void put_lamps(const World& world);
     void put_changes(const WorldModel& model);
 
     CameraSignals signals_;
     std::vector<cosim::PortIndex> ports_;
     std::vector<std::map<std::uint16_t, std::size_t>> ring_, turret_;  // by robot: signal id to ours
     std::map<std::size_t, double> leds_;
-    std::map<std::size_t, double> last_;  // as published, or as described
-    std::size_t patches_ = 0;             // described or published so far
+    std::map<std::size_t, double> last_;   // as published, or as described
+    std::size_t patches_ = 0, lamps_ = 0;  // described or published so far
     cosim::Time stamp_ = 0;
     std::vector<cosim::Message>* outbox_ = nullptr;
 };

@@ -113,6 +113,15 @@ void CameraScene::change_patch(std::size_t index, std::size_t part, double value
         if (values[kCameraPatchValues - 1] != 0.0) seen_patches_.push_back(patch_from(values));
 }
 
+void CameraScene::move_lamp(std::size_t index, std::size_t part, double value) {
+    Glow& lamp = grown(lamps_, index);
+    lamp.radius = kLampRadius;
+    if (part == 0) lamp.x = value;
+    if (part == 1) lamp.y = value;
+    if (part == 2) lamp.z = value;
+    if (part == 3) lamp.level.fill(kLampLevel * value);
+}
+
 void CameraScene::change(std::size_t id, double value) {
     using Kind = CameraSignals::Kind;
     const auto [kind, index, part] = signals_.meaning(id);
@@ -137,6 +146,9 @@ void CameraScene::change(std::size_t id, double value) {
         break;
     case Kind::Lamp:
         lamps_[index].level.fill(kLampLevel * value);
+        break;
+    case Kind::LampPlace:
+        move_lamp(index, part, value);
         break;
     case Kind::BoothLight:
         booth_lights_[index].level[part] = value;

@@ -60,6 +60,7 @@ class CameraScene {
         bool out = false;
     };
     void change_patch(std::size_t index, std::size_t part, double value);
+    void move_lamp(std::size_t index, std::size_t part, double value);
     void turret_glows(std::size_t robot, std::vector<Glow>& out) const;
     void ring_glows(std::size_t robot, std::vector<Glow>& out) const;
 

@@ -26,6 +26,9 @@ CameraSignals::Meaning CameraSignals::meaning(std::size_t id) const {
     if (id < lamps_) return of(Kind::Turret, turret_, kTurretColours);
     if (id < lights_) return of(Kind::Lamp, lamps_, 1);
     if (id < open_) return of(Kind::BoothLight, lights_, 3);
+    if (id >= kFirstLampPlace)
+        return {Kind::LampPlace, kMostLamps - 1 - (id - kFirstLampPlace) / kLampValues,
+                (id - kFirstLampPlace) % kLampValues};
     const std::size_t record = (id - open_) / kShapeSignals;
     constexpr Kind kLists[] = {Kind::Fixed, Kind::Added, Kind::Patch};
     return {kLists[record % 3], record / 3, (id - open_) % kShapeSignals};

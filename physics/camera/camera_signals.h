@@ -1,8 +1,6 @@
 #pragma once
 // The signals between the world's port "<robot>.camera" and the robot's Linux board: what cameras see, as of
 // the last step before each of their frames. Both ends compute the ids from the same description.
-//
-// Deviation: lamps that are moved or added during a run stay where they were, or are not seen.
 
 #include "cosim/core/time.h"
 #include "physics/description/description.h"
@@ -34,7 +32,16 @@ class CameraSignals {
     std::size_t turret(std::size_t robot, std::size_t colour) const {
         return turret_ + robot * kTurretColours + colour;
     }
+    /// Intensity of a lamp that was there from the start.
     std::size_t lamp(std::size_t lamp) const { return lamps_ + lamp; }
+    /// The first of kLampValues of the lamp that is number `lamp` now, from the upper end of all ids down;
+    /// the intensity counts for lamps that were added.
+    static constexpr std::size_t kLampValues = 4;  ///< x, y, height, intensity
+    static constexpr std::size_t kMostLamps = 512;
+    static constexpr std::size_t kFirstLampPlace = 0x10000 - kMostLamps * kLampValues;
+    static std::size_t lamp_place(std::size_t lamp) {
+        return kFirstLampPlace + (kMostLamps - 1 - lamp) * kLampValues;
+    }
     /// Red, green or blue (0..2) of light number `light` of all booths, kLights each
     /// (physics/description/booth.h).
     std::size_t booth_light(std::size_t light, std::size_t colour) const {
@@ -61,6 +68,7 @@ class CameraSignals {
         RingLed,
         Turret,
         Lamp,
+        LampPlace,
         BoothLight,
         Fixed,
         Added,

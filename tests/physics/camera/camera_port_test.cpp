@@ -89,6 +89,9 @@ TEST_CASE("ids of what cameras see do not meet, and mean what they are") {
             check(ids.turret(r, k), Kind::Turret, r, k);
     }
     check(ids.lamp(0), Kind::Lamp, 0, 0);
+    for (const std::size_t i : {std::size_t{0}, std::size_t{1}, CameraSignals::kMostLamps - 1})
+        for (std::size_t k = 0; k < CameraSignals::kLampValues; ++k)
+            check(CameraSignals::lamp_place(i) + k, Kind::LampPlace, i, k);
     for (std::size_t i = 0; i < ids.booth_lights(); ++i)
         for (std::size_t k = 0; k < 3; ++k)
             check(ids.booth_light(i, k), Kind::BoothLight, i, k);
@@ -145,6 +148,46 @@ TEST_CASE("cameras hear of poses, LEDs and events at frame times only") {
     std::vector<Glow> glows;
     scene.glows(1, glows);
     CHECK(glows.size() == 1);  // the lamp; the lifted robot's LEDs are out of sight
+}
+
+TEST_CASE("cameras see lamps that are moved, added and taken away") {
+    World world = room();
+    world.lamps.push_back({.name = "moon", .x = -0.4, .y = 0.5, .height = 0.1, .intensity = 0.5});
+    Action move = action(Verb::Move, "sun");
+    move.to = Point{0.1, -0.3};
+    Action add = action(Verb::Add, "star");
+    add.thing.lamps.push_back({.name = "star", .x = -0.2, .y = 0.0, .height = 0.2, .intensity = 0.25});
+    const auto seen = [&](Time until) {
+        const auto node = node_with(world, {at(20 * kMillisecond, move), at(50 * kMillisecond, add),
+                                            at(90 * kMillisecond, action(Verb::Remove, "sun"))});
+        CameraScene scene(world);
+        for (const Message& message : to_camera(run_node(*node, {}, until, 10 * kMillisecond))) {
+            const auto& signal = std::get<cosim::Signal>(message.payload);
+            scene.change(signal.id, signal.value);
+        }
+        std::vector<Glow> glows;
+        scene.glows(1, glows);
+        return glows;
+    };
+    const std::vector<Glow> before = seen(20 * kMillisecond), all = seen(80 * kMillisecond),
+                            end = seen(150 * kMillisecond);
+    REQUIRE(before.size() >= 2);
+    REQUIRE(all.size() == before.size() + 1);
+    REQUIRE(end.size() == before.size());
+    const auto there = [](const std::vector<Glow>& glows, const Lamp& lamp, double brightness) {
+        return std::any_of(glows.begin(), glows.end(), [&](const Glow& glow) {
+            return glow.x == lamp.x && glow.y == lamp.y && glow.z == lamp.height &&
+                   glow.level[0] == Approx(20.0 * brightness) && glow.radius == 0.02;
+        });
+    };
+    const Lamp moved{.name = "sun", .x = 0.1, .y = -0.3};
+    CHECK(there(before, world.lamps[0], 1.0));
+    CHECK(there(all, moved, 1.0));
+    CHECK(there(all, world.lamps[1], 0.5));
+    CHECK(there(all, add.thing.lamps[0], 0.25));
+    CHECK_FALSE(there(end, moved, 1.0));
+    CHECK(there(end, world.lamps[1], 0.5));
+    CHECK(there(end, add.thing.lamps[0], 0.25));
 }
 
 TEST_CASE("a world without cameras has no port for them") {
