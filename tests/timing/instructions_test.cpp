@@ -159,11 +159,11 @@ TEST_CASE("reading program memory through the PSV window costs MOV and MAC one c
     const auto timed = [&](const std::string& text, int cycles) { return Stretch{window, text, cycles}; };
     for (const DeviceInfo* device : kDevices)
         check(*device,
-              {timed("mov [w8], w3", 1 + 1), timed("mov.b [w8++], w3", 1 + 1), timed("mov [w8+4], w3", 1 + 1),
-               timed("mov 0x8200, w3", 1 + 1), timed("mac w4*w5, a, [w8]+=2, w4", 1 + 1),
-               timed("add w2, [w8], w3", 1 + 2), timed("sl [w8++], w3", 1 + 2), timed("cp0 [w8]", 1 + 2),
-               timed("btst.z [w8], #3", 1 + 2), timed("mul.uu w2, [w8], w4", 1 + 2),
-               timed("ze [w8], w3", 1 + 2), timed("lac [w8], a", 1 + 2),
+              {timed("mov [w8], w3", 1 + 1), timed("mov.b [w8++], w3", 1 + 1), timed("mov.d [w8], w2", 2 + 1),
+               timed("mov [w8+4], w3", 1 + 1), timed("mov 0x8200, w3", 1 + 1),
+               timed("mac w4*w5, a, [w8]+=2, w4", 1 + 1), timed("add w2, [w8], w3", 1 + 2),
+               timed("sl [w8++], w3", 1 + 2), timed("cp0 [w8]", 1 + 2), timed("btst.z [w8], #3", 1 + 2),
+               timed("mul.uu w2, [w8], w4", 1 + 2), timed("ze [w8], w3", 1 + 2), timed("lac [w8], a", 1 + 2),
                // in a REPEAT the first and the last time only
                timed("repeat #9\n add w2, [w8], w3", 1 + 10 + 2 + 2),
                timed("repeat #1\n add w2, [w8], w3", 1 + 2 + 2 + 2)});

@@ -17,7 +17,8 @@ std::uint16_t read_sfr(Machine& m, std::uint16_t address) {
     return value;
 }
 
-/// A read through the window, with the cycles it costs outside and inside REPEAT.
+/// A read through the window, with the cycles it costs the instruction, both words of MOV.D together, outside and
+/// inside REPEAT.
 std::uint16_t read_psv(Machine& m, std::uint16_t address) {
     bool implemented = false;
     const std::uint32_t window = std::uint32_t{m.st.psvpag} << 15 | (address & 0x7FFEu);
@@ -25,9 +26,9 @@ std::uint16_t read_psv(Machine& m, std::uint16_t address) {
     if (!implemented) raise_trap(m, Trap::AddressError);
     constexpr unsigned kRepeatEdge = 2;
     if (m.st.sr & sr::RA)
-        m.late += m.repeat_edge ? kRepeatEdge : 0;
+        m.late = m.repeat_edge ? kRepeatEdge : 0;
     else
-        m.late += m.current->psv_extra;
+        m.late = m.current->psv_extra;
     if (m.late != 0) m.limit = 0;  // the run loop adds them
     return static_cast<std::uint16_t>(word);
 }
