@@ -1,6 +1,7 @@
 #include "scenarios/robot_tables.h"
 
 #include "emu/pic/board_revision.h"
+#include "scenarios/bluetooth_tables.h"
 #include "scenarios/board_keys.h"
 #include "scenarios/camera_keys.h"
 #include "scenarios/linux_keys.h"
@@ -40,7 +41,8 @@ std::string read_revision(Reader& reader) {
 }
 
 PicBoard read_pic(const std::string& file, const std::string& where, const TomlValue& table,
-                  const std::filesystem::path& folder, const std::vector<std::filesystem::path>& others) {
+                  const std::filesystem::path& folder, const std::vector<std::filesystem::path>& others,
+                  std::size_t index) {
     Reader reader(file, where, table);
     PicBoard pic;
     pic.firmware = folder / reader.text("firmware");
@@ -49,6 +51,12 @@ PicBoard read_pic(const std::string& file, const std::string& where, const TomlV
     pic.adc_noise = read_adc_noise(reader, pic.adc_noise);
     pic.selector = static_cast<int>(reader.integer("selector", 0, 0, 15));
     pic.uart1 = reader.text("uart1", "");
+    pic.uart2 = reader.text("uart2", "");
+    if (const TomlValue* bluetooth = reader.table("bluetooth")) {
+        if (!pic.uart1.empty())
+            reader.fail("uart1", "the Bluetooth module is on UART1", "either 'uart1' or 'bluetooth'");
+        pic.bluetooth = read_bluetooth_module(file, where + ".bluetooth", *bluetooth, index);
+    }
     pic.resets = read_times(reader, "reset", 0.0);
     pic.nvm = read_nvm(reader, folder, others);
     constexpr double kNotGiven = std::numeric_limits<double>::quiet_NaN();
@@ -112,12 +120,14 @@ void read_robot(const std::string& file, const TomlValue& table, const std::file
     }
     const TomlValue* pic = reader.table("pic");
     if (!pic) reader.fail("pic", "[robot.pic] is missing", "[robot.pic] with firmware = \"image.hex\"");
-    boards.pic = read_pic(file, boards.name + ".pic", *pic, folder, memories);
+    boards.pic = read_pic(file, boards.name + ".pic", *pic, folder, memories, scenario.robots.size());
     if (!boards.pic.nvm.empty()) memories.push_back(boards.pic.nvm);
     if (const TomlValue* rab = reader.table("rab"))
         boards.rab = read_rab(file, boards.name + ".rab", *rab, folder, memories);
     if (const TomlValue* linux_table = reader.table("linux"))
         boards.linux_board = read_linux(file, boards.name + ".linux", *linux_table, boards.name);
+    if (boards.linux_board && !boards.pic.uart2.empty())
+        reader.fail("linux", "the Linux board is on UART2", "either 'uart2' in [robot.pic] or [robot.linux]");
     const bool linux_cameras = boards.linux_board && !boards.linux_board->cameras.empty();
     if (linux_cameras && !boards.pic.camera.empty())
         reader.fail("linux", "the main board and the Linux board both have cameras",

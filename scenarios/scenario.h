@@ -14,6 +14,25 @@
 
 namespace puckloop::scenarios {
 
+/// The Bluetooth module of a main board, on its UART1.
+struct BluetoothModule {
+    std::string name;        ///< that others see
+    std::string pin;         ///< fixed PIN
+    std::string address;     ///< "08:00:17:2C:00:01"
+    bool automatic = true;   ///< transparent once somebody has linked with it
+    double boot = 0.5;       ///< s from reset to READY
+    std::string computer{};  ///< at the other end: "pty", "tcp:PORT", "script:FILE"; empty: no computer
+    double connect = 0.0;    ///< s: when the computer begins to link
+};
+
+/// The air between Bluetooth devices (emu/bluetooth/times.h).
+struct BluetoothMedium {
+    double range = 10.0;       ///< m
+    double discovery = 2.611;  ///< s, mean time until a device answers an inquiry
+    /// s: mean and standard deviation.
+    std::vector<double> name_time{2.5, 1.2}, link_time{9.9, 4.3}, release_time{1.0, 0.3};
+};
+
 /// The e-puck main board of a robot.
 struct PicBoard {
     std::filesystem::path firmware;
@@ -22,12 +41,14 @@ struct PicBoard {
     bool adc_noise_given = false;  ///< by the scenario: then it holds for the phototransistors in any case
     int selector = 0;              ///< position of the rotary selector, 0..15
     std::string uart1;             ///< plugged in: "pty", "tcp:PORT", "script:FILE"; empty: nothing
+    std::string uart2{};           ///< likewise, where no Linux board is
     std::vector<double> resets;    ///< s: the reset button (MCLR) is pressed, rising
     std::filesystem::path nvm{};   ///< file that keeps flash and EEPROM; empty: none
     std::optional<double> boot{};  ///< s: how long the firmware needs until it listens; none: not said
     std::string camera{};          ///< on the board: "po3030k" or "po6030k"; empty: none
     bool camera_turned = false;    ///< it lies on its side, as on early boards
     std::string revision = "1.2";  ///< of the board: "1.2" or "1.3"
+    std::optional<BluetoothModule> bluetooth{};
 };
 
 /// The range-and-bearing board of a robot (e-RandB), on its I2C bus.
@@ -140,6 +161,7 @@ struct Scenario {
     std::vector<RobotBoards> robots;
     std::vector<TamBoard> tams{};  ///< in the order of the world's booths
     RadioMedium radio{};
+    BluetoothMedium bluetooth{};
     std::optional<CoordinatorPlace> coordinator{};
     std::vector<cosim::FaultSpec> faults;
     std::vector<std::string>
@@ -149,6 +171,13 @@ struct Scenario {
 /// Reads and checks a scenario; paths in it are relative to its own folder. Throws InputError with file and
 /// line.
 Scenario read_scenario(const std::filesystem::path& file);
+
+/// Any robot has a Bluetooth module.
+inline bool has_bluetooth(const Scenario& scenario) {
+    for (const RobotBoards& robot : scenario.robots)
+        if (robot.pic.bluetooth) return true;
+    return false;
+}
 
 /// Throws InputError if neither a duration nor a program ends the run: looked at when the command line's
 /// changes have been made.

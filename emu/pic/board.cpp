@@ -126,6 +126,7 @@ void Board::place_levels() {
 
 void Board::driven(dspic::PortLetter port, std::uint16_t levels, std::uint16_t driven, dspic::Cycle now) {
     settle(now);
+    if (port == wiring::kLinePort) watch_line(levels, driven, now);
     std::uint16_t& outputs = outputs_[static_cast<std::size_t>(port)];
     const std::uint16_t high = levels & driven;  // a pin that is an input drives nothing: all are active high
     const unsigned changed = outputs ^ high;
@@ -144,6 +145,12 @@ void Board::driven(dspic::PortLetter port, std::uint16_t levels, std::uint16_t d
             patterns[pin.signal == kWheelLeft ? 0 : 1] |= ((high >> pin.bit) & 1u) << pin.signal_bit;
     for (std::size_t i = 0; i < patterns.size(); ++i)
         motors_[i].coils(static_cast<std::uint8_t>(patterns[i]), now);
+}
+
+void Board::watch_line(std::uint16_t levels, std::uint16_t driven, dspic::Cycle now) {
+    const bool low = ((driven & ~levels) >> wiring::kLineTx & 1) != 0;
+    if (low && !line_low_) listener_.line_pulled_low(now);
+    line_low_ = low;
 }
 
 void Board::drive(SignalId id, bool level, dspic::Cycle now) {

@@ -67,6 +67,8 @@ class BoardListener {
     virtual void edges_moved(dspic::Cycle /*at*/) {}
     /// A fault kept motor 0 (left) or 1 from making a step that was due at `now`.
     virtual void step_lost(int /*motor*/, dspic::Cycle /*now*/) {}
+    /// The firmware pulls UART1's TX low by the port pin: a break, if the UART is off.
+    virtual void line_pulled_low(dspic::Cycle /*now*/) {}
 };
 
 class Board : public dspic::Pins {
@@ -115,8 +117,8 @@ class Board : public dspic::Pins {
     /// Positions of all signals, lights, motors and noise; the parameters are each board's own.
     template <class Archive>
     void state(Archive& archive) {
-        archive(noise_, values_, emitters_, lights_, microphones_, motors_, outputs_, analog_faults_, codec_,
-                sounds_);
+        archive(noise_, values_, emitters_, lights_, microphones_, motors_, outputs_, line_low_,
+                analog_faults_, codec_, sounds_);
         archive.bounded(sag_, 0.0, 1e3);
         archive.bounded(battery_, -1e15, 1e15);
         archive(profile_);
@@ -162,6 +164,7 @@ class Board : public dspic::Pins {
     };
     void check_loaded();
     void place_levels();
+    void watch_line(std::uint16_t levels, std::uint16_t driven, dspic::Cycle now);
     void drive(SignalId id, bool level, dspic::Cycle now);
     void show_speaker(dspic::Cycle now);
     double level_at(int channel, dspic::Cycle now) const;
@@ -178,6 +181,7 @@ class Board : public dspic::Pins {
     std::array<StepperDecoder, 2> motors_;
     Si3000 codec_;
     std::array<std::uint16_t, kPorts> outputs_{};  ///< pins that are driven high
+    bool line_low_ = false;                        ///< UART1's TX, by the port's driver
     std::array<std::uint16_t, kPorts> levels_{};   ///< what the board puts on the pins
     chip::AnalogFaults analog_faults_;
     double sag_ = 0.0, battery_ = 0.0;  ///< volts; the battery's without the sag

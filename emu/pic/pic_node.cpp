@@ -169,6 +169,16 @@ void PicNode::i2c_phase(int unit, const cosim::I2cPhase& phase) {
         bus_.phase(phase);
 }
 
+void PicNode::line_pulled_low(dspic::Cycle now) {
+    if (!options_.uart1_breaks || chip_->uart_enabled(1) || outbox_ == nullptr) return;
+    cosim::UartFrame frame;
+    frame.start = chip_->clock().time_of(now);
+    constexpr cosim::Time kBit = 8'680'556;  // ps: 115200 baud
+    frame.bit_period = kBit;
+    frame.is_break = 1;
+    uart_sent(1, frame);
+}
+
 void PicNode::step_lost(int motor, dspic::Cycle now) {
     if (faults_) faults_->lost_step(motor, chip_->clock().time_of(now));
 }

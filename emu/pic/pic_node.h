@@ -23,6 +23,9 @@ struct PicNodeOptions {
     BoardParameters board;  ///< its name is the node's name
     /// The board has the port "ir", as IRcom's medium (physics/ircom) needs it.
     bool ircom = false;
+    /// UART1's TX pulled low by the port pin is a break on the line, as for a Bluetooth module. Where the
+    /// firmware lets go before a character is over, that is not seen.
+    bool uart1_breaks = false;
     bool i2c_linked = true;  ///< false: nobody else is on the bus, and the node answers the master itself
     bool skip_idle = true;   ///< busy-wait loops are skipped forward
     std::vector<cosim::Time> resets;  ///< the reset button (a pulse on MCLR), rising times above 0
@@ -85,6 +88,7 @@ class PicNode : public cosim::StatefulNode, private BoardListener, private chip:
     void uart_sent(int unit, const cosim::UartFrame& frame) override;
     void i2c_phase(int unit, const cosim::I2cPhase& phase) override;
     void step_lost(int motor, dspic::Cycle now) override;
+    void line_pulled_low(dspic::Cycle now) override;
     void edges_moved(dspic::Cycle at) override { chip_->edges_moved(at); }
     void set_sag(double volts) override;
     void set_battery(std::optional<double> volts) override;

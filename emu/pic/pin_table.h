@@ -93,6 +93,9 @@ inline constexpr auto kPins = std::to_array<PinUse>({
     {G, 15, "codec_frame", PulledLow},
 });
 
+// UART1's TX.
+inline constexpr dspic::PortLetter kLinePort = F;
+inline constexpr int kLineTx = 3;
 // Where the camera's lines are.
 inline constexpr dspic::PortLetter kCameraLines = C, kCameraData = D;
 inline constexpr int kCameraHref = 3, kCameraVsync = 4, kCameraPclk = 14;

@@ -41,7 +41,7 @@ void add_events(const Journal& journal, nlohmann::ordered_json& report) {
 }  // namespace
 
 struct WorldNode::Impl {
-    Impl(World description, EventPlan plan, std::unique_ptr<CommandSource> commands);
+    Impl(World description, EventPlan plan, std::unique_ptr<CommandSource> commands, bool bluetooth);
     void add_cameras();
     void take(const cosim::Message& message);
     void step();
@@ -57,7 +57,7 @@ struct WorldNode::Impl {
     std::vector<BoothLink> booths;
     SoundLink sound;
     cosim::PortIndex first_booth = 0xFFFF;
-    std::vector<cosim::PortIndex> pose_ports;  // "ir", "ircom": whoever is told where everything is
+    std::vector<cosim::PortIndex> pose_ports;  // "ir", "ircom", "bluetooth": they hear where everything is
     std::vector<double> poses;                 // as last published; empty without those
     std::map<std::size_t, double> scene;       // likewise, by id: what events change
     std::vector<cosim::Message> waiting;       // stamped at or after the next step
@@ -73,7 +73,8 @@ struct WorldNode::Impl {
     cosim::Time next_step = 0;               // its sensor values leave one step later
 };
 
-WorldNode::Impl::Impl(World description, EventPlan plan, std::unique_ptr<CommandSource> source)
+WorldNode::Impl::Impl(World description, EventPlan plan, std::unique_ptr<CommandSource> source,
+                      bool bluetooth)
     : model(std::move(description)),
       sound(model.description(), kPortsOfRobot),
       log(model),
@@ -92,6 +93,10 @@ WorldNode::Impl::Impl(World description, EventPlan plan, std::unique_ptr<Command
     if (model.description().ircom) {
         pose_ports.push_back(static_cast<cosim::PortIndex>(ports.size()));
         ports.push_back({"ircom", cosim::PortKind::Signals});
+    }
+    if (bluetooth) {
+        pose_ports.push_back(static_cast<cosim::PortIndex>(ports.size()));
+        ports.push_back({"bluetooth", cosim::PortKind::Signals});
     }
     if (!pose_ports.empty()) {
         poses.assign(pose_signal_names(model.description()).size(), std::nan(""));
@@ -231,8 +236,10 @@ void WorldNode::Impl::publish_scene(std::vector<cosim::Message>& outbox) {
         body(true, i, model.fixed(i));
 }
 
-WorldNode::WorldNode(World description, EventPlan plan, std::unique_ptr<CommandSource> commands)
-    : impl_(std::make_unique<Impl>(std::move(description), std::move(plan), std::move(commands))) {}
+WorldNode::WorldNode(World description, EventPlan plan, std::unique_ptr<CommandSource> commands,
+                     bool bluetooth)
+    : impl_(std::make_unique<Impl>(std::move(description), std::move(plan), std::move(commands), bluetooth)) {
+}
 
 WorldNode::~WorldNode() = default;
 
@@ -312,8 +319,9 @@ std::string WorldNode::finish() {
 }
 
 std::unique_ptr<cosim::Node> make_world_node(std::string_view world, std::string_view plan,
-                                             std::unique_ptr<CommandSource> commands) {
-    return std::make_unique<WorldNode>(from_json(world), plan_from_json(plan), std::move(commands));
+                                             std::unique_ptr<CommandSource> commands, bool bluetooth) {
+    return std::make_unique<WorldNode>(from_json(world), plan_from_json(plan), std::move(commands),
+                                       bluetooth);
 }
 
 }  // namespace puckloop::physics

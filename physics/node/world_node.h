@@ -24,7 +24,9 @@ class WorldNode final : public cosim::Node {
     explicit WorldNode(World description) : WorldNode(std::move(description), {}, nullptr) {}
     /// With what happens to it, and where commands come from if the plan has any. Throws as check_events()
     /// too.
-    WorldNode(World description, EventPlan plan, std::unique_ptr<CommandSource> commands);
+    /// `bluetooth`: it has the port "bluetooth", with the same poses as "ir".
+    WorldNode(World description, EventPlan plan, std::unique_ptr<CommandSource> commands,
+              bool bluetooth = false);
     ~WorldNode() override;
 
     std::string_view name() const override;
@@ -45,6 +47,6 @@ class WorldNode final : public cosim::Node {
 
 /// From the JSON texts that to_json() of World and EventPlan write.
 std::unique_ptr<cosim::Node> make_world_node(std::string_view world, std::string_view plan,
-                                             std::unique_ptr<CommandSource> commands);
+                                             std::unique_ptr<CommandSource> commands, bool bluetooth = false);
 
 }  // namespace puckloop::physics

@@ -31,6 +31,10 @@ std::vector<FaultPlace> fault_places(const Scenario& scenario) {
     for (const RobotBoards& robot : scenario.robots) {
         const std::string pic = robot.name + ".pic", program = robot.name + ".linux";
         if (robot.linux_board) places.push_back({robot.name + ".uart", PlaceKind::Uart, {program, pic}});
+        if (robot.pic.bluetooth)
+            places.push_back({robot.name + ".bluetooth", PlaceKind::Uart, {pic, "bluetooth"}});
+        if (!robot.pic.uart2.empty())
+            places.push_back({robot.name + ".uart2", PlaceKind::Uart, {robot.name + ".uart2", pic}});
         std::vector<std::string> masters{pic};
         if (robot.linux_board) masters.push_back(program);
         places.push_back({robot.name + ".i2c", PlaceKind::I2c, masters, robot.name + ".i2c"});

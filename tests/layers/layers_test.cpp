@@ -42,6 +42,7 @@ const std::vector<std::string> kFolders = {
     "emu/i2c_devices",
     "emu/radio",
     "emu/xbee",
+    "emu/bluetooth",
     "emu/camera",
     "emu/board",
     "emu/pic",

@@ -5,6 +5,7 @@
 #include "tools/cli/check.h"
 #include "tools/cli/command.h"
 #include "tools/commands.h"
+#include "tools/commands/bench_bluetooth.h"
 #include "tools/commands/bench_rab.h"
 #include "tools/commands/bench_sound.h"
 
@@ -85,6 +86,7 @@ void declare_bench(Command& app, int& status) {
     command->add_flag("--json", options->json, "print JSON");
     declare_bench_rab(*command, status);
     declare_bench_sound(*command, status);
+    declare_bench_bluetooth(*command, status);
     command->callback([options, command, &status] {
         if (command->subcommand_given()) return;
         run(*options);

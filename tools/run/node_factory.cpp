@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "cosim/faults/fault_json.h"
 #include "emu/avr/device.h"
+#include "emu/bluetooth/air_node.h"
 #include "emu/i2c_devices/bus_node.h"
 #include "emu/image/avr_image.h"
 #include "emu/image/device.h"
@@ -59,6 +60,7 @@ std::unique_ptr<cosim::StatefulNode> make_pic(const json& spec) {
     options.board.selector = spec.at("selector");
     if (spec.contains("board")) options.board.revision = *pic::revision_of(spec["board"].get<std::string>());
     options.ircom = spec.value("ircom", false);
+    options.uart1_breaks = spec.value("bluetooth", false);
     options.log = spec.value("log", "");
     for (const double seconds : spec.at("resets").get<std::vector<double>>())
         options.resets.push_back(cosim::from_seconds(seconds));
@@ -140,7 +142,8 @@ std::unique_ptr<cosim::Node> make_outside(const json& spec) {
 std::unique_ptr<cosim::Node> make_world(const json& spec) {
     const std::string control = spec.at("control");
     return physics::make_world_node(spec.at("world").dump(), spec.at("events").dump(),
-                                    control.empty() ? nullptr : make_control_socket(control));
+                                    control.empty() ? nullptr : make_control_socket(control),
+                                    spec.value("bluetooth", false));
 }
 
 }  // namespace
@@ -164,6 +167,7 @@ std::unique_ptr<cosim::Node> make_node(const std::string& text) {
         if (kind == "i2c_bus") return i2c_devices::make_bus_node(text);
         if (kind == "outside") return make_outside(spec);
         if (kind == "xbee") return xbee::make_module_node(text);
+        if (kind == "bluetooth") return bluetooth::make_air_node(text);
         if (kind == "ether") return radio::make_ether_node(text);
         throw InputError("", "node", fmt::format("unknown kind '{}'", kind));
     } catch (const json::exception& error) {

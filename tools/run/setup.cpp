@@ -9,6 +9,7 @@
 #include "physics/description/channels.h"
 #include "tools/run/control/control_place.h"
 #include "tools/run/overrides.h"
+#include "tools/run/plan/bluetooth_nodes.h"
 #include "tools/run/plan/cameras.h"
 #include "tools/run/plan/ircom_nodes.h"
 #include "tools/run/plan/linux_nodes.h"
@@ -49,6 +50,7 @@ json pic_spec(const RunSetup& setup, const RobotBoards& robot) {
               {"nvm", robot.pic.nvm.empty() ? "" : full_path(robot.pic.nvm).string()},
               {"log", log_of(setup, robot.name + ".pic")}};
     if (has_lsm330(robot)) spec["board"] = robot.pic.revision;
+    if (robot.pic.bluetooth) spec["bluetooth"] = true;
     if (scenario.world.ircom) {
         spec["ircom"] = true;
         if (!robot.pic.adc_noise_given) spec["phototransistor_noise"] = pic::kPhototransistorNoise;
@@ -87,12 +89,15 @@ json bus_spec(const RunSetup& setup, const RobotBoards& robot) {
     return spec;
 }
 
-/// What the scenario plugs into the board's UART1, if anything.
-void add_uart1(RunSetup& setup, const RobotBoards& robot, const RunRequest& request) {
-    if (robot.pic.uart1.empty()) return;
+/// What the scenario plugs into the board's UARTs, if anything.
+void add_uarts(RunSetup& setup, const RobotBoards& robot, const RunRequest& request) {
     const double baud = setup.scenario.uart_baud;
-    add_outside(setup, robot.name + ".uart1", robot.pic.uart1, baud, {robot.name + ".pic", "uart1"}, baud,
-                request);
+    const auto add = [&](const std::string& port, const std::string& end) {
+        if (end.empty()) return;
+        add_outside(setup, robot.name + "." + port, end, baud, {robot.name + ".pic", port}, baud, request);
+    };
+    add("uart1", robot.pic.uart1);
+    add("uart2", robot.pic.uart2);
 }
 
 /// The range-and-bearing board: on the bus, and in the air.
@@ -144,7 +149,7 @@ void add_robot(RunSetup& setup, std::size_t index, const json& described, const 
     ground.record_from_b = false;
     setup.links.push_back(ground);
     setup.links.push_back({robot.name + ".i2c.pic", {pic, "i2c"}, {bus, "pic"}});
-    add_uart1(setup, robot, request);
+    add_uarts(setup, robot, request);
     add_rab(setup, robot);
     add_linux(setup, index, described, request);
 }
@@ -157,6 +162,7 @@ void add_world(RunSetup& setup, const json& world, const RunRequest& request) {
     if (events.any()) events.journal = (setup.out / "events.toml").string();
     if (events.live) setup.control = new_control_path();
     const json spec{{"kind", "world"},
+                    {"bluetooth", scenarios::has_bluetooth(setup.scenario)},
                     {"world", world},
                     {"events", json::parse(physics::to_json(events))},
                     {"control", setup.control}};
@@ -251,6 +257,7 @@ RunSetup set_up(const RunRequest& request) {
         add_robot(setup, i, world, request);
     add_tams(setup, request);
     add_radio(setup, request);
+    add_bluetooth(setup, request);
     add_ircom(setup, world);
     name_linked_ports(setup);
     hand_out_faults(setup);

@@ -13,12 +13,13 @@ namespace {
 
 /// Names of the links that have an end of a kind, found before anything is decoded.
 struct Ends {
-    bool xbee = false, board = false;
+    bool xbee = false, bluetooth = false, board = false;
     std::optional<protocols::UartReceiver> setting;  ///< the first that either end shows
 };
 
 std::unique_ptr<UartDecoder> decoder_for(const Ends& ends, const TakeFrame& take) {
     if (ends.xbee) return std::make_unique<XBeeDecoder>(take);
+    if (ends.bluetooth) return std::make_unique<LmxDecoder>(take);
     if (ends.board) return std::make_unique<EpuckDecoder>(take);
     return std::make_unique<BytesDecoder>(take);
 }
@@ -38,6 +39,7 @@ void decode_trace(const RecordedTrace& trace, const TakeFrame& take) {
         Ends& of = ends[row.link];
         if (!of.setting) of.setting = setting_of(row, *frame);
         of.xbee = of.xbee || row.from.ends_with(".xbee");
+        of.bluetooth = of.bluetooth || row.link.ends_with(".bluetooth");
         // A board that never answered is known by its link's name.
         of.board = of.board || ((row.from.ends_with(".pic") || row.from.ends_with(".linux")) &&
                                 row.link.ends_with(".uart"));

@@ -3,6 +3,7 @@
 
 #include "cosim/trace/trace_row.h"
 #include "protocols/ircom.h"
+#include "protocols/lmx9820_packet.h"
 #include "protocols/xbee_frame.h"
 #include "tools/trace/decode.h"
 #include "tools/trace/fault_marks.h"
@@ -102,6 +103,28 @@ class XBeeDecoder : public UartDecoder {
     void take(const std::string& from, Side& side, const cosim::TraceRow& row, const cosim::UartFrame& frame,
               const protocols::ReceivedCharacter& character);
     void give(const std::string& from, Side& side, const protocols::XBeeReading& reading);
+    TakeFrame take_;
+    std::string link_;
+    std::map<std::string, Side> sides_;
+};
+
+/// Packets between a main board and its Bluetooth module, and what passes between them transparently.
+class LmxDecoder : public UartDecoder {
+  public:
+    explicit LmxDecoder(TakeFrame take) : take_(std::move(take)) {}
+    void add(const cosim::TraceRow& row, const cosim::UartFrame& frame) override;
+    void end() override;
+
+  private:
+    struct Side {
+        protocols::LmxReader reader;
+        ByteRun packet, plain;
+        LineReceiver line;
+    };
+    void take(const std::string& from, Side& side, const cosim::TraceRow& row, const cosim::UartFrame& frame,
+              const protocols::ReceivedCharacter& character);
+    void give_plain(const std::string& from, ByteRun& run);
+    void give_packet(const std::string& from, Side& side, const protocols::LmxPacket& packet);
     TakeFrame take_;
     std::string link_;
     std::map<std::string, Side> sides_;

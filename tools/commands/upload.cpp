@@ -1,0 +1,88 @@
+// `puckloop upload`: a program into the flash of an e-puck's main board by its resident boot loader.
+
+#include "base/error.h"
+#include "tools/cli/check.h"
+#include "tools/cli/command.h"
+#include "tools/commands.h"
+#include "tools/upload/serial_upload.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <memory>
+
+namespace puckloop::tools {
+
+namespace {
+
+struct Options {
+    std::string image, port, script;
+    double at = 1.0, wait = 30.0;
+};
+
+/// Rows are sent at times of their own, late enough for the flash: nobody reads the answers.
+void write_script(const std::vector<BootPacket>& packets, const std::string& file, double at) {
+    constexpr double kHello = 0.1, kRow = 0.025;  // s; 8.8 ms on the line, 4 ms of erasing and writing
+    std::string lines = fmt::format("{:.3f} {:02x}\n", at, kBootHello);
+    double time = at + kHello;
+    const auto add = [&](const BootPacket& packet) {
+        lines += fmt::format("{:.3f}", time);
+        for (const std::uint8_t octet : packet)
+            lines += fmt::format(" {:02x}", octet);
+        lines += '\n';
+        time += kRow;
+    };
+    for (const BootPacket& packet : packets)
+        add(packet);
+    add(boot_end());
+    std::ofstream stream(file);
+    stream << lines;
+    stream.close();
+    if (!stream) throw RunError(fmt::format("cannot write {}", file));
+    fmt::print("{} rows, {:.2f} s to {:.2f} s: {}\n", packets.size(), at, time, file);
+}
+
+void run(const Options& options, int& status) {
+    if (options.port.empty() == options.script.empty())
+        throw InputError("", "upload", "one way to send it is needed", "a PORT or --script FILE");
+    const auto packets = boot_packets(image::load_image(options.image));
+    if (!options.script.empty()) {
+        write_script(packets, options.script, options.at);
+    } else {
+        const bool terminal = ::isatty(STDERR_FILENO) == 1;
+        upload(options.port, packets, options.wait, [terminal](double share) {
+            if (terminal) fmt::print(stderr, "\r{:3.0f} %", 100 * share);
+        });
+        if (terminal) fmt::print(stderr, "\r     \r");
+        fmt::print("{} rows, and the program starts\n", packets.size());
+    }
+    status = 0;
+}
+
+}  // namespace
+
+void declare_upload(Command& app, int& status) {
+    Command* command = app.add_subcommand(
+        "upload", "a program into an e-puck's flash by its boot loader, on a cable or by Bluetooth");
+    auto options = std::make_shared<Options>();
+    command->add_option("image", options->image, "program for the main board: HEX, ELF or COFF")
+        ->required()
+        ->type_name("IMAGE");
+    command->add_option("port", options->port, "serial port, such as a run's pty")->type_name("PORT");
+    command
+        ->add_option("--wait", options->wait,
+                     "s to ask for the boot loader: it listens for a second after a reset")
+        ->check(number_between(0.1, 3600))
+        ->type_name("S");
+    command
+        ->add_option("--script", options->script,
+                     "writes what to send as a script for uart1 or a Bluetooth computer instead")
+        ->type_name("FILE");
+    command->add_option("--at", options->at, "s: when the script asks for the boot loader")
+        ->check(number_between(0, 1e6))
+        ->type_name("S");
+    command->callback([options, &status] { run(*options, status); });
+}
+
+}  // namespace puckloop::tools
