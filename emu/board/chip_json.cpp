@@ -1,6 +1,7 @@
 #include "emu/board/chip_json.h"
 
 #include "emu/board/chip_warnings.h"
+#include "emu/board/place_json.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -19,23 +20,19 @@ nlohmann::ordered_json chip_json(const dspic::Chip& chip) {
     const auto seconds = [&](dspic::Cycle cycle) {
         return static_cast<double>(chip.clock().time_of(cycle)) / static_cast<double>(cosim::kSecond);
     };
-    // The symbol at a pc, where the image has one.
-    const auto with_symbol = [&](Json record, std::uint32_t pc) {
-        if (const std::string symbol = chip.symbol(pc); !symbol.empty()) record["symbol"] = symbol;
-        return record;
-    };
     Json json;
     json["cycles"] = report.cycles;
     json["instructions"] = report.instructions;
     json["resets"] = Json::array();
     for (const dspic::ResetRecord& reset : report.resets)
-        json["resets"].push_back(with_symbol(
+        json["resets"].push_back(with_place(
             {{"time_s", seconds(reset.cycle)}, {"cause", reset.cause}, {"pc", hexadecimal(reset.pc)}},
-            reset.pc));
+            chip.places(), reset.pc));
     json["traps"] = Json::array();
     for (const dspic::TrapRecord& trap : report.traps)
-        json["traps"].push_back(with_symbol(
-            {{"time_s", seconds(trap.cycle)}, {"name", trap.name}, {"pc", hexadecimal(trap.pc)}}, trap.pc));
+        json["traps"].push_back(
+            with_place({{"time_s", seconds(trap.cycle)}, {"name", trap.name}, {"pc", hexadecimal(trap.pc)}},
+                       chip.places(), trap.pc));
     json["unmodelled"] = Json::array();
     for (const dspic::UnmodelledTouch& touch : report.unmodelled)
         json["unmodelled"].push_back({{"name", touch.name},

@@ -2,6 +2,8 @@
 
 #include "base/times_text.h"
 
+#include "emu/image/code_places.h"
+
 #include <fmt/format.h>
 
 namespace puckloop::board {
@@ -19,10 +21,9 @@ double seconds(const dspic::Chip& chip, dspic::Cycle cycle) {
     return cosim::to_seconds(chip.clock().time_of(cycle));
 }
 
-/// "pc 0x01f2", with the symbol where the image has one: "pc 0x01f2 in main+0x12".
+/// "pc 0x01f2", with symbol and source line where the image has them: "pc 0x01f2 in main+0x12 (main.c:12)".
 std::string place(const dspic::Chip& chip, std::uint32_t pc) {
-    const std::string symbol = chip.symbol(pc);
-    return fmt::format("pc 0x{:04x}{}{}", pc, symbol.empty() ? "" : " in ", symbol);
+    return fmt::format("pc 0x{:04x}{}", pc, chip.places().text(pc));
 }
 
 /// Traps, and resets that no program asks for: the first of each with its place.

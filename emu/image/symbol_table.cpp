@@ -6,9 +6,9 @@
 
 namespace puckloop::image {
 
-CodeSymbols::CodeSymbols(const Image& image) {
+CodeSymbols::CodeSymbols(const std::map<std::string, Symbol>& symbols) {
     for (const bool global : {true, false})
-        for (const auto& [name, symbol] : image.symbols)
+        for (const auto& [name, symbol] : symbols)
             if (symbol.space == Space::Program && symbol.global == global)
                 names_.emplace(symbol.address, name);
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Program addresses in words: the symbol at or before an address.
+// Program addresses in words of text: the symbol at or before an address.
 
 #include "emu/image/image.h"
 
@@ -13,7 +13,8 @@ class CodeSymbols {
   public:
     /// The program symbols of an image; where several stand at one address, global ones first, then the first
     /// by name.
-    explicit CodeSymbols(const Image& image);
+    explicit CodeSymbols(const Image& image) : CodeSymbols(image.symbols) {}
+    explicit CodeSymbols(const std::map<std::string, Symbol>& symbols);
 
     /// "main", "main+0x12", or empty where no symbol lies at or before the address.
     std::string place(std::uint32_t address) const;

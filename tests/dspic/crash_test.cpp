@@ -2,6 +2,7 @@
 
 #include "emu/board/chip_json.h"
 #include "emu/board/chip_warnings.h"
+#include "emu/image/code_places.h"
 #include "emu/image/image.h"
 #include "tests/dspic/chip30_bench.h"
 
@@ -55,8 +56,9 @@ math:   bra math
     }
     std::string trap() const {
         const ChipReport report = chip.report();
-        return report.traps.empty() ? ""
-                                    : report.traps.front().name + " " + chip.symbol(report.traps.front().pc);
+        return report.traps.empty()
+                   ? ""
+                   : report.traps.front().name + " " + chip.places().symbol(report.traps.front().pc);
     }
     bool warned(const std::string& text) const {
         for (const std::string& line : board::chip_warnings(chip))
@@ -88,7 +90,7 @@ wrong:  .pword 0x3f1234
     const auto resets = crash.chip.report().resets;
     REQUIRE(resets.size() >= 2);
     CHECK(resets[1].cause == "IOPUWR");
-    CHECK(crash.chip.symbol(resets[1].pc) == "wrong");
+    CHECK(crash.chip.places().symbol(resets[1].pc) == "wrong");
     CHECK((crash.chip.peek("RCON") & 0x4000) == 0x4000);
     CHECK(crash.warned("crashed into a reset (IOPUWR) once, first at pc 0x02"));
     CHECK(crash.warned(" in wrong"));

@@ -15,9 +15,9 @@
 #include "emu/dspic/peripherals/oscillator_33f.h"
 #include "emu/dspic/waits/judge.h"
 #include "emu/dspic/waits/status_bits.h"
+#include "emu/image/code_places.h"
 #include "emu/image/device.h"
 #include "emu/image/image.h"
-#include "emu/image/symbol_table.h"
 #include "protocols/uart_sampling.h"
 
 #include <algorithm>
@@ -105,7 +105,7 @@ struct Chip::Parts {
     EventQueue::Slot edges;  ///< that the board makes by itself; the last: the others keep theirs
 
     ChipReport report;
-    std::optional<image::CodeSymbols> symbols;
+    image::CodePlaces places;
     std::vector<std::uint32_t> stops;
     std::optional<std::uint32_t> stopped_at;
     Time now = 0;  ///< the last `until`
@@ -451,7 +451,7 @@ Chip::~Chip() = default;
 
 void Chip::load(const image::Image& image) {
     image::check_fits(image, image::find_device(parts_->device.name));
-    parts_->symbols.emplace(image);
+    parts_->places = image::CodePlaces(image.symbols, image.file, image.sha256);
     std::vector<ProgramWord> words;
     for (const auto& [address, word] : image.all_words())
         words.push_back({address, word});
@@ -608,8 +608,8 @@ std::uint32_t Chip::pc() const {
     return parts_->core.pc();
 }
 
-std::string Chip::symbol(std::uint32_t address) const {
-    return parts_->symbols ? parts_->symbols->place(address) : std::string();
+const image::CodePlaces& Chip::places() const {
+    return parts_->places;
 }
 
 std::uint16_t Chip::peek(std::string_view register_name) const {

@@ -23,8 +23,9 @@
 #include <vector>
 
 namespace puckloop::image {
+class CodePlaces;
 struct Image;
-}
+}  // namespace puckloop::image
 
 namespace puckloop::dspic {
 
@@ -190,8 +191,8 @@ class Chip {
     cosim::Time now() const;
     Cycle cycle() const;
     std::uint32_t pc() const;
-    /// The symbol at or before a program address, "main+0x12", of the image loaded last; or empty.
-    std::string symbol(std::uint32_t address) const;
+    /// Symbols and source lines by program address, of the image loaded last.
+    const image::CodePlaces& places() const;
     /// A register's present value by data-sheet name, as the program would read it but without side
     /// effects. Throws std::out_of_range if the device has no such register.
     std::uint16_t peek(std::string_view register_name) const;

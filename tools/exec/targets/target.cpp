@@ -7,6 +7,7 @@
 #include "emu/board/chip_json.h"
 #include "emu/board/chip_warnings.h"
 #include "emu/board/nvm_file.h"
+#include "emu/image/code_places.h"
 #include "emu/image/device.h"
 
 #include <fmt/format.h>
@@ -61,12 +62,14 @@ std::string Target::chip_text() {
     const auto seconds = [&](dspic::Cycle cycle) { return cosim::to_seconds(clock().time_of(cycle)); };
     std::string text = fmt::format("work: {} cycles, {} instructions\n", report.cycles, report.instructions);
     for (std::size_t i = 0; i < report.resets.size() && i < kShownInText; ++i)
-        text += fmt::format("reset: {} at {:.6f} s, pc 0x{:04x}\n", report.resets[i].cause,
-                            seconds(report.resets[i].cycle), report.resets[i].pc);
+        text += fmt::format("reset: {} at {:.6f} s, pc 0x{:04x}{}\n", report.resets[i].cause,
+                            seconds(report.resets[i].cycle), report.resets[i].pc,
+                            chip().places().text(report.resets[i].pc));
     if (report.resets.size() > kShownInText) text += fmt::format("resets: {} in all\n", report.resets.size());
     for (std::size_t i = 0; i < report.traps.size() && i < kShownInText; ++i)
-        text += fmt::format("trap: {} at {:.6f} s, pc 0x{:04x}\n", report.traps[i].name,
-                            seconds(report.traps[i].cycle), report.traps[i].pc);
+        text += fmt::format("trap: {} at {:.6f} s, pc 0x{:04x}{}\n", report.traps[i].name,
+                            seconds(report.traps[i].cycle), report.traps[i].pc,
+                            chip().places().text(report.traps[i].pc));
     if (report.traps.size() > kShownInText) text += fmt::format("traps: {} in all\n", report.traps.size());
     return text;
 }
