@@ -15,6 +15,7 @@
 #include "emu/avr/peripherals/twi.h"
 #include "emu/avr/peripherals/usart.h"
 #include "emu/avr/peripherals/watchdog.h"
+#include "emu/image/code_places.h"
 
 #include <fmt/format.h>
 
@@ -137,6 +138,14 @@ struct Chip::Parts {
     bool held_in_reset = false;  ///< by the supply
     ResetCause hold_cause{};
     ChipReport report;
+    image::CodePlaces places;
+
+    void keep_refused_spm(std::string_view why) {
+        const std::string text = fmt::format("SPM writes nothing: {}", why);
+        const bool known = std::any_of(report.warnings.begin(), report.warnings.end(),
+                                       [&](const ChipWarning& warning) { return warning.text == text; });
+        if (!known) keep(report.warnings, {text, 2u * core.pc()});
+    }
 
     Parts(const DeviceInfo& info, Pins& pins, const ChipOptions& chosen)
         : device(info),
@@ -193,7 +202,10 @@ struct Chip::Parts {
         hooks.sleep = [this] { system.sleep(); };
         hooks.wake = [this] { system.wake(); };
         hooks.watchdog_reset = [this] { watchdog.restart(); };
-        hooks.spm = [this](std::uint32_t address, std::uint16_t word) { programming.spm(address, word); };
+        hooks.spm = [this](std::uint32_t address, std::uint16_t word) {
+            if (const std::string_view why = programming.spm(address, word); !why.empty())
+                keep_refused_spm(why);
+        };
         hooks.load_program = [this](std::uint32_t address, std::uint8_t& value) {
             return programming.load(address, value);
         };
@@ -410,7 +422,12 @@ Chip::Chip(const DeviceInfo& device, Pins& pins, const ChipOptions& options)
     : parts_(std::make_unique<Parts>(device, pins, options)) {}
 Chip::~Chip() = default;
 
+const image::CodePlaces& Chip::places() const {
+    return parts_->places;
+}
+
 void Chip::load(const image::AvrImage& image) {
+    parts_->places = image::CodePlaces(image.symbols, image.file, image.sha256);
     for (const image::ByteSegment& segment : image.flash)
         for (std::size_t i = 0; i < segment.bytes.size(); ++i) {
             const auto address = static_cast<std::uint32_t>(segment.address + i);

@@ -25,6 +25,10 @@ class StateReader;
 class StateWriter;
 }  // namespace puckloop
 
+namespace puckloop::image {
+class CodePlaces;
+}
+
 namespace puckloop::avr {
 
 class Eeprom;
@@ -143,6 +147,8 @@ class Chip {
     cosim::Time now() const;
     Cycle cycle() const;
     std::uint32_t pc() const;  ///< byte address
+    /// Symbols and source lines by byte address of flash, of the image loaded last.
+    const image::CodePlaces& places() const;
     bool sleeping() const;
     /// Unless something comes in, the program does nothing and no pin changes before this time: now() while
     /// it runs, the next event while it sleeps, kNever if nothing will ever wake it.

@@ -1,5 +1,8 @@
 #include "emu/tam_avr/tam_json.h"
 
+#include "emu/avr/crash_text.h"
+#include "emu/board/place_json.h"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -30,24 +33,27 @@ nlohmann::ordered_json tam_json(const Board& board, const TamLog& log,
     json["instructions"] = report.instructions;
     json["resets"] = Json::array();
     for (const avr::ResetRecord& reset : report.resets)
-        json["resets"].push_back({{"time_s", cosim::to_seconds(chip.clock().time_of(reset.cycle) + start)},
-                                  {"cause", std::string(avr::to_string(reset.cause))},
-                                  {"pc", hexadecimal(reset.pc)}});
+        json["resets"].push_back(
+            board::with_place({{"time_s", cosim::to_seconds(chip.clock().time_of(reset.cycle) + start)},
+                               {"cause", std::string(avr::to_string(reset.cause))},
+                               {"pc", hexadecimal(reset.pc)}},
+                              chip.places(), reset.pc));
     json["unmodelled"] = Json::array();
     std::vector<std::string> lines = warnings;
+    if (const auto crash = avr::crash_text(chip, report)) lines.push_back(*crash);
+    if (const auto hang = chip.hang()) lines.push_back(*hang);
+    if (const auto refused = avr::refused_text(report)) lines.push_back(*refused);
+    for (const avr::ChipWarning& warning : report.warnings)
+        lines.push_back(fmt::format("{} ({})", warning.text, avr::place_text(chip, warning.pc)));
     for (const avr::UnmodelledTouch& touch : report.unmodelled) {
         json["unmodelled"].push_back({{"name", touch.name},
                                       {"address", hexadecimal(touch.address)},
                                       {"pc", hexadecimal(touch.pc)},
                                       {"access", touch.write ? "write" : "read"}});
-        lines.push_back(fmt::format("{} {}, which is not modelled, at pc {}", touch.write ? "wrote" : "read",
+        lines.push_back(fmt::format("{} {}, which is not modelled, at {}", touch.write ? "wrote" : "read",
                                     touch.name.empty() ? hexadecimal(touch.address) : touch.name,
-                                    hexadecimal(touch.pc)));
+                                    avr::place_text(chip, touch.pc)));
     }
-    if (const auto hang = chip.hang()) lines.push_back(*hang);
-    if (const auto refused = avr::refused_text(report)) lines.push_back(*refused);
-    for (const avr::ChipWarning& warning : report.warnings)
-        lines.push_back(fmt::format("{} (pc {})", warning.text, hexadecimal(warning.pc)));
     json["warnings"] = lines;
     json["kind"] = "TAM board, ATmega1284P";
     const avr::Fuses& fuses = chip.fuses();

@@ -96,6 +96,10 @@ std::uint8_t load_outside_ram(Machine& m, const Op* op, std::uint16_t address) {
 void store_outside_ram(Machine& m, const Op* op, std::uint16_t address, std::uint8_t value,
                        std::uint8_t mask) {
     if (shows_accesses(m)) m.instrument->access(address, 1, true);
+    if (address < m.ram_start && address == static_cast<std::uint16_t>(m.sp + 1)) {
+        constexpr std::uint32_t kStackBelow = 0x30002;  // key of the warning
+        warn_once(m, op, kStackBelow, "the stack has grown below the RAM, into registers");
+    }
     if (address < kIoStart || address - m.ram_start < m.device.ram_bytes) {
         m.data[address] = value;
     } else if (address >= m.ram_start) {

@@ -103,10 +103,12 @@ void SelfProgramming::begin(std::uint32_t word) {
 }
 
 // Only the boot section's SPM does anything.
-void SelfProgramming::spm(std::uint32_t address, std::uint16_t word) {
+std::string_view SelfProgramming::spm(std::uint32_t address, std::uint16_t word) {
     const bool armed = around_.now < armed_until_;
     armed_until_ = 0;
-    if (!armed || busy_ || core_.pc() < system_.boot_start()) return;
+    if (core_.pc() < system_.boot_start()) return "it is outside the boot section";
+    if (busy_) return "the last page is still being written";
+    if (!armed) return "SPMCSR<SPMEN> was not set within the four cycles before";
     const std::uint32_t place = address / 2 % core_.device().flash_words;
     const auto size = static_cast<std::uint32_t>(buffer_.size());
     const std::uint32_t page = place - place % size;
@@ -139,6 +141,7 @@ void SelfProgramming::spm(std::uint32_t address, std::uint16_t word) {
         break;
     }
     update_request();
+    return {};
 }
 
 void SelfProgramming::due(void* owner, Cycle) {

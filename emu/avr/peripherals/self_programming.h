@@ -13,6 +13,7 @@
 #include "emu/avr/peripherals/system_control.h"
 
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 namespace puckloop::avr {
@@ -25,8 +26,8 @@ class SelfProgramming {
     void reset();
     /// Before and after a change of the CPU's clock, which does not time the programming.
     void rate_changes(bool changed);
-    /// SPM with Z (RAMPZ in front) and R1:R0.
-    void spm(std::uint32_t address, std::uint16_t word);
+    /// SPM with Z (RAMPZ in front) and R1:R0. Returns why it does nothing, or an empty text.
+    std::string_view spm(std::uint32_t address, std::uint16_t word);
     /// Lock bits keep interrupts off here: their vectors are in a section that may not be read from the one
     /// in which the program runs (tables 25-2 and 25-3, modes 3 and 4).
     bool interrupts_locked() const;

@@ -2,7 +2,9 @@
 
 #include "tools/debug/debug_chip.h"
 
+#include "emu/avr/crash_text.h"
 #include "emu/board/nvm_file.h"
+#include "emu/board/place_json.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -55,11 +57,6 @@ void AvrTarget::save_memory(board::NvmFile& nvm) {
     nvm.save_contents(image::write_avr_hex(avr().memory()));
 }
 
-std::string AvrTarget::place(std::uint32_t pc) const {
-    const std::string line = source_line(pc);
-    return line.empty() ? hexadecimal(pc) : fmt::format("{} ({})", hexadecimal(pc), line);
-}
-
 double AvrTarget::seconds(avr::Cycle cycle) {
     return static_cast<double>(avr().clock().time_of(cycle)) / static_cast<double>(cosim::kSecond);
 }
@@ -91,9 +88,10 @@ std::string AvrTarget::chip_json() {
     json["instructions"] = report.instructions;
     json["resets"] = Json::array();
     for (const avr::ResetRecord& reset : report.resets)
-        json["resets"].push_back({{"time_s", seconds(reset.cycle)},
-                                  {"cause", std::string(avr::to_string(reset.cause))},
-                                  {"pc", hexadecimal(reset.pc)}});
+        json["resets"].push_back(board::with_place({{"time_s", seconds(reset.cycle)},
+                                                    {"cause", std::string(avr::to_string(reset.cause))},
+                                                    {"pc", hexadecimal(reset.pc)}},
+                                                   avr().places(), reset.pc));
     json["unmodelled"] = Json::array();
     for (const avr::UnmodelledTouch& touch : report.unmodelled)
         json["unmodelled"].push_back({{"name", touch.name},
@@ -108,8 +106,8 @@ std::string AvrTarget::chip_text() {
     const avr::ChipReport report = avr().report();
     std::string text = fmt::format("work: {} cycles, {} instructions\n", report.cycles, report.instructions);
     for (std::size_t i = 0; i < report.resets.size() && i < kShownInText; ++i)
-        text += fmt::format("reset: {} at {:.6f} s, pc {}\n", avr::to_string(report.resets[i].cause),
-                            seconds(report.resets[i].cycle), hexadecimal(report.resets[i].pc));
+        text += fmt::format("reset: {} at {:.6f} s, {}\n", avr::to_string(report.resets[i].cause),
+                            seconds(report.resets[i].cycle), avr::place_text(avr(), report.resets[i].pc));
     if (report.resets.size() > kShownInText) text += fmt::format("resets: {} in all\n", report.resets.size());
     return text;
 }
@@ -117,14 +115,15 @@ std::string AvrTarget::chip_text() {
 std::vector<std::string> AvrTarget::warnings() {
     const avr::ChipReport report = avr().report();
     std::vector<std::string> lines;
+    if (const auto crash = avr::crash_text(avr(), report)) lines.push_back(*crash);
     if (const auto hang = avr().hang()) lines.push_back(*hang);
-    for (const avr::UnmodelledTouch& touch : report.unmodelled)
-        lines.push_back(
-            fmt::format("{} {}, which no model is behind, at pc {}", touch.write ? "writes" : "reads",
-                        touch.name.empty() ? hexadecimal(touch.address) : touch.name, place(touch.pc)));
-    if (const auto refused = avr::refused_text(report)) lines.push_back(*refused);
     for (const avr::ChipWarning& warning : report.warnings)
-        lines.push_back(fmt::format("{}, at pc {}", warning.text, place(warning.pc)));
+        lines.push_back(fmt::format("{}, at {}", warning.text, avr::place_text(avr(), warning.pc)));
+    for (const avr::UnmodelledTouch& touch : report.unmodelled)
+        lines.push_back(fmt::format(
+            "{} {}, which no model is behind, at {}", touch.write ? "writes" : "reads",
+            touch.name.empty() ? hexadecimal(touch.address) : touch.name, avr::place_text(avr(), touch.pc)));
+    if (const auto refused = avr::refused_text(report)) lines.push_back(*refused);
     return lines;
 }
 

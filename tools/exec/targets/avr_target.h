@@ -59,8 +59,6 @@ class AvrTarget : public Target {
     static constexpr int kPorts = 4;
 
   private:
-    /// "0x0128 (main.c:12)".
-    std::string place(std::uint32_t pc) const;
     double seconds(avr::Cycle cycle);
 
     void use_fuses();
