@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
 #include <set>
 
 namespace puckloop::gap {
@@ -26,6 +27,16 @@ const std::set<std::string_view> kSigned{"velocity", "speed",    "motor_speed", 
 /// Cumulative counts say nothing by themselves; what follows from them does. The clocks are time.
 const std::set<std::string_view> kNotByThemselves{"steps_left", "steps_right", "t_host_s",
                                                   "t_robot_s",  "x_m",         "y_m"};
+/// Along and across are turned by the measured heading, whose noise is then in both residual and covariate:
+/// a sector is all that may be asked about.
+constexpr std::string_view kMeasuredHeading = "theta_rad";
+constexpr double kSector = std::numbers::pi / 6;
+
+std::vector<double> in_sectors(std::vector<double> heading) {
+    for (double& value : heading)
+        value = kSector * std::round(std::remainder(value, 2 * std::numbers::pi) / kSector) + 0.0;
+    return heading;
+}
 
 /// Value of a column in each row of the series; a derived column by run likewise.
 std::vector<double> gathered(const Series& series, const std::vector<const std::vector<double>*>& by_run) {
@@ -140,6 +151,7 @@ std::vector<Covariate> covariates_of(const Experiment& experiment, const Series&
                                    : kSigned.contains(name) ? CovariateKind::Signed
                                                             : CovariateKind::Number;
         Covariate c{plain_name(info.name), kind, of_column(experiment, series, name), {}};
+        if (experiment.kind == Kind::Motion && name == kMeasuredHeading) c.value = in_sectors(c.value);
         if (stats::varies(c.value)) list.push_back(std::move(c));
     }
     add_conditions(experiment, series, list);

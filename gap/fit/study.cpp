@@ -351,8 +351,17 @@ Fit Study::fit_set(const std::vector<std::size_t>& effects, const State& from, c
     best.freed = freed_by(effects);
     best.bic = INFINITY;
     const Candidate& last = candidates_[effects.back()];
+    // A set with one effect more can do what the set without it does. A fit that ends below where it came
+    // from went astray, and begins again there.
+    const double parent = bic_of({from, log_likelihood(*model_, from)}, best.freed.size());
+    const auto restarted = [&](Fit end) {
+        if (!(end.bic > parent)) return end;
+        end.fitted = fit(*model_, end.freed, from, {}, effort);
+        end.bic = bic_of(end.fitted, end.freed.size());
+        return end;
+    };
     if (part_ && part_->candidates_[effects.back()].remark.empty())
-        return from_part(part_->fit_set(effects, in_part(from), kQuick), from, effort);
+        return restarted(from_part(part_->fit_set(effects, in_part(from), kQuick), from, effort));
     const auto take_better = [&](const State& state, const Effort& how) {
         const Fitted fitted = fit(*model_, best.freed, state, {}, how);
         const double bic = bic_of(fitted, best.freed.size());
@@ -386,7 +395,7 @@ Fit Study::fit_set(const std::vector<std::size_t>& effects, const State& from, c
         sums = sums || drifts(o);
     if (sums) take_better(begun(last, last.starts.front(), from), kQuick);
     if (effort.iterations > kQuick.iterations) take_better(best.fitted.state, effort);
-    return best;
+    return restarted(best);
 }
 
 State Study::without(std::size_t effect, State state) const {

@@ -37,7 +37,7 @@ class AccelerometerModel final : public Model {
                 const double sp = std::sin(pitch[i]), cp = std::cos(pitch[i]), sr = std::sin(roll[i]),
                              cr = std::cos(roll[i]);
                 one.felt.push_back({-left[i] * cr / kGravity - cp * sr, -forward[i] * cp / kGravity - sp,
-                                    cp * cr - forward[i] * sp / kGravity + left[i] * sr / kGravity});
+                                    cp * cr - forward[i] * sp / kGravity - left[i] * sr / kGravity});
             }
             one.motor = column("motor_speed");
             for (double& speed : one.motor)

@@ -19,6 +19,9 @@ namespace puckloop::gap {
 
 namespace {
 
+constexpr double kStill = 1e-6;     // m: less is no way
+constexpr double kSameGrey = 0.01;  // beyond the scatter of a standing robot's truth
+
 class GroundModel final : public Model {
   public:
     explicit GroundModel(const Experiment& experiment) {
@@ -116,6 +119,12 @@ class GroundModel final : public Model {
         return way_[i] - way_[k] - share * (way_[k + 1] - way_[k]);
     }
 
+    /// Does row k + 1 see another grey than row k though the wheels made no way between them? Then the robot
+    /// was carried, and the track of one says nothing of the other's place.
+    bool carried(std::size_t k) const {
+        return std::abs(way_[k + 1] - way_[k]) < kStill && std::abs(grey_[k + 1] - grey_[k]) > kSameGrey;
+    }
+
     /// The grey `ahead` metres farther on (or back) along the track of row i.
     double grey_ahead(std::size_t i, double ahead) const {
         if (ahead == 0.0) return grey_[i];
@@ -123,13 +132,13 @@ class GroundModel final : public Model {
         const double sense = speed_[i] < 0 ? -1.0 : 1.0;  // rows run the other way when the robot backs up
         std::size_t k = i;
         const auto behind = [&](std::size_t row) { return sense * (way_[row] - at) > 0; };
-        while (k > first_[i] && behind(k) && sense * (way_[k - 1] - way_[k]) <= 0)
+        while (k > first_[i] && behind(k) && sense * (way_[k - 1] - way_[k]) <= 0 && !carried(k - 1))
             --k;
-        while (k < last_[i] && !behind(k + 1) && sense * (way_[k + 1] - way_[k]) >= 0)
+        while (k < last_[i] && !behind(k + 1) && sense * (way_[k + 1] - way_[k]) >= 0 && !carried(k))
             ++k;
         const double rest = at - way_[k];
         const double step = k < last_[i] ? way_[k + 1] - way_[k] : 0.0;
-        if (behind(k) || std::abs(step) < 1e-6 || sense * (at - way_[k] - step) > 0)
+        if (behind(k) || std::abs(step) < kStill || sense * (at - way_[k] - step) > 0)
             return grey_[k] + rest * along_[k];
         const double u = rest / step, v = 1 - u;  // Hermite's cubic through both greys and slopes
         return (1 + 2 * u) * v * v * grey_[k] + u * v * v * step * along_[k] +

@@ -7,6 +7,7 @@
 // Deviations from the world model: 1. the wheel follows its motor at once, but for the loss a start or stop
 // costs at friction mu. 2. Between rows speed is even. 3. No contacts with things.
 
+#include "gap/clean/quantum.h"
 #include "gap/models/keyed_cache.h"
 #include "gap/models/model.h"
 #include "gap/models/motion_path.h"
@@ -222,7 +223,7 @@ class MotionModel final : public Model {
             Observable& one = observables_.back();
             one.name = names[o];
             one.unit = o == 2 ? "rad" : "m";
-            one.instrument = {NAN, NAN, 0.0};
+            one.instrument = {NAN, NAN, o == 2 ? quantum_of(theta) : base.instrument.quantum};
             one.y = sums[o];
             for (std::size_t i = 1; i < one.y.size(); ++i)
                 one.starts[i] = base.run[i] != base.run[i - 1] ? 1 : 0;

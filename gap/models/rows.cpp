@@ -1,5 +1,6 @@
 #include "gap/models/rows.h"
 
+#include "gap/clean/quantum.h"
 #include "gap/data/columns.h"
 
 #include <algorithm>
@@ -45,6 +46,18 @@ std::vector<double> Rows::column(std::string_view name, double fallback) const {
     return values;
 }
 
+std::vector<double> Rows::longest_steps(const std::vector<double>& time) const {
+    std::vector<std::vector<double>> steps(experiment_.runs.size());
+    for (std::size_t i = 1; i < size(); ++i)
+        if (starts_[i] == 0 && time[i] > time[i - 1]) steps[run_[i]].push_back(time[i] - time[i - 1]);
+    std::vector<double> longest;
+    for (auto& of_run : steps) {
+        std::sort(of_run.begin(), of_run.end());
+        longest.push_back(of_run.empty() ? 0.0 : kGap * of_run[of_run.size() / 2]);
+    }
+    return longest;
+}
+
 Observable Rows::observable(std::string_view name, NoiseKind noise, std::vector<std::uint32_t>& used,
                             const std::vector<double>& skipped) const {
     Observable out;
@@ -56,18 +69,17 @@ Observable Rows::observable(std::string_view name, NoiseKind noise, std::vector<
     const double none = std::numeric_limits<double>::quiet_NaN();
     out.instrument =
         instrument == experiment_.instruments.end() ? Instrument{none, none, 0.0} : instrument->second;
-    const std::vector<double> y = column(name, none), time = column("t_s", none);
-    std::vector<double> steps;
-    for (std::size_t i = 1; i < size(); ++i)
-        if (starts_[i] == 0 && time[i] > time[i - 1]) steps.push_back(time[i] - time[i - 1]);
-    std::sort(steps.begin(), steps.end());
-    const double longest = steps.empty() ? 0.0 : kGap * steps[steps.size() / 2];
+    const std::vector<double> y = column(name, none);
+    if (!(out.instrument.quantum > 0) && noise != NoiseKind::Event) out.instrument.quantum = quantum_of(y);
+    const std::vector<double> time = column("t_s", none);
+    const std::vector<double> longest = longest_steps(time);
     bool fresh = true, timed = true;
     used.clear();
     for (std::size_t i = 0; i < size(); ++i) {
         if (starts_[i] != 0) fresh = true;
         if (std::isnan(y[i]) || (!skipped.empty() && skipped[i] > 0.5)) continue;
-        if (!used.empty() && longest > 0 && time[i] - time[used.back()] > longest) fresh = true;
+        const double most = longest[run_[i]];
+        if (!used.empty() && most > 0 && time[i] - time[used.back()] > most) fresh = true;
         used.push_back(static_cast<std::uint32_t>(i));
         out.y.push_back(y[i]);
         out.run.push_back(run_[i]);

@@ -22,11 +22,16 @@ class Rows {
     /// The column in these rows; `fallback` where it is missing.
     std::vector<double> column(std::string_view name, double fallback) const;
     /// An observable of the column, rows without it left out: fills y, run, row, starts, time. `used`
-    /// receives the places of its rows in these rows. Rows where `skipped` is above a half are left out, too.
+    /// receives the places of its rows in these rows. Its quantum is the instrument's, else what the values
+    /// keep to. Rows where `skipped` is above a half are left out, too.
     Observable observable(std::string_view name, NoiseKind noise, std::vector<std::uint32_t>& used,
                           const std::vector<double>& skipped = {}) const;
 
   private:
+    /// The longest step over which something is carried over, a run each: runs have rates of their own. 0: no
+    /// times are known.
+    std::vector<double> longest_steps(const std::vector<double>& time) const;
+
     const Experiment& experiment_;
     std::vector<std::uint32_t> run_, row_;
     std::vector<char> starts_;

@@ -4,6 +4,7 @@
 // Deviations: 1. the wire takes ten bit times a byte; gaps between bytes are the firmware's. 2. The clocks'
 // zero is free in each run.
 
+#include "gap/clean/quantum.h"
 #include "gap/models/model.h"
 #include "gap/models/rows.h"
 
@@ -18,6 +19,7 @@ namespace {
 
 constexpr double kPeriod = 0.1;  // s, of the control loop
 constexpr double kTick = 1e-5;   // s, no robot's clock is written finer
+constexpr double kCoarse = 0.2;  // of the usual time between frames: no clock is written coarser
 constexpr double kBaud = 115200;
 constexpr double kBits = 10;              // a byte on the line
 constexpr double kTolerance = 0.02;       // error of the rate that a receiver stands
@@ -54,7 +56,7 @@ class TimingModel final : public Model {
             period.name = "robot_clock";
             period.y = robot;
             set_up(period);
-            period.instrument.quantum = std::max(period.instrument.quantum, kTick);
+            period.instrument.quantum = std::max(rounding_of(robot), kTick);
             if (keeps_to_periods(period)) take_periods(period);
         } else {
             robot_ = periods_;
@@ -64,6 +66,10 @@ class TimingModel final : public Model {
         // Against the robot's clock each arrival errs by itself; without one the periods' errors add up.
         observables_.back().noise = clocks_ ? NoiseKind::Carry : NoiseKind::Level;
         set_up(observables_.back());
+        // Against a rounded clock an arrival is as good as both clocks are.
+        double& quantum = observables_.back().instrument.quantum;
+        if (quantum > kCoarse * usual_step(host.y)) quantum = 0.0;
+        if (clocks_) quantum = std::hypot(quantum, rounding_of(robot_));
         gather_events(experiment);
         declare();
         apply_nominal(experiment);
@@ -107,6 +113,22 @@ class TimingModel final : public Model {
     }
 
   private:
+    static double usual_step(const std::vector<double>& clock) {
+        std::vector<double> steps;
+        for (std::size_t i = 1; i < clock.size(); ++i)
+            if (clock[i] > clock[i - 1]) steps.push_back(clock[i] - clock[i - 1]);
+        if (steps.empty()) return 0.0;
+        const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+        std::nth_element(steps.begin(), middle, steps.end());
+        return *middle;
+    }
+
+    /// A clock that was read at even times keeps to its period, which is no rounding.
+    static double rounding_of(const std::vector<double>& clock) {
+        const double quantum = quantum_of(clock);
+        return quantum > kCoarse * usual_step(clock) ? 0.0 : quantum;
+    }
+
     const Observable& arrivals() const { return observables_[clocks_ ? 1 : 0]; }
 
     /// 1: all intervals are whole multiples of the batch.

@@ -3,6 +3,7 @@
 
 #include "gap/pipeline/analyse.h"
 
+#include "gap/decide/range_end.h"
 #include "gap/diagnostics/agenda.h"
 #include "gap/diagnostics/heldout.h"
 #include "gap/diagnostics/leftovers.h"
@@ -32,7 +33,6 @@ constexpr double kSureLevel = 1e-3;  // of a structure that by itself makes a ve
 constexpr double kUnexplainedShareOfSums = 0.5;
 constexpr double kUnexplainedShare = 0.2;  // of all that is gained: what leaves this much is not the cause
 constexpr std::size_t kRunsThatJudge = 3;
-constexpr double kEdge = 0.005;  // of a plausible range: this near to its end is at its end
 constexpr double kFixedByOthers =
     0.97;  // correlation beyond which a parameter of the measuring chain is not fitted along
 
@@ -185,17 +185,10 @@ class Analysis {
 
     /// Is a freed parameter at an end of its plausible range? It was stopped there, not found there.
     bool at_edge(const Freed& freed, double& edge) const {
-        const double neutral = study_.model().parameters()[static_cast<std::size_t>(freed.index)].neutral;
-        const double value = final_.fitted.state.values[static_cast<std::size_t>(freed.index)];
-        const double near = kEdge * (freed.high - freed.low);
-        for (const double end : {freed.low, freed.high}) {
-            const bool nothing = end == 0.0;  // a mechanism that is not there, not a belief's end
-            if (!nothing && std::abs(value - end) < near && std::abs(end - neutral) > near) {
-                edge = end;
-                return true;
-            }
-        }
-        return false;
+        const auto index = static_cast<std::size_t>(freed.index);
+        edge = range_end(final_.fitted.state.values[index], freed.low, freed.high,
+                         study_.model().parameters()[index].neutral);
+        return !std::isnan(edge);
     }
 
     bool stopped_at_edge() const {

@@ -1,5 +1,6 @@
 #include "gap/stats/tails.h"
 
+#include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <boost/math/special_functions/gamma.hpp>
@@ -23,6 +24,11 @@ double gamma_tail(double shape, double x) {
 double poisson_tail(double mean, unsigned count) {
     if (count == 0) return 1.0;
     return mean <= 0 ? 0.0 : boost::math::gamma_p(static_cast<double>(count), mean);
+}
+
+double fisher_tail(double f, double numerator, double denominator) {
+    if (!(f > 0) || !(numerator > 0) || !(denominator > 0)) return 1.0;
+    return boost::math::cdf(boost::math::complement(boost::math::fisher_f(numerator, denominator), f));
 }
 
 double student_two_sided(double t, double degrees) {

@@ -11,6 +11,8 @@ double normal_quantile(double p);
 double gamma_tail(double shape, double x);
 /// P(X >= count) of a Poisson variable with the given mean.
 double poisson_tail(double mean, unsigned count);
+/// P(F > f) of Fisher's distribution.
+double fisher_tail(double f, double numerator, double denominator);
 /// P(|T| > t) of Student's distribution.
 double student_two_sided(double t, double degrees);
 

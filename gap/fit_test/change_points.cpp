@@ -1,0 +1,196 @@
+// Jumps that stay. Of a sum a jump is looked for in its innovations, where its trace is the same wherever it
+// lies (the noise's filter is the same), so that one look at each row is a short sum. Of a reading it is
+// looked for in the errors themselves: a jump that the model lacks makes the noise's fit believe in errors
+// that carry over, and such noise jumps by itself. How far errors scatter that carry over is taken from
+// batches of rows against their neighbours.
+
+#include "gap/fit_test/run_differences.h"
+#include "gap/fit_test/scores.h"
+#include "gap/stats/robust.h"
+#include "gap/stats/tails.h"
+#include "gap/verdict/sentences.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <span>
+
+namespace puckloop::gap {
+
+namespace {
+
+constexpr std::size_t kTrace = 30;       // rows after which a filter has settled
+constexpr std::size_t kSettled = 10;     // the last of them
+constexpr std::size_t kLeastChain = 24;  // rows
+constexpr std::size_t kLeastSide = 4;    // rows on either side of a jump
+constexpr std::size_t kBatches = 8;      // of a chain
+constexpr double kTrim = 4.0;            // robust deviations
+constexpr double kChiMedian = 0.4549;    // of one degree of freedom
+
+struct Chain {
+    std::size_t first, last;  ///< [first, last)
+    std::size_t size() const { return last - first; }
+};
+
+std::vector<Chain> chains_of(const Observable& o) {
+    std::vector<Chain> chains;
+    for (std::size_t i = 0; i < o.y.size(); ++i) {
+        if (i == 0 || o.starts[i] != 0 || o.run[i] != o.run[i - 1]) chains.push_back({i, i});
+        chains.back().last = i + 1;
+    }
+    return chains;
+}
+
+/// Answers of the rows from the jump on, a jump of one deviation.
+std::vector<double> trace_of(const Observable& o, const Predicted& p, const NoiseParameters& noise,
+                             const Scores& scores, const Chain& longest) {
+    std::vector<double> shift(o.y.size(), 0.0);
+    const std::size_t at = longest.first + longest.size() / 3;
+    std::fill(shift.begin() + static_cast<std::ptrdiff_t>(at),
+              shift.begin() + static_cast<std::ptrdiff_t>(longest.last), row_sd(o, p, noise, at));
+    const auto answers = scores.answers(shift);
+    std::vector<double> trace;
+    for (std::size_t i = at; i < std::min(at + kTrace, longest.last); ++i)
+        trace.push_back(answers[i]);
+    return trace;
+}
+
+/// Standardised errors, far ones pulled in; 0 where a reading was clipped.
+std::vector<double> errors_of(const Observable& o, const Predicted& p, const NoiseParameters& noise) {
+    std::vector<double> errors;
+    for (std::size_t i = 0; i < o.y.size(); ++i) {
+        const bool clipped = o.y[i] <= o.instrument.floor || o.y[i] >= o.instrument.ceiling;
+        errors.push_back(clipped ? 0.0 : (o.y[i] - p.mean[i]) / row_sd(o, p, noise, i));
+    }
+    const double limit = kTrim * stats::robust_scale(errors), middle = stats::median(errors);
+    if (limit > 0)
+        for (double& error : errors)
+            error = std::clamp(error - middle, -limit, limit);
+    return errors;
+}
+
+/// How much wider batches of pulls scatter against their neighbours than the noise model expects; one jump
+/// sets but one pair apart.
+double spread_of(const std::vector<Chain>& chains, std::span<const double> pull, double curvature) {
+    std::vector<double> squares;
+    for (const Chain& chain : chains) {
+        if (chain.size() < kLeastChain) continue;
+        double before = 0.0;
+        const std::size_t rows = chain.size() / kBatches;
+        for (std::size_t b = 0; rows > 0 && b < kBatches; ++b) {
+            const auto* from = pull.data() + chain.first + b * rows;
+            const double sum = std::accumulate(from, from + rows, 0.0);
+            if (b > 0)
+                squares.push_back(std::pow(sum - before, 2) / (2 * static_cast<double>(rows) * curvature));
+            before = sum;
+        }
+    }
+    return squares.empty() ? 1.0 : std::max(stats::median(squares) / kChiMedian, 1.0);
+}
+
+/// Of a jump at `at`: its score and information beyond those of a number for the whole chain.
+struct Look {
+    double g, h;
+};
+
+class Scan {
+  public:
+    Scan(std::span<const double> pull, double curvature, const std::vector<double>& trace)
+        : pull_(pull), curvature_(curvature), trace_(trace) {
+        const std::size_t n = trace.size(), from = n - std::min(kSettled, n);
+        for (std::size_t j = from; j < n; ++j)
+            settled_ += trace[j] / static_cast<double>(n - from);
+        after_.assign(pull.size() + 1, 0.0);
+        for (std::size_t i = pull.size(); i-- > 0;)
+            after_[i] = after_[i + 1] + pull[i];
+    }
+
+    Look at(const Chain& chain, std::size_t row) const {
+        const Look jump = from(chain, row), whole = from(chain, chain.first);
+        const std::size_t rows = chain.last - row;
+        // What is common to the whole chain is no jump: projected out, as far as it lasts.
+        double both = settled_ * settled_ * static_cast<double>(rows);
+        for (std::size_t j = 0; j < std::min(trace_.size(), rows); ++j)
+            both += (trace_[j] - settled_) * settled_;
+        both *= curvature_;
+        if (!(whole.h > 0)) return jump;
+        return {jump.g - both / whole.h * whole.g, jump.h - both * both / whole.h};
+    }
+
+  private:
+    Look from(const Chain& chain, std::size_t row) const {
+        const std::size_t rows = chain.last - row;
+        double g = settled_ * (after_[row] - after_[chain.last]),
+               h = settled_ * settled_ * static_cast<double>(rows);
+        for (std::size_t j = 0; j < std::min(trace_.size(), rows); ++j) {
+            g += (trace_[j] - settled_) * pull_[row + j];
+            h += trace_[j] * trace_[j] - settled_ * settled_;
+        }
+        return {g, h * curvature_};
+    }
+
+    std::span<const double> pull_;
+    double curvature_;
+    const std::vector<double>& trace_;
+    double settled_ = 0.0;
+    std::vector<double> after_;
+};
+
+}  // namespace
+
+std::vector<ChangePoint> change_points(const Model& model, const State& state) {
+    Prediction prediction;
+    model.predict(state.values, prediction);
+    std::vector<ChangePoint> all;
+    std::vector<double> deviations;
+    double places = 0.0;
+    for (std::size_t k = 0; k < model.observables().size(); ++k) {
+        const Observable& o = model.observables()[k];
+        if (o.fixed_sd > 0 || o.noise == NoiseKind::Event) continue;
+        const auto chains = chains_of(o);
+        const auto longest = std::max_element(
+            chains.begin(), chains.end(), [](const Chain& a, const Chain& b) { return a.size() < b.size(); });
+        if (longest == chains.end() || longest->size() < kLeastChain) continue;
+        const bool sum = o.noise == NoiseKind::Level;
+        const Scores scores(o, prediction[k], state.noise[k]);
+        const auto trace =
+            sum ? trace_of(o, prediction[k], state.noise[k], scores, *longest) : std::vector<double>(1, 1.0);
+        const auto pull = sum ? scores.pull() : errors_of(o, prediction[k], state.noise[k]);
+        const double curvature = sum ? scores.curvature() : 1.0;
+        const double spread = spread_of(chains, pull, curvature);
+        const Scan scan(pull, curvature, trace);
+        double most = 0.0;
+        ChangePoint best;
+        best.observable = o.name;
+        best.unit = o.unit;
+        for (const Chain& chain : chains) {
+            if (chain.size() < kLeastChain) continue;
+            for (std::size_t i = chain.first + kLeastSide; i + kLeastSide <= chain.last; ++i) {
+                places += 1;
+                const Look look = scan.at(chain, i);
+                const double square = look.h > 0 ? look.g * look.g / (spread * look.h) : 0.0;
+                if (square <= most) continue;
+                most = square;
+                best.run = o.run[i];
+                best.row = o.row[i];
+                best.jump = look.g / look.h * row_sd(o, prediction[k], state.noise[k], i);
+                best.shape = fmt::format(
+                    "jumps by {} in run {} at {}", quantity(best.jump, o.unit), o.run[i] + 1,
+                    o.time.empty() ? fmt::format("row {}", o.row[i] + 1) : quantity(o.time[i], "s"));
+            }
+        }
+        if (!(most > 0)) continue;
+        all.push_back(std::move(best));
+        deviations.push_back(std::sqrt(most));
+    }
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        all[k].gain = deviations[k] * deviations[k] / 2 - std::log(places);
+        all[k].p_value = std::min(1.0, 2 * places * stats::normal_tail(deviations[k]));
+    }
+    std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.gain > b.gain; });
+    return all;
+}
+
+}  // namespace puckloop::gap

@@ -1,0 +1,208 @@
+#include "gap/fit_test/run_differences.h"
+
+#include "gap/fit_test/scores.h"
+#include "gap/stats/robust.h"
+#include "gap/stats/tails.h"
+#include "gap/verdict/sentences.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+namespace puckloop::gap {
+
+namespace {
+
+constexpr std::size_t kLeastRuns = 3;
+constexpr std::size_t kBatches = 6;    // of a run: batch means (Schmeiser 1982: few and long ones)
+constexpr std::size_t kBatchRows = 4;  // at least
+constexpr double kLeastSpread = 0.25;  // of the scores, in units of what the noise model expects
+constexpr int kGrid = 60;              // values of tau
+constexpr double kSameShape = 0.999;   // correlation of two modes that are one
+
+/// What one run, or one batch of it, says of a number: score and information.
+struct Score {
+    double g = 0.0, h = 0.0;
+    void add(double answer, double pull, double curvature) {
+        g += answer * pull;
+        h += answer * answer * curvature;
+    }
+    double estimate() const { return g / h; }
+};
+
+struct Mode {
+    const char* what;
+    std::string unit;
+    std::vector<double> shift;
+};
+
+std::vector<Mode> modes_of(const Observable& o, const Predicted& p) {
+    const std::size_t n = o.y.size();
+    std::vector<Mode> modes;
+    if (o.noise != NoiseKind::Level) modes.push_back({"offset", o.unit, std::vector<double>(n, 1.0)});
+    if (o.noise == NoiseKind::Event) {
+        modes.front().unit = "logits";
+        return modes;
+    }
+    Mode share{"share of what is predicted", "1", p.mean};
+    if (o.noise == NoiseKind::Level) {
+        Mode drift{"drift", o.unit + "/s", std::vector<double>(n, 0.0)};
+        std::size_t first = 0;
+        for (std::size_t i = 0; i < n; ++i) {
+            if (i == 0 || o.run[i] != o.run[i - 1]) first = i;
+            share.shift[i] -= p.mean[first];
+            if (!o.time.empty()) drift.shift[i] = o.time[i] - o.time[first];
+        }
+        modes.push_back(std::move(drift));
+    }
+    modes.push_back(std::move(share));
+    return modes;
+}
+
+/// Scores of each run, and how much wider than expected they scatter inside runs.
+struct ByRun {
+    std::vector<Score> run;
+    double spread = 1.0, freedom = 0.0;
+};
+
+ByRun by_run(const Observable& o, const Scores& scores, const std::vector<double>& answers) {
+    std::map<std::uint32_t, std::size_t> rows, seen;
+    for (const auto run : o.run)
+        ++rows[run];
+    std::map<std::uint32_t, std::vector<Score>> batches;
+    for (std::size_t i = 0; i < o.y.size(); ++i) {
+        const std::size_t count = std::clamp<std::size_t>(rows[o.run[i]] / kBatchRows, 1, kBatches);
+        auto& of_run = batches[o.run[i]];
+        of_run.resize(count);
+        of_run[seen[o.run[i]]++ * count / rows[o.run[i]]].add(answers[i], scores.pull()[i],
+                                                              scores.curvature());
+    }
+    ByRun result;
+    double within = 0.0;
+    for (const auto& [run, of_run] : batches) {
+        Score sum;
+        double squares = 0.0, informed = 0.0;
+        for (const Score& one : of_run) {
+            if (!(one.h > 0)) continue;
+            sum.g += one.g;
+            sum.h += one.h;
+            squares += one.g * one.g / one.h;
+            informed += 1;
+        }
+        if (!(sum.h > 0)) continue;
+        result.run.push_back(sum);
+        within += squares - sum.g * sum.g / sum.h;
+        result.freedom += informed - 1;
+    }
+    if (result.freedom > 0) result.spread = std::max(within / result.freedom, kLeastSpread);
+    return result;
+}
+
+double log_normal(double x, double variance) {
+    return -0.5 * (std::log(2 * std::numbers::pi * variance) + x * x / variance);
+}
+
+/// Estimates of the runs, all but one, about a common mean with tau between them.
+struct Common {
+    double mean = 0.0, log_likelihood = 0.0;
+};
+Common common_of(const std::vector<Score>& runs, double spread, double tau, std::size_t left_out) {
+    double weights = 0.0, sum = 0.0;
+    for (std::size_t r = 0; r < runs.size(); ++r) {
+        if (r == left_out) continue;
+        const double weight = 1 / (tau * tau + spread / runs[r].h);
+        weights += weight;
+        sum += weight * runs[r].estimate();
+    }
+    Common result{sum / weights, 0.0};
+    for (std::size_t r = 0; r < runs.size(); ++r)
+        if (r != left_out)
+            result.log_likelihood +=
+                log_normal(runs[r].estimate() - result.mean, tau * tau + spread / runs[r].h);
+    return result;
+}
+
+double best_tau(const std::vector<Score>& runs, double spread, std::size_t left_out) {
+    std::vector<double> doubts;
+    for (const Score& run : runs)
+        doubts.push_back(std::sqrt(spread / run.h));
+    const double unit = stats::median(doubts);
+    double best = 0.0, most = common_of(runs, spread, 0.0, left_out).log_likelihood;
+    for (int k = 0; k < kGrid; ++k) {
+        const double tau = unit * std::pow(10.0, -1 + 5.0 * k / (kGrid - 1));
+        const double one = common_of(runs, spread, tau, left_out).log_likelihood;
+        if (one > most) most = one, best = tau;
+    }
+    return best;
+}
+
+RunDifference difference_of(const Observable& o, const Mode& mode, const ByRun& scores) {
+    const auto& runs = scores.run;
+    const std::size_t n = runs.size();
+    RunDifference result;
+    result.observable = o.name;
+    result.unit = mode.unit;
+    result.what = mode.what;
+    std::vector<double> gains;
+    for (std::size_t r = 0; r < n; ++r) {
+        const double tau = best_tau(runs, scores.spread, r), own = scores.spread / runs[r].h;
+        const double random = runs[r].estimate() - common_of(runs, scores.spread, tau, r).mean,
+                     fixed = runs[r].estimate() - common_of(runs, scores.spread, 0.0, r).mean;
+        gains.push_back(log_normal(random, tau * tau + own) - log_normal(fixed, own));
+    }
+    double squares = 0.0;
+    for (const double gain : gains)
+        result.gain += gain;
+    for (const double gain : gains)
+        squares += std::pow(gain - result.gain / static_cast<double>(n), 2);
+    result.sd = std::sqrt(squares * static_cast<double>(n) / static_cast<double>(n - 1));
+    result.size = best_tau(runs, scores.spread, n);
+    const double middle = common_of(runs, scores.spread, 0.0, n).mean;
+    double between = 0.0, low = INFINITY, high = -INFINITY;
+    for (const Score& run : runs) {
+        between += std::pow(run.estimate() - middle, 2) * run.h / scores.spread;
+        low = std::min(low, run.estimate());
+        high = std::max(high, run.estimate());
+    }
+    const auto freedom = static_cast<double>(n - 1);
+    if (scores.freedom > 0) result.p_value = stats::fisher_tail(between / freedom, freedom, scores.freedom);
+    result.shape =
+        fmt::format("differs from run to run: {} {} to {} (sd {})", mode.what, quantity(low, mode.unit),
+                    quantity(high, mode.unit), quantity(result.size, mode.unit));
+    return result;
+}
+
+bool is_fitted(const Observable& o) {
+    return o.fixed_sd <= 0 && !o.y.empty();
+}
+
+}  // namespace
+
+std::vector<RunDifference> run_differences(const Model& model, const State& state) {
+    Prediction prediction;
+    model.predict(state.values, prediction);
+    std::vector<RunDifference> all;
+    for (std::size_t k = 0; k < model.observables().size(); ++k) {
+        const Observable& o = model.observables()[k];
+        if (!is_fitted(o)) continue;
+        const Scores scores(o, prediction[k], state.noise[k]);
+        std::vector<std::vector<double>> seen;
+        for (const Mode& mode : modes_of(o, prediction[k])) {
+            auto answers = scores.answers(mode.shift);
+            if (std::any_of(seen.begin(), seen.end(), [&](const auto& other) {
+                    return std::abs(stats::correlation(other, answers)) > kSameShape;
+                }))
+                continue;
+            const ByRun sums = by_run(o, scores, answers);
+            if (sums.run.size() >= kLeastRuns) all.push_back(difference_of(o, mode, sums));
+            seen.push_back(std::move(answers));
+        }
+    }
+    std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.gain > b.gain; });
+    return all;
+}
+
+}  // namespace puckloop::gap

@@ -1,0 +1,112 @@
+// What differs from run to run, jumps that stay inside a run, and where a fit was stopped: each seen where it
+// is, and not where noise only carries over.
+
+#include "base/random.h"
+#include "gap/decide/range_end.h"
+#include "gap/fit/study.h"
+#include "gap/fit_test/run_differences.h"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <functional>
+
+using namespace puckloop;
+using namespace puckloop::gap;
+
+namespace {
+
+constexpr int kRuns = 8, kRows = 150;
+constexpr double kSd = 3.0;
+
+/// Ground readings of a still floor of several greys, errors carried over by `carry`.
+Experiment floors(std::uint64_t seed, double carry,
+                  const std::function<double(double level, int run, int row)>& wrong) {
+    RandomStream random(seed, "differences test");
+    Experiment experiment;
+    experiment.kind = Kind::Ground;
+    experiment.instruments["reading"] = {0, 967, 1};
+    for (int r = 0; r < kRuns; ++r) {
+        Run run;
+        run.name = "run" + std::to_string(r);
+        run.rows = kRows;
+        double error = random.normal();
+        for (int k = 0; k < kRows; ++k) {
+            error = carry * error + std::sqrt(1 - carry * carry) * random.normal();
+            const double grey = 0.3 + 0.4 * random.uniform();
+            run.columns["t_s"].push_back(0.1 * k);
+            run.columns["grey"].push_back(grey);
+            run.columns["reading"].push_back(std::round(wrong(329 + (953 - 329) * grey, r, k) + kSd * error));
+        }
+        experiment.runs.push_back(std::move(run));
+    }
+    return experiment;
+}
+
+struct Seen {
+    RunDifference difference;
+    ChangePoint jump;
+};
+
+Seen looked_at(const Experiment& experiment) {
+    const Study study(experiment, 1);
+    const Fit fit = study.fit_none();
+    const auto differences = run_differences(study.model(), fit.fitted.state);
+    const auto jumps = change_points(study.model(), fit.fitted.state);
+    REQUIRE_FALSE(differences.empty());
+    REQUIRE_FALSE(jumps.empty());
+    return {differences.front(), jumps.front()};
+}
+
+}  // namespace
+
+TEST_CASE("runs that differ are told from noise that carries over") {
+    int alarms = 0;
+    for (std::uint64_t seed = 1; seed <= 12; ++seed)
+        for (const double carry : {0.0, 0.8}) {
+            const auto seen = looked_at(floors(seed, carry, [](double level, int, int) { return level; }));
+            alarms += seen.difference.p_value < 0.01 ? 1 : 0;
+            alarms += seen.jump.p_value < 0.01 ? 1 : 0;
+        }
+    CHECK(alarms <= 2);  // of 48, by chance one half
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+        RandomStream random(seed, "differences test/runs");
+        std::vector<double> gain, offset;
+        for (int r = 0; r < kRuns; ++r) {
+            gain.push_back(1 + 0.02 * random.normal());
+            offset.push_back(4 * random.normal());
+        }
+        const auto surfaces = looked_at(floors(seed, 0.4, [&](double level, int run, int) {
+            return level * gain[static_cast<std::size_t>(run)];
+        }));
+        CHECK(surfaces.difference.p_value < 1e-4);
+        CHECK(surfaces.difference.gain > 5);
+        CHECK(surfaces.difference.shape.find("from run to run") != std::string::npos);
+        const auto boards = looked_at(floors(seed, 0.0, [&](double level, int run, int) {
+            return level + offset[static_cast<std::size_t>(run)];
+        }));
+        CHECK(boards.difference.p_value < 1e-4);
+        CHECK(boards.difference.gain > 5);
+    }
+}
+
+TEST_CASE("a jump inside one run that stays is found where it is") {
+    for (const double jump : {14 * kSd, -6 * kSd}) {
+        const auto seen = looked_at(floors(5, 0.4, [&](double level, int run, int row) {
+            return run == 3 && row >= 90 ? level + jump : level;
+        }));
+        CHECK(seen.jump.p_value < 1e-6);
+        CHECK(seen.jump.run == 3);
+        CHECK(std::abs(static_cast<int>(seen.jump.row) - 90) <= 3);
+        CHECK(seen.jump.jump == Approx(jump).epsilon(0.8));
+    }
+}
+
+TEST_CASE("a range over decades ends where its logarithm does") {
+    CHECK(std::isnan(range_end(25, 20, 2000, 300)));
+    CHECK(range_end(20.01, 20, 2000, 300) == 20);
+    CHECK(range_end(1999, 20, 2000, 300) == 2000);
+    CHECK(range_end(-0.0799, -0.08, 0.08, 0.0) == -0.08);
+    CHECK(std::isnan(range_end(0.0, 0.0, 0.5, 0.0)));
+    CHECK(range_end(0.4999, 0.0, 0.5, 0.0) == 0.5);
+}
