@@ -29,6 +29,10 @@ inline constexpr double kSure = 1e-3;
 /// may come from the scatter that goes with them. Half: else it is scatter by another name.
 inline constexpr double kMeanShare = 0.5;
 
+/// A sum whose own noise is less than this part of its rounding is not asked row by row: what rows say is
+/// what the rounding says (a step of q has a sd of 0.29 q, which then is all there is).
+inline constexpr double kFineNoise = 0.25;
+
 /// Runs below which stretches of one run are held out, which share its day and place.
 inline constexpr std::size_t kRunsThatJudge = 3;
 /// Runs below which there are no two halves to confirm on: each half needs two runs to be judged by.

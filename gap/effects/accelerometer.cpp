@@ -67,6 +67,7 @@ std::vector<Effect> accelerometer_effects() {
             .enters = "accelerometer.vibration",
             .confounded = {"reference_sag"},
             .separated_by = "wheels in the air at several speeds",
+            .role = EffectRole::Scatter,
         },
     };
 }

@@ -21,6 +21,14 @@ struct EffectParameter {
     const char* source;          ///< of the range
     const char* unless = nullptr;  ///< not freed where the model has this parameter, which does the same
     double resolution = 0.0;       ///< the model says no finer what it is, parameter's unit
+    bool threshold = false;        ///< acts only where something tried meets it: no row moves between
+};
+
+/// What an effect is said to do to the measurements.
+enum class EffectRole {
+    Mean,     ///< moves means; scatter may go with them
+    Scatter,  ///< makes errors larger, or other, and may move means besides
+    Outlier,  ///< makes single errors large, at moments of their own
 };
 
 struct Effect {
@@ -37,6 +45,8 @@ struct Effect {
     std::vector<const char*> confounded{};  ///< names of effects that can look the same
     const char* separated_by;               ///< the experiment that tells it from those
     bool measuring_chain = false;           ///< of tracker, host or ruler, not of the robot
+    EffectRole role = EffectRole::Mean;
+    bool fitted_along = false;  ///< beside every cause where the data can part them (the measuring chain's)
 };
 
 /// All of them, in the order of the sheet.

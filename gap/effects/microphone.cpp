@@ -32,6 +32,7 @@ std::vector<Effect> microphone_effects() {
             .enters = "microphone.self_noise, microphone.motor_noise",
             .confounded = {"microphone_fall"},
             .separated_by = "silence, with motors on and off",
+            .role = EffectRole::Scatter,
         },
         {
             .name = "microphone_fall",

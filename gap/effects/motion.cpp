@@ -143,7 +143,10 @@ std::vector<Effect> motion_effects() {
                             500.0,
                             80.0,
                             {60.0},
-                            "near 0 for a good stepper, 20 % of the range for DC motors"}},
+                            "near 0 for a good stepper, 20 % of the range for DC motors",
+                            nullptr,
+                            0.0,
+                            true}},
             .observables = "way along, heading",
             .enters = "robot.deadband (physics/wheel_drive)",
             .confounded = {"backlash"},
@@ -197,6 +200,7 @@ std::vector<Effect> motion_effects() {
             .enters = "the overlay's [uart] command_loss",
             .confounded = {"collision_push"},
             .separated_by = "log sequence numbers at both ends",
+            .role = EffectRole::Scatter,
         },
         {
             .name = "floor_tilt",
@@ -227,6 +231,7 @@ std::vector<Effect> motion_effects() {
                       "as well",
             .confounded = {"command_loss"},
             .separated_by = "film the arena; a run with nobody near",
+            .role = EffectRole::Outlier,
         },
         {
             .name = "marker_offset",
@@ -244,6 +249,7 @@ std::vector<Effect> motion_effects() {
             .confounded = {"axle_length"},
             .separated_by = "a spot turn: the centre then draws a circle",
             .measuring_chain = true,
+            .fitted_along = true,
         },
         {
             .name = "tracker_delay",
@@ -259,6 +265,7 @@ std::vector<Effect> motion_effects() {
             .separated_by =
                 "log the step counters with the robot's clock, or flash an LED that the tracker sees",
             .measuring_chain = true,
+            .fitted_along = true,
         },
         {
             .name = "heading_drift",

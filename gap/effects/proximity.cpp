@@ -94,6 +94,7 @@ std::vector<Effect> proximity_effects() {
             .enters = "proximity.ambient_offset, proximity.ambient_gain, proximity.ambient_noise",
             .confounded = {"sensor_offset", "flicker"},
             .separated_by = "every distance once in the dark and once in light",
+            .role = EffectRole::Scatter,
         },
         {
             .name = "flicker",
@@ -133,6 +134,7 @@ std::vector<Effect> proximity_effects() {
                 "sensors that the data shows sheltered",
             .confounded = {"proportional_noise"},
             .separated_by = "the same with the other robots switched off",
+            .role = EffectRole::Outlier,
         },
         {
             .name = "crosstalk",
@@ -209,6 +211,7 @@ std::vector<Effect> proximity_effects() {
             .enters = "proximity.motor_noise",
             .confounded = {"proportional_noise"},
             .separated_by = "the same distance with wheels on and off",
+            .role = EffectRole::Scatter,
         },
         {
             .name = "reference_sag",
@@ -239,6 +242,7 @@ std::vector<Effect> proximity_effects() {
             .confounded = {"response_law"},
             .separated_by = "approach and retreat at the same speed",
             .measuring_chain = true,
+            .fitted_along = true,
         },
         {
             .name = "warm_up",
@@ -293,6 +297,7 @@ std::vector<Effect> proximity_effects() {
             .enters = "proximity.proportional_noise",
             .confounded = {"motor_noise"},
             .separated_by = "many repeats at several distances",
+            .role = EffectRole::Scatter,
         },
         {
             .name = "battery_droop",

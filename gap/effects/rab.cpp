@@ -48,6 +48,7 @@ std::vector<Effect> rab_effects() {
             .enters = "ir.frame_noise, ir.receiver_noise, ir.near_noise",
             .confounded = {"strength_spread_parts"},
             .separated_by = "several pairs of boards at one distance, turned",
+            .role = EffectRole::Scatter,
         },
         {
             .name = "far_floor",
@@ -89,6 +90,7 @@ std::vector<Effect> rab_effects() {
             .enters = "ir.stray, ir.stray_loss, beside the scenario's walls and bodies",
             .confounded = {"range_noise"},
             .separated_by = "the same in the middle of an empty room",
+            .role = EffectRole::Outlier,
         },
         {
             .name = "collision_loss",

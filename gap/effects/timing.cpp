@@ -78,6 +78,7 @@ std::vector<Effect> timing_effects() {
                       "emulated loop",
             .confounded = {"clock_drift"},
             .separated_by = "count periods against a second clock",
+            .role = EffectRole::Scatter,
         },
         {
             .name = "clock_drift",

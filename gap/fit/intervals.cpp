@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 
 namespace puckloop::gap {
 
@@ -19,7 +18,6 @@ double t_quantile(double freedom) {
            (5 * std::pow(z, 5) + 16 * z * z * z + 3 * z) / (96 * freedom * freedom);
 }
 
-constexpr std::string_view kThreshold = "robot.deadband";  // acts only where a speed meets it
 constexpr double kSoftEdge =
     0.012;  // the model's edge is soft, 0.4 % wide: a sharp one may lie three of these on
 constexpr int kLooks = 48;
@@ -86,7 +84,7 @@ Interval interval_of(const Study& study, const Fit& fit, const Precision& precis
     // seen in few events may be twice as high, hardly zero.
     const bool one_sided = freed.low == study.model().parameters()[index].neutral && freed.low == 0.0;
     const double shift = one_sided ? reach * reach / (4 * std::max(value, reach)) : 0.0;
-    if (study.model().parameters()[index].name == kThreshold) {
+    if (freed.threshold) {
         const double most = precision.quantile * freed.prior_sd;
         return {
             value - fall_off(study, fit, index, precision.quantile, std::min(most, value - freed.low), -1),

@@ -1,5 +1,6 @@
 #include "gap/fit/select.h"
 
+#include "gap/evidence/criterion.h"
 #include "gap/fit/parallel.h"
 
 #include <fmt/format.h>
@@ -8,16 +9,16 @@
 #include <cmath>
 #include <map>
 #include <mutex>
-#include <string_view>
+#include <numeric>
 
 namespace puckloop::gap {
 
 namespace {
 
 constexpr std::size_t kMostEffects = 5;
-constexpr double kEnoughDeviations = 1.3;  // of the held-out gain
-constexpr double kSureDeviations = 2.0;
-constexpr double kEnoughBlocks = 0.5;  // share of blocks that gain, of those touched
+// BIC screens: it says what is worth the held-out look that decides.
+constexpr double kScreen = 0.0;        // better by BIC at all
+constexpr double kClearBic = 10.0;     // "very strong" (Kass and Raftery 1995): not looked at again
 constexpr std::size_t kValidated = 3;  // best by BIC that are cross-validated
 constexpr std::size_t kRefined = 5;    // best by a quick fit that are fitted to the end
 constexpr std::size_t kLookedAt = 7;   // best on a part of many rows that are fitted to all
@@ -28,18 +29,6 @@ constexpr double kHopelessOnPart = 20.0;  // of BIC, of a part's rows
 constexpr double kNoRival = 0.3;          // share of the evidence that a rival has alone, at least
 constexpr double kTie = 2.0;              // nats of merit, or of BIC: not even a hint
 constexpr double kDraw = 6.0;             // difference of BIC that tells nothing
-
-/// Effects that act as rare outliers: heavy-tailed noise looks much the same, so they must say far more.
-constexpr std::string_view kOutliers[] = {"multipath", "pulsed_interference", "collision_push"};
-constexpr double kEnoughForOutliers = 60.0;
-
-bool acts_as_outliers(const Effect& effect) {
-    return std::find(std::begin(kOutliers), std::end(kOutliers), effect.name) != std::end(kOutliers);
-}
-
-double enough_for(const Effect& effect) {
-    return acts_as_outliers(effect) ? kEnoughForOutliers : kEnoughBic;
-}
 
 bool has(const std::vector<std::size_t>& set, std::size_t effect) {
     return std::find(set.begin(), set.end(), effect) != set.end();
@@ -57,12 +46,16 @@ std::vector<std::size_t> with(std::vector<std::size_t> set, std::size_t effect) 
     return set;
 }
 
-class Selector {
-  public:
-    Selector(const Study& study, const std::function<void(const std::string&, double)>& progress)
-        : study_(study), progress_(progress) {}
+}  // namespace
 
-    Selection run() {
+class Search::Steps {
+  public:
+    Steps(const Study& study, const Progress& progress) : study_(study), progress_(progress) {
+        for (const Candidate& candidate : study.candidates())
+            testable_ += candidate.remark.empty() ? 1 : 0;
+    }
+
+    double first() {
         tell("fitting the simulator as it is", 0.02);
         result_.none = study_.fit_none();
         result_.held_none = study_.hold_out(result_.none);
@@ -70,8 +63,18 @@ class Selector {
         result_.held_chosen = result_.held_none;
         for (std::size_t i = 0; i < study_.candidates().size(); ++i)
             result_.trials.push_back({i, 0.0, {}, false, study_.candidates()[i].remark});
-        while (result_.chosen.effects.size() < kMostEffects && step())
+        more_ = step();
+        double sum = 0.0;
+        for (const auto& scores : result_.held_chosen.score)
+            sum = std::accumulate(scores.begin(), scores.end(), sum);
+        return sum;
+    }
+
+    Selection rest() {
+        while (more_) {
             improve();
+            more_ = result_.chosen.effects.size() < kMostEffects && step();
+        }
         find_draws();
         return std::move(result_);
     }
@@ -80,8 +83,6 @@ class Selector {
     void tell(const std::string& what, double share) const {
         if (progress_) progress_(what, share);
     }
-
-    const Effect& effect_of(const Fit& fit) const { return *study_.candidates()[fit.effects.back()].effect; }
 
     /// `state` with an effect where it stood when it was tried alone: beside another, a fit from nothing may
     /// not find it.
@@ -96,17 +97,9 @@ class Selector {
         return state;
     }
 
-    bool enough(const Fit& fit, const Gain& gain) const { return enough(effect_of(fit), gain); }
-
-    bool enough(const Effect& effect, const Gain& gain) const {
-        if (acts_as_outliers(effect)) return gain.sum > kSureDeviations * gain.sd;
-        // Against a claimed noise the claim is the evidence: a fit of the noise itself predicts as well.
-        const bool claim = effect.name == std::string_view("range_noise") && gain.sum > -1;
-        // Where it happens it says all, and the runs without it lose a trifle each for the possibility.
-        const bool sometimes = gain.sum > kSureDeviations * gain.sd && gain.clearly_better > 2 &&
-                               gain.clearly_better > 2 * gain.clearly_worse;
-        return claim || gain.here_and_there() || sometimes ||
-               (gain.sum > kEnoughDeviations * gain.sd && gain.share_touched > kEnoughBlocks);
+    /// The one criterion, for `taken` effects more.
+    bool enough(const Gain& gain, std::size_t taken = 1) const {
+        return gains_enough(gain, testable_, taken);
     }
 
     /// An effect that explains much, and makes as many runs worse as better, may have a partner that pulls
@@ -127,9 +120,9 @@ class Selector {
         Fit& both = fits.front().second;
         both = study_.refined(both);
         const double delta = fits.front().first = first.second.bic - both.bic;
-        if (delta < enough_for(effect_of(both))) return false;
+        if (delta < kScreen) return false;
         HeldOut held = study_.hold_out(both);
-        if (!enough(both, gain_of(gains_by_block(study_.blocks(), result_.held_chosen, held)))) return false;
+        if (!enough(gain_of(gains_by_block(study_.blocks(), result_.held_chosen, held)), 2)) return false;
         const Gain second_gain = gain_of(gains_by_block(study_.blocks(), first_held, held));
         result_.steps.push_back({first.second.effects.back(), first.first, first_gain, true, ""});
         result_.steps.push_back({both.effects.back(), delta, second_gain, true, ""});
@@ -160,8 +153,7 @@ class Selector {
         Fit both = study_.refined(fits.front().second);
         HeldOut held = study_.hold_out(both);
         const Gain gain = gain_of(gains_by_block(study_.blocks(), result_.held_chosen, held));
-        for (const std::size_t effect : both.effects)
-            if (!enough(*study_.candidates()[effect].effect, gain)) return false;
+        if (!enough(gain, 2)) return false;
         for (const std::size_t effect : both.effects) {
             const auto alone = std::find_if(last_step_.begin(), last_step_.end(), [&](const auto& one) {
                 return one.second.effects.back() != effect && has(both.effects, one.second.effects.back());
@@ -223,15 +215,14 @@ class Selector {
         std::vector<HeldOut> helds(fits.size());
         std::vector<Gain> gains(fits.size());
         for (std::size_t k = 0; k < fits.size(); ++k) {
-            if (fits[k].first < enough_for(*study_.candidates()[fits[k].second.effects.back()].effect))
-                continue;
+            if (fits[k].first < kScreen) continue;
             helds[k] = study_.hold_out(fits[k].second);
             gains[k] = gain_of(gains_by_block(study_.blocks(), result_.held_chosen, helds[k]));
             Trial& trial = result_.trials[fits[k].second.effects.back()];
             trial.held = gains[k];
             trial.validated = true;
             trial.delta_bic = fits[k].first;
-            if (!enough(fits[k].second, gains[k])) continue;
+            if (!enough(gains[k])) continue;
             // BIC says how simply, the held-out score how well: the sum of both decides.
             const double merit = gains[k].sum + fits[k].first / 2;
             // In a draw the sheet's order decides, which begins with what is met most often.
@@ -313,9 +304,11 @@ class Selector {
                 std::erase(set, effect);
                 if (needed_on_part(set, effect)) continue;
                 Fit fit = study_.fit_set(set, study_.without(effect, result_.chosen.fitted.state));
-                if (fit.bic > result_.chosen.bic + kEnoughBic) continue;
+                if (fit.bic > result_.chosen.bic + kClearBic) continue;
+                HeldOut held = study_.hold_out(fit);
+                if (enough(gain_of(gains_by_block(study_.blocks(), held, result_.held_chosen)))) continue;
                 result_.chosen = std::move(fit);
-                result_.held_chosen = study_.hold_out(result_.chosen);
+                result_.held_chosen = std::move(held);
                 std::erase_if(result_.steps, [&](const Trial& trial) { return trial.effect == effect; });
                 look_at_part();
                 changed = true;
@@ -354,7 +347,7 @@ class Selector {
     bool needed_on_part(const std::vector<std::size_t>& rest, std::size_t effect) const {
         if (study_.part() == nullptr || !study_.part()->candidates()[effect].remark.empty()) return false;
         const State from = study_.in_part(study_.without(effect, result_.chosen.fitted.state));
-        return study_.part()->fit_set(rest, from).bic > on_part_ + kEnoughBic + kHopelessOnPart;
+        return study_.part()->fit_set(rest, from).bic > on_part_ + kClearBic + kHopelessOnPart;
     }
 
     /// The chosen set with `rival` in the place of `effect`. Of many rows a part may say clearly that its BIC
@@ -430,7 +423,9 @@ class Selector {
     }
 
     const Study& study_;
-    const std::function<void(const std::string&, double)>& progress_;
+    const Progress& progress_;
+    std::size_t testable_ = 0;
+    bool more_ = false;
     Selection result_;
     std::map<std::size_t, double> alone_;                     // delta BIC at the first step
     std::map<std::size_t, std::vector<double>> alone_state_;  // and where the parameters stood then
@@ -438,10 +433,21 @@ class Selector {
     std::vector<std::pair<double, Fit>> last_step_, last_step_of_choice_;
 };
 
-}  // namespace
+Search::Search(const Study& study, const Progress& progress)
+    : steps_(std::make_unique<Steps>(study, progress)) {}
+Search::~Search() = default;
+Search::Search(Search&&) noexcept = default;
+double Search::first() {
+    return steps_->first();
+}
+Selection Search::rest() {
+    return steps_->rest();
+}
 
-Selection select(const Study& study, const std::function<void(const std::string&, double)>& progress) {
-    return Selector(study, progress).run();
+Selection select(const Study& study, const Search::Progress& progress) {
+    Search search(study, progress);
+    (void)search.first();
+    return search.rest();
 }
 
 }  // namespace puckloop::gap

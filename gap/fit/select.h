@@ -4,14 +4,11 @@
 #include "gap/fit/study.h"
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace puckloop::gap {
-
-/// BIC by which a set must do better with an effect than without; set by judgement on a few runs without
-/// effects (docs/gap.md).
-inline constexpr double kEnoughBic = 8.0;
 
 /// How an effect did at the step where it was looked at last.
 struct Trial {
@@ -38,6 +35,27 @@ struct Selection {
     std::vector<Draw> draws;
 };
 
-Selection select(const Study& study, const std::function<void(const std::string&, double)>& progress);
+/// The search for the set of effects. Several searches on models of the same rows (frames of view) compete by
+/// the log score of held-out rows.
+class Search {
+  public:
+    using Progress = std::function<void(const std::string&, double)>;
+
+    /// `study` and `progress` must outlive it.
+    Search(const Study& study, const Progress& progress);
+    ~Search();
+    Search(Search&&) noexcept;
+
+    /// The first step: nothing, or the best effect (or pair). Returns the log score of all held-out rows.
+    double first();
+    /// All further steps; once.
+    Selection rest();
+
+  private:
+    class Steps;
+    std::unique_ptr<Steps> steps_;
+};
+
+Selection select(const Study& study, const Search::Progress& progress);
 
 }  // namespace puckloop::gap

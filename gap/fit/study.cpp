@@ -2,6 +2,7 @@
 
 #include "base/random.h"
 #include "gap/data/columns.h"
+#include "gap/fit/objective.h"
 #include "gap/fit/parallel.h"
 #include "gap/fit/thinned.h"
 
@@ -81,7 +82,8 @@ std::string design_of(Kind kind, const Run& run) {
 /// One effect's parameter on one index of the model.
 Freed freed_at(const Model& model, const EffectParameter& parameter, int index) {
     const double neutral = model.parameters()[static_cast<std::size_t>(index)].neutral;
-    Freed freed{index, parameter.low, parameter.high, parameter.prior_sd, neutral, parameter.resolution};
+    Freed freed{index,   parameter.low,        parameter.high,     parameter.prior_sd,
+                neutral, parameter.resolution, parameter.threshold};
     if (neutral < parameter.low || neutral > parameter.high) {
         const bool zero_is_off = neutral == 0.0;
         if (zero_is_off)
@@ -448,10 +450,15 @@ HeldOut Study::hold_out(const Fit& whole) const {
         const Fitted part = fit(*model_, whole.freed, whole.fitted.state, weights, kPart);
         Prediction prediction;
         const auto costs = costs_at(*model_, part.state, prediction);
+        // What the noise loses for being off the simulator's claim is lost by every row alike.
+        std::vector<double> off;
+        for (std::size_t o = 0; o < observables.size(); ++o)
+            off.push_back(std::pow(claim_error(observables[o], part.state.noise[o]), 2) /
+                          (2 * static_cast<double>(std::max<std::size_t>(observables[o].y.size(), 1))));
         for (std::size_t o = 0; o < observables.size(); ++o)
             for (std::size_t i = 0; i < fold_[o].size(); ++i)
                 if (fold_[o][i] == static_cast<int>(k)) {
-                    held.score[o][i] = -costs[o].cost[i];
+                    held.score[o][i] = -costs[o].cost[i] - off[o];
                     held.mean[o][i] = shown(prediction[o], i);
                 }
     });

@@ -46,6 +46,7 @@ class Study {
 
     const Experiment& experiment() const { return experiment_; }
     const Model& model() const { return *model_; }
+    MotionView view() const { return view_; }
     const std::vector<Candidate>& candidates() const { return candidates_; }
     std::size_t rows() const { return rows_; }
     std::size_t folds() const { return folds_; }

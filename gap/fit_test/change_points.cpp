@@ -4,6 +4,7 @@
 // that carry over, and such noise jumps by itself. How far errors scatter that carry over is taken from
 // batches of rows against their neighbours.
 
+#include "gap/decide/thresholds.h"
 #include "gap/fit_test/run_differences.h"
 #include "gap/fit_test/scores.h"
 #include "gap/stats/robust.h"
@@ -149,6 +150,9 @@ std::vector<ChangePoint> change_points(const Model& model, const State& state) {
     for (std::size_t k = 0; k < model.observables().size(); ++k) {
         const Observable& o = model.observables()[k];
         if (o.fixed_sd > 0 || o.noise == NoiseKind::Event) continue;
+        if (o.noise == NoiseKind::Level &&
+            std::exp(state.noise[k].log_sd) < thresholds::kFineNoise * o.instrument.quantum)
+            continue;
         const auto chains = chains_of(o);
         const auto longest = std::max_element(
             chains.begin(), chains.end(), [](const Chain& a, const Chain& b) { return a.size() < b.size(); });

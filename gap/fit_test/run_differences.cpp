@@ -1,5 +1,6 @@
 #include "gap/fit_test/run_differences.h"
 
+#include "gap/decide/thresholds.h"
 #include "gap/fit_test/scores.h"
 #include "gap/stats/robust.h"
 #include "gap/stats/tails.h"
@@ -175,8 +176,10 @@ RunDifference difference_of(const Observable& o, const Mode& mode, const ByRun& 
     return result;
 }
 
-bool is_fitted(const Observable& o) {
-    return o.fixed_sd <= 0 && !o.y.empty();
+bool is_asked(const Observable& o, const NoiseParameters& noise) {
+    const bool rounding =
+        o.noise == NoiseKind::Level && std::exp(noise.log_sd) < thresholds::kFineNoise * o.instrument.quantum;
+    return o.fixed_sd <= 0 && !o.y.empty() && !rounding;
 }
 
 }  // namespace
@@ -187,7 +190,7 @@ std::vector<RunDifference> run_differences(const Model& model, const State& stat
     std::vector<RunDifference> all;
     for (std::size_t k = 0; k < model.observables().size(); ++k) {
         const Observable& o = model.observables()[k];
-        if (!is_fitted(o)) continue;
+        if (!is_asked(o, state.noise[k])) continue;
         const Scores scores(o, prediction[k], state.noise[k]);
         std::vector<std::vector<double>> seen;
         for (const Mode& mode : modes_of(o, prediction[k])) {

@@ -1,21 +1,25 @@
 // The whole way from an experiment to a verdict: select effects, fit them together with what the measuring
-// chain always adds, judge what is gained on held-out runs and what is left.
+// chain always adds, look at what is left, decide (gap/decide/decide.cpp).
 
 #include "gap/pipeline/analyse.h"
 
+#include "gap/decide/confirm.h"
+#include "gap/decide/decide.h"
 #include "gap/decide/range_end.h"
+#include "gap/decide/roles.h"
+#include "gap/decide/thresholds.h"
 #include "gap/diagnostics/agenda.h"
 #include "gap/diagnostics/heldout.h"
 #include "gap/diagnostics/leftovers.h"
-#include "gap/diagnostics/pushes.h"
-#include "gap/diagnostics/repeats.h"
 #include "gap/diagnostics/scatter.h"
 #include "gap/diagnostics/series.h"
+#include "gap/evidence/criterion.h"
 #include "gap/fit/intervals.h"
 #include "gap/fit/select.h"
+#include "gap/fit_test/rival_forms.h"
 #include "gap/next_experiment/suggest.h"
+#include "gap/overlay/overlay_names.h"
 #include "gap/residual_model/free_form.h"
-#include "gap/stats/tails.h"
 #include "gap/validate/placements.h"
 #include "gap/verdict/sentences.h"
 
@@ -23,42 +27,41 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 namespace puckloop::gap {
 
 namespace {
 
-constexpr double kLeftLevel = 0.01;  // corrected p of a structure worth telling
-constexpr double kSureLevel = 1e-3;  // of a structure that by itself makes a verdict
-constexpr double kUnexplainedShareOfSums = 0.5;
-constexpr double kUnexplainedShare = 0.2;  // of all that is gained: what leaves this much is not the cause
-constexpr std::size_t kRunsThatJudge = 3;
-constexpr double kFixedByOthers =
-    0.97;  // correlation beyond which a parameter of the measuring chain is not fitted along
-
-constexpr const char* kPlacement = "placement";
-constexpr const char* kNoScatter = "explains scatter that repeats, has a shape or comes in spells";
-constexpr std::string_view kPushes = "collision_push";
-
-const char* const kNuisances[] = {"marker_offset", "tracker_delay", "stale_readings"};
-
+/// The analysis of one experiment from one view.
 class Analysis {
   public:
-    Analysis(const Experiment& experiment, const Options& options, MotionView view)
+    Analysis(const Experiment& experiment, const Options& options, MotionView view, bool confirms = true)
         : experiment_(experiment),
           options_(options),
-          study_(experiment, options.seed, options.threads, view) {}
+          confirms_(confirms),
+          study_(experiment, options.seed, options.threads, view),
+          search_(study_, options_.progress) {}
 
+    /// Log score of held-out rows after the first step.
+    double first() { return search_.first(); }
+
+    /// After first().
     Verdict run() {
         verdict_.kind = experiment_.kind;
         verdict_.seed = options_.seed;
         verdict_.cautions = experiment_.cautions;
-        selection_ = select(study_, options_.progress);
+        selection_ = search_.rest();
         tell("what is left", 0.88);
         final_ = with_nuisances();
         look_at_rest();
-        const std::string doubt = selection_.steps.empty() ? "" : doubt_of_causes();
-        if (!doubt.empty()) take_back(doubt);
+        const std::string doubt = selection_.steps.empty() ? "" : doubted();
+        verdict_.decision = decision_of(grounds(), doubt);
+        if (!doubt.empty()) {
+            take_back(doubt);
+            // What the causes had covered is open now.
+            if (verdict_.decision == Decision::NoEffect) verdict_.decision = decision_of(grounds(), "");
+        }
         tell("intervals", 0.96);
         fill_causes();
         fill_tried();
@@ -67,12 +70,16 @@ class Analysis {
             for (const std::string& caution :
                  {placement_caution(experiment_, series), circular_caution(series)})
                 if (!caution.empty()) verdict_.cautions.push_back(caution);
-        decide();
+        if (verdict_.decision == Decision::Named && doubtful(verdict_))
+            verdict_.decision = Decision::CannotTell;
         verdict_.suggestions = suggestions_for(study_, selection_);
         verdict_.heldout.sentence = gain_sentence(verdict_.heldout);
         verdict_.summary = summary_of(verdict_);
         return std::move(verdict_);
     }
+
+    /// What was found, for whoever asks whether there is anything at all. After run().
+    double found() const { return found_; }
 
   private:
     void tell(const std::string& what, double share) const {
@@ -92,8 +99,7 @@ class Analysis {
                 interval.low,
                 interval.high,
                 parameter.neutral,
-                parameter.simulator || parameter.name.starts_with("wheel_") ||
-                    parameter.name == "inverse_friction"};
+                parameter.simulator || overlay_takes(parameter.name)};
     }
 
     Cause cause_of(const Fit& fit, const Precision& precision, std::size_t candidate) const {
@@ -106,6 +112,9 @@ class Analysis {
             for (std::size_t j = 0; j < fit.freed.size(); ++j)
                 if (fit.freed[j].index == freed.index)
                     cause.parameters.push_back(parameter_of(fit, precision, j));
+        const auto form = std::find_if(forms_.begin(), forms_.end(),
+                                       [&](const auto& one) { return one.first == candidate; });
+        if (form != forms_.end()) cause.form = form_words(form->second);
         cause.sentence = cause_sentence(cause);
         return cause;
     }
@@ -115,23 +124,22 @@ class Analysis {
     Fit with_nuisances() const {
         Fit fit = selection_.chosen;
         if (fit.effects.empty()) return fit;
-        for (const char* name : kNuisances)
-            for (std::size_t i = 0; i < study_.candidates().size(); ++i) {
-                const Candidate& candidate = study_.candidates()[i];
-                if (candidate.effect->name != std::string_view(name) || !candidate.remark.empty()) continue;
-                if (std::find(fit.effects.begin(), fit.effects.end(), i) != fit.effects.end()) continue;
-                auto set = fit.effects;
-                set.push_back(i);
-                const Fit wider = study_.fit_set(set, fit.fitted.state);
-                const Precision precision = precision_of(study_, wider);
-                bool fixed = false;
-                for (std::size_t j = 0; j < wider.freed.size(); ++j)
-                    for (std::size_t k = 0; k < j; ++k)
-                        fixed = fixed || std::abs(precision.correlation(static_cast<Eigen::Index>(j),
-                                                                        static_cast<Eigen::Index>(k))) >
-                                             kFixedByOthers;
-                if (!fixed && wider.bic < fit.bic + 40) fit = wider;
-            }
+        for (std::size_t i = 0; i < study_.candidates().size(); ++i) {
+            const Candidate& candidate = study_.candidates()[i];
+            if (!candidate.effect->fitted_along || !candidate.remark.empty()) continue;
+            if (std::find(fit.effects.begin(), fit.effects.end(), i) != fit.effects.end()) continue;
+            auto set = fit.effects;
+            set.push_back(i);
+            const Fit wider = study_.fit_set(set, fit.fitted.state);
+            const Precision precision = precision_of(study_, wider);
+            bool fixed = false;
+            for (std::size_t j = 0; j < wider.freed.size(); ++j)
+                for (std::size_t k = 0; k < j; ++k)
+                    fixed = fixed || std::abs(precision.correlation(static_cast<Eigen::Index>(j),
+                                                                    static_cast<Eigen::Index>(k))) >
+                                         thresholds::kOneNumber;
+            if (!fixed) fit = wider;
+        }
         return fit;
     }
 
@@ -213,7 +221,7 @@ class Analysis {
         State without = final_.fitted.state;
         without.values[index] = study_.model().parameters()[index].neutral;
         const double best = at(final_.fitted.state), none = at(selection_.none.fitted.state);
-        return at(without) - best > kUnexplainedShare * (none - best);
+        return at(without) - best > thresholds::kShareLeft * (none - best);
     }
 
     bool something_left() const { return !verdict_.leftovers.empty() || any_form_is_clear(); }
@@ -238,58 +246,70 @@ class Analysis {
 
     /// With fewer than three runs stretches of the same run are held out: a drift of that run predicts
     /// itself. Then the error has to fall for sure, not only the score to rise.
-    bool few_runs_disagree() {
-        return experiment_.runs.size() < kRunsThatJudge &&
+    bool few_runs_disagree() const {
+        return experiment_.runs.size() < thresholds::kRunsThatJudge &&
                held_figures(study_, selection_, options_.seed).all.high >= 1.0;
     }
 
-    /// A mean that the model lacks looks like larger errors. What repeats at each placement is no scatter,
-    /// nor is what has a shape: the free forms are asked again without the effects that only scatter. And
-    /// what comes in spells is no lapse that has a chance of its own.
-    bool scatter_hides_a_mean() const {
-        const auto scatter = scatter_effects(study_, selection_.chosen);
-        if (scatter.empty()) return false;
-        const auto touched = scattered_by(study_, selection_.chosen, scatter);
-        if (touched.empty()) return false;
-        for (const Leftover& left : verdict_.leftovers)
-            if (left.covariate == kPlacement && left.p_value < kSureLevel &&
-                std::find(touched.begin(), touched.end(), left.observable) != touched.end())
-                return true;
-        if (stats::normal_tail(repeats_at_once(study_, selection_.chosen, scatter)) < kSureLevel) return true;
-        const Fit calm = without_effects(study_, selection_.chosen, scatter);
-        const auto forms =
-            free_forms_of(experiment_, study_.model(), calm.fitted.state, options_.seed, touched);
-        const bool spells =
-            std::any_of(forms.begin(), forms.end(), [](const FreeForm& form) { return form.spells; });
-        if (spells && lapses(study_, selection_.chosen)) return true;
-        const double shaped = gained(forms);
-        const double won = std::max(
-            gain_of(gains_by_block(study_.blocks(), study_.hold_out(calm), selection_.held_chosen)).sum, 0.0);
-        return shaped > 0 && shaped > kUnexplainedShare * (shaped + won);
+    /// What speaks against the causes, asked from the cheap to the dear; causes that are out of their role go
+    /// by themselves where the first of them stands without them.
+    std::string doubted() {
+        std::string doubt = doubt_of(grounds());
+        if (!doubt.empty()) return doubt;
+        const OutOfRole out =
+            out_of_role(study_, selection_.chosen, selection_.held_chosen, verdict_.leftovers, options_.seed);
+        if (!out.effects.empty()) {
+            if (!go_without(out.effects, out.why)) return out.why;
+            for (const std::size_t one : out.effects)
+                verdict_.cautions.push_back(fmt::format("{} would have to be part of it, but {}: not named",
+                                                        effect(one).name, out.why));
+            doubt = doubt_of(grounds());
+        }
+        if (!doubt.empty() || !confirms_) return doubt;
+        tell("asking the other half of the runs", 0.92);
+        return not_confirmed(study_, selection_, share_allowed(),
+                             [&](const Experiment& half) { return asked(half); });
     }
 
-    /// Why what was chosen is not the cause, in words that follow "but"; empty: nothing speaks against it.
-    std::string doubt_of_causes() {
-        if (pushes_keep_to_something()) return "keeps to something that no push knows of";
-        if (!experiment_.assumed.empty())
-            return fmt::format("{} was assumed, not measured, and an error of it may look the same",
-                               fmt::join(experiment_.assumed, ", "));
-        if (auto doubt = doubt_of_what_is_left(); !doubt.empty()) return doubt;
-        if (!scatter_hides_a_mean()) return "";
-        const auto scatter = scatter_effects(study_, selection_.chosen);
-        if (!go_without(scatter, kNoScatter)) return kNoScatter;
-        for (const std::size_t one : scatter)
-            verdict_.cautions.push_back(fmt::format("{} would have to be part of it, but {}: not named",
-                                                    effect(one).name, kNoScatter));
-        return doubt_of_what_is_left();
+    /// Half of the experiment, corrected by what the other half told, as an experiment of its own.
+    Asked asked(const Experiment& half) const {
+        Options quiet = options_;
+        quiet.progress = nullptr;
+        Analysis other(half, quiet, study_.view(), false);
+        (void)other.first();
+        const Verdict verdict = other.run();
+        Asked result;
+        result.nothing = verdict.decision == Decision::NoEffect;
+        result.found = other.found();
+        const auto& causes = verdict.causes.empty() ? verdict.nearest : verdict.causes;
+        result.what = causes.empty() ? "structure" : fmt::format("\"{}\"", causes.front().title);
+        return result;
     }
 
-    std::string doubt_of_what_is_left() {
-        if (verdict_.unexplained_share > share_allowed()) return "leaves too much to be the cause";
-        if (stopped_at_edge() && something_left())
-            return "stopped at the end of its plausible range and leaves something";
-        if (few_runs_disagree()) return "lowers the error of so few runs by chance only, as far as they tell";
-        return "";
+    Grounds grounds() const {
+        Grounds g;
+        g.causes = selection_.steps.size();
+        for (const Candidate& candidate : study_.candidates())
+            g.candidates += candidate.remark.empty() ? 1 : 0;
+        g.gain = gain_of(gains_by_block(study_.blocks(), selection_.held_none, selection_.held_chosen));
+        g.assumed = fmt::format("{}", fmt::join(experiment_.assumed, ", "));
+        g.stopped_at_end = stopped_at_edge();
+        g.error_falls = g.causes == 0 || !few_runs_disagree();
+        g.left_by_shape = std::max(gained_by_shape(verdict_.free_forms), left_by_structure_);
+        for (const auto& [effect, form] : forms_)
+            g.left_by_shape = std::max(g.left_by_shape, form.left);
+        g.left_by_run = runs_.by_run;
+        g.left_by_jump = runs_.by_jump;
+        g.sums = adds_up();
+        for (const Observable& observable : study_.model().observables())
+            for (const FreeForm& form : verdict_.free_forms)
+                if (form.observable == observable.name && observable.noise != NoiseKind::Level &&
+                    form.clear && !form.wild)
+                    g.left_of_readings += form.gain;
+        g.structure = any_form_is_clear() ||
+                      std::any_of(verdict_.leftovers.begin(), verdict_.leftovers.end(),
+                                  [](const Leftover& one) { return one.p_value < thresholds::kSure; });
+        return g;
     }
 
     /// Effects that are doubted by themselves go, and the other causes stay. False: one of them is the first
@@ -328,32 +348,17 @@ class Analysis {
                 step.delta_bic = fewer.bic - selection_.chosen.bic;
                 step.held =
                     gain_of(gains_by_block(study_.blocks(), study_.hold_out(fewer), selection_.held_chosen));
-                if (step.delta_bic < selection_.steps[weakest].delta_bic)
+                if (step.held.sum < selection_.steps[weakest].held.sum)
                     weakest = static_cast<std::size_t>(&step - selection_.steps.data());
             }
             const Trial& least = selection_.steps[weakest];
-            if (least.delta_bic >= kEnoughBic) return true;
+            if (gains_enough(least.held, study_.candidates().size(), 1)) return true;
             if (weakest == 0) return false;
             selection_.trials[least.effect].remark = "says too little without what was doubted beside it";
             selection_.chosen = without_effects(study_, selection_.chosen, {least.effect});
             selection_.held_chosen = study_.hold_out(selection_.chosen);
             selection_.steps.erase(selection_.steps.begin() + static_cast<std::ptrdiff_t>(weakest));
         }
-    }
-
-    /// Pushes that keep to a place or to a command are none. First of the causes, they were all there was;
-    /// beside another cause they go and it stays.
-    bool pushes_keep_to_something() {
-        const auto step = std::find_if(selection_.steps.begin(), selection_.steps.end(),
-                                       [&](const Trial& one) { return effect(one.effect).name == kPushes; });
-        if (step == selection_.steps.end()) return false;
-        const auto pattern = push_pattern(experiment_, study_.model(), final_.fitted.state);
-        if (!pattern) return false;
-        verdict_.cautions.push_back(
-            fmt::format("jumps look like pushes, but {:.0f} of {:.0f} come at {} (by chance {:.1f}): no push "
-                        "knows of that",
-                        pattern->pushes, pattern->all, pattern->where, pattern->expected));
-        return !go_without({step->effect}, "keeps to something");
     }
 
     void fill_tried() {
@@ -376,7 +381,7 @@ class Analysis {
     void fill_held() {
         HeldFigures figures = held_figures(study_, selection_, options_.seed);
         verdict_.heldout = figures.all;
-        verdict_.heldout.gain = !verdict_.causes.empty() && verdict_.heldout.score_low > 0;
+        verdict_.heldout.gain = !verdict_.causes.empty();
         verdict_.observables = std::move(figures.observables);
     }
 
@@ -390,7 +395,7 @@ class Analysis {
                     return one.observable == series.observable && one.covariate == "previous sample";
                 });
             if (serial == verdict_.leftovers.end()) continue;
-            serial->covariate = kPlacement;
+            serial->covariate = kPlacementCovariate;
             serial->shape = shape;
         }
     }
@@ -398,30 +403,41 @@ class Analysis {
     /// Structures and free forms that are left with what is chosen, and their share of all that is gained.
     void look_at_rest() {
         verdict_.series = series_of(study_.model(), selection_.none.fitted.state, final_.fitted.state);
-        verdict_.leftovers = leftovers_of(experiment_, verdict_.series, options_.seed, kLeftLevel);
+        std::vector<double> quanta;
+        for (const Observable& observable : study_.model().observables())
+            quanta.push_back(observable.instrument.quantum);
+        Left left = leftovers_of(experiment_, verdict_.series, quanta, options_.seed, thresholds::kReported,
+                                 thresholds::kSure);
+        verdict_.leftovers = std::move(left.structures);
+        left_by_structure_ = left.gain;
         tell_placements();
         verdict_.free_forms = free_forms_of(experiment_, study_.model(), final_.fitted.state, options_.seed);
-        const double left = gained(verdict_.free_forms);
-        const double won = std::max(
-            gain_of(gains_by_block(study_.blocks(), selection_.held_none, selection_.held_chosen)).sum, 0.0);
-        verdict_.unexplained_share = left > 0 ? left / (left + won) : 0.0;
+        runs_ = left_by_runs(study_, final_.fitted.state);
+        look_at_forms();
+        verdict_.leftovers.insert(verdict_.leftovers.end(), runs_.structures.begin(), runs_.structures.end());
+        std::stable_sort(verdict_.leftovers.begin(), verdict_.leftovers.end(),
+                         [](const auto& a, const auto& b) { return a.p_value < b.p_value; });
+        const Grounds g = grounds();
+        verdict_.unexplained_share = g.unexplained();
+        found_ = std::max(g.causes > 0 ? g.gain.sum : 0.0, 0.0) + g.left();
     }
 
-    static double gained(const std::vector<FreeForm>& forms) {
-        double sum = 0.0;
-        for (const FreeForm& form : forms)
-            if (form.clear && !form.wild) sum += form.gain;
-        return sum;
+    /// Are the forms of the chosen effects told from their neighbours'?
+    void look_at_forms() {
+        forms_.clear();
+        for (const Trial& step : selection_.steps)
+            forms_.emplace_back(step.effect,
+                                form_verdict(rival_forms(study_, selection_.chosen, step.effect)));
+    }
+
+    bool adds_up() const {
+        const auto& all = study_.model().observables();
+        return std::any_of(all.begin(), all.end(),
+                           [](const Observable& observable) { return observable.noise == NoiseKind::Level; });
     }
 
     /// Of sums more may be left: their free forms act on single steps, and cannot say what adds up.
-    double share_allowed() const {
-        const auto& all = study_.model().observables();
-        const bool sums = std::any_of(all.begin(), all.end(), [](const Observable& observable) {
-            return observable.noise == NoiseKind::Level;
-        });
-        return sums ? kUnexplainedShareOfSums : kUnexplainedShare;
-    }
+    double share_allowed() const { return adds_up() ? thresholds::kShareLeftOfSums : thresholds::kShareLeft; }
 
     /// An effect fitted to what it does not describe soaks up some of it and leaves much. Then nothing is
     /// named: what came nearest is told as such, and all that is left is looked at again.
@@ -437,44 +453,49 @@ class Analysis {
         look_at_rest();
     }
 
-    void decide() {
-        const bool sure = std::any_of(verdict_.leftovers.begin(), verdict_.leftovers.end(),
-                                      [](const Leftover& one) { return one.p_value < kSureLevel; }) ||
-                          any_form_is_clear();
-        if (!verdict_.causes.empty())
-            verdict_.decision = doubtful(verdict_) ? Decision::CannotTell : Decision::Named;
-        else
-            verdict_.decision =
-                sure || !verdict_.nearest.empty() ? Decision::Unexplained : Decision::NoEffect;
-    }
-
     const Experiment& experiment_;
     const Options& options_;
+    bool confirms_;
     Study study_;
+    Search search_;
     Selection selection_;
     Fit final_;
+    LeftByRuns runs_;
+    std::vector<std::pair<std::size_t, FormVerdict>> forms_;  ///< of the chosen effects
+    double left_by_structure_ = 0.0;                          ///< nats
+    double found_ = 0.0;                                      ///< nats
     Verdict verdict_;
 };
 
 }  // namespace
 
 Verdict analyse(const Experiment& experiment, const Options& options) {
-    Verdict verdict = Analysis(experiment, options, MotionView::Robot).run();
-    if (experiment.kind != Kind::Motion) return verdict;
-    if (verdict.decision != Decision::NoEffect) {
-        std::vector<std::string> found;
-        for (const auto* causes : {&verdict.causes, &verdict.nearest})
-            for (const Cause& cause : *causes)
-                found.push_back(cause.name);
-        auto caution = agenda_caution(experiment, found, options.seed, options.threads);
-        if (!caution.empty()) verdict.cautions.push_back(std::move(caution));
-        return verdict;
+    // Way along and across the heading, and in the room, are the same numbers turned: their log scores
+    // compare.
+    std::vector<std::unique_ptr<Analysis>> views;
+    views.push_back(std::make_unique<Analysis>(experiment, options, MotionView::Robot));
+    if (experiment.kind == Kind::Motion)
+        views.push_back(std::make_unique<Analysis>(experiment, options, MotionView::Room));
+    std::vector<double> score;
+    for (const auto& view : views)
+        score.push_back(view->first());
+    const auto best = static_cast<std::size_t>(std::max_element(score.begin(), score.end()) - score.begin());
+    Verdict verdict = views[best]->run();
+    if (views.size() == 1) return verdict;
+    if (verdict.decision == Decision::NoEffect) {
+        Verdict other = views[1 - best]->run();
+        if (other.decision == Decision::NoEffect) return verdict;
+        other.cautions.push_back(fmt::format("seen {} only", best == 0 ? "from the room (x_m, y_m)"
+                                                                       : "along the robot's own axes"));
+        return other;
     }
-    Verdict from_room = Analysis(experiment, options, MotionView::Room).run();
-    if (from_room.decision == Decision::NoEffect) return verdict;
-    from_room.cautions.emplace_back(
-        "seen from the room only (x_m, y_m): along the robot's own axes nothing is more than the noise");
-    return from_room;
+    std::vector<std::string> found;
+    for (const auto* causes : {&verdict.causes, &verdict.nearest})
+        for (const Cause& cause : *causes)
+            found.push_back(cause.name);
+    auto caution = agenda_caution(experiment, found, options.seed, options.threads);
+    if (!caution.empty()) verdict.cautions.push_back(std::move(caution));
+    return verdict;
 }
 
 std::vector<Series> simulate(const Experiment& experiment, const std::map<std::string, double>& changed) {

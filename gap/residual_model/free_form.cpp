@@ -1,5 +1,6 @@
 #include "gap/residual_model/free_form.h"
 
+#include "gap/decide/thresholds.h"
 #include "gap/fit/study.h"
 #include "gap/residual_model/free_form_cells.h"
 #include "gap/residual_model/sum_form.h"
@@ -37,6 +38,7 @@ struct Errors {
     Series at;  // run and row of each
     std::vector<char> starts;
     std::vector<double> scale, level;  ///< noise and prediction, the observable's unit
+    double quantum = 0.0;              ///< that it is rounded to
 };
 
 Errors errors_of(const Observable& observable, const Predicted& predicted, const NoiseParameters& noise,
@@ -44,6 +46,7 @@ Errors errors_of(const Observable& observable, const Predicted& predicted, const
     Errors e;
     e.observable = observable.name;
     e.unit = observable.unit;
+    e.quantum = observable.instrument.quantum;
     const bool whitened = observable.noise != NoiseKind::Carry || predicted.line_amplitude > 0;
     e.rows.carry = whitened ? 0.0 : noise.carry;
     e.rows.trimmed = observable.noise != NoiseKind::Event;
@@ -183,8 +186,9 @@ FreeForm told(const Errors& errors, const std::vector<stats::Component>& compone
             form.terms.push_back(term_of(components[order[k]], fit.correction, errors.scale,
                                          fit.weight[order[k]] / all, errors.unit));
     // What only a few runs can show is clear when several gain by it and none loses.
-    form.clear =
-        form.gain > kClear && (form.gain > kSure * form.sd || gain.in_several()) && !form.terms.empty();
+    const bool rounding = form.size * stats::median(errors.scale) < errors.quantum / std::sqrt(12.0);
+    form.clear = !rounding && form.gain > kClear && (form.gain > kSure * form.sd || gain.in_several()) &&
+                 !form.terms.empty();
     if (form.clear) form.shape = form.terms.front().shape;
     return form;
 }
@@ -241,6 +245,7 @@ FreeForm wild_form(Errors errors, const std::vector<stats::Component>& component
         error /= sd;
     for (double& scale : errors.scale)
         scale = sd;
+    errors.quantum = 0.0;
     errors.observable = form.observable;
     errors.unit = "of the readings";
     errors.rows.carry = 0.0;
@@ -282,6 +287,10 @@ std::vector<FreeForm> free_forms_of(const Experiment& experiment, const Model& m
         if (!only.empty() && std::find(only.begin(), only.end(), observable.name) == only.end()) continue;
         if (observable.fixed_sd > 0 || observable.y.size() > 4 * kMostRows) continue;
         if (!enough_events(observable)) continue;
+        // Of a sum whose own noise is less than its rounding, rows say what the rounding says.
+        if (observable.noise == NoiseKind::Level &&
+            std::exp(state.noise[o].log_sd) < thresholds::kFineNoise * observable.instrument.quantum)
+            continue;
         Errors errors = errors_of(observable, prediction[o], state.noise[o], costs[o]);
         if (observable.name == "x_m" || observable.name == "y_m") {
             track.push_back(std::move(errors));

@@ -8,6 +8,9 @@
 
 namespace puckloop::gap {
 
+/// What a structure of placements is called among the covariates.
+inline constexpr const char* kPlacementCovariate = "placement";
+
 /// "differs from placement to placement by ..." if what is left (after) does so by more than repeats scatter
 /// at one placement; empty if not, or if there are fewer than six placements with ten rows each on average.
 std::string placement_shape(const Experiment& experiment, const Series& series);

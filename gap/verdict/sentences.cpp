@@ -54,7 +54,17 @@ std::string cause_sentence(const Cause& cause) {
                                       quantity(p.low, p.unit, more), quantity(p.high, p.unit, more)));
     }
     if (!figures.empty()) text += ": " + listed(figures, "and");
-    return text + ".";
+    text += ".";
+    if (!cause.form.empty()) text += fmt::format(" ({}.)", cause.form);
+    return text;
+}
+
+std::string form_words(const FormVerdict& form) {
+    if (!form.better.empty())
+        return fmt::format("this family, another form: {} fits better by {:.3g} nats", form.better,
+                           form.left);
+    if (form.open.empty()) return "";
+    return fmt::format("this family, form not told apart from: {}", fmt::join(form.open, ", "));
 }
 
 std::string gain_sentence(const Held& held) {

@@ -2,6 +2,7 @@
 // The verdict in plain words.
 
 #include "gap/fit/select.h"
+#include "gap/fit_test/rival_forms.h"
 #include "gap/verdict/verdict.h"
 
 #include <string>
@@ -12,6 +13,8 @@ namespace puckloop::gap {
 std::string quantity(double value, const std::string& unit, int more_digits = 0);
 /// What a cause says about this robot: title and its parameters with intervals.
 std::string cause_sentence(const Cause& cause);
+/// Whether an effect's form is told from its neighbours'; empty where it is.
+std::string form_words(const FormVerdict& form);
 std::string gain_sentence(const Held& held);
 /// One or two sentences at the top of the report.
 std::string summary_of(const Verdict& verdict);

@@ -39,7 +39,8 @@ Json cause_json(const Cause& cause) {
               {"score_low", number(cause.score_low)},
               {"score_high", number(cause.score_high)}}},
             {"parameters", parameters},
-            {"sentence", cause.sentence}};
+            {"sentence", cause.sentence},
+            {"form", cause.form}};
 }
 
 Json held_json(const Verdict& verdict) {

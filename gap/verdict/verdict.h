@@ -31,6 +31,7 @@ struct Cause {
     double score_low = 0.0, score_high = 0.0;  ///< 90 % over blocks of runs
     std::vector<FittedParameter> parameters;
     std::string sentence;  ///< what it says about this robot, with figures
+    std::string form;      ///< whether the data tells its form from its neighbours', in words; empty: it does
 };
 
 /// Another explanation that the data does not tell from `instead_of`.

@@ -1,0 +1,104 @@
+#include "gap/decide/confirm.h"
+
+#include "gap/decide/thresholds.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace puckloop::gap {
+
+namespace {
+
+constexpr Effort kEffort{12, true};
+constexpr double kSamePrediction = 1e-6;  // of an observable's noise
+
+/// Runs of the second half: every other fold, so that repeats of one condition stand in both.
+std::vector<char> second_half(const Study& study) {
+    std::vector<char> second(study.experiment().runs.size(), 0);
+    const auto& observables = study.model().observables();
+    for (std::size_t o = 0; o < observables.size(); ++o)
+        for (std::size_t i = 0; i < observables[o].run.size(); ++i)
+            second[observables[o].run[i]] = static_cast<char>(study.fold_of()[o][i] % 2);
+    return second;
+}
+
+Experiment half_of(const Experiment& whole, const std::vector<char>& second) {
+    Experiment half = whole;
+    half.runs.clear();
+    half.cautions.clear();
+    for (std::size_t r = 0; r < whole.runs.size(); ++r)
+        if (second[r] != 0) half.runs.push_back(whole.runs[r]);
+    return half;
+}
+
+double cost_in(const Study& study, const State& state, const std::vector<char>& second) {
+    Prediction prediction;
+    const auto costs = costs_at(study.model(), state, prediction);
+    double sum = 0.0;
+    for (std::size_t o = 0; o < costs.size(); ++o)
+        for (std::size_t i = 0; i < costs[o].cost.size(); ++i)
+            if (second[study.model().observables()[o].run[i]] != 0) sum += costs[o].cost[i];
+    return sum;
+}
+
+/// The half's numbers are those of the whole, which it may count otherwise (its sessions, its objects).
+bool takes(Experiment& half, const Study& study, const Fit& fit) {
+    const auto model = make_model(half);
+    for (const Freed& freed : fit.freed) {
+        const auto index = static_cast<std::size_t>(freed.index);
+        const ModelParameter& parameter = study.model().parameters()[index];
+        if (model->find(parameter.name) < 0) return false;
+        half.nominal[parameter.name] = fit.fitted.state.values[index];
+    }
+    return true;
+}
+
+bool same_means(const Study& study, const Fit& fit, const Experiment& half, MotionView view,
+                const std::vector<char>& second) {
+    const auto model = make_model(half, view);
+    Prediction of_half, of_whole;
+    model->predict(model->neutral(), of_half);
+    study.model().predict(fit.fitted.state.values, of_whole);
+    for (std::size_t o = 0; o < of_whole.size(); ++o) {
+        const Observable& observable = study.model().observables()[o];
+        if (observable.noise != NoiseKind::Carry) continue;
+        const double near = kSamePrediction + 1e-3 * std::exp(fit.fitted.state.noise[o].log_sd);
+        std::size_t next = 0;
+        for (std::size_t i = 0; i < observable.run.size(); ++i) {
+            if (second[observable.run[i]] == 0) continue;
+            if (next >= of_half[o].mean.size()) return false;
+            if (std::abs(of_half[o].mean[next++] - of_whole[o].mean[i]) > near) return false;
+        }
+    }
+    return true;
+}
+
+}  // namespace
+
+std::string not_confirmed(const Study& study, const Selection& selection, double share_left,
+                          const std::function<Asked(const Experiment&)>& ask) {
+    const Experiment& whole = study.experiment();
+    if (whole.runs.size() < thresholds::kRunsToConfirm || study.folds() < 2) return "";
+    const auto second = second_half(study);
+    Weights first;
+    for (const auto& folds : study.fold_of()) {
+        first.emplace_back();
+        for (const int fold : folds)
+            first.back().push_back(fold % 2 == 0 ? 1.0 : 0.0);
+    }
+    Fit half_fit = selection.chosen;
+    half_fit.fitted = fit(study.model(), half_fit.freed, half_fit.fitted.state, first, kEffort);
+    const Fitted none = fit(study.model(), {}, selection.none.fitted.state, first, kEffort);
+    const double won = cost_in(study, none.state, second) - cost_in(study, half_fit.fitted.state, second);
+    if (!(won > 0)) return "does not gain on the half of the runs that was not fitted";
+    Experiment half = half_of(whole, second);
+    if (!takes(half, study, half_fit) || !same_means(study, half_fit, half, study.view(), second)) return "";
+    const Asked asked = ask(half);
+    if (asked.nothing || asked.found <= share_left * (asked.found + won)) return "";
+    return fmt::format("fitted on half of the runs, it leaves {} in the other half", asked.what);
+}
+
+}  // namespace puckloop::gap

@@ -1,0 +1,38 @@
+#pragma once
+// Does each chosen effect do what it is said to do? One that moves means gains by the means that it moves;
+// one that only scatters gains by what comes anew at each reading, not by a mean that the model lacks, which
+// larger errors would cover as well.
+
+#include "gap/fit/study.h"
+#include "gap/verdict/verdict.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace puckloop::gap {
+
+/// Effects of a fit that are out of their role, and why, in words that follow "but".
+struct OutOfRole {
+    std::vector<std::size_t> effects;
+    std::string why;
+};
+
+/// What a fit's effects gain by the means they move, of all they gain, an effect; NaN: it moves no mean.
+double mean_share(const Study& study, const Fit& fit, std::size_t effect);
+
+/// `held`: of the fit. `leftovers`: structures left by it. Empty when all keep to their roles.
+OutOfRole out_of_role(const Study& study, const Fit& fit, const HeldOut& held,
+                      const std::vector<Leftover>& leftovers, std::uint64_t seed);
+
+/// nats that corrections without a mechanism gain: functions of covariates (clear ones), and numbers of runs
+/// or jumps that are sure.
+double gained_by_shape(const std::vector<FreeForm>& forms);
+
+struct LeftByRuns {
+    double by_run = 0.0, by_jump = 0.0;  ///< nats
+    std::vector<Leftover> structures;    ///< worth reporting, p corrected
+};
+LeftByRuns left_by_runs(const Study& study, const State& state);
+
+}  // namespace puckloop::gap

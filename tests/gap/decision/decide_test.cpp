@@ -1,0 +1,166 @@
+// The decision follows from its grounds; the criterion holds its size; an effect's form is told from its
+// neighbours' where the data can, and scatter is not what differs from run to run.
+
+#include "base/random.h"
+#include "gap/decide/decide.h"
+#include "gap/decide/thresholds.h"
+#include "gap/evidence/criterion.h"
+#include "gap/fit_test/rival_forms.h"
+#include "gap/pipeline/analyse.h"
+
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+using namespace puckloop;
+using namespace puckloop::gap;
+
+namespace {
+
+Grounds sound() {
+    Grounds g;
+    g.causes = 1;
+    g.candidates = 20;
+    g.gain.sum = 100;
+    g.gain.sd = 20;
+    return g;
+}
+
+/// Drives over patches of grey: six runs, `wrong` of level, run and way.
+Experiment drives(std::uint64_t seed, int runs,
+                  const std::function<double(double level, double grey, int run)>& wrong) {
+    RandomStream random(seed, "decide test");
+    Experiment experiment;
+    experiment.kind = Kind::Ground;
+    experiment.instruments["reading"] = {0, 967, 1};
+    for (int r = 0; r < runs; ++r) {
+        Run run;
+        run.name = "run" + std::to_string(r);
+        run.rows = 120;
+        for (std::size_t k = 0; k < run.rows; ++k) {
+            const double grey = 0.1 + 0.75 * random.uniform();
+            run.columns["t_s"].push_back(0.1 * static_cast<double>(k));
+            run.columns["grey"].push_back(grey);
+            run.columns["reading"].push_back(
+                std::round(wrong(329 + (953 - 329) * grey, grey, r) + 3 * random.normal()));
+        }
+        experiment.runs.push_back(std::move(run));
+    }
+    return experiment;
+}
+
+}  // namespace
+
+TEST_CASE("a name stands on every ground, and never beside no gain") {
+    CHECK(decision_of(sound(), doubt_of(sound())) == Decision::Named);
+    const std::function<void(Grounds&)> against[] = {
+        [](Grounds& g) { g.gain.sd = 80; },
+        [](Grounds& g) { g.gain.sum = 4; },
+        [](Grounds& g) { g.error_falls = false; },
+        [](Grounds& g) { g.assumed = "distance_m"; },
+        [](Grounds& g) { g.left_by_shape = 40; },
+        [](Grounds& g) { g.sums = true, g.left_of_readings = g.left_by_shape = 40; },
+        [](Grounds& g) { g.left_by_run = 40; },
+        [](Grounds& g) { g.left_by_jump = 40; },
+        [](Grounds& g) { g.stopped_at_end = g.structure = true; },
+        [](Grounds& g) { g.out_of_role = "gains by larger errors"; },
+        [](Grounds& g) { g.not_confirmed = "leaves something"; },
+    };
+    for (const auto& one : against) {
+        Grounds g = sound();
+        one(g);
+        CHECK_FALSE(doubt_of(g).empty());
+        CHECK(decision_of(g, doubt_of(g)) != Decision::Named);
+    }
+    Grounds rival = sound();
+    rival.rival = true;
+    CHECK(decision_of(rival, "") == Decision::CannotTell);
+    RandomStream random(1, "decide test/any");
+    for (int k = 0; k < 2000; ++k) {
+        Grounds g;
+        g.causes = random.below(3);
+        g.candidates = 1 + random.below(30);
+        g.gain.sum = 60 * random.uniform() - 10;
+        g.gain.sd = 30 * random.uniform();
+        g.left_by_shape = 10 * random.uniform() - 5;
+        g.sums = random.uniform() < 0.5;
+        g.structure = random.uniform() < 0.5;
+        const Decision decision = decision_of(g, doubt_of(g));
+        if (decision != Decision::Named) continue;
+        CHECK(gains_enough(g.gain, g.candidates, g.causes));
+        CHECK(g.gain.sum > thresholds::kStandardErrors * g.gain.sd);
+    }
+}
+
+TEST_CASE("the best of a catalogue meets the criterion by chance as seldom as is said") {
+    // Held-out scores of one number more where it is nothing: z^2/2 - (z - e)^2/2 with an error e of fitting.
+    RandomStream random(2, "criterion");
+    constexpr int kCases = 2000, kEffects = 20, kBlocks = 16;
+    int taken = 0;
+    for (int c = 0; c < kCases; ++c) {
+        bool any = false;
+        for (int e = 0; e < kEffects; ++e) {
+            std::vector<double> gains;
+            for (int b = 0; b < kBlocks; ++b) {
+                const double fitted = random.normal() / std::sqrt(kBlocks), score = random.normal();
+                gains.push_back(score * fitted - fitted * fitted / 2);
+            }
+            any = any || gains_enough(gain_of(gains), kEffects, 1);
+        }
+        taken += any ? 1 : 0;
+    }
+    CHECK(taken < kCases * thresholds::kFalseAlarm);
+    CHECK(needed_gain(20, 2) == Approx(std::log(190 / 0.05)));
+}
+
+TEST_CASE("an effect's own form is kept, a bent one is seen") {
+    const auto told = [](const std::function<double(double)>& wrong) {
+        const Experiment experiment =
+            drives(3, 6, [&](double level, double grey, int) { return level + wrong(grey); });
+        const Study study(experiment, 1);
+        for (std::size_t i = 0; i < study.candidates().size(); ++i) {
+            if (study.candidates()[i].effect->name != std::string_view("ground_gain")) continue;
+            const Fit fit = study.fit_set({i}, study.fit_none().fitted.state);
+            return form_verdict(rival_forms(study, fit, i));
+        }
+        throw std::logic_error("no such effect");
+    };
+    // Gain and offset: a straight line in grey, of both signs.
+    const FormVerdict straight = told([](double grey) { return 60 * (grey - 0.5); });
+    CHECK(straight.better.empty());
+    CHECK(std::find(straight.open.begin(), straight.open.end(), "its square") == straight.open.end());
+    const FormVerdict bent = told([](double grey) { return 200 * (grey - 0.5) * std::abs(grey - 0.5) * 2; });
+    CHECK(bent.better == "its square");
+    CHECK(bent.left > 20);
+}
+
+TEST_CASE("what differs from run to run is neither an effect nor nothing") {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+        RandomStream random(seed, "decide test/surfaces");
+        std::vector<double> gain;
+        for (int r = 0; r < 8; ++r)
+            gain.push_back(1 + 0.04 * random.normal());
+        const Verdict verdict = analyse(drives(seed, 8,
+                                               [&](double level, double, int run) {
+                                                   return level * gain[static_cast<std::size_t>(run)];
+                                               }),
+                                        {});
+        CHECK(verdict.decision == Decision::Unexplained);
+        CHECK(verdict.causes.empty());
+        CHECK(std::any_of(verdict.leftovers.begin(), verdict.leftovers.end(), [](const Leftover& one) {
+            return one.shape.find("from run to run") != std::string::npos;
+        }));
+    }
+}
+
+TEST_CASE("a step in one run is not nothing") {
+    Experiment experiment = drives(4, 6, [](double level, double, int) { return level; });
+    for (std::size_t k = 70; k < 120; ++k)
+        experiment.runs[2].columns["reading"][k] += 42;
+    const Verdict verdict = analyse(experiment, {});
+    CHECK(verdict.decision == Decision::Unexplained);
+    CHECK(std::any_of(verdict.leftovers.begin(), verdict.leftovers.end(),
+                      [](const Leftover& one) { return one.shape.find("jumps by") != std::string::npos; }));
+}
