@@ -9,36 +9,51 @@
 
 namespace puckloop::gap {
 
+namespace {
+double share_of(double left, double won) {
+    return left > 0 ? left / (left + std::max(won, 0.0)) : 0.0;
+}
+}  // namespace
+
 double Grounds::left() const {
-    return std::max(left_by_shape, 0.0) + std::max({left_by_run, left_by_jump, 0.0});
+    return std::max({left_by_structure, left_by_shape, left_by_form, 0.0}) +
+           std::max({left_by_run, left_by_jump, 0.0});
 }
 
 double Grounds::unexplained() const {
-    const double rest = left(), won = std::max(gain.sum, 0.0);
-    return rest > 0 ? rest / (rest + won) : 0.0;
+    return share_of(left(), gain.sum);
 }
 
-std::string doubt_of(const Grounds& g) {
-    if (g.causes == 0) return "";
+std::vector<std::string> objections(const Grounds& g) {
+    std::vector<std::string> all;
+    if (g.causes == 0) return all;
+    const auto against = [&](bool speaks, std::string why) {
+        if (speaks) all.push_back(std::move(why));
+    };
     // 1. Evidence. The set as a whole must gain on runs that were not fitted; else no gain could be claimed
     //    beside its name.
-    if (!gains_enough(g.gain, g.candidates, g.causes))
-        return "does not gain for sure on runs that were not fitted";
-    if (!g.error_falls) return "lowers the error of so few runs by chance only, as far as they tell";
+    against(!gains_enough(g.gain, g.candidates, g.causes),
+            "does not gain for sure on runs that were not fitted");
+    against(!g.error_falls, "lowers the error of so few runs by chance only, as far as they tell");
     // 2. Identification. What was assumed may itself be what is wrong.
-    if (!g.assumed.empty())
-        return fmt::format("{} was assumed, not measured, and an error of it may look the same", g.assumed);
+    against(!g.assumed.empty(),
+            fmt::format("{} was assumed, not measured, and an error of it may look the same", g.assumed));
     // 3. Goodness of fit. What is left must be a small part of what was wrong.
-    const double readings = g.left_of_readings / std::max(g.left_of_readings + g.gain.sum, 1e-9);
-    if (g.unexplained() > (g.sums ? thresholds::kShareLeftOfSums : thresholds::kShareLeft) ||
-        readings > thresholds::kShareLeft)
-        return "leaves too much to be the cause";
-    if (g.stopped_at_end && g.structure)
-        return "stopped at the end of its plausible range and leaves something";
+    const double most = g.sums ? thresholds::kShareLeftOfSums : thresholds::kShareLeft;
+    against(g.unexplained() > most || share_of(g.left_of_readings, g.gain.sum) > thresholds::kShareLeft,
+            "leaves too much to be the cause");
+    against(g.stopped_at_end && g.structure,
+            "stopped at the end of its plausible range and leaves something");
     // 4. Role. A cause gains by what it is said to do: means by means, scatter by what is scatter.
-    if (!g.out_of_role.empty()) return g.out_of_role;
+    against(!g.out_of_role.empty(), g.out_of_role);
     // 5. Confirmation, on runs that had no part in it.
-    return g.not_confirmed;
+    against(!g.not_confirmed.empty(), g.not_confirmed);
+    return all;
+}
+
+std::string doubt_of(const Grounds& grounds) {
+    const auto all = objections(grounds);
+    return all.empty() ? "" : all.front();
 }
 
 Decision decision_of(const Grounds& g, const std::string& doubt) {

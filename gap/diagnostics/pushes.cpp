@@ -2,6 +2,7 @@
 
 #include "gap/fit/filter.h"
 #include "gap/residual_model/free_form_cells.h"
+#include "gap/stats/tails.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,18 +13,6 @@ namespace {
 
 constexpr double kLeastPushes = 3.0;
 constexpr double kByChance = 1e-3;  // corrected p above which nothing is said
-
-/// ln of the chance that of `n` events `k` or more fall where a share of `share` should.
-double log_chance(int k, int n, double share) {
-    if (k <= 0) return 0.0;
-    if (share <= 0) return -INFINITY;
-    if (share >= 1) return 0.0;
-    double sum = 0.0;
-    for (int j = k; j <= n; ++j)
-        sum += std::exp(std::lgamma(n + 1.0) - std::lgamma(j + 1.0) - std::lgamma(n - j + 1.0) +
-                        j * std::log(share) + (n - j) * std::log1p(-share));
-    return std::log(std::min(std::max(sum, 1e-300), 1.0));
-}
 
 }  // namespace
 
@@ -61,7 +50,7 @@ std::optional<PushPattern> push_pattern(const Experiment& experiment, const Mode
     rows.run = base->run;
     rows.row = base->row;
     const auto components = free_form_cells(experiment, rows, base->starts);
-    double tried = 0.0, least = 0.0;
+    double tried = 0.0, least = 1.0;
     for (const stats::Component& component : components) {
         std::vector<double> there(static_cast<std::size_t>(component.cells), 0.0), share = there;
         for (std::size_t i = 0; i < pushed.size(); ++i) {
@@ -72,16 +61,16 @@ std::optional<PushPattern> push_pattern(const Experiment& experiment, const Mode
         for (std::size_t c = 0; c < there.size(); ++c) {
             if (share[c] <= 0) continue;
             tried += 1;
-            const double log_p = log_chance(static_cast<int>(std::floor(there[c])),
-                                            static_cast<int>(std::ceil(found.all)), share[c]);
-            if (log_p >= least) continue;
-            least = log_p;
+            const double p = stats::binomial_tail(static_cast<unsigned>(std::ceil(found.all)), share[c],
+                                                  static_cast<unsigned>(std::floor(there[c])));
+            if (p >= least) continue;
+            least = p;
             found.where = component.where[c];
             found.pushes = there[c];
             found.expected = share[c] * found.all;
         }
     }
-    found.p_value = std::min(std::exp(least) * tried, 1.0);
+    found.p_value = std::min(least * tried, 1.0);
     if (found.p_value > kByChance) return std::nullopt;
     return found;
 }

@@ -19,12 +19,6 @@ std::span<const Effect> catalogue() {
     return all;
 }
 
-const Effect* find_effect(std::string_view name) {
-    for (const Effect& effect : catalogue())
-        if (effect.name == name) return &effect;
-    return nullptr;
-}
-
 std::vector<const Effect*> effects_of(Kind kind) {
     std::vector<const Effect*> found;
     for (const Effect& effect : catalogue())

@@ -51,8 +51,6 @@ struct Effect {
 
 /// All of them, in the order of the sheet.
 std::span<const Effect> catalogue();
-/// nullptr if there is none of this name.
-const Effect* find_effect(std::string_view name);
 std::vector<const Effect*> effects_of(Kind kind);
 
 }  // namespace puckloop::gap

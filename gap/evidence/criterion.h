@@ -9,10 +9,25 @@
 // clear of its standard error over runs (Vehtari, Gelman and Gabry, Stat. Comput. 27, 2017).
 
 #include <cstddef>
+#include <vector>
 
 namespace puckloop::gap {
 
-struct Gain;
+/// nats on held-out rows: more than chance.
+inline constexpr double kClearGain = 3.0;
+
+struct Gain {
+    double sum = 0.0, sd = 0.0;                 ///< sd of the sum, from the spread between blocks
+    double share_better = 0.0;                  ///< of the blocks
+    int clearly_better = 0, clearly_worse = 0;  ///< blocks, by kClearGain
+    double without_best = 0.0;                  ///< sum over all blocks but the one that gains most
+
+    /// What is rare, or shows in few runs only, is not seen in most blocks, but more than once.
+    bool here_and_there() const { return clearly_better > 1 && clearly_worse == 0; }
+    /// The same, and not one block's doing: what the others lose does not eat up what the second best gains.
+    bool in_several() const { return here_and_there() && without_best > kClearGain; }
+};
+Gain gain_of(const std::vector<double>& by_block);
 
 /// ln of how many sets of `taken` effects there are among `candidates`: the price of the catalogue's size.
 double log_sets(std::size_t candidates, std::size_t taken);

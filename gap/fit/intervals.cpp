@@ -1,6 +1,7 @@
 #include "gap/fit/intervals.h"
 
 #include "gap/fit/objective.h"
+#include "gap/stats/tails.h"
 
 #include <Eigen/Dense>
 
@@ -11,13 +12,7 @@ namespace puckloop::gap {
 
 namespace {
 
-/// Student's t, 95 %, by degrees of freedom (Cornish-Fisher).
-double t_quantile(double freedom) {
-    const double z = 1.6449;
-    return z + (z * z * z + z) / (4 * freedom) +
-           (5 * std::pow(z, 5) + 16 * z * z * z + 3 * z) / (96 * freedom * freedom);
-}
-
+constexpr double kSide = 0.95;  // of a 90 % interval
 constexpr double kSoftEdge =
     0.012;  // the model's edge is soft, 0.4 % wide: a sharp one may lie three of these on
 constexpr int kLooks = 48;
@@ -62,7 +57,7 @@ Precision precision_of(const Study& study, const Fit& fit) {
     const Eigen::MatrixXd between = blocks.transpose() * blocks * (count / std::max(count - 1, 1.0));
     const Eigen::MatrixXd sandwich = inverse * between * inverse;
     Precision result;
-    result.quantile = t_quantile(std::max(count - 1, 2.0));
+    result.quantile = stats::student_quantile(kSide, std::max(count - 1, 2.0));
     result.correlation = Eigen::MatrixXd::Identity(n, n);
     for (Eigen::Index j = 0; j < n; ++j) {
         const double variance = (inverse(j, j) + sandwich(j, j)) / 2;

@@ -1,5 +1,10 @@
 #include "gap/fit/likelihood.h"
 
+#include "gap/stats/tails.h"
+
+#include <boost/math/special_functions/digamma.hpp>
+#include <boost/math/special_functions/trigamma.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -15,21 +20,8 @@ double square(double value) {
     return value * value;
 }
 
-double normal_below(double z) {
-    return 0.5 * std::erfc(-z / std::numbers::sqrt2);
-}
-
 double normal_density(double z) {
     return std::exp(-z * z / 2) / std::sqrt(2 * kPi);
-}
-
-/// Inverse of the normal distribution, good to 1e-4: enough for a picture of a clipped row.
-double normal_quantile(double p) {
-    const bool low = p < 0.5;
-    const double t = std::sqrt(-2 * std::log(std::max(low ? p : 1 - p, 1e-300)));
-    const double z =
-        t - (2.515517 + t * (0.802853 + t * 0.010328)) / (1 + t * (1.432788 + t * (0.189269 + t * 0.001308)));
-    return low ? -z : z;
 }
 
 /// ln(1 + q), q >= 0; std::log1p takes twice as long.
@@ -41,26 +33,8 @@ double t_constant(double nu) {
     return std::lgamma((nu + 1) / 2) - std::lgamma(nu / 2) - 0.5 * std::log(nu * kPi);
 }
 
-/// First derivative of lgamma.
-double digamma(double x) {
-    double sum = 0.0;
-    for (; x < 8; x += 1)
-        sum -= 1 / x;
-    const double r = 1 / (x * x);
-    return sum + std::log(x) - 0.5 / x - r * (1.0 / 12 - r * (1.0 / 120 - r / 252));
-}
-
-/// Second derivative of lgamma.
-double trigamma(double x) {
-    double sum = 0.0;
-    for (; x < 8; x += 1)
-        sum += 1 / (x * x);
-    const double r = 1 / (x * x);
-    return sum + 1 / x + r / 2 + r / x * (1.0 / 6 - r * (1.0 / 30 - r / 42));
-}
-
 double clip_likelihood(RowRole role, double z) {
-    return kLeastProbability + (1 - kLeastProbability) * normal_below(role == RowRole::Low ? z : -z);
+    return kLeastProbability + (1 - kLeastProbability) * stats::normal_tail(role == RowRole::Low ? -z : z);
 }
 
 double event_cost(double y, double mean) {
@@ -154,7 +128,7 @@ void row_costs(const Observable& o, const Predicted& p, const NoiseParameters& n
         if (role == RowRole::Event)
             z = ((o.y[i] > 0.5 ? 1.0 : 0.0) - z) / std::sqrt(z * (1 - z));
         else if (role == RowRole::Low || role == RowRole::High || role == RowRole::Piled)
-            z = (role == RowRole::Low ? 1 : -1) * normal_quantile(clip_likelihood(role, z) / 2);
+            z = (role == RowRole::Low ? 1 : -1) * stats::normal_quantile(clip_likelihood(role, z) / 2);
     }
 }
 
@@ -196,7 +170,7 @@ void slopes_of(const Observable& o, const NoiseParameters& noise, const Innovati
 void tail_slopes_of(const NoiseParameters& noise, const Innovations& innovations,
                     std::vector<double>& slope) {
     const double nu = std::exp(noise.log_tail);
-    const double constant = (digamma((nu + 1) / 2) - digamma(nu / 2) - 1 / nu) / 2;
+    const double constant = (boost::math::digamma((nu + 1) / 2) - boost::math::digamma(nu / 2) - 1 / nu) / 2;
     slope.resize(innovations.z.size());
     for (std::size_t i = 0; i < slope.size(); ++i) {
         const double q = square(innovations.z[i]) / nu;
@@ -211,9 +185,9 @@ ScaleInformation scale_information(const NoiseParameters& noise) {
     ScaleInformation information;
     information.scale = 2 * nu / (nu + 3);
     information.both = -2 * nu / ((nu + 1) * (nu + 3));
-    information.tail =
-        nu * nu *
-        ((trigamma(nu / 2) - trigamma((nu + 1) / 2)) / 4 - (nu + 5) / (2 * nu * (nu + 1) * (nu + 3)));
+    information.tail = nu * nu *
+                       ((boost::math::trigamma(nu / 2) - boost::math::trigamma((nu + 1) / 2)) / 4 -
+                        (nu + 5) / (2 * nu * (nu + 1) * (nu + 3)));
     return information;
 }
 

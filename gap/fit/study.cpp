@@ -25,8 +25,6 @@ constexpr std::size_t kEnoughRuns =
     6;  // then whole runs are the blocks: parts of a run share its day and place
 constexpr std::size_t kLeastBlockRows = 8;
 
-constexpr double kNoticed = 0.05;  // nats: a block that gains or loses less was not touched
-
 constexpr double kHeavyTail = 2.5, kLightTail = 20;  // degrees of freedom to begin at
 constexpr double kLightEnough = 8;                   // degrees of freedom that hide nothing
 constexpr int kMostRounds = 6;                       // of fitting the noise alone
@@ -471,28 +469,6 @@ std::vector<double> gains_by_block(const Blocks& blocks, const HeldOut& before, 
         for (std::size_t i = 0; i < blocks.of[o].size(); ++i)
             gains[blocks.of[o][i]] += after.score[o][i] - before.score[o][i];
     return gains;
-}
-
-Gain gain_of(const std::vector<double>& by_block) {
-    Gain gain;
-    const auto n = static_cast<double>(by_block.size());
-    double better = 0.0, worse = 0.0;
-    for (const double one : by_block) {
-        gain.sum += one;
-        gain.share_better += one > 0 ? 1 / n : 0;
-        better += one > kNoticed ? 1 : 0;
-        worse += one < -kNoticed ? 1 : 0;
-        gain.clearly_better += one > kClearGain ? 1 : 0;
-        gain.clearly_worse += one < -kClearGain ? 1 : 0;
-    }
-    gain.share_touched = better + worse > 0 ? better / (better + worse) : 0.0;
-    double squares = 0.0;
-    for (const double one : by_block)
-        squares += (one - gain.sum / n) * (one - gain.sum / n);
-    gain.sd = n > 1 ? std::sqrt(squares * n / (n - 1)) : INFINITY;
-    gain.without_best =
-        by_block.empty() ? 0.0 : gain.sum - *std::max_element(by_block.begin(), by_block.end());
-    return gain;
 }
 
 }  // namespace puckloop::gap

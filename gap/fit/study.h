@@ -3,6 +3,7 @@
 // and with parts held out.
 
 #include "gap/effects/effect.h"
+#include "gap/evidence/criterion.h"
 #include "gap/fit/fit.h"
 
 #include <memory>
@@ -105,22 +106,5 @@ class Study {
 
 /// Sum over rows of `after` - `before`, block by block.
 std::vector<double> gains_by_block(const Blocks& blocks, const HeldOut& before, const HeldOut& after);
-
-/// nats on held-out rows: more than chance.
-inline constexpr double kClearGain = 3.0;
-
-struct Gain {
-    double sum = 0.0, sd = 0.0;                 ///< sd of the sum, from the spread between blocks
-    double share_better = 0.0;                  ///< of the blocks
-    double share_touched = 0.0;                 ///< that gain, of the blocks that notice at all
-    int clearly_better = 0, clearly_worse = 0;  ///< blocks, by kClearGain
-    double without_best = 0.0;                  ///< sum over all blocks but the one that gains most
-
-    /// What is rare, or shows in few runs only, is not seen in most blocks, but more than once.
-    bool here_and_there() const { return clearly_better > 1 && clearly_worse == 0; }
-    /// The same, and not one block's doing: what the others lose does not eat up what the second best gains.
-    bool in_several() const { return here_and_there() && without_best > kClearGain; }
-};
-Gain gain_of(const std::vector<double>& by_block);
 
 }  // namespace puckloop::gap

@@ -1,6 +1,7 @@
 #include "gap/models/rab_ring.h"
 
 #include "base/random.h"
+#include "gap/stats/tails.h"
 #include "physics/description/parameters.h"
 
 #include <algorithm>
@@ -20,7 +21,7 @@ constexpr double kLeastCosine = 1e-3;
 constexpr double kFaintest = 1e-6;  // counts
 
 double below(double z) {
-    return 0.5 * std::erfc(-z / std::numbers::sqrt2);
+    return stats::normal_tail(-z);
 }
 
 /// The firmware's table, degrees: not the receivers' true directions, which a board may have otherwise.

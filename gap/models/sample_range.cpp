@@ -1,5 +1,7 @@
 #include "gap/models/sample_range.h"
 
+#include "gap/stats/tails.h"
+
 #include <cmath>
 #include <numbers>
 
@@ -14,7 +16,7 @@ double normal_range(double n) {
     // E(max - min) = integral of the probability that some sample is above x and some below
     double sum = 0.0;
     for (double x = 0.0; x < kFar; x += kStep) {
-        const double below = 0.5 * std::erfc(-x / std::numbers::sqrt2), above = 1.0 - below;
+        const double below = stats::normal_tail(-x), above = 1.0 - below;
         const double between = 1.0 - std::pow(below, n) - std::pow(above, n);
         sum += x == 0.0 ? between / 2 : between;
     }

@@ -20,6 +20,7 @@
 #include "gap/next_experiment/suggest.h"
 #include "gap/overlay/overlay_names.h"
 #include "gap/residual_model/free_form.h"
+#include "gap/stats/tails.h"
 #include "gap/validate/placements.h"
 #include "gap/verdict/sentences.h"
 
@@ -55,8 +56,8 @@ class Analysis {
         tell("what is left", 0.88);
         final_ = with_nuisances();
         look_at_rest();
-        const std::string doubt = selection_.steps.empty() ? "" : doubted();
-        verdict_.decision = decision_of(grounds(), doubt);
+        const std::string doubt = doubted();
+        verdict_.decision = decision_of(verdict_.grounds, doubt);
         if (!doubt.empty()) {
             take_back(doubt);
             // What the causes had covered is open now.
@@ -70,8 +71,8 @@ class Analysis {
             for (const std::string& caution :
                  {placement_caution(experiment_, series), circular_caution(series)})
                 if (!caution.empty()) verdict_.cautions.push_back(caution);
-        if (verdict_.decision == Decision::Named && doubtful(verdict_))
-            verdict_.decision = Decision::CannotTell;
+        verdict_.grounds.rival = doubtful(verdict_);
+        if (verdict_.decision == Decision::Named) verdict_.decision = decision_of(verdict_.grounds, "");
         verdict_.suggestions = suggestions_for(study_, selection_);
         verdict_.heldout.sentence = gain_sentence(verdict_.heldout);
         verdict_.summary = summary_of(verdict_);
@@ -224,8 +225,6 @@ class Analysis {
         return at(without) - best > thresholds::kShareLeft * (none - best);
     }
 
-    bool something_left() const { return !verdict_.leftovers.empty() || any_form_is_clear(); }
-
     bool any_form_is_clear() const {
         return std::any_of(verdict_.free_forms.begin(), verdict_.free_forms.end(),
                            [](const FreeForm& form) { return form.clear; });
@@ -251,24 +250,32 @@ class Analysis {
                held_figures(study_, selection_, options_.seed).all.high >= 1.0;
     }
 
-    /// What speaks against the causes, asked from the cheap to the dear; causes that are out of their role go
-    /// by themselves where the first of them stands without them.
+    /// What speaks against the causes, asked from the cheap to the dear until something does.
     std::string doubted() {
-        std::string doubt = doubt_of(grounds());
-        if (!doubt.empty()) return doubt;
+        Grounds& g = verdict_.grounds = grounds();
+        const auto goes_on = [&] { return g.causes > 0 && (doubt_of(g).empty() || options_.every_ground); };
+        if (goes_on()) ask_roles(g);
+        if (goes_on() && confirms_) {
+            tell("asking the other half of the runs", 0.92);
+            g.not_confirmed = not_confirmed(study_, selection_, share_allowed(),
+                                            [&](const Experiment& half) { return asked(half); });
+        }
+        return doubt_of(g);
+    }
+
+    /// Causes that are out of their role go by themselves where the first of them stands without them.
+    void ask_roles(Grounds& g) {
         const OutOfRole out =
             out_of_role(study_, selection_.chosen, selection_.held_chosen, verdict_.leftovers, options_.seed);
-        if (!out.effects.empty()) {
-            if (!go_without(out.effects, out.why)) return out.why;
-            for (const std::size_t one : out.effects)
-                verdict_.cautions.push_back(fmt::format("{} would have to be part of it, but {}: not named",
-                                                        effect(one).name, out.why));
-            doubt = doubt_of(grounds());
+        if (out.effects.empty()) return;
+        if (!doubt_of(g).empty() || !go_without(out.effects, out.why)) {
+            g.out_of_role = out.why;
+            return;
         }
-        if (!doubt.empty() || !confirms_) return doubt;
-        tell("asking the other half of the runs", 0.92);
-        return not_confirmed(study_, selection_, share_allowed(),
-                             [&](const Experiment& half) { return asked(half); });
+        for (const std::size_t one : out.effects)
+            verdict_.cautions.push_back(
+                fmt::format("{} would have to be part of it, but {}: not named", effect(one).name, out.why));
+        g = grounds();
     }
 
     /// Half of the experiment, corrected by what the other half told, as an experiment of its own.
@@ -295,9 +302,10 @@ class Analysis {
         g.assumed = fmt::format("{}", fmt::join(experiment_.assumed, ", "));
         g.stopped_at_end = stopped_at_edge();
         g.error_falls = g.causes == 0 || !few_runs_disagree();
-        g.left_by_shape = std::max(gained_by_shape(verdict_.free_forms), left_by_structure_);
+        g.left_by_structure = left_by_structure_;
+        g.left_by_shape = gained_by_shape(verdict_.free_forms);
         for (const auto& [effect, form] : forms_)
-            g.left_by_shape = std::max(g.left_by_shape, form.left);
+            g.left_by_form = std::max(g.left_by_form, form.left);
         g.left_by_run = runs_.by_run;
         g.left_by_jump = runs_.by_jump;
         g.sums = adds_up();
@@ -370,7 +378,7 @@ class Analysis {
                         1.0,
                         trial.remark};
             if (trial.validated && trial.held.sd > 0)
-                tried.p_value = std::erfc(trial.held.sum / trial.held.sd / std::sqrt(2.0)) / 2;
+                tried.p_value = stats::normal_tail(trial.held.sum / trial.held.sd);
             for (std::size_t k = 0; k < selection_.steps.size(); ++k)
                 if (selection_.steps[k].effect == trial.effect)
                     tried.remark = fmt::format("chosen, step {}", k + 1);

@@ -30,21 +30,6 @@ std::vector<std::vector<std::size_t>> bootstrap_rows(const Series& series, int d
     return result;
 }
 
-Interval block_bootstrap(const Series& series,
-                         const std::function<double(const std::vector<std::size_t>&)>& statistic,
-                         double coverage, const TestOptions& options, std::string_view stream) {
-    std::vector<std::size_t> all(series.size());
-    for (std::size_t i = 0; i < all.size(); ++i)
-        all[i] = i;
-    Interval interval{statistic(all), kNan, kNan};
-    std::vector<double> values;
-    for (const auto& rows : bootstrap_rows(series, options.permutations, options, stream))
-        values.push_back(statistic(rows));
-    interval.low = quantile(values, (1 - coverage) / 2);
-    interval.high = quantile(values, (1 + coverage) / 2);
-    return interval;
-}
-
 Band bootstrap_band(const Series& residual, const std::vector<double>& covariate, int bins, double coverage,
                     const TestOptions& options) {
     Series kept;

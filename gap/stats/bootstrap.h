@@ -5,24 +5,13 @@
 #include "gap/stats/profile.h"
 #include "gap/stats/series.h"
 
-#include <functional>
 #include <string_view>
 #include <vector>
 
 namespace puckloop::gap::stats {
 
-struct Interval {
-    double value = 0.0, low = 0.0, high = 0.0;
-};
-
-/// Resamples runs with replacement (blocks of 2.5 times the correlation length inside runs when there are
-/// fewer than five runs). `statistic` gets row numbers of the series, repeats included; coverage 0.9 means 5
-/// % on either side.
-Interval block_bootstrap(const Series& series,
-                         const std::function<double(const std::vector<std::size_t>& rows)>& statistic,
-                         double coverage, const TestOptions& options, std::string_view stream);
-
-/// The draws themselves: for each, the rows it holds.
+/// Runs with replacement (blocks of 2.5 times the correlation length inside runs when there are fewer than
+/// five runs): for each draw the rows it holds, repeats included.
 std::vector<std::vector<std::size_t>> bootstrap_rows(const Series& series, int draws,
                                                      const TestOptions& options, std::string_view stream);
 

@@ -5,33 +5,15 @@
 
 namespace puckloop::gap::stats {
 
-namespace {
-std::vector<std::size_t> by_size(const std::vector<double>& p) {
+std::vector<double> holm(const std::vector<double>& p) {
     std::vector<std::size_t> order(p.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return p[a] < p[b]; });
-    return order;
-}
-}  // namespace
-
-std::vector<double> holm(const std::vector<double>& p) {
-    const std::vector<std::size_t> order = by_size(p);
     std::vector<double> adjusted(p.size());
     double so_far = 0;
     for (std::size_t i = 0; i < order.size(); ++i) {
         so_far = std::max(so_far, p[order[i]] * static_cast<double>(p.size() - i));
         adjusted[order[i]] = std::min(so_far, 1.0);
-    }
-    return adjusted;
-}
-
-std::vector<double> benjamini_hochberg(const std::vector<double>& p) {
-    const std::vector<std::size_t> order = by_size(p);
-    std::vector<double> adjusted(p.size());
-    double so_far = 1;
-    for (std::size_t i = order.size(); i-- > 0;) {
-        so_far = std::min(so_far, p[order[i]] * static_cast<double>(p.size()) / static_cast<double>(i + 1));
-        adjusted[order[i]] = so_far;
     }
     return adjusted;
 }

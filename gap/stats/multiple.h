@@ -7,7 +7,5 @@ namespace puckloop::gap::stats {
 
 /// Holm's step-down adjusted p values: the chance of even one false alarm in the table stays below p.
 std::vector<double> holm(const std::vector<double>& p);
-/// Benjamini and Hochberg's adjusted p values: the expected share of false alarms among those below p.
-std::vector<double> benjamini_hochberg(const std::vector<double>& p);
 
 }  // namespace puckloop::gap::stats

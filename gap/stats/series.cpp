@@ -77,10 +77,6 @@ double correlation_length(const Series& series) {
     return 1.0 + 2.0 * sum;
 }
 
-double effective_size(const Series& series) {
-    return static_cast<double>(series.size()) / correlation_length(series);
-}
-
 std::size_t block_length(const Series& series) {
     std::size_t longest_run = 1;
     for (const Stretch& s : runs_of(series.run))

@@ -34,8 +34,6 @@ std::vector<double> autocorrelation(const Series& series, std::size_t longest);
 /// Rows that one independent value is worth: 1 + 2 * sum of the autocorrelations up to the first that
 /// vanishes in its own noise. At least 1.
 double correlation_length(const Series& series);
-/// Number of independent values the series is worth.
-double effective_size(const Series& series);
 
 /// Block length for resampling: 2.5 times the correlation length, at most a third of the longest run.
 std::size_t block_length(const Series& series);

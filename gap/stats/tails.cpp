@@ -3,8 +3,10 @@
 #include <boost/math/distributions/fisher_f.hpp>
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
+#include <boost/math/special_functions/beta.hpp>
 #include <boost/math/special_functions/gamma.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 namespace puckloop::gap::stats {
@@ -31,9 +33,14 @@ double fisher_tail(double f, double numerator, double denominator) {
     return boost::math::cdf(boost::math::complement(boost::math::fisher_f(numerator, denominator), f));
 }
 
-double student_two_sided(double t, double degrees) {
-    if (!(degrees > 0) || !std::isfinite(t)) return 1.0;
-    return 2 * boost::math::cdf(boost::math::complement(boost::math::students_t(degrees), std::fabs(t)));
+double student_quantile(double p, double degrees) {
+    return boost::math::quantile(boost::math::students_t(degrees), p);
+}
+
+double binomial_tail(unsigned of, double share, unsigned count) {
+    if (count == 0) return 1.0;
+    if (count > of || !(share > 0)) return 0.0;
+    return boost::math::ibeta(static_cast<double>(count), of - count + 1.0, std::min(share, 1.0));
 }
 
 }  // namespace puckloop::gap::stats

@@ -13,7 +13,9 @@ double gamma_tail(double shape, double x);
 double poisson_tail(double mean, unsigned count);
 /// P(F > f) of Fisher's distribution.
 double fisher_tail(double f, double numerator, double denominator);
-/// P(|T| > t) of Student's distribution.
-double student_two_sided(double t, double degrees);
+/// t with P(T <= t) = p of Student's distribution, 0 < p < 1.
+double student_quantile(double p, double degrees);
+/// P(X >= count) of a binomial variable, 0 <= share <= 1.
+double binomial_tail(unsigned of, double share, unsigned count);
 
 }  // namespace puckloop::gap::stats

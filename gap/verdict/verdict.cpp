@@ -73,6 +73,27 @@ Json held_json(const Verdict& verdict) {
 /// Less than this share of an error is no change.
 constexpr double kNoChange = 0.01;
 
+Json grounds_json(const Grounds& g) {
+    return {{"causes", g.causes},
+            {"candidates", g.candidates},
+            {"gain", number(g.gain.sum)},
+            {"gain_sd", number(g.gain.sd)},
+            {"rival", g.rival},
+            {"error_falls", g.error_falls},
+            {"stopped_at_end", g.stopped_at_end},
+            {"left_by_structure", number(g.left_by_structure)},
+            {"left_by_shape", number(g.left_by_shape)},
+            {"left_by_form", number(g.left_by_form)},
+            {"left_by_run", number(g.left_by_run)},
+            {"left_by_jump", number(g.left_by_jump)},
+            {"left_of_readings", number(g.left_of_readings)},
+            {"sums", g.sums},
+            {"structure", g.structure},
+            {"assumed", g.assumed},
+            {"out_of_role", g.out_of_role},
+            {"not_confirmed", g.not_confirmed}};
+}
+
 Json rerun_json(const Rerun& rerun) {
     if (!rerun.asked) return nullptr;
     if (!rerun.not_done.empty()) return {{"done", false}, {"why", rerun.not_done}};
@@ -150,6 +171,7 @@ std::string to_json(const Verdict& verdict) {
                          {"forms", Json::array()}};
     for (const auto& form : verdict.free_forms)
         if (form.clear) json["free_form"]["forms"].push_back(free_form_json(form));
+    json["grounds"] = grounds_json(verdict.grounds);
     json["doubt"] = verdict.doubt;
     json["nearest"] = Json::array();
     for (const auto& cause : verdict.nearest)

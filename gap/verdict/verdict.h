@@ -3,6 +3,7 @@
 // beside them.
 
 #include "gap/data/experiment.h"
+#include "gap/decide/grounds.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -142,6 +143,7 @@ struct Verdict {
     double unexplained_share = 0.0;    ///< of all that is gained: free forms over free forms and causes
     std::string doubt;                 ///< why what came nearest is no cause, in words that follow "but"
     std::vector<Cause> nearest;        ///< where nothing stands as a cause: what came nearest, and left much
+    Grounds grounds;                   ///< of the causes, as they were selected
     std::vector<Tried> tried;
     std::vector<FittedParameter> nuisance;  ///< fitted along with every model: tracker offset and delay, ...
     std::vector<std::string> cautions;

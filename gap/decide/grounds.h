@@ -1,0 +1,37 @@
+#pragma once
+// What a decision rests on, in numbers.
+
+#include "gap/evidence/criterion.h"
+
+#include <cstddef>
+#include <string>
+
+namespace puckloop::gap {
+
+struct Grounds {
+    // What was selected.
+    std::size_t causes = 0;       ///< effects chosen
+    std::size_t candidates = 0;   ///< that could have been
+    Gain gain;                    ///< held out, of all causes over the simulator as it is
+    bool rival = false;           ///< another effect does as well in the place of a cause that matters
+    std::string assumed;          ///< truth that nobody measured, in words; empty: all was
+    bool stopped_at_end = false;  ///< a parameter that carries the gain was stopped at the end of its range
+    bool error_falls = true;      ///< of few runs: for sure
+    std::string out_of_role;      ///< why a cause does not do what it is said to do; empty: all do
+
+    // Goodness of fit: nats that corrections without a mechanism gain beside the causes.
+    double left_by_structure = 0.0;  ///< of the largest structure that is sure
+    double left_by_shape = 0.0;      ///< held out, of functions of all covariates
+    double left_by_form = 0.0;       ///< of a cause's form, bent
+    double left_by_run = 0.0;        ///< of a number for each run
+    double left_by_jump = 0.0;       ///< of a jump inside a run
+    double left_of_readings = 0.0;   ///< of `left_by_shape`: what observables lack that do not add up
+    bool sums = false;               ///< some observable adds up
+    bool structure = false;          ///< something is left for sure
+    std::string not_confirmed;       ///< what the other half of the runs showed; empty: nothing, or not asked
+
+    double left() const;         ///< nats, together
+    double unexplained() const;  ///< share of all that is gained
+};
+
+}  // namespace puckloop::gap
