@@ -253,7 +253,7 @@ class Analysis {
     /// What speaks against the causes, asked from the cheap to the dear until something does.
     std::string doubted() {
         Grounds& g = verdict_.grounds = grounds();
-        const auto goes_on = [&] { return g.causes > 0 && (doubt_of(g).empty() || options_.every_ground); };
+        const auto goes_on = [&] { return g.causes > 0 && doubt_of(g).empty(); };
         if (goes_on()) ask_roles(g);
         if (goes_on() && confirms_) {
             tell("asking the other half of the runs", 0.92);
@@ -268,7 +268,7 @@ class Analysis {
         const OutOfRole out =
             out_of_role(study_, selection_.chosen, selection_.held_chosen, verdict_.leftovers, options_.seed);
         if (out.effects.empty()) return;
-        if (!doubt_of(g).empty() || !go_without(out.effects, out.why)) {
+        if (!go_without(out.effects, out.why)) {
             g.out_of_role = out.why;
             return;
         }

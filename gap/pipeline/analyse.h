@@ -15,8 +15,6 @@ struct Options {
     unsigned threads = 1;  ///< the verdict is the same for any number
     /// What is being done and how far (0..1); may be empty.
     std::function<void(const std::string&, double)> progress;
-    /// Ask everything that may speak against the causes, not only until something does: what each is worth.
-    bool every_ground = false;
 };
 
 Verdict analyse(const Experiment& experiment, const Options& options = {});

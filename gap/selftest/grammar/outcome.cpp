@@ -1,5 +1,6 @@
 #include "gap/selftest/grammar/outcome.h"
 
+#include "gap/decide/ablation.h"
 #include "gap/effects/effect.h"
 #include "gap/fit/parallel.h"
 #include "gap/pipeline/analyse.h"
@@ -62,6 +63,7 @@ Outcome outcome_of(const DrawnCase& drawn, const Verdict& verdict) {
     out.runs = drawn.runs;
     out.redrawn = drawn.redrawn;
     out.said = std::string(decision_name(verdict.decision));
+    out.alone_against = alone_against(verdict.grounds);
     for (const Cause& cause : verdict.causes)
         out.names.push_back(cause.name);
     const bool named = verdict.decision == Decision::Named && !out.names.empty();

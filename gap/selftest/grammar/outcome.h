@@ -29,6 +29,7 @@ struct Outcome {
     bool wrong_family = false;       ///< and no effect of that family could do more than half of it
     std::vector<double> ranks;       ///< of true parameters in what is said of them: 0..1, uniform if honest
     int covered = 0;                 ///< of them within the 90 % interval
+    std::vector<std::string> alone_against;  ///< rules without each of which the causes would be named
     double wall_s = 0.0;
 };
 

@@ -2,11 +2,13 @@
 #include "gap/selftest/grammar/rates.h"
 
 #include "base/error.h"
+#include "gap/decide/ablation.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <map>
 
 namespace puckloop::gap::selftest::grammar {
@@ -35,6 +37,22 @@ std::string by_kind(const std::vector<Outcome>& cases) {
 }
 
 /// What the targets hold against the analysis; weaker effects may be passed over.
+/// What would be named besides, were a rule of the decision left out.
+std::string ablation(const std::vector<Outcome>& cases) {
+    std::string text = "\nwould be named without one rule (at most: what is asked after it was not asked)\n";
+    text += fmt::format("  {:<38}{:>8}{:>8}{:>10}{:>10}\n", "", "unknown", "nothing", "near miss", "known");
+    for (const Rule& rule : rules()) {
+        std::map<Class, int> count;
+        for (const Outcome& one : cases)
+            if (std::find(one.alone_against.begin(), one.alone_against.end(), rule.name) !=
+                one.alone_against.end())
+                ++count[one.of];
+        text += fmt::format("  {:<38}{:>8}{:>8}{:>10}{:>10}\n", rule.name, count[Class::Unknown],
+                            count[Class::Null], count[Class::NearMiss], count[Class::Known]);
+    }
+    return text;
+}
+
 bool missed(const Outcome& one) {
     if (one.of == Class::NearMiss) return one.wrong_family || said_of(one) == Said::Failed;
     return !rightly(one) && (one.of == Class::Null || one.ratio >= 1);
@@ -77,7 +95,7 @@ std::string rates_text(const std::vector<Outcome>& cases, const std::string& see
         fmt::format("drawn again, because one effect of the catalogue could do more than half of it or the "
                     "strength could not be had: {}\n",
                     redrawn);
-    text += "\nmissed\n";
+    text += ablation(cases) + "\nmissed\n";
     for (const Outcome& one : cases)
         if (missed(one)) text += outcome_line(one) + "\n";
     return text;
@@ -105,6 +123,7 @@ std::string rates_json(const std::vector<Outcome>& cases, std::uint64_t seed) {
                        {"other_family", one.other_family},
                        {"ranks", one.ranks},
                        {"covered", one.covered},
+                       {"alone_against", one.alone_against},
                        {"wall_s", one.wall_s},
                        {"error", one.error}});
     for (const Target& target : targets(cases))
@@ -142,6 +161,7 @@ std::vector<Outcome> outcomes_from_json(const std::string& text, const std::stri
         out.other_family = one.at("other_family");
         out.ranks = one.at("ranks").get<std::vector<double>>();
         out.covered = one.at("covered");
+        out.alone_against = one.value("alone_against", std::vector<std::string>{});
         out.wall_s = one.at("wall_s");
         out.error = one.at("error");
         cases.push_back(std::move(out));

@@ -2,6 +2,7 @@
 // neighbours' where the data can, and scatter is not what differs from run to run.
 
 #include "base/random.h"
+#include "gap/decide/ablation.h"
 #include "gap/decide/decide.h"
 #include "gap/decide/thresholds.h"
 #include "gap/evidence/criterion.h"
@@ -74,6 +75,12 @@ TEST_CASE("a name stands on every ground, and never beside no gain") {
         CHECK_FALSE(doubt_of(g).empty());
         CHECK(decision_of(g, doubt_of(g)) != Decision::Named);
     }
+    CHECK(alone_against(sound()).empty());
+    Grounds doubted = sound();
+    doubted.left_by_run = 40;
+    CHECK(alone_against(doubted) == std::vector<std::string>{"share left: numbers of runs"});
+    doubted.not_confirmed = "leaves something";
+    CHECK(alone_against(doubted).empty());
     Grounds rival = sound();
     rival.rival = true;
     CHECK(decision_of(rival, "") == Decision::CannotTell);

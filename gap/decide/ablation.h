@@ -1,0 +1,23 @@
+#pragma once
+// What each ground of the decision is worth: which of them alone stands between a cause and its name.
+
+#include "gap/decide/grounds.h"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace puckloop::gap {
+
+/// A ground that may be left out of the decision.
+struct Rule {
+    const char* name;
+    void (*leave_out)(Grounds&);
+};
+std::span<const Rule> rules();
+
+/// Names of the rules without each of which the causes would be named, where they are not. What is asked
+/// after a rule that spoke was not asked: it might have spoken too.
+std::vector<std::string> alone_against(const Grounds& grounds);
+
+}  // namespace puckloop::gap
