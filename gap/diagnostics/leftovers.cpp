@@ -11,18 +11,6 @@ namespace puckloop::gap {
 namespace {
 
 constexpr int kPermutations = 299;
-constexpr double kBins = 12.0;  // at most, of a shape
-
-/// nats that a correction by the structure would gain: of normal errors n/2 times the share of variance it
-/// makes, less what its numbers cost (Schwarz). A test whose statistic is no share says nothing of it.
-double gain_of_structure(const stats::Finding& finding, double rows) {
-    const bool shares = finding.test == "shape" || finding.test == "group" || finding.test == "reversal";
-    const double share = shares                    ? finding.statistic
-                         : finding.test == "trend" ? finding.statistic * finding.statistic
-                                                   : 0.0;
-    const double numbers = finding.test == "trend" ? 1.0 : finding.test == "shape" ? kBins - 1 : 2.0;
-    return std::max(rows * share / 2 - numbers / 2 * std::log(rows), 0.0);
-}
 
 /// Is it no more than rounding can make: a difference below the step, or errors that are all rounding?
 bool is_rounding(const stats::Finding& finding, const Series& series, double quantum) {
@@ -35,8 +23,8 @@ bool is_rounding(const stats::Finding& finding, const Series& series, double qua
 
 }  // namespace
 
-Left leftovers_of(const Experiment& experiment, const std::vector<Series>& series,
-                  const std::vector<double>& quanta, std::uint64_t seed, double level, double sure) {
+std::vector<Leftover> leftovers_of(const Experiment& experiment, const std::vector<Series>& series,
+                                   const std::vector<double>& quanta, std::uint64_t seed, double level) {
     stats::TestOptions options;
     options.seed = seed;
     options.permutations = kPermutations;
@@ -54,22 +42,16 @@ Left leftovers_of(const Experiment& experiment, const std::vector<Series>& serie
     for (auto& table : tables)
         all.push_back(&table);
     stats::adjust_together(all);
-    Left left;
-    for (std::size_t o = 0; o < series.size(); ++o) {
-        double largest = 0.0;
+    std::vector<Leftover> left;
+    for (std::size_t o = 0; o < series.size(); ++o)
         for (const stats::Finding& finding : tables[o]) {
             // Tails and held samples are the noise's business; what is carried over is in its model.
             if (finding.p_adjusted > level || finding.test == "outliers" || finding.test == "held") continue;
-            left.structures.push_back({series[o].observable,
-                                       finding.covariate.empty() ? finding.test : finding.covariate,
-                                       finding.p_adjusted, finding.shape});
-            if (finding.p_adjusted < sure)
-                largest =
-                    std::max(largest, gain_of_structure(finding, static_cast<double>(series[o].run.size())));
+            left.push_back({series[o].observable,
+                            finding.covariate.empty() ? finding.test : finding.covariate, finding.p_adjusted,
+                            finding.shape});
         }
-        left.gain += largest;
-    }
-    std::stable_sort(left.structures.begin(), left.structures.end(),
+    std::stable_sort(left.begin(), left.end(),
                      [](const auto& a, const auto& b) { return a.p_value < b.p_value; });
     return left;
 }

@@ -302,7 +302,6 @@ class Analysis {
         g.assumed = fmt::format("{}", fmt::join(experiment_.assumed, ", "));
         g.stopped_at_end = stopped_at_edge();
         g.error_falls = g.causes == 0 || !few_runs_disagree();
-        g.left_by_structure = left_by_structure_;
         g.left_by_shape = gained_by_shape(verdict_.free_forms);
         for (const auto& [effect, form] : forms_)
             g.left_by_form = std::max(g.left_by_form, form.left);
@@ -414,10 +413,8 @@ class Analysis {
         std::vector<double> quanta;
         for (const Observable& observable : study_.model().observables())
             quanta.push_back(observable.instrument.quantum);
-        Left left = leftovers_of(experiment_, verdict_.series, quanta, options_.seed, thresholds::kReported,
-                                 thresholds::kSure);
-        verdict_.leftovers = std::move(left.structures);
-        left_by_structure_ = left.gain;
+        verdict_.leftovers =
+            leftovers_of(experiment_, verdict_.series, quanta, options_.seed, thresholds::kReported);
         tell_placements();
         verdict_.free_forms = free_forms_of(experiment_, study_.model(), final_.fitted.state, options_.seed);
         runs_ = left_by_runs(study_, final_.fitted.state);
@@ -470,7 +467,6 @@ class Analysis {
     Fit final_;
     LeftByRuns runs_;
     std::vector<std::pair<std::size_t, FormVerdict>> forms_;  ///< of the chosen effects
-    double left_by_structure_ = 0.0;                          ///< nats
     double found_ = 0.0;                                      ///< nats
     Verdict verdict_;
 };

@@ -81,7 +81,6 @@ Json grounds_json(const Grounds& g) {
             {"rival", g.rival},
             {"error_falls", g.error_falls},
             {"stopped_at_end", g.stopped_at_end},
-            {"left_by_structure", number(g.left_by_structure)},
             {"left_by_shape", number(g.left_by_shape)},
             {"left_by_form", number(g.left_by_form)},
             {"left_by_run", number(g.left_by_run)},
