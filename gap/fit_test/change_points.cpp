@@ -171,7 +171,9 @@ std::vector<ChangePoint> change_points(const Model& model, const State& state) {
         best.unit = o.unit;
         for (const Chain& chain : chains) {
             if (chain.size() < kLeastChain) continue;
-            for (std::size_t i = chain.first + kLeastSide; i + kLeastSide <= chain.last; ++i) {
+            // How far errors scatter is known of batches: of a shorter side nothing can be said.
+            const std::size_t side = std::max(kLeastSide, chain.size() / kBatches);
+            for (std::size_t i = chain.first + side; i + side <= chain.last; ++i) {
                 places += 1;
                 const Look look = scan.at(chain, i);
                 const double square = look.h > 0 ? look.g * look.g / (spread * look.h) : 0.0;
