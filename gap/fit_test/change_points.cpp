@@ -26,6 +26,7 @@ constexpr std::size_t kTrace = 30;       // rows after which a filter has settle
 constexpr std::size_t kSettled = 10;     // the last of them
 constexpr std::size_t kLeastChain = 24;  // rows
 constexpr std::size_t kLeastSide = 4;    // rows on either side of a jump
+constexpr std::size_t kLeastChains = 3;  // that say how high the others go
 constexpr std::size_t kBatches = 8;      // of a chain
 constexpr double kTrim = 4.0;            // robust deviations
 constexpr double kChiMedian = 0.4549;    // of one degree of freedom
@@ -166,17 +167,20 @@ std::vector<ChangePoint> change_points(const Model& model, const State& state) {
         const double spread = spread_of(chains, pull, curvature);
         const Scan scan(pull, curvature, trace);
         double most = 0.0;
+        std::vector<double> highest;  // of each chain, over what chance makes of so many rows
         ChangePoint best;
         best.observable = o.name;
         best.unit = o.unit;
         for (const Chain& chain : chains) {
             if (chain.size() < kLeastChain) continue;
+            double here = 0.0;
             // How far errors scatter is known of batches: of a shorter side nothing can be said.
             const std::size_t side = std::max(kLeastSide, chain.size() / kBatches);
             for (std::size_t i = chain.first + side; i + side <= chain.last; ++i) {
                 places += 1;
                 const Look look = scan.at(chain, i);
                 const double square = look.h > 0 ? look.g * look.g / (spread * look.h) : 0.0;
+                here = std::max(here, square);
                 if (square <= most) continue;
                 most = square;
                 best.run = o.run[i];
@@ -186,8 +190,12 @@ std::vector<ChangePoint> change_points(const Model& model, const State& state) {
                     "jumps by {} in run {} at {}", quantity(best.jump, o.unit), o.run[i] + 1,
                     o.time.empty() ? fmt::format("row {}", o.row[i] + 1) : quantity(o.time[i], "s"));
             }
+            highest.push_back(here / (2 * std::log(static_cast<double>(chain.size()))));
         }
         if (!(most > 0)) continue;
+        // The largest of n squares of one deviation is about 2 ln n. Where most chains go beyond it, it is
+        // their noise that jumps, and one jump is measured by that.
+        if (highest.size() >= kLeastChains) most /= std::max(stats::median(highest), 1.0);
         all.push_back(std::move(best));
         deviations.push_back(std::sqrt(most));
     }
