@@ -57,9 +57,10 @@ std::string doubt_of(const Grounds& grounds) {
 
 Decision decision_of(const Grounds& g, const std::string& doubt) {
     if (g.causes > 0 && doubt.empty()) return g.rival ? Decision::CannotTell : Decision::Named;
-    // Something is wrong where a structure is sure, or where the causes that were doubted gained for sure.
-    const bool wrong =
-        g.structure || (g.causes > 0 && g.error_falls && gains_enough(g.gain, g.candidates, g.causes));
+    // Something is wrong where a structure is sure, or where the causes that were doubted gained for sure
+    // what is not the errors' own law.
+    const bool gained = g.causes > 0 && g.error_falls && !g.law_alone;
+    const bool wrong = g.structure || (gained && gains_enough(g.gain, g.candidates, g.causes));
     return wrong ? Decision::Unexplained : Decision::NoEffect;
 }
 

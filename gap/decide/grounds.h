@@ -17,6 +17,7 @@ struct Grounds {
     std::string assumed;          ///< truth that nobody measured, in words; empty: all was
     bool stopped_at_end = false;  ///< a parameter that carries the gain was stopped at the end of its range
     bool error_falls = true;      ///< of few runs: for sure
+    bool law_alone = false;       ///< a law of errors without a mechanism gains as much
     std::string out_of_role;      ///< why a cause does not do what it is said to do; empty: all do
 
     // Goodness of fit: nats that corrections without a mechanism gain beside the causes, on held-out rows.

@@ -1,9 +1,11 @@
 #include "gap/decide/roles.h"
 
+#include "gap/decide/large_errors.h"
 #include "gap/decide/thresholds.h"
 #include "gap/diagnostics/pushes.h"
 #include "gap/diagnostics/repeats.h"
 #include "gap/diagnostics/scatter.h"
+#include "gap/evidence/criterion.h"
 #include "gap/fit_test/run_differences.h"
 #include "gap/residual_model/free_form.h"
 #include "gap/stats/tails.h"
@@ -78,6 +80,24 @@ std::string mean_behind(const Study& study, const Fit& fit, const HeldOut& held,
     return "";
 }
 
+/// The effects that make single errors large, if a law of errors without a mechanism does as well.
+std::vector<std::size_t> no_more_than_large_errors(const Study& study, const Fit& fit, const HeldOut& held) {
+    std::vector<std::size_t> outliers;
+    for (const std::size_t effect : fit.effects)
+        if (study.candidates()[effect].effect->role == EffectRole::Outlier) outliers.push_back(effect);
+    const auto touched = scattered_by(study, fit, outliers);
+    if (outliers.empty() || touched.empty()) return {};
+    const Fit calm = without_effects(study, fit, outliers);
+    auto gains = gains_by_block(study.blocks(), study.hold_out(calm), held);
+    const auto by_law = gains_of_large_errors(study, calm, touched);
+    if (gain_of(by_law).sum > 0)
+        for (std::size_t block = 0; block < gains.size(); ++block)
+            gains[block] -= by_law[block];
+    return gains_enough(gain_of(gains), study.candidates().size(), outliers.size())
+               ? std::vector<std::size_t>{}
+               : outliers;
+}
+
 }  // namespace
 
 double mean_share(const Study& study, const Fit& fit, std::size_t effect) {
@@ -118,6 +138,12 @@ OutOfRole out_of_role(const Study& study, const Fit& fit, const HeldOut& held,
             result.why = "keeps to a place, a command or a run, and chance does not";
             return result;
         }
+    result.effects = no_more_than_large_errors(study, fit, held);
+    if (!result.effects.empty()) {
+        result.why = "explains no more than errors of which a few are larger do";
+        result.law_alone = result.effects.size() == fit.effects.size();
+        return result;
+    }
     const auto scatter = scatter_effects(study, fit);
     if (scatter.empty()) return result;
     result.why = mean_behind(study, fit, held, leftovers, scatter, seed);

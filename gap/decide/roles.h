@@ -16,6 +16,7 @@ namespace puckloop::gap {
 struct OutOfRole {
     std::vector<std::size_t> effects;
     std::string why;
+    bool law_alone = false;  ///< all that was gained, a law of errors without a mechanism gains
 };
 
 /// What a fit's effects gain by the means they move, of all they gain, an effect; NaN: it moves no mean.

@@ -15,6 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <span>
 
@@ -26,10 +27,11 @@ constexpr std::size_t kTrace = 30;       // rows after which a filter has settle
 constexpr std::size_t kSettled = 10;     // the last of them
 constexpr std::size_t kLeastChain = 24;  // rows
 constexpr std::size_t kLeastSide = 4;    // rows on either side of a jump
-constexpr std::size_t kLeastChains = 3;  // that say how high the others go
+constexpr std::size_t kLeastChains = 4;  // that say how high the others go
 constexpr std::size_t kBatches = 8;      // of a chain
 constexpr double kTrim = 4.0;            // robust deviations
 constexpr double kChiMedian = 0.4549;    // of one degree of freedom
+constexpr double kGumbelScale = 2.0;     // of the largest of many squares of one deviation
 
 struct Chain {
     std::size_t first, last;  ///< [first, last)
@@ -92,6 +94,27 @@ double spread_of(const std::vector<Chain>& chains, std::span<const double> pull,
     return squares.empty() ? 1.0 : std::max(stats::median(squares) / kChiMedian, 1.0);
 }
 
+double ln_ln(double x) {
+    return std::log(std::log(x));
+}
+
+/// Chance that the highest of chains goes as high as `most` where none jumps. The maxima of chains follow a
+/// Gumbel law; where their quartiles lie wider apart or higher than squares of one deviation would, it is
+/// their noise that jumps, and one jump is measured by that.
+double tail_of_highest(double most, std::vector<double> highest) {
+    double scale = kGumbelScale, half = 0.0;
+    const std::size_t n = highest.size();
+    if (n >= kLeastChains) {
+        std::sort(highest.begin(), highest.end());
+        const double quarter = highest[n / 4], three = highest[3 * n / 4];
+        half = highest[n / 2];
+        scale = std::max(
+            {scale, (half - quarter) / (ln_ln(4) - ln_ln(2)), (three - half) / (ln_ln(2) - ln_ln(4.0 / 3))});
+    }
+    const double place = std::max(half + scale * ln_ln(2), 0.0);
+    return -std::expm1(-static_cast<double>(n) * std::exp(-(most - place) / scale));
+}
+
 /// Of a jump at `at`: its score and information beyond those of a number for the whole chain.
 struct Look {
     double g, h;
@@ -146,8 +169,6 @@ std::vector<ChangePoint> change_points(const Model& model, const State& state) {
     Prediction prediction;
     model.predict(state.values, prediction);
     std::vector<ChangePoint> all;
-    std::vector<double> deviations;
-    double places = 0.0;
     for (std::size_t k = 0; k < model.observables().size(); ++k) {
         const Observable& o = model.observables()[k];
         if (o.fixed_sd > 0 || o.noise == NoiseKind::Event) continue;
@@ -167,41 +188,40 @@ std::vector<ChangePoint> change_points(const Model& model, const State& state) {
         const double spread = spread_of(chains, pull, curvature);
         const Scan scan(pull, curvature, trace);
         double most = 0.0;
-        std::vector<double> highest;  // of each chain, over what chance makes of so many rows
+        std::vector<double> highest;  // of each chain, over 2 ln of its rows
         ChangePoint best;
         best.observable = o.name;
         best.unit = o.unit;
         for (const Chain& chain : chains) {
             if (chain.size() < kLeastChain) continue;
-            double here = 0.0;
+            // The largest of n squares of one deviation is about 2 ln n.
+            const double usual = 2 * std::log(static_cast<double>(chain.size()));
+            highest.push_back(-usual);
             // How far errors scatter is known of batches: of a shorter side nothing can be said.
             const std::size_t side = std::max(kLeastSide, chain.size() / kBatches);
             for (std::size_t i = chain.first + side; i + side <= chain.last; ++i) {
-                places += 1;
                 const Look look = scan.at(chain, i);
                 const double square = look.h > 0 ? look.g * look.g / (spread * look.h) : 0.0;
-                here = std::max(here, square);
-                if (square <= most) continue;
-                most = square;
-                best.run = o.run[i];
-                best.row = o.row[i];
-                best.jump = look.g / look.h * row_sd(o, prediction[k], state.noise[k], i);
-                best.shape = fmt::format(
-                    "jumps by {} in run {} at {}", quantity(best.jump, o.unit), o.run[i] + 1,
-                    o.time.empty() ? fmt::format("row {}", o.row[i] + 1) : quantity(o.time[i], "s"));
+                highest.back() = std::max(highest.back(), square - usual);
+                if (best.shape.empty() || square - usual > most) {
+                    most = square - usual;
+                    best.run = o.run[i];
+                    best.row = o.row[i];
+                    best.jump = look.g / look.h * row_sd(o, prediction[k], state.noise[k], i);
+                    best.shape = fmt::format(
+                        "jumps by {} in run {} at {}", quantity(best.jump, o.unit), o.run[i] + 1,
+                        o.time.empty() ? fmt::format("row {}", o.row[i] + 1) : quantity(o.time[i], "s"));
+                }
             }
-            highest.push_back(here / (2 * std::log(static_cast<double>(chain.size()))));
         }
-        if (!(most > 0)) continue;
-        // The largest of n squares of one deviation is about 2 ln n. Where most chains go beyond it, it is
-        // their noise that jumps, and one jump is measured by that.
-        if (highest.size() >= kLeastChains) most /= std::max(stats::median(highest), 1.0);
+        if (best.shape.empty()) continue;
+        best.p_value = tail_of_highest(most, highest);
         all.push_back(std::move(best));
-        deviations.push_back(std::sqrt(most));
     }
-    for (std::size_t k = 0; k < all.size(); ++k) {
-        all[k].gain = deviations[k] * deviations[k] / 2 - std::log(places);
-        all[k].p_value = std::min(1.0, 2 * places * stats::normal_tail(deviations[k]));
+    // One look at each observable.
+    for (ChangePoint& point : all) {
+        point.p_value = std::min(1.0, point.p_value * static_cast<double>(all.size()));
+        point.gain = -std::log(std::max(point.p_value, std::numeric_limits<double>::min()));
     }
     std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.gain > b.gain; });
     return all;

@@ -270,6 +270,7 @@ class Analysis {
         if (out.effects.empty()) return;
         if (!go_without(out.effects, out.why)) {
             g.out_of_role = out.why;
+            g.law_alone = out.law_alone;
             return;
         }
         for (const std::size_t one : out.effects)

@@ -89,6 +89,7 @@ Json grounds_json(const Grounds& g) {
             {"sums", g.sums},
             {"structure", g.structure},
             {"assumed", g.assumed},
+            {"law_alone", g.law_alone},
             {"out_of_role", g.out_of_role},
             {"not_confirmed", g.not_confirmed}};
 }
