@@ -19,16 +19,16 @@ Row row(const char* image, std::string command, std::string says, std::function<
 /// The answer to `command` begins so.
 Row answers(const char* image, const std::string& command, std::string says, const std::string& begins) {
     return row(image, command, std::move(says), [command, begins](Trial& trial) {
-        const std::string told = trial.ask(command + "\r", 1, 0.4);
-        expect(told.starts_with(begins), told.substr(0, 60));
+        const std::string reply = trial.ask(command + "\r", 1, 0.4);
+        expect(reply.starts_with(begins), reply.substr(0, 60));
         const std::string line = begins.substr(begins.find_first_not_of('\n'));
         return fmt::format("`{}`", line.substr(0, line.find_first_of("\r\n")));
     });
 }
 
 std::string calibrates(Trial& trial) {
-    const std::string told = trial.ask("K\r", 1, 4.0);
-    expect(told.find("k, Calibration finished") != std::string::npos, told.substr(0, 80));
+    const std::string reply = trial.ask("K\r", 1, 4.0);
+    expect(reply.find("k, Calibration finished") != std::string::npos, reply.substr(0, 80));
     return "`k, Calibration finished`";
 }
 
@@ -59,19 +59,19 @@ std::string sings(Trial& trial) {
 }
 
 std::string takes_picture(Trial& trial) {
-    const std::string told = trial.ask(std::string("\xB7\0", 2), 1, 3.0);
-    expect(told.size() == 3 + 3200, fmt::format("{} bytes", told.size()));
-    expect(told.substr(0, 3) == std::string("\x01\x28\x28", 3), "another header");
+    const std::string reply = trial.ask(std::string("\xB7\0", 2), 1, 3.0);
+    expect(reply.size() == 3 + 3200, fmt::format("{} bytes", reply.size()));
+    expect(reply.substr(0, 3) == std::string("\x01\x28\x28", 3), "another header");
     std::array<bool, 256> seen{};
-    for (const char byte : told.substr(3))
+    for (const char byte : reply.substr(3))
         seen[static_cast<unsigned char>(byte)] = true;
     expect(std::count(seen.begin(), seen.end(), true) > 10, "a picture of one colour");
     return "3 bytes and a picture of 40 x 40, 3200 bytes";
 }
 
 std::string restarts(Trial& trial) {
-    const std::string told = trial.ask("R\r", 1, kBoot);
-    expect(told.find("WELCOME to the SerCom protocol") != std::string::npos, told.substr(0, 60));
+    const std::string reply = trial.ask("R\r", 1, kBoot);
+    expect(reply.find("WELCOME to the SerCom protocol") != std::string::npos, reply.substr(0, 60));
     return "`r`, then its greeting";
 }
 

@@ -30,8 +30,8 @@ std::string falls(Trial& trial) {
     trial.heard();
     trial.set("acc_z", 2048);
     trial.run(0.1);
-    const std::string told = trial.heard();
-    expect(has(told, "Free fall"), "at 0 g: " + told);
+    const std::string reply = trial.heard();
+    expect(has(reply, "Free fall"), "at 0 g: " + reply);
     expect(trial.plays(0.3) > 0.05, "no sound at 0 g");
     return "at 0 g: \"Free fall\", a sound, body LED";
 }
@@ -174,10 +174,10 @@ std::string configures(Trial& trial) {
 
 std::string tests_all(Trial& trial) {
     trial.run(7.0);
-    const std::string told = trial.heard(2);
+    const std::string reply = trial.heard(2);
     for (const char* part : {"Calibration finished", "ACCELEROMETER", "SELECTOR", "IR\r\n",
                              "PROXIMITY SENSORS", "AMBIENT LIGHT SENSORS", "MICROPHONE", "CAMERA"})
-        expect(has(told, part), fmt::format("no {} at UART2", part));
+        expect(has(reply, part), fmt::format("no {} at UART2", part));
     return "all of its lines at UART2, pictures included";
 }
 
