@@ -1,14 +1,12 @@
 #include "cosim/resume/state_file.h"
 
 #include "base/error.h"
+#include "base/sha256.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <nettle/sha2.h>
 
-#include <array>
 #include <cstring>
-#include <fstream>
 
 #include <elf.h>
 #include <link.h>
@@ -42,28 +40,13 @@ int find_note(dl_phdr_info* info, std::size_t, void* found) {
     return 1;  // no further objects
 }
 
-std::string hash_of_program() {
-    std::ifstream in("/proc/self/exe", std::ios::binary);
-    sha256_ctx context;
-    sha256_init(&context);
-    std::array<char, 65536> buffer{};
-    while (in.read(buffer.data(), buffer.size()) || in.gcount() > 0) {
-        std::array<std::uint8_t, 65536> bytes{};
-        std::memcpy(bytes.data(), buffer.data(), static_cast<std::size_t>(in.gcount()));
-        sha256_update(&context, static_cast<std::size_t>(in.gcount()), bytes.data());
-    }
-    std::array<std::uint8_t, SHA256_DIGEST_SIZE> digest{};
-    sha256_digest(&context, digest.size(), digest.data());
-    return hexadecimal(digest);
-}
-
 }  // namespace
 
 const std::string& build_id() {
     static const std::string id = [] {
         std::string found;
         dl_iterate_phdr(find_note, &found);
-        return found.empty() ? hash_of_program() : found;
+        return found.empty() ? sha256_of_file("/proc/self/exe") : found;
     }();
     return id;
 }

@@ -2,9 +2,9 @@
 
 #include "base/archive.h"
 #include "base/error.h"
+#include "base/sha256.h"
 
 #include <fmt/format.h>
-#include <nettle/sha2.h>
 
 #include <algorithm>
 #include <array>
@@ -18,26 +18,11 @@
 
 namespace puckloop::cosim {
 
-namespace {
-
-using Digest = std::array<std::uint8_t, SHA256_DIGEST_SIZE>;
-
-Digest digest_of(std::span<const std::uint8_t> bytes) {
-    sha256_ctx context;
-    sha256_init(&context);
-    sha256_update(&context, bytes.size(), bytes.data());
-    Digest digest{};
-    sha256_digest(&context, digest.size(), digest.data());
-    return digest;
-}
-
-}  // namespace
-
 std::vector<std::uint8_t> seal(const SealedKind& kind, std::span<const std::uint8_t> content) {
     std::vector<std::uint8_t> bytes(kind.first_line.begin(), kind.first_line.end());
     StateWriter{bytes}(kind.format);
     bytes.insert(bytes.end(), content.begin(), content.end());
-    const Digest digest = digest_of(bytes);
+    const Sha256 digest = sha256(bytes);
     bytes.insert(bytes.end(), digest.begin(), digest.end());
     return bytes;
 }
@@ -54,10 +39,10 @@ std::span<const std::uint8_t> unseal(const SealedKind& kind, std::span<const std
         throw InputError(name, "",
                          fmt::format("a {} of format {}, from another version", kind.content, format),
                          fmt::format("format {}: save it again", kind.format));
-    if (bytes.size() < head + SHA256_DIGEST_SIZE) throw InputError(name, "", "is cut short", expected);
-    const auto sealed = bytes.first(bytes.size() - SHA256_DIGEST_SIZE);
-    const Digest digest = digest_of(sealed);
-    if (!std::equal(digest.begin(), digest.end(), bytes.end() - SHA256_DIGEST_SIZE))
+    if (bytes.size() < head + std::tuple_size_v<Sha256>) throw InputError(name, "", "is cut short", expected);
+    const auto sealed = bytes.first(bytes.size() - std::tuple_size_v<Sha256>);
+    const Sha256 digest = sha256(sealed);
+    if (!std::equal(digest.begin(), digest.end(), bytes.end() - digest.size()))
         throw InputError(name, "", "is damaged: its checksum is another", expected);
     return sealed.subspan(head);
 }

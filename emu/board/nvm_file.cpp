@@ -1,6 +1,7 @@
 #include "emu/board/nvm_file.h"
 
 #include "base/error.h"
+#include "base/sha256.h"
 #include "emu/image/image_file.h"
 #include "emu/image/intel_hex.h"
 
@@ -55,7 +56,7 @@ NvmFile::NvmFile(std::string path, std::string_view chip, const image::Image& be
         const std::string_view of_chip = take_line(rest, "chip: ", 2, path_);
         const std::string_view of_image = take_line(rest, "image: ", 3, path_);
         const std::string_view sum = take_line(rest, "contents: ", 4, path_);
-        if (image::sha256_of(rest) != sum)
+        if (sha256_text(rest) != sum)
             throw InputError(path_, "", "is damaged: its contents do not match their checksum", kAsWritten);
         if (of_chip != chip_)
             throw InputError(path_, "line 2", fmt::format("is the memory of a {}", of_chip),
@@ -107,7 +108,7 @@ void NvmFile::save(const image::Words& words) {
 
 void NvmFile::save_contents(const std::string& contents) {
     const std::string text = fmt::format("{}\nchip: {}\nimage: {}\ncontents: {}\n{}", kTitle, chip_, image_,
-                                         image::sha256_of(contents), contents);
+                                         sha256_text(contents), contents);
     const auto require = [&](bool done) {
         if (!done)
             throw RunError(

@@ -1,6 +1,7 @@
 #include "emu/image/avr_image.h"
 
 #include "base/error.h"
+#include "base/sha256.h"
 #include "emu/image/elf_file.h"
 #include "emu/image/image_file.h"
 #include "emu/image/intel_hex.h"
@@ -124,7 +125,7 @@ std::optional<std::uint32_t> AvrImage::find_code(std::string_view name) const {
 AvrImage parse_avr_image(std::string_view bytes, const std::string& file, const AvrPart& part) {
     AvrImage image;
     image.file = file;
-    image.sha256 = sha256_of(bytes);
+    image.sha256 = sha256_text(bytes);
     if (bytes.empty()) throw InputError(file, "", "is empty", "a HEX or ELF image");
     ByteSegments eeprom(file);
     if (is_elf(bytes)) {

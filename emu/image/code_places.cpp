@@ -1,6 +1,7 @@
 #include "emu/image/code_places.h"
 
 #include "base/error.h"
+#include "base/sha256.h"
 
 #include "emu/image/image_file.h"
 
@@ -12,7 +13,7 @@ namespace {
 LineTable lines_of(const std::string& file, const std::string& sha256) {
     if (file.empty()) return {};
     try {
-        if (sha256_of(read_image_file(file)) != sha256) return {};
+        if (sha256_text(read_image_file(file)) != sha256) return {};
         return source_lines(file);
     } catch (const InputError&) {
         return {};

@@ -1,9 +1,9 @@
 #include "emu/image/image_file.h"
 
 #include "base/error.h"
+#include "base/sha256.h"
 
 #include <fmt/format.h>
-#include <nettle/sha2.h>
 
 #include <cerrno>
 #include <cstring>
@@ -37,18 +37,6 @@ std::string read_image_file(const std::string& path) {
     std::string bytes{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
     if (stream.bad()) throw InputError(path, "", "cannot be read");
     return bytes;
-}
-
-std::string sha256_of(std::string_view bytes) {
-    sha256_ctx context;
-    sha256_init(&context);
-    sha256_update(&context, bytes.size(), reinterpret_cast<const std::uint8_t*>(bytes.data()));
-    std::uint8_t digest[SHA256_DIGEST_SIZE];
-    sha256_digest(&context, sizeof digest, digest);
-    std::string text;
-    for (const std::uint8_t byte : digest)
-        fmt::format_to(std::back_inserter(text), "{:02x}", byte);
-    return text;
 }
 
 bool looks_like_hex(std::string_view bytes) {

@@ -9,9 +9,6 @@ namespace puckloop::image {
 /// Throws InputError: missing, a directory, larger than 64 MB.
 std::string read_image_file(const std::string& path);
 
-/// Lower-case hexadecimal.
-std::string sha256_of(std::string_view bytes);
-
 /// Intel HEX: the first character that is no white space is a colon.
 bool looks_like_hex(std::string_view bytes);
 

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "base/log.h"
+#include "base/sha256.h"
 #include "emu/image/coff.h"
 #include "emu/image/dspic_view.h"
 #include "emu/image/elf.h"
@@ -42,7 +43,7 @@ Words Image::all_words() const {
 Image parse_image(std::string_view bytes, const std::string& file) {
     Image image;
     image.file = file;
-    image.sha256 = sha256_of(bytes);
+    image.sha256 = sha256_text(bytes);
     if (bytes.empty()) throw InputError(file, "", "is empty", "a HEX, ELF or COFF image");
     if (is_elf(bytes)) {
         image.format = Format::Elf;

@@ -4,13 +4,12 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "base/sha256.h"
 #include "cosim/resume/sealed_file.h"
 #include "cosim/resume/state_file.h"
 #include "tests/scratch.h"
 
 #include <catch2/catch.hpp>
-
-#include <nettle/sha2.h>
 
 #include <algorithm>
 
@@ -55,12 +54,8 @@ std::string problem(const std::vector<std::uint8_t>& bytes) {
 
 /// With a checksum that fits again.
 std::vector<std::uint8_t> sealed(std::vector<std::uint8_t> bytes) {
-    bytes.resize(bytes.size() - SHA256_DIGEST_SIZE);
-    sha256_ctx context;
-    sha256_init(&context);
-    sha256_update(&context, bytes.size(), bytes.data());
-    std::array<std::uint8_t, SHA256_DIGEST_SIZE> digest{};
-    sha256_digest(&context, digest.size(), digest.data());
+    bytes.resize(bytes.size() - std::tuple_size_v<Sha256>);
+    const Sha256 digest = sha256(bytes);
     bytes.insert(bytes.end(), digest.begin(), digest.end());
     return bytes;
 }

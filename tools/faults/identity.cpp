@@ -1,15 +1,10 @@
 #include "tools/faults/identity.h"
 
+#include "base/sha256.h"
 #include "cosim/resume/state_file.h"
 #include "tools/run/program_path.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
-#include <nettle/sha2.h>
-
-#include <array>
-#include <fstream>
-#include <iterator>
 
 namespace puckloop::faults {
 
@@ -22,15 +17,7 @@ namespace {
 std::string hash_of(const fs::path& file) {
     std::error_code error;
     if (!fs::is_regular_file(file, error)) return {};
-    std::ifstream in(file, std::ios::binary);
-    const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(in),
-                                          std::istreambuf_iterator<char>()};
-    sha256_ctx context;
-    sha256_init(&context);
-    sha256_update(&context, bytes.size(), bytes.data());
-    std::array<std::uint8_t, SHA256_DIGEST_SIZE> digest{};
-    sha256_digest(&context, digest.size(), digest.data());
-    return fmt::format("{:02x}", fmt::join(digest, ""));
+    return sha256_of_file(file);
 }
 
 class Inputs {

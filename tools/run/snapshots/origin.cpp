@@ -1,17 +1,14 @@
 #include "tools/run/snapshots/origin.h"
 
 #include "base/error.h"
+#include "base/sha256.h"
 #include "cosim/faults/fault_json.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
-#include <nettle/sha2.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <iterator>
 #include <map>
 
 namespace puckloop::tools {
@@ -24,18 +21,6 @@ namespace fs = std::filesystem;
 /// Keys of node descriptions that decide nothing of what a node does, or are compared by themselves.
 constexpr std::array kLeftOut{"faults",   "from_state", "save_state", "gdb",     "nvm",    "watchdog_s",
                               "quiet_ps", "control",    "live",       "repeats", "journal"};
-
-std::string hash_of(const fs::path& path) {
-    std::ifstream in(path, std::ios::binary);
-    const std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(in),
-                                          std::istreambuf_iterator<char>()};
-    sha256_ctx context;
-    sha256_init(&context);
-    sha256_update(&context, bytes.size(), bytes.data());
-    std::array<std::uint8_t, SHA256_DIGEST_SIZE> digest{};
-    sha256_digest(&context, digest.size(), digest.data());
-    return fmt::format("{:02x}", fmt::join(digest, ""));
-}
 
 /// Node descriptions with the results folder as "<out>" and the scenario as "<scenario>", wherever they are,
 /// and the files that they name.
@@ -67,7 +52,8 @@ class Descriptions {
             value = "<scenario>" + text.substr(scenario_.size());
         } else if (text.starts_with('/')) {
             std::error_code error;
-            if (!files_.contains(text) && fs::is_regular_file(text, error)) files_[text] = hash_of(text);
+            if (!files_.contains(text) && fs::is_regular_file(text, error))
+                files_[text] = sha256_of_file(text);
         }
     }
 

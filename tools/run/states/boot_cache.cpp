@@ -1,13 +1,11 @@
 #include "tools/run/states/boot_cache.h"
 
+#include "base/sha256.h"
 #include "cosim/resume/state_file.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
-#include <nettle/sha2.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -57,13 +55,7 @@ std::filesystem::path cached_boot(const std::filesystem::path& folder, const cos
          {cosim::build_id(), fmt::format("{}", cosim::kStateFormat), board.node, board.kind, board.chip,
           board.image, board.parameters, fmt::format("{}", length), world})
         text += fmt::format("{}:{}\n", part.size(), part);
-    sha256_ctx context;
-    sha256_init(&context);
-    const std::vector<std::uint8_t> bytes(text.begin(), text.end());
-    sha256_update(&context, bytes.size(), bytes.data());
-    std::array<std::uint8_t, SHA256_DIGEST_SIZE> digest{};
-    sha256_digest(&context, digest.size(), digest.data());
-    return folder / fmt::format("{:02x}{}", fmt::join(digest, ""), kEnding);
+    return folder / (sha256_text(text) + std::string(kEnding));
 }
 
 void prune_cache(const std::filesystem::path& folder, std::uintmax_t most) {
