@@ -8,7 +8,6 @@
 #include "gap/fit_test/run_differences.h"
 #include "gap/fit_test/scores.h"
 #include "gap/stats/robust.h"
-#include "gap/stats/tails.h"
 #include "gap/verdict/sentences.h"
 
 #include <fmt/format.h>

@@ -138,17 +138,6 @@ std::string translates(Trial& trial) {
            "wait)";
 }
 
-std::string ground(Trial& trial) {
-    trial.set("acc_x", 2048 + 400);
-    trial.run(0.3);
-    const std::string right = trial.leds();
-    trial.set("acc_x", 2048 - 400);
-    trial.run(0.3);
-    const std::string left = trial.leds();
-    expect(right.size() == 1 && left.size() == 1 && right != left, "LEDs " + right + ", " + left);
-    return fmt::format("tilted to either side: LED {} and LED {}", right, left);
-}
-
 std::string gyroscope(Trial& trial) {
     trial.set("lsm330_rate_z", 100);
     trial.run(0.3);
@@ -227,7 +216,7 @@ std::vector<Row> demo_gctronic_rows() {
         row(5, "sensors on LEDs, light of the camera", displays),
         row(6, "camera points to light", turns_to_light),
         row(7, "RS232 to I2C translator", translates, kNew),
-        row(8, "shows the ground's direction", ground),
+        row(8, "shows the ground's direction", shows_the_ground),
         row(9, "gyroscope on LEDs", gyroscope, kNew),
         row(10, "sercom for the extension, UART2 at 230400 baud", extension, pic::Revision::Rev12, 4.5,
             230400),

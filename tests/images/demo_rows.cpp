@@ -15,17 +15,6 @@ Row row(const char* image, int selector, std::string says, std::function<std::st
         image, fmt::format("selector {}", selector), std::move(says), {.selector = selector}, std::move(see)};
 }
 
-std::string ground(Trial& trial) {
-    trial.set("acc_x", 2048 + 400);
-    trial.run(0.3);
-    const std::string right = trial.leds();
-    trial.set("acc_x", 2048 - 400);
-    trial.run(0.3);
-    const std::string left = trial.leds();
-    expect(right.size() == 1 && left.size() == 1 && right != left, "LEDs " + right + ", " + left);
-    return fmt::format("tilted to either side: LED {} and LED {}", right, left);
-}
-
 std::string shocks(Trial& trial) {
     trial.set("acc_x", 4000);
     trial.set("acc_y", 4000);
@@ -79,7 +68,7 @@ std::string listens(Trial& trial) {
 std::vector<Row> demo_rows() {
     std::vector<Row> rows;
     constexpr const char *kDemo = "Demo.hex", *kOlder = "Demo-default.hex";
-    rows.push_back(row(kDemo, 0, "shows the ground's direction", ground));
+    rows.push_back(row(kDemo, 0, "shows the ground's direction", shows_the_ground));
     rows.push_back(row(kDemo, 1, "shock detection with sounds", shocks));
     rows.push_back(row(kDemo, 2, "locates a sound", locates));
     rows.push_back(row(kDemo, 3, "wall following", drives));
@@ -89,7 +78,7 @@ std::vector<Row> demo_rows() {
     rows.push_back(row(kDemo, 7, "follows the red ball", looks));
     rows.push_back(row(kDemo, 8, "follows the green ball", looks));
     rows.push_back(row(kDemo, 9, "9 to 15: commanded by sound", listens));
-    rows.push_back(row(kOlder, 0, "shows the ground's direction", ground));
+    rows.push_back(row(kOlder, 0, "shows the ground's direction", shows_the_ground));
     rows.push_back(row(kOlder, 1, "shock detection with sounds", shocks));
     rows.push_back(row(kOlder, 2, "locates a sound", locates));
     rows.push_back(row(kOlder, 5, "avoids obstacles", drives));

@@ -89,4 +89,15 @@ void expect(bool right, const std::string& seen) {
     if (!right) throw Wrong{seen};
 }
 
+std::string shows_the_ground(Trial& trial) {
+    trial.set("acc_x", 2048 + 400);
+    trial.run(0.3);
+    const std::string right = trial.leds();
+    trial.set("acc_x", 2048 - 400);
+    trial.run(0.3);
+    const std::string left = trial.leds();
+    expect(right.size() == 1 && left.size() == 1 && right != left, "LEDs " + right + ", " + left);
+    return fmt::format("tilted to either side: LED {} and LED {}", right, left);
+}
+
 }  // namespace puckloop::images

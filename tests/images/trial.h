@@ -64,6 +64,9 @@ void expect(bool right, const std::string& seen);
 /// A remote control drives the robot: keys 2 (ahead), 5 (stop), 4 (left), 0 (a sound).
 std::string drives_by_remote(Trial& trial);
 
+/// The accelerometer's lowest side, on an LED.
+std::string shows_the_ground(Trial& trial);
+
 std::vector<Row> demo_gctronic_rows();
 std::vector<Row> demo_rows();
 std::vector<Row> btcom_rows();

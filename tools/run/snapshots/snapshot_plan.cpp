@@ -4,6 +4,7 @@
 #include "cosim/resume/run_snapshot.h"
 #include "cosim/resume/state_file.h"
 #include "tools/run/plan/linux_nodes.h"
+#include "tools/run/plan/writable_file.h"
 #include "tools/run/snapshots/origin.h"
 
 #include <fmt/format.h>
@@ -13,8 +14,6 @@
 #include <cerrno>
 #include <cstring>
 #include <memory>
-
-#include <unistd.h>
 
 namespace puckloop::tools {
 
@@ -31,17 +30,6 @@ std::string decided_by_snapshot(const RunRequest& request) {
     if (!request.events.empty()) return "--events";
     if (request.seed) return "--seed";
     return {};
-}
-
-void check_writable(const fs::path& path) {
-    std::error_code error;
-    if (fs::is_directory(path, error)) throw InputError(path.string(), "", "is a folder", "a file");
-    std::string probe = path.string() + ".XXXXXX";
-    const int descriptor = ::mkstemp(probe.data());
-    if (descriptor < 0)
-        throw InputError(path.string(), "", fmt::format("cannot be written: {}", std::strerror(errno)));
-    ::close(descriptor);
-    ::unlink(probe.c_str());
 }
 
 void plan_saving(RunSetup& setup, const RunRequest& request) {

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "cosim/resume/state_file.h"
 #include "tools/run/node_factory.h"
+#include "tools/run/plan/writable_file.h"
 #include "tools/run/states/board_identity.h"
 #include "tools/run/states/boot_cache.h"
 
@@ -11,9 +12,7 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
-#include <unistd.h>
 
 namespace puckloop::tools {
 
@@ -132,14 +131,7 @@ void start_from_file(RunSetup& setup, const RunRequest& request) {
 
 void save_to_file(RunSetup& setup, const RunRequest& request) {
     const fs::path path = fs::absolute(request.save_state);
-    std::error_code error;
-    if (fs::is_directory(path, error)) throw InputError(path.string(), "", "is a folder", "a file");
-    std::string probe = path.string() + ".XXXXXX";
-    const int descriptor = ::mkstemp(probe.data());
-    if (descriptor < 0)
-        throw InputError(path.string(), "", fmt::format("cannot be written: {}", std::strerror(errno)));
-    ::close(descriptor);
-    ::unlink(probe.c_str());
+    check_writable(path);
     if (setup.scenario.duration && *request.save_at > *setup.scenario.duration)
         throw InputError("", "--at",
                          fmt::format("{:g} s is after the end of the run, {:g} s", *request.save_at,
@@ -151,7 +143,8 @@ void save_to_file(RunSetup& setup, const RunRequest& request) {
         json spec = json::parse(node.json);
         if (!has_state(spec)) continue;
         const std::string part = part_of(path, node.name);
-        fs::remove(part, error);
+        std::error_code ignored;
+        fs::remove(part, ignored);
         spec["save_state"] = {{"path", part}, {"at_ps", setup.save_at}};
         node.json = spec.dump();
     }
