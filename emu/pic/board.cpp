@@ -248,11 +248,16 @@ dspic::Cycle Board::next_edge(dspic::PortLetter port, std::uint16_t heeded, dspi
     return next;
 }
 
+std::optional<cosim::I2cPhase> Board::camera_i2c(const cosim::I2cPhase& phase, dspic::Cycle written) {
+    const std::optional<cosim::I2cPhase> answer = camera_->i2c(phase, written);
+    if (camera_->edges_moved()) listener_.edges_moved(written);
+    return answer;
+}
+
 Board::OwnPhase Board::own_i2c(const cosim::I2cPhase& phase, dspic::Cycle answered) {
     if (!camera_) return {};
     const bool stop = phase.kind == cosim::I2cPhaseKind::Stop && camera_->selected();
-    const std::optional<cosim::I2cPhase> answer = camera_->i2c(phase, answered);
-    if (camera_->edges_moved()) listener_.edges_moved(answered);
+    const std::optional<cosim::I2cPhase> answer = camera_i2c(phase, answered);
     return {stop || answer.has_value(), answer};
 }
 

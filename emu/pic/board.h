@@ -91,7 +91,10 @@ class Board : public dspic::Pins {
     }
     camera::Camera* camera() { return camera_ ? &*camera_ : nullptr; }
     const camera::Camera* camera() const { return camera_ ? &*camera_ : nullptr; }
-    /// What becomes of a phase of the I2C master that the camera, soldered to the same board, takes part in.
+    /// A phase for the camera, as a device of the bus. Returns its answer, nothing if it is not addressed or
+    /// none is due. `written`: from which cycle on a register that is written counts.
+    std::optional<cosim::I2cPhase> camera_i2c(const cosim::I2cPhase& phase, dspic::Cycle written);
+    /// Where nobody else is on the bus: what becomes of a phase of the chip, its master.
     struct OwnPhase {
         bool ours = false;  ///< nobody else need hear of it
         std::optional<cosim::I2cPhase> answer{};

@@ -8,12 +8,15 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace puckloop::pic {
 
 namespace {
 
 constexpr int kI2cUnit = 1;
+constexpr cosim::Time kClocksToAnswer = 8;
+constexpr std::uint8_t kNobody = 0xFF;  // the bus at rest
 
 int uart_unit(cosim::PortIndex port) {
     return port == PicNode::kUart1 ? 1 : 2;
@@ -31,6 +34,7 @@ PicNode::PicNode(const image::Image& image, const PicNodeOptions& options)
       log_(options.log, image) {
     if (options.ircom) ports_.push_back({"ir", cosim::PortKind::Signals});
     if (options.camera) {
+        if (options.i2c_linked) ports_.push_back({"camera_i2c", cosim::PortKind::I2c});
         ports_.push_back({"camera", cosim::PortKind::Signals});
         board_.fit_camera(*options.camera, *options_.scenery);
         followers_.scenery = options_.scenery.get();
@@ -118,6 +122,7 @@ void PicNode::receive(const cosim::Message& message) {
         log_.arrived(unit, *frame, message.time, chip_->uart_enabled(unit));
         chip_->uart_receive(unit, *frame);
     } else if (const auto* phase = std::get_if<cosim::I2cPhase>(&message.payload)) {
+        if (is_camera_bus(message.port)) return camera_phase(*phase, message.time);
         chip_->i2c_answer(kI2cUnit, *phase);
     } else if (const auto* signal = std::get_if<cosim::Signal>(&message.payload)) {
         if (options_.camera && message.port == camera_port())
@@ -129,7 +134,30 @@ void PicNode::receive(const cosim::Message& message) {
     }
 }
 
+/// The bus hands a phase on half a clock late at most.
+cosim::Time PicNode::camera_lookahead() const {
+    const auto fastest_period = static_cast<cosim::Time>(
+        std::llround(static_cast<double>(cosim::kSecond) / options_.fastest_i2c_hertz));
+    return kClocksToAnswer * fastest_period - fastest_period / 2;
+}
+
+/// The camera never stretches: its answer is known at once, and due when the eighth clock ends.
+void PicNode::camera_phase(const cosim::I2cPhase& phase, cosim::Time now) {
+    const cosim::Time due =
+        std::max(now + camera_lookahead(), phase.start + kClocksToAnswer * phase.clock_period);
+    const dspic::Cycle written = chip_->clock().first_cycle_at(due + phase.clock_period);
+    const std::optional<cosim::I2cPhase> answer = board_.camera_i2c(phase, written);
+    if (phase.kind == cosim::I2cPhaseKind::Stop) return;
+    cosim::I2cPhase none = phase;
+    none.kind = phase.kind == cosim::I2cPhaseKind::Read ? cosim::I2cPhaseKind::Data
+                                                        : cosim::I2cPhaseKind::Acknowledge;
+    none.byte = phase.kind == cosim::I2cPhaseKind::Read ? kNobody : phase.byte;
+    none.ack = 0;
+    outbox_->push_back({due, camera_bus_port(), answer.value_or(none)});
+}
+
 cosim::Time PicNode::earliest_output(cosim::PortIndex port) const {
+    if (is_camera_bus(port)) return cosim::kNever;
     if (port == kI2c) {
         const cosim::Time earliest = chip_->earliest_i2c(kI2cUnit);
         return std::max(granted_, faults_ ? std::min(earliest, faults_->earliest(granted_)) : earliest);
@@ -159,14 +187,14 @@ void PicNode::uart_sent(int unit, const cosim::UartFrame& frame) {
 
 void PicNode::i2c_phase(int unit, const cosim::I2cPhase& phase) {
     if (unit != kI2cUnit) return;
+    if (options_.i2c_linked) {
+        outbox_->push_back({board::reached(*chip_, faults_.get(), phase.start), kI2c, phase});
+        return;
+    }
     const cosim::Time answered = dspic::i2c_ninth_clock_end(phase);
     const Board::OwnPhase own = board_.own_i2c(phase, chip_->clock().first_cycle_at(answered));
     if (own.answer) chip_->i2c_answer_at(unit, *own.answer, answered);
-    if (own.ours) return;
-    if (options_.i2c_linked)
-        outbox_->push_back({board::reached(*chip_, faults_.get(), phase.start), kI2c, phase});
-    else
-        bus_.phase(phase);
+    if (!own.ours) bus_.phase(phase);
 }
 
 void PicNode::line_pulled_low(dspic::Cycle now) {

@@ -27,7 +27,9 @@ struct PicNodeOptions {
     /// firmware lets go before a character is over, that is not seen.
     bool uart1_breaks = false;
     bool i2c_linked = true;  ///< false: nobody else is on the bus, and the node answers the master itself
-    bool skip_idle = true;   ///< busy-wait loops are skipped forward
+    /// No master on the bus is faster; one that is gets the camera's answers as if it were not.
+    double fastest_i2c_hertz = 400e3;
+    bool skip_idle = true;            ///< busy-wait loops are skipped forward
     std::vector<cosim::Time> resets;  ///< the reset button (a pulse on MCLR), rising times above 0
     /// Configuration word in force on the robot, as its bootloader left it: XT with PLL x8.
     std::uint16_t fosc = kFoscXtPll8;
@@ -50,6 +52,8 @@ class PicNode : public cosim::StatefulNode, private BoardListener, private chip:
 
     /// The port "camera", behind all others.
     cosim::PortIndex camera_port() const { return static_cast<cosim::PortIndex>(ports_.size() - 1); }
+    /// The port "camera_i2c" before it, of a camera that is a device of a linked bus.
+    cosim::PortIndex camera_bus_port() const { return static_cast<cosim::PortIndex>(ports_.size() - 2); }
 
     /// Throws InputError if the image does not fit the chip, or a fault neither.
     PicNode(const image::Image& image, const PicNodeOptions& options);
@@ -59,7 +63,9 @@ class PicNode : public cosim::StatefulNode, private BoardListener, private chip:
     void advance(cosim::Time until, std::span<const cosim::Message> inbox,
                  std::vector<cosim::Message>& outbox) override;
     cosim::Time earliest_output(cosim::PortIndex port) const override;
-    cosim::Time lookahead(cosim::PortIndex /*port*/) const override { return 0; }
+    cosim::Time lookahead(cosim::PortIndex port) const override {
+        return is_camera_bus(port) ? camera_lookahead() : 0;
+    }
     std::optional<cosim::Time> begun(cosim::PortIndex port) const override;
     /// JSON: cycles, instructions, resets, traps, unmodelled registers, motor and UART counters.
     std::string finish() override;
@@ -83,6 +89,12 @@ class PicNode : public cosim::StatefulNode, private BoardListener, private chip:
     /// Lets the faults act that are due before (or at) `until`.
     void run_faults(cosim::Time until, bool inclusive);
     void receive(const cosim::Message& message);
+    bool is_camera_bus(cosim::PortIndex port) const {
+        return options_.camera && options_.i2c_linked && port == camera_bus_port();
+    }
+    cosim::Time camera_lookahead() const;
+    /// A phase for the camera as a device of the bus.
+    void camera_phase(const cosim::I2cPhase& phase, cosim::Time now);
 
     void signal_changed(SignalId id, double value, dspic::Cycle now) override;
     void uart_sent(int unit, const cosim::UartFrame& frame) override;

@@ -203,6 +203,54 @@ TEST_CASE("a board goes back, and on from a saved state, in the middle of a pict
     }
 }
 
+TEST_CASE("on a linked bus the camera answers as a device, when its eighth clock ends") {
+    const image::Image image = tests::assembled(dspic::dspic30f6014a(), kFirmware);
+    pic::PicNodeOptions options = with_camera(camera::make_test_pattern());
+    options.i2c_linked = true;
+    options.fastest_i2c_hertz = 100e3;
+    pic::PicNode node(image, options);
+    advance(node, kSetUp);
+    const cosim::PortIndex port = node.camera_bus_port();
+    REQUIRE(node.ports()[port].name == "camera_i2c");
+    CHECK(node.earliest_output(port) == cosim::kNever);
+    CHECK(node.lookahead(port) == 75 * cosim::kMicrosecond);
+    constexpr cosim::Time kClock = 12 * cosim::kMicrosecond;
+    cosim::Time now = kSetUp;
+    using Kind = cosim::I2cPhaseKind;
+    const auto asked = [&](Kind kind, unsigned byte) {
+        cosim::I2cPhase phase;
+        phase.kind = kind;
+        phase.byte = static_cast<std::uint8_t>(byte);
+        phase.start = now;
+        phase.clock_period = kClock;
+        const cosim::Message message{now + 5 * cosim::kMicrosecond, port, phase};
+        std::vector<cosim::Message> outbox;
+        node.advance(now += 20 * kClock, std::span(&message, 1), outbox);
+        std::erase_if(outbox, [&](const cosim::Message& out) { return out.port != port; });
+        if (kind == Kind::Stop) {
+            CHECK(outbox.empty());
+            return cosim::I2cPhase{};
+        }
+        REQUIRE(outbox.size() == 1);
+        CHECK(outbox[0].time == phase.start + 8 * kClock);
+        return std::get<cosim::I2cPhase>(outbox[0].payload);
+    };
+    CHECK(asked(Kind::Start, 0xC0).ack == 0);  // somebody else is meant
+    asked(Kind::Stop, 0);
+    CHECK(asked(Kind::Start, 0xDC).ack == 1);
+    CHECK(asked(Kind::Write, 0x5C).ack == 1);
+    CHECK(asked(Kind::Write, 0x37).ack == 1);
+    asked(Kind::Stop, 0);
+    CHECK(node.board().camera()->peek(0, 0x5C) == 0x37);
+    CHECK(asked(Kind::Start, 0xDC).ack == 1);
+    CHECK(asked(Kind::Write, 0x5C).ack == 1);
+    CHECK(asked(Kind::Start, 0xDD).ack == 1);
+    const cosim::I2cPhase data = asked(Kind::Read, 0);
+    CHECK(data.kind == Kind::Data);
+    CHECK(data.byte == 0x37);
+    asked(Kind::Stop, 0);
+}
+
 TEST_CASE("a camera that nobody listens to costs no events") {
     const std::shared_ptr<camera::Scenery> scenery = camera::make_test_pattern();
     const image::Image image = tests::assembled(dspic::dspic30f6014a(), R"(

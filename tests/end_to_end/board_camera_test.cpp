@@ -107,6 +107,43 @@ TEST_CASE("the main board's camera sees the world, the same in every placement a
     CHECK(right > 3 * noise);
 }
 
+TEST_CASE("the camera's transfers are in the trace and its exports, and faults of the bus reach them") {
+    const Workbench bench;
+    bench.file("ask.txt", "0.3 49\n");
+    REQUIRE(bench
+                .puckloop({"asm", PUCKLOOP_SOURCE "/firmware/camera/camera.s", "-o",
+                           (bench.folder() / "camera.hex").string()})
+                .status == 0);
+    const std::string file = bench.file("camera.toml", scenario("po3030k"));
+    const auto greeting = [&](const std::string& name, const std::string& fault) {
+        Words words{file, "--duration", "0.02", "--in-process", "--no-cache"};
+        if (!fault.empty()) words.insert(words.end(), {"--fault", fault});
+        const Ended ended = bench.run(name, words);
+        INFO(fault << ": " << ended.err);
+        CHECK(ended.status == 0);
+        const std::vector<unsigned char> bytes = received(bench, name);
+        return std::string(bytes.begin(), bytes.end());
+    };
+    CHECK(greeting("plain", "") == "3030\r\n");
+    int starts = 0;
+    std::vector<std::string> read;
+    for (const Row& row : bench.csv("plain", "trace.csv")) {
+        if (row.at("link") == "eye.i2c.pic" && row.at("detail") == "data") read.push_back(row.at("value"));
+        starts += row.at("link") == "eye.i2c.camera" && row.at("detail") == "start" ? 1 : 0;
+    }
+    CHECK(read == std::vector<std::string>{"30", "30"});
+    CHECK(starts > 4);  // the settings' writes besides
+    CHECK(bench.report("plain")["nodes"]["eye.i2c"]["not_acknowledged"] == 0);
+    const Ended decoded = bench.puckloop({"trace", "decode", bench.out("plain").string()});
+    CHECK_THAT(decoded.out, Catch::Contains("0x6e camera read DEVICE_ID_L(1) = 30"));
+
+    CHECK(greeting("flip", "flip link=eye.i2c address=0x6e phase=read bit=5 count=1") == "1030\r\n");
+    CHECK(greeting("nack", "nack link=eye.i2c address=0x6e register=1 phase=address count=1") == "30FF\r\n");
+    CHECK(greeting("sda", "sda link=eye.i2c address=0x6e phase=read time=70us count=1") == "0030\r\n");
+    CHECK(greeting("stretch", "stretch link=eye.i2c address=0x6e phase=read time=3ms count=1") == "3030\r\n");
+    CHECK(bench.report("stretch")["nodes"]["eye.i2c"]["stretched"] == 1);
+}
+
 TEST_CASE("a camera that cannot be is refused with its line") {
     const Workbench bench;
     const auto refused = [&](const std::string& text) {

@@ -70,6 +70,7 @@ std::unique_ptr<cosim::StatefulNode> make_pic(const json& spec) {
         options.camera = camera::Fitting{*camera::model_of(camera.at("model").get<std::string>()),
                                          camera.at("turned").get<bool>()};
         options.camera_log = spec.at("camera_log");
+        options.fastest_i2c_hertz = spec.at("i2c_hertz");
         options.scenery = make_board_scenery(camera);
     }
     const image::Image image = board_image(spec, dspic::dspic30f6014a().name, options.nvm);

@@ -2,6 +2,7 @@
 #include "tools/run/fault_results.h"
 
 #include "base/error.h"
+#include "emu/camera/model.h"
 #include "emu/i2c_devices/signals.h"
 #include "emu/pic/board.h"
 #include "emu/pic/signals.h"
@@ -75,6 +76,7 @@ json bus_spec(const RunSetup& setup, const RobotBoards& robot) {
     json boards = json::array();
     // The board hears every START: its firmware decides which address is its own.
     if (robot.rab) boards.push_back({{"name", "rab"}});
+    if (!robot.pic.camera.empty()) boards.push_back({{"name", "camera"}, {"address", camera::kI2cAddress}});
     json spec{{"kind", "i2c_bus"},
               {"name", robot.name + ".i2c"},
               {"hertz", setup.scenario.i2c_clock},

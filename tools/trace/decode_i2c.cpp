@@ -34,9 +34,12 @@ constexpr Register kRabWritten[] = {
 constexpr Register kGround[] = {{0, "REFLECTED_LEFT"}, {2, "REFLECTED_CENTRE"}, {4, "REFLECTED_RIGHT"},
                                 {6, "AMBIENT_LEFT"},   {8, "AMBIENT_CENTRE"},   {10, "AMBIENT_RIGHT"},
                                 {12, "REVISION"}};
+// The main board's camera: what all models share.
+constexpr Register kCamera[] = {{0, "DEVICE_ID_H"}, {1, "DEVICE_ID_L"}};
 constexpr Device kDevices[] = {{0x20, "rab", true, kRabRead, kRabWritten},
                                {0x60, "ground", true, kGround, kGround},
-                               {0x61, "rgb", false, {}, {}}};
+                               {0x61, "rgb", false, {}, {}},
+                               {0x6E, "camera", true, kCamera, kCamera}};
 
 const Device* device_at(std::uint8_t address) {
     for (const Device& device : kDevices)

@@ -38,11 +38,14 @@ void add_board_camera(RunSetup& setup, std::size_t index, const nlohmann::json& 
                       {"turned", robot.pic.camera_turned},
                       {"world", std::move(there)},
                       {"robot", index}};
+    spec["i2c_hertz"] = setup.scenario.i2c_clock;
     spec["camera_log"] = (setup.out / (robot.name + ".pic.camera.csv")).string();
     cosim::LinkSpec seen{
         robot.name + ".camera", {robot.name + ".pic", "camera"}, {"world", robot.name + ".camera"}};
     seen.record_from_b = false;
     setup.links.push_back(seen);
+    setup.links.push_back(
+        {robot.name + ".i2c.camera", {robot.name + ".pic", "camera_i2c"}, {robot.name + ".i2c", "camera"}});
 }
 
 }  // namespace puckloop::tools
