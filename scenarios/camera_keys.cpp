@@ -59,7 +59,8 @@ std::string read_board_camera(Reader& reader) {
     const std::string name = reader.text("camera", "none");
     if (name == "none") return {};
     if (!camera::model_of(name))
-        reader.fail("camera", fmt::format("there is no camera '{}'", name), "po3030k, po6030k or none");
+        reader.fail("camera", fmt::format("there is no camera '{}'", name),
+                    "po3030k, po6030k, po8030d or none");
     return name;
 }
 

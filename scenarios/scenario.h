@@ -45,7 +45,7 @@ struct PicBoard {
     std::vector<double> resets;    ///< s: the reset button (MCLR) is pressed, rising
     std::filesystem::path nvm{};   ///< file that keeps flash and EEPROM; empty: none
     std::optional<double> boot{};  ///< s: how long the firmware needs until it listens; none: not said
-    std::string camera{};          ///< on the board: "po3030k" or "po6030k"; empty: none
+    std::string camera{};          ///< on the board: "po3030k", "po6030k" or "po8030d"; empty: none
     bool camera_turned = false;    ///< it lies on its side, as on early boards
     std::string revision = "1.2";  ///< of the board: "1.2" or "1.3"
     std::optional<BluetoothModule> bluetooth{};

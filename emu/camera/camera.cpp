@@ -13,10 +13,6 @@ using cosim::I2cPhaseKind;
 constexpr std::uint8_t kBankRegister = 0x03;
 constexpr std::uint8_t kFullScale = 255;
 
-Registers defaults_of(Model model) {
-    return model == Model::Po3030k ? po3030k_defaults() : po6030k_defaults();
-}
-
 std::uint64_t fnv1a(const std::vector<std::uint8_t>& bytes) {
     std::uint64_t hash = 0xCBF29CE484222325u;
     for (const std::uint8_t byte : bytes)
@@ -182,7 +178,7 @@ std::uint8_t Camera::byte_at(const VideoTiming::Place& place) const {
                                                          : (rgb[1] << 3 & 0xE0) | rgb[2] >> 3);
     case PixelFormat::Yuv: {
         const Luma colour = luma(rgb);
-        return place.byte == 1 ? colour.y : place.pixel % 2 == 0 ? colour.u : colour.v;
+        return place.byte == 0 ? colour.y : place.pixel % 2 == 0 ? colour.u : colour.v;
     }
     case PixelFormat::Grey:
         return luma(rgb).y;

@@ -1,7 +1,7 @@
 #pragma once
-// The main board's camera: a PO3030K or PO6030K at its I2C address, its reset line, and its eight data lines
-// with VSYNC, HREF and pixel clock. It never ticks: lines are computed when somebody looks, and the scene is
-// drawn when the first byte of a frame is looked at.
+// The main board's camera: a PO3030K, PO6030K or PO8030D at its I2C address, its reset line, and its eight
+// data lines with VSYNC, HREF and pixel clock. It never ticks: lines are computed when somebody looks, and
+// the scene is drawn when the first byte of a frame is looked at.
 //
 // Deviations
 // 1. A picture is of the instant at which its first byte is looked at, all pixels at once: no rolling
@@ -9,7 +9,7 @@
 // 2. The master clock is the chip's instruction clock (14.7456 MHz on the board, where both come from one
 //    crystal), whatever the chip's oscillator does to it.
 // 3. A write that changes the timing begins a new frame at once.
-// 4. YUV comes as U Y V Y; U and V are those of the pixel that they come with.
+// 4. U and V of Y U Y V are those of the pixel that they come with.
 // 5. Without HREF the data lines are low. PCLK runs all the time.
 
 #include "cosim/core/message.h"

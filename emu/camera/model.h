@@ -11,22 +11,27 @@
 
 namespace puckloop::camera {
 
-enum class Model : std::uint8_t { Po3030k, Po6030k };
+enum class Model : std::uint8_t { Po3030k, Po6030k, Po8030d };
 
-/// "po3030k", "po6030k".
+/// "po3030k", "po6030k", "po8030d".
 std::string_view name_of(Model model);
 std::optional<Model> model_of(std::string_view name);
 
-/// 256 registers a bank; the PO3030K has one bank, the PO6030K four, chosen by register 3.
+/// 256 registers a bank; the PO3030K has one bank, the others four, chosen by register 3.
 inline constexpr std::size_t kBanks = 4, kBankSize = 256;
 using Registers = std::array<std::uint8_t, kBanks * kBankSize>;
 
-inline constexpr std::uint8_t kI2cAddress = 0x6E;  ///< 7 bits, of both
+inline constexpr std::uint8_t kI2cAddress = 0x6E;  ///< 7 bits, of all
 
 Registers po3030k_defaults();
 VideoMode po3030k_mode(const Registers& registers);
 Registers po6030k_defaults();
 VideoMode po6030k_mode(const Registers& registers);
+Registers po8030d_defaults();
+VideoMode po8030d_mode(const Registers& registers);
+
+/// After a reset.
+Registers defaults_of(Model model);
 
 /// What the model's registers come to, with frames no shorter than the array needs.
 VideoMode mode_of(Model model, const Registers& registers);

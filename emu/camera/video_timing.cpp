@@ -8,9 +8,13 @@ VideoTiming::VideoTiming(const VideoMode& mode, Cycle start) : mode_(mode), star
     const std::uint64_t pixel = mode_.pixel_thirds;
     row_ = mode_.frame_width * pixel;
     frame_ = mode_.frame_height * row_;
-    byte_ = std::max<std::uint64_t>(2, pixel * mode_.step / mode_.bytes_per_pixel());
+    const std::uint64_t out = mode_.out_pixel_thirds != 0 ? mode_.out_pixel_thirds : pixel * mode_.step;
+    byte_ = std::max<std::uint64_t>(2, out / mode_.bytes_per_pixel());
     rise_ = std::min(mode_.first_column * pixel, row_);
-    fall_ = std::clamp(mode_.end_column * pixel, rise_, row_);
+    fall_ = mode_.end_column * pixel;
+    if (mode_.out_pixel_thirds != 0 && mode_.end_column > mode_.first_column)
+        fall_ = rise_ + (mode_.end_column - mode_.first_column) / mode_.step * out;
+    fall_ = std::clamp(fall_, rise_, row_);
     const auto instant = [&](std::uint64_t row) {
         return std::min(row * row_ + mode_.vsync_column * pixel, frame_);
     };

@@ -99,11 +99,11 @@ void advance(pic::PicNode& node, cosim::Time until) {
 /// Out of reset, and before the first VSYNC.
 constexpr cosim::Time kSetUp = 100 * cosim::kMicrosecond;
 
-/// As if firmware had written the registers: QQVGA, 8 cycles a byte, upright.
+/// As if firmware had written the registers: QQVGA, 8 cycles a byte, upright, nothing automatic.
 void set_up(pic::PicNode& node) {
     advance(node, kSetUp);
     const dspic::Cycle now = node.chip().cycle();
-    for (const auto& [number, value] : {std::pair{0x1E, 0xCA}, {0x20, 0x33}, {0x1D, 0x20}}) {
+    for (const auto& [number, value] : {std::pair{0x1E, 0xCA}, {0x20, 0x33}, {0x1D, 0x20}, {0xD4, 0x0C}}) {
         cosim::I2cPhase phase;
         phase.kind = cosim::I2cPhaseKind::Start;
         phase.byte = 0xDC;

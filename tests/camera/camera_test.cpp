@@ -59,12 +59,12 @@ std::vector<std::uint8_t> row_at(Camera& camera, Cycle rise, std::size_t bytes) 
 
 TEST_CASE("a camera says which one it is, keeps what is written, and forgets it in reset") {
     const auto pattern = camera::make_test_pattern();
-    for (const Model model : {Model::Po3030k, Model::Po6030k}) {
+    for (const Model model : {Model::Po3030k, Model::Po6030k, Model::Po8030d}) {
         Camera camera({model}, *pattern);
         CHECK_FALSE(camera.i2c(phase(I2cPhaseKind::Start, kWriteAddress), 0));  // in reset
         camera.set_reset(true, 100);
         CHECK_FALSE(camera.i2c(phase(I2cPhaseKind::Start, 0xC0), 100));  // somebody else
-        CHECK(read(camera, 0) == (model == Model::Po3030k ? 0x30 : 0x60));
+        CHECK(read(camera, 0) == std::array{0x30, 0x60, 0x80}[static_cast<std::size_t>(model)]);
         CHECK(read(camera, 1) == 0x30);
         RandomStream random(5, "registers");
         const auto value = static_cast<std::uint8_t>(1 + random.below(255));
@@ -72,7 +72,7 @@ TEST_CASE("a camera says which one it is, keeps what is written, and forgets it 
         CHECK(read(camera, 0x5C) == value);
         write(camera, 0, 0x11, 200);
         CHECK(read(camera, 0) != 0x11);
-        if (model == Model::Po6030k) {
+        if (model != Model::Po3030k) {
             write(camera, 3, 1, 200);
             CHECK(read(camera, 0x5C) == 0);  // another bank
             write(camera, 3, 0, 200);
@@ -90,7 +90,7 @@ TEST_CASE("what comes out of a PO3030K is the picture, pixel for pixel, in each 
     const auto scenery = camera::make_picture(pixels);
     Camera camera({Model::Po3030k}, *scenery);
     camera.set_reset(true, 0);
-    for (const auto& [number, value] : {std::pair{0x1E, 0xCA}, {0x20, 0x33}, {0x1D, 0x20}})
+    for (const auto& [number, value] : {std::pair{0x1E, 0xCA}, {0x20, 0x33}, {0x1D, 0x20}, {0xD4, 0x0C}})
         write(camera, static_cast<std::uint8_t>(number), static_cast<std::uint8_t>(value), 1000);
     const auto row = static_cast<std::uint32_t>(random.below(120));
     Cycle rise = 1000;
@@ -125,6 +125,81 @@ TEST_CASE("what comes out of a PO3030K is the picture, pixel for pixel, in each 
     CHECK(camera.mode().flip);
 }
 
+TEST_CASE("a PO8030D set up as the e-puck library does gives what its routine reads") {
+    RandomStream random(8, "po8030d");
+    const camera::Pixels pixels = tests::random_pixels(random, 160, 120);
+    const auto scenery = camera::make_picture(pixels);
+    Camera camera({Model::Po8030d}, *scenery);
+    camera.set_reset(true, 0);
+    // 40 x 40 of the middle 320 x 320: each write chooses its bank first. The driver gives rows no window.
+    struct Setting {
+        int bank, number, value;
+    };
+    const auto set = [&](std::initializer_list<Setting> settings, Cycle now) {
+        for (const Setting& one : settings) {
+            write(camera, 3, static_cast<std::uint8_t>(one.bank), now);
+            write(camera, static_cast<std::uint8_t>(one.number), static_cast<std::uint8_t>(one.value), now);
+        }
+    };
+    constexpr int kFirst = 39, kLast = 235;
+    set({{0, 0x5B, 0}, {0, 0x6C, 0}, {0, 0x09, kFirst}, {0, 0x08, 0}, {0, 0x0C, 0}, {0, 0x0D, kLast}}, 1000);
+    set({{0, 0x11, 0x0A}, {0, 0x6A, 0x05}, {1, 0x4E, 0x30}, {1, 0xB7, 0}, {1, 0x93, 0x80}, {1, 0x94, 0x80}},
+        1000);
+    set({{2, 0x04, 0x9D}}, 1000);   // the picture as it is
+    constexpr Cycle kRoutine = 15;  // cycles from HREF to the first byte, then one in 8
+    const Cycle frame = camera.next_vsync(1000);
+    const auto row = static_cast<std::uint32_t>(random.below(120));
+    Cycle rise = camera.next_href(frame);
+    for (std::uint32_t i = 0; i < 2 * row; ++i)
+        rise = camera.next_href(rise);
+    REQUIRE(camera.href(rise));
+    const std::vector<std::uint8_t> colour = row_at(camera, rise + kRoutine, 160);
+    for (std::uint32_t x = 0; x < 80; ++x) {
+        const auto expected = tests::rgb565(pixels, kFirst + x, row);
+        CHECK((colour[2 * x] == expected[0] && colour[2 * x + 1] == expected[1]));
+    }
+    // 18.4 frames a second at full speed, an eighth of it here.
+    const Cycle falls = camera.next_vsync(frame);
+    CHECK(camera.next_vsync(falls) - frame == Cycle{776} * 516 * 16);
+
+    // Grey: half the clock's divider, one byte a pixel, so twice the rate.
+    set({{0, 0x11, 0x03}, {0, 0x6A, 0x04}, {1, 0x4E, 0x43}, {1, 0xB7, 1}}, falls);
+    const Cycle grey_frame = camera.next_vsync(falls);
+    rise = camera.next_href(grey_frame);
+    for (std::uint32_t i = 0; i < 2 * row; ++i)
+        rise = camera.next_href(rise);
+    const std::vector<std::uint8_t> grey = row_at(camera, rise + kRoutine, 80);
+    for (std::uint32_t x = 0; x < 80; ++x) {
+        const std::uint8_t* p = &pixels.rgb[3 * (row * 160 + kFirst + 1 + x)];
+        CHECK(std::abs(0.299 * p[0] + 0.587 * p[1] + 0.114 * p[2] - grey[x]) < 0.6);
+    }
+    CHECK(camera.next_vsync(camera.next_vsync(grey_frame)) - grey_frame == Cycle{776} * 516 * 8);
+}
+
+TEST_CASE("luma comes first in YUV") {
+    const camera::Pixels green{1, 1, {0, 200, 0}};
+    const auto scenery = camera::make_picture(green);
+    struct Setting {
+        std::uint8_t bank, number, value;
+    };
+    const auto check = [&](Model model, std::initializer_list<Setting> settings) {
+        Camera camera({model}, *scenery);
+        camera.set_reset(true, 0);
+        for (const Setting& one : settings) {
+            if (model != Model::Po3030k) write(camera, 3, one.bank, 0);
+            write(camera, one.number, one.value, 0);
+        }
+        Cycle rise = camera.next_href(camera.next_vsync(0));
+        if (!camera.href(rise)) rise = camera.next_href(rise);
+        constexpr int kLuma = 117, kU = 62, kV = 44;  // ITU-R BT.601
+        const std::vector<std::uint8_t> row = row_at(camera, rise, 4);
+        CHECK(row == std::vector<std::uint8_t>{kLuma, kU, kLuma, kV});
+    };
+    check(Model::Po3030k, {{0, 0xD4, 0x0C}, {0, 0x4E, 0x02}, {0, 0x1D, 0x40}});
+    check(Model::Po6030k, {{2, 0x04, 0x9D}, {1, 0x38, 0x02}, {0, 0x91, 0xD0}});
+    check(Model::Po8030d, {{2, 0x04, 0x9D}, {1, 0x4E, 0x02}, {0, 0x6A, 0x05}});
+}
+
 TEST_CASE("exposure, gain and white balance show in the picture once they are manual") {
     const camera::Pixels grey{1, 1, {100, 100, 100}};
     const auto scenery = camera::make_picture(grey);
@@ -143,7 +218,9 @@ TEST_CASE("exposure, gain and white balance show in the picture once they are ma
     write(camera, 0xB0, 0x0F, 0);
     write(camera, 0xB1, 0x98, 0);  // twice as long
     CHECK(levels(frame) == std::array{25u, 50u, 25u});
-    write(camera, 0xD4, 0x1C, 0);  // no automatic white balance
+    write(camera, 0xD4, 0x0C, 0);  // no automatic white balance
+    write(camera, 0xB0, 0x07, 0);
+    write(camera, 0xB1, 0xCC, 0);
     write(camera, 0x16, 0x80, 0);
     write(camera, 0x18, 0x20, 0);
     CHECK(levels(2 * frame) == std::array{25u, 25u, 6u});

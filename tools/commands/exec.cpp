@@ -192,8 +192,8 @@ void describe(Command& app, Arguments& a) {
     app.add_option("--camera", t.camera_picture,
                    "PGM or PPM picture that the camera looks at (pic; without it a test pattern)")
         ->type_name("FILE");
-    app.add_option("--camera-model", t.camera, "camera on the board: po3030k, po6030k or none (pic)")
-        ->check(one_of({"po3030k", "po6030k", "none"}))
+    app.add_option("--camera-model", t.camera, "camera on the board: po3030k, po6030k, po8030d or none (pic)")
+        ->check(one_of({"po3030k", "po6030k", "po8030d", "none"}))
         ->capture_default_str();
     app.add_flag("--camera-turned", t.camera_turned,
                  "the camera lies on its side, as the PO3030K of early boards (pic)");
