@@ -265,8 +265,8 @@ Time I2cBusNode::earliest_output(PortIndex port) const {
 
 Time I2cBusNode::lookahead(PortIndex port) const {
     if (is_world(port)) return nominal_period_;
-    if (!is_master(port)) return half_clock();
-    return options_.devices.empty() ? kClocksOfByte * nominal_period_ : nominal_period_;
+    if (!is_master(port)) return told_after(port);
+    return awaits_devices() ? nominal_period_ : kClocksOfByte * nominal_period_;
 }
 
 }  // namespace puckloop::cosim

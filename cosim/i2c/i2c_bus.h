@@ -20,9 +20,10 @@
 // told half a nominal clock after it began (`start` says when); by then masters have been told apart. Each
 // Start and Write is answered with Acknowledge and each Read with Data, in the device's own time: at
 // `start` + 8 clocks when it does not stretch, later when it does. The bus hands the answer on one clock
-// later. With such devices the bus's lookahead is one nominal clock. The `ack` of a Read is what the master
-// has decided when it begins; a dsPIC decides later and says 1. So a device knows that its byte was the last
-// one wanted when a Stop or Start follows it, not before.
+// later. While such a device is asked the bus's lookahead is one nominal clock. A `prompt` one, which never
+// stretches, is told of each phase late, half a nominal clock before it must answer. The `ack` of a Read is
+// what the master has decided when it begins; a dsPIC decides later and says 1. So a device knows that its
+// byte was the last one wanted when a Stop or Start follows it, not before.
 //
 // Several devices at one address answer together: SDA is low when any pulls it low, so their acknowledges are
 // or-ed and their bytes and-ed, and the slowest sets the pace.
@@ -59,6 +60,7 @@ struct I2cMasterPort {
 struct I2cDevicePort {
     std::string name;                       ///< port name: "rab"
     std::vector<std::uint8_t> addresses{};  ///< 7 bits; it is told of Starts for these only, empty: of all
+    bool prompt = false;                    ///< never stretches: knows its answer at once
 };
 
 struct I2cBusOptions {
@@ -194,6 +196,9 @@ class I2cBusNode final : public Node {
                 Time earliest);
     Time ninth_clock(const I2cPhase& phase) const;
     Time half_clock() const { return nominal_period_ / 2; }
+    /// How long after its begin a device in another node is told of a phase.
+    Time told_after(PortIndex device) const;
+    bool awaits_devices() const;
 
     I2cBusOptions options_;
     std::vector<Port> ports_;

@@ -10,6 +10,7 @@ namespace {
 constexpr std::uint8_t kReadBit = 1;
 constexpr Time kRecoveryClocks = 10;  // nine for the device, one for the STOP
 constexpr std::uint8_t kFirstBit = 0x80;
+constexpr Time kHalfClocksBeforeAnswer = 15;  // of the sixteen before the ninth clock
 
 bool contains(const std::vector<std::uint8_t>& list, std::uint8_t value) {
     return std::find(list.begin(), list.end(), value) != list.end();
@@ -19,6 +20,18 @@ bool contains(const std::vector<std::uint8_t>& list, std::uint8_t value) {
 const std::string& I2cBusNode::device_name(PortIndex port) const {
     static const std::string kLine = "a fault";
     return port == kFault ? kLine : options_.devices[port - options_.masters.size()].name;
+}
+
+Time I2cBusNode::told_after(PortIndex device) const {
+    return half_clock() *
+           (options_.devices[device - options_.masters.size()].prompt ? kHalfClocksBeforeAnswer : 1);
+}
+
+bool I2cBusNode::awaits_devices() const {
+    const auto others = [](const std::vector<PortIndex>& ports) {
+        return std::any_of(ports.begin(), ports.end(), [](PortIndex port) { return port != kFault; });
+    };
+    return others(holders_) || (pending_ && others(pending_->open));
 }
 
 void I2cBusNode::address(PortIndex port, const I2cPhase& phase, Time earliest) {
@@ -44,7 +57,7 @@ void I2cBusNode::offer_address(const I2cPhase& seen) {
         const auto& addresses = options_.devices[i].addresses;
         if (!addresses.empty() && !contains(addresses, wanted)) continue;
         const auto device = static_cast<PortIndex>(options_.masters.size() + i);
-        answers_.push_back({std::max(seen.start + half_clock(), pending_->earliest), device, seen});
+        answers_.push_back({std::max(seen.start + told_after(device), pending_->earliest), device, seen});
         pending_->open.push_back(device);
     }
 }
@@ -59,7 +72,7 @@ void I2cBusNode::byte_from(PortIndex port, const I2cPhase& phase) {
     } else if (heard) {
         for (const PortIndex device : addressed_devices_) {
             pending_->open.push_back(device);
-            answers_.push_back({seen.start + half_clock(), device, seen});
+            answers_.push_back({seen.start + told_after(device), device, seen});
         }
         for (I2cSlave* slave : addressed_)
             take_answer(write ? slave->write(seen.byte, seen.start) : slave->read(seen.start), {});
@@ -121,7 +134,7 @@ void I2cBusNode::release_devices(Time now) {
     I2cPhase stop;
     stop.start = now;
     for (const PortIndex device : addressed_devices_)
-        answers_.push_back({now + half_clock(), device, stop});
+        answers_.push_back({now + told_after(device), device, stop});
     addressed_devices_.clear();
     emitted_at_ = now + nominal_period_;
     for (I2cSlave* slave : addressed_)

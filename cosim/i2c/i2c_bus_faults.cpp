@@ -88,7 +88,7 @@ void I2cBusNode::go_on_incomplete(bool acknowledged) {
     pending_->phase = {I2cPhaseKind::Write, 0, 1, now_ + nominal_period_, nominal_period_, 0};
     for (const PortIndex device : addressed_devices_) {
         pending_->open.push_back(device);
-        answers_.push_back({pending_->phase.start + half_clock(), device, pending_->phase});
+        answers_.push_back({pending_->phase.start + told_after(device), device, pending_->phase});
     }
     for (I2cSlave* slave : addressed_)
         take_answer(slave->write(0, pending_->phase.start), {});

@@ -40,7 +40,7 @@ std::unique_ptr<cosim::Node> make_bus_node(const BusSpec& spec) {
     options.faults = spec.faults;
     options.masters = {{"pic", false}, {"linux", true}};
     for (const BoardOnBus& board : spec.boards) {
-        options.devices.push_back({board.name, {}});
+        options.devices.push_back({board.name, {}, board.prompt});
         if (board.address) options.devices.back().addresses.push_back(*board.address);
     }
     std::vector<std::unique_ptr<cosim::I2cSlave>> slaves;
@@ -65,7 +65,7 @@ std::unique_ptr<cosim::Node> make_bus_node(std::string_view text) {
         spec.log = json.value("log", spec.log);
         if (json.contains("faults")) spec.faults = cosim::faults_from_json(json["faults"]);
         for (const auto& board : json.value("boards", nlohmann::ordered_json::array())) {
-            spec.boards.push_back({board.at("name").get<std::string>(), {}});
+            spec.boards.push_back({board.at("name").get<std::string>(), {}, board.value("prompt", false)});
             if (board.contains("address")) spec.boards.back().address = board["address"].get<std::uint8_t>();
         }
     } catch (const nlohmann::json::exception& error) {

@@ -17,6 +17,7 @@ namespace puckloop::i2c_devices {
 struct BoardOnBus {
     std::string name;                       ///< of the port
     std::optional<std::uint8_t> address{};  ///< 7 bits: it hears this one only; without: its firmware decides
+    bool prompt = false;                    ///< it never stretches (cosim/i2c/i2c_bus.h)
 };
 
 struct BusSpec {
@@ -36,7 +37,7 @@ struct BusSpec {
 std::unique_ptr<cosim::Node> make_bus_node(const BusSpec& spec);
 
 /// The same from JSON: {"name", "ground_sensor", "rgb_turret", "lsm330", "seed", "hertz", "boards": [{"name",
-/// "address"}], "log", "faults"}, all optional but a board's name. Throws InputError.
+/// "address", "prompt"}], "log", "faults"}, all optional but a board's name. Throws InputError.
 std::unique_ptr<cosim::Node> make_bus_node(std::string_view json);
 
 }  // namespace puckloop::i2c_devices

@@ -134,11 +134,12 @@ void PicNode::receive(const cosim::Message& message) {
     }
 }
 
-/// The bus hands a phase on half a clock late at most.
+/// The bus tells of a phase half a clock before the answer is due: the camera is prompt
+/// (cosim/i2c/i2c_bus.h).
 cosim::Time PicNode::camera_lookahead() const {
     const auto fastest_period = static_cast<cosim::Time>(
         std::llround(static_cast<double>(cosim::kSecond) / options_.fastest_i2c_hertz));
-    return kClocksToAnswer * fastest_period - fastest_period / 2;
+    return fastest_period / 2;
 }
 
 /// The camera never stretches: its answer is known at once, and due when the eighth clock ends.

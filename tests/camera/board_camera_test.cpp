@@ -213,7 +213,7 @@ TEST_CASE("on a linked bus the camera answers as a device, when its eighth clock
     const cosim::PortIndex port = node.camera_bus_port();
     REQUIRE(node.ports()[port].name == "camera_i2c");
     CHECK(node.earliest_output(port) == cosim::kNever);
-    CHECK(node.lookahead(port) == 75 * cosim::kMicrosecond);
+    CHECK(node.lookahead(port) == 5 * cosim::kMicrosecond);
     constexpr cosim::Time kClock = 12 * cosim::kMicrosecond;
     cosim::Time now = kSetUp;
     using Kind = cosim::I2cPhaseKind;
@@ -223,7 +223,7 @@ TEST_CASE("on a linked bus the camera answers as a device, when its eighth clock
         phase.byte = static_cast<std::uint8_t>(byte);
         phase.start = now;
         phase.clock_period = kClock;
-        const cosim::Message message{now + 5 * cosim::kMicrosecond, port, phase};
+        const cosim::Message message{now + 75 * cosim::kMicrosecond, port, phase};
         std::vector<cosim::Message> outbox;
         node.advance(now += 20 * kClock, std::span(&message, 1), outbox);
         std::erase_if(outbox, [&](const cosim::Message& out) { return out.port != port; });

@@ -76,7 +76,8 @@ json bus_spec(const RunSetup& setup, const RobotBoards& robot) {
     json boards = json::array();
     // The board hears every START: its firmware decides which address is its own.
     if (robot.rab) boards.push_back({{"name", "rab"}});
-    if (!robot.pic.camera.empty()) boards.push_back({{"name", "camera"}, {"address", camera::kI2cAddress}});
+    if (!robot.pic.camera.empty())
+        boards.push_back({{"name", "camera"}, {"address", camera::kI2cAddress}, {"prompt", true}});
     json spec{{"kind", "i2c_bus"},
               {"name", robot.name + ".i2c"},
               {"hertz", setup.scenario.i2c_clock},
