@@ -12,6 +12,7 @@ using cosim::I2cPhaseKind;
 
 constexpr std::uint8_t kBankRegister = 0x03;
 constexpr std::uint8_t kFullScale = 255;
+constexpr std::uint64_t kSettled = 64;  // frames after which automatic control has come to rest
 
 std::uint64_t fnv1a(const std::vector<std::uint8_t>& bytes) {
     std::uint64_t hash = 0xCBF29CE484222325u;
@@ -55,6 +56,7 @@ void Camera::set_reset(bool high, Cycle now) {
     running_ = high;
     selected_ = false;
     registers_ = defaults_of(model_);
+    automatic_.reset();
     mode_ = mode_of(model_, registers_);
     restart(now);
 }
@@ -132,23 +134,31 @@ std::uint8_t Camera::quiet_data(Cycle now) const {
 }
 
 void Camera::take(Cycle now) {
-    taken_frame_ = timing_.frame(now);
+    const std::uint64_t frame = timing_.frame(now);
+    const std::uint64_t unseen = taken_frame_ ? frame - *taken_frame_ - 1 : frame;
+    taken_frame_ = frame;
     Picture& picture = pictures_[++pictures_taken_ % kPictures];
     picture.width = (turned_ ? kArrayHeight : kArrayWidth) / mode_.step;
     picture.height = (turned_ ? kArrayWidth : kArrayHeight) / mode_.step;
     picture.rgb.resize(3u * picture.width * picture.height);
     scenery_.render(picture.width, picture.height, pictures_taken_, picture.rgb);
-    expose(picture);
+    const SeenLight light(picture.rgb);
+    for (std::uint64_t i = 0; i < std::min(unseen, kSettled); ++i)
+        automatic_.frame(light, mode_.automatic, mode_.gain);
+    const std::array<double, 3> gain = automatic_.gain(mode_.automatic, mode_.gain);
+    expose(picture, gain);
+    automatic_.frame(light, mode_.automatic, mode_.gain);
     frames_.push_back({now, *taken_frame_, mode_.format, mode_.step,
                        static_cast<std::int32_t>(mode_.first_column - mode_.array_column),
-                       static_cast<std::int32_t>(mode_.first_row - mode_.array_row), fnv1a(picture.rgb)});
+                       static_cast<std::int32_t>(mode_.first_row - mode_.array_row), fnv1a(picture.rgb),
+                       gain[1]});
 }
 
-void Camera::expose(Picture& picture) const {
+void Camera::expose(Picture& picture, const std::array<double, 3>& gain) const {
     std::array<std::array<std::uint8_t, 256>, 3> curve{};
     for (std::size_t c = 0; c < 3; ++c)
         for (std::size_t i = 0; i < 256; ++i) {
-            const double light = static_cast<double>(i) / kFullScale * mode_.gain[c];
+            const double light = static_cast<double>(i) / kFullScale * gain[c];
             curve[c][i] = level((light - 0.5) * mode_.contrast + 0.5 + mode_.brightness);
         }
     for (std::size_t i = 0; i < picture.rgb.size(); ++i)

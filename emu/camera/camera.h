@@ -11,6 +11,8 @@
 // 3. A write that changes the timing begins a new frame at once.
 // 4. U and V of Y U Y V are those of the pixel that they come with.
 // 5. Without HREF the data lines are low. PCLK runs all the time.
+// 6. Frames that nobody looks at are not drawn: automatic exposure and white balance take what the next one
+//    that is drawn sees for what those saw.
 
 #include "cosim/core/message.h"
 #include "cosim/core/message_state.h"
@@ -36,12 +38,14 @@ struct TakenFrame {
     std::uint32_t step = 1;
     std::int32_t column = 0, row = 0;  ///< of the array's pixel where HREF begins
     std::uint64_t hash = 0;            ///< FNV-1a of the picture's red, green and blue bytes
+    double gain = 1.0;  ///< of green: what light was multiplied with, 1 at the default exposure
 
     template <class Archive>
     void state(Archive& archive) {
         archive(cycle, frame);
         archive.bounded(format, PixelFormat::Rgb565, PixelFormat::Grey);
         archive(step, column, row, hash);
+        archive.bounded(gain, 0.0, 1e12);
     }
 };
 std::string_view name_of(PixelFormat format);
@@ -101,7 +105,7 @@ class Camera {
     void state(Archive& archive) {
         archive(registers_, number_, number_next_, selected_, running_, edges_moved_, start_,
                 pictures_taken_);
-        archive(taken_frame_);
+        archive(taken_frame_, automatic_);
         archive.grows(frames_);
         if constexpr (!Archive::kRaw) state_of_pictures(archive);
         if constexpr (Archive::kLoads) set_mode();
@@ -130,7 +134,7 @@ class Camera {
     void restart(Cycle now);
     void set_mode();
     void take(Cycle now);
-    void expose(Picture& picture) const;
+    void expose(Picture& picture, const std::array<double, 3>& gain) const;
     std::uint8_t byte_at(const VideoTiming::Place& place) const;
 
     Model model_;
@@ -144,6 +148,7 @@ class Camera {
     std::uint64_t pictures_taken_ = 0;
     std::optional<std::uint64_t> taken_frame_;  ///< whose picture is the last one taken
     std::vector<TakenFrame> frames_;
+    AutomaticControl automatic_;
 
     // These follow from the rest, or are kept for as long as a board may go back.
     VideoMode mode_;

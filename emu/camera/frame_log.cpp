@@ -29,12 +29,12 @@ std::string report_json(const Camera& camera) {
 
 void write_frame_log(const std::string& file, const Camera& camera, const cosim::ClockDomain& clock) {
     std::ofstream out(file);
-    out << "time_s,frame,format,step,column,row,hash\n";
+    out << "time_s,frame,format,step,column,row,hash,gain\n";
     for (const TakenFrame& frame : camera.frames()) {
         const cosim::Time time = clock.time_of(frame.cycle);
-        out << fmt::format("{}.{:09},{},{},{},{},{},{:016x}\n", time / cosim::kSecond,
+        out << fmt::format("{}.{:09},{},{},{},{},{},{:016x},{:.4f}\n", time / cosim::kSecond,
                            time % cosim::kSecond / cosim::kNanosecond, frame.frame, name_of(frame.format),
-                           frame.step, frame.column, frame.row, frame.hash);
+                           frame.step, frame.column, frame.row, frame.hash, frame.gain);
     }
     close(out, file);
     const Camera::Picture& seen = camera.last_picture();

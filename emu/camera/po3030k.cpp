@@ -2,7 +2,7 @@
 //
 // Deviations: 1. After a reset the registers hold what that driver's table holds, but for the speed. 2. Edge
 // enhancement, gamma, colour matrix, lens shading, flicker and weighting windows are kept and change nothing.
-// 3. Automatic exposure and white balance hold a picture at the reference brightness at once.
+// 3. Registers do not show what automatic exposure and white balance (automatic.h) have come to.
 
 #include "emu/camera/model.h"
 
@@ -20,7 +20,10 @@ constexpr std::uint8_t kSpeed = 0x1D, kMirror = 0x1E, kSampling = 0x20, kOutput 
 constexpr std::uint8_t kBrightness = 0x9B, kContrast = 0x9C;
 constexpr std::uint8_t kVsyncStart = 0xA5, kVsyncStop = 0xA7, kVsyncColumn = 0xA9;
 constexpr std::uint8_t kExposure = 0xB0;  // three bytes
-constexpr std::uint8_t kReference = 0xB3, kAutomatic = 0xD4;
+constexpr std::uint8_t kMargin = 0xAE, kAutomaticSpeed = 0xAF, kReference = 0xB3;
+constexpr std::uint8_t kLongest = 0xBB, kShortest = 0xBD;  // exposure: the upper two bytes of three
+constexpr std::uint8_t kLeastRed = 0xC1, kMostRed = 0xC2, kLeastBlue = 0xC3, kMostBlue = 0xC4;
+constexpr std::uint8_t kAutomatic = 0xD4;
 
 constexpr std::uint8_t kDefaultContrast = 0x96, kDefaultReference = 0x70, kDefaultGain = 0x10;
 constexpr double kDefaultExposure = 0x07CC00;
@@ -43,11 +46,23 @@ std::uint32_t step_of(std::uint8_t sampling) {
     return sampling == 0x33 ? 4 : sampling == 0x11 ? 2 : 1;
 }
 
+void set_automatic(const Registers& r, AutomaticSettings& automatic) {
+    constexpr double kFullScale = 255.0, kSixteenth = 16.0, kDefaultLongest = kDefaultExposure / 256.0;
+    constexpr double kLargestAnalogGain = 4.0;
+    automatic.exposure = (r[kAutomatic] & kAutomaticExposure) != 0;
+    automatic.white = (r[kAutomatic] & kAutomaticWhite) != 0;
+    automatic.reference = r[kReference] / kFullScale;
+    automatic.margin = (r[kMargin] & 0x0F) / kFullScale;
+    automatic.rise = (r[kAutomaticSpeed] >> 4) / kSixteenth;
+    automatic.fall = (r[kAutomaticSpeed] & 0x0F) / kSixteenth;
+    automatic.least = word(r, kShortest) / kDefaultLongest;
+    automatic.most = word(r, kLongest) / kDefaultLongest * kLargestAnalogGain;
+    automatic.white_least = {r[kLeastRed] / kUnityGain, r[kLeastBlue] / kUnityGain};
+    automatic.white_most = {r[kMostRed] / kUnityGain, r[kMostBlue] / kUnityGain};
+}
+
 void set_exposure(const Registers& r, VideoMode& mode) {
-    if (r[kAutomatic] & kAutomaticExposure) {
-        for (double& gain : mode.gain)
-            gain = r[kReference] / static_cast<double>(kDefaultReference);
-    } else {
+    if (!(r[kAutomatic] & kAutomaticExposure)) {
         const double time =
             (r[kExposure] << 16 | r[kExposure + 1u] << 8 | r[kExposure + 2u]) / kDefaultExposure;
         const double steps = static_cast<double>(r[kGlobalGain]) - kDefaultGain;
@@ -95,9 +110,18 @@ Registers po3030k_defaults() {
                                                                 {kVsyncStop, 0x01},
                                                                 {kVsyncStop + 1, 0xE7},
                                                                 {kVsyncColumn + 1, 0x01},
+                                                                {kMargin, 0x22},
+                                                                {kAutomaticSpeed, 0x8C},
                                                                 {kExposure, 0x07},
                                                                 {kExposure + 1, 0xCC},
                                                                 {kReference, kDefaultReference},
+                                                                {kLongest, 0x07},
+                                                                {kLongest + 1, 0xCC},
+                                                                {kShortest + 1, 0x0C},
+                                                                {kLeastRed, 0x10},
+                                                                {kMostRed, 0xE0},
+                                                                {kLeastBlue, 0x10},
+                                                                {kMostBlue, 0xE0},
                                                                 {kAutomatic, 0x3C},
                                                                 {0xD5, 0x01}};
     for (const auto& [at, value] : kTable)
@@ -128,6 +152,7 @@ VideoMode po3030k_mode(const Registers& r) {
     mode.mirror = !(r[kMirror] & 0x80);
     mode.flip = !(r[kMirror] & 0x40);
     set_exposure(r, mode);
+    set_automatic(r, mode.automatic);
     return mode;
 }
 

@@ -2,7 +2,8 @@
 //
 // Deviations: 1. After a reset the registers hold a whole VGA picture in RGB565; frames are 800 x 500, the
 // most that the driver allows for. 2. Rows that come out are fixed; VSYNC rises one pixel behind HREF, as the
-// library sets it for the PO3030K. 3. The sketch filter is kept and changes nothing. 4. As po3030k.cpp, 3.
+// library sets it for the PO3030K. 3. The sketch filter is kept and changes nothing. 4. As po3030k.cpp,
+// 3; reference, speeds and bounds are those of the PO3030K.
 
 #include "emu/camera/model.h"
 
@@ -95,6 +96,8 @@ VideoMode po6030k_mode(const Registers& r) {
         for (double& gain : mode.gain)
             gain = time / kDefaultExposure;
     }
+    mode.automatic.exposure = (r[kAutomatic] & kManualExposure) == 0;
+    mode.automatic.white = (r[kAutomatic] & kManualWhite) == 0;
     if (r[kAutomatic] & kManualWhite)
         for (std::size_t c = 0; c < mode.gain.size(); ++c)
             mode.gain[c] *= r[kRedGain + c] / kUnityGain;

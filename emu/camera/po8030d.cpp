@@ -9,7 +9,7 @@
 // 3. The first row of colour comes 7 rows behind that of grey, as the two VSYNC settings of both drivers
 // mean; the window's Y is kept, for the library never writes it. 4. Pads drive the lines whatever pad control
 // says.
-// 5. The sketch filter and the auto control's windows are kept and change nothing. 6. As po3030k.cpp, 3.
+// 5. The sketch filter and the auto control's windows are kept and change nothing. 6. As po6030k.cpp, 4.
 
 #include "emu/camera/model.h"
 
@@ -70,6 +70,8 @@ void set_light(const Registers& r, VideoMode& mode) {
             static_cast<double>(word(r, kExposure)) * 65536.0 + static_cast<double>(word(r, kExposure + 2));
         mode.gain.fill(time / kDefaultExposure);
     }
+    mode.automatic.exposure = (r[kAutomatic] & kManualExposure) == 0;
+    mode.automatic.white = (r[kAutomatic] & kManualWhite) == 0;
     if (r[kAutomatic] & kManualWhite)
         for (std::size_t c = 0; c < mode.gain.size(); ++c)
             mode.gain[c] *= r[kRedGain + c] / kUnityGain;

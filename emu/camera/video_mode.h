@@ -3,6 +3,8 @@
 // a pixel is written. Decoded by each model (po3030k.cpp and its neighbours), carried out by VideoTiming and
 // Camera.
 
+#include "emu/camera/automatic.h"
+
 #include <array>
 #include <cstdint>
 
@@ -27,9 +29,10 @@ struct VideoMode {
     std::uint32_t vsync_row = 7, vsync_end_row = 487, vsync_column = 1;  ///< VSYNC rises and falls here
     PixelFormat format = PixelFormat::Rgb565;
     bool mirror = false, flip = false;          ///< left and right, top and bottom changed over
-    std::array<double, 3> gain{1.0, 1.0, 1.0};  ///< of red, green and blue, over that of the default exposure
-    double brightness = 0.0;                    ///< share of full scale, added
-    double contrast = 1.0;                      ///< about mid-grey
+    std::array<double, 3> gain{1.0, 1.0, 1.0};  ///< by hand: of red, green, blue, over the default exposure's
+    AutomaticSettings automatic{};
+    double brightness = 0.0;  ///< share of full scale, added
+    double contrast = 1.0;    ///< about mid-grey
 
     std::uint32_t bytes_per_pixel() const { return format == PixelFormat::Grey ? 1 : 2; }
     bool same_timing(const VideoMode& other) const {
