@@ -10,10 +10,16 @@ namespace puckloop::gap {
 std::span<const Effect> catalogue() {
     static const std::vector<Effect> all = [] {
         std::vector<Effect> effects;
-        for (const auto table : {motion_effects, proximity_effects, ground_effects, accelerometer_effects,
-                                 microphone_effects, rab_effects, timing_effects})
-            for (Effect& effect : table())
+        const std::pair<Kind, std::vector<Effect> (*)()> tables[] = {
+            {Kind::Motion, motion_effects},         {Kind::Proximity, proximity_effects},
+            {Kind::Ground, ground_effects},         {Kind::Accelerometer, accelerometer_effects},
+            {Kind::Microphone, microphone_effects}, {Kind::Rab, rab_effects},
+            {Kind::Timing, timing_effects}};
+        for (const auto& [kind, table] : tables)
+            for (Effect& effect : table()) {
+                effect.kinds.insert(effect.kinds.begin(), kind);
                 effects.push_back(std::move(effect));
+            }
         return effects;
     }();
     return all;

@@ -15,10 +15,10 @@ namespace puckloop::gap {
 /// the model has no a.
 struct EffectParameter {
     const char* name;
-    double low, high;            ///< beyond the simulator's neutral value these are not believed
-    double prior_sd;             ///< width of the weak prior about neutral
-    std::vector<double> starts;  ///< where a fit begins, in the parameter's unit; several = tried one by one
-    const char* source;          ///< of the range
+    double low, high;              ///< beyond the simulator's neutral value these are not believed
+    double prior_sd;               ///< width of the weak prior about neutral
+    const char* source;            ///< of the range
+    std::vector<double> starts{};  ///< where a fit begins, in the parameter's unit; several: tried one by one
     const char* unless = nullptr;  ///< not freed where the model has this parameter, which does the same
     double resolution = 0.0;       ///< the model says no finer what it is, parameter's unit
     bool threshold = false;        ///< acts only where something tried meets it: no row moves between
@@ -32,19 +32,14 @@ enum class EffectRole {
 };
 
 struct Effect {
-    const char* name;   ///< "wheel_scale"
-    int number;         ///< in the sheet of effects this catalogue follows
-    const char* title;  ///< plain words, as a sentence would name it
-    const char* mechanism;
-    const char* equation;
-    std::vector<Kind> kinds;
+    const char* name;           ///< "wheel_scale"
+    int number;                 ///< in the sheet of effects this catalogue follows
+    const char* title;          ///< plain words, as a sentence would name it
+    std::vector<Kind> kinds{};  ///< that of its table first; a table names only the others
     std::vector<EffectParameter> parameters;
-    std::vector<const char*> needs{};       ///< columns that must be there and vary; "a|b": one of them
-    const char* observables;                ///< what it touches
-    const char* enters;                     ///< where it enters the simulator
-    std::vector<const char*> confounded{};  ///< names of effects that can look the same
-    const char* separated_by;               ///< the experiment that tells it from those
-    bool measuring_chain = false;           ///< of tracker, host or ruler, not of the robot
+    std::vector<const char*> needs{};  ///< columns that must be there and vary; "a|b": one of them
+    const char* enters;                ///< where it enters the simulator
+    const char* separated_by;          ///< the experiment that tells it from those that can look the same
     EffectRole role = EffectRole::Mean;
     bool fitted_along = false;  ///< beside every cause where the data can part them (the measuring chain's)
 };

@@ -1,6 +1,6 @@
 #pragma once
 // The catalogue's tables, one a kind of experiment; catalogue.cpp puts them in order. An effect that acts in
-// several kinds stands in the first of them.
+// several kinds stands in the first of them. Above each: its mechanism and equation.
 
 #include "gap/effects/effect.h"
 
