@@ -1,6 +1,5 @@
 #include "gap/validate/check.h"
 
-#include "base/error.h"
 #include "gap/clean/copies.h"
 #include "gap/clean/fill_missing.h"
 #include "gap/clean/missing_cells.h"
@@ -9,6 +8,7 @@
 #include "gap/data/problems.h"
 #include "gap/validate/check_kinds.h"
 #include "gap/validate/check_mixed.h"
+#include "gap/validate/refuse.h"
 
 #include <fmt/format.h>
 
@@ -26,10 +26,6 @@ constexpr std::size_t kFewRows = 30;
 constexpr std::size_t kRunRows = 10;  // a run this long whose measurement never changes is odd
 constexpr double kLongestGap = 1e7;   // s
 constexpr double kManyClipped = 0.5, kMostClipped = 0.95;
-
-std::string place_of(const Experiment& experiment, const Run& run) {
-    return (experiment.folder / run.file).string();
-}
 
 /// " counts", "" for pure numbers.
 std::string unit_text(const ColumnInfo& info) {
@@ -57,10 +53,10 @@ void check_range(Experiment& experiment, Run& run, const ColumnInfo& info) {
             if (value < info.low || value > info.high) value = std::nan("");
         return;
     }
-    throw InputError(place_of(experiment, run), fmt::format("row {}", first + 1),
-                     fmt::format("{} = {:.6g}{} is impossible: wrong unit or swapped columns ({} of {} rows)",
-                                 info.name, values[first], unit_text(info), outside, present),
-                     fmt::format("{:g} to {:g}{}", info.low, info.high, unit_text(info)));
+    refuse(experiment, run,
+           fmt::format("{} = {:.6g}{} is impossible: wrong unit or swapped columns ({} of {} rows)",
+                       info.name, values[first], unit_text(info), outside, present),
+           fmt::format("{:g} to {:g}{}", info.low, info.high, unit_text(info)), static_cast<long>(first));
 }
 
 /// Columns that number something: between two of them is nothing.
@@ -74,9 +70,8 @@ void check_index(const Experiment& experiment, const Run& run, const ColumnInfo&
     const auto& values = run.column(info.name);
     for (std::size_t i = 0; i < values.size(); ++i)
         if (!std::isnan(values[i]) && values[i] != std::round(values[i]))
-            throw InputError(place_of(experiment, run), fmt::format("row {}", i + 1),
-                             fmt::format("{} = {:.6g} is not whole", info.name, values[i]),
-                             "whole numbers; or the columns are swapped");
+            refuse(experiment, run, fmt::format("{} = {:.6g} is not whole", info.name, values[i]),
+                   "whole numbers; or the columns are swapped", static_cast<long>(i));
 }
 
 /// Missing cells, in one caution for all runs.
@@ -89,9 +84,9 @@ void check_missing(Experiment& experiment, const ColumnInfo& info) {
         if (missing == 0) continue;
         const double share = static_cast<double>(missing) / static_cast<double>(values.size());
         if (info.required && share > kMostMissing)
-            throw InputError(place_of(experiment, run), "",
-                             fmt::format("{} is missing in {} of {} rows", info.name, missing, values.size()),
-                             info.role == Role::Truth ? "the truth in most rows" : "it in most rows");
+            refuse(experiment, run,
+                   fmt::format("{} is missing in {} of {} rows", info.name, missing, values.size()),
+                   info.role == Role::Truth ? "the truth in most rows" : "it in most rows");
         files.push_back({run.file, missing, values.size()});
     }
     if (files.empty()) return;
@@ -150,24 +145,21 @@ void check_clock(Experiment& experiment, const Run& run, const char* name) {
     for (std::size_t i = 0; i < times.size(); ++i) {
         if (std::isnan(times[i])) continue;
         if (times[i] < last)
-            throw InputError(place_of(experiment, run), fmt::format("row {}", i + 1),
-                             fmt::format("{} goes back from {:.6g} to {:.6g} s", name, last, times[i]),
-                             "a clock that runs forward: one run a file");
+            refuse(experiment, run, fmt::format("{} goes back from {:.6g} to {:.6g} s", name, last, times[i]),
+                   "a clock that runs forward: one run a file", static_cast<long>(i));
         if (!std::isnan(last)) steps.push_back(times[i] - last);
         last = times[i];
     }
     if (!steps.empty() && *std::max_element(steps.begin(), steps.end()) <= 0) {
         if (experiment.kind == Kind::Motion || experiment.kind == Kind::Timing)
-            throw InputError(place_of(experiment, run), "", fmt::format("the clock {} stands still", name),
-                             "a time for every row");
+            refuse(experiment, run, fmt::format("the clock {} stands still", name), "a time for every row");
         experiment.cautions.push_back(fmt::format(
             "{}: the clock {} stands still: what depends on time cannot be seen", run.file, name));
     }
     if (!steps.empty() && *std::max_element(steps.begin(), steps.end()) > kLongestGap)
-        throw InputError(
-            place_of(experiment, run), "",
-            fmt::format("{} jumps by {:.3g} s", name, *std::max_element(steps.begin(), steps.end())),
-            "seconds");
+        refuse(experiment, run,
+               fmt::format("{} jumps by {:.3g} s", name, *std::max_element(steps.begin(), steps.end())),
+               "seconds");
     if (steps.size() < 10) return;
     std::sort(steps.begin(), steps.end());
     const double usual = steps[steps.size() / 2];

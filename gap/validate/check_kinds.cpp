@@ -1,58 +1,37 @@
 #include "gap/validate/check_kinds.h"
 
-#include "base/error.h"
-#include "gap/data/columns.h"
 #include "gap/stats/robust.h"
 #include "gap/validate/check_motion.h"
+#include "gap/validate/refuse.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <numbers>
 
 namespace puckloop::gap {
 
 namespace {
 
-[[noreturn]] void refuse(const Experiment& experiment, const Run& run, const std::string& problem,
-                         const std::string& expected) {
-    throw InputError((experiment.folder / run.file).string(), "", problem, expected);
+/// Rows in which both columns are there.
+std::array<std::vector<double>, 2> both(const std::vector<double>& a, const std::vector<double>& b) {
+    std::array<std::vector<double>, 2> known;
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+        if (!std::isnan(a[i] + b[i])) known[0].push_back(a[i]), known[1].push_back(b[i]);
+    return known;
 }
 
-/// Rank correlation of two columns over rows where both are there; 0 when there are few.
+constexpr std::size_t kFew = 8;  // rows that say nothing
+
+/// Of two columns over rows where both are there; 0 when there are few.
+double correlation(const std::vector<double>& a, const std::vector<double>& b) {
+    const auto [x, y] = both(a, b);
+    return x.size() < kFew ? 0.0 : stats::correlation(x, y);
+}
 double rank_correlation(const std::vector<double>& a, const std::vector<double>& b) {
-    std::vector<std::pair<double, double>> pairs;
-    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-        if (!std::isnan(a[i]) && !std::isnan(b[i])) pairs.emplace_back(a[i], b[i]);
-    if (pairs.size() < 8) return 0.0;
-    const auto ranks = [&](auto key) {
-        std::vector<std::size_t> order(pairs.size());
-        for (std::size_t i = 0; i < order.size(); ++i)
-            order[i] = i;
-        std::sort(order.begin(), order.end(),
-                  [&](std::size_t i, std::size_t j) { return key(pairs[i]) < key(pairs[j]); });
-        std::vector<double> rank(pairs.size());
-        for (std::size_t i = 0; i < order.size();) {
-            std::size_t j = i;
-            while (j < order.size() && key(pairs[order[j]]) == key(pairs[order[i]]))
-                ++j;
-            for (std::size_t k = i; k < j; ++k)
-                rank[order[k]] = static_cast<double>(i + j - 1) / 2;
-            i = j;
-        }
-        return rank;
-    };
-    const auto ra = ranks([](const auto& p) { return p.first; });
-    const auto rb = ranks([](const auto& p) { return p.second; });
-    const double mean = static_cast<double>(pairs.size() - 1) / 2;
-    double ab = 0, aa = 0, bb = 0;
-    for (std::size_t i = 0; i < pairs.size(); ++i) {
-        ab += (ra[i] - mean) * (rb[i] - mean);
-        aa += (ra[i] - mean) * (ra[i] - mean);
-        bb += (rb[i] - mean) * (rb[i] - mean);
-    }
-    return aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : 0.0;
+    const auto [x, y] = both(a, b);
+    return correlation(stats::ranks(x), stats::ranks(y));
 }
 
 /// A reflective sensor sees more when the wall is nearer; the other way round the columns are exchanged or
@@ -91,27 +70,6 @@ void check_proximity(Experiment& experiment) {
             "distances below 1 m; say unit = \"cm\" or \"mm\" in [columns]");
 }
 
-double nominal(const Experiment& experiment, const std::string& name, double fallback) {
-    const auto place = experiment.nominal.find(name);
-    return place == experiment.nominal.end() ? fallback : place->second;
-}
-
-/// Plain correlation of two columns over rows where both are there.
-double correlation(const std::vector<double>& a, const std::vector<double>& b) {
-    double n = 0, sa = 0, sb = 0, aa = 0, bb = 0, ab = 0;
-    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
-        if (std::isnan(a[i] + b[i])) continue;
-        n += 1, sa += a[i], sb += b[i];
-    }
-    if (n < 8) return 0.0;
-    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
-        if (std::isnan(a[i] + b[i])) continue;
-        const double da = a[i] - sa / n, db = b[i] - sb / n;
-        aa += da * da, bb += db * db, ab += da * db;
-    }
-    return aa > 0 && bb > 0 ? ab / std::sqrt(aa * bb) : 0.0;
-}
-
 /// What the rear axis should feel, from the truth columns; the right axis likewise.
 std::vector<double> felt(const Run& run, const char* tilt, const char* push, double sign) {
     const auto &angle = run.column(tilt), &force = run.column(push);
@@ -132,7 +90,7 @@ Pace pace(const std::vector<double>& times) {
     std::vector<double> steps;
     for (std::size_t i = 1; i < times.size(); ++i)
         if (!std::isnan(times[i] - times[i - 1])) steps.push_back(times[i] - times[i - 1]);
-    if (steps.size() < 8) return {};
+    if (steps.size() < kFew) return {};
     Pace pace{stats::upper_median(steps), 0.0, 0.0};
     for (double& step : steps) {
         pace.mean += step / static_cast<double>(steps.size());
@@ -188,8 +146,8 @@ void check_ground(Experiment& experiment) {
 }
 
 void check_accelerometer(Experiment& experiment) {
-    const double zero = nominal(experiment, "accelerometer.zero", 2048),
-                 gain = nominal(experiment, "accelerometer.gain", 800);
+    const double zero = experiment.nominal_or("accelerometer.zero", 2048),
+                 gain = experiment.nominal_or("accelerometer.gain", 800);
     for (const Run& run : experiment.runs) {
         double sum = 0.0, count = 0.0;
         for (const double value : run.column("az"))

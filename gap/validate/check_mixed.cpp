@@ -1,15 +1,14 @@
 #include "gap/validate/check_mixed.h"
 
-#include "base/error.h"
 #include "gap/data/columns.h"
 #include "gap/stats/robust.h"
-#include "physics/description/robot_constants.h"
+#include "gap/validate/check_motion.h"
+#include "gap/validate/refuse.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <set>
 
 namespace puckloop::gap {
@@ -21,28 +20,17 @@ bool told_by_unit(const Run& run) {
     return std::any_of(units.begin(), units.end(), [&](double unit) { return unit != units.front(); });
 }
 
-[[noreturn]] void refuse(const Experiment& experiment, const Run& run, std::size_t row,
-                         const std::string& problem, const char* expected) {
-    throw InputError((experiment.folder / run.file).string(), fmt::format("row {}", row + 1), problem,
-                     expected);
-}
-
 // ---- motion
 
 /// m/s that no robot here exceeds: by its commands, else by what is built.
 double fastest(const Experiment& experiment, const Run& run) {
     constexpr double kAny = 1.0, kOver = 1.5;
     if (!run.has("cmd_left") || !run.has("cmd_right")) return kAny;
-    const auto nominal = [&](const char* name, double fallback) {
-        const auto place = experiment.nominal.find(name);
-        return place == experiment.nominal.end() ? fallback : place->second;
-    };
     double steps = 0.0;
     for (const char* name : {"cmd_left", "cmd_right"})
         for (const double value : run.column(name))
             if (!std::isnan(value)) steps = std::max(steps, std::abs(value));
-    return kOver * steps * 2 * std::numbers::pi * nominal("robot.wheel_radius_left", physics::kWheelRadius) /
-           nominal("robot.steps_per_turn", physics::kStepsPerTurn);
+    return kOver * steps * metres_per_step(experiment);
 }
 
 /// Each row belongs to that of two paths whose end is nearer; the second begins with the first jump that no
@@ -83,11 +71,11 @@ void check_paths(const Experiment& experiment, const Run& run) {
     if (shares.size() < kFewest || static_cast<double>(std::min(count[0], count[1])) < least) return;
     if (stats::upper_median(shares) > kOwn) return;
     refuse(
-        experiment, run, first,
+        experiment, run,
         fmt::format("the pose jumps to and fro between two paths, {} times and up to {:.2g} m: rows of two "
                     "robots are mixed, or the tracker took another one for it",
                     shares.size() + 1, far),
-        "one robot a file");
+        "one robot a file", static_cast<long>(first));
 }
 
 // ---- timing
@@ -100,12 +88,12 @@ void check_frames(Experiment& experiment, const Run& run) {
     for (std::size_t i = 1; i < seq.size(); ++i)
         if (seq[i] <= seq[i - 1] && back++ == 0) first = i;
     if (back > kFew && static_cast<double>(back) > kMostBack * static_cast<double>(seq.size()))
-        refuse(experiment, run, first,
+        refuse(experiment, run,
                fmt::format(
                    "seq does not count on ({:g} after {:g}; so in {} of {} rows): frames of two robots are "
                    "mixed, or told twice",
                    seq[first], seq[first - 1], back, seq.size()),
-               "one robot a file, each frame once");
+               "one robot a file, each frame once", static_cast<long>(first));
     const auto &host = run.column("t_host_s"), &period = run.column("nominal_period");
     if (!seq.empty() || period.empty() || std::isnan(period.front())) return;
     double begin = NAN, end = NAN;

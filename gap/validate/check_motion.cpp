@@ -1,7 +1,7 @@
 #include "gap/validate/check_motion.h"
 
-#include "base/error.h"
 #include "gap/stats/robust.h"
+#include "gap/validate/refuse.h"
 #include "physics/description/robot_constants.h"
 
 #include <fmt/format.h>
@@ -18,11 +18,6 @@ namespace {
 constexpr double kFastestWheel = 5.0;  // m/s
 constexpr double kFactor = 5.0;        // between what two columns say of one thing
 constexpr double kSideways = 0.6;      // share of a straight step that must lie along the heading
-
-[[noreturn]] void refuse(const Experiment& experiment, const Run& run, const std::string& problem,
-                         const std::string& expected) {
-    throw InputError((experiment.folder / run.file).string(), "", problem, expected);
-}
 
 struct Path {
     double length = 0.0, turned = 0.0;  // tracked
@@ -72,10 +67,11 @@ void check_counter(const Experiment& experiment, const Run& run, const char* nam
         last = i;
         if (std::abs(change) * metre_per_step < kFastestWheel * std::max(span, 0.1)) continue;
         const bool wrapped = std::abs(std::abs(change) - kWrap) < kNearWrap * kWrap;
-        throw InputError((experiment.folder / run.file).string(), fmt::format("row {}", i + 1),
-                         fmt::format("{} jumps by {:.6g} steps in {:.3g} s{}", name, change, span,
-                                     wrapped ? ": a 16-bit counter that wrapped" : ""),
-                         wrapped ? "counters put together over wraps (add 65536)" : "a counter that runs on");
+        refuse(experiment, run,
+               fmt::format("{} jumps by {:.6g} steps in {:.3g} s{}", name, change, span,
+                           wrapped ? ": a 16-bit counter that wrapped" : ""),
+               wrapped ? "counters put together over wraps (add 65536)" : "a counter that runs on",
+               static_cast<long>(i));
     }
 }
 
@@ -188,6 +184,11 @@ void check_pose(const Experiment& experiment, const Run& run, double metre_per_s
 
 }  // namespace
 
+double metres_per_step(const Experiment& experiment) {
+    return 2 * std::numbers::pi * experiment.nominal_or("robot.wheel_radius_left", physics::kWheelRadius) /
+           experiment.nominal_or("robot.steps_per_turn", physics::kStepsPerTurn);
+}
+
 /// Left and right wheel exchanged turn the other way; millimetres taken for metres go a thousand times too
 /// far.
 void check_motion(Experiment& experiment) {
@@ -195,9 +196,7 @@ void check_motion(Experiment& experiment) {
     double driven = 0.0, tracked = 0.0, duration = 0.0;
     bool steps = false, heading_fixed = true;
     const double axle = experiment.nominal_or("robot.axle_length", physics::kAxleLength);
-    const double metre_per_step = 2 * std::numbers::pi *
-                                  experiment.nominal_or("robot.wheel_radius_left", physics::kWheelRadius) /
-                                  experiment.nominal_or("robot.steps_per_turn", physics::kStepsPerTurn);
+    const double metre_per_step = metres_per_step(experiment);
     for (const Run& run : experiment.runs) {
         const Path path = measure(run);
         tracked += path.length;
