@@ -4,9 +4,8 @@
 // Deviations: 1. gravity is turned exactly by pitch and roll; the world model takes them as small. 2. The low
 // pass of 150 Hz is left out: rows are 10 ms and more apart.
 
-#include "gap/models/model.h"
+#include "gap/models/model_of.h"
 #include "gap/models/rows.h"
-#include "physics/description/parameters.h"
 #include "physics/description/robot_constants.h"
 
 #include <fmt/format.h>
@@ -22,7 +21,7 @@ namespace {
 constexpr double kGravity = 9.81;
 constexpr const char* kAxes[] = {"ax", "ay", "az"};
 
-class AccelerometerModel final : public Model {
+class AccelerometerModel final : public ModelOf<physics::Parameters> {
   public:
     explicit AccelerometerModel(const Experiment& experiment) {
         const Rows rows(experiment, "", {});
@@ -45,16 +44,14 @@ class AccelerometerModel final : public Model {
             one.time = column("t_s");
             one.session = column("session");
         }
-        declare();
+        declare_all();
         apply_nominal(experiment);
     }
 
     void predict(const std::vector<double>& v, Prediction& out) const override {
         out.resize(3);
-        const auto value = [&](int index) { return v[static_cast<std::size_t>(index)]; };
-        const double zero = value(zero_), gain = value(gain_), sag = value(sag_), warm = value(warmup_),
-                     vibration = value(vibration_);
-        const double c = std::cos(value(turn_)), s = std::sin(value(turn_));
+        const physics::AccelerometerParameters now = numbers(v).accelerometer;
+        const double c = std::cos(now.turn), s = std::sin(now.turn);
         for (std::size_t axis = 0; axis < 3; ++axis) {
             const Axis& one = axes_[axis];
             Predicted& p = out[axis];
@@ -64,18 +61,17 @@ class AccelerometerModel final : public Model {
                 const double seen = axis == 0   ? c * felt[0] + s * felt[1]
                                     : axis == 1 ? c * felt[1] - s * felt[0]
                                                 : felt[2];
-                double counts = zero + value(bias_[axis]) + gain * value(scale_[axis]) * seen;
+                double counts = now.zero + now.bias[axis] + now.gain * now.scale[axis] * seen;
                 for (const auto& [session, index] : session_bias_[axis])
-                    if (one.session[i] == session) counts += value(index);
-                if (warm != 0.0)
-                    counts += warm * (1 - std::exp(-std::max(one.time[i], 0.0) / value(warmup_time_)));
-                p.mean[i] = counts * (1 - sag * (one.motor[i] > 0 ? 1.0 : 0.0));
+                    if (one.session[i] == session) counts += v[static_cast<std::size_t>(index)];
+                if (now.warmup != 0.0) counts += now.warmup * warmed(one.time[i], now.warmup_time);
+                p.mean[i] = counts * (1 - now.motor_sag * (one.motor[i] > 0 ? 1.0 : 0.0));
             }
             p.extra.clear();
-            if (vibration == 0.0) continue;
+            if (now.vibration == 0.0) continue;
             p.extra.resize(p.mean.size());
             for (std::size_t i = 0; i < p.mean.size(); ++i)
-                p.extra[i] = vibration * one.motor[i];
+                p.extra[i] = now.vibration * one.motor[i];
         }
     }
 
@@ -85,18 +81,13 @@ class AccelerometerModel final : public Model {
         std::vector<double> motor, time, session;
     };
 
-    void declare() {
-        const physics::Parameters defaults;
-        zero_ = add("accelerometer.zero", "counts", defaults.accelerometer.zero);
-        gain_ = add("accelerometer.gain", "counts", defaults.accelerometer.gain);
-        turn_ = add("accelerometer.turn", "rad", 0.0);
-        sag_ = add("accelerometer.motor_sag", "1", 0.0);
-        warmup_ = add("accelerometer.warmup", "counts", 0.0);
-        warmup_time_ = add("accelerometer.warmup_time", "s", 300.0);
-        vibration_ = add("accelerometer.vibration", "counts", 0.0);
+    void declare_all() {
+        simulated({"accelerometer.zero", "accelerometer.gain", "accelerometer.turn",
+                   "accelerometer.motor_sag", "accelerometer.warmup", "accelerometer.warmup_time",
+                   "accelerometer.vibration"});
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            bias_[axis] = add(fmt::format("accelerometer.bias{}", axis), "counts", 0.0);
-            scale_[axis] = add(fmt::format("accelerometer.scale{}", axis), "1", 1.0);
+            simulated(
+                {fmt::format("accelerometer.bias{}", axis), fmt::format("accelerometer.scale{}", axis)});
             auto sessions = distinct(axes_[axis].session);
             for (std::size_t k = 1; k < std::min<std::size_t>(sessions.size(), 6); ++k)
                 session_bias_[axis].emplace_back(
@@ -106,9 +97,7 @@ class AccelerometerModel final : public Model {
     }
 
     std::array<Axis, 3> axes_;
-    std::array<int, 3> bias_{}, scale_{};
     std::array<std::vector<std::pair<double, int>>, 3> session_bias_;
-    int zero_ = 0, gain_ = 0, turn_ = 0, sag_ = 0, warmup_ = 0, warmup_time_ = 0, vibration_ = 0;
 };
 
 }  // namespace

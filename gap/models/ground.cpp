@@ -5,14 +5,12 @@
 // sensor stands ahead or answers late, the grey there is read off the sensor's own track (cubic between rows,
 // a straight line beyond its ends); aside it goes along the stated slope.
 
-#include "gap/models/model.h"
+#include "gap/models/model_of.h"
 #include "gap/models/rows.h"
-#include "physics/description/parameters.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace puckloop::gap {
@@ -22,7 +20,11 @@ namespace {
 constexpr double kStill = 1e-6;     // m: less is no way
 constexpr double kSameGrey = 0.01;  // beyond the scatter of a standing robot's truth
 
-class GroundModel final : public Model {
+struct Numbers : physics::Parameters {
+    double raised = 0.0, forward_error = 0.0, left_error = 0.0, ambient_offset = 0.0;
+};
+
+class GroundModel final : public ModelOf<Numbers> {
   public:
     explicit GroundModel(const Experiment& experiment) {
         const Rows rows(experiment, "sensor", {"grey", "reading"});
@@ -40,31 +42,20 @@ class GroundModel final : public Model {
         ambient_ = column("ambient", 0);
         time_ = column("t_s", 0);
         lay_track();
-        for (const double sensor : column("sensor", 0))
-            sensor_.push_back(static_cast<int>(sensor));
-        const physics::Parameters defaults;
-        black_ = add("ground.black", "counts", defaults.ground.black);
-        white_ = add("ground.white", "counts", defaults.ground.white);
-        saturation_ = add("ground.saturation", "counts", defaults.ground.saturation);
-        height_slope_ = add("ground.height_slope", "1/m", defaults.ground.height_slope);
-        x_ = add("ground.x", "m", defaults.ground.x);
-        raised_ = add("ground.raised", "m", 0.0);
-        tilt_ = add("ground.acceleration_tilt", "rad s2/m", 0.0);
-        forward_ = add("ground.forward_error", "m", 0.0);
-        left_ = add("ground.left_error", "m", 0.0);
-        lag_ = add("ground.lag", "s", 0.0);
-        light_ = add("ground.ambient_offset", "counts", 0.0);
-        warmup_ = add("ground.warmup_gain", "1", 0.0);
-        warmup_time_ = add("ground.warmup_time", "s", 300.0);
-        for (const int sensor : sensor_) {
-            const auto s = static_cast<std::size_t>(sensor);
-            if (gain_[s] >= 0) continue;
-            gain_[s] = add(fmt::format("ground.gain{}", s), "1", 1.0);
-            offset_[s] = add(fmt::format("ground.offset{}", s), "counts", 0.0);
-        }
+        sensor_ = whole(column("sensor", 0));
+        simulated({"ground.black", "ground.white", "ground.saturation", "ground.height_slope", "ground.x"});
+        declare({{&Numbers::raised, "ground.raised", "m"}});
+        simulated({"ground.acceleration_tilt"});
+        declare({{&Numbers::forward_error, "ground.forward_error", "m"},
+                 {&Numbers::left_error, "ground.left_error", "m"}});
+        simulated({"ground.lag"});
+        declare({{&Numbers::ambient_offset, "ground.ambient_offset", "counts"}});
+        simulated({"ground.warmup_gain", "ground.warmup_time"});
+        for (const int sensor : in_order_met(sensor_))
+            simulated({fmt::format("ground.gain{}", sensor), fmt::format("ground.offset{}", sensor)});
         apply_nominal(experiment);
         if (std::isnan(observables_[0].instrument.ceiling))
-            observables_[0].instrument.ceiling = parameters_[static_cast<std::size_t>(saturation_)].neutral;
+            observables_[0].instrument.ceiling = nominal().ground.saturation;
         if (std::isnan(observables_[0].instrument.floor)) observables_[0].instrument.floor = 0;
     }
 
@@ -72,19 +63,19 @@ class GroundModel final : public Model {
         out.resize(1);
         auto& mean = out[0].mean;
         mean.resize(grey_.size());
-        const auto value = [&](int index) { return v[static_cast<std::size_t>(index)]; };
-        const double black = value(black_), contrast = value(white_) - black, slope = value(height_slope_),
-                     warm = value(warmup_);
+        const Numbers now = numbers(v);
+        const physics::GroundParameters& ground = now.ground;
         for (std::size_t i = 0; i < mean.size(); ++i) {
             const auto s = static_cast<std::size_t>(sensor_[i]);
-            const double ahead = value(forward_) - way_since(i, value(lag_));
-            const double grey = grey_ahead(i, ahead) + value(left_) * across_[i];
+            const double ahead = now.forward_error - way_since(i, ground.lag);
+            const double grey = grey_ahead(i, ahead) + now.left_error * across_[i];
             const double lift =
-                value(raised_) + value(x_) * std::sin(pitch_[i] + value(tilt_) * acceleration_[i]);
-            double level = (black + contrast * grey) * (1 - slope * lift);
-            if (warm != 0.0)
-                level *= 1 + warm * (1 - std::exp(-std::max(time_[i], 0.0) / value(warmup_time_)));
-            mean[i] = value(gain_[s]) * level + value(offset_[s]) + value(light_) * ambient_[i];
+                now.raised + ground.x * std::sin(pitch_[i] + ground.acceleration_tilt * acceleration_[i]);
+            double level =
+                (ground.black + (ground.white - ground.black) * grey) * (1 - ground.height_slope * lift);
+            if (ground.warmup_gain != 0.0)
+                level *= 1 + ground.warmup_gain * warmed(time_[i], ground.warmup_time);
+            mean[i] = ground.gain[s] * level + ground.offset[s] + now.ambient_offset * ambient_[i];
         }
     }
 
@@ -149,9 +140,6 @@ class GroundModel final : public Model {
     std::vector<std::size_t> first_, last_;  // row of the chain that this row is in
     std::vector<double> grey_, along_, across_, speed_, pitch_, acceleration_, ambient_, time_;
     std::vector<int> sensor_;
-    std::array<int, physics::kGroundSensors> gain_{-1, -1, -1}, offset_{-1, -1, -1};
-    int black_ = 0, white_ = 0, saturation_ = 0, height_slope_ = 0, x_ = 0, raised_ = 0, tilt_ = 0,
-        forward_ = 0, left_ = 0, lag_ = 0, light_ = 0, warmup_ = 0, warmup_time_ = 0;
 };
 
 }  // namespace

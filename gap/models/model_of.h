@@ -1,36 +1,85 @@
 #pragma once
-// A model whose parameters are a struct of named numbers: what predicts reads `now.scale`, not the value at
-// an index.
+// A model whose parameters are named numbers: those of the simulator, by its own table of names, units and
+// defaults, and what the model has besides. What predicts reads `now.ground.black`, not the value at an
+// index.
 
 #include "gap/models/model.h"
+#include "physics/description/parameters.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <functional>
+#include <initializer_list>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace puckloop::gap {
 
+/// The default of `Numbers` is the simulator without an effect. To have numbers of the simulator's it is
+/// derived from physics::Parameters.
 template <class Numbers>
 class ModelOf : public Model {
   protected:
-    explicit ModelOf(const Numbers& others = {}) : others_(others) {}
-
-    /// As add(), for a number of the struct.
-    void number(double Numbers::*place, std::string name, std::string unit, double neutral) {
-        places_.emplace_back(place, static_cast<std::size_t>(add(std::move(name), std::move(unit), neutral)));
+    /// A number that the simulator does not have, and the parameter that it is.
+    struct Own {
+        double Numbers::*place;
+        std::string name;
+        const char* unit;
+    };
+    /// As add(), one by one.
+    void declare(std::initializer_list<Own> table) {
+        for (const auto& [place, name, unit] : table)
+            put(name, unit, [place = place](Numbers& all) { return &(all.*place); });
     }
-    /// `values` as parameters(); numbers that are no parameter stay as they were given.
+    /// Place `k` of an array: a parameter called `name` with `number` behind it.
+    template <class Array>
+    void declare_part(Array Numbers::*array, std::size_t k, const std::string& name, int number,
+                      const char* unit) {
+        put(name + std::to_string(number), unit, [array, k](Numbers& all) { return &(all.*array)[k]; });
+    }
+    /// The simulator's parameters of these names ("ground.black", "ground.gain2").
+    void simulated(std::initializer_list<std::string> names) {
+        for (const std::string& name : names) {
+            int index = -1;
+            const physics::ParameterInfo* info = physics::find_parameter(name, index);
+            if (info == nullptr) throw std::logic_error("the simulator has no parameter " + name);
+            put(name, info->unit,
+                [info, k = std::max(index, 0)](Numbers& all) { return info->place(all) + k; });
+        }
+    }
+    /// Has no say with this experiment: a name that nothing asks for.
+    void hide(std::string_view name) {
+        ModelParameter& known = parameters_[static_cast<std::size_t>(find(name))];
+        known.name.insert(0, "-");
+        known.simulator = false;
+    }
+    /// `values` as parameters().
     Numbers numbers(const std::vector<double>& values) const {
-        Numbers all = others_;
+        Numbers all = defaults_;
         for (const auto& [place, parameter] : places_)
-            all.*place = values[parameter];
+            *place(all) = values[parameter];
         return all;
     }
+    /// What the experiment says of the robot, else the simulator.
+    Numbers nominal() const { return numbers(neutral()); }
 
   private:
-    Numbers others_;
-    std::vector<std::pair<double Numbers::*, std::size_t>> places_;
+    using Place = std::function<double*(Numbers&)>;
+    void put(const std::string& name, const char* unit, Place place) {
+        const double neutral = *place(defaults_);
+        places_.emplace_back(std::move(place), static_cast<std::size_t>(add(name, unit, neutral)));
+    }
+
+    Numbers defaults_;
+    std::vector<std::pair<Place, std::size_t>> places_;
 };
+
+/// Share of its drift that something which warms up has made `time` s after power-up; `lasts`: s.
+inline double warmed(double time, double lasts) {
+    return 1 - std::exp(-std::max(time, 0.0) / lasts);
+}
 
 }  // namespace puckloop::gap

@@ -9,7 +9,7 @@
 
 #include "gap/clean/quantum.h"
 #include "gap/models/keyed_cache.h"
-#include "gap/models/model.h"
+#include "gap/models/model_of.h"
 #include "gap/models/motion_path.h"
 #include "gap/models/rows.h"
 #include "gap/models/steadied_heading.h"
@@ -43,16 +43,27 @@ constexpr double kSmallAngle = 1e-2;  // rad: below, two terms of a series do fo
 constexpr double kDoubt = 2e-3;       // rad: of a run's heading as a whole
 constexpr double kLeastDoubt = 1e-5, kMostDoubt = 0.2, kDoubtWidth = 3.0;
 
-class MotionModel final : public Model {
+/// Beside the simulator's: how the robot is told what to do, and what looks at it.
+struct Numbers : physics::Parameters {
+    double agenda = 1.0;  ///< 0: the project's own firmware; read before the fit, as start_loss
+    double start_loss = 0.0, scale = 0.0, mismatch = 0.0, friction = 1 / contact.mu, latency = 0.0,
+           drop = 0.0, marker_x = 0.0, marker_y = 0.0, marker_angle = 0.0, delay = 0.0, heading_drift = 0.0,
+           heading_span = std::log(kSpan), heading_doubt = std::log(kDoubt);
+
+    /// m of way for a step of the left wheel.
+    double metre() const { return 2 * std::numbers::pi * robot.wheel_radius_left / robot.steps_per_turn; }
+};
+
+class MotionModel final : public ModelOf<Numbers> {
   public:
     MotionModel(const Experiment& experiment, MotionView view) : view_(view) {
         const Rows rows(experiment, "", {"t_s", "x_m", "y_m", "theta_rad"});
         gather(experiment, rows);
-        declare();
+        declare_all();
         apply_nominal(experiment);
         const auto mu = experiment.nominal.find("contact.mu");
         if (mu != experiment.nominal.end() && !experiment.nominal.contains("inverse_friction"))
-            parameters_[static_cast<std::size_t>(friction_)].neutral = 1 / mu->second;
+            parameters_[static_cast<std::size_t>(find("inverse_friction"))].neutral = 1 / mu->second;
         // Turning mixes the tracker's noise of along and across: their sums wander.
         if (!room()) observables_[0].turn = observables_[1].turn = turns();
         for (std::size_t o = 0; exact_ && !counted_ && o < 3; ++o)
@@ -60,23 +71,24 @@ class MotionModel final : public Model {
     }
 
     void predict(const std::vector<double>& v, Prediction& out) const override {
+        const Numbers now = numbers(v);
         out.resize(observables_.size());
         const std::size_t n = observables_[0].y.size();
         for (int o = 0; o < 3; ++o)
             out[static_cast<std::size_t>(o)].mean.resize(n);
-        const bool noisy = at(v, push_rate_) > 0 || (!counted_ && at(v, drop_) > 0);
+        const bool noisy = now.push.rate > 0 || (!counted_ && now.drop > 0);
         for (int o = 0; o < 3; ++o) {
             Predicted& p = out[static_cast<std::size_t>(o)];
-            p.jolt.assign(at(v, loss_speed_) > 0 && (o != 1 || room()) ? n : 0, 0.0);
+            p.jolt.assign(now.robot.step_loss_speed > 0 && (o != 1 || room()) ? n : 0, 0.0);
             p.lapse.assign(noisy ? n : 0, 0.0);
             p.lapse_scale.assign(noisy ? n : 0, 0.0);
         }
         for (std::size_t o = room() ? 0 : 1; o < 2; ++o) {
             out[o].lever.resize(n);
-            out[o].lever_sd = std::exp(at(v, heading_doubt_));
+            out[o].lever_sd = std::exp(now.heading_doubt);
         }
         std::size_t first = 0;
-        const double late = at(v, delay_) + (counted_ ? 0.0 : at(v, latency_));
+        const double late = now.delay + (counted_ ? 0.0 : now.latency);
         const auto of_all = [&](auto look) {
             std::vector<decltype(look(paths_.front()))> all;
             for (const Path& path : paths_)
@@ -86,30 +98,30 @@ class MotionModel final : public Model {
         const auto driven = driven_.get(
             {late}, [&] { return of_all([&](const Path& path) { return driven_by(path, late); }); });
         std::shared_ptr<const std::vector<std::array<Paced, 2>>> paced;
-        if (at(v, deadband_) > 0)
+        if (now.robot.deadband > 0)
             paced = paced_.get({late}, [&] {
                 return of_all([&](const Path& path) {
                     return std::array{paced_by(path, 0, late), paced_by(path, 1, late)};
                 });
             });
         std::shared_ptr<const std::vector<std::vector<char>>> settled;
-        if (at(v, push_rate_) > 0)
+        if (now.push.rate > 0)
             settled = settled_.get(
                 {late}, [&] { return of_all([&](const Path& path) { return settled_rows(path, late); }); });
         for (std::size_t k = 0; k < paths_.size(); ++k) {
             const Ways ways{(*driven)[k], paced ? &(*paced)[k] : nullptr, settled ? &(*settled)[k] : nullptr};
-            drive(v, paths_[k], ways, late, first, out);
+            drive(now, paths_[k], ways, late, first, out);
             first += paths_[k].time.size();
         }
-        if (counted_) predict_counters(v, out);
+        if (counted_) predict_counters(now, out);
     }
 
     /// A dead band begins between the fastest speed that moved nothing and the next one.
     std::vector<double> starts(std::string_view parameter) const override {
         if (parameter != "robot.deadband") return {};
         std::map<double, std::array<double, 2>> moves;  // speed -> metres asked for, metres seen
-        const double metre = metre_a_step();
-        const double arm = nominal(axle_) / 2;
+        const Numbers told = nominal();
+        const double metre = told.metre(), arm = told.robot.axle_length / 2;
         std::size_t row = 0;
         for (const Path& path : paths_) {
             std::array<CurveReader, 2> pacer{CurveReader(pace_of(path, 0)), CurveReader(pace_of(path, 1))};
@@ -124,7 +136,7 @@ class MotionModel final : public Model {
                     const double speed =
                         std::abs(asked) / std::max(path.time[i] - path.time[i - 1], kSameTime);
                     const bool starts =
-                        !counted_ && nominal(start_loss_) > 0 && settled[i] == 0;  // not at one speed
+                        !counted_ && told.start_loss > 0 && settled[i] == 0;  // not at one speed
                     if (speed < 1 || starts) continue;
                     auto& sums = moves[std::round(speed * 10) / 10];
                     sums[0] += std::abs(asked) * metre;
@@ -147,12 +159,6 @@ class MotionModel final : public Model {
   private:
     bool room() const { return view_ == MotionView::Room; }
 
-    /// What the experiment says of the robot, else the simulator.
-    double nominal(int index) const { return parameters_[static_cast<std::size_t>(index)].neutral; }
-    double metre_a_step() const {
-        return 2 * std::numbers::pi * nominal(radius_left_) / nominal(steps_per_turn_);
-    }
-
     /// Of a variance along the robot: the share that an observable sees.
     double share_along(const Path& path, std::size_t row, std::size_t observable) const {
         if (observable == 2) return 1.0;
@@ -160,8 +166,6 @@ class MotionModel final : public Model {
         const double seen = observable == 0 ? std::cos(path.middle[row]) : std::sin(path.middle[row]);
         return seen * seen;
     }
-
-    static double at(const std::vector<double>& v, int index) { return v[static_cast<std::size_t>(index)]; }
 
     void gather(const Experiment& experiment, const Rows& rows) {
         std::vector<std::uint32_t> used;
@@ -233,14 +237,15 @@ class MotionModel final : public Model {
 
     /// By how much a robot turns in each row, by its wheels: the tracker's noise turns nothing.
     std::vector<double> turns() const {
-        const double metre = metre_a_step();
+        const Numbers told = nominal();
+        const double metre = told.metre();
         std::vector<double> turned;
         for (const Path& path : paths_) {
             CurveReader left(path.wheel[0]), right(path.wheel[1]);
             double last = 0.0;
             for (std::size_t i = 0; i < path.time.size(); ++i) {
                 const double apart = right.at(path.time[i]) - left.at(path.time[i]);
-                turned.push_back(i == 0 ? 0.0 : (apart - last) * metre / nominal(axle_));
+                turned.push_back(i == 0 ? 0.0 : (apart - last) * metre / told.robot.axle_length);
                 last = apart;
             }
         }
@@ -249,8 +254,8 @@ class MotionModel final : public Model {
 
     /// What a change of command leaves open: where in a step it came, and how exactly the tyres slid.
     std::vector<double> jolts(std::size_t observable) const {
-        const double metre = metre_a_step();
-        const double lever = observable == 2 ? 1 / nominal(axle_) : 0.5;
+        const Numbers told = nominal();
+        const double metre = told.metre(), lever = observable == 2 ? 1 / told.robot.axle_length : 0.5;
         std::vector<double> variance;
         for (const Path& path : paths_)
             for (std::size_t i = 0; i < path.time.size(); ++i) {
@@ -259,7 +264,7 @@ class MotionModel final : public Model {
                     for (const SpeedJump& jump : path.wheel[w].jumps)
                         if (jump.time >= path.time[i - 1] && jump.time < path.time[i]) {
                             const double slid =
-                                std::pow(jump.change * metre, 2) * nominal(friction_) / (2 * kGravity);
+                                std::pow(jump.change * metre, 2) * told.friction / (2 * kGravity);
                             sum += std::pow(kOpenSteps * metre, 2) + std::pow(kOpenSlip * slid, 2);
                         }
                 variance.push_back(sum * lever * lever * share_along(path, i, observable));
@@ -281,40 +286,30 @@ class MotionModel final : public Model {
         }
     }
 
-    void declare() {
-        const physics::Parameters defaults;
-        radius_left_ = add("robot.wheel_radius_left", "m", defaults.robot.wheel_radius_left);
-        radius_right_ = add("robot.wheel_radius_right", "m", defaults.robot.wheel_radius_right);
-        axle_ = add("robot.axle_length", "m", defaults.robot.axle_length);
-        steps_per_turn_ = add("robot.steps_per_turn", "1", defaults.robot.steps_per_turn);
-        (void)add("firmware.agenda", "1", 1.0);  // 0: the project's own firmware; read before the fit
-        start_loss_ = add("firmware.start_loss", "1", 0.0);  // as above
-        scale_ = add("wheel_scale", "1", 0.0);
-        mismatch_ = add("wheel_mismatch", "1", 0.0);
-        scrub_ = add("robot.turn_scrub", "1", 0.0);
-        friction_ = add("inverse_friction", "1", 1 / defaults.contact.mu);
-        creep_ = add("robot.load_creep", "1/kg", 0.0);
-        slope_creep_ = add("robot.slope_creep", "1/rad", 0.0);
-        loss_speed_ = add("robot.step_loss_speed", "steps/s", 0.0);
-        loss_width_ = add("robot.step_loss_width", "steps/s", defaults.robot.step_loss_width);
-        deadband_ = add("robot.deadband", "steps/s", 0.0);
-        backlash_ = add("robot.backlash", "rad", 0.0);
-        latency_ = add("command.latency", "s", 0.0);
-        drop_ = add("command.loss", "1", 0.0);
-        drift_x_ = add("robot.drift_x", "m/s", 0.0);
-        drift_y_ = add("robot.drift_y", "m/s", 0.0);
-        push_rate_ = add("push.rate", "1/s", 0.0);
-        push_size_ = add("push.size", "m", 0.02);
-        push_turn_ = add("push.turn", "rad", 0.0);
-        marker_x_ = add("tracker.marker_x", "m", 0.0);
-        marker_y_ = add("tracker.marker_y", "m", 0.0);
-        marker_angle_ = add("tracker.marker_angle", "rad", 0.0);
-        delay_ = add("tracker.delay", "s", 0.0);
-        heading_drift_ = add("tracker.heading_drift", "rad/s", 0.0);
-        heading_span_ = add("tracker.heading_span", "ln s", std::log(kSpan));
-        heading_doubt_ = add("tracker.heading_doubt", "ln rad", std::log(kDoubt));
-        nuisances_.push_back({heading_doubt_, std::log(kLeastDoubt), std::log(kMostDoubt), kDoubtWidth});
-        nuisances_.push_back({heading_span_, std::log(kShortestSpan), std::log(kLongestSpan), kSpanWidth});
+    void declare_all() {
+        simulated({"robot.wheel_radius_left", "robot.wheel_radius_right", "robot.axle_length",
+                   "robot.steps_per_turn"});
+        declare({{&Numbers::agenda, "firmware.agenda", "1"},
+                 {&Numbers::start_loss, "firmware.start_loss", "1"},
+                 {&Numbers::scale, "wheel_scale", "1"},
+                 {&Numbers::mismatch, "wheel_mismatch", "1"}});
+        simulated({"robot.turn_scrub"});
+        declare({{&Numbers::friction, "inverse_friction", "1"}});
+        simulated({"robot.load_creep", "robot.slope_creep", "robot.step_loss_speed", "robot.step_loss_width",
+                   "robot.deadband", "robot.backlash"});
+        declare({{&Numbers::latency, "command.latency", "s"}, {&Numbers::drop, "command.loss", "1"}});
+        simulated({"robot.drift_x", "robot.drift_y", "push.rate", "push.size", "push.turn"});
+        declare({{&Numbers::marker_x, "tracker.marker_x", "m"},
+                 {&Numbers::marker_y, "tracker.marker_y", "m"},
+                 {&Numbers::marker_angle, "tracker.marker_angle", "rad"},
+                 {&Numbers::delay, "tracker.delay", "s"},
+                 {&Numbers::heading_drift, "tracker.heading_drift", "rad/s"},
+                 {&Numbers::heading_span, "tracker.heading_span", "ln s"},
+                 {&Numbers::heading_doubt, "tracker.heading_doubt", "ln rad"}});
+        nuisances_.push_back(
+            {find("tracker.heading_doubt"), std::log(kLeastDoubt), std::log(kMostDoubt), kDoubtWidth});
+        nuisances_.push_back(
+            {find("tracker.heading_span"), std::log(kShortestSpan), std::log(kLongestSpan), kSpanWidth});
     }
 
     /// What is known of a path's motors; the last two only where a dead band or pushes ask for them.
@@ -324,21 +319,14 @@ class MotionModel final : public Model {
         const std::vector<char>* settled;
     };
 
-    void drive(const std::vector<double>& v, const Path& path, const Ways& ways, double late,
-               std::size_t first, Prediction& out) const {
-        const double turn = 2 * std::numbers::pi / at(v, steps_per_turn_);
+    void drive(const Numbers& told, const Path& path, const Ways& ways, double late, std::size_t first,
+               Prediction& out) const {
+        const physics::BodyParameters& robot = told.robot;
+        const double turn = 2 * std::numbers::pi / robot.steps_per_turn;
         const std::array<double, 2> metre{
-            turn * at(v, radius_left_) * (1 + at(v, scale_)) * (1 - at(v, mismatch_)),
-            turn * at(v, radius_right_) * (1 + at(v, scale_)) * (1 + at(v, mismatch_))};
-        const double axle = at(v, axle_), scrub = at(v, scrub_), inverse_mu = at(v, friction_);
-        const double loss_speed = at(v, loss_speed_), loss_width = at(v, loss_width_),
-                     deadband = at(v, deadband_);
-        const double drift_x = at(v, drift_x_), drift_y = at(v, drift_y_), push = at(v, push_rate_);
-        const double drop = counted_ ? 0.0 : at(v, drop_);
-        const double creep = at(v, creep_), slope_creep = at(v, slope_creep_), backlash = at(v, backlash_),
-                     marker_x = at(v, marker_x_), marker_y = at(v, marker_y_),
-                     marker_angle = at(v, marker_angle_), heading_drift = at(v, heading_drift_),
-                     push_size = at(v, push_size_), push_turn = at(v, push_turn_);
+            turn * robot.wheel_radius_left * (1 + told.scale) * (1 - told.mismatch),
+            turn * robot.wheel_radius_right * (1 + told.scale) * (1 + told.mismatch)};
+        const double drop = counted_ ? 0.0 : told.drop;
         std::array<double, 2> driven{}, geared{}, last_geared{};
         double heading = 0;
         std::vector<Step> steps(path.time.size());
@@ -355,15 +343,16 @@ class MotionModel final : public Model {
                 double change = wheel.steps[i];
                 if (change != 0.0 && span > 0) {
                     const double rate = std::abs(change) / span;
-                    if (loss_speed > 0) {
-                        const double lost = change / (1 + std::exp(-(rate - loss_speed) / loss_width));
+                    if (robot.step_loss_speed > 0) {
+                        const double lost =
+                            change / (1 + std::exp(-(rate - robot.step_loss_speed) / robot.step_loss_width));
                         change -= lost;
                         slips += kSlip * std::abs(lost) * metre[w] * metre[w];
                     }
-                    if (deadband > 0) change *= let_through((*ways.paced)[w], i, deadband);
+                    if (robot.deadband > 0) change *= let_through((*ways.paced)[w], i, robot.deadband);
                 }
                 driven[w] += change * metre[w];
-                const double play = backlash / 2 * metre[w] / turn;
+                const double play = robot.backlash / 2 * metre[w] / turn;
                 geared[w] = std::clamp(geared[w], driven[w] - play, driven[w] + play);
                 moved[w] = geared[w] - last_geared[w];
                 last_geared[w] = geared[w];
@@ -371,44 +360,48 @@ class MotionModel final : public Model {
                     moved[w] -=
                         slipped(std::span(path.wheel[w].jumps)
                                     .subspan(wheel.first_jump[i], wheel.last_jump[i] - wheel.first_jump[i]),
-                                metre[w], inverse_mu, 2 * play, before, now);
-                moved[w] *= 1 - creep * path.load[i] - slope_creep * path.incline[i];
+                                metre[w], told.friction, 2 * play, before, now);
+                moved[w] *= 1 - robot.load_creep * path.load[i] - robot.slope_creep * path.incline[i];
             }
             double way = (moved[0] + moved[1]) / 2;
             const double twist = std::abs(moved[1] - moved[0]) / 2;
             const double wide =
-                scrub == 0.0 || twist < 1e-9 ? axle : axle * (1 + scrub * twist / (std::abs(way) + twist));
+                robot.turn_scrub == 0.0 || twist < 1e-9
+                    ? robot.axle_length
+                    : robot.axle_length * (1 + robot.turn_scrub * twist / (std::abs(way) + twist));
             const double turned = (moved[1] - moved[0]) / wide;
             const double lever = 2 * std::sin(turned / 2);
             if (std::abs(turned) > 1e-6) way *= lever / turned;
             double aside = 0.0;
-            if (drift_x != 0.0 || drift_y != 0.0) {
+            if (robot.drift_x != 0.0 || robot.drift_y != 0.0) {
                 if (moves) {
                     const double c = std::cos(path.middle[i]), s = std::sin(path.middle[i]);
-                    way += (drift_x * c + drift_y * s) * span;
-                    aside += (-drift_x * s + drift_y * c) * span;
+                    way += (robot.drift_x * c + robot.drift_y * s) * span;
+                    aside += (-robot.drift_x * s + robot.drift_y * c) * span;
                 }
             }
-            way -= lever * marker_y;
-            aside += lever * marker_x;
-            heading += turned + heading_drift * span;
+            way -= lever * told.marker_y;
+            aside += lever * told.marker_x;
+            heading += turned + told.heading_drift * span;
             out[2].mean[first + i] = heading;
             steps[i] = {way, aside,
-                        marker_angle + heading_drift * (path.time[i] - path.time.front() - span / 2)};
-            if (loss_speed > 0) {
+                        told.marker_angle +
+                            told.heading_drift * (path.time[i] - path.time.front() - span / 2)};
+            if (robot.step_loss_speed > 0) {
                 for (std::size_t o = 0; o < 2; ++o)
                     if (!out[o].jolt.empty()) out[o].jolt[first + i] = slips / 4 * share_along(path, i, o);
-                out[2].jolt[first + i] = slips / (axle * axle);
+                out[2].jolt[first + i] = slips / (robot.axle_length * robot.axle_length);
             }
-            if (push > 0 && (*ways.settled)[i] != 0) {
+            if (told.push.rate > 0 && (*ways.settled)[i] != 0) {
                 for (std::size_t o = 0; o < 3; ++o) {
-                    out[o].lapse[first + i] = std::min(push * span, 0.5);
-                    out[o].lapse_scale[first + i] = o == 2 ? push_turn : push_size;
+                    out[o].lapse[first + i] = std::min(told.push.rate * span, 0.5);
+                    out[o].lapse_scale[first + i] = o == 2 ? told.push.turn : told.push.size;
                 }
             }
-            if (drop > 0) lapses_of_loss(drop, metre, axle, path, i, before, now, first + i, out);
+            if (drop > 0)
+                lapses_of_loss(drop, metre, robot.axle_length, path, i, before, now, first + i, out);
         }
-        tell_place(std::exp(at(v, heading_span_)), path, steps, first, out);
+        tell_place(std::exp(told.heading_span), path, steps, first, out);
     }
 
     /// What a robot does between two rows, and the angle by which the tracker's heading is off, noise apart.
@@ -457,8 +450,8 @@ class MotionModel final : public Model {
         }
     }
 
-    void predict_counters(const std::vector<double>& v, Prediction& out) const {
-        const double latency = at(v, latency_), drop = at(v, drop_);
+    void predict_counters(const Numbers& now, Prediction& out) const {
+        const double latency = now.latency, drop = now.drop;
         const auto told = counts_.get({latency}, [&] {
             return std::array{told_to(0, latency), told_to(1, latency)};
         });
@@ -522,11 +515,6 @@ class MotionModel final : public Model {
     bool counted_ = false;
     bool exact_ = false;  ///< wheels keep to their commands: no agenda makes a staircase of them
     std::array<std::vector<std::uint32_t>, 2> counter_rows_;
-    int radius_left_ = 0, radius_right_ = 0, axle_ = 0, steps_per_turn_ = 0, start_loss_ = 0, scale_ = 0,
-        mismatch_ = 0, scrub_ = 0, friction_ = 0, creep_ = 0, slope_creep_ = 0, loss_speed_ = 0,
-        loss_width_ = 0, deadband_ = 0, backlash_ = 0, latency_ = 0, drop_ = 0, drift_x_ = 0, drift_y_ = 0,
-        push_rate_ = 0, push_size_ = 0, push_turn_ = 0, marker_x_ = 0, marker_y_ = 0, marker_angle_ = 0,
-        delay_ = 0, heading_drift_ = 0, heading_span_ = 0, heading_doubt_ = 0;
 };
 
 }  // namespace

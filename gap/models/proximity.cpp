@@ -8,7 +8,6 @@
 
 #include "physics/sensors/proximity.h"
 #include "gap/models/keyed_cache.h"
-#include "gap/models/model.h"
 #include "gap/models/model_of.h"
 #include "gap/models/rows.h"
 #include "gap/models/spectrum.h"
@@ -33,14 +32,14 @@ constexpr double kGrazing = 0.02;         // cosine below which a wall is not me
 constexpr int kPhases = 8;                // of the schedule against the log's clock that are tried
 constexpr double kClearlyStronger = 1.2;  // a line's power, to believe a phase
 
-/// The sensors' own, and how the laboratory's order acts.
-struct Numbers : physics::ProximityParameters {
+/// Beside the simulator's: how the laboratory's order acts.
+struct Numbers : physics::Parameters {
     double order_drift = 0.0, order_zero = 0.0;
 };
 
 class ProximityModel final : public ModelOf<Numbers> {
   public:
-    explicit ProximityModel(const Experiment& experiment) : ModelOf({physics::Parameters().proximity}) {
+    explicit ProximityModel(const Experiment& experiment) {
         const Rows rows(experiment, "sensor", {"distance_m", "reading"});
         std::vector<std::uint32_t> used;
         observables_.push_back(rows.observable("reading", NoiseKind::Carry, used));
@@ -66,15 +65,14 @@ class ProximityModel final : public ModelOf<Numbers> {
             for (std::size_t i = 1; i < run.size(); ++i)
                 if (run[i] == run[i - 1] && order_[i] != order_[i - 1]) half_order_ = 0.0;
         }
-        const auto sensors = column("sensor", 0);
-        for (const double sensor : sensors) {
-            sensor_.push_back(static_cast<int>(sensor));
-            rows_of_[static_cast<std::size_t>(sensor)].push_back(sensor_.size() - 1);
-        }
-        const auto rays = std::lround(physics::Parameters().proximity.rays);
+        sensor_ = whole(column("sensor", 0));
+        for (std::size_t i = 0; i < sensor_.size(); ++i)
+            rows_of_[static_cast<std::size_t>(sensor_[i])].push_back(i);
+        const physics::ProximityParameters drawn = physics::Parameters().proximity;
+        const auto rays = std::lround(drawn.rays);
         for (long k = 0; k < rays; ++k)
             spread_.push_back(
-                physics::Parameters().proximity.aperture *
+                drawn.aperture *
                 (rays == 1 ? 0.0 : static_cast<double>(k) / static_cast<double>(rays - 1) - 0.5));
         for (const double angle : angle_) {
             cosine_.push_back(std::cos(angle));
@@ -88,13 +86,9 @@ class ProximityModel final : public ModelOf<Numbers> {
             speed = std::abs(speed) / physics::kSpeedUnit;
         }
         others_ = exposed();
-        declare(objects_of(experiment, column), experiment.nominal_or("proximity.curve", 0.0) == 0);
+        declare_all(objects_of(experiment, column), experiment.nominal_or("proximity.curve", 0.0) == 0);
         apply_nominal(experiment);
-        angle0_ = physics_.direction;
-        for (std::size_t s = 0; s < angle0_.size(); ++s)
-            angle0_[s] = parameters_[static_cast<std::size_t>(
-                                         first_of_.direction[s] >= 0 ? first_of_.direction[s] : 0)]
-                             .neutral;
+        angle0_ = nominal().proximity.direction;
         if (experiment.has("ambient")) {
             observables_[0].gate = ambient_;
             find_schedule();
@@ -106,8 +100,8 @@ class ProximityModel final : public ModelOf<Numbers> {
         Predicted& p = out[0];
         const std::size_t n = distance_.size();
         p.mean.resize(n);
-        const Numbers now = numbers(v);
-        const auto value = [&](int index) { return v[static_cast<std::size_t>(index)]; };
+        const Numbers all = numbers(v);
+        const physics::ProximityParameters& now = all.proximity;
         // What the curve says changes with few parameters: the rest reuse it. One sensor's direction moves
         // only that sensor's rows.
         std::vector<double> key{now.curve,
@@ -124,26 +118,28 @@ class ProximityModel final : public ModelOf<Numbers> {
                                 0.0};
         for (std::size_t s = 0; s < rows_of_.size(); ++s) {
             if (rows_of_[s].empty()) continue;
-            const double turned = value(first_of_.direction[s]) - angle0_[s];
+            const double turned = now.direction[s] - angle0_[s];
             key.back() = turned;
             const auto seen = seen_[s].get(key, [&] { return see(now, s, turned); });
             for (std::size_t k = 0; k < seen->size(); ++k)
                 p.mean[rows_of_[s][k]] = (*seen)[k];
         }
+        // Idle reading of a sensor, as far as the data or the simulator says.
+        const auto idle = [&](std::size_t sensor) { return now.offset[sensor % physics::kProximitySensors]; };
         for (std::size_t i = 0; i < n; ++i) {
             const auto s = static_cast<std::size_t>(sensor_[i]);
             double seen = p.mean[i];
-            if (!object_.empty()) seen *= value(object_parameter_[static_cast<std::size_t>(object_[i])]);
-            if (now.pair_crosstalk != 0.0) seen += now.pair_crosstalk * (pair_[i] - idle(v, s + kOpposite));
+            if (!object_.empty())
+                seen *= v[static_cast<std::size_t>(object_parameter_[static_cast<std::size_t>(object_[i])])];
+            if (now.pair_crosstalk != 0.0) seen += now.pair_crosstalk * (pair_[i] - idle(s + kOpposite));
             if (now.neighbour_crosstalk != 0.0)
                 seen += now.neighbour_crosstalk *
-                        (neighbour_[i] - idle(v, s + 1) - idle(v, s + physics::kProximitySensors - 1));
-            double gain = now.scale * value(first_of_.gain[s]) * (1 - now.ambient_gain * ambient_[i]);
-            if (now.warmup_gain != 0.0)
-                gain *= 1 + now.warmup_gain * (1 - std::exp(-std::max(time_[i], 0.0) / now.warmup_time));
+                        (neighbour_[i] - idle(s + 1) - idle(s + physics::kProximitySensors - 1));
+            double gain = now.scale * now.gain[s] * (1 - now.ambient_gain * ambient_[i]);
+            if (now.warmup_gain != 0.0) gain *= 1 + now.warmup_gain * warmed(time_[i], now.warmup_time);
             if (!battery_.empty()) gain *= 1 + now.battery_gain * battery_[i];
-            if (!order_.empty()) gain *= 1 + now.order_drift * (order_[i] - now.order_zero * half_order_);
-            p.mean[i] = (gain * seen + value(first_of_.offset[s]) + now.ambient_offset * ambient_[i]) *
+            if (!order_.empty()) gain *= 1 + all.order_drift * (order_[i] - all.order_zero * half_order_);
+            p.mean[i] = (gain * seen + now.offset[s] + now.ambient_offset * ambient_[i]) *
                         (1 - now.motor_sag * stepping_[i]);
         }
         p.floor = now.threshold;
@@ -210,13 +206,6 @@ class ProximityModel final : public ModelOf<Numbers> {
             best = threshold;
         }
         return {best};
-    }
-
-    /// Idle reading of a sensor, as far as the data or the simulator says.
-    double idle(const std::vector<double>& v, std::size_t sensor) const {
-        sensor %= physics::kProximitySensors;
-        const int index = first_of_.offset[sensor];
-        return index >= 0 ? v[static_cast<std::size_t>(index)] : physics_.offset[sensor];
     }
 
     /// 1 for the rows of sensors that a foreign source may hit: those side by side on the ring whose repeats
@@ -299,7 +288,8 @@ class ProximityModel final : public ModelOf<Numbers> {
     }
 
     /// Reflected counts of a sensor's rows before gains: the part that costs time.
-    std::vector<double> see(const Numbers& now, std::size_t sensor, double turned) const {
+    std::vector<double> see(const physics::ProximityParameters& now, std::size_t sensor,
+                            double turned) const {
         std::vector<double> all;
         all.reserve(rows_of_[sensor].size());
         const double turned_cosine = std::cos(turned), turned_sine = std::sin(turned);
@@ -320,10 +310,6 @@ class ProximityModel final : public ModelOf<Numbers> {
         }
         return all;
     }
-
-    struct PerSensor {
-        std::array<int, physics::kProximitySensors> gain{}, offset{}, direction{};
-    };
 
     static void center(std::vector<double> values, std::vector<double>& out) {
         double sum = 0.0;
@@ -356,59 +342,44 @@ class ProximityModel final : public ModelOf<Numbers> {
         return objects;
     }
 
-    /// `table`: the measured curve, which has no law; a leading '-' hides what has no say.
-    void declare(const std::vector<double>& objects, bool table) {
-        number(&Numbers::curve, "proximity.curve", "choice", physics_.curve);
-        number(&Numbers::amplitude, table ? "-proximity.amplitude" : "proximity.amplitude", "counts",
-               physics_.amplitude);
-        number(&Numbers::origin, table ? "-proximity.origin" : "proximity.origin", "m", physics_.origin);
-        number(&Numbers::exponent, table ? "-proximity.exponent" : "proximity.exponent", "1",
-               physics_.exponent);
-        number(&Numbers::saturation, table ? "-proximity.saturation" : "proximity.saturation", "counts",
-               physics_.saturation);
-        number(&Numbers::reach, "proximity.reach", "m", physics_.reach);
-        number(&Numbers::compression, table ? "proximity.compression" : "-proximity.compression", "1/counts",
-               physics_.compression);
-        number(&Numbers::extra_exponent, table ? "proximity.extra_exponent" : "-proximity.extra_exponent",
-               "1", physics_.extra_exponent);
-        number(&Numbers::distance_shift, table ? "proximity.distance_shift" : "-proximity.distance_shift",
-               "m", 0.0);
-        number(&Numbers::scale, "proximity.scale", "1", 1.0);
-        number(&Numbers::incidence_exponent, "proximity.incidence_exponent", "1",
-               physics_.incidence_exponent);
-        number(&Numbers::pair_crosstalk, "proximity.pair_crosstalk", "1", 0.0);
-        number(&Numbers::neighbour_crosstalk, "proximity.neighbour_crosstalk", "1", 0.0);
-        number(&Numbers::warmup_gain, "proximity.warmup_gain", "1", 0.0);
-        number(&Numbers::warmup_time, "proximity.warmup_time", "s", physics_.warmup_time);
-        number(&Numbers::motor_sag, "proximity.motor_sag", "1", 0.0);
-        number(&Numbers::age, "proximity.age", "s", 0.0);
-        number(&Numbers::ambient_offset, "proximity.ambient_offset", "counts", 0.0);
-        number(&Numbers::ambient_gain, "proximity.ambient_gain", "1", 0.0);
-        number(&Numbers::ambient_noise, "proximity.ambient_noise", "counts", 0.0);
-        number(&Numbers::battery_gain, "proximity.battery_gain", "1/V", 0.0);
-        number(&Numbers::order_drift, "proximity.order_drift", "1", 0.0);
+    /// `table`: the measured curve, which has no law.
+    void declare_all(const std::vector<double>& objects, bool table) {
+        simulated({"proximity.curve",
+                   "proximity.amplitude",
+                   "proximity.origin",
+                   "proximity.exponent",
+                   "proximity.saturation",
+                   "proximity.reach",
+                   "proximity.compression",
+                   "proximity.extra_exponent",
+                   "proximity.distance_shift",
+                   "proximity.scale",
+                   "proximity.incidence_exponent",
+                   "proximity.pair_crosstalk",
+                   "proximity.neighbour_crosstalk",
+                   "proximity.warmup_gain",
+                   "proximity.warmup_time",
+                   "proximity.motor_sag",
+                   "proximity.age",
+                   "proximity.ambient_offset",
+                   "proximity.ambient_gain",
+                   "proximity.ambient_noise",
+                   "proximity.battery_gain"});
+        declare({{&Numbers::order_drift, "proximity.order_drift", "1"},
+                 {&Numbers::order_zero, "proximity.order_zero", "1"}});
         // Inside a run the order goes with what was varied there, mostly the distance: with a zero of its own
         // a drift could take the place of any law.
-        number(&Numbers::order_zero, half_order_ > 0 ? "proximity.order_zero" : "-proximity.order_zero", "1",
-               0.0);
-        number(&Numbers::motor_noise, "proximity.motor_noise", "1", 0.0);
-        number(&Numbers::proportional_noise, "proximity.proportional_noise", "1", 0.0);
-        number(&Numbers::threshold, "proximity.threshold", "counts", 0.0);
-        number(&Numbers::interference_rate, "proximity.interference_rate", "1", 0.0);
-        number(&Numbers::interference_size, "proximity.interference_size", "counts", 100.0);
-        number(&Numbers::flicker, "proximity.flicker", "counts", 0.0);
-        number(&Numbers::flicker_frequency, "proximity.flicker_frequency", "Hz", 1.0);
-        first_of_.gain.fill(-1);
-        first_of_.offset.fill(-1);
-        first_of_.direction.fill(-1);
-        for (const int sensor : sensor_) {
-            const auto s = static_cast<std::size_t>(sensor);
-            if (first_of_.gain[s] >= 0) continue;
-            first_of_.gain[s] = add(fmt::format("proximity.gain{}", s), "1", physics_.gain[s]);
-            first_of_.offset[s] = add(fmt::format("proximity.offset{}", s), "counts", physics_.offset[s]);
-            first_of_.direction[s] =
-                add(fmt::format("proximity.direction{}", s), "rad", physics_.direction[s]);
-        }
+        if (!(half_order_ > 0)) hide("proximity.order_zero");
+        const std::vector<const char*> of_law{"amplitude", "origin", "exponent", "saturation"},
+            of_table{"compression", "extra_exponent", "distance_shift"};
+        for (const char* name : table ? of_law : of_table)
+            hide(fmt::format("proximity.{}", name));
+        simulated({"proximity.motor_noise", "proximity.proportional_noise", "proximity.threshold",
+                   "proximity.interference_rate", "proximity.interference_size", "proximity.flicker",
+                   "proximity.flicker_frequency"});
+        for (const int sensor : in_order_met(sensor_))
+            simulated({fmt::format("proximity.gain{}", sensor), fmt::format("proximity.offset{}", sensor),
+                       fmt::format("proximity.direction{}", sensor)});
         const auto kinds = distinct(objects);
         if (kinds.size() < 2) return;
         for (const double object : kinds)
@@ -419,7 +390,7 @@ class ProximityModel final : public ModelOf<Numbers> {
                 static_cast<int>(std::lower_bound(kinds.begin(), kinds.end(), object) - kinds.begin()));
     }
 
-    void noise(const Numbers& now, Predicted& p) const {
+    void noise(const physics::ProximityParameters& now, Predicted& p) const {
         const std::size_t n = p.mean.size();
         const double share = now.proportional_noise, light = now.ambient_noise, rate = now.interference_rate;
         p.factor.clear();
@@ -448,7 +419,6 @@ class ProximityModel final : public ModelOf<Numbers> {
         p.line_frequency = now.flicker_frequency;
     }
 
-    const physics::ProximityParameters physics_ = physics::Parameters().proximity;
     static constexpr std::size_t kOpposite = 4;  // places on the ring to the sensor lit by the same pulse
     double line_frequency_found_ = 0.0, jump_size_ = 0.0;
     double half_order_ = 0.0;  // half the range of the runs' `order`: the unit of the drift's zero
@@ -460,7 +430,6 @@ class ProximityModel final : public ModelOf<Numbers> {
     std::vector<int> sensor_, object_, object_parameter_;
     std::array<bool, physics::kProximitySensors> sheltered_{};
     std::array<double, physics::kProximitySensors> angle0_{};
-    PerSensor first_of_;
 };
 
 }  // namespace

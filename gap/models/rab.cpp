@@ -8,12 +8,10 @@
 // those errors. 2. Reception is a probability; in the simulator losses emerge from frames and interrupts.
 
 #include "gap/models/keyed_cache.h"
-#include "gap/models/model.h"
 #include "gap/models/model_of.h"
 #include "gap/models/rab_ring.h"
 #include "gap/models/rab_table.h"
 #include "gap/models/rows.h"
-#include "physics/description/parameters.h"
 
 #include <fmt/format.h>
 
@@ -45,9 +43,12 @@ double between(double RabMeasured::*what, double distance) {
 }
 
 struct Numbers {
+    /// 1: the simulator's boards; read before the fit, as `carrier` (Hz).
+    double ring = 0.0, carrier = 0.0;
     double strength_gain = 0.0, emitter_lobe = 0.0, receiver_lobe = 0.0, strength_spread = 0.0,
-           far_floor = 0.0, saturation = 0.0, multipath = 0.0, multipath_loss = 0.0, bearing_offset = 0.0,
-           collisions = 0.0, random_loss = 0.0, fetch_time = 0.0, beat = 0.0, beat_burst = 0.0;
+           far_floor = 0.0, saturation = kFullScale, multipath = 0.0, multipath_loss = 0.7,
+           bearing_offset = 0.0, collisions = 0.0, random_loss = 0.0, fetch_time = 0.0, beat = 0.0,
+           beat_burst = 0.5;
 };
 
 class RabModel final : public ModelOf<Numbers> {
@@ -59,7 +60,7 @@ class RabModel final : public ModelOf<Numbers> {
         if (experiment.has("strength")) gather_strength(rows, experiment);
         if (experiment.has("bearing_rad")) gather_bearing(rows, experiment);
         if (experiment.has("received")) gather_reception(rows);
-        declare();
+        declare_all();
         apply_nominal(experiment);
     }
 
@@ -88,13 +89,6 @@ class RabModel final : public ModelOf<Numbers> {
 
     static double at(const std::vector<double>& v, int index) {
         return index < 0 ? 0.0 : v[static_cast<std::size_t>(index)];
-    }
-
-    static std::vector<int> whole(const std::vector<double>& values) {
-        std::vector<int> out;
-        for (const double value : values)
-            out.push_back(static_cast<int>(std::lround(value)));
-        return out;
     }
 
     void make_ring(const Rows& rows, const Experiment& experiment) {
@@ -173,8 +167,8 @@ class RabModel final : public ModelOf<Numbers> {
         observables_.push_back(std::move(one));
     }
 
-    void declare() {
-        number(&Numbers::strength_gain, "rab.strength_gain", "1", 0.0);
+    void declare_all() {
+        declare({{&Numbers::strength_gain, "rab.strength_gain", "1"}});
         receiver_place_ = places_of(receiver_);
         emitter_place_ = places_of(emitter_);
         for (const int r : distinct_of(receiver_))
@@ -182,25 +176,28 @@ class RabModel final : public ModelOf<Numbers> {
         for (const int e : distinct_of(emitter_))
             if (!ring_ || e > 0)
                 emitter_gain_.emplace_back(e, add(fmt::format("rab.emitter_gain{}", e), "1", 1.0));
-        (void)add("rab.ring", "1", 0.0);  // 1: the simulator's boards; both are read before the fit
-        (void)add("rab.carrier", "Hz", 0.0);
+        declare({{&Numbers::ring, "rab.ring", "1"}, {&Numbers::carrier, "rab.carrier", "Hz"}});
         if (ring_) {
-            number(&Numbers::emitter_lobe, "rab.emitter_lobe", "1", ring_->neutral().emitter_lobe);
-            number(&Numbers::receiver_lobe, "rab.receiver_lobe", "1", ring_->neutral().receiver_lobe);
+            declare({{&Numbers::emitter_lobe, "rab.emitter_lobe", "1"},
+                     {&Numbers::receiver_lobe, "rab.receiver_lobe", "1"}});
+            parameters_[static_cast<std::size_t>(find("rab.emitter_lobe"))].neutral =
+                ring_->neutral().emitter_lobe;
+            parameters_[static_cast<std::size_t>(find("rab.receiver_lobe"))].neutral =
+                ring_->neutral().receiver_lobe;
         }
-        number(&Numbers::strength_spread, "rab.strength_spread", "1", 0.0);
-        number(&Numbers::far_floor, "rab.far_floor", "counts", 0.0);
+        declare({{&Numbers::strength_spread, "rab.strength_spread", "1"},
+                 {&Numbers::far_floor, "rab.far_floor", "counts"},
+                 {&Numbers::saturation, "rab.saturation", "counts"},
+                 {&Numbers::multipath, "rab.multipath", "1"},
+                 {&Numbers::multipath_loss, "rab.multipath_loss", "ln counts"},
+                 {&Numbers::bearing_offset, "rab.bearing_offset", "rad"},
+                 {&Numbers::collisions, "rab.collisions", "1"},
+                 {&Numbers::random_loss, "rab.random_loss", "1"},
+                 {&Numbers::fetch_time, "rab.fetch_time", "s"},
+                 {&Numbers::beat, "rab.beat", "1"},
+                 {&Numbers::beat_burst, "rab.beat_burst", "s"}});
         rail_ = rail_seen();
-        // A rail that no strength lies at has no say.
-        number(&Numbers::saturation, rail_ > 0 ? "rab.saturation" : "-rab.saturation", "counts", kFullScale);
-        number(&Numbers::multipath, "rab.multipath", "1", 0.0);
-        number(&Numbers::multipath_loss, "rab.multipath_loss", "ln counts", 0.7);
-        number(&Numbers::bearing_offset, "rab.bearing_offset", "rad", 0.0);
-        number(&Numbers::collisions, "rab.collisions", "1", 0.0);
-        number(&Numbers::random_loss, "rab.random_loss", "1", 0.0);
-        number(&Numbers::fetch_time, "rab.fetch_time", "s", 0.0);
-        number(&Numbers::beat, "rab.beat", "1", 0.0);
-        number(&Numbers::beat_burst, "rab.beat_burst", "s", 0.5);
+        if (!(rail_ > 0)) hide("rab.saturation");  // a rail that no strength lies at has no say
     }
 
     static std::vector<int> distinct_of(std::vector<int> values) {

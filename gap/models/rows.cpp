@@ -110,4 +110,19 @@ std::vector<double> distinct(const std::vector<double>& column) {
     return values;
 }
 
+std::vector<int> whole(const std::vector<double>& column) {
+    std::vector<int> numbers;
+    numbers.reserve(column.size());
+    for (const double value : column)
+        numbers.push_back(static_cast<int>(std::lround(value)));
+    return numbers;
+}
+
+std::vector<int> in_order_met(const std::vector<int>& numbers) {
+    std::vector<int> met;
+    for (const int number : numbers)
+        if (std::find(met.begin(), met.end(), number) == met.end()) met.push_back(number);
+    return met;
+}
+
 }  // namespace puckloop::gap

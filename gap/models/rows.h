@@ -43,4 +43,9 @@ std::vector<double> taken(const std::vector<double>& column, const std::vector<s
 /// The different values of a column, rising.
 std::vector<double> distinct(const std::vector<double>& column);
 
+/// Numbers of sensors and the like, rounded.
+std::vector<int> whole(const std::vector<double>& column);
+/// The different ones, each where it was met first.
+std::vector<int> in_order_met(const std::vector<int>& numbers);
+
 }  // namespace puckloop::gap

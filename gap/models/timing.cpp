@@ -5,8 +5,9 @@
 // zero is free in each run.
 
 #include "gap/clean/quantum.h"
-#include "gap/models/model.h"
+#include "gap/models/model_of.h"
 #include "gap/models/rows.h"
+#include "gap/stats/robust.h"
 
 #include <algorithm>
 #include <cmath>
@@ -33,7 +34,12 @@ constexpr std::size_t kTried = 3;         // peaks
 constexpr double kShortestBatch = 0.002;  // s
 constexpr double kWhole = 0.999;
 
-class TimingModel final : public Model {
+struct Numbers {
+    double extra_period = 0.0, period_jitter = 0.0, clock_drift = 0.0, i2c_stretch = 0.0, batch = 0.0,
+           edge_errors = 0.0, overrun = 0.0, truncation = 0.0, truncation_burst = 0.0, baud_error = 0.0;
+};
+
+class TimingModel final : public ModelOf<Numbers> {
   public:
     explicit TimingModel(const Experiment& experiment) {
         clocks_ = experiment.has("t_robot_s");
@@ -71,17 +77,18 @@ class TimingModel final : public Model {
         if (quantum > kCoarse * usual_step(host.y)) quantum = 0.0;
         if (clocks_) quantum = std::hypot(quantum, rounding_of(robot_));
         gather_events(experiment);
-        declare();
+        declare_all();
         apply_nominal(experiment);
     }
 
     void predict(const std::vector<double>& v, Prediction& out) const override {
+        const Numbers now = numbers(v);
         out.resize(observables_.size());
         std::size_t o = 0;
-        if (clocks_) predict_clock(v, out[o++]);
-        predict_arrival(v, out[o++]);
-        if (ok_ >= 0) predict_frames(v, out[static_cast<std::size_t>(ok_)]);
-        if (shift_ >= 0) predict_shifts(v, out[static_cast<std::size_t>(shift_)]);
+        if (clocks_) predict_clock(now, out[o++]);
+        predict_arrival(now, out[o++]);
+        if (ok_ >= 0) predict_frames(now, out[static_cast<std::size_t>(ok_)]);
+        if (shift_ >= 0) predict_shifts(now, out[static_cast<std::size_t>(shift_)]);
     }
 
     /// The longest batch that intervals between arrivals keep to, and those of frames that are ready do not;
@@ -117,10 +124,7 @@ class TimingModel final : public Model {
         std::vector<double> steps;
         for (std::size_t i = 1; i < clock.size(); ++i)
             if (clock[i] > clock[i - 1]) steps.push_back(clock[i] - clock[i - 1]);
-        if (steps.empty()) return 0.0;
-        const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-        std::nth_element(steps.begin(), middle, steps.end());
-        return *middle;
+        return steps.empty() ? 0.0 : stats::upper_median(std::move(steps));
     }
 
     /// A clock that was read at even times keeps to its period, which is no rounding.
@@ -177,8 +181,6 @@ class TimingModel final : public Model {
         }
         return power + std::abs(sum);
     }
-
-    static double at(const std::vector<double>& v, int index) { return v[static_cast<std::size_t>(index)]; }
 
     static void set_up(Observable& one) {
         one.unit = "s";
@@ -244,17 +246,17 @@ class TimingModel final : public Model {
         }
     }
 
-    void declare() {
-        longer_ = add("timing.extra_period", "s", 0.0);
-        jitter_ = add("timing.period_jitter", "s", 0.0);
-        drift_ = add("timing.clock_drift", "1", 0.0);
-        stretch_ = add("timing.i2c_stretch", "s", 0.0);
-        batch_ = add("timing.batch", "s", 0.0);
-        misread_ = add("timing.edge_errors", "1", 0.0);
-        overrun_ = add("timing.overrun", "1", 0.0);
-        cut_ = add("timing.truncation", "1", 0.0);
-        stays_ = add("timing.truncation_burst", "1", 0.0);
-        rate_ = add("timing.baud_error", "1", 0.0);
+    void declare_all() {
+        declare({{&Numbers::extra_period, "timing.extra_period", "s"},
+                 {&Numbers::period_jitter, "timing.period_jitter", "s"},
+                 {&Numbers::clock_drift, "timing.clock_drift", "1"},
+                 {&Numbers::i2c_stretch, "timing.i2c_stretch", "s"},
+                 {&Numbers::batch, "timing.batch", "s"},
+                 {&Numbers::edge_errors, "timing.edge_errors", "1"},
+                 {&Numbers::overrun, "timing.overrun", "1"},
+                 {&Numbers::truncation, "timing.truncation", "1"},
+                 {&Numbers::truncation_burst, "timing.truncation_burst", "1"},
+                 {&Numbers::baud_error, "timing.baud_error", "1"}});
     }
 
     /// The first row of a run sets the zero.
@@ -268,53 +270,45 @@ class TimingModel final : public Model {
         }
     }
 
-    void predict_clock(const std::vector<double>& v, Predicted& p) const {
-        const double longer = at(v, longer_);
+    void predict_clock(const Numbers& now, Predicted& p) const {
+        const double longer = now.extra_period;
         sums(observables_[0], p.mean, [&](std::size_t i) { return periods_[i] + longer * count_[i]; });
-        p.extra.assign(at(v, jitter_) > 0 ? p.mean.size() : 0, at(v, jitter_));
+        p.extra.assign(now.period_jitter > 0 ? p.mean.size() : 0, now.period_jitter);
     }
 
-    void predict_arrival(const std::vector<double>& v, Predicted& p) const {
+    void predict_arrival(const Numbers& now, Predicted& p) const {
         const Observable& o = arrivals();
-        const double drift = at(v, drift_), stretch = at(v, stretch_), batch = at(v, batch_),
-                     longer = clocks_ ? 0.0 : at(v, longer_);
-        const double slower = 1 / (1 + at(v, rate_));
+        const double drift = now.clock_drift, stretch = now.i2c_stretch, batch = now.batch,
+                     longer = clocks_ ? 0.0 : now.extra_period;
+        const double slower = 1 / (1 + now.baud_error);
         const auto arrival = [&](std::size_t i) {
             return robot_[i] * (1 + drift) + longer * count_[i] + wire_[i] * slower + stretch * reads_[i];
         };
-        if (batch <= 0) {
-            // The run's own zero: the median of what is left, so that no single row decides.
-            p.mean.resize(o.y.size());
-            p.extra.clear();
-            for (std::size_t i = 0; i < o.y.size();) {
-                std::size_t end = i + 1;
-                while (end < o.y.size() && o.run[end] == o.run[i])
-                    ++end;
+        p.mean.resize(o.y.size());
+        p.extra.clear();
+        for (std::size_t i = 0, end = 0; i < o.y.size(); i = end) {
+            while (end < o.y.size() && o.run[end] == o.run[i])
+                ++end;
+            if (batch <= 0) {
+                // The run's own zero: the middle half of what is left, so that no single row decides.
                 std::vector<double> left;
                 for (std::size_t k = i; k < end; ++k)
                     left.push_back(o.y[k] - arrival(k));
-                double sum = 0.0;
                 std::sort(left.begin(), left.end());
                 const std::size_t cut = left.size() / 4;
+                double sum = 0.0;
                 for (std::size_t k = cut; k < left.size() - cut; ++k)
                     sum += left[k];
                 const double zero = sum / static_cast<double>(left.size() - 2 * cut);
                 for (std::size_t k = i; k < end; ++k)
                     p.mean[k] = arrival(k) + zero;
-                i = end;
+                continue;
             }
-            return;
-        }
-        p.mean.resize(o.y.size());
-        p.extra.clear();
-        for (std::size_t i = 0; i < o.y.size();) {
-            std::size_t end = i;
             std::complex<double> beat;
-            for (; end < o.y.size() && o.run[end] == o.run[i]; ++end)
-                beat += std::polar(1.0, 2 * std::numbers::pi * o.y[end] / batch);
+            for (std::size_t k = i; k < end; ++k)
+                beat += std::polar(1.0, 2 * std::numbers::pi * o.y[k] / batch);
             const double phase = std::arg(beat) / (2 * std::numbers::pi) * batch;
             deliver(o, i, end, batch, phase, arrival, p.mean);
-            i = end;
         }
     }
 
@@ -339,10 +333,10 @@ class TimingModel final : public Model {
         }
     }
 
-    void predict_frames(const std::vector<double>& v, Predicted& p) const {
+    void predict_frames(const Numbers& now, Predicted& p) const {
         const Observable& o = observables_[static_cast<std::size_t>(ok_)];
-        const double error = std::max(at(v, misread_), 0.0), overrun = at(v, overrun_), cut = at(v, cut_),
-                     stays = at(v, stays_);
+        const double error = std::max(now.edge_errors, 0.0), overrun = now.overrun, cut = now.truncation,
+                     stays = now.truncation_burst;
         p.mean.resize(o.y.size());
         for (std::size_t i = 0; i < p.mean.size(); ++i) {
             double broken = cut;
@@ -352,8 +346,8 @@ class TimingModel final : public Model {
         }
     }
 
-    void predict_shifts(const std::vector<double>& v, Predicted& p) const {
-        const double overrun = at(v, overrun_);
+    void predict_shifts(const Numbers& now, Predicted& p) const {
+        const double overrun = now.overrun;
         p.mean.resize(load_.size());
         for (std::size_t i = 0; i < p.mean.size(); ++i)
             p.mean[i] = 1 - kWhole + overrun * load_[i];
@@ -362,8 +356,6 @@ class TimingModel final : public Model {
     bool clocks_ = false;
     int ok_ = -1, shift_ = -1;
     std::vector<double> periods_, count_, wire_, reads_, robot_, edges_, ok_load_, load_;
-    int longer_ = 0, jitter_ = 0, drift_ = 0, stretch_ = 0, batch_ = 0, misread_ = 0, overrun_ = 0, cut_ = 0,
-        stays_ = 0, rate_ = 0;
 };
 
 }  // namespace
