@@ -20,9 +20,9 @@ bool recognises(const std::filesystem::path& folder) {
     return std::filesystem::is_regular_file(folder / kFile);
 }
 
-std::vector<ImportedExperiment> read(const std::filesystem::path& folder) {
+std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
     const auto table = read_numbers(folder / kFile, ',', 3, 1);
-    ImportedExperiment e;
+    WrittenExperiment e;
     e.folder = "argos3_epuck_rab";
     e.kind = "rab";
     e.title = "range-and-bearing strength against distance, two e-pucks";
@@ -34,7 +34,7 @@ std::vector<ImportedExperiment> read(const std::filesystem::path& folder) {
     e.source = "github.com/demiurge-project/argos3-epuck";
     e.licence = "MIT";
     e.instruments.push_back({"strength", NAN, 4095, 0.0});
-    ImportedRun run;
+    WrittenRun run;
     run.name = "strength_by_distance";
     std::vector<double> distance, strength;
     for (std::size_t i = 0; i < table[0].size(); ++i) {

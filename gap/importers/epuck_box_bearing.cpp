@@ -43,10 +43,10 @@ std::pair<double, double> seen(const physics::Parameters& p, std::size_t sensor,
     return {distance, incidence};
 }
 
-std::vector<ImportedExperiment> read(const std::filesystem::path& folder) {
+std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
     const auto table = read_numbers(folder / kFile, ',', kSensors + 1, 1);
     const physics::Parameters simulator;
-    ImportedExperiment e;
+    WrittenExperiment e;
     e.folder = "epuck1_box_bearing";
     e.kind = "proximity";
     e.title = "e-puck 1 beside a box, turned on the spot";
@@ -61,7 +61,7 @@ std::vector<ImportedExperiment> read(const std::filesystem::path& folder) {
     e.licence = "GPL-3";
     e.assumed = {"distance_m"};
     for (std::size_t s = 0; s < kSensors; ++s) {
-        ImportedRun run;
+        WrittenRun run;
         run.name = fmt::format("ps{}", s);
         run.constants["sensor"] = static_cast<double>(s);
         std::vector<double> distance, angle, order;

@@ -6,6 +6,9 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <system_error>
 
 namespace puckloop::gap::importers {
 
@@ -38,18 +41,29 @@ const Importer& importer_for(const std::filesystem::path& folder, const std::str
     throw InputError(folder.string(), "", "holds no data set known here", known);
 }
 
-std::vector<ImportedExperiment> import_set(const std::filesystem::path& folder, const std::string& set,
-                                           const std::filesystem::path& out) {
-    std::vector<ImportedExperiment> experiments = importer_for(folder, set).read(folder);
+void refuse_edited(const WrittenExperiment& experiment, const std::filesystem::path& out) {
+    const std::filesystem::path file = out / experiment.folder / "experiment.toml";
+    std::error_code ignored;
+    if (!std::filesystem::exists(file, ignored)) return;
+    std::ifstream stream(file, std::ios::binary);
+    const std::string known{std::istreambuf_iterator<char>(stream), {}};
+    if (known != experiment_toml(experiment))
+        throw InputError(file.string(), "", "is there already, another or edited, and would be written over",
+                         "a new folder");
+}
+
+std::vector<WrittenExperiment> import_set(const std::filesystem::path& folder, const std::string& set,
+                                          const std::filesystem::path& out) {
+    std::vector<WrittenExperiment> experiments = importer_for(folder, set).read(folder);
     // An importer chosen by --set may find none of its files.
     if (experiments.empty()) throw InputError(folder.string(), "", "holds nothing of this data set");
-    for (const ImportedExperiment& experiment : experiments) {
+    for (const WrittenExperiment& experiment : experiments) {
         if (experiment.runs.empty())
             throw InputError(folder.string(), "", fmt::format("holds no run for {}", experiment.folder));
         refuse_edited(experiment, out);
     }
-    for (const ImportedExperiment& experiment : experiments)
-        write_experiment(experiment, out);
+    for (const WrittenExperiment& experiment : experiments)
+        write_folder(experiment, out / experiment.folder, 0);
     return experiments;
 }
 

@@ -3,7 +3,7 @@
 // Values are kept as they were measured; only units and layout change. What an importer had to assume stands
 // in the experiment's description.
 
-#include "gap/importers/imported.h"
+#include "gap/data/written.h"
 
 #include <filesystem>
 #include <string>
@@ -16,7 +16,7 @@ struct Importer {
     const char* what;           ///< one line
     const char* recognised_by;  ///< which files, for messages
     bool (*recognises)(const std::filesystem::path& folder);
-    std::vector<ImportedExperiment> (*read)(const std::filesystem::path& folder);
+    std::vector<WrittenExperiment> (*read)(const std::filesystem::path& folder);
 };
 
 const std::vector<Importer>& importers();
@@ -25,9 +25,12 @@ const std::vector<Importer>& importers();
 /// otherwise.
 const Importer& importer_for(const std::filesystem::path& folder, const std::string& set);
 
+/// InputError where out/folder holds an experiment.toml that this import would not write as it is.
+void refuse_edited(const WrittenExperiment& experiment, const std::filesystem::path& out);
+
 /// Reads the set and writes its experiments under `out`. Returns what was written.
-std::vector<ImportedExperiment> import_set(const std::filesystem::path& folder, const std::string& set,
-                                           const std::filesystem::path& out);
+std::vector<WrittenExperiment> import_set(const std::filesystem::path& folder, const std::string& set,
+                                          const std::filesystem::path& out);
 
 // One a data set; each in a file of that name.
 extern const Importer kEpuckBoxBearing;

@@ -63,9 +63,9 @@ std::vector<double> summed(const std::vector<double>& counts) {
     return sum;
 }
 
-ImportedRun read_run(const std::filesystem::path& file, const std::string& session) {
+WrittenRun read_run(const std::filesystem::path& file, const std::string& session) {
     auto table = read_numbers(file, ',', 6);
-    ImportedRun run;
+    WrittenRun run;
     run.name = file.stem().string();
     run.session = session;
     const auto right = summed(table[4]), left = summed(table[5]);
@@ -81,8 +81,8 @@ ImportedRun read_run(const std::filesystem::path& file, const std::string& sessi
     return run;
 }
 
-ImportedExperiment read_part(const std::filesystem::path& folder, const char* part, const char* title) {
-    ImportedExperiment e;
+WrittenExperiment read_part(const std::filesystem::path& folder, const char* part, const char* title) {
+    WrittenExperiment e;
     e.folder = fmt::format("optiodom_{}", part);
     e.kind = "motion";
     e.title = title;
@@ -116,11 +116,11 @@ ImportedExperiment read_part(const std::filesystem::path& folder, const char* pa
     return e;
 }
 
-std::vector<ImportedExperiment> read(const std::filesystem::path& folder) {
-    std::vector<ImportedExperiment> all{
+std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
+    std::vector<WrittenExperiment> all{
         read_part(folder, "circular", "circles in both senses under motion capture"),
         read_part(folder, "free", "free drives under motion capture")};
-    std::erase_if(all, [](const ImportedExperiment& e) { return e.runs.empty(); });
+    std::erase_if(all, [](const WrittenExperiment& e) { return e.runs.empty(); });
     if (all.empty())
         throw InputError(folder.string(), "", "has no runs", "circular/<session>/<session>_run-NN.csv");
     return all;

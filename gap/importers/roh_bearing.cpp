@@ -38,7 +38,7 @@ double coordinate(const std::filesystem::path& file, char letter) {
     return value;
 }
 
-ImportedRun read_run(const std::filesystem::path& file, const std::vector<std::vector<double>>& beacons) {
+WrittenRun read_run(const std::filesystem::path& file, const std::vector<std::vector<double>>& beacons) {
     const double x = coordinate(file, 'X'), y = coordinate(file, 'Y');
     const auto table = read_numbers(file, ',', beacons[0].size());
     std::vector<double> emitter, order, distance, truth, bearing;
@@ -52,7 +52,7 @@ ImportedRun read_run(const std::filesystem::path& file, const std::vector<std::v
             bearing.push_back(table[b][i] * kDegree);
         }
     }
-    ImportedRun run;
+    WrittenRun run;
     run.name = fmt::format("x{}_y{}", x, y);
     run.conditions = {{"x_m", fmt::format("{}", x)}, {"y_m", fmt::format("{}", y)}};
     run.columns = {{"emitter", emitter},
@@ -63,9 +63,9 @@ ImportedRun read_run(const std::filesystem::path& file, const std::vector<std::v
     return run;
 }
 
-std::vector<ImportedExperiment> read(const std::filesystem::path& folder) {
+std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
     const auto beacons = read_numbers(folder / kBeacons, ',', 2);
-    ImportedExperiment e;
+    WrittenExperiment e;
     e.folder = "roh_ir_bearing";
     e.kind = "rab";
     e.title = "bearings to infra-red beacons from 9 positions";

@@ -31,9 +31,9 @@ bool recognises(const std::filesystem::path& folder) {
            !files_named(folder, "ground_sensor_readings", ".csv").empty();
 }
 
-ImportedExperiment described(const char* folder, const char* kind, const char* title,
-                             const char* description) {
-    ImportedExperiment e;
+WrittenExperiment described(const char* folder, const char* kind, const char* title,
+                            const char* description) {
+    WrittenExperiment e;
     e.folder = folder;
     e.kind = kind;
     e.title = title;
@@ -55,10 +55,10 @@ double labelled_distance(const std::filesystem::path& file, const TextRow& row) 
     return value / 100;
 }
 
-ImportedRun proximity_run(const std::filesystem::path& file) {
+WrittenRun proximity_run(const std::filesystem::path& file) {
     const std::string name = file.stem().string();  // proximity_sensor02_readings_light
     const auto digits = name.find("sensor") + 6;
-    ImportedRun run;
+    WrittenRun run;
     run.name = name;
     const bool light = name.ends_with("light");
     if (!light && !name.ends_with("darkness"))
@@ -82,7 +82,7 @@ ImportedRun proximity_run(const std::filesystem::path& file) {
 }
 
 /// Left and right columns of every floor in one file; the header's first line names the left ones.
-void read_ground(const std::filesystem::path& file, std::vector<ImportedRun>& runs) {
+void read_ground(const std::filesystem::path& file, std::vector<WrittenRun>& runs) {
     const std::vector<TextRow> rows = read_rows(file, ',');
     if (rows.size() < 3) throw InputError(file.string(), "", "is too short", "two header lines and readings");
     const std::string stem = file.stem().string();
@@ -93,7 +93,7 @@ void read_ground(const std::filesystem::path& file, std::vector<ImportedRun>& ru
     for (std::size_t c = 0; c + 1 < rows[0].cells.size(); c += 2) {
         const std::string& floor = rows[0].cells[c];
         if (floor.empty()) continue;
-        ImportedRun run;
+        WrittenRun run;
         const auto prefix = std::string("ground_sensor_readings").size();
         run.name = "floor_" + floor + (stem.size() > prefix ? stem.substr(prefix) : "");
         std::string surface = floor;
@@ -119,22 +119,22 @@ void read_ground(const std::filesystem::path& file, std::vector<ImportedRun>& ru
 }
 
 /// Adds the column `grey`: the left sensor's mean over the surface, over all its runs.
-void add_reference(std::vector<ImportedRun>& runs) {
+void add_reference(std::vector<WrittenRun>& runs) {
     std::map<std::string, std::vector<double>> left;
-    for (const ImportedRun& run : runs)
-        for (std::size_t i = 0; i < run.columns[0].second.size(); ++i)
-            if (run.columns[0].second[i] == 0)
-                left[run.conditions.at("surface")].push_back(run.columns[1].second[i]);
-    for (ImportedRun& run : runs)
+    for (const WrittenRun& run : runs)
+        for (std::size_t i = 0; i < run.columns[0].values.size(); ++i)
+            if (run.columns[0].values[i] == 0)
+                left[run.conditions.at("surface")].push_back(run.columns[1].values[i]);
+    for (WrittenRun& run : runs)
         run.constants["grey"] = stats::mean(left[run.conditions.at("surface")]) / kGroundScale;
 }
 
-ImportedRun accelerometer_run(const std::filesystem::path& file) {
+WrittenRun accelerometer_run(const std::filesystem::path& file) {
     auto table = read_numbers(file, ',', 4);
     if (table[0].front() == 0 && table[1].front() == 0 && table[2].front() == 0 && table[3].front() == 0)
         for (auto& column : table)
             column.erase(column.begin());
-    ImportedRun run;
+    WrittenRun run;
     run.name = file.stem().string();
     run.conditions["driving"] =
         run.name.find("onspot") != std::string::npos ? "on the spot" : "straight runs";
@@ -142,9 +142,9 @@ ImportedRun accelerometer_run(const std::filesystem::path& file) {
     return run;
 }
 
-std::vector<ImportedExperiment> read(const std::filesystem::path& folder) {
-    std::vector<ImportedExperiment> all;
-    ImportedExperiment proximity =
+std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
+    std::vector<WrittenExperiment> all;
+    WrittenExperiment proximity =
         described("thymio_proximity", "proximity", "Thymio II proximity sensors in light and darkness",
                   "Three sensors, distances 11 to 0 cm in falling order, 100 readings each: distance and "
                   "order of measuring cannot "
@@ -152,7 +152,7 @@ std::vector<ImportedExperiment> read(const std::filesystem::path& folder) {
     for (const auto& file : files_named(folder, "proximity_sensor", ".csv"))
         proximity.runs.push_back(proximity_run(file));
     proximity.instruments.push_back({"reading", 0, NAN, 1});
-    ImportedExperiment ground = described(
+    WrittenExperiment ground = described(
         "thymio_ground", "ground", "Thymio II ground sensors over desk, floor, foil and nothing",
         "No grey of any surface is given. The left sensor's mean over a surface stands for it, so what is "
         "found compares "
@@ -162,7 +162,7 @@ std::vector<ImportedExperiment> read(const std::filesystem::path& folder) {
     add_reference(ground.runs);
     ground.nominal = {{"ground.black", 0}, {"ground.white", kGroundScale}, {"ground.saturation", 1023}};
     ground.instruments.push_back({"reading", 0, 1023, 1});
-    ImportedExperiment acceleration =
+    WrittenExperiment acceleration =
         described("thymio_accelerometer", "accelerometer", "Thymio II accelerometer while driving",
                   "Counts of 1/23 g. What the robot did is known only from the files' names, so there is no "
                   "true acceleration: rest "
@@ -172,7 +172,7 @@ std::vector<ImportedExperiment> read(const std::filesystem::path& folder) {
     acceleration.nominal = {{"accelerometer.zero", 0}, {"accelerometer.gain", kCountsPerG}};
     for (const char* axis : {"ax", "ay", "az"})
         acceleration.instruments.push_back({axis, NAN, NAN, 1});
-    for (ImportedExperiment* e : {&proximity, &ground, &acceleration})
+    for (WrittenExperiment* e : {&proximity, &ground, &acceleration})
         if (!e->runs.empty()) all.push_back(std::move(*e));
     return all;
 }

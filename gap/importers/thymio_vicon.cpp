@@ -50,7 +50,7 @@ wheel_counts(const std::vector<double>& x, const std::vector<double>& y, const s
     return {left, right};
 }
 
-ImportedRun read_run(const std::filesystem::path& folder) {
+WrittenRun read_run(const std::filesystem::path& folder) {
     const auto truth = read_numbers(folder / "gt.txt", ' ', 3);
     const auto pose = read_numbers(folder / "odom_pose.txt", ' ', 2);
     const auto turn = read_numbers(folder / "odom_quaternion.txt", ' ', 2);
@@ -65,15 +65,15 @@ ImportedRun read_run(const std::filesystem::path& folder) {
         time.push_back(static_cast<double>(i) * kPeriod);
     }
     auto [left, right] = wheel_counts(pose[0], pose[1], heading);
-    ImportedRun run;
+    WrittenRun run;
     run.name = folder.filename().string();
     run.columns = {{"t_s", time},           {"x_m", truth[0]},    {"y_m", truth[1]},
                    {"theta_rad", truth[2]}, {"steps_left", left}, {"steps_right", right}};
     return run;
 }
 
-std::vector<ImportedExperiment> read(const std::filesystem::path& folder) {
-    ImportedExperiment e;
+std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
+    WrittenExperiment e;
     e.folder = "thymio_vicon_motion";
     e.kind = "motion";
     e.title = "Thymio II under motion capture, odometry against truth";

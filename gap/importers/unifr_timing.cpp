@@ -70,25 +70,25 @@ double usual_loop(std::vector<double> loops) {
     return std::accumulate(loops.begin(), loops.begin() + kept, 0.0) / static_cast<double>(kept);
 }
 
-ImportedRun read_run(const std::filesystem::path& file) {
+WrittenRun read_run(const std::filesystem::path& file) {
     const std::vector<double> loops = loops_of(file);
     std::vector<double> arrival, seq;
     for (std::size_t i = 0; i < loops.size(); ++i) {
         arrival.push_back((arrival.empty() ? 0.0 : arrival.back()) + loops[i]);
         seq.push_back(static_cast<double>(i));
     }
-    ImportedRun run;
+    WrittenRun run;
     run.name = file.stem().string().substr(std::string("results_go_on_").size());
     run.constants["nominal_period"] = usual_loop(loops);
     run.columns = {{"seq", seq}, {"t_host_s", arrival}};
     return run;
 }
 
-std::vector<ImportedExperiment> read(const std::filesystem::path& folder) {
-    std::vector<ImportedExperiment> all;
+std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
+    std::vector<WrittenExperiment> all;
     for (const auto& [part, title] : {std::pair{"pipuck", "host loop of an e-puck2 on a Pi-puck"},
                                       std::pair{"wifi", "host loop of an e-puck2 over WiFi"}}) {
-        ImportedExperiment e;
+        WrittenExperiment e;
         e.folder = fmt::format("unifr_timing_{}", part);
         e.kind = "timing";
         e.title = title;

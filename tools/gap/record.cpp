@@ -33,7 +33,7 @@ struct Request {
 
 void record_kind(const std::string& kind, const fs::path& out, const gap::emulate::RecordOptions& options) {
     const auto experiment = gap::emulate::record(kind, options);
-    gap::selftest::write_folder(experiment, out);
+    gap::write_folder(experiment, out);
     std::size_t rows = 0;
     for (const auto& run : experiment.runs)
         rows += run.rows();

@@ -27,7 +27,7 @@ Errors errors_of(const std::string& kind, const std::string& observable) {
     options.brief = true;
     options.scratch = tests::scratch_path("gap_fast_" + kind);
     const auto folder = options.scratch / "experiment";
-    selftest::write_folder(emulate::record(kind, options), folder);
+    write_folder(emulate::record(kind, options), folder);
     const Experiment experiment = read_experiment(folder);
     Errors e;
     for (const Series& series : simulate(experiment, {})) {

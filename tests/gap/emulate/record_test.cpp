@@ -34,7 +34,7 @@ emulate::RecordOptions options_in(const std::filesystem::path& scratch) {
 
 Experiment recorded(const std::string& kind, emulate::RecordOptions& options) {
     const auto folder = options.scratch / "experiment";
-    selftest::write_folder(emulate::record(kind, options), folder);
+    write_folder(emulate::record(kind, options), folder);
     Experiment experiment = read_experiment(folder);
     std::filesystem::remove_all(options.scratch);
     return experiment;

@@ -36,7 +36,7 @@ Rerun again(const std::string& kind, const std::vector<std::string>& changes, co
     options.scratch = scratch / "emulated";
     for (const std::string& change : changes)
         emulate::set_parameter(options.robot, change);
-    selftest::write_folder(emulate::record(kind, options), scratch / "experiment");
+    write_folder(emulate::record(kind, options), scratch / "experiment");
     Experiment experiment = read_experiment(scratch / "experiment");
     if (kind == "motion") experiment.runs.resize(1);  // one drive tells
     std::ofstream(scratch / "overlay.toml") << overlay_toml(experiment, verdict);
@@ -141,7 +141,7 @@ TEST_CASE("what cannot be performed again is said, and leaves nothing behind") {
     options.tools = {PUCKLOOP_RECORD, PUCKLOOP_FIRMWARE, PUCKLOOP_RAB_FIRMWARE};
     options.brief = true;
     options.scratch = scratch / "emulated";
-    selftest::write_folder(emulate::record("timing", options), scratch / "experiment");
+    write_folder(emulate::record("timing", options), scratch / "experiment");
     const Experiment experiment = read_experiment(scratch / "experiment");
     const Verdict verdict = named("truncation", "timing.truncation", 1.0, 0.0);
     std::ofstream(scratch / "overlay.toml") << overlay_toml(experiment, verdict);
@@ -194,7 +194,7 @@ TEST_CASE("load and tilt of the table are noted beside a run, and set up again f
     act.slope_x = 0.08;
     act.slope_y = -0.03;
     const bool turns = GENERATE(true, false);
-    selftest::HiddenRun noted;
+    WrittenRun noted;
     std::vector<emulate::Row> rows(40);
     Run run;
     for (std::size_t i = 0; i < rows.size(); ++i) {

@@ -37,9 +37,7 @@ struct Folder {
         fs::remove_all(in);
         fs::remove_all(out);
     }
-    std::vector<importers::ImportedExperiment> import_all() const {
-        return importers::import_set(in, "", out);
-    }
+    std::vector<WrittenExperiment> import_all() const { return importers::import_set(in, "", out); }
     std::string error() const {
         try {
             import_all();
@@ -191,10 +189,10 @@ TEST_CASE("a box's turn gives each sensor distance and incidence") {
         text += fmt::format("{},{},60,60,3000.5,3100,60,60,60\n", turn, turn == 170 ? 3000 : 60 + turn % 20);
     put(f.in / "proximity_by_turn.csv", text);
     f.import_all();
-    const importers::ImportedExperiment made = f.import_all().front();
+    const WrittenExperiment made = f.import_all().front();
     REQUIRE(made.runs.size() == 8);
     // At turn 0 the box is behind: sensors 3 and 4 face it, sensor 0 sees nothing.
-    const auto column = [&](std::size_t run, std::size_t c) { return made.runs[run].columns[c].second; };
+    const auto column = [&](std::size_t run, std::size_t c) { return made.runs[run].columns[c].values; };
     CHECK(column(3, 1)[0] < 0.02);
     CHECK(column(0, 1)[0] == 1.0);
     CHECK(std::fabs(column(0, 2)[16]) < 0.2);  // 160 degrees on, sensor 0 (-17 degrees) faces it within 3

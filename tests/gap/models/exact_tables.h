@@ -4,8 +4,8 @@
 
 #include "gap/data/experiment.h"
 #include "gap/models/model.h"
-#include "gap/selftest/rigs.h"
 #include "tests/scratch.h"
+#include "tools/gap/selftest/benches.h"
 
 #include <cmath>
 #include <map>
@@ -20,10 +20,10 @@ class Exact {
   public:
     Exact(const selftest::Rig<Knobs>& rig, const Knobs& knobs, const std::string& name,
           MotionView view = MotionView::Robot) {
-        selftest::HiddenExperiment table = rig.exact(knobs, 5, "");
-        table.instrument.clear();
+        WrittenExperiment table = rig.exact(knobs, 5, "");
+        table.instruments.clear();
         const auto folder = tests::scratch_path("exact_" + name);
-        selftest::write_folder(table, folder);
+        write_folder(table, folder);
         experiment_ = read_experiment(folder);
         std::filesystem::remove_all(folder);
         model_ = make_model(experiment_, view);

@@ -2,13 +2,13 @@
 
 #include "base/error.h"
 #include "gap/effects/effect.h"
-#include "gap/selftest/case_list.h"
-#include "gap/selftest/grammar/curves.h"
-#include "gap/selftest/grammar/families.h"
-#include "gap/selftest/grammar/laboratory.h"
-#include "gap/selftest/grammar/near_misses.h"
-#include "gap/selftest/rig.h"
 #include "tests/scratch.h"
+#include "tools/gap/selftest/case_list.h"
+#include "tools/gap/selftest/grammar/curves.h"
+#include "tools/gap/selftest/grammar/families.h"
+#include "tools/gap/selftest/grammar/laboratory.h"
+#include "tools/gap/selftest/grammar/near_misses.h"
+#include "tools/gap/selftest/rig.h"
 
 #include <catch2/catch.hpp>
 
@@ -36,19 +36,19 @@ Outcome made(Class of, const char* said, double ratio, bool right = false) {
 
 TEST_CASE("an effect of no size changes nothing, wherever it enters") {
     for (const auto& bench : benches()) {
-        const HiddenExperiment exact = bench->exact(kSeed);
+        const gap::WrittenExperiment exact = bench->exact(kSeed);
         RandomStream random(kSeed, "fields");
         const Field field = drawn_field(exact, covariates_of(exact), random);
         for (const Site& site : sites_of(exact.kind)) {
             INFO(bench->kind() << ": " << site.text() << field.text << " seed " << kSeed);
-            const HiddenExperiment same = with_effect(exact, site, field, 0.0, RandomStream(1, "none"));
+            const gap::WrittenExperiment same = with_effect(exact, site, field, 0.0, RandomStream(1, "none"));
             CHECK(distance_in_noise(same, exact, bench->floor()) < 1e-6);
         }
     }
 }
 
 TEST_CASE("fields are of size one and of every sort") {
-    const HiddenExperiment exact = benches()[1]->exact(kSeed);
+    const gap::WrittenExperiment exact = benches()[1]->exact(kSeed);
     const auto covariates = covariates_of(exact);
     RandomStream random(kSeed, "sorts");
     std::set<std::string> texts;
@@ -94,15 +94,15 @@ TEST_CASE("cases of all classes and kinds are drawn as strong as asked, and the 
 
 TEST_CASE("an effect of the catalogue is wholly like itself, and another pattern is not") {
     const auto& bench = *benches()[4];  // ground
-    const HiddenExperiment rest = bench.exact(5);
-    std::vector<std::vector<HiddenExperiment>> examples;
+    const gap::WrittenExperiment rest = bench.exact(5);
+    std::vector<std::vector<gap::WrittenExperiment>> examples;
     for (std::size_t e = 0; e < bench.effects().size(); ++e)
         if (bench.effects()[e].number != 0 && bench.effects()[e].instead_of == 0)
             examples.push_back(bench.examples(e, 5));
     REQUIRE_FALSE(examples.empty());
     CHECK(likenesses_of(examples.front().front(), rest, examples, bench.floor()).front() ==
           Approx(1.0).margin(1e-6));
-    HiddenExperiment striped = rest;
+    gap::WrittenExperiment striped = rest;
     for (auto& run : striped.runs)
         for (std::size_t k = 0; k < run.rows(); ++k)
             run.column("reading").values[k] += k / 3 % 2 == 0 ? 20 : -20;
@@ -117,7 +117,7 @@ TEST_CASE("every effect has a family, every near miss one of them") {
     }
     CHECK(family_of("no such effect").empty());
     for (const auto& bench : benches()) {
-        const HiddenExperiment exact = bench->exact(3);
+        const gap::WrittenExperiment exact = bench->exact(3);
         RandomStream random(kSeed, "near");
         for (int k = 0; k < 10; ++k)
             CHECK_FALSE(drawn_near_miss(exact, random).family.empty());
@@ -125,7 +125,7 @@ TEST_CASE("every effect has a family, every near miss one of them") {
 }
 
 TEST_CASE("a laboratory rounds and leaves out, and never sends a clock back") {
-    HiddenExperiment experiment = benches()[0]->exact(7);
+    gap::WrittenExperiment experiment = benches()[0]->exact(7);
     const std::size_t runs = experiment.runs.size();
     Laboratory coarse;
     coarse.clock = 1e-3;
@@ -134,7 +134,7 @@ TEST_CASE("a laboratory rounds and leaves out, and never sends a clock back") {
     coarse.plan(experiment);
     coarse.keep(experiment);
     CHECK(experiment.runs.size() == runs / 2);
-    for (const HiddenRun& run : experiment.runs) {
+    for (const gap::WrittenRun& run : experiment.runs) {
         const auto &t = run.find("t_s")->values, &x = run.find("x_m")->values;
         for (std::size_t k = 1; k < t.size(); ++k)
             REQUIRE(t[k] > t[k - 1]);

@@ -1,9 +1,9 @@
 // The plain models at rest are what the simulator assumes; figures worked out by hand.
 
-#include "gap/selftest/design_motion.h"
-#include "gap/selftest/plain_accelerometer.h"
-#include "gap/selftest/plain_motion.h"
-#include "gap/selftest/plain_proximity.h"
+#include "tools/gap/selftest/design_motion.h"
+#include "tools/gap/selftest/plain_accelerometer.h"
+#include "tools/gap/selftest/plain_motion.h"
+#include "tools/gap/selftest/plain_proximity.h"
 
 #include <catch2/catch.hpp>
 

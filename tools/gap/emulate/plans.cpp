@@ -2,10 +2,10 @@
 
 #include "base/error.h"
 #include "base/random.h"
-#include "gap/selftest/design_motion.h"
 #include "physics/description/parameters.h"
 #include "tools/gap/emulate/plans_sensors.h"
 #include "tools/gap/emulate/wave_floor.h"
+#include "tools/gap/selftest/design_motion.h"
 
 #include <fmt/format.h>
 

@@ -131,9 +131,9 @@ std::vector<Act> microphone_acts(std::uint64_t seed, bool brief) {
     return acts;
 }
 
-selftest::HiddenRun microphone_run(const std::vector<Row>& rows) {
+WrittenRun microphone_run(const std::vector<Row>& rows) {
     const physics::MicrophoneParameters drawn = physics::Parameters().microphone;
-    selftest::HiddenRun run;
+    WrittenRun run;
     for (std::size_t k = 0; k < rows.size(); ++k) {
         const Row& r = rows[k];
         if (!at_rest_or_even(rows, k)) continue;
@@ -191,8 +191,8 @@ std::vector<Act> accelerometer_acts(std::uint64_t seed, bool brief) {
     return acts;
 }
 
-selftest::HiddenRun accelerometer_run(const std::vector<Row>& rows, const Act& act) {
-    selftest::HiddenRun run;
+WrittenRun accelerometer_run(const std::vector<Row>& rows, const Act& act) {
+    WrittenRun run;
     for (std::size_t k = 0; k < rows.size(); ++k) {
         const Row& r = rows[k];
         if (!at_rest_or_even(rows, k)) continue;

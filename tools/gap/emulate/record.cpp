@@ -21,9 +21,6 @@ namespace puckloop::gap::emulate {
 
 namespace {
 
-using selftest::HiddenExperiment;
-using selftest::HiddenRun;
-
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kPlaceNoise = 0.0005, kPlaceQuantum = 1e-4;         // m, of the tracker
 constexpr double kAngleNoise = 0.2 * kDegree, kAngleQuantum = 1e-4;  // rad
@@ -43,8 +40,8 @@ constexpr double kOwnLag = 0.009;  // s
 /// the rotor has made the last. What the world model's own poses say of unchanged robots: 1.0 to 1.2.
 constexpr double kStartLoss = 1.1;
 
-HiddenRun motion_run(const std::vector<Row>& rows, RandomStream& noise) {
-    HiddenRun run;
+WrittenRun motion_run(const std::vector<Row>& rows, RandomStream& noise) {
+    WrittenRun run;
     for (const Row& r : rows) {
         const auto blurred = [&](double value, double sd, double quantum) {
             return std::round((value + sd * noise.normal()) / quantum) * quantum;
@@ -59,10 +56,10 @@ HiddenRun motion_run(const std::vector<Row>& rows, RandomStream& noise) {
     return run;
 }
 
-HiddenRun proximity_run(const std::vector<Row>& rows, const Act& act, RandomStream& noise) {
+WrittenRun proximity_run(const std::vector<Row>& rows, const Act& act, RandomStream& noise) {
     const physics::Parameters nominal;
     const bool lamp = act.conditions.at("light") == "lamp", drives_on = act.conditions.contains("drive");
-    HiddenRun run;
+    WrittenRun run;
     for (std::size_t k = 0; k < rows.size(); ++k) {
         const bool drives = drives_on && steady(rows, k);
         if (!drives && !settled(rows, k)) continue;
@@ -96,9 +93,9 @@ HiddenRun proximity_run(const std::vector<Row>& rows, const Act& act, RandomStre
 }
 
 /// Between printed stripes: rows well inside one, at even speed.
-HiddenRun stripes_run(const std::vector<Row>& rows) {
+WrittenRun stripes_run(const std::vector<Row>& rows) {
     const physics::Parameters nominal;
-    HiddenRun run;
+    WrittenRun run;
     for (std::size_t k = 0; k < rows.size(); ++k) {
         if (!steady(rows, k)) continue;  // a start or stop tips the robot a little
         const Row& r = rows[k];
@@ -118,10 +115,10 @@ HiddenRun stripes_run(const std::vector<Row>& rows) {
 
 /// Over waves: rows of the drives, 0.3 s after the last change of speed, since starts and stops tip the
 /// robot. They are read before their command goes out.
-HiddenRun waves_run(const std::vector<Row>& rows) {
+WrittenRun waves_run(const std::vector<Row>& rows) {
     constexpr std::size_t kLevelRows = 4;
     const physics::Parameters nominal;
-    HiddenRun run;
+    WrittenRun run;
     for (std::size_t k = kLevelRows; k < rows.size(); ++k) {
         const Row& r = rows[k];
         const double steps = rows[k - 1].left;
@@ -144,15 +141,15 @@ HiddenRun waves_run(const std::vector<Row>& rows) {
     return run;
 }
 
-HiddenRun ground_run(const std::vector<Row>& rows, const Act& act) {
+WrittenRun ground_run(const std::vector<Row>& rows, const Act& act) {
     const bool waves = act.conditions.at("drive").starts_with("waves");
     return waves ? waves_run(rows) : stripes_run(rows);
 }
 
-HiddenRun timing_run(const std::vector<Row>& rows, RandomStream& noise) {
+WrittenRun timing_run(const std::vector<Row>& rows, RandomStream& noise) {
     constexpr double kBytes = 84;
     constexpr double kGroundTransfers = 12;  // six registers, each a write and a read
-    HiddenRun run;
+    WrittenRun run;
     for (std::size_t k = 0; k < rows.size(); ++k) {
         run.column("seq").values.push_back(static_cast<double>(k));
         const double stamp = rows[k].answered + kHostNoise * noise.normal();
@@ -167,37 +164,36 @@ HiddenRun timing_run(const std::vector<Row>& rows, RandomStream& noise) {
 
 }  // namespace
 
-HiddenExperiment record(std::string_view kind, const RecordOptions& options) {
+WrittenExperiment record(std::string_view kind, const RecordOptions& options) {
     if (kind == "rab") return record_rab(options);
     if (kind == "serial") return record_serial(options);
     const std::vector<Act> acts = acts_of(kind, options.seed, options.brief);
-    HiddenExperiment experiment;
+    WrittenExperiment experiment;
     experiment.kind = std::string(kind);
     if (kind == "motion")
-        experiment.nominal = {{"firmware.agenda", "0"},
-                              {"command.latency", fmt::format("{}", kCommandLatency)},
-                              {"firmware.start_loss", fmt::format("{}", kStartLoss)}};
-    if (kind == "proximity") experiment.nominal = {{"proximity.age", fmt::format("{}", kOwnAge)}};
+        experiment.nominal = {{"firmware.agenda", 0},
+                              {"command.latency", kCommandLatency},
+                              {"firmware.start_loss", kStartLoss}};
+    if (kind == "proximity") experiment.nominal = {{"proximity.age", kOwnAge}};
     if (kind == "timing")
-        experiment.nominal = {{"timing.i2c_stretch", fmt::format("{}", kTransferTime)},
-                              {"timing.extra_period", fmt::format("{}", kClockReading)}};
-    if (kind == "proximity") experiment.instrument = {{"reading", "{ ceiling = 4095, quantum = 1 }"}};
-    if (kind == "ground") experiment.nominal = {{"ground.lag", fmt::format("{}", kOwnLag)}};
+        experiment.nominal = {{"timing.i2c_stretch", kTransferTime}, {"timing.extra_period", kClockReading}};
+    if (kind == "proximity") experiment.instruments = {{"reading", NAN, 4095, 1}};
+    if (kind == "ground") experiment.nominal = {{"ground.lag", kOwnLag}};
     // The sensors saturate at 967, and the converter's noise comes after that.
-    if (kind == "ground") experiment.instrument = {{"reading", "{ floor = 0, ceiling = 963, quantum = 1 }"}};
+    if (kind == "ground") experiment.instruments = {{"reading", 0, 963, 1}};
     if (kind == "microphone") {
         // The loudspeaker's sound is noise: one window's level scatters by 12 %.
-        experiment.nominal = {{"microphone.gaussian", "1"}};
-        experiment.instrument = {{"level", "{ floor = 0, ceiling = 4095, quantum = 1 }"}};
+        experiment.nominal = {{"microphone.gaussian", 1}};
+        experiment.instruments = {{"level", 0, 4095, 1}};
     }
     if (kind == "accelerometer")
         for (const char* axis : {"ax", "ay", "az"})
-            experiment.instrument.emplace_back(axis, "{ floor = 0, ceiling = 4095, quantum = 1 }");
+            experiment.instruments.push_back({axis, 0, 4095, 1});
     RandomStream noise(options.seed, "laboratory");
     for (std::size_t k = 0; k < acts.size(); ++k) {
         const auto rows = perform(options.robot, acts[k], options.tools, options.seed + k,
                                   options.scratch / fmt::format("act{:02}", k + 1));
-        HiddenRun run;
+        WrittenRun run;
         if (kind == "motion") run = motion_run(rows, noise);
         if (kind == "motion" && !options.brief) note_surroundings(acts[k], rows, run);
         if (kind == "proximity") run = proximity_run(rows, acts[k], noise);

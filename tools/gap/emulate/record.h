@@ -1,7 +1,7 @@
 #pragma once
 // An experiment recorded on the emulator, as the folder a laboratory would hand over (docs/gap.md).
 
-#include "gap/selftest/hidden_table.h"
+#include "gap/data/written.h"
 #include "tools/gap/emulate/plans.h"
 
 #include <cstdint>
@@ -23,7 +23,7 @@ struct RecordOptions {
 };
 
 /// Performs the acts of a kind and lists what was measured, with a tracker's or jig's noise on the truth.
-selftest::HiddenExperiment record(std::string_view kind, const RecordOptions& options);
+WrittenExperiment record(std::string_view kind, const RecordOptions& options);
 
 /// "robot.axle_length=0.054": a physical parameter, or one of the boards, the line between them (uart.*) and
 /// the Linux program (linux.*, host.*; s). Throws InputError, which names them all.

@@ -64,11 +64,11 @@ int nearest_receiver(double bearing) {
     return best + 1;
 }
 
-selftest::HiddenExperiment record_rab(const RecordOptions& options) {
+WrittenExperiment record_rab(const RecordOptions& options) {
     constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
-    selftest::HiddenExperiment experiment;
+    WrittenExperiment experiment;
     experiment.kind = "rab";
-    experiment.nominal = {{"rab.ring", "1"}};
+    experiment.nominal = {{"rab.ring", 1}};
     const auto pairs_of = [&](const Part& part) { return options.brief ? part.brief_pairs : part.pairs; };
     std::size_t all = 0;
     for (const Part& part : parts())
@@ -88,7 +88,7 @@ selftest::HiddenExperiment record_rab(const RecordOptions& options) {
             what.seed = options.seed * 1000 + experiment.runs.size();
             const auto measured = tools::measure_rab(
                 what, [](double) {}, nullptr);
-            selftest::HiddenRun run;
+            WrittenRun run;
             run.conditions = {{"part", part.name}};
             const bool waited = part.left_out == 0;  // then no rate can be too high
             const auto order = static_cast<double>(experiment.runs.size() + 1);

@@ -10,7 +10,7 @@ namespace puckloop::gap::emulate {
 
 /// Of the robot only `parameters` (ir.*), `rab` and `rab_poll` count: the boards stand on the stage by
 /// themselves.
-selftest::HiddenExperiment record_rab(const RecordOptions& options);
+WrittenExperiment record_rab(const RecordOptions& options);
 
 /// Hardware number (1..12) of the receiver nearest to a direction (rad), by the drawing.
 int nearest_receiver(double bearing);

@@ -36,7 +36,7 @@ std::vector<double> start_bits(const std::filesystem::path& trace) {
 
 }  // namespace
 
-selftest::HiddenExperiment record_serial(const RecordOptions& options) {
+WrittenExperiment record_serial(const RecordOptions& options) {
     Act act;
     act.arena = "[arena]\nsize = [\"2 m\", \"2 m\"]\n";
     act.commands = {{0, 0, 0}, {options.brief ? kBriefSeconds : kSeconds, 0, 0}};
@@ -44,13 +44,13 @@ selftest::HiddenExperiment record_serial(const RecordOptions& options) {
     const auto times = start_bits(options.scratch / "out" / "trace.csv");
     const std::size_t wanted = options.brief ? kBriefAnswers : kAnswers;
     RandomStream noise(options.seed, "logic analyser");
-    selftest::HiddenExperiment experiment;
+    WrittenExperiment experiment;
     experiment.kind = "timing";
     for (std::size_t i = 0; i < times.size() && experiment.runs.size() < wanted;) {
         std::size_t end = i + 1;
         while (end < times.size() && times[end] - times[end - 1] < kApart * kByte)
             ++end;
-        selftest::HiddenRun run;
+        WrittenRun run;
         for (std::size_t k = i; end - i == protocols::kEpuckSensorBytes && k < end; ++k) {
             const auto number = static_cast<double>(k - i);
             run.column("seq").values.push_back(number);

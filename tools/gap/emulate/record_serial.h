@@ -6,6 +6,6 @@
 
 namespace puckloop::gap::emulate {
 
-selftest::HiddenExperiment record_serial(const RecordOptions& options);
+WrittenExperiment record_serial(const RecordOptions& options);
 
 }  // namespace puckloop::gap::emulate

@@ -2,8 +2,8 @@
 
 #include "base/random.h"
 #include "gap/pipeline/analyse.h"
-#include "gap/selftest/grammar/drawn_case.h"
 #include "tools/gap/emulate/rerun.h"
+#include "tools/gap/selftest/grammar/drawn_case.h"
 
 #include <fmt/format.h>
 
@@ -28,7 +28,7 @@ std::vector<std::string> finer(const std::string& kind, RandomStream& random) {
 }
 
 /// An effect drawn from the grammar on top of what was recorded, 1 to 8 times the self test's noise.
-std::string add_unknown(selftest::HiddenExperiment& recorded, RandomStream& random) {
+std::string add_unknown(WrittenExperiment& recorded, RandomStream& random) {
     namespace gr = selftest::grammar;
     const auto sites = gr::sites_of(recorded.kind);
     const gr::Site site = sites[random.below(sites.size())];
@@ -103,7 +103,7 @@ SecretResult try_secret(std::size_t number, bool closed_loop, const RecordOption
         const auto folder = given.scratch / "experiment";
         auto experiment = record(secret.kind, options);
         if (secret.unknown) result.changed += " " + add_unknown(experiment, random);
-        selftest::write_folder(experiment, folder);
+        write_folder(experiment, folder);
         Options analysis;
         analysis.seed = given.seed;
         const Experiment measured = read_experiment(folder);

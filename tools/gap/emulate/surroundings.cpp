@@ -21,7 +21,7 @@ double taken(const char* name, double value) {
 
 }  // namespace
 
-void note_surroundings(const Act& act, const std::vector<Row>& rows, selftest::HiddenRun& run) {
+void note_surroundings(const Act& act, const std::vector<Row>& rows, WrittenRun& run) {
     for (const Row& r : rows) {
         const double rise =
             std::sin(act.slope_x) * std::cos(r.theta) + std::sin(act.slope_y) * std::sin(r.theta);

@@ -3,7 +3,7 @@
 // what was noted.
 
 #include "gap/data/experiment.h"
-#include "gap/selftest/hidden_table.h"
+#include "gap/data/written.h"
 #include "tools/gap/emulate/stage.h"
 
 #include <vector>
@@ -11,7 +11,7 @@
 namespace puckloop::gap::emulate {
 
 /// The columns load_kg and incline_rad of a run.
-void note_surroundings(const Act& act, const std::vector<Row>& rows, selftest::HiddenRun& run);
+void note_surroundings(const Act& act, const std::vector<Row>& rows, WrittenRun& run);
 
 /// From the same columns, if they are there; the least tilt that they tell, as far as the simulator takes it.
 void restore_surroundings(const Run& run, Act& act);

@@ -1,0 +1,126 @@
+#include "tools/gap/selftest/grammar/curves.h"
+
+#include <fmt/format.h>
+
+#include <map>
+
+namespace puckloop::gap::selftest::grammar {
+
+namespace {
+
+constexpr std::array kClasses{Class::Unknown, Class::NearMiss, Class::Known, Class::Null};
+
+template <class Where>
+Curve curve(const std::vector<Outcome>& cases, Class of, const std::array<double, 5>& ends,
+            const Where& where) {
+    Curve bands{};
+    for (std::size_t b = 0; b < bands.size(); ++b) {
+        bands[b].low = ends[b];
+        bands[b].high = ends[b + 1];
+        for (const Outcome& one : cases) {
+            const double at = where(one);
+            if (one.of != of || !(at >= ends[b] && at < ends[b + 1])) continue;
+            ++bands[b].count[static_cast<std::size_t>(said_of(one))];
+            ++bands[b].of;
+            bands[b].right += rightly(one) ? 1 : 0;
+        }
+    }
+    return bands;
+}
+
+std::string table(const Curve& bands, Class of) {
+    std::string text;
+    for (const Band& band : bands) {
+        if (band.of == 0) continue;
+        text += fmt::format("  {:<10}{:>4g} to {:<5g}{:>4}", class_name(of), band.low, band.high, band.of);
+        for (const int count : band.count) {
+            const Rate rate = rate_of(count, band.of);
+            text += fmt::format("{:>5.0f} ({:>2.0f}..{:>3.0f})", 100 * rate.share(), 100 * rate.low,
+                                100 * rate.high);
+        }
+        text += "\n";
+    }
+    return text;
+}
+
+std::string heading(const char* by) {
+    std::string text = fmt::format("\n% of what was said, by {}\n  {:<10}{:<13}{:>4}", by, "", "", "of");
+    for (std::size_t s = 0; s < kSaid; ++s)
+        text += fmt::format("{:>14}", said_name(static_cast<Said>(s)));
+    return text + "\n";
+}
+
+/// Named first of all, band by band.
+std::string by_effect(const std::vector<Outcome>& cases) {
+    std::map<std::string, std::vector<Outcome>> effects;
+    for (const Outcome& one : cases)
+        if (one.of == Class::Known) effects[one.kind + " " + one.effect].push_back(one);
+    if (effects.empty()) return {};
+    std::string text = fmt::format("\nknown effects named first, by strength\n  {:<44}", "");
+    for (std::size_t b = 0; b + 1 < kStrengths.size(); ++b)
+        text += fmt::format("{:>12}", fmt::format("{:g} to {:g}", kStrengths[b], kStrengths[b + 1]));
+    text += "\n";
+    for (const auto& [effect, own] : effects) {
+        text += fmt::format("  {:<44}", effect);
+        for (const Band& band : by_strength(own, Class::Known))
+            text += fmt::format("{:>12}", band.of == 0 ? "-" : fmt::format("{} of {}", band.right, band.of));
+        text += "\n";
+    }
+    return text;
+}
+
+}  // namespace
+
+const char* said_name(Said said) {
+    constexpr const char* names[] = {"right name",  "other name", "unexplained",
+                                     "cannot tell", "no effect",  "failed"};
+    return names[static_cast<int>(said)];
+}
+
+Said said_of(const Outcome& one) {
+    if (one.said == "named") {
+        const bool right =
+            one.of == Class::Known ? one.right : one.of == Class::NearMiss && !one.wrong_family;
+        return right ? Said::RightName : Said::OtherName;
+    }
+    if (one.said == "unexplained") return Said::Unexplained;
+    if (one.said == "cannot_tell") return Said::CannotTell;
+    return one.said == "no_effect" ? Said::NoEffect : Said::Failed;
+}
+
+bool rightly(const Outcome& one) {
+    const Said said = said_of(one);
+    const bool open = said == Said::Unexplained || said == Said::CannotTell;
+    switch (one.of) {
+    case Class::Null:
+        return said == Said::NoEffect;
+    case Class::Known:
+        return said == Said::RightName;
+    case Class::NearMiss:
+        return open || said == Said::RightName;
+    default:
+        return open;
+    }
+}
+
+Curve by_strength(const std::vector<Outcome>& cases, Class of) {
+    return curve(cases, of, kStrengths, [](const Outcome& one) { return one.ratio; });
+}
+
+Curve by_runs(const std::vector<Outcome>& cases, Class of) {
+    return curve(cases, of, kRuns, [](const Outcome& one) {
+        return one.of == Class::Null || one.ratio >= 1 ? static_cast<double>(one.runs) : 0.0;
+    });
+}
+
+std::string curves_text(const std::vector<Outcome>& cases) {
+    std::string text = heading("strength over noise (right name: the effect, of a near miss its family)");
+    for (const Class of : kClasses)
+        if (of != Class::Null) text += table(by_strength(cases, of), of);
+    text += heading("number of runs, strength 1 and above");
+    for (const Class of : kClasses)
+        text += table(by_runs(cases, of), of);
+    return text + by_effect(cases);
+}
+
+}  // namespace puckloop::gap::selftest::grammar

@@ -1,0 +1,75 @@
+#include "gap/report/chart.h"
+#include "tools/gap/selftest/grammar/curves.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace puckloop::gap::selftest::grammar {
+
+namespace {
+
+constexpr double kWidth = 330, kHeight = 230;  // of a chart, pixels
+constexpr Class kShown[] = {Class::Unknown, Class::NearMiss, Class::Known, Class::Null};
+constexpr const char* kColours[] = {"#b03a2e", "#b9770e", "#1f618d", "#616a6b"};
+
+/// Share rightly called, a line a class; bands stand beside each other, each class a little aside.
+template <class CurveOf>
+std::string curves(const char* title, const char* axis, const CurveOf& curve_of, bool nulls) {
+    constexpr double kAside = 0.06;
+    report::Chart chart(title, axis, "share rightly called");
+    std::vector<std::string> names;
+    for (std::size_t c = 0; c < std::size(kShown); ++c) {
+        if (kShown[c] == Class::Null && !nulls) continue;
+        std::vector<double> x, y;
+        const Curve bands = curve_of(kShown[c]);
+        names.clear();
+        for (std::size_t b = 0; b < bands.size(); ++b) {
+            names.push_back(bands[b].high < 100 ? fmt::format("{:g} to {:g}", bands[b].low, bands[b].high)
+                                                : fmt::format("from {:g}", bands[b].low));
+            if (bands[b].of == 0) continue;
+            const Rate rate = rate_of(bands[b].right, bands[b].of);
+            x.push_back(static_cast<double>(b) + kAside * (static_cast<double>(c) - 1));
+            y.push_back(rate.share());
+            chart.interval(x.back(), rate.share(), rate.low, rate.high, kColours[c]);
+        }
+        chart.line(x, y, kColours[c], class_name(kShown[c]));
+    }
+    chart.categories(names);
+    chart.level(1.0);
+    chart.level(0.0);
+    return chart.svg(kWidth, kHeight);
+}
+
+std::string ranks(const std::vector<Outcome>& cases) {
+    report::Chart chart("ranks of true parameters", "rank in what is said of them", "parameters");
+    const auto histogram = rank_histogram(cases);
+    double all = 0.0;
+    for (std::size_t bin = 0; bin < histogram.size(); ++bin) {
+        const double at = (static_cast<double>(bin) + 0.5) / 10;
+        chart.interval(at, histogram[bin], 0, histogram[bin], kColours[2]);
+        all += histogram[bin];
+    }
+    chart.level(all / 10, "honest");
+    return chart.svg(kWidth, kHeight);
+}
+
+}  // namespace
+
+std::string curves_svg(const std::vector<Outcome>& cases) {
+    const std::string charts[] = {
+        curves(
+            "sensitivity", "strength over noise", [&](Class of) { return by_strength(cases, of); }, false),
+        curves(
+            "power, strength 1 and above", "runs", [&](Class of) { return by_runs(cases, of); }, true),
+        ranks(cases)};
+    std::string text = fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" "
+                                   "viewBox=\"0 0 {0} {1}\">\n",
+                                   3 * kWidth, kHeight);
+    for (std::size_t k = 0; k < std::size(charts); ++k)
+        text += fmt::format("<g transform=\"translate({},0)\">{}</g>\n", static_cast<double>(k) * kWidth,
+                            charts[k]);
+    return text + "</svg>\n";
+}
+
+}  // namespace puckloop::gap::selftest::grammar

@@ -1,0 +1,174 @@
+#include "tools/gap/selftest/grammar/curves.h"
+#include "tools/gap/selftest/grammar/rates.h"
+
+#include "base/error.h"
+#include "gap/decide/ablation.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <map>
+
+namespace puckloop::gap::selftest::grammar {
+
+namespace {
+
+std::string rate_text(const Rate& rate) {
+    if (rate.of == 0) return "no case";
+    return fmt::format("{:5.1f} % ({:.1f}..{:.1f}, {} of {})", 100 * rate.share(), 100 * rate.low,
+                       100 * rate.high, rate.hits, rate.of);
+}
+
+/// Every class in every kind: what was said how often.
+std::string by_kind(const std::vector<Outcome>& cases) {
+    std::map<std::pair<std::string, Class>, std::map<std::string, int>> count;
+    for (const Outcome& one : cases)
+        ++count[{one.kind, one.of}][one.said];
+    std::string text = "\nwhat was said\n";
+    for (const auto& [key, said] : count) {
+        text += fmt::format("  {:<14}{:<10}", key.first, class_name(key.second));
+        for (const auto& [word, times] : said)
+            text += fmt::format(" {} {}", times, word);
+        text += "\n";
+    }
+    return text;
+}
+
+/// What the targets hold against the analysis; weaker effects may be passed over.
+/// What would be named besides, were a rule of the decision left out.
+std::string ablation(const std::vector<Outcome>& cases) {
+    std::string text = "\nwould be named without one rule (at most: what is asked after it was not asked)\n";
+    text += fmt::format("  {:<38}{:>8}{:>8}{:>10}{:>10}\n", "", "unknown", "nothing", "near miss", "known");
+    for (const Rule& rule : rules()) {
+        std::map<Class, int> count;
+        for (const Outcome& one : cases)
+            if (std::find(one.alone_against.begin(), one.alone_against.end(), rule.name) !=
+                one.alone_against.end())
+                ++count[one.of];
+        text += fmt::format("  {:<38}{:>8}{:>8}{:>10}{:>10}\n", rule.name, count[Class::Unknown],
+                            count[Class::Null], count[Class::NearMiss], count[Class::Known]);
+    }
+    return text;
+}
+
+bool missed(const Outcome& one) {
+    if (one.of == Class::NearMiss) return one.wrong_family || said_of(one) == Said::Failed;
+    return !rightly(one) && (one.of == Class::Null || one.ratio >= 1);
+}
+
+}  // namespace
+
+std::string outcome_line(const Outcome& one) {
+    return fmt::format("{:>4} {:<14}{:<10}{:>5.2f}  said {:<12}{:<28} {:5.1f} s  hidden: {}", one.number,
+                       one.kind, class_name(one.of), one.ratio, one.said,
+                       fmt::format("{}", fmt::join(one.names, ", ")), one.wall_s,
+                       one.error.empty() ? one.text : one.text + " | " + one.error);
+}
+
+std::string rates_text(const std::vector<Outcome>& cases, const std::string& seeds) {
+    std::string text =
+        fmt::format("{} drawn cases, seed {}; 95 % binomial intervals\n\n", cases.size(), seeds);
+    for (const Target& target : targets(cases))
+        text += fmt::format("{:<66} {:<36} {}\n", target.what, rate_text(target.rate),
+                            target.rate.of == 0 ? ""
+                            : target.met()      ? "met"
+                                                : "MISSED");
+    text += curves_text(cases) + by_kind(cases);
+    const auto histogram = rank_histogram(cases);
+    text += fmt::format("\nranks of true parameters (uniform if honest): {}; p = {:.3g}\n",
+                        fmt::join(histogram, " "), uniformity(histogram));
+    int other = 0, near = 0;
+    for (const Outcome& one : cases) {
+        near += one.of == Class::NearMiss ? 1 : 0;
+        other += one.other_family ? 1 : 0;
+    }
+    text += fmt::format(
+        "near misses named of another family than the effect they were made from, whatever else could "
+        "do as much: {}\n",
+        rate_text(rate_of(other, near)));
+    int redrawn = 0;
+    for (const Outcome& one : cases)
+        redrawn += one.redrawn;
+    text +=
+        fmt::format("drawn again, because one effect of the catalogue could do more than half of it or the "
+                    "strength could not be had: {}\n",
+                    redrawn);
+    text += ablation(cases) + "\nmissed\n";
+    for (const Outcome& one : cases)
+        if (missed(one)) text += outcome_line(one) + "\n";
+    return text;
+}
+
+std::string rates_json(const std::vector<Outcome>& cases, std::uint64_t seed) {
+    using Json = nlohmann::ordered_json;
+    Json all = Json::array(), wanted = Json::array();
+    for (const Outcome& one : cases)
+        all.push_back({{"number", one.number},
+                       {"class", class_name(one.of)},
+                       {"kind", one.kind},
+                       {"hidden", one.text},
+                       {"effect", one.effect},
+                       {"family", one.family},
+                       {"asked", one.asked},
+                       {"strength", one.ratio},
+                       {"likeness", one.likeness},
+                       {"runs", one.runs},
+                       {"redrawn", one.redrawn},
+                       {"said", one.said},
+                       {"names", one.names},
+                       {"right", one.right},
+                       {"wrong_family", one.wrong_family},
+                       {"other_family", one.other_family},
+                       {"ranks", one.ranks},
+                       {"covered", one.covered},
+                       {"alone_against", one.alone_against},
+                       {"wall_s", one.wall_s},
+                       {"error", one.error}});
+    for (const Target& target : targets(cases))
+        wanted.push_back({{"what", target.what},
+                          {"share", target.rate.share()},
+                          {"low", target.rate.low},
+                          {"high", target.rate.high},
+                          {"cases", target.rate.of},
+                          {"met", target.met()}});
+    return Json{{"seed", seed}, {"targets", wanted}, {"ranks", rank_histogram(cases)}, {"cases", all}}.dump(
+        1);
+}
+
+std::vector<Outcome> outcomes_from_json(const std::string& text, const std::string& file) try {
+    std::vector<Outcome> cases;
+    const auto result = nlohmann::json::parse(text);
+    for (const auto& one : result.at("cases")) {
+        Outcome out;
+        out.number = one.at("number");
+        for (const Class of : {Class::Null, Class::Known, Class::NearMiss, Class::Unknown})
+            if (one.at("class") == class_name(of)) out.of = of;
+        out.kind = one.at("kind");
+        out.text = one.at("hidden");
+        out.effect = one.at("effect");
+        out.family = one.at("family");
+        out.asked = one.at("asked");
+        out.ratio = one.at("strength");
+        out.likeness = one.at("likeness");
+        out.runs = one.at("runs");
+        out.redrawn = one.at("redrawn");
+        out.said = one.at("said");
+        out.names = one.at("names").get<std::vector<std::string>>();
+        out.right = one.at("right");
+        out.wrong_family = one.at("wrong_family");
+        out.other_family = one.at("other_family");
+        out.ranks = one.at("ranks").get<std::vector<double>>();
+        out.covered = one.at("covered");
+        out.alone_against = one.value("alone_against", std::vector<std::string>{});
+        out.wall_s = one.at("wall_s");
+        out.error = one.at("error");
+        cases.push_back(std::move(out));
+    }
+    return cases;
+} catch (const nlohmann::json::exception&) {
+    throw InputError(file, "", "is no result of drawn cases", "gap selftest --grammar --json");
+}
+
+}  // namespace puckloop::gap::selftest::grammar
