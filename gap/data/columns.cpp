@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <stdexcept>
 
@@ -122,53 +123,24 @@ const std::vector<ColumnInfo> kTiming{
 
 struct UnitInfo {
     const char* name;
-    const char* si;
-    double factor;
-    double offset = 0.0;
+    double factor, offset = 0.0;
 };
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr UnitInfo kUnits[] = {
-    {"m", "m", 1},
-    {"cm", "m", 0.01},
-    {"mm", "m", 0.001},
-    {"um", "m", 1e-6},
-    {"in", "m", 0.0254},
-    {"km", "m", 1000},
-    {"rad", "rad", 1},
-    {"deg", "rad", kDegree},
-    {"turn", "rad", 2 * std::numbers::pi},
-    {"s", "s", 1},
-    {"ms", "s", 1e-3},
-    {"us", "s", 1e-6},
-    {"ns", "s", 1e-9},
-    {"min", "s", 60},
-    {"h", "s", 3600},
-    {"V", "V", 1},
-    {"mV", "V", 1e-3},
-    {"degC", "degC", 1},
-    {"K", "degC", 1, -273.15},
-    {"degF", "degC", 5.0 / 9, -32 * 5.0 / 9},
-    {"Hz", "Hz", 1},
-    {"kHz", "Hz", 1e3},
-    {"MHz", "Hz", 1e6},
-    {"1/s", "Hz", 1},
-    {"m/s", "m/s", 1},
-    {"cm/s", "m/s", 0.01},
-    {"mm/s", "m/s", 1e-3},
-    {"steps/s", "steps/s", 1},
-    {"m/s2", "m/s2", 1},
-    {"g", "m/s2", 9.80665},
-    {"mm/s2", "m/s2", 1e-3},
-    {"kg", "kg", 1},
-    {"gram", "kg", 1e-3},
-    {"1/m", "1/m", 1},
-    {"1/mm", "1/m", 1e3},
-    {"1/cm", "1/m", 100},
-    {"counts", "counts", 1},
-    {"1", "1", 1},
-    {"%", "1", 0.01},
-    {"steps", "1", 1},
-    {"", "1", 1},
+/// Units by the SI unit that they are turned into.
+const std::map<std::string_view, std::vector<UnitInfo>> kUnits{
+    {"m", {{"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"um", 1e-6}, {"in", 0.0254}, {"km", 1000}}},
+    {"rad", {{"rad", 1}, {"deg", kDegree}, {"turn", 2 * std::numbers::pi}}},
+    {"s", {{"s", 1}, {"ms", 1e-3}, {"us", 1e-6}, {"ns", 1e-9}, {"min", 60}, {"h", 3600}}},
+    {"V", {{"V", 1}, {"mV", 1e-3}}},
+    {"degC", {{"degC", 1}, {"K", 1, -273.15}, {"degF", 5.0 / 9, -32 * 5.0 / 9}}},
+    {"Hz", {{"Hz", 1}, {"kHz", 1e3}, {"MHz", 1e6}, {"1/s", 1}}},
+    {"m/s", {{"m/s", 1}, {"cm/s", 0.01}, {"mm/s", 1e-3}}},
+    {"steps/s", {{"steps/s", 1}}},
+    {"m/s2", {{"m/s2", 1}, {"g", 9.80665}, {"mm/s2", 1e-3}}},
+    {"kg", {{"kg", 1}, {"gram", 1e-3}}},
+    {"1/m", {{"1/m", 1}, {"1/mm", 1e3}, {"1/cm", 100}}},
+    {"counts", {{"counts", 1}}},
+    {"1", {{"1", 1}, {"%", 0.01}, {"steps", 1}, {"", 1}}},
 };
 
 std::vector<ColumnInfo> with_common(std::vector<ColumnInfo> own) {
@@ -198,13 +170,13 @@ const ColumnInfo* find_column(Kind kind, std::string_view name) {
 }
 
 bool unit_to_si(std::string_view unit, std::string_view si, double& factor, double& offset) {
-    for (const UnitInfo& known : kUnits) {
-        const bool bare = si == "counts" && std::string_view(known.si) == "1";
-        if (unit != known.name || (si != known.si && !bare)) continue;
-        factor = known.factor;
-        offset = known.offset;
-        return true;
-    }
+    for (const auto& [to, units] : kUnits)
+        for (const UnitInfo& known : units) {
+            if (unit != known.name || (si != to && !(si == "counts" && to == "1"))) continue;
+            factor = known.factor;
+            offset = known.offset;
+            return true;
+        }
     return false;
 }
 

@@ -99,23 +99,12 @@ void check_finite(const Experiment& experiment, const Model& model) {
 }
 
 std::unique_ptr<Model> make_unchecked(const Experiment& experiment, MotionView view) {
-    switch (experiment.kind) {
-    case Kind::Proximity:
-        return make_proximity_model(experiment);
-    case Kind::Motion:
-        return make_motion_model(experiment, view);
-    case Kind::Rab:
-        return make_rab_model(experiment);
-    case Kind::Microphone:
-        return make_microphone_model(experiment);
-    case Kind::Ground:
-        return make_ground_model(experiment);
-    case Kind::Accelerometer:
-        return make_accelerometer_model(experiment);
-    case Kind::Timing:
-        break;
-    }
-    return make_timing_model(experiment);
+    if (experiment.kind == Kind::Motion) return make_motion_model(experiment, view);
+    static const std::map<Kind, std::unique_ptr<Model> (*)(const Experiment&)> others{
+        {Kind::Proximity, make_proximity_model},         {Kind::Rab, make_rab_model},
+        {Kind::Microphone, make_microphone_model},       {Kind::Ground, make_ground_model},
+        {Kind::Accelerometer, make_accelerometer_model}, {Kind::Timing, make_timing_model}};
+    return others.at(experiment.kind)(experiment);
 }
 
 }  // namespace

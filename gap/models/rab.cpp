@@ -28,6 +28,7 @@ namespace {
 constexpr double kReception = 0.999;
 constexpr double kFullScale = 4095;
 constexpr std::size_t kReceivers = 12;
+constexpr double kLeastGain = 0.01;
 constexpr std::size_t kLeastReceivers = 3;  // with a gain: fewer tell nothing of a bearing
 constexpr std::size_t kLeastPiled = 5;      // equal highest strengths that look like a rail
 
@@ -42,9 +43,17 @@ double between(double RabMeasured::*what, double distance) {
     return kRabTable.back().*what;
 }
 
+constexpr std::array<double, kReceivers + 1> all_one() {
+    std::array<double, kReceivers + 1> ones{};
+    ones.fill(1.0);
+    return ones;
+}
+
 struct Numbers {
     /// 1: the simulator's boards; read before the fit, as `carrier` (Hz).
     double ring = 0.0, carrier = 0.0;
+    /// Of receivers and emitters by their number; 0: not told, or all.
+    std::array<double, kReceivers + 1> receiver = all_one(), emitter = all_one();
     double strength_gain = 0.0, emitter_lobe = 0.0, receiver_lobe = 0.0, strength_spread = 0.0,
            far_floor = 0.0, saturation = kFullScale, multipath = 0.0, multipath_loss = 0.7,
            bearing_offset = 0.0, collisions = 0.0, random_loss = 0.0, fetch_time = 0.0, beat = 0.0,
@@ -65,10 +74,11 @@ class RabModel final : public ModelOf<Numbers> {
     }
 
     void predict(const std::vector<double>& v, Prediction& out) const override {
+        const Numbers now = numbers(v);
         out.resize(observables_.size());
-        if (strength_ >= 0) predict_strength(v, out[static_cast<std::size_t>(strength_)]);
-        if (bearing_ >= 0) predict_bearing(v, out[static_cast<std::size_t>(bearing_)]);
-        if (reception_ >= 0) predict_reception(v, out[static_cast<std::size_t>(reception_)]);
+        if (strength_ >= 0) predict_strength(now, out[static_cast<std::size_t>(strength_)]);
+        if (bearing_ >= 0) predict_bearing(now, out[static_cast<std::size_t>(bearing_)]);
+        if (reception_ >= 0) predict_reception(now, out[static_cast<std::size_t>(reception_)]);
     }
 
     std::vector<double> starts(std::string_view parameter) const override {
@@ -85,10 +95,6 @@ class RabModel final : public ModelOf<Numbers> {
         const auto piled = static_cast<std::size_t>(
             std::count_if(y.begin(), y.end(), [&](double one) { return std::exp(one) > top - 1; }));
         return piled < kLeastPiled || top > kFullScale - 1 ? 0.0 : top;
-    }
-
-    static double at(const std::vector<double>& v, int index) {
-        return index < 0 ? 0.0 : v[static_cast<std::size_t>(index)];
     }
 
     void make_ring(const Rows& rows, const Experiment& experiment) {
@@ -169,13 +175,17 @@ class RabModel final : public ModelOf<Numbers> {
 
     void declare_all() {
         declare({{&Numbers::strength_gain, "rab.strength_gain", "1"}});
-        receiver_place_ = places_of(receiver_);
-        emitter_place_ = places_of(emitter_);
-        for (const int r : distinct_of(receiver_))
-            receiver_gain_.emplace_back(r, add(fmt::format("rab.receiver_gain{}", r), "1", 1.0));
-        for (const int e : distinct_of(emitter_))
+        auto known = receiver_, known_emitters = emitter_;
+        for (std::vector<int>* one : {&known, &known_emitters}) {
+            std::sort(one->begin(), one->end());
+            one->erase(std::unique(one->begin(), one->end()), one->end());
+        }
+        receivers_ = known.size();
+        for (const int r : known)
+            declare_part(&Numbers::receiver, static_cast<std::size_t>(r), "rab.receiver_gain", r, "1");
+        for (const int e : known_emitters)
             if (!ring_ || e > 0)
-                emitter_gain_.emplace_back(e, add(fmt::format("rab.emitter_gain{}", e), "1", 1.0));
+                declare_part(&Numbers::emitter, static_cast<std::size_t>(e), "rab.emitter_gain", e, "1");
         declare({{&Numbers::ring, "rab.ring", "1"}, {&Numbers::carrier, "rab.carrier", "Hz"}});
         if (ring_) {
             declare({{&Numbers::emitter_lobe, "rab.emitter_lobe", "1"},
@@ -200,43 +210,18 @@ class RabModel final : public ModelOf<Numbers> {
         if (!(rail_ > 0)) hide("rab.saturation");  // a rail that no strength lies at has no say
     }
 
-    static std::vector<int> distinct_of(std::vector<int> values) {
-        std::sort(values.begin(), values.end());
-        values.erase(std::unique(values.begin(), values.end()), values.end());
-        return values;
+    /// ln of each gain; a part that tells next to nothing is not taken for one that tells nothing.
+    static std::array<double, kReceivers + 1> logs_of(std::array<double, kReceivers + 1> gains) {
+        for (double& gain : gains)
+            gain = std::log(std::max(gain, kLeastGain));
+        return gains;
     }
 
-    /// Where each value stands among the different ones.
-    static std::vector<std::size_t> places_of(const std::vector<int>& values) {
-        const auto all = distinct_of(values);
-        std::vector<std::size_t> places;
-        for (const int value : values)
-            places.push_back(
-                static_cast<std::size_t>(std::lower_bound(all.begin(), all.end(), value) - all.begin()));
-        return places;
-    }
-
-    static std::vector<double> logs_of(const std::vector<std::pair<int, int>>& gains,
-                                       const std::vector<double>& v) {
-        std::vector<double> logs;
-        for (const auto& gain : gains)
-            logs.push_back(std::log(std::max(at(v, gain.second), 0.01)));
-        return logs;
-    }
-
-    static double of(const std::vector<std::pair<int, int>>& gains, int which, const std::vector<double>& v) {
-        for (const auto& [number, index] : gains)
-            if (number == which) return v[static_cast<std::size_t>(index)];
-        return 1.0;
-    }
-
-    std::shared_ptr<const std::vector<RabTold>> told(const std::vector<double>& v) const {
-        const Numbers now = numbers(v);
+    std::shared_ptr<const std::vector<RabTold>> told(const Numbers& now) const {
         RabParts parts = ring_->neutral();
         for (std::size_t k = 0; k < kReceivers; ++k) {
-            const int number = static_cast<int>(k) + 1;
-            parts.receiver[k] = std::max(of(receiver_gain_, number, v), 0.01);
-            parts.emitter[k] = std::max(of(emitter_gain_, number, v), 0.01);
+            parts.receiver[k] = std::max(now.receiver[k + 1], kLeastGain);
+            parts.emitter[k] = std::max(now.emitter[k + 1], kLeastGain);
         }
         // What all emitters have in common cannot be told from what all receivers have.
         double mean = 0.0;
@@ -249,24 +234,23 @@ class RabModel final : public ModelOf<Numbers> {
         return ring_->told(parts);
     }
 
-    void predict_strength(const std::vector<double>& v, Predicted& p) const {
-        const Numbers now = numbers(v);
+    void predict_strength(const Numbers& now, Predicted& p) const {
         const std::size_t n = log_median_.size();
         p.mean.resize(n);
         p.factor = spread_;
         const double more = 1 + now.strength_spread, gain = now.strength_gain, low = now.far_floor,
                      rail = now.saturation;
         const double other = now.multipath;
-        const auto told_of_ring = ring_ ? told(v) : nullptr;
-        const auto receivers = logs_of(receiver_gain_, v), emitters = logs_of(emitter_gain_, v);
+        const auto told_of_ring = ring_ ? told(now) : nullptr;
+        const auto receivers = logs_of(now.receiver), emitters = logs_of(now.emitter);
         for (std::size_t i = 0; i < n; ++i) {
             double level = gain;
             if (ring_) {
                 level += (*told_of_ring)[strength_row_[i]].log_strength;
             } else {
                 level += log_median_[i];
-                if (!receiver_.empty()) level += receivers[receiver_place_[i]];
-                if (!emitter_.empty()) level += emitters[emitter_place_[i]];
+                if (!receiver_.empty()) level += receivers[static_cast<std::size_t>(receiver_[i])];
+                if (!emitter_.empty()) level += emitters[static_cast<std::size_t>(emitter_[i])];
             }
             if (low > 0) level = std::max(level, std::log(low));
             p.mean[i] = level;
@@ -283,8 +267,7 @@ class RabModel final : public ModelOf<Numbers> {
                 p.lapse[i] = other * (occluded_[i] > 0 ? 1.0 : 0.05);
     }
 
-    void predict_bearing(const std::vector<double>& v, Predicted& p) const {
-        const Numbers now = numbers(v);
+    void predict_bearing(const Numbers& now, Predicted& p) const {
         const std::size_t n = observables_[static_cast<std::size_t>(bearing_)].y.size();
         const double other = now.multipath;
         p.mean.assign(n, now.bearing_offset);
@@ -292,16 +275,14 @@ class RabModel final : public ModelOf<Numbers> {
         p.lapse_scale.assign(other > 0 ? n : 0, 0.6);
         if (ring_) {
             p.factor = bearing_factor_;
-            const auto all = told(v);
+            const auto all = told(now);
             for (std::size_t i = 0; i < n; ++i)
                 p.mean[i] +=
                     std::remainder((*all)[bearing_row_[i]].bearing - truth_[i], 2 * std::numbers::pi);
             return;
         }
-        if (receiver_gain_.size() < kLeastReceivers || lobe_.empty()) return;
-        std::vector<double> gain;
-        for (std::size_t r = 0; r < kReceivers; ++r)
-            gain.push_back(of(receiver_gain_, static_cast<int>(r) + 1, v));
+        if (receivers_ < kLeastReceivers || lobe_.empty()) return;
+        const std::vector<double> gain(now.receiver.begin() + 1, now.receiver.end());
         const auto pull = pull_.get(gain, [&] { return pull_of(gain, n); });
         for (std::size_t i = 0; i < n; ++i)
             p.mean[i] += (*pull)[i];
@@ -324,8 +305,7 @@ class RabModel final : public ModelOf<Numbers> {
         return pull;
     }
 
-    void predict_reception(const std::vector<double>& v, Predicted& p) const {
-        const Numbers now = numbers(v);
+    void predict_reception(const Numbers& now, Predicted& p) const {
         const Observable& o = observables_[static_cast<std::size_t>(reception_)];
         const std::size_t n = o.y.size();
         p.mean.resize(n);
@@ -360,8 +340,7 @@ class RabModel final : public ModelOf<Numbers> {
     KeyedCache<std::vector<double>> pull_;  // of each bearing, by the receivers' gains
     std::vector<double> log_median_, spread_, occluded_, senders_, frame_, period_, rate_;
     std::vector<int> receiver_, emitter_;
-    std::vector<std::size_t> receiver_place_, emitter_place_;  // among the gains
-    std::vector<std::pair<int, int>> receiver_gain_, emitter_gain_;
+    std::size_t receivers_ = 0;  // that messages are told of
     int strength_ = -1, bearing_ = -1, reception_ = -1;
 };
 

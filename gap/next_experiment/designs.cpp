@@ -88,67 +88,49 @@ void drive(Table& table, const std::vector<Leg>& legs, double heading = 0.0, dou
     }
 }
 
-std::vector<Leg> square(double turn) {
-    std::vector<Leg> legs;
-    for (int side = 0; side < 4; ++side) {
-        legs.push_back({5, 400, 400});
-        legs.push_back({1.6, -turn * 200, turn * 200});
-        legs.push_back({0.5, 0, 0});
-    }
-    return legs;
+std::vector<Leg> repeated(int times, const std::vector<Leg>& legs, const std::vector<Leg>& after = {}) {
+    std::vector<Leg> all;
+    for (int k = 0; k < times; ++k)
+        all.insert(all.end(), legs.begin(), legs.end());
+    all.insert(all.end(), after.begin(), after.end());
+    return all;
 }
 
 void motion(Designs& designs) {
-    designs.add("drive straight lines of 0.5 m and 1.5 m, slowly", [](Table& t) {
-        drive(t, {{1, 0, 0}, {12, 300, 300}, {1, 0, 0}, {25, 300, 300}, {1, 0, 0}});
-    });
-    designs.add("drive straight at 900 steps/s", [](Table& t) {
-        drive(t, {{1, 0, 0}, {15, 900, 900}, {1, 0, 0}});
-    });
-    designs.add("drive straight forward and then backward the same way", [](Table& t) {
-        drive(t, {{12, 400, 400}, {1, 0, 0}, {12, -400, -400}, {1, 0, 0}});
-    });
-    designs.add("drive squares clockwise and counter-clockwise", [](Table& t) {
-        auto legs = square(1);
-        const auto other = square(-1);
-        legs.insert(legs.end(), other.begin(), other.end());
-        drive(t, legs);
-    });
-    designs.add("turn on the spot ten times, both ways", [](Table& t) {
-        drive(t, {{1, 0, 0}, {20, -300, 300}, {1, 0, 0}, {20, 300, -300}, {1, 0, 0}});
-    });
-    designs.add("drive wide circles both ways beside turns on the spot", [](Table& t) {
-        drive(t, {{15, 300, 400}, {15, 400, 300}, {8, -300, 300}, {8, 300, -300}});
-    });
-    designs.add("drive 1 m in ten hops and in one go", [](Table& t) {
+    const auto square = [](double turn) {
+        return repeated(4, {{5, 400, 400}, {1.6, -turn * 200, turn * 200}, {0.5, 0, 0}});
+    };
+    std::vector<Leg> steps;
+    for (double v = 20; v <= 200; v += 20)
+        steps.push_back({3, v, v});
+    struct Drive {
+        const char* what;
         std::vector<Leg> legs;
-        for (int hop = 0; hop < 10; ++hop) {
-            legs.push_back({1.0, 800, 800});
-            legs.push_back({0.5, 0, 0});
-        }
-        legs.push_back({10, 800, 800});
-        legs.push_back({1, 0, 0});
-        drive(t, legs);
-    });
-    designs.add("reverse twenty times without a stop", [](Table& t) {
-        std::vector<Leg> legs;
-        for (int k = 0; k < 20; ++k)
-            legs.push_back({1.0, k % 2 == 0 ? 300.0 : -300.0, k % 2 == 0 ? 300.0 : -300.0});
-        drive(t, legs);
-    });
-    designs.add("drive the same line with the start turned by 90 degrees", [](Table& t) {
-        drive(t, {{15, 400, 400}, {1, 0, 0}}, std::numbers::pi / 2);
-    });
-    designs.add("stand for a minute with the tracker on", [](Table& t) { drive(t, {{60, 0, 0}}); });
-    designs.add("drive the line with 0.3 kg on the robot", [](Table& t) {
-        drive(t, {{15, 400, 400}, {1, 0, 0}}, 0, 0.3);
-    });
-    designs.add("drive at commands from 20 to 200 steps/s in steps", [](Table& t) {
-        std::vector<Leg> legs;
-        for (int v = 20; v <= 200; v += 20)
-            legs.push_back({3, static_cast<double>(v), static_cast<double>(v)});
-        drive(t, legs);
-    });
+        double heading = 0.0, load = 0.0;
+    };
+    const Drive drives[] = {
+        {"drive straight lines of 0.5 m and 1.5 m, slowly",
+         {{1, 0, 0}, {12, 300, 300}, {1, 0, 0}, {25, 300, 300}, {1, 0, 0}}},
+        {"drive straight at 900 steps/s", {{1, 0, 0}, {15, 900, 900}, {1, 0, 0}}},
+        {"drive straight forward and then backward the same way",
+         {{12, 400, 400}, {1, 0, 0}, {12, -400, -400}, {1, 0, 0}}},
+        {"drive squares clockwise and counter-clockwise", repeated(1, square(1), square(-1))},
+        {"turn on the spot ten times, both ways",
+         {{1, 0, 0}, {20, -300, 300}, {1, 0, 0}, {20, 300, -300}, {1, 0, 0}}},
+        {"drive wide circles both ways beside turns on the spot",
+         {{15, 300, 400}, {15, 400, 300}, {8, -300, 300}, {8, 300, -300}}},
+        {"drive 1 m in ten hops and in one go",
+         repeated(10, {{1.0, 800, 800}, {0.5, 0, 0}}, {{10, 800, 800}, {1, 0, 0}})},
+        {"reverse twenty times without a stop", repeated(10, {{1.0, 300, 300}, {1.0, -300, -300}})},
+        {"drive the same line with the start turned by 90 degrees",
+         {{15, 400, 400}, {1, 0, 0}},
+         std::numbers::pi / 2},
+        {"stand for a minute with the tracker on", {{60, 0, 0}}},
+        {"drive the line with 0.3 kg on the robot", {{15, 400, 400}, {1, 0, 0}}, 0.0, 0.3},
+        {"drive at commands from 20 to 200 steps/s in steps", steps},
+    };
+    for (const Drive& one : drives)
+        designs.add(one.what, [&](Table& t) { drive(t, one.legs, one.heading, one.load); });
 }
 
 struct Wall {
@@ -180,66 +162,63 @@ void wall(Table& table, const Wall& w) {
 }
 
 void proximity(Designs& designs) {
-    designs.add("all eight sensors before white paper, 5 to 80 mm, in the dark",
-                [](Table& t) { wall(t, {}); });
-    designs.add("all eight sensors before a black and a white surface", [](Table& t) {
-        wall(t, {});
-        wall(t, {.reflectivity = 0.3});
-    });
-    designs.add("nothing in reach, in the dark and in light", [](Table& t) {
-        wall(t, {.low = 0.2, .high = 0.4});
-        wall(t, {.low = 0.2, .high = 0.4, .ambient = 1});
-    });
-    designs.add("distances below 10 mm in steps of half a millimetre",
-                [](Table& t) { wall(t, {.low = 0.0, .high = 0.01}); });
-    designs.add("walls turned by 35 degrees to either side", [](Table& t) {
-        wall(t, {.angle = 0.6});
-        wall(t, {.angle = -0.6});
-    });
-    designs.add("the same distances with the motors on and off", [](Table& t) {
-        wall(t, {});
-        wall(t, {.motor = 800});
-    });
-    designs.add("approach and retreat at full speed", [](Table& t) {
-        wall(t, {.velocity = 0.1});
-        wall(t, {.velocity = -0.1});
-    });
-    designs.add("one distance for an hour after switching on",
-                [](Table& t) { wall(t, {.low = 0.02, .high = 0.03, .hours = 1}); });
+    const std::pair<const char*, std::vector<Wall>> looks[] = {
+        {"all eight sensors before white paper, 5 to 80 mm, in the dark", {Wall{}}},
+        {"all eight sensors before a black and a white surface", {{}, {.reflectivity = 0.3}}},
+        {"nothing in reach, in the dark and in light",
+         {{.low = 0.2, .high = 0.4}, {.low = 0.2, .high = 0.4, .ambient = 1}}},
+        {"distances below 10 mm in steps of half a millimetre", {{.low = 0.0, .high = 0.01}}},
+        {"walls turned by 35 degrees to either side", {{.angle = 0.6}, {.angle = -0.6}}},
+        {"the same distances with the motors on and off", {{}, {.motor = 800}}},
+        {"approach and retreat at full speed", {{.velocity = 0.1}, {.velocity = -0.1}}},
+        {"one distance for an hour after switching on", {{.low = 0.02, .high = 0.03, .hours = 1}}},
+    };
+    for (const auto& [what, walls] : looks)
+        designs.add(what, [&](Table& t) {
+            for (const Wall& one : walls)
+                wall(t, one);
+        });
+}
+
+struct Messages {
+    double low = 0.2, high = 0.2;
+    int senders = 1;
+    double rate = 50;
+    int receivers = 1;
+};
+
+void messages(Table& t, const Messages& m) {
+    double time = 0;
+    for (int r = 1; r <= m.receivers; ++r)
+        for (int k = 0; k < 60; ++k)
+            t.row({{"t_s", time += 0.02},
+                   {"distance_m", m.low + (m.high - m.low) * k / 59},
+                   {"strength", 1000},
+                   {"bearing_rad", 0},
+                   {"true_bearing_rad", 0},
+                   {"received", 1},
+                   {"receiver", static_cast<double>(r)},
+                   {"emitter", 1},
+                   {"senders", static_cast<double>(m.senders)},
+                   {"frame_time", 0.0092},
+                   {"send_period", 0.02},
+                   {"arrival_rate", m.rate}});
 }
 
 void rab(Designs& designs) {
-    const auto messages = [](Table& t, double low, double high, int senders, double rate, int receivers) {
-        double time = 0;
-        for (int r = 1; r <= receivers; ++r)
-            for (int k = 0; k < 60; ++k)
-                t.row({{"t_s", time += 0.02},
-                       {"distance_m", low + (high - low) * k / 59},
-                       {"strength", 1000},
-                       {"bearing_rad", 0},
-                       {"true_bearing_rad", 0},
-                       {"received", 1},
-                       {"receiver", static_cast<double>(r)},
-                       {"emitter", 1},
-                       {"senders", static_cast<double>(senders)},
-                       {"frame_time", 0.0092},
-                       {"send_period", 0.02},
-                       {"arrival_rate", rate}});
+    const std::pair<const char*, std::vector<Messages>> talks[] = {
+        {"turn the receiver through all twelve sectors before one sender at 20 cm", {{.receivers = 12}}},
+        {"one sender from contact to 80 cm", {{.low = 0.0, .high = 0.8}}},
+        {"one, two and four senders at one place",
+         {{}, {.senders = 2, .rate = 100}, {.senders = 4, .rate = 200}}},
+        {"one sender at 10, 50 and 150 messages a second", {{.rate = 10}, {}, {.rate = 150}}},
+        {"six other pairs of boards at 20 cm", {{.receivers = 6}}},
     };
-    designs.add("turn the receiver through all twelve sectors before one sender at 20 cm",
-                [&](Table& t) { messages(t, 0.2, 0.2, 1, 50, 12); });
-    designs.add("one sender from contact to 80 cm", [&](Table& t) { messages(t, 0.0, 0.8, 1, 50, 1); });
-    designs.add("one, two and four senders at one place", [&](Table& t) {
-        messages(t, 0.2, 0.2, 1, 50, 1);
-        messages(t, 0.2, 0.2, 2, 100, 1);
-        messages(t, 0.2, 0.2, 4, 200, 1);
-    });
-    designs.add("one sender at 10, 50 and 150 messages a second", [&](Table& t) {
-        messages(t, 0.2, 0.2, 1, 10, 1);
-        messages(t, 0.2, 0.2, 1, 50, 1);
-        messages(t, 0.2, 0.2, 1, 150, 1);
-    });
-    designs.add("six other pairs of boards at 20 cm", [&](Table& t) { messages(t, 0.2, 0.2, 1, 50, 6); });
+    for (const auto& [what, parts] : talks)
+        designs.add(what, [&](Table& t) {
+            for (const Messages& one : parts)
+                messages(t, one);
+        });
 }
 
 void simple(Designs& designs, Kind kind) {

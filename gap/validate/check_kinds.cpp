@@ -208,22 +208,9 @@ void check_rab(Experiment& experiment) {
 }  // namespace
 
 void check_kind(Experiment& experiment) {
-    switch (experiment.kind) {
-    case Kind::Proximity:
-        return check_proximity(experiment);
-    case Kind::Motion:
-        return check_motion(experiment);
-    case Kind::Rab:
-        return check_rab(experiment);
-    case Kind::Microphone:
-        return check_microphone(experiment);
-    case Kind::Ground:
-        return check_ground(experiment);
-    case Kind::Accelerometer:
-        return check_accelerometer(experiment);
-    case Kind::Timing:
-        return check_timing(experiment);
-    }
+    constexpr std::array kChecks{check_proximity, check_motion,        check_rab,   check_microphone,
+                                 check_ground,    check_accelerometer, check_timing};  // in the order of Kind
+    kChecks[static_cast<std::size_t>(experiment.kind)](experiment);
 }
 
 }  // namespace puckloop::gap

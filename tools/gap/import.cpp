@@ -46,7 +46,7 @@ void declare_gap_import(Command& gap, int& status) {
         for (const auto& e : gap::importers::import_set(request->folder, request->set, request->out)) {
             std::size_t rows = 0;
             for (const auto& run : e.runs)
-                rows += run.columns.empty() ? 0 : run.columns.front().second.size();
+                rows += run.columns.empty() ? 0 : run.columns.front().values.size();
             fmt::print("{}: kind {}, {} runs, {} rows\n", (request->out / e.folder).string(), e.kind,
                        e.runs.size(), rows);
         }
