@@ -1,52 +1,47 @@
 #include "tools/gap/selftest/run_cases.h"
 
-#include "gap/fit/parallel.h"
 #include "gap/pipeline/analyse.h"
 
 #include <fmt/format.h>
 
 #include <chrono>
 #include <exception>
-#include <mutex>
 
 namespace puckloop::gap::selftest {
 
-namespace {
-
-/// The tool sees a folder with a name that says nothing.
-Judged run_one(const CasePlan& plan, std::size_t index, const RunOptions& options) {
-    const HiddenCase hidden = make_case(plan);
-    const auto folder = options.scratch / fmt::format("case{:03}", index);
-    write_folder(hidden.experiment, folder);
-    Judged judged;
+Analysed analysed(const WrittenExperiment& experiment, const std::filesystem::path& folder,
+                  std::uint64_t seed, bool keep) {
+    Analysed result;
+    write_folder(experiment, folder);
     try {
-        Options analysis;
-        analysis.seed = plan.seed;
+        Options options;
+        options.seed = seed;
         const auto begin = std::chrono::steady_clock::now();
-        judged = judge(hidden, analyse(read_experiment(folder), analysis));
-        judged.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+        result.verdict = analyse(read_experiment(folder), options);
+        result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     } catch (const std::exception& error) {
-        judged = judge(hidden, Verdict{});
-        judged.said = "error";
-        judged.error = error.what();
+        result.error = error.what();
     }
-    if (!options.keep) std::filesystem::remove_all(folder);
-    return judged;
+    if (!keep) std::filesystem::remove_all(folder);
+    return result;
 }
 
-}  // namespace
-
 std::vector<Judged> run_cases(const std::vector<CasePlan>& plans, const RunOptions& options) {
-    (void)benches();  // made once, before the workers
-    std::vector<Judged> results(plans.size());
-    std::size_t finished = 0;
-    std::mutex telling;
-    in_parallel(plans.size(), options.workers, [&](std::size_t k) {
-        results[k] = run_one(plans[k], k, options);
-        const std::lock_guard lock(telling);
-        if (options.done) options.done(k, results[k], ++finished, plans.size());
-    });
-    return results;
+    const auto one = [&](std::size_t k) {
+        const HiddenCase hidden = make_case(plans[k]);
+        // The tool sees a folder with a name that says nothing.
+        const auto said = analysed(hidden.experiment, options.scratch / fmt::format("case{:03}", k),
+                                   plans[k].seed, options.keep);
+        Judged judged = judge(hidden, said.verdict);
+        judged.wall_s = said.wall_s;
+        judged.error = said.error;
+        if (!said.error.empty()) judged.said = "error";
+        return judged;
+    };
+    return run_all(plans.size(), options.workers, one,
+                   [&](std::size_t k, const Judged& judged, std::size_t done) {
+                       if (options.done) options.done(k, judged, done, plans.size());
+                   });
 }
 
 }  // namespace puckloop::gap::selftest

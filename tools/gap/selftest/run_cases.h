@@ -1,14 +1,43 @@
 #pragma once
 // Makes cases, writes each to a folder of its own, has the tool read and judge it, and removes it.
 
+#include "gap/fit/parallel.h"
 #include "tools/gap/selftest/case_list.h"
 #include "tools/gap/selftest/score.h"
 
 #include <filesystem>
 #include <functional>
+#include <mutex>
+#include <string>
 #include <vector>
 
 namespace puckloop::gap::selftest {
+
+/// What the tool said of an experiment in a folder of its own.
+struct Analysed {
+    Verdict verdict;
+    std::string error;  ///< not empty: it failed
+    double wall_s = 0.0;
+};
+/// `folder` is removed again unless it is to be kept.
+Analysed analysed(const WrittenExperiment& experiment, const std::filesystem::path& folder,
+                  std::uint64_t seed, bool keep);
+
+/// `one(k)` for each of `count` cases on a few threads, in their order; `done(k, result, cases done)` from
+/// one thread at a time.
+template <class One, class Done>
+auto run_all(std::size_t count, unsigned workers, const One& one, const Done& done) {
+    (void)benches();  // made once, before the workers
+    std::vector<decltype(one(count))> results(count);
+    std::size_t finished = 0;
+    std::mutex telling;
+    in_parallel(count, workers, [&](std::size_t k) {
+        results[k] = one(k);
+        const std::lock_guard lock(telling);
+        done(k, results[k], ++finished);
+    });
+    return results;
+}
 
 struct RunOptions {
     std::filesystem::path scratch;

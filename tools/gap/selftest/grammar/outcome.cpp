@@ -2,46 +2,15 @@
 
 #include "gap/decide/ablation.h"
 #include "gap/effects/effect.h"
-#include "gap/fit/parallel.h"
-#include "gap/pipeline/analyse.h"
 #include "gap/stats/tails.h"
-#include "tools/gap/selftest/case_list.h"
 #include "tools/gap/selftest/grammar/families.h"
-#include "tools/gap/selftest/score.h"
+#include "tools/gap/selftest/run_cases.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
-#include <exception>
-#include <mutex>
 
 namespace puckloop::gap::selftest::grammar {
-
-namespace {
-
-Outcome run_one(std::size_t number, const Drawing& drawing) {
-    const DrawnCase drawn = drawn_case(number, drawing.seed, drawing.draw_runs);
-    const auto folder = drawing.scratch / fmt::format("case{:04}", number);
-    write_folder(drawn.hidden.experiment, folder);
-    Outcome outcome;
-    try {
-        Options analysis;
-        analysis.seed = drawing.seed + number;
-        const auto begin = std::chrono::steady_clock::now();
-        outcome = outcome_of(drawn, analyse(read_experiment(folder), analysis));
-        outcome.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    } catch (const std::exception& error) {
-        outcome = outcome_of(drawn, Verdict{});
-        outcome.said = "error";
-        outcome.error = error.what();
-    }
-    outcome.number = number;
-    if (!drawing.keep) std::filesystem::remove_all(folder);
-    return outcome;
-}
-
-}  // namespace
 
 double rank_in(double truth, double value, double low, double high) {
     constexpr double kHalf = 1.6449;  // sd from the middle to the end of a 90 % interval
@@ -97,15 +66,22 @@ std::vector<Outcome> run_drawn(const Drawing& drawing) {
         const bool kind = drawing.kind.empty() || benches()[n % benches().size()]->kind() == drawing.kind;
         if (asked && kind && (!drawing.of || class_of(n) == *drawing.of)) numbers.push_back(n);
     }
-    std::vector<Outcome> results(numbers.size());
-    std::size_t finished = 0;
-    std::mutex telling;
-    in_parallel(numbers.size(), drawing.workers, [&](std::size_t k) {
-        results[k] = run_one(numbers[k], drawing);
-        const std::lock_guard lock(telling);
-        if (drawing.done) drawing.done(results[k], ++finished, numbers.size());
-    });
-    return results;
+    const auto one = [&](std::size_t k) {
+        const DrawnCase drawn = drawn_case(numbers[k], drawing.seed, drawing.draw_runs);
+        const auto said =
+            analysed(drawn.hidden.experiment, drawing.scratch / fmt::format("case{:04}", numbers[k]),
+                     drawing.seed + numbers[k], drawing.keep);
+        Outcome outcome = outcome_of(drawn, said.verdict);
+        outcome.number = numbers[k];
+        outcome.wall_s = said.wall_s;
+        outcome.error = said.error;
+        if (!said.error.empty()) outcome.said = "error";
+        return outcome;
+    };
+    return run_all(numbers.size(), drawing.workers, one,
+                   [&](std::size_t, const Outcome& outcome, std::size_t done) {
+                       if (drawing.done) drawing.done(outcome, done, numbers.size());
+                   });
 }
 
 }  // namespace puckloop::gap::selftest::grammar

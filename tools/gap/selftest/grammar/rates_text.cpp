@@ -53,6 +53,30 @@ std::string ablation(const std::vector<Outcome>& cases) {
     return text;
 }
 
+/// What a result says of a case beside its number and class: written, and read again, by these names.
+template <class One, class Field>
+void for_each_field(One& one, const Field& field) {
+    field("kind", one.kind);
+    field("hidden", one.text);
+    field("effect", one.effect);
+    field("family", one.family);
+    field("asked", one.asked);
+    field("strength", one.ratio);
+    field("likeness", one.likeness);
+    field("runs", one.runs);
+    field("redrawn", one.redrawn);
+    field("said", one.said);
+    field("names", one.names);
+    field("right", one.right);
+    field("wrong_family", one.wrong_family);
+    field("other_family", one.other_family);
+    field("ranks", one.ranks);
+    field("covered", one.covered);
+    field("alone_against", one.alone_against);
+    field("wall_s", one.wall_s);
+    field("error", one.error);
+}
+
 bool missed(const Outcome& one) {
     if (one.of == Class::NearMiss) return one.wrong_family || said_of(one) == Said::Failed;
     return !rightly(one) && (one.of == Class::Null || one.ratio >= 1);
@@ -104,28 +128,11 @@ std::string rates_text(const std::vector<Outcome>& cases, const std::string& see
 std::string rates_json(const std::vector<Outcome>& cases, std::uint64_t seed) {
     using Json = nlohmann::ordered_json;
     Json all = Json::array(), wanted = Json::array();
-    for (const Outcome& one : cases)
-        all.push_back({{"number", one.number},
-                       {"class", class_name(one.of)},
-                       {"kind", one.kind},
-                       {"hidden", one.text},
-                       {"effect", one.effect},
-                       {"family", one.family},
-                       {"asked", one.asked},
-                       {"strength", one.ratio},
-                       {"likeness", one.likeness},
-                       {"runs", one.runs},
-                       {"redrawn", one.redrawn},
-                       {"said", one.said},
-                       {"names", one.names},
-                       {"right", one.right},
-                       {"wrong_family", one.wrong_family},
-                       {"other_family", one.other_family},
-                       {"ranks", one.ranks},
-                       {"covered", one.covered},
-                       {"alone_against", one.alone_against},
-                       {"wall_s", one.wall_s},
-                       {"error", one.error}});
+    for (const Outcome& one : cases) {
+        Json row{{"number", one.number}, {"class", class_name(one.of)}};
+        for_each_field(one, [&](const char* name, const auto& value) { row[name] = value; });
+        all.push_back(std::move(row));
+    }
     for (const Target& target : targets(cases))
         wanted.push_back({{"what", target.what},
                           {"share", target.rate.share()},
@@ -145,25 +152,10 @@ std::vector<Outcome> outcomes_from_json(const std::string& text, const std::stri
         out.number = one.at("number");
         for (const Class of : {Class::Null, Class::Known, Class::NearMiss, Class::Unknown})
             if (one.at("class") == class_name(of)) out.of = of;
-        out.kind = one.at("kind");
-        out.text = one.at("hidden");
-        out.effect = one.at("effect");
-        out.family = one.at("family");
-        out.asked = one.at("asked");
-        out.ratio = one.at("strength");
-        out.likeness = one.at("likeness");
-        out.runs = one.at("runs");
-        out.redrawn = one.at("redrawn");
-        out.said = one.at("said");
-        out.names = one.at("names").get<std::vector<std::string>>();
-        out.right = one.at("right");
-        out.wrong_family = one.at("wrong_family");
-        out.other_family = one.at("other_family");
-        out.ranks = one.at("ranks").get<std::vector<double>>();
-        out.covered = one.at("covered");
-        out.alone_against = one.value("alone_against", std::vector<std::string>{});
-        out.wall_s = one.at("wall_s");
-        out.error = one.at("error");
+        for_each_field(out, [&](const char* name, auto& value) {
+            const bool old = name == std::string_view("alone_against") && !one.contains(name);
+            if (!old) one.at(name).get_to(value);
+        });
         cases.push_back(std::move(out));
     }
     return cases;
