@@ -276,7 +276,8 @@ class MotionModel final : public ModelOf<Numbers> {
         constexpr const char* kNames[] = {"steps_left", "steps_right"};
         for (std::size_t w = 0; w < 2; ++w) {
             const Rows rows(experiment, "", {"t_s", kNames[w]});
-            Observable one = rows.observable(kNames[w], NoiseKind::Level, counter_rows_[w]);
+            std::vector<std::uint32_t> used;
+            Observable one = rows.observable(kNames[w], NoiseKind::Level, used);
             one.unit = "steps";
             one.instrument.quantum = 0.0;
             one.fixed_sd = kCounterSd;
@@ -514,7 +515,6 @@ class MotionModel final : public ModelOf<Numbers> {
     KeyedCache<std::array<std::vector<double>, 2>> counts_;  // by latency
     bool counted_ = false;
     bool exact_ = false;  ///< wheels keep to their commands: no agenda makes a staircase of them
-    std::array<std::vector<std::uint32_t>, 2> counter_rows_;
 };
 
 }  // namespace

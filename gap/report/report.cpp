@@ -1,14 +1,11 @@
 #include "gap/report/report.h"
 
-#include "base/error.h"
 #include "gap/report/pictures.h"
 #include "gap/report/sections.h"
 #include "gap/report/style.h"
 #include "physics/render/svg_canvas.h"
 
 #include <fmt/format.h>
-
-#include <fstream>
 
 namespace puckloop::gap::report {
 
@@ -72,13 +69,6 @@ std::string report_html(const Experiment& experiment, const Verdict& verdict) {
     out += evidence_section(verdict);
     out += reading_section();
     return out + "</body></html>\n";
-}
-
-void write_report(const Experiment& experiment, const Verdict& verdict, const std::filesystem::path& file) {
-    std::ofstream stream(file, std::ios::binary);
-    stream << report_html(experiment, verdict);
-    stream.close();
-    if (!stream) throw RunError(fmt::format("{}: cannot be written", file.string()));
 }
 
 }  // namespace puckloop::gap::report

@@ -21,8 +21,7 @@ std::array<double, kAxes> feel(const AccelerometerKnobs& k, const Attitude& a) {
     std::array<double, kAxes> counts{};
     for (std::size_t i = 0; i < kAxes; ++i) {
         const double zero = kZero + k.bias[i] + (a.session > 1 ? k.session_jump : 0.0);
-        double value = zero + kOneG * k.scale[i] * felt[i] + k.cubic * felt[i] * felt[i] * felt[i] +
-                       k.warm * (1.0 - std::exp(-a.t / kWarmSeconds));
+        double value = zero + kOneG * k.scale[i] * felt[i] + k.warm * (1.0 - std::exp(-a.t / kWarmSeconds));
         if (i == 0 && a.turning > 0.0) value += k.spin_pull;
         if (a.since_stop < kHoldSeconds) value += k.hold;
         if (a.steps != 0.0) value *= 1.0 - k.sag;

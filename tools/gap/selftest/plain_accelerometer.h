@@ -17,7 +17,6 @@ struct AccelerometerKnobs {
     double session_jump = 0.0;                 // [39] counts, another bias after power-up again
     double sag = 0.0;                          // [31] all channels shrink with the motors on
     double warm = 0.0;                         // [33] counts in the end, 95 % after ten minutes
-    double cubic = 0.0;                        // unknown: counts a g^3
     double spin_pull = 0.0;                    // unknown: counts on x while turning left only
     double hold = 0.0;                         // unknown: counts added in the seconds after a stop
 };

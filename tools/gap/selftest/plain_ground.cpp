@@ -16,10 +16,9 @@ constexpr double kFootprint = 0.004;                                    // m
 constexpr double kWaveLength = 0.08;                                    // m of the printed pattern
 constexpr double kWeave = 0.007;                                        // m from ripple to ripple
 constexpr double kHysteresisHold = 0.3;                                 // s
-constexpr double kNominalHeight = 1.0;
 
-double grey_spot(double x, double y, double width) {
-    const double r = width / 2;
+double grey_spot(double x, double y) {
+    constexpr double r = kFootprint / 2;
     return (printed_grey(x, y) + printed_grey(x + r, y) + printed_grey(x - r, y) + printed_grey(x, y + r) +
             printed_grey(x, y - r)) /
            5;
@@ -53,7 +52,7 @@ double printed_grey(double x, double y) {
 double nominal_grey(const Stand& s, std::size_t i, double ahead, double aside) {
     const double c = std::cos(s.heading), n = std::sin(s.heading);
     const double forward = kAhead + ahead, left = kAside[i] + aside;
-    return grey_spot(s.x + c * forward - n * left, s.y + n * forward + c * left, kFootprint);
+    return grey_spot(s.x + c * forward - n * left, s.y + n * forward + c * left);
 }
 
 std::vector<std::array<double, kGroundRow>> look_down(const GroundKnobs& k,
@@ -68,10 +67,8 @@ std::vector<std::array<double, kGroundRow>> look_down(const GroundKnobs& k,
             const double ahead = kAhead + k.forward;
             const double x = s.x + c * ahead - n * kAside[i];
             const double y = s.y + n * ahead + c * kAside[i];
-            const double grey = grey_spot(x, y, kFootprint + k.footprint);
+            const double grey = grey_spot(x, y);
             double level = kBlack + (kWhite - kBlack) * grey;
-            const double stand_height = kNominalHeight + k.height;
-            level /= stand_height * stand_height;
             level *= 1.0 - k.pitch * s.acceleration;
             level = k.gain[i] * level + k.offset[i];
             level += k.weave * std::sin(2 * std::numbers::pi * (x + y) / kWeave);

@@ -16,11 +16,9 @@ inline constexpr std::size_t kGroundRow = 3;
 struct GroundKnobs {
     std::array<double, kGroundRow> gain{1, 1, 1};  // [36]
     std::array<double, kGroundRow> offset{};       // [36] counts
-    double height = 0.0;                           // [37] share by which the board stands higher than stated
     double pitch = 0.0;                            // [37] share of the signal lost an m/s2 of acceleration
     double forward = 0.0;                          // [38] m further ahead than stated
     double lag = 0.0;                              // [38] s
-    double footprint = 0.0;                        // [38] m wider than stated
     double weave = 0.0;                            // unknown: counts, rippling with the place on the floor
     double hysteresis = 0.0;  // unknown: share of the last change kept for a while after dark
     double glare = 0.0;       // unknown: counts where the robot heads north

@@ -20,7 +20,7 @@ double loudness(const MicrophoneKnobs& k, const Listening& l) {
     level *= 1.0 + k.node * std::sin(2 * std::numbers::pi * l.distance / kRoomMode);
     level *= k.gain[l.microphone] * (1.0 + k.warm * (1.0 - std::exp(-l.t / kWarmSeconds)));
     if (std::fmod(kSpells * l.share, 1.0) > 0.5) level *= 1.0 - k.burst;
-    level += k.self_noise + (l.motors != 0.0 ? k.motor_floor : 0.0);
+    level += k.self_noise;
     // Extremes of N samples of noise lie about sqrt(2 ln N) from the mean: fewer samples, a smaller level.
     const double used = std::max(2.0, l.window * (1.0 - k.short_window));
     level *= std::sqrt(std::log(used) / std::log(l.window));

@@ -12,7 +12,6 @@ inline constexpr std::size_t kMicrophones = 3;
 struct MicrophoneKnobs {
     std::array<double, kMicrophones> gain{1, 1, 1};  // [41]
     double self_noise = 0.0;                         // [41] counts, the floor of the level
-    double motor_floor = 0.0;                        // [41] counts more with the motors on
     double exponent = 0.0;                           // [41] fall with distance, beyond 1
     double directivity = 0.0;                        // [41] share
     double short_window = 0.0;                       // [42] share of the window really used is 1 minus this

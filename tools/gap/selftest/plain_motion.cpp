@@ -117,7 +117,7 @@ std::vector<MotionRow> drive(const MotionKnobs& k, const MotionScript& script, d
             const double my = p.y + std::sin(p.heading) * k.marker_x + std::cos(p.heading) * k.marker_y;
             const double stretch = 1.0 + k.lens * (mx * mx + my * my);
             rows.push_back({t, cl, cr, left.counted, right.counted, mx * stretch, my * stretch,
-                            p.heading + k.marker_angle + k.heading_drift * t});
+                            p.heading + k.heading_drift * t});
         }
         double vl = kept * left.advance(k, radius_left, agenda_speed(command_left), chance);
         double vr = kept * right.advance(k, radius_right, agenda_speed(command_right), chance);

@@ -21,7 +21,6 @@ struct MotionKnobs {
     double creep = 0.0;                     // [6] share of travel lost a kg of load
     double loss_speed = 0.0;                // [7] steps/s, 0 = never
     double loss_width = 50.0;               // [7] steps/s
-    double agenda_error = 0.0;              // a motor driver with another staircase (not in the catalogue)
     double deadband = 0.0;                  // [9] steps/s
     double backlash = 0.0;                  // [10] m at the rim
     double latency = 0.0;                   // [11] s
@@ -31,7 +30,6 @@ struct MotionKnobs {
     double push_rate = 0.0;                 // [14] 1/s
     double push_size = 0.0;                 // [14] m
     double marker_x = 0.0, marker_y = 0.0;  // [15] m in the robot's frame
-    double marker_angle = 0.0;              // [15] rad
     double tracker_delay = 0.0;             // [16] s
     double heading_drift = 0.0;             // [17] rad/s in what is measured
     double eccentricity = 0.0;              // unknown: radius varies over a wheel turn
