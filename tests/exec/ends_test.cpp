@@ -96,7 +96,7 @@ TEST_CASE("a TCP port that is taken is an input error of one line") {
         exec::make_tcp_end(port_of(*first));
         FAIL("a second listener was let in");
     } catch (const InputError& error) {
-        CHECK(std::string(error.what()).find("tcp:") == 0);
+        CHECK(std::string(error.what()).find("uart: tcp:") == 0);
     }
 }
 

@@ -11,6 +11,7 @@
 #include <poll.h>
 #include <stdlib.h>
 #include <sys/ioctl.h>
+#include <sys/stat.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -35,7 +36,7 @@ class Pty final : public HostStream {
         master_.assign(master);
         char name[128];
         if (grantpt(master) != 0 || unlockpt(master) != 0 || ptsname_r(master, name, sizeof name) != 0 ||
-            !set_raw_terminal(master, baud))
+            ::chmod(name, S_IRUSR | S_IWUSR) != 0 || !set_raw_terminal(master, baud))
             fail();
         name_ = name;
     }

@@ -18,7 +18,8 @@ using boost::system::error_code;
 
 class TcpClient final : public HostStream {
   public:
-    TcpClient(boost::asio::io_context& io, std::uint16_t port) : acceptor_(io), client_(io) {
+    TcpClient(boost::asio::io_context& io, const std::string& name, std::uint16_t port)
+        : acceptor_(io), client_(io) {
         try {
             const tcp::endpoint here(boost::asio::ip::address_v4::loopback(), port);
             acceptor_.open(here.protocol());
@@ -26,7 +27,8 @@ class TcpClient final : public HostStream {
             acceptor_.bind(here);
             acceptor_.listen();
         } catch (const boost::system::system_error& error) {
-            throw InputError("", fmt::format("tcp:{}", port), error.code().message(), "a free port");
+            throw InputError("", fmt::format("{}: tcp:{}", name, port), error.code().message(),
+                             "a free port");
         }
         port_ = acceptor_.local_endpoint().port();
         accept();
@@ -103,8 +105,9 @@ class TcpClient final : public HostStream {
 }  // namespace
 
 std::unique_ptr<UartEnd> make_tcp_end(std::uint16_t port, const LiveOptions& options) {
-    return std::make_unique<LiveEnd>(
-        options, [&](boost::asio::io_context& io) { return std::make_unique<TcpClient>(io, port); });
+    return std::make_unique<LiveEnd>(options, [&](boost::asio::io_context& io) {
+        return std::make_unique<TcpClient>(io, options.name, port);
+    });
 }
 
 }  // namespace puckloop::exec

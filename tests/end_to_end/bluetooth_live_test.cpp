@@ -1,0 +1,269 @@
+// The computer at a Bluetooth module as a program outside meets it, through a pty or a TCP port of a run by
+// the wall clock: bytes pass both ways, and each way of leaving it has one outcome. Programs uploaded through
+// live lines, by the boot loader.
+
+#include "tests/end_to_end/live_line.h"
+#include "tests/end_to_end/one_line.h"
+#include "tests/end_to_end/workbench.h"
+
+#include <catch2/catch.hpp>
+#include <fmt/format.h>
+
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+using namespace puckloop::tests;
+using Catch::Matchers::Contains;
+using Kind = LiveLine::Kind;
+
+namespace {
+
+constexpr double kByteRate = 115200 / 10.0;
+
+/// One robot that answers "yes\n" to each line by Bluetooth and writes at UART2 what it heard.
+std::string talking_robot(const std::string& computer) {
+    return fmt::format(R"([run]
+duration = "120 s"
+[arena]
+size = ["1 m", "1 m"]
+[bluetooth]
+link_time = ["300 ms", "10 ms"]
+[[robot]]
+name = "a"
+position = ["0 m", "0 m"]
+[robot.pic]
+firmware = "{}/firmware/bluetooth/talk.hex"
+uart2 = "script:/dev/null"
+[robot.pic.bluetooth]
+computer = "{}"
+)",
+                       PUCKLOOP_SOURCE, computer);
+}
+
+/// `puckloop run --paced` of it.
+struct Run {
+    Workbench bench;
+    std::unique_ptr<Process> process;
+
+    explicit Run(const std::string& scenario) {
+        const auto file = bench.file("live.toml", scenario);
+        process = bench.start({"run", "--out", bench.out("o"), "--paced", file});
+    }
+    std::string place(const std::string& end) const { return place_of(bench.folder() / "stderr", end); }
+    std::string received(const std::string& end) const {
+        return text_of(bench.out("o") / (end + ".received"));
+    }
+    /// Waits until what came at `end` has this in it.
+    bool heard(const std::string& end, const std::string& text) const {
+        for (const double until = wall_seconds() + 30.0; wall_seconds() < until;) {
+            if (received(end).find(text) != std::string::npos) return true;
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        }
+        return false;
+    }
+    /// Ends it as its user does; nothing else may have gone wrong.
+    nlohmann::json end() {
+        process->signal(SIGINT);
+        const Ended ended = process->wait();
+        INFO(ended.err);
+        CHECK(ended.status == 128 + SIGINT);
+        CHECK_THAT(ended.err, Contains("interrupted (SIGINT)"));
+        return bench.report("o");
+    }
+};
+
+}  // namespace
+
+TEST_CASE("a computer's script is sent to the robot by Bluetooth, and its answers are in a file",
+          "[bluetooth]") {
+    const Workbench bench;
+    bench.file("ask.txt", "1.0 61 62 0a\n2.0 63 0a\n");
+    const auto file = bench.file("script.toml", talking_robot("script:ask.txt"));
+    for (const Words& placement : {Words{}, Words{"--in-process"}}) {
+        Words words{file, "--duration", "3"};
+        words.insert(words.end(), placement.begin(), placement.end());
+        const Ended ended = bench.run("o", words);
+        INFO(ended.err);
+        REQUIRE(ended.status == 0);
+        CHECK(text_of(bench.out("o") / "a.computer.received") == "yes\nyes\n");
+        CHECK(text_of(bench.out("o") / "a.uart2.received") == "linked\r\nheard ab\r\nheard c\r\n");
+    }
+    const auto none = bench.file("none.toml", talking_robot("script:nowhere.txt"));
+    check_one_line(bench.run("none", {none}), 2, {"nowhere.txt"});
+}
+
+TEST_CASE("a program at the computer's pty talks with the robot, leaves, and comes again", "[bluetooth]") {
+    if (!has_ptys()) return;
+    Run run(talking_robot("pty"));
+    const std::string name = run.place("a.computer");
+    struct stat entry {};
+    REQUIRE(::stat(name.c_str(), &entry) == 0);
+    CHECK((entry.st_mode & 0777) == 0600);  // nobody else's program speaks to the robot
+    {
+        const LiveLine program(Kind::Pty, name);
+        program.send("one\n");
+        CHECK(program.read_until("yes\n") == "yes\n");
+        program.send("two\n");
+    }
+    // What nobody has it open for is lost, as at a serial port, and the link stays.
+    CHECK(run.heard("a.computer", "yes\nyes\n"));
+    const LiveLine program(Kind::Pty, name);
+    program.send("three\n");
+    CHECK(program.read_until("yes\n") == "yes\n");
+    const auto report = run.end();
+    CHECK(run.received("a.computer") == "yes\nyes\nyes\n");
+    CHECK(run.received("a.uart2") == "linked\r\nheard one\r\nheard two\r\nheard three\r\n");
+    CHECK(report["nodes"]["bluetooth"]["links"] == 1);
+    CHECK(report["nodes"]["bluetooth"]["lost"] == 0);
+}
+
+TEST_CASE("clients of the computer's TCP port: one at a time, however the last one left", "[bluetooth]") {
+    Run run(talking_robot("tcp:0"));
+    const std::string port = run.place("a.computer");
+    LiveLine first(Kind::Tcp, port);
+    first.send("one\n");
+    CHECK(first.read_until("yes\n") == "yes\n");
+    const LiveLine second(Kind::Tcp, port);
+    CHECK(second.hung_up());
+    first.send("two\n");
+    CHECK(first.read_until("yes\n") == "yes\n");
+    first.reset();
+    {
+        const LiveLine third(Kind::Tcp, port);
+        third.send("three\n");
+        CHECK(third.read_until("yes\n") == "yes\n");
+    }
+    const LiveLine fourth(Kind::Tcp, port);
+    fourth.send("four\n");
+    CHECK(fourth.read_until("yes\n") == "yes\n");
+    const auto report = run.end();
+    CHECK(fourth.hung_up());
+    CHECK(run.received("a.uart2") == "linked\r\nheard one\r\nheard two\r\nheard three\r\nheard four\r\n");
+    CHECK(report["nodes"]["a.computer"]["sent"] == 4 + 4 + 6 + 5);
+    CHECK(report["nodes"]["bluetooth"]["links"] == 1);
+}
+
+TEST_CASE("a client that floods the robot waits, and the run goes on at its pace", "[bluetooth]") {
+    Run run(talking_robot("tcp:0"));
+    const LiveLine client(Kind::Tcp, run.place("a.computer"));
+    client.send("one\n");
+    CHECK(client.read_until("yes\n") == "yes\n");
+    // The system's buffers take a few megabytes, the line 11 kB a second: the rest stays with the client.
+    constexpr std::size_t kMost = 64 << 20;
+    const std::size_t taken = client.flood(std::string(4096, 'x'), kMost);
+    CHECK(taken < kMost / 2);
+    CHECK(run.heard("a.uart2", "heard xxxxxxxxxxxxxxxx"));
+    const auto report = run.end();
+    const double sent = report["nodes"]["a.computer"]["sent"].get<double>();
+    CHECK(sent > 1000);
+    CHECK(sent <= kByteRate * report["simulated_s"].get<double>());
+    CHECK(sent < static_cast<double>(taken));
+}
+
+TEST_CASE("a computer's TCP port that is taken ends the run before it begins, named", "[bluetooth]") {
+    const int other = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    sockaddr_in here{};
+    here.sin_family = AF_INET;
+    here.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    socklen_t size = sizeof here;
+    REQUIRE(::bind(other, reinterpret_cast<const sockaddr*>(&here), size) == 0);
+    REQUIRE(::listen(other, 1) == 0);
+    REQUIRE(::getsockname(other, reinterpret_cast<sockaddr*>(&here), &size) == 0);
+    const std::string end = fmt::format("tcp:{}", ntohs(here.sin_port));
+    const Workbench bench;
+    const auto file = bench.file("taken.toml", talking_robot(end));
+    for (const Words& placement : {Words{}, Words{"--in-process"}}) {
+        Words words{file, "--paced"};
+        words.insert(words.end(), placement.begin(), placement.end());
+        check_one_line(bench.run("o", words), 2, {"a.computer", end, "a free port"});
+    }
+    ::close(other);
+}
+
+TEST_CASE("an upload to a line whose run is killed says that the other end is gone", "[bluetooth]") {
+    if (!has_ptys()) return;
+    Run run(talking_robot("pty"));
+    const std::string name = run.place("a.computer");
+    const auto folder = run.bench.folder() / "upload";
+    std::filesystem::create_directory(folder);
+    // The robot's program is no boot loader: it is asked until somebody answers.
+    Process upload({PUCKLOOP_PROGRAM, "upload", PUCKLOOP_SOURCE "/firmware/bluetooth/talk.hex", name},
+                   folder);
+    CHECK(run.heard("a.uart2", "heard"));
+    const auto nodes = run.process->children();
+    run.process->signal(SIGKILL);
+    run.process->wait();
+    check_one_line(upload.wait(), 1, {name, "the other end is gone"});
+    for (const pid_t node : nodes)
+        CHECK(!runs(node));
+}
+
+TEST_CASE("programs are uploaded through live lines, on a cable and over the air", "[bluetooth]") {
+    if (!has_ptys()) return;
+    const auto loader = outside("PUCKLOOP_IMAGES", "tinybld_ds6014A_7.37Mhz_115200uart1_8xPLL_with_LEDs.hex");
+    const auto demo = outside("PUCKLOOP_IMAGES", "demoGCtronic-rev117+bootloader.hex");
+    if (!loader || !demo) {
+        WARN("PUCKLOOP_IMAGES has no boot loader: skipped");
+        return;
+    }
+    Run run(fmt::format(R"([run]
+duration = "120 s"
+[arena]
+size = ["2 m", "2 m"]
+[bluetooth]
+link_time = ["300 ms", "10 ms"]
+[[robot]]
+name = "cable"
+position = ["-40 cm", "0 cm"]
+[robot.pic]
+firmware = "{}"
+uart1 = "pty"
+uart2 = "script:/dev/null"
+[[robot]]
+name = "air"
+position = ["40 cm", "0 cm"]
+[robot.pic]
+firmware = "{}"
+uart2 = "script:/dev/null"
+reset = ["8 s"]
+[robot.pic.bluetooth]
+computer = "pty"
+)",
+                        loader->string(), demo->string()));
+    const std::map<std::string, std::string> lines{{"cable.uart1", "cable"}, {"air.computer", "air"}};
+    std::map<std::string, std::unique_ptr<Process>> uploads;
+    for (const auto& [end, robot] : lines) {
+        const auto folder = run.bench.folder() / robot;
+        std::filesystem::create_directory(folder);
+        uploads[end] = std::make_unique<Process>(Words{PUCKLOOP_PROGRAM, "upload",
+                                                       PUCKLOOP_SOURCE "/firmware/bluetooth/talk.hex",
+                                                       run.place(end), "--wait", "60"},
+                                                 folder);
+    }
+    for (const auto& [end, robot] : lines) {
+        const Ended ended = uploads[end]->wait();
+        INFO(ended.err);
+        CHECK(ended.status == 0);
+        CHECK_THAT(ended.out, Contains(" rows, and the program starts\n"));
+        // The boot loader's chip, a K for itself and one for each row.
+        const std::size_t rows = std::stoul(ended.out);
+        CHECK(rows > 20);
+        CHECK(run.heard(end, "q" + std::string(rows + 1, 'K')));
+        // The new program runs: it answers.
+        const LiveLine program(Kind::Pty, run.place(end));
+        std::string answer;
+        for (int tries = 0; tries < 20 && !answer.ends_with("yes\n"); ++tries) {
+            program.send("hi\n");
+            answer += program.read_until("yes\n", 1.0);
+        }
+        CHECK(answer.ends_with("yes\n"));
+        CHECK(run.heard(robot + ".uart2", "heard hi\r\n"));
+    }
+    run.end();
+}
