@@ -90,6 +90,7 @@ TEST_CASE("options that make no sense are refused in one line") {
     for (const char* duration : {"abc", "-3", "0", "3s", "nan"})
         refused(bench, {"--duration", duration}, {"--duration", duration, "is not a number from"});
     refused(bench, {"--seed", "x"}, {"--seed"});
+    refused(bench, {"--threads", "2"}, {"--threads", "--in-process"});
     refused(bench, {"--model", "nowhere.toml"}, {"nowhere.toml"});
     refused(bench, {"another.toml"}, {"another.toml"});
     check_one_line(bench.puckloop({"bench", "rab", "--pairs", "0"}), 2,

@@ -75,6 +75,15 @@ struct LongRun {
     }
 };
 
+/// At "disk" in the test's folder; false, with a warning, where that is not allowed.
+bool mount_small_disk(const Workbench& bench, const char* size) {
+    const auto disk = bench.folder() / "disk";
+    std::filesystem::create_directory(disk);
+    if (geteuid() == 0 && ::mount("tmpfs", disk.c_str(), "tmpfs", 0, size) == 0) return true;
+    WARN("a small disk cannot be mounted here: skipped");
+    return false;
+}
+
 }  // namespace
 
 TEST_CASE("a signal ends the run with the shell's status, a report and no orphans") {
@@ -146,12 +155,8 @@ TEST_CASE("the run itself killed takes its processes along and leaves what it re
 
 TEST_CASE("a full disk ends the run with what fits, and a report") {
     const Workbench bench;
+    if (!mount_small_disk(bench, "size=512k")) return;
     const auto disk = bench.folder() / "disk";
-    std::filesystem::create_directory(disk);
-    if (geteuid() != 0 || ::mount("tmpfs", disk.c_str(), "tmpfs", 0, "size=512k") != 0) {
-        WARN("a small disk cannot be mounted here: skipped");
-        return;
-    }
     for (const char* placement : {"--in-process", "--json"}) {
         const Ended ended = bench.run("disk/o", {kHello, "--duration", "30", placement});
         check_one_line(ended, 1, {"disk/o/", "No space left on device"}, 60);
@@ -160,5 +165,17 @@ TEST_CASE("a full disk ends the run with what fits, and a report") {
         CHECK_THAT(bench.report("disk/o")["ended_why"].get<std::string>(), Contains("No space left"));
         std::filesystem::remove_all(disk / "o");
     }
+    CHECK(::umount(disk.c_str()) == 0);
+}
+
+TEST_CASE("a disk that is too small for the report, too, ends the run and says that there is none") {
+    const Workbench bench;
+    if (!mount_small_disk(bench, "size=160k")) return;
+    const auto disk = bench.folder() / "disk";
+    const Ended ended = bench.run("disk/o", {kHello, "--duration", "30", "--in-process"});
+    check_one_line(ended, 1, {"disk/o/", "No space left on device", "report.json: cannot be written"}, 60);
+    CHECK(!std::filesystem::exists(disk / "o" / "report.json"));
+    CHECK(!std::filesystem::exists(disk / "o" / "report.json.part"));
+    CHECK(!bench.csv("disk/o", "trace.csv").empty());
     CHECK(::umount(disk.c_str()) == 0);
 }

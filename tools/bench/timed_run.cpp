@@ -133,7 +133,7 @@ RunTiming time_run(const std::filesystem::path& program, const RunSpec& spec,
                                    "--out",
                                    folder.string()};
     if (spec.in_process) words.emplace_back("--in-process");
-    if (spec.threads != 0) {
+    if (spec.in_process && spec.threads != 0) {
         words.emplace_back("--threads");
         words.push_back(std::to_string(spec.threads));
     }

@@ -86,6 +86,9 @@ int run(Options& options) {
         request.linux_command.insert(request.linux_command.end(), options.linux_args.begin(),
                                      options.linux_args.end());
     }
+    if (request.threads != 0 && !request.in_process)
+        throw InputError("", "--threads", "nodes in processes of their own share no threads",
+                         "--in-process with it");
     start_log("puckloop", options.log);
     if (!request.in_process) log::share_with_children();
     if (options.interpret) interpret_from_here(!request.in_process);

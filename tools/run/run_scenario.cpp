@@ -39,7 +39,8 @@ physics::World with_added_things(const scenarios::Scenario& scenario) {
     return world;
 }
 
-/// Report and picture are made even if the run failed; what goes wrong with them then is not the news.
+/// Report and picture are made even if the run failed; of what goes wrong with them then only a missing
+/// report is news.
 void write_results(const RunSetup& setup, cosim::Outcome& outcome, ReservedFile& report) {
     const auto guarded = [&](auto work) {
         try {
@@ -59,7 +60,12 @@ void write_results(const RunSetup& setup, cosim::Outcome& outcome, ReservedFile&
     guarded([&] {
         if (!outcome.faults.empty()) write_faults_csv(outcome, setup.out / "faults.csv");
     });
-    guarded([&] { write_report(setup, outcome, report); });
+    try {
+        write_report(setup, outcome, report);
+    } catch (const RunError& error) {
+        outcome.text = outcome.success ? error.what() : fmt::format("{}; {}", outcome.text, error.what());
+        outcome.success = false;
+    }
 }
 
 /// Robots in one process take some six descriptors each; the usual soft limit of 1024 is not meant for them.
