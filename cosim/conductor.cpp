@@ -76,7 +76,7 @@ Outcome Conductor::State::run() {
     try {
         for (TraceSink* sink : sinks)
             sink->begin(links_);
-        if (!options_.save_at.empty()) keep_record();
+        if (options_.save) keep_record();
         if (options_.from)
             go_on_from(*options_.from);
         else
@@ -99,6 +99,10 @@ Outcome Conductor::State::run() {
                                        to_seconds(stop_->time), stop_->reason);
             outcome.success = stop_->success;
         }
+    } catch (const TakenBack&) {
+        workers_->stop();
+        outcome.reason = EndReason::TakenBack;
+        return outcome;
     } catch (const Interrupted&) {
         outcome.reason = EndReason::Interrupted;
         outcome.text = "interrupted";

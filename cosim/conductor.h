@@ -57,6 +57,8 @@ struct RunOptions {
     /// before has none.
     std::vector<Time> save_at{};
     std::function<void(RunSnapshot&)> save{};
+    /// When the next snapshot after this time is due besides those; kNever: none.
+    std::function<Time(Time)> save_next{};
     /// The run goes on from here, of the same nodes and links; faults may be others, if they begin later.
     const RunSnapshot* from = nullptr;
     /// Called about five times a wall second.
@@ -68,7 +70,12 @@ struct RunOptions {
     const volatile std::sig_atomic_t* hurried = nullptr;
 };
 
-enum class EndReason : std::uint8_t { Duration, NodeStopped, Interrupted, Failed };
+enum class EndReason : std::uint8_t { Duration, NodeStopped, Interrupted, Failed, TakenBack };
+
+/// Thrown out of the advance() of a node in the conductor's process: the run is given up as it stands, for
+/// its owner to begin it again from a snapshot. Nodes are not finished, and the outcome says
+/// EndReason::TakenBack and nothing else.
+struct TakenBack {};
 
 struct Outcome {
     EndReason reason = EndReason::Duration;

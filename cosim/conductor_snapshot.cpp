@@ -75,8 +75,7 @@ void Conductor::State::keep_record() {
 /// To the end, with a snapshot at each instant asked for that comes before it.
 void Conductor::State::run_and_save() {
     const Time begin = options_.from ? options_.from->time : 0;
-    for (const Time at : options_.save_at) {
-        if (at <= begin) continue;
+    for (Time at = next_save(begin); at != kNever; at = next_save(at)) {
         pause_ = at;
         loop();
         if (end_ < at) return;
@@ -84,6 +83,12 @@ void Conductor::State::run_and_save() {
     }
     pause_ = kNever;
     loop();
+}
+
+Time Conductor::State::next_save(Time after) const {
+    const auto listed = std::upper_bound(options_.save_at.begin(), options_.save_at.end(), after);
+    const Time next = listed == options_.save_at.end() ? kNever : *listed;
+    return options_.save_next ? std::min(next, options_.save_next(after)) : next;
 }
 
 void Conductor::State::save(Time time) {

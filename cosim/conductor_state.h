@@ -72,6 +72,7 @@ class Conductor::State {
     // conductor_snapshot.cpp
     void begin_anew();
     void run_and_save();
+    Time next_save(Time after) const;
     void keep_record();
     void save(Time time);
     void go_on_from(const RunSnapshot& from);

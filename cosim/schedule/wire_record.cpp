@@ -13,6 +13,14 @@ void SentRecord::add(Time delivery, const Payload& payload) {
     ++count_;
 }
 
+SentRecord SentRecord::beginning(const Length& length) const {
+    SentRecord record(keep_);
+    record.count_ = length.count;
+    record.digest_ = length.digest;
+    record.bytes_.assign(bytes_.begin(), bytes_.begin() + static_cast<std::ptrdiff_t>(length.bytes));
+    return record;
+}
+
 std::vector<Message> SentRecord::messages(PortIndex to) const {
     std::vector<Message> messages;
     if (!keep_) return messages;

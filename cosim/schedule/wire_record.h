@@ -24,6 +24,15 @@ class SentRecord {
     /// Of all messages added, in their order: 64-bit FNV-1a over their encoding.
     std::uint64_t digest() const { return digest_; }
     bool keeps() const { return keep_; }
+    /// How long a record is: what it takes to have it again from a longer one.
+    struct Length {
+        std::uint64_t count = 0;
+        std::uint64_t digest = 0;
+        std::size_t bytes = 0;
+    };
+    Length length() const { return {count_, digest_, keep_ ? bytes_.size() : 0}; }
+    /// This record as it was when length() was that.
+    SentRecord beginning(const Length& length) const;
     /// Each with the time of its delivery and the port `to`. Throws CodecError if the bytes are damaged.
     std::vector<Message> messages(PortIndex to) const;
 

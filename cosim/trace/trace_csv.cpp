@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <unistd.h>
+
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -43,6 +45,7 @@ void TraceCsvSink::begin(const std::vector<LinkSpec>& links) {
             for (Sender* one : {&senders_.back() - 1, &senders_.back()})
                 one->signals.push_back(signal_column(link.signal_names[id], static_cast<std::uint16_t>(id)));
     }
+    if (std::exchange(goes_on_, false)) return;
     put(begin_with_.empty() ? std::string(kTraceColumns) + "\n" : std::exchange(begin_with_, {}));
 }
 
@@ -71,6 +74,20 @@ std::string TraceCsvSink::written() {
     std::string text{std::istreambuf_iterator<char>(in), {}};
     if (failed_ || !in) throw RunError(fmt::format("{}: cannot be read again", path_));
     return text;
+}
+
+std::uint64_t TraceCsvSink::size() {
+    flush();
+    const off_t size = ::ftello(file_);
+    if (size < 0) fail();
+    return static_cast<std::uint64_t>(size);
+}
+
+void TraceCsvSink::cut_back(std::uint64_t size) {
+    flush();
+    const auto end = static_cast<off_t>(size);
+    if (::ftruncate(::fileno(file_), end) != 0 || ::fseeko(file_, end, SEEK_SET) != 0) fail();
+    goes_on_ = true;
 }
 
 TraceRow to_row(const TraceRecord& record, const std::vector<LinkSpec>& links) {

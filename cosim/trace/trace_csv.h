@@ -4,6 +4,7 @@
 #include "cosim/trace/trace.h"
 #include "cosim/trace/trace_row.h"
 
+#include <cstdint>
 #include <cstdio>
 #include <functional>
 #include <istream>
@@ -28,6 +29,10 @@ class TraceCsvSink : public TraceSink {
     void begin_with(std::string text) { begin_with_ = std::move(text); }
     /// What the file holds so far. Throws RunError.
     std::string written();
+    /// How many bytes that is. Throws RunError.
+    std::uint64_t size();
+    /// The file holds so many bytes again, and begin() adds nothing to them. Throws RunError.
+    void cut_back(std::uint64_t size);
 
     void begin(const std::vector<LinkSpec>& links) override;
     void record(const TraceRecord& record) override;
@@ -41,6 +46,7 @@ class TraceCsvSink : public TraceSink {
     Rows rows_;
     std::FILE* file_ = nullptr;
     bool failed_ = false;
+    bool goes_on_ = false;  ///< begin() finds what the file is to begin with
     /// What is the same in all that one end of a link sends.
     struct Sender {
         std::string columns;

@@ -57,6 +57,12 @@ class RabNode : public cosim::StatefulNode, private BoardListener, private chip:
     void renew_random_streams() override { board_.renew_random_streams(); }
 
     dspic::Chip& chip() { return *chip_; }
+    /// A pulse on the reset pin between two advances; what leaves at once goes to `outbox`.
+    void press_reset(std::vector<cosim::Message>& outbox) {
+        outbox_ = &outbox;
+        chip_->mclr();
+        outbox_ = nullptr;
+    }
     Board& board() { return board_; }
     const RabLog& log() const { return log_; }
 

@@ -62,6 +62,12 @@ class TamNode : public cosim::StatefulNode, private BoardListener, private chip:
     void renew_random_streams() override { board_->renew_random_streams(); }
 
     Board& board() { return *board_; }
+    /// A pulse on the reset pin between two advances; what leaves at once goes to `outbox`.
+    void press_reset(std::vector<cosim::Message>& outbox) {
+        outbox_ = &outbox;
+        board_->reset_button();
+        outbox_ = nullptr;
+    }
 
   private:
     // The board's time begins when it is switched on.

@@ -1,4 +1,5 @@
-// avr-gdb as it is at an ATmega1284P: the session that docs/debugging.md shows, word for word.
+// avr-gdb as it is at an ATmega1284P, alone and as a board of a run: the sessions that docs/debugging.md
+// shows, word for word.
 
 #include "tests/debug/gdb_client.h"
 #include "tests/exec/command.h"
@@ -14,10 +15,10 @@ using exec::Workbench;
 
 namespace {
 
-/// The block of docs/debugging.md that begins with "(gdb) target".
-std::string documented_session() {
+/// The first block of docs/debugging.md behind `heading` that begins with "(gdb) target".
+std::string documented_session(const std::string& heading) {
     const std::string text = text_of(std::string(PUCKLOOP_SOURCE) + "/docs/debugging.md");
-    const std::size_t begin = text.find("\n    (gdb) target");
+    const std::size_t begin = text.find("\n    (gdb) target", text.find("\n" + heading));
     REQUIRE(begin != std::string::npos);
     std::istringstream lines(text.substr(begin + 1));
     std::string session;
@@ -37,21 +38,20 @@ std::string condensed(const std::string& text) {
     return kept;
 }
 
-}  // namespace
-
-TEST_CASE("the documented session with avr-gdb") {
-    const std::string lamp = PUCKLOOP_LAMP;
-    if (lamp.empty() || std::system("command -v avr-gdb >/dev/null") != 0) {
+bool can_debug() {
+    if (std::string(PUCKLOOP_LAMP).empty() || std::system("command -v avr-gdb >/dev/null") != 0) {
         WARN("skipped: avr-gdb (package gdb-avr) or avr-gcc with avr-libc is not installed");
-        return;
+        return false;
     }
     if (std::system("avr-gdb -nx -batch -ex 'python import gdb' 2>&1 | grep -q Python") == 0) {
         WARN("skipped: avr-gdb writes warnings for want of its Python files (package gdb)");
-        return;
+        return false;
     }
-    const std::string session = documented_session();
-    const Workbench bench;
-    tests::GdbServer server(bench.folder, "--mcu atmega1284p " + lamp);
+    return true;
+}
+
+/// Has avr-gdb do at `server` what is documented; it ends by killing the run.
+void check_session(const Workbench& bench, tests::GdbServer& server, const std::string& session) {
     std::string script = "set pagination off\nset confirm off\nset width 0\n";
     std::istringstream lines(session);
     int commands = 0;
@@ -67,8 +67,32 @@ TEST_CASE("the documented session with avr-gdb") {
     const std::string out = bench.folder + "/gdb.out";
     const std::string command =
         "cd " + std::string(PUCKLOOP_SOURCE) + "/tests/debug/programs && timeout 120 avr-gdb -nx -batch -x " +
-        bench.file("session.gdb", script) + " " + lamp + " >" + out + " 2>&1 </dev/null";
+        bench.file("session.gdb", script) + " " + PUCKLOOP_LAMP + " >" + out + " 2>&1 </dev/null";
     CHECK(std::system(command.c_str()) == 0);
     CHECK(condensed(text_of(out)) == condensed(session));
     CHECK(server.wait() == 1);  // killed
+}
+
+}  // namespace
+
+TEST_CASE("the documented session with avr-gdb") {
+    if (!can_debug()) return;
+    const Workbench bench;
+    tests::GdbServer server(bench.folder, std::string("--mcu atmega1284p ") + PUCKLOOP_LAMP);
+    check_session(bench, server, documented_session("## GDB: `exec --gdb PLACE`"));
+}
+
+TEST_CASE("the documented session with avr-gdb at a board of a run") {
+    if (!can_debug()) return;
+    const Workbench bench;
+    const std::string scenario = bench.file("lamp.toml", std::string("[run]\nduration = \"2 s\"\n"
+                                                                     "[arena]\nsize = [\"1 m\", \"1 m\"]\n"
+                                                                     "[[tam]]\nname = \"tam0\"\n"
+                                                                     "position = [\"0 m\", \"0 m\"]\n"
+                                                                     "firmware = \"") +
+                                                             PUCKLOOP_LAMP + "\"\n");
+    tests::GdbServer server(bench.folder,
+                            "run " + scenario + " --out " + bench.folder + "/out --gdb tam0.avr=unix:{}",
+                            tests::GdbServer::Whole{});
+    check_session(bench, server, documented_session("### A board of a run: `run --gdb NODE=PLACE`"));
 }

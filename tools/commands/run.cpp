@@ -191,7 +191,7 @@ void declare_run(Command& app, int& status) {
         ->add_option(
             "--gdb", request.gdb,
             "NODE=PLACE: the run waits for GDB at PLACE, :PORT (on 127.0.0.1) or unix:PATH, and stands "
-            "still whenever that stops the board NODE (robot0.pic, tam0, ...); repeatable "
+            "still whenever that stops the board NODE (robot0.pic, tam0.avr, ...); repeatable "
             "(docs/debugging.md)")
         ->allow_extra_args(false)
         ->type_name("NODE=PLACE");

@@ -17,6 +17,8 @@ class Debuggee {
     virtual StopControl& control() = 0;
     /// Whether the run can go back.
     virtual bool reverses() const = 0;
+    /// Empty, or why one that can go back does not now, as text for the user.
+    virtual std::string no_way_back() const { return {}; }
     /// Empty, or why nothing may be changed now (the program stands in its past).
     virtual std::string frozen() const = 0;
     /// From here on the chip is another one than the program made it. Registers and memory are changed by

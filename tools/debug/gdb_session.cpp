@@ -34,30 +34,38 @@ std::optional<std::uint32_t> take_address(std::string_view& text) {
 }  // namespace
 
 Resume GdbSession::serve(const Stop& stop) {
+    stand(stop);
+    while (true)
+        if (const std::optional<Resume> wanted = attend(true)) return *wanted;
+}
+
+void GdbSession::stand(const Stop& stop) {
     stop_ = stop;
     resume_.reset();
     if (std::exchange(awaited_, false)) send(stop_reply());
-    while (!resume_) {
-        if (!socket_.connected()) return Resume::Detach;
-        reader_.feed(socket_.read(true, gives_up_));
-        if (gives_up_ && gives_up_()) return Resume::Kill;
-        while (const std::optional<RspEvent> event = resume_ ? std::nullopt : reader_.next()) {
-            if (event->kind == RspEvent::Kind::Again) socket_.write(last_);
-            if (event->kind == RspEvent::Kind::Damaged && acknowledges_) socket_.write("-");
-            if (event->kind != RspEvent::Kind::Packet) continue;
-            if (acknowledges_) socket_.write("+");
-            const std::string reply = answer(event->data);
-            if (!resume_ || *resume_ == Resume::Detach) send(reply);
-            if (std::exchange(stop_acknowledging_, false)) acknowledges_ = false;
-        }
+}
+
+std::optional<Resume> GdbSession::attend(bool wait) {
+    if (!socket_.connected()) return Resume::Detach;
+    reader_.feed(socket_.read(wait, gives_up_));
+    if (gives_up_ && gives_up_()) return Resume::Kill;
+    while (const std::optional<RspEvent> event = resume_ ? std::nullopt : reader_.next()) {
+        if (event->kind == RspEvent::Kind::Again) socket_.write(last_);
+        if (event->kind == RspEvent::Kind::Damaged && acknowledges_) socket_.write("-");
+        if (event->kind != RspEvent::Kind::Packet) continue;
+        if (acknowledges_) socket_.write("+");
+        const std::string reply = answer(event->data);
+        if (!resume_ || *resume_ == Resume::Detach) send(reply);
+        if (std::exchange(stop_acknowledging_, false)) acknowledges_ = false;
     }
+    if (!resume_) return std::nullopt;
     awaited_ = *resume_ != Resume::Detach && *resume_ != Resume::Kill;
     if (!awaited_) {
         socket_.hang_up();
         acknowledges_ = true;
         reader_ = {};
     }
-    return *resume_;
+    return resume_;
 }
 
 bool GdbSession::wants_stop() {
@@ -128,6 +136,7 @@ std::string GdbSession::answer(std::string_view packet) {
         return resume(Resume::Continue, packet);
     case 'b':
         if (!debuggee_.reverses()) return std::string(kError);
+        if (const std::string why = debuggee_.no_way_back(); !why.empty()) return "E." + why;
         if (packet == "s") return resume(Resume::ReverseStep);
         if (packet == "c") return resume(Resume::ReverseContinue);
         return {};

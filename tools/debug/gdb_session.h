@@ -25,6 +25,11 @@ class GdbSession {
     /// The program stands still: reports it, if the debugger waits for that, and answers until it is to go
     /// on. A debugger that has left is one that detaches.
     Resume serve(const Stop& stop);
+    /// The same in parts, for whoever has several debuggers. The program stands still from here on.
+    void stand(const Stop& stop);
+    /// Answers what has come, waiting for something if `wait`; what the debugger wants once it wants the
+    /// program to go on.
+    std::optional<Resume> attend(bool wait);
     /// While the program runs: the debugger wants it to stop, or has left.
     bool wants_stop();
     /// The run is over with this exit status.

@@ -21,6 +21,8 @@ class GdbSocket {
     /// "127.0.0.1:4242" or the path.
     const std::string& address() const { return address_; }
     bool connected() const { return client_ >= 0; }
+    /// Where something is to be heard next: the debugger, or who wants to be it.
+    int descriptor() const { return connected() ? client_ : listener_; }
     /// Waits for a debugger; false: `gives_up` (asked every tenth of a second) said so.
     bool accept(const std::function<bool()>& gives_up);
     /// Takes a debugger that waits, if there is one.

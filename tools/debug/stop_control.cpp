@@ -20,16 +20,16 @@ void StopControl::begin(bool step) {
     step_ = step;
     first_ = true;
     begun_ = false;
-    first_pc_ = chip_.pc();
+    first_pc_ = chip_->pc();
     stop_.reset();
     if (step || !watches_.empty()) {
-        chip_.set_stops({});
-        chip_.set_instrument(this, !watches_.empty());
+        chip_->set_stops({});
+        chip_->set_instrument(this, !watches_.empty());
     } else {
-        chip_.set_instrument(nullptr, false);
+        chip_->set_instrument(nullptr, false);
         std::vector<std::uint32_t> stops(breaks_.begin(), breaks_.end());
         stops.insert(stops.end(), ends_.begin(), ends_.end());
-        chip_.set_stops(stops);
+        chip_->set_stops(stops);
     }
 }
 
@@ -38,34 +38,42 @@ void StopControl::begin_inside(bool step, bool inside) {
     step_ = step;
     first_ = !inside;
     begun_ = inside;
-    first_pc_ = chip_.pc();
+    first_pc_ = chip_->pc();
     stop_.reset();
 }
 
 void StopControl::begin_search(bool steps, std::uint64_t position) {
+    search_inside(steps, position);
+    chip_->set_stops({});
+    chip_->set_instrument(this, !steps && !watches_.empty());
+}
+
+void StopControl::search_inside(bool steps, std::uint64_t position) {
     mode_ = Mode::Search;
     step_ = steps;
     position_ = position;
     stop_.reset();
     found_.reset();
-    chip_.set_stops({});
-    chip_.set_instrument(this, !steps && !watches_.empty());
 }
 
 void StopControl::begin_seek(std::uint64_t position) {
+    seek_inside(position);
+    chip_->set_stops({});
+    chip_->set_instrument(this, false);
+}
+
+void StopControl::seek_inside(std::uint64_t position) {
     mode_ = Mode::Seek;
     position_ = position;
     stop_.reset();
-    chip_.set_stops({});
-    chip_.set_instrument(this, false);
 }
 
 std::optional<Stop> StopControl::end() {
     // Without an instrument the chip stands at a breakpoint if it stands at its address.
-    if (mode_ == Mode::Run && !stop_ && ends_.contains(chip_.pc())) stop_ = Stop{Stop::Why::End};
-    if (mode_ == Mode::Run && !stop_ && breaks_.contains(chip_.pc())) stop_ = Stop{Stop::Why::Break};
+    if (mode_ == Mode::Run && !stop_ && ends_.contains(chip_->pc())) stop_ = Stop{Stop::Why::End};
+    if (mode_ == Mode::Run && !stop_ && breaks_.contains(chip_->pc())) stop_ = Stop{Stop::Why::Break};
     mode_ = Mode::Idle;
-    chip_.set_instrument(nullptr, false);
+    chip_->set_instrument(nullptr, false);
     return stop_;
 }
 
@@ -100,7 +108,7 @@ bool StopControl::run_on(std::uint32_t pc) {
         stop_ = Stop{ends_.contains(pc) ? Stop::Why::End : Stop::Why::Break};
         return false;
     }
-    if (!step_ || (begun_ && pc == first_pc_ && chip_.repeating())) return true;
+    if (!step_ || (begun_ && pc == first_pc_ && chip_->repeating())) return true;
     stop_ = Stop{Stop::Why::Step};
     return false;
 }

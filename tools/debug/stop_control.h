@@ -38,7 +38,12 @@ struct Stop {
 
 class StopControl : private chip::Instrument {
   public:
-    explicit StopControl(DebugChip& chip) : chip_(chip) {}
+    explicit StopControl(DebugChip& chip) : chip_(&chip) {}
+    /// Of a chip that is named later.
+    StopControl() = default;
+
+    /// Another chip from here on, or the same again made anew; break- and watchpoints stay.
+    void set_chip(DebugChip& chip) { chip_ = &chip; }
 
     void add_break(std::uint32_t pc) { breaks_.insert(pc); }
     void remove_break(std::uint32_t pc) { breaks_.erase(pc); }
@@ -59,6 +64,9 @@ class StopControl : private chip::Instrument {
     /// As begin() for whoever is the chip's instrument himself and asks instrument(); `inside`: from within
     /// instrument().instruction(), whose instruction is executed next.
     void begin_inside(bool step, bool inside);
+    /// Likewise begin_search() and begin_seek().
+    void search_inside(bool steps, std::uint64_t position);
+    void seek_inside(std::uint64_t position);
     chip::Instrument& instrument() { return *this; }
     /// Why instrument().instruction() said no.
     const std::optional<Stop>& stopped() const { return stop_; }
@@ -81,7 +89,7 @@ class StopControl : private chip::Instrument {
     void access(std::uint16_t address, int bytes, bool write) override;
     bool run_on(std::uint32_t pc);
 
-    DebugChip& chip_;
+    DebugChip* chip_ = nullptr;
     std::set<std::uint32_t> breaks_, ends_;
     std::vector<Watchpoint> watches_;
 

@@ -19,7 +19,6 @@
 #include "physics/node/world_node.h"
 #include "tools/run/camera_scenery.h"
 #include "tools/run/control/control_socket.h"
-#include "tools/run/debugged_node.h"
 #include "tools/run/outside_node.h"
 #include "tools/run/states/make_resumed.h"
 
@@ -158,7 +157,6 @@ std::unique_ptr<cosim::Node> make_node(const std::string& text) {
     try {
         const json spec = json::parse(text);
         const std::string kind = spec.at("kind");
-        if (spec.contains("gdb")) return make_debugged(make_board(spec), spec.at("gdb"));
         if (kind == "pic" || kind == "rab" || kind == "tam")
             return with_state(spec, [spec] { return make_board(spec); });
         if (kind == "linux") return make_linux(spec);

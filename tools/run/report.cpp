@@ -27,6 +27,8 @@ std::string_view reason_name(cosim::EndReason reason) {
         return "interrupted";
     case cosim::EndReason::Failed:
         return "failed";
+    case cosim::EndReason::TakenBack:
+        break;  // and begun again: nobody reports it
     }
     return "";
 }

@@ -5,6 +5,7 @@
 #include "cosim/trace/trace_csv.h"
 #include "physics/render/trajectory_svg.h"
 #include "tools/run/control/control_place.h"
+#include "tools/run/debug/run_debuggers.h"
 #include "tools/run/fault_results.h"
 #include "tools/run/live_trace.h"
 #include "tools/run/node_factory.h"
@@ -104,6 +105,19 @@ void end_live(LiveTrace& live, cosim::Outcome& outcome) {
     }
 }
 
+/// Into files that are new, or hold what is kept of a run that goes back.
+void begin_recording(const RunSetup& setup, const RunRequest& request, const RunHistory::Place* kept,
+                     std::optional<cosim::TraceCsvSink>& trace, std::optional<cosim::TraceCsvSink>& record) {
+    if (kept != nullptr) {
+        trace->cut_back(kept->trace);
+        if (record) record->cut_back(kept->record);
+        return;
+    }
+    trace.emplace((setup.out / "trace.csv").string());
+    if (request.snapshot) trace->begin_with(request.snapshot->trace);
+    if (request.record) record.emplace((setup.out / "record.csv").string(), cosim::TraceCsvSink::Rows::All);
+}
+
 /// With few boards there is little to do side by side beside the world's step: whether that pays is tried.
 void set_threads(cosim::RunOptions& options, const RunSetup& setup, const RunRequest& request) {
     constexpr unsigned kBoardsOfThread = 4, kMost = 4;
@@ -176,19 +190,27 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
     if (!request.live.empty()) live.emplace(request.live, options.interrupted);
     std::optional<cosim::TraceCsvSink> trace;
     use_snapshots(setup, request, trace, options);
-    cosim::Conductor conductor(setup.nodes, setup.links, setup.scenario.faults, options, make_node);
-    // Only now: a run whose nodes do not start has recorded nothing.
-    trace.emplace((setup.out / "trace.csv").string());
-    if (request.snapshot) trace->begin_with(request.snapshot->trace);
-    conductor.add_sink(*trace);
     std::optional<cosim::TraceCsvSink> record;
-    if (request.record) {
-        record.emplace((setup.out / "record.csv").string(), cosim::TraceCsvSink::Rows::All);
-        conductor.add_sink(*record);
+    std::optional<RunDebuggers> debuggers;
+    cosim::NodeFactory factory = make_node;
+    if (!request.gdb.empty()) {
+        debuggers.emplace(setup, request, options.hurried);
+        debuggers->keep_past(options, trace, record);
+        factory = [&](const std::string& node) { return debuggers->make_node(node); };
     }
-    if (live) conductor.add_sink(*live);
-    diary.started(conductor);
-    cosim::Outcome outcome = conductor.run();
+    cosim::Outcome outcome;
+    do {
+        const bool back = outcome.reason == cosim::EndReason::TakenBack;
+        if (back) options.from = debuggers->begin_again();
+        cosim::Conductor conductor(setup.nodes, setup.links, setup.scenario.faults, options, factory);
+        // Only now: a run whose nodes do not start has recorded nothing.
+        begin_recording(setup, request, back ? debuggers->kept() : nullptr, trace, record);
+        conductor.add_sink(*trace);
+        if (record) conductor.add_sink(*record);
+        if (live) conductor.add_sink(*live);
+        diary.started(conductor);
+        outcome = conductor.run();
+    } while (outcome.reason == cosim::EndReason::TakenBack);
     if (live) end_live(*live, outcome);
     if (outcome.reason == cosim::EndReason::Interrupted) {
         outcome.success = false;

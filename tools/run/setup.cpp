@@ -190,7 +190,7 @@ void add_ir(RunSetup& setup, const json& world) {
     setup.links.push_back(poses);
 }
 
-/// "NODE=PLACE": the node is a board, in a process of its own, which stands still with its debugger. It
+/// "NODE=PLACE": the node is a board, in the run's process and on its thread, where all debuggers are. It
 /// begins at power-up.
 void debug_board(RunSetup& setup, const std::string& assignment) {
     const std::size_t equals = std::min(assignment.find('='), assignment.size());
@@ -206,7 +206,8 @@ void debug_board(RunSetup& setup, const std::string& assignment) {
         spec.erase("from_state");
         spec.erase("save_state");
         node.json = spec.dump();
-        node.in_process = false;
+        node.in_process = true;
+        node.any_thread = false;
         return;
     }
     throw InputError("", "--gdb", fmt::format("'{}' names no board of the scenario", assignment),

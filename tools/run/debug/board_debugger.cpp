@@ -1,0 +1,169 @@
+#include "tools/run/debug/board_debugger.h"
+
+#include "base/error.h"
+#include "emu/avr/chip.h"
+#include "emu/dspic/chip/chip.h"
+#include "emu/pic/pic_node.h"
+#include "emu/rab_board/rab_node.h"
+#include "emu/tam_avr/tam_node.h"
+#include "tools/run/debug/run_debuggers.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <utility>
+
+namespace puckloop::tools {
+
+using debug::Resume;
+using debug::Stop;
+
+namespace {
+
+/// Instructions between two looks at what the debugger sent.
+constexpr unsigned kLookEvery = 4096;
+
+}  // namespace
+
+BoardDebugger::BoardDebugger(RunDebuggers& run, std::size_t index, std::string name, const std::string& place)
+    : run_(run),
+      index_(index),
+      name_(std::move(name)),
+      socket_("--gdb", place),
+      session_(socket_, *this, nullptr) {
+    fmt::print(stderr, "gdb: {} at {}\n", name_, socket_.address());
+    std::fflush(stderr);
+}
+
+void BoardDebugger::set_board(cosim::Node& board) {
+    const auto take = [this](auto& node, auto& chip) {
+        clock_ = &chip.clock();
+        press_reset_ = [&node](std::vector<cosim::Message>& outbox) { node.press_reset(outbox); };
+        chip_ = debug::make_debug_chip(chip);
+    };
+    if (auto* pic = dynamic_cast<pic::PicNode*>(&board)) {
+        take(*pic, pic->chip());
+    } else if (auto* rab = dynamic_cast<rab::RabNode*>(&board)) {
+        take(*rab, rab->chip());
+    } else if (auto* tam = dynamic_cast<tam::TamNode*>(&board)) {
+        take(*tam, tam->board().chip());
+    } else {
+        throw InputError("", "--gdb", name_ + " has no chip", "a board of the run");
+    }
+    control_.set_chip(*chip_);
+}
+
+chip::Instrument* BoardDebugger::begin_advance(cosim::Time now, std::vector<cosim::Message>& outbox) {
+    now_ = now;
+    outbox_ = &outbox;
+    if (run_.repeats()) return this;
+    if (!met_) {
+        run_.begin_history();
+        run_.stand_still(*this, {}, false);
+    } else if (session_.wants_stop()) {
+        run_.stand_still(*this, {Stop::Why::Interrupt}, false);
+    }
+    if (std::exchange(reset_, false)) make_change([this] { press_reset_(*outbox_); });
+    // Without a debugger nobody looks, unless there is something to be done again.
+    return socket_.connected() || made_ < changes_.size() ? this : nullptr;
+}
+
+std::optional<cosim::Time> BoardDebugger::next_change(cosim::Time until) const {
+    if (made_ == changes_.size() || changes_[made_].inside || changes_[made_].time >= until)
+        return std::nullopt;
+    return changes_[made_].time;
+}
+
+void BoardDebugger::repeat_changes(cosim::Time now) {
+    for (; made_ < changes_.size() && !changes_[made_].inside && changes_[made_].time <= now; ++made_)
+        changes_[made_].make();
+}
+
+void BoardDebugger::end_advance(cosim::Time until) {
+    now_ = until;
+    run_.passed(*this, until);
+}
+
+bool BoardDebugger::instruction(std::uint32_t /*pc*/, std::uint64_t cycle) {
+    for (; made_ < changes_.size() && changes_[made_].inside && changes_[made_].cycle <= cycle; ++made_) {
+        changing_ = true;
+        changes_[made_].make();
+        changing_ = false;
+    }
+    if (!socket_.connected() || !run_.listens_to(*this)) return true;
+    if (!control_.instrument().instruction(chip_->pc(), cycle))
+        run_.stopped(*this);
+    else if (++looked_ % kLookEvery == 0 && session_.wants_stop())
+        run_.stand_still(*this, {Stop::Why::Interrupt}, true);
+    return true;
+}
+
+void BoardDebugger::stand(const Stop& stop, bool inside) {
+    control_.pause();
+    stands_ = true;
+    inside_ = inside;
+    session_.stand(stop);
+}
+
+bool BoardDebugger::attend() {
+    if (!stands_ || (!met_ && !socket_.connected())) {
+        // A debugger that comes, wants its program to stop, or leaves.
+        if (!stands_ && met_ && session_.wants_stop()) {
+            stand({Stop::Why::Interrupt}, false);
+            return true;
+        }
+        if (!met_ && socket_.accept_now()) {
+            met_ = true;
+            if (!stands_) stand({}, false);
+            return true;
+        }
+        return false;
+    }
+    const auto wanted = session_.attend(false);
+    if (wanted) resume(*wanted);
+    return wanted.has_value();
+}
+
+void BoardDebugger::resume(Resume how) {
+    stands_ = false;
+    if (how == Resume::Kill) killed_ = true;
+    if (how == Resume::Kill || how == Resume::Detach) control_.clear();
+    if (how == Resume::ReverseStep || how == Resume::ReverseContinue)
+        run_.go_back(*this, how == Resume::ReverseStep);  // returns only where there is nothing before
+    else
+        return control_.begin_inside(how == Resume::Step, inside_);
+    stand({Stop::Why::Begin}, inside_);
+}
+
+void BoardDebugger::go_back(std::size_t changes) {
+    made_ = changes;
+    reset_ = false;  // of an instant that is taken back
+    chip_.reset();
+}
+
+std::string BoardDebugger::no_way_back() const {
+    return run_.no_way_back(*this);
+}
+
+std::string BoardDebugger::frozen() const {
+    return chip_->cycle() < present_ ? "the past cannot be changed: continue to the present first" : "";
+}
+
+bool BoardDebugger::change(std::function<bool(debug::DebugChip&)> change) {
+    // Again, whenever this moment comes again.
+    changes_.push_back({inside_, chip_->cycle(), now_, [this, change] { change(*chip_); }});
+    ++made_;
+    return change(*chip_);
+}
+
+void BoardDebugger::make_change(std::function<void()> make) {
+    make();
+    changes_.push_back({false, 0, now_, std::move(make)});
+    ++made_;
+}
+
+std::string BoardDebugger::summary() {
+    return fmt::format("{} cycles, {} instructions\n", chip_->cycle(), chip_->instructions());
+}
+
+}  // namespace puckloop::tools
