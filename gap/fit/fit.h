@@ -40,7 +40,7 @@ struct Effort {
     int iterations = 40;  ///< of the solver
     bool noise = true;    ///< false: of the noise only its size is fitted
 };
-inline constexpr Effort kThorough{}, kQuick{6, true}, kPart{6, false};
+inline constexpr Effort kThorough{}, kQuick{6, true}, kPart{6, false}, kGlance{2, true};
 
 Fitted fit(const Model& model, const std::vector<Freed>& freed, const State& start, const Weights& weights,
            const Effort& effort = kThorough);

@@ -117,6 +117,62 @@ void costs_of(const Observable& o, const Predicted& p, const NoiseParameters& no
     }
 }
 
+namespace {
+
+/// ln of a product of many factors, each at least 1 or near it, taken whenever it grows large.
+class LogProduct {
+  public:
+    void add(double factor) {
+        product_ *= factor;
+        if (product_ < kLarge && product_ > 1 / kLarge) return;
+        sum_ += std::log(product_ / factor) + std::log(factor);
+        product_ = 1.0;
+    }
+    double value() const { return sum_ + std::log(product_); }
+
+  private:
+    static constexpr double kLarge = 1e100;
+    double product_ = 1.0, sum_ = 0.0;
+};
+
+}  // namespace
+
+double cost_sum(const Observable& o, const Predicted& p, const NoiseParameters& noise,
+                const Innovations& innovations, const std::vector<double>& weights) {
+    const std::size_t n = o.y.size();
+    const bool plain = is_simple(p) && innovations.mixed.empty() &&
+                       std::all_of(innovations.role.begin(), innovations.role.end(), [](RowRole role) {
+                           return role == RowRole::Plain || role == RowRole::First;
+                       });
+    if (!plain) {
+        std::vector<double> cost;
+        costs_of(o, p, noise, innovations, cost);
+        double sum = 0.0;
+        for (std::size_t i = 0; i < n; ++i)
+            sum += weights.empty() ? cost[i] : weights[i] * cost[i];
+        return sum;
+    }
+    const double nu = std::exp(noise.log_tail), constant = t_constant(nu);
+    LogProduct tails, scales;
+    double rows = 0.0, others = 0.0, unit = 0.0;
+    for (std::size_t i = 0; i < n; ++i) {
+        const double weight = weights.empty() ? 1.0 : weights[i];
+        if (innovations.role[i] == RowRole::First || weight == 0.0) continue;
+        const double z = innovations.z[i], tail = 1 + z * z / nu, variance = innovations.variance[i];
+        if (weight != 1.0) {
+            others += weight * ((nu + 1) / 2 * std::log(tail) + std::log(variance) / 2 - constant);
+            continue;
+        }
+        if (unit == 0.0) unit = variance;
+        tails.add(tail);
+        if (variance != unit) scales.add(variance / unit);
+        rows += 1;
+    }
+    if (rows == 0.0) return others;
+    return others + (nu + 1) / 2 * tails.value() + scales.value() / 2 +
+           rows * (std::log(unit) / 2 - constant);
+}
+
 void row_costs(const Observable& o, const Predicted& p, const NoiseParameters& noise, RowCosts& out) {
     Innovations innovations;
     filter(o, p, noise, innovations);

@@ -22,6 +22,10 @@ void row_costs(const Observable& observable, const Predicted& predicted, const N
 void costs_of(const Observable& observable, const Predicted& predicted, const NoiseParameters& noise,
               const Innovations& innovations, std::vector<double>& cost);
 
+/// Their weighted sum (`weights` empty: all 1). Logarithms of many rows are taken as one of their product.
+double cost_sum(const Observable& observable, const Predicted& predicted, const NoiseParameters& noise,
+                const Innovations& innovations, const std::vector<double>& weights);
+
 /// Is a row's cost a function of its z and its scale alone (no lapses, no dead zone)?
 bool is_simple(const Predicted& predicted);
 

@@ -40,12 +40,10 @@ Objective::Objective(const Model& model, const Layout& layout, State base, const
 double Objective::fill(std::size_t o) {
     Base& base = bases_[o];
     const Observable& observable = model_.observables()[o];
+    static const std::vector<double> even;
     filter(observable, prediction_[o], state_.noise[o], base.innovations);
-    costs_of(observable, prediction_[o], state_.noise[o], base.innovations, base.cost);
-    double sum = 0.0;
-    for (std::size_t i = 0; i < base.cost.size(); ++i)
-        sum += weight(o, i) * base.cost[i];
-    return sum;
+    return cost_sum(observable, prediction_[o], state_.noise[o], base.innovations,
+                    weights_.empty() ? even : weights_[o]);
 }
 
 double Objective::priors(const double* x) const {
@@ -98,12 +96,16 @@ void Objective::take_differences(std::size_t o, const std::vector<Moved>& moved)
 
 void Objective::difference(std::size_t o, const Moved& moved, const Innovations& other) {
     const Observable& observable = model_.observables()[o];
-    const Base& base = bases_[o];
+    Base& base = bases_[o];
     if (columns_[o].size() <= used_[o]) columns_[o].emplace_back();
     Column& column = columns_[o][used_[o]++];
     column.number = moved.number;
     const bool simple = is_simple(*moved.predicted) && is_simple(prediction_[o]);
-    if (!simple) costs_of(observable, *moved.predicted, moved.noise, other, other_cost_);
+    if (!simple) {
+        costs_of(observable, *moved.predicted, moved.noise, other, other_cost_);
+        if (base.cost.empty())
+            costs_of(observable, prediction_[o], base_noise_[o], base.innovations, base.cost);
+    }
     const std::size_t n = observable.y.size();
     for (Eigen::VectorXd* one : {&column.shift, &column.scale, &column.gradient})
         one->resize(as_index(n));
@@ -134,10 +136,10 @@ void Objective::difference(std::size_t o, const Moved& moved, const Innovations&
 void Objective::gather(std::size_t o, Eigen::VectorXd& gradient, Eigen::MatrixXd& curvature) const {
     const Base& base = bases_[o];
     const std::size_t count = used_[o];
-    const auto n = as_index(base.cost.size()), width = as_index(count);
+    const auto n = as_index(base.slope.size()), width = as_index(count);
     if (count == 0) return;
     Eigen::VectorXd weights(n), bend(n);
-    for (std::size_t i = 0; i < base.cost.size(); ++i) {
+    for (std::size_t i = 0; i < base.slope.size(); ++i) {
         weights[as_index(i)] = weight(o, i);
         bend[as_index(i)] = std::sqrt(weight(o, i) * base.curvature[i]);
     }
@@ -145,7 +147,7 @@ void Objective::gather(std::size_t o, Eigen::VectorXd& gradient, Eigen::MatrixXd
     Eigen::MatrixXd shifts(n, width), scales = Eigen::MatrixXd::Zero(n, width), others;
     bool any_other = false, any_scale = false;
     double plain = 0.0;
-    for (std::size_t i = 0; i < base.cost.size(); ++i)
+    for (std::size_t i = 0; i < base.slope.size(); ++i)
         if (base.innovations.role[i] == RowRole::Plain) plain += weight(o, i);
     for (Eigen::Index a = 0; a < width; ++a) {
         const Column& column = columns_[o][static_cast<std::size_t>(a)];
@@ -184,12 +186,14 @@ void Objective::gather(std::size_t o, Eigen::VectorXd& gradient, Eigen::MatrixXd
 double Objective::slopes(const double* x, Eigen::VectorXd& gradient, Eigen::MatrixXd& curvature,
                          Eigen::MatrixXd* rows) {
     double sum = value(x);
+    base_noise_ = state_.noise;
     const std::size_t width = layout_.size();
     gradient = Eigen::VectorXd::Zero(as_index(width));
     curvature = kLeastCurvature * Eigen::MatrixXd::Identity(as_index(width), as_index(width));
     if (!std::isfinite(sum)) return sum;
     for (std::size_t o = 0; o < bases_.size(); ++o) {
         Base& base = bases_[o];
+        base.cost.clear();
         slopes_of(model_.observables()[o], state_.noise[o], base.innovations, base.slope, base.curvature);
         tail_slopes_of(state_.noise[o], base.innovations, base.tail);
         used_[o] = 0;
@@ -244,10 +248,10 @@ double Objective::slopes(const double* x, Eigen::VectorXd& gradient, Eigen::Matr
     if (rows == nullptr) return sum;
     Eigen::Index first = 0, all = 0;
     for (const Base& base : bases_)
-        all += as_index(base.cost.size());
+        all += as_index(base.slope.size());
     *rows = Eigen::MatrixXd::Zero(all, as_index(width));
     for (std::size_t o = 0; o < bases_.size(); ++o) {
-        const auto n = as_index(bases_[o].cost.size());
+        const auto n = as_index(bases_[o].slope.size());
         for (std::size_t k = 0; k < used_[o]; ++k)
             rows->col(as_index(columns_[o][k].number)).segment(first, n) = columns_[o][k].gradient;
         first += n;

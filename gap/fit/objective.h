@@ -31,7 +31,8 @@ class Objective {
   private:
     struct Base {
         Innovations innovations;
-        std::vector<double> cost, slope, curvature, tail;
+        std::vector<double> slope, curvature, tail;
+        std::vector<double> cost;  ///< empty until it is needed
     };
     /// How one moved number changes the rows of one observable.
     struct Column {
@@ -63,6 +64,7 @@ class Objective {
     Prediction prediction_;
     std::array<Prediction, kLanes> moved_;
     std::vector<Base> bases_;
+    std::vector<NoiseParameters> base_noise_;   ///< that the bases' derivatives are taken at
     std::vector<std::vector<Column>> columns_;  ///< an observable each
     std::vector<std::size_t> used_;             ///< how many of its columns are in use
     std::array<Innovations, kLanes> other_;

@@ -398,6 +398,13 @@ Fit Study::fit_set(const std::vector<std::size_t>& effects, const State& from, c
     return restarted(best);
 }
 
+double Study::glance(const std::vector<std::size_t>& effects, const State& from) const {
+    const Candidate& last = candidates_[effects.back()];
+    const auto freed = freed_by(effects);
+    const double before = log_likelihood(*model_, from);
+    return fit(*model_, freed, begun(last, last.starts.front(), from), {}, kGlance).log_likelihood - before;
+}
+
 State Study::without(std::size_t effect, State state) const {
     for (const Freed& freed : candidates_[effect].freed) {
         const auto index = static_cast<std::size_t>(freed.index);

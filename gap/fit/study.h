@@ -71,6 +71,9 @@ class Study {
     /// Fits a set; begins at `from` and, for the last effect of the set, at each of its starts.
     Fit fit_set(const std::vector<std::size_t>& effects, const State& from,
                 const Effort& effort = kThorough) const;
+    /// A few steps from the last effect's first start only: does the set promise anything beyond `from`? Nats
+    /// that it wins.
+    double glance(const std::vector<std::size_t>& effects, const State& from) const;
     /// The same set again, from where `quick` ended.
     Fit refined(const Fit& quick) const;
     Fit fit_none() const;

@@ -63,6 +63,18 @@ class Design {
         b = q < 0 ? 0.0 : -carry_ * (c.weight.empty() ? 1.0 : c.weight[i - 1]);
     }
 
+    /// What the rows that `learns` say of a correction in each row, in the row itself and in the next, to
+    /// which it is carried over: the same for every component, to be summed over cells.
+    template <class Learns>
+    void gather(const std::vector<double>& rest, const Learns& learns, std::vector<double>& said) const {
+        said.assign(rest.size(), 0.0);
+        for (std::size_t i = 0; i < rest.size(); ++i) {
+            if (!learns(i)) continue;
+            said[i] += (follows(i) ? 1.0 : first_) * rest[i];
+            if (follows(i)) said[i - 1] -= carry_ * rest[i];
+        }
+    }
+
   private:
     const std::vector<Component>& components_;
     double carry_, first_;
@@ -70,15 +82,27 @@ class Design {
     std::vector<char> used_, chained_;
 };
 
-/// What each component's cells know of each other in the rows of the folds but one (held = -1: of all).
-std::vector<Eigen::MatrixXd> grams_of(const Design& design, const std::vector<Component>& components,
-                                      const std::vector<int>& fold, int held) {
-    std::vector<Eigen::MatrixXd> grams;
+/// What each component's cells know of each other: in all rows, and in those of each fold.
+struct Grams {
+    std::vector<Eigen::MatrixXd> all;
+    std::vector<std::vector<Eigen::MatrixXd>> fold;
+
+    /// In the rows of the folds but one (held = -1: of all).
+    Eigen::MatrixXd without(std::size_t component, int held) const {
+        if (held < 0) return all[component];
+        return all[component] - fold[component][static_cast<std::size_t>(held)];
+    }
+};
+
+Grams grams_of(const Design& design, const std::vector<Component>& components, const std::vector<int>& fold,
+               std::size_t folds) {
+    Grams grams;
     for (std::size_t g = 0; g < components.size(); ++g) {
-        grams.push_back(Eigen::MatrixXd::Zero(components[g].cells, components[g].cells));
-        Eigen::MatrixXd& gram = grams.back();
+        const auto cells = static_cast<Eigen::Index>(components[g].cells);
+        std::vector<Eigen::MatrixXd> parts(folds, Eigen::MatrixXd::Zero(cells, cells));
         for (std::size_t i = 0; i < design.rows(); ++i) {
-            if (!design.used(i) || fold[i] == held) continue;
+            if (!design.used(i)) continue;
+            Eigen::MatrixXd& gram = parts[static_cast<std::size_t>(fold[i])];
             int p = 0, q = 0;
             double a = 0, b = 0;
             design.parts(g, i, p, a, q, b);
@@ -89,6 +113,10 @@ std::vector<Eigen::MatrixXd> grams_of(const Design& design, const std::vector<Co
                 gram(q, p) += a * b;
             }
         }
+        grams.all.push_back(Eigen::MatrixXd::Zero(cells, cells));
+        for (const Eigen::MatrixXd& part : parts)
+            grams.all.back() += part;
+        grams.fold.push_back(std::move(parts));
     }
     return grams;
 }
@@ -114,20 +142,22 @@ double strength_for(const Eigen::MatrixXd& gram, const Eigen::MatrixXd& penalty)
     if (!(size > 1e-9)) return 0.0;
     double low = std::log(size) - 25, high = std::log(size) + 10;
     const double wanted = std::min(kFreedom, 0.75 * static_cast<double>(gram.rows()));
+    // Of eigenvalues e in the penalty's metric, each leaves e / (e + strength) of a degree of freedom.
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(
+        gram, penalty, Eigen::EigenvaluesOnly | Eigen::Ax_lBx);
+    const Eigen::ArrayXd values = solver.eigenvalues().array().max(0.0);
     for (int k = 0; k < 25; ++k) {
         const double middle = (low + high) / 2;
-        const double freedom = (gram + std::exp(middle) * penalty).ldlt().solve(gram).trace();
+        const double freedom = (values / (values + std::exp(middle))).sum();
         (freedom > wanted ? low : high) = middle;
     }
     return std::exp(high);
 }
 
-std::vector<double> strengths_of(const Design& design, const std::vector<Component>& components,
-                                 const std::vector<int>& fold) {
-    const auto grams = grams_of(design, components, fold, -1);
+std::vector<double> strengths_of(const Grams& grams, const std::vector<Component>& components) {
     std::vector<double> strengths;
     for (std::size_t g = 0; g < components.size(); ++g)
-        strengths.push_back(strength_for(grams[g], penalty_of(components[g])));
+        strengths.push_back(strength_for(grams.all[g], penalty_of(components[g])));
     return strengths;
 }
 
@@ -135,22 +165,23 @@ std::vector<double> strengths_of(const Design& design, const std::vector<Compone
 class Booster {
   public:
     Booster(const Design& design, const std::vector<Component>& components, const std::vector<int>& fold,
-            int held, const std::vector<double>& strength)
+            int held, const Grams& grams, const std::vector<double>& strength)
         : design_(design),
           components_(components),
           fold_(fold),
           held_(held),
           rest_(design.target()),
-          gram_(grams_of(design, components, fold, held)),
           inverse_(components.size()),
           values_(components.size()) {
         for (std::size_t i = 0; i < rest_.size(); ++i)
             if (learns(i)) ++count_;
-        for (std::size_t g = 0; g < components.size(); ++g)
+        for (std::size_t g = 0; g < components.size(); ++g) {
+            gram_.push_back(grams.without(g, held));
             if (strength[g] > 0)
                 inverse_[g] = (gram_[g] + strength[g] * penalty_of(components[g]))
                                   .ldlt()
                                   .solve(Eigen::MatrixXd::Identity(gram_[g].rows(), gram_[g].rows()));
+        }
         view_.resize(components.size());
         std::iota(view_.begin(), view_.end(), std::size_t{0});
     }
@@ -163,17 +194,11 @@ class Booster {
         }
         std::vector<std::pair<double, std::size_t>> won;
         std::vector<Eigen::VectorXd> moves(components_.size());
+        design_.gather(
+            rest_, [this](std::size_t i) { return learns(i); }, said_);
         for (const std::size_t g : view_) {
             if (inverse_[g].size() == 0) continue;
-            Eigen::VectorXd pull = Eigen::VectorXd::Zero(components_[g].cells);
-            for (std::size_t i = 0; i < rest_.size(); ++i) {
-                if (!learns(i)) continue;
-                int p = 0, q = 0;
-                double a = 0, b = 0;
-                design_.parts(g, i, p, a, q, b);
-                if (p >= 0) pull[p] += a * rest_[i];
-                if (q >= 0) pull[q] += b * rest_[i];
-            }
+            const Eigen::VectorXd pull = pull_of(components_[g]);
             moves[g] = inverse_[g] * pull;
             won.emplace_back(2 * moves[g].dot(pull) - moves[g].dot(gram_[g] * moves[g]), g);
         }
@@ -207,14 +232,24 @@ class Booster {
             if (learns(i)) sum += rest_[i] * rest_[i];
         return std::max(sum / std::max(count_, 1.0), 1e-12);
     }
-    /// Log score of a row with what is left.
-    double score(std::size_t i, double variance) const {
-        return -rest_[i] * rest_[i] / variance / 2 - std::log(variance) / 2;
-    }
+    double rest(std::size_t i) const { return rest_[i]; }
     const std::vector<Eigen::VectorXd>& values() const { return values_; }
 
   private:
     bool learns(std::size_t i) const { return design_.used(i) && fold_[i] != held_; }
+
+    /// What the rows say of each cell.
+    Eigen::VectorXd pull_of(const Component& c) {
+        pulls_.assign(static_cast<std::size_t>(c.cells) + 1, 0.0);
+        double* const at = pulls_.data() + 1;  // the first is of rows without a cell
+        if (c.weight.empty())
+            for (std::size_t i = 0; i < said_.size(); ++i)
+                at[c.cell[i]] += said_[i];
+        else
+            for (std::size_t i = 0; i < said_.size(); ++i)
+                at[c.cell[i]] += c.weight[i] * said_[i];
+        return Eigen::Map<const Eigen::VectorXd>(at, c.cells);
+    }
 
     const Design& design_;
     const std::vector<Component>& components_;
@@ -226,6 +261,7 @@ class Booster {
     std::vector<Eigen::MatrixXd> gram_, inverse_;
     std::vector<Eigen::VectorXd> values_;
     std::vector<std::size_t> view_;
+    std::vector<double> said_, pulls_;
 };
 
 /// Held-out gain over no correction at the given carry, by block, for each number of steps.
@@ -246,13 +282,15 @@ Boosted boosted(const ErrorRows& rows, const std::vector<Component>& components,
     std::vector<double> carries{rows.carry};
     if (std::abs(rows.carry) > 0.1) carries.push_back(kLessCarry * rows.carry);
     std::vector<double> baseline(n, 0.0);
+    std::vector<Grams> grams;
     std::vector<std::vector<double>> strengths;
     std::vector<Gains> gains(carries.size(), Gains(kMostSteps + 1, std::vector<double>(blocks, 0.0)));
     for (std::size_t c = 0; c < carries.size(); ++c) {
         const Design design(rows, components, carries[c]);
-        strengths.push_back(strengths_of(design, components, fold));
+        grams.push_back(grams_of(design, components, fold, folds));
+        strengths.push_back(strengths_of(grams[c], components));
         for (std::size_t k = 0; k < folds; ++k) {
-            Booster booster(design, components, fold, static_cast<int>(k), strengths[c]);
+            Booster booster(design, components, fold, static_cast<int>(k), grams[c], strengths[c]);
             bool more = true;
             double variance = booster.variance();
             for (int m = 0; m <= kMostSteps; ++m) {
@@ -260,9 +298,10 @@ Boosted boosted(const ErrorRows& rows, const std::vector<Component>& components,
                     more = booster.step();
                     variance = booster.variance();
                 }
+                const double size = std::log(variance) / 2;
                 for (std::size_t i = 0; i < n; ++i) {
                     if (fold[i] != static_cast<int>(k) || !design.used(i)) continue;
-                    const double score = booster.score(i, variance);
+                    const double score = -booster.rest(i) * booster.rest(i) / variance / 2 - size;
                     if (c == 0 && m == 0) baseline[i] = score;
                     gains[c][static_cast<std::size_t>(m)][static_cast<std::size_t>(block[i])] +=
                         score - baseline[i];
@@ -302,7 +341,7 @@ Boosted boosted(const ErrorRows& rows, const std::vector<Component>& components,
     best_without(folds, c, steps);
     result.carry = carries[c];
     const Design design(rows, components, carries[c]);
-    Booster booster(design, components, fold, -1, strengths[c]);
+    Booster booster(design, components, fold, -1, grams[c], strengths[c]);
     for (std::size_t m = 0; m < steps && booster.step(); ++m)
         ++result.steps;
     for (std::size_t g = 0; g < components.size(); ++g) {

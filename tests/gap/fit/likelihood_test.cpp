@@ -284,3 +284,32 @@ TEST_CASE("predictions of a sum filtered side by side give what each gives alone
         CHECK((together[k].role == alone.role));
     }
 }
+
+TEST_CASE("the sum of costs is that of every row's") {
+    RandomStream random(6, "cost sums");
+    for (const NoiseKind kind : {NoiseKind::Carry, NoiseKind::Level})
+        for (const double far : {0.0, 1e30})
+            for (const bool lapses : {false, true}) {
+                std::vector<double> y{0.0};
+                for (int i = 1; i < 400; ++i)
+                    y.push_back(y.back() + random.normal() + (i % 100 == 0 ? far : 0));
+                Straight model(kind, y);
+                Prediction prediction;
+                model.predict({0.3, 0.1, lapses ? 0.02 : 0.0}, prediction);
+                const NoiseParameters noise{-0.3, kind == NoiseKind::Level ? -2.0 : 0.4, 1.2, 0.3};
+                Innovations innovations;
+                filter(model.only(), prediction[0], noise, innovations);
+                std::vector<double> cost, some;
+                costs_of(model.only(), prediction[0], noise, innovations, cost);
+                double all = 0.0, part = 0.0;
+                for (std::size_t i = 0; i < cost.size(); ++i) {
+                    some.push_back(i % 3 == 0 ? 0.0 : i % 7 == 0 ? 0.25 : 1.0);
+                    all += cost[i];
+                    part += some[i] * cost[i];
+                }
+                CHECK(cost_sum(model.only(), prediction[0], noise, innovations, {}) ==
+                      Approx(all).epsilon(1e-9));
+                CHECK(cost_sum(model.only(), prediction[0], noise, innovations, some) ==
+                      Approx(part).epsilon(1e-9));
+            }
+}
