@@ -47,8 +47,10 @@ void Laboratory::plan(WrittenExperiment& experiment) const {
 void Laboratory::keep(WrittenExperiment& experiment) const {
     const auto round_to = [&](WrittenRun& run, const char* name, double step) {
         if (run.find(name) == nullptr) return false;
+        // Readings are whole counts already: of those half way every other one goes up, or all would read
+        // high by an eighth of the step.
         for (double& value : run.column(name).values)
-            value = std::round(value / step) * step;
+            value = std::nearbyint(value / step) * step;
         return true;
     };
     for (WrittenRun& run : experiment.runs) {
