@@ -9,6 +9,7 @@ std::span<const Rule> rules() {
         {"standard errors of the gain", [](Grounds& g) { g.gain.sd = 0.0; }},
         {"price of the catalogue's size", [](Grounds& g) { g.candidates = g.causes; }},
         {"error falls for sure (few runs)", [](Grounds& g) { g.error_falls = true; }},
+        {"more than the rounding", [](Grounds& g) { g.in_rounding = false; }},
         {"nothing merely assumed", [](Grounds& g) { g.assumed.clear(); }},
         {"share left: functions of covariates",
          [](Grounds& g) { g.left_by_shape = g.left_of_readings = 0.0; }},

@@ -34,6 +34,7 @@ std::vector<std::string> objections(const Grounds& g) {
     against(!gains_enough(g.gain, g.candidates, g.causes),
             "does not gain for sure on runs that were not fitted");
     against(!g.error_falls, "lowers the error of so few runs by chance only, as far as they tell");
+    against(g.in_rounding, "moves readings by no more than their rounding");
     // 2. Identification. What was assumed may itself be what is wrong.
     against(!g.assumed.empty(),
             fmt::format("{} was assumed, not measured, and an error of it may look the same", g.assumed));
@@ -59,7 +60,7 @@ Decision decision_of(const Grounds& g, const std::string& doubt) {
     if (g.causes > 0 && doubt.empty()) return g.rival ? Decision::CannotTell : Decision::Named;
     // Something is wrong where a structure is sure, or where the causes that were doubted gained for sure
     // what is not the errors' own law.
-    const bool gained = g.causes > 0 && g.error_falls && !g.law_alone;
+    const bool gained = g.causes > 0 && g.error_falls && !g.law_alone && !g.in_rounding;
     const bool wrong = g.structure || (gained && gains_enough(g.gain, g.candidates, g.causes));
     return wrong ? Decision::Unexplained : Decision::NoEffect;
 }

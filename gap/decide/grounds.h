@@ -16,6 +16,7 @@ struct Grounds {
     bool rival = false;           ///< another effect does as well in the place of a cause that matters
     std::string assumed;          ///< truth that nobody measured, in words; empty: all was
     bool stopped_at_end = false;  ///< a parameter that carries the gain was stopped at the end of its range
+    bool in_rounding = false;     ///< no cause moves readings by more than their rounding
     bool error_falls = true;      ///< of few runs: for sure
     bool law_alone = false;       ///< a law of errors without a mechanism gains as much
     std::string out_of_role;      ///< why a cause does not do what it is said to do; empty: all do

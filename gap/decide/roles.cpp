@@ -120,9 +120,38 @@ double mean_share(const Study& study, const Fit& fit, std::size_t effect) {
     return all > none ? std::max(first, last) / (all - none) : 0.0;
 }
 
+bool within_rounding(const Study& study, const Fit& fit, std::size_t effect) {
+    Prediction with, without;
+    study.model().predict(fit.fitted.state.values, with);
+    study.model().predict(study.without(effect, fit.fitted.state).values, without);
+    if (!moves_means(with, without)) return false;
+    if (study.candidates()[effect].effect->role != EffectRole::Mean && moves_more_than_means(with, without))
+        return false;
+    for (std::size_t o = 0; o < with.size(); ++o) {
+        const Observable& observable = study.model().observables()[o];
+        double squares = 0.0, fourths = 0.0;
+        for (std::size_t i = 0; i < observable.y.size(); ++i) {
+            const double moved = with[o].mean[i] - without[o].mean[i];
+            if (!std::isfinite(moved)) continue;
+            squares += moved * moved;
+            fourths += moved * moved * moved * moved;
+        }
+        // Rows that it moves most count most: it may act in few of them.
+        const double size = squares > 0 ? std::sqrt(fourths / squares) : 0.0;
+        if (size > thresholds::kRounding * observable.instrument.quantum) return false;
+    }
+    return true;
+}
+
 OutOfRole out_of_role(const Study& study, const Fit& fit, const HeldOut& held,
                       const std::vector<Leftover>& leftovers, std::uint64_t seed) {
     OutOfRole result;
+    for (const std::size_t effect : fit.effects)
+        if (within_rounding(study, fit, effect)) result.effects.push_back(effect);
+    if (!result.effects.empty()) {
+        result.why = "moves readings by no more than their rounding";
+        return result;
+    }
     for (const std::size_t effect : fit.effects) {
         if (study.candidates()[effect].effect->role != EffectRole::Mean) continue;
         if (mean_share(study, fit, effect) < thresholds::kMeanShare) result.effects.push_back(effect);

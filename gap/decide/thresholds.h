@@ -1,5 +1,7 @@
 #pragma once
-// Every number that the decision rests on, and why it is what it is. Nothing here is keyed on an effect.
+// Every number that the selection and the decision rest on, and why it is what it is. Nothing here is keyed
+// on an effect. Numbers that only say how much is computed (candidates looked at again, bins, steps) stand
+// where they are used.
 
 #include <cstddef>
 
@@ -37,6 +39,44 @@ inline constexpr double kFineNoise = 0.25;
 inline constexpr std::size_t kRunsThatJudge = 3;
 /// Runs below which there are no two halves to confirm on: each half needs two runs to be judged by.
 inline constexpr std::size_t kRunsToConfirm = 4;
+
+/// Of the step that readings keep to: an effect that moves them by less, where it acts, is not told from how
+/// they were rounded (to which side ties go, to the nearest or down). 1 / sqrt(12), the sd of rounding
+/// itself.
+inline constexpr double kRounding = 0.2887;
+
+// Selection. BIC screens, what decides is the held-out score (gap/evidence/criterion.h).
+
+/// Better by BIC at all: worth the held-out look.
+inline constexpr double kScreen = 0.0;
+/// "Very strong" (Kass and Raftery 1995): a choice that BIC misses so much is not looked at again.
+inline constexpr double kClearBic = 10.0;
+/// Below, BIC speaks for neither strongly (Kass and Raftery): another effect in its place is a draw.
+inline constexpr double kDraw = 6.0;
+/// "Not worth more than a bare mention" (the same): the order of the catalogue decides.
+inline constexpr double kTie = 2.0;
+/// BIC of an effect that may want a partner, and of two taken at once: far beyond kClearBic, since there are
+/// as many pairs as effects squared.
+inline constexpr double kPromising = 40.0;
+/// Share of a chosen effect's evidence that another has alone, at least, to be a rival of it: a rival says
+/// much the same, so that with less than a third of it, it does not.
+inline constexpr double kNoRival = 0.3;
+
+// Corrections without a mechanism.
+
+/// nats on held-out rows that make one clear: by chance one of e^6 = 400 does so much.
+inline constexpr double kClearForm = 6.0;
+/// Standard errors of that gain between blocks: one-sided 2.3 %.
+inline constexpr double kFormErrors = 2.0;
+/// Robust deviations beyond which a reading is wild, and beyond which no tail of an error's law goes
+/// (Student's t of four degrees of freedom: once in 40 000).
+inline constexpr double kWild = 5.0;
+inline constexpr double kFar = 20.0;
+/// Wild readings below which nothing is said of them.
+inline constexpr double kLeastWild = 5.0;
+/// Wild readings that are neighbours more often than chance makes them: by so many times and deviations (one
+/// in 30 000, for want of a law of their number).
+inline constexpr double kManyTimes = 1.5, kManyDeviations = 4.0;
 
 /// Of a plausible range (of its logarithm where it spans more than kWideRange to one): nearer than this to
 /// its end a fit was stopped there. The solver ends within a thousandth of a bound that holds it.

@@ -1,5 +1,6 @@
 #include "gap/fit/select.h"
 
+#include "gap/decide/thresholds.h"
 #include "gap/evidence/criterion.h"
 #include "gap/fit/parallel.h"
 
@@ -15,20 +16,22 @@ namespace puckloop::gap {
 
 namespace {
 
+using thresholds::kClearBic;
+using thresholds::kDraw;
+using thresholds::kNoRival;
+using thresholds::kPromising;
+using thresholds::kScreen;
+using thresholds::kTie;
+
+// How much is looked at.
 constexpr std::size_t kMostEffects = 5;
-// BIC screens: it says what is worth the held-out look that decides.
-constexpr double kScreen = 0.0;        // better by BIC at all
-constexpr double kClearBic = 10.0;     // "very strong" (Kass and Raftery 1995): not looked at again
-constexpr std::size_t kValidated = 3;  // best by BIC that are cross-validated
-constexpr std::size_t kRefined = 5;    // best by a quick fit that are fitted to the end
-constexpr std::size_t kLookedAt = 7;   // best on a part of many rows that are fitted to all
-constexpr double kHopeless = 60.0;
-constexpr double kPromising = 40.0;       // BIC of an effect that may want a partner
+constexpr std::size_t kValidated = 3;     // best by BIC that are cross-validated
+constexpr std::size_t kRefined = 5;       // best by a quick fit that are fitted to the end
+constexpr std::size_t kLookedAt = 7;      // best on a part of many rows that are fitted to all
+constexpr double kHopeless = 60.0;        // of BIC, by a quick fit: not fitted to the end
+constexpr double kGlimpse = 0.125;        // of kPromising, nats that a pair wins at a glance (half is due)
 constexpr std::size_t kPaired = 6;        // best alone that are tried two by two where none is enough
 constexpr double kHopelessOnPart = 20.0;  // of BIC, of a part's rows
-constexpr double kNoRival = 0.3;          // share of the evidence that a rival has alone, at least
-constexpr double kTie = 2.0;              // nats of merit, or of BIC: not even a hint
-constexpr double kDraw = 6.0;             // difference of BIC that tells nothing
 
 bool has(const std::vector<std::size_t>& set, std::size_t effect) {
     return std::find(set.begin(), set.end(), effect) != set.end();
@@ -140,16 +143,19 @@ class Search::Steps {
         for (std::size_t a = 0; a < count; ++a)
             for (std::size_t b = a + 1; b < count; ++b)
                 pairs.emplace_back(a, b);
-        std::vector<std::pair<double, Fit>> fits(pairs.size());
+        std::vector<std::pair<double, Fit>> fits(pairs.size(), {-INFINITY, {}});
         in_parallel(pairs.size(), study_.threads(), [&](std::size_t k) {
             const Fit &first = last_step_[pairs[k].first].second,
                       &second = last_step_[pairs[k].second].second;
-            Fit fit = study_.fit_set(with(first.effects, second.effects.back()), first.fitted.state, kQuick);
+            const auto set = with(first.effects, second.effects.back());
+            if (study_.glance(set, first.fitted.state) < kGlimpse * kPromising) return;
+            Fit fit = study_.fit_set(set, first.fitted.state, kQuick);
             fits[k] = {std::min(first.bic, second.bic) - fit.bic, std::move(fit)};
         });
         const auto best_first = [](const auto& x, const auto& y) { return x.first > y.first; };
         std::stable_sort(fits.begin(), fits.end(), best_first);
         if (fits.empty() || fits.front().first < kPromising) return false;
+        std::erase_if(fits, [](const auto& one) { return one.second.effects.empty(); });
         Fit both = study_.refined(fits.front().second);
         HeldOut held = study_.hold_out(both);
         const Gain gain = gain_of(gains_by_block(study_.blocks(), result_.held_chosen, held));

@@ -302,6 +302,10 @@ class Analysis {
         g.gain = gain_of(gains_by_block(study_.blocks(), selection_.held_none, selection_.held_chosen));
         g.assumed = fmt::format("{}", fmt::join(experiment_.assumed, ", "));
         g.stopped_at_end = stopped_at_edge();
+        const auto& chosen = selection_.chosen.effects;
+        g.in_rounding = !chosen.empty() && std::all_of(chosen.begin(), chosen.end(), [&](std::size_t one) {
+            return within_rounding(study_, selection_.chosen, one);
+        });
         g.error_falls = g.causes == 0 || !few_runs_disagree();
         g.left_by_shape = gained_by_shape(verdict_.free_forms);
         for (const auto& [effect, form] : forms_)

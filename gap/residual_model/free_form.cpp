@@ -19,17 +19,18 @@ namespace puckloop::gap {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kTerms = 4;                          // told, the largest first
-constexpr double kLeastTerm = 0.05;                        // of the correction's variance
-constexpr double kWild = 5.0;                              // robust deviations
-constexpr double kLeastWild = 5.0;                         // values
-constexpr double kFar = 20.0;                              // robust deviations: no tail of a noise goes there
-constexpr double kOneSided = 1e-3;                         // chance that all wild values lie on one side
-constexpr double kManyTimes = 1.5, kManyDeviations = 4.0;  // neighbours that chance does not make
-constexpr double kClear = 6.0;                             // nats on held-out rows
-constexpr double kSure = 2.0;                              // their deviations between blocks
-constexpr std::ptrdiff_t kLeastEvents = 5;                 // of the rarer kind: of fewer nothing is learnt
-constexpr std::size_t kMostRows = 12000;                   // beyond, stretches are left out
+using thresholds::kClearForm;
+using thresholds::kFar;
+using thresholds::kFormErrors;
+using thresholds::kLeastWild;
+using thresholds::kManyDeviations;
+using thresholds::kManyTimes;
+using thresholds::kWild;
+
+constexpr std::size_t kTerms = 4;           // told, the largest first
+constexpr double kLeastTerm = 0.05;         // of the correction's variance
+constexpr std::ptrdiff_t kLeastEvents = 5;  // of the rarer kind: of fewer nothing is learnt
+constexpr std::size_t kMostRows = 12000;    // beyond, stretches are left out
 
 /// Errors of one observable or more, rows in chains.
 struct Errors {
@@ -187,8 +188,8 @@ FreeForm told(const Errors& errors, const std::vector<stats::Component>& compone
                                          fit.weight[order[k]] / all, errors.unit));
     // What only a few runs can show is clear when several gain by it and none loses.
     const bool rounding = form.size * stats::median(errors.scale) < errors.quantum / std::sqrt(12.0);
-    form.clear = !rounding && form.gain > kClear && (form.gain > kSure * form.sd || gain.in_several()) &&
-                 !form.terms.empty();
+    form.clear = !rounding && form.gain > kClearForm &&
+                 (form.gain > kFormErrors * form.sd || gain.in_several()) && !form.terms.empty();
     if (form.clear) form.shape = form.terms.front().shape;
     return form;
 }
@@ -253,7 +254,7 @@ FreeForm wild_form(Errors errors, const std::vector<stats::Component>& component
     form = told(errors, components, seed);
     form.wild = true;
     form.spells = spells;
-    const bool one_sided = std::pow(0.5, low + high - 1) < kOneSided && std::min(low, high) == 0;
+    const bool one_sided = std::pow(0.5, low + high - 1) < thresholds::kSure && std::min(low, high) == 0;
     if (!form.clear && (one_sided || far >= kLeastWild)) {
         form.clear = true;
         form.gain = 0.0;

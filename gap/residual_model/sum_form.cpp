@@ -1,5 +1,6 @@
 #include "gap/residual_model/sum_form.h"
 
+#include "gap/decide/thresholds.h"
 #include "gap/fit/likelihood.h"
 #include "gap/fit/study.h"
 #include "gap/fit/sum_response.h"
@@ -16,6 +17,9 @@ namespace puckloop::gap {
 
 namespace {
 
+using thresholds::kClearForm;
+using thresholds::kFormErrors;
+
 constexpr double kTrim = 4.0;             // deviations
 constexpr std::size_t kKept = 60;         // columns that a pursuit looks at, the best by themselves
 constexpr std::size_t kMostTerms = 4;     // of a pursuit
@@ -23,8 +27,6 @@ constexpr double kMostDeviations = 10.0;  // that a term may move an innovation,
 constexpr Effort kEffort{12, true};
 constexpr std::size_t kManyRows = 6000;
 constexpr std::size_t kFolds = 6;               // runs are held out in
-constexpr double kClear = 6.0;                  // nats on held-out rows
-constexpr double kSure = 2.0;                   // their deviations between runs
 constexpr double kStill = 1e-9;                 // root mean square of increments: nothing moves
 constexpr double kCalmer[] = {1.0, 0.1, 0.01};  // shares of the fitted drift; structure looks like drift
 
@@ -373,9 +375,9 @@ FreeForm sum_form_of(const Experiment& experiment, const Model& model, const Sta
         form.terms.push_back(term_of((*all.columns)[all.terms[k]], all.fitted.state.values[k], cells, amounts,
                                      observable.unit));
     // What is held out was not fitted: chance alone wins nothing there. That one odd run could.
-    const bool several = gain.without_best > kClear && gain.clearly_better > 2 * gain.clearly_worse;
-    form.clear = form.gain > kClear && (form.gain > kSure * form.sd || gain.in_several() || several) &&
-                 !form.terms.empty();
+    const bool several = gain.without_best > kClearForm && gain.clearly_better > 2 * gain.clearly_worse;
+    form.clear = form.gain > kClearForm &&
+                 (form.gain > kFormErrors * form.sd || gain.in_several() || several) && !form.terms.empty();
     if (form.clear) form.shape = form.terms.front().shape;
     return form;
 }

@@ -59,6 +59,7 @@ TEST_CASE("a name stands on every ground, and never beside no gain") {
     const std::function<void(Grounds&)> against[] = {
         [](Grounds& g) { g.gain.sd = 80; },
         [](Grounds& g) { g.gain.sum = 4; },
+        [](Grounds& g) { g.in_rounding = true; },
         [](Grounds& g) { g.error_falls = false; },
         [](Grounds& g) { g.assumed = "distance_m"; },
         [](Grounds& g) { g.left_by_shape = 40; },
@@ -81,6 +82,11 @@ TEST_CASE("a name stands on every ground, and never beside no gain") {
     CHECK(alone_against(doubted) == std::vector<std::string>{"share left: numbers of runs"});
     doubted.not_confirmed = "leaves something";
     CHECK(alone_against(doubted).empty());
+    Grounds rounded = sound();
+    rounded.in_rounding = true;
+    CHECK(decision_of(rounded, doubt_of(rounded)) == Decision::NoEffect);
+    rounded.structure = true;
+    CHECK(decision_of(rounded, doubt_of(rounded)) == Decision::Unexplained);
     Grounds rival = sound();
     rival.rival = true;
     CHECK(decision_of(rival, "") == Decision::CannotTell);
@@ -99,6 +105,21 @@ TEST_CASE("a name stands on every ground, and never beside no gain") {
         CHECK(gains_enough(g.gain, g.candidates, g.causes));
         CHECK(g.gain.sum > thresholds::kStandardErrors * g.gain.sd);
     }
+}
+
+TEST_CASE("what rounding may do by itself is no cause, what goes beyond it is one") {
+    const auto kept_to_steps = [](double offset) {
+        Experiment experiment = drives(4, 12, [=](double level, double, int) { return level + offset; });
+        experiment.instruments["reading"].quantum = 4;
+        for (Run& run : experiment.runs)
+            for (double& reading : run.columns["reading"])
+                reading = 4 * std::floor(reading / 4 + 0.5);  // half way: up, 0.5 counts too high in the mean
+        return analyse(experiment);
+    };
+    const Verdict rounding = kept_to_steps(0.4), more = kept_to_steps(2.5);
+    CHECK(rounding.decision == Decision::NoEffect);
+    CHECK(more.decision == Decision::Named);
+    CHECK(more.causes.at(0).name == "ground_gain");
 }
 
 TEST_CASE("the best of a catalogue meets the criterion by chance as seldom as is said") {
