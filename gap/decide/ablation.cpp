@@ -14,6 +14,7 @@ std::span<const Rule> rules() {
         {"share left: functions of covariates",
          [](Grounds& g) { g.left_by_shape = g.left_of_readings = 0.0; }},
         {"share left: readings beside sums", [](Grounds& g) { g.left_of_readings = 0.0; }},
+        {"share left: structures", [](Grounds& g) { g.left_by_structure = 0.0; }},
         {"share left: bent forms", [](Grounds& g) { g.left_by_form = 0.0; }},
         {"share left: numbers of runs", [](Grounds& g) { g.left_by_run = 0.0; }},
         {"share left: jumps", [](Grounds& g) { g.left_by_jump = 0.0; }},

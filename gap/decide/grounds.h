@@ -22,14 +22,15 @@ struct Grounds {
     std::string out_of_role;      ///< why a cause does not do what it is said to do; empty: all do
 
     // Goodness of fit: nats that corrections without a mechanism gain beside the causes, on held-out rows.
-    double left_by_shape = 0.0;     ///< of functions of all covariates
-    double left_by_form = 0.0;      ///< of a cause's form, bent
-    double left_by_run = 0.0;       ///< of a number for each run
-    double left_by_jump = 0.0;      ///< of a jump inside a run
-    double left_of_readings = 0.0;  ///< of `left_by_shape`: what observables lack that do not add up
-    bool sums = false;              ///< some observable adds up
-    bool structure = false;         ///< something is left for sure
-    std::string not_confirmed;      ///< what the other half of the runs showed; empty: nothing, or not asked
+    double left_by_shape = 0.0;      ///< of functions of all covariates
+    double left_by_form = 0.0;       ///< of a cause's form, bent
+    double left_by_run = 0.0;        ///< of a number for each run
+    double left_by_jump = 0.0;       ///< of a jump inside a run
+    double left_by_structure = 0.0;  ///< that the surest structure left may stand for
+    double left_of_readings = 0.0;   ///< of `left_by_shape`: what observables lack that do not add up
+    bool sums = false;               ///< some observable adds up
+    bool structure = false;          ///< something is left for sure
+    std::string not_confirmed;       ///< what the other half of the runs showed; empty: nothing, or not asked
 
     double left() const;         ///< nats, together
     double unexplained() const;  ///< share of all that is gained

@@ -187,6 +187,16 @@ double gained_by_shape(const std::vector<FreeForm>& forms) {
     return sum;
 }
 
+double most_by_structure(const std::vector<Leftover>& leftovers) {
+    double most = 0.0;
+    for (const Leftover& one : leftovers) {
+        if (!(one.p_value < thresholds::kSure)) continue;
+        const double p = std::max(one.p_value, std::numeric_limits<double>::min());
+        most = std::max(most, -1 - std::log(p) - std::log(-std::log(p)));
+    }
+    return most;
+}
+
 LeftByRuns left_by_runs(const Study& study, const State& state) {
     LeftByRuns left;
     const auto differences = run_differences(study.model(), state);

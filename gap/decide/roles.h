@@ -34,6 +34,10 @@ OutOfRole out_of_role(const Study& study, const Fit& fit, const HeldOut& held,
 /// or jumps that are sure.
 double gained_by_shape(const std::vector<FreeForm>& forms);
 
+/// nats that the surest of structures may stand for: of a p value at most -ln(-e p ln p) (Sellke, Bayarri and
+/// Berger, Am. Stat. 55, 2001). 0: none is sure.
+double most_by_structure(const std::vector<Leftover>& leftovers);
+
 struct LeftByRuns {
     double by_run = 0.0, by_jump = 0.0;  ///< nats
     std::vector<Leftover> structures;    ///< worth reporting, p corrected

@@ -255,12 +255,21 @@ class Analysis {
         Grounds& g = verdict_.grounds = grounds();
         const auto goes_on = [&] { return g.causes > 0 && doubt_of(g).empty(); };
         if (goes_on()) ask_roles(g);
-        if (goes_on() && confirms_) {
-            tell("asking the other half of the runs", 0.92);
-            g.not_confirmed = not_confirmed(study_, selection_, share_allowed(),
-                                            [&](const Experiment& half) { return asked(half); });
-        }
-        return doubt_of(g);
+        if (goes_on() && confirms_) confirm(g);
+        const std::string doubt = doubt_of(g);
+        if (!options_.ask_all || doubt.empty() || !confirms_) return doubt;
+        if (g.out_of_role.empty())
+            g.out_of_role = out_of_role(study_, selection_.chosen, selection_.held_chosen, verdict_.leftovers,
+                                        options_.seed)
+                                .why;
+        if (g.not_confirmed.empty()) confirm(g);
+        return doubt;
+    }
+
+    void confirm(Grounds& g) const {
+        tell("asking the other half of the runs", 0.92);
+        g.not_confirmed = not_confirmed(study_, selection_, share_allowed(),
+                                        [&](const Experiment& half) { return asked(half); });
     }
 
     /// Causes that are out of their role go by themselves where the first of them stands without them.
@@ -312,6 +321,7 @@ class Analysis {
             g.left_by_form = std::max(g.left_by_form, form.left);
         g.left_by_run = runs_.by_run;
         g.left_by_jump = runs_.by_jump;
+        g.left_by_structure = by_structure_;
         g.sums = adds_up();
         for (const Observable& observable : study_.model().observables())
             for (const FreeForm& form : verdict_.free_forms)
@@ -424,6 +434,7 @@ class Analysis {
         verdict_.free_forms = free_forms_of(experiment_, study_.model(), final_.fitted.state, options_.seed);
         runs_ = left_by_runs(study_, final_.fitted.state);
         look_at_forms();
+        by_structure_ = most_by_structure(verdict_.leftovers);
         verdict_.leftovers.insert(verdict_.leftovers.end(), runs_.structures.begin(), runs_.structures.end());
         std::stable_sort(verdict_.leftovers.begin(), verdict_.leftovers.end(),
                          [](const auto& a, const auto& b) { return a.p_value < b.p_value; });
@@ -471,6 +482,7 @@ class Analysis {
     Selection selection_;
     Fit final_;
     LeftByRuns runs_;
+    double by_structure_ = 0.0;                               ///< nats; of all structures but those of runs
     std::vector<std::pair<std::size_t, FormVerdict>> forms_;  ///< of the chosen effects
     double found_ = 0.0;                                      ///< nats
     Verdict verdict_;

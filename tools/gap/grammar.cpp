@@ -43,6 +43,7 @@ std::vector<gr::Outcome> drawn(const GrammarRequest& request, std::uint64_t seed
     drawing.kind = request.kind;
     drawing.of = class_named(request.of);
     drawing.draw_runs = request.draw_runs;
+    drawing.ask_all = request.ask_all;
     drawing.only = request.only;
     drawing.scratch = request.scratch;
     drawing.workers = request.workers;

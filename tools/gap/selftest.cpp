@@ -30,7 +30,7 @@ struct Request {
     std::vector<std::size_t> only;
     unsigned workers = 2;
     std::string kind, of;
-    bool grammar = false, full = false, draw_runs = false;
+    bool grammar = false, full = false, draw_runs = false, ask_all = false;
     bool quick = false, json = false, keep = false, emulator = false, closed_loop = false, seed_given = false;
     std::filesystem::path scratch, svg;
     std::vector<std::string> pool;
@@ -107,17 +107,17 @@ int self_test(const Request& request) {
         const std::uint64_t cases = request.cases > 0 ? request.cases : request.full ? kAllDrawn : kDrawn;
         const bool own = request.scratch.empty();
         const auto scratch = scratch_of(request);
-        const int status = grammar_test(
-            {cases, request.seed_given ? request.seed : 0, request.only, request.workers, request.kind,
-             request.of, request.json, request.keep, request.draw_runs, scratch, request.svg, request.pool});
+        const int status =
+            grammar_test({cases, request.seed_given ? request.seed : 0, request.only, request.workers,
+                          request.kind, request.of, request.json, request.keep, request.draw_runs,
+                          request.ask_all, scratch, request.svg, request.pool});
         if (own && !request.keep) std::filesystem::remove_all(scratch);
         return status;
     }
-    const std::pair<const char*, bool> drawn[] = {{"--svg", !request.svg.empty()},
-                                                  {"--full", request.full},
-                                                  {"--class", !request.of.empty()},
-                                                  {"--pool", !request.pool.empty()},
-                                                  {"--draw-runs", request.draw_runs}};
+    const std::pair<const char*, bool> drawn[] = {
+        {"--svg", !request.svg.empty()},    {"--full", request.full},
+        {"--class", !request.of.empty()},   {"--pool", !request.pool.empty()},
+        {"--draw-runs", request.draw_runs}, {"--ablation", request.ask_all}};
     for (const auto& [option, given] : drawn)
         if (given) throw InputError("", option, "is for cases drawn from the grammar", "--grammar");
     st::RunOptions options;
@@ -164,6 +164,8 @@ void declare_gap_selftest(Command& gap, int& status) {
         ->type_name("FILE");
     command->add_flag("--draw-runs", request->draw_runs,
                       "of --grammar: how many runs an experiment has is drawn, too (power against runs)");
+    command->add_flag("--ablation", request->ask_all,
+                      "of --grammar: every ground of a refused name is asked, also after one has spoken");
     command
         ->add_option("--svg", request->svg, "of --grammar: sensitivity curves and calibration as a picture")
         ->check(not_empty())

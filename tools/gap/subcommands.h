@@ -23,7 +23,7 @@ struct GrammarRequest {
     std::vector<std::size_t> only;
     unsigned workers = 2;
     std::string kind, of;
-    bool json = false, keep = false, draw_runs = false;
+    bool json = false, keep = false, draw_runs = false, ask_all = false;
     std::filesystem::path scratch, svg;
     std::vector<std::string> pool;  ///< results of earlier runs, to be counted in place of new cases
 };

@@ -4,6 +4,7 @@
 #include "base/random.h"
 #include "gap/decide/ablation.h"
 #include "gap/decide/decide.h"
+#include "gap/decide/roles.h"
 #include "gap/decide/thresholds.h"
 #include "gap/evidence/criterion.h"
 #include "gap/fit_test/rival_forms.h"
@@ -64,6 +65,7 @@ TEST_CASE("a name stands on every ground, and never beside no gain") {
         [](Grounds& g) { g.assumed = "distance_m"; },
         [](Grounds& g) { g.left_by_shape = 40; },
         [](Grounds& g) { g.sums = true, g.left_of_readings = g.left_by_shape = 40; },
+        [](Grounds& g) { g.left_by_structure = 40; },
         [](Grounds& g) { g.left_by_run = 40; },
         [](Grounds& g) { g.left_by_jump = 40; },
         [](Grounds& g) { g.stopped_at_end = g.structure = true; },
@@ -105,6 +107,15 @@ TEST_CASE("a name stands on every ground, and never beside no gain") {
         CHECK(gains_enough(g.gain, g.candidates, g.causes));
         CHECK(g.gain.sum > thresholds::kStandardErrors * g.gain.sd);
     }
+}
+
+TEST_CASE("a structure counts by what its p value may stand for at most") {
+    CHECK(most_by_structure({}) == 0.0);
+    CHECK(most_by_structure({{"reading", "grey", 0.005, ""}}) == 0.0);
+    // Sellke, Bayarri and Berger 2001: a p of 1e-4 stands for odds of 400 to one at most.
+    CHECK(most_by_structure({{"reading", "grey", 0.005, ""}, {"reading", "time", 1e-4, ""}}) ==
+          Approx(std::log(399.4)).epsilon(1e-3));
+    CHECK(most_by_structure({{"reading", "time", 0.0, ""}}) > 600);
 }
 
 TEST_CASE("what rounding may do by itself is no cause, what goes beyond it is one") {

@@ -10,12 +10,13 @@
 namespace puckloop::gap::selftest {
 
 Analysed analysed(const WrittenExperiment& experiment, const std::filesystem::path& folder,
-                  std::uint64_t seed, bool keep) {
+                  std::uint64_t seed, bool keep, bool ask_all) {
     Analysed result;
     write_folder(experiment, folder);
     try {
         Options options;
         options.seed = seed;
+        options.ask_all = ask_all;
         const auto begin = std::chrono::steady_clock::now();
         result.verdict = analyse(read_experiment(folder), options);
         result.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

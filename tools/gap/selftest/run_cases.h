@@ -19,9 +19,9 @@ struct Analysed {
     std::string error;  ///< not empty: it failed
     double wall_s = 0.0;
 };
-/// `folder` is removed again unless it is to be kept.
+/// `folder` is removed again unless it is to be kept. `ask_all`: as Options::ask_all.
 Analysed analysed(const WrittenExperiment& experiment, const std::filesystem::path& folder,
-                  std::uint64_t seed, bool keep);
+                  std::uint64_t seed, bool keep, bool ask_all = false);
 
 /// `one(k)` for each of `count` cases on a few threads, in their order; `done(k, result, cases done)` from
 /// one thread at a time.

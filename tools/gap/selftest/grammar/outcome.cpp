@@ -70,7 +70,7 @@ std::vector<Outcome> run_drawn(const Drawing& drawing) {
         const DrawnCase drawn = drawn_case(numbers[k], drawing.seed, drawing.draw_runs);
         const auto said =
             analysed(drawn.hidden.experiment, drawing.scratch / fmt::format("case{:04}", numbers[k]),
-                     drawing.seed + numbers[k], drawing.keep);
+                     drawing.seed + numbers[k], drawing.keep, drawing.ask_all);
         Outcome outcome = outcome_of(drawn, said.verdict);
         outcome.number = numbers[k];
         outcome.wall_s = said.wall_s;

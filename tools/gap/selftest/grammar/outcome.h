@@ -44,6 +44,7 @@ struct Drawing {
     std::string kind;               ///< only this; "": all
     std::optional<Class> of;        ///< only this
     bool draw_runs = false;         ///< how many runs a case has is drawn, too
+    bool ask_all = false;           ///< what each rule of the decision is worth
     std::vector<std::size_t> only;  ///< numbers; empty: all
     std::filesystem::path scratch;
     unsigned workers = 1;

@@ -39,7 +39,8 @@ std::string by_kind(const std::vector<Outcome>& cases) {
 /// What the targets hold against the analysis; weaker effects may be passed over.
 /// What would be named besides, were a rule of the decision left out.
 std::string ablation(const std::vector<Outcome>& cases) {
-    std::string text = "\nwould be named without one rule (at most: what is asked after it was not asked)\n";
+    std::string text = "\nwould be named without one rule (at most, unless --ablation: what is asked after "
+                       "it was not asked)\n";
     text += fmt::format("  {:<38}{:>8}{:>8}{:>10}{:>10}\n", "", "unknown", "nothing", "near miss", "known");
     for (const Rule& rule : rules()) {
         std::map<Class, int> count;
