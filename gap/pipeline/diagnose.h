@@ -1,0 +1,26 @@
+#pragma once
+// Diagnose: what is left with the chosen causes, asked by discrepancies that know no effect. Changes nothing.
+
+#include "gap/decide/roles.h"
+#include "gap/fit_test/rival_forms.h"
+#include "gap/pipeline/choose.h"
+#include "gap/verdict/verdict.h"
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace puckloop::gap {
+
+struct Diagnosis {
+    std::vector<Series> series;                              ///< every observable, before and after
+    std::vector<Leftover> leftovers;                         ///< structures, the surest first
+    std::vector<FreeForm> free_forms;                        ///< corrections without a mechanism
+    LeftByRuns by_runs;                                      ///< numbers of runs, jumps inside runs
+    double by_structure = 0.0;                               ///< nats; of all structures but those of runs
+    std::vector<std::pair<std::size_t, FormVerdict>> forms;  ///< of the chosen effects (candidates)
+};
+
+Diagnosis diagnosed(const Study& study, const Chosen& chosen, std::uint64_t seed);
+
+}  // namespace puckloop::gap

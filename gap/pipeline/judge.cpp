@@ -1,0 +1,75 @@
+#include "gap/pipeline/judge.h"
+
+#include "gap/decide/decide.h"
+#include "gap/decide/roles.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace puckloop::gap {
+
+namespace {
+
+/// Causes that are out of their role go by themselves where the first of them stands without them.
+void ask_roles(const Study& study, const Judging& how, Judged& result) {
+    const Selection& selection = result.chosen.selection;
+    const OutOfRole out =
+        out_of_role(study, selection.chosen, selection.held_chosen, result.diagnosis.leftovers, how.seed);
+    if (out.effects.empty()) return;
+    auto rest = without_doubted(study, result.chosen, out.effects, out.why);
+    if (!rest) {
+        result.grounds.out_of_role = out.why;
+        result.grounds.law_alone = out.law_alone;
+        return;
+    }
+    for (const std::size_t one : out.effects)
+        result.changes.push_back({study.candidates()[one].effect->name, out.why});
+    result.chosen = std::move(*rest);
+    result.diagnosis = diagnosed(study, result.chosen, how.seed);
+    result.grounds = grounds_of(study, result.chosen, result.diagnosis, how.seed);
+}
+
+std::string confirmation(const Study& study, const Judging& how, const Judged& result) {
+    return not_confirmed(study, result.chosen.selection, share_allowed(study), how.ask);
+}
+
+/// What has not been asked, since something spoke before it.
+void ask_the_rest(const Study& study, const Judging& how, Judged& result) {
+    const Selection& selection = result.chosen.selection;
+    if (result.grounds.out_of_role.empty())
+        result.grounds.out_of_role =
+            out_of_role(study, selection.chosen, selection.held_chosen, result.diagnosis.leftovers, how.seed)
+                .why;
+    if (result.grounds.not_confirmed.empty()) result.grounds.not_confirmed = confirmation(study, how, result);
+}
+
+}  // namespace
+
+Judged judged(const Study& study, Chosen chosen, Diagnosis diagnosis, const Judging& how) {
+    Judged result;
+    result.chosen = std::move(chosen);
+    result.diagnosis = std::move(diagnosis);
+    Grounds& g = result.grounds = grounds_of(study, result.chosen, result.diagnosis, how.seed);
+    const auto goes_on = [&] { return g.causes > 0 && doubt_of(g).empty(); };
+    if (goes_on()) ask_roles(study, how, result);
+    if (goes_on() && how.ask) g.not_confirmed = confirmation(study, how, result);
+    result.doubt = doubt_of(g);
+    if (how.ask_all && how.ask && !result.doubt.empty()) ask_the_rest(study, how, result);
+    result.decision = decision_of(g, result.doubt);
+    Grounds standing = g;
+    if (!result.doubt.empty()) {
+        Chosen none = taken_back(result.chosen, result.doubt);
+        result.refused = std::move(result.chosen);
+        result.refused_forms = std::move(result.diagnosis.forms);
+        result.chosen = std::move(none);
+        result.diagnosis = diagnosed(study, result.chosen, how.seed);
+        // What the causes had covered is open now.
+        standing = grounds_of(study, result.chosen, result.diagnosis, how.seed);
+        if (result.decision == Decision::NoEffect) result.decision = decision_of(standing, "");
+    }
+    result.unexplained = standing.unexplained();
+    result.found = std::max(standing.causes > 0 ? standing.gain.sum : 0.0, 0.0) + standing.left();
+    return result;
+}
+
+}  // namespace puckloop::gap

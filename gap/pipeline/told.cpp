@@ -1,0 +1,177 @@
+#include "gap/pipeline/told.h"
+
+#include "gap/decide/decide.h"
+#include "gap/diagnostics/heldout.h"
+#include "gap/fit/intervals.h"
+#include "gap/next_experiment/suggest.h"
+#include "gap/overlay/overlay_names.h"
+#include "gap/stats/tails.h"
+#include "gap/validate/placements.h"
+#include "gap/verdict/sentences.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace puckloop::gap {
+
+namespace {
+
+using Forms = std::vector<std::pair<std::size_t, FormVerdict>>;
+
+constexpr double kInterval = 1.645;  // standard errors of a 90 % interval
+
+const Effect& effect_of(const Study& study, std::size_t candidate) {
+    return *study.candidates()[candidate].effect;
+}
+
+FittedParameter parameter_of(const Study& study, const Fit& fit, const Precision& precision, std::size_t j) {
+    const auto index = static_cast<std::size_t>(fit.freed[j].index);
+    const ModelParameter& parameter = study.model().parameters()[index];
+    const Interval interval = interval_of(study, fit, precision, j);
+    return {parameter.name,
+            parameter.unit,
+            fit.fitted.state.values[index],
+            interval.low,
+            interval.high,
+            parameter.neutral,
+            parameter.simulator || overlay_takes(parameter.name)};
+}
+
+Cause cause_of(const Study& study, const Fit& fit, const Precision& precision, std::size_t candidate,
+               const Forms& forms) {
+    const Effect& own = effect_of(study, candidate);
+    Cause cause;
+    cause.name = own.name;
+    cause.number = own.number;
+    cause.title = own.title;
+    for (const Freed& freed : study.candidates()[candidate].freed)
+        for (std::size_t j = 0; j < fit.freed.size(); ++j)
+            if (fit.freed[j].index == freed.index)
+                cause.parameters.push_back(parameter_of(study, fit, precision, j));
+    const auto form =
+        std::find_if(forms.begin(), forms.end(), [&](const auto& one) { return one.first == candidate; });
+    if (form != forms.end()) cause.form = form_words(form->second);
+    cause.sentence = cause_sentence(cause);
+    return cause;
+}
+
+std::vector<Cause> causes_of(const Study& study, const Chosen& chosen, const Precision& precision,
+                             const Forms& forms) {
+    std::vector<Cause> causes;
+    for (const Trial& step : chosen.selection.steps) {
+        Cause cause = cause_of(study, chosen.final, precision, step.effect, forms);
+        cause.evidence = step.delta_bic;
+        cause.score_gain = step.held.sum;
+        cause.score_low = step.held.sum - kInterval * step.held.sd;
+        cause.score_high = step.held.sum + kInterval * step.held.sd;
+        causes.push_back(std::move(cause));
+    }
+    return causes;
+}
+
+void tell_edges(const Study& study, const Fit& fit, Verdict& verdict) {
+    for (const Freed& freed : fit.freed) {
+        const double edge = end_of_range(study, fit, freed);
+        if (std::isnan(edge)) continue;
+        const ModelParameter& parameter = study.model().parameters()[static_cast<std::size_t>(freed.index)];
+        verdict.cautions.push_back(fmt::format("{} stands at the end of its plausible range ({}): it was "
+                                               "stopped there, so its value and its cause are doubtful",
+                                               parameter.name, quantity(edge, parameter.unit)));
+    }
+}
+
+/// A later cause whose intervals hold what the simulator has says nothing for sure: what could stand in its
+/// place does not make a clear first cause doubtful.
+void pass_over_empty(Verdict& verdict) {
+    for (std::size_t k = 1; k < verdict.causes.size(); ++k) {
+        const Cause& cause = verdict.causes[k];
+        if (!std::all_of(cause.parameters.begin(), cause.parameters.end(),
+                         [](const auto& p) { return p.low <= p.neutral && p.neutral <= p.high; }))
+            continue;
+        verdict.cautions.push_back(
+            fmt::format("{}: its interval holds the simulator's value, so it may be none", cause.name));
+        std::erase_if(verdict.rivals, [&](const Rival& rival) { return rival.instead_of == cause.name; });
+    }
+}
+
+void tell_causes(const Study& study, const Judged& judged, Verdict& verdict) {
+    const Selection& selection = judged.chosen.selection;
+    const Fit& final = judged.chosen.final;
+    const Forms& forms = judged.diagnosis.forms;
+    const Precision precision = precision_of(study, final);
+    verdict.causes = causes_of(study, judged.chosen, precision, forms);
+    tell_edges(study, final, verdict);
+    for (std::size_t k = selection.chosen.effects.size(); k < final.effects.size(); ++k)
+        for (const auto& parameter : cause_of(study, final, precision, final.effects[k], forms).parameters)
+            verdict.nuisance.push_back(parameter);
+    for (const Draw& draw : selection.draws) {
+        Rival rival;
+        rival.cause = cause_of(study, draw.fit, precision_of(study, draw.fit), draw.rival, forms);
+        rival.instead_of = effect_of(study, draw.chosen).name;
+        rival.delta_bic = draw.delta_bic;
+        rival.separated_by = effect_of(study, draw.chosen).separated_by;
+        rival.cause.evidence = selection.none.bic - draw.fit.bic;
+        rival.cause.score_gain = -draw.held.sum;
+        verdict.rivals.push_back(std::move(rival));
+    }
+    pass_over_empty(verdict);
+}
+
+void tell_tried(const Study& study, const Selection& selection, Verdict& verdict) {
+    for (const Trial& trial : selection.trials) {
+        const Effect& own = effect_of(study, trial.effect);
+        Tried tried{own.name, own.number, trial.delta_bic, trial.held.sum, 1.0, trial.remark};
+        if (trial.validated && trial.held.sd > 0)
+            tried.p_value = stats::normal_tail(trial.held.sum / trial.held.sd);
+        for (std::size_t k = 0; k < selection.steps.size(); ++k)
+            if (selection.steps[k].effect == trial.effect)
+                tried.remark = fmt::format("chosen, step {}", k + 1);
+        verdict.tried.push_back(std::move(tried));
+    }
+}
+
+void tell_held(const Study& study, const Selection& selection, std::uint64_t seed, Verdict& verdict) {
+    HeldFigures figures = held_figures(study, selection, seed);
+    verdict.heldout = figures.all;
+    verdict.heldout.gain = !verdict.causes.empty();
+    verdict.observables = std::move(figures.observables);
+}
+
+}  // namespace
+
+Verdict told(const Study& study, Judged judged, std::uint64_t seed) {
+    const Experiment& experiment = study.experiment();
+    Verdict verdict;
+    verdict.kind = experiment.kind;
+    verdict.seed = seed;
+    verdict.cautions = experiment.cautions;
+    for (const Change& gone : judged.changes)
+        verdict.cautions.push_back(
+            fmt::format("{} would have to be part of it, but {}: not named", gone.what, gone.why));
+    verdict.decision = judged.decision;
+    verdict.grounds = judged.grounds;
+    verdict.doubt = judged.doubt;
+    verdict.unexplained_share = judged.unexplained;
+    if (judged.refused)
+        verdict.nearest = causes_of(study, *judged.refused, precision_of(study, judged.refused->final),
+                                    judged.refused_forms);
+    tell_causes(study, judged, verdict);
+    verdict.series = std::move(judged.diagnosis.series);
+    verdict.leftovers = std::move(judged.diagnosis.leftovers);
+    verdict.free_forms = std::move(judged.diagnosis.free_forms);
+    tell_tried(study, judged.chosen.selection, verdict);
+    tell_held(study, judged.chosen.selection, seed, verdict);
+    for (const Series& series : verdict.series)
+        for (const std::string& caution : {placement_caution(experiment, series), circular_caution(series)})
+            if (!caution.empty()) verdict.cautions.push_back(caution);
+    verdict.grounds.rival = doubtful(verdict);
+    if (verdict.decision == Decision::Named) verdict.decision = decision_of(verdict.grounds, "");
+    verdict.suggestions = suggestions_for(study, judged.chosen.selection);
+    verdict.heldout.sentence = gain_sentence(verdict.heldout);
+    verdict.summary = summary_of(verdict);
+    return verdict;
+}
+
+}  // namespace puckloop::gap

@@ -1,0 +1,117 @@
+#include "gap/pipeline/weigh.h"
+
+#include "gap/decide/range_end.h"
+#include "gap/decide/thresholds.h"
+#include "gap/diagnostics/heldout.h"
+#include "gap/evidence/criterion.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace puckloop::gap {
+
+namespace {
+
+double cost_at(const Study& study, const State& state) {
+    Prediction prediction;
+    double sum = 0.0;
+    for (const RowCosts& costs : costs_at(study.model(), state, prediction))
+        for (const double cost : costs.cost)
+            sum += cost;
+    return sum;
+}
+
+/// Does a parameter make much of what is gained? Of an effect with several, one may stop at its end beside
+/// the one that explains. With it back at neutral and nothing else fitted again, this errs towards yes.
+bool carries(const Study& study, const Chosen& chosen, const Freed& freed) {
+    const auto index = static_cast<std::size_t>(freed.index);
+    State without = chosen.final.fitted.state;
+    without.values[index] = study.model().parameters()[index].neutral;
+    const double best = cost_at(study, chosen.final.fitted.state),
+                 none = cost_at(study, chosen.selection.none.fitted.state);
+    return cost_at(study, without) - best > thresholds::kShareLeft * (none - best);
+}
+
+bool stopped_at_end(const Study& study, const Chosen& chosen) {
+    const auto& freed = chosen.final.freed;
+    return std::any_of(freed.begin(), freed.end(), [&](const Freed& one) {
+        return !std::isnan(end_of_range(study, chosen.final, one)) && carries(study, chosen, one);
+    });
+}
+
+bool all_in_rounding(const Study& study, const Fit& chosen) {
+    return !chosen.effects.empty() &&
+           std::all_of(chosen.effects.begin(), chosen.effects.end(),
+                       [&](std::size_t one) { return within_rounding(study, chosen, one); });
+}
+
+/// With fewer than three runs stretches of the same run are held out: a drift of that run predicts itself.
+/// Then the error has to fall for sure, not only the score to rise.
+bool few_runs_disagree(const Study& study, const Selection& selection, std::uint64_t seed) {
+    return study.experiment().runs.size() < thresholds::kRunsThatJudge &&
+           held_figures(study, selection, seed).all.high >= 1.0;
+}
+
+bool adds_up(const Study& study) {
+    const auto& all = study.model().observables();
+    return std::any_of(all.begin(), all.end(),
+                       [](const Observable& observable) { return observable.noise == NoiseKind::Level; });
+}
+
+/// nats that functions of covariates gain of what does not add up.
+double left_of_readings(const Study& study, const std::vector<FreeForm>& forms) {
+    double sum = 0.0;
+    for (const Observable& observable : study.model().observables())
+        for (const FreeForm& form : forms)
+            if (form.observable == observable.name && observable.noise != NoiseKind::Level && form.clear &&
+                !form.wild)
+                sum += form.gain;
+    return sum;
+}
+
+bool any_is_sure(const Diagnosis& diagnosis) {
+    const auto clear = [](const FreeForm& form) { return form.clear; };
+    const auto sure = [](const Leftover& one) { return one.p_value < thresholds::kSure; };
+    return std::any_of(diagnosis.free_forms.begin(), diagnosis.free_forms.end(), clear) ||
+           std::any_of(diagnosis.leftovers.begin(), diagnosis.leftovers.end(), sure);
+}
+
+}  // namespace
+
+double end_of_range(const Study& study, const Fit& fit, const Freed& freed) {
+    const auto index = static_cast<std::size_t>(freed.index);
+    return range_end(fit.fitted.state.values[index], freed.low, freed.high,
+                     study.model().parameters()[index].neutral);
+}
+
+double share_allowed(const Study& study) {
+    return adds_up(study) ? thresholds::kShareLeftOfSums : thresholds::kShareLeft;
+}
+
+Grounds grounds_of(const Study& study, const Chosen& chosen, const Diagnosis& diagnosis, std::uint64_t seed) {
+    const Selection& selection = chosen.selection;
+    Grounds g;
+    g.causes = selection.steps.size();
+    for (const Candidate& candidate : study.candidates())
+        g.candidates += candidate.remark.empty() ? 1 : 0;
+    g.gain = gain_of(gains_by_block(study.blocks(), selection.held_none, selection.held_chosen));
+    g.assumed = fmt::format("{}", fmt::join(study.experiment().assumed, ", "));
+    g.stopped_at_end = stopped_at_end(study, chosen);
+    g.in_rounding = all_in_rounding(study, selection.chosen);
+    g.error_falls = g.causes == 0 || !few_runs_disagree(study, selection, seed);
+    g.left_by_shape = gained_by_shape(diagnosis.free_forms);
+    for (const auto& [effect, form] : diagnosis.forms)
+        g.left_by_form = std::max(g.left_by_form, form.left);
+    g.left_by_run = diagnosis.by_runs.by_run;
+    g.left_by_jump = diagnosis.by_runs.by_jump;
+    g.left_by_structure = diagnosis.by_structure;
+    g.sums = adds_up(study);
+    g.left_of_readings = left_of_readings(study, diagnosis.free_forms);
+    g.structure = any_is_sure(diagnosis);
+    return g;
+}
+
+}  // namespace puckloop::gap
