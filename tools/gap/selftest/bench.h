@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <string>
 #include <utility>
 
 namespace puckloop::gap::selftest {
@@ -28,6 +29,29 @@ struct HiddenEffect {
     int instead_of = 0;
     const char* called = "";  ///< in the catalogue, where several of its effects share the number
 };
+
+/// The plainest thing to hide: one knob turned by the amount, which is the parameter's value where there is
+/// one.
+template <class Knobs>
+auto turned(double Knobs::*knob, std::string parameter = {}) {
+    return [knob, parameter = std::move(parameter)](Knobs& knobs, double amount, const RandomStream&) {
+        knobs.*knob = amount;
+        return parameter.empty() ? std::vector<Truth>{} : std::vector<Truth>{{parameter, amount}};
+    };
+}
+
+/// Every knob of an array drawn by itself; its parameter is numbered from `first` and has `rest(i)` besides.
+template <class Array, class Draw, class Rest = double (*)(std::size_t)>
+std::vector<Truth> scattered(
+    Array& knobs, const char* parameter, const Draw& draw, std::size_t first = 0,
+    const Rest& rest = [](std::size_t) { return 0.0; }) {
+    std::vector<Truth> truths;
+    for (std::size_t i = 0; i < knobs.size(); ++i) {
+        knobs[i] = draw();
+        truths.push_back({fmt::format("{}{}", parameter, i + first), rest(i) + knobs[i]});
+    }
+    return truths;
+}
 
 template <class Knobs>
 class BenchOf : public Bench {

@@ -130,12 +130,7 @@ std::unique_ptr<Bench> accelerometer_bench() {
     // clang-format off
     return std::make_unique<BenchOf<K>>(accelerometer_rig(), std::vector<HiddenEffect<K>>{
         {39, "bias", 100, false, [](K& k, double a, RandomStream r) {
-            Truths truths;
-            for (std::size_t i = 0; i < kAxes; ++i) {
-                k.bias[i] = a * (2 * r.uniform() - 1);
-                truths.push_back({fmt::format("accelerometer.bias{}", i), k.bias[i]});
-            }
-            return truths; }, {}, "", 0, "accelerometer_bias"},
+            return scattered(k.bias, "accelerometer.bias", [&] { return a * (2 * r.uniform() - 1); }); }, {}, "", 0, "accelerometer_bias"},
         {39, "scale and alignment", 1.0, false, [](K& k, double a, RandomStream r) {
             Truths truths;
             for (std::size_t i = 0; i < kAxes; ++i) {
@@ -150,11 +145,11 @@ std::unique_ptr<Bench> accelerometer_bench() {
             Truths truths;
             for (std::size_t i = 0; i < kAxes; ++i) truths.push_back({fmt::format("accelerometer.session_bias2{}", i), a});
             return truths; }, {}, "", 0, "accelerometer_session"},
-        {40, "vibration", 200, false, [](K& k, double a, RandomStream) { k.vibration = a; return Truths{{"accelerometer.vibration", a}}; }},
-        {31, "reference sag", 0.04, false, [](K& k, double a, RandomStream) { k.sag = a; return Truths{{"accelerometer.motor_sag", a}}; }},
-        {33, "warm-up drift", 30, true, [](K& k, double a, RandomStream) { k.warm = a; return Truths{{"accelerometer.warmup", a}}; }},
-        {0, "pull in left spins", 60, false, [](K& k, double a, RandomStream) { k.spin_pull = a; return Truths{}; }},
-        {0, "hold after a stop", 60, false, [](K& k, double a, RandomStream) { k.hold = a; return Truths{}; }},
+        {40, "vibration", 200, false, turned(&K::vibration, "accelerometer.vibration")},
+        {31, "reference sag", 0.04, false, turned(&K::sag, "accelerometer.motor_sag")},
+        {33, "warm-up drift", 30, true, turned(&K::warm, "accelerometer.warmup")},
+        {0, "pull in left spins", 60, false, turned(&K::spin_pull)},
+        {0, "hold after a stop", 60, false, turned(&K::hold)},
     });
     // clang-format on
 }

@@ -111,10 +111,10 @@ std::unique_ptr<Bench> ground_bench() {
             }
             return truths; }},
         {37, "pitch while starting", 0.3, false, [](K& k, double a, RandomStream) { k.pitch = a; return Truths{{"ground.acceleration_tilt", a / (43.75 * 0.030)}}; }},
-        {38, "further ahead", 0.01, true, [](K& k, double a, RandomStream) { k.forward = a; return Truths{{"ground.forward_error", a}}; }, {}, "", 0, "ground_position"},
-        {38, "lag", 0.3, false, [](K& k, double a, RandomStream) { k.lag = a; return Truths{{"ground.lag", a}}; }, {}, "", 0, "ground_lag"},
-        {0, "weave of the floor", 60, false, [](K& k, double a, RandomStream) { k.weave = a; return Truths{}; }},
-        {0, "memory of the dark", 0.3, false, [](K& k, double a, RandomStream) { k.hysteresis = a; return Truths{}; }},
+        {38, "further ahead", 0.01, true, turned(&K::forward, "ground.forward_error"), {}, "", 0, "ground_position"},
+        {38, "lag", 0.3, false, turned(&K::lag, "ground.lag"), {}, "", 0, "ground_lag"},
+        {0, "weave of the floor", 60, false, turned(&K::weave)},
+        {0, "memory of the dark", 0.3, false, turned(&K::hysteresis)},
         {0, "glare to the north", 60, false, [](K& k, double a, RandomStream) { k.glare = -a; return Truths{}; }},
     });
     // clang-format on

@@ -82,26 +82,26 @@ std::unique_ptr<Bench> motion_bench() {
         {1, "wheel radius", 0.03, true, [](K& k, double a, RandomStream) {
             k.radius_scale = 1 + a;
             return Truths{{"wheel_scale", a}}; }},
-        {2, "wheel mismatch", 0.01, true, [](K& k, double a, RandomStream) { k.mismatch = a; return Truths{{"wheel_mismatch", a}}; }},
+        {2, "wheel mismatch", 0.01, true, turned(&K::mismatch, "wheel_mismatch")},
         {3, "axle length", 0.04, true, [](K& k, double a, RandomStream) {
             k.axle_scale = 1 + a;
             return Truths{{"robot.axle_length", kAxle * (1 + a)}}; }},
-        {4, "scrub", 0.04, false, [](K& k, double a, RandomStream) { k.scrub = a; return Truths{{"robot.turn_scrub", a}}; }},
+        {4, "scrub", 0.04, false, turned(&K::scrub, "robot.turn_scrub")},
         // friction falls from 0.7 to 0.02
         {5, "slip at starts", 1.0, false, [](K& k, double a, RandomStream) {
             k.friction = 0.7 * std::pow(0.02 / 0.7, a);
             return Truths{{"inverse_friction", 1 / k.friction}}; }},
-        {6, "creep under load", 0.5, false, [](K& k, double a, RandomStream) { k.creep = a; return Truths{{"robot.load_creep", a}}; }},
+        {6, "creep under load", 0.5, false, turned(&K::creep, "robot.load_creep")},
         {7, "step loss", 1.0, false, [](K& k, double a, RandomStream) {
             k.loss_speed = 1100 - 300 * a; k.loss_width = 60;
             return Truths{{"robot.step_loss_speed", k.loss_speed}}; }},
-        {9, "dead band", 120, false, [](K& k, double a, RandomStream) { k.deadband = a; return Truths{{"robot.deadband", a}}; }},
+        {9, "dead band", 120, false, turned(&K::deadband, "robot.deadband")},
         {10, "backlash", 0.004, false, [](K& k, double a, RandomStream) {
             k.backlash = a;
             return Truths{{"robot.backlash", a / kRadius}}; }},
-        {11, "command latency", 0.15, false, [](K& k, double a, RandomStream) { k.latency = a; return Truths{{"command.latency", a}}; }},
+        {11, "command latency", 0.15, false, turned(&K::latency, "command.latency")},
         // of 128 changes of speed 2, 8 and 19 are lost
-        {12, "lost commands", 0.15, false, [](K& k, double a, RandomStream) { k.drop = a; return Truths{{"command.loss", a}}; },
+        {12, "lost commands", 0.15, false, turned(&K::drop, "command.loss"),
             std::array{0.015, 0.06, 0.15}},
         {13, "pull in the world", 0.01, false, [](K& k, double a, RandomStream r) {
             const double way = 2 * std::numbers::pi * r.uniform();
@@ -112,17 +112,17 @@ std::unique_ptr<Bench> motion_bench() {
             const double way = 2 * std::numbers::pi * r.uniform();
             k.marker_x = a * std::cos(way); k.marker_y = a * std::sin(way);
             return Truths{{"tracker.marker_x", k.marker_x}, {"tracker.marker_y", k.marker_y}}; }},
-        {16, "tracker delay", 0.2, false, [](K& k, double a, RandomStream) { k.tracker_delay = a; return Truths{{"tracker.delay", a}}; }},
-        {17, "heading drift", 0.02, true, [](K& k, double a, RandomStream) { k.heading_drift = a; return Truths{{"tracker.heading_drift", a}}; }},
+        {16, "tracker delay", 0.2, false, turned(&K::tracker_delay, "tracker.delay")},
+        {17, "heading drift", 0.02, true, turned(&K::heading_drift, "tracker.heading_drift")},
         // a circle of one sense only: a mismatch and another axle look the same
-        {2, "mismatch on one circle", 0.01, true, [](K& k, double a, RandomStream) { k.mismatch = a; return Truths{}; },
+        {2, "mismatch on one circle", 0.01, true, turned(&K::mismatch),
             {}, "one circle", 3},
         {3, "axle on one circle", 0.04, true, [](K& k, double a, RandomStream) { k.axle_scale = 1 + a; return Truths{}; },
             {}, "one circle", 2},
-        {0, "wheel out of round", 0.3, false, [](K& k, double a, RandomStream) { k.eccentricity = a; return Truths{}; }},
-        {0, "tracker's lens", 2.0, true, [](K& k, double a, RandomStream) { k.lens = a; return Truths{}; }},
-        {0, "slippery patch", 0.8, false, [](K& k, double a, RandomStream) { k.patch = a; return Truths{}; }},
-        {0, "kick at reversals", 0.5, true, [](K& k, double a, RandomStream) { k.thrust = a; return Truths{}; }},
+        {0, "wheel out of round", 0.3, false, turned(&K::eccentricity)},
+        {0, "tracker's lens", 2.0, true, turned(&K::lens)},
+        {0, "slippery patch", 0.8, false, turned(&K::patch)},
+        {0, "kick at reversals", 0.5, true, turned(&K::thrust)},
     });
     // clang-format on
 }

@@ -147,19 +147,9 @@ std::unique_ptr<Bench> proximity_bench() {
     // clang-format off
     return std::make_unique<BenchOf<K>>(proximity_rig(), std::vector<HiddenEffect<K>>{
         {18, "gain spread", 0.35, false, [](K& k, double a, RandomStream r) {
-            Truths truths;
-            for (std::size_t i = 0; i < kRing; ++i) {
-                k.gain[i] = std::exp(a * r.normal());
-                truths.push_back({fmt::format("proximity.gain{}", i), k.gain[i]});
-            }
-            return truths; }},
+            return scattered(k.gain, "proximity.gain", [&] { return std::exp(a * r.normal()); }); }},
         {19, "offsets", 40, false, [](K& k, double a, RandomStream r) {
-            Truths truths;
-            for (std::size_t i = 0; i < kRing; ++i) {
-                k.offset[i] = a * (2 * r.uniform() - 1);
-                truths.push_back({fmt::format("proximity.offset{}", i), kIdle[i] + k.offset[i]});
-            }
-            return truths; }},
+            return scattered(k.offset, "proximity.offset", [&] { return a * (2 * r.uniform() - 1); }, 0, [](std::size_t i) { return kIdle[i]; }); }},
         {20, "exponent", 0.5, true, [](K& k, double a, RandomStream) {
             k.exponent = 2 + a;
             return Truths{{"proximity.exponent", 2 + a}, {"proximity.amplitude", kLawAmplitude * std::pow(29.9, a)}}; }, {}, "power law"},
@@ -169,7 +159,7 @@ std::unique_ptr<Bench> proximity_bench() {
         {22, "ambient light", 1.0, false, [](K& k, double a, RandomStream) {
             k.light_gain = 2 * a; k.light_offset = 40 * a; k.light_noise = 5 * a;
             return Truths{{"proximity.ambient_gain", 2 * a * 300 / 4095}, {"proximity.ambient_offset", 40 * a}, {"proximity.ambient_noise", 5 * a}}; }},
-        {23, "lamp flicker", 30, false, [](K& k, double a, RandomStream) { k.flicker = a; return Truths{{"proximity.flicker", a}}; }},
+        {23, "lamp flicker", 30, false, turned(&K::flicker, "proximity.flicker")},
         {24, "foreign pulses", 300, false, [](K& k, double a, RandomStream) { k.hits = 0.1; k.hit_counts = a; return Truths{}; }},
         {25, "crosstalk", 0.1, false, [](K& k, double a, RandomStream) {
             k.pair = a; k.neighbours = a / 2;
@@ -181,30 +171,25 @@ std::unique_ptr<Bench> proximity_bench() {
             k.incidence = 1 + a;
             return Truths{{"proximity.incidence_exponent", 1 + a}}; }},
         {28, "sensors turned", 0.15, false, [](K& k, double a, RandomStream r) {
-            Truths truths;
-            for (std::size_t i = 0; i < kRing; ++i) {
-                k.turned[i] = a * (2 * r.uniform() - 1);
-                truths.push_back({fmt::format("proximity.direction{}", i), nominal_direction(i) + k.turned[i]});
-            }
-            return truths; }},
+            return scattered(k.turned, "proximity.direction", [&] { return a * (2 * r.uniform() - 1); }, 0, [](std::size_t i) { return nominal_direction(i); }); }},
         {29, "motor noise", 6.0, false, [](K& k, double a, RandomStream) {
             k.motor_noise = a;
             return Truths{{"proximity.motor_noise", a / 0.8}}; }},
-        {31, "reference sag", 0.04, false, [](K& k, double a, RandomStream) { k.sag = a; return Truths{{"proximity.motor_sag", a}}; }},
-        {32, "sample age", 0.1, false, [](K& k, double a, RandomStream) { k.age = a; return Truths{{"proximity.age", a}}; }},
+        {31, "reference sag", 0.04, false, turned(&K::sag, "proximity.motor_sag")},
+        {32, "sample age", 0.1, false, turned(&K::age, "proximity.age")},
         {33, "warm-up", 0.3, true, [](K& k, double a, RandomStream) {
             k.warm_gain = a; k.warm_time = 200;
             return Truths{{"proximity.warmup_gain", a}}; }},
-        {64, "battery", 0.5, true, [](K& k, double a, RandomStream) { k.per_volt = a; return Truths{{"proximity.battery_gain", a}}; }},
-        {66, "slow drift", 0.02, true, [](K& k, double a, RandomStream) { k.per_run = a; return Truths{{"proximity.order_drift", a}}; }},
-        {34, "dead zone", 200, false, [](K& k, double a, RandomStream) { k.dead_zone = a; return Truths{{"proximity.threshold", a}}; }},
-        {35, "noise with the level", 0.1, false, [](K& k, double a, RandomStream) { k.noise_share = a; return Truths{{"proximity.proportional_noise", a}}; }},
+        {64, "battery", 0.5, true, turned(&K::per_volt, "proximity.battery_gain")},
+        {66, "slow drift", 0.02, true, turned(&K::per_run, "proximity.order_drift")},
+        {34, "dead zone", 200, false, turned(&K::dead_zone, "proximity.threshold")},
+        {35, "noise with the level", 0.1, false, turned(&K::noise_share, "proximity.proportional_noise")},
         {18, "gain, one object", 0.35, true, [](K& k, double a, RandomStream) { k.gain[2] = 1 + a; return Truths{}; },
             {}, "one object", 26},
-        {0, "ripple with distance", 0.3, false, [](K& k, double a, RandomStream) { k.fringe = a; return Truths{}; }},
-        {0, "notch at 30 mm", 0.9, false, [](K& k, double a, RandomStream) { k.notch = a; return Truths{}; }},
-        {0, "threefold incidence", 0.5, false, [](K& k, double a, RandomStream) { k.swing = a; return Truths{}; }},
-        {0, "loose contact", 0.9, false, [](K& k, double a, RandomStream) { k.step = a; return Truths{}; }},
+        {0, "ripple with distance", 0.3, false, turned(&K::fringe)},
+        {0, "notch at 30 mm", 0.9, false, turned(&K::notch)},
+        {0, "threefold incidence", 0.5, false, turned(&K::swing)},
+        {0, "loose contact", 0.9, false, turned(&K::step)},
     });
     // clang-format on
 }
