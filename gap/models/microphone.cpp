@@ -9,12 +9,13 @@
 
 #include "gap/models/model_of.h"
 #include "gap/models/rows.h"
-#include "gap/models/sample_range.h"
+#include "gap/stats/tails.h"
 #include "physics/description/robot_constants.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace puckloop::gap {
 
@@ -23,6 +24,27 @@ namespace {
 constexpr double kReference = 0.1;  // m
 constexpr double kLevel = 300.0;    // counts at the reference, where nothing is stated
 constexpr double kWindow = 100.0;   // samples of the firmware's buffer
+
+constexpr double kFar = 7.0;     // deviations: nothing is beyond
+constexpr double kStep = 0.025;  // trapezoids; exact to 1e-6 for so smooth a function
+
+/// Largest minus smallest, expected for n (2 or more, whole or not) independent standard normal
+/// samples: 1.128 for 2, 5.015 for 100.
+double normal_range(double n) {
+    // E(max - min) = integral of the probability that some sample is above x and some below
+    double sum = 0.0;
+    for (double x = 0.0; x < kFar; x += kStep) {
+        const double below = stats::normal_tail(-x), above = 1.0 - below;
+        const double between = 1.0 - std::pow(below, n) - std::pow(above, n);
+        sum += x == 0.0 ? between / 2 : between;
+    }
+    return 2.0 * sum * kStep;  // even in x
+}
+
+/// Its standard deviation, by the extremes' limiting law: within 2 % of 0.605 for 100, 5 % of 0.797 for 10.
+double normal_range_sd(double n) {
+    return std::numbers::pi / std::numbers::sqrt3 / std::sqrt(2.0 * std::log(n));
+}
 
 struct Numbers : physics::Parameters {
     double level = kLevel, gaussian = 0.0;

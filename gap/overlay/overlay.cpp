@@ -2,9 +2,7 @@
 // takes, [measurement] what belongs to the measuring chain or has no counterpart in a run; `run` says that it
 // passes over it.
 
-#include "gap/overlay/overlay_links.h"
-#include "gap/overlay/overlay_rab.h"
-#include "gap/overlay/overlay_sensors.h"
+#include "gap/overlay/overlay_parts.h"
 #include "gap/pipeline/analyse.h"
 #include "physics/description/parameters.h"
 #include "scenarios/world_tables.h"

@@ -2,7 +2,7 @@
 // time, not for a time, keeps its period. 2. Commands are lost byte by byte, each with the share that makes
 // the found share of records.
 
-#include "gap/overlay/overlay_links.h"
+#include "gap/overlay/overlay_parts.h"
 
 #include "protocols/epuck_serial.h"
 

@@ -3,7 +3,7 @@
 // is one of the single receivers: the register of a sender between two receivers at the rail is a little
 // above it.
 
-#include "gap/overlay/overlay_rab.h"
+#include "gap/overlay/overlay_parts.h"
 
 #include "gap/models/rab_table.h"
 #include "physics/description/parameters.h"

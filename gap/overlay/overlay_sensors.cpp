@@ -1,4 +1,4 @@
-#include "gap/overlay/overlay_sensors.h"
+#include "gap/overlay/overlay_parts.h"
 
 #include "gap/models/model.h"
 #include "physics/description/parameters.h"

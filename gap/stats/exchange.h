@@ -43,4 +43,15 @@ double permutation_p(const Pairs& pairs, const std::function<double(const std::v
 double null_p(double observed, double units, const std::function<double(RandomStream&)>& draw,
               const TestOptions& options, std::string_view stream);
 
+/// A straight line with errors that hold when rows of a block depend on each other.
+struct Line {
+    double slope = 0.0, intercept = 0.0;
+    double slope_error = 0.0;      ///< from the scatter between blocks (or runs), not between rows
+    double intercept_error = 0.0;  ///< likewise
+    double clusters = 0.0;
+};
+
+/// Least squares of y on x with cluster-robust errors; the clusters are the pairs' blocks.
+Line clustered_line(const Pairs& pairs);
+
 }  // namespace puckloop::gap::stats

@@ -1,11 +1,11 @@
 #include "gap/stats/structure.h"
 
-#include "gap/stats/multiple.h"
 #include "gap/stats/robust.h"
 #include "gap/stats/tests.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace puckloop::gap::stats {
 
@@ -64,6 +64,19 @@ std::vector<Finding> structure_table(const StructureInput& input, const TestOpti
     if (!input.raw.empty()) table.push_back(held_test({input.raw, input.residual.run}, options));
     adjust_together({&table});
     return table;
+}
+
+std::vector<double> holm(const std::vector<double>& p) {
+    std::vector<std::size_t> order(p.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return p[a] < p[b]; });
+    std::vector<double> adjusted(p.size());
+    double so_far = 0;
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        so_far = std::max(so_far, p[order[i]] * static_cast<double>(p.size() - i));
+        adjusted[order[i]] = std::min(so_far, 1.0);
+    }
+    return adjusted;
 }
 
 void adjust_together(std::vector<std::vector<Finding>*> tables) {

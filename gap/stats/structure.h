@@ -34,6 +34,9 @@ struct StructureInput {
 /// two different values is left out; a residual without any has no findings.
 std::vector<Finding> structure_table(const StructureInput& input, const TestOptions& options);
 
+/// Holm's step-down adjusted p values: the chance of even one false alarm in the table stays below p.
+std::vector<double> holm(const std::vector<double>& p);
+
 /// Holm over several observables' tables together.
 void adjust_together(std::vector<std::vector<Finding>*> tables);
 

@@ -1,6 +1,5 @@
 #include "gap/stats/exchange.h"
 #include "gap/stats/profile.h"
-#include "gap/stats/regression.h"
 #include "gap/stats/robust.h"
 #include "gap/stats/tests.h"
 

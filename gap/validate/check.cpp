@@ -6,9 +6,7 @@
 #include "gap/data/columns.h"
 #include "gap/data/nominal.h"
 #include "gap/data/problems.h"
-#include "gap/validate/check_kinds.h"
-#include "gap/validate/check_mixed.h"
-#include "gap/validate/refuse.h"
+#include "gap/validate/checks.h"
 
 #include <fmt/format.h>
 

@@ -1,9 +1,7 @@
-#include "gap/validate/check_mixed.h"
+#include "gap/validate/checks.h"
 
 #include "gap/data/columns.h"
 #include "gap/stats/robust.h"
-#include "gap/validate/check_motion.h"
-#include "gap/validate/refuse.h"
 
 #include <fmt/format.h>
 

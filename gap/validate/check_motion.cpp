@@ -1,7 +1,6 @@
-#include "gap/validate/check_motion.h"
+#include "gap/validate/checks.h"
 
 #include "gap/stats/robust.h"
-#include "gap/validate/refuse.h"
 #include "physics/description/robot_constants.h"
 
 #include <fmt/format.h>

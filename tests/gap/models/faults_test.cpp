@@ -5,7 +5,7 @@
 #include "gap/clean/quantum.h"
 #include "gap/diagnostics/residual_structure.h"
 #include "gap/effects/effect.h"
-#include "gap/overlay/overlay_links.h"
+#include "gap/overlay/overlay_parts.h"
 #include "physics/sensors/accelerometer.h"
 #include "tests/gap/models/made_table.h"
 

@@ -2,11 +2,11 @@
 
 #include "gap/stats/bootstrap.h"
 #include "gap/stats/duplicates.h"
-#include "gap/stats/multiple.h"
+#include "gap/stats/exchange.h"
 #include "gap/stats/noise_floor.h"
 #include "gap/stats/profile.h"
-#include "gap/stats/regression.h"
 #include "gap/stats/robust.h"
+#include "gap/stats/structure.h"
 #include "gap/stats/tails.h"
 #include "tests/gap/stats/made_series.h"
 

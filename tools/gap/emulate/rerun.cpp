@@ -1,7 +1,7 @@
 #include "tools/gap/emulate/rerun.h"
 
 #include "base/error.h"
-#include "gap/overlay/overlay_sensors.h"
+#include "gap/overlay/overlay_parts.h"
 #include "physics/description/parameters.h"
 #include "tools/gap/emulate/reacts.h"
 #include "tools/gap/emulate/rerun_rab.h"

@@ -1,5 +1,6 @@
 #pragma once
-// What a verdict on sensors means for the world model where the two do not have the same parameter.
+// What a verdict means for a run where the two do not have the same parameter: links, clocks and Linux
+// boards; the infra-red medium; sensors.
 
 #include "gap/data/experiment.h"
 
@@ -7,6 +8,16 @@
 #include <string>
 
 namespace puckloop::gap {
+
+/// [uart], [linux] and [clock]. Takes those parameters out of `fitted` that a run has there, told as TOML
+/// tables; `nominal` is what the experiment says of its robot. What would make a frame faster than the
+/// simulator's stays.
+std::string links_overlay(const std::map<std::string, double>& nominal,
+                          std::map<std::string, double>& fitted);
+
+/// Takes the parameters of the strength, bearing and loss out of `fitted` and sets the medium's (`ir.*`) in
+/// `simulator` so that a board reports what they say. What the medium has nothing for stays in `fitted`.
+void rab_overlay(std::map<std::string, double>& fitted, std::map<std::string, double>& simulator);
 
 /// Takes what it knows out of `fitted` and sets the world's parameters in `simulator`:
 /// - an age or lag, less what firmware and host make by themselves, which an emulated run makes again;

@@ -1,0 +1,34 @@
+#pragma once
+// The parts of check(): each throws InputError for what cannot be used, or adds cautions.
+
+#include "base/error.h"
+#include "gap/data/experiment.h"
+
+#include <fmt/format.h>
+
+#include <string>
+
+namespace puckloop::gap {
+
+/// Throws InputError, which names the run's file and, where `row` (from 0) is told, the row.
+[[noreturn]] inline void refuse(const Experiment& experiment, const Run& run, const std::string& problem,
+                                const std::string& expected, long row = -1) {
+    throw InputError((experiment.folder / run.file).string(),
+                     row < 0 ? std::string() : fmt::format("row {}", row + 1), problem, expected);
+}
+
+/// What needs to know what a kind of experiment is: swapped columns, wrong units that stay plausible.
+void check_kind(Experiment& experiment);
+/// Of a motion experiment: units, sides, headings, counters.
+void check_motion(Experiment& experiment);
+/// m of way for a step of the left wheel, by the nominal numbers.
+double metres_per_step(const Experiment& experiment);
+
+/// Rows of two robots in one file, where no column `unit` says so. Motion: InputError if a run's pose jumps
+/// to and fro between two paths. Timing: InputError if `seq` does not count on; a caution where frames come
+/// twice as often as `nominal_period` says. Proximity, ground, microphone: a caution if what was measured at
+/// one placement falls into two levels, to and fro. Not seen: two robots of which each has runs of its own,
+/// readings whose placements are never repeated, and other kinds.
+void check_mixed(Experiment& experiment);
+
+}  // namespace puckloop::gap
