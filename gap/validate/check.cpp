@@ -2,9 +2,7 @@
 
 #include "gap/clean/copies.h"
 #include "gap/clean/fill_missing.h"
-#include "gap/clean/missing_cells.h"
 #include "gap/data/columns.h"
-#include "gap/data/nominal.h"
 #include "gap/data/problems.h"
 #include "gap/validate/checks.h"
 
@@ -128,9 +126,7 @@ void check_clipped(Experiment& experiment, const ColumnInfo& info) {
         static_cast<double>(clipped) / static_cast<double>(std::max<std::size_t>(present, 1));
     const std::string told = fmt::format(
         "{} is at or beyond [instrument]'s floor or ceiling in {} of {} rows", info.name, clipped, present);
-    if (share > kMostClipped)
-        throw InputError((experiment.folder / "experiment.toml").string(), "", told,
-                         "readings between the two");
+    if (share > kMostClipped) refuse(experiment, told, "readings between the two");
     if (share > kManyClipped)
         experiment.cautions.push_back(told + ": such rows only say 'at least this far'");
 }
@@ -180,9 +176,8 @@ void check_constant(Experiment& experiment, const ColumnInfo& info) {
             }
     if (low != high) return;
     if (info.role == Role::Observable && std::string_view(info.unit) != "1")
-        throw InputError((experiment.folder / "experiment.toml").string(), "",
-                         fmt::format("{} is {:g} in every row of every run", info.name, low),
-                         "a measurement that changes");
+        refuse(experiment, fmt::format("{} is {:g} in every row of every run", info.name, low),
+               "a measurement that changes");
     if (info.role != Role::Covariate)
         experiment.cautions.push_back(
             fmt::format("{} is {:g}{} in every row: nothing can be learnt about what depends on it",
@@ -227,8 +222,7 @@ void check_runs(Experiment& experiment) {
     std::set<std::string> files;
     for (const Run& run : experiment.runs)
         if (!files.insert(run.file).second)
-            throw InputError((experiment.folder / "experiment.toml").string(), "",
-                             fmt::format("{} is named by two runs", run.file), "each file once");
+            refuse(experiment, fmt::format("{} is named by two runs", run.file), "each file once");
 }
 
 }  // namespace

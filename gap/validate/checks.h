@@ -17,6 +17,15 @@ namespace puckloop::gap {
                      row < 0 ? std::string() : fmt::format("row {}", row + 1), problem, expected);
 }
 
+/// Of the experiment as a whole: its experiment.toml.
+[[noreturn]] inline void refuse(const Experiment& experiment, const std::string& problem,
+                                const std::string& expected) {
+    throw InputError((experiment.folder / "experiment.toml").string(), "", problem, expected);
+}
+
+/// [nominal]: what no robot can have is refused; a caution for what is far from anything that the simulator's
+/// robot can have, mostly a number in another unit.
+void check_nominal(Experiment& experiment);
 /// What needs to know what a kind of experiment is: swapped columns, wrong units that stay plausible.
 void check_kind(Experiment& experiment);
 /// Of a motion experiment: units, sides, headings, counters.

@@ -1,8 +1,8 @@
 // What is wrong inside the columns: units, exchanged columns, clocks, constants, missing and impossible
 // values.
 
-#include "gap/data/nominal.h"
 #include "gap/models/model.h"
+#include "gap/validate/checks.h"
 #include "tests/gap/bad_input/made_experiment.h"
 
 #include <catch2/catch.hpp>

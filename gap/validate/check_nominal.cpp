@@ -1,6 +1,4 @@
-#include "gap/data/nominal.h"
-
-#include "base/error.h"
+#include "gap/validate/checks.h"
 #include "physics/description/parameters.h"
 
 #include <fmt/format.h>
@@ -34,8 +32,7 @@ constexpr double kFarOff = 10.0;  // times the ends of what a scenario takes
 void check_limit(const Experiment& experiment, const Limit& limit, double value) {
     const bool whole = limit.name != "firmware.agenda" || value == std::round(value);
     if (value >= limit.low && value <= limit.high && whole) return;
-    throw InputError((experiment.folder / "experiment.toml").string(), "",
-                     fmt::format("[nominal] {} = {:g} is not possible", limit.name, value), limit.wanted);
+    refuse(experiment, fmt::format("[nominal] {} = {:g} is not possible", limit.name, value), limit.wanted);
 }
 
 }  // namespace
@@ -48,8 +45,8 @@ void check_nominal(Experiment& experiment) {
         const physics::ParameterInfo* info = physics::find_parameter(name, index);
         if (info == nullptr) continue;
         if (info->min > 0 && value <= 0)
-            throw InputError((experiment.folder / "experiment.toml").string(), "",
-                             fmt::format("[nominal] {} = {:g} is not possible", name, value), "more than 0");
+            refuse(experiment, fmt::format("[nominal] {} = {:g} is not possible", name, value),
+                   "more than 0");
         const double most = kFarOff * std::max(std::abs(info->min), std::abs(info->max));
         const bool small = info->min > 0 && value * kFarOff < info->min;
         if (std::abs(value) <= most && !small) continue;
