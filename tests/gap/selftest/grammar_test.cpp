@@ -143,6 +143,21 @@ TEST_CASE("a laboratory rounds and leaves out, and never sends a clock back") {
     }
 }
 
+TEST_CASE("a coarse instrument reads no higher and no lower than a fine one") {
+    gap::WrittenExperiment experiment;
+    experiment.runs.resize(1);
+    auto& reading = experiment.runs[0].column("reading").values;
+    for (int k = 100; k < 180; ++k)
+        reading.push_back(k);  // whole counts, as often half way between two steps as anywhere
+    Laboratory coarse;
+    coarse.coarse = true;
+    coarse.keep(experiment);
+    double off = 0.0;
+    for (int k = 100; k < 180; ++k)
+        off += reading[static_cast<std::size_t>(k) - 100] - k;
+    CHECK(off == Approx(0.0).margin(1e-9));
+}
+
 TEST_CASE("binomial intervals are Clopper and Pearson's") {
     CHECK(rate_of(0, 37).low == 0.0);
     CHECK(rate_of(0, 37).high == Approx(1 - std::pow(0.025, 1.0 / 37)));
