@@ -64,6 +64,7 @@ void check_session(const Workbench& bench, tests::GdbServer& server, const std::
         ++commands;
     }
     REQUIRE(commands > 10);
+    server.await_listening();
     const std::string out = bench.folder + "/gdb.out";
     const std::string command =
         "cd " + std::string(PUCKLOOP_SOURCE) + "/tests/debug/programs && timeout 120 avr-gdb -nx -batch -x " +

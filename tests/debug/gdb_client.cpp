@@ -63,6 +63,14 @@ std::string GdbServer::err() const {
     return content(folder_ + "/server.err");
 }
 
+void GdbServer::await_listening() const {
+    for (int waited = 0; waited < kPatienceMs / 2; waited += 10) {
+        if (err().find(socket_ + "\n") != std::string::npos) return;
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    FAIL("nobody listens at " << socket_ << ": " << err());
+}
+
 int GdbServer::wait() {
     for (int waited = 0; waited < kPatienceMs; waited += 10) {
         int status = 0;

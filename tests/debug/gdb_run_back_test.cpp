@@ -170,34 +170,29 @@ TEST_CASE("a run goes back step by step, and forward again to the same end", "[r
 TEST_CASE("what a debugger changes is changed again when the run comes by", "[reverse]") {
     std::mt19937 random(Catch::rngSeed() + 12);
     const TwoRobots robots(draw(random, 3, 9));
+    const std::string options = "--duration 1.2 --in-process";
     const unsigned before = draw(random, 8, 30), after = draw(random, 4, 10);
     const auto session = [&](const std::string& name, bool back) {
-        const auto server = robots.debugged(name, "--duration 1.2 --in-process");
+        const auto server = robots.debugged(name, options);
         GdbClient gdb(server->socket());
         CHECK(gdb.ask("Z2,800a00,2") == "OK");
         for (unsigned i = 0; i < before; ++i)
             CHECK(gdb.ask("c") == "T05watch:800a00;");
         CHECK(gdb.ask("P2=0010") == "OK");  // the count goes on from 4096
+        // The LED is not switched this time.
+        CHECK(gdb.ask(fmt::format("P10={}0000",
+                                  little(static_cast<unsigned>(gdb.register_value(kPc)) + 2))) == "OK");
         for (unsigned i = 0; i < after; ++i)
             CHECK(gdb.ask("c") == "T05watch:800a00;");
-        CHECK(gdb.monitor("reset") == "reset\n");
-        const std::string last = gdb.ask("m800a00,2");
-        CHECK(last == fmt::format("{:02x}10", after));
-        CHECK(gdb.ask("c") == "T05watch:800a00;");
-        CHECK(gdb.ask("m800a00,2") == "0100");  // it has begun anew
+        const std::string last = sight(gdb);
+        CHECK(gdb.ask("m800a00,2") == little(0x1000 + after));
         if (back) {
-            CHECK(gdb.ask("bc") == "T05watch:800a00;");
-            CHECK(gdb.ask("bc") == "T05watch:800a00;");
-            CHECK(gdb.ask("m800a00,2") == fmt::format("{:02x}10", after - 1));
-            for (unsigned i = 0; i < after; ++i)
+            for (unsigned i = 0; i < after + 1; ++i)
                 CHECK(gdb.ask("bc") == "T05watch:800a00;");
-            CHECK(gdb.ask("m800a00,2") == fmt::format("{:02x}00", before - 1));
-            CHECK(gdb.monitor("reset") == "the past cannot be changed: continue to the present first\n");
+            CHECK(gdb.ask("m800a00,2") == little(before - 1));
             for (unsigned i = 0; i < after + 1; ++i)
                 CHECK(gdb.ask("c") == "T05watch:800a00;");
-            CHECK(gdb.ask("m800a00,2") == last);
-            CHECK(gdb.ask("c") == "T05watch:800a00;");
-            CHECK(gdb.ask("m800a00,2") == "0100");
+            CHECK(sight(gdb) == last);
         }
         CHECK(gdb.ask("D") == "OK");
         INFO(server->err());
@@ -206,8 +201,66 @@ TEST_CASE("what a debugger changes is changed again when the run comes by", "[re
     session("changed", false);
     session("back", true);
     check_same_run(robots.bench, "changed", "back");
-    robots.undisturbed("--duration 1.2 --in-process");
+    robots.undisturbed(options);
     CHECK(robots.bench.report("plain")["trace_sha256"] != robots.bench.report("back")["trace_sha256"]);
+}
+
+TEST_CASE("a reset by the debugger comes again at the instant where it came", "[reverse]") {
+    std::mt19937 random(Catch::rngSeed() + 14);
+    const TwoRobots robots(draw(random, 3, 9));
+    const auto server = robots.debugged("reset", "--duration 1.2 --in-process");
+    GdbClient gdb(server->socket());
+    CHECK(gdb.ask("Z2,800a00,2") == "OK");
+    const unsigned before = draw(random, 5, 40);
+    for (unsigned i = 0; i < before; ++i)
+        CHECK(gdb.ask("c") == "T05watch:800a00;");
+    const std::string last = sight(gdb);
+    CHECK(gdb.monitor("reset") == "reset\n");
+    CHECK(gdb.ask("c") == "T05watch:800a00;");
+    const std::string anew = sight(gdb);
+    CHECK(gdb.ask("m800a00,2") == "0100");  // it has begun anew
+    CHECK(gdb.ask("bc") == "T05watch:800a00;");
+    CHECK(gdb.ask("bc") == "T05watch:800a00;");
+    CHECK(gdb.ask("m800a00,2") == little(before - 1));
+    CHECK(gdb.monitor("reset") == "the past cannot be changed: continue to the present first\n");
+    CHECK(gdb.ask("c") == "T05watch:800a00;");
+    CHECK(sight(gdb) == last);
+    CHECK(gdb.ask("c") == "T05watch:800a00;");
+    CHECK(sight(gdb) == anew);
+    CHECK(gdb.ask("D") == "OK");
+    INFO(server->err());
+    CHECK(server->wait() == 0);
+}
+
+TEST_CASE("a run from a snapshot goes back to it, and is saved again as it would have been", "[reverse]") {
+    std::mt19937 random(Catch::rngSeed() + 15);
+    const TwoRobots robots(draw(random, 3, 9));
+    const std::string first = robots.bench.folder() / "first.snap",
+                      second = robots.bench.folder() / "second.snap";
+    const std::string at = fmt::format("0.{}", draw(random, 2, 3));
+    robots.undisturbed("--duration 0.8 --save " + first + " --save-at " + at);
+    GdbServer server(robots.bench.folder(),
+                     fmt::format("run --from {} --in-process --out {} --save {} --save-at 0.5 --gdb "
+                                 "counter.pic=unix:{{}}",
+                                 first, robots.bench.out("from").string(), second),
+                     GdbServer::Whole{});
+    GdbClient gdb(server.socket());
+    const std::string begin = gdb.monitor("time");
+    CHECK_THAT(begin, StartsWith(at));
+    CHECK(gdb.ask("Z2,800a00,2") == "OK");
+    while (std::stod(gdb.monitor("time")) < 0.6)
+        REQUIRE(gdb.ask("c") == "T05watch:800a00;");
+    CHECK(gdb.ask("z2,800a00,2") == "OK");
+    CHECK(gdb.ask("bc") == "T05replaylog:begin;");
+    CHECK(gdb.monitor("time") == begin);
+    CHECK(gdb.ask("D") == "OK");
+    INFO(server.err());
+    CHECK(server.wait() == 0);
+    check_same_run(robots.bench, "plain", "from");
+    const Ended again = robots.bench.run("again", {"--from", second});
+    INFO(again.err);
+    CHECK(again.status == 0);
+    check_same_run(robots.bench, "plain", "again");
 }
 
 TEST_CASE("two debuggers: each is answered while the other one's board stands", "[reverse]") {

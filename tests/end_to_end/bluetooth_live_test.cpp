@@ -83,10 +83,11 @@ struct Run {
 TEST_CASE("a computer's script is sent to the robot by Bluetooth, and its answers are in a file",
           "[bluetooth]") {
     const Workbench bench;
-    bench.file("ask.txt", "1.0 61 62 0a\n2.0 63 0a\n");
+    // The first waits for the link.
+    bench.file("ask.txt", "1.0 61 62 0a\n14.0 63 0a\n");
     const auto file = bench.file("script.toml", talking_robot("script:ask.txt"));
     for (const Words& placement : {Words{}, Words{"--in-process"}}) {
-        Words words{file, "--duration", "3"};
+        Words words{file, "--duration", "15"};
         words.insert(words.end(), placement.begin(), placement.end());
         const Ended ended = bench.run("o", words);
         INFO(ended.err);
@@ -225,29 +226,37 @@ position = ["-40 cm", "0 cm"]
 firmware = "{}"
 uart1 = "pty"
 uart2 = "script:/dev/null"
+reset = ["30 s", "60 s"]
 [[robot]]
 name = "air"
 position = ["40 cm", "0 cm"]
 [robot.pic]
 firmware = "{}"
 uart2 = "script:/dev/null"
-reset = ["8 s"]
+reset = ["8 s", "38 s", "68 s"]
 [robot.pic.bluetooth]
 computer = "pty"
 )",
                         loader->string(), demo->string()));
     const std::map<std::string, std::string> lines{{"cable.uart1", "cable"}, {"air.computer", "air"}};
-    std::map<std::string, std::unique_ptr<Process>> uploads;
-    for (const auto& [end, robot] : lines) {
+    const auto start = [&](const std::string& end, const std::string& robot) {
         const auto folder = run.bench.folder() / robot;
-        std::filesystem::create_directory(folder);
-        uploads[end] = std::make_unique<Process>(Words{PUCKLOOP_PROGRAM, "upload",
-                                                       PUCKLOOP_SOURCE "/firmware/bluetooth/talk.hex",
-                                                       run.place(end), "--wait", "60"},
-                                                 folder);
-    }
+        std::filesystem::create_directories(folder);
+        return std::make_unique<Process>(Words{PUCKLOOP_PROGRAM, "upload",
+                                               PUCKLOOP_SOURCE "/firmware/bluetooth/talk.hex", run.place(end),
+                                               "--wait", "60"},
+                                         folder);
+    };
+    std::map<std::string, std::unique_ptr<Process>> uploads;
+    for (const auto& [end, robot] : lines)
+        uploads[end] = start(end, robot);
     for (const auto& [end, robot] : lines) {
-        const Ended ended = uploads[end]->wait();
+        Ended ended = uploads[end]->wait();
+        // On a busy machine the run stands still and then hurries after the wall clock: the boot loader,
+        // which waits a second for a byte, has then left in the middle. It listens again after the next
+        // reset.
+        for (int again = 0; again < 2 && ended.err.find("was not taken") != std::string::npos; ++again)
+            ended = start(end, robot)->wait();
         INFO(ended.err);
         CHECK(ended.status == 0);
         CHECK_THAT(ended.out, Contains(" rows, and the program starts\n"));
