@@ -36,7 +36,8 @@ struct Pins30 : Pins {
     std::vector<Word> words;
     std::uint16_t spi_answer = 0xFFFF;
     bool pwm_edges = true;
-    double volts = 0.5;
+    double volts = 0.5;  ///< at analog inputs, of the supply
+    double vdd = 3.3;    ///< Chip::supply_changed() tells of a new one
 
     void driven(PortLetter port, std::uint16_t levels, std::uint16_t driven, Cycle now) override {
         const auto p = static_cast<std::size_t>(port);
@@ -56,6 +57,7 @@ struct Pins30 : Pins {
         words.push_back({unit, sent, bits, now});
         return spi_answer;
     }
+    double supply() const override { return vdd; }
     bool wants_pwm_edges(int) const override { return pwm_edges; }
 };
 

@@ -46,6 +46,24 @@ low:    bclr IFS2, #10
         retfie
 )";
 
+/// LED 0 after power-up, LED 1 after a brown-out (FBORPOR: below 2.7 V, 64 ms of power-up timer).
+const std::string kBrownOut = R"(
+        goto main
+        .org 0x0100
+main:   bclr TRISA, #6
+        bclr TRISA, #7
+        btsc RCON, #0
+        bset LATA, #6
+        btss RCON, #0
+        btss RCON, #1
+        bra done
+        bset LATA, #7
+done:   clr RCON
+here:   bra here
+        .org 0xF80004
+        .pword 0xFF87A3
+)";
+
 /// When each LED went on; 0: never.
 std::vector<cosim::Time> lit(pic::PicNode& node, std::vector<cosim::Message> inbox, cosim::Time until) {
     std::vector<cosim::Message> out;
@@ -85,4 +103,24 @@ TEST_CASE("a program that polls BGST goes on, and is interrupted when the batter
     const auto low = lit(node, {battery(3.1, 20 * kMillisecond)}, 30 * kMillisecond);
     CHECK(low[1] >= 20 * kMillisecond);
     CHECK(low[1] < 20 * kMillisecond + cosim::kMicrosecond);
+}
+
+TEST_CASE("a battery that gives out for a moment is a brown-out reset, if the image asks for it",
+          "[supply]") {
+    pic::PicNodeOptions options;
+    options.board.name = "robot";
+    options.i2c_linked = false;
+    pic::PicNode node(tests::assembled(dspic::dspic30f6014a(), kBrownOut), options);
+    const auto battery = [](double volts, cosim::Time time) {
+        return cosim::Message{time, pic::PicNode::kWorld, cosim::Signal{pic::kBatteryVoltage, volts}};
+    };
+    const auto boot = lit(node, {battery(2.9, 5 * kMillisecond)}, 10 * kMillisecond);
+    CHECK(boot[0] > 0);
+    CHECK(boot[1] == 0);
+    // The regulator needs 0.1 V.
+    const auto dip =
+        lit(node, {battery(2.79, 20 * kMillisecond), battery(3.7, 25 * kMillisecond)}, 200 * kMillisecond);
+    CHECK(dip[0] == 0);
+    CHECK(dip[1] > 89 * kMillisecond);
+    CHECK(dip[1] < 90 * kMillisecond);
 }

@@ -2,6 +2,7 @@
 
 #include "emu/dspic/chip/layout.h"
 #include "emu/dspic/chip/module_disable.h"
+#include "emu/dspic/chip/supply_reset.h"
 #include "emu/dspic/core/core.h"
 #include "emu/dspic/core/interrupts.h"
 #include "emu/dspic/devices/dspic30f6014a_sfr.h"
@@ -102,7 +103,8 @@ struct Chip::Parts {
     std::deque<Ecan> ecans;
     std::optional<ModuleDisable> disable;
     chip::HeldInterrupts held;
-    EventQueue::Slot edges;  ///< that the board makes by itself; the last: the others keep theirs
+    EventQueue::Slot edges;  ///< that the board makes by itself; behind the others, which keep theirs
+    SupplyReset supply;
 
     ChipReport report;
     image::CodePlaces places;
@@ -129,11 +131,13 @@ struct Chip::Parts {
                [](void* owner, int irq, bool, Cycle due) {
                    static_cast<InterruptController*>(owner)->set_flag(irq, due);
                }),
-          edges(events.add(this, [](void* owner, Cycle due) {
-              Parts& parts = *static_cast<Parts*>(owner);
-              parts.ports.look_at_heeded(due);
-              parts.plan_edges(due);
-          })) {
+          edges(events.add(this,
+                           [](void* owner, Cycle due) {
+                               Parts& parts = *static_cast<Parts*>(owner);
+                               parts.ports.look_at_heeded(due);
+                               parts.plan_edges(due);
+                           })),
+          supply(core, events, pins) {
         Timer* before = nullptr;
         for (const TimerPlace& place : layout.timers) {
             Timer* upper = place.setup.hold ? before : nullptr;
@@ -255,7 +259,7 @@ struct Chip::Parts {
         if (low_voltage) core.set_rcon_hook([this] { low_voltage->changed(clock.hertz()); });
         core.set_power_hook([this](PowerMode mode) { set_power(mode); });
         core.observer().on_reset = [this](ResetCause cause, std::uint32_t pc, Cycle at) {
-            if (report.resets.size() < kRecords)
+            if (!supply.holds() && report.resets.size() < kRecords)
                 report.resets.push_back({at, std::string(reset_name(cause)), pc});
         };
         core.observer().on_trap = [this](Trap trap, std::uint32_t pc, Cycle at) {
@@ -276,11 +280,11 @@ struct Chip::Parts {
         source->on_match = trigger;
     }
 
-    /// BOREN: the brown-out detector is on.
-    bool brown_out() const {
-        constexpr std::uint32_t kFborpor30F = 0xF80004;
-        constexpr std::uint32_t kBoren = 1u << 7;
-        return !device.family_33f && (core.config(kFborpor30F) & kBoren) != 0;
+    void supply_changed() {
+        const Cycle at = message_cycle();
+        const double start = supply.power_up_seconds() + oscillator->wake_seconds();
+        supply.changed(at, static_cast<Cycle>(start * clock.hertz()));
+        if (low_voltage) low_voltage->supply_changed(at);
     }
 
     ClockConfiguration clock_words() const {
@@ -313,12 +317,13 @@ struct Chip::Parts {
         input_capture->reset();
         if (dma) dma->reset();
         if (dci) dci->reset();
-        if (low_voltage) low_voltage->reset(brown_out());
+        if (low_voltage) low_voltage->reset(supply.brown_out_on());
         reset_all(cans);
         reset_all(ecans);
         interrupts.reset();
         held.reset();
         ports.heeding_changed();
+        supply.reset(cause);
     }
 
     // Sleep stops every module that needs the instruction clock, Idle those whose xSIDL bit says so.
@@ -407,6 +412,7 @@ struct Chip::Parts {
         if constexpr (Archive::kLoads) holding = true;
         if constexpr (!Archive::kRaw) check_report(archive);
         archive.part("held interrupts", held);
+        archive.part("supply", supply);
         archive.part("events", events);
         if constexpr (Archive::kLoads)
             for (Timer& timer : timers)
@@ -554,7 +560,7 @@ void Chip::pins_changed(PortLetter port) {
 }
 
 void Chip::supply_changed() {
-    if (parts_->low_voltage) parts_->low_voltage->supply_changed(parts_->message_cycle());
+    parts_->supply_changed();
 }
 
 Time Chip::earliest_uart_send(int unit, Time nominal_bit) const {

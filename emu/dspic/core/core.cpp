@@ -157,6 +157,15 @@ void Core::stall_until(Cycle cycle) {
     machine_->limit = 0;
 }
 
+void Core::hold(bool on) {
+    machine_->held = on;
+    machine_->limit = 0;
+    schedule_watchdog(*machine_);
+}
+void Core::request_reset(ResetCause cause) {
+    dspic::request_reset(*machine_, cause);
+}
+
 Cycle Core::cycle() const {
     return machine_->st.cycle;
 }

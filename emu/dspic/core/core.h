@@ -95,6 +95,10 @@ class Core {
     void set_instrument(chip::Instrument* instrument, bool accesses = false);
     /// Keeps the CPU from executing until `cycle` (flash programming, oscillator start-up); events go on.
     void stall_until(Cycle cycle);
+    /// In reset until told otherwise: nothing is executed, the watchdog stands. Resets pass.
+    void hold(bool on);
+    /// A reset as soon as what is under way allows; from within events.
+    void request_reset(ResetCause cause);
 
     // Seen from outside.
     Cycle cycle() const;  ///< where the next instruction starts; inside hooks: the present one's

@@ -50,7 +50,7 @@ void list(Archive& archive, Machine& m) {
     archive(m.repeat_first, m.repeat_edge);
     archive.bounded(m.late, 0, kLongestExtra);
     archive.bounded(m.mode, PowerMode::Run, PowerMode::Sleep);
-    archive(m.stall_end, m.wake_seconds, m.wake_end);
+    archive(m.stall_end, m.held, m.wake_seconds, m.wake_end);
     archive.bounded(m.cycle_rate, 0.0, 1e10);
     archive(m.watchdog_cleared);
     archive(m.nvm.address, m.nvm.key_step);

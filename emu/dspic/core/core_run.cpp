@@ -203,12 +203,15 @@ void perform_reset(Machine& m, ResetCause cause) {
     reset_nvm(m);
 
     std::uint32_t value = old_rcon & ~std::uint32_t{m.device.family_33f ? rcon::SWDTEN : 0u};
+    constexpr std::uint32_t kBrownOutClears33F =  // DS70286, RCON; the 30F's wait for a power-on reset
+        rcon::TRAPR | rcon::IOPUWR | rcon::SWR | rcon::WDTO | rcon::SLEEP | rcon::IDLE;
     switch (cause) {
     case ResetCause::PowerOn:
         value = rcon::POR | rcon::BOR;
         if (!m.device.family_33f) value |= 0x0500;  // LVDL = 0101
         break;
     case ResetCause::BrownOut:
+        if (m.device.family_33f) value &= ~kBrownOutClears33F;
         value |= rcon::BOR;
         break;
     case ResetCause::Mclr:
@@ -263,8 +266,8 @@ Core::Outcome run_until(Machine& m, Cycle until) {
             leave_power_save(m);
             if (m.eligible && m.since >= m.st.cycle) m.since = m.st.cycle == 0 ? 0 : m.st.cycle - 1;
         }
-        if (m.stall_end > m.st.cycle) {
-            m.st.cycle = std::min(quiet, m.stall_end);
+        if (m.held || m.stall_end > m.st.cycle) {
+            m.st.cycle = m.held ? quiet : std::min(quiet, m.stall_end);
             continue;
         }
         if (m.disi_waits && m.st.cycle >= m.st.disi_end) reconsider(m, m.st.disi_end);

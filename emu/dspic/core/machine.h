@@ -110,6 +110,7 @@ struct Machine {
     // Power, stalls, watchdog.
     PowerMode mode = PowerMode::Run;
     Cycle stall_end = 0;
+    bool held = false;          ///< in reset
     double wake_seconds = 0.0;  ///< from what ends Sleep to the first instruction
     Cycle wake_end = kNoCycle;  ///< the oscillator starts, until then
     double cycle_rate = 0.0;    ///< 0: not told yet

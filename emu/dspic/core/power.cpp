@@ -71,7 +71,7 @@ void hook_power(Machine& m) {
 }
 
 void schedule_watchdog(Machine& m) {
-    if (m.cycle_rate <= 0.0 || !watchdog_on(m)) return m.events.cancel(m.watchdog_slot);
+    if (m.cycle_rate <= 0.0 || m.held || !watchdog_on(m)) return m.events.cancel(m.watchdog_slot);
     m.events.schedule(m.watchdog_slot,
                       m.watchdog_cleared + static_cast<Cycle>(watchdog_period(m) * m.cycle_rate));
 }

@@ -65,7 +65,8 @@ class Pins {
     /// The DCI's last bit of `word` is over, in a slot enabled for either direction: what came in meanwhile,
     /// left justified. Without a board the line rests low.
     virtual std::uint16_t dci_exchange(const DciWord& word, Cycle now);
-    /// Voltage at VDD, as the low-voltage detector sees it; a change is told by Chip::supply_changed().
+    /// Voltage at VDD, as brown-out reset and low-voltage detector see it; a change is told by
+    /// Chip::supply_changed().
     virtual double supply() const;
     /// Module CAN`unit` has sent a frame as far as the acknowledge slot, which began at cycle `now`: does
     /// anybody take it? Without a board nobody does.

@@ -1,6 +1,7 @@
 // `--mcu`: a chip on the bench with nothing connected. Idle levels: every digital input is held high (a weak
 // pull-up), every analog input stands at 3800 counts of 4095 (near the rail, like a light sensor in a dim
-// room), UART and I2C lines are at rest. The stimulus may change any of it: `adc8 1200`, `RF1 0`.
+// room), the supply is 3.3 V, UART and I2C lines are at rest. The stimulus may change any of it: `adc8 1200`,
+// `RF1 0`.
 
 #include "base/archive.h"
 #include "tools/exec/targets/dspic_target.h"
@@ -19,6 +20,7 @@ constexpr double kFullScale = 4095;
 constexpr double kIdleCounts = 3800;
 constexpr double kSpan = 4096;
 constexpr double kInsideCode = 0.25;
+constexpr double kSupplyVolts = 3.3, kHighestVolts = 5.5;
 
 std::string_view no_function(dspic::PortLetter, int) {
     return {};
@@ -44,6 +46,10 @@ class BareChip : public DspicTarget, private dspic::Pins {
                          fmt::format("level at pin R{}{} while it is an input", letter, bit), 1},
                         static_cast<std::size_t>(letter - 'A'), bit);
         }
+        supply_id_ = signals_.size();
+        add({"vdd", cosim::SignalDirection::Input, "V", 0, kHighestVolts,
+             "supply; analog inputs keep their counts", kSupplyVolts},
+            0, 0);
         levels_.fill(0xFFFF);
         build(tap_);
     }
@@ -55,6 +61,7 @@ class BareChip : public DspicTarget, private dspic::Pins {
         const cosim::SignalInfo& info = signals_[id];
         values_[id] = value > info.min ? (value < info.max ? value : info.max) : info.min;
         if (id < channels_) return;
+        if (id == supply_id_) return chip().supply_changed();
         const auto [port, bit] = places_[id];
         const auto mask = static_cast<std::uint16_t>(1u << bit);
         levels_[port] =
@@ -72,6 +79,7 @@ class BareChip : public DspicTarget, private dspic::Pins {
     std::uint16_t levels(dspic::PortLetter port, dspic::Cycle) override {
         return levels_[static_cast<std::size_t>(port)];
     }
+    double supply() const override { return values_[supply_id_]; }
     double analog(int channel, dspic::Cycle) override {
         return (static_cast<double>(static_cast<int>(values_[static_cast<std::size_t>(channel)])) +
                 kInsideCode) /
@@ -81,6 +89,7 @@ class BareChip : public DspicTarget, private dspic::Pins {
     void i2c_phase(int unit, const cosim::I2cPhase& phase) override { on_bus(unit, phase); }
 
     int channels_;
+    std::size_t supply_id_ = 0;
     std::vector<cosim::SignalInfo> signals_;
     std::vector<double> values_;
     std::vector<std::pair<std::size_t, int>> places_;
