@@ -9,14 +9,13 @@
 #include "emu/image/image.h"
 #include "emu/image/image_file.h"
 #include "emu/image/line_table.h"
+#include "tests/crashes/crash_image.h"
 #include "tests/scratch.h"
 #include "tests/tools/shell.h"
 
 #include <catch2/catch.hpp>
-#include <elf.h>
 #include <fmt/format.h>
 
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -28,113 +27,6 @@ using namespace puckloop;
 using puckloop::tests::run_puckloop;
 
 namespace {
-
-using Bytes = std::map<std::uint32_t, std::string>;  // stretches by address
-
-constexpr Elf32_Word kAvr51 = 51;  // architecture, as avr-gcc notes it
-
-/// The least of an ELF file that has code and symbols.
-std::string elf(Elf32_Half machine, const Bytes& code, const std::map<std::string, std::uint32_t>& labels) {
-    std::string file(sizeof(Elf32_Ehdr), '\0'), strings(1, '\0');
-    std::vector<Elf32_Shdr> sections(1);
-    std::vector<Elf32_Phdr> segments;
-    const auto intern = [&](const std::string& name) {
-        const auto at = static_cast<Elf32_Word>(strings.size());
-        strings += name + '\0';
-        return at;
-    };
-    const auto add = [&](const std::string& name, Elf32_Word type, Elf32_Word flags, std::uint32_t address,
-                         const std::string& data) {
-        file.resize((file.size() + 3) / 4 * 4);
-        Elf32_Shdr section{};
-        section.sh_name = intern(name);
-        section.sh_type = type;
-        section.sh_flags = flags;
-        section.sh_addr = address;
-        section.sh_offset = static_cast<Elf32_Off>(file.size());
-        section.sh_size = static_cast<Elf32_Word>(data.size());
-        section.sh_addralign = 2;
-        sections.push_back(section);
-        file += data;
-    };
-    for (const auto& [address, data] : code) {
-        add(".code", SHT_PROGBITS, SHF_ALLOC | SHF_EXECINSTR, address, data);
-        Elf32_Phdr segment{};
-        segment.p_type = PT_LOAD;
-        segment.p_offset = sections.back().sh_offset;
-        segment.p_vaddr = segment.p_paddr = address;
-        segment.p_filesz = segment.p_memsz = sections.back().sh_size;
-        segments.push_back(segment);
-    }
-    std::string symbols(sizeof(Elf32_Sym), '\0');
-    for (const auto& [name, address] : labels) {
-        Elf32_Sym symbol{};
-        symbol.st_name = intern(name);
-        symbol.st_value = address;
-        symbol.st_info = ELF32_ST_INFO(STB_GLOBAL, STT_FUNC);
-        symbol.st_shndx = 1;
-        symbols.append(reinterpret_cast<const char*>(&symbol), sizeof symbol);
-    }
-    add(".symtab", SHT_SYMTAB, 0, 0, symbols);
-    sections.back().sh_entsize = sizeof(Elf32_Sym);
-    sections.back().sh_link = static_cast<Elf32_Word>(sections.size());
-    intern(".strtab");
-    add(".strtab", SHT_STRTAB, 0, 0, strings);
-    sections.back().sh_size = static_cast<Elf32_Word>(strings.size());
-    file.resize(sections.back().sh_offset);
-    file += strings;
-    file.resize((file.size() + 3) / 4 * 4);
-    Elf32_Ehdr header{};
-    std::memcpy(header.e_ident, ELFMAG, SELFMAG);
-    header.e_ident[EI_CLASS] = ELFCLASS32;
-    header.e_ident[EI_DATA] = ELFDATA2LSB;
-    header.e_ident[EI_VERSION] = EV_CURRENT;
-    header.e_type = ET_EXEC;
-    header.e_machine = machine;
-    if (machine == EM_AVR) header.e_flags = kAvr51;
-    header.e_version = EV_CURRENT;
-    header.e_ehsize = sizeof(Elf32_Ehdr);
-    header.e_phoff = static_cast<Elf32_Off>(file.size());
-    header.e_phentsize = sizeof(Elf32_Phdr);
-    header.e_phnum = static_cast<Elf32_Half>(segments.size());
-    file.append(reinterpret_cast<const char*>(segments.data()), segments.size() * sizeof(Elf32_Phdr));
-    header.e_shoff = static_cast<Elf32_Off>(file.size());
-    header.e_shentsize = sizeof(Elf32_Shdr);
-    header.e_shnum = static_cast<Elf32_Half>(sections.size());
-    header.e_shstrndx = static_cast<Elf32_Half>(sections.size() - 1);
-    file.append(reinterpret_cast<const char*>(sections.data()), sections.size() * sizeof(Elf32_Shdr));
-    std::memcpy(file.data(), &header, sizeof header);
-    return file;
-}
-
-/// Words of a program as stretches of bytes.
-template <class Word>
-Bytes stretches(const std::map<std::uint32_t, Word>& words, int bytes_of_word) {
-    Bytes all;
-    std::uint32_t next = ~0u;
-    std::string* last = nullptr;
-    for (const auto& [address, word] : words) {
-        if (address != next) last = &all[address];
-        for (int i = 0; i < bytes_of_word; ++i)
-            *last += static_cast<char>(static_cast<std::uint32_t>(word) >> 8 * i & 0xFF);
-        next = address + (bytes_of_word == 1 ? 1 : 2);
-    }
-    return all;
-}
-
-class File {
-  public:
-    File(const std::string& name, const std::string& content)
-        : path(tests::scratch_path(name).string() + ".elf") {
-        std::ofstream(path, std::ios::binary) << content;
-    }
-    ~File() { std::filesystem::remove(path); }
-    File(const File&) = delete;
-    File& operator=(const File&) = delete;
-    const std::string path;
-};
-
-constexpr Elf32_Half kDspic = 118;
 
 /// `body` is a function named guilty at `place`; traps end in loops.
 std::string dspic_image(const dspic::DeviceInfo& device, std::uint32_t place, const std::string& body) {
@@ -163,7 +55,7 @@ guilty: nop
     std::map<std::string, std::uint32_t> labels;
     for (const char* name : {"start", "handler", "guilty"})
         labels[name] = program.symbol(name);
-    return elf(kDspic, stretches(program.words, 4), labels);
+    return tests::dspic_elf(program.words, labels);
 }
 
 std::string avr_image(std::uint32_t place, const std::string& body) {
@@ -185,7 +77,7 @@ guilty: nop
     std::map<std::string, std::uint32_t> labels;
     for (const char* name : {"start", "last", "guilty"})
         labels[name] = program.symbols.at(name);
-    return elf(EM_AVR, stretches(program.bytes, 1), labels);
+    return tests::avr_elf(program.bytes, labels);
 }
 
 /// A line of `text` says `what`, at a place in guilty that is near its beginning.
@@ -240,7 +132,7 @@ TEST_CASE("a dsPIC's firmware that goes wrong is named with place and function")
          {std::pair{"pic", &dspic::dspic30f6014a()}, {"rab", &dspic::dspic33fj256gp710()}})
         for (const Kind& kind : kDspicKinds) {
             const std::uint32_t place = 0x1000 + 2 * static_cast<std::uint32_t>(random.next() % 0x8000);
-            const File image("crash", dspic_image(*device, place, kind.body));
+            const tests::ImageFile image("crash", dspic_image(*device, place, kind.body));
             const auto result =
                 run_puckloop(fmt::format("exec --board {} {} --seconds 0.02 --strict", board, image.path));
             INFO(board);
@@ -256,7 +148,7 @@ TEST_CASE("a dsPIC that jumps into erased flash is named with where it came in")
          {std::pair{"pic", &dspic::dspic30f6014a()}, {"rab", &dspic::dspic33fj256gp710()}}) {
         const std::uint32_t place = 0x1000 + 2 * static_cast<std::uint32_t>(random.next() % 0x1000);
         const std::uint32_t target = 0x4000 + 2 * static_cast<std::uint32_t>(random.next() % 0x2000);
-        const File image(
+        const tests::ImageFile image(
             "crash",
             dspic_image(*device, place, fmt::format("        mov #{:#x}, w1\n        goto w1\n", target)));
         const auto result = run_puckloop(fmt::format("exec --board {} {} --seconds 0.1", board, image.path));
@@ -271,14 +163,14 @@ TEST_CASE("an AVR's firmware that goes wrong is named with place and function") 
     RandomStream random(Catch::rngSeed(), "avr crashes");
     for (const Kind& kind : kAvrKinds) {
         const std::uint32_t place = 0x1000 + 2 * static_cast<std::uint32_t>(random.next() % 0x4000);
-        const File image("crash", avr_image(place, kind.body));
+        const tests::ImageFile image("crash", avr_image(place, kind.body));
         const auto result = run_puckloop("exec --board tam " + image.path + " --seconds 0.05 --strict");
         CHECK(result.status == 1);
         check_named(result.output, kind.said, place);
         if (kind.reset) CHECK(result.output.find(kind.reset) != std::string::npos);
     }
     const std::uint32_t target = 0x9000 + 2 * static_cast<std::uint32_t>(random.next() % 0x2000);
-    const File image("crash", avr_image(0x1000, fmt::format("        jmp {:#x}\n", target)));
+    const tests::ImageFile image("crash", avr_image(0x1000, fmt::format("        jmp {:#x}\n", target)));
     const auto result = run_puckloop("exec --board tam " + image.path + " --seconds 0.05");
     INFO(result.output);
     CHECK(result.output.find("runs into erased flash") != std::string::npos);
@@ -300,7 +192,7 @@ TEST_CASE("where a compiler noted lines, a crash is named with its line") {
     REQUIRE(at != std::string::npos);
     REQUIRE(bytes.find(code, at + 1) == std::string::npos);
     bytes.replace(at, 3, "\x11\x11\x3f", 3);  // illegal
-    const File image("crash", bytes);
+    const tests::ImageFile image("crash", bytes);
     const auto result = run_puckloop("exec --board pic " + image.path + " --seconds 0.2");
     INFO(result.output);
     const std::string place =
@@ -316,7 +208,7 @@ TEST_CASE("a crash within a run is in its report, with place and function") {
     const std::filesystem::path folder = tests::scratch_path("crash_run");
     const auto check_run = [&](const std::string& scenario, const std::string& node,
                                const std::string& content, const Kind& kind) {
-        const File image("crash", content);
+        const tests::ImageFile image("crash", content);
         const auto result =
             run_puckloop(fmt::format("run {}/{} --firmware {}={} --duration 0.3 --in-process --out {}",
                                      PUCKLOOP_SCENARIOS, scenario, node, image.path, folder.string()));

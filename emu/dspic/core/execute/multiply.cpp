@@ -4,10 +4,14 @@
 // steps is safe under the same rules as on silicon (W0, W1, divisor and RCOUNT preserved).
 
 #include "emu/dspic/core/execute/products.h"
+#include "emu/dspic/devices/dspic30f6014a_sfr.h"
+#include "emu/dspic/devices/register_bits.h"
 
 namespace puckloop::dspic {
 
 namespace {
+
+constexpr RegisterBits kINTCON1{"INTCON1"};
 
 /// REPEAT #17 gives eighteen steps; RCOUNT counts 17 down to 0.
 constexpr std::uint16_t kFirstStep = 17;
@@ -57,7 +61,10 @@ template <Division Kind>
 const Op* divide_step(Machine& m, const Op* op) {
     if (m.st.rcount == kFirstStep) {
         latch_dividend<Kind>(m, op);
-        if (m.st.w[op->s] == 0) raise_trap(m, Trap::MathError);
+        if (m.st.w[op->s] == 0) {
+            if (m.device.family_33f) m.sfr.raw(sfr::INTCON1) |= kINTCON1["DIV0ERR"];
+            raise_trap(m, Trap::MathError);
+        }
     }
     if (m.st.rcount == 0) divide<Kind>(m, op);
     return op + 1;
