@@ -4,6 +4,7 @@
 
 #include "tools/debug/debug_chip.h"
 #include "tools/debug/places.h"
+#include "tools/debug/variables.h"
 
 #include <cstdint>
 #include <map>
@@ -127,7 +128,20 @@ std::string callgrind_text(const Profile& profile, const Places& places, const s
 /// lcov's tracefile format. `folder`: where the source files lie, put before names that are not absolute;
 /// empty: nothing. Empty without source lines.
 std::string lcov_text(const Profile& profile, const Places& places, const std::string& folder);
+/// The data addresses first..behind-1 that the stack has held at its deepest.
+struct StackUse {
+    std::uint32_t first = 0, behind = 0;
+    /// Bytes to spare: a dsPIC's up to SPLIM, an AVR's down to the end of the variables; nothing: no such
+    /// limit is known.
+    std::optional<std::uint32_t> left;
+    Variables::Overlap over;  ///< with variables
+};
+/// Nothing: no call was made.
+std::optional<StackUse> stack_use(const Profile& profile, const Variables& variables, const DebugChip& chip);
+/// "the stack has grown over 4 bytes of variables (levels, ticks)", or empty.
+std::string overlap_text(const StackUse& use);
 /// For a person: functions by cost, stack, reads of RAM that nothing had written.
-std::string profile_text(const Profile& profile, const Places& places);
+std::string profile_text(const Profile& profile, const Places& places, const Variables& variables,
+                         const DebugChip& chip);
 
 }  // namespace puckloop::debug

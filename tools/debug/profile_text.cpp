@@ -10,7 +10,7 @@ namespace puckloop::debug {
 
 namespace {
 
-constexpr std::size_t kMostFunctions = 30, kMostReads = 10;
+constexpr std::size_t kMostFunctions = 30, kMostReads = 10, kMostNames = 5;
 
 }  // namespace
 
@@ -38,7 +38,36 @@ std::string FunctionNames::name_of(std::uint32_t start) const {
     return at == starts_.end() ? fmt::format("0x{:06x}", start) : at->second;
 }
 
-std::string profile_text(const Profile& profile, const Places& places) {
+std::optional<StackUse> stack_use(const Profile& profile, const Variables& variables, const DebugChip& chip) {
+    const auto& stack = profile.stack();
+    if (!stack) return std::nullopt;
+    StackUse use;
+    if (chip.stack_grows_up()) {  // the pointer is behind the last word
+        use = {stack->base, stack->peak, std::nullopt, {}};
+        const auto limit = chip.special("SPLIM");
+        if (limit && limit->value > 0) use.left = limit->value > use.behind ? limit->value - use.behind : 0;
+    } else {  // the pointer is below the last byte
+        use = {stack->peak + 1, stack->base + 1, std::nullopt, {}};
+        const std::uint32_t end = variables.end();
+        if (end > 0) use.left = use.first > end ? use.first - end : 0;
+    }
+    use.over = variables.overlap(use.first, use.behind);
+    return use;
+}
+
+std::string overlap_text(const StackUse& use) {
+    if (use.over.bytes == 0) return {};
+    std::string names;
+    for (std::size_t i = 0; i < use.over.names.size() && i < kMostNames; ++i)
+        names += (names.empty() ? " (" : ", ") + use.over.names[i];
+    if (use.over.names.size() > kMostNames)
+        names += fmt::format(" and {} more", use.over.names.size() - kMostNames);
+    return fmt::format("the stack has grown over {} bytes of variables{}{}", use.over.bytes, names,
+                       names.empty() ? "" : ")");
+}
+
+std::string profile_text(const Profile& profile, const Places& places, const Variables& variables,
+                         const DebugChip& chip) {
     const FunctionNames names(profile, places);
     std::vector<std::pair<Cost, std::string>> functions;
     Cost total;
@@ -66,6 +95,12 @@ std::string profile_text(const Profile& profile, const Places& places) {
     if (const auto& stack = profile.stack())
         text += fmt::format("stack: {} bytes at most, 0x{:04x} from 0x{:04x}, at {}\n", stack->bytes(),
                             stack->peak, stack->base, place(stack->peak_pc));
+    if (const auto use = stack_use(profile, variables, chip)) {
+        if (use->left)
+            text += fmt::format("stack: {} bytes left to {}\n", *use->left,
+                                chip.stack_grows_up() ? "SPLIM" : "the variables");
+        if (use->over.bytes > 0) text += fmt::format("warning: {}\n", overlap_text(*use));
+    }
     const auto unwritten = profile.unwritten();
     if (unwritten.empty()) return text + "no byte of RAM was read before it was written\n";
     text += fmt::format("{} reads of bytes of RAM that nothing had written, at {} places:\n",

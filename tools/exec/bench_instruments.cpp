@@ -154,6 +154,9 @@ BenchInstruments::BenchInstruments(const InstrumentOptions& options, Target& tar
         });
     }
     if (options.profiles()) profile_.emplace(*chip_);
+    if (options.stats)
+        variables_ = {image.symbols, image::symbol_sizes(image.file), chip_->ram_start(), chip_->ram_end(),
+                      !chip_->stack_grows_up()};
     // What ends the run is asked first: the others see what is executed, and nothing else.
     if (!options.watches.empty()) instruments_.add(*watches_);
     if (trace_) instruments_.add(*trace_);
@@ -180,7 +183,13 @@ void BenchInstruments::finish() {
 }
 
 std::string BenchInstruments::text() const {
-    return options_.stats ? profile_text(*profile_, places_) : std::string();
+    return options_.stats ? profile_text(*profile_, places_, variables_, *chip_) : std::string();
+}
+
+std::string BenchInstruments::warning() const {
+    if (!options_.stats) return {};
+    const auto use = debug::stack_use(*profile_, variables_, *chip_);
+    return use ? overlap_text(*use) : std::string();
 }
 
 std::string BenchInstruments::json() const {
@@ -199,6 +208,11 @@ std::string BenchInstruments::json() const {
                          {"peak", stack->peak},
                          {"pc", fmt::format("0x{:06x}", stack->peak_pc)},
                          {"place", places_.place(stack->peak_pc)}};
+    if (const auto use = debug::stack_use(*profile_, variables_, *chip_)) {
+        if (use->left) json["stack"]["left"] = *use->left;
+        json["stack"]["over_variables"] = use->over.bytes;
+        json["stack"]["variables"] = use->over.names;
+    }
     json["unwritten_reads"] = profile_->unwritten_reads();
     auto& reads = json["unwritten"] = nlohmann::ordered_json::array();
     for (const debug::Profile::Unwritten& read : profile_->unwritten()) {

@@ -45,6 +45,8 @@ class BenchInstruments {
     void finish();
     /// For a person; empty without --stats.
     std::string text() const;
+    /// That the stack has grown over variables; empty: it has not, or nobody looked (--stats).
+    std::string warning() const;
     /// A JSON object; empty without --stats.
     std::string json() const;
 
@@ -55,6 +57,7 @@ class BenchInstruments {
     std::string image_;
     std::unique_ptr<debug::DebugChip> chip_;
     debug::Places places_;
+    debug::Variables variables_;
     std::optional<debug::InstructionTrace> trace_;
     std::optional<debug::Profile> profile_;
     std::unique_ptr<Watches> watches_;
