@@ -136,3 +136,53 @@ stay:   bra     stay
             CHECK(register_of(run, 11) - register_of(run, 10) == 1 + held + 1 + 5);
         }
 }
+
+TEST_CASE("RETFIE takes 2 cycles where the next exception is pending, which begins 4 later; else 3") {
+    RandomStream random(Catch::rngSeed(), "chained");
+    for (const DeviceInfo* device : kDevices)
+        for (int i = 0; i < 10; ++i) {
+            // Both flags stand before either may be taken. The first routine's last word is TMR1, the
+            // second's first one, and the program's first one behind it.
+            const int first = device->family_33f ? 7 : 6, second = device->family_33f ? 8 : 7;
+            const Straight code = straight(random, 1 + static_cast<int>(random.next() % 20), 6);
+            const std::string source = fmt::format(R"(
+        goto    main
+        .org    {0:#x}
+        .pword  one, two
+        .org    0x200
+one:    bclr    IFS0, #{1}
+{4}
+        mov     TMR1, w10
+        retfie
+two:    mov     TMR1, w11
+        bclr    IFS0, #{2}
+        mov     TMR1, w12
+        retfie
+main:   mov     #{3:#x}, w15
+        mov     #0x1400, w8
+        setm    PR1
+        mov     #0x8000, w0
+        mov     w0, T1CON
+        bset    IEC0, #{1}
+        bset    IEC0, #{2}
+        disi    #10
+        bset    IFS0, #{1}
+        bset    IFS0, #{2}
+        clr     w0
+wait:   inc     w0, w0
+        btss    w0, #3
+        bra     wait
+        mov     TMR1, w13
+        mov     w10, 0x1314
+        mov     w11, 0x1316
+        mov     w12, 0x1318
+end:    bra     end
+)",
+                                                   device->ivt + 2 * (kTrapVectors + first), first, second,
+                                                   device->ram_start + 0x200, code.text);
+            TimedChip run(*device, source);
+            run.run_to("end");
+            INFO(device->name << "\n" << code.text);
+            CHECK(register_of(run, 11) - register_of(run, 10) == 1 + 2 + 4);
+        }
+}

@@ -1,6 +1,6 @@
 // What of the program flow is written for the interpreter alone: returns from interrupts, hardware loops, and
 // the instructions that control the processor. Cycles: returns 3, or 2 when an exception is waiting to be
-// taken.
+// taken: its handler begins four cycles later, which is five behind the cycle that lowers the level.
 
 #include "emu/dspic/core/execute/branches.h"
 
@@ -8,7 +8,7 @@ namespace puckloop::dspic {
 
 namespace {
 
-/// Pops {SR<7:0>, IPL3, PC<22:16>} and PC<15:0>. If a next exception may now be taken, two cycles.
+/// Pops {SR<7:0>, IPL3, PC<22:16>} and PC<15:0>. The level is restored in the second cycle.
 const Op* return_from_interrupt(Machine& m, const Op*) {
     const std::uint16_t high = pop(m);
     const std::uint16_t low = pop(m);
