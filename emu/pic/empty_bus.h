@@ -11,18 +11,18 @@ namespace puckloop::pic {
 
 class EmptyBus {
   public:
-    /// The fastest master whose answers come in time when run in steps of kStep.
-    static constexpr cosim::Time kStep = 20 * cosim::kMicrosecond;  // below nine clocks at 400 kHz
     static constexpr int kClocksOfByte = 9;
 
-    void phase(const cosim::I2cPhase& phase) {
-        if (phase.kind == cosim::I2cPhaseKind::Stop) return;
+    /// Returns due(), up to which the master may run on.
+    cosim::Time phase(const cosim::I2cPhase& phase) {
+        if (phase.kind == cosim::I2cPhaseKind::Stop) return due();
         pending_ = phase;
         pending_->kind = phase.kind == cosim::I2cPhaseKind::Read ? cosim::I2cPhaseKind::Data
                                                                  : cosim::I2cPhaseKind::Acknowledge;
         if (phase.kind == cosim::I2cPhaseKind::Read) pending_->byte = 0xFF;
         pending_->ack = 0;
         due_ = phase.start + kClocksOfByte * phase.clock_period;
+        return due_;
     }
     /// When the answer to the last phase is due: the end of its ninth clock.
     cosim::Time due() const { return pending_ ? due_ : cosim::kNever; }

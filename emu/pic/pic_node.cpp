@@ -109,10 +109,9 @@ void PicNode::run_chip(cosim::Time until) {
         return;
     }
     while (chip_->now() < until) {
-        cosim::Time step = std::min(until, chip_->now() + EmptyBus::kStep);
-        step = std::min(step, std::max(bus_.due(), chip_->now()));
+        const cosim::Time step = std::min(until, std::max(bus_.due(), chip_->now()));
         if (step > chip_->now()) board::run_past_faults(*chip_, faults_.get(), step);
-        if (bus_.due() <= step) chip_->i2c_answer(kI2cUnit, bus_.take());
+        if (bus_.due() <= chip_->now()) chip_->i2c_answer(kI2cUnit, bus_.take());
     }
 }
 
@@ -195,7 +194,7 @@ void PicNode::i2c_phase(int unit, const cosim::I2cPhase& phase) {
     const cosim::Time answered = dspic::i2c_ninth_clock_end(phase);
     const Board::OwnPhase own = board_.own_i2c(phase, chip_->clock().first_cycle_at(answered));
     if (own.answer) chip_->i2c_answer_at(unit, *own.answer, answered);
-    if (!own.ours) bus_.phase(phase);
+    if (!own.ours) chip_->pause_at(bus_.phase(phase));
 }
 
 void PicNode::line_pulled_low(dspic::Cycle now) {

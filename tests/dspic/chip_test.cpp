@@ -336,3 +336,69 @@ done:   bra done
     CHECK(chip.pc() == bench.symbols.at("done"));
     CHECK((chip.peek("I2CSTAT") & 0x8018) == 0x0010);
 }
+
+TEST_CASE("a pause asked for at the pins ends a run there, and changes nothing else") {
+    // Who answers only between runs is in time, however far each run was to go.
+    struct Nobody : Recorder {
+        Chip* master = nullptr;
+        Time due = cosim::kNever;
+        void i2c_phase(int unit, const cosim::I2cPhase& phase) override {
+            Recorder::i2c_phase(unit, phase);
+            if (phase.kind == cosim::I2cPhaseKind::Stop) return;
+            due = i2c_ninth_clock_end(phase);
+            master->pause_at(due);
+        }
+    };
+    const auto run = [](Time step, std::vector<Time>& pauses) {
+        Nobody pins;
+        Chip chip(dspic30f6014a(), pins, {.fosc = kFoscCrystalX8});
+        pins.chip = pins.master = &chip;
+        AssembleOptions options;
+        for (const RegisterInfo& info : dspic30f6014a().registers)
+            options.predefined[std::string(info.name)] = info.address;
+        const Program program = assemble(R"(
+        goto main
+        .org 0x100
+main:   mov #150, w0
+        mov w0, I2CBRG
+        mov #0x8000, w0
+        mov w0, I2CCON
+again:  bset I2CCON, #0
+start:  btsc I2CCON, #0
+        bra start
+        mov #0xC0, w0
+        mov w0, I2CTRN
+sent:   btsc I2CSTAT, #14
+        bra sent
+        bset I2CCON, #2
+stop:   btsc I2CCON, #2
+        bra stop
+        inc w5, w5
+        bra again
+)",
+                                         options);
+        for (const auto& [address, word] : program.words)
+            chip.load_word(address, word);
+        chip.power_on();
+        constexpr Time kEnd = 3 * cosim::kMillisecond;
+        for (Time until = step; chip.now() < kEnd;) {
+            chip.run_until(std::min(until, kEnd));
+            if (chip.now() < std::min(until, kEnd)) pauses.push_back(chip.now());
+            if (pins.due <= chip.now()) {
+                CHECK(pins.due == chip.now());
+                pins.due = cosim::kNever;
+                chip.i2c_answer(1, {.kind = cosim::I2cPhaseKind::Acknowledge});
+            }
+            until = std::max(until, chip.now() + step);
+        }
+        std::vector<Time> starts;
+        for (const cosim::I2cPhase& phase : pins.phases)
+            starts.push_back(phase.start);
+        return starts;
+    };
+    std::vector<Time> few, many;
+    const std::vector<Time> whole = run(3 * cosim::kMillisecond, few);
+    CHECK(whole.size() > 20);
+    CHECK(few.size() > 10);
+    CHECK(run(7 * cosim::kMicrosecond, many) == whole);
+}

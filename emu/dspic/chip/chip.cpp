@@ -110,7 +110,9 @@ struct Chip::Parts {
     image::CodePlaces places;
     std::vector<std::uint32_t> stops;
     std::optional<std::uint32_t> stopped_at;
-    Time now = 0;  ///< the last `until`
+    Time now = 0;    ///< the last `until`
+    Time until = 0;  ///< of the run in progress
+    Time pause = cosim::kNever;
     std::optional<Cycle> asleep_since;
     std::vector<std::uint16_t> idle_controls;  ///< registers with a bit that stops a module in Idle
     bool holding = true;                       ///< set_power() may have stopped a module
@@ -442,6 +444,8 @@ struct Chip::Parts {
         archive.check(later_cycle(events.next(), kMostAhead) >= core.cycle(), "an event long overdue");
     }
 
+    Cycle until_cycle() const { return clock.first_cycle_at(until); }
+
     /// Run up to `time`: the outside may change from there on.
     void arrive(Time time) {
         now = std::max(now, time);
@@ -499,16 +503,25 @@ void Chip::mclr() {
 void Chip::run_until(Time until) {
     Parts& parts = *parts_;
     parts.stopped_at.reset();
+    if (parts.pause <= parts.now) parts.pause = cosim::kNever;
+    parts.until = std::min(until, parts.pause);
     // The rate may change on the way: then the cycle that starts at `until` is another one.
-    for (Cycle limit = parts.clock.first_cycle_at(until);; limit = parts.clock.first_cycle_at(until)) {
+    for (Cycle limit = parts.until_cycle();; limit = parts.until_cycle()) {
         if (parts.core.run(limit) == Core::Outcome::Stopped) {
             parts.stopped_at = parts.core.pc();
-            parts.arrive(std::min(until, parts.clock.time_of(parts.core.cycle())));
+            parts.arrive(std::min(parts.until, parts.clock.time_of(parts.core.cycle())));
             return;
         }
-        if (parts.clock.first_cycle_at(until) <= parts.core.cycle()) break;
+        if (parts.until_cycle() <= parts.core.cycle()) break;
     }
-    parts.arrive(until);
+    parts.arrive(parts.until);
+}
+
+void Chip::pause_at(Time time) {
+    parts_->pause = time;
+    if (time >= parts_->until) return;
+    parts_->until = time;
+    parts_->core.end_run();
 }
 
 void Chip::stop_at(std::uint32_t pc) {
@@ -667,6 +680,10 @@ ChipReport Chip::report() const {
     report.instructions = parts_->core.instructions();
     report.cycles = parts_->core.cycle();
     return report;
+}
+
+std::size_t Chip::resets() const {
+    return parts_->report.resets.size();
 }
 
 void Chip::state(StateWriter& archive) const {

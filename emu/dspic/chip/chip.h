@@ -133,9 +133,13 @@ class Chip {
     /// A pulse on MCLR now.
     void mclr();
 
-    /// Runs everything that starts strictly before `until`. Returns early only at a stop address. An
+    /// Runs everything that starts strictly before `until`. Returns early at a stop address and where
+    /// pause_at() says so. An
     /// instruction that starts at time s has seen everything handed in after run_until(t), t <= s.
     void run_until(cosim::Time until);
+    /// From within a call of Pins: run_until() ends at `time`, or at the end of the present instruction where
+    /// that is later, so that what is due then can be handed in. Only the last call counts; kNever: none.
+    void pause_at(cosim::Time time);
     /// Ends run_until() before the instruction at program address `pc` runs.
     void stop_at(std::uint32_t pc);
     /// The stop address at which run_until() returned early, until it is called again.
@@ -199,6 +203,7 @@ class Chip {
     /// A word of RAM at an even data address. Throws std::out_of_range elsewhere.
     std::uint16_t peek_data(std::uint16_t address) const;
     ChipReport report() const;
+    std::size_t resets() const;  ///< how many the report has, without making one
     /// What the program has been waiting for, if it has gone round in one loop, or slept, for a tenth of a
     /// second or more. Costs some milliseconds.
     std::optional<WaitReport> waiting() const;

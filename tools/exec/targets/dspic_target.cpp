@@ -69,9 +69,9 @@ void DspicTarget::run_until(cosim::Time until) {
         if (chip_->stopped_at()) break;
         for (int unit = 1; unit <= 2; ++unit) {
             pic::EmptyBus& nobody = bus(unit).nobody;
-            if (nobody.due() <= step) answer(unit, nobody.take());
+            if (nobody.due() <= chip_->now()) answer(unit, nobody.take());
         }
-        if (devices_ && devices_->due() <= step) answer(kI2cDeviceUnit, devices_->take());
+        if (devices_ && devices_->due() <= chip_->now()) answer(kI2cDeviceUnit, devices_->take());
     }
     passed(chip_->cycle());
 }
@@ -80,9 +80,6 @@ void DspicTarget::run_until(cosim::Time until) {
 cosim::Time DspicTarget::next_step(cosim::Time until) {
     const cosim::Time now = chip_->now();
     cosim::Time step = until;
-    // On an empty bus a phase that begins in this step is answered in a later one.
-    const bool empty = !devices_ || device_.family_33f;  // the dsPIC30F has one module only
-    if (empty) step = std::min(step, now + pic::EmptyBus::kStep);
     for (const Bus& bus : buses_)
         step = std::min(step, std::max(bus.nobody.due(), now));
     if (devices_) step = devices_->advance(now, chip_->earliest_i2c(kI2cDeviceUnit), step);
@@ -107,7 +104,7 @@ void DspicTarget::on_bus(int unit, const cosim::I2cPhase& phase) {
     if (devices_ && unit == kI2cDeviceUnit)
         devices_->phase(phase);
     else
-        bus(unit).nobody.phase(phase);
+        chip_->pause_at(bus(unit).nobody.phase(phase));
 }
 
 void DspicTarget::answer(int unit, const cosim::I2cPhase& phase) {

@@ -116,7 +116,7 @@ class Target {
     virtual bool uart_enabled(int unit) { return chip().uart_enabled(unit); }
     virtual dspic::UartCounters uart_counters(int unit) { return chip().uart_counters(unit); }
     /// Resets so far, power-on included.
-    virtual std::size_t resets() { return chip().report().resets.size(); }
+    virtual std::size_t resets() { return chip().resets(); }
     /// Reads a firmware file and checks that it fits `mcu`. Throws InputError.
     virtual image::Image read_image(const std::string& file, std::string_view mcu);
     /// cycles, instructions, resets and whatever else this kind of chip reports, as JSON text.
