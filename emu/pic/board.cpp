@@ -75,6 +75,7 @@ std::optional<dspic::PortLetter> Board::set_signal(SignalId id, double value, ds
     input.before = input.at(now);
     input.value = wanted;
     input.since = now;
+    analog_changed();
     if (id >= kInfraredLight && id < kInfraredLight + kProximityCount)
         lights_[static_cast<std::size_t>(id - kInfraredLight)].set(wanted, now);
     if (id >= kSound && id < kSound + kMicrophoneCount)
@@ -155,7 +156,7 @@ void Board::watch_line(std::uint16_t levels, std::uint16_t driven, dspic::Cycle 
 
 void Board::drive(SignalId id, bool level, dspic::Cycle now) {
     if (id >= kPulse && id < kPulse + kPulseCount)
-        emitters_[static_cast<std::size_t>(id - kPulse)].set(level, now);
+        emitters_[static_cast<std::size_t>(id - kPulse)].set(level, now), analog_changed();
     if (id == kCameraReset && camera_) {
         camera_->set_reset(level, now);
         listener_.edges_moved(now);
@@ -189,6 +190,7 @@ void Board::check_loaded() {
         values_[id].before = clipped(id, values_[id].before);
     }
     place_levels();
+    analog_changed();
 }
 
 void Board::renew_random_streams() {
@@ -277,6 +279,32 @@ double Board::level_at(int channel, dspic::Cycle now) const {
         if (channel < kBatteryChannel) return 0.0;
     }
     return values_[kAnalogWiring[static_cast<std::size_t>(channel)]].at(now);
+}
+
+void Board::analog_changed() {
+    ++analog_epoch_;
+    analog_settled_ = dspic::kNoCycle;
+}
+
+std::uint64_t Board::analog_epoch(dspic::Cycle from) {
+    if (phototransistor_noise_ > 0 || parameters_.adc_noise_counts > 0 || analog_faults_.any()) return 0;
+    if (analog_settled_ == dspic::kNoCycle) {
+        dspic::Cycle settled = 0;
+        for (const Input& input : values_)
+            settled = std::max(settled, input.since);
+        const auto follow = [&settled](const auto& parts) {
+            for (const auto& part : parts)
+                settled = std::max(settled, part.settled_from());
+        };
+        follow(emitters_);
+        follow(lights_);
+        follow(sounds_);
+        analog_settled_ = settled;
+    }
+    if (from < analog_settled_) return 0;
+    for (std::size_t i = 0; i < microphones_.size(); ++i)
+        if (values_[kMicrophoneLevel + i].value > 0) return 0;  // every conversion draws another value
+    return analog_epoch_;
 }
 
 double Board::analog(int channel, dspic::Cycle now) {

@@ -109,7 +109,10 @@ class Board : public dspic::Pins {
     /// It has this voltage, before any sag, whatever set_signal() says; nullopt: what that says.
     std::optional<dspic::PortLetter> set_battery(std::optional<double> volts, dspic::Cycle now);
     /// Light that swallows this share of each proximity sensor's signal.
-    void set_ambient(const chip::AmbientShares& shares) { dazzle_ = shares; }
+    void set_ambient(const chip::AmbientShares& shares) {
+        dazzle_ = shares;
+        ++analog_epoch_;
+    }
     /// The wheel of motor 0 (left) or 1 does not turn from `now` on.
     void set_held(int motor, bool held, dspic::Cycle now);
 
@@ -143,6 +146,7 @@ class Board : public dspic::Pins {
     std::uint16_t quiet_levels(dspic::PortLetter port, dspic::Cycle now) override;
     dspic::Cycle next_edge(dspic::PortLetter port, std::uint16_t heeded, dspic::Cycle after) const override;
     double analog(int channel, dspic::Cycle now) override;
+    std::uint64_t analog_epoch(dspic::Cycle from) override;
     void uart_sent(int unit, const cosim::UartFrame& frame) override { listener_.uart_sent(unit, frame); }
     void i2c_phase(int unit, const cosim::I2cPhase& phase) override { listener_.i2c_phase(unit, phase); }
     std::uint16_t dci_exchange(const dspic::DciWord& word, dspic::Cycle now) override;
@@ -170,6 +174,7 @@ class Board : public dspic::Pins {
     void watch_line(std::uint16_t levels, std::uint16_t driven, dspic::Cycle now);
     void drive(SignalId id, bool level, dspic::Cycle now);
     void show_speaker(dspic::Cycle now);
+    void analog_changed();
     double level_at(int channel, dspic::Cycle now) const;
 
     BoardParameters parameters_;
@@ -190,6 +195,8 @@ class Board : public dspic::Pins {
     double sag_ = 0.0, battery_ = 0.0;  ///< volts; the battery's without the sag
     std::optional<double> profile_;     ///< in place of the battery's
     chip::AmbientShares dazzle_{};
+    std::uint64_t analog_epoch_ = 1;
+    dspic::Cycle analog_settled_ = dspic::kNoCycle;  ///< since when inputs stand still; kNoCycle: not known
     std::optional<camera::Camera> camera_;
 };
 

@@ -22,10 +22,14 @@ class Emitter {
     double intensity(dspic::Cycle now) const {
         const double target = on_ ? 1.0 : 0.0;
         const double age = now > edge_ ? static_cast<double>(now - edge_) : 0.0;
-        // Less than 2e-35 is left, which moves no ADC code.
-        constexpr double kSettled = 80.0;
         if (age > kSettled * time_constant_) return target;
         return target + (at_edge_ - target) * std::exp(-age / time_constant_);
+    }
+
+    /// From here on intensity() stays the same until set().
+    dspic::Cycle settled_from() const { return edge_ + settling(time_constant_); }
+    static dspic::Cycle settling(double time_constant) {
+        return static_cast<dspic::Cycle>(kSettled * time_constant) + 2;
     }
 
     template <class Archive>
@@ -35,6 +39,9 @@ class Emitter {
     }
 
   private:
+    /// Time constants; less than 2e-35 is left, which moves no ADC code.
+    static constexpr double kSettled = 80.0;
+
     double time_constant_;
     double at_edge_ = 0.0;
     dspic::Cycle edge_ = 0;

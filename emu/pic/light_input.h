@@ -28,6 +28,11 @@ class LightInput {
         return age > kSettled ? light_ : light_ + (at_edge_ - light_) * std::exp(-age);
     }
 
+    /// From here on counts_at() stays the same until set().
+    dspic::Cycle settled_from() const {
+        return edge_ + static_cast<dspic::Cycle>(kSettled * time_constant_) + 2;
+    }
+
     template <class Archive>
     void state(Archive& archive) {
         archive.bounded(at_edge_, 0.0, 1e9);

@@ -25,6 +25,9 @@ class SoundInput {
         return share < 1.0 ? from_ + (to_ - from_) * share : to_;
     }
 
+    /// From here on at() stays the same until set().
+    dspic::Cycle settled_from() const { return since_ + static_cast<dspic::Cycle>(period_) + 2; }
+
     template <class Archive>
     void state(Archive& archive) {
         archive.bounded(from_, -1e6, 1e6);

@@ -3,6 +3,7 @@
 #include "emu/dspic/assembler/assembler.h"
 #include "emu/dspic/core/isa.h"
 
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -57,6 +58,12 @@ std::uint32_t some_word(RandomStream& random, const std::vector<const Form*>& fo
             const bool words = form.width('f') == 15;
             word = with(form, word, 'f', words ? address / 2 : random.below(4) ? address & ~1u : address);
         }
+        if (form.has_field('f') && random.below(10) == 0) {  // a register that programs do look at
+            constexpr std::uint32_t kRegisters[] = {0x32, 0x34, 0x36, 0x84,  0x85,
+                                                    0x86, 0x8C, 0x94, 0x280, 0x282};
+            const std::uint32_t address = kRegisters[random.below(std::size(kRegisters))];
+            word = with(form, word, 'f', form.width('f') == 15 ? address / 2 : address);
+        }
         if (random.below(24) != 0) word = with_sane_pointers(random, form, word);
         // W15 loses the stack soon enough without being written on purpose.
         if (form.has_field('d') && form.field('d', word) == 15 && random.below(16) != 0) continue;
@@ -83,9 +90,12 @@ std::uint32_t random_word(RandomStream& random, std::uint32_t pc) {
         return first + 2 * static_cast<std::uint32_t>(random.below(words));
     };
     const std::uint64_t kind = random.below(40);
-    if (kind < 3)  // a pointer into RAM
-        return 0x200000 | static_cast<std::uint32_t>(0x0900 + 2 * random.below(0x200)) << 4 |
+    if (kind < 3) {  // a pointer into RAM, or to registers
+        const std::uint64_t to =
+            random.below(8) == 0 ? 0x27C + random.below(12) : 0x0900 + 2 * random.below(0x200);
+        return 0x200000 | static_cast<std::uint32_t>(to) << 4 |
                static_cast<std::uint32_t>(8 + random.below(5));
+    }
     if (kind < 10) {  // a conditional branch, near more often than far
         constexpr std::uint32_t kConditions[] = {0x30, 0x31, 0x32, 0x33, 0x34, 0x35, 0x36, 0x38, 0x39,
                                                  0x3A, 0x3B, 0x3C, 0x3D, 0x3E, 0x0C, 0x0D, 0x0E, 0x0F};
@@ -103,7 +113,10 @@ std::uint32_t random_word(RandomStream& random, std::uint32_t pc) {
         const auto reg = static_cast<std::uint32_t>(random.below(14));
         return kind == 14 ? kStack[0] | reg : kStack[1] | reg << 7;
     }
-    if (kind == 17 && random.below(2) != 0) return random.below(2) != 0 ? 0xF80036 : 0xF90036;  // RCOUNT
+    if (kind == 17 && random.below(2) != 0) {
+        constexpr std::uint32_t kSaves[] = {0xF80036, 0xF90036, 0xF80034, 0xF90034};  // RCOUNT, PSVPAG
+        return kSaves[random.below(4)];
+    }
     return some_word(random, all[kind == 16]);
 }
 
@@ -117,9 +130,10 @@ LoopProgram random_loops(RandomStream& random) {
               "trap:   clr 0x80\n        clr 0x44\n        mov #0x1800, w15\n        mov #0x200, w0\n"
               "        push w0\n        clr w0\n        push w0\n        clr 0x46\n        clr 0x50\n        "
               "retfie\n"
-              "isr:    push w0\n        push 0x36\n        mov 0x0900, w0\n        inc w0, w0\n        mov "
+              "isr:    push w0\n        push 0x36\n        push 0x34\n        clr w0\n        mov w0, "
+              "0x34\n        mov 0x0280, w0\n        mov 0x0900, w0\n        inc w0, w0\n        mov "
               "w0, 0x0900\n"
-              "        bclr 0x84, #3\n        pop 0x36\n        pop w0\n        retfie\n";
+              "        bclr 0x84, #3\n        pop 0x34\n        pop 0x36\n        pop w0\n        retfie\n";
     const dspic::Program assembled = dspic::assemble(source);
     LoopProgram program;
     for (const auto& [address, word] : assembled.words)

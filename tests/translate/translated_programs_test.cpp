@@ -41,7 +41,15 @@ struct Subject {
           rewrites(random.below(2) == 0) {
         for (const auto& [address, word] : program.words)
             core.poke_program(address, word);
-        core.set_reset_hook([this](ResetCause) { sfr.reset_values(); });
+        core.set_reset_hook([this](ResetCause) {
+            sfr.reset_values();
+            sfr.plain().until[SfrSpace::Plain::kConverter] = 0;
+        });
+        for (const std::uint16_t address : {kDrifting, kDriftingToo}) {
+            sfr.hook(address, this, &read_drifting,
+                     [](void*, std::uint16_t, std::uint16_t, std::uint16_t) {});
+            sfr.set_plain_kind(address, SfrSpace::Plain::kConverter);
+        }
         core.observer().on_reset = [this](ResetCause cause, std::uint32_t pc, Cycle now) {
             note("reset " + std::string(to_string(cause)), pc, now);
         };
@@ -62,6 +70,21 @@ struct Subject {
     static SfrSpace& described(SfrSpace& space, const DeviceInfo& info) {
         space.describe(info.registers);
         return space;
+    }
+    /// Registers that change with time, brought up to date when they are read; in between they say until
+    /// when a read is but a look.
+    static constexpr std::uint16_t kDrifting = 0x280, kDriftingToo = 0x282;
+    static constexpr Cycle kDriftPeriod = 53;
+    void drift() {
+        const Cycle period = core.cycle_counter() / kDriftPeriod;
+        sfr.raw(kDrifting) = static_cast<std::uint16_t>(period);
+        sfr.raw(kDriftingToo) = static_cast<std::uint16_t>(period * 40503u);
+        sfr.plain().until[SfrSpace::Plain::kConverter] = (period + 1) * kDriftPeriod;
+    }
+    static std::uint16_t read_drifting(void* owner, std::uint16_t address) {
+        auto& s = *static_cast<Subject*>(owner);
+        s.drift();
+        return s.sfr.raw(address);
     }
     void note(const std::string& what, std::uint32_t pc, Cycle now) {
         log.push_back(what + " at " + std::to_string(pc) + " in " + std::to_string(now));
@@ -91,7 +114,8 @@ std::vector<std::uint8_t> state_of(const Subject& s) {
     return bytes;
 }
 
-std::vector<std::uint8_t> whole_state_of(const Subject& s) {
+std::vector<std::uint8_t> whole_state_of(Subject& s) {
+    s.drift();
     std::vector<std::uint8_t> bytes;
     StateWriter writer(bytes);
     writer.part("registers", s.sfr);

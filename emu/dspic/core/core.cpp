@@ -46,7 +46,8 @@ Machine::Machine(const DeviceInfo& info, SfrSpace& registers, EventQueue& queue,
     code_words = info.flash_end / 2;
     code = pages.operations();
     current = code;
-    first_level = &irq.first().level;
+    line = &irq.line();
+    plain = &sfr.plain();
     ram_store.assign((info.ram_end - info.ram_start) / 2u, 0);
     ram = ram_store.data();
     ram_words = static_cast<std::uint16_t>(ram_store.size());
@@ -224,7 +225,8 @@ void Core::set_w(int index, std::uint16_t value) {
 }
 void Core::set_pc(std::uint32_t pc) {
     machine_->current = at(*machine_, pc & kProgramSpace);
-    if (machine_->pass_pc != (pc & kProgramSpace)) machine_->pass_pc.reset();  // the stop reported there is left
+    if (machine_->pass_pc != (pc & kProgramSpace))
+        machine_->pass_pc.reset();  // the stop reported there is left
 }
 std::uint16_t Core::read_data(std::uint16_t address) {
     return read16(*machine_, address & 0xFFFE);

@@ -93,7 +93,7 @@ void InterruptController::reset() {
         sfr_.raw(static_cast<std::uint16_t>(device_.ipc + 2 * (entry.irq / 4))) |=
             static_cast<std::uint16_t>(kResetPriority << (4 * (entry.irq % 4)));
     if (device_.inttreg) sfr_.raw(device_.inttreg) = 0;
-    first_ = {};
+    line_.first = {};
     for (int i = 0; i < device_.ifs_words; ++i)
         wake_hearing(i);
 }
@@ -116,7 +116,7 @@ void InterruptController::set_gate(void* owner, bool (*passes)(void* owner, int 
 
 void InterruptController::rest(int irq, void* owner, void (*wake)(void* owner, Cycle passed)) {
     resters_[static_cast<std::size_t>(irq)] = {owner, wake};
-    resting_[static_cast<std::size_t>(irq) / 16] |= bit_of(irq);
+    line_.resting[static_cast<std::size_t>(irq) / 16] |= bit_of(irq);
 }
 
 void InterruptController::set_resting(bool on) {
@@ -126,16 +126,16 @@ void InterruptController::set_resting(bool on) {
 }
 
 void InterruptController::wake(int irq) {
-    resting_[static_cast<std::size_t>(irq) / 16] &= static_cast<std::uint16_t>(~bit_of(irq));
+    line_.resting[static_cast<std::size_t>(irq) / 16] &= static_cast<std::uint16_t>(~bit_of(irq));
     const Rester& rester = resters_[static_cast<std::size_t>(irq)];
     rester.wake(rester.owner, now_ ? *now_ : 0);
 }
 
 void InterruptController::wake_hearing(int word) {
     const auto index = static_cast<std::size_t>(word);
-    if (resting_[index] == 0) return;
+    if (line_.resting[index] == 0) return;
     const unsigned deaf = ifs()[index] & ~iec()[index] & ~(tapped_[index / 4] >> (index % 4 * 16));
-    for (unsigned woken = resting_[index] & (rests_ ? ~deaf : ~0u); woken != 0; woken &= woken - 1)
+    for (unsigned woken = line_.resting[index] & (rests_ ? ~deaf : ~0u); woken != 0; woken &= woken - 1)
         wake(16 * word + std::countr_zero(woken));
 }
 
@@ -155,8 +155,8 @@ void InterruptController::set_flag(int irq, Cycle now) {
     // Whoever is first in line stays so unless this one ranks higher.
     const int level = priority(irq);
     const int vector = kTrapVectors + irq;
-    if (level > first_.level || (level == first_.level && level > 0 && vector < first_.vector))
-        first_ = {level, vector};
+    if (level > line_.first.level || (level == line_.first.level && level > 0 && vector < line_.first.vector))
+        line_.first = {level, vector};
     if (changed_) changed_(listener_, now);
 }
 
@@ -182,14 +182,14 @@ bool InterruptController::alternate_table() const {
 }
 
 bool InterruptController::any_enabled_flag() const {
-    bool waiting = first_.level > 7;
+    bool waiting = line_.first.level > 7;
     see_pending(ifs(), iec(), device_.ifs_words, [&](int, std::uint16_t) { waiting = true; });
     return waiting;
 }
 
 bool InterruptController::waits_alone() const {
-    if (first_.level < 1 || first_.level > 7) return false;
-    const int irq = first_.vector - kTrapVectors;
+    if (line_.first.level < 1 || line_.first.level > 7) return false;
+    const int irq = line_.first.vector - kTrapVectors;
     for (int i = 0; i < device_.ifs_words; ++i) {
         const unsigned waiting = sfr_.raw(static_cast<std::uint16_t>(device_.ifs + 2 * i)) &
                                  sfr_.raw(static_cast<std::uint16_t>(device_.iec + 2 * i));
@@ -199,9 +199,9 @@ bool InterruptController::waits_alone() const {
 }
 
 void InterruptController::serve_alone() {
-    const int irq = first_.vector - kTrapVectors;
+    const int irq = line_.first.vector - kTrapVectors;
     sfr_.raw(word_of(device_.ifs, irq)) &= static_cast<std::uint16_t>(~bit_of(irq));
-    first_ = {};
+    line_.first = {};
     wake_hearing(irq / 16);
 }
 
@@ -236,7 +236,7 @@ void InterruptController::find_first(Cycle now) {
             }
         });
     }
-    first_ = best;
+    line_.first = best;
     if (changed_) changed_(listener_, now);
 }
 

@@ -8,6 +8,7 @@
 #include "emu/dspic/core/sfr_space.h"
 #include "emu/dspic/devices/device.h"
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
@@ -63,7 +64,7 @@ class InterruptController {
     /// would have changed nothing, when that is over, or with no need at any other time.
     void rest(int irq, void* owner, void (*wake)(void* owner, Cycle passed));
     /// No source rests any more, and none is woken: what is loaded is another state.
-    void forget_rests() { resting_ = {}; }
+    void forget_rests() { line_.resting = {}; }
     /// Off: every source raises as it is due (on from the start).
     void set_resting(bool on);
     void clear(int irq);
@@ -82,7 +83,13 @@ class InterruptController {
         int vector = 0;
     };
     /// The first in line of everything flagged and enabled, whatever the CPU's priority is.
-    const Request& first() const { return first_; }
+    const Request& first() const { return line_.first; }
+    /// Who waits, and who rests, for translated code: it may take first() away, as serve_alone() does.
+    struct Line {
+        Request first;
+        std::array<std::uint16_t, 8> resting{};  ///< sources that rest, by IFS word
+    };
+    Line& line() { return line_; }
     /// first() is a user interrupt, and no other source is flagged and enabled.
     bool waits_alone() const;
     /// Clears the flag of first(), which waits alone; the listener need not be told.
@@ -136,9 +143,8 @@ class InterruptController {
     void* gate_owner_ = nullptr;
     bool (*gate_)(void*, int, Cycle) = nullptr;
     bool rests_ = true;
-    std::array<std::uint16_t, 8> resting_{};  ///< by IFS word
     std::array<Rester, 128> resters_{};
-    Request first_;
+    Line line_;
     void* listener_ = nullptr;
     void (*changed_)(void*, Cycle) = nullptr;
     const Cycle* now_ = nullptr;

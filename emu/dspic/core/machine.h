@@ -89,7 +89,8 @@ struct Machine {
     bool eligible = false;  ///< irq.first() may interrupt now ...
     Cycle since = 0;        ///< ... since this cycle
     bool disi_waits = false;
-    const int* first_level = nullptr;  ///< of irq.first(), for translated code
+    InterruptController::Line* line = nullptr;  ///< of irq, for translated code
+    SfrSpace::Plain* plain = nullptr;           ///< of sfr, for translated code
     std::optional<ResetCause> reset_request;
     std::uint32_t fault_pc = 0;
 

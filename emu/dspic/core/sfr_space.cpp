@@ -14,6 +14,13 @@ void SfrSpace::describe(std::span<const RegisterInfo> registers) {
 
 void SfrSpace::claim(std::uint16_t address) {
     words_[address >> 1].behaviour = Behaviour::Modelled;
+    find_kind(address);
+}
+
+void SfrSpace::find_kind(std::uint16_t address) {
+    const Word& word = words_[address >> 1];
+    const bool modelled = word.behaviour == Behaviour::Modelled || word.behaviour == Behaviour::Stored;
+    plain_.kind[address >> 1] = word.read ? word.plain_kind : modelled ? Plain::kAlways : Plain::kNever;
 }
 
 void SfrSpace::hook(std::uint16_t address, void* owner, ReadHook read, WriteHook write) {
@@ -22,6 +29,7 @@ void SfrSpace::hook(std::uint16_t address, void* owner, ReadHook read, WriteHook
     word.read = read;
     word.write = write;
     word.behaviour = Behaviour::Modelled;
+    find_kind(address);
 }
 
 void SfrSpace::set_off(std::uint16_t address, bool off) {
@@ -31,15 +39,17 @@ void SfrSpace::set_off(std::uint16_t address, bool off) {
         word.read = word.quiet = [](void*, std::uint16_t) -> std::uint16_t { return 0; };
         word.write = [](void*, std::uint16_t, std::uint16_t, std::uint16_t) {};
         word.behaviour = Behaviour::Modelled;
+        word.plain_kind = Plain::kNever;
     } else if (const auto old = off_.find(address); old != off_.end()) {
         word = old->second;
         off_.erase(old);
     }
+    find_kind(address);
 }
 
 void SfrSpace::reset_values() {
     for (std::size_t i = 0; i < kWords; ++i)
-        value_[i] = words_[i].info ? words_[i].info->reset : 0;
+        plain_.value[i] = words_[i].info ? words_[i].info->reset : 0;
 }
 
 const RegisterInfo* SfrSpace::find(std::string_view name) const {

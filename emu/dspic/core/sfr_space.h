@@ -2,6 +2,7 @@
 // The special-function register space, 0x0000 to 0x07FF: plain storage with masks, hooks where a register
 // acts, and a report of the first touch of every register that no model stands behind.
 
+#include "emu/dspic/core/event_queue.h"
 #include "emu/dspic/devices/register_info.h"
 
 #include <array>
@@ -43,7 +44,7 @@ class SfrSpace {
     }
     std::uint16_t quiet_read(std::uint16_t address) const {
         const Word& word = words_[address >> 1];
-        return word.quiet ? word.quiet(word.owner, address) : value_[address >> 1];
+        return word.quiet ? word.quiet(word.owner, address) : raw(address);
     }
     /// A model acts on the word or keeps it.
     bool modelled(std::uint16_t address) const {
@@ -63,6 +64,21 @@ class SfrSpace {
         return word.idempotent || (!word.write && word.behaviour == Behaviour::Modelled);
     }
 
+    /// Words by what a read is besides a look at the stored word, and until when it is nothing: what
+    /// translated code goes by. A read at cycle c is a plain look if c < until[kind[word]].
+    struct Plain {
+        static constexpr std::uint8_t kNever = 0, kAlways = 1, kConverter = 2, kKinds = 3;
+        std::array<std::uint16_t, kWords> value{};
+        std::array<std::uint8_t, kWords> kind{};
+        std::array<Cycle, kKinds> until{0, kNoCycle, 0};
+    };
+    Plain& plain() { return plain_; }
+    /// A hooked word whose model says by Plain::until how long nothing happens at a read.
+    void set_plain_kind(std::uint16_t address, std::uint8_t kind) {
+        words_[address >> 1].plain_kind = kind;
+        plain_.kind[address >> 1] = kind;
+    }
+
     /// Takes the word away from its model: it reads 0 and ignores writes. And gives it back.
     void set_off(std::uint16_t address, bool off);
 
@@ -75,7 +91,7 @@ class SfrSpace {
         if (word.read) return word.read(word.owner, address);
         if (word.behaviour != Behaviour::Modelled && word.behaviour != Behaviour::Stored)
             touch(address, false);
-        return value_[address >> 1];
+        return raw(address);
     }
     void write(std::uint16_t address, std::uint16_t value, std::uint16_t mask) {
         const Word& word = words_[address >> 1];
@@ -86,12 +102,12 @@ class SfrSpace {
     }
 
     /// The stored word itself, no side effects: what models keep their register contents in.
-    std::uint16_t& raw(std::uint16_t address) { return value_[address >> 1]; }
-    std::uint16_t raw(std::uint16_t address) const { return value_[address >> 1]; }
+    std::uint16_t& raw(std::uint16_t address) { return plain_.value[address >> 1]; }
+    std::uint16_t raw(std::uint16_t address) const { return plain_.value[address >> 1]; }
     /// Plain masked storage, for write hooks that only add to it.
     void store(std::uint16_t address, std::uint16_t value, std::uint16_t mask) {
         const std::uint16_t bits = static_cast<std::uint16_t>(mask & words_[address >> 1].implemented);
-        std::uint16_t& slot = value_[address >> 1];
+        std::uint16_t& slot = raw(address);
         slot = static_cast<std::uint16_t>((slot & ~bits) | (value & bits));
     }
     /// True where a plain read has no side effect and no hook: a loop that polls it can be skipped safely as
@@ -106,7 +122,7 @@ class SfrSpace {
 
     template <class Archive>
     void state(Archive& archive) {
-        archive(value_, reported_);
+        archive(plain_.value, reported_);
     }
 
   private:
@@ -119,10 +135,12 @@ class SfrSpace {
         std::uint16_t implemented = 0;
         Behaviour behaviour = Behaviour::Absent;
         bool idempotent = false;
+        std::uint8_t plain_kind = Plain::kNever;
     };
+    void find_kind(std::uint16_t address);
     void touch(std::uint16_t address, bool write);
 
-    std::array<std::uint16_t, kWords> value_{};
+    Plain plain_;
     std::array<Word, kWords> words_{};
     std::array<bool, kWords> reported_{};
     std::map<std::uint16_t, Word> off_;  ///< as they were, by address

@@ -15,8 +15,8 @@ namespace {
 /// With less than this to the next event a walk is not begun.
 constexpr Cycle kWorthwhile = 64;
 constexpr std::uint8_t kMostPatience = 10;
-/// For loops that do something unknown on one of their ways round.
-constexpr std::uint8_t kMostPatienceUnknown = 12;
+/// For loops that no walk came round yet.
+constexpr std::uint8_t kMostPatienceUnknown = 15;
 constexpr std::uint64_t kFewestIterations = 4;
 
 std::uint16_t& word_of(Machine& m, std::uint16_t key) {
@@ -56,11 +56,12 @@ void advance(IdleLoops::Plan& plan, std::uint64_t iterations) {
     plan.iterations -= iterations;
 }
 
-/// Leaps over as many iterations as the plan and the limit allow, less one.
-void leap(Machine& m, IdleLoops::Plan& plan, Cycle arrival) {
-    if (m.limit < arrival) return;
+/// Leaps over as many iterations as the plan and the limit allow, less one. True if the limit decided: then
+/// the real iteration that follows is over before the limit, and the next one is not.
+bool leap(Machine& m, IdleLoops::Plan& plan, Cycle arrival) {
+    if (m.limit < arrival) return false;
     const std::uint64_t room = (m.limit - arrival) / plan.cycles;
-    if (room < 2 || plan.iterations < 2) return;
+    if (room < 2 || plan.iterations < 2) return false;
     const std::uint64_t count = std::min(plan.iterations - 1, room - 1);
     advance(plan, count);
     for (std::size_t i = 0; i < plan.count; ++i)
@@ -76,9 +77,11 @@ void leap(Machine& m, IdleLoops::Plan& plan, Cycle arrival) {
     plan.used = true;
     ++m.skip->leaps;
     m.skip->skipped_cycles += cycles;
+    return count + 1 == room;
 }
 
-void give_up_for_now(Machine& m, IdleLoops::Branch& known, std::uint8_t most = kMostPatience) {
+void give_up_for_now(Machine& m, IdleLoops::Branch& known) {
+    const std::uint8_t most = known.walked ? kMostPatience : kMostPatienceUnknown;
     if (known.patience < most) ++known.patience;
     m.skip->waits[known.place] = static_cast<std::uint16_t>((1u << known.patience) - 1);
 }
@@ -107,8 +110,7 @@ void make_plan(Machine& m, IdleLoops::Branch& known, const Op* branch, const Op*
         break;
     case SymbolicLoop::Verdict::Unknown:
         // On its last round a loop leaves by instructions that the walk need not know.
-        if (known.walked) return give_up_for_now(m, known);
-        if (walk.chose()) return give_up_for_now(m, known, kMostPatienceUnknown);  // another way round may do
+        if (known.walked || walk.chose()) return give_up_for_now(m, known);  // another way round may do
         if (m.program_undo.on())
             m.program_undo.note_operation(m, static_cast<std::uint32_t>(branch - m.code));
         m.code[branch - m.code].may_skip = false;
@@ -159,10 +161,16 @@ void try_skip(Machine& m, const Op* branch, const Op* head) {
             const bool clean = !plan.proven || plan.clean_due == arrival;
             plan.proven = true;
             if (!std::exchange(known.polls_noted, true) && plan.polled_count > 0) note_polls(m, branch, head);
-            if (!clean || !fast_forward(m, known, arrival)) leap(m, plan, arrival);
+            bool to_limit = false;
+            if (!clean || !fast_forward(m, known, arrival)) to_limit = leap(m, plan, arrival);
             note_leap(m, branch);
             plan.clean_due = clean_arrival(m, known, m.st.cycle + branch->cycles);
             advance(plan, 1);  // the real iteration that follows
+            // At its end nothing can be gained: only the arrival after that one is looked at.
+            if (to_limit && !known.trace.steady && plan.iterations > 2) {
+                advance(plan, 1);
+                m.skip->waits[known.place] = 1;
+            }
             return;
         }
         plan.alive = false;

@@ -34,8 +34,11 @@ unsigned counts_of(double value) {
 
 Adc12::Adc12(const Surroundings& around, const cosim::ClockDomain& clock, Pins& pins)
     : around_(around), clock_(clock), pins_(pins), slot_(around.events.add(this, due)) {
-    for (int i = 0; i < kInputs; ++i)
-        around_.sfr.hook(static_cast<std::uint16_t>(sfr::ADCBUF0 + 2 * i), this, read_register, nullptr);
+    for (int i = 0; i < kInputs; ++i) {
+        const auto buffer = static_cast<std::uint16_t>(sfr::ADCBUF0 + 2 * i);
+        around_.sfr.hook(buffer, this, read_register, nullptr);
+        around_.sfr.set_plain_kind(buffer, SfrSpace::Plain::kConverter);
+    }
     around_.sfr.hook(sfr::ADCON1, this, read_register, write_adcon1);
     around_.sfr.hook(sfr::ADCON2, this, read_register, write_register);
     for (const std::uint16_t address : {sfr::ADCON3, sfr::ADCHS, sfr::ADPCFG, sfr::ADCSSL})
@@ -44,7 +47,9 @@ Adc12::Adc12(const Surroundings& around, const cosim::ClockDomain& clock, Pins& 
 
 void Adc12::reset() {
     state_ = {};
+    group_.epoch = 0;
     around_.events.cancel(slot_);
+    forget_quiet();
 }
 
 Adc12::Trigger Adc12::source() const {
@@ -161,6 +166,13 @@ bool Adc12::goes_on_by_itself() const {
            !(around_.sfr.raw(sfr::ADCHS) & kADCHS["CH0NA"]);
 }
 
+/// The group that begins with the present sampling gives what the last one gave.
+bool Adc12::repeats() const {
+    return group_.epoch != 0 && group_.channel == state_.channel && group_.scanned == state_.scanned &&
+           group_.tris == around_.sfr.raw(sfr::TRISB) && group_.lat == around_.sfr.raw(sfr::LATB) &&
+           pins_.analog_epoch(state_.phase_end / 2) == group_.epoch;
+}
+
 // end_sampling() and end_conversion() in turn up to `until`, with what the registers say looked up once: no
 // one writes them meanwhile.
 void Adc12::run_automatic(HalfCycle until) {
@@ -173,7 +185,27 @@ void Adc12::run_automatic(HalfCycle until) {
     const unsigned form = kADCON1["FORM"].of(adcon1), last = kADCON2["SMPI"].of(adcon2);
     const bool scans = adcon2 & kADCON2["CSCNA"];
     const HalfCycle conversion = kConversionTads * tad(), sampling = kADCON3["SAMC"].of(adcon3) * tad();
+    const bool whole = !(adcon2 & kADCON2["BUFM"]);  // every group fills the buffers from the first on
+    const HalfCycle rest = conversion + last * (sampling + conversion);  // from its first sample to its end
     while (state_.phase_end <= until) {
+        if (whole && state_.phase == Phase::Sampling && state_.done == 0 && state_.next == 0) {
+            const HalfCycle end = state_.phase_end + rest;
+            if (end <= until && repeats()) {
+                const std::uint8_t scanned = state_.scanned;
+                std::copy_n(group_.results.begin(), last + 1, buffers);
+                adcon1 |= kADCON1["DONE"] | kADCON1["SAMP"];
+                end_group(end);
+                state_.scanned = scanned;
+                state_.result = group_.results[last];
+                state_.phase_end = end + sampling;
+                continue;
+            }
+            group_ = {.epoch = pins_.analog_epoch(state_.phase_end / 2),
+                      .channel = state_.channel,
+                      .scanned = state_.scanned,
+                      .tris = around_.sfr.raw(sfr::TRISB),
+                      .lat = around_.sfr.raw(sfr::LATB)};
+        }
         if (state_.phase == Phase::Sampling) {
             const int channel = state_.channel;
             const Cycle at = state_.phase_end / 2;
@@ -188,6 +220,10 @@ void Adc12::run_automatic(HalfCycle until) {
         adcon1 |= kADCON1["DONE"];
         if (state_.done >= last) {
             end_group(state_.phase_end);
+            if (group_.epoch != 0 && pins_.analog_epoch(state_.phase_end / 2) == group_.epoch)
+                std::copy_n(buffers, last + 1, group_.results.begin());
+            else
+                group_.epoch = 0;
         } else {
             ++state_.done;
             state_.next = static_cast<std::uint8_t>((state_.next + 1) % kInputs);
@@ -211,9 +247,18 @@ void Adc12::catch_up(Cycle now) {
     }
 }
 
+// Until the conversion under way ends, and while none is, the buffers stay as they are.
+void Adc12::note_quiet() {
+    HalfCycle end = state_.phase_end;
+    const bool rc = around_.sfr.raw(sfr::ADCON3) & kADCON3["ADRC"];  // then TAD may change meanwhile
+    if (state_.phase == Phase::Sampling && !rc) end += kConversionTads * tad();
+    around_.sfr.plain().until[SfrSpace::Plain::kConverter] = state_.timed ? (end + 1) / 2 : kNoCycle;
+}
+
 // Automatic groups need one event, at the interrupt: all before is made up for by catch_up(), which
 // everything calls that could tell the difference.
 void Adc12::plan() {
+    note_quiet();
     if (!state_.timed) {
         around_.events.cancel(slot_);
         return;
@@ -249,6 +294,7 @@ bool Adc12::runs_in_sleep() const {
 void Adc12::hold(bool on) {
     if (state_.held == on) return;
     state_.held = on;
+    group_.epoch = 0;
     if (state_.phase == Phase::Off) return;
     std::uint16_t& adcon1 = around_.sfr.raw(sfr::ADCON1);
     if (on) {
@@ -265,6 +311,7 @@ void Adc12::hold(bool on) {
 std::uint16_t Adc12::read_register(void* owner, std::uint16_t address) {
     Adc12& self = *static_cast<Adc12*>(owner);
     self.catch_up(self.around_.now);
+    self.note_quiet();
     return self.around_.sfr.raw(address);
 }
 
@@ -273,6 +320,7 @@ void Adc12::write_register(void* owner, std::uint16_t address, std::uint16_t val
     self.catch_up(self.around_.now);
     if (address == sfr::ADCON2) mask &= static_cast<std::uint16_t>(~kADCON2["BUFS"]);
     self.around_.sfr.store(address, value, mask);
+    self.group_.epoch = 0;
     self.plan();
 }
 
@@ -282,6 +330,7 @@ void Adc12::write_adcon1(void* owner, std::uint16_t address, std::uint16_t value
     const HalfCycle at = 2 * (self.around_.now + 1);
     const std::uint16_t old = self.around_.sfr.raw(address);
     self.around_.sfr.store(address, value, mask);
+    self.group_.epoch = 0;
     std::uint16_t& adcon1 = self.around_.sfr.raw(address);
     if (!(adcon1 & kADCON1["ADON"])) {
         self.switch_off();

@@ -13,6 +13,7 @@
 #include "emu/dspic/peripherals/pins.h"
 #include "emu/dspic/peripherals/surroundings.h"
 
+#include <array>
 #include <cstdint>
 
 namespace puckloop::dspic {
@@ -44,6 +45,10 @@ class Adc12 {
     template <class Archive>
     void state(Archive& archive) {
         archive(state_);
+        if constexpr (Archive::kLoads) {
+            forget_quiet();
+            group_.epoch = 0;
+        }
         constexpr HalfCycle kMostBehind = 4000;
         archive.check(!state_.timed || state_.phase_end >= 2 * around_.now ||
                           2 * around_.now - state_.phase_end <= kMostBehind,
@@ -77,6 +82,14 @@ class Adc12 {
         }
     };
 
+    /// A whole automatic group, to be repeated while it would give the same results.
+    struct Group {
+        std::uint64_t epoch = 0;                ///< of the pins (Pins::analog_epoch()); 0: none is known
+        std::uint8_t channel = 0, scanned = 0;  ///< as it began
+        std::uint16_t tris = 0, lat = 0;        ///< of port B
+        std::array<std::uint16_t, 16> results{};
+    };
+
     static std::uint16_t read_register(void* owner, std::uint16_t address);
     static void write_register(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask);
     static void write_adcon1(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask);
@@ -90,17 +103,22 @@ class Adc12 {
     void switch_off();
     bool goes_on_by_itself() const;
     void run_automatic(HalfCycle until);
+    bool repeats() const;
     std::uint8_t scan();
     double input(int channel, Cycle at) const;
     std::uint16_t convert(Cycle at) const;
     std::uint16_t formatted(unsigned counts, unsigned form) const;
     void end_group(HalfCycle at);
     void plan();
+    void note_quiet();
+    /// Every read of a buffer comes to read_register() until note_quiet().
+    void forget_quiet() { around_.sfr.plain().until[SfrSpace::Plain::kConverter] = 0; }
 
     Surroundings around_;
     const cosim::ClockDomain& clock_;
     Pins& pins_;
     State state_;
+    Group group_;  ///< the last one, or the one under way
     EventQueue::Slot slot_;
 };
 

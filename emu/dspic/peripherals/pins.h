@@ -50,6 +50,9 @@ class Pins {
     /// ADC clips. May be asked somewhat after that cycle, but always before anything that the chip drives
     /// changes and before its run_until() returns; calls come in time order among themselves.
     virtual double analog(int channel, Cycle now) = 0;
+    /// Stands for what the analog inputs show from cycle `from` on: while it stays the same, and is not 0,
+    /// they show what they showed, and asking analog() changes nothing. 0: they may change by themselves.
+    virtual std::uint64_t analog_epoch(Cycle from);
     /// A character left UART `unit` (1 or 2); called when its stop bit begins.
     virtual void uart_sent(int unit, const cosim::UartFrame& frame) = 0;
     /// The chip, as master, began an I2C phase of module `unit`; the board answers through
@@ -111,6 +114,9 @@ inline OutsidePin Pins::outside(PortLetter, int) const {
 inline void Pins::output_compare_changed(int, Cycle) {}
 inline bool Pins::wants_pwm_edges(int) const {
     return true;
+}
+inline std::uint64_t Pins::analog_epoch(Cycle) {
+    return 0;
 }
 inline Cycle Pins::next_edge(PortLetter, std::uint16_t, Cycle) const {
     return kNoCycle;

@@ -92,9 +92,10 @@ bool Emitter::emit_two_operands(const Op* op, const Two& two) {
     const Xbyak::Reg32 base = base_register(two), other = other_register(two);
     int file = 0;
     if (shape == Shape::File || shape == Shape::FileToW0) {
-        if (!ram_literal(op->k, op->byte, file)) return false;
+        const bool writes = shape == Shape::File && !compares;
+        if (writes ? !ram_literal(op->k, op->byte, file) : !can_read_literal(op->k, op->byte)) return false;
         if (takes_carry(two)) flush_flags();
-        movzx(base, file_cell(file, op->byte));
+        movzx(base, read_literal(op->k, op->byte));
         load_w(other, 0, op->byte);
         const Xbyak::Reg32 result = combine(two, op->byte);
         if (compares) return true;
@@ -130,13 +131,12 @@ bool Emitter::emit_alu(const Op* op) {
     if (const std::optional<Two> two = two_operands(op->form)) return emit_two_operands(op, *two);
     switch (op->form) {
     case FormId::CP0_f: {
-        int file = 0;
-        if (!ram_literal(op->k, op->byte, file)) return false;
-        movzx(r8d, file_cell(file, op->byte));
+        if (!can_read_literal(op->k, op->byte)) return false;
+        movzx(r8d, read_literal(op->k, op->byte));
         break;
     }
     case FormId::CP0_Ws: {
-        if (op->source == Ea::Indirect) source_index(op, ecx, op->byte);
+        if (op->source == Ea::Indirect) read_index(op, op->byte);
         load_source(op, r8d, op->byte);
         move_source(op, op->byte);
         break;

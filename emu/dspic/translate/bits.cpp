@@ -45,7 +45,7 @@ bool Emitter::emit_bits(const Op* op) {
     case FormId::BCLR_f_bit4:
     case FormId::BTG_f_bit4: {
         int file = 0;
-        if (!ram_literal(op->k, true, file)) return false;
+        if (!ram_literal(op->k, true, file)) return emit_clear_flag(op);
         // As a word: a later load of it would wait for a store of half of it.
         movzx(eax, file_cell(file & ~1, false));
         change(std::uint32_t{op->aux} << (file & 1 ? 8 : 0));
@@ -71,17 +71,16 @@ bool Emitter::emit_bit_test(const Op* op) {
     };
     switch (op->form) {
     case FormId::BTST_f_bit4: {
-        int file = 0;
-        if (!ram_literal(op->k, true, file)) return false;
+        if (!can_read_literal(op->k, true)) return false;
         prepare();
-        movzx(eax, file_cell(file, true));
+        movzx(eax, read_literal(op->k, true));
         bit_to_z(op->aux);
         return true;
     }
     case FormId::BTST_C_Ws_bit4:
     case FormId::BTST_Z_Ws_bit4:
         prepare();
-        if (op->source == Ea::Indirect) source_index(op, ecx, false);
+        if (op->source == Ea::Indirect) read_index(op, false);
         load_source(op, eax, false);
         move_source(op, false);
         if (to_z) {
@@ -94,7 +93,7 @@ bool Emitter::emit_bit_test(const Op* op) {
     case FormId::BTST_C_Ws_Wb:
     case FormId::BTST_Z_Ws_Wb:
         prepare();
-        if (op->source == Ea::Indirect) source_index(op, ecx, false);
+        if (op->source == Ea::Indirect) read_index(op, false);
         load_source(op, eax, false);
         load_w(ecx, op->b, false);
         move_source(op, false);

@@ -62,6 +62,7 @@ Emitter::Shared Emitter::emit_entry_code() {
 
 bool Emitter::emit_block(Machine& m, std::uint32_t index, const Shared& shared) {
     shared_ = shared;
+    machine_ = &m;
     start_ = index_ = index;
     Xbyak::Label late;
     L(entry_);
@@ -130,15 +131,18 @@ Xbyak::Label& Emitter::bail() {
     return bail_;
 }
 
-void Emitter::finish_bail() {
-    if (!bailed_) return;
-    cold(bail_, [this, flags = bail_flags_, cycles = cycles_, steps = steps_, keep = keep_, writes = writes_,
-                 index = index_] {
+std::function<void()> Emitter::leaving(const Flags& flags) {
+    return [this, flags, cycles = cycles_, steps = steps_, keep = keep_, writes = writes_, index = index_] {
         flags_ = flags;
         flush_flags();
         account(cycles, steps, keep, writes);
         leave_before(index, Left::Slow);
-    });
+    };
+}
+
+void Emitter::finish_bail() {
+    if (!bailed_) return;
+    cold(bail_, leaving(bail_flags_));
     bailed_ = false;
 }
 

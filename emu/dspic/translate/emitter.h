@@ -52,6 +52,8 @@ class Emitter : private Xbyak::CodeGenerator {
     Flow emit(Machine& m, const Op* op);
     /// The instruction cannot be finished here: the label leads out before it. Nothing has changed yet.
     Xbyak::Label& bail();
+    /// What emits a way out before the present instruction, where these flags hold.
+    std::function<void()> leaving(const Flags& flags);
     void finish_bail();
     void finish_step(const Op* op);
     void leave_before(std::uint32_t index, Left why);
@@ -85,6 +87,8 @@ class Emitter : private Xbyak::CodeGenerator {
     Xbyak::Address file_cell(int displacement, bool byte_size);
     void store_file(int displacement, const Xbyak::Reg32& from, bool byte_size);
     void source_index(const Op* op, const Xbyak::Reg32& index, bool byte_size, int words = 1);
+    /// The same into ecx for an operand that is only read.
+    void read_index(const Op* op, bool byte_size);
     void destination_index(const Op* op, const Xbyak::Reg32& index, bool byte_size, int words = 1);
     void step_pointer(int reg, int step, bool byte_size);
     void move_source(const Op* op, bool byte_size);
@@ -94,6 +98,21 @@ class Emitter : private Xbyak::CodeGenerator {
     void reach(const Op* op, bool byte_size);
     void load_source(const Op* op, const Xbyak::Reg32& to, bool byte_size);
     void store_destination(const Op* op, const Xbyak::Reg32& from, bool byte_size);
+
+    // registers.cpp
+    void jump_unless_plain(Xbyak::Label& out, std::uint32_t cycles);
+    /// As ram_index() into ecx for what is only read: leads to registers, too. Uses rax and rdx.
+    void readable_index(int disp, bool byte_size);
+    bool can_read_literal(std::uint32_t address, bool byte_size) const;
+    /// Emits the check that reading is a look at what the address returned leads to. Uses rax, rcx and rdx.
+    Xbyak::Address read_literal(std::uint32_t address, bool byte_size);
+    /// A register of the core's own that is a field and nothing else.
+    struct CoreRegister {
+        int place = 0;  ///< from Machine::st
+        std::uint32_t bits = 0;
+    };
+    std::optional<CoreRegister> core_register(std::uint32_t address) const;
+    bool emit_clear_flag(const Op* op);
 
     // alu.cpp
     enum class Sum : std::uint8_t { Add, AddC, Sub, SubB, SubR, SubBR };
@@ -172,6 +191,7 @@ class Emitter : private Xbyak::CodeGenerator {
     const Layout& layout_;
     std::size_t offset_;
     Shared shared_;
+    const Machine* machine_ = nullptr;  ///< whose program it is
 
     // The block so far.
     std::uint32_t start_ = 0;

@@ -169,8 +169,8 @@ void Emitter::emit_return(const Op* op) {
 }
 
 void Emitter::bail_if_requested() {
-    mov(rax, qword[rbp + layout_.first_level]);
-    cmp(dword[rax], 0);
+    mov(rax, qword[rbp + layout_.line]);
+    cmp(dword[rax + static_cast<int>(offsetof(InterruptController::Line, first.level))], 0);
     jne(bail(), T_NEAR);
 }
 
@@ -214,15 +214,14 @@ bool Emitter::emit_skip(Machine& m, const Op* op) {
     switch (op->form) {
     case FormId::BTSS_f_bit4:
     case FormId::BTSC_f_bit4: {
-        int file = 0;
-        if (!ram_literal(op->k, true, file)) return false;
-        test(file_cell(file, true), op->aux);
+        if (!can_read_literal(op->k, true)) return false;
+        test(read_literal(op->k, true), op->aux);
         if (op->form == FormId::BTSC_f_bit4) host ^= 1;
         break;
     }
     case FormId::BTSS_Ws_bit4:
     case FormId::BTSC_Ws_bit4:
-        if (op->source == Ea::Indirect) source_index(op, ecx, false);
+        if (op->source == Ea::Indirect) read_index(op, false);
         load_source(op, eax, false);
         move_source(op, false);
         test(eax, op->k);

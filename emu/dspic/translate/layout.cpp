@@ -14,7 +14,7 @@ Layout::Layout(const Machine& m) {
     cycle = from_state(m.st.cycle);
     rcount = from_state(m.st.rcount);
     disi_end = from_state(m.st.disi_end);
-    first_level = from_state(m.first_level);
+    psvpag = from_state(m.st.psvpag);
     repeat_first = from_state(m.repeat_first);
     current = from_state(m.current);
     code = from_state(m.code);
@@ -25,6 +25,9 @@ Layout::Layout(const Machine& m) {
     instructions = from_state(m.instructions);
     eligible = from_state(m.eligible);
     skip_idle = from_state(m.skip_idle);
+    disi_waits = from_state(m.disi_waits);
+    line = from_state(m.line);
+    plain = from_state(m.plain);
     wait_level = from_state(m.waits.level);
     stays = from_state(m.waits.stays);
     stale_after = from_state(m.waits.stale_after);
@@ -33,6 +36,9 @@ Layout::Layout(const Machine& m) {
     entries = from_state(m.translated.entries);
     ram_words = m.ram_words;
     code_words = m.code_words;
+    ifs = m.device.ifs;
+    iec = m.device.iec;
+    ifs_words = m.device.ifs_words;
 }
 
 }  // namespace puckloop::dspic::translate

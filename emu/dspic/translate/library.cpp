@@ -45,7 +45,9 @@ class Library {
 
     bool available() const { return memory_.available(); }
     bool serves(const Machine& m) const {
-        return layout_.ram_words == m.ram_words && layout_.code_words == m.code_words;
+        return layout_.ram_words == m.ram_words && layout_.code_words == m.code_words &&
+               layout_.ifs == m.device.ifs && layout_.iec == m.device.iec &&
+               layout_.ifs_words == m.device.ifs_words;
     }
 
     std::uint32_t block_at(Machine& m, std::uint32_t index) {

@@ -1,6 +1,5 @@
 // Moving data: MOV in its addressing modes, double words, the stack.
 
-#include "emu/dspic/devices/dspic30f6014a_sfr.h"
 #include "emu/dspic/translate/emitter.h"
 
 namespace puckloop::dspic::translate {
@@ -31,8 +30,10 @@ bool Emitter::emit_move(const Op* op) {
         return true;
     case FormId::MOV_f:
     case FormId::MOV_f_WREG:
-        if (!ram_literal(op->k, byte_size, file)) return false;
-        movzx(r11d, file_cell(file, byte_size));
+        if (op->form == FormId::MOV_f ? !ram_literal(op->k, byte_size, file)  // written back
+                                      : !can_read_literal(op->k, byte_size))
+            return false;
+        movzx(r11d, read_literal(op->k, byte_size));
         set_result(byte_size);
         if (op->form == FormId::MOV_f_WREG) store_w(0, r11d, byte_size);
         return true;
@@ -45,18 +46,31 @@ bool Emitter::emit_move(const Op* op) {
         store_w(op->d, eax, false);
         return true;
     case FormId::MOV_f_Wnd:
-        if (!ram_literal(op->k, false, file)) return false;
-        movzx(eax, file_cell(file, false));
+        if (const auto own = core_register(op->k)) {
+            movzx(eax, word[rbp + own->place]);
+        } else {
+            if (!can_read_literal(op->k, false)) return false;
+            movzx(eax, read_literal(op->k, false));
+        }
         store_w(op->d, eax, false);
         return true;
     case FormId::MOV_Wns_f:
+        if (const auto own = core_register(op->k)) {
+            load_w(eax, op->s, false);
+            and_(eax, own->bits);
+            mov(word[rbp + own->place], ax);
+            return true;
+        }
         if (!ram_literal(op->k, false, file)) return false;
         load_w(eax, op->s, false);
         store_file(file, eax, false);
         return true;
     case FormId::MOV_WsOffset_Wnd:
         load_w(eax, op->s, false);
-        ram_index(ecx, static_cast<std::int16_t>(op->k), byte_size, op->s == 15);
+        if (op->s == 15)
+            ram_index(ecx, static_cast<std::int16_t>(op->k), byte_size, true);
+        else
+            readable_index(static_cast<std::int16_t>(op->k), byte_size);
         movzx(eax, ram_cell(rcx, byte_size));
         store_w(op->d, eax, byte_size);
         return true;
@@ -93,29 +107,29 @@ bool Emitter::emit_move(const Op* op) {
         mov(word[r12 + rdx * 2], ax);
         mov(word[r12 + rdx * 2 + 2], cx);
         return true;
-    case FormId::PUSH_f: {  // RCOUNT is what compilers save of the core's registers
-        const bool count = op->k == sfr::RCOUNT;
-        if (!count && !ram_literal(op->k, false, file)) return false;
+    case FormId::PUSH_f: {
+        const auto own = core_register(op->k);
+        if (!own && !ram_literal(op->k, false, file)) return false;
         load_w(eax, 15, false);
         ram_index(edx, 0, false, true);
-        movzx(eax, count ? word[rbp + layout_.rcount] : file_cell(file, false));
+        movzx(eax, own ? word[rbp + own->place] : file_cell(file, false));
         mov(ram_cell(rdx, false), ax);
         add(w_word(15), 2);
         return true;
     }
     case FormId::POP_f: {
-        const bool count = op->k == sfr::RCOUNT;
-        if (!count && !ram_literal(op->k, false, file)) return false;
+        const auto own = core_register(op->k);
+        if (!own && !ram_literal(op->k, false, file)) return false;
         load_w(eax, 15, false);
         ram_index(ecx, -2, false, true);
         movzx(eax, ram_cell(rcx, false));
         add(w_word(15), -2);
-        if (!count) {
+        if (!own) {
             store_file(file, eax, false);
             return true;
         }
-        and_(eax, 0x3FFF);
-        mov(word[rbp + layout_.rcount], ax);
+        and_(eax, own->bits);
+        mov(word[rbp + own->place], ax);
         return true;
     }
     default:

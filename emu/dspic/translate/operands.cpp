@@ -73,6 +73,18 @@ void Emitter::source_index(const Op* op, const Xbyak::Reg32& index, bool byte_si
     ram_index(index, op->s_pre, byte_size, op->s == 15, words);
 }
 
+void Emitter::read_index(const Op* op, bool byte_size) {
+    if (op->s == 15) return source_index(op, ecx, byte_size);
+    load_w(eax, op->s, false);
+    if (op->source == Ea::Offset) {
+        load_w(ecx, op->b, false);
+        add(eax, ecx);
+        movzx(eax, ax);
+        return readable_index(0, byte_size);
+    }
+    readable_index(op->s_pre, byte_size);
+}
+
 void Emitter::destination_index(const Op* op, const Xbyak::Reg32& index, bool byte_size, int words) {
     load_w(eax, op->d, false);
     if (op->destination == Ea::Offset) {
@@ -105,7 +117,7 @@ bool Emitter::can_reach(const Op* op) {
 }
 
 void Emitter::reach(const Op* op, bool byte_size) {
-    if (op->source == Ea::Indirect || op->source == Ea::Offset) source_index(op, ecx, byte_size);
+    if (op->source == Ea::Indirect || op->source == Ea::Offset) read_index(op, byte_size);
     if (op->destination == Ea::Indirect || op->destination == Ea::Offset)
         destination_index(op, edx, byte_size);
 }

@@ -111,7 +111,7 @@ bool Emitter::emit_shift(const Op* op) {
     case FormId::SE_Ws_Wnd:
     case FormId::ZE_Ws_Wnd: {
         const bool is_signed = op->form == FormId::SE_Ws_Wnd;
-        if (op->source == Ea::Indirect) source_index(op, ecx, true);
+        if (op->source == Ea::Indirect) read_index(op, true);
         load_source(op, r11d, true);
         move_source(op, true);
         if (is_signed) {
@@ -178,7 +178,7 @@ bool Emitter::emit_multiply(const Op* op) {
     default:
         return false;
     }
-    if (op->source == Ea::Indirect) source_index(op, ecx, false);
+    if (op->source == Ea::Indirect) read_index(op, false);
     load_source(op, edx, false);
     if (signed_s) movsx(edx, dx);
     if (signed_b)

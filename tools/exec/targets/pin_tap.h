@@ -32,6 +32,7 @@ class PinTap : public dspic::Pins {
         return inner_.next_edge(port, heeded, after);
     }
     double analog(int channel, dspic::Cycle now) override { return inner_.analog(channel, now); }
+    std::uint64_t analog_epoch(dspic::Cycle from) override { return inner_.analog_epoch(from); }
     void uart_sent(int unit, const cosim::UartFrame& frame) override;
     void i2c_phase(int unit, const cosim::I2cPhase& phase) override;
     void i2c_slave_answer(int unit, const cosim::I2cPhase& answer) override;
