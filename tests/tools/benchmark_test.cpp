@@ -167,6 +167,7 @@ TEST_CASE("a run is timed by its own report, and a build may be its own peer") {
 
     std::vector<std::string> names;
     for (const char* words : {"bench --json --rounds 1 --duration 1.1 --case overhead",
+                              "bench --json --rounds 2 --duration 1.1 --case wait --peer " PUCKLOOP_PROGRAM,
                               "bench --json --rounds 2 --duration 1.1 --case wander --case memory --robots 1 "
                               "--robots 2 --peer " PUCKLOOP_PROGRAM}) {
         const auto bench = run_puckloop(words);
@@ -184,8 +185,9 @@ TEST_CASE("a run is timed by its own report, and a build may be its own peer") {
             if (figure["unit"] == "x real time") CHECK(figure.contains("ratio_to_peer") == peer);
         }
     }
-    for (const char* name : {"hello.toml, overhead factor", "swarm.toml, 1 thread, overhead factor",
-                             "hello.toml, boards alone", "wander, 2 robots", "peak memory, 2 wandering"})
+    for (const char* name :
+         {"hello.toml, overhead factor", "swarm.toml, 1 thread, overhead factor", "hello.toml, boards alone",
+          "epuck.hex, 42.1 s from power-up", "wander, 2 robots", "peak memory, 2 wandering"})
         CHECK(std::find(names.begin(), names.end(), name) != names.end());
 }
 

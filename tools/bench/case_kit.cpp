@@ -25,12 +25,6 @@ constexpr const char* kRealTime = "x real time";
 /// A name that children of this process do not see change when the program is built anew meanwhile.
 constexpr const char* kSelf = "/proc/self/exe";
 
-std::filesystem::path self() {
-    std::error_code error;
-    const auto path = std::filesystem::read_symlink(kSelf, error);
-    return error ? std::filesystem::path(kSelf) : path;
-}
-
 }  // namespace
 
 Kit::Kit(const BenchOptions& options)
@@ -42,6 +36,12 @@ Kit::Kit(const BenchOptions& options)
 Kit::~Kit() {
     std::error_code ignored;
     std::filesystem::remove_all(folder_, ignored);
+}
+
+std::filesystem::path Kit::own_program() {
+    std::error_code error;
+    const auto path = std::filesystem::read_symlink(kSelf, error);
+    return error ? std::filesystem::path(kSelf) : path;
 }
 
 // Where this program was built; `bench` works from any folder.
@@ -136,7 +136,7 @@ void Kit::time_boards() {
 RunTiming Kit::own_run(const RunSpec& given, const std::function<void(pid_t)>& watch) const {
     RunSpec spec = given;
     if (options_.interpret) spec.options.emplace_back("--no-translate");
-    return time_run(self(), spec, folder_ / "own", watch);
+    return time_run(own_program(), spec, folder_ / "own", watch);
 }
 
 std::optional<RunTiming> Kit::peer_run(const RunSpec& spec, const RunTiming& own, Figure& figure) const {

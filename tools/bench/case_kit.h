@@ -36,6 +36,8 @@ class Kit {
     void time_growth(double simulated_s);
     /// The physical world alone, part by part (tools/bench/world_cost.h).
     void time_world();
+    /// Images on the main board that wait.
+    void time_waiting();
     /// Wandering robots: peak memory.
     void weigh(double simulated_s);
 
@@ -48,6 +50,7 @@ class Kit {
         std::function<double()> once;
     };
     void time_speeds(const std::string& bench_case, const std::vector<Speed>& speeds);
+    static std::filesystem::path own_program();
     RunTiming own_run(const RunSpec& spec, const std::function<void(pid_t)>& watch = {}) const;
     /// Nothing without a peer, and when it cannot run this, which becomes `figure`'s note; it is not tried
     /// again.

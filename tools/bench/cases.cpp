@@ -77,6 +77,7 @@ const std::vector<Case>& table() {
                                          {"overhead", overhead},
                                          {"wander", wander},
                                          {"world", [](Kit& kit) { kit.time_world(); }},
+                                         {"wait", [](Kit& kit) { kit.time_waiting(); }},
                                          {"memory", memory},
                                          {"rab1", [](Kit& kit) { rab(kit, 1); }},
                                          {"rab2", [](Kit& kit) { rab(kit, 2); }},
