@@ -4,7 +4,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace puckloop::images {
 
@@ -196,15 +198,39 @@ std::string drives_on(Trial& trial) {
     return fmt::format("drives {}", std::abs(there[0] - there[1]) > 20 ? "a spiral" : "on");
 }
 
-/// An older build of the same.
-Row older(const char* image, const char* at) {
-    return {image, at, "sercom protocol at UART1", {.selector = 3}, asercom};
+/// An older build of the same, behind a boot loader.
+std::vector<Row> older_rows(const char* image, const char* where) {
+    std::vector<Row> rows;
+    const auto add = [&](int selector, std::string says, std::function<std::string(Trial&)> see,
+                         pic::Revision revision = pic::Revision::Rev12, double boot = 3.8,
+                         double baud = 0.0) {
+        rows.push_back(row(selector, std::move(says), std::move(see), revision, boot, baud));
+        rows.back().image = image;
+        rows.back().at += fmt::format(", {}", where);
+    };
+    add(0, "free fall and shock detection with sounds", falls);
+    add(1, "says \"Locate sound\"", locates_a_clap);
+    add(2, "wall following", wall);
+    add(3, "sercom protocol at UART1", asercom);
+    add(4, "drives a square, by steps", square_by_steps);
+    add(5, "sensors on LEDs, light of the camera", displays);
+    add(6, "camera points to light", turns_to_light);
+    add(7, "RS232 to I2C translator", translates, kNew);
+    add(8, "shows the ground's direction", shows_the_ground);
+    add(9, "gyroscope on LEDs", gyroscope, kNew);
+    add(10, "sercom for the extension, UART2 at 230400 baud", extension, pic::Revision::Rev12, 4.5, 230400);
+    add(11, "configures the Bluetooth module, by UART2", configures);
+    add(12, "test of everything, at UART2", tests_all);
+    add(13, "UART1 to UART2", passes_on);
+    add(14, "follows what is before it", follows);
+    add(15, "dust cleaner: a spiral until something is met", drives_on);
+    return rows;
 }
 
 }  // namespace
 
 std::vector<Row> demo_gctronic_rows() {
-    return {
+    std::vector<Row> rows{
         row(0, "free fall and shock detection with sounds", falls),
         row(1, "LED at the loudest microphone", loudest),
         row(2, "wall following", wall),
@@ -225,9 +251,12 @@ std::vector<Row> demo_gctronic_rows() {
         row(13, "UART1 to UART2", passes_on),
         row(14, "follows what is before it", follows),
         row(15, "dust cleaner: a spiral until something is met", drives_on),
-        older("demoGCtronic-rev117+bootloader.hex", "selector 3, behind a boot loader"),
-        older("demoGCtronic-rev117+bootloader+EEPROM-FFF7.hex", "selector 3, with an EEPROM"),
     };
+    for (const auto& [image, where] :
+         {std::pair{"demoGCtronic-rev117+bootloader.hex", "behind a boot loader"},
+          std::pair{"demoGCtronic-rev117+bootloader+EEPROM-FFF7.hex", "with an EEPROM"}})
+        std::ranges::move(older_rows(image, where), std::back_inserter(rows));
+    return rows;
 }
 
 }  // namespace puckloop::images

@@ -23,22 +23,6 @@ std::string shocks(Trial& trial) {
     return "a shock: LEDs and a sound";
 }
 
-/// A clap: all microphones, one after the other.
-std::string locates(Trial& trial) {
-    for (int i = 0; i < 3; ++i)
-        trial.set(fmt::format("mic_level{}", i), 1500);
-    trial.run(0.02);
-    for (int i = 0; i < 3; ++i)
-        trial.set(fmt::format("mic_level{}", i), 0);
-    double turned = 0.0;
-    for (int i = 0; i < 30; ++i) {
-        const auto there = trial.drives(0.1);
-        turned += std::abs(there[0]) + std::abs(there[1]);
-    }
-    expect(turned > 10 || !trial.leds().empty(), "nothing after a clap");
-    return "a clap: shows a direction and turns (directions: sound.md)";
-}
-
 std::string drives(Trial& trial) {
     trial.run(3.5);
     trial.set("proximity0", 400);
@@ -70,7 +54,7 @@ std::vector<Row> demo_rows() {
     constexpr const char *kDemo = "Demo.hex", *kOlder = "Demo-default.hex";
     rows.push_back(row(kDemo, 0, "shows the ground's direction", shows_the_ground));
     rows.push_back(row(kDemo, 1, "shock detection with sounds", shocks));
-    rows.push_back(row(kDemo, 2, "locates a sound", locates));
+    rows.push_back(row(kDemo, 2, "locates a sound", locates_a_clap));
     rows.push_back(row(kDemo, 3, "wall following", drives));
     rows.push_back(row(kDemo, 4, "follows what is before it", drives));
     rows.push_back(row(kDemo, 5, "avoids obstacles", drives));
@@ -80,9 +64,13 @@ std::vector<Row> demo_rows() {
     rows.push_back(row(kDemo, 9, "9 to 15: commanded by sound", listens));
     rows.push_back(row(kOlder, 0, "shows the ground's direction", shows_the_ground));
     rows.push_back(row(kOlder, 1, "shock detection with sounds", shocks));
-    rows.push_back(row(kOlder, 2, "locates a sound", locates));
+    rows.push_back(row(kOlder, 2, "locates a sound", locates_a_clap));
+    rows.push_back(row(kOlder, 3, "wall following", drives));
+    rows.push_back(row(kOlder, 4, "follows what is before it", drives));
     rows.push_back(row(kOlder, 5, "avoids obstacles", drives));
     rows.push_back(row(kOlder, 6, "follows all balls", looks));
+    rows.push_back(row(kOlder, 7, "follows the red ball", looks));
+    rows.push_back(row(kOlder, 8, "follows the green ball", looks));
     rows.push_back(row(kOlder, 9, "9 to 15: commanded by sound", listens));
     return rows;
 }

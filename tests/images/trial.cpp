@@ -100,4 +100,19 @@ std::string shows_the_ground(Trial& trial) {
     return fmt::format("tilted to either side: LED {} and LED {}", right, left);
 }
 
+std::string locates_a_clap(Trial& trial) {
+    for (int i = 0; i < 3; ++i)
+        trial.set(fmt::format("mic_level{}", i), 1500);
+    trial.run(0.02);
+    for (int i = 0; i < 3; ++i)
+        trial.set(fmt::format("mic_level{}", i), 0);
+    double turned = 0.0;
+    for (int i = 0; i < 30; ++i) {
+        const auto there = trial.drives(0.1);
+        turned += std::abs(there[0]) + std::abs(there[1]);
+    }
+    expect(turned > 10 || !trial.leds().empty(), "nothing after a clap");
+    return "a clap: shows a direction and turns (directions: sound.md)";
+}
+
 }  // namespace puckloop::images

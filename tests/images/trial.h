@@ -67,6 +67,9 @@ std::string drives_by_remote(Trial& trial);
 /// The accelerometer's lowest side, on an LED.
 std::string shows_the_ground(Trial& trial);
 
+/// A clap of 20 ms at all microphones: an LED shows a direction, the robot turns to it.
+std::string locates_a_clap(Trial& trial);
+
 std::vector<Row> demo_gctronic_rows();
 std::vector<Row> demo_rows();
 std::vector<Row> btcom_rows();
