@@ -190,6 +190,74 @@ TEST_CASE("cameras see lamps that are moved, added and taken away") {
     CHECK(there(end, add.thing.lamps[0], 0.25));
 }
 
+TEST_CASE("beyond 512 lamps a camera sees none, and one more when one goes away") {
+    World world = room();
+    constexpr std::size_t kRoom = 2, kAdded = 5;
+    while (world.lamps.size() < CameraSignals::kMostLamps - kRoom)
+        world.lamps.push_back({.name = "lamp " + std::to_string(world.lamps.size()),
+                               .x = -0.9 + 0.003 * static_cast<double>(world.lamps.size())});
+    std::vector<Event> events;
+    for (std::size_t i = 0; i < kAdded; ++i) {
+        Action add = action(Verb::Add, "added " + std::to_string(i));
+        add.thing.lamps.push_back({.name = add.object, .x = 0.1 * static_cast<double>(i), .y = 0.7});
+        events.push_back(at(20 * kMillisecond, add));
+    }
+    events.push_back(at(80 * kMillisecond, action(Verb::Remove, "sun")));
+    const auto added = [&](Time until) {
+        const auto node = node_with(world, events);
+        CameraScene scene(world);
+        for (const Message& message : to_camera(run_node(*node, {}, until, 10 * kMillisecond))) {
+            const auto& signal = std::get<cosim::Signal>(message.payload);
+            scene.change(signal.id, signal.value);
+        }
+        std::vector<Glow> glows;
+        scene.glows(1, glows);
+        CHECK(glows.size() <= CameraSignals::kMostLamps);
+        return std::ranges::count_if(glows, [](const Glow& glow) { return glow.y == 0.7; });
+    };
+    CHECK(added(20 * kMillisecond) == 0);
+    CHECK(added(75 * kMillisecond) == kRoom);
+    CHECK(added(150 * kMillisecond) == kRoom + 1);
+}
+
+TEST_CASE("beyond some 2600 things a camera sees them as they were at the start") {
+    World world = room();
+    constexpr std::size_t kBoxes = 2700, kRow = 60;
+    constexpr double kApart = 0.03;
+    world.arena = rectangular_arena(4, 4);
+    for (std::size_t i = 0; i < kBoxes; ++i)
+        world.boxes.push_back({.name = "box " + std::to_string(i),
+                               .x = -1.9 + kApart * static_cast<double>(i % kRow),
+                               .y = 0.55 + kApart * static_cast<double>(i / kRow),
+                               .length = 0.01,
+                               .width = 0.01,
+                               .reflectivity = 0.5});
+    const CameraSignals signals(world);
+    std::size_t beyond = 0;
+    while (signals.shape(true, beyond) + kShapeSignals <= CameraSignals::kFirstLampPlace)
+        ++beyond;
+    CHECK((beyond > 2500 && beyond < kBoxes));
+    std::vector<Event> events;
+    for (const std::size_t box : {std::size_t{0}, kBoxes - 1}) {
+        Action set = action(Verb::Set, "box " + std::to_string(box));
+        set.property = "reflectivity";
+        set.value = 0.9;
+        events.push_back(at(20 * kMillisecond, set));
+    }
+    const auto node = node_with(world, events);
+    CameraScene scene(world);
+    for (const Message& message : to_camera(run_node(*node, {}, 75 * kMillisecond, 10 * kMillisecond))) {
+        const auto& signal = std::get<cosim::Signal>(message.payload);
+        scene.change(signal.id, signal.value);
+    }
+    std::vector<Body> bodies;
+    scene.bodies(1, bodies);
+    CHECK(bodies.size() > kBoxes);  // all are drawn
+    const auto bright = std::ranges::count_if(
+        bodies, [](const Body& body) { return body.shape.reflectivity == Approx(0.9); });
+    CHECK(bright == 1);
+}
+
 TEST_CASE("a world without cameras has no port for them") {
     World world = room();
     world.robots[1].camera = false;
