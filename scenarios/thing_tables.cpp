@@ -1,5 +1,7 @@
 #include "scenarios/thing_tables.h"
 
+#include <fmt/format.h>
+
 namespace puckloop::scenarios {
 
 namespace {
@@ -62,7 +64,27 @@ void read_speaker(Reader& reader, physics::Speaker& speaker) {
     speaker.height = reader.quantity("height", Dimension::Length, speaker.height);
     speaker.level = reader.quantity("level", Dimension::Number);
     speaker.on = reader.quantity("on", Dimension::Time, speaker.on);
-    speaker.off = reader.quantity("off", Dimension::Time, speaker.off);
+    const double duration = reader.quantity("duration", Dimension::Time, 0.0);
+    speaker.off =
+        reader.quantity("off", Dimension::Time, duration > 0.0 ? speaker.on + duration : speaker.off);
+    if (duration > 0.0 && reader.has("off")) reader.fail("off", "duration is given as well", "one of them");
+    speaker.every = reader.quantity("every", Dimension::Time, 0.0);
+    constexpr std::int64_t kMost = 1'000'000;
+    speaker.times = static_cast<std::uint64_t>(reader.integer("times", 0, 0, kMost));
+    const std::string wave = reader.text("wave", "none");
+    if (wave != "none" && wave != "noise")
+        reader.fail("wave", fmt::format("there is no wave '{}'", wave), "noise or none; a tone by tone");
+    speaker.wave = wave == "noise";
+    speaker.tone = reader.quantity("tone", Dimension::Frequency, 0.0);
+    speaker.sweep_to = reader.quantity("sweep_to", Dimension::Frequency, 0.0);
+    const bool ends = duration > 0.0 || reader.has("off");
+    const auto needs = [&](const char* key, bool given, const char* other, bool there) {
+        if (given && !there) reader.fail(key, fmt::format("has no meaning without {}", other), other);
+    };
+    needs("sweep_to", speaker.sweep_to > 0.0, "tone", speaker.tone > 0.0);
+    needs("sweep_to", speaker.sweep_to > 0.0, "duration", ends);
+    needs("every", speaker.every > 0.0, "duration", ends);
+    needs("times", speaker.times > 0, "every", speaker.every > 0.0);
 }
 
 void read_patch(Reader& reader, physics::Patch& patch) {

@@ -21,8 +21,9 @@ namespace {
 constexpr double kFarthest = 1000.0;      // m: nothing is further out or bigger
 constexpr double kMostReflective = 10.0;  // foil is 1.5
 constexpr double kBrightest = 100.0;
-constexpr double kLoudest = 1e5;  // counts: full scale 2 m away
-constexpr double kLongest = 1e9;  // s
+constexpr double kLoudest = 1e5;                 // counts: full scale 2 m away
+constexpr double kLongest = 1e9;                 // s
+constexpr double kLowest = 20, kHighest = 4000;  // Hz: what microphones hear evenly here (sound_waves.h)
 
 class Checker {
   public:
@@ -174,6 +175,9 @@ class Checker {
         range(what, s.place, "level", s.level, 0.0, kLoudest);
         range(what, s.place, "on", s.on, 0.0, kLongest);
         range(what, s.place, "off", s.off, s.on, kLongest);
+        if (s.every != 0.0) range(what, s.place, "every", s.every, std::max(s.off - s.on, 1e-3), kLongest);
+        if (s.tone != 0.0) range(what, s.place, "tone", s.tone, kLowest, kHighest);
+        if (s.sweep_to != 0.0) range(what, s.place, "sweep_to", s.sweep_to, kLowest, kHighest);
     }
     void check_patch(const Patch& p) {
         const auto what = named("patch", p.name, p.place);

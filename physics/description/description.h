@@ -69,14 +69,19 @@ struct Lamp {
     Place place{};
 };
 
-/// A loudspeaker with a steady noise-like sound.
+/// A loudspeaker: steady noise, or a wave (physics/sensors/speaker_wave.h).
 struct Speaker {
     std::string name;
     double x = 0.0, y = 0.0;
     double height = 0.03;
-    double level = 0.0;  ///< counts (volume) at a plain microphone 0.1 m away, on its axis
-    double on = 0.0;     ///< s: when it begins
-    double off = 1e9;    ///< s: when it ends
+    double level = 0.0;       ///< counts (volume) at a plain microphone 0.1 m away, on its axis
+    double on = 0.0;          ///< s: when it begins
+    double off = 1e9;         ///< s: when it ends
+    double every = 0.0;       ///< s: from one sound's begin to the next's; 0: there is one
+    std::uint64_t times = 0;  ///< sounds in all, if there are several; 0: without end
+    bool wave = false;        ///< noise that travels
+    double tone = 0.0;        ///< Hz; 0: noise
+    double sweep_to = 0.0;    ///< Hz: what the tone becomes, evenly, up to its end; 0: it stays
     Place place{};
 };
 

@@ -15,7 +15,8 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Box, name, x, y, heading, length, width, heig
                                    reflectivity, place)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Cylinder, name, x, y, radius, height, movable, mass, reflectivity, place)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Lamp, name, x, y, height, intensity, place)
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Speaker, name, x, y, height, level, on, off, place)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Speaker, name, x, y, height, level, on, off, every, times, wave, tone,
+                                   sweep_to, place)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Patch, name, shape, x, y, heading, length, width, radius, grey, place)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Booth, name, x, y, heading, reflectivity, signals, place)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Robot, name, x, y, heading, parameters, board_signals, ground_signals, rab,

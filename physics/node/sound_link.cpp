@@ -2,9 +2,11 @@
 
 #include "physics/description/robot_parameters.h"
 #include "physics/node/robot_links.h"
+#include "physics/sensors/speaker_wave.h"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace puckloop::physics {
@@ -20,7 +22,7 @@ constexpr double kSpeakerHeight = 0.045;  // m, above the middle of the axle; an
 
 }  // namespace
 
-SoundLink::SoundLink(const World& world, std::size_t ports_of_robot) {
+SoundLink::SoundLink(const World& world, std::size_t ports_of_robot) : seed_(world.seed) {
     for (const auto& described : world.robots) {
         Robot robot;
         const auto id_of = [&](const std::string& name) {
@@ -46,22 +48,37 @@ void SoundLink::take(std::size_t robot, std::uint16_t id, double value, double s
     }
 }
 
+bool SoundLink::any_speaker(const WorldModel& model) const {
+    const auto& speakers = model.description().speakers;
+    return std::any_of(speakers.begin(), speakers.end(), [&](const Speaker& speaker) {
+        return is_wave(speaker) && plays_within(speaker, model.seconds() - kOnTheWay, model.seconds());
+    });
+}
+
 void SoundLink::find_sources(const WorldModel& model) {
     const double now = model.seconds();
     sources_.clear();
     for (std::size_t i = 0; i < robots_.size(); ++i) {
         robots_[i].track.forget(now - kOnTheWay);
         if (robots_[i].track.silent_from(now - kOnTheWay)) continue;
-        sources_.push_back({model.state(i).x, model.state(i).y, &robots_[i].track});
+        sources_.push_back(
+            {model.state(i).x, model.state(i).y, kSpeakerHeight, kSpeakerLevel / 2, &robots_[i].track});
     }
+    for (const Speaker& speaker : model.description().speakers)
+        if (is_wave(speaker) && plays_within(speaker, now - kOnTheWay, now))
+            sources_.push_back({speaker.x, speaker.y, speaker.height, speaker.level / 2, nullptr, &speaker});
 }
 
 void SoundLink::publish(const WorldModel& model, cosim::Time stamp, std::vector<cosim::Message>& outbox) {
-    if (!sounding_) return;
+    if (!sounding_ && !any_speaker(model)) return;
     find_sources(model);
     for (std::size_t i = 0; i < robots_.size(); ++i)
         if (robots_[i].hears) publish_to(robots_[i], model.state(i), stamp, outbox);
     sounding_ = !sources_.empty();
+}
+
+double SoundLink::value_of(const Source& source, double seconds) const {
+    return source.track ? source.track->at(seconds) : wave_of(*source.speaker, seed_, seconds);
 }
 
 void SoundLink::publish_to(Robot& robot, const RobotState& state, cosim::Time stamp,
@@ -70,12 +87,12 @@ void SoundLink::publish_to(Robot& robot, const RobotState& state, cosim::Time st
     const double begin = cosim::to_seconds(stamp) - kSoundLatency;
     const double period = cosim::to_seconds(kSoundPeriod);
     for (const Source& source : sources_) {
-        const auto ways = sound_ways(robot.microphones, state, begin, source.x, source.y, kSpeakerHeight);
+        const auto ways = sound_ways(robot.microphones, state, begin, source.x, source.y, source.height);
         for (std::size_t mic = 0; mic < kMicrophones; ++mic) {
-            const double swing = kSpeakerLevel / 2 * ways[mic].share;
+            const double swing = source.swing * ways[mic].share;
             const double made = begin - ways[mic].distance / kSpeedOfSound;
             for (std::size_t i = 0; i < kSoundSamples; ++i)
-                waves[mic][i] += swing * source.track->at(made + static_cast<double>(i) * period);
+                waves[mic][i] += swing * value_of(source, made + static_cast<double>(i) * period);
         }
     }
     for (std::size_t i = 0; i < kSoundSamples; ++i)

@@ -1,5 +1,6 @@
 #pragma once
-// Sound through the world: what robots' speakers do comes in with their signals, the waves at every robot's
+// Sound through the world: what robots' speakers do comes in with their signals, what loudspeakers that play
+// waves do is known (speaker_wave.h); the waves at every robot's
 // three microphones go out, 16 samples a step, while there is anything to hear.
 
 #include "cosim/core/message.h"
@@ -32,15 +33,20 @@ class SoundLink {
         MicrophoneParameters microphones;
         bool hears = false;
     };
-    /// A speaker that is heard in this step.
+    /// A speaker that is heard in this step: a robot's by its track, or the scenario's.
     struct Source {
-        double x = 0.0, y = 0.0;
+        double x = 0.0, y = 0.0, height = 0.0;
+        double swing = 0.0;  ///< counts of a full-scale value at the level's distance
         const SoundTrack* track = nullptr;
+        const Speaker* speaker = nullptr;
     };
+    bool any_speaker(const WorldModel& model) const;
     void find_sources(const WorldModel& model);
+    double value_of(const Source& source, double seconds) const;
     void publish_to(Robot& robot, const RobotState& state, cosim::Time stamp,
                     std::vector<cosim::Message>& outbox);
 
+    std::uint64_t seed_;
     std::vector<Robot> robots_;
     std::vector<Source> sources_;
     bool sounding_ = false;

@@ -2,6 +2,7 @@
 
 #include "physics/description/robot_constants.h"
 #include "physics/sensors/sensor_view.h"
+#include "physics/sensors/speaker_wave.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +19,8 @@ Ears::Ears(const MicrophoneParameters& parameters, std::span<const Speaker> spea
     : parameters_(parameters), speakers_(speakers) {}
 
 bool Ears::any() const {
-    return !speakers_.empty() || parameters_.self_noise > 0.0 || parameters_.motor_noise > 0.0;
+    return parameters_.self_noise > 0.0 || parameters_.motor_noise > 0.0 ||
+           std::any_of(speakers_.begin(), speakers_.end(), [](const Speaker& one) { return !is_wave(one); });
 }
 
 std::array<double, kMicrophones> Ears::hear(const RobotState& robot, double seconds,
@@ -32,7 +34,7 @@ std::array<double, kMicrophones> Ears::hear(const RobotState& robot, double seco
                                  {p.x[i], p.y[i], std::cos(p.direction[i]), std::sin(p.direction[i])});
         double power = 0.0;
         for (const Speaker& speaker : speakers_) {
-            if (seconds < speaker.on || seconds >= speaker.off) continue;
+            if (is_wave(speaker) || !into_sound(speaker, seconds)) continue;
             const double dx = speaker.x - ear.x, dy = speaker.y - ear.y;
             const double distance = std::max(std::hypot(dx, dy, speaker.height - p.height), kNearest);
             const double facing = (dx * ear.dx + dy * ear.dy) / distance;

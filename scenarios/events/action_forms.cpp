@@ -37,7 +37,8 @@ constexpr ActionKey kWall[]{{"name"}, {"from", List}, {"to", List}, {"thickness"
 constexpr ActionKey kBox[]{{"name"}, {"centre", List}, {"size", List}, {"heading"}, {"mass"}, {"reflectivity"}};
 constexpr ActionKey kCylinder[]{{"name"}, {"centre", List}, {"radius"}, {"height"}, {"mass"}, {"reflectivity"}};
 constexpr ActionKey kLamp[]{{"name"}, {"centre", List}, {"height"}, {"intensity"}};
-constexpr ActionKey kSpeaker[]{{"name"}, {"position", List}, {"level"}, {"height"}, {"on"}, {"off"}};
+constexpr ActionKey kSpeaker[]{{"name"}, {"position", List}, {"level"}, {"height"}, {"on"}, {"off"}, {"duration"}, {"every"},
+                               {"times", Integer}, {"wave"}, {"tone"}, {"sweep_to"}};
 constexpr ActionKey kPatch[]{{"name"}, {"centre", List}, {"grey"}, {"shape"}, {"size", List}, {"heading"}, {"radius"}};
 
 constexpr ThingForm kThings[]{{"wall", kWall}, {"box", kBox}, {"cylinder", kCylinder},

@@ -114,10 +114,25 @@ TEST_CASE("a world without sound says nothing of it on the links") {
 
 TEST_CASE("a loudspeaker travels as JSON; a bad one is refused with its name") {
     World world = world_with_robot();
-    world.speakers = {{"horn", 0.1, -0.2, 0.4, 700, 1, 2, "line 7"}};
+    world.speakers = {{.name = "horn",
+                       .x = 0.1,
+                       .y = -0.2,
+                       .height = 0.4,
+                       .level = 700,
+                       .on = 1,
+                       .off = 2,
+                       .every = 3,
+                       .times = 4,
+                       .tone = 500,
+                       .sweep_to = 600,
+                       .place = "line 7"}};
     const Speaker back = from_json(to_json(world)).speakers.at(0);
     CHECK(back.y == -0.2);
     CHECK(back.height == 0.4);
+    CHECK(back.every == 3);
+    CHECK(back.times == 4);
+    CHECK(back.tone == 500);
+    CHECK(back.sweep_to == 600);
     CHECK(back.level == 700);
     CHECK(back.on == 1);
     CHECK(back.off == 2);

@@ -157,6 +157,7 @@ TEST_CASE("a command becomes a table and a table a command without loss") {
           "add lamp name \"my lamp\" centre 1 cm, 1 cm intensity 0.5",
           "add floor_patch name p centre 0 m, 0 m grey 0.1 shape disc radius 4 cm",
           "add wall name w from 0 m, 0 m to 10 cm, 10 cm", "add speaker name s position 0 m, 1 m level 100",
+          "add speaker name t position 0 m, 1 m level 100 on 1 s duration 30 ms every 1 s times 3 wave noise",
           "add cylinder name c centre 0 m, 0 m radius 1 cm"}) {
         INFO(text);
         const auto action = parse_command(text);

@@ -139,6 +139,35 @@ TEST_CASE("what cannot be run is said with its line") {
               kRobot) == "line 8: box 1: size is not a list of 3 (expected a length such as \"25 cm\")");
 }
 
+TEST_CASE("loudspeakers play tones, sweeps and noise, once or again") {
+    const std::string place = "[[speaker]]\nposition = [\"30 cm\", \"0 m\"]\nlevel = 450\n";
+    const TemporaryFile file(kArena + kRobot + place +
+                             "tone = \"700 Hz\"\nsweep_to = \"2 kHz\"\non = \"1 s\"\n"
+                             "duration = \"30 ms\"\nevery = \"500 ms\"\ntimes = 3\n" +
+                             place + "wave = \"noise\"\n");
+    const auto speakers = read_scenario(file.path()).world.speakers;
+    REQUIRE(speakers.size() == 2);
+    CHECK(speakers[0].tone == 700);
+    CHECK(speakers[0].sweep_to == 2000);
+    CHECK(speakers[0].off == Approx(1.03));
+    CHECK(speakers[0].every == 0.5);
+    CHECK(speakers[0].times == 3);
+    CHECK_FALSE(speakers[0].wave);
+    CHECK(speakers[1].wave);
+    CHECK(speakers[1].every == 0);
+    const auto refused = [&](const std::string& keys, const std::string& message) {
+        CHECK_THAT(problem_of(kArena + kRobot + place + keys), Catch::Contains(message));
+    };
+    refused("sweep_to = \"1 kHz\"\nduration = \"1 s\"\n", "without tone");
+    refused("tone = \"1 kHz\"\nsweep_to = \"2 kHz\"\n", "without duration");
+    refused("every = \"1 s\"\n", "without duration");
+    refused("wave = \"square\"\n", "no wave 'square'");
+    refused("times = 3\n", "without every");
+    refused("off = \"1 s\"\nduration = \"1 s\"\n", "duration is given as well");
+    refused("duration = \"1 s\"\nevery = \"900 ms\"\n", "every");
+    refused("tone = \"5 kHz\"\n", "tone");
+}
+
 TEST_CASE("loudspeakers are read with their level and times") {
     const TemporaryFile file(kArena + kRobot +
                              "[[speaker]]\nposition = [\"30 cm\", \"-1 cm\"]\nlevel = 450\n"
