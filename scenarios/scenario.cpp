@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "physics/description/parameters.h"
 #include "scenarios/bluetooth_tables.h"
+#include "scenarios/can_tables.h"
 #include "scenarios/events/event_tables.h"
 #include "scenarios/faults/fault_tables.h"
 #include "scenarios/radio_tables.h"
@@ -58,6 +59,7 @@ Scenario read_scenario(const std::filesystem::path& file) {
     scenario.radio = read_radio(top);
     scenario.coordinator = read_coordinator(top);
     read_bluetooth(top, scenario);
+    read_can_buses(top, scenario);
     scenario.world.ircom = !scenario.robots.empty() && !scenario.tams.empty();
     if (const TomlValue* table = top.table("ircom")) {
         Reader ircom(name, "ircom", *table);

@@ -147,6 +147,21 @@ struct TamBoard {
     XBeeModule xbee{};
 };
 
+/// A CAN module of a board: "robot0.pic.can1".
+struct CanController {
+    std::string board;  ///< node: "robot0.pic", "robot0.rab"
+    int unit = 1;       ///< 1 or 2
+
+    std::string port() const { return "can" + std::to_string(unit); }
+    std::string name() const { return board + "." + port(); }
+};
+
+/// Wires between CAN modules.
+struct CanBus {
+    std::string name;  ///< of its node
+    std::vector<CanController> controllers;
+};
+
 struct Scenario {
     std::filesystem::path file;
     std::string name;                ///< the file's stem
@@ -163,6 +178,7 @@ struct Scenario {
     RadioMedium radio{};
     BluetoothMedium bluetooth{};
     std::optional<CoordinatorPlace> coordinator{};
+    std::vector<CanBus> can_buses{};
     std::vector<cosim::FaultSpec> faults;
     std::vector<std::string>
         passed_over{};  ///< an overlay's [measurement]: of the measuring chain, not of a run

@@ -7,7 +7,7 @@
 namespace puckloop::cosim {
 
 namespace {
-enum class PayloadTag : std::uint8_t { Uart, I2c, Signal, Radio };
+enum class PayloadTag : std::uint8_t { Uart, I2c, Signal, Radio, Can };
 constexpr std::uint8_t kFirstChannel = 11, kLastChannel = 26;
 }  // namespace
 
@@ -47,16 +47,29 @@ void ByteWriter::payload(const Payload& payload) {
         u8(static_cast<std::uint8_t>(PayloadTag::Signal));
         u16(signal->id);
         f64(signal->value);
-    } else {
-        const auto& radio = std::get<RadioFrame>(payload);
+    } else if (const auto* radio = std::get_if<RadioFrame>(&payload)) {
         u8(static_cast<std::uint8_t>(PayloadTag::Radio));
-        time(radio.start);
-        time(radio.duration);
-        u8(radio.channel);
-        u8(static_cast<std::uint8_t>(radio.dbm));
-        const auto octets = radio.octets.view();
+        time(radio->start);
+        time(radio->duration);
+        u8(radio->channel);
+        u8(static_cast<std::uint8_t>(radio->dbm));
+        const auto octets = radio->octets.view();
         u8(static_cast<std::uint8_t>(octets.size()));
         bytes_.insert(bytes_.end(), octets.begin(), octets.end());
+    } else {
+        const auto& can = std::get<CanMessage>(payload);
+        u8(static_cast<std::uint8_t>(PayloadTag::Can));
+        u8(static_cast<std::uint8_t>(can.kind));
+        time(can.start);
+        bytes_.insert(bytes_.end(), can.data.begin(), can.data.end());
+        u32(can.id);
+        u32(can.bit_time);
+        u16(can.transmit_errors);
+        u8(can.receive_errors);
+        u8(can.length);
+        u8(can.flags);
+        u8(can.tag);
+        u8(can.position);
     }
 }
 
@@ -99,7 +112,7 @@ std::string ByteReader::text() {
 }
 
 Payload ByteReader::payload() {
-    switch (enumerator(PayloadTag::Radio)) {
+    switch (enumerator(PayloadTag::Can)) {
     case PayloadTag::Uart: {
         UartFrame frame;
         frame.start = time();
@@ -144,6 +157,24 @@ Payload ByteReader::payload() {
         radio.octets = Octets(bytes_.subspan(position_, size));
         position_ += size;
         return radio;
+    }
+    case PayloadTag::Can: {
+        CanMessage can;
+        can.kind = enumerator(CanKind::Wake);
+        can.start = time();
+        for (std::uint8_t& byte : can.data)
+            byte = u8();
+        can.id = u32();
+        can.bit_time = u32();
+        can.transmit_errors = u16();
+        can.receive_errors = u8();
+        can.length = u8();
+        can.flags = u8();
+        can.tag = u8();
+        can.position = u8();
+        if (can.length > can.data.size() || can.flags >> kCanErrorShift > kMostCanError || can.id >= 1u << 29)
+            fail("CAN message with values out of range");
+        return can;
     }
     case PayloadTag::Signal:
         break;

@@ -4,6 +4,7 @@
 #include "cosim/core/octets.h"
 #include "cosim/core/time.h"
 
+#include <array>
 #include <cstdint>
 #include <type_traits>
 #include <variant>
@@ -94,7 +95,47 @@ struct RadioFrame {
 /// Longest PHY payload, 802.15.4 aMaxPHYPacketSize.
 inline constexpr std::size_t kMostRadioOctets = 127;
 
-using Payload = std::variant<UartFrame, I2cPhase, Signal, RadioFrame>;
+/// What a CAN controller and its bus tell each other. The bus (cosim/can/can_bus.h) is bit by bit: it carries
+/// out arbitration, acknowledgement, error frames and error counters; what crosses a link is what a
+/// controller wants and what became of it.
+enum class CanKind : std::uint8_t {
+    Join,      ///< to the bus: takes part from now on; `bit_time`, data = quanta of a bit, of them before the
+               ///< sample, quanta of a jump; flag Listens
+    Watch,     ///< to the bus: off, but wants Wake
+    Leave,     ///< to the bus: off
+    Offer,     ///< to the bus: this frame is to be sent, in place of one offered before that has not begun
+    Withdraw,  ///< to the bus: nothing is to be sent; a frame under way is not repeated
+    Sent,      ///< the frame `tag` ended well
+    Received,  ///< somebody else's frame ended well
+    Error,     ///< an error frame is over; flag Sender: it was this controller's frame `tag`
+    Withdrawn,  ///< the frame `tag` will not be sent
+    Recovered,  ///< bus-off is over
+    Wake,       ///< the bus stirred while this controller watched
+};
+
+struct CanMessage {
+    Time start = 0;                      ///< of the frame, as this controller saw it; else of the message
+    std::array<std::uint8_t, 8> data{};  ///< of the frame
+    std::uint32_t id = 0;                ///< as CanFrame::id (protocols/can_frame.h)
+    std::uint32_t bit_time = 0;          ///< of the controller, ps; at most 4.29 ms
+    std::uint16_t transmit_errors = 0;   ///< from the bus: the counter; 256 and more: bus-off
+    std::uint8_t receive_errors = 0;
+    CanKind kind = CanKind::Leave;
+    std::uint8_t length = 0;    ///< DLC: 0..8
+    std::uint8_t flags = 0;     ///< of kCanExtended .. kCanListens, and from bit 5 on protocols::CanError
+    std::uint8_t tag = 0;       ///< the controller's name for the frame offered: a transmit buffer
+    std::uint8_t position = 0;  ///< Error: bits from the start of frame to the one in which it was found
+
+    friend bool operator==(const CanMessage&, const CanMessage&) = default;
+};
+inline constexpr std::uint8_t kCanExtended = 1, kCanRemote = 2;
+inline constexpr std::uint8_t kCanLost = 4;  ///< `tag` lost arbitration on the way
+/// Error: the controller sent `tag`. Join: it listens only.
+inline constexpr std::uint8_t kCanSender = 8, kCanListens = 8;
+inline constexpr std::uint8_t kCanGone = 16;  ///< `tag` had been withdrawn and is not sent again
+inline constexpr int kCanErrorShift = 5, kMostCanError = 5;
+
+using Payload = std::variant<UartFrame, I2cPhase, Signal, RadioFrame, CanMessage>;
 // Messages are copied byte by byte in every grant: keep them small and plain.
 static_assert(std::is_trivially_copyable_v<Payload> && sizeof(Payload) == 40);
 

@@ -52,16 +52,26 @@ void state(Archive& archive, RadioFrame& frame) {
 }
 
 template <class Archive>
+void state(Archive& archive, CanMessage& can) {
+    archive(can.start, can.data, can.id, can.bit_time, can.transmit_errors, can.receive_errors);
+    archive.bounded(can.kind, CanKind::Join, CanKind::Wake);
+    archive.bounded(can.length, 0, 8);
+    archive(can.flags, can.tag, can.position);
+    archive.check(can.flags >> kCanErrorShift <= kMostCanError, "a CAN error that is none");
+}
+
+template <class Archive>
 void state(Archive& archive, Message& message) {
     archive.bounded(message.time, 0, kNever);
     archive(message.port);
     auto kind = static_cast<std::uint8_t>(message.payload.index());
-    archive.bounded(kind, 0, 3);
+    archive.bounded(kind, 0, 4);
     if constexpr (Archive::kLoads) {
         if (kind == 0) message.payload = UartFrame{};
         if (kind == 1) message.payload = I2cPhase{};
         if (kind == 2) message.payload = Signal{};
         if (kind == 3) message.payload = RadioFrame{};
+        if (kind == 4) message.payload = CanMessage{};
     }
     std::visit([&](auto& payload) { archive(payload); }, message.payload);
 }

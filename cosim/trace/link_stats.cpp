@@ -58,6 +58,11 @@ void LinkStats::count(const TraceRecord& record, double nominal_baud) {
     } else if (const auto* radio = std::get_if<RadioFrame>(&record.payload)) {
         ++radio_frames;
         radio_octets += radio->octets.size();
+    } else if (const auto* can = std::get_if<CanMessage>(&record.payload)) {
+        can_offers += can->kind == CanKind::Offer;
+        can_sent += can->kind == CanKind::Sent;
+        can_received += can->kind == CanKind::Received;
+        can_errors += can->kind == CanKind::Error;
     } else {
         ++signals;
     }
@@ -80,6 +85,10 @@ std::string to_json(const LinkStats& s) {
     add("signals", s.signals, false);
     add("radio_frames", s.radio_frames, false);
     add("radio_octets", s.radio_octets, false);
+    add("can_offers", s.can_offers, false);
+    add("can_sent", s.can_sent, false);
+    add("can_received", s.can_received, false);
+    add("can_errors", s.can_errors, false);
     add("faults", s.faults, false);
     add("lost", s.lost, false);
     return text + "}";

@@ -1,6 +1,7 @@
 #include "cosim/trace/trace_row.h"
 
 #include "base/error.h"
+#include "cosim/trace/can_row.h"
 
 #include <fmt/format.h>
 
@@ -138,6 +139,18 @@ void put_payload(std::string& out, const RadioFrame& frame) {
     put_seconds(out, frame.start);
     out += ',';
     put_seconds(out, frame.duration);
+    out += ',';
+}
+
+void put_payload(std::string& out, const CanMessage& message) {
+    out += "can,";
+    out += can_data_text(message);
+    out += ',';
+    out += can_detail_text(message);
+    out += ',';
+    put_seconds(out, message.start);
+    out += ',';
+    put_seconds(out, message.bit_time);
     out += ',';
 }
 
@@ -315,6 +328,19 @@ RadioFrame parse_radio(const Parser& in) {
     return frame;
 }
 
+CanMessage parse_can_message(const Parser& in) {
+    std::optional<CanMessage> message = parse_can(in[4], in[5]);
+    if (!message)
+        in.fail(fmt::format("\"{}\", \"{}\" is no CAN message", in[4], in[5]),
+                "123#0102, sent tag 0 tec 0 rec 0, ...");
+    constexpr Time kLongestBit = 0xFFFFFFFF;
+    const Time bit = in.span(7);
+    if (bit > kLongestBit) in.fail(fmt::format("\"{}\" is no bit time", in[7]), "up to 4.29 ms");
+    message->start = in.time(6);
+    message->bit_time = static_cast<std::uint32_t>(bit);
+    return *message;
+}
+
 }  // namespace
 
 std::string hex_of(const Octets& octets) {
@@ -359,6 +385,8 @@ void append_row(std::string& out, Time time, std::string_view sender, const Payl
         out += ',';
         out += signal;
         out += ",,,";
+    } else if (const auto* can = std::get_if<CanMessage>(&payload)) {
+        put_payload(out, *can);
     } else {
         put_payload(out, std::get<RadioFrame>(payload));
     }
@@ -393,8 +421,10 @@ TraceRow parse_trace_row(std::string_view text, std::string_view file, std::size
         row.payload = parse_signal(in, row.signal);
     else if (in[3] == "radio")
         row.payload = parse_radio(in);
+    else if (in[3] == "can")
+        row.payload = parse_can_message(in);
     else
-        in.fail(fmt::format("\"{}\" is no kind of message", in[3]), "uart, break, i2c, signal, radio");
+        in.fail(fmt::format("\"{}\" is no kind of message", in[3]), "uart, break, i2c, signal, radio, can");
     return row;
 }
 

@@ -11,6 +11,7 @@
 // 3. The microphones and the accelerometer have no bandwidth of their own.
 
 #include "base/random.h"
+#include "emu/board/can_ports.h"
 #include "emu/camera/camera.h"
 #include "emu/chip/faults/ambient_shares.h"
 #include "emu/chip/faults/analog_faults.h"
@@ -51,6 +52,7 @@ struct BoardParameters {
     double battery_low_volts = 3.4;  ///< below this RF1 falls
     int selector = 0;                ///< initial position, 0..15
     Revision revision = Revision::Rev12;
+    board::CanModules can = 0;  ///< that are on a bus
 };
 
 /// What leaves the board.
@@ -63,6 +65,8 @@ class BoardListener {
     /// The codec turned a sample into sound; `value` is that of the signal `speaker`.
     virtual void sound_sample(double /*value*/, dspic::Cycle /*now*/) {}
     virtual void i2c_phase(int unit, const cosim::I2cPhase& phase) = 0;
+    /// For the bus of a module among BoardParameters::can.
+    virtual void can_to_bus(int /*unit*/, const cosim::CanMessage& /*message*/) {}
     /// Edges that the board makes by itself moved, from cycle `at` on (Chip::edges_moved()).
     virtual void edges_moved(dspic::Cycle /*at*/) {}
     /// A fault kept motor 0 (left) or 1 from making a step that was due at `now`.
@@ -149,6 +153,10 @@ class Board : public dspic::Pins {
     std::uint64_t analog_epoch(dspic::Cycle from) override;
     void uart_sent(int unit, const cosim::UartFrame& frame) override { listener_.uart_sent(unit, frame); }
     void i2c_phase(int unit, const cosim::I2cPhase& phase) override { listener_.i2c_phase(unit, phase); }
+    bool can_wired(int unit) const override { return parameters_.can >> (unit - 1) & 1; }
+    void can_to_bus(int unit, const cosim::CanMessage& message, dspic::Cycle) override {
+        listener_.can_to_bus(unit, message);
+    }
     std::uint16_t dci_exchange(const dspic::DciWord& word, dspic::Cycle now) override;
 
     dspic::OutsidePin outside(dspic::PortLetter port, int bit) const override;

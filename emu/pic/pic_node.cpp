@@ -33,6 +33,7 @@ PicNode::PicNode(const image::Image& image, const PicNodeOptions& options)
       board_(options.board, *this),
       log_(options.log, image) {
     if (options.ircom) ports_.push_back({"ir", cosim::PortKind::Signals});
+    can_.add(options.board.can, ports_);
     if (options.camera) {
         if (options.i2c_linked) ports_.push_back({"camera_i2c", cosim::PortKind::I2c});
         ports_.push_back({"camera", cosim::PortKind::Signals});
@@ -123,6 +124,8 @@ void PicNode::receive(const cosim::Message& message) {
     } else if (const auto* phase = std::get_if<cosim::I2cPhase>(&message.payload)) {
         if (is_camera_bus(message.port)) return camera_phase(*phase, message.time);
         chip_->i2c_answer(kI2cUnit, *phase);
+    } else if (const auto* can = std::get_if<cosim::CanMessage>(&message.payload)) {
+        chip_->can_news(can_.unit_of(message.port), *can);
     } else if (const auto* signal = std::get_if<cosim::Signal>(&message.payload)) {
         if (options_.camera && message.port == camera_port())
             return options_.scenery->change(signal->id, signal->value);
@@ -223,6 +226,10 @@ void PicNode::set_battery(std::optional<double> volts) {
 
 void PicNode::set_motor(int motor, std::uint8_t open, bool stalled) {
     board_.set_held(motor, open != 0 || stalled, message_cycle());
+}
+
+void PicNode::can_to_bus(int unit, const cosim::CanMessage& message) {
+    outbox_->push_back({board::reached(*chip_, faults_.get(), message.start), can_.port_of(unit), message});
 }
 
 void PicNode::state(StateWriter& archive) const {

@@ -105,6 +105,7 @@ class PicNode : public cosim::StatefulNode, private BoardListener, private chip:
     void signal_changed(SignalId id, double value, dspic::Cycle now) override;
     void uart_sent(int unit, const cosim::UartFrame& frame) override;
     void i2c_phase(int unit, const cosim::I2cPhase& phase) override;
+    void can_to_bus(int unit, const cosim::CanMessage& message) override;
     void step_lost(int motor, dspic::Cycle now) override;
     void line_pulled_low(dspic::Cycle now) override;
     void edges_moved(dspic::Cycle at) override { chip_->edges_moved(at); }
@@ -116,6 +117,7 @@ class PicNode : public cosim::StatefulNode, private BoardListener, private chip:
 
     PicNodeOptions options_;
     std::vector<cosim::Port> ports_;
+    board::CanPorts can_;
     Board board_;
     std::unique_ptr<dspic::Chip> chip_;
     EmptyBus bus_;

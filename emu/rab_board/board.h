@@ -9,6 +9,7 @@
 // 3. The emitters' supply needs no time to rise when RF12 switches it on.
 
 #include "base/random.h"
+#include "emu/board/can_ports.h"
 #include "emu/chip/faults/analog_faults.h"
 #include "emu/dspic/chip/chip.h"
 #include "emu/dspic/peripherals/pins.h"
@@ -32,6 +33,7 @@ struct BoardParameters {
     double crystal_ppm = 0.0;       ///< error of the crystal, + is fast
     double adc_noise_counts = 1.0;  ///< standard deviation, 0 or more
     PeakDetectorParameters peak{};
+    board::CanModules can = 0;  ///< that are on a bus
     cosim::Time potentiometer_settling = kPotentiometerSettling;
 };
 
@@ -48,6 +50,8 @@ class BoardListener {
     virtual void i2c_answer(const cosim::I2cPhase& answer, cosim::Time now) = 0;
     /// The firmware made the chip master of the bus (no known firmware does).
     virtual void i2c_phase(int unit, const cosim::I2cPhase& phase) = 0;
+    /// For the bus of a module among BoardParameters::can.
+    virtual void can_to_bus(int /*unit*/, const cosim::CanMessage& /*message*/) {}
 };
 
 class Board : public dspic::Pins {
@@ -89,6 +93,10 @@ class Board : public dspic::Pins {
     double analog(int channel, dspic::Cycle now) override;
     void uart_sent(int unit, const cosim::UartFrame& frame) override { listener_.uart_sent(unit, frame); }
     void i2c_phase(int unit, const cosim::I2cPhase& phase) override { listener_.i2c_phase(unit, phase); }
+    bool can_wired(int unit) const override { return parameters_.can >> (unit - 1) & 1; }
+    void can_to_bus(int unit, const cosim::CanMessage& message, dspic::Cycle) override {
+        listener_.can_to_bus(unit, message);
+    }
     void i2c_slave_answer(int unit, const cosim::I2cPhase& answer) override;
     std::uint16_t spi_exchange(int unit, std::uint16_t sent, int bits, dspic::Cycle now) override;
     void output_compare_changed(int unit, dspic::Cycle now) override;

@@ -31,6 +31,7 @@ RabNode::RabNode(const image::Image& image, const RabNodeOptions& options)
              {"ir", cosim::PortKind::Signals}},
       board_(options.board, *this),
       log_(options.log, image) {
+    can_.add(options.board.can, ports_);
     dspic::ChipOptions chip_options;
     chip_options.crystal_hertz = options.board.crystal_hertz;
     chip_options.ppm = options.board.crystal_ppm;
@@ -87,6 +88,8 @@ void RabNode::receive(const cosim::Message& message) {
         chip_->uart_receive(unit, *frame);
     } else if (const auto* phase = std::get_if<cosim::I2cPhase>(&message.payload)) {
         begin_i2c(*phase, message.time);
+    } else if (const auto* can = std::get_if<cosim::CanMessage>(&message.payload)) {
+        chip_->can_news(can_.unit_of(message.port), *can);
     } else if (const auto* signal = std::get_if<cosim::Signal>(&message.payload)) {
         const int receiver = signal->id - kDemodulator;
         if (faults_ && receiver >= 0 && receiver < kSensorCount) {
@@ -173,6 +176,10 @@ void RabNode::i2c_answer(const cosim::I2cPhase& answer, cosim::Time now) {
 /// A device port cannot carry it: the firmware waits for an answer for ever, and the report says so.
 void RabNode::i2c_phase(int /*unit*/, const cosim::I2cPhase& /*phase*/) {
     ++own_.master_phases;
+}
+
+void RabNode::can_to_bus(int unit, const cosim::CanMessage& message) {
+    outbox_->push_back({board::reached(*chip_, faults_.get(), message.start), can_.port_of(unit), message});
 }
 
 void RabNode::state(StateWriter& archive) const {

@@ -82,10 +82,12 @@ class RabNode : public cosim::StatefulNode, private BoardListener, private chip:
     void uart_sent(int unit, const cosim::UartFrame& frame) override;
     void i2c_answer(const cosim::I2cPhase& answer, cosim::Time now) override;
     void i2c_phase(int unit, const cosim::I2cPhase& phase) override;
+    void can_to_bus(int unit, const cosim::CanMessage& message) override;
 
     RabNodeOptions options_;
     cosim::Time fastest_period_;
     std::vector<cosim::Port> ports_;
+    board::CanPorts can_;
     Board board_;
     std::unique_ptr<dspic::Chip> chip_;
     RabLog log_;

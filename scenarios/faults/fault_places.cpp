@@ -62,6 +62,12 @@ std::vector<FaultPlace> fault_places(const Scenario& scenario) {
         places.push_back({"coordinator.radio", PlaceKind::Radio, {"coordinator.xbee", "ether"}});
     }
     add_media(scenario, places);
+    for (const CanBus& bus : scenario.can_buses) {
+        FaultPlace place{bus.name, PlaceKind::Can, {}, bus.name};
+        for (const CanController& controller : bus.controllers)
+            place.ends.push_back(controller.name());
+        places.push_back(std::move(place));
+    }
     return places;
 }
 

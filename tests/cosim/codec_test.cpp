@@ -24,11 +24,16 @@ std::vector<Message> some_messages() {
     damaged.line = kLineInverted | kLineRestsLow;
     damaged.glitch_at = 4'000'000'000;
     damaged.glitch_width = 1;
+    CanMessage can{123, {1, 2, 3, 4, 5, 6, 7, 0xff}, (1u << 29) - 1, 0xFFFFFFFF, 256, 255, CanKind::Error};
+    can.length = 8;
+    can.flags = static_cast<std::uint8_t>(kMostCanError << kCanErrorShift | 0x1f);
+    can.tag = can.position = 255;
     return {{1, 0, frame},
             {1, 1, damaged},
             {2, 65535, phase},
             {kNever, 3, Signal{7, -0.25}},
-            {9, 1, some_radio_frame()}};
+            {9, 1, some_radio_frame()},
+            {9, 1, can}};
 }
 
 NodeState some_state() {

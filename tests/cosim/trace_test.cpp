@@ -42,6 +42,39 @@ std::vector<TraceRow> some_rows() {
     const std::vector<std::uint8_t> octets{0x00, 0x7e, 0xff};
     rows.push_back({kSecond, "tam0.radio", "ether", "", FaultKind::None,
                     RadioFrame{kSecond - 288'000'000, 288'000'000, Octets(octets), 12, -60}});
+    CanMessage can;
+    can.start = kMillisecond;
+    can.bit_time = 2'000'000;
+    can.tag = 2;
+    const auto add = [&](CanKind kind) {
+        can.kind = kind;
+        rows.push_back({kSecond, "can.robot0.pic.can1", "can", "", FaultKind::None, can});
+    };
+    can.data = {16, 12, 4};
+    can.flags = kCanListens;
+    add(CanKind::Join);
+    can.data = {};
+    can.flags = 0;
+    for (const CanKind kind : {CanKind::Watch, CanKind::Leave, CanKind::Withdraw, CanKind::Withdrawn,
+                               CanKind::Recovered, CanKind::Wake, CanKind::Error})
+        add(kind);
+    can.id = 0x123;
+    can.data = {0, 0xff};
+    can.length = 2;
+    add(CanKind::Offer);
+    can.flags = kCanLost | kCanGone;
+    add(CanKind::Received);
+    can.transmit_errors = 256;
+    can.receive_errors = 9;
+    can.position = 34;
+    for (int error = 1; error <= kMostCanError; ++error) {
+        can.flags = static_cast<std::uint8_t>(kCanSender | error << kCanErrorShift);
+        add(CanKind::Error);
+    }
+    can.id = 0x1abcdef0;
+    can.data = {};
+    can.flags = kCanExtended | kCanRemote;
+    add(CanKind::Sent);
     return rows;
 }
 

@@ -1,81 +1,26 @@
 // CAN1 and CAN2 of the 30F: frames' lengths, modes, filters, error counters, two chips on a bus.
 
 #include "base/random.h"
+#include "cosim/faults/kinds/kind_table.h"
 #include "emu/dspic/core/sfr_space.h"
-#include "tests/dspic/chip30_bench.h"
+#include "tests/can/can_reference.h"
+#include "tests/dspic/can_bus_bench.h"
 
 #include <catch2/catch.hpp>
-
-#include <functional>
 
 using namespace puckloop;
 using namespace puckloop::dspic;
 using namespace puckloop::dspic::test;
+using tests::draw_frame, tests::reference_bits;
 
 namespace {
-
-CanFrame draw(RandomStream& random) {
-    CanFrame frame;
-    frame.extended = random.below(2);
-    frame.id = static_cast<std::uint32_t>(random.below(frame.extended ? 1u << 29 : 1u << 11));
-    frame.remote = random.below(5) == 0;
-    frame.length = static_cast<std::uint8_t>(random.below(9));
-    if (!frame.remote)
-        for (int i = 0; i < frame.length; ++i)
-            frame.data[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(random.below(256));
-    return frame;
-}
-
-std::string binary(std::uint32_t value, int bits) {
-    std::string text;
-    while (bits-- > 0)
-        text += value >> bits & 1 ? '1' : '0';
-    return text;
-}
-
-/// By the text of the specification: fields as characters, division of polynomials, stuffing by search.
-int reference_bits(const CanFrame& frame) {
-    std::string bits = "0";
-    if (frame.extended)
-        bits += binary(frame.id >> 18, 11) + "11" + binary(frame.id & 0x3FFFF, 18);
-    else
-        bits += binary(frame.id, 11);
-    bits += (frame.remote ? "100" : "000") + binary(frame.length, 4);
-    for (int i = 0; i < frame.length && !frame.remote; ++i)
-        bits += binary(frame.data[static_cast<std::size_t>(i)], 8);
-    const std::string divisor = "1100010110011001";
-    std::string rest = bits + std::string(15, '0');
-    for (std::size_t i = 0; i < bits.size(); ++i)
-        if (rest[i] == '1')
-            for (std::size_t j = 0; j < divisor.size(); ++j)
-                rest[i + j] = rest[i + j] == divisor[j] ? '0' : '1';
-    bits += rest.substr(bits.size());
-    for (std::size_t at = 0;
-         (at = std::min(bits.find("00000", at), bits.find("11111", at))) != std::string::npos;) {
-        bits.insert(at + 5, 1, bits[at] == '0' ? '1' : '0');
-        at += 5;
-    }
-    return static_cast<int>(bits.size()) + 1 + 2 + 7;
-}
-
-/// Runs of five overlap a stuffed bit's own run only from that bit on, as find() from there has it.
-struct CanPins : Pins30 {
-    std::vector<CanFrame> sent;
-    std::vector<Cycle> acknowledged_at;
-    std::function<CanOutcome(const CanFrame&, Cycle)> bus;
-    CanOutcome can_sent(int, const CanFrame& frame, Cycle now) override {
-        sent.push_back(frame);
-        acknowledged_at.push_back(now);
-        return bus ? bus(frame, now) : CanOutcome::NotAcknowledged;
-    }
-};
 
 struct CanBench {
     CanPins pins;
     Chip chip{dspic30f6014a(), pins, ChipOptions{.fosc = std::uint16_t{0xFFE6}}};
     std::map<std::string, std::uint32_t> symbols;
 
-    explicit CanBench(const std::string& more) {
+    explicit CanBench(const std::string& more, bool wired = true) : pins(wired) {
         AssembleOptions options;
         for (const RegisterInfo& info : dspic30f6014a().registers)
             options.predefined[std::string(info.name)] = info.address;
@@ -120,6 +65,14 @@ can1:   bclr IFS1, #11
 
 constexpr Cycle kBit = 32;
 
+cosim::Time time_of(const CanBench& bench, Cycle cycle) {
+    return bench.chip.clock().time_of(cycle);
+}
+/// 16 quanta as the chips have it.
+cosim::Time bit_time(const CanBench& bench) {
+    return time_of(bench, 1000 * kBit) / 1000;
+}
+
 std::string set(int value, const std::string& name) {
     return "        mov #" + std::to_string(value & 0xFFFF) + ", w0\n        mov w0, " + name + "\n";
 }
@@ -163,19 +116,19 @@ CanFrame received(const Chip& chip, const std::string& n) {
 TEST_CASE("a frame is as long as its bits and stuff bits (CAN 2.0)") {
     RandomStream random(21, "frames");
     for (int i = 0; i < 500; ++i) {
-        CanFrame frame = draw(random);
+        CanFrame frame = draw_frame(random);
         if (i % 5 == 0) frame.data.fill(i % 2 ? 0x00 : 0xFF);
         if (frame.remote) frame.data.fill(0);
         CHECK(can_bits(frame) == reference_bits(frame));
     }
-    CHECK(can_bits({.id = 0x555, .length = 8, .data = {0x55, 0x55, 0x55, 0x55, 0x55, 0x55, 0x55, 0x55}}) >=
-          108);
+    CHECK(can_bits(CanFrame{
+              .id = 0x555, .length = 8, .data = {0x55, 0x55, 0x55, 0x55, 0x55, 0x55, 0x55, 0x55}}) >= 108);
 }
 
 TEST_CASE("loopback: what is sent comes into RXB0 to the cycle at the frame's end (DS70070 23.6)") {
     RandomStream random(4, "frames");
     for (int i = 0; i < 6; ++i) {
-        const CanFrame frame = draw(random);
+        const CanFrame frame = draw_frame(random);
         CanBench bench(load(frame) + R"(
         mov #0x0a00, w0                 ; loopback
         mov w0, C1CTRL
@@ -198,7 +151,7 @@ sent:
         CHECK(received(bench.chip, "0") == frame);
         bench.go(end + 40);
         CHECK(bench.chip.peek_data(0x1000) == 1);
-        CHECK(bench.pins.sent.empty());
+        CHECK(bench.pins.to_bus.empty());  // the bus hears nothing of it
     }
 }
 
@@ -221,18 +174,20 @@ TEST_CASE("the buffer of the highest priority goes first, the highest number amo
         bset C1TX1CON, #3
         bset C1TX2CON, #3
 )");
-    bench.pins.bus = [](const CanFrame&, Cycle) { return CanOutcome::Acknowledged; };
-    bench.go(20'000);
-    REQUIRE(bench.pins.sent.size() == 3);
-    CHECK(bench.pins.sent[0].id == 2);
-    CHECK(bench.pins.sent[1].id == 3);
-    CHECK(bench.pins.sent[2].id == 1);
+    CanBusBench bus({{&bench.chip, &bench.pins}});
+    bus.peer_joins(0, bit_time(bench));
+    bus.run_until(time_of(bench, 20'000));
+    const auto sent = bus.told(0, CanKind::Sent);
+    REQUIRE(sent.size() == 3);
+    CHECK(sent[0].message.id == 2);
+    CHECK(sent[1].message.id == 3);
+    CHECK(sent[2].message.id == 1);
     // Three bits of intermission lie between.
-    CHECK(bench.pins.acknowledged_at[1] - bench.pins.acknowledged_at[0] ==
-          kBit * static_cast<Cycle>(3 + can_bits(bench.pins.sent[1])));
+    const cosim::Time between = sent[1].message.start - sent[0].time;
+    CHECK(std::abs(between - 3 * bit_time(bench)) < bit_time(bench) / 100);
 }
 
-TEST_CASE("alone on the bus a sender is error passive after 16 tries and goes on; a broken bus puts it off") {
+TEST_CASE("alone a sender is error passive after 16 tries and goes on; on a bus until somebody comes") {
     const std::string program = set(0x0800, "C1CTRL") + set(4, "C1TX0SID") + R"(
 wait:   mov C1CTRL, w1
         and #0xe0, w1
@@ -240,24 +195,98 @@ wait:   mov C1CTRL, w1
         bset C1INTE, #5
         bset C1TX0CON, #3
 )";
-    CanBench alone(program);
-    alone.go(100'000);
-    CHECK(alone.pins.sent.size() > 40);
-    CHECK(alone.reg("C1EC") == 0x8000);
-    CHECK((alone.reg("C1INTF") & 0x3F20) == 0x1520);  // TXBP, TXWARN, EWARN, ERRIF
-    CHECK((alone.reg("C1TX0CON") & 0x18) == 0x18);
-    alone.pins.bus = [](const CanFrame&, Cycle) { return CanOutcome::Acknowledged; };
-    alone.go(105'000);
-    CHECK((alone.reg("C1TX0CON") & 0x18) == 0);
-    CHECK(alone.reg("C1EC") == 0x7F00);
+    for (const bool wired : {false, true}) {
+        CAPTURE(wired);
+        CanBench alone(program, wired);
+        CanBusBench bus({{&alone.chip, &alone.pins}});
+        bus.run_until(time_of(alone, 100'000));
+        CHECK(alone.reg("C1EC") == 0x8000);
+        CHECK((alone.reg("C1INTF") & 0x3F20) == 0x1520);  // TXBP, TXWARN, EWARN, ERRIF
+        CHECK((alone.reg("C1TX0CON") & 0x18) == 0x18);
+        CHECK((bus.told(0, CanKind::Error).size() > 30) == wired);
+        bus.peer_joins(time_of(alone, 100'001), bit_time(alone));
+        bus.run_until(time_of(alone, 110'000));
+        CHECK((alone.reg("C1TX0CON") & 0x18) == (wired ? 0 : 0x18));
+        CHECK(alone.reg("C1EC") == (wired ? 0x7F00 : 0x8000));
+    }
+}
 
-    CanBench broken(program);
-    broken.pins.bus = [](const CanFrame&, Cycle) { return CanOutcome::BitError; };
-    broken.go(80'000);
-    CHECK(broken.pins.sent.size() == 32);
-    CHECK((broken.reg("C1INTF") & 0x2000) == 0x2000);  // TXBO
-    broken.go(broken.pins.acknowledged_at.back() + 128 * 11 * kBit + 4000);
-    CHECK(broken.pins.sent.size() > 32);  // recovered after 128 times 11 bits
+TEST_CASE("frames spoilt 32 times put a sender off the bus, until 128 times 11 bits have been idle") {
+    CanBench bench(set(0x0800, "C1CTRL") + set(4, "C1TX0SID") + R"(
+wait:   mov C1CTRL, w1
+        and #0xe0, w1
+        bra nz, wait
+        bset C1TX0CON, #3
+)");
+    cosim::FaultSpec spec;
+    spec.link = spec.node = "can";
+    spec.kind = "flip";
+    spec.count = 32;
+    spec.set("bit", 3);
+    CanBusBench bus({{&bench.chip, &bench.pins}},
+                    {{spec, cosim::Trigger(spec, cosim::fault_stream(spec, 1, 0))}});
+    bus.peer_joins(0, bit_time(bench));
+    bus.run_until(time_of(bench, 80'000));
+    CHECK((bench.reg("C1INTF") & 0x2000) == 0x2000);  // TXBO
+    CHECK(bus.told(0, CanKind::Error).size() == 32);
+    CHECK(bus.told(0, CanKind::Sent).empty());
+    bus.run_until(time_of(bench, 130'000));
+    CHECK(bus.told(0, CanKind::Recovered).size() == 1);
+    CHECK(bus.told(0, CanKind::Sent).size() == 1);
+    CHECK(bench.reg("C1EC") == 0);
+    CHECK((bench.reg("C1TX0CON") & 0x18) == 0);
+}
+
+TEST_CASE("TXREQ taken back: TXABT, unless the frame is on the wire; another mode waits for it") {
+    const std::string program = set(0x0800, "C1CTRL") + set(4, "C1TX0SID") + R"(
+wait:   mov C1CTRL, w1
+        and #0xe0, w1
+        bra nz, wait
+        repeat #0xfff
+        nop
+        bset C1TX0CON, #3
+        repeat #0xff
+        nop
+asked:  bclr C1TX0CON, #3
+        nop
+)" + set(0x0900, "C1CTRL");
+    for (const bool first : {false, true}) {  // somebody else was before it
+        CAPTURE(first);
+        CanBench bench(program);
+        CanBusBench bus({{&bench.chip, &bench.pins}});
+        bus.peer_joins(0, bit_time(bench));
+        if (first) bus.peer_sends(time_of(bench, 4200), {.id = 1, .length = 8});
+        bus.run_until(time_of(bench, 20'000));
+        CHECK((bench.reg("C1TX0CON") & 0x78) == (first ? 0x40 : 0));
+        CHECK(bus.told(0, CanKind::Sent).size() == (first ? 0 : 1));
+        CHECK((bench.reg("C1CTRL") & 0xE0) == 0x20);  // Disable
+    }
+}
+
+TEST_CASE("who loses arbitration shows TXLARB and is sent behind the winner") {
+    const std::string program = set(0x0800, "C1CTRL") + set(0x2004, "C1TX0SID") + R"(
+wait:   mov C1CTRL, w1
+        and #0xe0, w1
+        bra nz, wait
+        repeat #0x7ff
+        nop
+asks:   bset C1TX0CON, #3
+)";
+    CanBench bench(program), twin(program);
+    const cosim::Time bit = bit_time(bench);
+    // The peer's request comes in the same bit as the chip's.
+    const Cycle asks = twin.run_to("asks");
+    CanBusBench bus({{&bench.chip, &bench.pins}});
+    bus.peer_joins(0, bit);
+    const CanFrame winner{.id = 0x80, .length = 1, .data = {9}};
+    bus.peer_sends(time_of(bench, asks + 10), winner);
+    const Cycle end = asks + kBit * static_cast<Cycle>(can_bits(winner));
+    bus.run_until(time_of(bench, end + 10));
+    CHECK((bench.reg("C1TX0CON") & 0x28) == 0x28);  // TXLARB, TXREQ
+    CHECK(received(bench.chip, "0") == winner);
+    bus.run_until(time_of(bench, end + 100 * kBit));
+    CHECK(bus.told(0, CanKind::Sent).size() == 1);
+    CHECK((bench.reg("C1TX0CON") & 0x08) == 0);
 }
 
 TEST_CASE("filters and masks let through what they should, drawn against the rule (DS70070 23.7)") {
@@ -287,9 +316,9 @@ TEST_CASE("filters and masks let through what they should, drawn against the rul
         Cycle at = 5000;
         int hits = 0;
         for (int k = 0; k < 60; ++k, at += 10'000) {
-            CanFrame frame = draw(random);
+            CanFrame frame = draw_frame(random);
             bench.go(at);
-            CHECK(bench.chip.can_receive(1, frame));
+            receive(bench.chip, frame);
             const std::uint32_t id = frame.extended ? frame.id : frame.id << 18;
             int first = -1;
             for (std::size_t f = 0; f < 6 && first < 0; ++f) {
@@ -321,7 +350,7 @@ TEST_CASE("RXB0 overflows into RXB1 with DBEN, else the frame is lost with RXB0O
         bench.run_to("ready");
         for (std::uint32_t i = 0; i < 3; ++i) {
             bench.go(5000 + 5000 * i);
-            bench.chip.can_receive(1, {.id = 0x100 + i, .length = 1, .data = {static_cast<std::uint8_t>(i)}});
+            receive(bench.chip, {.id = 0x100 + i, .length = 1, .data = {static_cast<std::uint8_t>(i)}});
         }
         CHECK(received(bench.chip, "0").id == 0x100);
         CHECK(((bench.reg("C1RX1CON") & 0x80) != 0) == (dben != 0));
@@ -342,7 +371,11 @@ woken:
     CHECK((bench.reg("C1CTRL") & 0xE0) == 0x20);
     CHECK(bench.reg("C1CFG1") == 0);
     CHECK(bench.reg("C1RXF0SID") == 0);
-    CHECK_FALSE(bench.chip.can_receive(1, {.id = 1}));
+    REQUIRE_FALSE(bench.pins.to_bus.empty());
+    CHECK(bench.pins.to_bus.back().kind == CanKind::Watch);
+    CanMessage stirs;
+    stirs.kind = CanKind::Wake;
+    bench.chip.can_news(1, stirs);
     bench.go(9000);
     CHECK((bench.reg("C1INTF") & 0x40) == 0x40);
     CHECK(bench.chip.peek_data(0x1000) == 1);
@@ -368,33 +401,30 @@ wait:   btss C1INTF, #0
         set(0x0800, "C1CTRL") + load({.id = 0x321, .length = 2, .data = {0x34, 0x12}}) + R"(
         bset C1TX0CON, #3
 )";
-    CanBench left(ask), right(echo);
-    const auto connect = [](CanBench& from, CanBench& to) {
-        from.pins.bus = [&from, &to](const CanFrame& frame, Cycle at) {
-            to.chip.run_until(from.chip.clock().time_of(at));
-            return to.chip.can_receive(1, frame) ? CanOutcome::Acknowledged : CanOutcome::NotAcknowledged;
-        };
-    };
-    connect(left, right);
-    connect(right, left);
-    left.go(9000);
+    CanBench left(ask), right(echo), again(echo);
+    CanBusBench bus({{&left.chip, &left.pins}, {&right.chip, &right.pins}});
+    bus.run_until(time_of(left, 3500));
     CHECK((left.reg("C1INTF") & 4) == 4);
     CHECK(left.reg("C1EC") == 0);
+    const auto taken = bus.told(1, CanKind::Received);
+    REQUIRE(taken.size() == 1);
+    // Saved while its answer is on the wire.
     std::vector<std::uint8_t> bytes;
     StateWriter writer(bytes);
     right.chip.state(writer);
-    CanBench again(echo);
     StateReader reader(bytes);
     again.chip.state(reader);
-    std::vector<CanFrame> repeated;
-    again.pins.bus = [&](const CanFrame& frame, Cycle) {
-        repeated.push_back(frame);
-        return CanOutcome::Acknowledged;
-    };
-    again.go(20'000);
-    right.go(20'000);
+    bus.run_until(time_of(left, 20'000));
     CHECK(received(left.chip, "0") == CanFrame{.id = 0x84, .length = 2, .data = {0xCB, 0xED}});
-    REQUIRE(repeated.size() == 1);
-    CHECK(repeated[0].data == right.pins.sent.back().data);
+    const auto answered = bus.told(1, CanKind::Sent);
+    REQUIRE(answered.size() == 1);
+    again.chip.run_until(answered[0].time);
+    again.chip.can_news(1, answered[0].message);
+    again.chip.run_until(right.chip.now());
     CHECK((right.reg("C1INTF") & 4) == 4);
+    std::vector<std::uint8_t> one, other;
+    StateWriter of_right(one), of_again(other);
+    right.chip.state(of_right);
+    again.chip.state(of_again);
+    CHECK(one == other);
 }

@@ -2,31 +2,22 @@
 
 #include "base/random.h"
 #include "emu/dspic/core/sfr_space.h"
-#include "emu/dspic/peripherals/can_frame.h"
-#include "tests/dspic/chip30_bench.h"
+#include "tests/can/can_reference.h"
+#include "tests/dspic/can_bus_bench.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
-#include <functional>
 #include <optional>
 
 using namespace puckloop;
 using namespace puckloop::dspic;
 using namespace puckloop::dspic::test;
+using tests::draw_frame;
 
 namespace {
 
 using Words = std::array<int, 8>;
-
-struct BusPins : Pins30 {
-    std::vector<CanFrame> sent;
-    std::function<CanOutcome(const CanFrame&, Cycle)> bus;
-    CanOutcome can_sent(int, const CanFrame& frame, Cycle now) override {
-        sent.push_back(frame);
-        return bus ? bus(frame, now) : CanOutcome::Acknowledged;
-    }
-};
 
 std::string set(unsigned value, unsigned address) {
     return fmt::format("        mov #{:#x}, w0\n        mov w0, {:#x}\n", value & 0xFFFFu, address);
@@ -40,12 +31,13 @@ constexpr unsigned kRam = 0x7800;
 constexpr Cycle kBit = 32;  // 16 quanta of 2 cycles, FCAN = FCY
 
 struct EcanBench {
-    BusPins pins;
+    CanPins pins;
     Chip chip{dspic33fj256gp710(), pins, ChipOptions{4e6, 0.0}};
     std::map<std::string, std::uint32_t> symbols;
 
     /// `setup` runs in Configuration mode with window 1, `more` in window 0.
-    EcanBench(const std::string& setup, const std::string& more, unsigned fctrl = 0x8000) {
+    EcanBench(const std::string& setup, const std::string& more, unsigned fctrl = 0x8000, bool wired = true)
+        : pins(wired) {
         std::string source = "        goto main\n        .org 0x200\nmain:\n";
         source += set(0x0C00, kCtrl1) + set(0x03AC, kCfg2) + set(fctrl, kFctrl) + set(0x0C01, kCtrl1) +
                   setup + set(0x0C00, kCtrl1);
@@ -80,18 +72,6 @@ struct EcanBench {
     unsigned full() const { return chip.peek("C1BUFPNT1"); }  // CxRXFUL1 in window 0
 };
 
-CanFrame draw(RandomStream& random) {
-    CanFrame frame;
-    frame.extended = random.below(2);
-    frame.id = static_cast<std::uint32_t>(random.below(frame.extended ? 1u << 29 : 1u << 11));
-    frame.remote = random.below(5) == 0;
-    frame.length = static_cast<std::uint8_t>(random.below(9));
-    if (!frame.remote)
-        for (int i = 0; i < frame.length; ++i)
-            frame.data[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(random.below(256));
-    return frame;
-}
-
 /// DS70185, figure of the message buffer.
 Words words_of(const CanFrame& frame, int filter = 0) {
     Words words{};
@@ -123,7 +103,7 @@ const std::string kTakeAll = set(0x0009, kPointers) + set(1, kFen1);  // filter 
 TEST_CASE("ECAN in loopback: a buffer of DMA RAM comes back in another at the frame's end (DS70185)") {
     RandomStream random(5, "ecan");
     for (int i = 0; i < 12; ++i) {
-        const CanFrame frame = draw(random);
+        const CanFrame frame = draw_frame(random);
         const int buffer = static_cast<int>(random.below(8));
         CAPTURE(frame.id, frame.extended, frame.remote, int{frame.length}, buffer);
         const unsigned request = 0x88u << (buffer % 2 ? 8 : 0);  // TXEN, TXREQ
@@ -143,7 +123,7 @@ TEST_CASE("ECAN in loopback: a buffer of DMA RAM comes back in another at the fr
         CHECK((bench.chip.peek("IFS0") & 0x4010) == 0x4010);  // both DMA channels have moved a buffer
         CHECK((bench.chip.peek("IFS2") & 4) == 4);            // C1RXIF
         CHECK((bench.chip.peek("IFS4") & 0x40) == 0x40);      // C1TXIF
-        CHECK(bench.pins.sent.empty());
+        CHECK(bench.pins.to_bus.empty());
         CHECK(bench.chip.report().unmodelled.empty());
     }
 }
@@ -189,7 +169,7 @@ TEST_CASE("ECAN's filters, masks and pointers put a frame where they should, dra
         bench.go(20 * kBit);
         unsigned full = 0;
         for (int k = 0; k < 25; ++k) {
-            CanFrame frame = draw(random);
+            CanFrame frame = draw_frame(random);
             const Filter& near = filters[random.below(16)];
             if (random.below(2)) {
                 frame.extended = near.extended;
@@ -206,7 +186,7 @@ TEST_CASE("ECAN's filters, masks and pointers put a frame where they should, dra
                                                   : (frame.id ^ filters[f].id >> 18) & (cares >> 18);
                 if (differs == 0) hit = f;
             }
-            CHECK(bench.chip.can_receive(1, frame));
+            receive(bench.chip, frame);
             const bool fits = hit && !(full >> filters[*hit].buffer & 1);
             if (fits) {
                 full |= 1u << filters[*hit].buffer;
@@ -227,29 +207,29 @@ TEST_CASE("ECAN's FIFO fills from FSA on, warns when one is left, overflows, and
     EcanBench bench(set(0x000F, kPointers) + set(1, kFen1), set(0x0800, kCtrl1), 0x2002);
     bench.run_to("ready");
     bench.go(20 * kBit);
-    const auto receive = [&](std::uint8_t byte) {
-        CHECK(bench.chip.can_receive(1, {.id = 0x123, .length = 1, .data = {byte}}));
+    const auto take = [&](std::uint8_t byte) {
+        receive(bench.chip, {.id = 0x123, .length = 1, .data = {byte}});
         bench.go(200);
     };
     CHECK(bench.chip.peek("C1FIFO") == 0x0202);
-    receive(1);
+    take(1);
     CHECK(bench.chip.peek("C1FIFO") == 0x0302);
-    receive(2);
+    take(2);
     CHECK((bench.chip.peek("C1INTF") & 8) == 0);
-    receive(3);
+    take(3);
     CHECK((bench.chip.peek("C1INTF") & 8) == 8);
-    receive(4);
+    take(4);
     CHECK(bench.chip.peek("C1FIFO") == 0x0202);
     CHECK(bench.full() == 0x3C);
     CHECK((bench.chip.peek("C1INTF") & 4) == 0);
-    receive(5);
+    take(5);
     CHECK((bench.chip.peek("C1INTF") & 4) == 4);
     CHECK(bench.chip.peek("C1RXOVF1") == 4);
     for (int i = 0; i < 4; ++i)
         CHECK(bench.buffer(2 + i)[3] == i + 1);
     bench.chip.inside().sfr.write(kFull, 0xFFFB, 0xFFFF);  // buffer 2 is given back
     CHECK(bench.chip.peek("C1FIFO") == 0x0203);
-    receive(6);
+    take(6);
     CHECK(bench.buffer(2)[3] == 6);
     CHECK(bench.chip.peek("C1FIFO") == 0x0303);
     bench.chip.inside().sfr.write(kFull, 0, 0xFFFF);
@@ -265,39 +245,50 @@ TEST_CASE("ECAN answers a remote frame by itself with RTREN, and sends by priori
     EcanBench bench(set(0x55 << 5, kFilters) + set(0xFFE0, kMasks) + set(2, kPointers) + set(1, kFen1),
                     load(0, low) + load(1, high) + load(2, answer) + set(0x0084, kTr01 + 2) +
                         set(0x0800, kCtrl1) + set(0x8B89, kTr01));
-    bench.run_to("ready");
-    bench.go(400 * kBit);
-    REQUIRE(bench.pins.sent.size() == 2);
-    CHECK(bench.pins.sent[0] == high);
-    CHECK(bench.pins.sent[1] == low);
-    CHECK(bench.chip.can_receive(1, {.id = 0x55, .length = 2}));  // data, not a question
-    bench.go(200 * kBit);
-    CHECK(bench.pins.sent.size() == 2);
-    CHECK(bench.chip.can_receive(1, {.id = 0x55, .remote = true, .length = 2}));
-    bench.go(200 * kBit);
-    REQUIRE(bench.pins.sent.size() == 3);
-    CHECK(bench.pins.sent[2] == answer);
+    CanBusBench bus({{&bench.chip, &bench.pins}});
+    const cosim::Time bit = bench.chip.clock().time_of(1000 * kBit) / 1000;
+    bus.peer_joins(0, bit);
+    const auto sent = [&] {
+        std::vector<CanFrame> frames;
+        for (const auto& one : bus.told(0, CanKind::Sent))
+            frames.push_back(cosim::frame_in(one.message));
+        return frames;
+    };
+    bus.run_until(500 * bit);
+    CHECK(sent() == std::vector{high, low});
+    bus.peer_sends(500 * bit, {.id = 0x55, .length = 2});  // data, not a question
+    bus.run_until(700 * bit);
+    CHECK(sent().size() == 2);
+    bus.peer_sends(700 * bit, {.id = 0x55, .remote = true, .length = 2});
+    bus.run_until(1000 * bit);
+    CHECK(sent() == std::vector{high, low, answer});
 }
 
 TEST_CASE("ECAN alone on a bus becomes error passive; saved in the middle of a frame it goes on alike") {
     const CanFrame frame{.id = 0x321, .length = 8, .data = {1, 2, 3, 4, 5, 6, 7, 8}};
     const std::string more = load(0, frame) + set(0x0800, kCtrl1) + set(0x0088, kTr01);
-    EcanBench bench(kTakeAll, more);
-    bench.pins.bus = [](const CanFrame&, Cycle) { return CanOutcome::NotAcknowledged; };
-    bench.run_to("ready");
-    bench.go(60 * kBit);
-    std::vector<std::uint8_t> bytes;
-    StateWriter writer(bytes);
-    bench.chip.state(writer);
-    EcanBench again(kTakeAll, more);
-    again.pins.bus = bench.pins.bus;
-    StateReader reader(bytes);
-    again.chip.state(reader);
-    bench.go(4000 * kBit);
-    again.go(4000 * kBit);
-    CHECK(bench.chip.peek("C1EC") == 0x8000);
-    CHECK((bench.chip.peek("C1INTF") & 0x1020) == 0x1020);
-    CHECK(again.pins.sent.size() == bench.pins.sent.size());
-    CHECK(bench.pins.sent.size() > 16);
-    CHECK(again.chip.peek("C1EC") == 0x8000);
+    for (const bool wired : {false, true}) {
+        CAPTURE(wired);
+        EcanBench bench(kTakeAll, more, 0x8000, wired);
+        CanBusBench bus({{&bench.chip, &bench.pins}});
+        const cosim::Time bit = bench.chip.clock().time_of(1000 * kBit) / 1000;
+        bus.run_until(100 * bit);
+        std::vector<std::uint8_t> bytes;
+        StateWriter writer(bytes);
+        bench.chip.state(writer);
+        EcanBench again(kTakeAll, more, 0x8000, wired);
+        StateReader reader(bytes);
+        again.chip.state(reader);
+        bus.run_until(4000 * bit);
+        for (const auto& one : bus.told(0, CanKind::Error)) {
+            again.chip.run_until(one.time);
+            again.chip.can_news(1, one.message);
+        }
+        again.chip.run_until(4000 * bit);
+        CHECK((bus.told(0, CanKind::Error).size() > 16) == wired);
+        for (const Chip* chip : {&bench.chip, &again.chip}) {
+            CHECK(chip->peek("C1EC") == 0x8000);
+            CHECK((chip->peek("C1INTF") & 0x1020) == 0x1020);
+        }
+    }
 }

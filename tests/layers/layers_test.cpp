@@ -25,6 +25,7 @@ const std::vector<std::string> kFolders = {
     "cosim/schedule",
     "cosim/remote",
     "cosim/i2c",
+    "cosim/can",
     "cosim/resume",
     "cosim",
     "emu/chip",

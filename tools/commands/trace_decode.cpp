@@ -36,7 +36,8 @@ void declare_trace_decode(Command& trace) {
         ->add_option("--protocol", options->protocols,
                      "only epuck, xbee, bluetooth, bytes, i2c, rab, ircom, mesh or fault (repeatable)")
         ->allow_extra_args(false)
-        ->check(one_of({"epuck", "xbee", "bluetooth", "bytes", "i2c", "rab", "ircom", "mesh", "fault"}));
+        ->check(
+            one_of({"epuck", "xbee", "bluetooth", "bytes", "i2c", "can", "rab", "ircom", "mesh", "fault"}));
     command->add_flag("--errors", options->errors_only, "only frames with something wrong");
     command->add_flag("--json", options->json, "one JSON object per line");
     add_selection(*command, options->selection);

@@ -57,7 +57,7 @@ void add_selection(Command& command, TraceSelection& selection) {
         ->allow_extra_args(false);
     command.add_option("--kind", selection.kinds, "only uart, i2c, signal or radio (repeatable)")
         ->allow_extra_args(false)
-        ->check(one_of({"uart", "i2c", "signal", "radio"}));
+        ->check(one_of({"uart", "i2c", "signal", "radio", "can"}));
     command.add_option("--from", selection.from_s, "first time, s")->check(number_between(0.0, kLongest));
     command.add_option("--to", selection.until_s, "end time, s; not included")
         ->check(number_between(0.0, kLongest));

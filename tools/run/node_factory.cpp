@@ -1,6 +1,7 @@
 #include "tools/run/node_factory.h"
 
 #include "base/error.h"
+#include "cosim/can/can_bus.h"
 #include "cosim/faults/fault_json.h"
 #include "emu/avr/device.h"
 #include "emu/bluetooth/air_node.h"
@@ -60,6 +61,7 @@ std::unique_ptr<cosim::StatefulNode> make_pic(const json& spec) {
     if (spec.contains("board")) options.board.revision = *pic::revision_of(spec["board"].get<std::string>());
     options.ircom = spec.value("ircom", false);
     options.uart1_breaks = spec.value("bluetooth", false);
+    options.board.can = spec.value("can", board::CanModules{0});
     options.log = spec.value("log", "");
     for (const double seconds : spec.at("resets").get<std::vector<double>>())
         options.resets.push_back(cosim::from_seconds(seconds));
@@ -83,6 +85,7 @@ std::unique_ptr<cosim::StatefulNode> make_rab(const json& spec) {
     options.board.crystal_ppm = spec.at("crystal_ppm");
     options.board.adc_noise_counts = spec.at("adc_noise");
     options.fastest_i2c_hertz = spec.at("i2c_hertz");
+    options.board.can = spec.value("can", board::CanModules{0});
     options.log = spec.value("log", "");
     options.faults = faults_of(spec);
     const image::Image image = board_image(spec, dspic::dspic33fj256gp710().name, options.nvm);
@@ -164,6 +167,7 @@ std::unique_ptr<cosim::Node> make_node(const std::string& text) {
         if (kind == "ir") return physics::make_ir_node(text);
         if (kind == "ircom") return physics::make_ircom_node(text);
         if (kind == "i2c_bus") return i2c_devices::make_bus_node(text);
+        if (kind == "can_bus") return cosim::make_can_bus(text);
         if (kind == "outside") return make_outside(spec);
         if (kind == "xbee") return xbee::make_module_node(text);
         if (kind == "bluetooth") return bluetooth::make_air_node(text);

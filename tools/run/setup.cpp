@@ -12,6 +12,7 @@
 #include "tools/run/overrides.h"
 #include "tools/run/plan/bluetooth_nodes.h"
 #include "tools/run/plan/cameras.h"
+#include "tools/run/plan/can_buses.h"
 #include "tools/run/plan/ircom_nodes.h"
 #include "tools/run/plan/linux_nodes.h"
 #include "tools/run/plan/plan_kit.h"
@@ -52,6 +53,7 @@ json pic_spec(const RunSetup& setup, const RobotBoards& robot) {
               {"log", log_of(setup, robot.name + ".pic")}};
     if (has_lsm330(robot)) spec["board"] = robot.pic.revision;
     if (robot.pic.bluetooth) spec["bluetooth"] = true;
+    add_can_modules(setup.scenario, robot.name + ".pic", spec);
     if (scenario.world.ircom) {
         spec["ircom"] = true;
         if (!robot.pic.adc_noise_given) spec["phototransistor_noise"] = pic::kPhototransistorNoise;
@@ -61,15 +63,17 @@ json pic_spec(const RunSetup& setup, const RobotBoards& robot) {
 
 json rab_spec(const RunSetup& setup, const RobotBoards& robot) {
     const Scenario& scenario = setup.scenario;
-    return {{"kind", "rab"},
-            {"name", robot.name + ".rab"},
-            {"firmware", full_path(robot.rab->firmware).string()},
-            {"seed", scenario.seed},
-            {"crystal_ppm", robot.rab->crystal_ppm},
-            {"adc_noise", robot.rab->adc_noise},
-            {"i2c_hertz", scenario.i2c_clock},
-            {"nvm", robot.rab->nvm.empty() ? "" : full_path(robot.rab->nvm).string()},
-            {"log", log_of(setup, robot.name + ".rab")}};
+    json spec{{"kind", "rab"},
+              {"name", robot.name + ".rab"},
+              {"firmware", full_path(robot.rab->firmware).string()},
+              {"seed", scenario.seed},
+              {"crystal_ppm", robot.rab->crystal_ppm},
+              {"adc_noise", robot.rab->adc_noise},
+              {"i2c_hertz", scenario.i2c_clock},
+              {"nvm", robot.rab->nvm.empty() ? "" : full_path(robot.rab->nvm).string()},
+              {"log", log_of(setup, robot.name + ".rab")}};
+    add_can_modules(scenario, robot.name + ".rab", spec);
+    return spec;
 }
 
 json bus_spec(const RunSetup& setup, const RobotBoards& robot) {
@@ -262,6 +266,7 @@ RunSetup set_up(const RunRequest& request) {
     add_tams(setup, request);
     add_radio(setup, request);
     add_bluetooth(setup, request);
+    add_can_buses(setup);
     add_ircom(setup, world);
     name_linked_ports(setup);
     hand_out_faults(setup);

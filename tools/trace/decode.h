@@ -18,7 +18,8 @@ struct DecodedFrame {
     cosim::Time begin = 0;  ///< first bit on the line or air
     cosim::Time end = 0;    ///< the last bit is there
     std::string link, from;
-    std::string protocol;  ///< "epuck", "xbee", "bluetooth", "bytes", "i2c", "mesh", "rab", "ircom", "fault"
+    std::string
+        protocol;  ///< "epuck", "xbee", "bluetooth", "bytes", "i2c", "can", "mesh", "rab", "ircom", "fault"
     std::string text;
     std::vector<std::string> errors;  ///< what is wrong with it, and what faults did to it
     nlohmann::ordered_json fields = nlohmann::ordered_json::object();

@@ -5,6 +5,7 @@
 #include "protocols/ircom.h"
 #include "protocols/lmx9820_packet.h"
 #include "protocols/xbee_frame.h"
+#include "tools/trace/can_frames.h"
 #include "tools/trace/decode.h"
 #include "tools/trace/fault_marks.h"
 #include "tools/trace/i2c_transfers.h"
@@ -201,6 +202,7 @@ class IrcomDecoder {
 /// A fault that is on no frame.
 void decode_mark(const FaultMark& mark, const TakeFrame& take);
 
+void decode_can(const cosim::TraceRow& row, const CanOnBus& seen, const TakeFrame& take);
 void decode_radio(const cosim::TraceRow& row, const cosim::RadioFrame& frame, const TakeFrame& take);
 
 }  // namespace puckloop::tools

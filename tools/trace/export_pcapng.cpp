@@ -1,6 +1,7 @@
-// What becomes a packet: bursts of bytes, segments of I2C transfers, radio frames.
+// What becomes a packet: bursts of bytes, segments of I2C transfers, radio and CAN frames.
 
 #include "protocols/uart_sampling.h"
+#include "tools/trace/can_frames.h"
 #include "tools/trace/export.h"
 #include "tools/trace/i2c_transfers.h"
 #include "tools/trace/pcapng_stream.h"
@@ -202,6 +203,11 @@ struct PcapngStream::Parts {
             const auto octets = radio->octets.view();
             writer.packet(writer.interface(fmt::format("{} {}", row.link, row.from), LinkType::Radio),
                           radio->start, {octets.begin(), octets.end()}, fault_text(row.fault));
+        } else if (const auto frame = can_on_bus(row)) {
+            const bool failed = frame->error != protocols::CanError::None;
+            writer.packet(writer.interface(frame->bus, LinkType::Can), frame->start, frame->socketcan(),
+                          failed ? fmt::format("{} {}: {}", frame->sender, frame->text(), frame->error_text())
+                                 : frame->sender);
         }
     }
 

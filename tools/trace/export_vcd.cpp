@@ -1,3 +1,4 @@
+#include "tools/trace/can_frames.h"
 #include "tools/trace/edges.h"
 #include "tools/trace/export.h"
 
@@ -64,11 +65,14 @@ class Values {
         } else if (const auto* signal = std::get_if<cosim::Signal>(&row.payload)) {
             const std::string name = row.signal.empty() ? fmt::format("signal{}", signal->id) : row.signal;
             emit_(row.time, variable(row, name, "real", 64, "r0 "), fmt::format("r{} ", signal->value));
-        } else {
-            const auto& radio = std::get<cosim::RadioFrame>(row.payload);
+        } else if (const auto* radio = std::get_if<cosim::RadioFrame>(&row.payload)) {
             const std::size_t octets = variable(row, "octets", "string", 1, "s ");
-            emit_(radio.start, octets, fmt::format("s{} ", hex_of(radio.octets)));
-            emit_(radio.start + radio.duration, octets, "s ");
+            emit_(radio->start, octets, fmt::format("s{} ", hex_of(radio->octets)));
+            emit_(radio->start + radio->duration, octets, "s ");
+        } else if (const auto can = can_on_bus(row)) {
+            const std::size_t text = variable(can->bus, "", "frame", "string", 1, "s ");
+            emit_(can->start, text, fmt::format("s{} ", can->text()));
+            emit_(can->end(), text, "s ");
         }
         if (row.fault == cosim::FaultKind::None) return;
         emit_(row.time, variable(row, "fault_kind", "string", 1, "s "),

@@ -1,6 +1,7 @@
 #include "tools/trace/lines.h"
 
 #include "protocols/uart_sampling.h"
+#include "tools/trace/can_frames.h"
 
 #include <fmt/format.h>
 
@@ -66,8 +67,13 @@ void LineRenderer::add(const cosim::TraceRow& row) {
         transfers_.add(row, *phase);
     } else if (const auto* change = std::get_if<cosim::Signal>(&row.payload)) {
         signal(row, *change);
-    } else {
-        const auto& radio = std::get<cosim::RadioFrame>(row.payload);
+    } else if (const auto frame = can_on_bus(row)) {
+        const std::size_t wire = line(frame->bus, "", "rx", Line::Kind::Can);
+        shortest_ = std::min(shortest_, std::max<Time>(frame->bit, 1));
+        for (const auto& [begin, end] : frame->dominant())
+            active(wire, begin, end);
+    } else if (const auto* sent = std::get_if<cosim::RadioFrame>(&row.payload)) {
+        const cosim::RadioFrame& radio = *sent;
         if (!keeps_from_arriving(row.fault))
             active(line(row.link, row.from, "on_air", Line::Kind::OnAir), radio.start,
                    radio.start + radio.duration);

@@ -14,6 +14,7 @@
 // was lost, and the line as it is held from then on; what a master lost to another one is that one's byte.
 // A fault that leaves no mark in the trace (fault_marks.h) is on a line of its place: for the byte that it
 // harmed, or for 10 us.
+// CAN: can_frames.h; the line of a bus is low where it is dominant, as at a controller's RX pin.
 // Signals with no other values than 0 and 1 are lines; a radio's line is high while it transmits.
 
 #include "cosim/trace/trace_row.h"
@@ -30,14 +31,16 @@
 namespace puckloop::tools {
 
 struct Line {
-    enum class Kind : std::uint8_t { Uart, Scl, Sda, Pin, OnAir, Fault };
+    enum class Kind : std::uint8_t { Uart, Scl, Sda, Can, Pin, OnAir, Fault };
     std::string scope;  ///< link, or bus
     std::string from;   ///< node; empty for a bus
     std::string name;   ///< "line", "scl", the signal's name, "fault"
     Kind kind = Kind::Uart;
     bool logic = true;  ///< false: a signal that had other values than 0 and 1
 
-    bool rests_high() const { return kind == Kind::Uart || kind == Kind::Scl || kind == Kind::Sda; }
+    bool rests_high() const {
+        return kind == Kind::Uart || kind == Kind::Scl || kind == Kind::Sda || kind == Kind::Can;
+    }
     /// "robot0.uart/robot0.pic", "robot0.i2c/scl", "robot0.world/robot0.pic/body_led"
     std::string full_name() const;
 };

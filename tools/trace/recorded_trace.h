@@ -24,7 +24,7 @@ struct TraceSelection {
     bool wanted(const cosim::TraceRow& row) const;
 };
 
-/// "uart", "i2c", "signal" or "radio".
+/// "uart", "i2c", "signal", "radio" or "can".
 std::string_view kind_of(const cosim::TraceRow& row);
 
 class RecordedTrace {

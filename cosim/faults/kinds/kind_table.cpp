@@ -42,7 +42,8 @@ bool in_range(const ParameterInfo& parameter, double value) {
 /// Where faults that hold do so for everything; on lines each frame is a candidate.
 bool carries_out_by_window(PlaceKind place) {
     return place == PlaceKind::Pic || place == PlaceKind::Rab || place == PlaceKind::Tam ||
-           place == PlaceKind::InfraRed || place == PlaceKind::Linux || place == PlaceKind::Xbee;
+           place == PlaceKind::InfraRed || place == PlaceKind::Linux || place == PlaceKind::Xbee ||
+           place == PlaceKind::Can;
 }
 
 }  // namespace
@@ -50,8 +51,8 @@ bool carries_out_by_window(PlaceKind place) {
 const std::vector<KindInfo>& all_kinds() {
     static const std::vector<KindInfo> kinds = [] {
         std::vector<KindInfo> all;
-        for (auto family : {uart_kinds, radio_kinds, xbee_kinds, ircom_kinds, i2c_kinds, linux_kinds,
-                            board_kinds, infrared_kinds}) {
+        for (auto family : {uart_kinds, radio_kinds, xbee_kinds, ircom_kinds, i2c_kinds, can_kinds,
+                            linux_kinds, board_kinds, infrared_kinds}) {
             std::vector<KindInfo> some = family();
             std::move(some.begin(), some.end(), std::back_inserter(all));
         }

@@ -15,7 +15,7 @@
 namespace puckloop::cosim {
 
 /// What a fault sits on. Radio: a module's way to the air; Xbee: the air between modules.
-enum class PlaceKind : std::uint8_t { Uart, Radio, I2c, InfraRed, Pic, Rab, Tam, Linux, Xbee, Ircom };
+enum class PlaceKind : std::uint8_t { Uart, Radio, I2c, InfraRed, Pic, Rab, Tam, Linux, Xbee, Ircom, Can };
 
 enum class Unit : std::uint8_t {
     Time,
@@ -71,6 +71,7 @@ void check_fault(const FaultSpec& spec, const KindInfo& kind);
 std::vector<KindInfo> uart_kinds();
 std::vector<KindInfo> radio_kinds();
 std::vector<KindInfo> i2c_kinds();
+std::vector<KindInfo> can_kinds();
 std::vector<KindInfo> xbee_kinds();
 std::vector<KindInfo> ircom_kinds();
 std::vector<KindInfo> linux_kinds();

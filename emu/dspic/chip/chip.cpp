@@ -168,9 +168,9 @@ struct Chip::Parts {
         if (layout.dci.con1) dci.emplace(around, layout.dci, ports, pins);
         if (layout.low_voltage_irq) low_voltage.emplace(around, layout.low_voltage_irq, pins);
         for (const Can::Setup& setup : layout.cans)
-            cans.emplace_back(around, setup, ports, pins);
+            cans.emplace_back(around, setup, clock, ports, pins);
         for (const Ecan::Setup& setup : layout.ecans)
-            ecans.emplace_back(around, setup, ports, pins, *dma);
+            ecans.emplace_back(around, setup, clock, ports, pins, *dma);
         for (const std::uint16_t address : layout.stored)
             sfr.claim(address);
         const auto address_of = [&](std::string_view name) {
@@ -562,10 +562,10 @@ void Chip::stop_crystal() {
     parts.core.stall_until(kNoCycle);
 }
 
-bool Chip::can_receive(int unit, const CanFrame& frame) {
+void Chip::can_news(int unit, const cosim::CanMessage& message) {
     const auto module = static_cast<std::size_t>(unit - 1);
-    if (!parts_->ecans.empty()) return parts_->ecans.at(module).receive(frame, parts_->message_cycle());
-    return parts_->cans.at(module).receive(frame, parts_->message_cycle());
+    if (!parts_->ecans.empty()) return parts_->ecans.at(module).news(message, parts_->message_cycle());
+    parts_->cans.at(module).news(message, parts_->message_cycle());
 }
 
 void Chip::pins_changed(PortLetter port) {

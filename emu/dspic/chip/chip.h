@@ -155,10 +155,8 @@ class Chip {
     /// Each but Stop is answered through Pins::i2c_slave_answer(), with ack = 0 where the slave does not feel
     /// addressed.
     void i2c_slave_phase(int unit, const cosim::I2cPhase& phase);
-    /// A frame that somebody else sent to module CAN`unit` ends now. True: the module acknowledged it. A bus
-    /// asks before it calls the frame acknowledged to its sender; the answer does not change within a frame
-    /// unless the program changes the mode.
-    bool can_receive(int unit, const CanFrame& frame);
+    /// What the bus of module CAN`unit` has to say now (Pins::can_wired()).
+    void can_news(int unit, const cosim::CanMessage& message);
     /// The crystal at OSC1 and OSC2 stops now, for good: the fail-safe clock monitor takes over, or the chip
     /// stands still.
     void stop_crystal();

@@ -1,5 +1,5 @@
 // The modules of the dsPIC33FJ256GP710 (100 pins) and their pins. Source: DS70286, pin diagram and tables.
-// Not modelled: CAN1, CAN2, CRC; their registers are reported when touched.
+// Not modelled: CRC; their registers are reported when touched.
 
 #include "emu/dspic/chip/layout.h"
 #include "emu/dspic/devices/dspic33fj256gp710_irq.h"

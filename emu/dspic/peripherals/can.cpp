@@ -33,8 +33,9 @@ CanLine::Place place_of(const Can::Setup& setup) {
 
 }  // namespace
 
-Can::Can(const Surroundings& around, const Setup& setup, Ports& ports, Pins& pins)
-    : CanLine(around, place_of(setup), ports, pins), setup_(setup) {
+Can::Can(const Surroundings& around, const Setup& setup, const cosim::ClockDomain& clock, Ports& ports,
+         Pins& pins)
+    : CanLine(around, place_of(setup), clock, ports, pins), setup_(setup) {
     for (int offset = 0; offset <= kLast; offset += 2) {
         const auto address = static_cast<std::uint16_t>(setup_.base + offset);
         if (!around_.sfr.info(address)) continue;

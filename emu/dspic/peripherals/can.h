@@ -24,7 +24,8 @@ class Can : public CanLine {
     static constexpr std::uint16_t control(const Setup& setup) {
         return static_cast<std::uint16_t>(setup.base + 0x90);
     }
-    Can(const Surroundings& around, const Setup& setup, Ports& ports, Pins& pins);
+    Can(const Surroundings& around, const Setup& setup, const cosim::ClockDomain& clock, Ports& ports,
+        Pins& pins);
 
     void reset() { reset_line(); }
 

@@ -3,6 +3,7 @@
 #include "emu/dspic/peripherals/can_registers.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace puckloop::dspic {
 
@@ -11,20 +12,29 @@ using namespace can;
 namespace {
 
 constexpr Cycle kIdleBits = 11;  // recessive bits that show an idle bus
-constexpr Cycle kRecoveries = 128;
 constexpr Cycle kIntermission = 3;
-constexpr int kAckToEnd = 9;  // bits from the acknowledge slot to the end of the frame
 constexpr unsigned kWarning = 96, kPassive = 128, kBusOff = 256;
+constexpr unsigned kLimits[] = {kWarning, kPassive, kBusOff};
 constexpr unsigned kErrorStep = 8;
 constexpr std::uint16_t kFlags = 0xFF;  // of CxINTF that interrupt
 
 }  // namespace
 
-CanLine::CanLine(const Surroundings& around, const Place& place, Ports& ports, Pins& pins)
-    : around_(around), place_(place), ports_(ports), pins_(pins), slot_(around.events.add(this, due)) {}
+CanLine::CanLine(const Surroundings& around, const Place& place, const cosim::ClockDomain& clock,
+                 Ports& ports, Pins& pins)
+    : around_(around),
+      place_(place),
+      clock_(clock),
+      ports_(ports),
+      pins_(pins),
+      slot_(around.events.add(this, due)),
+      wired_(pins.can_wired(place.unit)) {}
 
 void CanLine::reset_line() {
+    const Role role = state_.role;
     state_ = {};
+    state_.role = role;
+    take_role(around_.now);
     around_.events.cancel(slot_);
 }
 
@@ -32,33 +42,27 @@ CanLine::Mode CanLine::mode() const {
     return static_cast<Mode>(kCTRL["OPMODE"].of(reg(place_.ctrl)));
 }
 
-bool CanLine::on_bus() const {
-    return mode() == Mode::Normal && state_.errors < kBusOff && !state_.held;
-}
-
-// A bit is 1 + PRSEG + SEG1PH + SEG2PH quanta of 2 (BRP + 1) master clocks.
-Cycle CanLine::bit_quarters() const {
-    const unsigned cfg1 = reg(place_.cfg1), cfg2 = reg(place_.cfg2);
+// A bit is 1 + PRSEG + SEG1PH + SEG2PH quanta, sampled before SEG2PH.
+CanLine::Quanta CanLine::bit_quanta() const {
+    const unsigned cfg2 = reg(place_.cfg2);
     const unsigned first = kCFG2["SEG1PH"].of(cfg2) + 1;
     const unsigned second = cfg2 & kCFG2["SEG2PHTS"] ? kCFG2["SEG2PH"].of(cfg2) + 1 : std::max(first, 2u);
-    const unsigned quanta = 1 + kCFG2["PRSEG"].of(cfg2) + 1 + first + second;
-    const unsigned clocks = quanta * 2 * (kCFG1["BRP"].of(cfg1) + 1);
+    return {1 + kCFG2["PRSEG"].of(cfg2) + 1 + first + second, second};
+}
+
+// A quantum is 2 (BRP + 1) master clocks.
+Cycle CanLine::bit_quarters() const {
+    const unsigned clocks = bit_quanta().all * 2 * (kCFG1["BRP"].of(reg(place_.cfg1)) + 1);
     return clocks * (reg(place_.ctrl) & kCTRL["CANCKS"] ? place_.clock_quarters_set : place_.clock_quarters);
 }
 
 void CanLine::plan() {
-    around_.events.schedule(slot_, std::min({state_.mode_due, state_.frame_due, state_.recovery}));
+    around_.events.schedule(slot_, std::min(state_.mode_due, state_.frame_due));
 }
 
 void CanLine::due(void* owner, Cycle due) {
     CanLine& self = *static_cast<CanLine*>(owner);
     State& state = self.state_;
-    if (state.recovery <= due) {
-        state.recovery = kNoCycle;
-        state.errors = 0;
-        self.show_errors();
-        self.look_for_frame(due);
-    }
     if (state.frame_due <= due) {
         state.frame_due = kNoCycle;
         if (state.sending == kNobody)
@@ -81,6 +85,7 @@ void CanLine::hold(bool on) {
         state_.sending = kNobody;
         state_.frame_due = kNoCycle;
     }
+    take_role(around_.now);
     if (!on) look_for_frame(around_.now);
     plan();
 }
@@ -108,6 +113,7 @@ void CanLine::request_mode(Cycle at) {
     const bool listens = wanted == Mode::Normal || wanted == Mode::ListenOnly || wanted == Mode::ListenAll;
     state_.mode_due = at + (listens ? bits(kIdleBits) : 0);
     if (state_.sending != kNobody) state_.mode_due = std::max(state_.mode_due, state_.frame_due);
+    if (state_.sending != kNobody && on_bus()) withdraw(at);  // the bus's answer asks for the mode again
 }
 
 void CanLine::enter_mode(Cycle at) {
@@ -116,10 +122,10 @@ void CanLine::enter_mode(Cycle at) {
     ctrl = static_cast<std::uint16_t>((ctrl & ~kCTRL["OPMODE"]) | wanted << 5);
     if (mode() == Mode::Configuration) {
         state_.errors = 0;
-        state_.recovery = kNoCycle;
         reg(place_.ec) = 0;
         show_errors();
     }
+    take_role(at);
     lend_pins(at);
     look_for_frame(at);
 }
@@ -153,16 +159,17 @@ void CanLine::control_written(int buffer, bool was_asked) {
 
 // Plans the next frame if one is asked for and may be sent.
 void CanLine::look_for_frame(Cycle at) {
+    if (on_bus()) return offer(at);
     if (state_.sending != kNobody || state_.held) return;
     state_.frame_due = kNoCycle;
     if (state_.mode_due != kNoCycle) return;
-    if (!on_bus() && mode() != Mode::Loopback) return;
+    if (mode() != Mode::Normal && mode() != Mode::Loopback) return;
     for (int buffer = 0; buffer < place_.transmitters; ++buffer)
         if (asks(buffer)) state_.frame_due = std::max(at, state_.bus_free);
 }
 
-// The highest TXPRI first, the highest buffer among equals.
-void CanLine::send(Cycle at) {
+// The highest TXPRI first, the highest buffer among equals; -1: none asks.
+int CanLine::best_buffer() const {
     int best = -1;
     unsigned priority = 0;
     for (int buffer = 0; buffer < place_.transmitters; ++buffer) {
@@ -171,48 +178,53 @@ void CanLine::send(Cycle at) {
         best = buffer;
         priority = wants;
     }
+    return best;
+}
+
+void CanLine::send(Cycle at) {
+    const int best = best_buffer();
     if (best < 0) return;
     state_.sending = static_cast<std::uint8_t>(best);
     state_.frame = frame_of(best, at);
     state_.frame_due = at + bits(static_cast<Cycle>(can_bits(state_.frame)));
 }
 
+/// In loopback it comes back; alone, nobody acknowledges, for which an error passive sender is not punished.
 void CanLine::end_frame(Cycle at) {
     const int buffer = state_.sending;
     const CanFrame frame = state_.frame;
-    const bool loops = mode() == Mode::Loopback;
-    const CanOutcome outcome =
-        loops ? CanOutcome::Acknowledged : pins_.can_sent(place_.unit, frame, at - bits(kAckToEnd));
     state_.sending = kNobody;
     state_.bus_free = at + bits(kIntermission);
-    if (!loops) count_errors(outcome, at);
-    const bool well = outcome == CanOutcome::Acknowledged;
-    change_control(buffer, well ? kTxErr | kTxReq : 0, well ? 0 : kTxErr);
-    if (well) {
+    if (mode() == Mode::Loopback) {
+        change_control(buffer, kTxErr | kTxReq, 0);
         was_sent(buffer, at);
-        if (loops) deliver(frame, at);
+        deliver(frame, at);
+    } else {
+        if (state_.errors < kPassive) count_errors(state_.errors + kErrorStep, 0, at);
+        change_control(buffer, 0, kTxErr);
     }
     look_for_frame(at);
 }
 
 void CanLine::abort(int buffer) {
+    if (state_.sending == buffer && on_bus()) {
+        state_.aborting |= static_cast<std::uint8_t>(1u << buffer);
+        return withdraw(around_.now + 1);
+    }
     if (state_.sending == buffer) return;  // what is on the wire goes on
     change_control(buffer, kTxReq, kTxAbt);
 }
 
-// An error passive sender is not punished for a missing acknowledge.
-void CanLine::count_errors(CanOutcome outcome, Cycle at) {
-    const unsigned before = state_.errors;
-    if (outcome == CanOutcome::Acknowledged) {
-        if (state_.errors > 0) --state_.errors;
-    } else if (outcome == CanOutcome::BitError || before < kPassive) {
-        state_.errors = static_cast<std::uint16_t>(before + kErrorStep);
-    }
-    const auto crossed = [&](unsigned limit) { return before < limit && state_.errors >= limit; };
-    const bool tells = crossed(kWarning) || crossed(kPassive) || crossed(kBusOff);
+void CanLine::count_errors(unsigned transmit, unsigned receive, Cycle at) {
+    const unsigned sent_before = state_.errors, received_before = reg(place_.ec) & 0xFFu;
+    state_.errors = static_cast<std::uint16_t>(transmit);
+    reg(place_.ec) = static_cast<std::uint16_t>(receive);
     show_errors();
-    if (tells) set_flags(kErrIf, at);
-    if (crossed(kBusOff)) state_.recovery = at + kRecoveries * bits(kIdleBits);
+    const auto crossed = [](unsigned before, unsigned now) {
+        return std::any_of(std::begin(kLimits), std::end(kLimits),
+                           [&](unsigned limit) { return before < limit && now >= limit; });
+    };
+    if (crossed(sent_before, transmit) || crossed(received_before, receive)) set_flags(kErrIf, at);
 }
 
 void CanLine::show_errors() {
@@ -222,30 +234,9 @@ void CanLine::show_errors() {
     assign(intf, kTxWarn, state_.errors >= kWarning);
     assign(intf, kTxBp, state_.errors >= kPassive && state_.errors < kBusOff);
     assign(intf, kTxBo, state_.errors >= kBusOff);
+    assign(intf, kRxWarn, received >= kWarning);
+    assign(intf, kRxBp, received >= kPassive);
     assign(intf, kEwarn, (intf & (kTxWarn | kRxWarn)) != 0);
-}
-
-// ---- reception
-
-bool CanLine::receive(const CanFrame& frame, Cycle at) {
-    const Mode mode = this->mode();
-    if (state_.held || mode == Mode::Disable) {
-        set_flags(kWakIf, at);
-        return false;
-    }
-    const bool hears = mode == Mode::ListenOnly || mode == Mode::ListenAll || on_bus();
-    if (!hears || state_.sending != kNobody) return false;
-    state_.bus_free = at + bits(kIntermission);
-    if (mode == Mode::Normal) {
-        std::uint16_t& errors = reg(place_.ec);
-        if (errors & 0xFF) --errors;
-    }
-    deliver(frame, at);
-    if (state_.frame_due != kNoCycle && state_.frame_due < state_.bus_free)
-        state_.frame_due = state_.bus_free;
-    look_for_frame(at);
-    plan();
-    return mode == Mode::Normal;
 }
 
 // ---- interrupts

@@ -39,8 +39,9 @@ CanLine::Place place_of(const Ecan::Setup& setup) {
 
 }  // namespace
 
-Ecan::Ecan(const Surroundings& around, const Setup& setup, Ports& ports, Pins& pins, Dma& dma)
-    : CanLine(around, place_of(setup), ports, pins), setup_(setup), dma_(dma) {
+Ecan::Ecan(const Surroundings& around, const Setup& setup, const cosim::ClockDomain& clock, Ports& ports,
+           Pins& pins, Dma& dma)
+    : CanLine(around, place_of(setup), clock, ports, pins), setup_(setup), dma_(dma) {
     const auto hook = [&](int offset, ReadHook read, WriteHook write) {
         around_.sfr.hook(static_cast<std::uint16_t>(setup_.base + offset), this, read, write);
     };

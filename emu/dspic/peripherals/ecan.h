@@ -7,8 +7,8 @@
 // channels in peripheral indirect mode carry them: CxRXD, CxTXD with the requests of CxRXIF, CxTXIF.
 //
 // Deviations
-//  1. A buffer's words move at once, when its frame begins to be sent or has been received.
-//  2. DNCNT (filtering by data) is stored. Invalid messages (IVRIF) never come in.
+//  1. A buffer's words move at once, when its frame is offered to the bus or has been received.
+//  2. DNCNT (filtering by data) is stored.
 //  3. Filters, masks and pointers can be written in any mode; only the bit timing asks for Configuration
 //  mode.
 //  4. ICODE shows error, wake-up, overflow and FIFO before buffers.
@@ -34,7 +34,8 @@ class Ecan : public CanLine {
     static constexpr int kWords = 64;  ///< from the first register to the last
     /// CxCTRL1.
     static constexpr std::uint16_t control(const Setup& setup) { return setup.base; }
-    Ecan(const Surroundings& around, const Setup& setup, Ports& ports, Pins& pins, Dma& dma);
+    Ecan(const Surroundings& around, const Setup& setup, const cosim::ClockDomain& clock, Ports& ports,
+         Pins& pins, Dma& dma);
 
     void reset();
 

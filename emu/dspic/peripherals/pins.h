@@ -3,7 +3,6 @@
 
 #include "cosim/core/message.h"
 #include "emu/dspic/core/event_queue.h"
-#include "emu/dspic/peripherals/can_frame.h"
 
 #include <cstdint>
 #include <string_view>
@@ -71,9 +70,11 @@ class Pins {
     /// Voltage at VDD, as brown-out reset and low-voltage detector see it; a change is told by
     /// Chip::supply_changed().
     virtual double supply() const;
-    /// Module CAN`unit` has sent a frame as far as the acknowledge slot, which began at cycle `now`: does
-    /// anybody take it? Without a board nobody does.
-    virtual CanOutcome can_sent(int unit, const CanFrame& frame, Cycle now);
+    /// Module CAN`unit` is on a bus, which answers by Chip::can_news(). Fixed for the chip's life. Without a
+    /// board it is alone.
+    virtual bool can_wired(int unit) const;
+    /// What module CAN`unit` tells that bus, at cycle `now`.
+    virtual void can_to_bus(int unit, const cosim::CanMessage& message, Cycle now);
     /// Bit 0..15 of a port. Unless a board knows better, anything may change.
     virtual OutsidePin outside(PortLetter port, int bit) const;
     /// Chip::output_compare(unit) changed at cycle `now`.
@@ -105,9 +106,10 @@ inline std::uint16_t Pins::dci_exchange(const DciWord&, Cycle) {
 inline double Pins::supply() const {
     return 3.3;
 }
-inline CanOutcome Pins::can_sent(int, const CanFrame&, Cycle) {
-    return CanOutcome::NotAcknowledged;
+inline bool Pins::can_wired(int) const {
+    return false;
 }
+inline void Pins::can_to_bus(int, const cosim::CanMessage&, Cycle) {}
 inline OutsidePin Pins::outside(PortLetter, int) const {
     return {};
 }
