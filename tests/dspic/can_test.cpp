@@ -422,6 +422,8 @@ wait:   btss C1INTF, #0
     again.chip.can_news(1, answered[0].message);
     again.chip.run_until(right.chip.now());
     CHECK((right.reg("C1INTF") & 4) == 4);
+    // PORTx's storage is what the last look at the pins saw.
+    CHECK(right.reg("PORTF") == again.reg("PORTF"));
     std::vector<std::uint8_t> one, other;
     StateWriter of_right(one), of_again(other);
     right.chip.state(of_right);

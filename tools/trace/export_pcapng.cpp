@@ -203,11 +203,11 @@ struct PcapngStream::Parts {
             const auto octets = radio->octets.view();
             writer.packet(writer.interface(fmt::format("{} {}", row.link, row.from), LinkType::Radio),
                           radio->start, {octets.begin(), octets.end()}, fault_text(row.fault));
-        } else if (const auto frame = can_on_bus(row)) {
-            const bool failed = frame->error != protocols::CanError::None;
-            writer.packet(writer.interface(frame->bus, LinkType::Can), frame->start, frame->socketcan(),
-                          failed ? fmt::format("{} {}: {}", frame->sender, frame->text(), frame->error_text())
-                                 : frame->sender);
+        } else if (const auto heard = can_on_bus(row)) {
+            const bool failed = heard->error != protocols::CanError::None;
+            writer.packet(writer.interface(heard->bus, LinkType::Can), heard->start, heard->socketcan(),
+                          failed ? fmt::format("{} {}: {}", heard->sender, heard->text(), heard->error_text())
+                                 : heard->sender);
         }
     }
 

@@ -67,10 +67,10 @@ void LineRenderer::add(const cosim::TraceRow& row) {
         transfers_.add(row, *phase);
     } else if (const auto* change = std::get_if<cosim::Signal>(&row.payload)) {
         signal(row, *change);
-    } else if (const auto frame = can_on_bus(row)) {
-        const std::size_t wire = line(frame->bus, "", "rx", Line::Kind::Can);
-        shortest_ = std::min(shortest_, std::max<Time>(frame->bit, 1));
-        for (const auto& [begin, end] : frame->dominant())
+    } else if (const auto heard = can_on_bus(row)) {
+        const std::size_t wire = line(heard->bus, "", "rx", Line::Kind::Can);
+        shortest_ = std::min(shortest_, std::max<Time>(heard->bit, 1));
+        for (const auto& [begin, end] : heard->dominant())
             active(wire, begin, end);
     } else if (const auto* sent = std::get_if<cosim::RadioFrame>(&row.payload)) {
         const cosim::RadioFrame& radio = *sent;
