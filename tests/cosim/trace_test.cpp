@@ -73,6 +73,7 @@ std::vector<TraceRow> some_rows() {
     }
     can.id = 0x1abcdef0;
     can.data = {};
+    can.position = 0;
     can.flags = kCanExtended | kCanRemote;
     add(CanKind::Sent);
     return rows;
@@ -92,6 +93,13 @@ TEST_CASE("rows go to text and back without loss") {
     CHECK(to_csv(some_rows()[0]) ==
           "1.000000000001,robot0.uart,robot0.pic,uart,4e,8N1,0.999921875000,0.000008680555,,");
     CHECK(to_csv(some_rows().back()) ==
+          "1.000000000000,can.robot0.pic.can1,can,can,1abcdef0#R2,sent tag 2 tec 256 rec 9,"
+          "0.001000000000,0.000002000000,,");
+    const auto rows = some_rows();
+    const auto radio =
+        std::find_if(rows.begin(), rows.end(), [](const TraceRow& row) { return row.link == "tam0.radio"; });
+    REQUIRE(radio != rows.end());
+    CHECK(to_csv(*radio) ==
           "1.000000000000,tam0.radio,ether,radio,007eff,ch12 -60dBm,0.999712000000,0.000288000000,,");
     CHECK(format_seconds(-1) == "-0.000000000001");
 }
@@ -235,7 +243,7 @@ TEST_CASE("statistics of a trace") {
     for (const TraceRow& row : some_rows())
         stats.add(row);
     CHECK_THAT(stats.text(), Catch::Contains("robot0.i2c"));
-    CHECK_THAT(stats.json(), Catch::Contains("\"messages\": 15") && Catch::Contains("\"i2c_nacks\": 1") &&
+    CHECK_THAT(stats.json(), Catch::Contains("\"messages\": 31") && Catch::Contains("\"i2c_nacks\": 1") &&
                                  Catch::Contains("\"uart_breaks\": 1") &&
                                  Catch::Contains("\"radio_frames\": 1, \"radio_octets\": 3") &&
                                  Catch::Contains("\"link\": \"a, \\\"b\\\"\""));

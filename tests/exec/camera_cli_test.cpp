@@ -35,7 +35,7 @@ std::vector<unsigned> sent(const std::string& csv, double from_s) {
 TEST_CASE("BTcom's I returns the very picture that the camera looks at") {
     const Workbench bench;
     RandomStream random(31, "btcom picture");
-    const camera::Pixels pixels = tests::random_pixels(random, 160, 120);
+    const camera::Pixels pixels = tests::settled_pixels(random, 160, 120);
     std::string ppm = fmt::format("P6 {} {} 255\n", pixels.width, pixels.height);
     ppm.append(pixels.rgb.begin(), pixels.rgb.end());
     const std::string view = bench.file("view.ppm", ppm);
@@ -87,7 +87,7 @@ TEST_CASE("a camera that is not there, and pictures that are none") {
 TEST_CASE("the project's own camera firmware takes that picture, too") {
     const Workbench bench;
     RandomStream random(32, "own picture");
-    const camera::Pixels pixels = tests::random_pixels(random, 160, 120);
+    const camera::Pixels pixels = tests::settled_pixels(random, 160, 120);
     std::string ppm = fmt::format("P6 {} {} 255\n", pixels.width, pixels.height);
     ppm.append(pixels.rgb.begin(), pixels.rgb.end());
     const std::string view = bench.file("view.ppm", ppm), ask = bench.file("ask.txt", "0.5 49\n1.5 49\n");

@@ -14,9 +14,10 @@ namespace puckloop::tests {
 using cosim::Message;
 using cosim::Time;
 
-MakeBoard pic_board(const image::Image& image) {
-    return [image] {
+MakeBoard pic_board(const image::Image& image, bool skip_idle) {
+    return [image, skip_idle] {
         pic::PicNodeOptions options;
+        options.skip_idle = skip_idle;
         options.board.name = "robot0.pic";
         options.board.crystal_ppm = 17;
         return std::make_unique<pic::PicNode>(image, options);

@@ -19,8 +19,8 @@ namespace puckloop::tests {
 /// Makes a fresh board; each is the same.
 using MakeBoard = std::function<std::unique_ptr<cosim::StatefulNode>()>;
 
-MakeBoard pic_board(const image::Image& image);
 /// `skip_idle` off: every cycle of waiting loops is executed.
+MakeBoard pic_board(const image::Image& image, bool skip_idle = true);
 MakeBoard rab_board(const image::Image& image, bool skip_idle = true);
 
 /// The own firmware of the two boards.

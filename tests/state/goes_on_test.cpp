@@ -52,8 +52,14 @@ void check(const MakeBoard& make, const Plan& plan, const std::string& name) {
 }  // namespace
 
 TEST_CASE("own firmware goes on from a saved state") {
-    check(pic_board(own_pic_image()),
-          {.states = 100, .between = 40 * cosim::kMillisecond, .on = 60 * cosim::kMillisecond}, "epuck.hex");
+    Plan main{.states = 100,
+              .between = 40 * cosim::kMillisecond,
+              .on = 60 * cosim::kMillisecond,
+              .same_bytes_later = false};
+    check(pic_board(own_pic_image()), main, "epuck.hex");
+    main.states = 20;
+    main.same_bytes_later = true;
+    check(pic_board(own_pic_image(), false), main, "epuck.hex, every cycle executed");
     Plan plan{.states = 60,
               .between = 10 * cosim::kMillisecond,
               .on = 20 * cosim::kMillisecond,
