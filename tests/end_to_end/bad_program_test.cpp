@@ -85,13 +85,15 @@ TEST_CASE("a program that has done its work ends the run well") {
 
 TEST_CASE("a low limit of open files is enough, or named") {
     const Workbench bench;
-    const auto limited = [&](const std::string& limit, const char* placement) {
-        return Process({"/bin/sh", "-c", "ulimit -n " + limit + "; exec \"$0\" \"$@\"", PUCKLOOP_PROGRAM,
-                        "run", bench.hello(), placement, "--duration", "2", "--out", bench.out("o")},
-                       bench.folder())
-            .wait();
+    const auto limited = [&](const std::string& limit, const Words& placement) {
+        Words words{"/bin/sh",        "-c",  "ulimit -n " + limit + "; exec \"$0\" \"$@\"",
+                    PUCKLOOP_PROGRAM, "run", bench.hello(),
+                    "--duration",     "2",   "--out",
+                    bench.out("o")};
+        words.insert(words.end(), placement.begin(), placement.end());
+        return Process(words, bench.folder()).wait();
     };
-    for (const char* placement : {"--in-process", "--threads=1"}) {
+    for (const Words& placement : {Words{"--in-process"}, Words{}}) {
         CHECK(limited("100", placement).status == 0);
         check_one_line(limited("30", placement), 1, {"limit of open files is 30", "needs 32"});
     }

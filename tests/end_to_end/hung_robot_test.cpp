@@ -84,8 +84,8 @@ TEST_CASE("run names the robot that hangs, in both placements alike", "[hung]") 
     const std::string line =
         "warning: robot0.pic: has run 2.0 s in the loop 0x0108..0x010a reading INTCON1, bit "
         "OSCFAIL, which no model drives\n";
-    for (const char* placement : {"--threads=1", "--in-process"}) {
-        const Ended ended = bench.run("o", {file, placement});
+    for (const Words& arguments : {Words{file}, Words{file, "--in-process"}}) {
+        const Ended ended = bench.run("o", arguments);
         CHECK(ended.status == 0);
         CHECK_THAT(ended.out, Contains(line));
         CHECK(bench.report("o")["nodes"]["robot0.pic"]["waiting"]["hung"] == true);

@@ -251,5 +251,6 @@ TEST_CASE("Demo turns to a clap of a loudspeaker, and hears no weak noise", "[so
         CAPTURE(degrees);
         CHECK(std::abs(turned(degrees, "level = 3000\nwave = \"noise\"\n")) < 0.4);
     }
-    CHECK(turned(0, "level = 300\n") == Approx(0.0).margin(1e-3));
+    // It turns once by itself soon after its start, whatever sounds.
+    CHECK(turned(0, "level = 300\n") == Approx(turned(0, "level = 1\n")).margin(1e-3));
 }
