@@ -78,8 +78,13 @@ class Search::Steps {
             improve();
             more_ = result_.chosen.effects.size() < kMostEffects && step();
         }
-        find_draws();
         return std::move(result_);
+    }
+
+    void find_rivals(Selection& selection) {
+        result_ = std::move(selection);
+        find_draws();
+        selection = std::move(result_);
     }
 
   private:
@@ -112,12 +117,15 @@ class Search::Steps {
         for (std::size_t i = 0; i < study_.candidates().size(); ++i)
             if (study_.candidates()[i].remark.empty() && !has(first.second.effects, i)) partners.push_back(i);
         if (partners.empty() || first.second.effects.size() >= kMostEffects) return false;
-        std::vector<std::pair<double, Fit>> fits(partners.size());
+        std::vector<std::pair<double, Fit>> fits(partners.size(), {-INFINITY, {}});
         in_parallel(partners.size(), study_.threads(), [&](std::size_t k) {
-            Fit fit =
-                study_.fit_set(with(first.second.effects, partners[k]), first.second.fitted.state, kQuick);
+            const auto set = with(first.second.effects, partners[k]);
+            if (study_.glance(set, first.second.fitted.state) < kGlimpse * kPromising) return;
+            Fit fit = study_.fit_set(set, first.second.fitted.state, kQuick);
             fits[k] = {first.second.bic - fit.bic, std::move(fit)};
         });
+        std::erase_if(fits, [](const auto& one) { return one.second.effects.empty(); });
+        if (fits.empty()) return false;
         std::stable_sort(fits.begin(), fits.end(),
                          [](const auto& x, const auto& y) { return x.first > y.first; });
         Fit& both = fits.front().second;
@@ -450,10 +458,16 @@ Selection Search::rest() {
     return steps_->rest();
 }
 
+void Search::find_rivals(Selection& selection) {
+    steps_->find_rivals(selection);
+}
+
 Selection select(const Study& study, const Search::Progress& progress) {
     Search search(study, progress);
     (void)search.first();
-    return search.rest();
+    Selection selection = search.rest();
+    search.find_rivals(selection);
+    return selection;
 }
 
 }  // namespace puckloop::gap

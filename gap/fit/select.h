@@ -32,7 +32,7 @@ struct Selection {
     HeldOut held_none, held_chosen;
     std::vector<Trial> trials;  ///< an effect each, the first step's figures for those never chosen
     std::vector<Trial> steps;   ///< the chosen ones, as they were chosen
-    std::vector<Draw> draws;
+    std::vector<Draw> draws;    ///< empty until Search::find_rivals
 };
 
 /// The search for the set of effects. Several searches on models of the same rows (frames of view) compete by
@@ -50,6 +50,8 @@ class Search {
     double first();
     /// All further steps; once.
     Selection rest();
+    /// What the data does not refuse in the place of what was chosen; once, after rest().
+    void find_rivals(Selection& selection);
 
   private:
     class Steps;

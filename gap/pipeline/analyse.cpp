@@ -49,6 +49,7 @@ class Analysis {
 
     Verdict verdict() {
         Judged judged = decided(true);
+        if (judged.decision == Decision::Named) search_.find_rivals(judged.chosen.selection);
         if (options_.progress) options_.progress("intervals", 0.96);
         return told(study_, std::move(judged), options_.seed);
     }

@@ -74,10 +74,6 @@ bool weigh_again(const Study& study, Chosen& chosen) {
 
 }  // namespace
 
-bool Chosen::has(std::size_t candidate) const {
-    return among(selection.chosen.effects, candidate);
-}
-
 Chosen chosen_of(const Study& study, Selection selection) {
     Chosen chosen{std::move(selection), {}, {}};
     add_nuisances(study, chosen);
@@ -97,7 +93,6 @@ std::optional<Chosen> without_doubted(const Study& study, const Chosen& all,
     }
     std::erase_if(selection.steps, [&](const Trial& step) { return among(doubted, step.effect); });
     if (!weigh_again(study, rest)) return std::nullopt;
-    std::erase_if(selection.draws, [&](const Draw& draw) { return !rest.has(draw.chosen); });
     add_nuisances(study, rest);
     return rest;
 }
@@ -108,7 +103,6 @@ Chosen taken_back(const Chosen& all, const std::string& doubt) {
     for (const Trial& step : selection.steps)
         selection.trials[step.effect].remark = "came nearest, but " + doubt;
     selection.steps.clear();
-    selection.draws.clear();
     selection.chosen = none.final = selection.none;
     selection.held_chosen = selection.held_none;
     none.changes.push_back({"all causes", doubt});

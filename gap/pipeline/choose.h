@@ -21,8 +21,6 @@ struct Chosen {
     Selection selection;
     Fit final;  ///< the chosen set with nuisances
     std::vector<Change> changes;
-
-    bool has(std::size_t candidate) const;
 };
 
 Chosen chosen_of(const Study& study, Selection selection);
