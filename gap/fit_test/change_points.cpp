@@ -22,15 +22,8 @@ namespace puckloop::gap {
 
 namespace {
 
-constexpr std::size_t kTrace = 30;       // rows after which a filter has settled
-constexpr std::size_t kSettled = 10;     // the last of them
-constexpr std::size_t kLeastChain = 24;  // rows
-constexpr std::size_t kLeastSide = 4;    // rows on either side of a jump
-constexpr std::size_t kLeastChains = 4;  // that say how high the others go
-constexpr std::size_t kBatches = 8;      // of a chain
-constexpr double kTrim = 4.0;            // robust deviations
-constexpr double kChiMedian = 0.4549;    // of one degree of freedom
-constexpr double kGumbelScale = 2.0;     // of the largest of many squares of one deviation
+constexpr std::size_t kTrace = 30;    // rows after which a filter has settled
+constexpr std::size_t kSettled = 10;  // the last of them
 
 struct Chain {
     std::size_t first, last;  ///< [first, last)
@@ -67,7 +60,7 @@ std::vector<double> errors_of(const Observable& o, const Predicted& p, const Noi
         const bool clipped = o.y[i] <= o.instrument.floor || o.y[i] >= o.instrument.ceiling;
         errors.push_back(clipped ? 0.0 : (o.y[i] - p.mean[i]) / row_sd(o, p, noise, i));
     }
-    const double limit = kTrim * stats::robust_scale(errors), middle = stats::median(errors);
+    const double limit = thresholds::kJumpTrim * stats::robust_scale(errors), middle = stats::median(errors);
     if (limit > 0)
         for (double& error : errors)
             error = std::clamp(error - middle, -limit, limit);
@@ -79,10 +72,10 @@ std::vector<double> errors_of(const Observable& o, const Predicted& p, const Noi
 double spread_of(const std::vector<Chain>& chains, std::span<const double> pull, double curvature) {
     std::vector<double> squares;
     for (const Chain& chain : chains) {
-        if (chain.size() < kLeastChain) continue;
+        if (chain.size() < thresholds::kJumpChain) continue;
         double before = 0.0;
-        const std::size_t rows = chain.size() / kBatches;
-        for (std::size_t b = 0; rows > 0 && b < kBatches; ++b) {
+        const std::size_t rows = chain.size() / thresholds::kJumpBatches;
+        for (std::size_t b = 0; rows > 0 && b < thresholds::kJumpBatches; ++b) {
             const auto* from = pull.data() + chain.first + b * rows;
             const double sum = std::accumulate(from, from + rows, 0.0);
             if (b > 0)
@@ -90,7 +83,7 @@ double spread_of(const std::vector<Chain>& chains, std::span<const double> pull,
             before = sum;
         }
     }
-    return squares.empty() ? 1.0 : std::max(stats::median(squares) / kChiMedian, 1.0);
+    return squares.empty() ? 1.0 : std::max(stats::median(squares) / thresholds::kSquareMedian, 1.0);
 }
 
 double ln_ln(double x) {
@@ -101,9 +94,9 @@ double ln_ln(double x) {
 /// Gumbel law; where their quartiles lie wider apart or higher than squares of one deviation would, it is
 /// their noise that jumps, and one jump is measured by that.
 double tail_of_highest(double most, std::vector<double> highest) {
-    double scale = kGumbelScale, half = 0.0;
+    double scale = thresholds::kSquareScale, half = 0.0;
     const std::size_t n = highest.size();
-    if (n >= kLeastChains) {
+    if (n >= thresholds::kJumpChains) {
         std::sort(highest.begin(), highest.end());
         const double quarter = highest[n / 4], three = highest[3 * n / 4];
         half = highest[n / 2];
@@ -177,7 +170,7 @@ std::vector<ChangePoint> change_points(const Model& model, const State& state) {
         const auto chains = chains_of(o);
         const auto longest = std::max_element(
             chains.begin(), chains.end(), [](const Chain& a, const Chain& b) { return a.size() < b.size(); });
-        if (longest == chains.end() || longest->size() < kLeastChain) continue;
+        if (longest == chains.end() || longest->size() < thresholds::kJumpChain) continue;
         const bool sum = o.noise == NoiseKind::Level;
         const Scores scores(o, prediction[k], state.noise[k]);
         const auto trace =
@@ -192,12 +185,12 @@ std::vector<ChangePoint> change_points(const Model& model, const State& state) {
         best.observable = o.name;
         best.unit = o.unit;
         for (const Chain& chain : chains) {
-            if (chain.size() < kLeastChain) continue;
+            if (chain.size() < thresholds::kJumpChain) continue;
             // The largest of n squares of one deviation is about 2 ln n.
             const double usual = 2 * std::log(static_cast<double>(chain.size()));
             highest.push_back(-usual);
             // How far errors scatter is known of batches: of a shorter side nothing can be said.
-            const std::size_t side = std::max(kLeastSide, chain.size() / kBatches);
+            const std::size_t side = std::max(thresholds::kJumpSide, chain.size() / thresholds::kJumpBatches);
             for (std::size_t i = chain.first + side; i + side <= chain.last; ++i) {
                 const Look look = scan.at(chain, i);
                 const double square = look.h > 0 ? look.g * look.g / (spread * look.h) : 0.0;

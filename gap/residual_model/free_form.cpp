@@ -1,5 +1,6 @@
 #include "gap/residual_model/free_form.h"
 
+#include "base/random.h"
 #include "gap/decide/thresholds.h"
 #include "gap/fit/study.h"
 #include "gap/residual_model/free_form_cells.h"
@@ -162,6 +163,44 @@ FreeFormTerm term_of(const stats::Component& component, const std::vector<double
     return term;
 }
 
+/// The same errors with what is new in each row exchanged inside its run: carried over as before, as wild as
+/// before, each run as far off as before, and no function of any covariate.
+stats::ErrorRows exchanged(stats::ErrorRows rows, RandomStream& random) {
+    std::vector<double>& error = rows.error;
+    const auto carries = [&](std::size_t i) {
+        return rows.follows[i] != 0 && std::isfinite(error[i]) && std::isfinite(error[i - 1]);
+    };
+    std::vector<double> fresh;
+    std::vector<std::size_t> at;
+    const auto shuffle = [&] {
+        for (std::size_t i = fresh.size(); i > 1; --i)
+            std::swap(fresh[i - 1], fresh[random.below(i)]);
+        for (std::size_t k = 0; k < at.size(); ++k)
+            error[at[k]] = rows.carry * error[at[k] - 1] + fresh[k];
+        fresh.clear();
+        at.clear();
+    };
+    for (std::size_t i = 0; i < error.size(); ++i) {
+        if (i > 0 && rows.run[i] != rows.run[i - 1]) shuffle();
+        if (!carries(i)) continue;
+        at.push_back(i);
+        fresh.push_back(error[i] - rows.carry * error[i - 1]);
+    }
+    shuffle();
+    return rows;
+}
+
+/// Does a gain stand as clear of the best that exchanged errors make as of nothing?
+bool beyond_exchanged(double gain, const Errors& errors, const std::vector<stats::Component>& components,
+                      std::uint64_t seed) {
+    RandomStream random(seed, "free form of " + errors.observable);
+    for (int k = 0; k < thresholds::kExchanges && gain > kClearForm; ++k) {
+        const auto rows = exchanged(errors.rows, random);
+        if (gain_of(stats::boosted(rows, components, seed).gains).sum > gain - kClearForm) return false;
+    }
+    return gain > kClearForm;
+}
+
 FreeForm told(const Errors& errors, const std::vector<stats::Component>& components, std::uint64_t seed) {
     const stats::Boosted fit = stats::boosted(errors.rows, components, seed);
     FreeForm form;
@@ -186,10 +225,12 @@ FreeForm told(const Errors& errors, const std::vector<stats::Component>& compone
         if (fit.weight[order[k]] > kLeastTerm * all)
             form.terms.push_back(term_of(components[order[k]], fit.correction, errors.scale,
                                          fit.weight[order[k]] / all, errors.unit));
-    // What only a few runs can show is clear when several gain by it and none loses.
+    // What only a few runs can show is clear when several gain by it and none loses, or where the same errors
+    // exchanged come nowhere near.
     const bool rounding = form.size * stats::median(errors.scale) < errors.quantum / std::sqrt(12.0);
-    form.clear = !rounding && form.gain > kClearForm &&
-                 (form.gain > kFormErrors * form.sd || gain.in_several()) && !form.terms.empty();
+    form.clear = !rounding && form.gain > kClearForm && !form.terms.empty() &&
+                 (form.gain > kFormErrors * form.sd || gain.in_several() ||
+                  beyond_exchanged(form.gain, errors, components, seed));
     if (form.clear) form.shape = form.terms.front().shape;
     return form;
 }

@@ -16,6 +16,8 @@ constexpr double kWild = 4.0;            // robust deviations
 constexpr double kNormalWild = 6.33e-5;  // share of a normal sample beyond, both sides
 // Allowed before the tail counts as heavy: residuals of a good model are seldom quite normal.
 constexpr double kAllowedShare = 2e-3;
+// Stretches whose scatter is compared: so few, and so long, that each knows its own to a fifth.
+constexpr std::size_t kStretches = 4, kStretchRows = 12;
 }  // namespace
 
 Finding outlier_test(const Series& residual, const TestOptions&) {
@@ -95,6 +97,65 @@ Finding spread_test(const Series& residual, const std::vector<double>& level, st
     finding.shape =
         fmt::format("scatter {} with {} (mean distance {} low, {} high)",
                     finding.statistic > 0 ? "grows" : "shrinks", name, plain(below), plain(above));
+    return finding;
+}
+
+Finding evenness_test(const Series& residual, const TestOptions& options) {
+    Series kept;
+    for (std::size_t i = 0; i < residual.size(); ++i)
+        if (std::isfinite(residual.value[i])) {
+            kept.value.push_back(residual.value[i]);
+            kept.run.push_back(residual.run[i]);
+        }
+    Finding finding{.test = "evenness", .covariate = "stretch of a run"};
+    finding.effect_unit = "ratio - 1";
+    finding.units = static_cast<double>(kept.size());
+    std::vector<Stretch> stretches;
+    for (const Stretch& run : runs_of(kept.run)) {
+        const std::size_t parts = std::clamp<std::size_t>(run.size() / kStretchRows, 1, kStretches);
+        for (std::size_t k = 0; k < parts; ++k)
+            stretches.push_back(
+                {run.first + k * run.size() / parts, run.first + (k + 1) * run.size() / parts, run.run});
+    }
+    std::erase_if(stretches, [](const Stretch& one) { return one.size() < kStretchRows; });
+    if (stretches.size() < 2) {
+        finding.shape = "too few values";
+        return finding;
+    }
+    std::vector<double> values = winsorised(kept.value), distance, means;
+    const auto statistic = [&](const std::vector<double>& y) {
+        double between = 0, within = 0, all = 0, rows = 0;
+        means.clear();
+        for (const Stretch& one : stretches) {
+            const auto at = y.begin() + static_cast<std::ptrdiff_t>(one.first);
+            distance.assign(at, at + static_cast<std::ptrdiff_t>(one.size()));
+            const double centre = median(distance);
+            double sum = 0, square = 0;
+            for (const double v : distance) {
+                sum += std::fabs(v - centre);
+                square += (v - centre) * (v - centre);
+            }
+            const double n = static_cast<double>(one.size());
+            means.push_back(sum / n);
+            between += sum * sum / n;
+            within += square - sum * sum / n;
+            all += sum;
+            rows += n;
+        }
+        return within > 0 ? (between - all * all / rows) / within : 0.0;
+    };
+    finding.statistic = statistic(values);
+    const auto [low, high] = std::minmax_element(means.begin(), means.end());
+    finding.effect = *low > 0 ? *high / *low - 1 : 0.0;
+    finding.shape =
+        fmt::format("scatters unevenly: from {} to {} from stretch to stretch", plain(*low), plain(*high));
+    std::vector<double> y = values;
+    const auto draw = [&](RandomStream& random) {
+        for (std::size_t i = y.size(); i > 1; --i)
+            std::swap(y[i - 1], y[random.below(i)]);
+        return statistic(y);
+    };
+    finding.p = null_p(finding.statistic, finding.units, draw, options, "evenness");
     return finding;
 }
 

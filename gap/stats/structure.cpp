@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace puckloop::gap::stats {
@@ -49,6 +50,16 @@ void test_covariate(const StructureInput& input, const Covariate& c, const TestO
     }
 }
 
+/// Without the rows at either end of what was measured, where an instrument cuts the scatter off (and
+/// without any of what only happens or not).
+Series inside(Series residual, const std::vector<double>& raw) {
+    if (raw.empty()) return residual;
+    const auto [low, high] = std::minmax_element(raw.begin(), raw.end());
+    for (std::size_t i = 0; i < raw.size(); ++i)
+        if (raw[i] == *low || raw[i] == *high) residual.value[i] = std::numeric_limits<double>::quiet_NaN();
+    return residual;
+}
+
 }  // namespace
 
 std::vector<Finding> structure_table(const StructureInput& input, const TestOptions& options) {
@@ -60,6 +71,7 @@ std::vector<Finding> structure_table(const StructureInput& input, const TestOpti
     table.push_back(serial_test(input.residual, options));
     if (!input.time.empty()) table.push_back(periodic_test(input.residual, input.time, options));
     table.push_back(outlier_test(input.residual, options));
+    table.push_back(evenness_test(inside(input.residual, input.raw), options));
     if (varies(input.level)) table.push_back(spread_test(input.residual, input.level, "level", options));
     if (!input.raw.empty()) table.push_back(held_test({input.raw, input.residual.run}, options));
     adjust_together({&table});

@@ -51,6 +51,11 @@ Finding outlier_test(const Series& residual, const TestOptions& options);
 Finding spread_test(const Series& residual, const std::vector<double>& level, std::string_view name,
                     const TestOptions& options);
 
+/// Do some runs, or quarters of runs, scatter more than others? Brown and Forsythe's analysis of variance of
+/// the distances from each stretch's median (J. Am. Stat. Assoc. 69, 1974), rows exchanged over all runs; for
+/// innovations, which do not carry over. Effect: ratio of the widest to the narrowest, minus 1.
+Finding evenness_test(const Series& residual, const TestOptions& options);
+
 /// Does the run's place in the order of runs matter? A trend over run means; needs four runs.
 Finding run_order_test(const Series& residual, const TestOptions& options);
 

@@ -48,6 +48,16 @@ TEST_CASE("a distance in 9 steps of one run is enough for a strong trend, not fo
     CHECK_THAT(f.shape, Contains("grows with distance, zero at zero"));
 }
 
+TEST_CASE("what happens in one half of some runs shows in the scatter, whatever it follows") {
+    RandomStream random(4, "uneven");
+    Series y = made_noise(8, 100, 0.0, random);
+    for (std::size_t i = 0; i < y.size(); ++i)
+        if (y.run[i] % 3 == 0 && i % 100 > 50) y.value[i] += 2 * random.normal();
+    const Finding f = evenness_test(y, kOptions);
+    CHECK(f.p < 1e-6);
+    CHECK(f.effect > 1);
+}
+
 TEST_CASE("a hump is invisible to the trend and plain to the shape test") {
     RandomStream random(3, "hump");
     Series y = made_noise(5, 80, 0.0, random);
@@ -165,7 +175,7 @@ TEST_CASE("tests say when there is too little") {
     CHECK(serial_test(y, kOptions).p == 1);
     CHECK(periodic_test(y, {1, 2, 3}, kOptions).p == 1);
     CHECK(group_test(y, {0, 0, 0}, "session", {"a"}, kOptions).shape == "one session only");
-    CHECK(structure_table({y, {}, {}, {}, {}}, kOptions).size() == 3);
+    CHECK(structure_table({y, {}, {}, {}, {}}, kOptions).size() == 4);
 }
 
 TEST_CASE("the same seed gives the same table") {
