@@ -112,9 +112,10 @@ TEST_CASE("a name stands on every ground, and never beside no gain") {
 TEST_CASE("a structure counts by what its p value may stand for at most") {
     CHECK(most_by_structure({}) == 0.0);
     CHECK(most_by_structure({{"reading", "grey", 0.005, ""}}) == 0.0);
-    // Sellke, Bayarri and Berger 2001: a p of 1e-4 stands for odds of 400 to one at most.
-    CHECK(most_by_structure({{"reading", "grey", 0.005, ""}, {"reading", "time", 1e-4, ""}}) ==
-          Approx(std::log(399.4)).epsilon(1e-3));
+    CHECK(most_by_structure({{"reading", "grey", 2e-4, ""}}) == 0.0);
+    // Sellke, Bayarri and Berger 2001: a p of 1e-5 stands for odds of 3195 to one at most.
+    CHECK(most_by_structure({{"reading", "grey", 0.005, ""}, {"reading", "time", 1e-5, ""}}) ==
+          Approx(std::log(3195.3)).epsilon(1e-3));
     CHECK(most_by_structure({{"reading", "time", 0.0, ""}}) > 600);
 }
 
