@@ -1,4 +1,5 @@
 // The experiments with sound: their arithmetic on drawn values, and short runs of the project's own firmware.
+// All draws follow Catch's seed (--rng-seed): a case that fails does so again.
 
 #include "tools/sound/ellipse.h"
 #include "tools/sound/experiments.h"
@@ -21,16 +22,14 @@ SoundOptions options(const std::string& folder) {
     options.firmware = options.walker = std::string(PUCKLOOP_SOURCE) + "/firmware/sound/sound.hex";
     options.folder = puckloop::tests::scratch_path(folder);
     options.trials = 1;
-    options.seed = std::random_device{}() % 1000;
+    options.seed = Catch::rngSeed();
     return options;
 }
 
 }  // namespace
 
 TEST_CASE("an ellipse's points give the ellipse back") {
-    const auto seed = std::random_device{}();
-    CAPTURE(seed);
-    std::mt19937 random(seed);
+    std::mt19937 random(Catch::rngSeed());
     const auto draw = [&](double low, double high) {
         return std::uniform_real_distribution<double>(low, high)(random);
     };
@@ -109,5 +108,9 @@ TEST_CASE("what is farther is quieter, and a walker hears its caller", "[sound]"
         const double since = std::fmod(one.seconds - 0.5, 5.0);
         CHECK(since < kCallWords[4] / kCallRate + 0.05);
     }
-    CHECK(std::hypot(ears.path.back().x + 0.2, ears.path.back().y + 0.2) > 0.05);
+    // It leaves its corner; where its walk has taken it by the end is chance, and that may be back.
+    double farthest = 0.0;
+    for (const auto& point : ears.path)
+        farthest = std::max(farthest, std::hypot(point.x + 0.2, point.y + 0.2));
+    CHECK(farthest > 0.05);
 }
