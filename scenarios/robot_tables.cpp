@@ -1,5 +1,6 @@
 #include "scenarios/robot_tables.h"
 
+#include "emu/dspic/devices/errata.h"
 #include "emu/pic/board_revision.h"
 #include "scenarios/bluetooth_tables.h"
 #include "scenarios/board_keys.h"
@@ -40,6 +41,16 @@ std::string read_revision(Reader& reader) {
     return name;
 }
 
+std::vector<std::string> read_errata(Reader& reader) {
+    std::vector<std::string> names =
+        reader.has("errata") ? reader.texts("errata") : std::vector<std::string>{};
+    for (const std::string& name : names)
+        if (!dspic::erratum_of(name))
+            reader.fail("errata", fmt::format("there is no erratum '{}'", name),
+                        fmt::format("one of {}", fmt::join(dspic::kErratumNames, ", ")));
+    return names;
+}
+
 PicBoard read_pic(const std::string& file, const std::string& where, const TomlValue& table,
                   const std::filesystem::path& folder, const std::vector<std::filesystem::path>& others,
                   std::size_t index) {
@@ -69,6 +80,7 @@ PicBoard read_pic(const std::string& file, const std::string& where, const TomlV
     pic.camera = read_board_camera(reader);
     pic.camera_turned = reader.flag("camera_turned", false);
     pic.revision = read_revision(reader);
+    pic.errata = read_errata(reader);
     reader.finish();
     return pic;
 }

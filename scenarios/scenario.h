@@ -48,6 +48,7 @@ struct PicBoard {
     std::string camera{};          ///< on the board: "po3030k", "po6030k" or "po8030d"; empty: none
     bool camera_turned = false;    ///< it lies on its side, as on early boards
     std::string revision = "1.2";  ///< of the board: "1.2" or "1.3"
+    std::vector<std::string> errata{};  ///< of the chip (emu/dspic/devices/errata.h)
     std::optional<BluetoothModule> bluetooth{};
 };
 

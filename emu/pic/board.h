@@ -15,6 +15,7 @@
 #include "emu/camera/camera.h"
 #include "emu/chip/faults/ambient_shares.h"
 #include "emu/chip/faults/analog_faults.h"
+#include "emu/dspic/devices/errata.h"
 #include "emu/dspic/peripherals/pins.h"
 #include "emu/pic/board_revision.h"
 #include "emu/pic/emitter.h"
@@ -52,6 +53,7 @@ struct BoardParameters {
     double battery_low_volts = 3.4;  ///< below this RF1 falls
     int selector = 0;                ///< initial position, 0..15
     Revision revision = Revision::Rev12;
+    dspic::Errata errata{};     ///< of the chip
     board::CanModules can = 0;  ///< that are on a bus
 };
 

@@ -44,6 +44,7 @@ PicNode::PicNode(const image::Image& image, const PicNodeOptions& options)
     chip_options.crystal_hertz = options.board.crystal_hertz;
     chip_options.ppm = options.board.crystal_ppm;
     chip_options.fosc = options.fosc;
+    chip_options.errata = options.board.errata;
     chip_ = std::make_unique<dspic::Chip>(dspic::dspic30f6014a(), board_, chip_options);
     chip_->set_skipping(options.skip_idle);
     chip_->load(image);

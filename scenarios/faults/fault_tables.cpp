@@ -24,6 +24,9 @@ using cosim::Unit;
 namespace {
 
 std::string range_of(const ParameterInfo& parameter) {
+    if (parameter.unit == Unit::Integer)
+        return fmt::format("{} to {}", static_cast<std::int64_t>(parameter.low),
+                           static_cast<std::int64_t>(parameter.high));
     return fmt::format("{:g} to {:g}{}", parameter.low, parameter.high,
                        parameter.unit == Unit::Time ? " s" : "");
 }

@@ -67,8 +67,8 @@ struct Bench30 {
     std::map<std::string, std::uint32_t> symbols;
 
     explicit Bench30(const std::string& source, std::map<std::uint32_t, std::uint32_t> config = {},
-                     std::optional<std::uint16_t> fosc = 0xFFE6)
-        : chip(dspic30f6014a(), pins, ChipOptions{.fosc = fosc}) {
+                     std::optional<std::uint16_t> fosc = 0xFFE6, Errata errata = {})
+        : chip(dspic30f6014a(), pins, ChipOptions{.fosc = fosc, .errata = errata}) {
         AssembleOptions options;
         for (const RegisterInfo& info : dspic30f6014a().registers)
             options.predefined[std::string(info.name)] = info.address;

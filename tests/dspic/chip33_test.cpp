@@ -506,6 +506,43 @@ end:    bra end
     CHECK((bench.chip.peek("NVMCON") & 0xE000) == 0x6000);  // WREN, WRERR, not busy
 }
 
+TEST_CASE("NVMCON outlives every reset but power-on; one in mid-operation ends it with WRERR (DS70286)") {
+    Bench33 bench(R"(
+        .org 0x200
+main:   btss NVMCON, #14                ; WREN: this is behind a reset
+        bra first
+        mov NVMCON, w10
+again:  bra again
+first:  mov #0x0000, w0
+        mov w0, TBLPAG
+        mov #0x4000, w6
+        tblwtl w0, [w6]
+        mov #0x4042, w0                 ; WREN, erase a page
+        mov w0, NVMCON
+idle:   mov #0x55, w7
+        mov w7, NVMKEY
+        mov #0xAA, w7
+        mov w7, NVMKEY
+        bset NVMCON, #15
+        nop
+end:    bra end
+)");
+    SECTION("in mid-operation") {
+        bench.run_to_label("idle");
+        bench.chip.run_until(bench.chip.now() + 200 * cosim::kMicrosecond);
+        REQUIRE((bench.chip.peek("NVMCON") & 0xE000) == 0xC000);
+        bench.chip.mclr();
+        bench.run_to_label("again");
+        CHECK(bench.chip.peek("NVMCON") == 0x6042);
+    }
+    SECTION("behind it") {
+        bench.run_to_label("end");
+        bench.chip.mclr();
+        bench.run_to_label("again");
+        CHECK(bench.chip.peek("NVMCON") == 0x4042);
+    }
+}
+
 TEST_CASE("a part without a program at the reset vector is warned of") {
     Pins33 pins;
     Chip chip(dspic33fj256gp710(), pins);

@@ -40,6 +40,16 @@ TEST_CASE("hello.toml says what the README promises") {
     CHECK(hello.world.robots[0].heading == Approx(std::numbers::pi / 6));
 }
 
+TEST_CASE("errata of a main board's chip are named, and others refused") {
+    const TemporaryFile file(kArena + kRobot + "errata = [\"daw.b\", \"pwm-zero-duty\"]\n");
+    CHECK(read_scenario(file.path()).robots[0].pic.errata ==
+          std::vector<std::string>{"daw.b", "pwm-zero-duty"});
+    CHECK(problem_of(kArena + kRobot + "errata = [\"daw\"]\n") ==
+          "line 9: robot0.pic: there is no erratum 'daw' (expected one of daw.b, pwm-zero-duty)");
+    CHECK(problem_of(kArena + kRobot + "errata = 1\n")
+              .ends_with("errata is not a list of texts (expected [\"a\", \"b\"])"));
+}
+
 TEST_CASE("parameters are named, checked against their range, and set for one robot or all") {
     const TemporaryFile file(
         kArena +

@@ -66,6 +66,7 @@ std::vector<std::uint8_t> fuse_bytes(const std::string& text) {
 struct Arguments {
     exec::ExecOptions options;
     std::string fosc = "robot", fuses, revision = "1.2";
+    std::vector<std::string> errata;
     std::optional<double> crystal_hertz, baud;
     std::array<std::optional<double>, 2> uart_baud;
     LogOptions log;
@@ -203,6 +204,10 @@ void describe(Command& app, Arguments& a) {
            "AN7")
         ->check(one_of({"1.2", "1.3"}))
         ->capture_default_str();
+    app.add_option("--errata", a.errata,
+                   "what revision B0 of the dsPIC30F6014A does otherwise than its manuals (docs/fidelity.md)")
+        ->delimiter(',')
+        ->check(one_of({"daw.b", "pwm-zero-duty"}));
     app.add_option("--crystal", a.crystal_hertz,
                    "in Hz (7372800; of the dsPIC33F 4000000, of the AVR 16000000)")
         ->check(number_between(kSlowestCrystal, kFastestCrystal));
@@ -257,6 +262,11 @@ void declare_exec(Command& app, int& status) {
                 "--board pic");
         bench.target.revision = *pic::revision_of(a.revision);
         const exec::TargetDefaults defaults = exec::defaults_of(bench.mcu, bench.board);
+        if (!a.errata.empty() && defaults.mcu != "dspic30f6014a")
+            throw InputError("", "--errata", fmt::format("none of the {} is known", defaults.mcu),
+                             "a dsPIC30F6014A");
+        for (const std::string& name : a.errata)
+            bench.target.chip.errata.add(*dspic::erratum_of(name));
         bench.target.chip.crystal_hertz = a.crystal_hertz.value_or(defaults.crystal_hertz);
         const bool is_avr = defaults.mcu.starts_with("atmega");
         if (!is_avr && !a.fuses.empty())

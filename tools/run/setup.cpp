@@ -52,6 +52,7 @@ json pic_spec(const RunSetup& setup, const RobotBoards& robot) {
               {"nvm", robot.pic.nvm.empty() ? "" : full_path(robot.pic.nvm).string()},
               {"log", log_of(setup, robot.name + ".pic")}};
     if (has_lsm330(robot)) spec["board"] = robot.pic.revision;
+    if (!robot.pic.errata.empty()) spec["errata"] = robot.pic.errata;
     if (robot.pic.bluetooth) spec["bluetooth"] = true;
     add_can_modules(setup.scenario, robot.name + ".pic", spec);
     if (scenario.world.ircom) {

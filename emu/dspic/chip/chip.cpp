@@ -140,6 +140,7 @@ struct Chip::Parts {
                                parts.plan_edges(due);
                            })),
           supply(core, events, pins) {
+        core.set_errata(options.errata);
         Timer* before = nullptr;
         for (const TimerPlace& place : layout.timers) {
             Timer* upper = place.setup.hold ? before : nullptr;
@@ -159,6 +160,7 @@ struct Chip::Parts {
             spis.emplace_back(around, setup, ports, pins);
         const std::array time_bases{timer(2), timer(3)};
         output_compare.emplace(around, layout.output_compare, time_bases, ports, pins);
+        output_compare->set_errata(options.errata);
         input_capture.emplace(around, layout.input_captures, time_bases, clock, ports);
         if (!device.family_33f)
             for (Uart& uart : uarts)

@@ -10,6 +10,7 @@
 #include "emu/chip/held_interrupts.h"
 #include "emu/dspic/core/event_queue.h"
 #include "emu/dspic/devices/device.h"
+#include "emu/dspic/devices/errata.h"
 #include "emu/dspic/peripherals/output_compare_state.h"
 #include "emu/dspic/peripherals/pins.h"
 #include "emu/dspic/peripherals/uart_counters.h"
@@ -39,6 +40,7 @@ struct ChipOptions {
     /// 30F: configuration word FOSC that is in force whatever the image says (a bootloader's words stay on
     /// the part).
     std::optional<std::uint16_t> fosc{};
+    Errata errata{};  ///< of the 30F; the 33FJ has none of them
 };
 
 /// One entry each; times are the chip's cycles.

@@ -141,6 +141,9 @@ void Core::set_skip_idle(bool on) {
 void Core::set_translate(bool on) {
     machine_->translated.on = on;
 }
+void Core::set_errata(const Errata& errata) {
+    machine_->daw_clears_carry = errata.has(Erratum::DawCarry);
+}
 void Core::set_instrument(chip::Instrument* instrument, bool accesses) {
     Machine& m = *machine_;
     if (!m.instrument && instrument) {

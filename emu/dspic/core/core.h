@@ -12,6 +12,7 @@
 #include "emu/dspic/core/interrupts.h"
 #include "emu/dspic/core/sfr_space.h"
 #include "emu/dspic/devices/device.h"
+#include "emu/dspic/devices/errata.h"
 #include "emu/dspic/waits/wait_watch.h"
 
 #include <cstdint>
@@ -90,6 +91,8 @@ class Core {
     /// Hot code is translated to the host's, where that is possible, without changing anything observable: by
     /// default as emu/chip/translation_switch.h says.
     void set_translate(bool on);
+    /// Instructions do what these say; none from the start.
+    void set_errata(const Errata& errata);
     /// From now on `instrument` looks on, at data accesses too if `accesses`; null: nobody does. Between runs
     /// only; set_skip_idle() and set_translate() are to be called without one.
     void set_instrument(chip::Instrument* instrument, bool accesses = false);

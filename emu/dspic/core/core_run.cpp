@@ -5,6 +5,7 @@
 
 #include "emu/dspic/core/interpret.h"
 #include "emu/dspic/core/machine.h"
+#include "emu/dspic/devices/dspic30f6014a_sfr.h"
 
 #include <algorithm>
 #include <cmath>
@@ -197,10 +198,11 @@ void perform_reset(Machine& m, ResetCause cause) {
     if (m.observer.on_reset) m.observer.on_reset(cause, m.fault_pc, m.st.cycle);
     if (m.instrument) m.instrument->reset(m.st.cycle);
     const std::uint16_t old_rcon = rcon_register(m);
+    const std::uint16_t old_nvmcon = m.sfr.raw(sfr::NVMCON);
     if (m.reset_hook) m.reset_hook(cause);
     m.irq.reset();
     reset_registers(m);
-    reset_nvm(m);
+    reset_nvm(m, cause, old_nvmcon);
 
     std::uint32_t value = old_rcon & ~std::uint32_t{m.device.family_33f ? rcon::SWDTEN : 0u};
     constexpr std::uint32_t kBrownOutClears33F =  // DS70286, RCON; the 30F's wait for a power-on reset

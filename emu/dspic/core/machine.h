@@ -93,6 +93,7 @@ struct Machine {
     SfrSpace::Plain* plain = nullptr;           ///< of sfr, for translated code
     std::optional<ResetCause> reset_request;
     std::uint32_t fault_pc = 0;
+    bool daw_clears_carry = false;  ///< Erratum::DawCarry
 
     // Repeated instructions.
     bool repeat_first = false;  ///< the next iteration follows REPEAT or a return from interrupt
@@ -205,7 +206,7 @@ void perform_reset(Machine& m, ResetCause cause);
 // nvm.cpp
 void table_write(Machine& m, std::uint32_t address, bool high, bool byte, std::uint16_t value);
 void hook_nvm(Machine& m);
-void reset_nvm(Machine& m);
+void reset_nvm(Machine& m, ResetCause cause, std::uint16_t nvmcon_before);
 // watchdog.cpp
 void hook_power(Machine& m);
 void clear_watchdog(Machine& m);

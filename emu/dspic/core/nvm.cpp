@@ -186,9 +186,13 @@ void hook_nvm(Machine& m) {
     m.nvm.latch.assign(m.device.row_words, kErased);
 }
 
-void reset_nvm(Machine& m) {
+void reset_nvm(Machine& m, ResetCause cause, std::uint16_t nvmcon_before) {
     m.events.cancel(m.nvm.slot);
-    m.sfr.raw(sfr::NVMCON) = 0;
+    // The 33FJ's stays as the operation left it (DS70286, table 4-34): cut off, it failed.
+    const bool keeps = m.device.family_33f && cause != ResetCause::PowerOn;
+    std::uint16_t con = keeps ? nvmcon_before : std::uint16_t{0};
+    if (con & kNVMCON["WR"]) con = static_cast<std::uint16_t>((con & ~kNVMCON["WR"]) | kNVMCON["WRERR"]);
+    m.sfr.raw(sfr::NVMCON) = con;
     m.nvm.key_step = 0;
     std::fill(m.nvm.latch.begin(), m.nvm.latch.end(), kErased);
 }

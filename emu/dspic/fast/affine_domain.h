@@ -88,6 +88,7 @@ class AffineDomain {
     bool n() const { return known(n_); }
     bool ov() const { return known(ov_); }
     bool dc() const { fail(Verdict::Unknown); }
+    bool daw_clears_carry() const { fail(Verdict::Unknown); }
     bool accumulator(std::uint16_t) const { fail(Verdict::Unknown); }
     void set_c(bool on) { c_ = {true, on}; }
     void set_z(bool on) { z_ = {true, on}; }

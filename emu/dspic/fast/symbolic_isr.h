@@ -80,6 +80,7 @@ class SymbolicIsr {
     bool n() const { throw Stop{}; }
     bool ov() const { throw Stop{}; }
     bool dc() const { throw Stop{}; }
+    bool daw_clears_carry() const { return false; }
     bool accumulator(std::uint16_t) const { throw Stop{}; }
     void set_c(bool) {}
     void set_z(bool) {}

@@ -107,6 +107,7 @@ void OutputCompare::begin(std::size_t index) {
     State& state = states_[index];
     const Cycle at = around_.now + 1;
     used_ |= mode(index) != kOff;
+    state.glitch = state.missed = false;
     state.step = mode(index) == kOff || (pwm(index) && !pwm_edges(index)) ? Step::Idle : Step::First;
     if (mode(index) != kToggle) state.level = mode(index) == kLow;
     if (pwm_edges(index)) state.level = r(index) != 0;
@@ -162,7 +163,7 @@ void OutputCompare::edge(std::size_t index, Cycle at) {
         state.step = first ? Step::Second : mode(index) == kPulse ? Step::Idle : Step::First;
         break;
     default:  // PWM: the duty is over
-        state.level = false;
+        state.level = state.glitch = false;
         interrupt = false;
         match = at;
         break;
@@ -201,6 +202,7 @@ void OutputCompare::timer_changed(void* owner, Cycle at) {
 // After a write; an edge whose match was before it still comes.
 void OutputCompare::replan(std::size_t index, Cycle at) {
     const State& state = states_[index];
+    if (state.glitch) return;
     const Cycle delay = pwm(index) ? 0 : setup_.pin_delay;
     const bool matched = state.due != kNoCycle && state.due < at + delay;
     if (state.step != Step::Idle && !matched) plan(index, at);

@@ -10,8 +10,12 @@
 //     is no time base.
 //  3. 33FJ: an edge and its interrupt take place in the cycle in which the count is reached.
 //  4. PWM's edges take place in the cycle in which the count is reached (TMRy = 0, TMRy = OCxR).
-//  5. The glitch at 0 % duty of the 30F's revision B0 is left out.
+//  5. The glitch at 0 % duty of the 30F's revision B0 comes only where it is asked for
+//  (Erratum::PwmZeroDuty),
+//     at a pin whose board wants PWM's edges: one instruction cycle long, once each time the duty becomes 0;
+//     the period behind it stays low whatever its duty. Length and occasion are assumptions.
 
+#include "emu/dspic/devices/errata.h"
 #include "emu/dspic/peripherals/output_compare_state.h"
 #include "emu/dspic/peripherals/pins.h"
 #include "emu/dspic/peripherals/ports.h"
@@ -44,6 +48,7 @@ class OutputCompare {
                   Pins& pins);
 
     void reset();
+    void set_errata(const Errata& errata) { glitches_ = errata.has(Erratum::PwmZeroDuty); }
     /// Sleep, or Idle for modules with OCSIDL set: matches do nothing. Faults act all the same.
     void hold(bool sleeps, bool idles) {
         if (used_) set_hold(sleeps, idles);
@@ -68,6 +73,8 @@ class OutputCompare {
         Step step = Step::Idle;
         bool level = false;
         bool held = false;
+        bool glitch = false;         ///< high for a cycle, at a duty of 0
+        bool missed = false;         ///< the next period stays low
         Cycle due = kNoCycle;        ///< of the edge to come
         Cycle interrupt = kNoCycle;  ///< when OCxIF is set for the last one
         OutputCompareState reported;
@@ -75,7 +82,7 @@ class OutputCompare {
         template <class Archive>
         void state(Archive& archive) {
             archive.bounded(step, Step::Idle, Step::Second);
-            archive(level, held, due, interrupt, reported);
+            archive(level, held, glitch, missed, due, interrupt, reported);
         }
     };
 
@@ -105,6 +112,7 @@ class OutputCompare {
     bool faulted(std::size_t index) const;
     void fault(std::size_t index, Cycle at);
     void begin_period(std::size_t index, Cycle at);
+    void begin_glitch(std::size_t index, Cycle at);
     void set_hold(bool sleeps, bool idles);
     Timer& timer(std::size_t index) const;
     void begin(std::size_t index);
@@ -129,7 +137,8 @@ class OutputCompare {
     std::array<FaultInput, 2> faults_;
     Ports& ports_;
     Pins& pins_;
-    bool used_ = false;  ///< a module was ever switched on: there is something to remember
+    bool glitches_ = false;  ///< Erratum::PwmZeroDuty
+    bool used_ = false;      ///< a module was ever switched on: there is something to remember
     std::vector<State> states_;
     EventQueue::Slot slot_;
 };

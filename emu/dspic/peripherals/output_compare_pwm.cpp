@@ -29,13 +29,28 @@ void OutputCompare::begin_period(std::size_t index, Cycle at) {
         timer(index).want_period();
         State& state = states_[index];
         state.step = faulted(index) ? Step::Idle : Step::First;
-        if (!state.held && !faulted(index) && state.level != (r(index) != 0)) {
-            state.level = r(index) != 0;
+        const bool acts = !state.held && !faulted(index);
+        if (acts && changed && glitches_ && r(index) == 0) return begin_glitch(index, at);
+        const bool high = r(index) != 0 && !state.missed;
+        state.missed = false;
+        if (acts && state.level != high) {
+            state.level = high;
             drive(index, at);
         }
         plan(index, at);
     }
     if (changed) tell(index, at);
+}
+
+// Erratum::PwmZeroDuty
+void OutputCompare::begin_glitch(std::size_t index, Cycle at) {
+    State& state = states_[index];
+    state.glitch = state.missed = true;
+    state.level = true;
+    drive(index, at);
+    state.due = at + 1;
+    plan_all();
+    tell(index, at);
 }
 
 bool OutputCompare::faulted(std::size_t index) const {
@@ -47,7 +62,7 @@ void OutputCompare::fault(std::size_t index, Cycle at) {
     State& state = states_[index];
     con(index) |= kOCxCON["OCFLT"];
     state.step = Step::Idle;
-    state.level = false;
+    state.level = state.glitch = state.missed = false;
     drive(index, at);
     plan(index, at);
     around_.interrupts.raise(units_[index].irq, at);

@@ -144,7 +144,10 @@ struct DecimalAdjust {
         std::uint32_t t = d.word(d.part(op->s, true));
         if ((t & 0xF) > 9 || d.dc()) t += 0x06;
         if (t > 0x9F || d.c()) t += 0x60;
-        if (t > 0xFF) d.set_c(true);
+        if (t > 0xFF)
+            d.set_c(true);
+        else if (d.daw_clears_carry())
+            d.set_c(false);
         d.put(op->s, true, d.value(t & 0xFF));
         return op + 1;
     }

@@ -89,6 +89,8 @@ class Words {
     bool n() const { return m_.st.sr & sr::N; }
     bool ov() const { return m_.st.sr & sr::OV; }
     bool dc() const { return m_.st.sr & sr::DC; }
+    /// DAW.B's carry is that of its own sum alone (Erratum::DawCarry).
+    bool daw_clears_carry() const { return m_.daw_clears_carry; }
     /// OA, OB, SA, SB.
     bool accumulator(std::uint16_t bit) const { return m_.st.sr & bit; }
     void set_c(bool on) { set_flags(m_, sr::C, on ? sr::C : 0u); }
