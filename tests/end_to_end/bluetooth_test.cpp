@@ -2,6 +2,7 @@
 // library's images; programs uploaded on a cable and over the air.
 
 #include "tests/end_to_end/same_run.h"
+#include "tests/end_to_end/upload_scene.h"
 #include "tests/end_to_end/workbench.h"
 
 #include <catch2/catch.hpp>
@@ -113,12 +114,8 @@ number = 2002
 }
 
 TEST_CASE("programs are uploaded by the boot loader, on a cable and over the air", "[bluetooth]") {
-    const auto loader = outside("PUCKLOOP_IMAGES", "tinybld_ds6014A_7.37Mhz_115200uart1_8xPLL_with_LEDs.hex");
-    const auto demo = outside("PUCKLOOP_IMAGES", "demoGCtronic-rev117+bootloader.hex");
-    if (!loader || !demo) {
-        WARN("PUCKLOOP_IMAGES has no boot loader: skipped");
-        return;
-    }
+    const auto images = upload_images();
+    if (!images) return;
     const Workbench bench;
     const std::string image = PUCKLOOP_SOURCE "/firmware/bluetooth/talk.hex";
     const auto script = [&](const char* name, const char* at, const std::string& more) {
@@ -133,29 +130,11 @@ TEST_CASE("programs are uploaded by the boot loader, on a cable and over the air
     const std::size_t rows = script("cable.txt", "0.6", "8.0 68 69 0a\n");
     CHECK(rows > 20);
     CHECK(script("air.txt", "40.3", "50.0 68 69 0a\n") == rows);
-    const auto file = bench.file("upload.toml", fmt::format(R"([run]
-seed = 4
-duration = "52 s"
-[arena]
-size = ["2 m", "2 m"]
-[[robot]]
-name = "cable"
-position = ["-40 cm", "0 cm"]
-[robot.pic]
-firmware = "{}"
-uart1 = "script:cable.txt"
-uart2 = "script:/dev/null"
-[[robot]]
-name = "air"
-position = ["40 cm", "0 cm"]
-[robot.pic]
-firmware = "{}"
-uart2 = "script:/dev/null"
-reset = ["40 s"]
-[robot.pic.bluetooth]
-computer = "script:air.txt"
-)",
-                                                            loader->string(), demo->string()));
+    const UploadScene scene{.run = "seed = 4\nduration = \"52 s\"",
+                            .cable = "script:cable.txt",
+                            .computer = "script:air.txt",
+                            .air = "reset = [\"40 s\"]"};
+    const auto file = bench.file("upload.toml", scenario_of(scene, *images));
     const Ended ended = bench.run("o", {file, "--in-process"});
     INFO(ended.err);
     REQUIRE(ended.status == 0);

@@ -36,7 +36,7 @@ bool has_ptys() {
 }
 
 std::string place_of(const std::filesystem::path& err, const std::string& end) {
-    constexpr double kPatience = 30.0;
+    constexpr double kPatience = 120.0;
     for (const double until = wall_seconds() + kPatience; wall_seconds() < until;) {
         const std::string text = text_of(err);
         const std::size_t line = text.find(end + ": ");

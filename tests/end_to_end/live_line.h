@@ -13,7 +13,7 @@ namespace puckloop::tests {
 bool has_ptys();
 
 /// What the run, whose standard error is `err`, says where `end` is: "/dev/pts/3", or "4242" of TCP. Fails
-/// the test if it does not within 30 s.
+/// the test if it does not within 120 s.
 std::string place_of(const std::filesystem::path& err, const std::string& end);
 
 class LiveLine {
@@ -28,9 +28,9 @@ class LiveLine {
     int file() const { return file_; }
     void send(const std::string& bytes) const;
     /// Bytes until they end with `end` or `patience` seconds of wall time are over.
-    std::string read_until(const std::string& end, double patience = 30.0) const;
+    std::string read_until(const std::string& end, double patience = 120.0) const;
     /// The other side hangs up within `patience` seconds, saying nothing.
-    bool hung_up(double patience = 30.0) const;
+    bool hung_up(double patience = 120.0) const;
     /// Sends `bytes` again and again until nothing is taken for half a second, at most `most` bytes in all;
     /// how many were taken.
     std::size_t flood(const std::string& bytes, std::size_t most) const;
