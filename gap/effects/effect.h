@@ -11,8 +11,8 @@
 
 namespace puckloop::gap {
 
-/// A parameter that an effect frees. "name*" = one for each sensor, object, ... in the data; "a*|b": b where
-/// the model has no a.
+/// A parameter that an effect estimates. "name*" = one for each sensor, object, ... in the data; "a*|b": b
+/// where the model has no a.
 struct EffectParameter {
     const char* name;
     double low, high;              ///< beyond the simulator's neutral value these are not believed
@@ -32,16 +32,16 @@ enum class EffectRole {
 };
 
 struct Effect {
-    const char* name;           ///< "wheel_scale"
-    int number;                 ///< in the sheet of effects this catalogue follows
-    const char* title;          ///< plain words, as a sentence would name it
-    std::vector<Kind> kinds{};  ///< that of its table first; a table names only the others
+    const char* name;   ///< "wheel_scale"
+    int number;         ///< in the sheet of effects this catalogue follows
+    const char* title;  ///< plain words, as a sentence would name it
     std::vector<EffectParameter> parameters;
-    std::vector<const char*> needs{};  ///< columns that must be there and vary; "a|b": one of them
     const char* enters;                ///< where it enters the simulator
     const char* separated_by;          ///< the experiment that tells it from those that can look the same
+    std::vector<const char*> needs{};  ///< columns that must be there and vary; "a|b": one of them
     EffectRole role = EffectRole::Mean;
     bool fitted_along = false;  ///< beside every cause where the data can part them (the measuring chain's)
+    std::vector<Kind> kinds{};  ///< that of its table first; a table names only the others
 };
 
 /// All of them, in the order of the sheet.
