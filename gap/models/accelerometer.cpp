@@ -28,21 +28,23 @@ class AccelerometerModel final : public ModelOf<physics::Parameters> {
         for (std::size_t axis = 0; axis < 3; ++axis) {
             std::vector<std::uint32_t> used;
             observables_.push_back(rows.observable(kAxes[axis], NoiseKind::Carry, used));
-            const auto column = [&](std::string_view name) { return taken(rows.column(name, 0), used); };
-            const auto pitch = column("pitch_rad"), roll = column("roll_rad"),
-                       forward = column("acceleration"), left = column("lateral");
+            std::vector<double> pitch, roll, forward, left;
             Axis& one = axes_[axis];
+            rows.take(used, {{pitch, "pitch_rad"},
+                             {roll, "roll_rad"},
+                             {forward, "acceleration"},
+                             {left, "lateral"},
+                             {one.motor, "motor_speed"},
+                             {one.time, "t_s"},
+                             {one.session, "session"}});
             for (std::size_t i = 0; i < used.size(); ++i) {
                 const double sp = std::sin(pitch[i]), cp = std::cos(pitch[i]), sr = std::sin(roll[i]),
                              cr = std::cos(roll[i]);
                 one.felt.push_back({-left[i] * cr / kGravity - cp * sr, -forward[i] * cp / kGravity - sp,
                                     cp * cr - forward[i] * sp / kGravity - left[i] * sr / kGravity});
             }
-            one.motor = column("motor_speed");
             for (double& speed : one.motor)
                 speed = std::abs(speed) / physics::kSpeedUnit;
-            one.time = column("t_s");
-            one.session = column("session");
         }
         declare_all();
         apply_nominal(experiment);
@@ -82,12 +84,10 @@ class AccelerometerModel final : public ModelOf<physics::Parameters> {
     };
 
     void declare_all() {
-        simulated({"accelerometer.zero", "accelerometer.gain", "accelerometer.turn",
-                   "accelerometer.motor_sag", "accelerometer.warmup", "accelerometer.warmup_time",
-                   "accelerometer.vibration"});
+        simulated("accelerometer.",
+                  {"zero", "gain", "turn", "motor_sag", "warmup", "warmup_time", "vibration"});
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            simulated(
-                {fmt::format("accelerometer.bias{}", axis), fmt::format("accelerometer.scale{}", axis)});
+            simulated("accelerometer.", {fmt::format("bias{}", axis), fmt::format("scale{}", axis)});
             auto sessions = distinct(axes_[axis].session);
             for (std::size_t k = 1; k < std::min<std::size_t>(sessions.size(), 6); ++k)
                 session_bias_[axis].emplace_back(

@@ -30,29 +30,28 @@ class GroundModel final : public ModelOf<Numbers> {
         const Rows rows(experiment, "sensor", {"grey", "reading"});
         std::vector<std::uint32_t> used;
         observables_.push_back(rows.observable("reading", NoiseKind::Carry, used));
-        const auto column = [&](std::string_view name, double fallback) {
-            return taken(rows.column(name, fallback), used);
-        };
-        grey_ = column("grey", 0);
-        along_ = column("grey_rate", 0);
-        across_ = column("grey_across", 0);
-        speed_ = column("speed", 0);
-        pitch_ = column("pitch_rad", 0);
-        acceleration_ = column("acceleration", 0);
-        ambient_ = column("ambient", 0);
-        time_ = column("t_s", 0);
+        std::vector<double> sensor;
+        rows.take(used, {{grey_, "grey"},
+                         {along_, "grey_rate"},
+                         {across_, "grey_across"},
+                         {speed_, "speed"},
+                         {pitch_, "pitch_rad"},
+                         {acceleration_, "acceleration"},
+                         {ambient_, "ambient"},
+                         {time_, "t_s"},
+                         {sensor, "sensor"}});
         lay_track();
-        sensor_ = whole(column("sensor", 0));
-        simulated({"ground.black", "ground.white", "ground.saturation", "ground.height_slope", "ground.x"});
+        sensor_ = whole(sensor);
+        simulated("ground.", {"black", "white", "saturation", "height_slope", "x"});
         declare({{&Numbers::raised, "ground.raised", "m"}});
-        simulated({"ground.acceleration_tilt"});
+        simulated("ground.", {"acceleration_tilt"});
         declare({{&Numbers::forward_error, "ground.forward_error", "m"},
                  {&Numbers::left_error, "ground.left_error", "m"}});
-        simulated({"ground.lag"});
+        simulated("ground.", {"lag"});
         declare({{&Numbers::ambient_offset, "ground.ambient_offset", "counts"}});
-        simulated({"ground.warmup_gain", "ground.warmup_time"});
-        for (const int sensor : in_order_met(sensor_))
-            simulated({fmt::format("ground.gain{}", sensor), fmt::format("ground.offset{}", sensor)});
+        simulated("ground.", {"warmup_gain", "warmup_time"});
+        for (const int one : in_order_met(sensor_))
+            simulated("ground.", {fmt::format("gain{}", one), fmt::format("offset{}", one)});
         apply_nominal(experiment);
         if (std::isnan(observables_[0].instrument.ceiling))
             observables_[0].instrument.ceiling = nominal().ground.saturation;

@@ -57,23 +57,21 @@ class MicrophoneModel final : public ModelOf<Numbers> {
         const Rows rows(experiment, "mic", {"distance_m", "level"});
         std::vector<std::uint32_t> used;
         observables_.push_back(rows.observable("level", NoiseKind::Carry, used));
-        const auto column = [&](std::string_view name, double fallback) {
-            return taken(rows.column(name, fallback), used);
-        };
-        distance_ = column("distance_m", 0);
-        angle_ = column("angle_rad", 0);
-        amplitude_ = column("amplitude", 0);
-        window_ = column("window", kWindow);
-        motor_ = column("motor_speed", 0);
-        time_ = column("t_s", 0);
-        mic_ = whole(column("mic", 0));
+        std::vector<double> mic;
+        rows.take(used, {{distance_, "distance_m"},
+                         {angle_, "angle_rad"},
+                         {amplitude_, "amplitude"},
+                         {window_, "window", kWindow},
+                         {motor_, "motor_speed"},
+                         {time_, "t_s"},
+                         {mic, "mic"}});
+        mic_ = whole(mic);
         declare({{&Numbers::level, "microphone.level", "counts"}});
-        simulated({"microphone.exponent", "microphone.directivity", "microphone.self_noise",
-                   "microphone.motor_noise", "microphone.window_lost"});
+        simulated("microphone.", {"exponent", "directivity", "self_noise", "motor_noise", "window_lost"});
         declare({{&Numbers::gaussian, "microphone.gaussian", "1"}});
-        simulated({"microphone.warmup_gain", "microphone.warmup_time"});
-        for (const int mic : in_order_met(mic_))
-            declare_part(&Numbers::gain, static_cast<std::size_t>(mic), "microphone.gain", mic, "1");
+        simulated("microphone.", {"warmup_gain", "warmup_time"});
+        for (const int one : in_order_met(mic_))
+            declare_part(&Numbers::gain, static_cast<std::size_t>(one), "microphone.gain", one, "1");
         apply_nominal(experiment);
     }
 

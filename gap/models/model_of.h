@@ -40,9 +40,10 @@ class ModelOf : public Model {
                       const char* unit) {
         put(name + std::to_string(number), unit, [array, k](Numbers& all) { return &(all.*array)[k]; });
     }
-    /// The simulator's parameters of these names ("ground.black", "ground.gain2").
-    void simulated(std::initializer_list<std::string> names) {
-        for (const std::string& name : names) {
+    /// The simulator's parameters of these names in a group: "ground.", {"black", "gain2"}.
+    void simulated(const std::string& group, std::initializer_list<std::string> names) {
+        for (const std::string& one : names) {
+            const std::string name = group + one;
             int index = -1;
             const physics::ParameterInfo* info = physics::find_parameter(name, index);
             if (info == nullptr) throw std::logic_error("the simulator has no parameter " + name);

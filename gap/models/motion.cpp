@@ -170,10 +170,10 @@ class MotionModel final : public ModelOf<Numbers> {
     void gather(const Experiment& experiment, const Rows& rows) {
         std::vector<std::uint32_t> used;
         const Observable base = rows.observable("x_m", NoiseKind::Level, used);
-        const auto x = taken(rows.column("x_m", 0), used), y = taken(rows.column("y_m", 0), used),
-                   theta = taken(rows.column("theta_rad", 0), used);
-        const auto load = taken(rows.column("load_kg", 0), used),
-                   incline = taken(rows.column("incline_rad", 0), used);
+        std::vector<double> x, y, theta, load, incline;
+        rows.take(
+            used,
+            {{x, "x_m"}, {y, "y_m"}, {theta, "theta_rad"}, {load, "load_kg"}, {incline, "incline_rad"}});
         counted_ = experiment.has("steps_left") && experiment.has("cmd_left");
         exact_ = experiment.nominal_or("firmware.agenda", 1.0) == 0;
         // A counter has counted what a start made.
@@ -288,18 +288,18 @@ class MotionModel final : public ModelOf<Numbers> {
     }
 
     void declare_all() {
-        simulated({"robot.wheel_radius_left", "robot.wheel_radius_right", "robot.axle_length",
-                   "robot.steps_per_turn"});
+        simulated("robot.", {"wheel_radius_left", "wheel_radius_right", "axle_length", "steps_per_turn"});
         declare({{&Numbers::agenda, "firmware.agenda", "1"},
                  {&Numbers::start_loss, "firmware.start_loss", "1"},
                  {&Numbers::scale, "wheel_scale", "1"},
                  {&Numbers::mismatch, "wheel_mismatch", "1"}});
-        simulated({"robot.turn_scrub"});
+        simulated("robot.", {"turn_scrub"});
         declare({{&Numbers::friction, "inverse_friction", "1"}});
-        simulated({"robot.load_creep", "robot.slope_creep", "robot.step_loss_speed", "robot.step_loss_width",
-                   "robot.deadband", "robot.backlash"});
+        simulated("robot.", {"load_creep", "slope_creep", "step_loss_speed", "step_loss_width", "deadband",
+                             "backlash"});
         declare({{&Numbers::latency, "command.latency", "s"}, {&Numbers::drop, "command.loss", "1"}});
-        simulated({"robot.drift_x", "robot.drift_y", "push.rate", "push.size", "push.turn"});
+        simulated("robot.", {"drift_x", "drift_y"});
+        simulated("push.", {"rate", "size", "turn"});
         declare({{&Numbers::marker_x, "tracker.marker_x", "m"},
                  {&Numbers::marker_y, "tracker.marker_y", "m"},
                  {&Numbers::marker_angle, "tracker.marker_angle", "rad"},

@@ -7,11 +7,11 @@
 // pairs and calibration are the firmware's and the board's; the reading is taken as they leave it.
 
 #include "physics/sensors/proximity.h"
+#include "gap/models/foreign_pulses.h"
 #include "gap/models/keyed_cache.h"
 #include "gap/models/model_of.h"
 #include "gap/models/rows.h"
 #include "gap/models/spectrum.h"
-#include "gap/stats/robust.h"
 #include "physics/description/robot_constants.h"
 
 #include <fmt/format.h>
@@ -43,21 +43,16 @@ class ProximityModel final : public ModelOf<Numbers> {
         const Rows rows(experiment, "sensor", {"distance_m", "reading"});
         std::vector<std::uint32_t> used;
         observables_.push_back(rows.observable("reading", NoiseKind::Carry, used));
-        const auto column = [&](std::string_view name, double fallback) {
-            return taken(rows.column(name, fallback), used);
-        };
-        distance_ = column("distance_m", 0);
-        angle_ = column("angle_rad", 0);
-        reflectivity_ = column("reflectivity", 1);
-        ambient_ = column("ambient", 0);
-        pair_ = column("pair_reading", 0);
-        neighbour_ = column("neighbour_reading", 0);
-        motor_ = column("motor_speed", 0);
-        velocity_ = column("velocity", 0);
-        time_ = column("t_s", 0);
-        others_ = column("neighbours", experiment.has("neighbours") ? 0 : 1);
-        center(column("battery_v", NAN), battery_);
-        center(column("order", NAN), order_);
+        std::vector<double> sensor, object, battery, order;
+        // clang-format off
+        rows.take(used, {{distance_, "distance_m"}, {angle_, "angle_rad"}, {reflectivity_, "reflectivity", 1},
+                         {ambient_, "ambient"}, {pair_, "pair_reading"}, {neighbour_, "neighbour_reading"},
+                         {motor_, "motor_speed"}, {velocity_, "velocity"}, {time_, "t_s"},
+                         {others_, "neighbours", experiment.has("neighbours") ? 0.0 : 1.0},
+                         {battery, "battery_v", NAN}, {order, "order", NAN}, {sensor, "sensor"}, {object, "object", 1}});
+        // clang-format on
+        center(std::move(battery), battery_);
+        center(std::move(order), order_);
         if (!order_.empty()) {
             const auto [first, last] = std::minmax_element(order_.begin(), order_.end());
             half_order_ = (*last - *first) / 2;
@@ -65,7 +60,7 @@ class ProximityModel final : public ModelOf<Numbers> {
             for (std::size_t i = 1; i < run.size(); ++i)
                 if (run[i] == run[i - 1] && order_[i] != order_[i - 1]) half_order_ = 0.0;
         }
-        sensor_ = whole(column("sensor", 0));
+        sensor_ = whole(sensor);
         for (std::size_t i = 0; i < sensor_.size(); ++i)
             rows_of_[static_cast<std::size_t>(sensor_[i])].push_back(i);
         const physics::ProximityParameters drawn = physics::Parameters().proximity;
@@ -85,8 +80,10 @@ class ProximityModel final : public ModelOf<Numbers> {
             stepping_.push_back(speed != 0.0 ? 1.0 : 0.0);
             speed = std::abs(speed) / physics::kSpeedUnit;
         }
-        others_ = exposed();
-        declare_all(objects_of(experiment, column), experiment.nominal_or("proximity.curve", 0.0) == 0);
+        pulses_ = foreign_pulses(observables_[0], sensor_, distance_, angle_);
+        for (std::size_t i = 0; i < others_.size(); ++i)
+            if (pulses_.sheltered[static_cast<std::size_t>(sensor_[i])]) others_[i] = 0.0;
+        declare_all(objects_of(experiment, object), experiment.nominal_or("proximity.curve", 0.0) == 0);
         apply_nominal(experiment);
         angle0_ = nominal().proximity.direction;
         if (experiment.has("ambient")) {
@@ -104,18 +101,11 @@ class ProximityModel final : public ModelOf<Numbers> {
         const physics::ProximityParameters& now = all.proximity;
         // What the curve says changes with few parameters: the rest reuse it. One sensor's direction moves
         // only that sensor's rows.
-        std::vector<double> key{now.curve,
-                                now.amplitude,
-                                now.origin,
-                                now.exponent,
-                                now.saturation,
-                                now.reach,
-                                now.compression,
-                                now.extra_exponent,
-                                now.distance_shift,
-                                now.incidence_exponent,
-                                now.age,
-                                0.0};
+        // clang-format off
+        std::vector<double> key{now.curve, now.amplitude, now.origin, now.exponent, now.saturation, now.reach,
+                                now.compression, now.extra_exponent, now.distance_shift, now.incidence_exponent,
+                                now.age, 0.0};
+        // clang-format on
         for (std::size_t s = 0; s < rows_of_.size(); ++s) {
             if (rows_of_[s].empty()) continue;
             const double turned = now.direction[s] - angle0_[s];
@@ -149,7 +139,7 @@ class ProximityModel final : public ModelOf<Numbers> {
     std::vector<double> starts(std::string_view parameter) const override {
         if (parameter == "proximity.threshold") return thresholds();
         if (parameter == "proximity.age") return ages();
-        if (parameter == "proximity.interference_size" && jump_size_ > 0) return {jump_size_};
+        if (parameter == "proximity.interference_size" && pulses_.size > 0) return {pulses_.size};
         if (parameter == "proximity.flicker_frequency" && line_frequency_found_ > 0)
             return {line_frequency_found_};
         return {};
@@ -158,8 +148,8 @@ class ProximityModel final : public ModelOf<Numbers> {
     /// Sensors that no foreign pulse hits.
     std::map<std::string, double> implied() const override {
         std::map<std::string, double> shares;
-        for (std::size_t s = 0; s < sheltered_.size(); ++s)
-            if (sheltered_[s]) shares[fmt::format("proximity.interference_share{}", s)] = 0.0;
+        for (std::size_t s = 0; s < pulses_.sheltered.size(); ++s)
+            if (pulses_.sheltered[s]) shares[fmt::format("proximity.interference_share{}", s)] = 0.0;
         return shares;
     }
 
@@ -206,59 +196,6 @@ class ProximityModel final : public ModelOf<Numbers> {
             best = threshold;
         }
         return {best};
-    }
-
-    /// 1 for the rows of sensors that a foreign source may hit: those side by side on the ring whose repeats
-    /// at one place jump clearly more often than the others', or all.
-    std::vector<double> exposed() {
-        constexpr double kJump = 2.5;
-        constexpr double kBelieved = 10.0;  // log likelihood ratio, above the number of arcs that are tried
-        constexpr int kRing = physics::kProximitySensors;
-        std::vector<double> sizes;
-        std::vector<std::pair<int, double>> repeats;  // sensor, difference
-        const Observable& o = observables_[0];
-        for (std::size_t i = 1; i < o.y.size(); ++i)
-            if (o.starts[i] == 0 && distance_[i] == distance_[i - 1] && angle_[i] == angle_[i - 1]) {
-                repeats.emplace_back(sensor_[i], std::abs(o.y[i] - o.y[i - 1]));
-                sizes.push_back(repeats.back().second);
-            }
-        std::vector<double> all = others_;
-        if (sizes.size() < 2 * kRing) return all;
-        const double limit = kJump * stats::kMadToSigma * std::max(stats::upper_median(sizes), 1.0);
-        std::vector<double> beyond;
-        std::array<double, kRing> jumps{}, counts{};
-        for (const auto& [sensor, size] : repeats) {
-            counts[static_cast<std::size_t>(sensor)] += 1;
-            jumps[static_cast<std::size_t>(sensor)] += size > limit ? 1 : 0;
-            if (size > limit) beyond.push_back(size);
-        }
-        if (!beyond.empty()) jump_size_ = stats::upper_median(beyond);
-        const auto fit = [](double yes, double of) {
-            return yes <= 0 || yes >= of ? 0.0
-                                         : yes * std::log(yes / of) + (of - yes) * std::log1p(-yes / of);
-        };
-        double best = kBelieved;
-        int first = 0, length = kRing;
-        for (int from = 0; from < kRing; ++from)
-            for (int wide = 1; wide < kRing; ++wide) {
-                double in = 0, in_of = 0, out = 0, out_of = 0;
-                for (int k = 0; k < kRing; ++k) {
-                    const auto s = static_cast<std::size_t>((from + k) % kRing);
-                    (k < wide ? in : out) += jumps[s];
-                    (k < wide ? in_of : out_of) += counts[s];
-                }
-                if (in_of == 0 || out_of == 0 || in * out_of <= out * in_of) continue;
-                const double ratio = fit(in, in_of) + fit(out, out_of) - fit(in + out, in_of + out_of);
-                if (ratio <= best) continue;
-                best = ratio;
-                first = from;
-                length = wide;
-            }
-        for (int s = 0; s < kRing; ++s)
-            sheltered_[static_cast<std::size_t>(s)] = (s - first + kRing) % kRing >= length;
-        for (std::size_t i = 0; i < all.size(); ++i)
-            if (sheltered_[static_cast<std::size_t>(sensor_[i])]) all[i] = 0.0;
-        return all;
     }
 
     /// Readings are held between two samples of the sensor's schedule, whose phase the log does not tell: the
@@ -322,9 +259,8 @@ class ProximityModel final : public ModelOf<Numbers> {
     }
 
     /// Which object a row is about: said, or told by surface's name or stated reflectivity.
-    template <class Column>
-    std::vector<double> objects_of(const Experiment& experiment, const Column& column) const {
-        if (experiment.has("object")) return column("object", 1);
+    std::vector<double> objects_of(const Experiment& experiment, const std::vector<double>& said) const {
+        if (experiment.has("object")) return said;
         std::map<std::string, double> surfaces;
         for (const Run& run : experiment.runs)
             surfaces.emplace(run.condition("surface"), static_cast<double>(surfaces.size() + 1));
@@ -344,27 +280,11 @@ class ProximityModel final : public ModelOf<Numbers> {
 
     /// `table`: the measured curve, which has no law.
     void declare_all(const std::vector<double>& objects, bool table) {
-        simulated({"proximity.curve",
-                   "proximity.amplitude",
-                   "proximity.origin",
-                   "proximity.exponent",
-                   "proximity.saturation",
-                   "proximity.reach",
-                   "proximity.compression",
-                   "proximity.extra_exponent",
-                   "proximity.distance_shift",
-                   "proximity.scale",
-                   "proximity.incidence_exponent",
-                   "proximity.pair_crosstalk",
-                   "proximity.neighbour_crosstalk",
-                   "proximity.warmup_gain",
-                   "proximity.warmup_time",
-                   "proximity.motor_sag",
-                   "proximity.age",
-                   "proximity.ambient_offset",
-                   "proximity.ambient_gain",
-                   "proximity.ambient_noise",
-                   "proximity.battery_gain"});
+        simulated("proximity.", {"curve", "amplitude", "origin", "exponent", "saturation", "reach"});
+        simulated("proximity.", {"compression", "extra_exponent", "distance_shift", "scale"});
+        simulated("proximity.", {"incidence_exponent", "pair_crosstalk", "neighbour_crosstalk"});
+        simulated("proximity.", {"warmup_gain", "warmup_time", "motor_sag", "age"});
+        simulated("proximity.", {"ambient_offset", "ambient_gain", "ambient_noise", "battery_gain"});
         declare({{&Numbers::order_drift, "proximity.order_drift", "1"},
                  {&Numbers::order_zero, "proximity.order_zero", "1"}});
         // Inside a run the order goes with what was varied there, mostly the distance: with a zero of its own
@@ -374,12 +294,11 @@ class ProximityModel final : public ModelOf<Numbers> {
             of_table{"compression", "extra_exponent", "distance_shift"};
         for (const char* name : table ? of_law : of_table)
             hide(fmt::format("proximity.{}", name));
-        simulated({"proximity.motor_noise", "proximity.proportional_noise", "proximity.threshold",
-                   "proximity.interference_rate", "proximity.interference_size", "proximity.flicker",
-                   "proximity.flicker_frequency"});
+        simulated("proximity.", {"motor_noise", "proportional_noise", "threshold", "interference_rate",
+                                 "interference_size", "flicker", "flicker_frequency"});
         for (const int sensor : in_order_met(sensor_))
-            simulated({fmt::format("proximity.gain{}", sensor), fmt::format("proximity.offset{}", sensor),
-                       fmt::format("proximity.direction{}", sensor)});
+            simulated("proximity.", {fmt::format("gain{}", sensor), fmt::format("offset{}", sensor),
+                                     fmt::format("direction{}", sensor)});
         const auto kinds = distinct(objects);
         if (kinds.size() < 2) return;
         for (const double object : kinds)
@@ -420,7 +339,7 @@ class ProximityModel final : public ModelOf<Numbers> {
     }
 
     static constexpr std::size_t kOpposite = 4;  // places on the ring to the sensor lit by the same pulse
-    double line_frequency_found_ = 0.0, jump_size_ = 0.0;
+    double line_frequency_found_ = 0.0;
     double half_order_ = 0.0;  // half the range of the runs' `order`: the unit of the drift's zero
     std::array<KeyedCache<std::vector<double>>, physics::kProximitySensors> seen_;  // of a sensor's rows
     std::array<std::vector<std::size_t>, physics::kProximitySensors> rows_of_;
@@ -428,7 +347,7 @@ class ProximityModel final : public ModelOf<Numbers> {
     std::vector<double> distance_, angle_, reflectivity_, ambient_, pair_, neighbour_, motor_, stepping_,
         velocity_, time_, others_, battery_, order_;
     std::vector<int> sensor_, object_, object_parameter_;
-    std::array<bool, physics::kProximitySensors> sheltered_{};
+    ForeignPulses pulses_;
     std::array<double, physics::kProximitySensors> angle0_{};
 };
 

@@ -162,10 +162,10 @@ class RabModel final : public ModelOf<Numbers> {
     void gather_reception(const Rows& rows) {
         std::vector<std::uint32_t> used;
         Observable one = rows.observable("received", NoiseKind::Event, used);
-        senders_ = taken(rows.column("senders", 1), used);
-        frame_ = taken(rows.column("frame_time", 0.0092), used);
-        period_ = taken(rows.column("send_period", 0.02), used);
-        rate_ = taken(rows.column("arrival_rate", 0), used);
+        rows.take(used, {{senders_, "senders", 1},
+                         {frame_, "frame_time", 0.0092},
+                         {period_, "send_period", 0.02},
+                         {rate_, "arrival_rate"}});
         if (std::all_of(rate_.begin(), rate_.end(), [](double rate) { return rate == 0; }))
             for (std::size_t i = 0; i < rate_.size(); ++i)
                 rate_[i] = senders_[i] / std::max(period_[i], 1e-3);

@@ -93,6 +93,11 @@ Observable Rows::observable(std::string_view name, NoiseKind noise, std::vector<
     return out;
 }
 
+void Rows::take(const std::vector<std::uint32_t>& used, std::initializer_list<Wanted> columns) const {
+    for (const Wanted& one : columns)
+        one.into = taken(column(one.name, one.fallback), used);
+}
+
 std::vector<double> taken(const std::vector<double>& column, const std::vector<std::uint32_t>& used) {
     std::vector<double> values;
     values.reserve(used.size());

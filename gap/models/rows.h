@@ -26,6 +26,14 @@ class Rows {
     /// keep to. Rows where `skipped` is above a half are left out, too.
     Observable observable(std::string_view name, NoiseKind noise, std::vector<std::uint32_t>& used,
                           const std::vector<double>& skipped = {}) const;
+    /// A column, where it goes to, and what it is where it is missing.
+    struct Wanted {
+        std::vector<double>& into;
+        std::string_view name;
+        double fallback = 0.0;
+    };
+    /// These columns at the places `used`.
+    void take(const std::vector<std::uint32_t>& used, std::initializer_list<Wanted> columns) const;
 
   private:
     /// The longest step over which something is carried over, a run each: runs have rates of their own. 0: no

@@ -47,22 +47,19 @@ class TimingModel final : public ModelOf<Numbers> {
         std::vector<std::uint32_t> used;
         const Observable host = rows.observable("t_host_s", NoiseKind::Level, used);
         gather_counts(experiment, host);
-        const auto column = [&](std::string_view name, double fallback) {
-            return taken(rows.column(name, fallback), used);
-        };
-        const auto bytes = column("bytes", 0), baud = column("baud", kBaud);
+        std::vector<double> bytes, baud;
+        rows.take(
+            used,
+            {{bytes, "bytes"}, {baud, "baud", kBaud}, {reads_, "i2c_reads"}, {robot_, "t_robot_s", NAN}});
         for (std::size_t i = 0; i < bytes.size(); ++i)
             wire_.push_back(bytes[i] * kBits / baud[i]);
-        reads_ = column("i2c_reads", 0);
         if (clocks_) {
-            const auto robot = column("t_robot_s", NAN);
-            robot_ = robot;
             observables_.push_back(host);
             Observable& period = observables_.back();
             period.name = "robot_clock";
-            period.y = robot;
+            period.y = robot_;
             set_up(period);
-            period.instrument.quantum = std::max(rounding_of(robot), kTick);
+            period.instrument.quantum = std::max(rounding_of(robot_), kTick);
             if (keeps_to_periods(period)) take_periods(period);
         } else {
             robot_ = periods_;
