@@ -11,14 +11,7 @@ namespace {
 
 /// CPU seconds of a thousand rows; measured on made experiments and those of docs/gap.md.
 double seconds_per_thousand(Kind kind) {
-    switch (kind) {
-    case Kind::Motion:
-        return 5.0;
-    case Kind::Rab:
-        return 2.0;
-    default:
-        return 1.0;
-    }
+    return kind == Kind::Motion ? 5.0 : kind == Kind::Rab ? 2.0 : 1.0;
 }
 
 constexpr double kGrowth = 0.8;    // large experiments are begun on a part of their rows

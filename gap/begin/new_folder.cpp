@@ -8,42 +8,22 @@
 
 #include <algorithm>
 #include <fstream>
+#include <map>
 #include <string_view>
 
 namespace puckloop::gap {
 
 namespace {
 
-const char* role_text(const ColumnInfo& column) {
-    switch (column.role) {
-    case Role::Observable:
-        return "measured";
-    case Role::Truth:
-        return "truth";
-    case Role::Stimulus:
-        return "set up";
-    default:
-        return "noted";
-    }
-}
+constexpr const char* kRoles[] = {"measured", "truth", "set up", "noted"};  // in the order of Role
 
-/// What an instrument of the kind can report, as an example; "" where there is no usual one.
-const char* usual_instrument(Kind kind) {
-    switch (kind) {
-    case Kind::Proximity:
-        return "reading = { floor = 0, ceiling = 4095, quantum = 1 }";
-    case Kind::Ground:
-        return "reading = { floor = 0, ceiling = 1023, quantum = 1 }";
-    case Kind::Microphone:
-        return "level = { floor = 0, quantum = 1 }";
-    case Kind::Motion:
-        return "x_m = { quantum = 0.0001 }   # step between two values that the tracker reports, m";
-    case Kind::Accelerometer:
-        return "ax = { floor = 0, ceiling = 4095, quantum = 1 }";
-    default:
-        return "";
-    }
-}
+/// What an instrument of the kind can report, as an example, where there is a usual one.
+const std::map<Kind, const char*> kUsualInstrument{
+    {Kind::Proximity, "reading = { floor = 0, ceiling = 4095, quantum = 1 }"},
+    {Kind::Ground, "reading = { floor = 0, ceiling = 1023, quantum = 1 }"},
+    {Kind::Microphone, "level = { floor = 0, quantum = 1 }"},
+    {Kind::Motion, "x_m = { quantum = 0.0001 }   # step between two values that the tracker reports, m"},
+    {Kind::Accelerometer, "ax = { floor = 0, ceiling = 4095, quantum = 1 }"}};
 
 bool in_header(const ColumnInfo& column) {
     return column.required || column.role != Role::Covariate || std::string_view(column.name) == "t_s";
@@ -56,7 +36,8 @@ std::string column_lines(Kind kind) {
     std::string text;
     for (const ColumnInfo& column : columns_of(kind))
         text += fmt::format("# {:<{}}  {:<8} {:<9} {}{}\n", column.name, width, column.unit,
-                            role_text(column), column.required ? "REQUIRED: " : "", column.meaning);
+                            kRoles[static_cast<std::size_t>(column.role)],
+                            column.required ? "REQUIRED: " : "", column.meaning);
     return text;
 }
 
@@ -102,8 +83,8 @@ std::string new_experiment_toml(Kind kind, std::size_t runs) {
         "# {} = {{ from = \"name in the file\", unit = \"{}\" }}\n\n",
         column_lines(kind), first.name, first.unit);
     text += "# [instrument]: the range and step of what is read out, where known.\n[instrument]\n";
-    if (const std::string_view usual = usual_instrument(kind); !usual.empty())
-        text += fmt::format("# {}\n", usual);
+    if (const auto usual = kUsualInstrument.find(kind); usual != kUsualInstrument.end())
+        text += fmt::format("# {}\n", usual->second);
     text +=
         "\n# [nominal]: where this robot is known to differ from the simulator (docs/gap.md).\n[nominal]\n\n";
     text += "# Conditions that hold for all runs, in words.\n[conditions]\n# light = \"dark\"\n\n";

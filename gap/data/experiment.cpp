@@ -263,8 +263,7 @@ void read_assumed(Reader& top, Experiment& experiment) {
             top.fail("assumed", fmt::format("{} is no truth of kind {}", name, kind_name(experiment.kind)),
                      "a truth column of docs/gap.md");
         experiment.cautions.push_back(fmt::format(
-            "{} was not measured but assumed: whatever is found may be an error of it, so nothing "
-            "is named",
+            "{} was not measured but assumed: whatever is found may be an error of it, so nothing is named",
             name));
     }
 }

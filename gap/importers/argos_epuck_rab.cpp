@@ -29,8 +29,7 @@ std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
     e.robot = "e-puck with range-and-bearing board";
     e.description =
         "Published log-normal fits of the received strength at each distance. A row is the median of one "
-        "fit: one "
-        "measurement a distance, in one run; the deviations (sigma_ln) are kept but not compared.";
+        "fit: one measurement a distance, in one run; the deviations (sigma_ln) are kept but not compared.";
     e.source = "github.com/demiurge-project/argos3-epuck";
     e.licence = "MIT";
     e.instruments.push_back({"strength", NAN, 4095, 0.0});

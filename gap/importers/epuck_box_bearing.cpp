@@ -51,12 +51,10 @@ std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
     e.kind = "proximity";
     e.title = "e-puck 1 beside a box, turned on the spot";
     e.robot = "e-puck 1";
-    e.description = "36 steps of 10 degrees, each value the mean of 20 reads. The distance to the box is not "
-                    "given: taken is a "
-                    "flat face that touches the body, so amplitude, origin "
-                    "and distance cannot be "
-                    "told apart. One sweep; each sensor is written as a run, held-out runs are other sensors "
-                    "of the same sweep.";
+    e.description =
+        "36 steps of 10 degrees, each value the mean of 20 reads. The distance to the box is not given: "
+        "taken is a flat face that touches the body, so amplitude, origin and distance cannot be told apart. "
+        "One sweep; each sensor is written as a run, held-out runs are other sensors of the same sweep.";
     e.source = "github.com/clamesc/ePuck-Box-Pushing";
     e.licence = "GPL-3";
     e.assumed = {"distance_m"};

@@ -87,11 +87,11 @@ WrittenExperiment read_part(const std::filesystem::path& folder, const char* par
     e.kind = "motion";
     e.title = title;
     e.robot = "differential-drive robot, 84 mm wheels, 0.2 m axle";
-    e.description = "Wheel counts are the encoders' (what the wheels did), so commands and latency are not "
-                    "part of this set. "
-                    "Positions are motion capture. Every fourth of 20 rows a second is kept. Session = one "
-                    "folder of the set. Geared motors change the speed by 1 m/s2 at most: no tyre slides, so "
-                    "the e-puck's sliding at each jump of its stepper motors is off.";
+    e.description =
+        "Wheel counts are the encoders' (what the wheels did), so commands and latency are not part of this "
+        "set. Positions are motion capture. Every fourth of 20 rows a second is kept. Session = one folder "
+        "of the set. Geared motors change the speed by 1 m/s2 at most: no tyre slides, so the e-puck's "
+        "sliding at each jump of its stepper motors is off.";
     e.source = "github.com/sousarbarb/optiodom";
     e.licence = "MIT";
     Geometry first;

@@ -70,9 +70,9 @@ std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
     e.kind = "rab";
     e.title = "bearings to infra-red beacons from 9 positions";
     e.robot = "rotating infra-red detector";
-    e.description = "200 bearings to each of four beacons at each position; not an e-puck's board but a "
-                    "rotating detector. Each "
-                    "position is a run; the 200 repeats of a bearing share its error and count as one.";
+    e.description =
+        "200 bearings to each of four beacons at each position; not an e-puck's board but a rotating "
+        "detector. Each position is a run; the 200 repeats of a bearing share its error and count as one.";
     e.source = "github.com/sunglok/TriangulationToolbox; Roh 2010";
     e.licence = "BSD-2";
     e.instruments.push_back({"bearing_rad", NAN, NAN, kQuantum});

@@ -144,19 +144,18 @@ WrittenRun accelerometer_run(const std::filesystem::path& file) {
 
 std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
     std::vector<WrittenExperiment> all;
-    WrittenExperiment proximity =
-        described("thymio_proximity", "proximity", "Thymio II proximity sensors in light and darkness",
-                  "Three sensors, distances 11 to 0 cm in falling order, 100 readings each: distance and "
-                  "order of measuring cannot "
-                  "be told apart, and the readings of one placement share its error.");
+    WrittenExperiment proximity = described(
+        "thymio_proximity", "proximity", "Thymio II proximity sensors in light and darkness",
+        "Three sensors, distances 11 to 0 cm in falling order, 100 readings each: distance and order of "
+        "measuring cannot be told apart, and the readings of one placement share its error.");
     for (const auto& file : files_named(folder, "proximity_sensor", ".csv"))
         proximity.runs.push_back(proximity_run(file));
     proximity.instruments.push_back({"reading", 0, NAN, 1});
-    WrittenExperiment ground = described(
-        "thymio_ground", "ground", "Thymio II ground sensors over desk, floor, foil and nothing",
-        "No grey of any surface is given. The left sensor's mean over a surface stands for it, so what is "
-        "found compares "
-        "the right sensor with the left one and directions with each other, not floors with truth.");
+    WrittenExperiment ground =
+        described("thymio_ground", "ground", "Thymio II ground sensors over desk, floor, foil and nothing",
+                  "No grey of any surface is given. The left sensor's mean over a surface stands for it, so "
+                  "what is found compares the right sensor with the left one and directions with each other, "
+                  "not floors with truth.");
     for (const auto& file : files_named(folder, "ground_sensor_readings", ".csv"))
         read_ground(file, ground.runs);
     add_reference(ground.runs);
@@ -165,8 +164,7 @@ std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
     WrittenExperiment acceleration =
         described("thymio_accelerometer", "accelerometer", "Thymio II accelerometer while driving",
                   "Counts of 1/23 g. What the robot did is known only from the files' names, so there is no "
-                  "true acceleration: rest "
-                  "on level ground is assumed.");
+                  "true acceleration: rest on level ground is assumed.");
     for (const auto& file : files_named(folder, "acc_", ".csv"))
         acceleration.runs.push_back(accelerometer_run(file));
     acceleration.nominal = {{"accelerometer.zero", 0}, {"accelerometer.gain", kCountsPerG}};

@@ -79,13 +79,10 @@ std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
     e.title = "Thymio II under motion capture, odometry against truth";
     e.robot = "Thymio II";
     e.description =
-        "Wheel counts (0.01 mm) are reckoned back from the authors' odometry poses with an axle "
-        "of 95 mm: what is "
-        "found corrects their odometry. Rows are taken 1/3 s apart. The floor picture is not in "
-        "the set, so the "
-        "ground sensors have no truth and are left out. Geared motors change the speed by 0.1 m/s2 "
-        "at most: no "
-        "tyre slides, so the e-puck's sliding is off.";
+        "Wheel counts (0.01 mm) are reckoned back from the authors' odometry poses with an axle of 95 mm: "
+        "what is found corrects their odometry. Rows are taken 1/3 s apart. The floor picture is not in the "
+        "set, so the ground sensors have no truth and are left out. Geared motors change the speed by 0.1 "
+        "m/s2 at most: no tyre slides, so the e-puck's sliding is off.";
     e.source = "github.com/epfl-mobots/thymio-ground-localisation";
     e.licence = "LGPL-3";
     e.nominal = {{"robot.wheel_radius_left", kWheelRadius},

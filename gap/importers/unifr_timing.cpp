@@ -94,9 +94,8 @@ std::vector<WrittenExperiment> read(const std::filesystem::path& folder) {
         e.title = title;
         e.robot = "e-puck2";
         e.description = "Running sum of the measured stages of each loop; pauses between loops are not "
-                        "recorded. The nominal period "
-                        "is the run's own mean (longest 1 % left out): a wrong rate cannot be found here, "
-                        "jitter and tails can.";
+                        "recorded. The nominal period is the run's own mean (longest 1 % left out): a wrong "
+                        "rate cannot be found here, jitter and tails can.";
         e.source = "github.com/davidfrisch/UNIFR_API_EPUCK";
         e.licence = "GPL-3";
         for (const auto& file :

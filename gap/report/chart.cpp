@@ -16,6 +16,7 @@ constexpr double kLeft = 58, kRight = 20, kTop = 40, kBottom = 42;  // pixels ro
 constexpr std::size_t kMostPoints = 1500;
 constexpr const char* kGrid = "#dddddd";
 constexpr const char* kInk = "#333333";
+constexpr const char* kThick = "stroke-width=\"2\"";
 
 using physics::escaped;
 
@@ -24,10 +25,14 @@ std::string text_at(double x, double y, const std::string& text, const char* anc
                        more, escaped(text));
 }
 
-std::string segment(double x1, double y1, double x2, double y2, const std::string& colour, double width) {
-    return fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\" "
-                       "stroke-width=\"{}\"/>\n",
-                       x1, y1, x2, y2, colour, width);
+std::string segment(double x1, double y1, double x2, double y2, const std::string& colour,
+                    const char* style) {
+    return fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\" {}/>\n",
+                       x1, y1, x2, y2, colour, style);
+}
+std::string dot(double x, double y, const std::string& colour, const char* radius, const char* more = "") {
+    return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\"{}/>\n", x, y, radius, colour,
+                       more);
 }
 
 }  // namespace
@@ -120,13 +125,10 @@ std::string Chart::legend(double left, double top) const {
     for (const Layer& layer : layers_) {
         if (layer.name.empty()) continue;
         if (layer.kind == Layer::Kind::Points)
-            out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3\" fill=\"{}\"/>\n", x + 6, top - 4,
-                               layer.colour);
+            out += dot(x + 6, top - 4, layer.colour, "3");
         else
-            out += fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\" "
-                               "stroke-width=\"2\"{}/>\n",
-                               x, top - 4, x + 12, top - 4, layer.colour,
-                               layer.dashed ? " stroke-dasharray=\"4 3\"" : "");
+            out += segment(x, top - 4, x + 12, top - 4, layer.colour,
+                           layer.dashed ? "stroke-width=\"2\" stroke-dasharray=\"4 3\"" : kThick);
         out += text_at(x + 16, top, layer.name, "start");
         x += 26 + 5.6 * static_cast<double>(layer.name.size());
     }
@@ -156,42 +158,37 @@ std::string Chart::svg(double width, double height) const {
     const auto py = [&](double y) {
         return bottom - (std::clamp(y, ys.low, ys.high) - ys.low) / (ys.high - ys.low) * (bottom - kTop);
     };
-    std::string out = fmt::format(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" width=\"{0:.0f}\" "
-        "height=\"{1:.0f}\" "
-        "font-family=\"DejaVu Sans, Helvetica, Arial, sans-serif\" font-size=\"10\" fill=\"{2}\">\n"
-        "<rect width=\"{0:.0f}\" height=\"{1:.0f}\" fill=\"#ffffff\"/>\n",
-        width, height, kInk);
+    std::string out = fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" "
+                                  "width=\"{0:.0f}\" height=\"{1:.0f}\" font-family=\"DejaVu Sans, "
+                                  "Helvetica, Arial, sans-serif\" font-size=\"10\" fill=\"{2}\">\n"
+                                  "<rect width=\"{0:.0f}\" height=\"{1:.0f}\" fill=\"#ffffff\"/>\n",
+                                  width, height, kInk);
     const auto first_tick = [](const Scale& s) {
         return Scale{std::ceil(s.low / s.step - 1e-9) * s.step, std::floor(s.high / s.step + 1e-9) * s.step,
                      s.step};
     };
     for (const double tick : first_tick(ys).ticks()) {
-        out += segment(kLeft, py(tick), right, py(tick), kGrid, 1);
+        out += segment(kLeft, py(tick), right, py(tick), kGrid, "stroke-width=\"1\"");
         out += text_at(kLeft - 5, py(tick) + 3.5, ys.label(tick), "end");
     }
     if (categories_.empty())
         for (const double tick : first_tick(xs).ticks()) {
-            out += segment(px(tick), kTop, px(tick), bottom, kGrid, 1);
+            out += segment(px(tick), kTop, px(tick), bottom, kGrid, "stroke-width=\"1\"");
             out += text_at(px(tick), bottom + 14, xs.label(tick), "middle");
         }
     for (std::size_t i = 0; i < categories_.size(); ++i)
         out += text_at(px(static_cast<double>(i)), bottom + 14, categories_[i], "middle");
     for (const Layer& layer : layers_) {
         if (layer.kind == Layer::Kind::Level)
-            out += fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" stroke=\"{}\" "
-                               "stroke-dasharray=\"4 3\"/>\n",
-                               kLeft, py(layer.y[0]), right, py(layer.y[0]), layer.colour);
+            out += segment(kLeft, py(layer.y[0]), right, py(layer.y[0]), layer.colour,
+                           "stroke-dasharray=\"4 3\"");
         if (layer.kind == Layer::Kind::Points)
             for (std::size_t i = 0; i < layer.x.size(); ++i)
-                out += fmt::format(
-                    "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"1.6\" fill=\"{}\" fill-opacity=\"0.55\"/>\n",
-                    px(layer.x[i]), py(layer.y[i]), layer.colour);
+                out += dot(px(layer.x[i]), py(layer.y[i]), layer.colour, "1.6", " fill-opacity=\"0.55\"");
         if (layer.kind == Layer::Kind::Interval) {
-            out +=
-                segment(px(layer.x[0]), py(layer.y[0]), px(layer.x[0]), py(layer.high[0]), layer.colour, 2);
-            out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.5\" fill=\"{}\"/>\n",
-                               px(layer.x[0]), py(layer.y[1]), layer.colour);
+            const double x = px(layer.x[0]);
+            out += segment(x, py(layer.y[0]), x, py(layer.high[0]), layer.colour, kThick);
+            out += dot(x, py(layer.y[1]), layer.colour, "3.5");
         }
         std::string path;
         if (layer.kind == Layer::Kind::Line || layer.kind == Layer::Kind::Band)

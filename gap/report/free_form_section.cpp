@@ -14,12 +14,10 @@ std::string free_form_section(const Verdict& verdict) {
         for (const Cause& cause : verdict.nearest)
             table.row({cause.name, std::to_string(cause.number), cell(cause.evidence), cell(cause.score_gain),
                        cause.sentence});
-        out +=
-            "<h2>What came nearest</h2>\n<p>These effects gain something, but not as a cause would, or less "
-            "than a "
-            "correction without any mechanism: they are not told as causes, and the figures below are those "
-            "of the simulator without them.</p>\n" +
-            table.html();
+        out += "<h2>What came nearest</h2>\n<p>These effects gain something, but not as a cause would, or "
+               "less than a correction without any mechanism: they are not told as causes, and the figures "
+               "below are those of the simulator without them.</p>\n" +
+               table.html();
     }
     Table table({"observable", "#held-out score (nats)", "over", "#share", "shape"});
     for (const FreeForm& form : verdict.free_forms) {
@@ -32,12 +30,13 @@ std::string free_form_section(const Verdict& verdict) {
         }
     }
     if (!table.empty())
-        out += fmt::format("<h2>Unexplained: the shape of what remains</h2>\n<p>A correction without a "
-                           "mechanism, made after the named effects: it predicts runs that it did not see "
-                           "better than they do, by {:.0f} % of all that is gained. It names nothing and is "
-                           "not part of the overlay.</p>\n",
-                           100 * verdict.unexplained_share) +
-               table.html();
+        out +=
+            fmt::format(
+                "<h2>Unexplained: the shape of what remains</h2>\n<p>A correction without a mechanism, made "
+                "after the named effects: it predicts runs that it did not see better than they do, by "
+                "{:.0f} % of all that is gained. It names nothing and is not part of the overlay.</p>\n",
+                100 * verdict.unexplained_share) +
+            table.html();
     return out;
 }
 

@@ -25,9 +25,9 @@ void use_it(const Verdict& verdict, std::vector<std::string>& steps) {
         acts_in_a_run(verdict)
             ? "Simulate with it: puckloop run SCENARIO --model overlay.toml."
             : "Correct the measurement, not the simulator: [measurement] of overlay.toml has the numbers.");
-    steps.emplace_back("Confirm it before you rely on the name: record a few fresh runs, write the numbers "
-                       "into [nominal] of "
-                       "their experiment.toml and analyse them; the verdict has to be \"no effect\".");
+    steps.emplace_back(
+        "Confirm it before you rely on the name: record a few fresh runs, write the numbers into [nominal] "
+        "of their experiment.toml and analyse them; the verdict has to be \"no effect\".");
 }
 
 void tell_apart(const Verdict& verdict, std::vector<std::string>& steps) {
@@ -43,9 +43,9 @@ void tell_apart(const Verdict& verdict, std::vector<std::string>& steps) {
 void look_at_what_is_left(const Verdict& verdict, std::vector<std::string>& steps) {
     if (!verdict.leftovers.empty()) {
         const Leftover& left = verdict.leftovers.front();
-        steps.push_back(fmt::format("Look at {} against {}: {}. Vary {} alone, everything else held, in both "
-                                    "directions.",
-                                    left.observable, left.covariate, left.shape, left.covariate));
+        steps.push_back(
+            fmt::format("Look at {} against {}: {}. Vary {} alone, everything else held, in both directions.",
+                        left.observable, left.covariate, left.shape, left.covariate));
     } else if (!verdict.free_forms.empty() && verdict.free_forms.front().clear) {
         const FreeForm& form = verdict.free_forms.front();
         steps.push_back(fmt::format("Look at {}: {}.", form.observable, form.shape));
@@ -58,10 +58,9 @@ void look_at_what_is_left(const Verdict& verdict, std::vector<std::string>& step
 std::string next_section(const Verdict& verdict) {
     std::vector<std::string> steps;
     if (!verdict.cautions.empty())
-        steps.push_back(
-            fmt::format("Read the caution{} about the data below ({}): what the data cannot say, no "
-                        "verdict can.",
-                        verdict.cautions.size() == 1 ? "" : "s", verdict.cautions.size()));
+        steps.push_back(fmt::format(
+            "Read the caution{} about the data below ({}): what the data cannot say, no verdict can.",
+            verdict.cautions.size() == 1 ? "" : "s", verdict.cautions.size()));
     switch (verdict.decision) {
     case Decision::Named:
         use_it(verdict, steps);

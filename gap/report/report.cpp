@@ -28,8 +28,7 @@ std::string meaning_of(const Experiment& experiment, const std::string& observab
                "heading.</p>\n";
     if (observable == "across")
         return "<p class=\"about\">Way to the left since the run began, summed row by row across the robot's "
-               "own "
-               "heading.</p>\n";
+               "own heading.</p>\n";
     if (observable == "heading") return "<p class=\"about\">Turn since the run began, to the left.</p>\n";
     if (observable == "x_m" || observable == "y_m")
         return "<p class=\"about\">Place in the room, from where the run began.</p>\n";

@@ -18,19 +18,10 @@ std::string paragraph(const std::string& text) {
     return text.empty() ? std::string() : fmt::format("<p>{}</p>\n", escaped(text));
 }
 
-const char* word_of(Decision decision) {
-    switch (decision) {
-    case Decision::Named:
-        return "The cause is named";
-    case Decision::CannotTell:
-        return "Cannot tell: two explanations are as good";
-    case Decision::NoEffect:
-        return "No effect found: nothing to gain";
-    case Decision::Unexplained:
-        return "Structure remains that nothing in the catalogue explains";
-    }
-    return "";
-}
+/// In the order of Decision.
+constexpr const char* kWords[] = {"The cause is named", "Cannot tell: two explanations are as good",
+                                  "No effect found: nothing to gain",
+                                  "Structure remains that nothing in the catalogue explains"};
 
 std::string called(const Cause& cause) {
     return cause.number > 0
@@ -53,7 +44,8 @@ std::string header_section(const Experiment& experiment, const Verdict& verdict)
 
 std::string verdict_section(const Verdict& verdict) {
     std::string out = fmt::format("<div class=\"verdict {}\">\n<div class=\"word\">{}</div>\n",
-                                  decision_name(verdict.decision), escaped(word_of(verdict.decision)));
+                                  decision_name(verdict.decision),
+                                  escaped(kWords[static_cast<std::size_t>(verdict.decision)]));
     out += paragraph(verdict.summary);
     std::set<std::string> said{verdict.summary};
     for (const Cause& cause : verdict.causes)
@@ -104,11 +96,10 @@ std::string rerun_section(const Verdict& verdict) {
     for (const RerunObservable& o : rerun.observables)
         table.row({o.name, o.unit, cell(o.before), cell(o.after), cell(o.after / o.before)});
     out += table.html();
-    out += paragraph(fmt::format(
-        "The whole robot emulated, firmware in the loop: {} of {} runs or placements a side, {} rows "
-        "of the measurement compared; first as the simulator is, then with "
-        "overlay.toml. Measurement noise is in both errors.",
-        rerun.runs, rerun.of_runs, rerun.rows));
+    out += paragraph(fmt::format("The whole robot emulated, firmware in the loop: {} of {} runs or "
+                                 "placements a side, {} rows of the measurement compared; first as the "
+                                 "simulator is, then with overlay.toml. Measurement noise is in both errors.",
+                                 rerun.runs, rerun.of_runs, rerun.rows));
     if (const auto caution = rerun.caution(); !caution.empty()) out += paragraph("Mind: " + caution + ".");
     if (!rerun.left_out.empty())
         out += paragraph(
@@ -161,14 +152,11 @@ std::string evidence_section(const Verdict& verdict) {
 
 std::string reading_section() {
     return "<h2>How to read this</h2>\n<p class=\"about\">Before: the simulator as it is, with the nominal "
-           "numbers of the "
-           "experiment. After: with the named causes and the parameters of the table. Held out: each run was "
-           "predicted from "
-           "parameters fitted to other runs. ΔBIC: evidence for the effect after paying for its parameters; "
-           "above 6 is clear, "
-           "below 0 speaks against it. Structure tests exchange whole blocks of rows or whole runs, so that "
-           "readings that carry "
-           "over do not count twice, and are corrected for their number (Holm).</p>\n";
+           "numbers of the experiment. After: with the named causes and the parameters of the table. Held "
+           "out: each run was predicted from parameters fitted to other runs. ΔBIC: evidence for the effect "
+           "after paying for its parameters; above 6 is clear, below 0 speaks against it. Structure tests "
+           "exchange whole blocks of rows or whole runs, so that readings that carry over do not count "
+           "twice, and are corrected for their number (Holm).</p>\n";
 }
 
 }  // namespace puckloop::gap::report

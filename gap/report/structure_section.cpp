@@ -78,10 +78,9 @@ std::string tests_of(const std::vector<Finding>& before, const std::vector<Findi
                    later != nullptr ? p_cell(later->p_adjusted) : "–", left ? later->shape : f.shape},
                   left ? "strong" : "");
     }
-    const std::string rest =
-        fmt::format("<p class=\"about\">{} of {} tests shown; the others find nothing (corrected p above "
-                    "{}) or less. Bold: still there after.</p>\n",
-                    clear, before.size(), kClear);
+    const std::string rest = fmt::format("<p class=\"about\">{} of {} tests shown; the others find nothing "
+                                         "(corrected p above {}) or less. Bold: still there after.</p>\n",
+                                         clear, before.size(), kClear);
     return (table.empty() ? std::string() : table.html()) + rest;
 }
 
@@ -108,8 +107,8 @@ std::string structure_section(const Experiment& experiment, const Verdict& verdi
         tests += fmt::format("<h3>{}</h3>\n{}", physics::escaped(verdict.series[i].observable),
                              tests_of(*before[i], *after[i]));
     return "<h2>Noise floor</h2>\n<p>Standard deviations: of repeats of one stimulus inside a run, of their "
-           "means from run to "
-           "run, and from differences of successive rows; no model can do better than the first two.</p>\n" +
+           "means from run to run, and from differences of successive rows; no model can do better than the "
+           "first two.</p>\n" +
            floor.html() + "<h2>Structure of what is left</h2>\n" + tests;
 }
 

@@ -206,9 +206,8 @@ void align_clocks(Experiment& experiment) {
     }
     experiment.cautions.push_back(fmt::format(
         "the clocks of tracker and counters run apart: the tracker's rows are {:.0f} to {:.0f} ms late, and "
-        "the "
-        "lateness changes by {:.2f} to {:.2f} % of the time inside a run ({:.0f} of {} runs beyond doubt). "
-        "Counters were read at corrected times before anything was fitted",
+        "the lateness changes by {:.2f} to {:.2f} % of the time inside a run ({:.0f} of {} runs beyond "
+        "doubt). Counters were read at corrected times before anything was fitted",
         1e3 * earliest, 1e3 * latest, 100 * slowest, 100 * fastest, clear, paths.size()));
 }
 

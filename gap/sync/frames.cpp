@@ -316,13 +316,12 @@ bool align_frames(Experiment& experiment, const std::vector<FrameBeat>& beats) {
         for (double& time : run.counted_at)
             time -= std::copysign(period, beat.period) * sawtooth(beat.beat * time + beat.phase);
     }
-    experiment.cautions.push_back(fmt::format(
-        "the tracker tells poses at frames of its own, about {:.2g} ms apart (or the counters are polled "
-        "so): a row "
-        "is later than the one before until it falls back by a frame ({} of {} runs beyond doubt). Counters "
-        "were read "
-        "at the frames' times before anything was fitted; half a frame of a tracker's delay is theirs",
-        1e3 * period, clear, beats.size()));
+    experiment.cautions.push_back(
+        fmt::format("the tracker tells poses at frames of its own, about {:.2g} ms apart (or the counters "
+                    "are polled so): a row is later than the one before until it falls back by a frame ({} "
+                    "of {} runs beyond doubt). Counters were read at the frames' times before anything was "
+                    "fitted; half a frame of a tracker's delay is theirs",
+                    1e3 * period, clear, beats.size()));
     return true;
 }
 

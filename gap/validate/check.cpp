@@ -42,8 +42,7 @@ void check_range(Experiment& experiment, Run& run, const ColumnInfo& info) {
     if (outside == 0) return;
     if (static_cast<double>(outside) < kFewOutside * static_cast<double>(present)) {
         experiment.cautions.push_back(
-            fmt::format("{}: {} = {:.6g}{} in row {} is impossible ({} of {} rows): taken as "
-                        "missing",
+            fmt::format("{}: {} = {:.6g}{} in row {} is impossible ({} of {} rows): taken as missing",
                         run.file, info.name, values[first], unit_text(info), first + 1, outside, present));
         for (double& value : values)
             if (value < info.low || value > info.high) value = std::nan("");
@@ -159,10 +158,9 @@ void check_clock(Experiment& experiment, const Run& run, const char* name) {
     const double usual = steps[steps.size() / 2];
     const double longest = steps.back();
     if (usual > 0 && longest > 50 * usual && longest > 1.0)
-        experiment.cautions.push_back(fmt::format(
-            "{}: the clock {} jumps by {:.3g} s (a step is {:.3g} s): rows before and after are not "
-            "taken as neighbours",
-            run.file, name, longest, usual));
+        experiment.cautions.push_back(fmt::format("{}: the clock {} jumps by {:.3g} s (a step is {:.3g} s): "
+                                                  "rows before and after are not taken as neighbours",
+                                                  run.file, name, longest, usual));
 }
 
 /// Constant over the whole experiment, where something must change to learn anything.
@@ -204,9 +202,8 @@ void check_runs(Experiment& experiment) {
             "there are only {} rows: that nothing is found in so few does not mean that there is nothing",
             experiment.rows()));
     if (experiment.runs.size() == 1)
-        experiment.cautions.push_back(
-            "there is one run only: nothing can be held out whole, intervals come from blocks of the run and "
-            "say nothing about another day");
+        experiment.cautions.push_back("there is one run only: nothing can be held out whole, intervals come "
+                                      "from blocks of the run and say nothing about another day");
     else if (experiment.runs.size() < 4)
         experiment.cautions.push_back(fmt::format(
             "there are only {} runs: intervals over runs are wide and uncertain", experiment.runs.size()));
@@ -215,10 +212,9 @@ void check_runs(Experiment& experiment) {
         for (const double value : run.column("unit"))
             if (!std::isnan(value)) units.insert(value);
     if (units.size() > 1)
-        experiment.cautions.push_back(fmt::format(
-            "{} robots are mixed: what is found is common to them; a difference between robots shows as "
-            "structure against unit",
-            units.size()));
+        experiment.cautions.push_back(fmt::format("{} robots are mixed: what is found is common to them; a "
+                                                  "difference between robots shows as structure against unit",
+                                                  units.size()));
     std::set<std::string> files;
     for (const Run& run : experiment.runs)
         if (!files.insert(run.file).second)

@@ -44,8 +44,7 @@ void check_proximity(Experiment& experiment) {
     if (correlation > 0.5)
         refuse(experiment, experiment.runs.front(),
                fmt::format("reading grows with distance_m (rank correlation {:.2f}): columns swapped, or "
-                           "ambient counts instead of "
-                           "ambient minus lit",
+                           "ambient counts instead of ambient minus lit",
                            correlation),
                "readings that fall with distance");
     std::vector<double> angles;

@@ -68,12 +68,11 @@ void check_paths(const Experiment& experiment, const Run& run) {
     const auto least = kLeastShare * static_cast<double>(count[0] + count[1]);
     if (shares.size() < kFewest || static_cast<double>(std::min(count[0], count[1])) < least) return;
     if (stats::upper_median(shares) > kOwn) return;
-    refuse(
-        experiment, run,
-        fmt::format("the pose jumps to and fro between two paths, {} times and up to {:.2g} m: rows of two "
-                    "robots are mixed, or the tracker took another one for it",
-                    shares.size() + 1, far),
-        "one robot a file", static_cast<long>(first));
+    refuse(experiment, run,
+           fmt::format("the pose jumps to and fro between two paths, {} times and up to {:.2g} m: rows of "
+                       "two robots are mixed, or the tracker took another one for it",
+                       shares.size() + 1, far),
+           "one robot a file", static_cast<long>(first));
 }
 
 // ---- timing
@@ -87,10 +86,9 @@ void check_frames(Experiment& experiment, const Run& run) {
         if (seq[i] <= seq[i - 1] && back++ == 0) first = i;
     if (back > kFew && static_cast<double>(back) > kMostBack * static_cast<double>(seq.size()))
         refuse(experiment, run,
-               fmt::format(
-                   "seq does not count on ({:g} after {:g}; so in {} of {} rows): frames of two robots are "
-                   "mixed, or told twice",
-                   seq[first], seq[first - 1], back, seq.size()),
+               fmt::format("seq does not count on ({:g} after {:g}; so in {} of {} rows): frames of two "
+                           "robots are mixed, or told twice",
+                           seq[first], seq[first - 1], back, seq.size()),
                "one robot a file, each frame once", static_cast<long>(first));
     const auto &host = run.column("t_host_s"), &period = run.column("nominal_period");
     if (!seq.empty() || period.empty() || std::isnan(period.front())) return;
@@ -104,10 +102,9 @@ void check_frames(Experiment& experiment, const Run& run) {
     const double ratio =
         (end - begin) / static_cast<double>(std::max<std::size_t>(frames, 2) - 1) / period.front();
     if (frames >= kEnough && ratio > 0.4 && ratio < 0.6)
-        experiment.cautions.push_back(fmt::format(
-            "{}: frames come every {:.3g} s where nominal_period is {:.3g} s: another period, or frames "
-            "of two robots mixed?",
-            run.file, ratio * period.front(), period.front()));
+        experiment.cautions.push_back(fmt::format("{}: frames come every {:.3g} s where nominal_period is "
+                                                  "{:.3g} s: another period, or frames of two robots mixed?",
+                                                  run.file, ratio * period.front(), period.front()));
 }
 
 // ---- readings at placements
@@ -210,13 +207,11 @@ void check_levels(Experiment& experiment, const Run& run, const char* observable
     }
     if (split < kPlacements || static_cast<double>(split) < kLeastSplit * static_cast<double>(repeated))
         return;
-    experiment.cautions.push_back(fmt::format("{}: {} falls into two levels, to and fro, at {} of {} "
-                                              "placements ({:.4g} and {:.4g} where row {} is): "
-                                              "rows of two robots mixed, or something that nobody noted was "
-                                              "switched? Nothing that is found is to be "
-                                              "believed before a column (unit) tells them apart",
-                                              run.file, observable, split, repeated, seen.low, seen.high,
-                                              row + 1));
+    experiment.cautions.push_back(fmt::format(
+        "{}: {} falls into two levels, to and fro, at {} of {} placements ({:.4g} and {:.4g} where row {} "
+        "is): rows of two robots mixed, or something that nobody noted was switched? Nothing that is found "
+        "is to be believed before a column (unit) tells them apart",
+        run.file, observable, split, repeated, seen.low, seen.high, row + 1));
 }
 
 }  // namespace
@@ -224,24 +219,11 @@ void check_levels(Experiment& experiment, const Run& run, const char* observable
 void check_mixed(Experiment& experiment) {
     for (const Run& run : experiment.runs) {
         if (told_by_unit(run)) continue;
-        switch (experiment.kind) {
-        case Kind::Motion:
-            check_paths(experiment, run);
-            break;
-        case Kind::Timing:
-            check_frames(experiment, run);
-            break;
-        case Kind::Proximity:
-        case Kind::Ground:
+        if (experiment.kind == Kind::Motion) check_paths(experiment, run);
+        if (experiment.kind == Kind::Timing) check_frames(experiment, run);
+        if (experiment.kind == Kind::Proximity || experiment.kind == Kind::Ground)
             check_levels(experiment, run, "reading");
-            break;
-        case Kind::Microphone:
-            check_levels(experiment, run, "level");
-            break;
-        case Kind::Rab:
-        case Kind::Accelerometer:
-            break;
-        }
+        if (experiment.kind == Kind::Microphone) check_levels(experiment, run, "level");
     }
 }
 

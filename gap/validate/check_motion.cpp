@@ -19,11 +19,9 @@ constexpr double kFactor = 5.0;        // between what two columns say of one th
 constexpr double kSideways = 0.6;      // share of a straight step that must lie along the heading
 
 struct Path {
-    double length = 0.0, turned = 0.0;  // tracked
-    double left = 0.0, right = 0.0;     // steps of either wheel, absolute
-    double largest_jump = 0.0, duration = 0.0;
-    double largest_turn = 0.0;
-    double forward = 0.0;  // signed displacement along the heading
+    double length = 0.0;             // tracked
+    double left = 0.0, right = 0.0;  // steps of either wheel, absolute
+    double duration = 0.0, largest_turn = 0.0;
 };
 
 Path measure(const Run& run) {
@@ -35,13 +33,9 @@ Path measure(const Run& run) {
     for (std::size_t i = 0; i < run.rows; ++i) {
         if (std::isnan(x[i]) || std::isnan(y[i]) || std::isnan(theta[i])) continue;
         if (last < run.rows) {
-            const double step = std::hypot(x[i] - x[last], y[i] - y[last]);
             const double turn = std::remainder(theta[i] - theta[last], 2 * std::numbers::pi);
-            path.length += step;
-            path.turned += turn;
-            path.largest_jump = std::max(path.largest_jump, step / std::max(time[i] - time[last], 1e-3));
+            path.length += std::hypot(x[i] - x[last], y[i] - y[last]);
             path.largest_turn = std::max(path.largest_turn, std::abs(turn));
-            path.forward += (x[i] - x[last]) * std::cos(theta[i]) + (y[i] - y[last]) * std::sin(theta[i]);
             if (!left.empty() && !right.empty() &&
                 !std::isnan(left[i] + right[i] + left[last] + right[last])) {
                 path.left += std::abs(left[i] - left[last]);
@@ -102,10 +96,9 @@ void check_commands(const Experiment& experiment, const Run& run) {
     constexpr double kEnough = 500;  // steps asked for, both wheels
     if (asked > kEnough && (counted > kFactor * asked || counted < asked / kFactor))
         refuse(experiment, run,
-               fmt::format(
-                   "the counters ran {:.4g} steps where the commands over t_s ask for {:.4g}: wrong unit of "
-                   "t_s or cmd_left, cmd_right",
-                   counted, asked),
+               fmt::format("the counters ran {:.4g} steps where the commands over t_s ask for {:.4g}: wrong "
+                           "unit of t_s or cmd_left, cmd_right",
+                           counted, asked),
                "steps/s and seconds");
     for (std::size_t w = 0; w < 2; ++w)
         if (told[w] > kEnough && ran[w] == 0)
@@ -162,9 +155,9 @@ void check_pose(const Experiment& experiment, const Run& run, double metre_per_s
                    "radians, or theta_rad = \"deg\" in [columns]");
         if (middle < kLeastTurned)
             refuse(experiment, run,
-                   fmt::format("theta_rad turns {:.3g} times as far as the wheels do: wrong unit, or not the "
-                               "heading",
-                               middle),
+                   fmt::format(
+                       "theta_rad turns {:.3g} times as far as the wheels do: wrong unit, or not the heading",
+                       middle),
                    "radians; \"turn\" and \"deg\" are known in [columns]");
     }
     constexpr double kEnough = 0.1;  // m
@@ -174,10 +167,9 @@ void check_pose(const Experiment& experiment, const Run& run, double metre_per_s
                "the heading's direction");
     if (all > kEnough && along < kSideways * all)
         refuse(experiment, run,
-               fmt::format(
-                   "only {:.0f} % of the way lies along theta_rad: x_m and y_m are swapped, or theta_rad is "
-                   "not the heading",
-                   100 * std::max(along, 0.0) / all),
+               fmt::format("only {:.0f} % of the way lies along theta_rad: x_m and y_m are swapped, or "
+                           "theta_rad is not the heading",
+                           100 * std::max(along, 0.0) / all),
                "x, y and a counter-clockwise heading from the x axis");
 }
 
@@ -242,8 +234,7 @@ void check_motion(Experiment& experiment) {
         if (tracked > 5 * driven || turned == 0 || tracked > 0.01 * driven)
             refuse(experiment, first,
                    fmt::format("the tracker saw {:.3g} m while the wheels turned {:.3g} m: wrong unit of "
-                               "x_m, y_m or a wrong "
-                               "robot.wheel_radius / steps_per_turn in [nominal]",
+                               "x_m, y_m or a wrong robot.wheel_radius / steps_per_turn in [nominal]",
                                tracked, driven),
                    "the same within a factor of five");
     }

@@ -70,8 +70,7 @@ std::string placement_shape(const Experiment& experiment, const Series& series) 
     const double by_chance = within * std::sqrt(stats::correlation_length(inside) / each);
     if (!(between > within && between > kClearly * by_chance)) return {};
     return fmt::format("differs from placement to placement by {} (standard deviation of {} placements), "
-                       "while repeats at one "
-                       "placement scatter by {}",
+                       "while repeats at one placement scatter by {}",
                        with_unit(between, series.unit), placements.size(), with_unit(within, series.unit));
 }
 
@@ -79,8 +78,7 @@ std::string placement_caution(const Experiment& experiment, const Series& series
     const std::string shape = placement_shape(experiment, series);
     if (shape.empty()) return {};
     return fmt::format("what is left of {} {}: no effect explains these offsets; more repeats would not "
-                       "help, more placements "
-                       "would",
+                       "help, more placements would",
                        series.observable, shape);
 }
 
@@ -90,8 +88,7 @@ std::string circular_caution(const Series& series) {
     for (std::size_t i = 0; i < series.measured.size(); ++i)
         if (std::fabs(series.measured[i] - series.before[i]) > kSameNumber * spread) return {};
     return fmt::format("the simulator says every {} to the last digit: its own numbers were taken from this "
-                       "data, so the agreement "
-                       "proves nothing",
+                       "data, so the agreement proves nothing",
                        series.observable);
 }
 

@@ -93,12 +93,11 @@ void declare_gap_record(Command& gap, int& status) {
         ->type_name("DIR")
         ->check(not_empty())
         ->required();
-    command->add_option(
-        "--set", request->changes,
-        "PARAMETER=NUMBER: a physical parameter (puckloop run --list-parameters), board.crystal_ppm, "
-        "host.period, host.rab_poll, uart.factor, uart.loss, uart.delay, uart.cut, uart.cut_again, "
-        "uart.edge_loss, linux.tty_batch, linux.i2c_hold, linux.oversleep, linux.oversleep_jitter, "
-        "tracker.exposure");
+    command->add_option("--set", request->changes,
+                        "PARAMETER=NUMBER: a physical parameter (puckloop run --list-parameters), "
+                        "board.crystal_ppm, host.period, host.rab_poll, uart.factor, uart.loss, uart.delay, "
+                        "uart.cut, uart.cut_again, uart.edge_loss, linux.tty_batch, linux.i2c_hold, "
+                        "linux.oversleep, linux.oversleep_jitter, tracker.exposure");
     command->add_option("--firmware", request->firmware, "image for the main board (the project's own)")
         ->type_name("IMAGE");
     command

@@ -149,10 +149,9 @@ void declare_gap_selftest(Command& gap, int& status) {
     command->add_option("--cases", request->cases, "how many (default: all, over 300; of --grammar 56)")
         ->check(count_up_to(kMostCases))
         ->type_name("N");
-    command->add_flag(
-        "--grammar", request->grammar,
-        "cases drawn at random from a grammar of effects: unknown ones, near misses, known ones, nothing; "
-        "with a fresh seed, which is reported, unless --seed is given");
+    command->add_flag("--grammar", request->grammar,
+                      "cases drawn at random from a grammar of effects: unknown ones, near misses, known "
+                      "ones, nothing; with a fresh seed, which is reported, unless --seed is given");
     command->add_flag("--full", request->full, "of --grammar: 1120 cases, 280 of each class (hours)");
     command->add_option("--class", request->of, "of --grammar: only these of its cases")
         ->type_name("unknown|near-miss|known|null");
@@ -186,10 +185,9 @@ void declare_gap_selftest(Command& gap, int& status) {
     command->add_flag("--keep", request->keep, "leave the cases' folders");
     command->add_flag("--emulator", request->emulator,
                       "robots changed in secret and recorded on the emulator, in place of made experiments");
-    command->add_flag(
-        "--closed-loop", request->closed_loop,
-        "of --emulator: typed values and a recording no finer than the fitted model, in place of values "
-        "drawn from their published ranges with a fresh seed");
+    command->add_flag("--closed-loop", request->closed_loop,
+                      "of --emulator: typed values and a recording no finer than the fitted model, in place "
+                      "of values drawn from their published ranges with a fresh seed");
     command->add_flag("--quick", request->quick, "a small sample");
     command->add_flag("--json", request->json, "the result for programs");
     command->callback([command, request, &status] {

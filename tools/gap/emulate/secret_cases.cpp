@@ -158,12 +158,11 @@ std::string secrets_text(const std::vector<SecretResult>& results) {
         ++again;
         back += back_to_floor(r.again) ? 1 : 0;
     }
-    return fmt::format(
-        "secret changes found: {} of {}; changes beyond the catalogue called unexplained: {} of {}; "
-        "robots left alone called so: {} of {}; performed again with the overlay of a right name, every "
-        "error "
-        "within {:.0f} % of the true robot's: {} of {}\n\n{}",
-        found, changed, seen, beyond, quiet, plain, 100 * (kAboveFloor - 1), back, again, text);
+    return fmt::format("secret changes found: {} of {}; changes beyond the catalogue called unexplained: {} "
+                       "of {}; robots left alone called so: {} of {}; performed again with the overlay of a "
+                       "right name, every error within {:.0f} % of the true robot's: {} of {}\n\n{}",
+                       found, changed, seen, beyond, quiet, plain, 100 * (kAboveFloor - 1), back, again,
+                       text);
 }
 
 }  // namespace puckloop::gap::emulate
