@@ -16,6 +16,9 @@ constexpr int kPermutations = 299;
 bool is_rounding(const stats::Finding& finding, const Series& series, double quantum) {
     if (!(quantum > 0)) return false;
     const double sd = stats::median(series.scale);
+    // What rounds up in one row is taken back in the next: of a sum's steps a share of their variance.
+    if (finding.test == "previous" && finding.effect < 0)
+        return -finding.effect * sd * sd < quantum * quantum / 12;
     const bool sized = finding.test == "shape" || finding.test == "group" || finding.test == "reversal" ||
                        finding.test == "trend" || finding.test == "step";
     return sized ? std::abs(finding.effect) * sd < quantum : sd < quantum / 2;

@@ -201,7 +201,9 @@ bool beyond_exchanged(double gain, const Errors& errors, const std::vector<stats
     return gain > kClearForm;
 }
 
-FreeForm told(const Errors& errors, const std::vector<stats::Component>& components, std::uint64_t seed) {
+/// `law`: the errors follow one, so that they may be exchanged.
+FreeForm told(const Errors& errors, const std::vector<stats::Component>& components, std::uint64_t seed,
+              bool law = true) {
     const stats::Boosted fit = stats::boosted(errors.rows, components, seed);
     FreeForm form;
     form.observable = errors.observable;
@@ -230,7 +232,7 @@ FreeForm told(const Errors& errors, const std::vector<stats::Component>& compone
     const bool rounding = form.size * stats::median(errors.scale) < errors.quantum / std::sqrt(12.0);
     form.clear = !rounding && form.gain > kClearForm && !form.terms.empty() &&
                  (form.gain > kFormErrors * form.sd || gain.in_several() ||
-                  beyond_exchanged(form.gain, errors, components, seed));
+                  (law && beyond_exchanged(form.gain, errors, components, seed)));
     if (form.clear) form.shape = form.terms.front().shape;
     return form;
 }
@@ -292,7 +294,7 @@ FreeForm wild_form(Errors errors, const std::vector<stats::Component>& component
     errors.unit = "of the readings";
     errors.rows.carry = 0.0;
     errors.rows.trimmed = false;
-    form = told(errors, components, seed);
+    form = told(errors, components, seed, false);
     form.wild = true;
     form.spells = spells;
     const bool one_sided = std::pow(0.5, low + high - 1) < thresholds::kSure && std::min(low, high) == 0;
