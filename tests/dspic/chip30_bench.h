@@ -5,6 +5,8 @@
 #include "emu/dspic/assembler/assembler.h"
 #include "emu/dspic/chip/chip.h"
 
+#include "tests/dspic/master_codec.h"
+
 #include <array>
 #include <map>
 #include <stdexcept>
@@ -38,6 +40,9 @@ struct Pins30 : Pins {
     bool pwm_edges = true;
     double volts = 0.5;  ///< at analog inputs, of the supply
     double vdd = 3.3;    ///< Chip::supply_changed() tells of a new one
+    MasterCodec codec;
+
+    explicit Pins30(const DciMaster& codec_clocks = {}) : codec{codec_clocks} {}
 
     void driven(PortLetter port, std::uint16_t levels, std::uint16_t driven, Cycle now) override {
         const auto p = static_cast<std::size_t>(port);
@@ -57,6 +62,8 @@ struct Pins30 : Pins {
         words.push_back({unit, sent, bits, now});
         return spi_answer;
     }
+    std::uint16_t dci_exchange(const DciWord& word, Cycle now) override { return codec.exchange(word, now); }
+    DciMaster dci_master() const override { return codec.clocks; }
     double supply() const override { return vdd; }
     bool wants_pwm_edges(int) const override { return pwm_edges; }
 };
@@ -67,8 +74,9 @@ struct Bench30 {
     std::map<std::string, std::uint32_t> symbols;
 
     explicit Bench30(const std::string& source, std::map<std::uint32_t, std::uint32_t> config = {},
-                     std::optional<std::uint16_t> fosc = 0xFFE6, Errata errata = {})
-        : chip(dspic30f6014a(), pins, ChipOptions{.fosc = fosc, .errata = errata}) {
+                     std::optional<std::uint16_t> fosc = 0xFFE6, Errata errata = {},
+                     const DciMaster& codec = {})
+        : pins(codec), chip(dspic30f6014a(), pins, ChipOptions{.fosc = fosc, .errata = errata}) {
         AssembleOptions options;
         for (const RegisterInfo& info : dspic30f6014a().registers)
             options.predefined[std::string(info.name)] = info.address;

@@ -38,7 +38,7 @@ struct CodecPins : FakePins {
 struct DciBench : Bench {
     CodecPins codec;
     Ports ports{around, layout_dspic30f6014a().ports, codec};
-    Dci dci{around, layout_dspic30f6014a().dci, ports, codec};
+    Dci dci{around, layout_dspic30f6014a().dci, clock, ports, codec};
 
     std::uint16_t stat() { return read(sfr::DCISTAT); }
     void setup(unsigned words, unsigned bits, unsigned buffers, std::uint16_t slots, unsigned bcg) {
@@ -218,7 +218,7 @@ TEST_CASE("the 33FJ's tells of words lost by an interrupt of its own, once", "[d
     Bench b(dspic33fj256gp710());
     CodecPins codec;
     Ports ports{b.around, layout_dspic33fj256gp710().ports, codec};
-    Dci dci{b.around, layout_dspic33fj256gp710().dci, ports, codec};
+    Dci dci{b.around, layout_dspic33fj256gp710().dci, b.clock, ports, codec};
     b.write(sfr33::TSCON, 1);
     b.write(sfr33::RSCON, 1);
     b.write(sfr33::DCICON2, 15);

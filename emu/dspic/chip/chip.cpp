@@ -167,7 +167,7 @@ struct Chip::Parts {
                 uart.attach(*input_capture);
         if (layout.dma.con)
             dma.emplace(around, layout.dma, core.ram().subspan((layout.dma.ram - device.ram_start) / 2u));
-        if (layout.dci.con1) dci.emplace(around, layout.dci, ports, pins);
+        if (layout.dci.con1) dci.emplace(around, layout.dci, clock, ports, pins);
         if (layout.low_voltage_irq) low_voltage.emplace(around, layout.low_voltage_irq, pins);
         for (const Can::Setup& setup : layout.cans)
             cans.emplace_back(around, setup, clock, ports, pins);
@@ -253,10 +253,12 @@ struct Chip::Parts {
                 static_cast<Adc12*>(owner)->catch_up(until);
             };
         }
-        oscillator->on_rate_owner = &core;
+        oscillator->on_rate_owner = this;
         oscillator->on_rate = [](void* owner, double hertz) {
-            static_cast<Core*>(owner)->set_cycle_rate(hertz);
-            static_cast<Core*>(owner)->end_run();
+            Parts& parts = *static_cast<Parts*>(owner);
+            parts.core.set_cycle_rate(hertz);
+            parts.core.end_run();
+            if (parts.dci) parts.dci->rate_changed();
         };
         core.set_cycle_rate(clock.hertz());
         core.set_reset_hook([this](ResetCause cause) { reset(cause); });
@@ -359,7 +361,7 @@ struct Chip::Parts {
             adcs[i].hold(stops(layout.adcs[i].con1) && !(sleeps && adcs[i].runs_in_sleep()));
         for (std::size_t i = 0; i < spis.size(); ++i)
             spis[i].hold(stops(layout.spis[i].stat));
-        if (dci) dci->hold(stops(layout.dci.con1));
+        if (dci) dci->hold(stops(layout.dci.con1) && !(sleeps && dci->runs_in_sleep()));
         for (std::size_t i = 0; i < cans.size(); ++i)
             cans[i].hold(stops(Can::control(layout.cans[i])));
         for (std::size_t i = 0; i < ecans.size(); ++i)

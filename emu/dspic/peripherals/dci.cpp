@@ -2,6 +2,8 @@
 
 #include "emu/dspic/devices/register_bits.h"
 
+#include <cmath>
+
 namespace puckloop::dspic {
 
 namespace {
@@ -19,14 +21,21 @@ enum Offset : int {
 constexpr RegisterBits kDCICON1{"DCICON1"}, kDCICON2{"DCICON2"}, kDCISTAT{"DCISTAT"};
 enum FrameMode : unsigned { kMultichannel = 0, kI2s = 1, kAcLink16 = 2, kAcLink20 = 3 };
 
-constexpr unsigned kWholeWord = 16;    // bits
-constexpr unsigned kAcLinkSlots = 13;  // one of 16 bits, twelve of 20
-constexpr unsigned kAcLinkSlotBits = 20;
+constexpr std::uint8_t kWholeWord = 16;    // bits
+constexpr std::uint8_t kAcLinkSlots = 13;  // one of 16 bits, twelve of 20
+constexpr std::uint8_t kAcLinkSlotBits = 20;
 
 }  // namespace
 
-Dci::Dci(const Surroundings& around, const Setup& setup, Ports& ports, Pins& pins)
-    : around_(around), setup_(setup), ports_(ports), pins_(pins), slot_(around.events.add(this, due)) {
+Dci::Dci(const Surroundings& around, const Setup& setup, const cosim::ClockDomain& clock, Ports& ports,
+         Pins& pins)
+    : around_(around),
+      setup_(setup),
+      clock_(clock),
+      ports_(ports),
+      pins_(pins),
+      master_(pins.dci_master()),
+      slot_(around.events.add(this, due)) {
     const auto at = [&](int offset) { return static_cast<std::uint16_t>(setup_.con1 + offset); };
     around_.sfr.hook(at(kCon1), this, nullptr, write_con1);
     around_.sfr.claim(at(kCon2));
@@ -54,16 +63,27 @@ void Dci::hold(bool on) {
     if (on) {
         state_.held_at = around_.now;
         around_.events.cancel(slot_);
+    } else if (state_.frame.external) {
+        enter(around_.now);
     } else {
-        state_.begun += around_.now - state_.held_at;
-        around_.events.schedule(slot_, end_of(state_.slot));
+        state_.base += around_.now - state_.held_at;
+        around_.events.schedule(slot_, event());
     }
 }
 
-/// This chip makes both clocks.
+bool Dci::runs_in_sleep() const {
+    return reg(kCon1) & kDCICON1["CSCKD"];
+}
+
+void Dci::rate_changed() {
+    if (state_.running && !state_.held && state_.frame.external) around_.events.schedule(slot_, event());
+}
+
+/// Somebody makes each of the two clocks.
 bool Dci::clocked() const {
     const unsigned con1 = reg(kCon1);
-    return !(con1 & (kDCICON1["CSCKD"] | kDCICON1["COFSD"])) && reg(kCon3) != 0;
+    const bool bits = con1 & kDCICON1["CSCKD"] ? master_.bit > 0 : reg(kCon3) != 0;
+    return bits && (!(con1 & kDCICON1["COFSD"]) || master_.frame_bits > 0);
 }
 
 unsigned Dci::in_use() const {
@@ -82,40 +102,93 @@ void Dci::lend_pins() {
     ports_.lend(setup_.port, all, output, 0);
 }
 
+/// DJST = 0: data begin one bit behind the frame sync, in every frame.
+unsigned Dci::delay() const {
+    return reg(kCon1) & kDCICON1["DJST"] ? 0 : 1;
+}
+
 void Dci::start(Cycle from) {
     if (!clocked() || state_.running) return;
     state_.running = true;
     state_.next = 0;
     swap(from, false);
-    // DJST = 0: data begins one bit behind the frame sync, in every frame.
-    const Cycle delay = reg(kCon1) & kDCICON1["DJST"] ? 0 : 2 * (reg(kCon3) + Cycle{1});
-    begin_frame(from + delay);
+    enter(from);
     if (!state_.held) return;
     state_.held_at = from;
     around_.events.cancel(slot_);
 }
 
-void Dci::begin_frame(Cycle from) {
+/// Goes by the clocks that the registers choose, from the first bit on that begins at `from` or later.
+void Dci::enter(Cycle from) {
+    state_.frame.external = (reg(kCon1) & kDCICON1["CSCKD"]) != 0;
+    state_.frame.synced = (reg(kCon1) & kDCICON1["COFSD"]) != 0;
+    state_.base = from;
+    state_.base_bit = 0;
+    state_.frame.bit = 2 * (reg(kCon3) + 1u);
+    Bit sync = 0;
+    if (state_.frame.external) {
+        const cosim::Time passed = clock_.time_of(from) - master_.first;
+        if (passed > 0) sync = static_cast<Bit>((passed + master_.bit - 1) / master_.bit);
+    }
+    await_frame(sync + delay());
+}
+
+/// Slot 0 begins with bit `earliest`, or behind the codec's next frame sync.
+void Dci::await_frame(Bit earliest) {
+    state_.begun = earliest;
+    state_.waiting = state_.frame.synced || state_.frame.external;
+    if (!state_.waiting) return begin_frame();
+    if (state_.frame.synced) {
+        const Bit syncs = (earliest - delay() + master_.frame_bits - 1) / master_.frame_bits;
+        state_.begun = syncs * master_.frame_bits + delay();
+    }
+    around_.events.schedule(slot_, event());
+}
+
+void Dci::begin_frame() {
     const unsigned con2 = reg(kCon2);
     const unsigned mode = kDCICON1["COFSM"].of(reg(kCon1));
     Frame& frame = state_.frame;
-    frame.bit = 2 * (reg(kCon3) + 1u);
+    state_.waiting = false;
+    if (frame.external) {
+        constexpr double kPerSecond = 1e-12;
+        frame.bit = static_cast<std::uint32_t>(
+            std::llround(static_cast<double>(master_.bit) * kPerSecond * clock_.hertz()));
+    } else {
+        state_.base = cycle_of(state_.begun);
+        state_.base_bit = state_.begun;
+        frame.bit = 2 * (reg(kCon3) + 1u);
+    }
     frame.slots = static_cast<std::uint8_t>(kDCICON2["COFSG"].of(con2) + 1);
     frame.bits = static_cast<std::uint8_t>(kDCICON2["WS"].of(con2) + 1);
-    frame.first = frame.word = frame.bit * frame.bits;
+    frame.first = frame.word = frame.bits;
     if (mode == kAcLink16 || mode == kAcLink20) {
-        frame.bits = kWholeWord;
-        frame.first = frame.word = frame.bit * kWholeWord;
+        frame.first = frame.word = frame.bits = kWholeWord;
         frame.slots = kSlots;
     }
     if (mode == kAcLink16) {
-        frame.word = frame.bit * kAcLinkSlotBits;
+        frame.word = kAcLinkSlotBits;
         frame.slots = kAcLinkSlots;
     }
     frame.transmit = reg(kTscon);
     frame.receive = reg(kRscon);
-    state_.begun = from;
     plan(0);
+}
+
+/// A frame is over at cycle `at`.
+void Dci::next_frame(Cycle at) {
+    const Frame& frame = state_.frame;
+    const unsigned con1 = reg(kCon1);
+    if (!clocked()) {
+        state_.running = false;
+        return;
+    }
+    const bool as_before = frame.external == ((con1 & kDCICON1["CSCKD"]) != 0) &&
+                           frame.synced == ((con1 & kDCICON1["COFSD"]) != 0);
+    if (!as_before) return enter(at);
+    state_.begun = after(frame.slots);
+    // The codec's sync for the next frame may come with this one's last bit.
+    frame.synced ? await_frame(state_.begun) : begin_frame();
 }
 
 /// The next event: the end of the first enabled slot from `from_slot` on, or the frame's.
@@ -126,25 +199,33 @@ void Dci::plan(unsigned from_slot) {
     while (slot < frame.slots && !(enabled >> slot & 1u))
         ++slot;
     state_.slot = static_cast<std::uint8_t>(slot);
-    around_.events.schedule(slot_, end_of(slot));
+    around_.events.schedule(slot_, event());
 }
 
-/// When a slot is over; of `slots` on: the frame.
-Cycle Dci::end_of(unsigned slot) const {
+Cycle Dci::cycle_of(Bit bit) const {
+    if (state_.frame.external)
+        return clock_.first_cycle_at(master_.first + static_cast<cosim::Time>(bit) * master_.bit);
+    return state_.base + (bit - state_.base_bit) * state_.frame.bit;
+}
+
+/// The first bit behind a slot; of `slots` on: behind the frame.
+Dci::Bit Dci::after(unsigned slot) const {
     const Frame& frame = state_.frame;
     const unsigned whole = slot < frame.slots ? slot : frame.slots - 1u;
-    return state_.begun + frame.first + Cycle{whole} * frame.word;
+    return state_.begun + frame.first + Bit{whole} * frame.word;
+}
+
+Cycle Dci::event() const {
+    return cycle_of(state_.waiting ? state_.begun : after(state_.slot));
 }
 
 void Dci::due(void* owner, Cycle due) {
     Dci& self = *static_cast<Dci*>(owner);
+    if (self.state_.waiting) return self.begin_frame();
     const unsigned slot = self.state_.slot;
     if (slot < self.state_.frame.slots) self.exchange(due);
     if (!self.state_.running) return;  // the board may have reset the chip
-    if (slot + 1u >= self.state_.frame.slots)
-        self.clocked() ? self.begin_frame(due) : self.plan(0);
-    else
-        self.plan(slot + 1u);
+    slot + 1u >= self.state_.frame.slots ? self.next_frame(due) : self.plan(slot + 1u);
 }
 
 void Dci::exchange(Cycle at) {
@@ -156,7 +237,7 @@ void Dci::exchange(Cycle at) {
     word.bits = frame.bits;
     word.driven = (frame.transmit & here) != 0;
     word.value = word.driven ? static_cast<std::uint16_t>(state_.out[state_.next] & mask) : 0;
-    word.frame = state_.begun;
+    word.frame = cycle_of(state_.begun);
     word.bit_cycles = frame.bit;
     std::uint16_t got = pins_.dci_exchange(word, at);
     if (reg(kCon1) & kDCICON1["DLOOP"]) got = word.value;
@@ -207,9 +288,9 @@ std::uint16_t Dci::read_stat(void* owner, std::uint16_t) {
     assign(stat, kDCISTAT["SLOT"], false);
     if (!state.running) return stat;
     const Cycle now = state.held ? state.held_at : self.around_.now;
-    const Cycle into = now > state.begun ? now - state.begun : 0;
-    Cycle slot = into < state.frame.first ? 0 : 1 + (into - state.frame.first) / state.frame.word;
-    if (slot >= state.frame.slots) slot = state.frame.slots - 1u;
+    unsigned slot = 0;
+    while (!state.waiting && slot + 1u < state.frame.slots && now >= self.cycle_of(self.after(slot)))
+        ++slot;
     stat |= static_cast<std::uint16_t>(slot << 8);
     return stat;
 }

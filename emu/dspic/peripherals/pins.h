@@ -25,6 +25,13 @@ struct DciWord {
     std::uint32_t bit_cycles = 2;  ///< bit clock, cycles
 };
 
+/// A codec that is the DCI's master, and makes bit clock, frame sync or both for it, evenly.
+struct DciMaster {
+    cosim::Time first = 0;         ///< rising edge of its bit clock with which its first frame sync comes
+    cosim::Time bit = 0;           ///< period of its bit clock; 0: it makes none, and counts the chip's
+    std::uint32_t frame_bits = 0;  ///< from frame sync to frame sync (I2S: edge to edge); 0: it makes none
+};
+
 /// Ports A..G as on the package; H and above do not exist on these parts.
 enum class PortLetter : std::uint8_t { A, B, C, D, E, F, G };
 
@@ -67,6 +74,9 @@ class Pins {
     /// The DCI's last bit of `word` is over, in a slot enabled for either direction: what came in meanwhile,
     /// left justified. Without a board the line rests low.
     virtual std::uint16_t dci_exchange(const DciWord& word, Cycle now);
+    /// What clocks the board's codec makes at CSCK and COFS. Fixed for the chip's life. Without a board:
+    /// none.
+    virtual DciMaster dci_master() const;
     /// Voltage at VDD, as brown-out reset and low-voltage detector see it; a change is told by
     /// Chip::supply_changed().
     virtual double supply() const;
@@ -102,6 +112,9 @@ inline std::uint16_t Pins::spi_exchange(int, std::uint16_t, int bits, Cycle) {
 }
 inline std::uint16_t Pins::dci_exchange(const DciWord&, Cycle) {
     return 0;
+}
+inline DciMaster Pins::dci_master() const {
+    return {};
 }
 inline double Pins::supply() const {
     return 3.3;

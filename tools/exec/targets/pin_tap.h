@@ -42,6 +42,7 @@ class PinTap : public dspic::Pins {
     std::uint16_t dci_exchange(const dspic::DciWord& word, dspic::Cycle now) override {
         return inner_.dci_exchange(word, now);
     }
+    dspic::DciMaster dci_master() const override { return inner_.dci_master(); }
     double supply() const override { return inner_.supply(); }
     dspic::OutsidePin outside(dspic::PortLetter port, int bit) const override {
         return inner_.outside(port, bit);
