@@ -29,6 +29,9 @@ enum Source : std::uint8_t {
 constexpr RegisterBits kOSCCON{"OSCCON"};
 constexpr RegisterBits kCLKDIV{"CLKDIV"};
 constexpr RegisterBits kPLLFBD{"PLLFBD"};
+constexpr RegisterBits kOSCTUN{"OSCTUN"};
+constexpr unsigned kTunSign = 0x20;   // two's complement of six bits
+constexpr double kTunStep = 0.00375;  // +11.625 % at 31, -12 % at -32
 constexpr std::uint16_t kHighWritable = kOSCCON["NOSC"];
 constexpr std::uint16_t kLowWritable = kOSCCON["CLKLOCK"] | kOSCCON["LPOSCEN"] | kOSCCON["OSWEN"];
 // FOSC
@@ -56,7 +59,7 @@ Oscillator33F::Oscillator33F(const Surroundings& around, cosim::ClockDomain& clo
     around_.sfr.hook(sfr33::OSCCON, this, nullptr, write_osccon);
     around_.sfr.hook(sfr33::CLKDIV, this, nullptr, write_divider);
     around_.sfr.hook(sfr33::PLLFBD, this, nullptr, write_divider);
-    around_.sfr.claim(sfr33::OSCTUN);
+    around_.sfr.hook(sfr33::OSCTUN, this, nullptr, write_divider);
 }
 
 double Oscillator33F::start_hertz() {
@@ -79,8 +82,15 @@ double Oscillator33F::pll(double input) const {
            ((kCLKDIV["PLLPRE"].of(clkdiv) + 2.0) * kPllPost[kCLKDIV["PLLPOST"].of(clkdiv)]);
 }
 
+double Oscillator33F::frc_hertz() const {
+    const unsigned tun = kOSCTUN["TUN"].of(around_.sfr.raw(sfr33::OSCTUN));
+    const int steps = static_cast<int>(tun ^ kTunSign) - static_cast<int>(kTunSign);
+    return kFrcHertz * (1.0 + kTunStep * steps);
+}
+
 double Oscillator33F::source_hertz(std::uint8_t source) const {
-    const double divided = kFrcHertz / kFrcDivider[kCLKDIV["FRCDIV"].of(around_.sfr.raw(sfr33::CLKDIV))];
+    const double frc = frc_hertz();
+    const double divided = frc / kFrcDivider[kCLKDIV["FRCDIV"].of(around_.sfr.raw(sfr33::CLKDIV))];
     switch (source) {
     case kFrcPll:
         return pll(divided);
@@ -93,11 +103,11 @@ double Oscillator33F::source_hertz(std::uint8_t source) const {
     case kLprc:
         return kLprcHertz;
     case kFrcBy16:
-        return kFrcHertz / 16.0;
+        return frc / 16.0;
     case kFrcDivided:
         return divided;
     default:
-        return kFrcHertz;
+        return frc;
     }
 }
 

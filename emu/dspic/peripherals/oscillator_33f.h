@@ -1,16 +1,17 @@
 #pragma once
 // The 33FJ's clock: configuration words FOSCSEL and FOSC, OSCCON with its unlock sequences, clock switching,
-// the PLL (CLKDIV, PLLFBD). Source: DS70286, oscillator chapter; fact sheets config_words.csv, semantics.md
-// section 17.
+// the PLL (CLKDIV, PLLFBD), the RC oscillator's tuning (OSCTUN). Source: DS70286, oscillator chapter; fact
+// sheets config_words.csv, semantics.md section 17.
 //
 // Deviations
 //  1. A switch takes 10 new cycles; towards the primary oscillator 1024 crystal periods more, towards the PLL
 //     1 ms more (the data sheet's AC table: 0.9 to 3.1 ms). The wait is counted in cycles of the old clock.
 //  2. A switch between the two PLL modes, which the sheet forbids, is ignored.
-//  3. Writing CLKDIV or PLLFBD while the PLL runs changes the rate at once; PLLPOST 2 (reserved) divides
-//  by 4.
-//  4. DOZE is stored: the CPU is not slowed down. OSCTUN and LPOSCEN are stored, too. The
-//     fail-safe monitor acts at once.
+//  3. Writing CLKDIV or PLLFBD while the PLL runs changes the rate at once, as OSCTUN does; PLLPOST 2
+//  (reserved) divides by 4.
+//  4. DOZE is stored: the CPU is not slowed down. LPOSCEN is stored, too. The fail-safe monitor acts at once.
+//  5. OSCTUN moves the RC oscillator by its nominal 0.375 % a step (expected values of errata DS80280G, item
+//  42), which silicon leaves between 16 and 31 and between -16 and -1; programming times stay nominal.
 
 #include "emu/dspic/peripherals/clock_control.h"
 
@@ -51,6 +52,7 @@ class Oscillator33F : public ClockControl {
     static void switch_due(void* owner, Cycle due);
     void begin_switch(std::uint8_t present, std::uint8_t wanted);
     void select(std::uint8_t source, Cycle at);
+    double frc_hertz() const;
     double source_hertz(std::uint8_t source) const;
     double pll(double input) const;
 
