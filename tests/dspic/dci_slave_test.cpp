@@ -1,6 +1,6 @@
 // The data converter interface as slave of its codec: bit clock (CSCKD) and frame sync (COFSD) from outside.
-// Sources: DS70286, DCICON1 (CSCKD, COFSD, DJST: fact sheet peripherals.md section 7); dsPIC30F Family
-// Reference Manual, sections 22.4 (slave frame sync) and 22.6 (Sleep).
+// Sources: DS70286, DCICON1 (CSCKD, COFSD, DJST: fact sheet peripherals.md section 7). That a sync in
+// mid-frame is not heard and that the module runs on in Sleep are assumptions (docs/fidelity.md).
 
 #include "emu/dspic/peripherals/dci.h"
 

@@ -13,7 +13,8 @@
 // Slave: CSCKD = 1 takes the bit clock of Pins::dci_master(), whatever BCG says, COFSD = 1 its frame syncs.
 // A frame's data begin with the sync or a bit behind it (DJST); a sync while a frame is under way is not
 // heard, and behind a frame shorter than the codec's nothing moves until the next. With the codec's bit clock
-// the module runs on in Sleep (family manual, 22.6).
+// the module runs on in Sleep. The last two rules are taken from other parts of the family: the manual's text
+// was not at hand.
 //
 // Deviations
 //  1. Clocks of a codec are even: it counts the bits of its own clock or of the chip's, from DCIEN on. Both
