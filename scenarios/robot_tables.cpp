@@ -42,8 +42,7 @@ std::string read_revision(Reader& reader) {
 }
 
 std::vector<std::string> read_errata(Reader& reader) {
-    std::vector<std::string> names =
-        reader.has("errata") ? reader.texts("errata") : std::vector<std::string>{};
+    std::vector<std::string> names = reader.texts("errata");
     for (const std::string& name : names)
         if (!dspic::erratum_of(name))
             reader.fail("errata", fmt::format("there is no erratum '{}'", name),

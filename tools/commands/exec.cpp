@@ -207,7 +207,7 @@ void describe(Command& app, Arguments& a) {
     app.add_option("--errata", a.errata,
                    "what revision B0 of the dsPIC30F6014A does otherwise than its manuals (docs/fidelity.md)")
         ->delimiter(',')
-        ->check(one_of({"daw.b", "pwm-zero-duty"}));
+        ->check(one_of({dspic::kErratumNames.begin(), dspic::kErratumNames.end()}));
     app.add_option("--crystal", a.crystal_hertz,
                    "in Hz (7372800; of the dsPIC33F 4000000, of the AVR 16000000)")
         ->check(number_between(kSlowestCrystal, kFastestCrystal));
