@@ -5,6 +5,7 @@
 #include "gap/fit/objective.h"
 #include "gap/fit/parallel.h"
 #include "gap/fit/thinned.h"
+#include "gap/stats/shuffle.h"
 
 #include <fmt/format.h>
 
@@ -249,8 +250,7 @@ void Study::make_folds(std::uint64_t seed) {
     std::vector<std::size_t> order(runs);
     std::iota(order.begin(), order.end(), std::size_t{0});
     RandomStream random(seed, "gap/folds");
-    for (std::size_t i = runs; i > 1; --i)
-        std::swap(order[i - 1], order[random.below(i)]);
+    stats::shuffle(std::span(order), random);
     // Repeats of one condition, and among them of one design, are dealt to different folds: what only they
     // show could not be learnt from the others.
     std::vector<std::string> design;

@@ -7,6 +7,7 @@
 #include "gap/residual_model/sum_form.h"
 #include "gap/stats/profile.h"
 #include "gap/stats/robust.h"
+#include "gap/stats/shuffle.h"
 
 #include <fmt/format.h>
 
@@ -172,21 +173,20 @@ stats::ErrorRows exchanged(stats::ErrorRows rows, RandomStream& random) {
     };
     std::vector<double> fresh;
     std::vector<std::size_t> at;
-    const auto shuffle = [&] {
-        for (std::size_t i = fresh.size(); i > 1; --i)
-            std::swap(fresh[i - 1], fresh[random.below(i)]);
+    const auto exchange = [&] {
+        stats::shuffle(std::span(fresh), random);
         for (std::size_t k = 0; k < at.size(); ++k)
             error[at[k]] = rows.carry * error[at[k] - 1] + fresh[k];
         fresh.clear();
         at.clear();
     };
     for (std::size_t i = 0; i < error.size(); ++i) {
-        if (i > 0 && rows.run[i] != rows.run[i - 1]) shuffle();
+        if (i > 0 && rows.run[i] != rows.run[i - 1]) exchange();
         if (!carries(i)) continue;
         at.push_back(i);
         fresh.push_back(error[i] - rows.carry * error[i - 1]);
     }
-    shuffle();
+    exchange();
     return rows;
 }
 

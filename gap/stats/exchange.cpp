@@ -1,6 +1,7 @@
 #include "gap/stats/exchange.h"
 
 #include "gap/stats/robust.h"
+#include "gap/stats/shuffle.h"
 #include "gap/stats/tails.h"
 
 #include <algorithm>
@@ -82,8 +83,7 @@ void shuffle_blocks(const Pairs& pairs, RandomStream& random, std::vector<double
         order.clear();
         for (std::size_t b = first; b < last; ++b)
             order.push_back(b);
-        for (std::size_t i = order.size(); i > 1; --i)
-            std::swap(order[i - 1], order[random.below(i)]);
+        shuffle(std::span(order), random);
         for (const std::size_t b : order)
             for (std::size_t i = pairs.blocks[b].first; i < pairs.blocks[b].last; ++i)
                 y[out++] = pairs.y[i];

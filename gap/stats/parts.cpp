@@ -1,6 +1,7 @@
 #include "gap/stats/parts.h"
 
 #include "base/random.h"
+#include "gap/stats/shuffle.h"
 
 #include <algorithm>
 #include <numeric>
@@ -46,8 +47,7 @@ Parts parts_of(const std::vector<int>& run, std::size_t folds, std::uint64_t see
         std::vector<std::size_t> order(runs.size());
         std::iota(order.begin(), order.end(), std::size_t{0});
         RandomStream random(seed, "gap/free form");
-        for (std::size_t i = order.size(); i > 1; --i)
-            std::swap(order[i - 1], order[random.below(i)]);
+        shuffle(std::span(order), random);
         if (!likeness.empty()) order = dealt(runs, order, likeness);
         parts.folds = std::min(folds, runs.size());
         parts.blocks = runs.size();

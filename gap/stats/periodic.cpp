@@ -1,6 +1,7 @@
 #include "gap/stats/exchange.h"
 #include "gap/stats/profile.h"
 #include "gap/stats/robust.h"
+#include "gap/stats/shuffle.h"
 #include "gap/stats/tests.h"
 
 #include <fmt/format.h>
@@ -173,8 +174,7 @@ Finding periodic_test(const Series& residual, const std::vector<double>& time, c
     }
     const auto draw = [&](RandomStream& random) {
         for (Segment& s : segments)
-            for (std::size_t i = s.value.size(); i > 1; --i)
-                std::swap(s.value[i - 1], s.value[random.below(i)]);
+            shuffle(std::span(s.value), random);
         return highest_line(spectrum.power(segments), ignored);
     };
     finding.p = null_p(finding.statistic, finding.units, draw, options, "periodic");

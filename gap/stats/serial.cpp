@@ -1,5 +1,6 @@
 #include "gap/stats/exchange.h"
 #include "gap/stats/robust.h"
+#include "gap/stats/shuffle.h"
 #include "gap/stats/tests.h"
 
 #include <fmt/format.h>
@@ -14,8 +15,7 @@ namespace {
 
 void shuffle_rows(std::vector<double>& y, const std::vector<Stretch>& runs, RandomStream& random) {
     for (const Stretch& s : runs)
-        for (std::size_t i = s.size(); i > 1; --i)
-            std::swap(y[s.first + i - 1], y[s.first + random.below(i)]);
+        shuffle(std::span(y).subspan(s.first, s.size()), random);
 }
 
 Series without_gaps(const Series& residual) {

@@ -1,6 +1,7 @@
 #include "gap/stats/exchange.h"
 #include "gap/stats/profile.h"
 #include "gap/stats/robust.h"
+#include "gap/stats/shuffle.h"
 #include "gap/stats/tails.h"
 #include "gap/stats/tests.h"
 
@@ -151,8 +152,7 @@ Finding evenness_test(const Series& residual, const TestOptions& options) {
         fmt::format("scatters unevenly: from {} to {} from stretch to stretch", plain(*low), plain(*high));
     std::vector<double> y = values;
     const auto draw = [&](RandomStream& random) {
-        for (std::size_t i = y.size(); i > 1; --i)
-            std::swap(y[i - 1], y[random.below(i)]);
+        shuffle(std::span(y), random);
         return statistic(y);
     };
     finding.p = null_p(finding.statistic, finding.units, draw, options, "evenness");
