@@ -2,7 +2,10 @@
 // The revisions of the e-puck's main board that firmware can tell apart. Source: e-puck library,
 // e_init_port.c and utility.c; e-puck fact sheet 3.13.
 
+#include "base/enum_names.h"
+
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <string_view>
 
@@ -19,9 +22,7 @@ constexpr std::string_view name_of(Revision revision) {
     return kRevisionNames[static_cast<std::size_t>(revision)];
 }
 constexpr std::optional<Revision> revision_of(std::string_view name) {
-    for (const Revision revision : {Revision::Rev12, Revision::Rev13})
-        if (name_of(revision) == name) return revision;
-    return std::nullopt;
+    return value_named<Revision>(kRevisionNames, name);
 }
 
 /// Counts at AN7 of revision 1.3: 2070 at 3.4 V, 2560 at 4.2 V (utility.c).

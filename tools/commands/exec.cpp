@@ -265,8 +265,7 @@ void declare_exec(Command& app, int& status) {
         if (!a.errata.empty() && defaults.mcu != "dspic30f6014a")
             throw InputError("", "--errata", fmt::format("none of the {} is known", defaults.mcu),
                              "a dsPIC30F6014A");
-        for (const std::string& name : a.errata)
-            bench.target.chip.errata.add(*dspic::erratum_of(name));
+        bench.target.chip.errata = dspic::errata_named(a.errata);
         bench.target.chip.crystal_hertz = a.crystal_hertz.value_or(defaults.crystal_hertz);
         const bool is_avr = defaults.mcu.starts_with("atmega");
         if (!is_avr && !a.fuses.empty())

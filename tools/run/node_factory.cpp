@@ -59,8 +59,7 @@ std::unique_ptr<cosim::StatefulNode> make_pic(const json& spec) {
         options.board.phototransistor_noise_counts = spec.at("phototransistor_noise");
     options.board.selector = spec.at("selector");
     if (spec.contains("board")) options.board.revision = *pic::revision_of(spec["board"].get<std::string>());
-    for (const std::string& name : spec.value("errata", std::vector<std::string>{}))
-        options.board.errata.add(*dspic::erratum_of(name));
+    options.board.errata = dspic::errata_named(spec.value("errata", std::vector<std::string>{}));
     options.ircom = spec.value("ircom", false);
     options.uart1_breaks = spec.value("bluetooth", false);
     options.board.can = spec.value("can", board::CanModules{0});

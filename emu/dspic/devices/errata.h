@@ -3,10 +3,14 @@
 // one; nothing of it is played unless asked for. Source: the headings of its errata sheet, fact
 // sheets semantics.md (DAW.B) and peripherals.md section 5 (output compare).
 
+#include "base/enum_names.h"
+
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <vector>
 
 namespace puckloop::dspic {
 
@@ -21,9 +25,7 @@ constexpr std::string_view name_of(Erratum erratum) {
     return kErratumNames[static_cast<std::size_t>(erratum)];
 }
 constexpr std::optional<Erratum> erratum_of(std::string_view name) {
-    for (const Erratum erratum : {Erratum::DawCarry, Erratum::PwmZeroDuty})
-        if (name_of(erratum) == name) return erratum;
-    return std::nullopt;
+    return value_named<Erratum>(kErratumNames, name);
 }
 
 /// A set of them.
@@ -31,10 +33,17 @@ class Errata {
   public:
     constexpr void add(Erratum erratum) { bits_ |= 1u << static_cast<unsigned>(erratum); }
     constexpr bool has(Erratum erratum) const { return bits_ >> static_cast<unsigned>(erratum) & 1; }
-    constexpr bool empty() const { return bits_ == 0; }
 
   private:
     unsigned bits_ = 0;
 };
+
+/// By names that were checked.
+inline Errata errata_named(const std::vector<std::string>& names) {
+    Errata errata;
+    for (const std::string& name : names)
+        errata.add(*erratum_of(name));
+    return errata;
+}
 
 }  // namespace puckloop::dspic
