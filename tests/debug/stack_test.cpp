@@ -5,6 +5,7 @@
 #include "emu/avr/assembler/assembler.h"
 #include "emu/avr/device.h"
 #include "tests/crashes/crash_image.h"
+#include "tests/debug/drawn_reads.h"
 #include "tests/exec/command.h"
 
 #include <catch2/catch.hpp>
@@ -169,6 +170,35 @@ TEST_CASE("an AVR's deepest stack and its distance to the variables are what the
         CHECK((text.find("warning: the stack has grown over") != std::string::npos) == (over > 0));
         CHECK((text.find("bytes of variables (buffer)") != std::string::npos) == (over > 0));
     }
+}
+
+TEST_CASE("reads of RAM that nothing had written are named, and no other, on every chip and board") {
+    const Workbench bench;
+    RandomStream random(Catch::rngSeed(), "unwritten reads");
+    for (int i = 0; i < 8; ++i) {
+        const tests::DrawnReads avr = tests::draw_avr_reads(random);
+        const std::string image = bench.file("avr.elf", avr.elf);
+        for (const char* where : {"--mcu atmega1284p ", "--board tam "})
+            avr.check(stats_of(bench, where + image + " --seconds 0.002"));
+        const auto of_dspic = [&](const dspic::DeviceInfo& device, const char* mcu, const char* board) {
+            const tests::DrawnReads drawn = tests::draw_dspic_reads(random, device);
+            const std::string elf = bench.file("dspic.elf", drawn.elf);
+            for (const char* where : {mcu, board})
+                drawn.check(stats_of(bench, where + elf + " --seconds 0.002"));
+        };
+        of_dspic(dspic::dspic30f6014a(), "--mcu dspic30f6014a ", "--board pic ");
+        of_dspic(dspic::dspic33fj256gp710(), "--mcu dspic33fj256gp710 ", "--board rab ");
+    }
+    // For a person, too: place, variable and address.
+    tests::DrawnReads drawn = tests::draw_avr_reads(random);
+    while (drawn.reads.empty() || drawn.reads.front().variable.empty())
+        drawn = tests::draw_avr_reads(random);
+    const tests::DrawnReads::Read& first = drawn.reads.front();
+    const std::string text =
+        bench.run("--mcu atmega1284p " + bench.file("avr.elf", drawn.elf) + " --seconds 0.002 --stats").out;
+    INFO(text);
+    CHECK(text.find(fmt::format("  0x{:04x} ({}) at 0x{:06x} main", first.address, first.variable,
+                                first.pc)) != std::string::npos);
 }
 
 TEST_CASE("the stack of the project's firmware is as deep as its instruction trace shows") {

@@ -195,6 +195,14 @@ void declare_run(Command& app, int& status) {
             "(docs/debugging.md)")
         ->allow_extra_args(false)
         ->type_name("NODE=PLACE");
+    command
+        ->add_option("--stats", request.stats,
+                     "NODE: into report.json what the board's program costs, how deep its stack goes, and "
+                     "what it reads of RAM before writing it; NODE is robot0.pic, tam0.avr, ..., pic, rab or "
+                     "tam for all of a kind, or all; repeatable (docs/debugging.md)")
+        ->allow_extra_args(false)
+        ->check(not_empty())
+        ->type_name("NODE");
     command->add_flag("--strict", request.strict,
                       "status 1 if there is anything to warn of: firmware that hangs, registers without a "
                       "model, I2C addresses that nobody acknowledges, ...");

@@ -140,8 +140,13 @@ struct StackUse {
 std::optional<StackUse> stack_use(const Profile& profile, const Variables& variables, const DebugChip& chip);
 /// "the stack has grown over 4 bytes of variables (levels, ticks)", or empty.
 std::string overlap_text(const StackUse& use);
+/// The same of a profile; empty, too, where no call was made.
+std::string stack_warning(const Profile& profile, const Variables& variables, const DebugChip& chip);
 /// For a person: functions by cost, stack, reads of RAM that nothing had written.
 std::string profile_text(const Profile& profile, const Places& places, const Variables& variables,
+                         const DebugChip& chip);
+/// The same for programs, as a JSON object; of the reads at most 1000 places.
+std::string profile_json(const Profile& profile, const Places& places, const Variables& variables,
                          const DebugChip& chip);
 
 }  // namespace puckloop::debug

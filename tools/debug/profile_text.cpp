@@ -66,6 +66,11 @@ std::string overlap_text(const StackUse& use) {
                        names.empty() ? "" : ")");
 }
 
+std::string stack_warning(const Profile& profile, const Variables& variables, const DebugChip& chip) {
+    const auto use = stack_use(profile, variables, chip);
+    return use ? overlap_text(*use) : std::string();
+}
+
 std::string profile_text(const Profile& profile, const Places& places, const Variables& variables,
                          const DebugChip& chip) {
     const FunctionNames names(profile, places);
@@ -105,9 +110,12 @@ std::string profile_text(const Profile& profile, const Places& places, const Var
     if (unwritten.empty()) return text + "no byte of RAM was read before it was written\n";
     text += fmt::format("{} reads of bytes of RAM that nothing had written, at {} places:\n",
                         profile.unwritten_reads(), unwritten.size());
-    for (std::size_t i = 0; i < unwritten.size() && i < kMostReads; ++i)
-        text += fmt::format("  0x{:04x} at {}, {} times\n", unwritten[i].address, place(unwritten[i].pc),
+    for (std::size_t i = 0; i < unwritten.size() && i < kMostReads; ++i) {
+        const std::string name = variables.name_at(unwritten[i].address);
+        text += fmt::format("  0x{:04x}{} at {}, {} times\n", unwritten[i].address,
+                            name.empty() ? "" : fmt::format(" ({})", name), place(unwritten[i].pc),
                             unwritten[i].times);
+    }
     return text;
 }
 

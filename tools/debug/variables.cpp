@@ -1,5 +1,7 @@
 #include "tools/debug/variables.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <string_view>
@@ -48,6 +50,15 @@ Variables::Overlap Variables::overlap(std::uint32_t first, std::uint32_t behind)
         if (!range.name.empty()) found.names.push_back(range.name);
     }
     return found;
+}
+
+std::string Variables::name_at(std::uint32_t address) const {
+    for (auto range = ranges_.rbegin(); range != ranges_.rend(); ++range) {
+        if (range->name.empty() || address < range->first || address >= range->behind) continue;
+        return address == range->first ? range->name
+                                       : fmt::format("{}+{}", range->name, address - range->first);
+    }
+    return {};
 }
 
 }  // namespace puckloop::debug

@@ -28,6 +28,9 @@ class Variables {
     };
     /// With the data addresses first..behind-1.
     Overlap overlap(std::uint32_t first, std::uint32_t behind) const;
+    /// "levels", "levels+2" for the byte behind its second, or empty: no variable lies there. Of several the
+    /// one that begins last.
+    std::string name_at(std::uint32_t address) const;
 
   private:
     struct Range {

@@ -5,7 +5,6 @@
 #include "emu/image/symbol_sizes.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <charconv>
 #include <fstream>
@@ -13,8 +12,6 @@
 namespace puckloop::exec {
 
 namespace {
-
-constexpr std::size_t kMostInJson = 1000;
 
 std::optional<std::uint32_t> number(std::string_view text) {
     const bool hexadecimal = text.starts_with("0x") || text.starts_with("0X");
@@ -187,44 +184,11 @@ std::string BenchInstruments::text() const {
 }
 
 std::string BenchInstruments::warning() const {
-    if (!options_.stats) return {};
-    const auto use = debug::stack_use(*profile_, variables_, *chip_);
-    return use ? overlap_text(*use) : std::string();
+    return options_.stats ? stack_warning(*profile_, variables_, *chip_) : std::string();
 }
 
 std::string BenchInstruments::json() const {
-    if (!options_.stats) return {};
-    const debug::FunctionNames names(*profile_, places_);
-    nlohmann::ordered_json json;
-    auto& functions = json["functions"] = nlohmann::ordered_json::array();
-    for (const auto& [start, cost] : function_costs(*profile_, names))
-        functions.push_back({{"name", names.name_of(start)},
-                             {"address", fmt::format("0x{:06x}", start)},
-                             {"cycles", cost.cycles},
-                             {"instructions", cost.instructions}});
-    if (const auto& stack = profile_->stack())
-        json["stack"] = {{"bytes", stack->bytes()},
-                         {"base", stack->base},
-                         {"peak", stack->peak},
-                         {"pc", fmt::format("0x{:06x}", stack->peak_pc)},
-                         {"place", places_.place(stack->peak_pc)}};
-    if (const auto use = debug::stack_use(*profile_, variables_, *chip_)) {
-        if (use->left) json["stack"]["left"] = *use->left;
-        json["stack"]["over_variables"] = use->over.bytes;
-        json["stack"]["variables"] = use->over.names;
-    }
-    json["unwritten_reads"] = profile_->unwritten_reads();
-    auto& reads = json["unwritten"] = nlohmann::ordered_json::array();
-    for (const debug::Profile::Unwritten& read : profile_->unwritten()) {
-        if (reads.size() == kMostInJson) break;
-        reads.push_back({{"address", read.address},
-                         {"pc", fmt::format("0x{:06x}", read.pc)},
-                         {"place", places_.place(read.pc)},
-                         {"line", places_.lines().at(read.pc)},
-                         {"cycle", read.cycle},
-                         {"times", read.times}});
-    }
-    return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+    return options_.stats ? profile_json(*profile_, places_, variables_, *chip_) : std::string();
 }
 
 }  // namespace puckloop::exec

@@ -22,6 +22,7 @@
 #include "tools/run/control/control_socket.h"
 #include "tools/run/outside_node.h"
 #include "tools/run/states/make_resumed.h"
+#include "tools/run/stats/profiled_node.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -153,8 +154,12 @@ std::unique_ptr<cosim::Node> make_world(const json& spec) {
 }  // namespace
 
 std::unique_ptr<cosim::StatefulNode> make_board(const json& spec) {
-    if (spec.at("kind") == "tam") return make_tam(spec);
-    return spec.at("kind") == "pic" ? make_pic(spec) : make_rab(spec);
+    const std::string kind = spec.at("kind");
+    std::unique_ptr<cosim::StatefulNode> board = kind == "tam"   ? make_tam(spec)
+                                                 : kind == "pic" ? make_pic(spec)
+                                                                 : make_rab(spec);
+    if (!spec.value("stats", false)) return board;
+    return make_profiled(std::move(board), spec.at("firmware"));
 }
 
 std::unique_ptr<cosim::Node> make_node(const std::string& text) {

@@ -45,6 +45,7 @@ struct RunRequest {
     std::vector<std::string> trace_formats;  ///< forms of the trace beside trace.csv: sr, pcapng, vcd
     std::string live;                        ///< pcapng while the run goes on; "-": standard output
     std::vector<std::string> gdb;            ///< "NODE=PLACE": boards under a debugger
+    std::vector<std::string> stats;          ///< boards that are profiled: nodes, kinds, or "all"
     bool strict = false;                     ///< a run with warnings has failed
 };
 

@@ -21,6 +21,7 @@
 #include "tools/run/program_path.h"
 #include "tools/run/snapshots/snapshot_plan.h"
 #include "tools/run/states/state_plan.h"
+#include "tools/run/stats/stats_plan.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -276,6 +277,7 @@ RunSetup set_up(const RunRequest& request) {
         throw InputError("", "--gdb", "saved states and a debugger do not go together", "one of them");
     for (const std::string& assignment : request.gdb)
         debug_board(setup, assignment);
+    plan_stats(setup, request);
     plan_snapshots(setup, request);
     return setup;
 }

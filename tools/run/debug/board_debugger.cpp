@@ -1,11 +1,7 @@
 #include "tools/run/debug/board_debugger.h"
 
 #include "base/error.h"
-#include "emu/avr/chip.h"
-#include "emu/dspic/chip/chip.h"
-#include "emu/pic/pic_node.h"
-#include "emu/rab_board/rab_node.h"
-#include "emu/tam_avr/tam_node.h"
+#include "tools/run/debug/board_chip.h"
 #include "tools/run/debug/run_debuggers.h"
 
 #include <fmt/format.h>
@@ -36,20 +32,11 @@ BoardDebugger::BoardDebugger(RunDebuggers& run, std::size_t index, std::string n
 }
 
 void BoardDebugger::set_board(cosim::Node& board) {
-    const auto take = [this](auto& node, auto& chip) {
-        clock_ = &chip.clock();
-        press_reset_ = [&node](std::vector<cosim::Message>& outbox) { node.press_reset(outbox); };
-        chip_ = debug::make_debug_chip(chip);
-    };
-    if (auto* pic = dynamic_cast<pic::PicNode*>(&board)) {
-        take(*pic, pic->chip());
-    } else if (auto* rab = dynamic_cast<rab::RabNode*>(&board)) {
-        take(*rab, rab->chip());
-    } else if (auto* tam = dynamic_cast<tam::TamNode*>(&board)) {
-        take(*tam, tam->board().chip());
-    } else {
-        throw InputError("", "--gdb", name_ + " has no chip", "a board of the run");
-    }
+    BoardChip found = chip_of(board);
+    if (!found.chip) throw InputError("", "--gdb", name_ + " has no chip", "a board of the run");
+    chip_ = std::move(found.chip);
+    clock_ = found.clock;
+    press_reset_ = std::move(found.press_reset);
     control_.set_chip(*chip_);
 }
 

@@ -19,8 +19,8 @@ using nlohmann::json;
 namespace fs = std::filesystem;
 
 /// Keys of node descriptions that decide nothing of what a node does, or are compared by themselves.
-constexpr std::array kLeftOut{"faults",   "from_state", "save_state", "gdb",     "nvm",    "watchdog_s",
-                              "quiet_ps", "control",    "live",       "repeats", "journal"};
+constexpr std::array kLeftOut{"faults",     "from_state", "save_state", "gdb",  "stats",   "nvm",
+                              "watchdog_s", "quiet_ps",   "control",    "live", "repeats", "journal"};
 
 /// Node descriptions with the results folder as "<out>" and the scenario as "<scenario>", wherever they are,
 /// and the files that they name.

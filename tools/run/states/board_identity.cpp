@@ -30,7 +30,7 @@ cosim::BoardIdentity identity_of(const nlohmann::json& spec) {
     // Neither where the files are nor what is saved decides how the board runs.
     nlohmann::json parameters = spec;
     for (const char* key : {"kind", "name", "firmware", "log", "camera_log", "from_state", "save_state",
-                            "pins_linked", "ir_linked"})
+                            "pins_linked", "ir_linked", "stats"})
         parameters.erase(key);
     board.parameters = parameters.dump();
     return board;
