@@ -486,6 +486,11 @@ void Chip::external_reset() {
     parts_->core.request_reset(ResetCause::External);
 }
 
+void Chip::reset_now() {
+    parts_->at_present();
+    parts_->core.reset(ResetCause::External);
+}
+
 void Chip::set_supply(double volts) {
     parts_->at_present();
     parts_->set_supply(volts);

@@ -107,6 +107,8 @@ class Chip {
     void power_on();
     /// A pulse on the reset pin now.
     void external_reset();
+    /// The same, carried out before this returns; before an instruction, too (chip::Instrument).
+    void reset_now();
     /// The supply (VCC and AVCC) from now on. Below the brown-out level of the fuses, or 1.3 V without one,
     /// the chip is held in reset until the supply is back (50 mV higher). A chip begins with its options'
     /// avcc.

@@ -11,7 +11,8 @@ class Instrument {
   public:
     virtual ~Instrument() = default;
     /// The instruction at `pc` (program address; AVR: in bytes) is next, at `cycle`; each iteration of a
-    /// repeated instruction. False: the run ends before it, as at a stop address, and goes on with it.
+    /// repeated instruction. False: the run ends before it, as at a stop address, and goes on with it. A chip
+    /// that is reset from within this call goes on with what its reset vector leads to, which is shown next.
     virtual bool instruction(std::uint32_t pc, std::uint64_t cycle) = 0;
     /// An interrupt or trap is taken at `cycle`, before the instruction at `pc`.
     virtual void interrupt(int /*vector*/, std::uint32_t /*pc*/, std::uint64_t /*cycle*/) {}

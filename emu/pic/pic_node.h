@@ -15,6 +15,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace puckloop::pic {
@@ -78,11 +79,14 @@ class PicNode : public cosim::StatefulNode, private BoardListener, private chip:
     void renew_random_streams() override { board_.renew_random_streams(); }
 
     dspic::Chip& chip() { return *chip_; }
-    /// A pulse on the reset pin between two advances; what leaves at once goes to `outbox`.
+    /// The end of the last advance.
+    cosim::Time granted() const { return granted_; }
+    /// A pulse on the reset pin where the chip is: between two advances, or before an instruction
+    /// (chip::Instrument). What leaves at once goes to `outbox`.
     void press_reset(std::vector<cosim::Message>& outbox) {
-        outbox_ = &outbox;
+        auto* const before = std::exchange(outbox_, &outbox);
         chip_->mclr();
-        outbox_ = nullptr;
+        outbox_ = before;
     }
     Board& board() { return board_; }
 

@@ -14,6 +14,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace puckloop::rab {
@@ -57,11 +58,14 @@ class RabNode : public cosim::StatefulNode, private BoardListener, private chip:
     void renew_random_streams() override { board_.renew_random_streams(); }
 
     dspic::Chip& chip() { return *chip_; }
-    /// A pulse on the reset pin between two advances; what leaves at once goes to `outbox`.
+    /// The end of the last advance.
+    cosim::Time granted() const { return granted_; }
+    /// A pulse on the reset pin where the chip is: between two advances, or before an instruction
+    /// (chip::Instrument). What leaves at once goes to `outbox`.
     void press_reset(std::vector<cosim::Message>& outbox) {
-        outbox_ = &outbox;
+        auto* const before = std::exchange(outbox_, &outbox);
         chip_->mclr();
-        outbox_ = nullptr;
+        outbox_ = before;
     }
     Board& board() { return board_; }
     const RabLog& log() const { return log_; }

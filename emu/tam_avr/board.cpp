@@ -108,6 +108,13 @@ void Board::reset_button() {
     chip_.external_reset();
 }
 
+void Board::reset_now(bool inside) {
+    if (!powered()) return;
+    leds_.reset();
+    update_leds(inside ? time_of(chip_.cycle()) : now_);
+    chip_.reset_now();
+}
+
 void Board::report(SignalId id, double value, Time now) {
     if (values_[id] == value) return;
     values_[id] = value;

@@ -77,6 +77,9 @@ class Board : private avr::Pins {
     cosim::Time wakes() const { return powered() ? std::min(chip_.wakes(), off_at_) : cosim::kNever; }
     /// The reset button, or DTR of the console's cable: a pulse now.
     void reset_button();
+    /// The same for a debugger, who sees the chip as it is then. `inside`: before an instruction
+    /// (chip::Instrument), at its time.
+    void reset_now(bool inside);
 
     /// The firmware has not switched the board off.
     bool powered() const { return values_[kPower] != 0.0; }

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <utility>
 
 namespace puckloop::tam {
 
@@ -71,6 +72,12 @@ void TamNode::advance(Time until, std::span<const cosim::Message> inbox,
     run_until(until);
     granted_ = until;
     outbox_ = nullptr;
+}
+
+void TamNode::press_reset(std::vector<cosim::Message>& outbox) {
+    auto* const before = std::exchange(outbox_, &outbox);
+    board_->reset_now(before != nullptr);
+    outbox_ = before;
 }
 
 void TamNode::press_reset(Time until, bool inclusive) {

@@ -62,12 +62,11 @@ class TamNode : public cosim::StatefulNode, private BoardListener, private chip:
     void renew_random_streams() override { board_->renew_random_streams(); }
 
     Board& board() { return *board_; }
-    /// A pulse on the reset pin between two advances; what leaves at once goes to `outbox`.
-    void press_reset(std::vector<cosim::Message>& outbox) {
-        outbox_ = &outbox;
-        board_->reset_button();
-        outbox_ = nullptr;
-    }
+    /// The end of the last advance.
+    cosim::Time granted() const { return granted_; }
+    /// A pulse on the reset pin where the chip is: between two advances, or before an instruction
+    /// (chip::Instrument). What leaves at once goes to `outbox`.
+    void press_reset(std::vector<cosim::Message>& outbox);
 
   private:
     // The board's time begins when it is switched on.

@@ -102,6 +102,7 @@ struct Machine {
     CoreHooks hooks;
     chip::Instrument* instrument = nullptr;
     bool kept_skip = true, kept_translate = true;  ///< what holds again without an instrument
+    bool anew = false;                             ///< a reset was performed since the instrument was asked
 
     std::uint16_t pc_of(const Op* op) const { return static_cast<std::uint16_t>(op - code); }
     bool may_interrupt() const { return (sreg & sreg::I) && (asleep ? irq.any(wakers) : irq.any()); }

@@ -26,11 +26,13 @@ void execute_observed(Machine& m) {
     do {
         const std::uint16_t pc = m.pc_of(m.current);
         const bool stop = stops(pc);
+        m.anew = false;
         if (!stop && !m.instrument->instruction(pc * 2u, m.cycle)) {
             m.stopped = true;
             m.limit = 0;
             return;
         }
+        if (m.anew) return;  // a debugger pressed reset: another instruction is next, and is shown first
         const Op* op = m.current;  // a debugger may have changed it
         if (!stop) {
             if (op->run == &decode_now) decode(m, m.code_store[static_cast<std::size_t>(op - m.code)]);
@@ -89,6 +91,7 @@ void enter_interrupt(Machine& m) {
 
 void perform_reset(Machine& m, ResetCause cause) {
     m.reset_request.reset();
+    m.anew = true;
     m.now = m.cycle;
     if (m.observer.on_reset) m.observer.on_reset(cause, m.pc_of(m.current), m.cycle);
     m.stall_end = 0;  // the hook may halt it anew

@@ -54,7 +54,9 @@ void run_repeated(Machine& m) {
 void execute_observed(Machine& m) {
     const auto looks = [&m] {
         if (m.current->marks & kStop && m.current->run != m.current->base) return true;  // ends the run first
-        if (m.instrument->instruction(m.pc_of(m.current), m.st.cycle)) return true;
+        m.anew = false;
+        // A debugger may have pressed reset: then another instruction is next, and is shown first.
+        if (m.instrument->instruction(m.pc_of(m.current), m.st.cycle)) return !m.anew;
         m.stopped = true;
         m.limit = 0;
         return false;
@@ -194,6 +196,7 @@ void request_reset(Machine& m, ResetCause cause) {
 
 void perform_reset(Machine& m, ResetCause cause) {
     m.reset_request.reset();
+    m.anew = true;
     m.waits.forget();
     if (m.observer.on_reset) m.observer.on_reset(cause, m.fault_pc, m.st.cycle);
     if (m.instrument) m.instrument->reset(m.st.cycle);

@@ -140,6 +140,7 @@ struct Machine {
     CoreObserver observer;
     chip::Instrument* instrument = nullptr;
     bool kept_skip = true, kept_translate = true;  ///< what holds again without an instrument
+    bool anew = false;                             ///< a reset was performed since the instrument was asked
     std::vector<std::uint32_t> warned;
     bool skip_idle = true;
     std::unique_ptr<IdleLoops> skip;

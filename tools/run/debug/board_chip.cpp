@@ -10,7 +10,7 @@ namespace puckloop::tools {
 
 BoardChip chip_of(cosim::Node& board) {
     const auto found = [](auto& node, auto& chip) {
-        return BoardChip{debug::make_debug_chip(chip), &chip.clock(),
+        return BoardChip{debug::make_debug_chip(chip), &chip.clock(), [&node] { return node.granted(); },
                          [&node](std::vector<cosim::Message>& outbox) { node.press_reset(outbox); }};
     };
     if (auto* pic = dynamic_cast<pic::PicNode*>(&board)) return found(*pic, pic->chip());

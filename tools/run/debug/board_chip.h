@@ -14,6 +14,7 @@ namespace puckloop::tools {
 struct BoardChip {
     std::unique_ptr<debug::DebugChip> chip;     ///< null: the node is no board
     const cosim::ClockDomain* clock = nullptr;  ///< of the chip's cycles, in the board's own time
+    std::function<cosim::Time()> granted{};     ///< the end of the node's last advance
     /// A pulse on the reset pin where the chip is now: between two advances of the node, or before an
     /// instruction (chip::Instrument). What leaves at once goes to the outbox.
     std::function<void(std::vector<cosim::Message>&)> press_reset;

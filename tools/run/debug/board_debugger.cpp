@@ -36,12 +36,14 @@ void BoardDebugger::set_board(cosim::Node& board) {
     if (!found.chip) throw InputError("", "--gdb", name_ + " has no chip", "a board of the run");
     chip_ = std::move(found.chip);
     clock_ = found.clock;
+    granted_ = std::move(found.granted);
     press_reset_ = std::move(found.press_reset);
     control_.set_chip(*chip_);
 }
 
 chip::Instrument* BoardDebugger::begin_advance(cosim::Time now, std::vector<cosim::Message>& outbox) {
     now_ = now;
+    inside_ = false;
     outbox_ = &outbox;
     if (run_.repeats()) return this;
     if (!met_) {
@@ -50,7 +52,7 @@ chip::Instrument* BoardDebugger::begin_advance(cosim::Time now, std::vector<cosi
     } else if (session_.wants_stop()) {
         run_.stand_still(*this, {Stop::Why::Interrupt}, false);
     }
-    if (std::exchange(reset_, false)) make_change([this] { press_reset_(*outbox_); });
+    if (reset_) press_reset();
     // Without a debugger nobody looks, unless there is something to be done again.
     return socket_.connected() || made_ < changes_.size() ? this : nullptr;
 }
@@ -68,21 +70,44 @@ void BoardDebugger::repeat_changes(cosim::Time now) {
 
 void BoardDebugger::end_advance(cosim::Time until) {
     now_ = until;
+    outbox_ = nullptr;
     run_.passed(*this, until);
 }
 
 bool BoardDebugger::instruction(std::uint32_t /*pc*/, std::uint64_t cycle) {
-    for (; made_ < changes_.size() && changes_[made_].inside && changes_[made_].cycle <= cycle; ++made_) {
-        changing_ = true;
-        changes_[made_].make();
-        changing_ = false;
+    if (std::exchange(begun_at_, cycle) != cycle) behind_ = false;
+    anew_ = false;
+    while (const Change* change = next_inside(cycle)) {
+        if (change->reset) break;
+        repeat_change();
     }
-    if (!socket_.connected() || !run_.listens_to(*this)) return true;
-    if (!control_.instrument().instruction(chip_->pc(), cycle))
-        run_.stopped(*this);
-    else if (++looked_ % kLookEvery == 0 && session_.wants_stop())
-        run_.stand_still(*this, {Stop::Why::Interrupt}, true);
+    if (socket_.connected() && run_.listens_to(*this)) {
+        if (!control_.instrument().instruction(chip_->pc(), position()))
+            run_.stopped(*this);
+        else if (++looked_ % kLookEvery == 0 && session_.wants_stop())
+            run_.stand_still(*this, {Stop::Why::Interrupt}, true);
+    }
+    // Whoever stops here sees the chip before its reset; then it comes again, with its first instruction.
+    if (!anew_ && next_inside(cycle) != nullptr) repeat_change();
     return true;
+}
+
+/// The next change, if it was made at the instruction that starts at `cycle`, or before.
+const BoardDebugger::Change* BoardDebugger::next_inside(std::uint64_t cycle) const {
+    if (made_ == changes_.size()) return nullptr;
+    const Change& next = changes_[made_];
+    return next.inside && next.cycle <= cycle ? &next : nullptr;
+}
+
+void BoardDebugger::repeat_change() {
+    changing_ = true;
+    changes_[made_++].make();
+    changing_ = false;
+}
+
+std::uint64_t BoardDebugger::position() const {
+    const std::uint64_t cycle = chip_->cycle();
+    return 2 * cycle + (behind_ && begun_at_ == cycle ? 1 : 0);
 }
 
 void BoardDebugger::stand(const Stop& stop, bool inside) {
@@ -118,13 +143,14 @@ void BoardDebugger::resume(Resume how) {
     if (how == Resume::ReverseStep || how == Resume::ReverseContinue)
         run_.go_back(*this, how == Resume::ReverseStep);  // returns only where there is nothing before
     else
-        return control_.begin_inside(how == Resume::Step, inside_);
+        return control_.begin_inside(how == Resume::Step, inside_ && !anew_);
     stand({Stop::Why::Begin}, inside_);
 }
 
 void BoardDebugger::go_back(std::size_t changes) {
     made_ = changes;
     reset_ = false;  // of an instant that is taken back
+    outbox_ = nullptr;
     chip_.reset();
 }
 
@@ -133,20 +159,28 @@ std::string BoardDebugger::no_way_back() const {
 }
 
 std::string BoardDebugger::frozen() const {
-    return chip_->cycle() < present_ ? "the past cannot be changed: continue to the present first" : "";
+    return position() < present_ ? "the past cannot be changed: continue to the present first" : "";
 }
 
 bool BoardDebugger::change(std::function<bool(debug::DebugChip&)> change) {
     // Again, whenever this moment comes again.
-    changes_.push_back({inside_, chip_->cycle(), now_, [this, change] { change(*chip_); }});
+    changes_.push_back({inside_, false, chip_->cycle(), now_, [this, change] { change(*chip_); }});
     ++made_;
     return change(*chip_);
 }
 
-void BoardDebugger::make_change(std::function<void()> make) {
-    make();
-    changes_.push_back({false, 0, now_, std::move(make)});
+void BoardDebugger::reset_board() {
+    press_reset_(*outbox_);
+    anew_ = behind_ = true;
+}
+
+void BoardDebugger::press_reset() {
+    // While another board stands this one may be between two advances.
+    reset_ = outbox_ == nullptr;
+    if (reset_) return;
+    changes_.push_back({inside_, true, chip_->cycle(), now_, [this] { reset_board(); }});
     ++made_;
+    reset_board();
 }
 
 std::string BoardDebugger::summary() {

@@ -37,6 +37,8 @@ class BoardDebugger final : private debug::Debuggee, private chip::Instrument {
     void repeat_changes(cosim::Time now);
     /// Everything before `until` was executed.
     void end_advance(cosim::Time until);
+    /// The end of the board's last advance.
+    cosim::Time granted() const { return granted_(); }
     bool killed() const { return killed_; }
     void over(int status) { session_.over(status); }
 
@@ -52,17 +54,21 @@ class BoardDebugger final : private debug::Debuggee, private chip::Instrument {
     /// Whatever its debugger wants.
     void let_go() { stands_ = false; }
     std::uint64_t cycle() const { return chip_->cycle(); }
+    /// Twice the cycle at which the next instruction starts, and one more behind a reset that was pressed
+    /// then: what stops() counts by.
+    std::uint64_t position() const;
     std::size_t changes_made() const { return made_; }
     cosim::Time time_of(std::uint64_t cycle) const { return clock_->time_of(cycle); }
     debug::StopControl& stops() { return control_; }
     /// The run goes back, to where so many changes had been made.
     void go_back(std::size_t changes);
     /// The run repeats what was before.
-    void remember_present() { present_ = std::max(present_, cycle()); }
+    void remember_present() { present_ = std::max(present_, position()); }
 
   private:
     struct Change {
         bool inside = false;
+        bool reset = false;
         std::uint64_t cycle = 0;  ///< of the instruction before which it was made, if inside
         cosim::Time time = 0;     ///< else
         std::function<void()> make;
@@ -74,10 +80,13 @@ class BoardDebugger final : private debug::Debuggee, private chip::Instrument {
     std::string no_way_back() const override;
     std::string frozen() const override;
     bool change(std::function<bool(debug::DebugChip&)> change) override;
-    void press_reset() override { reset_ = true; }
+    /// Where the board is: at the present instruction, or behind all that it has executed.
+    void press_reset() override;
     double seconds() const override { return cosim::to_seconds(clock_->time_of(chip_->cycle())); }
     std::string summary() override;
-    void make_change(std::function<void()> make);
+    const Change* next_inside(std::uint64_t cycle) const;
+    void repeat_change();
+    void reset_board();
 
     bool instruction(std::uint32_t pc, std::uint64_t cycle) override;
     void access(std::uint16_t address, int bytes, bool write) override {
@@ -89,19 +98,24 @@ class BoardDebugger final : private debug::Debuggee, private chip::Instrument {
     std::size_t index_;
     std::string name_;
     const cosim::ClockDomain* clock_ = nullptr;
+    std::function<cosim::Time()> granted_;
     std::function<void(std::vector<cosim::Message>&)> press_reset_;
-    std::vector<cosim::Message>* outbox_ = nullptr;  ///< of the advance under way
+    std::vector<cosim::Message>* outbox_ = nullptr;  ///< of the advance under way; null: there is none
     std::unique_ptr<debug::DebugChip> chip_;
     debug::StopControl control_;
     debug::GdbSocket socket_;
     debug::GdbSession session_;
     bool met_ = false;  ///< a debugger was here
     bool stands_ = false, inside_ = false;
-    bool killed_ = false, reset_ = false;
-    bool changing_ = false;  ///< repeats a change of the debugger's: no access of the program's
+    bool killed_ = false;
+    bool reset_ = false;          ///< pressed between two advances: the next one begins with it
+    bool anew_ = false;           ///< pressed at the present instruction, which is not executed any more
+    std::uint64_t begun_at_ = 0;  ///< the present instruction
+    bool behind_ = false;         ///< it is the first one after a reset at this very cycle
+    bool changing_ = false;       ///< repeats a change of the debugger's: no access of the program's
     unsigned looked_ = 0;
     cosim::Time now_ = 0;        ///< where the advance under way began
-    std::uint64_t present_ = 0;  ///< cycle: what lies before has been
+    std::uint64_t present_ = 0;  ///< position(): what lies before has been
     std::vector<Change> changes_;
     std::size_t made_ = 0;  ///< so many of them, where the board is now
 };

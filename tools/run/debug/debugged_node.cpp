@@ -20,8 +20,12 @@ class DebuggedNode final : public cosim::StatefulNode {
 
     std::string_view name() const override { return board_->name(); }
     std::span<const cosim::Port> ports() const override { return board_->ports(); }
+    /// The debugger may press reset at any instant. Only a bus's next phase waits for the answer to the last
+    /// one all the same.
     cosim::Time earliest_output(cosim::PortIndex port) const override {
-        return board_->earliest_output(port);
+        const cosim::Time earliest = board_->earliest_output(port);
+        const bool bus = board_->ports()[port].kind == cosim::PortKind::I2c;
+        return bus && earliest == cosim::kNever ? earliest : std::min(earliest, reached_);
     }
     cosim::Time lookahead(cosim::PortIndex port) const override { return board_->lookahead(port); }
     std::optional<cosim::Time> begun(cosim::PortIndex port) const override { return board_->begun(port); }
@@ -30,7 +34,10 @@ class DebuggedNode final : public cosim::StatefulNode {
         const cosim::StatefulNode& board = *board_;
         board.state(archive);
     }
-    void state(StateReader& archive) override { board_->state(archive); }
+    void state(StateReader& archive) override {
+        board_->state(archive);
+        reached_ = debugger_.granted();
+    }
     void renew_random_streams() override { board_->renew_random_streams(); }
     std::string finish() override {
         debugger_.look_at(nullptr);

@@ -131,7 +131,7 @@ void RunDebuggers::go_back(BoardDebugger& who, bool step) {
     if (!instant) return;
     for (const auto& board : boards_)
         board->remember_present();
-    plan_ = Plan{.who = who.index(), .step = step, .instant = *instant, .limit = who.cycle()};
+    plan_ = Plan{.who = who.index(), .step = step, .instant = *instant, .limit = who.position()};
     throw cosim::TakenBack{};
 }
 
@@ -144,11 +144,11 @@ void RunDebuggers::stopped(BoardDebugger& who) {
 void RunDebuggers::passed(BoardDebugger& who, cosim::Time until) {
     if (!plan_ || plan_->who != who.index() || plan_->position) return;
     // No instruction began at the limit: the chip slept.
-    if (until > who.time_of(plan_->limit)) search_over(who);
+    if (until > who.time_of(plan_->limit / 2)) search_over(who);
 }
 
 void RunDebuggers::search_over(BoardDebugger& who) {
-    const std::uint64_t begin = history_.place(plan_->instant).boards[who.index()].cycle;
+    const std::uint64_t begin = 2 * history_.place(plan_->instant).boards[who.index()].cycle;
     if (const auto& found = who.stops().found()) {
         plan_->position = found->position;
         plan_->stop = found->stop;

@@ -58,8 +58,8 @@ class RunDebuggers {
         bool step = false;
         std::size_t instant = 0;  ///< of history_, to begin from
         std::size_t next = 1;     ///< so many instants further back if nothing is found
-        std::uint64_t limit = 0;  ///< cycle before which a place to stop is looked for
-        /// Once found: to stop before the instruction that starts at this cycle.
+        std::uint64_t limit = 0;  ///< BoardDebugger::position() before which a place to stop is looked for
+        /// Once found: to stop before the instruction there.
         std::optional<std::uint64_t> position{};
         debug::Stop stop{};
     };
