@@ -11,6 +11,7 @@
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <random>
 
 using namespace puckloop;
@@ -165,6 +166,54 @@ TEST_CASE("a run goes back step by step, and forward again to the same end", "[r
         CHECK(server->wait() == 0);
         check_same_run(robots.bench, "plain", "back");
     }
+}
+
+TEST_CASE("a run that goes back takes its record along, and every file is that of an undisturbed run",
+          "[reverse]") {
+    std::mt19937 random(Catch::rngSeed() + 16);
+    const TwoRobots robots(draw(random, 3, 9));
+    const std::string options =
+        "--duration 1.3 --in-process --record --trace-format vcd --trace-format pcapng --trace-format sr";
+    robots.undisturbed(options);
+    const auto server = robots.debugged("back", options);
+    GdbClient gdb(server->socket());
+    CHECK(gdb.ask("Z2,800a00,2") == "OK");
+    const auto forward_to = [&gdb](double until) {
+        while (std::stod(gdb.monitor("time")) < until)
+            REQUIRE(gdb.ask("c") == "T05watch:800a00;");
+    };
+    // Near a snapshot and far behind it, twice over the same stretch, and once to the very beginning.
+    forward_to(1.0 + 0.01 * draw(random, 1, 9));
+    for (unsigned i = draw(random, 1, 4); i > 0; --i)
+        CHECK(gdb.ask("bc") == "T05watch:800a00;");
+    forward_to(1.1 + 0.01 * draw(random, 1, 9));
+    for (unsigned i = draw(random, 10, 25); i > 0; --i)
+        CHECK(gdb.ask("bc") == "T05watch:800a00;");
+    forward_to(0.01 * draw(random, 105, 115));
+    if (random() % 2) {
+        CHECK(gdb.ask("z2,800a00,2") == "OK");
+        CHECK(gdb.ask("bc") == "T05replaylog:begin;");
+    }
+    CHECK(gdb.ask("D") == "OK");
+    INFO(server->err());
+    CHECK(server->wait() == 0);
+    check_same_run(robots.bench, "plain", "back");
+    unsigned compared = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(robots.bench.out("plain"))) {
+        const std::string name = std::filesystem::relative(entry.path(), robots.bench.out("plain"));
+        if (!entry.is_regular_file() || name == "report.json" || name == ".puckloop") continue;
+        INFO(name);
+        const bool same = text_of(entry.path()) == text_of(robots.bench.out("back") / name);
+        CHECK(same);
+        ++compared;
+    }
+    CHECK(compared >= 8);
+    CHECK(std::filesystem::file_size(robots.bench.out("back") / "record.csv") > 10'000);
+    // What was recorded can be replayed.
+    const Ended replayed =
+        robots.bench.puckloop({"replay", robots.scenario, robots.bench.out("back"), "--node", "counter.pic"});
+    INFO(replayed.err);
+    CHECK(replayed.status == 0);
 }
 
 TEST_CASE("what a debugger changes is changed again when the run comes by", "[reverse]") {
