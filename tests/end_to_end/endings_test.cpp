@@ -3,6 +3,7 @@
 #include "tests/end_to_end/one_line.h"
 
 #include <catch2/catch.hpp>
+#include <fmt/format.h>
 
 #include <sys/mount.h>
 #include <unistd.h>
@@ -168,14 +169,27 @@ TEST_CASE("a full disk ends the run with what fits, and a report") {
     CHECK(::umount(disk.c_str()) == 0);
 }
 
-TEST_CASE("a disk that is too small for the report, too, ends the run and says that there is none") {
+TEST_CASE(
+    "a disk that is too small for anything ends the run, with a report or the word that there is none") {
     const Workbench bench;
-    if (!mount_small_disk(bench, "size=160k")) return;
-    const auto disk = bench.folder() / "disk";
-    const Ended ended = bench.run("disk/o", {kHello, "--duration", "30", "--in-process"});
-    check_one_line(ended, 1, {"disk/o/", "No space left on device", "report.json: cannot be written"}, 60);
-    CHECK(!std::filesystem::exists(disk / "o" / "report.json"));
-    CHECK(!std::filesystem::exists(disk / "o" / "report.json.part"));
-    CHECK(!bench.csv("disk/o", "trace.csv").empty());
-    CHECK(::umount(disk.c_str()) == 0);
+    unsigned reports = 0;
+    for (const int kilobytes : {4, 8, 16, 24, 36, 64, 160}) {
+        if (!mount_small_disk(bench, fmt::format("size={}k", kilobytes).c_str())) return;
+        const auto disk = bench.folder() / "disk";
+        for (const char* placement : {"--in-process", "--record"}) {
+            CAPTURE(kilobytes, placement);
+            const Ended ended = bench.run("disk/o", {kHello, "--duration", "30", placement});
+            check_one_line(ended, 1, {"disk/o/", "No space left on device"}, 60);
+            const bool named = ended.err.find("report.json: cannot be written") != std::string::npos;
+            const bool there = std::filesystem::exists(disk / "o" / "report.json");
+            CHECK(there != named);
+            if (there)
+                CHECK_THAT(bench.report("disk/o")["ended_why"].get<std::string>(), Contains("No space"));
+            reports += there;
+            CHECK(!std::filesystem::exists(disk / "o" / "report.json.part"));
+            std::filesystem::remove_all(disk / "o");
+        }
+        CHECK(::umount(disk.c_str()) == 0);
+    }
+    CHECK(reports >= 10);  // of 14: a quarter of such a disk is the report's
 }

@@ -19,6 +19,7 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 
 namespace puckloop::tools {
@@ -60,7 +61,7 @@ double time_of(const std::string& option, const std::string& text) {
 }
 
 void export_trace(const std::filesystem::path& out, const std::vector<std::string>& formats) {
-    if (formats.empty()) return;
+    if (formats.empty() || !std::filesystem::exists(out / "trace.csv")) return;  // the run did not begin
     const RecordedTrace trace(out, {});
     for (const std::string& format : formats) {
         const std::string file = (out / ("trace." + format)).string();

@@ -4,23 +4,32 @@
 
 #include <fmt/format.h>
 
+#include <fcntl.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <fcntl.h>
-#include <unistd.h>
 
 namespace puckloop::tools {
 
 namespace {
 constexpr mode_t kMode = 0666;
-}
+constexpr std::size_t kShareOfDisk = 4;
+}  // namespace
 
 ReservedFile::ReservedFile(std::filesystem::path path, std::size_t bytes)
     : path_(std::move(path)), part_(path_.string() + ".part") {
     descriptor_ = ::open(part_.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, kMode);
     if (descriptor_ < 0) fail();
-    // Less than asked is no error: then write() tells, if it matters.
-    ::posix_fallocate(descriptor_, 0, static_cast<off_t>(bytes));
+    // Less than asked is no error: then write() names it, if it matters. A small disk has other files to
+    // take.
+    if (::posix_fallocate(descriptor_, 0, static_cast<off_t>(bytes)) == 0) return;
+    struct statvfs disk {};
+    if (::fstatvfs(descriptor_, &disk) != 0) return;
+    const std::size_t share = std::min(bytes, disk.f_bavail * disk.f_bsize / kShareOfDisk);
+    if (share > 0) ::posix_fallocate(descriptor_, 0, static_cast<off_t>(share));
 }
 
 ReservedFile::~ReservedFile() {

@@ -10,7 +10,7 @@ namespace puckloop::tools {
 
 class ReservedFile {
   public:
-    /// Takes `bytes` under the name `path`.part, as far as the disk has them.
+    /// Takes `bytes` under the name `path`.part; of a disk that has less, a quarter of what is free.
     ReservedFile(std::filesystem::path path, std::size_t bytes);
     /// Removes the .part file if write() was not called.
     ~ReservedFile();

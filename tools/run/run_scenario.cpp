@@ -202,14 +202,23 @@ cosim::Outcome run_scenario(const RunSetup& setup, const RunRequest& request,
     do {
         const bool back = outcome.reason == cosim::EndReason::TakenBack;
         if (back) options.from = debuggers->begin_again();
-        cosim::Conductor conductor(setup.nodes, setup.links, setup.scenario.faults, options, factory);
+        std::optional<cosim::Conductor> conductor;
+        try {
+            conductor.emplace(setup.nodes, setup.links, setup.scenario.faults, options, factory);
+        } catch (const RunError& error) {  // why it did not begin is in the report, as of one that ended so
+            outcome = {};
+            outcome.reason = cosim::EndReason::Failed;
+            outcome.success = false;
+            outcome.text = error.what();
+            break;
+        }
         // Only now: a run whose nodes do not start has recorded nothing.
         begin_recording(setup, request, back ? debuggers->kept() : nullptr, trace, record);
-        conductor.add_sink(*trace);
-        if (record) conductor.add_sink(*record);
-        if (live) conductor.add_sink(*live);
-        diary.started(conductor);
-        outcome = conductor.run();
+        conductor->add_sink(*trace);
+        if (record) conductor->add_sink(*record);
+        if (live) conductor->add_sink(*live);
+        diary.started(*conductor);
+        outcome = conductor->run();
     } while (outcome.reason == cosim::EndReason::TakenBack);
     if (live) end_live(*live, outcome);
     if (outcome.reason == cosim::EndReason::Interrupted) {
