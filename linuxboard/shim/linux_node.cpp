@@ -55,6 +55,7 @@ void LinuxNode::start_program() {
     start_at_ = kNever;
     ++starts_;
     ++processes_;
+    first_killed_.clear();
     last_number_ = wire::kFirstProcess;
     clients_.clear();
     auto process = launcher_->start();  // may throw: there is no client without a process

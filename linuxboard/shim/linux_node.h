@@ -170,6 +170,9 @@ class LinuxNode : public cosim::Node, public cosim::Suspendable {
 
     // linux_node_end.cpp: how it ends
     void program_ended(cosim::Time now);
+    void first_ended(cosim::Time now);
+    void notice_first_killed(cosim::Time now);
+    std::string with_first_killed(std::string how) const;
     void ended_winding_up(cosim::Time now);
     void out_of_grace(cosim::Time now);
     void send_end_signal(cosim::Time now);
@@ -216,6 +219,7 @@ class LinuxNode : public cosim::Node, public cosim::Suspendable {
     bool ended_well_ = false;
     bool crashed_ = false;
     int killed_by_ = 0;
+    std::string first_killed_;  ///< while others of its processes went on, and when; empty: it was not
 };
 
 }  // namespace puckloop::linuxboard

@@ -34,6 +34,26 @@ void LinuxNode::end_run(Time now, bool success, std::string reason, std::uint32_
     if (!stop_) stop_ = cosim::Stop{now, success, std::move(reason), programs};
 }
 
+/// Others of the program's processes go on: what became of it then is known only when they have ended, and
+/// where the run is over before that its end was nobody's doing but the signal's.
+void LinuxNode::first_ended(Time now) {
+    const bool asked = end_signal_ != 0 && killed_by_ == end_signal_;
+    if (killed_by_ == 0 || asked) return;
+    first_killed_ = fmt::format("its first process {} at {:.6f} s", end_, cosim::to_seconds(now));
+    warn(fmt::format("{}: {}, and {} more went on", spec_.program, first_killed_, clients_.size()));
+}
+
+/// One that waited for simulated time, and was killed from outside of it, has not been heard of since.
+void LinuxNode::notice_first_killed(Time now) {
+    Client* first = client_at(0);
+    if (first != nullptr && first->process->was_killed()) client_ended(*first, now);
+}
+
+/// How the program ended, and that its first process had been killed before.
+std::string LinuxNode::with_first_killed(std::string how) const {
+    return first_killed_.empty() ? how : fmt::format("{}; {}", how, first_killed_);
+}
+
 void LinuxNode::program_ended(Time now) {
     kernel_.reset();
     if (end_signal_ != 0) return ended_winding_up(now);
@@ -72,6 +92,7 @@ void LinuxNode::note_devices() {
 }
 
 void LinuxNode::wind_up(Time now, int signal) {
+    notice_first_killed(now);
     start_at_ = kNever;
     next_restart_ = spec_.restarts.size();
     end_signal_ = signal != 0 ? signal : spec_.end_signal;
@@ -82,7 +103,7 @@ void LinuxNode::wind_up(Time now, int signal) {
     });
     if (die) {
         kill_all();
-        end_ = "was ended with the run";
+        end_ = with_first_killed("was ended with the run");
         return;
     }
     end_signal_at_ = now;
@@ -122,16 +143,17 @@ void LinuxNode::out_of_grace(Time now) {
     kill_at_ = end_signal_at_ = kNever;
     wound_up_ = now;
     kill_all();
-    end_ = fmt::format("was killed: it had not ended {:g} s after {}", cosim::to_seconds(spec_.grace),
-                       signal_name(end_signal_));
+    end_ = with_first_killed(fmt::format("was killed: it had not ended {:g} s after {}",
+                                         cosim::to_seconds(spec_.grace), signal_name(end_signal_)));
     warn(fmt::format("{} {}", spec_.program, end_));
 }
 
 std::string LinuxNode::finish() {
     if (starts_ == 0) end_ = "was not started: the run ended before its time";
+    notice_first_killed(until_);
     if (!clients_.empty()) {
         note_devices();
-        end_ = "was ended with the run";
+        end_ = with_first_killed("was ended with the run");
         kill_all();
     }
     const wire::TtyCounters tty = kernel_.tty().counters();

@@ -244,6 +244,7 @@ void LinuxNode::client_ended(Client& client, Time now) {
     } else {
         send_signal(static_cast<std::uint32_t>(ended.parent), SIGCHLD, now);
     }
+    if (slot == 0 && !clients_.empty()) first_ended(now);
     changed(nullptr, now);
     if (signalled) signalled_ended(now);
     if (clients_.empty()) program_ended(now);

@@ -139,6 +139,13 @@ bool Process::is_gone() const {
     return poll(&entry, 1, 0) == 1;
 }
 
+bool Process::was_killed() const {
+    siginfo_t ended{};
+    return !ended_ && entry_.host > 0 &&
+           waitid(P_PID, static_cast<id_t>(entry_.host), &ended, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+           ended.si_pid != 0 && ended.si_code != CLD_EXITED;
+}
+
 Heard Process::hear(double watchdog, wire::Request& request, std::string& data) {
     while (true)
         if (const auto heard = try_hear(watchdog, true, request, data)) return *heard;

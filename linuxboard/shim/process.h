@@ -32,6 +32,8 @@ class Process {
     /// The same, but nothing if none has come yet; with `wait` after some milliseconds at the latest.
     std::optional<Heard> try_hear(double watchdog, bool wait, wire::Request& request, std::string& data);
 
+    /// By a signal, and nobody has listened to it since.
+    bool was_killed() const;
     /// SIGKILL, for the whole group of a process that leads one.
     void kill();
     /// "exited with status 3", "was killed by SIGSEGV (Segmentation fault)"; after its end.

@@ -2,8 +2,10 @@
 
 #include "cosim/core/cores.h"
 #include "tests/linuxboard/bench.h"
+#include "tests/scratch.h"
 
 #include <catch2/catch.hpp>
+#include <fmt/format.h>
 
 #include <sched.h>
 #include <sys/resource.h>
@@ -12,11 +14,13 @@
 #include <algorithm>
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 
 using namespace puckloop;
 using namespace puckloop::cosim;
 using namespace puckloop::tests;
 using Catch::Contains;
+using Catch::EndsWith;
 using Catch::StartsWith;
 
 namespace {
@@ -195,6 +199,45 @@ TEST_CASE("a wrapper that dies of the end signal is no cause for a warning") {
     CHECK(bench.node().wound_up() < 320 * kMillisecond);
     CHECK(bench.sent() == "RR");
     CHECK(bench.node().warnings().empty());
+}
+
+TEST_CASE("a first process that is killed while another one lives is named, whoever killed it") {
+    SECTION("one of its own, and the other one goes on") {
+        Bench bench(shell("while sleep 0.1; do echo on; done & sleep 0.25; kill -9 $$"));
+        bench.run(kSecond);
+        REQUIRE(bench.node().warnings().size() == 1);
+        CHECK_THAT(bench.node().warnings().front(),
+                   StartsWith("/bin/sh: its first process was killed by SIGKILL (Killed) at 0.2") &&
+                       EndsWith(" more went on"));
+        CHECK_THAT(bench.log(), Contains("on\non\non\non\n"));
+        bench.node().wind_up(2 * kSecond, 0);
+        CHECK_THAT(
+            bench.node().finish(),
+            Contains("was ended with the run; its first process was killed by SIGKILL (Killed) at 0.2"));
+    }
+    SECTION("somebody outside, while it waits in simulated time") {
+        const std::string number = scratch_path("first");
+        Bench bench(shell("read first rest < /proc/self/stat; echo $first > " + number +
+                          "; sleep 50 & sleep 50; true"));
+        bench.run(100 * kMillisecond);
+        pid_t first = 0;
+        std::ifstream(number) >> first;
+        REQUIRE(first > 1);
+        REQUIRE(first != getpid());
+        REQUIRE(kill(first, SIGKILL) == 0);
+        usleep(100'000);
+        bench.node().wind_up(200 * kMillisecond, 0);
+        CHECK_THAT(fmt::format("{}", fmt::join(bench.node().warnings(), "\n")),
+                   Contains("its first process was killed by SIGKILL (Killed) at 0.2") && Contains("2 more"));
+    }
+    SECTION("nobody: it was asked to end with the run") {
+        Bench bench(shell("sleep 50 & sleep 50; true"));
+        bench.run(200 * kMillisecond);
+        bench.node().wind_up(200 * kMillisecond, 0);
+        bench.run(3 * kSecond);
+        for (const std::string& warning : bench.node().warnings())
+            CHECK_THAT(warning, !Contains("first process"));
+    }
 }
 
 TEST_CASE("semaphores shared between processes wait in simulated time") {
