@@ -301,6 +301,8 @@ struct Chip::Parts {
     // Registers and modules at a reset; the core does its own and RCON.
     void reset(ResetCause cause) {
         const bool power_on = cause == ResetCause::PowerOn;
+        // What was converted until now draws its noise, wherever the run was looked at last.
+        if (adc12 && core.cycle() > 0) adc12->catch_up(core.cycle() - 1);
         const std::uint16_t rcon = sfr.raw(sfr::RCON);
         sfr.reset_values();
         disable->restore();
