@@ -260,6 +260,7 @@ struct Chip::Parts {
             parts.core.end_run();
             if (parts.dci) parts.dci->rate_changed();
         };
+        oscillator->on_doze = [](void* owner) { static_cast<Parts*>(owner)->core.doze_changed(); };
         core.set_cycle_rate(clock.hertz());
         core.set_reset_hook([this](ResetCause cause) { reset(cause); });
         if (low_voltage) core.set_rcon_hook([this] { low_voltage->changed(clock.hertz()); });
@@ -444,7 +445,7 @@ struct Chip::Parts {
     void check_times(Archive& archive) const {
         // An instruction is never cut in two, so the core may be somewhat ahead.
         constexpr Cycle kMostAhead = 1000;
-        constexpr Time kAhead = 10 * cosim::kMillisecond;
+        constexpr Time kAhead = 100 * cosim::kMillisecond;
         const Time reached = clock.time_of(core.cycle());
         archive.check(reached >= now && reached - now <= kAhead, "core and clock at different times");
         archive.check(later_cycle(events.next(), kMostAhead) >= core.cycle(), "an event long overdue");

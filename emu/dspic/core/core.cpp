@@ -170,6 +170,13 @@ void Core::request_reset(ResetCause cause) {
     dspic::request_reset(*machine_, cause);
 }
 
+void Core::doze_changed() {
+    dspic::doze_changed(*machine_);
+}
+Cycle Core::cpu_cycle() const {
+    return machine_->doze.ratio;
+}
+
 Cycle Core::cycle() const {
     return machine_->st.cycle;
 }

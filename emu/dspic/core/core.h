@@ -157,6 +157,10 @@ class Core {
     void set_rcon_hook(std::function<void()> hook);
     /// Instruction rate in hertz: the watchdog and flash timing need it. Call at each clock change.
     void set_cycle_rate(double hertz);
+    /// 33FJ: CLKDIV has been written, or a reset has set it: the CPU's clock follows (Doze).
+    void doze_changed();
+    /// Cycles in a CPU cycle: 1 but in Doze.
+    Cycle cpu_cycle() const;
     /// What the oscillator takes after Sleep, from now on.
     void set_wake_time(double seconds);
     CoreObserver& observer();

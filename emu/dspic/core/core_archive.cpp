@@ -15,6 +15,8 @@ namespace {
 constexpr std::uint32_t kWordMask = 0xFFFFFF;
 constexpr Cycle kLongestExtra = 100;  ///< cycles that PSV reads of one instruction add, generously
 
+constexpr Cycle kSlowest = 128;  ///< DOZE = 111
+
 /// Words up to the last one that is not 0. Looking for it costs a fraction of copying what no program uses.
 std::size_t used_words(std::span<const std::uint16_t> ram) {
     static constexpr std::array<std::uint16_t, 512> kZeros{};
@@ -52,7 +54,9 @@ void list(Archive& archive, Machine& m) {
     archive.bounded(m.mode, PowerMode::Run, PowerMode::Sleep);
     archive(m.stall_end, m.held, m.wake_seconds, m.wake_end);
     archive.bounded(m.cycle_rate, 0.0, 1e10);
-    archive(m.watchdog_cleared);
+    archive(m.watchdog_cleared, m.doze.on, m.doze.recovers);
+    archive.bounded(m.doze.ratio, 1, kSlowest);
+    archive.bounded(m.doze.owed, 0, kLongestExtra);
     archive(m.nvm.address, m.nvm.key_step);
     archive.fixed(m.nvm.latch);
     if constexpr (!Archive::kRaw) {  // see ProgramUndo

@@ -107,7 +107,8 @@ std::uint16_t read_register(void* owner, std::uint16_t address) {
     case sfr::XBREV:
         return st.xbrev;
     case sfr::DISICNT:
-        return static_cast<std::uint16_t>(st.disi_end > st.cycle ? st.disi_end - st.cycle : 0);
+        return static_cast<std::uint16_t>(st.disi_end > st.cycle ? (st.disi_end - st.cycle) / m.doze.ratio
+                                                                 : 0);
     default:
         return 0;
     }
@@ -151,7 +152,7 @@ void write_control(Machine& m, std::uint16_t value, std::uint16_t mask) {
 /// A write while nonzero extends or cuts; a write while 0 has no effect.
 void write_disicnt(Machine& m, std::uint16_t value) {
     if (m.st.disi_end <= m.st.cycle) return;
-    m.st.disi_end = m.st.cycle + (value & 0x3FFFu);
+    m.st.disi_end = m.st.cycle + (value & 0x3FFFu) * m.doze.ratio;
     reconsider(m, m.st.cycle);
 }
 

@@ -79,7 +79,7 @@ void execute(Machine& m) {
         execute_observed(m);
     else if (m.st.sr & sr::RA)
         run_repeated(m);
-    else if (m.translated.on)
+    else if (m.translated.on && !m.doze.on)
         run_translated(m);
     else
         run_interpreted(m);
@@ -104,7 +104,8 @@ void enter_interrupt(Machine& m) {
 
     const std::uint32_t table = m.irq.alternate_table() ? m.device.aivt : m.device.ivt;
     const std::uint32_t handler = m.program[table / 2 + static_cast<std::uint32_t>(taken.vector)];
-    const Cycle start = service_start(m.since, m.st.cycle);
+    const Cycle start =
+        m.doze.on ? service_start(m.since, m.st.cycle, m.doze.ratio) : service_start(m.since, m.st.cycle);
     m.eligible = false;
     reconsider(m, m.st.cycle);
     m.st.cycle = start;
@@ -113,7 +114,8 @@ void enter_interrupt(Machine& m) {
 
 /// The interrupt first in line, its routine included, in one step, if that is exact and over by `horizon`.
 bool pass_service(Machine& m, Cycle horizon) {
-    if (!m.skip_idle || m.st.sr & sr::RA || m.st.disi_end > m.st.cycle || m.observer.on_interrupt)
+    if (!m.skip_idle || m.doze.on || m.st.sr & sr::RA || m.st.disi_end > m.st.cycle ||
+        m.observer.on_interrupt)
         return false;
     const IsrSummary* summary = isr_summary(m, m.irq.first().vector);
     if (!summary || summary->uses & m.watch & 0xFFFF0000) return false;
@@ -150,6 +152,29 @@ void pass_stop(Machine& m) {
     op.marks |= kStop;
     forget_loops(m);
     decode(m, op);
+}
+
+/// One instruction of a slow CPU, or the one that makes it slow.
+void execute_dozing(Machine& m) {
+    const Cycle began = m.st.cycle;
+    m.limit = std::min(m.limit, began + 1);
+    if (m.pass_pc && *m.pass_pc == m.pc_of(m.current))
+        pass_stop(m);
+    else
+        execute(m);
+    stretch(m, began);
+}
+
+/// Idle or Sleep is over: the CPU's clock starts, and what ended it is taken without another instruction.
+void wake(Machine& m) {
+    leave_power_save(m);
+    if (!m.doze.on) {
+        if (m.eligible && m.since >= m.st.cycle) m.since = m.st.cycle == 0 ? 0 : m.st.cycle - 1;
+        return;
+    }
+    if (m.eligible) recover(m);
+    m.st.cycle += m.doze.ratio - 1;
+    if (m.eligible) m.since = std::min(m.since, m.st.cycle - m.doze.ratio);
 }
 
 /// What ends Sleep has come: the clock needs its time first.
@@ -241,6 +266,7 @@ void perform_reset(Machine& m, ResetCause cause) {
     clear_watchdog(m);
     m.eligible = m.disi_waits = m.stopped = false;
     m.late = 0;
+    m.doze.owed = 0;
     m.stall_end = 0;
     m.limit = 0;
     m.pass_pc.reset();
@@ -258,6 +284,10 @@ Core::Outcome run_until(Machine& m, Cycle until) {
             if (m.reset_request) continue;
         }
         if (m.end_requested || m.st.cycle >= until) return Core::Outcome::Until;
+        if (m.doze.owed > 0) [[unlikely]] {
+            pay_cycle(m);
+            continue;
+        }
         const Cycle quiet = std::min(until, m.events.next());
         if (m.mode != PowerMode::Run) {
             if (!m.irq.any_enabled_flag()) {
@@ -268,15 +298,15 @@ Core::Outcome run_until(Machine& m, Cycle until) {
                 m.st.cycle = std::min(quiet, m.wake_end);
                 continue;
             }
-            leave_power_save(m);
-            if (m.eligible && m.since >= m.st.cycle) m.since = m.st.cycle == 0 ? 0 : m.st.cycle - 1;
+            wake(m);
+            if (m.doze.on) continue;
         }
         if (m.held || m.stall_end > m.st.cycle) {
             m.st.cycle = m.held ? quiet : std::min(quiet, m.stall_end);
             continue;
         }
         if (m.disi_waits && m.st.cycle >= m.st.disi_end) reconsider(m, m.st.disi_end);
-        if (m.eligible && m.since < m.st.cycle) {
+        if (m.eligible && m.since + m.doze.ratio <= m.st.cycle) {
             if (!pass_service(m, quiet)) enter_interrupt(m);
             continue;
         }
@@ -285,11 +315,18 @@ Core::Outcome run_until(Machine& m, Cycle until) {
             m.limit = m.st.cycle + 1;
         else if (m.disi_waits)
             m.limit = std::min(m.limit, m.st.disi_end);
-        if (m.pass_pc && *m.pass_pc == m.pc_of(m.current)) {
-            pass_stop(m);
-            continue;
+        if (m.doze.on) {
+            execute_dozing(m);
+        } else {
+            if (m.pass_pc && *m.pass_pc == m.pc_of(m.current)) {
+                pass_stop(m);
+                if (m.doze.on) stretch(m, m.doze.entry);
+                continue;
+            }
+            execute(m);
+            if (m.doze.on) [[unlikely]]
+                stretch(m, m.doze.entry);
         }
-        execute(m);
         if (m.stopped) {
             m.stopped = false;
             m.pass_pc = m.pc_of(m.current);

@@ -27,15 +27,18 @@ inline constexpr std::uint32_t stacked_pc(std::uint16_t low, std::uint16_t high)
     return (high & std::uint32_t{kStackedPcHigh}) << 16 | (low & 0xFFFEu);
 }
 
+inline constexpr Cycle kServiceLatency = 5, kEntryOverhead = 4, kShortestEntry = 2;
+
 /// First cycle of the service routine of an exception entered between instructions at cycle `now`, its flag
 /// set at cycle `since`: five cycles after the flag; at least four after an instruction that ran on for
 /// longer than three of them.
 inline constexpr Cycle service_start(Cycle since, Cycle now) {
-    constexpr Cycle kLatency = 5;
-    constexpr Cycle kEntryOverhead = 4;
-    constexpr Cycle kShortestEntry = 2;
-    const Cycle start = since + kLatency;
+    const Cycle start = since + kServiceLatency;
     return start < now + kShortestEntry ? now + kEntryOverhead : start;
+}
+/// The same in Doze, where `ratio` cycles are one of the CPU; `since` lies in a CPU cycle before `now`'s.
+inline constexpr Cycle service_start(Cycle since, Cycle now, Cycle ratio) {
+    return now + ratio * (service_start(0, (now - since) / ratio) - (now - since) / ratio);
 }
 
 }  // namespace puckloop::dspic

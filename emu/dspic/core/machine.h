@@ -116,6 +116,13 @@ struct Machine {
     double wake_seconds = 0.0;  ///< from what ends Sleep to the first instruction
     Cycle wake_end = kNoCycle;  ///< the oscillator starts, until then
     double cycle_rate = 0.0;    ///< 0: not told yet
+    struct Doze {
+        bool on = false;        ///< CLKDIV<DOZEN>
+        bool recovers = false;  ///< CLKDIV<ROI>
+        Cycle ratio = 1;        ///< cycles in a CPU cycle
+        Cycle entry = 0;        ///< where the instruction began that set DOZEN
+        Cycle owed = 0;         ///< CPU cycles that the instruction under way still takes
+    } doze;
     EventQueue::Slot watchdog_slot = 0;
     Cycle watchdog_cleared = 0;
 
@@ -215,6 +222,16 @@ void enter_power_save(Machine& m, PowerMode mode);
 void leave_power_save(Machine& m);
 std::uint16_t& rcon_register(Machine& m);
 void schedule_watchdog(Machine& m);
+// doze.cpp
+/// CLKDIV was written or reset.
+void doze_changed(Machine& m);
+/// An exception is accepted at the end of the present CPU cycle: with ROI it ends Doze.
+void recover(Machine& m);
+/// The instruction that began at `began` is over: its cycles are the CPU's, and Machine::st counts the
+/// chip's.
+void stretch(Machine& m, Cycle began);
+/// One CPU cycle of those that the instruction under way still takes.
+void pay_cycle(Machine& m);
 // idle_loops.cpp
 /// At a taken backward branch: leaps over iterations of a pure loop if it can.
 void try_skip(Machine& m, const Op* branch, const Op* head);

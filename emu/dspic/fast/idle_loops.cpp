@@ -147,7 +147,7 @@ void publish_loops(Machine& m) {
 
 void try_skip(Machine& m, const Op* branch, const Op* head) {
     note_arrival(m, branch, head);
-    if (!m.skip_idle) return;
+    if (!m.skip_idle || m.doze.on) return;
     IdleLoops::Branch& known = branch_at(m, static_cast<std::size_t>(branch - m.code));
     m.loop_undo->note(known);
     if (std::uint16_t& wait = m.skip->waits[known.place]; wait > 0) {

@@ -21,9 +21,10 @@ struct OscconKeys {
     }
 
     /// A byte is written to the half at cycle `now`: true if it is the value that the keys let through.
-    bool opens(std::uint8_t value, Cycle now) {
+    /// `cpu_cycle`: cycles in one of the CPU.
+    bool opens(std::uint8_t value, Cycle now, Cycle cpu_cycle = 1) {
         constexpr Cycle kDistance = 2;  // the writes come from successive instructions
-        const bool in_time = now - last <= kDistance;
+        const bool in_time = now - last <= kDistance * cpu_cycle;
         last = now;
         if (seen == 2 && in_time) {
             seen = 0;
@@ -65,6 +66,8 @@ class ClockControl {
     /// From what ends Sleep to the first instruction.
     virtual double wake_seconds() const = 0;
 
+    /// 33FJ: called after each change of CLKDIV, resets included; may stay empty.
+    void (*on_doze)(void* owner) = nullptr;
     /// Called after each change of the instruction rate.
     void (*on_rate)(void* owner, double hertz) = nullptr;
     void* on_rate_owner = nullptr;

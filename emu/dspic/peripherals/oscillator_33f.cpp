@@ -73,6 +73,12 @@ void Oscillator33F::reset(bool power_on) {
     std::uint16_t& osccon = around_.sfr.raw(sfr33::OSCCON);
     osccon = static_cast<std::uint16_t>(running_ << 8);
     select(running_, around_.now);
+    if (on_doze) on_doze(on_rate_owner);
+}
+
+Cycle Oscillator33F::cpu_cycle() const {
+    const std::uint16_t clkdiv = around_.sfr.raw(sfr33::CLKDIV);
+    return clkdiv & kCLKDIV["DOZEN"] ? Cycle{1} << kCLKDIV["DOZE"].of(clkdiv) : 1;
 }
 
 double Oscillator33F::pll(double input) const {
@@ -168,13 +174,13 @@ void Oscillator33F::write_osccon(void* owner, std::uint16_t address, std::uint16
     const bool locked = (osccon & kOSCCON["CLKLOCK"]) && (self.words_.fosc & kMonitorOff);
     if (mask == 0xFF00) {
         self.state_.low = kLowKeys;
-        if (self.state_.high.opens(static_cast<std::uint8_t>(value >> 8), now) && !locked)
+        if (self.state_.high.opens(static_cast<std::uint8_t>(value >> 8), now, self.cpu_cycle()) && !locked)
             osccon = merge(osccon, value, kHighWritable);
         return;
     }
     if (mask != 0x00FF) return;  // word writes do not open it
     self.state_.high = kHighKeys;
-    if (!self.state_.low.opens(static_cast<std::uint8_t>(value), now) || locked) return;
+    if (!self.state_.low.opens(static_cast<std::uint8_t>(value), now, self.cpu_cycle()) || locked) return;
     const std::uint16_t old = osccon;
     osccon = merge(osccon, value, kLowWritable);
     if (!(value & kOSCCON["CF"])) assign(osccon, kOSCCON["CF"], false);
@@ -193,6 +199,7 @@ void Oscillator33F::write_divider(void* owner, std::uint16_t address, std::uint1
     Oscillator33F& self = *static_cast<Oscillator33F*>(owner);
     self.around_.sfr.store(address, value, mask);
     self.change_rate(self.clock_, self.around_.now + 1, self.source_hertz(self.running_) / kClocksPerCycle);
+    if (address == sfr33::CLKDIV && self.on_doze) self.on_doze(self.on_rate_owner);
 }
 
 void Oscillator33F::switch_due(void* owner, Cycle due) {

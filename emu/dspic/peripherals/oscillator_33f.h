@@ -9,7 +9,8 @@
 //  2. A switch between the two PLL modes, which the sheet forbids, is ignored.
 //  3. Writing CLKDIV or PLLFBD while the PLL runs changes the rate at once, as OSCTUN does; PLLPOST 2
 //  (reserved) divides by 4.
-//  4. DOZE is stored: the CPU is not slowed down. LPOSCEN is stored, too. The fail-safe monitor acts at once.
+//  4. LPOSCEN is stored. The fail-safe monitor acts at once. DOZE, DOZEN and ROI are the core's
+//  (core/doze.cpp).
 //  5. OSCTUN moves the RC oscillator by its nominal 0.375 % a step (expected values of errata DS80280G, item
 //  42), which silicon leaves between 16 and 31 and between -16 and -1; programming times stay nominal.
 
@@ -55,6 +56,7 @@ class Oscillator33F : public ClockControl {
     double frc_hertz() const;
     double source_hertz(std::uint8_t source) const;
     double pll(double input) const;
+    Cycle cpu_cycle() const;
 
     Surroundings around_;
     cosim::ClockDomain& clock_;

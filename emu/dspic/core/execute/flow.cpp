@@ -60,7 +60,7 @@ const Op* repeat_w(Machine& m, const Op* op) {
 
 /// Priorities 1 to 6 are held for count + 1 cycles, this one included.
 const Op* disable_interrupts(Machine& m, const Op* op) {
-    m.st.disi_end = m.st.cycle + 1 + op->k;
+    m.st.disi_end = m.st.cycle + (Cycle{1} + op->k) * m.doze.ratio;
     reconsider(m, m.st.cycle);
     return op + 1;
 }
