@@ -26,6 +26,15 @@ bool bit_level(const UartFrame& frame, int index) {
 
 }  // namespace
 
+UartFrame line_level(bool high, Time from, Time bit) {
+    UartFrame frame;
+    frame.start = from;
+    frame.bit_period = bit;
+    frame.is_break = 1;
+    frame.line = high ? cosim::kLineInverted : cosim::kLineRestsLow;
+    return frame;
+}
+
 void UartLine::add(const UartFrame& frame) {
     // Sound frames come in order, or overlap as they came.
     auto place = frames_.end();

@@ -14,6 +14,10 @@
 
 namespace puckloop::protocols {
 
+/// No character but a level, from `from` on up to whatever comes next. `bit`: the bit time of
+/// its sender, whose frames are known as late as this level.
+cosim::UartFrame line_level(bool high, cosim::Time from, cosim::Time bit);
+
 /// Frames in order of their starts. Where two overlap, the later one has the line, of two that begin together
 /// the one that was added later.
 class UartLine {

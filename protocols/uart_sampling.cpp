@@ -1,5 +1,7 @@
 #include "protocols/uart_sampling.h"
 
+#include "protocols/irda.h"
+
 #include <algorithm>
 #include <bit>
 
@@ -20,8 +22,11 @@ Time glitch_start(const UartFrame& frame) {
 Time glitch_end(const UartFrame& frame) {
     return edge_of(frame, (Time{frame.glitch_at} + frame.glitch_width) * cosim::kNanosecond);
 }
+bool has_glitch(const UartFrame& frame) {
+    return frame.glitch_width != 0 && !is_infrared(frame);
+}
 bool in_glitch(const UartFrame& frame, Time time) {
-    return frame.glitch_width != 0 && time >= glitch_start(frame) && time < glitch_end(frame);
+    return has_glitch(frame) && time >= glitch_start(frame) && time < glitch_end(frame);
 }
 
 /// As the sender meant it; bit 0 is the start bit.
@@ -30,6 +35,17 @@ bool bit_is_mark(const UartFrame& frame, Time bit) {
     if (bit <= frame.data_bits) return (frame.data >> (bit - 1) & 1u) != 0;
     if (frame.parity != 0 && bit == frame.data_bits + 1) return frame.parity_bit != 0;
     return true;
+}
+
+// IrDA's pulse, in sixteenths of a bit.
+constexpr Time kPulseFrom = 7, kPulseTo = 10, kSixteenths = 16;
+
+Time pulse_edge(const UartFrame& frame, Time sixteenth) {
+    return frame.bit_period * sixteenth / kSixteenths;
+}
+
+bool in_pulse(const UartFrame& frame, Time since_bit) {
+    return since_bit >= pulse_edge(frame, kPulseFrom) && since_bit < pulse_edge(frame, kPulseTo);
 }
 
 /// The next instant at or after `from` at which the frame's line is low, or kNever.
@@ -67,7 +83,8 @@ Time frame_end(const UartFrame& frame) {
 bool line_is_mark(const UartFrame& frame, Time time) {
     if (time < frame.start) return true;
     if (time >= frame_end(frame)) return (frame.line & cosim::kLineRestsLow) == 0;
-    const bool meant = bit_is_mark(frame, (time - frame.start) / frame.bit_period);
+    bool meant = bit_is_mark(frame, (time - frame.start) / frame.bit_period);
+    if (is_infrared(frame)) meant = meant || !in_pulse(frame, (time - frame.start) % frame.bit_period);
     const bool inverted = (frame.line & cosim::kLineInverted) != 0;
     return (meant != inverted) != in_glitch(frame, time);
 }
@@ -76,8 +93,13 @@ Time next_change(const UartFrame& frame, Time time) {
     if (time < frame.start) return frame.start;
     const Time end = frame_end(frame);
     if (time >= end) return cosim::kNever;
-    Time next = frame.start + ((time - frame.start) / frame.bit_period + 1) * frame.bit_period;
-    if (frame.glitch_width != 0)
+    const Time bit = frame.start + (time - frame.start) / frame.bit_period * frame.bit_period;
+    Time next = bit + frame.bit_period;
+    if (is_infrared(frame))
+        for (const Time sixteenth : {kPulseFrom, kPulseTo})
+            if (const Time edge = bit + pulse_edge(frame, sixteenth); edge > time)
+                next = std::min(next, edge);
+    if (has_glitch(frame))
         for (const Time edge : {glitch_start(frame), glitch_end(frame)})
             if (edge > time) next = std::min(next, edge);
     return std::min(next, end);

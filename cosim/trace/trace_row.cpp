@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "cosim/trace/can_row.h"
+#include "protocols/irda.h"
 
 #include <fmt/format.h>
 
@@ -85,13 +86,15 @@ void put_phase(std::string& out, const I2cPhase& phase) {
     if (phase.kind == I2cPhaseKind::Read) out += phase.ack ? "+ack" : "+nack";
 }
 
-constexpr std::string_view kGlitch = " glitch ", kRestsLow = " low", kInverted = " inverted";
+constexpr std::string_view kGlitch = " glitch ", kRestsLow = " low", kInverted = " inverted",
+                           kPulses = " irda";
 
-/// What a damaged line did to a frame.
+/// What a damaged line did to a frame, or one of another polarity or coding.
 void put_line(std::string& out, const UartFrame& frame) {
+    if (protocols::is_infrared(frame)) out += kPulses;
     if (frame.line & kLineInverted) out += kInverted;
     if (frame.line & kLineRestsLow) out += kRestsLow;
-    if (frame.glitch_width != 0)
+    if (frame.glitch_width != 0 && !protocols::is_infrared(frame))
         out += fmt::format("{}{}+{}ns", kGlitch, frame.glitch_at, frame.glitch_width);
 }
 
@@ -234,13 +237,17 @@ void take_line(std::string& format, UartFrame& frame) {
         if (std::string_view(next, end) != "ns" || frame.glitch_width == 0) return;
         format.resize(at);
     }
-    const auto take = [&](std::string_view word, std::uint8_t flag) {
-        if (!format.ends_with(word)) return;
+    const auto ends = [&](std::string_view word) {
+        if (!format.ends_with(word)) return false;
         format.resize(format.size() - word.size());
-        frame.line |= flag;
+        return true;
+    };
+    const auto take = [&](std::string_view word, std::uint8_t flag) {
+        if (ends(word)) frame.line |= flag;
     };
     take(kRestsLow, kLineRestsLow);
     take(kInverted, kLineInverted);
+    if (ends(kPulses)) protocols::set_infrared(frame);
 }
 
 UartFrame parse_frame(const Parser& in) {

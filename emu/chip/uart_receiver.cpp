@@ -22,7 +22,20 @@ void UartReceiver::start(Cycle at) {
 }
 
 void UartReceiver::frame(const UartFrame& frame) {
+    if (switched_at_ != kNotSwitched) {
+        if (frame.start <= switched_at_) line_.clear();  // it was on its way: this is what the line is
+        switched_at_ = kNotSwitched;
+    }
     line_.add(frame);
+}
+
+void UartReceiver::set_rest(bool high, Cycle at) {
+    const Time time = clock_.time_of(at);
+    const bool was_high = line_.level(time);
+    line_.clear();
+    if (!was_high) line_.add(protocols::line_level(false, time - 1, 1));
+    if (high != was_high) line_.add(protocols::line_level(high, time, 1));
+    switched_at_ = time;
 }
 
 bool UartReceiver::sample(const Format& format, Cycle middle, bool exact) const {

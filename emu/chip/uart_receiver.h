@@ -55,6 +55,11 @@ class UartReceiver {
     void start(Cycle at);
     /// A frame on the line; frames come in order of their starts.
     void frame(const cosim::UartFrame& frame);
+    /// Something between line and receiver was switched at cycle `at`: from there on it sees the line at
+    /// rest, or what is left of the frames on it, as this level; frames to come are handed in as it sees
+    /// them.
+    void set_rest(bool high, Cycle at);
+    bool level(Cycle at) const { return line_.level(clock_.time_of(at)); }
     /// Nobody listens at cycle `at`: what has passed by then is of no use.
     void pass(Cycle at) { line_.forget_before(clock_.time_of(at)); }
     /// The next character, if all that it depends on is known at cycle `now`.
@@ -66,6 +71,7 @@ class UartReceiver {
     void state(Archive& archive) {
         archive(line_, ask_again_);
         archive.bounded(listening_from_, 0, cosim::kNever);
+        archive.bounded(switched_at_, kNotSwitched, cosim::kNever);
     }
 
   private:
@@ -77,6 +83,8 @@ class UartReceiver {
     protocols::UartLine line_;
     cosim::Time listening_from_ = 0;
     Cycle ask_again_ = kNoCycle;
+    static constexpr cosim::Time kNotSwitched = -1;
+    cosim::Time switched_at_ = kNotSwitched;  ///< the level since then is a guess, until a frame begins
 };
 
 }  // namespace puckloop::chip

@@ -46,12 +46,18 @@ void UartLine::deliver() {
     target_.uart_receive(unit_, frame);
 }
 
+protocols::UartReceiver UartLine::receiver() const {
+    const cosim::Time partner = end_ ? end_->bit_period() : 0;
+    return {.bit_period = partner != 0 ? partner : bit_period_};
+}
+
 void UartLine::sent(const cosim::UartFrame& frame) {
     ++from_chip_;
-    const cosim::Time partner = end_ ? end_->bit_period() : 0;
-    const protocols::UartReceiver receiver{.bit_period = partner != 0 ? partner : bit_period_};
-    for (const auto& character : protocols::sample_frame(frame, receiver, heard_until_)) {
-        heard_until_ = character.time;
+    heard(listener_.add(frame, receiver(), protocols::stop_bit_start(frame)));
+}
+
+void UartLine::heard(const std::vector<protocols::ReceivedCharacter>& characters) {
+    for (const auto& character : characters) {
         const auto byte = static_cast<std::uint8_t>(character.data);
         if (character.framing_error) ++bad_frames_;
         log(character.start, "tx", byte,
@@ -64,6 +70,7 @@ void UartLine::sent(const cosim::UartFrame& frame) {
 
 void UartLine::poll(cosim::Time now) {
     watch_receiver(now);
+    if (listener_.ask_again() <= now) heard(listener_.pass(receiver(), now));
     if (end_) end_->poll(now, listening_since_);
 }
 

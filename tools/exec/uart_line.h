@@ -3,11 +3,13 @@
 // at the one that the end's partner has set (a pty).
 
 #include "cosim/core/message.h"
+#include "protocols/uart_line.h"
 #include "tools/exec/ends/uart_end.h"
 #include "tools/exec/logs.h"
 #include "tools/exec/targets/target.h"
 
 #include <memory>
+#include <vector>
 
 namespace puckloop::exec {
 
@@ -36,6 +38,8 @@ class UartLine {
   private:
     cosim::Time start_of_next() const;
     cosim::Time period_of_next() const;
+    protocols::UartReceiver receiver() const;
+    void heard(const std::vector<protocols::ReceivedCharacter>& characters);
     void watch_receiver(cosim::Time now);
     void log(cosim::Time time, const char* direction, int byte, const char* error);
 
@@ -44,8 +48,8 @@ class UartLine {
     Target& target_;
     Logs* logs_;
     std::unique_ptr<UartEnd> end_;
-    cosim::Time free_ = 0;         ///< when the line towards the chip is idle again
-    cosim::Time heard_until_ = 0;  ///< when the bench's receiver was done with the last character
+    cosim::Time free_ = 0;  ///< when the line towards the chip is idle again
+    protocols::UartListener listener_;
     cosim::Time listening_since_ = cosim::kNever;
     std::size_t resets_ = 0;
     dspic::UartCounters counters_;

@@ -42,8 +42,8 @@ constexpr TimerPlace kTimers[] = {
 };
 
 constexpr Uart::Setup kUarts[] = {
-    {1, sfr::U1MODE, irq::U1RX, irq::U1TX, F, 2, 3, true, irq::U1E},
-    {2, sfr::U2MODE, irq::U2RX, irq::U2TX, F, 4, 5, true, irq::U2E},
+    {1, sfr::U1MODE, irq::U1RX, irq::U1TX, F, 2, 3, true, irq::U1E, D, 14, 15},
+    {2, sfr::U2MODE, irq::U2RX, irq::U2TX, F, 4, 5, true, irq::U2E, F, 12, 13},
 };
 
 constexpr double kI2cFixedHertz = 10'000'000.0;

@@ -39,6 +39,9 @@ Uart::Uart(const Surroundings& around, const Setup& setup, const cosim::ClockDom
     around_.sfr.hook(at(4), this, nullptr, write_txreg);
     around_.sfr.hook(at(6), this, read_rxreg, write_rxreg);
     around_.sfr.hook(at(8), this, nullptr, write_brg);
+    if (!setup_.family_33f) return;
+    level_slot_ = around.events.add(this, level_due);
+    ports_.listen(setup_.flow_port, setup_.cts_pin, this, cts_changed);
 }
 
 void Uart::reset() {
@@ -46,6 +49,9 @@ void Uart::reset() {
     state_.phase = around_.now;
     around_.events.cancel(transmit_slot_);
     around_.events.cancel(receive_slot_);
+    if (!setup_.family_33f) return;
+    update_rest(around_.now);
+    update_polarity(around_.now);
 }
 
 bool Uart::enabled() const {
@@ -53,8 +59,11 @@ bool Uart::enabled() const {
 }
 
 std::optional<cosim::UartFrame> Uart::begun() const {
-    if (!state_.shifting || state_.stop_begun) return std::nullopt;
-    return state_.frame;
+    const bool shifting = state_.shifting && !state_.stop_begun;
+    if (!line_.level) return shifting ? std::optional(state_.frame) : std::nullopt;
+    const bool frame_first =
+        shifting && protocols::stop_bit_start(state_.frame) < protocols::stop_bit_start(*line_.level);
+    return frame_first ? state_.frame : *line_.level;
 }
 
 std::uint32_t Uart::ticks_per_bit() const {
@@ -105,12 +114,13 @@ void Uart::lend_pins() {
     if (!enabled()) {
         ports_.give_back(setup_.port, rx | tx);
     } else if (sta() & kUxSTA["UTXEN"]) {
-        const bool low = (sta() & kUxSTA["UTXBRK"]) && !setup_.family_33f;
+        const bool low = setup_.family_33f ? idles_low() : (sta() & kUxSTA["UTXBRK"]) != 0;
         ports_.lend(setup_.port, rx | tx, tx, low ? 0 : tx);
     } else {
         ports_.lend(setup_.port, rx, 0, 0);
         ports_.give_back(setup_.port, tx);
     }
+    if (setup_.family_33f) update_rest(around_.now + 1);
 }
 
 // ---- transmitter
@@ -118,6 +128,7 @@ void Uart::lend_pins() {
 void Uart::show_transmitter() {
     assign(sta(), kUxSTA["UTXBF"], state_.transmit.full());
     assign(sta(), kUxSTA["TRMT"], !state_.shifting && state_.transmit.count == 0);
+    if (flow_pins() != 0) show_rts(around_.now + 1);
 }
 
 void Uart::stop_transmitter() {
@@ -132,6 +143,7 @@ void Uart::begin_frame(Cycle from) {
     const bool is_break = sta() & kUxSTA["UTXBRK"];
     if (state_.held) return;
     if ((setup_.family_33f || !is_break) && state_.transmit.count == 0) return;
+    if (cts_holds()) return;
     const Cycle late = (from - state_.phase) % divisor();
     const Cycle start = from + (late ? divisor() - late : 0);
 
@@ -142,6 +154,8 @@ void Uart::begin_frame(Cycle from) {
     frame.parity = pdsel == 1 ? 2 : pdsel == 2 ? 1 : 0;
     frame.stop_bits = mode() & kUxMODE["STSEL"] ? 2 : 1;
     frame.is_break = is_break;
+    if (idles_low()) frame.line = cosim::kLineInverted | cosim::kLineRestsLow;
+    if (infrared()) protocols::set_infrared(frame);
     if (is_break && setup_.family_33f) {  // the word written is a dummy
         state_.transmit.pop();
         assign(sta(), kUxSTA["UTXBRK"], false);
@@ -176,7 +190,7 @@ void Uart::transmit_due(void* owner, Cycle due) {
         ++self.counters_.sent;
         const cosim::UartFrame frame = self.state_.frame;
         if (self.mode() & kUxMODE["LPBACK"]) {
-            self.receiver_.frame(frame);
+            self.take_from_line(frame, due);
             self.sample(due);
         } else {
             self.pins_.uart_sent(self.setup_.unit, frame);
@@ -209,9 +223,14 @@ UartReceiver::Format Uart::format() const {
 
 void Uart::receive(const cosim::UartFrame& frame, Cycle at) {
     if (enabled() && (mode() & kUxMODE["LPBACK"])) return;
-    if ((mode() & (kUxMODE["ABAUD"] | kUxMODE["WAKE"])) && consumed(frame, at)) return;
+    if (line_.turned || line_.decodes) {
+        take_from_line(frame, at);
+    } else {
+        if ((mode() & (kUxMODE["ABAUD"] | kUxMODE["WAKE"])) && consumed(frame, at)) return;
+        if (state_.held) return;
+        receiver_.frame(frame);
+    }
     if (state_.held) return;
-    receiver_.frame(frame);
     if (enabled())
         sample(at);
     else
@@ -236,7 +255,9 @@ bool Uart::consumed(const cosim::UartFrame& frame, Cycle at) {
 void Uart::measure(const cosim::UartFrame& frame) {
     constexpr std::uint16_t kPattern = 0x55;
     constexpr int kBits = 8;
-    if (frame.is_break || frame.data_bits != kBits || frame.parity || frame.data != kPattern) return;
+    if (!is_sound(frame) || frame.is_break || frame.data_bits != kBits || frame.parity ||
+        frame.data != kPattern)
+        return;
     const Cycle first = clock_.first_cycle_at(frame.start + frame.bit_period);
     const Cycle fifth = clock_.first_cycle_at(frame.start + (kBits + 1) * frame.bit_period);
     const Cycle ticks = (fifth - first) / (kBits * ticks_per_bit());
@@ -297,6 +318,7 @@ void Uart::show_receiver() {
     assign(sta(), kUxSTA["FERR"], any && state_.receive.top().framing_error);
     assign(sta(), kUxSTA["PERR"], any && state_.receive.top().parity_error);
     if (any) rxreg() = state_.receive.top().data;
+    if (flow_pins() != 0) show_rts(around_.now + 1);
 }
 
 std::uint16_t Uart::read_rxreg(void* owner, std::uint16_t) {
@@ -318,8 +340,14 @@ void Uart::write_mode(void* owner, std::uint16_t address, std::uint16_t value, s
     const bool was_enabled = self.enabled();
     self.around_.sfr.store(address, value, mask);
     if (self.capture_) self.capture_->take_line(self.setup_.unit, self.mode() & kUxMODE["ABAUD"]);
+    if (self.setup_.family_33f) {
+        self.update_polarity(self.around_.now + (was_enabled ? 1 : 0));
+        if (was_enabled && self.enabled() && !self.state_.held) self.sample(self.around_.now);
+        if (was_enabled || self.enabled()) self.lend_pins();
+        self.show_rts(self.around_.now + 1);
+    }
     if (self.enabled() == was_enabled) return;
-    self.lend_pins();
+    if (!self.setup_.family_33f) self.lend_pins();
     if (self.enabled()) {
         self.state_.phase = self.around_.now + 1;
         self.receiver_.start(self.around_.now + 1);
@@ -340,7 +368,7 @@ void Uart::write_sta(void* owner, std::uint16_t address, std::uint16_t value, st
         self.show_receiver();
     }
     const std::uint16_t changed = old ^ self.sta();
-    if (!self.enabled() || !(changed & (kUxSTA["UTXEN"] | kUxSTA["UTXBRK"]))) return;
+    if (!self.enabled() || !(changed & (kUxSTA["UTXEN"] | kUxSTA["UTXBRK"] | kUxSTA["UTXINV"]))) return;
     self.lend_pins();
     // 33FJ: the empty transmitter asks for words as soon as it may send.
     if (self.setup_.family_33f && (changed & kUxSTA["UTXEN"]) && (self.sta() & kUxSTA["UTXEN"]))

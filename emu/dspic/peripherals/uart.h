@@ -12,7 +12,12 @@
 //     the next tick of the 16x clock.
 //  4. While UTXBRK is set the line is told to be low in whole frames, from the end of the frame in progress
 //     on. 33FJ: the next word written goes out as one such frame, and UTXBRK clears itself.
-//  5. 33FJ: UTXINV, URXINV, IREN, UEN and RTSMD are stored: polarity, IrDA and flow control pins do nothing.
+//  5. 33FJ (uart_line.cpp): a new level at rest, as UTXINV, IREN and UTXEN make it, is handed out as a frame
+//     would be, nine bits after it began; one that lasts less is not. UTXINV and IREN are taken over by the
+//     next frame, URXINV at once. IREN does nothing with BRGH = 1, for which the sheet does not have it.
+//  6. 33FJ: UxRTS is high while the FIFO is full or OERR is set, not while a character comes in; UEN = 3
+//  lends
+//     its pin to BCLK, which rests low. UxCTS is looked at when a frame would begin.
 
 #include "cosim/core/clock.h"
 #include "cosim/core/message.h"
@@ -22,6 +27,7 @@
 #include "emu/dspic/peripherals/surroundings.h"
 #include "emu/dspic/peripherals/uart_counters.h"
 #include "emu/dspic/peripherals/uart_receiver.h"
+#include "protocols/irda.h"
 
 #include <array>
 #include <cstdint>
@@ -43,6 +49,9 @@ class Uart {
         int tx_pin = 0;
         bool family_33f = false;  ///< BRGH, UTXISEL of two bits, a break of 13 bits, no first TX interrupt
         std::uint8_t error_irq = 255;  ///< 33FJ only
+        PortLetter flow_port{};        ///< 33FJ: of UxCTS and UxRTS
+        int cts_pin = 0;
+        int rts_pin = 0;
     };
     Uart(const Surroundings& around, const Setup& setup, const cosim::ClockDomain& clock, Ports& ports,
          Pins& pins);
@@ -54,7 +63,7 @@ class Uart {
     void receive(const cosim::UartFrame& frame, Cycle at);
     /// Sleep, or Idle with USIDL set: frames in progress are lost, the FIFOs stay.
     void hold(bool on);
-    /// The frame in the shift register, if its stop bit has not begun.
+    /// The frame in the shift register, if its stop bit has not begun, or the level at rest to be handed out.
     std::optional<cosim::UartFrame> begun() const;
     bool enabled() const;
     const UartCounters& counters() const { return counters_; }
@@ -62,6 +71,7 @@ class Uart {
     template <class Archive>
     void state(Archive& archive) {
         archive(state_, counters_, receiver_);
+        if (setup_.family_33f) archive(line_);
         archive.check(!state_.shifting || state_.frame.bit_period > 0, "a frame without a bit period");
     }
 
@@ -113,6 +123,19 @@ class Uart {
             archive(transmit, shifting, stop_begun, frame_end, frame, receive, sampled, held, phase);
         }
     };
+    /// 33FJ: what is between the module and its line.
+    struct LineState {
+        bool rests_low = false;                 ///< as the other side knows it
+        std::optional<cosim::UartFrame> level;  ///< the other one, to be handed out
+        bool turned = false, decodes = false;   ///< how the receiver sees the line (URXINV, IREN)
+        protocols::IrdaDecoder infrared;
+
+        template <class Archive>
+        void state(Archive& archive) {
+            archive(rests_low, level, turned, decodes, infrared);
+            archive.check(!level || level->bit_period > 0, "a level without a bit period");
+        }
+    };
 
     static std::uint16_t read_rxreg(void* owner, std::uint16_t address);
     static void write_mode(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask);
@@ -122,6 +145,8 @@ class Uart {
     static void write_brg(void* owner, std::uint16_t address, std::uint16_t value, std::uint16_t mask);
     static void transmit_due(void* owner, Cycle due);
     static void receive_due(void* owner, Cycle due);
+    static void level_due(void* owner, Cycle due);
+    static void cts_changed(void* owner, bool level, Cycle at);
 
     std::uint16_t mode_address() const { return setup_.mode; }
     std::uint16_t& mode() const { return around_.sfr.raw(setup_.mode); }
@@ -137,6 +162,16 @@ class Uart {
     bool consumed(const cosim::UartFrame& frame, Cycle at);
     void measure(const cosim::UartFrame& frame);
     void lend_pins();
+    // uart_line.cpp
+    bool infrared() const;
+    bool idles_low() const;
+    unsigned flow_pins() const;
+    bool cts_holds() const;
+    bool rts_low() const;
+    void show_rts(Cycle when);
+    void update_rest(Cycle at);
+    void update_polarity(Cycle at);
+    void take_from_line(const cosim::UartFrame& frame, Cycle at);
     void begin_frame(Cycle from);
     void stop_transmitter();
     void show_transmitter();
@@ -153,9 +188,11 @@ class Uart {
     InputCapture* capture_ = nullptr;
     UartReceiver receiver_;
     State state_;
+    LineState line_;
     UartCounters counters_;
     EventQueue::Slot transmit_slot_;
     EventQueue::Slot receive_slot_;
+    EventQueue::Slot level_slot_ = 0;  ///< 33FJ
 };
 
 }  // namespace puckloop::dspic
