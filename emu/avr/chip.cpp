@@ -15,6 +15,7 @@
 #include "emu/avr/peripherals/twi.h"
 #include "emu/avr/peripherals/usart.h"
 #include "emu/avr/peripherals/watchdog.h"
+#include "emu/avr/supply_reset.h"
 #include "emu/image/code_places.h"
 
 #include <fmt/format.h>
@@ -29,10 +30,6 @@ namespace {
 
 constexpr std::size_t kMostRecords = 1000;
 constexpr std::uint16_t kAcsr = 0x50, kMcusr = 0x54, kAssr = 0xB6, kGtccr = 0x43, kPrr0 = 0x64, kPrr1 = 0x65;
-/// The supply below which nothing runs, and how much more ends a reset (data sheet, "System and Reset
-/// Characteristics", typical).
-constexpr double kPowerOnVolts = 1.3, kHysteresisVolts = 0.05;
-
 using P = PortLetter;
 constexpr std::array<std::uint16_t, 8> kSynchronousDividers = {0, 1, 8, 64, 256, 1024, 0, 0};
 constexpr std::array<std::uint16_t, 8> kTimer2Dividers = {0, 1, 8, 32, 64, 128, 256, 1024};
@@ -130,13 +127,11 @@ struct Chip::Parts {
     Eeprom eeprom;
     Watchdog watchdog;
     SelfProgramming programming;
-    chip::HeldInterrupts held;  ///< its slot is the last: the others keep theirs
+    chip::HeldInterrupts held;  ///< its slot and the supply's are the last: the others keep theirs
+    SupplyReset supply;
     std::vector<std::uint16_t> stops;
     bool stopped = false;
     cosim::Time now = 0;
-    double supply;
-    bool held_in_reset = false;  ///< by the supply
-    ResetCause hold_cause{};
     ChipReport report;
     image::CodePlaces places;
 
@@ -177,7 +172,7 @@ struct Chip::Parts {
                    auto& controller = *static_cast<InterruptController*>(owner);
                    lost ? controller.lose(vector) : controller.release(vector);
                }),
-          supply(chosen.avcc) {
+          supply(core, events, system, fuses, clock, chosen.avcc) {
         io.hook(kGtccr, this, nullptr, &write_gtccr);
         connect_hooks();
         connect_reports();
@@ -219,9 +214,7 @@ struct Chip::Parts {
         system.jtag_changed = [this] { lend_to_jtag(); };
         system.pull_ups_changed = [this] { ports.refresh(); };
         system.quiet_conversion = [this] { adc.quiet(); };
-        system.brown_out_on = [this] {
-            if (supply < lowest_supply()) core.request_reset(ResetCause::BrownOut);
-        };
+        system.brown_out_on = [this] { supply.detector_on(); };
         system.rate_changes = [this](bool changed) {
             synchronise_timers();
             watchdog.rate_changes(changed);
@@ -291,7 +284,7 @@ struct Chip::Parts {
             keep(report.warnings, {std::string(text), 2u * pc});
         };
         core.observer().on_reset = [this](ResetCause cause, std::uint16_t pc, Cycle cycle) {
-            if (!held_in_reset) keep(report.resets, {cause, 2u * pc, cycle});
+            if (!supply.holds()) keep(report.resets, {cause, 2u * pc, cycle});
         };
     }
 
@@ -318,41 +311,8 @@ struct Chip::Parts {
         programming.reset();
         lend_to_jtag();
         held.reset();
-        hold_without_supply(cause);
-    }
-
-    /// Below it the chip is held in reset.
-    double lowest_supply() const {
-        return std::max(system.brown_out_off() ? 0.0 : fuses.brown_out_volts(), kPowerOnVolts);
-    }
-    ResetCause supply_reset() const {
-        return supply < kPowerOnVolts || fuses.brown_out_volts() == 0 ? ResetCause::PowerOn
-                                                                      : ResetCause::BrownOut;
-    }
-
-    void set_supply(double volts) {
-        const double before = supply;
-        supply = volts;
-        adc.set_avcc(volts);
-        if (held_in_reset) {
-            if (volts < kPowerOnVolts) hold_cause = ResetCause::PowerOn;
-            if (volts >= lowest_supply() + kHysteresisVolts)
-                core.reset(hold_cause);  // once more, and it runs
-        } else if (volts < lowest_supply() && before >= lowest_supply()) {
-            core.reset(supply_reset());
-        }
-    }
-
-    // After any reset: without enough supply the chip stays in it.
-    void hold_without_supply(ResetCause cause) {
-        const double enough = lowest_supply() + (held_in_reset ? kHysteresisVolts : 0.0);
-        if (supply >= enough) {
-            held_in_reset = false;
-            return;
-        }
-        if (!held_in_reset) hold_cause = cause;
-        held_in_reset = true;
-        core.stall_until(kNoCycle);
+        supply.reset(cause);
+        if (supply.holds()) watchdog.stop();
     }
 
     // PSRSYNC, PSRASY: the prescaler starts again; with TSM it stays at 0.
@@ -400,11 +360,9 @@ struct Chip::Parts {
         archive.part("programming", programming);
         archive.part("held interrupts", held);
         archive.bounded(now, 0, cosim::kNever);
-        archive.bounded(supply, 0.0, 1e3);
-        archive(held_in_reset);
-        archive.bounded(hold_cause, ResetCause::PowerOn, ResetCause::Watchdog);
+        archive.part("supply", supply);
         if constexpr (Archive::kLoads) {
-            adc.set_avcc(supply);
+            adc.set_avcc(supply.volts());
             watch_triggers(false);
         }
         if constexpr (Archive::kRaw)
@@ -493,7 +451,12 @@ void Chip::reset_now() {
 
 void Chip::set_supply(double volts) {
     parts_->at_present();
-    parts_->set_supply(volts);
+    parts_->adc.set_avcc(volts);
+    parts_->supply.set(volts, parts_->core.now());
+}
+
+double Chip::supply() const {
+    return parts_->supply.volts();
 }
 
 void Chip::run_until(cosim::Time until) {

@@ -110,9 +110,10 @@ class Chip {
     /// The same, carried out before this returns; before an instruction, too (chip::Instrument).
     void reset_now();
     /// The supply (VCC and AVCC) from now on. Below the brown-out level of the fuses, or 1.3 V without one,
-    /// the chip is held in reset until the supply is back (50 mV higher). A chip begins with its options'
-    /// avcc.
+    /// the chip is held in reset until the supply is back (50 mV higher) and the start-up time of its fuses
+    /// over. A chip begins with its options' avcc.
     void set_supply(double volts);
+    double supply() const;
 
     /// Runs everything that starts strictly before `until`. Returns early only at a stop address.
     void run_until(cosim::Time until);

@@ -54,6 +54,12 @@ end:    rjmp end
                        0x48 | select, behind);
 }
 
+/// Cycles from the end of a reset by the supply to the first instruction.
+Cycle start_up(const Rig& rig) {
+    const StartUp time = rig.chip.fuses().reset_start_up();
+    return time.clocks + static_cast<Cycle>(time.seconds * rig.chip.clock().hertz() + 0.5);
+}
+
 }  // namespace
 
 TEST_CASE("the watchdog in both modes resets at the second time-out, served or not, unless it is set again") {
@@ -195,7 +201,7 @@ end:    rjmp end
         rig.run(11'000);
         CHECK(rig.chip.report().instructions == stands);
         rig.chip.set_supply(4.4);
-        rig.run(12'000);
+        rig.run(12'000 + start_up(rig));
         CHECK(rig.chip.report().instructions > stands);
         CHECK((rig.chip.peek("MCUSR") & 0x04) != 0);
     }
@@ -209,7 +215,7 @@ TEST_CASE("a chip that is switched on below its brown-out level waits for its su
     rig.run(100'000);
     CHECK(rig.chip.report().instructions == 0);
     rig.chip.set_supply(4.5);
-    rig.run(200'000);
+    rig.run(200'000 + start_up(rig));
     CHECK(rig.chip.report().instructions == 50'000);
     CHECK(rig.chip.report().resets.size() == 1);
 }

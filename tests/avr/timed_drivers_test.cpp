@@ -321,14 +321,21 @@ TEST_CASE("fuses choose the clock, keep the watchdog on, and set the supply belo
     supplied.chip.set_supply(2.75);
     CHECK(runs());
     supplied.chip.set_supply(2.6);
+    supplied.chip.run_until(supplied.chip.now() + 3 * cosim::kMicrosecond);  // tBOD is 2
     CHECK_FALSE(runs());
     supplied.chip.set_supply(2.72);
     CHECK_FALSE(runs());
     supplied.chip.set_supply(3.3);
+    const auto start_up = [&] {  // 65 ms and 16384 clocks
+        CHECK_FALSE(runs());
+        supplied.chip.run_until(supplied.chip.now() + 67 * cosim::kMillisecond);
+    };
+    start_up();
     CHECK(runs());
     CHECK(supplied.ram(0x100) == 0x05);  // BORF beside PORF
     supplied.chip.set_supply(0.5);
     supplied.chip.set_supply(5.0);
+    start_up();
     CHECK(runs());
     CHECK(supplied.ram(0x100) == 0x01);
     const ChipReport report = supplied.chip.report();

@@ -115,10 +115,10 @@ void SystemControl::sleep() {
         return;
     case kPowerDown:
         stop(true);
-        return core_.sleep(deep, brown_out_start_up(start_up_clocks()));
+        return core_.sleep(deep, brown_out_start_up(fuses_.start_up_clocks()));
     case kPowerSave:
         stop(false);
-        return core_.sleep(deep | timer2, brown_out_start_up(start_up_clocks()));
+        return core_.sleep(deep | timer2, brown_out_start_up(fuses_.start_up_clocks()));
     case kStandby:
         stop(true);
         return core_.sleep(deep, brown_out_start_up(kStandbyStartUp));
@@ -143,17 +143,6 @@ void SystemControl::wake() {
 std::uint32_t SystemControl::brown_out_start_up(std::uint32_t clocks) const {
     if (!brown_out_off_ || fuses_.brown_out_volts() == 0) return clocks;
     return std::max(clocks, static_cast<std::uint32_t>(kBrownOutStartUp * clock_.hertz()));
-}
-
-// From power-down and power-save, by CKSEL3:0 and SUT1:0 (data sheet, tables 9-2 to 9-13).
-std::uint32_t SystemControl::start_up_clocks() const {
-    const unsigned select = field(fuses_.low, 3, 0), time = field(fuses_.low, 5, 4);
-    constexpr std::uint32_t kAtOnce = 6, kFast = 258, kThousand = 1024, kSlow = 16'384, kWatch = 32'768;
-    if (select < 4) return kAtOnce;                           // external clock, RC oscillators
-    if (select < 6) return select == 5 ? kWatch : kThousand;  // low-frequency crystal
-    const unsigned code = (select & 1u) << 2 | time;
-    if (code < 2) return kFast;
-    return code < 5 ? kThousand : kSlow;
 }
 
 // A zero written clears a flag, a one leaves it.

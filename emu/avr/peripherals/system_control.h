@@ -8,7 +8,8 @@
 //     USART, of the SPI, of the two-wire interface or of the ADC that is under way goes on.
 //  2. The internal oscillators run at exactly 8 MHz and 128 kHz; OSCCAL is stored, a write of it is reported.
 //  3. JTAG takes its pins and does nothing with them; OCDR is stored and reported.
-//  4. The program begins in the clock of the reset: start-up delays (SUT) are those of waking up only.
+//  4. The program begins in the clock of the reset: start-up delays (SUT) are those of waking up, and of a
+//     supply that comes back (supply_reset.h).
 
 #include "cosim/core/clock.h"
 #include "emu/avr/core/core.h"
@@ -67,7 +68,6 @@ class SystemControl {
     double source_hertz() const;
     static std::uint8_t read_mcucr(void* owner, std::uint16_t address);
     static void write_reported(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);
-    std::uint32_t start_up_clocks() const;
     std::uint32_t brown_out_start_up(std::uint32_t clocks) const;
     static void write_flags(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);
     static void write_mcucr(void* owner, std::uint16_t address, std::uint8_t value, std::uint8_t mask);

@@ -17,6 +17,8 @@ class Watchdog {
 
     /// `always_on`: fuse WDTON. MCUSR.WDRF keeps it on as well.
     void reset(bool always_on);
+    /// The chip is held in reset.
+    void stop() { around_.events.cancel(slot_); }
     /// Before and after a change of the CPU's clock, which is not the watchdog's.
     void rate_changes(bool changed);
     /// WDR.
