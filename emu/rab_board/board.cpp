@@ -1,5 +1,7 @@
 #include "emu/rab_board/board.h"
 
+#include <algorithm>
+
 namespace puckloop::rab {
 
 namespace {
@@ -9,6 +11,7 @@ constexpr double kSpan = 4096.0;
 // Where inside its code a value is put, so that neither truncation nor rounding moves it to the next one.
 constexpr double kInsideCode = 0.25;
 constexpr double kPartsPerMillion = 1e-6;
+constexpr double kDropout = 0.1;  // V, of the regulator
 
 template <std::size_t... i>
 std::array<PeakDetector, kSensorCount> detectors(const PeakDetectorParameters& parameters,
@@ -44,6 +47,7 @@ Board::Board(const BoardParameters& parameters, BoardListener& listener)
 std::optional<dspic::PortLetter> Board::set_signal(SignalId id, double value, cosim::Time now) {
     if (id >= kSignalCount || signals()[id].direction != cosim::SignalDirection::Input) return std::nullopt;
     values_[id] = clipped(id, value);
+    if (is_supply(id)) return std::nullopt;
     if (id >= kPeak) {
         peaks_[id - kPeak].set_input(values_[id], now);
         return std::nullopt;
@@ -57,6 +61,11 @@ std::optional<dspic::PortLetter> Board::set_signal(SignalId id, double value, co
         if (level != before) return pin.port;
     }
     return std::nullopt;
+}
+
+double Board::supply() const {
+    const double battery = profile_.value_or(values_[kBattery]) - sag_;
+    return std::max(0.0, std::min({kRegulatedVolts, values_[kVdd], battery - kDropout}));
 }
 
 void Board::settle(cosim::Time now) {
@@ -98,7 +107,7 @@ void Board::drive(const PinUse& pin, bool high, cosim::Time now) {
         gates_ = static_cast<std::uint16_t>(high ? gates_ | bit(pin.index) : gates_ & ~bit(pin.index));
         break;
     case Role::Supply:
-        supply_ = high;
+        emitter_supply_ = high;
         break;
     case Role::PeakReset:
         if (peaks_[pin.index].resetting() != high) peaks_[pin.index].set_reset(high, now);
@@ -120,7 +129,7 @@ void Board::drive(const PinUse& pin, bool high, cosim::Time now) {
 /// Carrier reaches the emitters whose gate is on, while there is supply and carrier.
 void Board::light(cosim::Time now) {
     const std::uint16_t before = emitters_;
-    emitters_ = supply_ && values_[kCarrier] > 0 ? gates_ : 0;
+    emitters_ = emitter_supply_ && values_[kCarrier] > 0 ? gates_ : 0;
     if (emitters_ == before) return;
     listener_.emitters_changed(emitters_, now);
     for (int i = 0; i < kSensorCount; ++i)

@@ -7,6 +7,9 @@
 // 1. An emitter is on or off: no rise time of its own (the medium's demodulator delays stand for all of it).
 // 2. ADC noise is white, Gaussian and the same on every channel.
 // 3. The emitters' supply needs no time to rise when RF12 switches it on.
+// 4. VDD is 3.3 V, less where the battery, with 0.1 V of dropout, cannot hold them (an assumption: no
+// schematic
+//    was at hand). The potentiometer, detectors and inputs do not notice; a reading stays a share of VDD.
 
 #include "base/random.h"
 #include "emu/board/can_ports.h"
@@ -24,6 +27,8 @@
 #include <string>
 
 namespace puckloop::rab {
+
+inline constexpr double kRegulatedVolts = 3.3;
 
 /// What differs from one board to the next.
 struct BoardParameters {
@@ -63,6 +68,13 @@ class Board : public dspic::Pins {
     /// Sets an input signal from `now` on, clipped to its range. Returns the port whose pins changed, if any:
     /// the chip must hear of it. Outputs cannot be set; asking for it is ignored.
     std::optional<dspic::PortLetter> set_signal(SignalId id, double value, cosim::Time now);
+    /// The battery's voltage is lower by so much. The chip must hear of it (Chip::supply_changed()), as of
+    /// signals that change the supply.
+    void set_sag(double volts) { sag_ = volts; }
+    /// It has this voltage, before any sag, whatever set_signal() sets; nullopt: what that sets.
+    void set_battery(std::optional<double> volts) { profile_ = volts; }
+    double supply() const override;
+    static bool is_supply(SignalId id) { return id == kBattery || id == kVdd; }
     /// Present value of any signal.
     double signal(SignalId id) const { return values_[id]; }
     /// Emitters that are on: bit 0 is emitter 1.
@@ -78,8 +90,9 @@ class Board : public dspic::Pins {
     /// Signals, detectors, potentiometer, pins and noise; the parameters are each board's own.
     template <class Archive>
     void state(Archive& archive) {
-        archive(noise_, potentiometer_, peaks_, low_, outputs_, levels_, gates_, emitters_, supply_,
-                analog_faults_);
+        archive(noise_, potentiometer_, peaks_, low_, outputs_, levels_, gates_, emitters_, emitter_supply_,
+                analog_faults_, profile_);
+        archive.bounded(sag_, 0.0, 1e3);
         for (double& value : values_)
             archive.bounded(value, -1e15, 1e15);
     }
@@ -122,8 +135,10 @@ class Board : public dspic::Pins {
     std::array<std::uint16_t, kPorts> levels_{};   ///< what the board puts on the pins
     std::uint16_t gates_ = 0;
     std::uint16_t emitters_ = 0;
-    bool supply_ = false;
+    bool emitter_supply_ = false;
     chip::AnalogFaults analog_faults_;
+    double sag_ = 0.0;               ///< V
+    std::optional<double> profile_;  ///< in place of the battery's
 };
 
 }  // namespace puckloop::rab

@@ -100,8 +100,20 @@ void RabNode::receive(const cosim::Message& message) {
             show_carrier(receiver, message.time);
         } else if (const auto port = board_.set_signal(signal->id, signal->value, message.time)) {
             chip_->pins_changed(*port);
+        } else if (Board::is_supply(signal->id)) {
+            chip_->supply_changed();
         }
     }
+}
+
+void RabNode::set_sag(double volts) {
+    board_.set_sag(volts);
+    chip_->supply_changed();
+}
+
+void RabNode::set_battery(std::optional<double> volts) {
+    board_.set_battery(volts);
+    chip_->supply_changed();
 }
 
 void RabNode::set_carrier(std::uint16_t receivers) {

@@ -75,6 +75,8 @@ class RabNode : public cosim::StatefulNode, private BoardListener, private chip:
     void run_faults(cosim::Time until, bool inclusive);
     void settle(cosim::Time until);
     void set_carrier(std::uint16_t receivers) override;
+    void set_sag(double volts) override;
+    void set_battery(std::optional<double> volts) override;
     /// The demodulator sees a carrier of the medium's, or one of a fault.
     void show_carrier(int receiver, cosim::Time now);
     void receive(const cosim::Message& message);

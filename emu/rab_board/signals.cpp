@@ -2,6 +2,8 @@
 
 #include "emu/rab_board/signals.h"
 
+#include "emu/rab_board/board.h"
+
 #include <fmt/format.h>
 
 #include <vector>
@@ -16,6 +18,8 @@ using cosim::SignalInfo;
 constexpr double kFullScale = 4095;
 constexpr double kHighestCarrier = 100e6;  // Hz
 constexpr double kHighestCode = 255;
+constexpr double kHighestBattery = 5;    // V
+constexpr double kChargedBattery = 3.9;  // V, as on the main board
 
 std::vector<SignalInfo> build() {
     std::vector<SignalInfo> list;
@@ -35,6 +39,11 @@ std::vector<SignalInfo> build() {
     output("power", "code", kHighestCode, "byte in the potentiometer, 0 = strongest", kPowerAtPowerOn);
     output("led", "level", 1, "level at the LED's pin");
     twelve("peak_reset", SignalDirection::Output, "level", 1, "1 = peak detector is being discharged");
+    const auto volts = [&](const char* name, double max, double initial, const char* text) {
+        list.push_back({name, SignalDirection::Input, "V", 0, max, text, initial});
+    };
+    volts("battery_v", kHighestBattery, kChargedBattery, "voltage of the robot's battery");
+    volts("vdd", kRegulatedVolts, kRegulatedVolts, "supply of the chip at most, under a load or a short");
     return list;
 }
 

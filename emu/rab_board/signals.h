@@ -23,13 +23,16 @@ inline constexpr SignalId kCarrier = 36;    ///< Hz of OC1, 0 = off
 inline constexpr SignalId kPower = 37;      ///< the potentiometer's byte, 0 = strongest
 inline constexpr SignalId kLed = 38;        ///< level at the LED's pin
 inline constexpr SignalId kPeakReset = 39;  ///< 12: 1 = detector is being discharged; not on the `ir` port
-inline constexpr SignalId kSignalCount = 51;
+// Inputs.
+inline constexpr SignalId kBattery = 51;  ///< V of the robot's battery, behind which the regulator is
+inline constexpr SignalId kVdd = 52;      ///< V that the supply has at most, as a load pulls it down
+inline constexpr SignalId kSignalCount = 53;
 
 /// What the potentiometer's byte is until the first one is latched: mid scale, as such parts power up (an
 /// inference; the firmware writes 0 before anything is emitted).
 inline constexpr int kPowerAtPowerOn = 128;
 
-/// kSignalCount entries, inputs first.
+/// kSignalCount entries.
 std::span<const cosim::SignalInfo> signals();
 
 }  // namespace puckloop::rab

@@ -15,6 +15,9 @@ constexpr int kClocksOfByte = 9;
 // is run in steps of half of this, so that it has never gone past that instant.
 constexpr Time kSupplyFalls = cosim::kMillisecond;
 constexpr Time kStep = kSupplyFalls / 2;
+constexpr double kLowestBattery = 1.8;  // V, from which on the converter works
+constexpr double kLowestModule = 2.1;   // V that the radio module runs on (S2C)
+constexpr double kLowestDriver = 1.3;   // V below which the LED driver forgets: as the chip's (an assumption)
 
 avr::ChipOptions chip_options(const BoardParameters& parameters) {
     avr::ChipOptions options;
@@ -76,8 +79,24 @@ void Board::set_signal(SignalId id, double value) {
     else if (id < kBattery)
         barriers_[id - kAmbient].set_ambient(values_[id]);
     if (!powered()) return;
+    if (id == kBattery || id == kVdd) return update_supply();
     for (const PinUse& pin : wiring::kPins)
         if (pin.role == Role::Input && pin.signal == id) chip_.pins_changed(pin.port);
+}
+
+double Board::supply() const {
+    return values_[kBattery] >= kLowestBattery ? std::min(kSupplyVolts, values_[kVdd]) : 0.0;
+}
+
+void Board::update_supply() {
+    const double volts = supply();
+    if (volts == chip_.supply()) return;
+    chip_.set_supply(volts);
+    if (volts < kLowestDriver) {
+        leds_.reset();
+        update_leds(now_);
+    }
+    report(kPower, volts >= kLowestModule ? 1.0 : 0.0, now_);
 }
 
 void Board::set_sag(double volts) {
@@ -127,6 +146,7 @@ void Board::switch_off(Time now) {
     update_leds(now);
     for (const PinUse& pin : wiring::kPins)
         if (pin.role == Role::Output) report(pin.signal, 0.0, now);
+    off_ = true;
     report(kPower, 0.0, now);
 }
 

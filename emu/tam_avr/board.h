@@ -9,6 +9,8 @@
 // 2. ADC noise is white, Gaussian and the same on every channel.
 // 3. The supply is gone 1 ms after the firmware sets PWR_CLEAR, at once and for good.
 // 4. The bus has no other device; SCL is never stretched.
+// 5. The converter (LTC3536, which raises as well as lowers) makes 3.3 V of any battery from 1.8 V on, and
+//    nothing below; its own figures for that are within 0.1 V. The on/off switch stays on meanwhile.
 
 #include "base/archive.h"
 #include "base/random.h"
@@ -82,7 +84,9 @@ class Board : private avr::Pins {
     void reset_now(bool inside);
 
     /// The firmware has not switched the board off.
-    bool powered() const { return values_[kPower] != 0.0; }
+    bool powered() const { return !off_; }
+    /// VCC, in volts.
+    double supply() const;
     avr::Chip& chip() { return chip_; }
     const avr::Chip& chip() const { return chip_; }
     const LedDriver& leds() const { return leds_; }
@@ -102,7 +106,7 @@ class Board : private avr::Pins {
         archive(noise_, leds_, barriers_, addressed_, analog_faults_);
         archive.bounded(sag_, 0.0, 1e3);
         archive.bounded(battery_, -1e15, 1e15);
-        archive(profile_);
+        archive(profile_, off_);
         for (double& value : values_)
             archive.bounded(value, 0.0, kHighestSignal);
         archive.bounded(now_, 0, cosim::kNever);
@@ -128,6 +132,7 @@ class Board : private avr::Pins {
     void update_leds(cosim::Time now);
     void report(SignalId id, double value, cosim::Time now);
     void switch_off(cosim::Time now);
+    void update_supply();
 
     BoardParameters parameters_;
     BoardListener& listener_;
@@ -141,6 +146,7 @@ class Board : private avr::Pins {
     double sag_ = 0.0, battery_ = 0.0;    ///< volts; the battery's without the sag
     std::optional<double> profile_;       ///< in place of the battery's
     cosim::Time off_at_ = cosim::kNever;  ///< when the supply goes
+    bool off_ = false;                    ///< by the firmware, for good
     avr::Chip chip_;                      ///< last: it looks at the rest when it is made
 };
 

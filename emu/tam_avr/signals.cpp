@@ -49,6 +49,7 @@ std::vector<SignalInfo> build() {
     for (const char* name : kLedNames)
         output(name, "share", "part of the time that the LED is on");
     output("power", "level", "1 = the board has supply", 1);
+    input("vdd", "V", kSupply, "supply of the board at most, under a load or a short", kSupply);
     return list;
 }
 

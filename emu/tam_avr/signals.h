@@ -32,12 +32,14 @@ inline constexpr SignalId kXBeeRts = 12;     ///< level at PC2
 inline constexpr SignalId kXBeeWake = 13;    ///< level at PD4
 inline constexpr SignalId kLed = 14;         ///< 16: share of the time that the LED is on
 inline constexpr SignalId kPower = 30;       ///< 1: the board has supply
-inline constexpr SignalId kSignalCount = 31;
+// Input.
+inline constexpr SignalId kVdd = 31;  ///< V that the supply has at most, as a load pulls it down
+inline constexpr SignalId kSignalCount = 32;
 
 /// Outputs of the LED driver that light the barriers.
 inline constexpr int kInfraredRight = 0, kInfraredLeft = 10;
 
-/// kSignalCount entries, inputs first.
+/// kSignalCount entries.
 std::span<const cosim::SignalInfo> signals();
 
 }  // namespace puckloop::tam

@@ -53,6 +53,7 @@ void TamLog::signal_changed(SignalId id, double value, Time now) {
         switched_off_ = now;
         lines_.note(now, "is off");
     }
+    if (id == kPower && value != 0.0) lines_.note(now, "has supply again");
     if (id == kPowerClear && value > 0.0) lines_.note(now, "the firmware switches the board off");
     if (id == kXBeeReset)
         lines_.note(now, value > 0.0 ? "radio module held in reset" : "radio module released from reset");

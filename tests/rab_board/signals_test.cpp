@@ -19,9 +19,11 @@ TEST_CASE("the range-and-bearing board's signal list stands where its ids say") 
     CHECK(list[rab::kPower].name == "power");
     CHECK(list[rab::kLed].name == "led");
     CHECK(list[rab::kPeakReset + 11].name == "peak_reset12");
+    CHECK(list[rab::kBattery].name == "battery_v");
+    CHECK(list[rab::kVdd].name == "vdd");
     std::set<std::string> names;
     for (std::size_t id = 0; id < list.size(); ++id) {
         CHECK(names.insert(list[id].name).second);
-        CHECK((list[id].direction == SignalDirection::Input) == (id < rab::kEmitter));
+        CHECK((list[id].direction == SignalDirection::Input) == (id < rab::kEmitter || id >= rab::kBattery));
     }
 }

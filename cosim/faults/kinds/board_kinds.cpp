@@ -68,19 +68,17 @@ std::vector<KindInfo> of_chip(PlaceKind place) {
         {"interrupt", place, Style::Times, FaultKind::None, at_program({vector}), "spurious_interrupt"});
     kinds.push_back({"lost_interrupt", place, Style::Each, FaultKind::None, {vector}});
     kinds.push_back({"late_interrupt", place, Style::Each, FaultKind::None, {vector, delay, jitter}});
-    if (place != PlaceKind::Rab) {
-        kinds.push_back({"battery",
-                         place,
-                         Style::Hold,
-                         FaultKind::None,
-                         {{.key = "profile", .unit = Unit::Text, .required = true}}});
-        kinds.push_back(
-            {"sag",
-             place,
-             Style::Hold,
-             FaultKind::None,
-             {{.key = "volts", .unit = Unit::Voltage, .low = 0, .high = kMostVolts, .required = true}}});
-    }
+    kinds.push_back({"battery",
+                     place,
+                     Style::Hold,
+                     FaultKind::None,
+                     {{.key = "profile", .unit = Unit::Text, .required = true}}});
+    kinds.push_back(
+        {"sag",
+         place,
+         Style::Hold,
+         FaultKind::None,
+         {{.key = "volts", .unit = Unit::Voltage, .low = 0, .high = kMostVolts, .required = true}}});
     return kinds;
 }
 

@@ -61,6 +61,7 @@ class RabTarget : public DspicTarget, private rab::BoardListener {
     double own_signal(std::uint16_t id) const override { return board_.signal(id); }
     void set_own_signal(std::uint16_t id, double value) override {
         if (const auto port = board_.set_signal(id, value, chip().now())) chip().pins_changed(*port);
+        if (rab::Board::is_supply(id)) chip().supply_changed();
     }
     void save_own(StateWriter& archive) override { archive(board_); }
     void restore_own(StateReader& archive) override { archive(board_); }
