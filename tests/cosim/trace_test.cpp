@@ -5,6 +5,7 @@
 #include "cosim/trace/trace_csv.h"
 #include "cosim/trace/trace_merger.h"
 #include "cosim/trace/trace_stats.h"
+#include "protocols/irda.h"
 
 #include <catch2/catch.hpp>
 #include <fmt/format.h>
@@ -279,9 +280,11 @@ std::string plain_row(const TraceRow& row) {
         text += frame->is_break ? "break,," : fmt::format("uart,{:02x},", frame->data);
         text += fmt::format("{}{}{}", frame->data_bits, "NOE"[frame->parity], frame -> stop_bits);
         if (frame->parity != 0) text += frame->parity_bit ? " p1" : " p0";
+        const bool infrared = frame->glitch_width == 0xFFFFFFFF;
+        if (infrared) text += " irda";
         if (frame->line & 1) text += " inverted";
         if (frame->line & 2) text += " low";
-        if (frame->glitch_width != 0)
+        if (frame->glitch_width != 0 && !infrared)
             text += fmt::format(" glitch {}+{}ns", frame->glitch_at, frame->glitch_width);
         text += fmt::format(",{},{},", seconds(frame->start), seconds(frame->bit_period));
     } else if (const auto* phase = std::get_if<I2cPhase>(&row.payload)) {
@@ -338,6 +341,7 @@ Payload random_payload(RandomStream& chance) {
             frame.glitch_at = static_cast<std::uint32_t>(chance.below(1ull << 32));
             frame.glitch_width = static_cast<std::uint32_t>(1 + chance.below(100'000));
         }
+        if (chance.below(4) == 0) protocols::set_infrared(frame);
         return frame;
     }
     case 1:
