@@ -1,6 +1,6 @@
 #include "gap/fit/filter.h"
 
-#include "gap/fit/walk.h"
+#include "gap/fit/sums.h"
 
 #include <Eigen/Core>
 
@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <type_traits>
 
 namespace puckloop::gap {
 
@@ -83,49 +82,6 @@ bool clipped(const Observable& o, const Predicted& p, std::size_t i, double sd, 
     out.role[i] = role;
     out.z[i] = (limit - p.mean[i]) / sd;
     return true;
-}
-
-/// Where a sum begins: the median of its first errors, since the very first may be an outlier of a heavy
-/// tail. Errors are in the unit of the observable.
-struct Beginning {
-    double error = 0.0;  ///< of the first row
-    double guess = 0.0;  ///< the sum's own part of it
-    double rows = 1.0;   ///< that the guess rests on
-};
-
-Beginning beginning(const Observable& o, const Predicted& p, std::size_t i) {
-    std::array<double, kFirstRows> errors;
-    std::size_t n = 0;
-    for (std::size_t k = i; n < kFirstRows && k < o.y.size() && (k == i || o.starts[k] == 0) &&
-                            role_of(o, p, k) == RowRole::Plain;
-         ++k)
-        errors[n++] = o.y[k] - p.mean[k];
-    const double first = errors[0];
-    if (n < kFirstRows) return {first, first, 1.0};
-    std::nth_element(errors.begin(), errors.begin() + kFirstRows / 2, errors.end());
-    return {first, errors[kFirstRows / 2], static_cast<double>(kFirstRows)};
-}
-
-/// Variance that a sum gains where its axes turn, in units of the error's: each error comes in along one axis
-/// and leaves along another. Errors that carry over do so together, as long as the axes stay near.
-template <class Number>
-Number turned_in(const Observable& o, std::size_t i, const Number& memory) {
-    if (o.turn.empty()) return Number(memory * 0.0);
-    const double squared = o.turn[i] * o.turn[i];
-    const Number short_of = 1.0 - memory;
-    return squared * (1.0 - memory * memory) / (short_of * short_of + memory * squared);
-}
-
-/// Variance of the guess, in units of the error's: that of a median of so many errors that carry over; of one
-/// row it is the error's own.
-template <class Number>
-Number unsure_of(double rows, const Number& memory) {
-    if (rows < 2) return Number(memory * 0.0 + 1.0);
-    const Number variance = std::numbers::pi / 2 * (1.0 + memory) / ((1.0 - memory) * rows);
-    if constexpr (std::is_same_v<Number, double>)
-        return std::min(variance, 1.0);
-    else
-        return variance.min(1.0);
 }
 
 void filter_level(const Observable& o, const Predicted& p, const NoiseParameters& noise, Innovations& out,
@@ -242,6 +198,19 @@ void filter_carry(const Observable& o, const Predicted& p, const NoiseParameters
 }
 
 }  // namespace
+
+Beginning beginning(const Observable& o, const Predicted& p, std::size_t i) {
+    std::array<double, kFirstRows> errors;
+    std::size_t n = 0;
+    for (std::size_t k = i; n < kFirstRows && k < o.y.size() && (k == i || o.starts[k] == 0) &&
+                            role_of(o, p, k) == RowRole::Plain;
+         ++k)
+        errors[n++] = o.y[k] - p.mean[k];
+    const double first = errors[0];
+    if (n < kFirstRows) return {first, first, 1.0};
+    std::nth_element(errors.begin(), errors.begin() + kFirstRows / 2, errors.end());
+    return {first, errors[kFirstRows / 2], static_cast<double>(kFirstRows)};
+}
 
 bool is_plain_sum(const Observable& o, const Predicted& p) {
     return o.noise == NoiseKind::Level && p.factor.empty() && p.extra.empty() && p.jolt.empty() &&

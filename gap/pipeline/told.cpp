@@ -5,6 +5,7 @@
 #include "gap/fit/intervals.h"
 #include "gap/next_experiment/suggest.h"
 #include "gap/overlay/overlay_names.h"
+#include "gap/predictive/check.h"
 #include "gap/stats/tails.h"
 #include "gap/validate/placements.h"
 #include "gap/verdict/sentences.h"
@@ -139,6 +140,13 @@ void tell_held(const Study& study, const Selection& selection, std::uint64_t see
     verdict.observables = std::move(figures.observables);
 }
 
+void tell_predictive(const Study& study, const Chosen& chosen, std::uint64_t seed, Verdict& verdict) {
+    verdict.predictive = predictive_checks(study, chosen.selection.none, false, seed);
+    if (chosen.final.effects.empty()) return;
+    for (PredictiveCheck& check : predictive_checks(study, chosen.final, true, seed))
+        verdict.predictive.push_back(std::move(check));
+}
+
 }  // namespace
 
 Verdict told(const Study& study, Judged judged, std::uint64_t seed) {
@@ -163,6 +171,7 @@ Verdict told(const Study& study, Judged judged, std::uint64_t seed) {
     verdict.free_forms = std::move(judged.diagnosis.free_forms);
     tell_tried(study, judged.chosen.selection, verdict);
     tell_held(study, judged.chosen.selection, seed, verdict);
+    tell_predictive(study, judged.chosen, seed, verdict);
     for (const Series& series : verdict.series)
         for (const std::string& caution : {placement_caution(experiment, series), circular_caution(series)})
             if (!caution.empty()) verdict.cautions.push_back(caution);

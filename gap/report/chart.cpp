@@ -93,6 +93,10 @@ void Chart::band(const std::vector<double>& x, const std::vector<double>& low,
     layers_.push_back({Layer::Kind::Band, x, low, high, colour, "", false});
 }
 
+void Chart::dots(const std::vector<double>& x, const std::vector<double>& y, const std::string& colour) {
+    layers_.push_back({Layer::Kind::Dots, x, y, {}, colour, "", false});
+}
+
 void Chart::interval(double x, double y, double low, double high, const std::string& colour) {
     layers_.push_back({Layer::Kind::Interval, {x, x}, {low, y}, {high, y}, colour, "", false});
 }
@@ -185,6 +189,10 @@ std::string Chart::svg(double width, double height) const {
         if (layer.kind == Layer::Kind::Points)
             for (std::size_t i = 0; i < layer.x.size(); ++i)
                 out += dot(px(layer.x[i]), py(layer.y[i]), layer.colour, "1.6", " fill-opacity=\"0.55\"");
+        if (layer.kind == Layer::Kind::Dots)
+            for (std::size_t i = 0; i < layer.x.size(); ++i)
+                if (std::isfinite(layer.y[i]))
+                    out += dot(px(layer.x[i]), py(layer.y[i]), layer.colour, "2.2");
         if (layer.kind == Layer::Kind::Interval) {
             const double x = px(layer.x[0]);
             out += segment(x, py(layer.y[0]), x, py(layer.high[0]), layer.colour, kThick);

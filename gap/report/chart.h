@@ -29,6 +29,8 @@ class Chart {
               const std::string& name, bool dashed = false);
     void band(const std::vector<double>& x, const std::vector<double>& low, const std::vector<double>& high,
               const std::string& colour);
+    /// Every point, larger than points() draws them.
+    void dots(const std::vector<double>& x, const std::vector<double>& y, const std::string& colour);
     /// A vertical bar from low to high at x, with a dot at y.
     void interval(double x, double y, double low, double high, const std::string& colour);
     /// A grey line at y across the chart, and a reason for the y axis to reach there.
@@ -46,7 +48,7 @@ class Chart {
 
   private:
     struct Layer {
-        enum class Kind { Points, Line, Band, Interval, Level } kind;
+        enum class Kind { Points, Dots, Line, Band, Interval, Level } kind;
         std::vector<double> x, y, high;  // y is the low side of a band
         std::string colour, name;
         bool dashed = false;

@@ -1,6 +1,7 @@
 #include "gap/report/pictures.h"
 
 #include "gap/diagnostics/residual_structure.h"
+#include "gap/predictive/main_covariates.h"
 #include "gap/report/chart.h"
 #include "gap/stats/bootstrap.h"
 #include "gap/stats/robust.h"
@@ -23,56 +24,6 @@ constexpr double kCoverage = 0.9;
 
 using stats::Covariate;
 
-std::string with_unit(const std::string& name, const std::string& unit) {
-    return unit.empty() || unit == "1" ? name : fmt::format("{} ({})", name, unit);
-}
-
-/// Unit of a covariate as covariates_of() names it.
-std::string unit_of(const std::string& name) {
-    static const std::map<std::string, std::string> units{{"distance", "m"},
-                                                          {"angle", "rad"},
-                                                          {"off axis", "rad"},
-                                                          {"true bearing", "rad"},
-                                                          {"time", "s"},
-                                                          {"velocity", "m/s"},
-                                                          {"speed", "m/s"},
-                                                          {"wheel speed", "steps/s"},
-                                                          {"turn rate", "steps/s"},
-                                                          {"acceleration", "steps/s²"},
-                                                          {"distance so far", "steps"},
-                                                          {"temperature", "°C"},
-                                                          {"battery", "V"},
-                                                          {"cmd left", "steps/s"},
-                                                          {"cmd right", "steps/s"},
-                                                          {"theta", "rad"},
-                                                          {"motor speed", "steps/s"},
-                                                          {"pitch", "rad"},
-                                                          {"grey rate", "1/m"},
-                                                          {"frame time", "s"},
-                                                          {"poll period", "s"}};
-    const auto found = units.find(name);
-    return found == units.end() ? "" : found->second;
-}
-
-/// What an experimentalist would draw this kind against.
-Covariate main_covariate(const Experiment& experiment, const Series& series,
-                         const std::vector<Covariate>& all) {
-    static const std::map<Kind, std::vector<std::string>> wanted{
-        {Kind::Proximity, {"distance", "angle"}},
-        {Kind::Rab, {"distance", "true bearing", "senders"}},
-        {Kind::Microphone, {"distance", "angle"}},
-        {Kind::Ground, {"grey"}},
-        {Kind::Accelerometer, {"time"}},
-        {Kind::Timing, {"seq"}},
-        {Kind::Motion, {"distance so far", "time"}}};
-    std::vector<std::string> names = wanted.at(experiment.kind);
-    if (series.observable == "bearing_rad") names = {"true bearing", "distance"};
-    for (const std::string& name : names)
-        for (const Covariate& c : all)
-            if (c.name == name) return c;
-    return {"row", stats::CovariateKind::Number, {series.row.begin(), series.row.end()}, {}};
-}
-
 std::vector<double> left_over(const std::vector<double>& measured, const std::vector<double>& simulated) {
     std::vector<double> rest(measured.size(), NAN);
     for (std::size_t i = 0; i < rest.size() && i < simulated.size(); ++i)
@@ -91,8 +42,7 @@ void add_means(Chart& chart, const std::vector<double>& x, const Series& series,
 }
 
 Picture measured_and_simulated(const Series& series, const Covariate& c) {
-    Chart chart("Measured and simulated", with_unit(c.name, unit_of(c.name)),
-                with_unit(series.observable, series.unit));
+    Chart chart("Measured and simulated", covariate_label(c.name), with_unit(series.observable, series.unit));
     chart.clip(0.002, 0.998);
     chart.points(c.value, series.measured, kMeasured, "measured");
     add_means(chart, c.value, series, series.before, kBefore, "before", true);
@@ -118,7 +68,7 @@ std::vector<double> as_places(const Covariate& c, std::vector<std::string>& name
 }
 
 Picture residuals(const Series& series, const Covariate& c, const char* title, std::uint64_t seed) {
-    Chart chart(title, with_unit(c.name, unit_of(c.name)),
+    Chart chart(title, covariate_label(c.name),
                 with_unit(fmt::format("{}, measured − simulated", series.observable), series.unit));
     chart.level(0);
     const bool groups = c.kind == stats::CovariateKind::Label;
@@ -236,7 +186,7 @@ std::vector<double> of_run(const Series& series, const std::vector<double>& valu
 
 std::vector<Picture> pictures_of(const Experiment& experiment, const Series& series, std::uint64_t seed) {
     const std::vector<Covariate> all = covariates_of(experiment, series);
-    const Covariate main = main_covariate(experiment, series, all);
+    const Covariate main = main_covariates(experiment, series.observable, all, series.row).front();
     std::vector<Picture> pictures;
     const bool sums =
         experiment.kind == Kind::Motion || experiment.kind == Kind::Timing;  // say little as they are

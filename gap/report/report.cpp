@@ -61,6 +61,7 @@ std::string report_html(const Experiment& experiment, const Verdict& verdict) {
     out += gain_section(verdict);
     out += rerun_section(verdict);
     out += all_pictures(experiment, verdict);
+    out += predictive_section(verdict);
     out += parameters_section(verdict);
     out += rivals_section(verdict);
     out += free_form_section(verdict);

@@ -11,4 +11,7 @@ namespace puckloop::gap::report {
 
 std::string report_html(const Experiment& experiment, const Verdict& verdict);
 
+/// The posterior-predictive checks of a verdict as one picture (SVG); empty where it has none.
+std::string predictive_svg(const Verdict& verdict);
+
 }  // namespace puckloop::gap::report

@@ -20,6 +20,8 @@ std::string parameters_section(const Verdict& verdict);
 std::string rivals_section(const Verdict& verdict);
 /// Noise floor and structure tests, before and after.
 std::string structure_section(const Experiment& experiment, const Verdict& verdict);
+/// Data replicated from the fitted model against what was measured: p values and pictures.
+std::string predictive_section(const Verdict& verdict);
 /// What came nearest where nothing is named, and the free-form correction of what is left.
 std::string free_form_section(const Verdict& verdict);
 std::string evidence_section(const Verdict& verdict);

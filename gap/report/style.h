@@ -26,6 +26,7 @@ tr { break-inside: avoid; }
 .faint { color: #888; }
 .pictures { display: flex; flex-wrap: wrap; gap: 3mm; }
 figure { margin: 0 0 2mm; width: 88mm; break-inside: avoid; }
+figure.wide { width: 100%; break-inside: auto; }
 figure svg { width: 100%; height: auto; }
 figcaption { font-size: 8pt; color: #555; }
 ul { margin: 1mm 0; padding-left: 5mm; }

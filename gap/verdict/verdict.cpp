@@ -113,6 +113,16 @@ Json rerun_json(const Rerun& rerun) {
             {"caution", rerun.caution()}};
 }
 
+Json predictive_json(const PredictiveCheck& check) {
+    Json p = Json::object();
+    for (const auto& curve : check.curves)
+        p[curve.name] = number(curve.p);
+    return {{"observable", check.observable},
+            {"with_causes", check.extended},
+            {"replicates", check.replicates},
+            {"p", p}};
+}
+
 Json free_form_json(const FreeForm& form) {
     Json terms = Json::array();
     for (const auto& term : form.terms) {
@@ -187,6 +197,9 @@ std::string to_json(const Verdict& verdict) {
     json["nuisance"] = Json::array();
     for (const auto& parameter : verdict.nuisance)
         json["nuisance"].push_back(parameter_json(parameter));
+    json["posterior_predictive"] = Json::array();
+    for (const auto& check : verdict.predictive)
+        json["posterior_predictive"].push_back(predictive_json(check));
     json["cautions"] = verdict.cautions;
     json["rerun"] = rerun_json(verdict.rerun);
     return json.dump(2) + "\n";

@@ -4,6 +4,7 @@
 
 #include "gap/data/experiment.h"
 #include "gap/decide/grounds.h"
+#include "gap/predictive/predictive.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -148,8 +149,9 @@ struct Verdict {
     std::vector<FittedParameter> nuisance;  ///< fitted along with every model: tracker offset and delay, ...
     std::vector<std::string> cautions;
     Rerun rerun;
-    std::vector<Series> series;  ///< not in gap.json
-    double wall_s = 0.0;         ///< not in gap.json
+    std::vector<PredictiveCheck> predictive;  ///< as it is, then with the causes; of these in gap.json p only
+    std::vector<Series> series;               ///< not in gap.json
+    double wall_s = 0.0;                      ///< not in gap.json
 };
 
 /// gap.json as text. Same verdict, same bytes.

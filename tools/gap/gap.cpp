@@ -133,10 +133,10 @@ void analyse_folder(const Request& request) {
     log::info("read {}: kind {}, {} runs, {} rows", request.folder.string(), gap::kind_name(experiment.kind),
               experiment.runs.size(), experiment.rows());
     const auto overlay = request.out / "overlay.toml", json = request.out / "gap.json",
-               page = request.out / "report.html";
+               page = request.out / "report.html", checks = request.out / "predictive.svg";
     if (!request.out.empty()) {
         prepare_folder(request.out);
-        for (const auto& file : {overlay, json, page})
+        for (const auto& file : {overlay, json, page, checks})
             if (std::filesystem::is_directory(file))
                 throw InputError(file.string(), "", "is a folder", "a file, or nothing yet");
     }
@@ -155,7 +155,8 @@ void analyse_folder(const Request& request) {
         run_again(request, experiment, verdict);
     write_beside(json, gap::to_json(verdict));
     write_beside(page, gap::report::report_html(experiment, verdict));
-    for (const auto& file : {overlay, json, page})
+    write_beside(checks, gap::report::predictive_svg(verdict));
+    for (const auto& file : {overlay, json, page, checks})
         put_in_place(file);
     fmt::print("report in {}\n", page.string());
 }
@@ -170,7 +171,9 @@ void declare_gap(Command& app, int& status) {
         ->add_option("folder", request->folder,
                      "measured experiment: a folder with experiment.toml (docs/gap.md)")
         ->type_name("DIR");
-    command->add_option("--out", request->out, "folder for report.html, gap.json and overlay.toml")
+    command
+        ->add_option("--out", request->out,
+                     "folder for report.html, predictive.svg, gap.json and overlay.toml")
         ->type_name("OUT")
         ->check(not_empty());
     command->add_option("--seed", request->seed, "of everything random in the analysis")

@@ -54,7 +54,7 @@ std::vector<gr::Outcome> drawn(const GrammarRequest& request, std::uint64_t seed
     drawing.done = [](const gr::Outcome& outcome, std::size_t done, std::size_t all) {
         fmt::print(stderr, "{:>4}/{} {}\n", done, all, gr::outcome_line(outcome));
     };
-    auto cases = gr::run_drawn(drawing);
+    auto cases = request.power ? gr::run_power(drawing) : gr::run_drawn(drawing);
     if (cases.empty())
         throw InputError("", "gap selftest", "no drawn case is of this kind, class and number",
                          "--cases 28 or more");
@@ -80,12 +80,14 @@ int grammar_test(const GrammarRequest& request) {
     const std::uint64_t seed = request.seed == 0 ? fresh_seed() : request.seed;
     const auto cases = request.pool.empty() ? drawn(request, seed) : pooled(request.pool);
     if (!request.svg.empty()) {
-        write_beside(request.svg, gr::curves_svg(cases));
+        write_beside(request.svg, request.power ? gr::power_svg(cases) : gr::curves_svg(cases));
         put_in_place(request.svg);
     }
-    fmt::print("{}\n", request.json ? gr::rates_json(cases, seed)
-                                    : gr::rates_text(cases, request.pool.empty() ? std::to_string(seed)
-                                                                                 : "of each file"));
+    const std::string seeds = request.pool.empty() ? std::to_string(seed) : "of each file";
+    fmt::print("{}\n", request.json    ? gr::rates_json(cases, seed)
+                       : request.power ? gr::power_text(cases, seeds)
+                                       : gr::rates_text(cases, seeds));
+    if (request.power) return 0;  // the targets are asked of whole experiments
     const auto wanted = gr::targets(cases);
     return std::all_of(wanted.begin(), wanted.end(), [](const gr::Target& target) { return target.met(); })
                ? 0

@@ -30,7 +30,7 @@ struct Request {
     std::vector<std::size_t> only;
     unsigned workers = 2;
     std::string kind, of;
-    bool grammar = false, full = false, draw_runs = false, ask_all = false;
+    bool grammar = false, full = false, draw_runs = false, ask_all = false, power = false;
     bool quick = false, json = false, keep = false, emulator = false, closed_loop = false, seed_given = false;
     std::filesystem::path scratch, svg;
     std::vector<std::string> pool;
@@ -104,20 +104,23 @@ int self_test(const Request& request) {
         if (request.quick) throw InputError("", "--quick", "is not for --grammar", "--cases N");
         if (request.full && request.cases > 0)
             throw InputError("", "--full", "is a number of cases, too", "no --cases");
+        if (request.power && request.draw_runs)
+            throw InputError("", "--draw-runs", "draws what --power varies", "one of the two");
         const std::uint64_t cases = request.cases > 0 ? request.cases : request.full ? kAllDrawn : kDrawn;
         const bool own = request.scratch.empty();
         const auto scratch = scratch_of(request);
         const int status =
             grammar_test({cases, request.seed_given ? request.seed : 0, request.only, request.workers,
                           request.kind, request.of, request.json, request.keep, request.draw_runs,
-                          request.ask_all, scratch, request.svg, request.pool});
+                          request.ask_all, request.power, scratch, request.svg, request.pool});
         if (own && !request.keep) std::filesystem::remove_all(scratch);
         return status;
     }
     const std::pair<const char*, bool> drawn[] = {
         {"--svg", !request.svg.empty()},    {"--full", request.full},
         {"--class", !request.of.empty()},   {"--pool", !request.pool.empty()},
-        {"--draw-runs", request.draw_runs}, {"--ablation", request.ask_all}};
+        {"--draw-runs", request.draw_runs}, {"--ablation", request.ask_all},
+        {"--power", request.power}};
     for (const auto& [option, given] : drawn)
         if (given) throw InputError("", option, "is for cases drawn from the grammar", "--grammar");
     st::RunOptions options;
@@ -163,6 +166,10 @@ void declare_gap_selftest(Command& gap, int& status) {
         ->type_name("FILE");
     command->add_flag("--draw-runs", request->draw_runs,
                       "of --grammar: how many runs an experiment has is drawn, too (power against runs)");
+    command->add_flag(
+        "--power", request->power,
+        "of --grammar: each case is drawn with 24 runs or more and analysed with 4, 6, 8, 12, 16 "
+        "and 24 of them: how often it is rightly called, against the number of runs");
     command->add_flag("--ablation", request->ask_all,
                       "of --grammar: every ground of a refused name is asked, also after one has spoken");
     command

@@ -24,6 +24,7 @@ struct GrammarRequest {
     unsigned workers = 2;
     std::string kind, of;
     bool json = false, keep = false, draw_runs = false, ask_all = false;
+    bool power = false;  ///< each case with several numbers of its runs
     std::filesystem::path scratch, svg;
     std::vector<std::string> pool;  ///< results of earlier runs, to be counted in place of new cases
 };

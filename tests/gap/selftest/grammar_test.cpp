@@ -12,6 +12,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -281,6 +282,54 @@ TEST_CASE("how many runs there are is drawn when asked for, and nothing else cha
         counts.insert(part.runs);
     }
     CHECK(counts.size() > 1);
+}
+
+TEST_CASE("for the power a case has runs enough, and fewer of them are among the more") {
+    const std::size_t most = kPowerRuns.back();
+    for (const std::size_t n : {3U, 4U, 10U, 17U, 18U, 24U}) {  // microphone and ground, of every class
+        const DrawnCase whole = drawn_case(n, kSeed, false, most);
+        INFO(n << " " << class_name(whole.of) << ": " << whole.text << " seed " << kSeed);
+        CHECK(whole.runs >= most);
+        CHECK(whole.text == drawn_case(n, kSeed, false, most).text);
+        std::size_t last = 0;
+        for (const std::size_t runs : kPowerRuns) {
+            const DrawnCase part = with_runs(whole, runs, kSeed + n);
+            CHECK(part.runs == runs);
+            CHECK(part.hidden.experiment.runs.size() == runs);
+            CHECK(part.hidden.truths.size() == whole.hidden.truths.size());
+            // Every run of the smaller set is a run of this one.
+            const auto texts = [](const DrawnCase& one) {
+                std::multiset<std::vector<double>> all;
+                for (const gap::WrittenRun& run : one.hidden.experiment.runs)
+                    all.insert(run.find(one.hidden.kind == "ground" ? "reading" : "level")->values);
+                return all;
+            };
+            if (last > 0) {
+                const auto more = texts(part), fewer = texts(with_runs(whole, last, kSeed + n));
+                CHECK(std::includes(more.begin(), more.end(), fewer.begin(), fewer.end()));
+            }
+            last = runs;
+        }
+    }
+}
+
+TEST_CASE("power is counted at each number of runs, weak effects left out") {
+    std::vector<Outcome> cases;
+    for (const std::size_t runs : kPowerRuns)
+        for (int k = 0; k < 4; ++k) {
+            Outcome one = made(Class::Known, static_cast<int>(runs) > 6 * k ? "named" : "no_effect",
+                               k == 3 ? 0.6 : 2.0, static_cast<int>(runs) > 6 * k);
+            one.runs = runs;
+            cases.push_back(one);
+        }
+    const Curve curve = power(cases, Class::Known);
+    REQUIRE(curve.size() == kPowerRuns.size());
+    for (std::size_t b = 0; b < curve.size(); ++b) {
+        CHECK(curve[b].of == 3);
+        CHECK(curve[b].right == (kPowerRuns[b] > 12 ? 3 : kPowerRuns[b] > 6 ? 2 : 1));
+    }
+    CHECK(power_text(cases, "1").find("33 % (") != std::string::npos);
+    CHECK(power_svg(cases).find("runs that were analysed") != std::string::npos);
 }
 
 TEST_CASE("ranks of honest intervals are uniform, of too narrow ones not") {

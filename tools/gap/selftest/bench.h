@@ -120,7 +120,8 @@ class BenchOf : public Bench {
         }
         RandomStream random(plan.seed, "noise style");
         const NoiseStyle style = NoiseStyle::draw(random);
-        made.experiment = rig_.exact(knobs, plan.seed, variant);
+        made.experiment = repeated(plan.seed, plan.least_runs,
+                                   [&](std::uint64_t seed) { return rig_.exact(knobs, seed, variant); });
         rig_.measure(made.experiment, knobs, style, plan.seed);
         RandomStream holes(plan.seed, "holes");
         for (WrittenRun& run : made.experiment.runs)

@@ -50,8 +50,9 @@ struct CasePlan {
     Strength strength = Strength::None;
     Expect expect = Expect::NoEffect;
     std::uint64_t seed = 0;
-    std::string variant{};  ///< of the experiment, where no effect asks for one
-    double asked = 0.0;     ///< ratio to the noise, where it is not the strength's; 0: the strength's
+    std::string variant{};       ///< of the experiment, where no effect asks for one
+    double asked = 0.0;          ///< ratio to the noise, where it is not the strength's; 0: the strength's
+    std::size_t least_runs = 0;  ///< performed again, with other designs, until there are so many
 };
 
 struct EffectInfo {

@@ -5,6 +5,16 @@
 
 namespace puckloop::gap::selftest {
 
+WrittenExperiment repeated(std::uint64_t seed, std::size_t least_runs,
+                           const std::function<WrittenExperiment(std::uint64_t)>& exact) {
+    WrittenExperiment all = exact(seed);
+    RandomStream designs(seed, "designs of further runs");
+    while (all.runs.size() < least_runs)
+        for (WrittenRun& run : exact(designs.next()).runs)
+            all.runs.push_back(std::move(run));
+    return all;
+}
+
 double distance_in_noise(const WrittenExperiment& with, const WrittenExperiment& without,
                          const std::vector<NoiseFloor>& floor) {
     double most = 0.0;

@@ -25,6 +25,10 @@ struct Rig {
     std::function<double(const Knobs&, std::uint64_t seed, const std::string& variant)> growth;
 };
 
+/// What `exact` makes of `seed`, and of other seeds after it until there are `least_runs` runs.
+WrittenExperiment repeated(std::uint64_t seed, std::size_t least_runs,
+                           const std::function<WrittenExperiment(std::uint64_t)>& exact);
+
 /// Root mean square of the difference between two exact experiments in units of the noise floor, of the
 /// column most affected.
 double distance_in_noise(const WrittenExperiment& with, const WrittenExperiment& without,

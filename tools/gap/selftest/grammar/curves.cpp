@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 
 namespace puckloop::gap::selftest::grammar {
@@ -11,28 +12,37 @@ namespace {
 constexpr std::array kClasses{Class::Unknown, Class::NearMiss, Class::Known, Class::Null};
 
 template <class Where>
-Curve curve(const std::vector<Outcome>& cases, Class of, const std::array<double, 5>& ends,
-            const Where& where) {
-    Curve bands{};
-    for (std::size_t b = 0; b < bands.size(); ++b) {
-        bands[b].low = ends[b];
-        bands[b].high = ends[b + 1];
+Curve counted(Curve bands, const std::vector<Outcome>& cases, Class of, const Where& where) {
+    for (Band& band : bands)
         for (const Outcome& one : cases) {
             const double at = where(one);
-            if (one.of != of || !(at >= ends[b] && at < ends[b + 1])) continue;
-            ++bands[b].count[static_cast<std::size_t>(said_of(one))];
-            ++bands[b].of;
-            bands[b].right += rightly(one) ? 1 : 0;
+            const bool inside = band.low < band.high ? at >= band.low && at < band.high : at == band.low;
+            if (one.of != of || !inside) continue;
+            ++band.count[static_cast<std::size_t>(said_of(one))];
+            ++band.of;
+            band.right += rightly(one) ? 1 : 0;
         }
-    }
     return bands;
+}
+
+Curve bands_between(const std::array<double, 5>& ends) {
+    Curve bands;
+    for (std::size_t b = 0; b + 1 < ends.size(); ++b)
+        bands.push_back({ends[b], ends[b + 1]});
+    return bands;
+}
+
+/// 0 of what is too weak to be asked for.
+double runs_of(const Outcome& one) {
+    return one.of == Class::Null || one.ratio >= 1 ? static_cast<double>(one.runs) : 0.0;
 }
 
 std::string table(const Curve& bands, Class of) {
     std::string text;
     for (const Band& band : bands) {
         if (band.of == 0) continue;
-        text += fmt::format("  {:<10}{:>4g} to {:<5g}{:>4}", class_name(of), band.low, band.high, band.of);
+        text += fmt::format("  {:<10}{:>4g}{:<9}{:>4}", class_name(of), band.low,
+                            band.low < band.high ? fmt::format(" to {:g}", band.high) : "", band.of);
         for (const int count : band.count) {
             const Rate rate = rate_of(count, band.of);
             text += fmt::format("{:>5.0f} ({:>2.0f}..{:>3.0f})", 100 * rate.share(), 100 * rate.low,
@@ -104,13 +114,45 @@ bool rightly(const Outcome& one) {
 }
 
 Curve by_strength(const std::vector<Outcome>& cases, Class of) {
-    return curve(cases, of, kStrengths, [](const Outcome& one) { return one.ratio; });
+    return counted(bands_between(kStrengths), cases, of, [](const Outcome& one) { return one.ratio; });
 }
 
 Curve by_runs(const std::vector<Outcome>& cases, Class of) {
-    return curve(cases, of, kRuns, [](const Outcome& one) {
-        return one.of == Class::Null || one.ratio >= 1 ? static_cast<double>(one.runs) : 0.0;
-    });
+    return counted(bands_between(kRuns), cases, of, runs_of);
+}
+
+Curve power(const std::vector<Outcome>& cases, Class of) {
+    Curve numbers;
+    for (const std::size_t runs : kPowerRuns)
+        numbers.push_back({static_cast<double>(runs), static_cast<double>(runs)});
+    return counted(std::move(numbers), cases, of, runs_of);
+}
+
+std::string power_text(const std::vector<Outcome>& cases, const std::string& seeds) {
+    std::string text =
+        fmt::format("{} analyses of drawn cases with some of their runs, seed {}; 95 % binomial "
+                    "intervals\n\nrightly called, strength 1 and above\n  {:<10}",
+                    cases.size(), seeds, "");
+    for (const std::size_t runs : kPowerRuns)
+        text += fmt::format("{:>24}", fmt::format("{} runs", runs));
+    text += "\n";
+    for (const Class of : kClasses) {
+        const Curve bands = power(cases, of);
+        if (std::all_of(bands.begin(), bands.end(), [](const Band& band) { return band.of == 0; })) continue;
+        text += fmt::format("  {:<10}", class_name(of));
+        for (const Band& band : bands) {
+            const Rate rate = rate_of(band.right, band.of);
+            text +=
+                fmt::format("{:>24}", fmt::format("{:.0f} % ({:.0f}..{:.0f}, {} of {})", 100 * rate.share(),
+                                                  100 * rate.low, 100 * rate.high, rate.hits, rate.of));
+        }
+        text += "\n";
+    }
+    text +=
+        heading("number of runs, strength 1 and above (right name: the effect, of a near miss its family)");
+    for (const Class of : kClasses)
+        text += table(power(cases, of), of);
+    return text;
 }
 
 std::string curves_text(const std::vector<Outcome>& cases) {

@@ -23,15 +23,20 @@ inline constexpr std::array<double, 5> kStrengths{0.5, 1.0, 2.0, 4.0, 8.5};
 inline constexpr std::array<double, 5> kRuns{2, 4, 8, 16, 1000};
 
 struct Band {
-    double low = 0.0, high = 0.0;
+    double low = 0.0, high = 0.0;  ///< the same: one number
     std::array<int, kSaid> count{};
     int right = 0, of = 0;
 };
-using Curve = std::array<Band, 4>;
+using Curve = std::vector<Band>;
 
 Curve by_strength(const std::vector<Outcome>& cases, Class of);
 /// Of cases of strength 1 and above, and of nulls.
 Curve by_runs(const std::vector<Outcome>& cases, Class of);
+
+/// At each of kPowerRuns, of cases of strength 1 and above, and of nulls: what run_power gives.
+Curve power(const std::vector<Outcome>& cases, Class of);
+std::string power_text(const std::vector<Outcome>& cases, const std::string& seeds);
+std::string power_svg(const std::vector<Outcome>& cases);
 
 /// Tables of both, and of every known effect.
 std::string curves_text(const std::vector<Outcome>& cases);

@@ -15,7 +15,8 @@ constexpr const char* kColours[] = {"#b03a2e", "#b9770e", "#1f618d", "#616a6b"};
 
 /// Share rightly called, a line a class; bands stand beside each other, each class a little aside.
 template <class CurveOf>
-std::string curves(const char* title, const char* axis, const CurveOf& curve_of, bool nulls) {
+std::string curves(const char* title, const char* axis, const CurveOf& curve_of, bool nulls,
+                   double width = kWidth, double height = kHeight) {
     constexpr double kAside = 0.06;
     report::Chart chart(title, axis, "share rightly called");
     std::vector<std::string> names;
@@ -25,20 +26,21 @@ std::string curves(const char* title, const char* axis, const CurveOf& curve_of,
         const Curve bands = curve_of(kShown[c]);
         names.clear();
         for (std::size_t b = 0; b < bands.size(); ++b) {
-            names.push_back(bands[b].high < 100 ? fmt::format("{:g} to {:g}", bands[b].low, bands[b].high)
-                                                : fmt::format("from {:g}", bands[b].low));
+            names.push_back(bands[b].high == bands[b].low ? fmt::format("{:g}", bands[b].low)
+                            : bands[b].high < 100 ? fmt::format("{:g} to {:g}", bands[b].low, bands[b].high)
+                                                  : fmt::format("from {:g}", bands[b].low));
             if (bands[b].of == 0) continue;
             const Rate rate = rate_of(bands[b].right, bands[b].of);
             x.push_back(static_cast<double>(b) + kAside * (static_cast<double>(c) - 1));
             y.push_back(rate.share());
             chart.interval(x.back(), rate.share(), rate.low, rate.high, kColours[c]);
         }
-        chart.line(x, y, kColours[c], class_name(kShown[c]));
+        if (!x.empty()) chart.line(x, y, kColours[c], class_name(kShown[c]));
     }
     chart.categories(names);
     chart.level(1.0);
     chart.level(0.0);
-    return chart.svg(kWidth, kHeight);
+    return chart.svg(width, height);
 }
 
 std::string ranks(const std::vector<Outcome>& cases) {
@@ -55,6 +57,13 @@ std::string ranks(const std::vector<Outcome>& cases) {
 }
 
 }  // namespace
+
+std::string power_svg(const std::vector<Outcome>& cases) {
+    constexpr double kWide = 520, kHigh = 320;
+    return curves(
+        "power, strength 1 and above (95 % binomial intervals)", "runs that were analysed",
+        [&](Class of) { return power(cases, of); }, true, kWide, kHigh);
+}
 
 std::string curves_svg(const std::vector<Outcome>& cases) {
     const std::string charts[] = {

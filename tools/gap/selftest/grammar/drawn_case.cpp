@@ -1,5 +1,6 @@
 #include "tools/gap/selftest/grammar/drawn_case.h"
 
+#include "gap/stats/shuffle.h"
 #include "tools/gap/selftest/case_list.h"
 #include "tools/gap/selftest/grammar/laboratory.h"
 #include "tools/gap/selftest/grammar/near_misses.h"
@@ -14,6 +15,8 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <numeric>
+#include <span>
 
 namespace puckloop::gap::selftest::grammar {
 
@@ -121,13 +124,14 @@ void draw_near_miss(DrawnCase& drawn, const WrittenExperiment& exact, std::size_
 }
 
 /// An effect of the catalogue, by the self test's own models.
-void draw_known(DrawnCase& drawn, std::size_t bench, RandomStream& random) {
+void draw_known(DrawnCase& drawn, std::size_t bench, std::size_t least_runs, RandomStream& random) {
     const auto effects = benches()[bench]->effects();
     std::size_t one = random.below(effects.size());
     while (effects[one].number == 0 || effects[one].instead_of != 0)
         one = random.below(effects.size());
     CasePlan plan{bench, {one}, Strength::Medium, Expect::Named, random.next()};
     plan.asked = drawn.asked;
+    plan.least_runs = least_runs;
     drawn.hidden = benches()[bench]->make(plan);
     drawn.text = effects[one].label;
 }
@@ -161,10 +165,14 @@ double amplitude_for(const WrittenExperiment& exact, const Site& site, const Fie
 
 std::vector<double> likenesses_of(const WrittenExperiment& with, const WrittenExperiment& rest,
                                   const Examples& examples, const std::vector<NoiseFloor>& floor) {
+    std::size_t runs = rest.runs.size();  // of a longer experiment the first design's
+    for (const auto& effect : examples)
+        for (const WrittenExperiment& example : effect)
+            runs = std::min(runs, example.runs.size());
     const auto difference = [&](const WrittenExperiment& one) {
         std::vector<double> all;
         for (const NoiseFloor& noise : floor)
-            for (std::size_t r = 0; r < rest.runs.size(); ++r) {
+            for (std::size_t r = 0; r < runs; ++r) {
                 const WrittenColumn *a = one.runs[r].find(noise.column), *b = rest.runs[r].find(noise.column);
                 if (a == nullptr || b == nullptr) continue;
                 for (std::size_t k = 0; k < b->values.size(); ++k) {
@@ -212,21 +220,23 @@ Class class_of(std::size_t number) {
     return kTurns[number / benches().size() % kTurns.size()];
 }
 
-DrawnCase drawn_case(std::size_t number, std::uint64_t seed, bool draw_runs) {
+DrawnCase drawn_case(std::size_t number, std::uint64_t seed, bool draw_runs, std::size_t least_runs) {
     const std::size_t bench = number % benches().size();
     RandomStream random(seed, fmt::format("grammar case {}", number));
     Laboratory laboratory = Laboratory::draw(random);
+    laboratory.one_pass = laboratory.one_pass && least_runs == 0;
     if (draw_runs) laboratory.fewer.emplace(seed, fmt::format("runs of case {}", number));
     DrawnCase drawn;
     drawn.of = class_of(number);
     drawn.asked = drawn.of == Class::Null ? 0.0 : drawn_strength(random);
     if (drawn.of == Class::Known) {
-        draw_known(drawn, bench, random);
+        draw_known(drawn, bench, least_runs, random);
         laboratory.plan(drawn.hidden.experiment);  // every pass has every condition
     } else {
         const std::uint64_t design =
             RandomStream(seed, fmt::format("design {} {}", bench, random.below(kDesigns))).next();
-        WrittenExperiment exact = benches()[bench]->exact(design);
+        WrittenExperiment exact =
+            repeated(design, least_runs, [&](std::uint64_t one) { return benches()[bench]->exact(one); });
         laboratory.plan(exact);
         drawn.hidden.kind = benches()[bench]->kind();
         drawn.hidden.experiment = exact;
@@ -240,6 +250,21 @@ DrawnCase drawn_case(std::size_t number, std::uint64_t seed, bool draw_runs) {
     drawn.text += laboratory.text();
     drawn.runs = drawn.hidden.experiment.runs.size();
     return drawn;
+}
+
+DrawnCase with_runs(const DrawnCase& drawn, std::size_t count, std::uint64_t seed) {
+    std::vector<std::size_t> order(drawn.runs);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    RandomStream random(seed, "runs that are left");
+    stats::shuffle(std::span(order), random);
+    order.resize(std::min(count, order.size()));
+    std::sort(order.begin(), order.end());
+    DrawnCase fewer = drawn;
+    fewer.hidden.experiment.runs.clear();
+    for (const std::size_t run : order)
+        fewer.hidden.experiment.runs.push_back(drawn.hidden.experiment.runs[run]);
+    fewer.runs = order.size();
+    return fewer;
 }
 
 }  // namespace puckloop::gap::selftest::grammar

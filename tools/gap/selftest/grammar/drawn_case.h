@@ -32,8 +32,12 @@ struct DrawnCase {
 inline constexpr double kMostLikeness = 0.5;
 
 /// Case `number` of a run with this seed. Kinds and classes take turns; everything else is drawn, how many
-/// runs there are only with `draw_runs`.
-DrawnCase drawn_case(std::size_t number, std::uint64_t seed, bool draw_runs = false);
+/// runs there are only with `draw_runs`. With `least_runs` everything is performed again, with the same
+/// change and other designs, until there are so many.
+DrawnCase drawn_case(std::size_t number, std::uint64_t seed, bool draw_runs = false,
+                     std::size_t least_runs = 0);
+/// The same case with `count` of its runs, drawn at random; fewer runs are among those of more.
+DrawnCase with_runs(const DrawnCase& drawn, std::size_t count, std::uint64_t seed);
 Class class_of(std::size_t number);
 
 /// Noise of the measured columns of a kind, in the self test's experiments.

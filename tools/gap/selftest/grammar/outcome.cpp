@@ -58,7 +58,9 @@ Outcome outcome_of(const DrawnCase& drawn, const Verdict& verdict) {
     return out;
 }
 
-std::vector<Outcome> run_drawn(const Drawing& drawing) {
+namespace {
+
+std::vector<std::size_t> numbers_of(const Drawing& drawing) {
     std::vector<std::size_t> numbers;
     for (std::size_t n = 0; n < drawing.cases; ++n) {
         const bool asked = drawing.only.empty() ||
@@ -66,22 +68,53 @@ std::vector<Outcome> run_drawn(const Drawing& drawing) {
         const bool kind = drawing.kind.empty() || benches()[n % benches().size()]->kind() == drawing.kind;
         if (asked && kind && (!drawing.of || class_of(n) == *drawing.of)) numbers.push_back(n);
     }
+    return numbers;
+}
+
+Outcome tried(const Drawing& drawing, std::size_t number, const DrawnCase& drawn, const std::string& folder) {
+    const auto said = analysed(drawn.hidden.experiment, drawing.scratch / folder, drawing.seed + number,
+                               drawing.keep, drawing.ask_all);
+    Outcome outcome = outcome_of(drawn, said.verdict);
+    outcome.number = number;
+    outcome.wall_s = said.wall_s;
+    outcome.error = said.error;
+    if (!said.error.empty()) outcome.said = "error";
+    return outcome;
+}
+
+}  // namespace
+
+std::vector<Outcome> run_drawn(const Drawing& drawing) {
+    const auto numbers = numbers_of(drawing);
     const auto one = [&](std::size_t k) {
-        const DrawnCase drawn = drawn_case(numbers[k], drawing.seed, drawing.draw_runs);
-        const auto said =
-            analysed(drawn.hidden.experiment, drawing.scratch / fmt::format("case{:04}", numbers[k]),
-                     drawing.seed + numbers[k], drawing.keep, drawing.ask_all);
-        Outcome outcome = outcome_of(drawn, said.verdict);
-        outcome.number = numbers[k];
-        outcome.wall_s = said.wall_s;
-        outcome.error = said.error;
-        if (!said.error.empty()) outcome.said = "error";
-        return outcome;
+        return tried(drawing, numbers[k], drawn_case(numbers[k], drawing.seed, drawing.draw_runs),
+                     fmt::format("case{:04}", numbers[k]));
     };
     return run_all(numbers.size(), drawing.workers, one,
                    [&](std::size_t, const Outcome& outcome, std::size_t done) {
                        if (drawing.done) drawing.done(outcome, done, numbers.size());
                    });
+}
+
+std::vector<Outcome> run_power(const Drawing& drawing) {
+    const auto numbers = numbers_of(drawing);
+    const auto one = [&](std::size_t k) {
+        const DrawnCase drawn = drawn_case(numbers[k], drawing.seed, false, kPowerRuns.back());
+        std::vector<Outcome> outcomes;
+        for (const std::size_t runs : kPowerRuns)
+            outcomes.push_back(tried(drawing, numbers[k], with_runs(drawn, runs, drawing.seed + numbers[k]),
+                                     fmt::format("case{:04}", numbers[k])));
+        return outcomes;
+    };
+    const auto each = run_all(numbers.size(), drawing.workers, one,
+                              [&](std::size_t, const std::vector<Outcome>& outcomes, std::size_t done) {
+                                  for (const Outcome& outcome : outcomes)
+                                      if (drawing.done) drawing.done(outcome, done, numbers.size());
+                              });
+    std::vector<Outcome> all;
+    for (const auto& outcomes : each)
+        all.insert(all.end(), outcomes.begin(), outcomes.end());
+    return all;
 }
 
 }  // namespace puckloop::gap::selftest::grammar

@@ -4,6 +4,7 @@
 #include "gap/verdict/verdict.h"
 #include "tools/gap/selftest/grammar/drawn_case.h"
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -52,6 +53,12 @@ struct Drawing {
     std::function<void(const Outcome&, std::size_t done, std::size_t all)>
         done;  ///< from one thread at a time
 };
+
+/// Numbers of runs for the power against them.
+inline constexpr std::array<std::size_t, 6> kPowerRuns{4, 6, 8, 12, 16, 24};
+/// Each case drawn with as many runs as the last of these, then analysed with so many of them: an outcome
+/// each, in order of the cases' numbers, then of the runs.
+std::vector<Outcome> run_power(const Drawing& drawing);
 
 /// Draws, has analysed and judges; in order of their numbers.
 std::vector<Outcome> run_drawn(const Drawing& drawing);

@@ -1,0 +1,87 @@
+#include "gap/predictive/check.h"
+
+#include "gap/diagnostics/residual_structure.h"
+#include "gap/fit/likelihood.h"
+#include "gap/fit/parallel.h"
+#include "gap/predictive/discrepancies.h"
+#include "gap/predictive/main_covariates.h"
+#include "gap/predictive/posterior.h"
+#include "gap/predictive/replicate.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace puckloop::gap {
+
+namespace {
+
+constexpr std::size_t kReplicates = 199, kFewer = 99;  // of many rows: each costs a prediction and a filter
+constexpr std::size_t kManyRows = 20000;
+
+/// Measured minus shown; of a sum what each row adds, in the observable's unit.
+std::vector<double> residuals_of(const Observable& o, const Predicted& at_fit, const NoiseParameters& noise) {
+    std::vector<double> residuals(o.y.size());
+    if (o.noise == NoiseKind::Level) {
+        Innovations innovations;
+        filter(o, at_fit, noise, innovations);
+        for (std::size_t i = 0; i < residuals.size(); ++i)
+            residuals[i] = innovations.role[i] == RowRole::Plain
+                               ? innovations.z[i] * std::sqrt(innovations.variance[i])
+                               : NAN;
+    } else {
+        for (std::size_t i = 0; i < residuals.size(); ++i)
+            residuals[i] = o.y[i] - shown(at_fit, i);
+    }
+    return residuals;
+}
+
+std::vector<stats::Covariate> covariates_for(const Experiment& experiment, const Observable& o) {
+    Series rows;
+    rows.run = o.run;
+    rows.row = o.row;
+    return main_covariates(experiment, o.name, covariates_of(experiment, rows), o.row);
+}
+
+}  // namespace
+
+std::vector<PredictiveCheck> predictive_checks(const Study& study, const Fit& fit, bool extended,
+                                               std::uint64_t seed) {
+    const Model& model = study.model();
+    const auto& observables = model.observables();
+    const State& mode = fit.fitted.state;
+    Prediction at_fit;
+    model.predict(mode.values, at_fit);
+    std::vector<Discrepancies> discrepancies;
+    std::vector<std::vector<double>> measured;
+    for (std::size_t o = 0; o < observables.size(); ++o) {
+        measured.push_back(residuals_of(observables[o], at_fit[o], mode.noise[o]));
+        discrepancies.emplace_back(
+            observables[o], measured[o], covariates_for(study.experiment(), observables[o]),
+            with_unit(observables[o].noise == NoiseKind::Level ? "added by a row" : "measured − simulated",
+                      observables[o].unit));
+    }
+    RandomStream random(seed, fmt::format("gap/posterior {}", extended));
+    const std::size_t count = study.rows() > kManyRows ? kFewer : kReplicates;
+    const auto states = posterior_states(model, fit.freed, mode, count, random);
+    // values[o][k]: of observable o the curves of replicate k.
+    std::vector<std::vector<std::vector<std::vector<double>>>> values(
+        observables.size(), std::vector<std::vector<std::vector<double>>>(count));
+    in_parallel(count, study.threads(), [&](std::size_t k) {
+        RandomStream own(seed, fmt::format("gap/replicate {} {}", extended, k));
+        Prediction drawn;
+        model.predict(states[k].values, drawn);
+        for (std::size_t o = 0; o < observables.size(); ++o) {
+            Observable replicate = observables[o];
+            replicate.y = replicated(observables[o], drawn[o], states[k].noise[o], own);
+            values[o][k] = discrepancies[o].values_of(residuals_of(replicate, at_fit[o], mode.noise[o]));
+        }
+    });
+    std::vector<PredictiveCheck> checks;
+    for (std::size_t o = 0; o < observables.size(); ++o)
+        checks.push_back({observables[o].name, observables[o].unit, extended, static_cast<int>(count),
+                          discrepancies[o].curves(measured[o], values[o])});
+    return checks;
+}
+
+}  // namespace puckloop::gap

@@ -1,0 +1,74 @@
+#include "gap/predictive/main_covariates.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+namespace puckloop::gap {
+
+namespace {
+
+using stats::Covariate;
+
+constexpr std::size_t kMost = 3;
+
+/// In the order of importance.
+const std::vector<std::string>& wanted(Kind kind, const std::string& observable) {
+    static const std::vector<std::string> kBearing{"true bearing", "distance", "receiver"};
+    static const std::map<Kind, std::vector<std::string>> kOfKind{
+        {Kind::Proximity, {"distance", "angle", "sensor"}},
+        {Kind::Rab, {"distance", "true bearing", "senders"}},
+        {Kind::Microphone, {"distance", "angle", "mic"}},
+        {Kind::Ground, {"grey", "time", "sensor"}},
+        {Kind::Accelerometer, {"time", "pitch", "roll"}},
+        {Kind::Timing, {"seq", "bytes", "load"}},
+        {Kind::Motion, {"distance so far", "wheel speed", "turn rate", "time"}}};
+    return observable == "bearing_rad" ? kBearing : kOfKind.at(kind);
+}
+
+}  // namespace
+
+std::vector<Covariate> main_covariates(const Experiment& experiment, const std::string& observable,
+                                       const std::vector<Covariate>& all,
+                                       const std::vector<std::uint32_t>& row) {
+    std::vector<Covariate> found;
+    for (const std::string& name : wanted(experiment.kind, observable))
+        for (const Covariate& one : all)
+            if (one.name == name && found.size() < kMost) found.push_back(one);
+    if (found.empty()) found.push_back({"row", stats::CovariateKind::Number, {row.begin(), row.end()}, {}});
+    return found;
+}
+
+std::string with_unit(const std::string& name, const std::string& unit) {
+    return unit.empty() || unit == "1" ? name : fmt::format("{} ({})", name, unit);
+}
+
+std::string covariate_label(const std::string& name) {
+    static const std::map<std::string, std::string> kUnits{{"distance", "m"},
+                                                           {"angle", "rad"},
+                                                           {"off axis", "rad"},
+                                                           {"true bearing", "rad"},
+                                                           {"time", "s"},
+                                                           {"velocity", "m/s"},
+                                                           {"speed", "m/s"},
+                                                           {"wheel speed", "steps/s"},
+                                                           {"turn rate", "steps/s"},
+                                                           {"acceleration", "steps/s²"},
+                                                           {"distance so far", "steps"},
+                                                           {"temperature", "°C"},
+                                                           {"battery", "V"},
+                                                           {"cmd left", "steps/s"},
+                                                           {"cmd right", "steps/s"},
+                                                           {"theta", "rad"},
+                                                           {"motor speed", "steps/s"},
+                                                           {"pitch", "rad"},
+                                                           {"roll", "rad"},
+                                                           {"grey rate", "1/m"},
+                                                           {"frame time", "s"},
+                                                           {"poll period", "s"}};
+    const auto unit = kUnits.find(name);
+    return with_unit(name, unit == kUnits.end() ? "" : unit->second);
+}
+
+}  // namespace puckloop::gap

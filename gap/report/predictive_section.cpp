@@ -1,0 +1,119 @@
+// Posterior-predictive checks: a row of panels for each observable and model.
+
+#include "gap/report/chart.h"
+#include "gap/report/pictures.h"
+#include "gap/report/report.h"
+#include "gap/report/sections.h"
+#include "gap/report/table.h"
+#include "physics/render/svg_canvas.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <vector>
+
+namespace puckloop::gap::report {
+
+namespace {
+
+constexpr double kWidth = 228, kHeight = 172, kHeading = 24;  // of a panel and of a check's heading, pixels
+constexpr std::size_t kColumns = 3;
+constexpr const char* kData = "#222222";
+
+/// Do the places stand by themselves, as bars do, or are they points of a course?
+bool stands_alone(const PredictiveCurve& curve) {
+    return !curve.categories.empty() || curve.name == "marginal law" || curve.name == "spread per run" ||
+           curve.name == "autocorrelation";
+}
+
+/// Half the distance between two places.
+double half_step(const PredictiveCurve& curve) {
+    return curve.x.size() > 1 ? std::abs(curve.x[1] - curve.x[0]) / 2 : 0.5;
+}
+
+std::string panel(const PredictiveCurve& curve, bool extended) {
+    Chart chart(fmt::format("{}, p = {:.{}f}", curve.name, curve.p, curve.p < 0.1 ? 3 : 2), curve.x_label,
+                curve.y_label);
+    const char* colour = extended ? kAfter : kBefore;
+    if (stands_alone(curve)) {
+        const double half = half_step(curve) * (curve.name == "marginal law" ? 1.0 : 0.7);
+        for (std::size_t k = 0; k < curve.x.size(); ++k)
+            if (std::isfinite(curve.low[k]))
+                chart.band({curve.x[k] - half, curve.x[k] + half}, {curve.low[k], curve.low[k]},
+                           {curve.high[k], curve.high[k]}, colour);
+        chart.dots(curve.x, curve.measured, kData);
+    } else {
+        chart.band(curve.x, curve.low, curve.high, colour);
+        chart.line(curve.x, curve.measured, kData, "");
+    }
+    if (curve.name != "marginal law" && curve.name != "spread per run") chart.level(0);
+    chart.categories(curve.categories);
+    return chart.svg(kWidth, kHeight);
+}
+
+double height_of(const PredictiveCheck& check) {
+    return kHeading + kHeight * static_cast<double>((check.curves.size() + kColumns - 1) / kColumns);
+}
+
+std::string heading(const PredictiveCheck& check, double top) {
+    const char* model = check.extended ? "with the named causes" : "the simulator as it is";
+    return fmt::format(
+        "<text x=\"4\" y=\"{0:.0f}\" font-size=\"12\" font-weight=\"bold\">{1}: {2}</text>\n"
+        "<rect x=\"{3:.0f}\" y=\"{4:.0f}\" width=\"14\" height=\"10\" fill=\"{5}\" "
+        "fill-opacity=\"0.3\"/>\n<text x=\"{6:.0f}\" y=\"{0:.0f}\" font-size=\"10\">90 % of {7} "
+        "replicated data sets</text>\n<circle cx=\"{8:.0f}\" cy=\"{9:.0f}\" r=\"2.5\" "
+        "fill=\"{10}\"/>\n<text x=\"{11:.0f}\" y=\"{0:.0f}\" font-size=\"10\">measured</text>\n",
+        top + 16, physics::escaped(check.observable), model, 2 * kWidth - 70, top + 7,
+        check.extended ? kAfter : kBefore, 2 * kWidth - 52, check.replicates, 3 * kWidth - 72, top + 12,
+        kData, 3 * kWidth - 64);
+}
+
+std::string picture_of(const std::vector<const PredictiveCheck*>& checks) {
+    double top = 0.0;
+    std::string body;
+    for (const PredictiveCheck* check : checks) {
+        body += heading(*check, top);
+        for (std::size_t k = 0; k < check->curves.size(); ++k)
+            body += fmt::format("<g transform=\"translate({:.0f},{:.0f})\">{}</g>\n",
+                                kWidth * static_cast<double>(k % kColumns),
+                                top + kHeading + kHeight * static_cast<double>(k / kColumns),
+                                panel(check->curves[k], check->extended));
+        top += height_of(*check);
+    }
+    return fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" "
+                       "width=\"{0:.0f}\" height=\"{1:.0f}\" font-family=\"DejaVu Sans, Helvetica, Arial, "
+                       "sans-serif\" fill=\"#333333\">\n<rect width=\"{0:.0f}\" height=\"{1:.0f}\" "
+                       "fill=\"#ffffff\"/>\n{2}</svg>\n",
+                       kColumns * kWidth, top, body);
+}
+
+}  // namespace
+
+std::string predictive_svg(const Verdict& verdict) {
+    std::vector<const PredictiveCheck*> all;
+    for (const PredictiveCheck& check : verdict.predictive)
+        all.push_back(&check);
+    return all.empty() ? std::string() : picture_of(all);
+}
+
+std::string predictive_section(const Verdict& verdict) {
+    if (verdict.predictive.empty()) return {};
+    Table table({"observable", "model", "discrepancy", "#p"});
+    std::string figures;
+    for (const PredictiveCheck& check : verdict.predictive) {
+        for (const PredictiveCurve& curve : check.curves)
+            table.row({check.observable, check.extended ? "with the named causes" : "as it is", curve.name,
+                       p_cell(curve.p)},
+                      curve.p <= 0.05 ? "strong" : "");
+        figures += fmt::format("<figure class=\"wide\">{}</figure>\n", picture_of({&check}));
+    }
+    return "<h2>Does the fitted model make such data?</h2>\n<p>Posterior-predictive check (Gelman, Meng and "
+           "Stern 1996): data sets are replicated from the fitted model, with parameters drawn from their "
+           "approximate posterior, errors by the fitted law, rounding and clipping. p: share of data sets "
+           "that lie as far from the replicates' mean as the measured one does, at the place where each is "
+           "farthest. A small p: the model does not make such data. Data that a model was fitted to look a "
+           "little better than new data would.</p>\n" +
+           figures + table.html();
+}
+
+}  // namespace puckloop::gap::report
