@@ -141,10 +141,13 @@ void tell_held(const Study& study, const Selection& selection, std::uint64_t see
 }
 
 void tell_predictive(const Study& study, const Chosen& chosen, std::uint64_t seed, Verdict& verdict) {
-    verdict.predictive = predictive_checks(study, chosen.selection.none, false, seed);
-    if (chosen.final.effects.empty()) return;
-    for (PredictiveCheck& check : predictive_checks(study, chosen.final, true, seed))
-        verdict.predictive.push_back(std::move(check));
+    auto as_it_is = predictive_checks(study, chosen.selection.none, false, seed);
+    std::vector<PredictiveCheck> with_causes;
+    if (!chosen.final.effects.empty()) with_causes = predictive_checks(study, chosen.final, true, seed);
+    for (std::size_t o = 0; o < as_it_is.size(); ++o) {
+        verdict.predictive.push_back(std::move(as_it_is[o]));
+        if (o < with_causes.size()) verdict.predictive.push_back(std::move(with_causes[o]));
+    }
 }
 
 }  // namespace

@@ -58,8 +58,7 @@ std::vector<PredictiveCheck> predictive_checks(const Study& study, const Fit& fi
         measured.push_back(residuals_of(observables[o], at_fit[o], mode.noise[o]));
         discrepancies.emplace_back(
             observables[o], measured[o], covariates_for(study.experiment(), observables[o]),
-            with_unit(observables[o].noise == NoiseKind::Level ? "added by a row" : "measured − simulated",
-                      observables[o].unit));
+            observables[o].noise == NoiseKind::Level ? "added by a row" : "measured − simulated");
     }
     RandomStream random(seed, fmt::format("gap/posterior {}", extended));
     const std::size_t count = study.rows() > kManyRows ? kFewer : kReplicates;

@@ -34,7 +34,7 @@ class Discrepancies {
     void add_marginal(const std::vector<double>& measured, const std::string& residual);
     void add_autocorrelation();
     void add_covariate(const stats::Covariate& covariate, const std::string& residual);
-    void add_spread(const std::string& residual);
+    void add_spread();
 
     const Observable& observable_;
     std::vector<PredictiveCurve> places_;  ///< names, labels and places; values still missing

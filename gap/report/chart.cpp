@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kLeft = 58, kRight = 20, kTop = 40, kBottom = 42;  // pixels round the plot
 constexpr std::size_t kMostPoints = 1500;
+constexpr double kSmall = 300;  // pixels wide: fewer ticks
 constexpr const char* kGrid = "#dddddd";
 constexpr const char* kInk = "#333333";
 constexpr const char* kThick = "stroke-width=\"2\"";
@@ -97,6 +98,11 @@ void Chart::dots(const std::vector<double>& x, const std::vector<double>& y, con
     layers_.push_back({Layer::Kind::Dots, x, y, {}, colour, "", false});
 }
 
+void Chart::bars(const std::vector<double>& x, double half, const std::vector<double>& low,
+                 const std::vector<double>& high, const std::string& colour) {
+    layers_.push_back({Layer::Kind::Bars, x, low, high, colour, "", false, half});
+}
+
 void Chart::interval(double x, double y, double low, double high, const std::string& colour) {
     layers_.push_back({Layer::Kind::Interval, {x, x}, {low, y}, {high, y}, colour, "", false});
 }
@@ -105,12 +111,14 @@ void Chart::level(double y, const std::string& name) {
     layers_.push_back({Layer::Kind::Level, {}, {y}, {}, "#888888", name, true});
 }
 
-Scale Chart::scale_of(bool vertical) const {
+Scale Chart::scale_of(bool vertical, int wanted) const {
     std::vector<double> values, dots;
     for (const Layer& layer : layers_) {
         auto& into = vertical && layer.kind == Layer::Kind::Points ? dots : values;
         const auto& from = vertical ? layer.y : layer.x;
         into.insert(into.end(), from.begin(), from.end());
+        for (std::size_t i = 0; !vertical && layer.half > 0 && i < from.size(); ++i)
+            into.insert(into.end(), {from[i] - layer.half, from[i] + layer.half});
         if (vertical) values.insert(values.end(), layer.high.begin(), layer.high.end());
     }
     if (!dots.empty()) {
@@ -120,7 +128,7 @@ Scale Chart::scale_of(bool vertical) const {
         values.push_back(std::min(high + room, stats::quantile(dots, 1)));
     }
     if (!vertical && !categories_.empty()) return {-0.5, static_cast<double>(categories_.size()) - 0.5, 1};
-    return Scale::covering(stats::quantile(values, 0), stats::quantile(values, 1), vertical ? 5 : 4);
+    return Scale::covering(stats::quantile(values, 0), stats::quantile(values, 1), wanted);
 }
 
 std::string Chart::legend(double left, double top) const {
@@ -140,7 +148,8 @@ std::string Chart::legend(double left, double top) const {
 }
 
 std::string Chart::svg(double width, double height) const {
-    Scale xs = scale_of(false), ys = scale_of(true);
+    // Labels stay apart in small charts, too.
+    Scale xs = scale_of(false, width < kSmall ? 3 : 4), ys = scale_of(true, width < kSmall ? 4 : 5);
     const double bottom = height - kBottom, right = width - kRight;
     if (equal_) {  // widen the shorter axis about its middle
         const double unit =
@@ -171,17 +180,19 @@ std::string Chart::svg(double width, double height) const {
         return Scale{std::ceil(s.low / s.step - 1e-9) * s.step, std::floor(s.high / s.step + 1e-9) * s.step,
                      s.step};
     };
+    std::string grid;
     for (const double tick : first_tick(ys).ticks()) {
-        out += segment(kLeft, py(tick), right, py(tick), kGrid, "stroke-width=\"1\"");
+        grid += fmt::format("M{:.1f} {:.1f}H{:.1f}", kLeft, py(tick), right);
         out += text_at(kLeft - 5, py(tick) + 3.5, ys.label(tick), "end");
     }
     if (categories_.empty())
         for (const double tick : first_tick(xs).ticks()) {
-            out += segment(px(tick), kTop, px(tick), bottom, kGrid, "stroke-width=\"1\"");
+            grid += fmt::format("M{:.1f} {:.1f}V{:.1f}", px(tick), kTop, bottom);
             out += text_at(px(tick), bottom + 14, xs.label(tick), "middle");
         }
     for (std::size_t i = 0; i < categories_.size(); ++i)
         out += text_at(px(static_cast<double>(i)), bottom + 14, categories_[i], "middle");
+    out += fmt::format("<path d=\"{}\" stroke=\"{}\"/>\n", grid, kGrid);
     for (const Layer& layer : layers_) {
         if (layer.kind == Layer::Kind::Level)
             out += segment(kLeft, py(layer.y[0]), right, py(layer.y[0]), layer.colour,
@@ -189,10 +200,24 @@ std::string Chart::svg(double width, double height) const {
         if (layer.kind == Layer::Kind::Points)
             for (std::size_t i = 0; i < layer.x.size(); ++i)
                 out += dot(px(layer.x[i]), py(layer.y[i]), layer.colour, "1.6", " fill-opacity=\"0.55\"");
-        if (layer.kind == Layer::Kind::Dots)
+        if (layer.kind == Layer::Kind::Dots) {
+            std::string all;
             for (std::size_t i = 0; i < layer.x.size(); ++i)
                 if (std::isfinite(layer.y[i]))
-                    out += dot(px(layer.x[i]), py(layer.y[i]), layer.colour, "2.2");
+                    all += fmt::format("M{:.1f} {:.1f}h0", px(layer.x[i]), py(layer.y[i]));
+            out += fmt::format("<path d=\"{}\" stroke=\"{}\" stroke-width=\"4.4\" "
+                               "stroke-linecap=\"round\"/>\n",
+                               all, layer.colour);
+        }
+        if (layer.kind == Layer::Kind::Bars) {
+            std::string all;
+            for (std::size_t i = 0; i < layer.x.size(); ++i)
+                if (std::isfinite(layer.y[i]))
+                    all += fmt::format("M{:.1f} {:.1f}H{:.1f}V{:.1f}H{:.1f}z", px(layer.x[i] - layer.half),
+                                       py(layer.y[i]), px(layer.x[i] + layer.half), py(layer.high[i]),
+                                       px(layer.x[i] - layer.half));
+            out += fmt::format("<path d=\"{}\" fill=\"{}\" fill-opacity=\"0.3\"/>\n", all, layer.colour);
+        }
         if (layer.kind == Layer::Kind::Interval) {
             const double x = px(layer.x[0]);
             out += segment(x, py(layer.y[0]), x, py(layer.high[0]), layer.colour, kThick);

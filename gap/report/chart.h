@@ -31,6 +31,9 @@ class Chart {
               const std::string& colour);
     /// Every point, larger than points() draws them.
     void dots(const std::vector<double>& x, const std::vector<double>& y, const std::string& colour);
+    /// A wide bar round each x from low to high, `half` to either side.
+    void bars(const std::vector<double>& x, double half, const std::vector<double>& low,
+              const std::vector<double>& high, const std::string& colour);
     /// A vertical bar from low to high at x, with a dot at y.
     void interval(double x, double y, double low, double high, const std::string& colour);
     /// A grey line at y across the chart, and a reason for the y axis to reach there.
@@ -48,13 +51,14 @@ class Chart {
 
   private:
     struct Layer {
-        enum class Kind { Points, Dots, Line, Band, Interval, Level } kind;
+        enum class Kind { Points, Dots, Line, Band, Bars, Interval, Level } kind;
         std::vector<double> x, y, high;  // y is the low side of a band
         std::string colour, name;
         bool dashed = false;
+        double half = 0.0;  // of bars
     };
 
-    Scale scale_of(bool vertical) const;
+    Scale scale_of(bool vertical, int wanted) const;
     std::string legend(double left, double top) const;
 
     std::string title_, x_label_, y_label_;

@@ -1,5 +1,6 @@
 // Posterior-predictive checks: a row of panels for each observable and model.
 
+#include "gap/predictive/main_covariates.h"
 #include "gap/report/chart.h"
 #include "gap/report/pictures.h"
 #include "gap/report/report.h"
@@ -9,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -31,21 +33,48 @@ double half_step(const PredictiveCurve& curve) {
     return curve.x.size() > 1 ? std::abs(curve.x[1] - curve.x[0]) / 2 : 0.5;
 }
 
-std::string panel(const PredictiveCurve& curve, bool extended) {
-    Chart chart(fmt::format("{}, p = {:.{}f}", curve.name, curve.p, curve.p < 0.1 ? 3 : 2), curve.x_label,
-                curve.y_label);
-    const char* colour = extended ? kAfter : kBefore;
+/// Thousandths of a unit where all values are small, so that labels are short.
+struct Unit {
+    double factor = 1.0;
+    std::string name;
+};
+
+Unit unit_for(const PredictiveCheck& check) {
+    constexpr double kSmallest = 0.1;
+    if (check.unit != "m" && check.unit != "rad" && check.unit != "s") return {1.0, check.unit};
+    double most = 0.0;
+    for (const PredictiveCurve& curve : check.curves)
+        if (curve.residual == PredictiveCurve::Residual::Vertical)
+            for (const auto* values : {&curve.measured, &curve.low, &curve.high})
+                for (const double value : *values)
+                    if (std::isfinite(value)) most = std::max(most, std::abs(value));
+    return most < kSmallest ? Unit{1e3, "m" + check.unit} : Unit{1.0, check.unit};
+}
+
+std::vector<double> times(std::vector<double> values, double factor) {
+    for (double& value : values)
+        value *= factor;
+    return values;
+}
+
+std::string panel(const PredictiveCheck& check, const PredictiveCurve& curve) {
+    using enum PredictiveCurve::Residual;
+    const Unit unit = unit_for(check);
+    const bool across = curve.residual == Horizontal, up = curve.residual == Vertical;
+    Chart chart(fmt::format("{}, p = {:.{}f}", curve.name, curve.p, curve.p < 0.1 ? 3 : 2),
+                across ? with_unit(curve.x_label, unit.name) : curve.x_label,
+                up ? with_unit(curve.y_label, unit.name) : curve.y_label);
+    const char* colour = check.extended ? kAfter : kBefore;
+    const double wide = across ? unit.factor : 1.0, high_by = up ? unit.factor : 1.0;
+    const auto x = times(curve.x, wide), measured = times(curve.measured, high_by),
+               low = times(curve.low, high_by), high = times(curve.high, high_by);
     if (stands_alone(curve)) {
-        const double half = half_step(curve) * (curve.name == "marginal law" ? 1.0 : 0.7);
-        for (std::size_t k = 0; k < curve.x.size(); ++k)
-            if (std::isfinite(curve.low[k]))
-                chart.band({curve.x[k] - half, curve.x[k] + half}, {curve.low[k], curve.low[k]},
-                           {curve.high[k], curve.high[k]}, colour);
-        chart.dots(curve.x, curve.measured, kData);
+        chart.bars(x, wide * half_step(curve) * (across ? 1.0 : 0.7), low, high, colour);
     } else {
-        chart.band(curve.x, curve.low, curve.high, colour);
-        chart.line(curve.x, curve.measured, kData, "");
+        chart.band(x, low, high, colour);
+        chart.line(x, measured, kData, "");
     }
+    chart.dots(x, measured, kData);
     if (curve.name != "marginal law" && curve.name != "spread per run") chart.level(0);
     chart.categories(curve.categories);
     return chart.svg(kWidth, kHeight);
@@ -77,7 +106,7 @@ std::string picture_of(const std::vector<const PredictiveCheck*>& checks) {
             body += fmt::format("<g transform=\"translate({:.0f},{:.0f})\">{}</g>\n",
                                 kWidth * static_cast<double>(k % kColumns),
                                 top + kHeading + kHeight * static_cast<double>(k / kColumns),
-                                panel(check->curves[k], check->extended));
+                                panel(*check, check->curves[k]));
         top += height_of(*check);
     }
     return fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" "
@@ -90,9 +119,11 @@ std::string picture_of(const std::vector<const PredictiveCheck*>& checks) {
 }  // namespace
 
 std::string predictive_svg(const Verdict& verdict) {
+    const bool named = std::any_of(verdict.predictive.begin(), verdict.predictive.end(),
+                                   [](const PredictiveCheck& check) { return check.extended; });
     std::vector<const PredictiveCheck*> all;
     for (const PredictiveCheck& check : verdict.predictive)
-        all.push_back(&check);
+        if (check.extended == named) all.push_back(&check);
     return all.empty() ? std::string() : picture_of(all);
 }
 

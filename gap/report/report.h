@@ -11,7 +11,8 @@ namespace puckloop::gap::report {
 
 std::string report_html(const Experiment& experiment, const Verdict& verdict);
 
-/// The posterior-predictive checks of a verdict as one picture (SVG); empty where it has none.
+/// The posterior-predictive checks of the model that the verdict stands by as one picture (SVG): with the
+/// named causes, where there are any. Empty where it has none.
 std::string predictive_svg(const Verdict& verdict);
 
 }  // namespace puckloop::gap::report

@@ -149,9 +149,10 @@ struct Verdict {
     std::vector<FittedParameter> nuisance;  ///< fitted along with every model: tracker offset and delay, ...
     std::vector<std::string> cautions;
     Rerun rerun;
-    std::vector<PredictiveCheck> predictive;  ///< as it is, then with the causes; of these in gap.json p only
-    std::vector<Series> series;               ///< not in gap.json
-    double wall_s = 0.0;                      ///< not in gap.json
+    std::vector<PredictiveCheck>
+        predictive;              ///< each observable as it is, then with the causes; in gap.json p only
+    std::vector<Series> series;  ///< not in gap.json
+    double wall_s = 0.0;         ///< not in gap.json
 };
 
 /// gap.json as text. Same verdict, same bytes.

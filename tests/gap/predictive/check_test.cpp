@@ -65,7 +65,7 @@ const PredictiveCurve& curve_named(const std::vector<PredictiveCheck>& checks, c
     throw std::logic_error("no such curve");
 }
 
-constexpr const char* kNames[] = {"marginal law", "autocorrelation", "against grey", "spread per run"};
+constexpr const char* kNames[] = {"marginal law", "autocorrelation", "grey", "spread per run"};
 
 }  // namespace
 
@@ -91,7 +91,7 @@ TEST_CASE("what is wrong shows at its own discrepancy", "[gap][predictive]") {
     const Case cases[] = {
         {"marginal law", [](auto, std::size_t k, double) { return k % 2 == 0 ? 8 * kSd : -8 * kSd; }},
         {"autocorrelation", [](auto, std::size_t k, double) { return k / 4 % 2 == 0 ? 2 * kSd : -2 * kSd; }},
-        {"against grey",
+        {"grey",
          [](auto, std::size_t k, double) { return 3 * kSd * std::sin(0.37 * static_cast<double>(k)); }},
         {"spread per run", [](std::size_t r, auto, double noise) { return r == 3 ? 4 * kSd * noise : 0.0; }}};
     for (const Case& one : cases) {
