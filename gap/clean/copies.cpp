@@ -76,10 +76,6 @@ std::string sentence(const Experiment& experiment, const Copy& copy) {
     return what + " to the last digit: copied, not measured again; the later one is left out";
 }
 
-}  // namespace
-
-namespace {
-
 /// Rows that repeat the one before, clock and all: written twice.
 void drop_twins(Experiment& experiment, Run& run) {
     const char* clock = run.has("t_s") ? "t_s" : "t_host_s";

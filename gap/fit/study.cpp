@@ -34,30 +34,24 @@ constexpr double kSettled = 0.1;                     // nats that a round must b
 constexpr std::size_t kManyRows = 6000;  // beyond, fits are begun on a part of them
 constexpr std::size_t kPartRows = 3000;
 
-bool same(const std::vector<double>& a, const std::vector<double>& b) {
-    if (a.size() != b.size()) return false;
-    for (std::size_t i = 0; i < a.size(); ++i)
-        if (a[i] != b[i] && !(std::isnan(a[i]) && std::isnan(b[i]))) return false;
-    return true;
-}
-
-bool differ(const Predicted& a, const Predicted& b) {
-    return !same(a.mean, b.mean) || !same(a.factor, b.factor) || !same(a.extra, b.extra) ||
-           !same(a.jolt, b.jolt) || !same(a.lapse, b.lapse) || !same(a.lapse_scale, b.lapse_scale) ||
-           !same(a.lever, b.lever) || a.lever_sd != b.lever_sd || a.lapse_shift != b.lapse_shift ||
-           a.floor != b.floor || a.ceiling != b.ceiling || a.line_amplitude != b.line_amplitude ||
-           a.line_frequency != b.line_frequency;
-}
-
-bool varies(const Experiment& experiment, std::string_view column) {
+/// Smallest and largest known value; the other way round where there is none.
+struct Range {
     double low = INFINITY, high = -INFINITY;
-    for (const Run& run : experiment.runs)
-        for (const double value : run.column(column))
+
+    void take(const std::vector<double>& values) {
+        for (const double value : values)
             if (!std::isnan(value)) {
                 low = std::min(low, value);
                 high = std::max(high, value);
             }
-    return high > low;
+    }
+};
+
+bool varies(const Experiment& experiment, std::string_view column) {
+    Range all;
+    for (const Run& run : experiment.runs)
+        all.take(run.column(column));
+    return all.high > all.low;
 }
 
 /// What was done in a run, roughly: of each column that was set up or is true, whether it is nothing, one
@@ -66,14 +60,10 @@ std::string design_of(Kind kind, const Run& run) {
     std::string design;
     for (const ColumnInfo& info : columns_of(kind)) {
         if (info.role != Role::Stimulus && info.role != Role::Truth) continue;
-        double low = INFINITY, high = -INFINITY;
-        for (const double value : run.column(info.name))
-            if (!std::isnan(value)) {
-                low = std::min(low, value);
-                high = std::max(high, value);
-            }
-        const bool nothing = !(low <= high) || (low == 0.0 && high == 0.0);
-        design += nothing ? '0' : low == high ? '1' : 'n';
+        Range own;
+        own.take(run.column(info.name));
+        const bool nothing = !(own.low <= own.high) || (own.low == 0.0 && own.high == 0.0);
+        design += nothing ? '0' : own.low == own.high ? '1' : 'n';
     }
     return design;
 }
@@ -203,9 +193,7 @@ bool Study::matters(const Candidate& candidate) const {
         for (std::size_t j = 0; j < place.size(); ++j)
             values[static_cast<std::size_t>(candidate.freed[j].index)] = place[j];
         model_->predict(values, moved);
-        for (std::size_t o = 0; o < neutral.size(); ++o)
-            if (differ(neutral[o], moved[o])) return true;
-        return false;
+        return moved != neutral;
     });
 }
 

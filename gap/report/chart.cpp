@@ -14,7 +14,8 @@ namespace {
 
 constexpr double kLeft = 58, kRight = 20, kTop = 40, kBottom = 42;  // pixels round the plot
 constexpr std::size_t kMostPoints = 1500;
-constexpr double kSmall = 300;  // pixels wide: fewer ticks
+constexpr double kLetter = 5.8;  // pixels wide, about
+constexpr double kSmall = 300;   // pixels wide: fewer ticks
 constexpr const char* kGrid = "#dddddd";
 constexpr const char* kInk = "#333333";
 constexpr const char* kThick = "stroke-width=\"2\"";
@@ -188,6 +189,10 @@ std::string Chart::svg(double width, double height) const {
     if (categories_.empty())
         for (const double tick : first_tick(xs).ticks()) {
             grid += fmt::format("M{:.1f} {:.1f}V{:.1f}", px(tick), kTop, bottom);
+            // Long labels stand at every second tick.
+            const bool crowded =
+                kLetter * static_cast<double>(xs.label(tick).size() + 1) > px(tick + xs.step) - px(tick);
+            if (crowded && std::lround(tick / xs.step) % 2 != 0) continue;
             out += text_at(px(tick), bottom + 14, xs.label(tick), "middle");
         }
     for (std::size_t i = 0; i < categories_.size(); ++i)

@@ -75,16 +75,11 @@ struct Place {
     std::size_t run, row;
 };
 
-std::vector<double> row_of(const MeasuredRun& run, std::size_t row) {
-    std::vector<double> values;
-    for (const auto& column : run.measured)
-        values.push_back(column[row]);
-    return values;
-}
+using Columns = std::vector<std::vector<double>>;
 
-std::vector<double> keys_of(const MeasuredRun& run, std::size_t row) {
+std::vector<double> row_of(const Columns& columns, std::size_t row) {
     std::vector<double> values;
-    for (const auto& column : run.keys)
+    for (const auto& column : columns)
         values.push_back(column[row]);
     return values;
 }
@@ -126,7 +121,7 @@ std::vector<Copy> copies_in(const std::vector<MeasuredRun>& runs) {
     constexpr std::size_t kMostAlike = 8;  // rows that more than these share are levels, not copies
     for (std::size_t r = 0; r < runs.size(); ++r)
         for (std::size_t i = 0; i < rows_in(runs[r]); ++i) {
-            const std::vector<double> values = row_of(runs[r], i);
+            const std::vector<double> values = row_of(runs[r].measured, i);
             if (!complete(values)) continue;
             auto& earlier = seen[values];
             for (const Place& p : earlier) {
@@ -134,15 +129,15 @@ std::vector<Copy> copies_in(const std::vector<MeasuredRun>& runs) {
                 Copy copy{p.run, p.row, r, i, 0, 0.0};
                 while (copy.row_b + copy.rows < rows_in(runs[r]) &&
                        copy.row_a + copy.rows < (p.run == r ? i : rows_in(runs[p.run]))) {
-                    const std::vector<double> a = row_of(runs[p.run], copy.row_a + copy.rows);
-                    if (!complete(a) || a != row_of(runs[r], copy.row_b + copy.rows)) break;
+                    const std::vector<double> a = row_of(runs[p.run].measured, copy.row_a + copy.rows);
+                    if (!complete(a) || a != row_of(runs[r].measured, copy.row_b + copy.rows)) break;
                     inside.insert({p.run, copy.row_a + copy.rows, r, copy.row_b + copy.rows});
-                    if (copy.rows == 0 || a != row_of(runs[p.run], copy.row_a + copy.rows - 1))
+                    if (copy.rows == 0 || a != row_of(runs[p.run].measured, copy.row_a + copy.rows - 1))
                         copy.bits += bits_of(a);
                     ++copy.rows;
                 }
                 const bool held = p.run == r && copy.row_a + copy.rows >= i &&
-                                  keys_of(runs[r], p.row) == keys_of(runs[r], i);
+                                  row_of(runs[r].keys, p.row) == row_of(runs[r].keys, i);
                 if (!held && copy.bits > needed) copies.push_back(copy);
             }
             if (earlier.size() <= kMostAlike) earlier.push_back({r, i});

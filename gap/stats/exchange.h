@@ -43,15 +43,10 @@ double permutation_p(const Pairs& pairs, const std::function<double(const std::v
 double null_p(double observed, double units, const std::function<double(RandomStream&)>& draw,
               const TestOptions& options, std::string_view stream);
 
-/// A straight line with errors that hold when rows of a block depend on each other.
-struct Line {
-    double slope = 0.0, intercept = 0.0;
-    double slope_error = 0.0;      ///< from the scatter between blocks (or runs), not between rows
-    double intercept_error = 0.0;  ///< likewise
-    double clusters = 0.0;
-};
+/// Least squares of y on x; 0 where x does not vary.
+double slope_of(const Pairs& pairs);
 
-/// Least squares of y on x with cluster-robust errors; the clusters are the pairs' blocks.
-Line clustered_line(const Pairs& pairs);
+/// Without the rows that have no value.
+Series without_gaps(const Series& residual);
 
 }  // namespace puckloop::gap::stats

@@ -18,16 +18,6 @@ void shuffle_rows(std::vector<double>& y, const std::vector<Stretch>& runs, Rand
         shuffle(std::span(y).subspan(s.first, s.size()), random);
 }
 
-Series without_gaps(const Series& residual) {
-    Series kept;
-    for (std::size_t i = 0; i < residual.size(); ++i)
-        if (std::isfinite(residual.value[i])) {
-            kept.value.push_back(residual.value[i]);
-            kept.run.push_back(residual.run[i]);
-        }
-    return kept;
-}
-
 /// P(difference = 0) of a bell-shaped histogram of differences, from its places at one and two quanta.
 double repeats_of_bell(const Series& series) {
     std::vector<double> steps;

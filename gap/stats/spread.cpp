@@ -102,12 +102,7 @@ Finding spread_test(const Series& residual, const std::vector<double>& level, st
 }
 
 Finding evenness_test(const Series& residual, const TestOptions& options) {
-    Series kept;
-    for (std::size_t i = 0; i < residual.size(); ++i)
-        if (std::isfinite(residual.value[i])) {
-            kept.value.push_back(residual.value[i]);
-            kept.run.push_back(residual.run[i]);
-        }
+    const Series kept = without_gaps(residual);
     Finding finding{.test = "evenness", .covariate = "stretch of a run"};
     finding.effect_unit = "ratio - 1";
     finding.units = static_cast<double>(kept.size());

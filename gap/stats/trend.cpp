@@ -47,8 +47,7 @@ Finding trend_test(const Series& residual, const std::vector<double>& covariate,
     finding.statistic = correlation(x, ranked.y);
     finding.p = permutation_p(
         ranked, [&](const auto& y) { return std::fabs(slope(y)); }, options, fmt::format("trend/{}", name));
-    const Line line = clustered_line(pairs);
-    finding.effect = line.slope * (quantile(pairs.x, 0.95) - quantile(pairs.x, 0.05));
+    finding.effect = slope_of(pairs) * (quantile(pairs.x, 0.95) - quantile(pairs.x, 0.05));
     finding.relative = relative_size(finding.effect, residual);
     finding.shape = shape_words(profile_of(pairs.x, winsorised(pairs.y)), name);
     return finding;

@@ -113,6 +113,47 @@ TEST_CASE("the report is whole, self-contained, and says the verdict first") {
     CHECK(report_html(e, tests::made_verdict(e)) == html);
 }
 
+TEST_CASE("posterior-predictive checks are drawn for both models, and alone for the one that stands") {
+    using Residual = PredictiveCurve::Residual;
+    const Experiment e = tests::made_experiment();
+    Verdict v = tests::made_verdict(e);
+    CHECK(predictive_svg(v).empty());
+    PredictiveCurve law{"marginal law",
+                        "measured − simulated",
+                        "rows (%)",
+                        Residual::Horizontal,
+                        {-0.001, 0, 0.001},
+                        {20, 60, 20},
+                        {15, 50, 15},
+                        {25, 70, 25},
+                        {},
+                        0.62};
+    PredictiveCurve mic{"mic <1>",
+                        "mic",
+                        "measured − simulated",
+                        Residual::Vertical,
+                        {0, 1, 2},
+                        {0.004, NAN, 0.001},
+                        {-0.001, NAN, -0.001},
+                        {0.001, NAN, 0.001},
+                        {"a & b", "c", "d"},
+                        0.005};
+    v.predictive = {{"x_m", "m", false, 199, {law, mic}}, {"x_m", "m", true, 199, {law}}};
+    const std::string html = report_html(e, v);
+    CHECK(unclosed(html) == "");
+    CHECK(html.find("nan") == std::string::npos);
+    CHECK_THAT(html, Contains("Does the fitted model make such data?") &&
+                         Contains("the simulator as it is") && Contains("with the named causes") &&
+                         Contains("a &amp; b"));
+    const std::string svg = predictive_svg(v);
+    CHECK(unclosed(svg) == "");
+    CHECK_THAT(svg, Contains("marginal law, p = 0.62") && Contains("with the named causes") &&
+                        !Contains("the simulator as it is") && !Contains("p = 0.005"));
+    v.predictive.pop_back();
+    CHECK_THAT(predictive_svg(v), Contains("mic &lt;1&gt;, p = 0.005") && Contains("(mm)"));
+    CHECK_THAT(to_json(v), Contains("posterior_predictive") && Contains("\"marginal law\": 0.62"));
+}
+
 TEST_CASE("a verdict without causes, series and observables still makes a page") {
     const Experiment e = tests::made_experiment();
     Verdict v;

@@ -107,16 +107,9 @@ TEST_CASE("bootstrap intervals over runs cover a mean whose runs have offsets") 
     CHECK(covered <= 194);
 }
 
-TEST_CASE("slope errors count blocks, not rows") {
-    RandomStream random(4, "cluster");
-    std::vector<double> z;
-    for (int c = 0; c < 200; ++c) {
-        Series y = made_noise(5, 100, 0.8, random);
-        const Pairs pairs = prepared(y, made_covariate(5, 100, 0.8, random));
-        const Line line = clustered_line(pairs);
-        z.push_back(line.slope / line.slope_error);
-    }
-    CHECK(standard_deviation(z) == Approx(1).margin(0.3));  // rows as clusters would give above 2
+TEST_CASE("a slope is that of least squares, none where nothing varies") {
+    CHECK(slope_of({{0, 1, 2, 3}, {1, 3, 4, 8}, {}, {}}) == Approx(2.2));
+    CHECK(slope_of({{2, 2, 2}, {1, 5, 9}, {}, {}}) == 0.0);
 }
 
 TEST_CASE("profiles in words") {
