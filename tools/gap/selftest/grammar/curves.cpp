@@ -125,16 +125,17 @@ Curve power(const std::vector<Outcome>& cases, Class of) {
     Curve numbers;
     for (const std::size_t runs : kPowerRuns)
         numbers.push_back({static_cast<double>(runs), static_cast<double>(runs)});
-    return counted(std::move(numbers), cases, of, runs_of);
+    return counted(std::move(numbers), cases, of,
+                   [](const Outcome& one) { return static_cast<double>(one.runs); });
 }
 
 std::string power_text(const std::vector<Outcome>& cases, const std::string& seeds) {
     std::string text =
         fmt::format("{} analyses of drawn cases with some of their runs, seed {}; 95 % binomial "
-                    "intervals\n\nrightly called, strength 1 and above\n  {:<10}",
+                    "intervals\n\nrightly called\n  {:<10}",
                     cases.size(), seeds, "");
     for (const std::size_t runs : kPowerRuns)
-        text += fmt::format("{:>24}", fmt::format("{} runs", runs));
+        text += fmt::format("{:>26}", fmt::format("{} runs", runs));
     text += "\n";
     for (const Class of : kClasses) {
         const Curve bands = power(cases, of);
@@ -143,13 +144,12 @@ std::string power_text(const std::vector<Outcome>& cases, const std::string& see
         for (const Band& band : bands) {
             const Rate rate = rate_of(band.right, band.of);
             text +=
-                fmt::format("{:>24}", fmt::format("{:.0f} % ({:.0f}..{:.0f}, {} of {})", 100 * rate.share(),
+                fmt::format("{:>26}", fmt::format("{:.0f} % ({:.0f}..{:.0f}, {} of {})", 100 * rate.share(),
                                                   100 * rate.low, 100 * rate.high, rate.hits, rate.of));
         }
         text += "\n";
     }
-    text +=
-        heading("number of runs, strength 1 and above (right name: the effect, of a near miss its family)");
+    text += heading("number of runs (right name: the effect, of a near miss its family)");
     for (const Class of : kClasses)
         text += table(power(cases, of), of);
     return text;

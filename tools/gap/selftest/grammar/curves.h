@@ -33,7 +33,7 @@ Curve by_strength(const std::vector<Outcome>& cases, Class of);
 /// Of cases of strength 1 and above, and of nulls.
 Curve by_runs(const std::vector<Outcome>& cases, Class of);
 
-/// At each of kPowerRuns, of cases of strength 1 and above, and of nulls: what run_power gives.
+/// At each of kPowerRuns, of all strengths: what run_power gives.
 Curve power(const std::vector<Outcome>& cases, Class of);
 std::string power_text(const std::vector<Outcome>& cases, const std::string& seeds);
 std::string power_svg(const std::vector<Outcome>& cases);

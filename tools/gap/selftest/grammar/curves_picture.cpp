@@ -61,7 +61,7 @@ std::string ranks(const std::vector<Outcome>& cases) {
 std::string power_svg(const std::vector<Outcome>& cases) {
     constexpr double kWide = 520, kHigh = 320;
     return curves(
-        "power, strength 1 and above (95 % binomial intervals)", "runs that were analysed",
+        "power of drawn cases, all strengths (95 % binomial intervals)", "runs that were analysed",
         [&](Class of) { return power(cases, of); }, true, kWide, kHigh);
 }
 
