@@ -30,8 +30,8 @@ std::string text_of(const fs::path& file) {
 TEST_CASE("no effect has a name in selection, diagnosis and decision") {
     const fs::path source = fs::path(PUCKLOOP_SOURCE) / "gap";
     int files = 0;
-    for (const char* folder :
-         {"decide", "diagnostics", "evidence", "fit", "fit_test", "pipeline", "residual_model", "verdict"})
+    for (const char* folder : {"decide", "diagnostics", "evidence", "fit", "fit_test", "pipeline",
+                               "predictive", "residual_model", "verdict"})
         for (const auto& entry : fs::directory_iterator(source / folder)) {
             const std::string extension = entry.path().extension().string();
             if (extension != ".h" && extension != ".cpp") continue;
