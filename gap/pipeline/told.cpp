@@ -140,7 +140,7 @@ void tell_held(const Study& study, const Selection& selection, std::uint64_t see
     verdict.observables = std::move(figures.observables);
 }
 
-void tell_predictive(const Study& study, const Chosen& chosen, std::uint64_t seed, Verdict& verdict) {
+void add_predictive(const Study& study, const Chosen& chosen, std::uint64_t seed, Verdict& verdict) {
     auto as_it_is = predictive_checks(study, chosen.selection.none, false, seed);
     std::vector<PredictiveCheck> with_causes;
     if (!chosen.final.effects.empty()) with_causes = predictive_checks(study, chosen.final, true, seed);
@@ -174,7 +174,7 @@ Verdict told(const Study& study, Judged judged, std::uint64_t seed) {
     verdict.free_forms = std::move(judged.diagnosis.free_forms);
     tell_tried(study, judged.chosen.selection, verdict);
     tell_held(study, judged.chosen.selection, seed, verdict);
-    tell_predictive(study, judged.chosen, seed, verdict);
+    add_predictive(study, judged.chosen, seed, verdict);
     for (const Series& series : verdict.series)
         for (const std::string& caution : {placement_caution(experiment, series), circular_caution(series)})
             if (!caution.empty()) verdict.cautions.push_back(caution);
