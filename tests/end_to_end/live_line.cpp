@@ -71,7 +71,10 @@ std::string LiveLine::read_until(const std::string& end, double patience) const 
     for (const double until = wall_seconds() + patience; wall_seconds() < until && !got.ends_with(end);) {
         pollfd waiting{file_, POLLIN, 0};
         char byte;
-        if (::poll(&waiting, 1, 5) == 1 && ::read(file_, &byte, 1) == 1) got += byte;
+        if (::poll(&waiting, 1, 5) != 1) continue;
+        const ssize_t count = ::read(file_, &byte, 1);
+        if (count == 1) got += byte;
+        if (count == 0 || (count < 0 && errno != EAGAIN)) break;
     }
     return got;
 }

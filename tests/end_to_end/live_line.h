@@ -27,7 +27,7 @@ class LiveLine {
 
     int file() const { return file_; }
     void send(const std::string& bytes) const;
-    /// Bytes until they end with `end` or `patience` seconds of wall time are over.
+    /// Bytes until they end with `end`, `patience` seconds of wall time are over, or the other side hangs up.
     std::string read_until(const std::string& end, double patience = 120.0) const;
     /// The other side hangs up within `patience` seconds, saying nothing.
     bool hung_up(double patience = 120.0) const;

@@ -10,7 +10,9 @@
 #include <catch2/catch.hpp>
 
 #include <fcntl.h>
+#include <netinet/in.h>
 #include <poll.h>
+#include <sys/socket.h>
 #include <termios.h>
 #include <unistd.h>
 
@@ -235,6 +237,127 @@ TEST_CASE("a pty that everybody closed, or that was set to B0, is unplugged") {
     settle();
     end->receive('5', true, 0);
     CHECK(second.receive() == '5');
+}
+
+namespace {
+
+/// A client of the end's TCP port.
+class Client {
+  public:
+    explicit Client(const std::string& announcement) : file_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+        sockaddr_in here{};
+        here.sin_family = AF_INET;
+        here.sin_port =
+            htons(static_cast<std::uint16_t>(std::stoi(announcement.substr(announcement.rfind(':') + 1))));
+        here.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        REQUIRE(connect(file_, reinterpret_cast<const sockaddr*>(&here), sizeof here) == 0);
+    }
+    ~Client() { close(file_); }
+    /// At most a block; "" if nothing comes within `patience`.
+    std::string read_some(milliseconds patience) const {
+        pollfd waiting{file_, POLLIN, 0};
+        char block[65536];
+        if (poll(&waiting, 1, static_cast<int>(patience.count())) != 1) return {};
+        const ssize_t got = read(file_, block, sizeof block);
+        return {block, got > 0 ? static_cast<std::size_t>(got) : 0};
+    }
+
+  private:
+    int file_;
+};
+
+/// Bytes that count up and do not repeat every 256.
+std::uint8_t byte_at(std::size_t i) {
+    return static_cast<std::uint8_t>(i % 251);
+}
+
+std::size_t first_wrong(const std::string& bytes) {
+    for (std::size_t i = 0; i < bytes.size(); ++i)
+        if (static_cast<std::uint8_t>(bytes[i]) != byte_at(i)) return i;
+    return bytes.size();
+}
+
+}  // namespace
+
+TEST_CASE("a paced run does not wait for a client that does not read: what it loses is counted") {
+    const auto end = exec::make_tcp_end(0, LiveOptions{"uart1", 1, true});
+    const Client client(end->announcement());
+    end->poll(0, cosim::kNever);
+    std::this_thread::sleep_for(milliseconds(50));  // it is accepted
+    const auto begun = Clock::now();
+    std::size_t sent = 0;
+    // The kernel's own buffers take some megabytes at most.
+    for (; sent < 32 << 20 && end->losses().unread < 1000; ++sent)
+        end->receive(byte_at(sent), true, cosim::kSecond + static_cast<cosim::Time>(sent));
+    CHECK(Clock::now() - begun < std::chrono::seconds(20));
+    const exec::EndLosses lost = end->losses();
+    REQUIRE(lost.unread == 1000);
+    CHECK(lost.unconnected == 0);
+    CHECK(lost.unread_since >= cosim::kSecond + (1 << 20));
+    CHECK(lost.unread_since < cosim::kSecond + static_cast<cosim::Time>(sent));
+    // All before that is still there, in order.
+    std::string got;
+    while (got.size() < sent - 1000) {
+        const std::string more = client.read_some(milliseconds(2000));
+        REQUIRE_FALSE(more.empty());
+        got += more;
+    }
+    CHECK(got.size() == sent - 1000);
+    CHECK(first_wrong(got) == got.size());
+}
+
+TEST_CASE("a run that is not paced waits for a client that reads slowly, and not for one that does not") {
+    const auto end = exec::make_tcp_end(0, LiveOptions{"uart1", 1, false});
+    constexpr std::size_t kSent = 8 << 20;
+    {
+        const Client client(end->announcement());
+        std::this_thread::sleep_for(milliseconds(50));
+        std::string got;
+        std::thread reader([&] {
+            std::this_thread::sleep_for(milliseconds(300));
+            while (got.size() < kSent) {
+                const std::string more = client.read_some(milliseconds(5000));
+                if (more.empty()) break;
+                got += more;
+                if (got.size() % 7 == 0) std::this_thread::sleep_for(milliseconds(1));
+            }
+        });
+        for (std::size_t i = 0; i < kSent; ++i)
+            end->receive(byte_at(i), true, 0);
+        end->finish();
+        reader.join();
+        CHECK(got.size() == kSent);
+        CHECK(first_wrong(got) == got.size());
+        CHECK(end->losses().unread == 0);
+    }
+    for (int i = 0; i < 100 && end->losses().unconnected == 0; ++i) {  // until it is seen to have left
+        std::this_thread::sleep_for(milliseconds(5));
+        end->receive('x', true, 0);
+    }
+    CHECK(end->losses().unconnected > 0);
+    const Client idle(end->announcement());
+    std::this_thread::sleep_for(milliseconds(50));
+    const auto begun = Clock::now();
+    for (std::size_t i = 0; i < kSent; ++i)
+        end->receive(byte_at(i), true, static_cast<cosim::Time>(i));
+    CHECK(Clock::now() - begun < std::chrono::seconds(20));  // a second of patience, once
+    CHECK(end->losses().unread > kSent / 4);
+}
+
+TEST_CASE("a paced run loses what a terminal has no room for, and counts it") {
+    if (no_ptys()) return;
+    const auto end = exec::make_pty_end(LiveOptions{"uart1", 1, true});
+    const Terminal terminal(end->announcement());
+    constexpr std::uint64_t kSent = 200000;
+    for (std::uint64_t i = 0; i < kSent; ++i)
+        end->receive(byte_at(i), true, static_cast<cosim::Time>(i));
+    end->finish();
+    std::uint64_t got = 0;
+    while (terminal.receive(milliseconds(300)) >= 0)
+        ++got;
+    CHECK(got > 1000);
+    CHECK(end->losses().unread == kSent - got);
+    CHECK(end->losses().unconnected == 0);
 }
 
 TEST_CASE("a paced bench that falls behind does not hurry after the wall clock") {

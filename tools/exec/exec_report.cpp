@@ -83,6 +83,17 @@ std::string bus_text(const nlohmann::json& bus) {
 
 }  // namespace
 
+std::vector<std::string> warnings_of(Bench& bench) {
+    std::vector<std::string> warnings = bench.target().warnings();
+    for (int unit = 1; unit <= 2; ++unit) {
+        const UartEnd* end = bench.uart(unit).end();
+        if (end == nullptr) continue;
+        if (const EndLosses lost = end->losses(); lost.unread > 0)
+            warnings.push_back(fmt::format("uart{}: {}", unit, text_of(lost, end->announcement())));
+    }
+    return warnings;
+}
+
 std::string json_report(Bench& bench, const image::Image& image, const ExecOutcome& outcome) {
     using Json = nlohmann::ordered_json;
     Json json;
@@ -95,6 +106,7 @@ std::string json_report(Bench& bench, const image::Image& image, const ExecOutco
     json["image"] = {
         {"file", image.file}, {"format", image::name_of(image.format)}, {"sha256", image.sha256}};
     json.update(Json::parse(bench.target().chip_json()));
+    json["warnings"] = warnings_of(bench);
     json["simulated_s"] = seconds_of(bench.now());
     json["wall_s"] = outcome.wall_s;
     if (bench.fallen_behind() > 0) json["fallen_behind_s"] = seconds_of(bench.fallen_behind());
@@ -102,6 +114,10 @@ std::string json_report(Bench& bench, const image::Image& image, const ExecOutco
         Json uart = board::uart_json(bench.target().uart_counters(unit));
         uart["offered_by_bench"] = bench.uart(unit).bytes_to_chip();
         uart["framing_errors_at_bench"] = bench.uart(unit).framing_errors_seen();
+        if (const UartEnd* end = bench.uart(unit).end(); end != nullptr && end->live()) {
+            uart["unconnected"] = end->losses().unconnected;
+            uart["unread"] = end->losses().unread;
+        }
         json[fmt::format("uart{}", unit)] = std::move(uart);
     }
     if (bench.master() != nullptr) json["i2c_script"] = script_json(bench.master()->report());
@@ -125,7 +141,7 @@ std::string text_report(Bench& bench, const ExecOutcome& outcome) {
         text += fmt::format("time: fell behind the wall clock by {:.3f} s in all\n",
                             seconds_of(bench.fallen_behind()));
     text += bench.target().chip_text();
-    const std::vector<std::string> warnings = bench.target().warnings();
+    const std::vector<std::string> warnings = warnings_of(bench);
     for (std::size_t i = 0; i < warnings.size() && i < kShownInText; ++i)
         text += fmt::format("warning: {}\n", warnings[i]);
     if (warnings.size() > kShownInText)

@@ -6,6 +6,7 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 namespace puckloop::exec {
 
@@ -21,6 +22,9 @@ struct ExecOutcome {
     std::string stats_json{};  ///< the same as a JSON object; empty: none
     std::string failure{};     ///< why not, where the rest of the report does not say it
 };
+
+/// The target's, and what live ends have lost.
+std::vector<std::string> warnings_of(Bench& bench);
 
 /// One JSON object on one line.
 std::string json_report(Bench& bench, const image::Image& image, const ExecOutcome& outcome);

@@ -246,7 +246,7 @@ int run_exec(const ExecOptions& options) {
         (outcome.end == Bench::End::Address ||
          (outcome.end == Bench::End::Time && options.stop_at.empty() && options.instruments.watches.empty()));
     if (options.strict && outcome.success) {
-        std::vector<std::string> warnings = bench.target().warnings();
+        std::vector<std::string> warnings = warnings_of(bench);
         if (instruments && !instruments->warning().empty()) warnings.push_back(instruments->warning());
         outcome.success = warnings.empty();
         if (!warnings.empty()) outcome.failure = "with --strict a warning is a failure: " + warnings.front();

@@ -8,6 +8,7 @@
 #include "tools/run/program_path.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <cmath>
 #include <filesystem>
@@ -131,8 +132,16 @@ cosim::Time OutsideNode::earliest_output(cosim::PortIndex /*port*/) const {
 
 std::string OutsideNode::finish() {
     end_->finish();
-    return fmt::format(R"({{"sent":{},"received":{},"framing_errors":{}}})", sent_, received_,
-                       framing_errors_);
+    nlohmann::ordered_json json = {
+        {"sent", sent_}, {"received", received_}, {"framing_errors", framing_errors_}};
+    if (end_->live()) {
+        const exec::EndLosses lost = end_->losses();
+        json["unconnected"] = lost.unconnected;
+        json["unread"] = lost.unread;
+        if (lost.unread > 0)
+            json["warnings"] = nlohmann::ordered_json::array({exec::text_of(lost, end_->announcement())});
+    }
+    return json.dump();
 }
 
 }  // namespace puckloop::tools

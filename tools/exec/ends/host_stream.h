@@ -25,8 +25,10 @@ class HostStream {
     virtual void await_readable(std::function<void()> then) = 0;
     /// Takes what there is, at most a block; 0 if there is nothing now.
     virtual std::size_t read(std::span<std::uint8_t> block) = 0;
-    /// Returns how many bytes were taken, or are lost because nobody takes them; the rest is offered again.
+    /// Returns how many bytes were taken; 0 if there is no room now, or nobody.
     virtual std::size_t write(std::span<const std::uint8_t> bytes) = 0;
+    /// In a paced run what it has no room for may wait for it; else that is lost, as at a serial port.
+    virtual bool waits() const = 0;
 };
 
 }  // namespace puckloop::exec

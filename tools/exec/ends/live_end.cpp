@@ -20,9 +20,12 @@ constexpr int kBitsOfFrame = 10;
 constexpr std::size_t kUnpacedBlock = 4096;
 constexpr auto kLookEvery = std::chrono::milliseconds(2);
 constexpr auto kRetry = std::chrono::milliseconds(2);
-/// A partner that does not read at all loses what comes after so many bytes.
-constexpr std::size_t kLongestBacklog = 1 << 20;
-constexpr auto kLongestFarewell = std::chrono::seconds(1);
+/// What waits for a partner that does not read, in a paced run (91 s at 115200 baud) and in another.
+constexpr std::size_t kPacedBacklog = 1 << 20, kUnpacedBacklog = 16 << 10;
+/// A partner that has taken nothing for so long does not read.
+constexpr auto kPatience = std::chrono::seconds(1);
+/// At the end of a run: also one that reads slowly is not waited for any longer.
+constexpr auto kLongestFarewell = std::chrono::seconds(5);
 constexpr double kRatesDiffer = 0.02;
 
 std::chrono::nanoseconds wall(cosim::Time time) {
@@ -30,6 +33,11 @@ std::chrono::nanoseconds wall(cosim::Time time) {
 }
 
 }  // namespace
+
+std::string text_of(const EndLosses& losses, const std::string& partner) {
+    return fmt::format("{} bytes from {:.3f} s on were lost: the program at {} did not read them",
+                       losses.unread, cosim::to_seconds(losses.unread_since), partner);
+}
 
 LiveEnd::LiveEnd(const LiveOptions& options, const MakeStream& make)
     : options_(options), busy_(io_.get_executor()), timer_(io_), stream_(make(io_)), wall_now_(Clock::now()) {
@@ -80,17 +88,57 @@ std::uint8_t LiveEnd::take() {
 }
 
 void LiveEnd::receive(std::uint8_t byte, bool /*clean*/, cosim::Time start) {
-    if (!plugged()) return;
+    const bool plugged_in = plugged();
+    std::unique_lock lock(mutex_);
+    if (!plugged_in) {
+        ++losses_.unconnected;
+        return;
+    }
     const Clock::duration length = duration_of_byte(bit_period_);
-    Byte out{byte, 0, {}};
+    Byte out{byte, 0, {}, start};
     if (options_.paced) out.due = std::max(wall_now_ + wall(start - now_) + length, last_sent_ + length);
+    if (!make_room(lock)) {
+        losses_.unread_since = std::min(losses_.unread_since, start);
+        ++losses_.unread;
+        return;
+    }
     last_sent_ = out.due;
-    const std::lock_guard lock(mutex_);
-    if (outgoing_.size() >= kLongestBacklog) return;
     outgoing_.push_back(out);
     if (sending_) return;
     sending_ = true;
     boost::asio::post(io_, [this] { send_due(); });
+}
+
+/// Whether one byte more may wait for the partner; `lock`, of `mutex_`, is released while it waits for that.
+bool LiveEnd::make_room(std::unique_lock<std::mutex>& lock) {
+    if (options_.paced) return outgoing_.size() < kPacedBacklog;
+    std::uint64_t taken = taken_;
+    for (auto until = Clock::now() + kPatience; outgoing_.size() >= kUnpacedBacklog;) {
+        if (!reads_ || Clock::now() >= until) return reads_ = false;
+        lock.unlock();
+        std::this_thread::sleep_for(kRetry);
+        lock.lock();
+        if (taken_ != taken) until = Clock::now() + kPatience;
+        taken = taken_;
+    }
+    return reads_ = true;
+}
+
+/// The first `count` bytes that wait reach nobody; with `mutex_` held.
+void LiveEnd::lose(std::size_t count) {
+    if (count == 0) return;
+    if (plugged()) {
+        losses_.unread_since = std::min(losses_.unread_since, outgoing_.front().start);
+        losses_.unread += count;
+    } else {
+        losses_.unconnected += count;
+    }
+    outgoing_.erase(outgoing_.begin(), outgoing_.begin() + static_cast<std::ptrdiff_t>(count));
+}
+
+EndLosses LiveEnd::losses() const {
+    const std::lock_guard lock(mutex_);
+    return losses_;
 }
 
 void LiveEnd::poll(cosim::Time now, cosim::Time /*listening_since*/) {
@@ -98,6 +146,7 @@ void LiveEnd::poll(cosim::Time now, cosim::Time /*listening_since*/) {
     wall_now_ = Clock::now();
     bit_period_ = period_of_partner();
     notice_rate();
+    notice_loss();
     const std::lock_guard lock(mutex_);
     if (error_) std::rethrow_exception(error_);
     if (incoming_.empty() || incoming_.front().due > wall_now_) return;
@@ -121,15 +170,31 @@ void LiveEnd::notice_rate() {
     std::fflush(stderr);
 }
 
+void LiveEnd::notice_loss() {
+    if (loss_noticed_) return;
+    const cosim::Time since = losses().unread_since;
+    if (since == cosim::kNever) return;
+    loss_noticed_ = true;
+    fmt::print(stderr,
+               "{}: the program at {} does not read: bytes for it are lost from {:.3f} s on, and counted\n",
+               options_.name, stream_->announcement(), cosim::to_seconds(since));
+    std::fflush(stderr);
+}
+
+/// What the partner does not take in time is lost, and counted.
 void LiveEnd::finish() {
-    for (const auto until = Clock::now() + kLongestFarewell; Clock::now() < until;) {
-        {
-            const std::lock_guard lock(mutex_);
-            if (error_) std::rethrow_exception(error_);
-            if (outgoing_.empty()) return;
-        }
-        std::this_thread::sleep_for(kRetry);
+    std::uint64_t taken = 0;
+    const auto end = Clock::now() + kLongestFarewell;
+    for (auto until = Clock::now() + kPatience;; std::this_thread::sleep_for(kRetry)) {
+        const std::lock_guard lock(mutex_);
+        if (error_) std::rethrow_exception(error_);
+        if (taken_ != taken) until = Clock::now() + kPatience;
+        taken = taken_;
+        if (!outgoing_.empty() && Clock::now() < std::min(until, end)) continue;
+        lose(outgoing_.size());
+        break;
     }
+    notice_loss();
 }
 
 void LiveEnd::await_bytes() {
@@ -177,12 +242,20 @@ void LiveEnd::send_due() {
     const std::size_t count = take_due(block, now);
     const std::size_t taken = count == 0 ? 0 : stream_->write({block.data(), count});
     const std::lock_guard lock(mutex_);
-    outgoing_.erase(outgoing_.begin(), outgoing_.begin() + static_cast<std::ptrdiff_t>(taken));
+    taken_ += taken;
+    // finish() may have given up what waited.
+    outgoing_.erase(outgoing_.begin(),
+                    outgoing_.begin() + static_cast<std::ptrdiff_t>(std::min(taken, outgoing_.size())));
+    std::size_t left = std::min(count - taken, outgoing_.size());
+    if (!plugged() || (options_.paced && !stream_->waits())) {
+        lose(left);
+        left = 0;
+    }
     if (outgoing_.empty()) {
         sending_ = false;
         return;
     }
-    timer_.expires_at(taken < count ? now + kRetry : std::max(outgoing_.front().due, line_free_out_));
+    timer_.expires_at(left > 0 ? now + kRetry : std::max(outgoing_.front().due, line_free_out_));
     timer_.async_wait([this](const boost::system::error_code& error) {
         if (!error) send_due();
     });

@@ -5,6 +5,11 @@
 //
 // Bytes to the partner leave when their stop bit is over. If the thread itself comes late, at most kFifo
 // bytes go out together, as from the FIFO of a UART.
+//
+// A partner that does not read: a paced run cannot wait for it. What finds no room is lost, as at a serial
+// port (a pty: once the kernel's buffer is full; TCP: once 1 MiB waits behind the kernel's), counted, and
+// reported when it begins. A run that is not paced waits for a partner as long as that takes something every
+// second.
 
 #include "tools/exec/ends/host_stream.h"
 #include "tools/exec/ends/uart_end.h"
@@ -40,6 +45,7 @@ class LiveEnd final : public UartEnd {
     bool live() const override { return true; }
     std::string announcement() const override { return stream_->announcement(); }
     void finish() override;
+    EndLosses losses() const override;
 
   private:
     using Clock = std::chrono::steady_clock;
@@ -47,12 +53,16 @@ class LiveEnd final : public UartEnd {
         std::uint8_t value = 0;
         cosim::Time bit_period = 0;  ///< 0: the line's own
         Clock::time_point due;       ///< not before this on the wall clock
+        cosim::Time start = 0;       ///< of its start bit, simulated
     };
 
     cosim::Time period_of_partner() const;
     Clock::duration duration_of_byte(cosim::Time bit_period) const;
     bool plugged() const;
     void notice_rate();
+    void notice_loss();
+    bool make_room(std::unique_lock<std::mutex>& lock);
+    void lose(std::size_t count);
     void work();
     // On the I/O thread.
     void await_bytes();
@@ -74,11 +84,14 @@ class LiveEnd final : public UartEnd {
     cosim::Time now_ = 0;         ///< simulated, at `wall_now_`
     Clock::time_point wall_now_;
     Clock::time_point last_sent_;  ///< when the byte queued last is due
-    bool rate_noticed_ = false;
+    bool rate_noticed_ = false, loss_noticed_ = false;
+    bool reads_ = true;  ///< the partner, as far as a run that is not paced has waited for it
 
     mutable std::mutex mutex_;  ///< of what follows
     std::deque<Byte> incoming_, outgoing_;
-    bool sending_ = false;  ///< the timer runs
+    bool sending_ = false;     ///< the timer runs
+    std::uint64_t taken_ = 0;  ///< bytes that the partner has taken
+    EndLosses losses_;
     std::exception_ptr error_;
 
     // The I/O thread's.

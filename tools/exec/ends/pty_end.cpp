@@ -63,10 +63,13 @@ class Pty final : public HostStream {
         return got > 0 ? static_cast<std::size_t>(got) : 0;
     }
     std::size_t write(std::span<const std::uint8_t> bytes) override {
-        // What does not fit is lost: a serial line has nobody to wait for.
-        if (::write(descriptor(), bytes.data(), bytes.size()) < 0 && errno != EAGAIN && errno != EIO) fail();
-        return bytes.size();
+        const ssize_t taken = ::write(descriptor(), bytes.data(), bytes.size());
+        if (taken >= 0) return static_cast<std::size_t>(taken);
+        if (errno != EAGAIN && errno != EIO) fail();
+        closed();  // it may be that nobody is there any more
+        return 0;
     }
+    bool waits() const override { return false; }
 
   private:
     int descriptor() const {

@@ -16,6 +16,9 @@ namespace {
 using boost::asio::ip::tcp;
 using boost::system::error_code;
 
+/// Of the kernel's own for a client, as small as a serial driver's: what waits is to be known here.
+constexpr int kSendBuffer = 64 << 10;
+
 class TcpClient final : public HostStream {
   public:
     TcpClient(boost::asio::io_context& io, const std::string& name, std::uint16_t port)
@@ -50,13 +53,13 @@ class TcpClient final : public HostStream {
         return got;
     }
     std::size_t write(std::span<const std::uint8_t> bytes) override {
-        if (!client_.is_open()) return bytes.size();
+        if (!client_.is_open()) return 0;
         error_code error;
         const std::size_t taken = client_.write_some(boost::asio::buffer(bytes.data(), bytes.size()), error);
-        if (!error || error == boost::asio::error::would_block) return taken;
-        drop();
-        return bytes.size();
+        if (error && error != boost::asio::error::would_block) drop();
+        return taken;
     }
+    bool waits() const override { return true; }
 
   private:
     void accept() {
@@ -67,6 +70,7 @@ class TcpClient final : public HostStream {
                 error_code ignored;
                 client_.non_blocking(true, ignored);
                 client_.set_option(tcp::no_delay(true), ignored);
+                client_.set_option(tcp::socket::send_buffer_size(kSendBuffer), ignored);
                 there_ = true;
                 await();
             }

@@ -12,6 +12,15 @@ namespace puckloop::exec {
 
 struct UartSpec;
 
+/// Bytes from the chip that no partner outside got.
+struct EndLosses {
+    std::uint64_t unconnected = 0;             ///< nobody had the terminal open or was connected
+    std::uint64_t unread = 0;                  ///< somebody was there and did not read
+    cosim::Time unread_since = cosim::kNever;  ///< start of the first of those
+};
+/// "1200 bytes from 3.412 s on were lost: the program at tcp 127.0.0.1:4242 did not read them".
+std::string text_of(const EndLosses& losses, const std::string& partner);
+
 class UartEnd {
   public:
     virtual ~UartEnd() = default;
@@ -35,6 +44,8 @@ class UartEnd {
     virtual std::string announcement() const { return {}; }
     /// The run is over; everything received is written out. Throws RunError if that fails.
     virtual void finish() {}
+    /// What was lost so far; after finish() all of it.
+    virtual EndLosses losses() const { return {}; }
 };
 
 /// How `-` offers standard input when it is a pipe or a file (a terminal is live: bytes go as they are
@@ -58,10 +69,11 @@ struct LiveOptions {
 
 std::unique_ptr<UartEnd> make_stdio_end(const StdioOptions& options);
 /// A pseudo terminal in raw mode, at the line's rate until a program sets another one: bytes are then sampled
-/// as at that rate, in both directions. Bytes that nobody reads are dropped once its buffer is full, and
-/// while nobody has it open after somebody had.
+/// as at that rate, in both directions. Bytes that nobody reads are lost once its buffer is full, and
+/// while nobody has it open after somebody had; both are counted.
 std::unique_ptr<UartEnd> make_pty_end(const LiveOptions& options = {});
-/// Listens on 127.0.0.1; one client at a time. Bytes sent while there is none are dropped.
+/// Listens on 127.0.0.1; one client at a time. Bytes sent while there is none are lost, and those for a
+/// client that does not read once 1 MiB waits for it; both are counted.
 std::unique_ptr<UartEnd> make_tcp_end(std::uint16_t port, const LiveOptions& options = {});
 
 }  // namespace puckloop::exec
