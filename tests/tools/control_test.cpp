@@ -13,8 +13,10 @@
 #include <sys/un.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstring>
 #include <fstream>
+#include <thread>
 
 using namespace puckloop;
 using namespace puckloop::tools;
@@ -131,6 +133,26 @@ TEST_CASE("a run of another user is named as such") {
     if (me == 0) REQUIRE(::seteuid(me) == 0);
     REQUIRE(::chmod(folder.c_str(), S_IRWXU) == 0);
     CHECK_THAT(problem, Contains("out/hello: belongs to another user"));
+}
+
+TEST_CASE("a command that comes before a new run has its socket waits for it") {
+    const Run run;
+    const ControlPlace place(run.socket, run.results);
+    CHECK(control_path_of(run.results.string()) == run.socket);
+    std::thread world([&] {
+        std::this_thread::sleep_for(std::chrono::milliseconds(200));
+        const auto source = make_control_socket(run.socket);
+        for (bool asked = false; !asked; std::this_thread::sleep_for(std::chrono::milliseconds(1)))
+            for (const physics::Command& command : source->poll()) {
+                source->reply(command.id, "{}");
+                asked = true;
+            }
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));  // it is read
+    });
+    CHECK(ask("out/hello", run.socket, "{\"list\":true}\n", 10.0) == "{}\n");
+    world.join();
+    const std::string gone = "/tmp/puckloop-nowhere/act";
+    CHECK_THROWS_WITH(ask("out/hello", gone, "{\"list\":true}\n", 1.0), Contains("the run has ended"));
 }
 
 TEST_CASE("the socket of a killed run goes with the next run into its folder") {

@@ -15,6 +15,7 @@
 #include <chrono>
 #include <filesystem>
 #include <map>
+#include <thread>
 
 namespace puckloop::tools {
 
@@ -115,11 +116,33 @@ bool is_left_over(const std::string& path) {
     return error == boost::asio::error::connection_refused;
 }
 
+namespace {
+
+/// A run that has just begun has its folder before the socket in it, and the socket before it listens.
+error_code connect(stream_protocol::socket& socket, const std::string& path) {
+    using std::chrono::steady_clock;
+    constexpr std::chrono::milliseconds kUntilThere{5000}, kUntilListens{100};
+    for (const auto begun = steady_clock::now();; std::this_thread::sleep_for(std::chrono::milliseconds(5))) {
+        error_code error;
+        std::error_code ignored;
+        socket.connect(stream_protocol::endpoint(path), error);
+        const auto waited = steady_clock::now() - begun;
+        const bool soon_there =
+            error == boost::system::errc::no_such_file_or_directory &&
+            std::filesystem::is_directory(std::filesystem::path(path).parent_path(), ignored);
+        const bool soon_listens = error == boost::asio::error::connection_refused;
+        if (!(soon_there && waited < kUntilThere) && !(soon_listens && waited < kUntilListens)) return error;
+        error_code closed;
+        socket.close(closed);
+    }
+}
+
+}  // namespace
+
 std::string ask(const std::string& run, const std::string& path, const std::string& request, double seconds) {
     boost::asio::io_context io;
     stream_protocol::socket socket(io);
-    error_code error;
-    socket.connect(stream_protocol::endpoint(path), error);
+    error_code error = connect(socket, path);
     if (error == boost::asio::error::access_denied)
         throw InputError("", run, "belongs to another user", "a run of your own");
     if (error) throw InputError("", run, "the run has ended");
