@@ -17,6 +17,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <map>
 #include <thread>
 
 using namespace puckloop::tests;
@@ -95,13 +96,35 @@ Ended upload(const Run& run, const std::string& end, const std::string& robot) {
                         folder);
         Process button({PUCKLOOP_PROGRAM, "act", run.bench.out("o").string(), "reset " + robot}, act);
         const Ended pressed = button.wait();
-        INFO(pressed.err);
+        INFO(pressed.err << "the run: " << text_of(run.bench.folder() / "stderr"));
         REQUIRE(pressed.status == 0);
         ended = process.wait();
         if (!ended.err.ends_with("was not taken\n") && ended.err.find("no boot loader") == std::string::npos)
             break;
     }
     return ended;
+}
+
+/// What the flash of either robot holds ("cable", "air") after an upload at times of its own.
+std::map<std::string, std::string> uploaded_by_script(const UploadImages& images) {
+    const Workbench bench;
+    for (const auto& [file, at] : {std::pair{"cable.txt", "0.6"}, {"air.txt", "40.3"}}) {
+        const std::string path = (bench.folder() / file).string();
+        const Ended made = bench.puckloop(
+            {"upload", PUCKLOOP_SOURCE "/firmware/bluetooth/talk.hex", "--script", path, "--at", at});
+        INFO(made.err);
+        REQUIRE(made.status == 0);
+    }
+    const auto scene = bench.file("script.toml", scenario_of({.run = "seed = 4\nduration = \"45 s\"",
+                                                              .cable = "script:cable.txt",
+                                                              .computer = "script:air.txt",
+                                                              .air = "reset = [\"40 s\"]\nnvm = \"air.nvm\"",
+                                                              .by_cable = "nvm = \"cable.nvm\""},
+                                                             images));
+    const Ended ended = bench.run("o", {scene, "--in-process"});
+    INFO(ended.err);
+    REQUIRE(ended.status == 0);
+    return {{"cable", text_of(bench.folder() / "cable.nvm")}, {"air", text_of(bench.folder() / "air.nvm")}};
 }
 
 }  // namespace
@@ -193,6 +216,34 @@ TEST_CASE("a client that floods the robot waits, and the run goes on at its pace
     CHECK(sent < static_cast<double>(taken));
 }
 
+TEST_CASE("answers that the computer does not read are lost, and the run's report counts them",
+          "[bluetooth]") {
+    if (!has_ptys()) return;
+    Run run(talking_robot("pty"));
+    const LiveLine program(Kind::Pty, run.place("a.computer"));
+    program.send("one\n");
+    CHECK(program.read_until("yes\n") == "yes\n");
+    // 24 kB of answers, and the terminal keeps a good 12; the robot's own buffer holds 512 bytes.
+    constexpr std::size_t kBursts = 15, kLines = 400;
+    for (std::size_t burst = 1; burst <= kBursts; ++burst) {
+        program.send(std::string(kLines, '\n'));
+        const std::size_t answers = 4 * (1 + kLines * burst);
+        for (const double until = wall_seconds() + kPatience;
+             wall_seconds() < until && run.received("a.computer").size() < answers;)
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        REQUIRE(run.received("a.computer").size() == answers);
+    }
+    const std::string got = program.read_until("nothing ends so", 2.0);
+    run.process->signal(SIGINT);
+    const Ended ended = run.process->wait();
+    CHECK_THAT(ended.err, Contains("a.computer: the program at pty ") && Contains(" does not read"));
+    const auto report = run.bench.report("o");
+    const auto& node = report["nodes"]["a.computer"];
+    CHECK(node["unread"].get<std::size_t>() > 0);
+    CHECK(node["unread"].get<std::size_t>() + got.size() + 4 == node["received"].get<std::size_t>());
+    CHECK_THAT(report["warnings"].dump(), Contains("did not read them"));
+}
+
 TEST_CASE("a computer's TCP port that is taken ends the run before it begins, named", "[bluetooth]") {
     const int other = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
     sockaddr_in here{};
@@ -235,9 +286,12 @@ TEST_CASE("programs are uploaded through live lines, on a cable and over the air
     if (!has_ptys()) return;
     const auto images = upload_images();
     if (!images) return;
+    const std::map<std::string, std::string> expected = uploaded_by_script(*images);
     Run run(scenario_of({.run = "duration = \"3600 s\"",
                          .cable = "pty",
                          .computer = "pty",
+                         .air = "nvm = \"air.nvm\"",
+                         .by_cable = "nvm = \"cable.nvm\"",
                          .tables = "[bluetooth]\nlink_time = [\"300 ms\", \"10 ms\"]"},
                         *images));
     for (const auto& [end, robot] : {std::pair{"cable.uart1", "cable"}, {"air.computer", "air"}}) {
@@ -245,10 +299,7 @@ TEST_CASE("programs are uploaded through live lines, on a cable and over the air
         INFO(ended.err);
         REQUIRE(ended.status == 0);
         CHECK_THAT(ended.out, Contains(" rows, and the program starts\n"));
-        // The boot loader's chip, a K for itself and one for each row.
-        const std::size_t rows = std::stoul(ended.out);
-        CHECK(rows > 20);
-        CHECK(run.heard(end, "q" + std::string(rows + 1, 'K')));
+        CHECK(std::stoul(ended.out) > 20);
         // The new program runs: it answers.
         const LiveLine program(Kind::Pty, run.place(end));
         std::string answer;
@@ -261,4 +312,9 @@ TEST_CASE("programs are uploaded through live lines, on a cable and over the air
         CHECK(run.heard(std::string(robot) + ".uart2", "heard hi\r\n"));
     }
     run.end();
+    // Whatever hellos and answers met on the way: the flash is, word for word, that of an upload by script.
+    for (const auto& [robot, flash] : expected) {
+        INFO(robot);
+        CHECK(text_of(run.bench.folder() / (robot + ".nvm")) == flash);
+    }
 }

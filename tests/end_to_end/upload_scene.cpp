@@ -28,6 +28,7 @@ position = ["-40 cm", "0 cm"]
 firmware = "{}"
 uart1 = "{}"
 uart2 = "script:/dev/null"
+{}
 [[robot]]
 name = "air"
 position = ["40 cm", "0 cm"]
@@ -38,8 +39,8 @@ uart2 = "script:/dev/null"
 [robot.pic.bluetooth]
 computer = "{}"
 )",
-                       scene.run, scene.tables, images.loader.string(), scene.cable, images.demo.string(),
-                       scene.air, scene.computer);
+                       scene.run, scene.tables, images.loader.string(), scene.cable, scene.by_cable,
+                       images.demo.string(), scene.air, scene.computer);
 }
 
 }  // namespace puckloop::tests

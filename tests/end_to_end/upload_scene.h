@@ -18,7 +18,8 @@ std::optional<UploadImages> upload_images();
 struct UploadScene {
     std::string run;              ///< lines of [run]
     std::string cable, computer;  ///< the ends: "pty", "script:FILE"
-    std::string air{};            ///< further lines of the robot's board
+    std::string air{};            ///< further lines of that robot's board
+    std::string by_cable{};       ///< of the other one's
     std::string tables{};         ///< further tables
 };
 std::string scenario_of(const UploadScene& scene, const UploadImages& images);

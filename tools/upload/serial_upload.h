@@ -9,8 +9,9 @@
 namespace puckloop::tools {
 
 /// Asks for the boot loader every 100 ms until it answers, for at most `patience` s, then sends the packets;
-/// a row that came wrong is sent again, five times. `progress` gets the share that is through. Throws
-/// RunError: no port, nobody answers.
+/// a row that came wrong is sent again, five times, each time from where the boot loader begins a row for
+/// certain (boot_place.h). After 3 s without an answer the boot loader is asked for again. `progress` gets
+/// the share that is through. Throws RunError: no port, nobody answers.
 void upload(const std::string& port, const std::vector<BootPacket>& packets, double patience,
             const std::function<void(double)>& progress);
 
