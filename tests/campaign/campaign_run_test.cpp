@@ -58,7 +58,7 @@ void two_workers(const Workbench& bench, const std::filesystem::path& file, cons
 
 /// It goes on without losing or repeating a case.
 void killed(const Workbench& bench, const std::filesystem::path& file, const std::string& table) {
-    RandomStream random(static_cast<std::uint64_t>(::getpid()), "campaign kill");
+    RandomStream random(Catch::rngSeed(), "campaign kill");
     const std::size_t after = 1 + random.below(7);
     CAPTURE(after);
     {

@@ -96,7 +96,7 @@ std::array<double, 3> volumes(const std::string& bytes) {
 TEST_CASE("a robot's sound is read at others' microphones by the law of distance, in every placement",
           "[sound]") {
     const Workbench bench;
-    std::mt19937 random(std::random_device{}());
+    std::mt19937 random(Catch::rngSeed());
     const double near = 0.1 + 0.001 * static_cast<double>(random() % 60u),
                  far = 0.25 + 0.001 * static_cast<double>(random() % 150);
     const int level = 2 * static_cast<int>(4000 + random() % 6000u);
@@ -187,7 +187,7 @@ TEST_CASE("Demo's FFT follows the tone that another robot plays", "[sound][image
                         std::lround(hertz * 65536 / 7200)),
             table + "over:\n");
     };
-    std::mt19937 random(std::random_device{}());
+    std::mt19937 random(Catch::rngSeed());
     const double low = 500 + static_cast<double>(random() % 250u),
                  middle = 1050 + static_cast<double>(random() % 600u),
                  high = 2050 + static_cast<double>(random() % 900u);
@@ -205,7 +205,7 @@ TEST_CASE("Demo turns to where another robot's burst of sound comes from", "[sou
     const auto firmware = outside("PUCKLOOP_IMAGES", "Demo.hex");
     if (!firmware) return;
     const Workbench bench;
-    std::mt19937 random(std::random_device{}());
+    std::mt19937 random(Catch::rngSeed());
     const double bearing = static_cast<double>(random() % 628u) / 100.0;
     CAPTURE(bearing);
     // 60 samples of a loud 500 Hz at 3 s and every 3 s.

@@ -12,7 +12,6 @@
 #include <nlohmann/json.hpp>
 
 #include <cerrno>
-#include <random>
 
 using namespace puckloop;
 using namespace puckloop::cosim;
@@ -293,7 +292,7 @@ TEST_CASE("lose_arbitration: EAGAIN, the bus is busy for the time given, then fr
 }
 
 TEST_CASE("a spurious STOP or START: what follows reaches nobody, or the wrong device") {
-    Draw draw(std::random_device{}());
+    Draw draw(Catch::rngSeed());
     const auto position = static_cast<int>(1 + draw.below(3));
     SharedBus bus = writes(0x20, 2, 4);
     bus.faults = {fault("stop", {.position = position})};

@@ -95,7 +95,7 @@ std::vector<Message> chirp_of(cosim::PortIndex port, double begin) {
 }  // namespace
 
 TEST_CASE("what a speaker plays comes to each microphone later and weaker by its way", "[sound]") {
-    std::mt19937 random(std::random_device{}());
+    std::mt19937 random(Catch::rngSeed());
     std::uniform_real_distribution<double> place(-1.2, 1.2), turn(-3, 3);
     const std::vector<Robot> robots{robot_at("a", place(random), 1.3 + 0.2 * place(random), turn(random)),
                                     robot_at("b", place(random), -1.3 + 0.2 * place(random), turn(random))};
