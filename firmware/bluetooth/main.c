@@ -6,166 +6,28 @@
 #include "../epuck/clock.h"
 #include "../epuck/leds.h"
 #include "../epuck/registers.h"
-#include "module.h"
+#include "exchange.h"
 #include "serial.h"
 
 SFR(PORTG, 0x2E6);
 #define SELECTOR() (PORTG >> 6 & 15)
 
-#define SECONDS(n) ((u16)((n) * (u32)TICKS_PER_SECOND))
 #define LED_LINKED 0x01
 #define LED_CALLING 0x10
 
-static struct Packet packet;
-
-static void pause(u16 ticks) {
-    const u16 begin = clock_ticks();
-    while ((u16)(clock_ticks() - begin) < ticks) IDLE();
-}
-
-static u32 milliseconds_since(u16 begin) {
-    return (u32)(u16)(clock_ticks() - begin) * 1000 / TICKS_PER_SECOND;
-}
-
-static void tell_time(const char* what, u16 begin) {
-    tell(what);
-    tell(" ");
-    tell_number(milliseconds_since(begin));
-    tell(" ms\r\n");
-}
-
-static void listen(void) {
-    u8 byte;
-    u8 line = 0;
+static void answer(void) {
     for (;;) {
-        const u8 got = module_poll(&packet, &byte);
-        if (got == 1 && packet.type == INDICATION) {
-            if (packet.opcode == INCOMING_LINK) {
-                leds_set(LED_LINKED, 0);
-                tell("linked\r\n");
-            }
-            if (packet.opcode == LINK_RELEASED) {
-                leds_set(0, 0);
-                tell("released\r\n");
-            }
-        } else if (got == 2) {
-            if (!line) tell("heard ");
-            line = byte != '\n';
-            if (line) {
-                tell_byte(byte);
-            } else {
-                const char* answer = "yes\n";
-                tell("\r\n");
-                while (*answer != 0) serial_send((u8)*answer++);
-            }
-        } else {
-            IDLE();
+        switch (listen()) {
+        case LISTEN_LINKED: leds_set(LED_LINKED, 0); break;
+        case LISTEN_RELEASED: leds_set(0, 0); break;
+        case LISTEN_NOTHING: IDLE(); break;
         }
     }
-}
-
-/* Whether the other says "yes" and ends the line within 2 s. */
-static u8 answered(void) {
-    const char* expected = "yes\n";
-    const u16 begin = clock_ticks();
-    while ((u16)(clock_ticks() - begin) < SECONDS(2)) {
-        u8 byte;
-        const u8 got = module_poll(&packet, &byte);
-        if (got == 2 && byte == (u8)*expected && *++expected == 0) return 1;
-        if (got == 0) IDLE();
-    }
-    return 0;
-}
-
-/* The first device that answers an inquiry of 5 x 1.28 s as e-pucks do: no class, an address of 08:... */
-static u8 find(u8* address) {
-    static const u8 inquiry[] = {5, 10, 0};
-    const u16 begin = clock_ticks();
-    u8 found = 0;
-    u8 plain;
-    module_request(INQUIRY, inquiry, sizeof inquiry);
-    while ((u16)(clock_ticks() - begin) < SECONDS(20)) {
-        const u8 got = module_poll(&packet, &plain);
-        if (got == 1 && packet.type == INDICATION && packet.opcode == DEVICE_FOUND && !found &&
-            packet.data[5] == 0x08 && (packet.data[6] | packet.data[7] | packet.data[8]) == 0) {
-            u8 i;
-            for (i = 0; i < 6; ++i) address[i] = packet.data[i];
-            found = 1;
-        }
-        if (got == 1 && packet.type == CONFIRM && packet.opcode == INQUIRY) break;
-        if (got == 0) IDLE();
-    }
-    return found;
-}
-
-static void write_pin(const u8* pin) {
-    u8 data[5];
-    u8 i;
-    data[0] = 4;
-    for (i = 0; i < 4; ++i) data[1 + i] = pin[i];
-    module_request(WRITE_PIN, data, sizeof data);
-    module_await(CONFIRM, WRITE_PIN, &packet, SECONDS(1));
-}
-
-/* Links with `address`, whose name ends with its PIN. */
-static u8 link_with(const u8* address) {
-    u8 own_pin[4];
-    u8 wanted[8];
-    u8 i;
-    const u8 port = 1;
-    u16 begin = clock_ticks();
-    module_request(REMOTE_NAME, address, 6);
-    if (!module_await(CONFIRM, REMOTE_NAME, &packet, SECONDS(20)) || packet.data[0] != 0 ||
-        packet.data[7] < 11) {
-        tell("no name\r\n");
-        return 0;
-    }
-    tell("named ");
-    for (i = 0; i < packet.data[7] && i < 40; ++i) tell_byte(packet.data[8 + i]);
-    tell_time(" in", begin);
-    for (i = 0; i < 4; ++i) wanted[i] = packet.data[15 + i];
-    module_request(READ_PIN, &port, 0);
-    module_await(CONFIRM, READ_PIN, &packet, SECONDS(1));
-    for (i = 0; i < 4; ++i) own_pin[i] = packet.data[2 + i];
-    write_pin(wanted);
-    begin = clock_ticks();
-    wanted[0] = wanted[7] = port;
-    for (i = 0; i < 6; ++i) wanted[1 + i] = address[i];
-    module_request(ESTABLISH_LINK, wanted, sizeof wanted);
-    i = module_await(INDICATION, LINK_ESTABLISHED, &packet, SECONDS(60)) && packet.data[0] == 0;
-    write_pin(own_pin);
-    if (!i) {
-        tell("not linked\r\n");
-        return 0;
-    }
-    tell_time("linked in", begin);
-    module_request(TRANSPARENT_MODE, &port, 1);
-    module_await(CONFIRM, TRANSPARENT_MODE, &packet, SECONDS(1));
-    return 1;
 }
 
 static void call(void) {
-    const u8 port = 1;
-    const u16 begin = clock_ticks();
-    u8 address[6];
     leds_set(LED_CALLING, 0);
-    serial_forget();
-    if (!find(address)) {
-        tell("nobody found\r\n");
-    } else if (link_with(address)) {
-        const char* word = "I hear you\n";
-        u16 since;
-        leds_set(LED_CALLING | LED_LINKED, 0);
-        while (*word != 0) serial_send((u8)*word++);
-        tell(answered() ? "answered\r\n" : "no answer\r\n");
-        serial_break();
-        module_await(INDICATION, TRANSPARENT_MODE, &packet, SECONDS(1));
-        since = clock_ticks();
-        module_request(RELEASE_LINK, &port, 1);
-        module_await(INDICATION, LINK_RELEASED, &packet, SECONDS(10));
-        tell_time("released in", since);
-        tell_time("exchange", begin);
-    }
+    exchange("I hear you");
     leds_set(0, 0);
     pause(SECONDS(5));
 }
@@ -176,6 +38,6 @@ int main(void) {
     clock_start();
     serial_start();
     pause(SECONDS(2)); /* the module is ready by then */
-    if (SELECTOR() == 0) listen();
+    if (SELECTOR() == 0) answer();
     for (;;) call();
 }

@@ -11,7 +11,8 @@ SFR(U1RXREG, 0x212);
 SFR(U1BRG, 0x214);
 #define U1RXIF (1 << 9)             /* IFS0, IEC0 */
 #define U1RXIP(level) ((level) << 4) /* IPC2 */
-#define U1TX (1 << 3)               /* port F */
+#define UTXBRK 0x0800               /* UxSTA */
+#define TRMT 0x0100                 /* UxSTA */
 
 #define BAUD 115200UL
 #define RING 512 /* a power of two: more than the longest packet */
@@ -33,16 +34,12 @@ void INTERRUPT _U1RXInterrupt(void) {
     if (U1STA & OERR) U1STA &= ~OERR;
 }
 
-static void start_uart1(void) {
+void serial_start(void) {
     U1MODE = 0;
     U1STA = 0;
     U1BRG = FCY / (16 * BAUD) - 1; /* 7: exact */
     U1MODE = UARTEN;
     U1STA = UTXEN;
-}
-
-void serial_start(void) {
-    start_uart1();
     IFS0 &= ~U1RXIF;
     IPC2 = (IPC2 & ~IP_MASK(U1RXIP)) | U1RXIP(LEVEL_UART);
     IEC0 |= U1RXIF;
@@ -70,31 +67,27 @@ void serial_send(u8 byte) {
     U1TXREG = byte;
 }
 
+/* By UTXBRK, so that the receiver stays on: the module answers while the line is low. */
 void serial_break(void) {
-    u16 begin = clock_ticks();
-    /* The FIFO's four bytes and the one on the line go first. */
-    while ((u16)(clock_ticks() - begin) < 2) IDLE();
-    U1MODE = 0;
-    LATF &= ~U1TX;
-    TRISF &= ~U1TX;
+    u16 begin;
+    while (!(U1STA & TRMT)) continue; /* the last byte is on its way until then */
+    U1STA |= UTXBRK;
     begin = clock_ticks();
     while ((u16)(clock_ticks() - begin) < 3) IDLE();
-    LATF |= U1TX;
-    TRISF |= U1TX;
-    start_uart1();
+    U1STA &= ~UTXBRK;
 }
 
-void tell_byte(u8 byte) {
+void report_byte(u8 byte) {
     while (U2STA & UTXBF) {
     }
     U2TXREG = byte;
 }
 
-void tell(const char* text) {
-    while (*text != 0) tell_byte((u8)*text++);
+void report(const char* text) {
+    while (*text != 0) report_byte((u8)*text++);
 }
 
-void tell_number(u32 number) {
+void report_number(u32 number) {
     static const u32 power[] = {1000000000, 100000000, 10000000, 1000000, 100000, 10000, 1000, 100, 10, 1};
     u8 i;
     u8 begun = 0;
@@ -105,6 +98,6 @@ void tell_number(u32 number) {
             ++digit;
         }
         begun |= digit != '0' || power[i] == 1;
-        if (begun) tell_byte(digit);
+        if (begun) report_byte(digit);
     }
 }

@@ -15,9 +15,9 @@ void serial_send(u8 byte);
 /* Holds the line to the module low for 2 ms: transparent mode ends. */
 void serial_break(void);
 
-/* A word to UART2, a number, the end of a line. */
-void tell(const char* text);
-void tell_number(u32 number);
-void tell_byte(u8 byte);
+/* To UART2. */
+void report(const char* text);
+void report_number(u32 number);
+void report_byte(u8 byte);
 
 #endif
