@@ -3,6 +3,7 @@
 // live lines, by the boot loader.
 
 #include "tests/end_to_end/live_line.h"
+#include "tests/end_to_end/load.h"
 #include "tests/end_to_end/one_line.h"
 #include "tests/end_to_end/upload_scene.h"
 #include "tests/end_to_end/workbench.h"
@@ -282,8 +283,9 @@ TEST_CASE("an upload to a line whose run is killed says that the other end is go
         CHECK(!runs(node));
 }
 
-TEST_CASE("programs are uploaded through live lines, on a cable and over the air", "[bluetooth]") {
-    if (!has_ptys()) return;
+namespace {
+
+void upload_through_live_lines() {
     const auto images = upload_images();
     if (!images) return;
     const std::map<std::string, std::string> expected = uploaded_by_script(*images);
@@ -316,5 +318,21 @@ TEST_CASE("programs are uploaded through live lines, on a cable and over the air
     for (const auto& [robot, flash] : expected) {
         INFO(robot);
         CHECK(text_of(run.bench.folder() / (robot + ".nvm")) == flash);
+    }
+}
+
+}  // namespace
+
+TEST_CASE("programs are uploaded through live lines, on a cable and over the air", "[bluetooth]") {
+    if (has_ptys()) upload_through_live_lines();
+}
+
+// Where the run stands still and hurries, hellos come together and answers late.
+TEST_CASE("programs are uploaded beside much other work", "[.sweep]") {
+    if (!has_ptys()) return;
+    for (int round = 0; round < 5; ++round) {
+        INFO("round " << round);
+        const Load load(8);
+        upload_through_live_lines();
     }
 }
