@@ -3,7 +3,9 @@
 #include "tools/commands/bench_sound.h"
 #include "base/error.h"
 #include "tools/cli/check.h"
-#include "tools/sound/pictures.h"
+#include "tools/experiments/ears_radio.h"
+#include "tools/experiments/exchange_boards.h"
+#include "tools/experiments/pictures.h"
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -22,6 +24,7 @@ constexpr double kSquareCentimetres = 1e4, kDegrees = 180 / std::numbers::pi, kM
 
 struct Options {
     SoundOptions sound;
+    std::filesystem::path radio;
     std::vector<std::string> experiments;
     std::filesystem::path out = "out/sound";
 };
@@ -48,25 +51,56 @@ void print_bins(const Readings& readings, double width, double scale, const char
                    bin.p90);
 }
 
+std::string shape_of(const std::vector<std::pair<double, double>>& places) {
+    const auto fit = fit_ellipse(places);
+    if (!fit) return "too few for an ellipse";
+    return fmt::format("ellipse of {:.0f} cm2, half axes {:.0f} and {:.0f} mm, at {:.0f} degrees",
+                       fit->area() * kSquareCentimetres, fit->major * kMillimetres, fit->minor * kMillimetres,
+                       fit->angle * kDegrees);
+}
+
 void run_ears(const Options& options, const TrialProgress& progress) {
     const Ears ears = ears_and_radio(options.sound, progress);
     save(options.out / "ears.csv", heard_csv(ears));
     std::vector<std::pair<double, double>> places;
     for (const Heard& one : ears.heard)
         places.emplace_back(one.x, one.y);
-    std::string shape = "too few for an ellipse";
-    if (const auto fit = fit_ellipse(places))
-        shape = fmt::format("ellipse of {:.0f} cm2, half axes {:.0f} and {:.0f} mm, at {:.0f} degrees",
-                            fit->area() * kSquareCentimetres, fit->major * kMillimetres,
-                            fit->minor * kMillimetres, fit->angle * kDegrees);
     const std::string summary = fmt::format(
         "heard {} times in {} calls (published: 58 on robots, 65 in Webots)", ears.heard.size(), ears.calls);
     save(options.out / "ears.svg", ears_picture(ears, summary));
-    fmt::print("ears and radio, {:g} s: {}; {}\n", options.sound.walk_s, summary, shape);
+    fmt::print("ears and radio, {:g} s: {}; {}\n", options.sound.walk_s, summary, shape_of(places));
+}
+
+void run_radio(const Options& options) {
+    SoundOptions sound = options.sound;
+    sound.walker = options.radio;
+    const EarsRadio ears = ears_with_radio(sound);
+    save(options.out / "radio.csv", ears_radio_csv(ears));
+    std::vector<std::pair<double, double>> places;
+    std::vector<ReportedExchange> exchanges;
+    for (const RadioAttempt& one : ears.attempts) {
+        places.emplace_back(one.heard.x, one.heard.y);
+        exchanges.push_back(one.exchange);
+    }
+    const ExchangeTimes times = times_of(exchanges);
+    const std::string summary =
+        fmt::format("heard {} times in {:.0f} s of walking, {} messages arrived (published: 58, 53)",
+                    times.attempts, ears.walked, ears.messages);
+    save(options.out / "radio.svg", ears_radio_picture(ears, summary));
+    save(options.out / "radio_times.svg", exchange_picture(times, sound.walker.filename().string()));
+    fmt::print("ears and radio by Bluetooth, {:.0f} s with its pauses: {}; {}\n{}", ears.lasted, summary,
+               shape_of(places), exchange_table(times, sound.walker.filename().string()));
 }
 
 void run(Options& options, int& status) {
     SoundOptions& sound = options.sound;
+    const bool with_radio =
+        wanted(options, "radio") && !(options.experiments.empty() && options.radio.empty());
+    if (with_radio && options.radio.empty())
+        throw InputError("", "--experiment radio", "its robots need a program", "--radio IMAGE");
+    const bool others = wanted(options, "distance") || wanted(options, "calls") || wanted(options, "ears");
+    if (others && sound.firmware.empty())
+        throw InputError("", "bench sound", "the robots need a program", "--firmware IMAGE");
     if (sound.walker.empty()) sound.walker = sound.firmware;
     std::error_code failed;
     std::filesystem::create_directories(options.out, failed);
@@ -90,6 +124,7 @@ void run(Options& options, int& status) {
         fmt::print("five sounds in a row, 10 cm apart: {}\n", (options.out / "calls.svg").string());
     }
     if (wanted(options, "ears")) run_ears(options, progress);
+    if (with_radio) run_radio(options);
     fmt::print("{}\n", options.out.string());
     status = 0;
 }
@@ -105,7 +140,6 @@ void declare_bench_sound(Command& bench, int& status) {
         ->add_option("--firmware", sound.firmware,
                      "image that answers BTcom's commands T, U and D on UART1, such as "
                      "firmware/sound/sound.hex")
-        ->required()
         ->type_name("IMAGE");
     command
         ->add_option("--walker", sound.walker,
@@ -113,14 +147,22 @@ void declare_bench_sound(Command& bench, int& status) {
                      "--firmware)")
         ->type_name("IMAGE");
     command
+        ->add_option(
+            "--radio", options->radio,
+            "of radio: image that calls at selector 0 and at 1 walks, hears and sends by Bluetooth, such "
+            "as firmware/ears/ears.hex")
+        ->type_name("IMAGE");
+    command
         ->add_option("--experiment", options->experiments,
-                     "distance, calls or ears (repeatable; default all)")
+                     "distance, calls, ears or radio (repeatable; default all that have their image)")
         ->allow_extra_args(false)
-        ->check(one_of({"distance", "calls", "ears"}));
+        ->check(one_of({"distance", "calls", "ears", "radio"}));
     command->add_option("--trials", sound.trials, "of distance and calls (default 10)")
         ->check(whole_number_between(1, 1000))
         ->type_name("N");
-    command->add_option("--walk", sound.walk_s, "how long ears lasts (default 360)")
+    command
+        ->add_option("--walk", sound.walk_s,
+                     "how long ears lasts, and radio without its pauses (default 360)")
         ->check(number_between(1, 36000))
         ->type_name("S");
     command->add_option("--seed", sound.seed, "of the trials (default 1)")

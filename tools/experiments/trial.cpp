@@ -1,4 +1,4 @@
-#include "tools/sound/trial.h"
+#include "tools/experiments/trial.h"
 
 #include "base/error.h"
 #include "tools/run/run_scenario.h"
@@ -33,17 +33,24 @@ std::string script(const std::vector<ScriptLine>& commands) {
     return text;
 }
 
+/// Where it is spoken with.
+const char* uart_of(const TrialRobot& robot) {
+    return robot.bluetooth != 0 ? "uart2" : "uart1";
+}
+
 fs::path write_scenario(const TrialSpec& spec) {
     std::string text =
         fmt::format("[run]\nduration = \"{} s\"\nseed = {}\n[arena]\nsize = [\"{} m\", \"{} m\"]\n",
                     spec.seconds, spec.seed, spec.arena, spec.arena);
-    for (const SoundRobot& robot : spec.robots) {
+    for (const TrialRobot& robot : spec.robots) {
         save(spec.folder / (robot.name + ".txt"), script(robot.commands));
         text += fmt::format("[[robot]]\nname = \"{0}\"\nposition = [\"{1:.6f} m\", \"{2:.6f} m\"]\nheading = "
                             "\"{3:.6f} rad\"\n"
-                            "[robot.pic]\nfirmware = \"{4}\"\nselector = {5}\nuart1 = \"script:{0}.txt\"\n",
+                            "[robot.pic]\nfirmware = \"{4}\"\nselector = {5}\n{6} = \"script:{0}.txt\"\n",
                             robot.name, robot.x, robot.y, robot.heading,
-                            fs::absolute(robot.firmware).string(), robot.selector);
+                            fs::absolute(robot.firmware).string(), robot.selector, uart_of(robot));
+        if (robot.bluetooth != 0)
+            text += fmt::format("[robot.pic.bluetooth]\nnumber = {}\n", robot.bluetooth);
     }
     const fs::path file = spec.folder / "trial.toml";
     save(file, text);
@@ -58,17 +65,20 @@ std::string_view field(std::string_view& line) {
     return found;
 }
 
-/// Puts the characters of each robot's UART1 together to lines.
-std::vector<std::vector<Line>> read_lines(const fs::path& trace, const std::vector<SoundRobot>& robots) {
+/// Puts the characters of each robot's UART together to lines.
+std::vector<std::vector<Line>> read_lines(const fs::path& trace, const std::vector<TrialRobot>& robots) {
     std::vector<std::vector<Line>> lines(robots.size());
     std::vector<Line> open(robots.size());
+    std::vector<std::string> names;
+    for (const TrialRobot& robot : robots)
+        names.push_back(fmt::format("{}.{}", robot.name, uart_of(robot)));
     std::ifstream stream(trace);
     for (std::string row; std::getline(stream, row);) {
         std::string_view rest = row;
         const std::string_view time = field(rest), link = field(rest), from = field(rest), kind = field(rest);
         if (kind != "uart") continue;
         for (std::size_t i = 0; i < robots.size(); ++i) {
-            if (link != robots[i].name + ".uart1" || from != robots[i].name + ".pic") continue;
+            if (link != names[i] || from != robots[i].name + ".pic") continue;
             const auto character =
                 static_cast<char>(std::strtoul(std::string(field(rest)).c_str(), nullptr, 16));
             if (character == '\r' || character == '\n') {
@@ -116,7 +126,7 @@ Trial run_trial(const TrialSpec& spec) {
     Trial trial;
     trial.lines = read_lines(request.out / "trace.csv", spec.robots);
     const physics::Paths paths = physics::read_paths(request.out / "trajectory.csv");
-    for (const SoundRobot& robot : spec.robots) {
+    for (const TrialRobot& robot : spec.robots) {
         const auto found = std::find_if(paths.begin(), paths.end(),
                                         [&](const auto& path) { return path.first == robot.name; });
         trial.paths.push_back(found == paths.end() ? std::vector<physics::PathPoint>{} : found->second);

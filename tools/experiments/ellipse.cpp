@@ -1,4 +1,4 @@
-#include "tools/sound/ellipse.h"
+#include "tools/experiments/ellipse.h"
 
 #include <Eigen/Dense>
 

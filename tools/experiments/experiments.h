@@ -4,8 +4,8 @@
 // Their set-up is in the fact sheet of published experiments; what it leaves open stands beside each figure
 // here.
 
-#include "tools/sound/ellipse.h"
-#include "tools/sound/trial.h"
+#include "tools/experiments/ellipse.h"
+#include "tools/experiments/trial.h"
 
 #include <array>
 #include <cstdint>

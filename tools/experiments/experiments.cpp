@@ -1,4 +1,4 @@
-#include "tools/sound/experiments.h"
+#include "tools/experiments/experiments.h"
 
 #include "base/error.h"
 
@@ -30,7 +30,7 @@ std::uint64_t seed_of(const SoundOptions& options, int trial) {
     return options.seed * 1000 + static_cast<std::uint64_t>(trial);
 }
 
-void ask(SoundRobot& robot, double from, double until, double every) {
+void ask(TrialRobot& robot, double from, double until, double every) {
     for (int i = 0; from + i * every < until; ++i)
         robot.commands.push_back({from + i * every, "U\r"});
 }
@@ -72,7 +72,7 @@ Readings sound_against_distance(const SoundOptions& options, const TrialProgress
         if (progress) progress(trial, options.trials);
         TrialSpec spec = spec_of(options, "distance", trial);
         spec.seconds = end;
-        SoundRobot caller{"caller", options.firmware, 0.0, 0.0, 0.0}, listener = caller;
+        TrialRobot caller{"caller", options.firmware, 0.0, 0.0, 0.0}, listener = caller;
         const double call = kCallWords[0] / kCallRate;
         for (double t = kBooted; t < end; t += call)
             caller.commands.push_back({t, "T,1\r"});
@@ -101,7 +101,7 @@ Readings five_sounds(const SoundOptions& options, const TrialProgress& progress)
         if (progress) progress(trial, options.trials);
         TrialSpec spec = spec_of(options, "calls", trial);
         spec.seconds = kEnd;
-        SoundRobot caller{"caller", options.firmware, 0.0, 0.0, 0.0}, listener = caller;
+        TrialRobot caller{"caller", options.firmware, 0.0, 0.0, 0.0}, listener = caller;
         for (int call = 0; call < kCalls; ++call)
             caller.commands.push_back({kFirstCall + call * kCallSpacing, fmt::format("T,{}\r", call + 1)});
         listener.name = "listener";
@@ -120,12 +120,12 @@ Ears ears_and_radio(const SoundOptions& options, const TrialProgress& progress) 
     spec.seconds = options.walk_s;
     spec.arena = kField;
     Ears ears;
-    SoundRobot caller{"R", options.firmware, 0.0, 0.0, 0.0};
+    TrialRobot caller{"R", options.firmware, 0.0, 0.0, 0.0};
     for (double t = kBooted; t < options.walk_s; t += kCallEvery) {
         ++ears.calls;
         caller.commands.push_back({t, "T,5\r"});
     }
-    SoundRobot walker{"E", options.walker, -kCorner, -kCorner, 0.0, 2};
+    TrialRobot walker{"E", options.walker, -kCorner, -kCorner, 0.0, 2};
     spec.robots = {caller, walker};
     const Trial run = run_trial(spec);
     for (const Line& line : run.lines.at(1)) {

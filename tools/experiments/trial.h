@@ -1,6 +1,5 @@
 #pragma once
-// One run of robots that make and hear sound, controlled over UART1: from its robots to what they wrote
-// there.
+// One run of robots that make and hear sound or talk by Bluetooth: from its robots to what they wrote.
 
 #include "physics/render/path_file.h"
 
@@ -11,18 +10,19 @@
 
 namespace puckloop::tools {
 
-/// Bytes that reach a robot's UART1 at a time.
+/// Bytes that reach a robot at a time.
 struct ScriptLine {
     double seconds = 0.0;
     std::string text;
 };
 
-struct SoundRobot {
+struct TrialRobot {
     std::string name;
     std::filesystem::path firmware;
     double x = 0.0, y = 0.0, heading = 0.0;  ///< m, rad
     int selector = 0;
-    std::vector<ScriptLine> commands{};
+    std::vector<ScriptLine> commands{};  ///< to UART1, or with Bluetooth to UART2; its lines come from there
+    int bluetooth = 0;                   ///< number of its module, on UART1; 0: none
 };
 
 struct TrialSpec {
@@ -31,7 +31,7 @@ struct TrialSpec {
     double arena = 2.0;  ///< side, m
     std::uint64_t seed = 1;
     std::filesystem::path overlay{};  ///< physical parameters; empty: none
-    std::vector<SoundRobot> robots;
+    std::vector<TrialRobot> robots;
 };
 
 /// A line that a robot wrote, without its end, and when its first character was on the wire.

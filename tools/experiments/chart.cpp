@@ -1,4 +1,4 @@
-#include "tools/sound/chart.h"
+#include "tools/experiments/chart.h"
 
 #include "physics/render/svg_canvas.h"
 

@@ -1,6 +1,6 @@
-#include "tools/sound/pictures.h"
+#include "tools/experiments/pictures.h"
 
-#include "tools/sound/chart.h"
+#include "tools/experiments/chart.h"
 
 #include <fmt/format.h>
 
@@ -14,6 +14,7 @@ namespace {
 
 constexpr const char* kMeasured = "#1f6fb2";
 constexpr const char* kPath = "#b5b5b5";
+constexpr const char* kFailed = "#c0392b";
 constexpr double kHeardAt = 60;  // counts: the publication's threshold
 constexpr std::array<const char*, kCalls> kCallNames{"haa", "spaah", "ouah", "yaouh", "wouaaaaaaaah"};
 
@@ -65,7 +66,7 @@ std::string calls_picture(const Readings& readings, const std::string& caption) 
     return chart.document();
 }
 
-std::string ears_picture(const Ears& ears, const std::string& caption) {
+std::string ears_picture(const Ears& ears, const std::string& caption, const std::vector<Heard>& failed) {
     Chart chart("Ears and radio: where it heard", caption, {-300, 300, 100, "x, mm"},
                 {-300, 300, 100, "y, mm"}, true);
     Chart::Points path, heard, ellipse;
@@ -79,6 +80,11 @@ std::string ears_picture(const Ears& ears, const std::string& caption) {
     chart.line(path, kPath, "stroke-opacity=\"0.6\"");
     chart.dots({{0, 0}}, "#c2541b", 9);
     chart.dots(heard, kMeasured, 3.5);
+    for (const Heard& one : failed)
+        chart.dots({{1000 * one.x, 1000 * one.y}}, kFailed, 3.5);
+    if (!failed.empty())
+        chart.text(-290, 275, "message failed: nobody found",
+                   fmt::format("fill=\"{}\" font-size=\"11\"", kFailed));
     if (const auto fit = fit_ellipse(places)) {
         constexpr int kCorners = 72;
         for (int i = 0; i <= kCorners; ++i) {
