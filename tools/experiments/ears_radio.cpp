@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 
 namespace puckloop::tools {
@@ -13,6 +14,7 @@ namespace puckloop::tools {
 namespace {
 
 constexpr double kField = 0.6, kCorner = 0.2;  // m
+constexpr double kStands = 0.0005;             // m: points closer than that are one
 /// Simulated time for a second of the walk at most: each exchange of 20 s has five seconds of silence behind
 /// it, in which it walks.
 constexpr double kShare = 5.5, kStart = 10.0;
@@ -77,8 +79,12 @@ EarsRadio ears_with_radio(const SoundOptions& options) {
         one.heard.x = where.x;
         one.heard.y = where.y;
     }
-    for (const auto& point : run.paths.at(1))
-        if (point.seconds <= ears.lasted) ears.path.push_back(point);
+    for (const auto& point : run.paths.at(1)) {
+        if (point.seconds > ears.lasted) break;
+        const bool stands = !ears.path.empty() &&
+                            std::hypot(point.x - ears.path.back().x, point.y - ears.path.back().y) < kStands;
+        if (!stands) ears.path.push_back(point);
+    }
     for (const Line& line : run.lines.at(0))
         if (line.text == "heard I hear you" && line.seconds <= ears.lasted) ++ears.messages;
     return ears;

@@ -24,10 +24,10 @@ struct RadioAttempt {
 
 struct EarsRadio {
     std::vector<RadioAttempt> attempts;
-    double walked = 0.0;  ///< s, without the radio's pauses
-    double lasted = 0.0;  ///< s, with them
-    int messages = 0;     ///< that the caller wrote it has heard
-    std::vector<physics::PathPoint> path;
+    double walked = 0.0;                   ///< s, without the radio's pauses
+    double lasted = 0.0;                   ///< s, with them
+    int messages = 0;                      ///< that the caller wrote it has heard
+    std::vector<physics::PathPoint> path;  ///< of the walker, without repetitions where it stands
 };
 
 /// What the walker wrote within `end` seconds: "walks", "hears 132", then of the exchange. Attempts that

@@ -1,0 +1,78 @@
+// `puckloop bench bluetooth` and `bench sound` as their users meet them: what is missing is named before any
+// work, results are where they were asked for.
+
+#include "tests/scratch.h"
+#include "tests/tools/shell.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+using namespace puckloop::tests;
+using Catch::Matchers::Contains;
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string text_of(const fs::path& file) {
+    std::ifstream stream(file);
+    return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+long lines_of(const fs::path& file) {
+    const std::string text = text_of(file);
+    return std::count(text.begin(), text.end(), '\n');
+}
+
+void check_refused(const std::string& arguments, const std::string& expected) {
+    const Result result = run_puckloop(arguments);
+    INFO(result.output);
+    CHECK(result.status == 2);
+    CHECK(std::count(result.output.begin(), result.output.end(), '\n') == 1);
+    CHECK_THAT(result.output, Contains(expected));
+}
+
+}  // namespace
+
+TEST_CASE("benchmarks with robots ask for the program that they need", "[bluetooth]") {
+    check_refused("bench bluetooth --boards", "--boards and --firmware IMAGE");
+    check_refused("bench bluetooth --firmware x.hex", "--boards and --firmware IMAGE");
+    check_refused("bench bluetooth --boards --firmware nowhere.hex --out " + scratch_path("refused").string(),
+                  "nowhere.hex");
+    check_refused("bench sound --experiment radio", "--radio IMAGE");
+    check_refused("bench sound --radio x.hex", "--firmware IMAGE");
+}
+
+TEST_CASE("exchanges of modules and of boards are tabled, drawn and listed", "[bluetooth]") {
+    const fs::path out = scratch_path("bench_bluetooth");
+    const Result drawn = run_puckloop(fmt::format("bench bluetooth --exchanges 300 --out {}", out.string()));
+    INFO(drawn.output);
+    REQUIRE(drawn.status == 0);
+    CHECK_THAT(drawn.output, Contains("attempts                               300                58\n"));
+    CHECK_THAT(drawn.output, Contains("3.7 to 18.6 %\n"));
+    CHECK(lines_of(out / "exchanges.csv") == 301);
+    CHECK_THAT(text_of(out / "exchanges.svg"), Contains("drawn: 300 attempts"));
+    const Result boards = run_puckloop(fmt::format(
+        "bench bluetooth --boards --firmware {}/firmware/bluetooth/talk.hex --exchanges 3 --out {}",
+        PUCKLOOP_SOURCE, out.string()));
+    INFO(boards.output);
+    REQUIRE(boards.status == 0);
+    CHECK_THAT(boards.output, Contains("talk.hex"));
+    CHECK(lines_of(out / "exchanges.csv") == 4);
+    CHECK_THAT(text_of(out / "exchanges.svg"), Contains("talk.hex: 3 attempts"));
+}
+
+TEST_CASE("a short walk with ears and radio leaves its table and pictures", "[bluetooth][sound]") {
+    const fs::path out = scratch_path("bench_radio");
+    const Result result = run_puckloop(
+        fmt::format("bench sound --experiment radio --radio {}/firmware/ears/ears.hex --walk 8 --out {}",
+                    PUCKLOOP_SOURCE, out.string()));
+    INFO(result.output);
+    REQUIRE(result.status == 0);
+    CHECK_THAT(result.output, Contains("messages arrived (published: 58, 53)"));
+    CHECK(lines_of(out / "radio.csv") >= 2);
+    CHECK_THAT(text_of(out / "radio.svg"), Contains("</svg>"));
+    CHECK_THAT(text_of(out / "radio_times.svg"), Contains("ears.hex: "));
+}
