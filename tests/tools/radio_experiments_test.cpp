@@ -126,8 +126,8 @@ TEST_CASE("the walk's time leaves the radio's pauses out", "[bluetooth]") {
 
 TEST_CASE("two boards exchange words again and again, as long as modules take", "[bluetooth]") {
     const auto exchanges = exchange_on_boards(
-        {firmware("bluetooth/talk.hex"), tests::scratch_path("exchanges"), 4, Catch::rngSeed()});
-    REQUIRE(exchanges.size() == 4);
+        {firmware("bluetooth/talk.hex"), tests::scratch_path("exchanges"), 2, Catch::rngSeed()});
+    REQUIRE(exchanges.size() == 2);
     for (const ReportedExchange& one : exchanges) {
         CAPTURE(one.failure, one.seconds);
         if (one.failure == "nobody found") continue;
@@ -147,9 +147,9 @@ TEST_CASE("a walker hears its caller and sends it word by Bluetooth", "[bluetoot
     options.walker = firmware("ears/ears.hex");
     options.folder = tests::scratch_path("radio");
     options.seed = Catch::rngSeed();
-    options.walk_s = 12;
+    options.walk_s = 8;
     const EarsRadio ears = ears_with_radio(options);
-    CHECK(ears.walked == Approx(12).margin(6));
+    CHECK(ears.walked == Approx(8).margin(6));
     REQUIRE(ears.attempts.size() >= 1);
     CHECK(ears.attempts.size() <= 6);
     int arrived = 0;

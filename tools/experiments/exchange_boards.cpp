@@ -9,7 +9,7 @@ namespace puckloop::tools {
 namespace {
 
 /// s of an attempt: the longest mean that was seen, and the pause of 5 s behind it. What is left over is cut.
-constexpr double kAttempt = 27.0, kStart = 60.0;
+constexpr double kAttempt = 27.0, kStart = 30.0;
 
 std::string seconds(const std::optional<double>& value) {
     return value ? fmt::format("{:.3f}", *value) : std::string();
