@@ -6,6 +6,7 @@
 #include "emu/dspic/core/interpret.h"
 #include "emu/dspic/core/machine.h"
 #include "emu/dspic/devices/dspic30f6014a_sfr.h"
+#include "emu/dspic/fast/loop_advance.h"
 
 #include <algorithm>
 #include <cmath>
@@ -79,10 +80,24 @@ void execute(Machine& m) {
         execute_observed(m);
     else if (m.st.sr & sr::RA)
         run_repeated(m);
-    else if (m.translated.on && !m.doze.on)
+    else if (m.doze.on)
+        run_interpreted(m);
+    else if (m.skip->position.op == m.current && advance_in_loop(m))
+        return;
+    else if (m.translated.on)
         run_translated(m);
     else
         run_interpreted(m);
+}
+
+/// CPU level of the routine of this interrupt or trap.
+int service_level(const Machine& m, const InterruptController::Request& taken) {
+    if (taken.level > 7) return taken.level & 7;
+    return m.irq.nesting_disabled() ? 7 : taken.level;
+}
+
+void set_level(Machine& m, int level) {
+    m.st.sr = static_cast<std::uint16_t>((m.st.sr & ~sr::IPL) | level << sr::kIplShift);
 }
 
 void enter_interrupt(Machine& m) {
@@ -97,8 +112,8 @@ void enter_interrupt(Machine& m) {
     push(m, stacked_pc_low(pc));
     push(m, stacked_status(m.st.sr, m.st.corcon, pc));
 
-    const int level = trap ? taken.level & 7 : m.irq.nesting_disabled() ? 7 : taken.level;
-    m.st.sr = static_cast<std::uint16_t>((m.st.sr & ~(sr::IPL | sr::RA)) | level << sr::kIplShift);
+    set_level(m, service_level(m, taken));
+    m.st.sr &= static_cast<std::uint16_t>(~sr::RA);
     if (trap) m.st.corcon |= corcon::IPL3;
     m.watch &= 0xFFFF0000;
 
@@ -112,26 +127,75 @@ void enter_interrupt(Machine& m) {
     m.current = at(m, handler & kProgramSpace);
 }
 
-/// The interrupt first in line, its routine included, in one step, if that is exact and over by `horizon`.
+/// A service routine is passed in one step: all but its last instruction. `Known`: IsrSummary or IsrPath.
+template <class Known>
+void leave_service(Machine& m, const Known& routine) {
+    m.irq.serve_alone();
+    m.eligible = m.disi_waits = false;
+    m.watch = (m.watch & routine.keep) | routine.writes;
+    m.repeat_first = true;
+    m.instructions += routine.instructions;
+}
+
+bool pass_summary(Machine& m, const IsrSummary& summary, Cycle start, Cycle horizon) {
+    const Cycle end = start + summary.cycles;
+    if (end > horizon || summary.uses & m.watch & 0xFFFF0000 || !stack_holds(m, summary.depth, m.st.w[15]) ||
+        !refreshes_hold(m, summary) || !m.irq.waits_alone())
+        return false;
+    m.irq.acknowledge(m.irq.first(), cpu_level(m));
+    push_trace(m, summary, {m.st.w.data(), m.st.sr, m.pc_of(m.current)});
+    leave_service(m, summary);
+    m.st.cycle = end;
+    return true;
+}
+
+/// Until `end` one event at most falls due, and all it does is to set a flag that cannot interrupt the
+/// routine of `taken`.
+bool only_flags_until(const Machine& m, Cycle end, const InterruptController::Request& taken) {
+    const EventQueue::Slot slot = m.events.next_slot();
+    const EventQueue::Steady& steady = m.events.steady(slot);
+    return end <= m.until && steady.irq >= 0 && steady.irq != taken.vector - kTrapVectors &&
+           !m.irq.gated(steady.irq) && !m.irq.tapped(steady.irq) &&
+           m.irq.priority(steady.irq) <= service_level(m, taken) && end <= m.events.next() + steady.period &&
+           end <= m.events.next_except(slot);
+}
+
+bool pass_path(Machine& m, const IsrPath& path, const Service& service, Cycle horizon) {
+    const InterruptController::Request taken = m.irq.first();
+    Cycle end = service.start + path.cycles;
+    if (!m.irq.waits_alone() || (end > horizon && !only_flags_until(m, end, taken))) return false;
+    m.irq.acknowledge(taken, cpu_level(m));
+    take_path(m, path, service);
+    leave_service(m, path);
+    m.st.cycle = service.start + path.returns;
+    if (m.events.next() <= m.st.cycle) {
+        const std::uint16_t status = m.st.sr;
+        set_level(m, service.level);
+        m.events.service(m.st.cycle);
+        m.st.sr = status;
+        reconsider(m, m.st.cycle + 1);  // as RETFIE does
+        if (m.eligible) --end;
+    }
+    m.st.cycle = end;
+    return true;
+}
+
+/// The interrupt first in line, its routine included, in one step, if that is exact.
 bool pass_service(Machine& m, Cycle horizon) {
     if (!m.skip_idle || m.doze.on || m.st.sr & sr::RA || m.st.disi_end > m.st.cycle ||
         m.observer.on_interrupt)
         return false;
-    const IsrSummary* summary = isr_summary(m, m.irq.first().vector);
-    if (!summary || summary->uses & m.watch & 0xFFFF0000) return false;
-    const Cycle end = service_start(m.since, m.st.cycle) + summary->cycles;
-    if (end > horizon || !stack_holds(m, *summary, m.st.w[15]) || !refreshes_hold(m, *summary) ||
-        !m.irq.waits_alone())
-        return false;
-    m.irq.acknowledge(m.irq.first(), cpu_level(m));
-    push_trace(m, *summary, {m.st.w.data(), m.st.sr, m.pc_of(m.current)});
-    m.irq.serve_alone();
-    m.eligible = m.disi_waits = false;
-    m.watch = (m.watch & summary->keep) | summary->writes;
-    m.repeat_first = true;
-    m.instructions += summary->instructions;
-    m.st.cycle = end;
-    return true;
+    const int vector = m.irq.first().vector;
+    const Cycle start = service_start(m.since, m.st.cycle);
+    if (!has_paths(m, vector)) {
+        if (const IsrSummary* summary = isr_summary(m, vector))
+            return pass_summary(m, *summary, start, horizon);
+        // A program that does not wait in loops gains less by paths than learning them costs.
+        if (m.skip->position.table == nullptr) return false;
+    }
+    const Service service{start, service_level(m, m.irq.first())};
+    const IsrPath* path = isr_path(m, vector, service);
+    return path && pass_path(m, *path, service, horizon);
 }
 
 /// Executes the instruction under a stop address that was reported before.

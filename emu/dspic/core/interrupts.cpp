@@ -190,12 +190,11 @@ bool InterruptController::any_enabled_flag() const {
 bool InterruptController::waits_alone() const {
     if (line_.first.level < 1 || line_.first.level > 7) return false;
     const int irq = line_.first.vector - kTrapVectors;
-    for (int i = 0; i < device_.ifs_words; ++i) {
-        const unsigned waiting = sfr_.raw(static_cast<std::uint16_t>(device_.ifs + 2 * i)) &
-                                 sfr_.raw(static_cast<std::uint16_t>(device_.iec + 2 * i));
-        if (waiting != (i == irq / 16 ? bit_of(irq) : 0u)) return false;
-    }
-    return true;
+    bool alone = true;
+    see_pending(ifs(), iec(), device_.ifs_words, [&](int word, unsigned pending) {
+        alone = alone && word == irq / 16 && pending == bit_of(irq);
+    });
+    return alone;
 }
 
 void InterruptController::serve_alone() {

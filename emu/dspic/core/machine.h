@@ -9,6 +9,7 @@
 #include "emu/dspic/core/memory_map.h"
 #include "emu/dspic/core/program_pages.h"
 #include "emu/dspic/core/program_undo.h"
+#include "emu/dspic/fast/isr_path.h"
 #include "emu/dspic/fast/isr_summary.h"
 #include "emu/dspic/translate/translation.h"
 #include "emu/dspic/waits/wait_watch.h"
@@ -158,6 +159,7 @@ struct Machine {
     ProgramUndo program_undo;
     std::unique_ptr<LoopUndo> loop_undo;
     IsrSummaries isr_summaries;
+    std::vector<IsrPaths> isr_paths;  ///< by vector
     WaitWatch waits;
     Translated translated;
 
@@ -239,6 +241,11 @@ void try_skip(Machine& m, const Op* branch, const Op* head);
 void forget_loops(Machine& m);
 /// Sets Machine::loop_index and loop_waits.
 void publish_loops(Machine& m);
+
+/// A return, which is a cycle shorter while an exception waits to be taken.
+inline bool shortened_by_exception(const Op& op) {
+    return op.form == FormId::RETURN || op.form == FormId::RETLW_lit10_Wn || op.form == FormId::RETFIE;
+}
 
 inline int cpu_level(const Machine& m) {
     return (m.st.sr >> sr::kIplShift & 7) | (m.st.corcon & corcon::IPL3);

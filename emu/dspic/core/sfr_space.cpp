@@ -18,6 +18,7 @@ void SfrSpace::claim(std::uint16_t address) {
 }
 
 void SfrSpace::find_kind(std::uint16_t address) {
+    ++layout_changes_;
     const Word& word = words_[address >> 1];
     const bool modelled = word.behaviour == Behaviour::Modelled || word.behaviour == Behaviour::Stored;
     plain_.kind[address >> 1] = word.read ? word.plain_kind : modelled ? Plain::kAlways : Plain::kNever;

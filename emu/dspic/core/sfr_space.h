@@ -73,10 +73,13 @@ class SfrSpace {
         std::array<Cycle, kKinds> until{0, kNoCycle, 0};
     };
     Plain& plain() { return plain_; }
+    /// Changes whenever a word's kind may have.
+    std::uint32_t layout_changes() const { return layout_changes_; }
     /// A hooked word whose model says by Plain::until how long nothing happens at a read.
     void set_plain_kind(std::uint16_t address, std::uint8_t kind) {
         words_[address >> 1].plain_kind = kind;
         plain_.kind[address >> 1] = kind;
+        ++layout_changes_;
     }
 
     /// Takes the word away from its model: it reads 0 and ignores writes. And gives it back.
@@ -141,6 +144,7 @@ class SfrSpace {
     void touch(std::uint16_t address, bool write);
 
     Plain plain_;
+    std::uint32_t layout_changes_ = 0;
     std::array<Word, kWords> words_{};
     std::array<bool, kWords> reported_{};
     std::map<std::uint16_t, Word> off_;  ///< as they were, by address

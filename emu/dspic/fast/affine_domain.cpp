@@ -25,7 +25,7 @@ IdleLoops::Cell& AffineDomain::cell(std::uint16_t key) {
 AffineDomain::Value AffineDomain::read_cell(std::uint16_t key) {
     IdleLoops::Cell& c = cell(key);
     if (!c.written) c.carried = true;
-    if (key >= 16) note_access(key, c.now, false);
+    if (key >= 16) note_access(key, {c.now, c.now_step}, false);
     return {c.now, c.now_step};
 }
 
@@ -34,12 +34,16 @@ void AffineDomain::write_cell(std::uint16_t key, Value value) {
     c.written = true;
     c.now = value.v;
     c.now_step = value.step;
-    if (key >= 16) note_access(key, value.v, true);
+    if (key >= 16)
+        note_access(key, value, true);
+    else
+        trace_.boundaries.back().writes |= static_cast<std::uint16_t>(1u << key);
 }
 
-void AffineDomain::note_access(std::uint16_t address, std::int32_t value, bool write) {
+void AffineDomain::note_access(std::uint16_t address, Value value, bool write) {
     trace_.accesses.push_back({static_cast<std::uint32_t>(trace_.boundaries.size() - 1), address,
-                               static_cast<std::uint16_t>(value), write});
+                               static_cast<std::uint16_t>(value.v), write,
+                               static_cast<std::int16_t>(value.step)});
 }
 
 void AffineDomain::set_whole(int reg, Value value) {
@@ -168,6 +172,8 @@ AffineDomain::Value AffineDomain::add(bool byte, bool sticky, Value a, Value b, 
     set_c(base != 0);
     const bool sign_a = a.v >= half_way, sign_b = b.v >= half_way, sign_r = result.v >= half_way;
     ov_ = {true, sign_a == sign_b && sign_r != sign_a};
+    trace_.boundaries.back().sum = {true, byte, carry, {a.v, a.step}, {b.v, b.step}};
+    dc_ = {true, dc_of(trace_.boundaries.back().sum, 0)};
     return result;
 }
 

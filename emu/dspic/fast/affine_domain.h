@@ -130,13 +130,13 @@ class AffineDomain {
     std::size_t first_count_ = 0;                                       ///< 0: this is the first walk
     std::uint64_t bound_ = 0;
     bool chose_ = false;
-    Flag c_, z_, n_, ov_;
+    Flag c_, z_, n_, ov_, dc_;
 
   private:
     IdleLoops::Cell& cell(std::uint16_t key);
     Value read_cell(std::uint16_t key);
     void write_cell(std::uint16_t key, Value value);
-    void note_access(std::uint16_t address, std::int32_t value, bool write);
+    void note_access(std::uint16_t address, Value value, bool write);
     bool is_ram(Address even) const { return even >= kRamStart && (even - kRamStart) / 2 < m_.ram_words; }
     Address step_pointer(int reg, int pre, int post);
     Address indexed(int reg, int index);

@@ -12,7 +12,7 @@ constexpr std::uint64_t kFewestIterations = 2;
 constexpr std::size_t kMostServices = 4096;
 
 /// An interrupt that comes in during the leap.
-struct Service {
+struct PassedService {
     std::uint32_t boundary = 0;
     std::uint64_t iteration = 0;  ///< counted from the leap's start
 };
@@ -88,13 +88,13 @@ bool prepare(Machine& m, IdleLoops::Branch& known, Leap& leap) {
     }
     if (trace.live) return false;
     for (const LoopTrace::Boundary& boundary : trace.boundaries)
-        if (!stack_holds(m, *leap.summary, boundary.w[15])) return false;
+        if (!stack_holds(m, leap.summary->depth, boundary.w[15])) return false;
     return true;
 }
 
 /// Follows loop and interrupts up to the last arrival before the horizon, at most `most` iterations on.
 void simulate(const IdleLoops::Plan& plan, const LoopTrace& trace, Leap& leap, Cycle arrival,
-              std::uint64_t most, std::vector<Service>& services) {
+              std::uint64_t most, std::vector<PassedService>& services) {
     const Cycle length = plan.cycles;
     Cycle base = arrival;  // when the iteration under way began, had it not been interrupted
     Cycle due = leap.due;
@@ -129,6 +129,11 @@ void simulate(const IdleLoops::Plan& plan, const LoopTrace& trace, Leap& leap, C
         iteration += whole;
         if (iteration >= most) return;
         base += whole * length;
+        // A flag that is set just when a return begins shortens it.
+        const LoopTrace::Boundary& before =
+            boundary != 0 ? trace.boundaries[boundary - 1] : trace.boundaries.back();
+        const Cycle begins = base + before.offset - (boundary != 0 ? 0 : length);
+        if (begins == due && shortened_by_exception(*before.op)) return;
         const LoopTrace::Boundary& at = trace.boundaries[boundary];
         const Cycle end = service_start(due, base + at.offset) + leap.summary->cycles;
         if (end > leap.horizon || end > due + leap.steady.period) return;
@@ -147,7 +152,7 @@ void repeat_writes(Machine& m, const LoopTrace& trace, std::uint32_t from) {
         if (access.write && access.boundary >= from) word(m, access.address) = access.value;
 }
 
-void push_at(Machine& m, const LoopTrace& trace, const IsrSummary& summary, const Service& service) {
+void push_at(Machine& m, const LoopTrace& trace, const IsrSummary& summary, const PassedService& service) {
     const LoopTrace::Boundary& at = trace.boundaries[service.boundary];
     const auto sr = static_cast<std::uint16_t>((m.st.sr & ~unsigned{at.known}) | at.flags);
     push_trace(m, summary, {at.w.data(), sr, m.pc_of(at.op)});
@@ -163,7 +168,7 @@ bool steady_event_next(Machine& m) {
 std::uint64_t fast_forward_arrival(Machine& m, IdleLoops::Branch& known, std::uint64_t arrival,
                                    std::uint64_t iterations, bool& interrupted) {
     Leap leap;
-    std::vector<Service> services;
+    std::vector<PassedService> services;
     if (!prepare(m, known, leap)) return kNoCycle;
     simulate(known.plan, known.trace, leap, arrival, iterations, services);
     interrupted = leap.services > 0;
@@ -173,18 +178,18 @@ std::uint64_t fast_forward_arrival(Machine& m, IdleLoops::Branch& known, std::ui
 bool fast_forward(Machine& m, IdleLoops::Branch& known, std::uint64_t arrival) {
     Leap leap;
     if (!prepare(m, known, leap)) return false;
-    static thread_local std::vector<Service> services;
+    static thread_local std::vector<PassedService> services;
     services.clear();
     const LoopTrace& trace = known.trace;
     simulate(known.plan, trace, leap, arrival, known.plan.iterations - 1, services);
     if (leap.iterations < kFewestIterations || leap.services == 0) return false;
 
     services.resize(leap.services);
-    for (const Service& service : services)
+    for (const PassedService& service : services)
         push_at(m, trace, *leap.summary, service);
     // The last iteration in its order: what the loop writes, and what interrupts put over it afterwards.
     repeat_writes(m, trace, 0);
-    for (const Service& service : services) {
+    for (const PassedService& service : services) {
         if (service.iteration + 1 != leap.iterations) continue;
         push_at(m, trace, *leap.summary, service);
         repeat_writes(m, trace, service.boundary);

@@ -2,6 +2,7 @@
 
 #include "emu/dspic/core/machine.h"
 #include "emu/dspic/fast/fast_forward.h"
+#include "emu/dspic/fast/loop_advance.h"
 #include "emu/dspic/fast/loop_undo.h"
 #include "emu/dspic/fast/symbolic_loop.h"
 
@@ -49,13 +50,6 @@ bool as_predicted(Machine& m, const IdleLoops::Plan& plan, Cycle arrival) {
     return true;
 }
 
-void advance(IdleLoops::Plan& plan, std::uint64_t iterations) {
-    for (std::size_t i = 0; i < plan.count; ++i)
-        plan.cells[i].now +=
-            static_cast<std::int32_t>(static_cast<std::int64_t>(iterations) * plan.cells[i].step);
-    plan.iterations -= iterations;
-}
-
 /// Leaps over as many iterations as the plan and the limit allow, less one. True if the limit decided: then
 /// the real iteration that follows is over before the limit, and the next one is not.
 bool leap(Machine& m, IdleLoops::Plan& plan, Cycle arrival) {
@@ -63,7 +57,7 @@ bool leap(Machine& m, IdleLoops::Plan& plan, Cycle arrival) {
     const std::uint64_t room = (m.limit - arrival) / plan.cycles;
     if (room < 2 || plan.iterations < 2) return false;
     const std::uint64_t count = std::min(plan.iterations - 1, room - 1);
-    advance(plan, count);
+    plan.advance(count);
     for (std::size_t i = 0; i < plan.count; ++i)
         if (plan.cells[i].carried)
             word_of(m, plan.cells[i].key) = static_cast<std::uint16_t>(plan.cells[i].now);
@@ -80,6 +74,17 @@ bool leap(Machine& m, IdleLoops::Plan& plan, Cycle arrival) {
     return count + 1 == room;
 }
 
+/// Registers that the loop does not touch may hold something else than when it was walked.
+void adopt_registers(const Machine& m, IdleLoops::Branch& known) {
+    if (!known.trace.steady || known.trace.boundaries.front().w == m.st.w) return;
+    std::uint32_t touched = 0;
+    for (std::size_t i = 0; i < known.plan.count; ++i)
+        if (known.plan.cells[i].key < 16) touched |= 1u << known.plan.cells[i].key;
+    for (LoopTrace::Boundary& boundary : known.trace.boundaries)
+        for (std::size_t reg = 0; reg < 16; ++reg)
+            if (!(touched >> reg & 1)) boundary.w[reg] = m.st.w[reg];
+}
+
 void give_up_for_now(Machine& m, IdleLoops::Branch& known) {
     const std::uint8_t most = known.walked ? kMostPatience : kMostPatienceUnknown;
     if (known.patience < most) ++known.patience;
@@ -89,6 +94,7 @@ void give_up_for_now(Machine& m, IdleLoops::Branch& known) {
 void make_plan(Machine& m, IdleLoops::Branch& known, const Op* branch, const Op* head, Cycle arrival) {
     IdleLoops::Plan& plan = known.plan;
     m.loop_undo->note_walk(known);
+    known.table.trace = nullptr;
     SymbolicLoop walk(m, plan, known.trace);
     switch (walk.analyse(branch, head)) {
     case SymbolicLoop::Verdict::Pure:
@@ -129,13 +135,21 @@ Cycle clean_arrival(Machine& m, IdleLoops::Branch& known, Cycle arrival) {
 
 }  // namespace
 
+void IdleLoops::Plan::advance(std::uint64_t passed) {
+    for (std::size_t i = 0; i < count; ++i)
+        cells[i].now += static_cast<std::int32_t>(static_cast<std::int64_t>(passed) * cells[i].step);
+    iterations -= passed;
+}
+
 void forget_loops(Machine& m) {
     m.loop_undo->note_forgetting(m);
     m.waits.forget();
     m.skip->index.clear();
     m.skip->branches.clear();
     m.skip->waits.clear();
+    m.skip->position = {};
     m.isr_summaries.known.clear();
+    m.isr_paths.clear();
     publish_loops(m);
 }
 
@@ -155,20 +169,27 @@ void try_skip(Machine& m, const Op* branch, const Op* head) {
         return;
     }
     const Cycle arrival = m.st.cycle + branch->cycles;  // the run loop adds them after this
+    if (back_in_loop(m, known)) return;
     IdleLoops::Plan& plan = known.plan;
     if (plan.alive) {
         if (plan.iterations >= 2 && as_predicted(m, plan, arrival)) {
             const bool clean = !plan.proven || plan.clean_due == arrival;
             plan.proven = true;
             if (!std::exchange(known.polls_noted, true) && plan.polled_count > 0) note_polls(m, branch, head);
+            adopt_registers(m, known);
             bool to_limit = false;
-            if (!clean || !fast_forward(m, known, arrival)) to_limit = leap(m, plan, arrival);
+            const bool forwarded = clean && fast_forward(m, known, arrival);
+            if (!forwarded && enter_loop(m, known)) {
+                plan.used = true;
+                return;
+            }
+            if (!forwarded) to_limit = leap(m, plan, arrival);
             note_leap(m, branch);
             plan.clean_due = clean_arrival(m, known, m.st.cycle + branch->cycles);
-            advance(plan, 1);  // the real iteration that follows
+            plan.advance(1);  // the real iteration that follows
             // At its end nothing can be gained: only the arrival after that one is looked at.
             if (to_limit && !known.trace.steady && plan.iterations > 2) {
-                advance(plan, 1);
+                plan.advance(1);
                 m.skip->waits[known.place] = 1;
             }
             return;

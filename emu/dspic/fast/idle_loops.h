@@ -12,10 +12,13 @@
 // The next real iteration must end in the state that the walk predicted; only then are iterations leapt over,
 // at most up to the next event, and one fewer than could be, so that a real one sets flags and scratch cells.
 // A loop that changes nothing at all from iteration to iteration (it waits for somebody else) is leapt over
-// together with the interrupts that leave no trace (isr_summary.h): see fast_forward.h.
+// together with the interrupts that leave no trace (isr_summary.h): see fast_forward.h. Other interrupts come
+// in where they do: loop_advance.h goes from one to the next.
 //
 // A plan stays good over events and interrupts for as long as its cells and registers are as predicted at
 // every arrival at the branch.
+
+#include "emu/dspic/fast/loop_table.h"
 
 #include <array>
 #include <cstddef>
@@ -25,38 +28,66 @@
 
 namespace puckloop::dspic {
 
+struct Machine;
 struct Op;
 
-/// One iteration, instruction by instruction, of a loop that changes nothing.
+/// One iteration, instruction by instruction. Numbers are those of the iteration that was walked, number 0;
+/// in iteration n they are larger by n steps.
 struct LoopTrace {
+    struct Number {
+        std::int32_t v = 0;
+        std::int32_t step = 0;
+    };
+    /// What an instruction put through the adder, which leaves DC.
+    struct Sum {
+        bool done = false;
+        bool byte = false;
+        bool carry = false;
+        Number a, b;
+    };
     /// Between two instructions: where an interrupt may come in.
     struct Boundary {
         const Op* op = nullptr;    ///< the next instruction
         std::uint32_t offset = 0;  ///< cycles from the loop's head
         bool stall = false;        ///< of one cycle, before it; an interrupt takes its place
-        std::uint8_t known = 0;    ///< flags that the iteration has set by then, bits as in SR
-        std::uint8_t flags = 0;
+        Sum sum;                   ///< of the instruction
+        std::uint16_t known = 0;   ///< flags that the iteration has set by then, bits as in SR
+        std::uint16_t flags = 0;
         std::array<std::uint16_t, 16> w{};
+        std::array<std::int16_t, 16> w_steps{};
+        std::uint16_t written = 0;  ///< registers that the iteration has written by then
+        std::uint16_t writes = 0;   ///< registers that the instruction writes
     };
     struct Access {
         std::uint32_t boundary = 0;  ///< before the instruction that does it
         std::uint16_t address = 0;
         std::uint16_t value = 0;
         bool write = false;
+        std::int16_t step = 0;
     };
     std::vector<Boundary> boundaries;
     std::vector<Access> accesses;
-    bool steady = false;
-    std::uint16_t depth = 0;  ///< bytes above the stack pointer known to be dead at every boundary
-    bool live = false;        ///< there are live ones
+    std::uint64_t iterations = 0;  ///< that go the same way; 0: the trace is no good
+    bool steady = false;           ///< the loop changes nothing
+    std::uint16_t depth = 0;       ///< bytes above the stack pointer known to be dead at every boundary
+    bool live = false;             ///< there are live ones
 
     void clear() {
         boundaries.clear();
         accesses.clear();
         steady = live = false;
-        depth = 0;
+        iterations = depth = 0;
     }
 };
+
+/// DC after the sum, in an iteration.
+inline bool dc_of(const LoopTrace::Sum& sum, std::uint64_t iteration) {
+    const auto in = [&](const LoopTrace::Number& number) {
+        return static_cast<std::uint32_t>(number.v) + static_cast<std::uint32_t>(number.step) * iteration;
+    };
+    const std::uint64_t a = in(sum.a), b = in(sum.b);
+    return (a ^ b ^ (a + b + (sum.carry ? 1 : 0))) & (sum.byte ? 0x10 : 0x100);
+}
 
 struct IdleLoops {
     /// A cell of the loop: 0..15 a W register, above a RAM byte address.
@@ -93,6 +124,11 @@ struct IdleLoops {
         /// as an undisturbed iteration leaves it.
         std::uint64_t clean_due = 0;
         bool proof_interrupted = false;  ///< ... but routines without a trace
+
+        /// So many iterations have been.
+        void advance(std::uint64_t count);
+        /// So many are still to come.
+        void catch_up(std::uint64_t to_come) { advance(iterations - to_come); }
     };
     /// What is known of one backward branch.
     struct Branch {
@@ -102,15 +138,20 @@ struct IdleLoops {
         bool walked = false;        ///< a walk came round once: no way out of the loop decides for all of it
         Plan plan;
         LoopTrace trace;
+        LoopTable table;          ///< of the trace, once it is wanted
         std::uint32_t noted = 0;  ///< by the LoopUndo with this stamp ...
         std::size_t note = 0;     ///< ... at this place
     };
     std::vector<std::uint16_t> index;  ///< by program word: place in `branches` plus 1, 0 = not seen yet
     std::deque<Branch> branches;
     std::vector<std::uint16_t> waits;  ///< by branch: arrivals until the next try
-    std::uint64_t leaps = 0;           ///< for tests and curiosity
+    LoopPosition position;
+    std::uint64_t leaps = 0;  ///< for tests and curiosity
     std::uint64_t skipped_cycles = 0;
     std::uint64_t passed_services = 0;  ///< routines without a trace that fell into leaps
 };
+
+/// Makes the table of the branch's plan and trace; these stay as they are as long as it is used.
+void make_table(Machine& m, IdleLoops::Branch& known);
 
 }  // namespace puckloop::dspic

@@ -33,9 +33,9 @@ const IsrSummary* isr_summary(Machine& m, int vector) {
     return fresh.possible ? &*known[index] : nullptr;
 }
 
-bool stack_holds(const Machine& m, const IsrSummary& summary, std::uint16_t stack) {
+bool stack_holds(const Machine& m, std::uint16_t depth, std::uint16_t stack) {
     const auto lowest = static_cast<std::uint16_t>(stack - kRamStart);
-    return lowest + summary.depth <= m.stack_span && lowest / 2 + summary.depth / 2 <= m.ram_words;
+    return lowest + depth <= m.stack_span && lowest / 2 + depth / 2 <= m.ram_words;
 }
 
 bool refreshes_hold(const Machine& m, const IsrSummary& summary) {

@@ -65,8 +65,8 @@ struct Interrupted {
 const IsrSummary* isr_summary(Machine& m, int vector);
 /// True if what it expects of the modules' registers is so now.
 bool refreshes_hold(const Machine& m, const IsrSummary& summary);
-/// True if it finds room with the stack pointer at `stack`.
-bool stack_holds(const Machine& m, const IsrSummary& summary, std::uint16_t stack);
+/// True if `depth` bytes find room with the stack pointer at `stack`.
+bool stack_holds(const Machine& m, std::uint16_t depth, std::uint16_t stack);
 /// Does what the routine leaves behind.
 void push_trace(Machine& m, const IsrSummary& summary, const Interrupted& interrupted);
 

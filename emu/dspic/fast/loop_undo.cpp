@@ -32,6 +32,7 @@ void LoopUndo::note_first(IdleLoops::Branch& branch) {
     note.walked = branch.walked;
     note.plan = branch.plan;
     note.swapped = false;
+    note.trace.iterations = branch.trace.iterations;
     note.trace.steady = branch.trace.steady;
     note.trace.depth = branch.trace.depth;
     note.trace.live = branch.trace.live;
@@ -53,12 +54,14 @@ void LoopUndo::take_back(Machine& m) {
         branch.polls_noted = note.polls_noted;
         branch.walked = note.walked;
         branch.plan = note.plan;
+        branch.trace.iterations = note.trace.iterations;
         branch.trace.steady = note.trace.steady;
         branch.trace.depth = note.trace.depth;
         branch.trace.live = note.trace.live;
         if (!note.swapped) continue;
         branch.trace.boundaries.swap(note.trace.boundaries);
         branch.trace.accesses.swap(note.trace.accesses);
+        branch.table.trace = nullptr;
     }
     count_ = 0;
     m.skip->waits = waits_;
@@ -77,7 +80,9 @@ void LoopUndo::note_forgetting(Machine& m) {
 }
 
 void LoopUndo::rewind(Machine& m) {
+    m.skip->position = {};
     if (forgotten_) {
+        m.isr_paths.clear();  // of code that is not there any more
         m.skip->index = std::move(forgotten_->index);
         m.skip->branches = std::move(forgotten_->branches);
         m.skip->waits = std::move(forgotten_->waits);

@@ -23,7 +23,7 @@ void SymbolicLoop::walk(const Op* branch, const Op* head) {
     bound_ = kForever;
     watch_ = 0;
     w_ = {};
-    c_ = z_ = n_ = ov_ = {};
+    c_ = z_ = n_ = ov_ = dc_ = {};
     const Op* op = head;
     for (int i = 0; i < probe_.most_steps; ++i) {
         record(op);
@@ -57,26 +57,36 @@ void SymbolicLoop::record(const Op* op) {
     boundary.offset = static_cast<std::uint32_t>(plan_.cycles);
     boundary.stall = op->uses & watch_;
     const auto note = [&](const Flag& flag, std::uint16_t bit) {
-        if (flag.known) boundary.known |= static_cast<std::uint8_t>(bit);
-        if (flag.known && flag.value) boundary.flags |= static_cast<std::uint8_t>(bit);
+        if (flag.known) boundary.known |= bit;
+        if (flag.known && flag.value) boundary.flags |= bit;
     };
     note(c_, sr::C);
     note(z_, sr::Z);
     note(n_, sr::N);
     note(ov_, sr::OV);
-    for (std::size_t reg = 0; reg < 16; ++reg)
+    note(dc_, sr::DC);
+    for (std::size_t reg = 0; reg < 16; ++reg) {
         boundary.w[reg] = w_[reg] ? static_cast<std::uint16_t>(w_[reg]->now) : m_.st.w[reg];
+        if (!w_[reg]) continue;
+        boundary.w_steps[reg] = static_cast<std::int16_t>(w_[reg]->now_step);
+        if (w_[reg]->written) boundary.written |= static_cast<std::uint16_t>(1u << reg);
+    }
 }
 
-/// A flag that an iteration sets late still has at its head what the iteration before left.
-void SymbolicLoop::settle_flags() {
+/// A flag or a register that an iteration sets late still has at its head what the iteration before left.
+void SymbolicLoop::settle() {
     record(trace_.boundaries.front().op);
     const LoopTrace::Boundary end = trace_.boundaries.back();
     trace_.boundaries.pop_back();
     for (LoopTrace::Boundary& boundary : trace_.boundaries) {
-        const auto missing = static_cast<std::uint8_t>(end.known & ~boundary.known);
-        boundary.flags |= static_cast<std::uint8_t>(end.flags & missing);
+        const auto missing = static_cast<std::uint16_t>(end.known & ~boundary.known);
+        boundary.flags |= static_cast<std::uint16_t>(end.flags & missing);
         boundary.known |= missing;
+        for (std::size_t reg = 0; reg < 16; ++reg) {
+            if (!((end.written & ~boundary.written) >> reg & 1)) continue;
+            boundary.w[reg] = static_cast<std::uint16_t>(end.w[reg] - end.w_steps[reg]);
+            boundary.w_steps[reg] = end.w_steps[reg];
+        }
     }
 }
 
@@ -115,7 +125,10 @@ SymbolicLoop::Verdict SymbolicLoop::analyse(const Op* branch, const Op* head) {
         }
         plan_.iterations = bound_;
         trace_.steady = !moves && !plan_.clears_watchdog;
-        if (trace_.steady) settle_flags();
+        if (!plan_.clears_watchdog) {
+            trace_.iterations = bound_;
+            settle();
+        }
         return Verdict::Pure;
     } catch (const Stop& stop) {
         return stop.verdict;

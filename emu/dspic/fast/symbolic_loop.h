@@ -25,7 +25,7 @@ class SymbolicLoop : private AffineDomain {
     const Op* execute(const Op* op);
     void hazards(const Op* op);
     void record(const Op* op);
-    void settle_flags();
+    void settle();
 
     std::uint32_t watch_ = 0;  ///< Op::writes of the instruction before
 };

@@ -34,14 +34,17 @@ void note_rate(Machine& m) {
 }
 
 void note_arrival(Machine& m, const Op* branch, const Op* head) {
+    note_arrival(m, {branch, head, m.st.w[15], cpu_level(m), m.st.cycle});
+}
+
+void note_arrival(Machine& m, const Arrival& arrival) {
     WaitWatch& watch = m.waits;
-    const int level = cpu_level(m);
-    for (; watch.level > level; --watch.level)
+    for (; watch.level > arrival.level; --watch.level)
         watch.stays[static_cast<std::size_t>(watch.level)].branch = nullptr;
-    watch.level = level;
-    WaitWatch::Stay& stay = watch.stays[static_cast<std::size_t>(level)];
-    const Cycle now = m.st.cycle;
-    if (stay.branch == branch) [[likely]] {
+    watch.level = arrival.level;
+    WaitWatch::Stay& stay = watch.stays[static_cast<std::size_t>(arrival.level)];
+    const Cycle now = arrival.now;
+    if (stay.branch == arrival.branch) [[likely]] {
         if (now < stay.next_look) {
             stay.last = now;
             return;
@@ -51,11 +54,19 @@ void note_arrival(Machine& m, const Op* branch, const Op* head) {
             return look(m, stay);
         }
     } else if (stay.branch != nullptr) {
-        // A loop within this one, or in what it calls, is part of it.
-        const bool inside = (branch >= stay.head && branch <= stay.branch) || m.st.w[15] > stay.stack;
-        if (inside && now < stay.last + seconds(m, kStale)) return;
+        if (is_inside(stay, arrival.branch, arrival.stack) && now < stay.last + seconds(m, kStale)) return;
     }
-    stay = {branch, head, m.st.w[15], now, now, now + seconds(m, kFirstLook), {}};
+    stay.branch = arrival.branch;
+    stay.head = arrival.head;
+    stay.stack = arrival.stack;
+    stay.since = stay.last = now;
+    stay.next_look = now + seconds(m, kFirstLook);
+    stay.finding.reset();
+}
+
+bool needs_look(const Machine& m, const Arrival& arrival) {
+    const WaitWatch::Stay& stay = m.waits.stays[static_cast<std::size_t>(arrival.level)];
+    return arrival.level <= m.waits.level && stay.branch == arrival.branch && arrival.now >= stay.next_look;
 }
 
 void note_leap(Machine& m, const Op* branch) {

@@ -75,10 +75,26 @@ struct WaitWatch {
     }
 };
 
+/// A loop within the one that is stayed in, or in what it calls, is part of it. `stack`: W15 at the branch.
+inline bool is_inside(const WaitWatch::Stay& stay, const Op* branch, std::uint16_t stack) {
+    return (branch >= stay.head && branch <= stay.branch) || stack > stay.stack;
+}
+
 /// Sets WaitWatch::stale_after by the clock's present rate.
 void note_rate(Machine& m);
-/// At a taken backward branch, before anything is leapt over.
+/// A taken backward branch.
+struct Arrival {
+    const Op* branch = nullptr;
+    const Op* head = nullptr;
+    std::uint16_t stack = 0;  ///< W15
+    int level = 0;            ///< of the CPU
+    Cycle now = 0;            ///< start of the branch
+};
+/// Before anything is leapt over; the machine is at the branch wherever needs_look().
+void note_arrival(Machine& m, const Arrival& arrival);
 void note_arrival(Machine& m, const Op* branch, const Op* head);
+/// The arrival is one at which the loop is looked at.
+bool needs_look(const Machine& m, const Arrival& arrival);
 /// After a leap at `branch`: the loop came round all the time.
 void note_leap(Machine& m, const Op* branch);
 /// At the first leap over iterations of a loop: whether it polls what no model drives.
