@@ -13,7 +13,8 @@ double range_end(double value, double low, double high, double neutral) {
     const auto scaled = [wide](double one) { return wide ? std::log(one) : one; };
     const double near = thresholds::kRangeEnd * (scaled(high) - scaled(low));
     for (const double end : {low, high}) {
-        if (end == 0.0) continue;
+        // Nothing, and all of a share, are ends of what there is, not of what is believed.
+        if (end == 0.0 || (end == 1.0 && low == 0.0)) continue;
         const bool beside_neutral = (!wide || neutral > 0) && std::abs(scaled(end) - scaled(neutral)) <= near;
         if (!beside_neutral && !(wide && value <= 0) && std::abs(scaled(value) - scaled(end)) < near)
             return end;

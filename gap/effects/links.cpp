@@ -31,7 +31,7 @@ std::vector<Effect> rab_effects() {
          "ir.level", "distances beyond half a metre"},
         // The peak detector reaches its rail. s = min(s, S)
         {"strength_saturation", 49, "near strengths are clipped early",
-         {{"rab.saturation", 300.0, 4095.0, 1500.0, "4095; readings fold below 2 cm"}},
+         {{"rab.saturation", 300.0, 4095.0, 1500.0, "4095; readings fold below 2 cm", {}, nullptr, 0.5}},
          "ir.rail", "distances below 5 cm"},
         // Another path wins: longer, weaker, from elsewhere. with probability w: ln s - l, bearing scattered
         {"multipath", 51, "messages come by reflections",
@@ -45,7 +45,7 @@ std::vector<Effect> rab_effects() {
          "emerges from boards that send", "the same place with one, two and four senders", {"senders"}},
         // Weak light, interference, interrupts. p_ok = 1 - q
         {"random_loss", 53, "messages are lost whoever sends",
-         {{"rab.random_loss", 0.0, 0.95, 0.15, "30 % to 85 % reported", {0.05}}},
+         {{"rab.random_loss", 0.0, 1.0, 0.15, "30 % to 85 % reported", {0.05, 0.5}}},
          "ir.loss, beside the losses that emerge", "one sender only, many messages in a row"},
         // The board's queue overflows. p_ok = min(1, capacity / rate)
         {"poll_loss", 54, "the host polls too slowly",
@@ -54,7 +54,7 @@ std::vector<Effect> rab_effects() {
          "the same senders with a faster and a slower poll", {"arrival_rate|senders"}},
         // Two crystals beat: while the edges meet, frames are lost. lost while the phase lies in a window
         {"beat_loss", 55, "losses come in spells",
-         {{"rab.beat", 0.0, 0.7, 0.1, "1-5 % of frames", {0.05}},
+         {{"rab.beat", 0.0, 1.0, 0.1, "1-5 % of frames", {0.05}},
           {"rab.beat_burst", 0.01, 20.0, 1.0, "beat 10-60 s", {0.3}}},
          "ir.spell, ir.spell_time, beside what emerges from the crystals", "long records at two temperatures",
          {"t_s"}},
@@ -86,10 +86,10 @@ std::vector<Effect> timing_effects() {
         {"fifo_overrun", 59, "bytes are lost when interrupts wait",
          {{"timing.overrun", 0.0, 1.0, 0.1, "blocked over 350 us", {0.05}}},
          "emerges from the emulated board", "the same traffic with the analogue service off", {"load"}},
-        // Radio or line drop-outs, in bursts. p, in bursts
+        // Radio or line drop-outs, in bursts. p; after a broken frame p + (1 - p) b, of b < 0 p (1 + b)
         {"truncation", 60, "frames are cut now and then",
-         {{"timing.truncation", 0.0, 0.5, 0.02, "1e-4..1e-2", {0.005}},
-          {"timing.truncation_burst", 0.0, 0.98, 0.4, "bursts", {0.3}}},
+         {{"timing.truncation", 0.0, 1.0, 0.02, "1e-4..1e-2", {0.005}},
+          {"timing.truncation_burst", -1.0, 1.0, 0.4, "bursts; below 0: none after another", {0.3, -0.3}}},
          "the overlay's [uart] answer_cut, answer_cut_again", "the same frames over a cable"},
         // Bytes and delays add to the nominal period. T = T0 + delta, with jitter
         {"long_period", 61, "the control loop takes longer than nominal",
@@ -103,7 +103,7 @@ std::vector<Effect> timing_effects() {
          "the overlay's [clock] pic_error", "a longer run", {"t_robot_s"}},
         // Radio and operating system deliver at their own ticks. t_host = ceil(t / B) B
         {"batching", 63, "the host hands frames over in batches",
-         {{"timing.batch", 0.002, 1.0, 0.001, "ticks of 5..50 ms; intervals bimodal", {0.02}, nullptr, 1e-6}},
+         {{"timing.batch", 0.001, 1.0, 0.001, "ticks of 5..50 ms; intervals bimodal", {0.02}, nullptr, 1e-6}},
          "the overlay's [linux] tty_batch", "log the robot's own clock"},
     };
 }

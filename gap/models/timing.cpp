@@ -31,7 +31,8 @@ constexpr double kLongestBatch = 0.5;     // s, looked for
 constexpr double kAsGood = 0.9;           // share of the coherence that noise would leave
 constexpr double kNeighbour = 1.01;       // nearer is the same peak
 constexpr std::size_t kTried = 3;         // peaks
-constexpr double kShortestBatch = 0.002;  // s
+constexpr double kShortestBatch = 0.001;  // s
+constexpr double kRoundings = 2.0;        // of the clocks: a shorter batch is their rounding
 constexpr double kWhole = 0.999;
 
 struct Numbers {
@@ -100,7 +101,8 @@ class TimingModel final : public ModelOf<Numbers> {
                 expected.push_back(robot_[i] + wire_[i] - robot_[i - 1] - wire_[i - 1]);
             }
         std::vector<std::pair<double, double>> peaks;  // score, batch
-        for (double batch = kLongestBatch; batch > kShortestBatch; batch /= 1.003) {
+        const double shortest = std::max(kShortestBatch, kRoundings * o.instrument.quantum);
+        for (double batch = kLongestBatch; batch > shortest; batch /= 1.003) {
             const double score = keep_to(seen, batch) - std::max(keep_to(expected, batch), 0.0);
             if (!peaks.empty() && peaks.back().second < kNeighbour * batch) {
                 if (score > peaks.back().first) peaks.back() = {score, batch};
@@ -337,7 +339,9 @@ class TimingModel final : public ModelOf<Numbers> {
         p.mean.resize(o.y.size());
         for (std::size_t i = 0; i < p.mean.size(); ++i) {
             double broken = cut;
-            if (stays > 0 && o.starts[i] == 0 && o.y[i - 1] < 0.5) broken = cut + (1 - cut) * stays;
+            // A frame after a broken one: more likely broken too (bursts), or less.
+            if (o.starts[i] == 0 && o.y[i - 1] < 0.5)
+                broken = stays > 0 ? cut + (1 - cut) * stays : cut * (1 + stays);
             p.mean[i] = kWhole * std::pow(1 - std::min(error, 0.99), edges_[i]) *
                         (1 - std::min(overrun * ok_load_[i], 0.99)) * (1 - broken);
         }

@@ -109,4 +109,5 @@ TEST_CASE("a range over decades ends where its logarithm does") {
     CHECK(range_end(-0.0799, -0.08, 0.08, 0.0) == -0.08);
     CHECK(std::isnan(range_end(0.0, 0.0, 0.5, 0.0)));
     CHECK(range_end(0.4999, 0.0, 0.5, 0.0) == 0.5);
+    CHECK(std::isnan(range_end(0.9999, 0.0, 1.0, 0.0)));  // all of a share
 }
