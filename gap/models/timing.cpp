@@ -101,8 +101,7 @@ class TimingModel final : public ModelOf<Numbers> {
                 expected.push_back(robot_[i] + wire_[i] - robot_[i - 1] - wire_[i - 1]);
             }
         std::vector<std::pair<double, double>> peaks;  // score, batch
-        const double shortest = std::max(kShortestBatch, kRoundings * o.instrument.quantum);
-        for (double batch = kLongestBatch; batch > shortest; batch /= 1.003) {
+        for (double batch = kLongestBatch; batch > kShortestBatch; batch /= 1.003) {
             const double score = keep_to(seen, batch) - std::max(keep_to(expected, batch), 0.0);
             if (!peaks.empty() && peaks.back().second < kNeighbour * batch) {
                 if (score > peaks.back().first) peaks.back() = {score, batch};

@@ -1,6 +1,7 @@
 #include "gap/pipeline/judge.h"
 
 #include "gap/decide/decide.h"
+#include "gap/decide/left_beside.h"
 #include "gap/decide/roles.h"
 
 #include <algorithm>
@@ -10,11 +11,8 @@ namespace puckloop::gap {
 
 namespace {
 
-/// Causes that are out of their role go by themselves where the first of them stands without them.
-void ask_roles(const Study& study, const Judging& how, Judged& result) {
-    const Selection& selection = result.chosen.selection;
-    const OutOfRole out =
-        out_of_role(study, selection.chosen, selection.held_chosen, result.diagnosis.leftovers, how.seed);
+/// Causes that are doubted by themselves go where the first of them stands without them.
+void let_go(const Study& study, const Judging& how, const OutOfRole& out, Judged& result) {
     if (out.effects.empty()) return;
     auto rest = without_doubted(study, result.chosen, out.effects, out.why);
     if (!rest) {
@@ -27,6 +25,22 @@ void ask_roles(const Study& study, const Judging& how, Judged& result) {
     result.chosen = std::move(*rest);
     result.diagnosis = diagnosed(study, result.chosen, how.seed);
     result.grounds = grounds_of(study, result.chosen, result.diagnosis, how.seed);
+}
+
+void ask_each(const Study& study, const Judging& how, Judged& result) {
+    const Diagnosis& found = result.diagnosis;
+    let_go(
+        study, how,
+        {outweighed(study, result.chosen.selection, found.free_forms, found.leftovers, share_allowed(study)),
+         "leaves too much of what it acts on"},
+        result);
+}
+
+void ask_roles(const Study& study, const Judging& how, Judged& result) {
+    const Selection& selection = result.chosen.selection;
+    let_go(study, how,
+           out_of_role(study, selection.chosen, selection.held_chosen, result.diagnosis.leftovers, how.seed),
+           result);
 }
 
 std::string confirmation(const Study& study, const Judging& how, const Judged& result) {
@@ -51,6 +65,7 @@ Judged judged(const Study& study, Chosen chosen, Diagnosis diagnosis, const Judg
     result.diagnosis = std::move(diagnosis);
     Grounds& g = result.grounds = grounds_of(study, result.chosen, result.diagnosis, how.seed);
     const auto goes_on = [&] { return g.causes > 0 && doubt_of(g).empty(); };
+    if (goes_on()) ask_each(study, how, result);
     if (goes_on()) ask_roles(study, how, result);
     if (goes_on() && how.ask) g.not_confirmed = confirmation(study, how, result);
     result.doubt = doubt_of(g);
