@@ -16,7 +16,8 @@ constexpr double kSide = 0.95;  // of a 90 % interval
 constexpr double kSoftEdge =
     0.012;  // the model's edge is soft, 0.4 % wide: a sharp one may lie three of these on
 constexpr int kLooks = 48;
-constexpr double kNearest = 1e-3;  // of the reach, the first look
+constexpr double kLeastRest = 0.5;  // of the information, at least, that is left without a block
+constexpr double kNearest = 1e-3;   // of the reach, the first look
 
 /// A threshold between two speeds that were tried moves no row until it meets one of them: slopes say nothing
 /// of it, and what bounds it is where the likelihood falls off. How far from the fitted value, up (1) or down
@@ -35,6 +36,37 @@ double fall_off(const Study& study, const Fit& fit, std::size_t index, double qu
     return reach;
 }
 
+/// Covariance of a fit as the blocks say it: each block's pull on a fit that it had no part in (the
+/// jackknife, CR3: Cameron and Miller, J. Hum. Resour. 50, 2015), since a block that weighs much draws the
+/// fit to itself. `g`: gradient of each row's cost; a block's information is taken from its rows' gradients.
+Eigen::MatrixXd left_out_by_block(const Blocks& blocks, const Eigen::MatrixXd& g,
+                                  const Eigen::MatrixXd& inverse) {
+    const Eigen::Index p = g.cols();
+    const Eigen::LLT<Eigen::MatrixXd> factor(inverse);
+    if (factor.info() != Eigen::Success) return inverse;
+    const Eigen::MatrixXd root = factor.matrixL();
+    std::vector<Eigen::MatrixXd> loading(blocks.count, Eigen::MatrixXd::Zero(p, p));
+    Eigen::MatrixXd pull = Eigen::MatrixXd::Zero(p, static_cast<Eigen::Index>(blocks.count));
+    const Eigen::MatrixXd scaled = g * root;
+    Eigen::Index at = 0;
+    for (const auto& of : blocks.of)
+        for (const std::uint32_t block : of) {
+            pull.col(block) += scaled.row(at).transpose();
+            loading[block].selfadjointView<Eigen::Lower>().rankUpdate(scaled.row(at++).transpose());
+        }
+    for (std::size_t b = 0; b < blocks.count; ++b) {
+        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(loading[b]);
+        const Eigen::VectorXd rest = (1 - eigen.eigenvalues().array()).max(kLeastRest).inverse().matrix();
+        const auto k = static_cast<Eigen::Index>(b);
+        pull.col(k) =
+            eigen.eigenvectors() * rest.asDiagonal() * eigen.eigenvectors().transpose() * pull.col(k);
+    }
+    pull.colwise() -= pull.rowwise().mean().eval();
+    const auto count = static_cast<double>(blocks.count);
+    const Eigen::MatrixXd moved = root * pull;
+    return moved * moved.transpose() * ((count - 1) / count);
+}
+
 }  // namespace
 
 Precision precision_of(const Study& study, const Fit& fit) {
@@ -45,17 +77,11 @@ Precision precision_of(const Study& study, const Fit& fit) {
     Eigen::VectorXd gradient;
     Eigen::MatrixXd information, g;
     Objective(study.model(), layout, fit.fitted.state, even).slopes(x.data(), gradient, information, &g);
-    const Eigen::Index p = g.cols(), n = static_cast<Eigen::Index>(fit.freed.size());
-    Eigen::MatrixXd blocks = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(study.blocks().count), p);
-    Eigen::Index at = 0;
-    for (const auto& of : study.blocks().of)
-        for (const std::uint32_t block : of)
-            blocks.row(block) += g.row(at++);
-    const Eigen::MatrixXd inverse = information.ldlt().solve(Eigen::MatrixXd::Identity(p, p));
+    const auto n = static_cast<Eigen::Index>(fit.freed.size());
+    const Eigen::MatrixXd inverse =
+        information.ldlt().solve(Eigen::MatrixXd::Identity(information.rows(), information.cols()));
     const auto count = static_cast<double>(study.blocks().count);
-    blocks.rowwise() -= blocks.colwise().mean().eval();
-    const Eigen::MatrixXd between = blocks.transpose() * blocks * (count / std::max(count - 1, 1.0));
-    const Eigen::MatrixXd sandwich = inverse * between * inverse;
+    const Eigen::MatrixXd sandwich = left_out_by_block(study.blocks(), g, inverse);
     Precision result;
     result.quantile = stats::student_quantile(kSide, std::max(count - 1, 2.0));
     result.correlation = Eigen::MatrixXd::Identity(n, n);
