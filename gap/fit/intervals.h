@@ -9,8 +9,8 @@
 
 namespace puckloop::gap {
 
-/// sd of each freed parameter of a fit (its own unit), from the rows' information and from how blocks of rows
-/// disagree; and how far each is fixed by the others.
+/// sd of each freed parameter of a fit (its own unit), from the rows' information and from what fits without
+/// one block of rows would say; and how far each is fixed by the others.
 struct Precision {
     std::vector<double> sd;
     double quantile = 1.645;      ///< of the 90 % interval, for the number of blocks
@@ -23,5 +23,9 @@ struct Interval {
     double low = 0.0, high = 0.0;
 };
 Interval interval_of(const Study& study, const Fit& fit, const Precision& precision, std::size_t j);
+
+/// Do the intervals of all parameters that an effect (a candidate of the fit's set) estimates hold what the
+/// simulator has?
+bool holds_neutral(const Study& study, const Fit& fit, const Precision& precision, std::size_t effect);
 
 }  // namespace puckloop::gap

@@ -41,18 +41,8 @@ void ask_each(const Study& study, const Judging& how, Judged& result) {
 std::vector<std::size_t> may_be_none(const Study& study, const Chosen& chosen) {
     const Precision precision = precision_of(study, chosen.final);
     std::vector<std::size_t> effects;
-    for (const Trial& step : chosen.selection.steps) {
-        bool all = true;
-        for (const Freed& own : study.candidates()[step.effect].freed)
-            for (std::size_t j = 0; j < chosen.final.freed.size() && all; ++j) {
-                if (chosen.final.freed[j].index != own.index) continue;
-                const Interval interval = interval_of(study, chosen.final, precision, j);
-                const double neutral =
-                    study.model().parameters()[static_cast<std::size_t>(own.index)].neutral;
-                all = interval.low <= neutral && neutral <= interval.high;
-            }
-        if (all) effects.push_back(step.effect);
-    }
+    for (const Trial& step : chosen.selection.steps)
+        if (holds_neutral(study, chosen.final, precision, step.effect)) effects.push_back(step.effect);
     return effects;
 }
 

@@ -1,6 +1,7 @@
 // The forward model of timing against frames made by other formulas.
 
 #include "tests/gap/models/exact_tables.h"
+#include "tests/gap/models/made_table.h"
 
 #include <catch2/catch.hpp>
 
@@ -56,4 +57,22 @@ TEST_CASE("batches are found by the grid that arrivals keep to") {
         CHECK(table.misfit("arrival", {{"timing.batch", batch}}) < 0.1 * batch);
     }
     CHECK(exact({}, "timing_no_batch").model().starts("proximity.gain").empty());
+}
+
+TEST_CASE("a frame after a broken one is broken more often, or less") {
+    const auto experiment =
+        tests::experiment_of(Kind::Timing, {{"t_host_s", {0.0, 0.1, 0.2, 0.3}}, {"frame_ok", {1, 0, 0, 1}}});
+    const auto model = make_model(experiment);
+    const auto whole = [&](double cut, double burst) {
+        return tests::predicted(*model, {{"timing.truncation", cut}, {"timing.truncation_burst", burst}})
+            .back()
+            .mean;
+    };
+    const auto bursts = whole(0.2, 0.5), spared = whole(0.2, -0.5), all = whole(1.0, -0.5);
+    CHECK(bursts[1] == Approx(0.8).margin(0.002));  // after a whole one
+    CHECK(bursts[2] == Approx(0.4).margin(0.002));  // 0.8 (1 - 0.5)
+    CHECK(spared[1] == Approx(0.8).margin(0.002));
+    CHECK(spared[3] == Approx(0.9).margin(0.002));  // 1 - 0.2 (1 - 0.5)
+    CHECK(all[1] == Approx(0.0).margin(0.002));
+    CHECK(all[2] == Approx(0.5).margin(0.002));
 }
