@@ -114,15 +114,4 @@ Interval interval_of(const Study& study, const Fit& fit, const Precision& precis
     return {std::max(value - reach + shift, freed.low), std::min(value + reach + shift, freed.high)};
 }
 
-bool holds_neutral(const Study& study, const Fit& fit, const Precision& precision, std::size_t effect) {
-    for (const Freed& own : study.candidates()[effect].freed)
-        for (std::size_t j = 0; j < fit.freed.size(); ++j) {
-            if (fit.freed[j].index != own.index) continue;
-            const Interval interval = interval_of(study, fit, precision, j);
-            const double neutral = study.model().parameters()[static_cast<std::size_t>(own.index)].neutral;
-            if (!(interval.low <= neutral && neutral <= interval.high)) return false;
-        }
-    return true;
-}
-
 }  // namespace puckloop::gap

@@ -24,8 +24,4 @@ struct Interval {
 };
 Interval interval_of(const Study& study, const Fit& fit, const Precision& precision, std::size_t j);
 
-/// Do the intervals of all parameters that an effect (a candidate of the fit's set) estimates hold what the
-/// simulator has?
-bool holds_neutral(const Study& study, const Fit& fit, const Precision& precision, std::size_t effect);
-
 }  // namespace puckloop::gap

@@ -3,7 +3,6 @@
 #include "gap/decide/decide.h"
 #include "gap/decide/left_beside.h"
 #include "gap/decide/roles.h"
-#include "gap/fit/intervals.h"
 
 #include <algorithm>
 #include <utility>
@@ -37,20 +36,6 @@ void ask_each(const Study& study, const Judging& how, Judged& result) {
         result);
 }
 
-/// A cause whose intervals all hold what the simulator has may be none.
-std::vector<std::size_t> may_be_none(const Study& study, const Chosen& chosen) {
-    const Precision precision = precision_of(study, chosen.final);
-    std::vector<std::size_t> effects;
-    for (const Trial& step : chosen.selection.steps)
-        if (holds_neutral(study, chosen.final, precision, step.effect)) effects.push_back(step.effect);
-    return effects;
-}
-
-void ask_intervals(const Study& study, const Judging& how, Judged& result) {
-    let_go(study, how,
-           {may_be_none(study, result.chosen), "has intervals that hold the simulator's own values"}, result);
-}
-
 void ask_roles(const Study& study, const Judging& how, Judged& result) {
     const Selection& selection = result.chosen.selection;
     let_go(study, how,
@@ -81,7 +66,6 @@ Judged judged(const Study& study, Chosen chosen, Diagnosis diagnosis, const Judg
     Grounds& g = result.grounds = grounds_of(study, result.chosen, result.diagnosis, how.seed);
     const auto goes_on = [&] { return g.causes > 0 && doubt_of(g).empty(); };
     if (goes_on()) ask_each(study, how, result);
-    if (goes_on()) ask_intervals(study, how, result);
     if (goes_on()) ask_roles(study, how, result);
     if (goes_on() && how.ask) g.not_confirmed = confirmation(study, how, result);
     result.doubt = doubt_of(g);

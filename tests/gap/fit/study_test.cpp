@@ -133,16 +133,6 @@ TEST_CASE("what shows in few runs is clear when a second one bears out the best"
     CHECK_FALSE(gain_of(one).in_several());
 }
 
-TEST_CASE("an interval that holds what the simulator has says that there may be nothing", "[gap][fit]") {
-    for (const double lag : {0.0, 0.1}) {
-        const Experiment experiment = drives(7, lag);
-        const Study study(experiment, 1);
-        const std::size_t effect = candidate(study, "ground_lag");
-        const Fit fit = study.fit_set({effect}, study.fit_none().fitted.state);
-        CHECK(holds_neutral(study, fit, precision_of(study, fit), effect) == (lag == 0.0));
-    }
-}
-
 TEST_CASE("selection takes nothing from data without effects", "[gap][fit]") {
     int taken = 0;
     for (std::uint64_t seed = 1; seed <= 12; ++seed) {
