@@ -33,6 +33,12 @@ class LinksOverlay {
             line("command_loss",
                  number(1 - std::pow(1 - std::clamp(lost, 0.0, 0.999),
                                      1 / static_cast<double>(protocols::kEpuckActuatorBytes))));
+        if (const auto burst = fitted_.find("timing.truncation_burst");
+            burst != fitted_.end() && burst->second < 0) {
+            header_ +=
+                fmt::format("# {:.3g} of truncation_burst was found; a run takes 0 to 1\n", burst->second);
+            fitted_.erase(burst);
+        }
         const bool cut = share("timing.truncation", "answer_cut");
         if (cut) share("timing.truncation_burst", "answer_cut_again");
         share("timing.edge_errors", "answer_edge_loss");
