@@ -38,7 +38,8 @@ bool is_of(const std::string& form, const std::string& observable) {
 std::vector<std::size_t> outweighed(const Study& study, const Selection& selection,
                                     const std::vector<FreeForm>& forms,
                                     const std::vector<Leftover>& leftovers, double share) {
-    std::vector<std::size_t> effects;
+    std::vector<std::size_t> weakest;
+    double least = INFINITY;
     for (const Trial& step : selection.steps) {
         const auto moved = moved_by(study, selection.chosen, step.effect);
         const auto is_moved = [&](const std::string& name) {
@@ -52,9 +53,12 @@ std::vector<std::size_t> outweighed(const Study& study, const Selection& selecti
         std::copy_if(leftovers.begin(), leftovers.end(), std::back_inserter(own_leftovers),
                      [&](const Leftover& one) { return is_moved(one.observable); });
         const double left = std::max(gained_by_shape(own_forms), most_by_structure(own_leftovers));
-        if (left > share * (left + std::max(step.held.sum, 0.0))) effects.push_back(step.effect);
+        const double won = std::max(step.held.sum, 0.0);
+        if (!(left > share * (left + won)) || won >= least) continue;
+        least = won;
+        weakest = {step.effect};
     }
-    return effects;
+    return weakest;
 }
 
 }  // namespace puckloop::gap
