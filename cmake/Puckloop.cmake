@@ -25,7 +25,7 @@ endif()
 # libraries and once, with Catch2, for the tests. A file still includes what it uses: the presets `debug` and `asan` build without.
 if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
   # libstdc++ switches these off around its strings by a pragma, which GCC 12 forgets in what is precompiled.
-  target_compile_options(puckloop_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds -Wno-stringop-overflow>)
+  target_compile_options(puckloop_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread>)
 endif()
 # What fmt's users define holds for all, or those who do not link it could not share them.
 find_package(fmt REQUIRED)

@@ -55,7 +55,7 @@ void check_proximity(Experiment& experiment) {
         else
             angles.insert(angles.end(), run.rows, std::nan(""));
     if (std::abs(correlation) < 0.3 && rank_correlation(angles, readings) < -0.85)
-        experiment.cautions.push_back(
+        experiment.cautions.emplace_back(
             "readings fall with angle_rad and not with distance_m: are the two columns swapped?");
     const double furthest = *std::max_element(distances.begin(), distances.end(), [](double a, double b) {
         return std::isnan(a) || (!std::isnan(b) && a < b);
