@@ -62,6 +62,8 @@ void SupplyReset::detector_on() {
 }
 
 void SupplyReset::reset(ResetCause cause) {
+    // Within tBOD the chip runs on, and its detector acts then: with a flag of its own.
+    if (cause != ResetCause::PowerOn && events_.due(trip_slot_) != kNoCycle) return;
     events_.cancel(trip_slot_);
     if (volts_ < (holds_ ? rising() : falling()) && !counts()) {
         if (!holds_) cause_ = volts_ < kPowerOnVolts ? ResetCause::PowerOn : cause;

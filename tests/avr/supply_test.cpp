@@ -136,6 +136,22 @@ TEST_CASE("a dip of less than tBOD, 2 us, is no brown-out", "[supply]") {
     }
 }
 
+TEST_CASE("another reset within tBOD leaves the brown-out that follows its flag", "[supply]") {
+    RandomStream random(Catch::rngSeed(), "resets within tBOD");
+    for (int i = 0; i < 20; ++i) {
+        Supplied s(with(0xE2, kLevel2V7));
+        s.pass(kMillisecond);
+        s.chip.set_supply(2.2);
+        s.pass(static_cast<Time>(random.below(1'700'000)));  // ps
+        s.chip.external_reset();
+        s.pass(100 * kMillisecond);
+        s.chip.set_supply(3.3);
+        s.until_start();
+        CHECK((s.flags() & kBorf) != 0);
+        CHECK(s.chip.report().resets.back().cause == ResetCause::BrownOut);
+    }
+}
+
 TEST_CASE("without BODLEVEL the supply resets below 1.3 V only; a failure within a brown-out is PORF's",
           "[supply]") {
     Supplied off(with(0xE2, kNoLevel));
