@@ -169,6 +169,15 @@ TEST_CASE("a full disk ends the run with what fits, and a report") {
     CHECK(::umount(disk.c_str()) == 0);
 }
 
+TEST_CASE("an export that cannot be written hides nothing of the run") {
+    const Workbench bench;
+    std::filesystem::create_directories(bench.out("o") / "trace.vcd");
+    const Ended ended =
+        bench.run("o", {kHello, "--duration", "0.3", "--in-process", "--trace-format", "vcd"});
+    check_one_line(ended, 1, {"trace.vcd: cannot write"});
+    CHECK_THAT(ended.out, Contains("ended: ") && Contains("results in "));
+}
+
 TEST_CASE(
     "a disk that is too small for anything ends the run, with a report or the word that there is none") {
     const Workbench bench;

@@ -19,6 +19,7 @@
 
 #include <fmt/format.h>
 
+#include <exception>
 #include <filesystem>
 #include <memory>
 
@@ -107,7 +108,12 @@ int run(Options& options) {
     const cosim::Outcome outcome = run_scenario(
         setup, request, [&](const cosim::Progress& progress) { status_line.show(progress); }, &interrupt);
     status_line.clear();
-    export_trace(setup.out, request.trace_formats);
+    std::exception_ptr failed;  // of an export: what came of the run is shown first
+    try {
+        export_trace(setup.out, request.trace_formats);
+    } catch (...) {
+        failed = std::current_exception();
+    }
     std::FILE* said = request.live == "-" ? stderr : stdout;  // the trace's own
     if (options.json)
         fmt::print(said, "{}\n", (setup.out / "report.json").string());
@@ -115,6 +121,7 @@ int run(Options& options) {
         fmt::print(said, "{}{}\n", summary(setup, outcome), snapshots_summary(request, outcome));
     const int status = status_of(outcome, *interrupt.flag());
     if (status != 0) fmt::print(stderr, "puckloop: {}\n", outcome.text);
+    if (failed) std::rethrow_exception(failed);
     return status;
 }
 
