@@ -51,6 +51,7 @@ void StopControl::begin_search(bool steps, std::uint64_t position) {
 void StopControl::search_inside(bool steps, std::uint64_t position) {
     mode_ = Mode::Search;
     step_ = steps;
+    first_ = true;
     position_ = position;
     stop_.reset();
     found_.reset();
@@ -88,10 +89,15 @@ bool StopControl::instruction(std::uint32_t pc, std::uint64_t cycle) {
         return cycle < position_;
     case Mode::Search:
         if (cycle >= position_) return false;
-        if (step_)
-            found_ = Found{cycle, {Stop::Why::Step}};
-        else if (breaks_.contains(pc))
+        if (step_) {
+            // A REPEAT is one step: neither its other iterations are, nor one that the search begins within.
+            const bool goes_on = chip_->repeating() && (first_ || pc == first_pc_);
+            if (!goes_on) found_ = Found{cycle, {Stop::Why::Step}};
+            first_ = false;
+            first_pc_ = pc;
+        } else if (breaks_.contains(pc)) {
             found_ = Found{cycle, {Stop::Why::Break}};
+        }
         return true;
     }
     return true;

@@ -95,9 +95,9 @@ class StopControl : private chip::Instrument {
 
     Mode mode_ = Mode::Idle;
     bool step_ = false;
-    std::uint32_t first_pc_ = 0;
-    bool first_ = false;  ///< no instruction was begun yet
-    bool begun_ = false;  ///< the first one was
+    std::uint32_t first_pc_ = 0;  ///< of a search: the instruction before
+    bool first_ = false;          ///< no instruction was begun yet
+    bool begun_ = false;          ///< the first one was
     std::uint64_t position_ = 0;
     std::uint64_t current_ = 0;  ///< where the present instruction starts
     std::optional<Stop> stop_;
