@@ -28,7 +28,7 @@ ReservedFile::ReservedFile(std::filesystem::path path, std::size_t bytes)
     if (::posix_fallocate(descriptor_, 0, static_cast<off_t>(bytes)) == 0) return;
     struct statvfs disk {};
     if (::fstatvfs(descriptor_, &disk) != 0) return;
-    const std::size_t share = std::min(bytes, disk.f_bavail * disk.f_bsize / kShareOfDisk);
+    const std::size_t share = std::min(bytes, disk.f_bavail * disk.f_frsize / kShareOfDisk);
     if (share > 0) ::posix_fallocate(descriptor_, 0, static_cast<off_t>(share));
 }
 
