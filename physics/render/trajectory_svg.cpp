@@ -5,7 +5,9 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 
 namespace puckloop::physics {
 
@@ -20,7 +22,8 @@ void write_trajectory_svg(const World& world, const std::filesystem::path& direc
     std::FILE* out = std::fopen(file.c_str(), "w");
     const bool written = out != nullptr && std::fputs(document.c_str(), out) >= 0;
     const bool closed = out != nullptr && std::fclose(out) == 0;
-    if (!written || !closed) throw RunError(fmt::format("cannot write {}", file.string()));
+    if (!written || !closed)
+        throw RunError(fmt::format("{}: cannot write: {}", file.string(), std::strerror(errno)));
 }
 
 }  // namespace puckloop::physics

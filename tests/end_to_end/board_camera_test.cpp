@@ -59,7 +59,7 @@ std::vector<unsigned char> received(const Workbench& bench, const std::string& r
 /// Share of full green, 0 to 1, of a pixel of a picture whose first byte is `at`.
 double green(const std::vector<unsigned char>& bytes, std::size_t at, int x, int y) {
     const std::size_t pixel = at + 3 + 2 * static_cast<std::size_t>(40 * y + x);
-    return (bytes[pixel] << 8 >> 5 & 0x38 | bytes[pixel + 1] >> 5) / 63.0;
+    return ((bytes[pixel] << 3 & 0x38) | bytes[pixel + 1] >> 5) / 63.0;
 }
 
 }  // namespace

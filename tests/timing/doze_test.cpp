@@ -1,4 +1,4 @@
-// Doze of the 33FJ, timed by programs: docs/timing_rules.md, rules D1 to D5. Timer1 and Timer2 count the
+// Doze of the 33FJ, timed by programs: docs/timing_rules.md, rules D1 to D6. Timer1 and Timer2 count the
 // peripherals' clock, the program runs on the CPU's.
 
 #include "tests/timing/timed_chip.h"

@@ -445,7 +445,7 @@ struct Chip::Parts {
     void check_times(Archive& archive) const {
         // An instruction is never cut in two, so the core may be somewhat ahead.
         constexpr Cycle kMostAhead = 1000;
-        constexpr Time kAhead = 100 * cosim::kMillisecond;
+        constexpr Time kAhead = 100 * cosim::kMillisecond;  // a CPU that dozes: cycles 128 times as long
         const Time reached = clock.time_of(core.cycle());
         archive.check(reached >= now && reached - now <= kAhead, "core and clock at different times");
         archive.check(later_cycle(events.next(), kMostAhead) >= core.cycle(), "an event long overdue");
