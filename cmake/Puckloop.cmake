@@ -22,9 +22,9 @@ if(PUCKLOOP_TSAN)
 endif()
 
 # Most of a file's compile time was reading the same headers of the standard library: they are precompiled once for the
-# libraries and once, with Catch2, for the tests. A file still includes what it uses: the presets `debug` and `asan` build without.
+# libraries and once, with Catch2, for the tests. A file still includes what it uses: the presets `plain`, `debug` and `asan` build without.
 if(NOT CMAKE_DISABLE_PRECOMPILE_HEADERS)
-  # libstdc++ switches these off around its strings by a pragma, which GCC 12 forgets in what is precompiled.
+  # libstdc++ switches these off around its strings by a pragma, which GCC 12 forgets in what is precompiled; `plain` has them.
   target_compile_options(puckloop_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread>)
 endif()
 # What fmt's users define holds for all, or those who do not link it could not share them.
