@@ -40,15 +40,16 @@ Cycle SupplyReset::start_up() const {
 
 void SupplyReset::set(double volts, Cycle at) {
     volts_ = volts;
-    if (holds_) {
-        if (volts < kPowerOnVolts) cause_ = ResetCause::PowerOn;
+    if (volts < kPowerOnVolts && !(holds_ && cause_ == ResetCause::PowerOn)) {
+        events_.cancel(trip_slot_);
+        events_.cancel(release_slot_);
+        holds_ = false;  // a reset of its own, even in one by the brown-out detector
+        core_.reset(ResetCause::PowerOn);
+    } else if (holds_) {
         if (volts < falling())
             events_.cancel(release_slot_);  // a dip before the end of the start-up time: it begins anew
         else if (volts >= rising() && !counts())
             events_.schedule(release_slot_, at + start_up());
-    } else if (volts < kPowerOnVolts) {
-        events_.cancel(trip_slot_);
-        core_.reset(ResetCause::PowerOn);
     } else if (volts >= falling()) {
         events_.cancel(trip_slot_);
     } else if (events_.due(trip_slot_) == kNoCycle) {

@@ -72,9 +72,8 @@ void AvrHost::write_word(std::uint16_t address, std::uint16_t value) {
 
 void AvrHost::run_to(Cycle end) {
     board_.run_until(board_.chip().clock().time_of(end));
-    if (!board_.powered()) {
-        throw InputEnds{};
-    }
+    // Switched off by the firmware, or without a battery.
+    if (!board_.powered() || board_.supply() == 0.0) throw InputEnds{};
     // An interrupt that was entered in the last cycles is at its routine, too, though not stopped there.
     std::uint32_t pc = board_.chip().pc() / 2;
     while (pc != 0 && pc < 2u * kVectors) {  // the jump to it is still to come

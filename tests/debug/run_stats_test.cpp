@@ -124,7 +124,7 @@ TEST_CASE("a stack that meets variables is a warning of the run, and fails one t
     CHECK(bench.run("silent", {scenario, "--strict"}).status == 0);
 }
 
-TEST_CASE("--stats names what it cannot do") {
+TEST_CASE("run: --stats names what it cannot do") {
     const Workbench bench;
     const std::string scenario = bench.hello(), snapshot = bench.folder() / "one.snap";
     REQUIRE(

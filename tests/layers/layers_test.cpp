@@ -67,6 +67,7 @@ const std::vector<std::string> kFolders = {
 const std::set<std::string> kUpward = {
     // The machine holds the state of what watches, shortens and translates its loops; Core makes and saves
     // it.
+    "emu/dspic/core/machine.h emu/dspic/fast/isr_path.h",
     "emu/dspic/core/machine.h emu/dspic/fast/isr_summary.h",
     "emu/dspic/core/machine.h emu/dspic/translate/translation.h",
     "emu/dspic/core/machine.h emu/dspic/waits/wait_watch.h",
@@ -74,6 +75,8 @@ const std::set<std::string> kUpward = {
     "emu/dspic/core/core.cpp emu/dspic/fast/loop_undo.h",
     "emu/dspic/core/core.cpp emu/dspic/fast/idle_loops.h",
     "emu/dspic/core/core_archive.cpp emu/dspic/fast/loop_undo.h",
+    // The run loop goes on inside a loop in which the machine is.
+    "emu/dspic/core/core_run.cpp emu/dspic/fast/idle_loops.h",
     // Judging a wait asks which modules could end it.
     "emu/dspic/waits/judge.h emu/dspic/chip/layout.h",
 };

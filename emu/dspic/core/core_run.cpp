@@ -6,7 +6,7 @@
 #include "emu/dspic/core/interpret.h"
 #include "emu/dspic/core/machine.h"
 #include "emu/dspic/devices/dspic30f6014a_sfr.h"
-#include "emu/dspic/fast/loop_advance.h"
+#include "emu/dspic/fast/idle_loops.h"
 
 #include <algorithm>
 #include <cmath>

@@ -234,6 +234,10 @@ void recover(Machine& m);
 void stretch(Machine& m, Cycle began);
 /// One CPU cycle of those that the instruction under way still takes.
 void pay_cycle(Machine& m);
+// loop_advance.cpp
+/// Inside a waiting loop: goes on towards Machine::limit, exactly as executing would. False, and nothing
+/// done, if the machine is not where Machine::skip expects it.
+bool advance_in_loop(Machine& m);
 // idle_loops.cpp
 /// At a taken backward branch: leaps over iterations of a pure loop if it can.
 void try_skip(Machine& m, const Op* branch, const Op* head);

@@ -17,8 +17,5 @@ namespace puckloop::dspic {
 bool enter_loop(Machine& m, IdleLoops::Branch& known);
 /// The same for a loop in which the machine was when it last advanced, and whose branch was now executed.
 bool back_in_loop(Machine& m, IdleLoops::Branch& known);
-/// Goes on towards Machine::limit, exactly as executing would. False, and nothing done, if the machine is not
-/// where Machine::skip expects it.
-bool advance_in_loop(Machine& m);
 
 }  // namespace puckloop::dspic
