@@ -10,7 +10,7 @@
 namespace puckloop::dspic::test {
 
 struct Rig {
-    const DeviceInfo& device = dspic30f6014a();
+    const DeviceInfo& device;
     SfrSpace sfr;
     EventQueue events;
     InterruptController interrupts;
@@ -19,8 +19,8 @@ struct Rig {
     std::vector<std::string> log;  ///< "reset <cause>", "trap <n>", "interrupt <vector>"
 
     /// Assembles from 0x200 on (labels may be used by .org elsewhere); the reset vector leads there.
-    explicit Rig(const std::string& source)
-        : interrupts(device, describe()), core(device, sfr, events, interrupts) {
+    explicit Rig(const std::string& source, const DeviceInfo& part = dspic30f6014a())
+        : device(part), interrupts(device, describe()), core(device, sfr, events, interrupts) {
         program = assemble("        goto 0x200\n        .org 0x200\n" + source);
         for (const auto& [address, word] : program.words)
             core.poke_program(address, word);

@@ -140,6 +140,7 @@ void Core::state(StateReader& archive) {
     dspic::mark(m, m.st.loop.doend, kLoopEnd);
     dspic::mark(m, m.st.loop_shadow.doend, kLoopEnd);
     update_pointer_rules(m);
+    note_rate(m);
     list_waits(archive, m);  // whatever changes code forgets them
     archive(m.pass_pc);
     if (m.pass_pc && std::find(m.stops.begin(), m.stops.end(), *m.pass_pc) == m.stops.end())
@@ -153,6 +154,7 @@ void Core::state(CheckpointWriter& archive) const {
 void Core::state(CheckpointReader& archive) {
     Machine& m = *machine_;
     list_raw(archive, m);
+    note_rate(m);
     m.limit = 0;
     m.stopped = m.end_requested = false;
 }

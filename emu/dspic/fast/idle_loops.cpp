@@ -38,6 +38,7 @@ IdleLoops::Branch& branch_at(Machine& m, std::size_t word) {
 
 /// The machine stands where the plan expects it, at the branch.
 bool as_predicted(Machine& m, const IdleLoops::Plan& plan, Cycle arrival) {
+    if (plan.polled_count != 0 && plan.layout != m.sfr.layout_changes()) return false;
     for (std::size_t i = 0; i < plan.polled_count; ++i)
         if (m.sfr.raw(plan.polled[i].address) != plan.polled[i].value) return false;
     if (!plan.proven && plan.proof_due != arrival) return false;
@@ -95,6 +96,7 @@ void make_plan(Machine& m, IdleLoops::Branch& known, const Op* branch, const Op*
     IdleLoops::Plan& plan = known.plan;
     m.loop_undo->note_walk(known);
     known.table.trace = nullptr;
+    plan.layout = m.sfr.layout_changes();
     SymbolicLoop walk(m, plan, known.trace);
     switch (walk.analyse(branch, head)) {
     case SymbolicLoop::Verdict::Pure:

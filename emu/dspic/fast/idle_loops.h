@@ -115,6 +115,7 @@ struct IdleLoops {
         static constexpr std::size_t kMostPolled = 8;
         std::array<Polled, kMostPolled> polled{};
         std::size_t polled_count = 0;
+        std::uint32_t layout = 0;  ///< SfrSpace::layout_changes(): a stored word is what a read returns
 
         bool alive = false;
         bool proven = false;          ///< a real iteration ended as the walk predicted

@@ -12,24 +12,30 @@ using Place = LoopTable::Place;
 
 constexpr std::uint32_t kPointers = 0xFFFF0000;  ///< of Machine::watch: not written since reset
 
-/// What note_arrival() does at the loop's arrivals up to the first one at or after the limit.
+/// What note_arrival() does at the loop's arrivals, and at those of branches within it, up to the first one
+/// at or after the limit. The machine is at this boundary.
 enum class Arrivals : std::uint8_t { Noted, Inside, Looked };
-Arrivals arrivals(const Machine& m, const LoopTable& table) {
+Arrivals arrivals(const Machine& m, const LoopTable& table, std::size_t boundary) {
     const WaitWatch::Stay& stay = m.waits.stays[static_cast<std::size_t>(cpu_level(m))];
     const auto before = [&](Cycle cycle) { return m.limit < cycle && table.cycles < cycle - m.limit; };
-    if (stay.branch == table.branch()) return before(stay.next_look) ? Arrivals::Noted : Arrivals::Looked;
-    const bool inside =
-        stay.branch != nullptr && is_inside(stay, table.branch(), table.trace->boundaries.back().w[15]);
-    return inside && before(stay.last + m.waits.stale_after) ? Arrivals::Inside : Arrivals::Looked;
+    const bool lasts = before(stay.last + m.waits.stale_after);
+    if (stay.branch == table.branch()) {
+        const bool alone = table.places[table.count() - 1].inner == 0;
+        return before(stay.next_look) && (alone || lasts) ? Arrivals::Noted : Arrivals::Looked;
+    }
+    // The loop need not touch W15, and may be met at another depth than when it was walked.
+    const auto& trace = table.trace->boundaries;
+    const auto stack = static_cast<std::uint16_t>(m.st.w[15] + trace.back().w[15] - trace[boundary].w[15]);
+    const bool inside = stay.branch != nullptr && is_inside(stay, table.branch(), stack);
+    return inside && lasts ? Arrivals::Inside : Arrivals::Looked;
 }
 
-/// As note_arrival(); the last arrival was at cycle `last`.
-void note_arrivals(Machine& m, Arrivals which, Cycle last) {
+/// At a level where the program goes on, whatever waited above it is over.
+void note_level(Machine& m) {
     const int level = cpu_level(m);
     for (; m.waits.level > level; --m.waits.level)
         m.waits.stays[static_cast<std::size_t>(m.waits.level)].branch = nullptr;
     m.waits.level = level;
-    if (which == Arrivals::Noted) m.waits.stays[static_cast<std::size_t>(level)].last = last;
 }
 
 /// Every pointer that the loop needs or sets has been set.
@@ -41,6 +47,7 @@ bool pointers_set(const Machine& m, const LoopTable& table) {
 bool as_traced(const Machine& m, const LoopTable& table, std::size_t boundary, std::uint64_t iteration) {
     const Place* const at = &table.places[boundary];
     if (((m.st.sr ^ at->flags) & at->known) != 0) return false;
+    if (!table.polled.empty() && table.layout != m.sfr.layout_changes()) return false;
     for (const LoopTable::Polled& polled : table.polled)
         if (*polled.word != polled.value) return false;
     const LoopTable::Word* const end = table.checks.data() + at[1].checks;
@@ -52,7 +59,7 @@ bool as_traced(const Machine& m, const LoopTable& table, std::size_t boundary, s
 /// At the loop's head, in the state of this iteration: the run loop goes on by advance_in_loop(), if it may.
 bool stand_at_head(Machine& m, const LoopTable& table, std::uint64_t iteration) {
     if (m.limit == 0 || iteration >= table.trace->iterations || steady_event_next(m) ||
-        arrivals(m, table) == Arrivals::Looked || !pointers_set(m, table))
+        arrivals(m, table, 0) == Arrivals::Looked || !pointers_set(m, table))
         return false;
     m.skip->position = {table.places.front().op, &table, 0, iteration};
     m.limit = 0;
@@ -125,7 +132,8 @@ bool advance_in_loop(Machine& m) {
         iterations = most;
         to = 0;
     }
-    const Arrivals which = iterations > 0 ? arrivals(m, table) : Arrivals::Inside;
+    const bool arrives = iterations > 0 || table.places[to].inner != from.inner;
+    const Arrivals which = arrives ? arrivals(m, table, position.boundary) : Arrivals::Inside;
     if (which == Arrivals::Looked) return false;
     const std::uint64_t count = iterations * table.count() + to - position.boundary;
     const Cycle head = base + iterations * table.cycles;
@@ -133,7 +141,9 @@ bool advance_in_loop(Machine& m) {
     position.boundary = to;
     position.iteration += iterations;
     leave_state(m, table, position, count);
-    if (iterations > 0) note_arrivals(m, which, head - table.branch()->cycles);
+    if (arrives) note_level(m);
+    if (iterations > 0 && which == Arrivals::Noted)
+        m.waits.stays[static_cast<std::size_t>(m.waits.level)].last = head - table.branch()->cycles;
     ++m.skip->leaps;
     m.skip->skipped_cycles += now - m.st.cycle;
     m.st.cycle = now;

@@ -20,6 +20,7 @@ class TableMaker {
         table_ = {};
         table_.trace = &trace;
         table_.cycles = plan.cycles;
+        table_.layout = plan.layout;
         for (std::size_t i = 0; i < plan.polled_count; ++i)
             table_.polled.push_back({&m.sfr.raw(plan.polled[i].address), plan.polled[i].value});
         for (std::size_t i = 0; i < plan.count; ++i) {
@@ -44,6 +45,7 @@ class TableMaker {
     void list_instructions() {
         table_.keep = 0xFFFFFFFF;
         const Op* before = trace_.boundaries.back().op;
+        std::uint16_t inner = 0;
         for (std::size_t i = 0; i < count_; ++i) {
             const Boundary& at = trace_.boundaries[i];
             table_.first_at.resize(at.offset + 1, static_cast<std::uint16_t>(i));
@@ -54,8 +56,10 @@ class TableMaker {
             place.returns = shortened_by_exception(*at.op);
             place.known = static_cast<std::uint16_t>(at.known & ~sr::DC);
             place.flags = at.flags;
+            place.inner = inner;
             table_.places.push_back(place);
             before = at.op;
+            if (at.op->may_skip && i + 1 != count_ && trace_.boundaries[i + 1].op != at.op + 1) ++inner;
         }
         table_.first_at.resize(table_.cycles, static_cast<std::uint16_t>(count_));
     }

@@ -36,6 +36,7 @@ struct LoopTable {
         std::uint16_t flags = 0;
         std::uint16_t dc_age = 0;   ///< instructions since DC was set; 0: the loop never does
         std::uint16_t dc_from = 0;  ///< the boundary before that instruction
+        std::uint16_t inner = 0;    ///< other branches that came round since the head (waits/)
         std::uint32_t checks = 0;   ///< where those of this boundary begin; they end where the next one's do
         std::uint32_t changes = 0;  ///< the same
     };
@@ -53,6 +54,7 @@ struct LoopTable {
     std::vector<Word> checks;   ///< that the loop reads before it writes them again
     std::vector<Word> changes;  ///< that the loop writes, the latest first
     std::vector<Polled> polled;
+    std::uint32_t layout = 0;  ///< as IdleLoops::Plan's
 
     std::size_t count() const { return places.size() - 1; }
     const Op* branch() const { return places[count() - 1].op; }

@@ -22,6 +22,9 @@ constexpr std::uint16_t even(std::uint16_t address) {
 constexpr bool is_saved_register(std::uint16_t address) {
     return address == sfr::RCOUNT || address == sfr::PSVPAG;
 }
+constexpr std::uint16_t bits_of_saved(std::uint16_t address) {
+    return address == sfr::RCOUNT ? 0x3FFF : 0xFF;
+}
 
 }  // namespace
 
@@ -254,7 +257,9 @@ void PathDomain::store_register(const Address& at, bool byte, const Value& value
     if (byte || address % 2 != 0 || address < kWEnd) throw Stop{};
     if (is_saved_register(address)) {
         if (value.kind != Kind::Constant && value != found(address)) throw Stop{};
-        known_place(false, address).slot = {value};
+        const bool constant = value.kind == Kind::Constant;
+        known_place(false, address).slot = {constant ? PathDomain::value(value.now & bits_of_saved(address))
+                                                     : value};
         return;
     }
     // Of a module: may be written what it holds.
@@ -345,10 +350,17 @@ const Op* PathDomain::go(std::uint32_t pc) const {
     return m_.code + (pc >> 1);
 }
 
+/// Op::may_skip may have been taken back; going back to a mark restores it, and the path stays.
+bool PathDomain::may_close_loop(const Op* op) const {
+    constexpr std::uint32_t kFarthest = 128;  // as decoding has it
+    const std::uint32_t pc = pc_of(op);
+    return op->target <= pc && pc - op->target <= kFarthest;
+}
+
 const Op* PathDomain::branch(const Op* op, bool conditional) {
     if (conditional) ++path_.cycles;
     const Op* const next = go(op->target);
-    if (op->may_skip) arrive(op, next, instruction_ + (conditional ? 1 : 0));
+    if (may_close_loop(op)) arrive(op, next, instruction_ + (conditional ? 1 : 0));
     return next;
 }
 

@@ -145,6 +145,7 @@ class PathDomain {
     Value joined(Slot& slot);
 
     void reach(std::uint32_t depth);
+    bool may_close_loop(const Op* op) const;
     /// At a backward branch that is taken; `at`: its start, as note_arrival() has it, from the routine's.
     void arrive(const Op* branch, const Op* head, Cycle at);
     Address step_pointer(int reg, int pre, int post);
