@@ -169,3 +169,16 @@ i:      dec     w0, w0
     for (Cycle at = 1000; at < 200'000; at += 37)
         bench.compare(at);
 }
+
+TEST_CASE("a routine reads a register whose module is taken away") {
+    PathBench bench(kWaits +
+                    counting("isr", "0x84, #3", "        mov     0x0d8, w0\n        mov     w0, 0x0C16\n"));
+    bench.both([](Rig& rig) {
+        rig.sfr.claim(kPolled);
+        rig.sfr.raw(kPolled) = 5;
+    });
+    bench.raises(kT1, "isr", 501, 703);
+    bench.every(30'000, 90'011, [](Rig& rig, Cycle due) { rig.sfr.set_off(kPolled, due / 90'011 % 2 != 0); });
+    for (Cycle at = 1000; at < 900'000; at += 9973)
+        bench.compare(at);
+}
