@@ -39,7 +39,7 @@ loop:   rjmp loop
     CHECK(rig.ram(0x102) == 0x07);
 }
 
-TEST_CASE("edges, levels and pin changes interrupt; a flag waits for its mask and is cleared by a one") {
+TEST_CASE("edges, levels and pin changes interrupt, a flag waits for its mask and is cleared by a one") {
     Rig rig(R"(
         ldi r16, 0x02       ; INT0 falling
         sts EICRA, r16
@@ -197,7 +197,7 @@ loop:   rjmp loop
     CHECK(edges[1] - edges[0] == Approx(3.4e-3 * 16e6).margin(20));
 }
 
-TEST_CASE("the SPI master exchanges a byte in eight of its clocks; SPIF clears by reading") {
+TEST_CASE("the SPI master exchanges a byte in eight of its clocks, SPIF clears by reading") {
     Rig rig(R"(
         ldi r16, 0x51       ; on, master, /16
         out SPCR, r16

@@ -102,7 +102,7 @@ wait:   sbiw r24, 1
         CHECK(near(interrupts[i], interrupts[0] + i * period));
 }
 
-TEST_CASE("another time-out of the watchdog counts from the last WDR; what is past it is over at once") {
+TEST_CASE("another time-out of the watchdog counts from the last WDR, what is past it is over at once") {
     for (const unsigned turns : {1u, 3u}) {  // of 16.4 ms
         Rig rig(fmt::format(R"(
         jmp  start
@@ -220,7 +220,7 @@ TEST_CASE("a chip that is switched on below its brown-out level waits for its su
     CHECK(rig.chip.report().resets.size() == 1);
 }
 
-TEST_CASE("idle and ADC noise reduction mode begin a conversion, and its end wakes; other modes do not") {
+TEST_CASE("idle and ADC noise reduction mode begin a conversion, and its end wakes, other modes do not") {
     RandomStream random(20261123, "idle");
     for (const unsigned mode : {0u, 1u, 2u}) {
         const auto channel = static_cast<unsigned>(random.below(8));

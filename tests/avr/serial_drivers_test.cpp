@@ -227,7 +227,7 @@ TEST_CASE("in multi-processor mode data frames are seen only by who was addresse
     CHECK(bench.result(4) == 0);
 }
 
-TEST_CASE("a two-wire START waits for the bus; lost arbitration may make a slave; a stray STOP is an error") {
+TEST_CASE("a two-wire START waits for the bus, lost arbitration may make a slave, a stray STOP is an error") {
     const std::string source = R"(
         ldi r26, 0
         ldi r27, 1
@@ -349,7 +349,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("the two-wire master of util/twi.h: write, repeated START, read; every status code") {
+TEST_CASE("the two-wire master of util/twi.h: write, repeated START, read, every status code") {
     RandomStream random(20261123, "twi");
     DriverBench bench("twi_master");
     const auto address = static_cast<std::uint8_t>(8 + random.below(100));

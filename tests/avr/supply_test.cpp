@@ -152,7 +152,7 @@ TEST_CASE("another reset within tBOD leaves the brown-out that follows its flag"
     }
 }
 
-TEST_CASE("without BODLEVEL the supply resets below 1.3 V only; a failure within a brown-out is PORF's",
+TEST_CASE("without BODLEVEL the supply resets below 1.3 V only, a failure within a brown-out is PORF's",
           "[supply]") {
     Supplied off(with(0xE2, kNoLevel));
     off.pass(kMillisecond);
@@ -180,7 +180,7 @@ TEST_CASE("without BODLEVEL the supply resets below 1.3 V only; a failure within
     CHECK(s.flags() == kExtrf);
 }
 
-TEST_CASE("a dip within the start-up time starts it anew; neither button nor watchdog end it", "[supply]") {
+TEST_CASE("a dip within the start-up time starts it anew, neither button nor watchdog end it", "[supply]") {
     Supplied s(with(0xE2, kLevel2V7, 8e6, 0xC9));  // WDTON: 16 ms that nobody clears
     s.pass(kMillisecond);
     s.chip.set_supply(2.0);

@@ -92,7 +92,7 @@ end:    rjmp end
     CHECK(rig.chip.cycle() < 8'000'000);  // (50 + 78 / 8) / 128 of a second's
 }
 
-TEST_CASE("AS2 without a crystal stops timer 2, and says so; with EXCLK it counts edges at TOSC1") {
+TEST_CASE("AS2 without a crystal stops timer 2, and says so, with EXCLK it counts edges at TOSC1") {
     test::Rig rig("ldi r16, 0x20\n sts ASSR, r16\n ldi r16, 1\n sts TCCR2B, r16\nend: rjmp end\n");
     rig.chip.run_until(10 * cosim::kMillisecond);
     CHECK(rig.chip.peek("ASSR") == 0x21);
@@ -114,7 +114,7 @@ TEST_CASE("AS2 without a crystal stops timer 2, and says so; with EXCLK it count
     CHECK(bench.result(0) == 100 + edges / 8);
 }
 
-TEST_CASE("the ADC: triggers without interrupts, a channel that stays, sleep that converts; the multiplexed "
+TEST_CASE("the ADC: triggers without interrupts, a channel that stays, sleep that converts, the multiplexed "
           "comparator") {
     RandomStream random(20261123, "adc");
     DriverBench bench("adc_triggered");
@@ -203,7 +203,7 @@ TEST_CASE("EEPROM, watchdog, clock prescaler and fuses as avr-libc uses them") {
     CHECK(cosim::to_seconds(clock.time_of(report.resets[1].cycle)) - began == Approx(0.128).margin(1e-4));
 }
 
-TEST_CASE("JTAG holds its pins until JTD is written twice; every port's pin changes wake from power-down") {
+TEST_CASE("JTAG holds its pins until JTD is written twice, every port's pin changes wake from power-down") {
     RandomStream random(20261123, "wakers");
     DriverBench bench("wakers", {.fuses = kAsShippedButCrystal});
     std::array<std::uint8_t, 4> masks{};

@@ -25,7 +25,7 @@ void all_are(const std::vector<Cycle>& values, Cycle value) {
 
 }  // namespace
 
-TEST_CASE("TCNT counts the clock; an IN and an LDS see it one clock apart") {
+TEST_CASE("TCNT counts the clock, an IN and an LDS see it one clock apart") {
     Rig rig(R"(
         ldi r16, 1
         out TCCR0B, r16     ; clock 1
@@ -110,7 +110,7 @@ loop:   rjmp loop
     CHECK(rig.chip.peek("TIFR0") == 0x06);  // OCF0A, and OCF0B at 0; never TOV0
 }
 
-TEST_CASE("fast PWM: OCR + 1 counts high; a new compare value waits for BOTTOM") {
+TEST_CASE("fast PWM: OCR + 1 counts high, a new compare value waits for BOTTOM") {
     Rig rig(R"(
         sbi DDRD, 7
         ldi r16, 63
@@ -219,7 +219,7 @@ loop:   rjmp loop
 }
 
 TEST_CASE(
-    "input capture stores the count at the edge that ICES1 selects; the noise canceler takes four clocks") {
+    "input capture stores the count at the edge that ICES1 selects, the noise canceler takes four clocks") {
     for (const bool canceler : {false, true}) {
         const std::string select = canceler ? "0xC1" : "0x41";  // rising edge, clock / 1
         // The timer began to count behind the STS, whose second clock is clock 2.

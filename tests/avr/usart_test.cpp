@@ -37,7 +37,7 @@ void send(Rig& rig, cosim::UartFrame f, int bits = 9) {
 
 }  // namespace
 
-TEST_CASE("a byte takes ten bit times, back to back from the buffer; UDRE and TXC follow") {
+TEST_CASE("a byte takes ten bit times, back to back from the buffer, UDRE and TXC follow") {
     Rig rig(R"(
         ldi r16, 16
         sts UBRR0L, r16
@@ -73,7 +73,7 @@ loop:   rjmp loop
     CHECK(done[0] <= end + 12);
 }
 
-TEST_CASE("U2X doubles the rate; nine bits, parity and two stop bits make the frame") {
+TEST_CASE("U2X doubles the rate, nine bits, parity and two stop bits make the frame") {
     Rig rig(R"(
         ldi r16, 207
         sts UBRR1L, r16
@@ -131,7 +131,7 @@ TEST_CASE("a low stop bit is FE, a wrong parity bit UPE") {
     CHECK((parity.chip.peek("UCSR1A") & 0x9C) == 0x84);
 }
 
-TEST_CASE("two characters wait in the FIFO, a third in the shift register; a fourth makes DOR") {
+TEST_CASE("two characters wait in the FIFO, a third in the shift register, a fourth makes DOR") {
     Rig rig(receiver("0x06", R"(
         ldi r26, 0
         ldi r27, 1

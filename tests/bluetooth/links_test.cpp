@@ -58,7 +58,7 @@ TEST_CASE("an inquiry finds who is near and shows itself, and lasts as long as a
     CHECK(said[1] == LmxPacket{kCfm, 0x00, {0}});
 }
 
-TEST_CASE("names are asked over the air; nobody at the address is a timeout", "[bluetooth]") {
+TEST_CASE("names are asked over the air, nobody at the address is a timeout", "[bluetooth]") {
     Air air(robots(2));
     air.boot();
     air.request(0, 0x02, with({}, address_of(1)));
@@ -140,7 +140,7 @@ TEST_CASE("two robots link, talk both ways, and part", "[bluetooth]") {
     CHECK(air.ask(1, 0x1C) == with({0, 1}, address_of(0)));
 }
 
-TEST_CASE("pairing needs the other's PIN once; keys last", "[bluetooth]") {
+TEST_CASE("pairing needs the other's PIN once, keys last", "[bluetooth]") {
     Air air(robots(2));
     air.boot();
     const auto attempt = [&](std::size_t from, std::size_t to) {
@@ -229,7 +229,7 @@ TEST_CASE("a robot that leaves is heard again in time, or lost", "[bluetooth]") 
     CHECK(air.report()["lost"] == 1);
 }
 
-TEST_CASE("a reset takes a module's links with it; the other notices after the timeout", "[bluetooth]") {
+TEST_CASE("a reset takes a module's links with it, the other notices after the timeout", "[bluetooth]") {
     Air air(robots(2));
     air.boot();
     air.link(0, 1);

@@ -133,7 +133,7 @@ TEST_CASE("what a CAN bus says does not depend on how it is advanced, and keeps 
     }
 }
 
-TEST_CASE("a frame crosses the bus; its sender and the others are told at the same instant") {
+TEST_CASE("a frame crosses the bus, its sender and the others are told at the same instant") {
     RandomStream random(1, "bus");
     CanBusNode bus(three());
     const protocols::CanFrame frame{.id = 0x321, .length = 3, .data = {1, 2, 3}};
@@ -153,7 +153,7 @@ TEST_CASE("a frame crosses the bus; its sender and the others are told at the sa
     }
 }
 
-TEST_CASE("a frame that comes too late is sent behind; one withdrawn is not; the watcher is woken") {
+TEST_CASE("a frame that comes too late is sent behind, one withdrawn is not, the watcher is woken") {
     RandomStream random(2, "bus");
     CanBusNode bus(three());
     const protocols::CanFrame low{.id = 1}, high{.id = 2}, never{.id = 3};

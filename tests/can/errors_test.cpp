@@ -203,7 +203,7 @@ TEST_CASE("a wire held dominant: nobody sends, counters climb, all goes on when 
     CHECK(bench.wire.faults().carried()[0].evidence.fired() == 1);
 }
 
-TEST_CASE("a controller cut off hears only itself; the others go on") {
+TEST_CASE("a controller cut off hears only itself, the others go on") {
     FaultSpec spec = holding("disconnect", 0, 1000 * kBit);
     spec.from = "s2";
     WireBench bench(3, {spec});
@@ -222,7 +222,7 @@ TEST_CASE("a controller cut off hears only itself; the others go on") {
     CHECK(bench.wire.faults().carried()[0].evidence.fired() == 1);
 }
 
-TEST_CASE("what is withdrawn before it has begun is not sent; what is under way is not repeated") {
+TEST_CASE("what is withdrawn before it has begun is not sent, what is under way is not repeated") {
     WireBench bench(2, {flip(5)});
     bench.join_all();
     bench.wishes[0].push_back({100 * kBit, kFrame});

@@ -142,7 +142,7 @@ TEST_CASE("random-task: what each TAM goes through is what the settings say") {
     }
 }
 
-TEST_CASE("the same seed gives the same events; another one does not") {
+TEST_CASE("the same seed gives the same events, another one does not") {
     const auto run = [](const char* seed) {
         SimulatedMesh::Settings settings;
         settings.loss = 0.1;
@@ -304,7 +304,7 @@ TEST_CASE("a mesh that answers late costs time-outs, and nothing else") {
     }
 }
 
-TEST_CASE("a module in API mode 1 is set to 2; odd modules are refused with the step") {
+TEST_CASE("a module in API mode 1 is set to 2, odd modules are refused with the step") {
     SimulatedMesh::Settings settings;
     settings.api_mode = 1;
     CHECK(perform("random-task", {}, settings, 1, [](SimulatedMesh&) {}).commands.at(1) == "AP");

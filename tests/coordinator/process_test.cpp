@@ -238,7 +238,7 @@ TEST_CASE("peers that are dead, flood, or send garbage end the program with port
     }
 }
 
-TEST_CASE("a port that vanishes ends the program at once; a second signal does so while it waits") {
+TEST_CASE("a port that vanishes ends the program at once, a second signal does so while it waits") {
     Pty pty;
     SimulatedMesh mesh({.window = 1});
     SimulatedTam& tam = mesh.add("TAM01", kFirst);

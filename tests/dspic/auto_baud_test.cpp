@@ -130,7 +130,7 @@ ready:  bra ready
     CHECK(bench.pins.frames.empty());
 }
 
-TEST_CASE("33FJ: ABAUD sets UxBRG from 0x55 and clears itself; WAKE swallows a character and clears itself") {
+TEST_CASE("33FJ: ABAUD sets UxBRG from 0x55 and clears itself, WAKE swallows a character and clears itself") {
     Bench33 bench(R"(
         .org 0x200
 main:   mov #0x8020, w0

@@ -187,7 +187,7 @@ TEST_CASE("the buffer of the highest priority goes first, the highest number amo
     CHECK(std::abs(between - 3 * bit_time(bench)) < bit_time(bench) / 100);
 }
 
-TEST_CASE("alone a sender is error passive after 16 tries and goes on; on a bus until somebody comes") {
+TEST_CASE("alone a sender is error passive after 16 tries and goes on, on a bus until somebody comes") {
     const std::string program = set(0x0800, "C1CTRL") + set(4, "C1TX0SID") + R"(
 wait:   mov C1CTRL, w1
         and #0xe0, w1
@@ -237,7 +237,7 @@ wait:   mov C1CTRL, w1
     CHECK((bench.reg("C1TX0CON") & 0x18) == 0);
 }
 
-TEST_CASE("TXREQ taken back: TXABT, unless the frame is on the wire; another mode waits for it") {
+TEST_CASE("TXREQ taken back: TXABT, unless the frame is on the wire, another mode waits for it") {
     const std::string program = set(0x0800, "C1CTRL") + set(4, "C1TX0SID") + R"(
 wait:   mov C1CTRL, w1
         and #0xe0, w1
@@ -359,7 +359,7 @@ TEST_CASE("RXB0 overflows into RXB1 with DBEN, else the frame is lost with RXB0O
     }
 }
 
-TEST_CASE("configuration mode alone takes filters and timing; Disable and Sleep wake by the bus") {
+TEST_CASE("configuration mode alone takes filters and timing, Disable and Sleep wake by the bus") {
     CanBench bench(set(0x0900, "C1CTRL") + set(0x55, "C1CFG1") + set(0x7FC, "C1RXF0SID") + R"(
         bset C1INTE, #6
         bset IEC1, #11

@@ -22,7 +22,7 @@ const char* const kChangePins[] = {"C14", "C13", "B0", "B1",  "B2",  "B3",  "B4"
 
 }  // namespace
 
-TEST_CASE("CN0 to CN23 each see their pin and no other; both edges count (fact sheet 9)") {
+TEST_CASE("CN0 to CN23 each see their pin and no other, both edges count (fact sheet 9)") {
     for (int cn = 0; cn < 24; ++cn) {
         CAPTURE(cn);
         Bench30 bench(kNothing);

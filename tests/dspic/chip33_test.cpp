@@ -201,7 +201,7 @@ wait:   bra wait
 }
 
 TEST_CASE(
-    "the A/D converter samples, converts in 14 TAD and shows DONE; digital and driven pins are not asked") {
+    "the A/D converter samples, converts in 14 TAD and shows DONE, digital and driven pins are not asked") {
     Bench33 bench(R"(
         .org 0x200
 main:   mov #0x84E0, w0
@@ -506,7 +506,7 @@ end:    bra end
     CHECK((bench.chip.peek("NVMCON") & 0xE000) == 0x6000);  // WREN, WRERR, not busy
 }
 
-TEST_CASE("NVMCON outlives every reset but power-on; one in mid-operation ends it with WRERR (DS70286)") {
+TEST_CASE("NVMCON outlives every reset but power-on, one in mid-operation ends it with WRERR (DS70286)") {
     Bench33 bench(R"(
         .org 0x200
 main:   btss NVMCON, #14                ; WREN: this is behind a reset

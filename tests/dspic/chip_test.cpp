@@ -178,7 +178,7 @@ wait:   bra wait
     CHECK_THROWS_AS(bench.chip.peek("NOSUCH"), std::out_of_range);
 }
 
-TEST_CASE("stop addresses end a run before their instruction; MCLR starts over with EXTR set") {
+TEST_CASE("stop addresses end a run before their instruction, MCLR starts over with EXTR set") {
     Bench bench(kBlink);
     Chip& chip = bench.chip;
     chip.stop_at(bench.symbols.at("isr"));

@@ -88,7 +88,7 @@ TEST_CASE("a codec that is switched on later, or is under way already, starts wi
     CHECK(b.until_flag(irq::DCI, 100'000) == b.bit(128 + 16));
 }
 
-TEST_CASE("a frame sync while a frame is under way is not heard; one with its last bit is", "[dci]") {
+TEST_CASE("a frame sync while a frame is under way is not heard, one with its last bit is", "[dci]") {
     const auto on = static_cast<std::uint16_t>(kEnable | kBitClock | kFrameSync);
     SlaveBench busy(codec_clocks(1'000'000.0, 20, 0));
     busy.setup(2, 16, 2, 3, 0);  // 32 bits: every second sync

@@ -91,7 +91,7 @@ TEST_CASE("SLOT tells the slot under way, and 0 between DCIEN and the first", "[
     }
 }
 
-TEST_CASE("what is not written in time is zero, or the last word with UNFM; what is not read is lost",
+TEST_CASE("what is not written in time is zero, or the last word with UNFM, what is not read is lost",
           "[dci]") {
     for (const bool repeats : {false, true}) {
         DciBench b;
@@ -160,7 +160,7 @@ TEST_CASE("each enabled slot takes the next buffer, whatever the frame", "[dci]"
     }
 }
 
-TEST_CASE("I2S starts slot 0 at both edges; AC-Link has a slot of 16 bits and twelve of 20", "[dci]") {
+TEST_CASE("I2S starts slot 0 at both edges, AC-Link has a slot of 16 bits and twelve of 20", "[dci]") {
     DciBench i2s;
     i2s.setup(2, 16, 4, 1, 1);
     i2s.write(sfr::DCICON1, kEnable | 1);
@@ -181,7 +181,7 @@ TEST_CASE("I2S starts slot 0 at both edges; AC-Link has a slot of 16 bits and tw
     CHECK(whole.codec.words.back().slot == 15);
 }
 
-TEST_CASE("without a clock of its own nothing moves; disabled it stops; asleep it stands still", "[dci]") {
+TEST_CASE("without a clock of its own nothing moves, disabled it stops, asleep it stands still", "[dci]") {
     DciBench b;
     b.setup(1, 16, 1, 1, 1);
     b.write(sfr::DCICON1, kEnable | kSlaveClock);

@@ -264,7 +264,7 @@ TEST_CASE("ECAN answers a remote frame by itself with RTREN, and sends by priori
     CHECK(sent() == std::vector{high, low, answer});
 }
 
-TEST_CASE("ECAN alone on a bus becomes error passive; saved in the middle of a frame it goes on alike") {
+TEST_CASE("ECAN alone on a bus becomes error passive, saved in the middle of a frame it goes on alike") {
     const CanFrame frame{.id = 0x321, .length = 8, .data = {1, 2, 3, 4, 5, 6, 7, 8}};
     const std::string more = load(0, frame) + set(0x0800, kCtrl1) + set(0x0088, kTr01);
     for (const bool wired : {false, true}) {

@@ -143,7 +143,7 @@ read:
     CHECK((bench.reg("IC1CON") & 0x18) == 0x08);
 }
 
-TEST_CASE("ICI chooses how many captures make an interrupt; off clears buffer and prescaler") {
+TEST_CASE("ICI chooses how many captures make an interrupt, off clears buffer and prescaler") {
     for (int ici = 0; ici < 4; ++ici) {
         CAPTURE(ici);
         Bench30 bench(program("        bset IEC0, #1\n        mov #0x0083 + 32 * " + std::to_string(ici) +
@@ -184,7 +184,7 @@ again:  bra again
     CHECK((bench.reg("IC1CON") & 8) == 8);
 }
 
-TEST_CASE("ICM = 7 wakes from Sleep by a rising edge; the timer's clock stands still (DS70150E 12.2)") {
+TEST_CASE("ICM = 7 wakes from Sleep by a rising edge, the timer's clock stands still (DS70150E 12.2)") {
     Bench30 bench(program(R"(
         mov #0x0087, w0
         mov w0, IC1CON

@@ -80,7 +80,7 @@ TEST_CASE("RETFIE takes 3 cycles and restores status and level") {
     CHECK(rig.w(15) == 0x1000);
 }
 
-TEST_CASE("a higher priority nests, an equal one waits; NSTDIS forbids nesting") {
+TEST_CASE("a higher priority nests, an equal one waits, NSTDIS forbids nesting") {
     const std::string source = R"(
         mov     #0x1000, w15
         mov     #0x00C8, w0
@@ -142,7 +142,7 @@ TEST_CASE("of equal priorities the lower number goes first, whatever came first"
     CHECK(rig.log == std::vector<std::string>{"interrupt T1"});
 }
 
-TEST_CASE("DISI holds priorities 1 to 6 for its count and one cycle; 7 passes") {
+TEST_CASE("DISI holds priorities 1 to 6 for its count and one cycle, 7 passes") {
     for (const int priority : {6, 7}) {
         Rig rig("        mov #0x1000, w15\n        bset 0x8c, #3\n        mov w1, 0x94\nhere:   disi #20\n"
                 "loop:   nop\n        nop\n        nop\n        nop\n        nop\n        nop\n        nop\n"
@@ -159,7 +159,7 @@ TEST_CASE("DISI holds priorities 1 to 6 for its count and one cycle; 7 passes") 
     }
 }
 
-TEST_CASE("software sets a flag; priority 0 is never taken; ALTIVT moves the table") {
+TEST_CASE("software sets a flag, priority 0 is never taken, ALTIVT moves the table") {
     Rig rig(R"(
         mov     #0x1000, w15
         bset    0x8c, #3
@@ -214,7 +214,7 @@ trap:   bclr    0x80, #3
     CHECK(rig.log.size() == 1);
 }
 
-TEST_CASE("each trap sets its own flag of INTCON1; the address error goes before the stack error") {
+TEST_CASE("each trap sets its own flag of INTCON1, the address error goes before the stack error") {
     const struct {
         const char* cause;
         int vector;

@@ -44,7 +44,7 @@ timer:  bclr IFS0, #3
 
 }  // namespace
 
-TEST_CASE("a timer whose PMD bit is set stops, ignores writes and reads 0; it comes back as after a reset") {
+TEST_CASE("a timer whose PMD bit is set stops, ignores writes and reads 0, it comes back as after a reset") {
     Bench30 bench(kTimerProgram);
     bench.set(PortLetter::F, 0, true, 10'050);
     CHECK(bench.word(0x1000) == 10);

@@ -157,7 +157,7 @@ TEST_CASE("a mode with faults, written while OCFA and OCFB are low, is off at on
     CHECK((bench.reg("IFS2") & 1) == 1);
 }
 
-TEST_CASE("OCFA stops OC1 at once, OC5 goes on; only with OCFA high again does writing the mode help") {
+TEST_CASE("OCFA stops OC1 at once, OC5 goes on, only with OCFA high again does writing the mode help") {
     const std::string source = CompareBench::source({7, 30, 30, 99}, R"(
 loop:   btss PORTF, #0
         bra loop

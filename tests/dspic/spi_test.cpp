@@ -42,7 +42,7 @@ std::uint16_t clock_word(Bench30& bench, int con, std::uint16_t out, int bits, C
 }  // namespace
 
 TEST_CASE(
-    "a master's word takes its bits at the prescaled clock; the next one waits behind it (fact sheet 8)") {
+    "a master's word takes its bits at the prescaled clock, the next one waits behind it (fact sheet 8)") {
     struct Clock {
         int bits, cycles;
     };

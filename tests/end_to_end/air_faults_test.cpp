@@ -77,7 +77,7 @@ int count(const nlohmann::json& report, const std::string& name) {
 }  // namespace
 
 TEST_CASE(
-    "every fault of radio and IRcom fires on real traffic and says on what; placement changes nothing") {
+    "every fault of radio and IRcom fires on real traffic and says on what, placement changes nothing") {
     const Workbench bench;
     const auto file = bench.file("air.toml", scenario());
     const Ended plain = bench.run("plain", with_faults(file, {}, {"--threads", "1"}));
@@ -135,7 +135,7 @@ TEST_CASE(
     CHECK(bench.report("own")["faults"] == report["faults"]);
 }
 
-TEST_CASE("a fault of the air that never fires fails the run, unless it may; one that cannot be is refused") {
+TEST_CASE("a fault of the air that never fires fails the run, unless it may, one that cannot be is refused") {
     const Workbench bench;
     const auto file = bench.file("air.toml", scenario());
     const Words brief{"--duration", "0.5"};

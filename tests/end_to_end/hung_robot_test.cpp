@@ -97,7 +97,7 @@ TEST_CASE("run names the robot that hangs, in both placements alike", "[hung]") 
     CHECK(bench.report("o")["success"] == false);
 }
 
-TEST_CASE("a robot that waits for a character is in order; a register without a model is not", "[hung]") {
+TEST_CASE("a robot that waits for a character is in order, a register without a model is not", "[hung]") {
     const Workbench bench;
     const std::string file = scenario(bench, image(bench, "idle", kWaitsForCharacter));
     const Ended ended = bench.run("o", {file});

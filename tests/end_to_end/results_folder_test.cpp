@@ -49,7 +49,7 @@ TEST_CASE("a second run into the same folder is refused and names the first") {
     }
 }
 
-TEST_CASE("files of an earlier, larger run go; a user's own stay") {
+TEST_CASE("files of an earlier, larger run go, a user's own stay") {
     const Workbench bench;
     REQUIRE(bench.run("o", {kPair, "--duration", "0.2"}).status == 0);
     const fs::path out = bench.out("o");

@@ -39,7 +39,7 @@ std::string tams(const std::string& coordinator) {
 
 }  // namespace
 
-TEST_CASE("a coordinator's program finds its TAMs and sets their LEDs; the same in every placement") {
+TEST_CASE("a coordinator's program finds its TAMs and sets their LEDs, the same in every placement") {
     const Workbench bench;
     const auto file =
         bench.file("tams.toml", tams("program = [\"puckloop-coordinator\", \"--seed\", \"3\"]\n"));

@@ -90,7 +90,7 @@ std::string set_leds(int red, int green, int blue) {
 
 }  // namespace
 
-TEST_CASE("TAMs find the coordinator over the air, report, and obey; the same in every placement") {
+TEST_CASE("TAMs find the coordinator over the air, report, and obey, the same in every placement") {
     const Workbench bench;
     const auto file = scenario(bench, "4.0 " + frame({8, 1, 'N', 'D'}) + "\n10.8 " + set_leds(0x19, 0, 0x0C) +
                                           "\n11.2 " + frame({8, 1, 'Q', 'Q'}) + "\n");

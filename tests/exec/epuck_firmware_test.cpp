@@ -328,7 +328,7 @@ TEST_CASE("epuck_firmware.hex on the board boots twice and serves sessions as on
     CHECK(rig.take(1).empty());
 }
 
-TEST_CASE("epuck_firmware.hex on the bare chip boots the same; MCLR spares the second pass") {
+TEST_CASE("epuck_firmware.hex on the bare chip boots the same, MCLR spares the second pass") {
     const auto image = exec::real_image(kImage);
     if (!image) return;
     Rig rig("dspic30f6014a", *image);

@@ -123,7 +123,7 @@ TEST_CASE("a read that names no register starts with the read") {
     CHECK_FALSE(master.report().reads[0].register_number.has_value());
 }
 
-TEST_CASE("stretching delays what follows; a line that is late follows at once") {
+TEST_CASE("stretching delays what follows, a line that is late follows at once") {
     Slave slave;
     exec::I2cScriptMaster master(exec::parse_i2c_script("s", "0 w 0x20 0e 55\n0.0001 w 0x20 0e 55\n"), {},
                                  slave, nullptr);

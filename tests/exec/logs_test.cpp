@@ -44,7 +44,7 @@ TEST_CASE("the logs hold a header and one row for what happened") {
     CHECK(exec::read_text_file(base + "pins.csv") == "time_s,pin,signal,value\n0.000000000,RA6,led0,z\n");
 }
 
-TEST_CASE("a folder that cannot be made is an input error; a full disk is a run error that names the file") {
+TEST_CASE("a folder that cannot be made is an input error, a full disk is a run error that names the file") {
     const Folder folder;
     std::filesystem::create_directories(folder.path);
     std::ofstream(folder.path + "/file") << "x";

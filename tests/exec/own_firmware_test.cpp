@@ -223,7 +223,7 @@ TEST_CASE("own firmware: wheels stop a second after the last command, and go on 
     CHECK(speed_over(rig, "wheel_left", 0.5) == Approx(400).margin(4));
 }
 
-TEST_CASE("own firmware: the end record stops all, unanswered; the next session begins") {
+TEST_CASE("own firmware: the end record stops all, unanswered, the next session begins") {
     InSession session;
     Rig& rig = session.rig;
     ask(rig, actuators(400, 400, 0xFF, 3));
@@ -244,7 +244,7 @@ TEST_CASE("own firmware: any byte wakes it, and a lone one is forgotten") {
     CHECK(ask(rig, {0x42, 0xFF, 0xFF, 0xFF, 0xFF}).size() == kEpuckSensorBytes);
 }
 
-TEST_CASE("own firmware: part of a record is dropped and answered, not obeyed; the next record counts") {
+TEST_CASE("own firmware: part of a record is dropped and answered, not obeyed, the next record counts") {
     for (std::size_t part = 1; part < kEpuckActuatorBytes; ++part) {
         InSession session;
         Rig& rig = session.rig;

@@ -131,7 +131,7 @@ TEST_CASE("own RAB firmware: a message without light above darkness says: no sen
     CHECK(got.sensor == 12);
 }
 
-TEST_CASE("own RAB firmware: all payload sizes; frames follow each other by three dark chips") {
+TEST_CASE("own RAB firmware: all payload sizes, frames follow each other by three dark chips") {
     for (const int size : {8, 16, 24, 32}) {
         RabBench bench(kImage);
         bench.write(kReady - 0.005, {21, static_cast<std::uint8_t>(size)});

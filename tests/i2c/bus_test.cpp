@@ -192,7 +192,7 @@ TEST_CASE("while one owns the bus the dsPIC loses and Linux waits for the stop")
     CHECK(out[0].time == asked + kMillisecond + 10 * kPeriod);  // bus free, then nine clocks
 }
 
-TEST_CASE("a board behind a port answers in its own time; the master sees the stretch") {
+TEST_CASE("a board behind a port answers in its own time, the master sees the stretch") {
     Bench bench({.boards = {{"rab", 0x20}}});
     constexpr PortIndex kRab = 2;
     CHECK(bench.world == 3);

@@ -75,7 +75,7 @@ TEST_CASE("a coloured spot is found where it is drawn, in its colour only") {
     }
 }
 
-TEST_CASE("pixels that touch are one blob, whatever its shape; small ones do not count") {
+TEST_CASE("pixels that touch are one blob, whatever its shape, small ones do not count") {
     Picture picture(352, 288, 90);
     // A ring, which comes in pieces from row to row.
     picture.disc(200, 100, 20, {40, 220, 40});

@@ -70,7 +70,7 @@ TEST_CASE("payloads of every size go to all emitters in one operation") {
     }
 }
 
-TEST_CASE("different payloads are stored first and sent once; emitters without one stay dark") {
+TEST_CASE("different payloads are stored first and sent once, emitters without one stay dark") {
     for (int bytes = 1; bytes <= 4; ++bytes) {
         Bench bench({.bytes = bytes});
         REQUIRE(bench.board.initialise());

@@ -122,7 +122,7 @@ TEST_CASE("the emission power is set again once the board has surely booted") {
     CHECK(settings == 2);
 }
 
-TEST_CASE("no board: told after the wait; a late one is found") {
+TEST_CASE("no board: told after the wait, a late one is found") {
     Bench absent({.start_wait = 0.3});
     absent.device.refuse = 1000000;
     CHECK_FALSE(absent.link.initialise());

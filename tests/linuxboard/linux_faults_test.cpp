@@ -88,7 +88,7 @@ TEST_CASE("read_error: the chosen reads fail with the errno given, the bytes com
     }
 }
 
-TEST_CASE("short_read and short_write move fewer bytes; the rest is not lost") {
+TEST_CASE("short_read and short_write move fewer bytes, the rest is not lost") {
     for (unsigned seed = 1; seed <= 3; ++seed) {
         RandomStream random(seed, "test");
         const auto most = static_cast<int>(1 + random.below(6));

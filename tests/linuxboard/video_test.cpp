@@ -238,7 +238,7 @@ TEST_CASE("a stream ends with its file, is shared by fork, and never hangs a run
     CHECK(report["cameras"][0]["lost"].get<int>() > 50);
 }
 
-TEST_CASE("the end of a stream ends what waits for its frames; the highest priority changes the device") {
+TEST_CASE("the end of a stream ends what waits for its frames, the highest priority changes the device") {
     const Result result = run_mode("threads", 1, kMillisecond);
     INFO(result.log);
     CHECK(lines_of(result.log, "waited EINVAL until").size() == 1);

@@ -85,7 +85,7 @@ TEST_CASE("a demodulator answers to its own frequency") {
     CHECK(shine(medium, kAllEmitters, 115, 0).carrier[6] == 0.0F);
 }
 
-TEST_CASE("bodies, walls, boxes and cylinders shade; what is low or aside does not") {
+TEST_CASE("bodies, walls, boxes and cylinders shade, what is low or aside does not") {
     const auto carrier = [](auto change) {
         World world = ideal_pair(0.4);
         change(world);
@@ -123,7 +123,7 @@ TEST_CASE("a moving thing opens and closes the way at the next burst") {
     CHECK(total(shine(medium).carrier) < near / 2);
 }
 
-TEST_CASE("two senders add up at a third; the dark reads baseline and room light") {
+TEST_CASE("two senders add up at a third, the dark reads baseline and room light") {
     World world = ideal_pair(0.3);
     world.robots.push_back(rab_robot("c", 0.37 / 2, 0.4));
     world.ambient_light = 2.0;

@@ -103,7 +103,7 @@ TEST_CASE("low friction costs distance at the start, as v^2 / (2 mu g)") {
     }
 }
 
-TEST_CASE("a wall stops a robot at full speed; it neither passes nor climbs") {
+TEST_CASE("a wall stops a robot at full speed, it neither passes nor climbs") {
     auto description = world_with_robot(1, 1);
     description.robots[0].heading = GENERATE(0.0, 0.4, kPi / 2, 2.5);
     WorldModel world(description);

@@ -78,7 +78,7 @@ TEST_CASE("sensors are numbered clockwise from the front right") {
     }
 }
 
-TEST_CASE("a robot sees another robot and not itself; low things pass under the rays") {
+TEST_CASE("a robot sees another robot and not itself, low things pass under the rays") {
     World world = world_with_robot();
     world.parameters["proximity.offset"] = 0;
     for (std::size_t i = 0; i < 8; ++i)

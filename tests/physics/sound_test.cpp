@@ -112,7 +112,7 @@ TEST_CASE("a world without sound says nothing of it on the links") {
     CHECK(told(world) == 4);
 }
 
-TEST_CASE("a loudspeaker travels as JSON; a bad one is refused with its name") {
+TEST_CASE("a loudspeaker travels as JSON, a bad one is refused with its name") {
     World world = world_with_robot();
     world.speakers = {{.name = "horn",
                        .x = 0.1,

@@ -109,7 +109,7 @@ TEST_CASE("A5: 32 bits to all emitters") {
     CHECK(rig.bursts()[0].chips == visible(encode_rab(32, 0xDEADBEEF)));
 }
 
-TEST_CASE("A6 and 2.2: payload size 7 is ignored; of several bytes for one register the last one stays") {
+TEST_CASE("A6 and 2.2: payload size 7 is ignored, of several bytes for one register the last one stays") {
     const auto file = exec::real_image(rab::kRandb);
     if (!file) return;
     RabRig rig(*file);
@@ -179,7 +179,7 @@ TEST_CASE("2.4: what transfers take in all") {
     CHECK(cosim::to_seconds(rig.write(20, {1}).last_stop) - write_from + clock == about(write_us * 1e-6));
 }
 
-TEST_CASE("a stored payload goes to its emitter only; register 15 sends what is armed") {
+TEST_CASE("a stored payload goes to its emitter only, register 15 sends what is armed") {
     const auto file = exec::real_image(rab::kRandb);
     if (!file) return;
     RabRig rig(*file);

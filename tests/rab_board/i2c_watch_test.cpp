@@ -95,7 +95,7 @@ TEST_CASE("stretched time is summed, long stretches are told at powers of two") 
                                    "i2c: SCL held for 0.808 ms after 0x34 for register 14, 4 so far"});
 }
 
-TEST_CASE("a board that does not answer is told; a Start for another board is not its business") {
+TEST_CASE("a board that does not answer is told, a Start for another board is not its business") {
     Watched w;
     w.exchange(I2cPhaseKind::Start, 0x40, 0);
     CHECK(w.lines == std::vector<std::string>{"i2c: address not acknowledged, 1 so far"});

@@ -347,7 +347,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "4.7: two payloads on one receiver spoil it; a receiver that sees one of them only still delivers it") {
+    "4.7: two payloads on one receiver spoil it, a receiver that sees one of them only still delivers it") {
     const auto file = exec::real_image(rab::kRandb);
     if (!file) return;
     Ready board(*file);

@@ -91,7 +91,7 @@ TEST_CASE("section 4: the loop takes 10.27 ms and the time on the bus, barriers 
     CHECK(ms(off[1] - on[off[1] > on[1] ? 1 : 0]) == Approx(2 * loop).margin(0.7));
 }
 
-TEST_CASE("section 4: a barrier is blocked below 120 counts; present and absent need eight looks", "[slow]") {
+TEST_CASE("section 4: a barrier is blocked below 120 counts, present and absent need eight looks", "[slow]") {
     NEEDS_IMAGE();
     Ready booth;
     Board& board = booth.rig.board;
@@ -177,7 +177,7 @@ TEST_CASE("section 4: a robot is noticed 360 to 412 ms after it came, wherever i
     CHECK(most - least > 25);
 }
 
-TEST_CASE("section 4: the battery is 33 times the count; low and empty are said", "[slow]") {
+TEST_CASE("section 4: the battery is 33 times the count, low and empty are said", "[slow]") {
     NEEDS_IMAGE();
     Ready booth;
     RandomStream random(5, "battery");
@@ -277,7 +277,7 @@ TEST_CASE("section 6: the four networks by the two switches", "[slow]") {
     }
 }
 
-TEST_CASE("section 6: a dot every 100 ms without a module; reset pulse; times of the start-up", "[slow]") {
+TEST_CASE("section 6: a dot every 100 ms without a module, reset pulse, times of the start-up", "[slow]") {
     NEEDS_IMAGE();
     {
         Booth booth(image_path());
@@ -316,7 +316,7 @@ TEST_CASE("section 6: a dot every 100 ms without a module; reset pulse; times of
     CHECK(booth.console.find("initialization: OK") != std::string::npos);
 }
 
-TEST_CASE("section 6: DN is asked until status 40 and ten bytes come; the network LED blinks", "[slow]") {
+TEST_CASE("section 6: DN is asked until status 40 and ten bytes come, the network LED blinks", "[slow]") {
     NEEDS_IMAGE();
     Booth booth(image_path());
     booth.found_status = 0;  // what other modules answer
@@ -349,7 +349,7 @@ TEST_CASE("section 6: DN is asked until status 40 and ten bytes come; the networ
     CHECK(booth.console.find("initialization: OK") != std::string::npos);
 }
 
-TEST_CASE("section 6: an unescaped 7E costs two packets; errors and unknown frames ask for a report",
+TEST_CASE("section 6: an unescaped 7E costs two packets, errors and unknown frames ask for a report",
           "[slow]") {
     NEEDS_IMAGE();
     Ready booth;

@@ -250,7 +250,7 @@ stay:   bra     stay
     }
 }
 
-TEST_CASE("in Doze a handler begins in the fifth CPU cycle behind the flag's; with ROI in the fifth of 1:1") {
+TEST_CASE("in Doze a handler begins in the fifth CPU cycle behind the flag's, with ROI in the fifth of 1:1") {
     RandomStream random(Catch::rngSeed(), "doze latency");
     for (int i = 0; i < 120; ++i) {
         const unsigned doze = static_cast<unsigned>(random.next() % 8);
@@ -287,7 +287,7 @@ TEST_CASE("ROI leaves Doze on where the CPU's priority holds the interrupt back"
     }
 }
 
-TEST_CASE("in Doze Idle ends with an interrupt, with ROI at full speed; a trap recovers as well") {
+TEST_CASE("in Doze Idle ends with an interrupt, with ROI at full speed, a trap recovers as well") {
     for (const bool recovers : {false, true}) {
         TimedChip run(device(), one_interrupt(dozing(5, recovers ? kRoi : 0), 3000, "        pwrsav #1\n"));
         run.run_to("end");

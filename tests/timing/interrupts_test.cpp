@@ -137,7 +137,7 @@ stay:   bra     stay
         }
 }
 
-TEST_CASE("RETFIE takes 2 cycles where the next exception is pending, which begins 4 later; else 3") {
+TEST_CASE("RETFIE takes 2 cycles where the next exception is pending, which begins 4 later, else 3") {
     RandomStream random(Catch::rngSeed(), "chained");
     for (const DeviceInfo* device : kDevices)
         for (int i = 0; i < 10; ++i) {

@@ -120,7 +120,7 @@ TEST_CASE("a UART's frames follow each other by bits x 16 x (BRG + 1) cycles, by
         }
 }
 
-TEST_CASE("a conversion ends SAMC + 14 TAD after sampling began, with 10 bits + 12; the 30F's TAD counts "
+TEST_CASE("a conversion ends SAMC + 14 TAD after sampling began, with 10 bits + 12, the 30F's TAD counts "
           "half cycles") {
     RandomStream random(Catch::rngSeed(), "conversions");
     for (const DeviceInfo* device : kDevices)
@@ -171,7 +171,7 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "a row of flash stops the CPU, 2 ms or 11064 RC cycles (33FJ); a word of EEPROM is written beside it") {
+    "a row of flash stops the CPU, 2 ms or 11064 RC cycles (33FJ), a word of EEPROM is written beside it") {
     for (const auto& [device, eeprom] :
          {std::pair{kDevices[0], false}, {kDevices[0], true}, {kDevices[1], false}}) {
         TimedChip run(

@@ -98,7 +98,7 @@ TEST_CASE("register traffic is read from the phases on the wires") {
     CHECK(wire.bus.busy()[1].end - wire.bus.busy()[1].begin == 8 * kPeriod);
 }
 
-TEST_CASE("each message belongs to the frame that carried its bytes; the others have a cause") {
+TEST_CASE("each message belongs to the frame that carried its bytes, the others have a cause") {
     std::map<std::string, BoardTraffic> boards;
     std::vector<HeardFrame> frames;
     for (int i = 0; i < 9; ++i) {

@@ -123,7 +123,7 @@ TEST_CASE("DN finds by name: status 40 with FFFE and the address, or status 1 af
     CHECK(host.ask("DN").status == kAtError);
 }
 
-TEST_CASE("ND: every answer within NT is a frame of its own; later ones are not") {
+TEST_CASE("ND: every answer within NT is a frame of its own, later ones are not") {
     Host host;
     host.boot();
     host.ask("NT", {0x00, 0x20});
@@ -186,7 +186,7 @@ TEST_CASE("asked to show itself: at once by name, at random times within NT else
 }
 
 TEST_CASE(
-    "remote commands: done for another, answered over the air; 97 at who asked, status 4 if nobody answers") {
+    "remote commands: done for another, answered over the air, 97 at who asked, status 4 if nobody answers") {
     Host host;
     host.boot();
     host.hear(from_other(MeshKind::RemoteAt, {0x01, 0x02, 'R', 'R', 6}));

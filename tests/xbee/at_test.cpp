@@ -88,7 +88,7 @@ TEST_CASE("unknown commands are answered with status 2 and counted by name") {
     CHECK(host.report()["at"]["unknown"].size() <= 33);
 }
 
-TEST_CASE("09 queues, AC, WR and the next 08 apply; WR keeps, reset forgets the rest") {
+TEST_CASE("09 queues, AC, WR and the next 08 apply, WR keeps, reset forgets the rest") {
     Host host;
     host.boot();
     CHECK(host.ask("RR", {3}, true).status == kAtOk);
@@ -145,7 +145,7 @@ TEST_CASE("the reset pin: silent while held, then status 0 after the start, valu
     CHECK(host.report()["uart"]["while_down"] == 8);
 }
 
-TEST_CASE("AP 1: frames without escapes; BD: answers in the old rate, then the new one") {
+TEST_CASE("AP 1: frames without escapes, BD: answers in the old rate, then the new one") {
     Host host;
     host.boot();
     host.ask("AP", {1});

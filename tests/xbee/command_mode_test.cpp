@@ -220,7 +220,7 @@ TEST_CASE("SM 1: asleep while SLEEP_RQ is high, off the air and deaf at its line
     CHECK(awake.ask("VR").status == kAtOk);
 }
 
-TEST_CASE("SM 4: asleep for SP after ST without a byte or packet; a packet under way is finished first") {
+TEST_CASE("SM 4: asleep for SP after ST without a byte or packet, a packet under way is finished first") {
     ModuleOptions options = escaped();
     options.parameters.insert(options.parameters.end(), {{"SM", 4}, {"SP", 100}, {"ST", 300}});
     Host host(options);

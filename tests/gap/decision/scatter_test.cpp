@@ -145,7 +145,7 @@ TEST_CASE("pulses that hit single readings are named, spells of bad contact are 
     CHECK(spells.causes.empty());
 }
 
-TEST_CASE("noise in proportion errs anew at each reading; what is there again at the next one is none") {
+TEST_CASE("noise in proportion errs anew at each reading, what is there again at the next one is none") {
     RandomStream random(15, "scatter test");
     double share = 0.0;
     const auto told = [&](bool anew) {

@@ -106,7 +106,7 @@ TEST_CASE("replicated readings keep to the instrument's step and range, and spre
           Approx(scale * std::sqrt(30.0 / 28.0)).epsilon(0.04));
 }
 
-TEST_CASE("what happens or not happens as often as predicted; lapses come at their rate",
+TEST_CASE("what happens or not happens as often as predicted, lapses come at their rate",
           "[gap][predictive]") {
     RandomStream random(Catch::rngSeed(), "test/events");
     Observable event = chains(NoiseKind::Event);

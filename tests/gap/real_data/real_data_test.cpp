@@ -159,7 +159,7 @@ TEST_CASE("free drives: the axle is longer and the wheels are smaller than the m
 }
 
 TEST_CASE(
-    "the Thymio's right ground sensor reads higher than its left one; directions differ more than repeats") {
+    "the Thymio's right ground sensor reads higher than its left one, directions differ more than repeats") {
     const auto v = verdict_on("thymio_sensors_resilient-swarms", "thymio_ground");
     if (!v) return;
     REQUIRE(names(*v, "ground_gain"));
