@@ -164,7 +164,7 @@ TEST_CASE("exec: fuses, supply and what no model is behind, of an AVR") {
         folder.file("supply.txt", "0.002 vcc 2\n0.003 vcc 5\n0.005 vcc 0\n0.006 vcc 3.3\n");
     const Result supply = run("--json --stimulus " + stimulus);
     CHECK_THAT(supply.output, Contains("\"time_s\":0.0020020625,\"cause\":\"brown-out\"") &&
-                                  Contains("\"time_s\":0.0050000625,\"cause\":\"power-on\""));
+                                  Contains("\"time_s\":0.005,\"cause\":\"power-on\""));
 }
 
 TEST_CASE("exec: an AVR as master of devices, and as slave of a script") {

@@ -72,7 +72,7 @@ TEST_CASE_METHOD(AdcBench, "a scan of more inputs than SMPI + 1 never reaches th
     CHECK(read(sfr::ADCBUF0 + 4) == 0);
 }
 
-TEST_CASE_METHOD(AdcBench, "software samples and converts a single input; TAD counts half cycles") {
+TEST_CASE_METHOD(AdcBench, "software samples and converts a single input, TAD counts half cycles") {
     write(sfr::ADCHS, 5);
     write(sfr::ADCON3, 0x0002);  // TAD = 1.5 cycles
     write(sfr::ADCON1, kAdon);

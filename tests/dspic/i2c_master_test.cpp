@@ -106,7 +106,7 @@ TEST_CASE_METHOD(I2cBench, "a register read: start, address, register, restart, 
     CHECK(pins.phases.size() == 5);
 }
 
-TEST_CASE_METHOD(I2cBench, "a second request while one is active is ignored; writing I2CTRN sets IWCOL") {
+TEST_CASE_METHOD(I2cBench, "a second request while one is active is ignored, writing I2CTRN sets IWCOL") {
     set(kSen);
     set(kPen);
     CHECK_FALSE(read(sfr::I2CCON) & kPen);

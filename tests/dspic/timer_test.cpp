@@ -58,7 +58,7 @@ TEST_CASE_METHOD(TimerBench, "prescalers divide, and a write to TMR restarts the
     CHECK(until_flag(irq::T1, 100000) == start + 185 * 256);
 }
 
-TEST_CASE_METHOD(TimerBench, "PR = 0 never interrupts; a count beyond PR goes round through 0xFFFF") {
+TEST_CASE_METHOD(TimerBench, "PR = 0 never interrupts, a count beyond PR goes round through 0xFFFF") {
     write(sfr::PR1, 0);
     write(sfr::T1CON, kOn);
     CHECK(until_flag(irq::T1, 200000) == kNoCycle);
