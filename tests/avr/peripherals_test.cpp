@@ -110,7 +110,7 @@ loop:   rjmp loop
     CHECK(woke[0] <= 256000 + 40);
 }
 
-TEST_CASE("the watchdog resets, says so, and stays on until its flag is cleared") {
+TEST_CASE("the watchdog resets, sets WDRF, and stays on until that is cleared") {
     Rig rig(R"(
         in  r16, MCUSR
         sts 0x100, r16

@@ -78,12 +78,12 @@ void check_program(const std::string& file) {
 
 }  // namespace
 
-TEST_CASE("avr-gcc's programs give the output and take the cycles that simavr says: -O0") {
+TEST_CASE("avr-gcc's programs give the output and take the cycles of simavr: -O0") {
     check_program(AVR_PROGRAMS "/compute-O0.elf");
 }
-TEST_CASE("avr-gcc's programs give the output and take the cycles that simavr says: -O2") {
+TEST_CASE("avr-gcc's programs give the output and take the cycles of simavr: -O2") {
     check_program(AVR_PROGRAMS "/compute-O2.elf");
 }
-TEST_CASE("avr-gcc's programs give the output and take the cycles that simavr says: -Os") {
+TEST_CASE("avr-gcc's programs give the output and take the cycles of simavr: -Os") {
     check_program(AVR_PROGRAMS "/compute-Os.elf");
 }

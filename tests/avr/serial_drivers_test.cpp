@@ -63,7 +63,7 @@ TEST_CASE("SPI master and slave of two chips exchange bytes in every mode and bi
     }
 }
 
-TEST_CASE("an SPI master whose SS input is pulled low becomes a slave, and says so") {
+TEST_CASE("an SPI master whose SS input is pulled low becomes a slave, and is interrupted") {
     DriverBench bench("spi_lost");
     bench.start();
     bench.chip.run_until(50 * cosim::kMicrosecond);

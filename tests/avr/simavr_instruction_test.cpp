@@ -188,7 +188,7 @@ std::string Pair::compare(const Form& form, RandomStream& random) {
 
 }  // namespace
 
-TEST_CASE("Every instruction leaves the state and takes the cycles that simavr says") {
+TEST_CASE("Every instruction leaves the state and takes the cycles of simavr") {
     Pair pair;
     int compared = 0, expected = 0;
     for (const Form& form : forms()) {

@@ -47,7 +47,7 @@ TEST_CASE("memory, program memory and two-word instructions") {
     says(state + " op=e00f,950a,f7f1 run=3", "pc=000006 m= cyc=45");              // a loop of 15
 }
 
-TEST_CASE("what a vector cannot contain is said") {
+TEST_CASE("what a vector cannot contain is refused") {
     const std::string state = "1 " + registers() + " pc=0";
     says("1", "1 error no state");
     says("1 pc=0 op=0", "error r is missing");

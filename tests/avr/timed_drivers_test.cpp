@@ -92,7 +92,7 @@ end:    rjmp end
     CHECK(rig.chip.cycle() < 8'000'000);  // (50 + 78 / 8) / 128 of a second's
 }
 
-TEST_CASE("AS2 without a crystal stops timer 2, and says so, with EXCLK it counts edges at TOSC1") {
+TEST_CASE("AS2 without a crystal stops timer 2, which is reported, with EXCLK it counts edges at TOSC1") {
     test::Rig rig("ldi r16, 0x20\n sts ASSR, r16\n ldi r16, 1\n sts TCCR2B, r16\nend: rjmp end\n");
     rig.chip.run_until(10 * cosim::kMillisecond);
     CHECK(rig.chip.peek("ASSR") == 0x21);

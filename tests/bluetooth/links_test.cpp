@@ -287,7 +287,7 @@ TEST_CASE("stored connections are set up after a reset", "[bluetooth]") {
     CHECK(air.node.module(1).transparent());
 }
 
-TEST_CASE("a computer links by itself, again and again, and what it said before waits", "[bluetooth]") {
+TEST_CASE("a computer links by itself, again and again, and what it sent before waits", "[bluetooth]") {
     AirSpec spec = robots(1);
     ComputerOptions computer;
     computer.name = "r0.computer";

@@ -7,7 +7,7 @@ using namespace puckloop;
 using namespace puckloop::bluetooth;
 using namespace puckloop::bluetooth::test;
 
-TEST_CASE("a module says READY, and again after a reset", "[bluetooth]") {
+TEST_CASE("a module sends READY, and again after a reset", "[bluetooth]") {
     Air air(robots(1));
     air.run(2 * cosim::kSecond, 7 * kMs);
     REQUIRE(air.packets(0).size() == 1);

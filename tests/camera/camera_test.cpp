@@ -57,7 +57,7 @@ std::vector<std::uint8_t> row_at(Camera& camera, Cycle rise, std::size_t bytes) 
 
 }  // namespace
 
-TEST_CASE("a camera says which one it is, keeps what is written, and forgets it in reset") {
+TEST_CASE("a camera has its identification, keeps what is written, and forgets it in reset") {
     const auto pattern = camera::make_test_pattern();
     for (const Model model : {Model::Po3030k, Model::Po6030k, Model::Po8030d}) {
         Camera camera({model}, *pattern);

@@ -70,7 +70,7 @@ struct File {
 
 }  // namespace
 
-TEST_CASE("a campaign file says what it says") {
+TEST_CASE("a campaign file is read with all of its keys") {
     const File file(kGood);
     const Campaign campaign = read_campaign(file.path);
     CHECK(campaign.duration == 3.0);

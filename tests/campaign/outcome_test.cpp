@@ -83,7 +83,7 @@ TEST_CASE("a metric counts the lines of a program's log that hold its text") {
     CHECK(verdict.metrics[0].second == 1.0);
 }
 
-TEST_CASE("each outcome is what its definition says, wherever the fault strikes") {
+TEST_CASE("each outcome is the one of its definition, wherever the fault strikes") {
     RandomStream random(GENERATE(11, 12, 13, 14, 15, 16), "outcomes");
     const Campaign campaign = campaign_of();
     const Profile nominal = nominal_run();

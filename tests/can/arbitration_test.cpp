@@ -84,7 +84,7 @@ TEST_CASE("frames as bits: the reader reads what was written, and each bit of it
     }
 }
 
-TEST_CASE("who sends when is what a straight model says, drawn at random") {
+TEST_CASE("who sends when is as in a straight model, drawn at random") {
     for (std::uint64_t seed = 1; seed <= 60; ++seed) {
         CAPTURE(seed);
         RandomStream random(seed, "arbitration");

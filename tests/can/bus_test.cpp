@@ -73,7 +73,7 @@ std::vector<Message> run(CanBusNode& bus, const std::vector<Message>& inbox, Tim
 
 }  // namespace
 
-TEST_CASE("what a CAN bus says does not depend on how it is advanced, and keeps its promises") {
+TEST_CASE("what a CAN bus sends does not depend on how it is advanced, and keeps its earliest output times") {
     for (std::uint64_t seed = 1; seed <= 30; ++seed) {
         CAPTURE(seed);
         RandomStream random(seed, "bus");
@@ -133,7 +133,7 @@ TEST_CASE("what a CAN bus says does not depend on how it is advanced, and keeps 
     }
 }
 
-TEST_CASE("a frame crosses the bus, its sender and the others are told at the same instant") {
+TEST_CASE("a frame crosses the bus, its sender and the others hear of it at the same instant") {
     RandomStream random(1, "bus");
     CanBusNode bus(three());
     const protocols::CanFrame frame{.id = 0x321, .length = 3, .data = {1, 2, 3}};
@@ -205,7 +205,7 @@ TEST_CASE("a frame that a fault keeps from a program is acknowledged, and counte
     CHECK(report["faults"][0]["fired"] == 1);
 }
 
-TEST_CASE("the report says who is set to another bit rate and whom nobody acknowledged") {
+TEST_CASE("the report names who is set to another bit rate and whom nobody acknowledged") {
     RandomStream random(4, "bus");
     CanBusNode bus(three());
     const std::vector<Message> inbox{

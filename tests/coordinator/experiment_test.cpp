@@ -82,7 +82,7 @@ void haunt(SimulatedMesh& mesh, SimulatedTam& tam, RandomStream& random, double 
 
 }  // namespace
 
-TEST_CASE("random-task: what each TAM goes through is what the settings say") {
+TEST_CASE("random-task: what each TAM goes through is by the settings") {
     RandomStream seeds(20261, "random-task");
     for (int round = 0; round < 6; ++round) {
         const double green = 2 + 4 * seeds.uniform(), blue = 6 + 8 * seeds.uniform(),

@@ -140,7 +140,7 @@ TEST_CASE("ten runs under load are one run") {
         burner.join();
 }
 
-TEST_CASE("paced by the wall clock a run takes its time, tells its progress, and is the same") {
+TEST_CASE("paced by the wall clock a run takes its time, reports its progress, and is the same") {
     Run run = ping_pong(true);
     run.options.duration = 300 * kMillisecond;
     const Outcome free = run();
@@ -226,7 +226,7 @@ TEST_CASE("nodes that want to stop together end the run with the last of them") 
     CHECK(run().reason == EndReason::Duration);
 }
 
-TEST_CASE("a cycle without look-ahead is told with its nodes") {
+TEST_CASE("a cycle without look-ahead is reported with its nodes") {
     Run run{{{"idle", "idle"}, {"one", "mutual uarts=0 signals=2"}, {"two", "mutual uarts=0 signals=2"}},
             {{"a", {"one", "signals0"}, {"two", "signals1"}}}};
     run.options.duration = kSecond;
@@ -240,7 +240,7 @@ TEST_CASE("a cycle without look-ahead is told with its nodes") {
     CHECK(run().reason == EndReason::Duration);
 }
 
-TEST_CASE("a node at the edge of a zero cycle does not spin, it is told as deadlocked") {
+TEST_CASE("a node at the edge of a zero cycle does not spin, it is reported as deadlocked") {
     // The bus has something to say now, and the program would answer in no time.
     Run run{{{"bus", "chatter seed=1 uarts=0 signals=1 fly_us=0"}, {"program", "mutual uarts=0 signals=1"}},
             {{"wire", {"bus", "signals0"}, {"program", "signals0"}}}};

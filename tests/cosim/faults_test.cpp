@@ -173,7 +173,7 @@ TEST_CASE("rate: the receiver sees another bit time, the statistics count it") {
     CHECK(compare(fault).outcome.links[0].from_a.uart_off_rate == 5);
 }
 
-TEST_CASE("a fault that never fired is told") {
+TEST_CASE("a fault that never fired is reported") {
     FaultSpec fault{"", "", "drop"};
     fault.begin = 500 * kMs;
     CHECK(talk(fault)().faults.at(0).failed_to_fire());

@@ -358,7 +358,7 @@ Payload random_payload(RandomStream& chance) {
 
 }  // namespace
 
-TEST_CASE("rows are written as their plain form says") {
+TEST_CASE("rows are written as in their plain form") {
     const std::string path = temporary("rows.csv");
     std::vector<LinkSpec> links(2);
     for (std::size_t i = 0; i < links.size(); ++i) {

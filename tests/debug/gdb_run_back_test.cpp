@@ -355,7 +355,7 @@ TEST_CASE("two debuggers: each is answered while the other one's board stands", 
     check_same_run(robots.bench, "plain", "both");
 }
 
-TEST_CASE("a run with a line to the outside has no way back, and says whose it is", "[reverse]") {
+TEST_CASE("a run with a line to the outside has no way back, and names the line", "[reverse]") {
     const TwoRobots robots(5, "uart1 = \"tcp:0\"\n");
     const auto server = robots.debugged("line", "--duration 5 --paced --in-process");
     GdbClient gdb(server->socket());

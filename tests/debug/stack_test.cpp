@@ -131,7 +131,7 @@ TEST_CASE("a dsPIC's deepest stack, its distance to SPLIM, and unwritten reads a
     }
 }
 
-TEST_CASE("a dsPIC's stack that begins below variables and grows over them is told") {
+TEST_CASE("a dsPIC's stack that begins below variables and grows over them is reported") {
     const Workbench bench;
     RandomStream random(Catch::rngSeed(), "stacks over variables");
     const Recursion r(random);

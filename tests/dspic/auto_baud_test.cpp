@@ -27,7 +27,7 @@ void receive(Chip& chip, int unit, std::uint16_t data, double rate, Time start, 
 
 }  // namespace
 
-TEST_CASE("ABAUD leads U1RX to IC1: the bit length of 0x55 is what falling edges say (fact sheet 1)") {
+TEST_CASE("ABAUD leads U1RX to IC1: the bit length of 0x55 is that between falling edges (fact sheet 1)") {
     for (const double rate : {9600.0, 57600.0, 115200.0}) {
         CAPTURE(rate);
         Bench30 bench(R"(

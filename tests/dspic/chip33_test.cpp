@@ -122,7 +122,7 @@ isr:    clr TMR3
     CHECK(*periods.rbegin() <= 4008);
 }
 
-TEST_CASE("OC1 tells its carrier: mode, period and duty, once a change") {
+TEST_CASE("OC1 reports its carrier: mode, period and duty, once a change") {
     Bench33 bench(R"(
         .org 0x200
 main:   mov #84, w0

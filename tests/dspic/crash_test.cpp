@@ -117,7 +117,7 @@ after:  nop
     CHECK(crash.warned("took the MathError trap once, first at pc 0x02"));
 }
 
-TEST_CASE("flash is not written without the unlock sequence, and the report says so") {
+TEST_CASE("flash is not written without the unlock sequence, and the report has it") {
     for (const bool unlocked : {false, true}) {
         CAPTURE(unlocked);
         const Crash crash(std::string(R"(

@@ -81,7 +81,7 @@ TEST_CASE("a frame of eight 16-bit words at FCY/8 takes 1024 cycles, as the e-pu
     CHECK(b.codec.words[2].value == 0);
 }
 
-TEST_CASE("SLOT tells the slot under way, and 0 between DCIEN and the first", "[dci]") {
+TEST_CASE("SLOT is the slot under way, and 0 between DCIEN and the first", "[dci]") {
     DciBench b;
     b.setup(4, 10, 1, 1, 4);  // bit 10 cycles, word 100, frame 400
     b.write(sfr::DCICON1, kEnable | kDjst);
@@ -214,7 +214,7 @@ TEST_CASE("its four pins leave the port while it is on", "[dci]") {
     CHECK(b.codec.drives.back().levels == 0xF000);
 }
 
-TEST_CASE("the 33FJ's tells of words lost by an interrupt of its own, once", "[dci]") {
+TEST_CASE("the 33FJ's reports words lost by an interrupt of its own, once", "[dci]") {
     Bench b(dspic33fj256gp710());
     CodecPins codec;
     Ports ports{b.around, layout_dspic33fj256gp710().ports, codec};

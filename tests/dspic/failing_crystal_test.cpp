@@ -56,7 +56,7 @@ TEST_CASE("with the fail-safe monitor the chip goes on with its RC oscillator, C
     CHECK(bench.chip.pc() == bench.symbols.at("ready"));
 }
 
-TEST_CASE("without the monitor the chip stands still, and the report says so") {
+TEST_CASE("without the monitor the chip stands still, and the report has it") {
     Bench30 bench(kProgram, {}, 0xFFE6);
     bench.go(10'000);
     bench.chip.stop_crystal();

@@ -356,7 +356,7 @@ TEST_CASE("resets leave their cause in RCON") {
     CHECK(rig.data(0x740) == 1u << 7);
 }
 
-TEST_CASE("debugger break words run as NOP and are told once") {
+TEST_CASE("debugger break words run as NOP and are reported once") {
     Rig rig("        .pword 0xda4000\n        .pword 0xdac000\n        .pword 0xda4000\nend:    bra end\n");
     int told = 0;
     rig.core.observer().on_warning = [&](std::string_view, std::uint32_t) { ++told; };

@@ -171,7 +171,7 @@ void check_sum(const Counts& c) {
 
 }  // namespace
 
-TEST_CASE("a counting loop under scans and two timers takes what their periods and handlers say") {
+TEST_CASE("a counting loop under scans and two timers takes as long as by their periods and handlers") {
     const Counts c = count(0x7FFF, true);
     const double elapsed = static_cast<double>(c.elapsed);
     // 15 TAD of (19 + 1)/2 cycles for each of eight channels; PR + 1 counts, T1 behind 1:8.

@@ -78,7 +78,7 @@ std::string coverage(const DeviceInfo& device, int& registers, int& modelled) {
 
 }  // namespace
 
-TEST_CASE("docs/registers.md says what becomes of every register") {
+TEST_CASE("docs/registers.md lists what becomes of every register") {
     std::string text = "# Registers of the dsPICs and what stands behind them\n\n"
                        "Made from the device tables (`emu/dspic/devices`) and the models' own claims; a test "
                        "holds it to them.\n"

@@ -52,7 +52,7 @@ TEST_CASE("a real image of the range-and-bearing board is none for the e-puck") 
     refused(bench, {"--firmware", "robot0.pic=" + image->string()}, {"randb.hex", "another chip"});
 }
 
-TEST_CASE("mistakes in a scenario are told with line and what was perhaps meant") {
+TEST_CASE("mistakes in a scenario are reported with line and what was perhaps meant") {
     const Workbench bench;
     const std::string good = text_of(bench.hello());
     // `with` takes the place of what stands from `key` to the end of its line.

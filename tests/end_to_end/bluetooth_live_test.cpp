@@ -265,7 +265,7 @@ TEST_CASE("a computer's TCP port that is taken ends the run before it begins, na
     ::close(other);
 }
 
-TEST_CASE("an upload to a line whose run is killed says that the other end is gone", "[bluetooth]") {
+TEST_CASE("an upload to a line whose run is killed reports that the other end is gone", "[bluetooth]") {
     if (!has_ptys()) return;
     Run run(talking_robot("pty"));
     const std::string name = run.place("a.computer");

@@ -147,7 +147,7 @@ TEST_CASE("programs are uploaded by the boot loader, on a cable and over the air
     CHECK(received(bench, "o", "air.uart2").ends_with("heard hi\r\n"));
 }
 
-TEST_CASE("what a scenario or an upload says wrongly is refused with its place", "[bluetooth]") {
+TEST_CASE("what is wrong in a scenario or an upload is refused with its place", "[bluetooth]") {
     const Workbench bench;
     const auto refused = [&](const std::string& tables) {
         const auto file =

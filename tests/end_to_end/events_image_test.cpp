@@ -73,7 +73,7 @@ Span span(const std::vector<Row>& rows, const std::string& column, double from, 
 
 }  // namespace
 
-TEST_CASE("BTcom drives as its remote control says") {
+TEST_CASE("BTcom drives by its remote control") {
     const auto image = outside("PUCKLOOP_IMAGES", "BTcom_default.hex");
     if (!image) {
         WARN("no image of BTcom");

@@ -89,7 +89,7 @@ TEST_CASE("a run whose fault never fired has failed, unless that is allowed") {
     CHECK(bench.report("p")["warnings"].empty());
 }
 
-TEST_CASE("a program whose serial port fails says why it ends") {
+TEST_CASE("a program whose serial port fails prints why it ends") {
     const Workbench bench;
     const Ended ended = bench.run("o", {bench.hello(), "--duration", "2.5", "--in-process", "--fault",
                                         "write_error node=robot0.linux errno=EIO begin=2s count=1"});
@@ -107,7 +107,8 @@ TEST_CASE("a fault of the command line is one of the scenario, with the same evi
         bench.hello(fault("from = \"robot0.linux\"\nat = \"2 s\"\ncount = 3\nevery = 5\nskip = 7\n"));
     const Ended from_table = bench.run("table", {table, "--duration", "4", "--in-process"});
     REQUIRE(from_table.status == 0);
-    CHECK_THAT(from_table.out, Contains("fault robot0.uart.drop: fired 3 times, first at 2.") && Contains("(0x"));
+    CHECK_THAT(from_table.out,
+               Contains("fault robot0.uart.drop: fired 3 times, first at 2.") && Contains("(0x"));
     const auto a = bench.report("table"), b = bench.report("words");
     CHECK(a["trace_sha256"] == b["trace_sha256"]);
     CHECK(a["faults"] == b["faults"]);

@@ -44,14 +44,14 @@ bool says(const std::vector<Line>& lines, const std::string& process, const std:
 
 }  // namespace
 
-TEST_CASE("run says nothing of its own work unless it is asked") {
+TEST_CASE("run prints nothing of its own work unless it is asked") {
     const Workbench bench;
     const Ended plain = bench.run("o", {kHello, "--duration", "0.1"});
     CHECK(plain.status == 0);
     CHECK(plain.err.empty());
 }
 
-TEST_CASE("run -v says what was read, where each node lives, how fast it went and why it ended") {
+TEST_CASE("run -v logs what was read, where each node lives, how fast it went and why it ended") {
     const Workbench bench;
     const Ended ended = bench.run("o", {kHello, "--duration", "0.5", "-v"});
     CHECK(ended.status == 0);

@@ -37,7 +37,7 @@ std::unique_ptr<Process> interrupted_run(const Workbench& bench, const std::stri
 
 }  // namespace
 
-TEST_CASE("at --duration programs get SIGTERM, say R and save, the same in both placements") {
+TEST_CASE("at --duration programs get SIGTERM, send R and save, the same in both placements") {
     const Workbench bench;
     const std::string saved = bench.folder() / "saved.xml";
     for (const char* placement : {"--in-process", "--json"}) {
@@ -99,7 +99,7 @@ TEST_CASE("a scenario sends signals at simulated times") {
     CHECK(bench.report("o")["programs_asked_to_end_s"].is_null());
 }
 
-TEST_CASE("programs save their files in a folder of their own where the scenario says so") {
+TEST_CASE("programs save their files in a folder of their own where the scenario asks for one") {
     const Workbench bench;
     const Ended ended = bench.run("o", {bench.hello("folder = \"robot0/files\"\n"), "--duration", "2",
                                         "--linux", PUCKLOOP_POLITE, "handler", "saved.xml"});

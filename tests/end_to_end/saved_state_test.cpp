@@ -83,7 +83,7 @@ TEST_CASE("a state can be saved from a run that began with one") {
     check_same_run(bench, "plain", "third");
 }
 
-TEST_CASE("a state stands in another world, and the report says so") {
+TEST_CASE("a state is loaded in another world, and the run prints where it does not fit") {
     const Workbench bench;
     const fs::path state = saved(bench);
     std::string text = text_of(bench.hello());

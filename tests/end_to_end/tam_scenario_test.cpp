@@ -30,7 +30,8 @@ TEST_CASE("two robots find two TAMs and work and talk in them, the same in every
         REQUIRE_FALSE(robot.entered.empty());
         CHECK(robot.entered.front() > 10);  // it had to look for it
         CHECK(robot.left);
-        CHECK((robot.heard.contains(0x11) || robot.heard.contains(0x22)));  // the coordinator's, through the TAM
+        CHECK((robot.heard.contains(0x11) ||
+               robot.heard.contains(0x22)));  // the coordinator's, through the TAM
     }
     std::set<std::string> reported;
     for (const auto& [tam, words] : values_of(bench, "one", "heard"))
@@ -84,7 +85,7 @@ TEST_CASE("two robots find two TAMs and work and talk in them, the same in every
     }
 }
 
-TEST_CASE("what is wrong with a TAM is said in one line, before the run") {
+TEST_CASE("what is wrong with a TAM is refused in one line, before the run") {
     const Workbench bench;
     const auto refused = [&](const std::string& tam, const std::string& word, const Words& more = {}) {
         const auto file =

@@ -190,7 +190,7 @@ TEST_CASE("exec lists the signals of boards and chips") {
     CHECK(json.back()["unit"] == "V");
 }
 
-TEST_CASE("a newcomer's first line: BTcom says hello and tells its version") {
+TEST_CASE("a newcomer's first line: BTcom prints its greeting and its version") {
     const auto image = exec::real_image("BTcom_default.hex");
     if (!image) return;
     const Workbench bench;

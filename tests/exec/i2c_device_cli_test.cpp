@@ -95,7 +95,7 @@ TEST_CASE("a read that nobody answers is recorded as the FF that the firmware ge
     CHECK_THAT(i2c, !Contains(",read,00,"));
 }
 
-TEST_CASE("the ground sensor on the bench's bus reads what the stimulus says") {
+TEST_CASE("the ground sensor on the bench's bus reads the stimulus") {
     const Workbench bench;
     const std::string image = probe_image(bench);
     const std::string script = bench.file("u.txt", "0.001 60\n0.01 60\n0.02 61\n");

@@ -155,7 +155,7 @@ TEST_CASE("a byte that is not acknowledged ends the line, not the script") {
     CHECK(master.report().reads.empty());
 }
 
-TEST_CASE("a slave that holds SCL for ever ends the script and is told") {
+TEST_CASE("a slave that holds SCL for ever ends the script and is named") {
     Slave slave;
     exec::I2cScriptMaster master(exec::parse_i2c_script("s", "# one\n0.001 r 0x20 0 1\n1 w 0x20 00 00\n"), {},
                                  slave, nullptr);

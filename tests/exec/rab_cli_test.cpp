@@ -92,7 +92,7 @@ TEST_CASE("the range-and-bearing board lies on the bench: text, emitters, log") 
                Contains("demod12") && Contains("peak1 ") && Contains("emitter7"));
 }
 
-TEST_CASE("a script of the bus's master is played, what nobody answers is told") {
+TEST_CASE("a script of the bus's master is played, what nobody answers is reported") {
     const Workbench bench;
     const std::string image = slave_image(bench);
     const std::string script = bench.file("m.txt", "0.005 r 0x20 7 2\n"

@@ -25,7 +25,7 @@ void check_clean(RabBench& bench) {
 
 }  // namespace
 
-TEST_CASE("own RAB firmware: boots, tells so, answers at 0x20 only") {
+TEST_CASE("own RAB firmware: boots, prints it, answers at 0x20 only") {
     for (const std::string& image : {kImage, std::string(PUCKLOOP_FIRMWARE) + "/rab/rab.elf"}) {
         RabBench bench(image);
         for (int i = 0; i < 12; ++i)

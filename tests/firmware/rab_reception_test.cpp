@@ -113,7 +113,7 @@ TEST_CASE("own RAB firmware: bearing, range, peak and sensor by the formulas") {
     CHECK(bench.rig.chip().report().unmodelled.empty());
 }
 
-TEST_CASE("own RAB firmware: a message without light above darkness says: no sensor") {
+TEST_CASE("own RAB firmware: a message without light above darkness has no sensor") {
     RabBench bench(kImage);
     Levels dim{};
     dim[3] = 1;

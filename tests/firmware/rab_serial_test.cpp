@@ -79,7 +79,7 @@ TEST_CASE("own RAB firmware: commands over UART1: register, then as many bytes a
     }
 }
 
-TEST_CASE("own RAB firmware: four hexadecimal digits from a PC are sent and told") {
+TEST_CASE("own RAB firmware: four hexadecimal digits from a PC are sent and printed") {
     RabBench bench(kImage);
     bench.run(0.06);
     bench.rig.take_text(2);

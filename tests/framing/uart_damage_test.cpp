@@ -249,7 +249,7 @@ constexpr const char* kDamages[] = {"glitch", "glitch", "stop", "invert", "false
 
 }  // namespace
 
-TEST_CASE("uart damage: every chip hears what the levels on the line say") {
+TEST_CASE("uart damage: every chip hears the levels on the line") {
     RandomStream random(61, "damaged lines");
     for (const ChipKind& kind : chip_kinds()) {
         int framing = 0, parity = 0, changed = 0;
@@ -279,7 +279,7 @@ TEST_CASE("uart damage: every chip hears what the levels on the line say") {
     }
 }
 
-TEST_CASE("uart damage: the Linux port hears what the levels on the line say") {
+TEST_CASE("uart damage: the Linux port hears the levels on the line") {
     RandomStream random(62, "damaged lines");
     int framing = 0, breaks = 0;
     for (int round = 0; round < 600; ++round) {

@@ -166,7 +166,7 @@ Result run(RandomStream& random, const Format& format, const Side& sends, const 
 
 }  // namespace
 
-TEST_CASE("uart polarity: each receiver hears what the levels of each sender's line say") {
+TEST_CASE("uart polarity: each receiver hears the levels of each sender's line") {
     RandomStream random(Catch::rngSeed(), "polarity");
     const Format formats[] = {{8, 0}, {8, 1}, {8, 2}, {9, 0}, {8, 0, 2}};
     int matched = 0, framing = 0, silent = 0;

@@ -159,7 +159,7 @@ TEST_CASE("the RGB turret takes nine bytes and shows them as signals") {
     CHECK(bench.report().find(R"("frames":1,"wrong_length":1)") != std::string::npos);
 }
 
-TEST_CASE("of two starts at once the lower address wins, the other is told") {
+TEST_CASE("of two starts at once the lower address wins, the other hears that it lost") {
     const PortIndex low = GENERATE(kPic, kLinux);
     Bench bench;
     bench.send(low, I2cPhaseKind::Start, 0xC0, kMillisecond + 2 * kMicrosecond);
@@ -221,7 +221,7 @@ TEST_CASE("a board behind a port answers in its own time, the master sees the st
     CHECK(out[0].port == kRab);
 }
 
-TEST_CASE("the log tells first transfers, absent devices, lost buses and stretches") {
+TEST_CASE("the log has first transfers, absent devices, lost buses and stretches") {
     const auto file = puckloop::tests::scratch_path("puckloop-i2c-log-test.log");
     const auto run = [&](Time longest) {
         Bench bench({.boards = {{"rab", 0x20}}, .log = file.string()});

@@ -71,7 +71,7 @@ constexpr Time k1600 = 625 * cosim::kMicrosecond;
 
 }  // namespace
 
-TEST_CASE("both dies of the LSM330 say who they are, sleep at first and keep what is written") {
+TEST_CASE("both dies of the LSM330 identify themselves, sleep at first and keep what is written") {
     Bench a(Lsm330::Die::Accelerometer), g(Lsm330::Die::Gyroscope);
     CHECK(a.device.listens_to(0x1E));
     CHECK(g.device.listens_to(0x6A));

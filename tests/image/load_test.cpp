@@ -42,7 +42,7 @@ TEST_CASE("Symbols of ELF and COFF know their space") {
     }
 }
 
-TEST_CASE("An image for another chip is told as such") {
+TEST_CASE("An image for another chip is refused as such") {
     const Image elf = parse_image(elf_image(), "e.elf");
     CHECK(error_of([&] { check_fits(elf, kDspic33FJ256GP710); }) ==
           "e.elf: was built for another chip, dspic30f6014a (expected dspic33fj256gp710)");

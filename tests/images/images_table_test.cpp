@@ -68,7 +68,7 @@ constexpr const char* kHead =
 
 }  // namespace
 
-TEST_CASE("docs/images.md says what third-party images do", "[.sweep]") {
+TEST_CASE("docs/images.md lists what third-party images do", "[.sweep]") {
     std::string text = kHead;
     std::set<std::string> absent;
     for (const auto& [title, rows] : {std::pair{"demoGCtronic", images::demo_gctronic_rows()},

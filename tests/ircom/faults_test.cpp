@@ -121,7 +121,7 @@ using Words = std::vector<int>;
 
 }  // namespace
 
-TEST_CASE("without faults robots hear all words, and the report says nothing of faults") {
+TEST_CASE("without faults robots hear all words, and the report has no faults") {
     const Heard heard = listen(talk(3), {});
     CHECK(heard.words(0) == Words{0x20, 0x21, 0x22});
     CHECK(heard.words(1) == Words{0x10, 0x11, 0x12});

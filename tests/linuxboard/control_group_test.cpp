@@ -181,7 +181,7 @@ TEST_CASE("follow: keeps its distance, turns where it lost the leader, then lead
     CHECK(a.left_mm_s == a.right_mm_s);
 }
 
-TEST_CASE("the control loop gives behaviours their neighbours and passes on what they say") {
+TEST_CASE("the control loop gives behaviours their neighbours and passes on what they send") {
     SimulatedLine line(kOwnFirmware);
     line.sensors.battery_ok = 1;
     line.sensors.light.fill(3800);

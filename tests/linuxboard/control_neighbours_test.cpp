@@ -54,7 +54,7 @@ TEST_CASE("a calibration run polls until it has all messages, or gives up") {
     CHECK(clock.time - begun == Approx(5).margin(0.05));
 }
 
-TEST_CASE("neighbours are told by id, averaged, and forgotten after a second") {
+TEST_CASE("neighbours are kept by id, averaged, and forgotten after a second") {
     Neighbourhood around(1);
     const std::vector<RabPacket> first{{.payload = 0x0A02, .bearing = 3.1, .strength = 1000, .time = 10.0},
                                        {.payload = 0x0001, .bearing = 1, .strength = 1000, .time = 10.0},

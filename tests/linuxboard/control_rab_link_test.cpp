@@ -39,7 +39,7 @@ struct Bench {
 
 }  // namespace
 
-TEST_CASE("frames go out every 20 ms, varied by a tenth, once there is something to say") {
+TEST_CASE("frames go out every 20 ms, varied by a tenth, once there is something to send") {
     Bench bench;
     REQUIRE(bench.link.initialise());
     bench.run(1);
@@ -122,7 +122,7 @@ TEST_CASE("the emission power is set again once the board has surely booted") {
     CHECK(settings == 2);
 }
 
-TEST_CASE("no board: told after the wait, a late one is found") {
+TEST_CASE("no board: reported after the wait, a late one is found") {
     Bench absent({.start_wait = 0.3});
     absent.device.refuse = 1000000;
     CHECK_FALSE(absent.link.initialise());
@@ -132,7 +132,7 @@ TEST_CASE("no board: told after the wait, a late one is found") {
     CHECK(late.link.initialise());
 }
 
-TEST_CASE("a board that goes away is told once, and set up again when it is back") {
+TEST_CASE("a board that goes away is reported once, and set up again when it is back") {
     Bench bench;
     REQUIRE(bench.link.initialise());
     bench.link.say(1);

@@ -11,7 +11,7 @@
 using namespace puckloop;
 using protocols::EpuckSensors;
 
-TEST_CASE("several sensor records give their medians, and one garbled one of three or more no say") {
+TEST_CASE("several sensor records give their medians, and one garbled one of three or more has no weight") {
     RandomStream random(51, "record vote");
     for (int round = 0; round < 200; ++round) {
         std::vector<EpuckSensors> records(1 + random.below(5));

@@ -40,7 +40,8 @@ struct Asked {
 
 }  // namespace
 
-TEST_CASE("a program that is asked to end runs its handler, says so to the robot and saves its files") {
+TEST_CASE(
+    "a program that is asked to end runs its handler, sends a last record to the robot and saves its files") {
     Asked asked("handler");
     CHECK(asked.bench.log() ==
           "read -1, Interrupted system call, signal 15\nasked by 15 at 200 ms\nsaved at 200 ms\n");

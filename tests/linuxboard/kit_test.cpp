@@ -63,7 +63,7 @@ TEST_CASE("children run in simulated time and may open the port") {
     CHECK(bench.node().warnings().empty());
 }
 
-TEST_CASE("queues, flush and drain tell what a UART's driver tells") {
+TEST_CASE("queues, flush and drain report what a UART's driver reports") {
     const std::string text =
         run_kit("modem", [](Bench& bench) { bench.send(5 * kMillisecond, "12345678abc"); });
     // 100 bytes are taken at once and take 8.68 ms to leave.

@@ -66,7 +66,7 @@ TEST_CASE("canonical mode gives whole lines, edited") {
     CHECK(line.take(100, settings).empty());
 }
 
-TEST_CASE("damaged characters as IGNPAR, PARMRK, INPCK say") {
+TEST_CASE("damaged characters by IGNPAR, PARMRK, INPCK") {
     termios settings = raw();
     CHECK(damaged(settings, true, false) == "x");
     CHECK(damaged(settings, false, true) == "x");  // not asked to check parity

@@ -35,7 +35,7 @@ TEST_CASE("an exit status other than 0 fails the run") {
                Contains("exited with status 7") && Contains("no robot here"));
 }
 
-TEST_CASE("a program that never opens the port is told so") {
+TEST_CASE("a program that never opens the port is reported") {
     CHECK_THAT(reason_of(spec_for("misbehave", {"never-opens"}), false),
                Contains("without ever opening /dev/ttyS0"));
 }
@@ -56,7 +56,7 @@ TEST_CASE("a polling loop lets time pass") {
     CHECK(std::stol(bench.log()) == Approx(7714).margin(10));
 }
 
-TEST_CASE("signals interrupt or restart a blocked read as sigaction says") {
+TEST_CASE("signals interrupt or restart a blocked read as sigaction asks") {
     linuxboard::LinuxSpec spec = spec_for("misbehave", {"signal"});
     spec.signals = {{10 * kMillisecond, SIGINT}, {40 * kMillisecond, SIGTERM}, {40 * kMillisecond, SIGUSR1}};
     Bench bench(std::move(spec));
@@ -73,7 +73,7 @@ TEST_CASE("an unsupported ioctl is named once with its place") {
                Contains("/dev/ttyS0: ioctl 0x5470") && Contains("test_misbehave"));
 }
 
-TEST_CASE("a program is killed and started anew where the scenario says so") {
+TEST_CASE("a program is killed and started anew where the scenario asks for it") {
     linuxboard::LinuxSpec spec = spec_for("clocks");
     spec.restarts = {{100 * kMillisecond, 50 * kMillisecond}};
     Bench bench(std::move(spec));

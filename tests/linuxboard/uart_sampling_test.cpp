@@ -55,7 +55,7 @@ TEST_CASE("a receiver of twice the rate reads each bit twice, and perhaps a seco
     CHECK_FALSE(got[1].framing_error);
 }
 
-TEST_CASE("parity is checked, breaks are told from framing errors") {
+TEST_CASE("parity is checked, breaks are no framing errors") {
     CHECK_FALSE(sample_frame(frame_of(0x07, 2, 1), {kBit, 8, 2}, 0)[0].parity_error);
     CHECK(sample_frame(frame_of(0x07, 2, 0), {kBit, 8, 2}, 0)[0].parity_error);
     CHECK(sample_frame(frame_of(0x07, 2, 1), {kBit, 8, 1}, 0)[0].parity_error);

@@ -167,7 +167,7 @@ TEST_CASE("a booth that cannot stand there is refused with its line") {
     CHECK(refused(robot_inside).empty());
 }
 
-TEST_CASE("the world's node publishes beams a step later, and its lights shine as the board says") {
+TEST_CASE("the world's node publishes beams a step later, and its lights shine as the board drives them") {
     World world = booth_world(0.21);  // stands in the booth
     world.booths[0].signals = {
         {"barrier_front", 0}, {"barrier_back", 1}, {"led_top_red", 29}, {"led_left_blue", 22}};

@@ -63,7 +63,7 @@ TEST_CASE("a floor that nobody asked to move is still") {
     CHECK_FALSE(motion_with({{"push.rate", 0.1}}).still());
 }
 
-TEST_CASE("pushes come at their rate and with their size, and move the floor as far as they say") {
+TEST_CASE("disturbances come at their rate and with their size, and move the floor by as much") {
     auto floor = motion_with({{"push.rate", 0.5}, {"push.size", 0.02}, {"push.turn", 0.2}});
     constexpr int kSeconds = 2000;
     std::array<double, 3> moved{}, last{};

@@ -25,7 +25,7 @@ World floor_with_edge() {
 
 }  // namespace
 
-TEST_CASE("a late row says what lay under it then") {
+TEST_CASE("a late row reads what lay under it then") {
     const World world = with(floor_with_edge(), {{"ground.height_slope", 0}});
     const Drive drive{500, 500, 1.5};
     const auto plain = run(world, drive);

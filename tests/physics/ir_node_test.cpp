@@ -183,7 +183,7 @@ TEST_CASE("the level stands through the frame and falls once after it") {
     CHECK(levels[2].second == dark);
 }
 
-TEST_CASE("what the medium says does not depend on how time was granted, and repeats bit for bit") {
+TEST_CASE("what the medium sends does not depend on how time was granted, and repeats bit for bit") {
     const auto folder = puckloop::tests::scratch_path("puckloop-ir-node-test");
     std::filesystem::create_directories(folder);
     const auto file = (folder / "ir.csv").string();
@@ -244,7 +244,7 @@ TEST_CASE("frames on the air: who heard what, what overlapped, frames back to ba
     std::filesystem::remove_all(folder);
 }
 
-TEST_CASE("two senders heard at once are told at the third") {
+TEST_CASE("two senders heard at once are reported at the third") {
     const auto folder = puckloop::tests::scratch_path("puckloop-ir-overlap-test");
     std::filesystem::create_directories(folder);
     const auto file = folder / "ir.csv";
@@ -296,7 +296,7 @@ TEST_CASE("boards that change over at one instant make no level that never was")
     CHECK(highest[0] == Approx(highest[1]).margin(1));
 }
 
-TEST_CASE("alone, a board is told its baseline and nothing can reach it") {
+TEST_CASE("alone, a board gets its baseline and nothing can reach it") {
     World world;
     world.arena = rectangular_arena(1, 1);
     world.robots = {rab_robot("a", 0, 0)};
@@ -339,7 +339,7 @@ TEST_CASE("a carrier that never ends follows the robots") {
     CHECK(when == 50 * kMillisecond + 20 * kMicrosecond);
 }
 
-TEST_CASE("the world tells the medium where things are, only when a board is aboard") {
+TEST_CASE("the world publishes to the medium where things are, only when a board is aboard") {
     World world = trio();
     CHECK(pose_signal_names(world)[4] == "b.y");
     CHECK(pose_signal_names(world)[12] == "crate.x");

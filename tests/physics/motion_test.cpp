@@ -14,7 +14,7 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kMetresPerStep = 2 * kPi * 0.0205 / 1000;
 }  // namespace
 
-TEST_CASE("a straight run is as long as its steps say") {
+TEST_CASE("a straight run is as long as its steps") {
     const double speed = GENERATE(100.0, 500.0, 993.0, -500.0);
     WorldModel world(world_with_robot(6, 2));
     Driver driver(world);
@@ -41,7 +41,7 @@ TEST_CASE("single steps move the robot too") {
     CHECK(std::abs(world.state(0).x - asked) < 1.5 * kMetresPerStep);  // the last step may be under way
 }
 
-TEST_CASE("a spin is as wide as steps and axle say") {
+TEST_CASE("a spin is as wide as by steps and axle") {
     const double speed = GENERATE(307.0, 993.0, -500.0);
     WorldModel world(world_with_robot());
     Driver driver(world);
@@ -74,7 +74,7 @@ TEST_CASE("an arc follows wheel radii and axle that were overridden") {
     CHECK(world.state(0).heading - heading0 == Approx(asked).epsilon(0.005));
 }
 
-TEST_CASE("after the last step the robot stands where the steps say, and stays") {
+TEST_CASE("after the last step the robot stands where the steps lead, and stays") {
     WorldModel world(world_with_robot());
     Driver driver(world);
     driver.drive(300, 300, 1.0);

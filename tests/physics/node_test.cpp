@@ -105,7 +105,7 @@ TEST_CASE("the node's messages do not depend on how time was granted, and repeat
     CHECK(first.finish() == second.finish());
 }
 
-TEST_CASE("the report tells where pushes took a robot, and of none where there are none") {
+TEST_CASE("the report has where disturbances took a robot, and none where there are none") {
     World world = busy_world();
     WorldNode left_alone(world);
     run(left_alone, 1000 * kMillisecond, 100 * kMillisecond);
@@ -135,7 +135,7 @@ TEST_CASE("a step is used in the step after it and seen one later") {
     }
 }
 
-TEST_CASE("the log tells what stands where, contacts and poses, however time was granted") {
+TEST_CASE("the log has what stands where, contacts and poses, however time was granted") {
     const TemporaryDirectory directory;
     World world = busy_world();
     world.recording.log = (directory.path / "world.log").string();

@@ -253,7 +253,7 @@ TEST_CASE("the accelerometer feels gravity at rest and the start of motion") {
     CHECK(forward < 2048 - 200);  // forward is -y
 }
 
-TEST_CASE("the battery sags under load, runs down and says when it is low") {
+TEST_CASE("the battery sags under load, runs down and signals when it is low") {
     World world = world_with_robot();
     WorldModel fresh(world);
     const double idle = fresh.robot(0).channels()[kBatteryVoltageChannel];

@@ -93,7 +93,7 @@ TEST_CASE("microphones warm up, and a level ends at full scale") {
     CHECK(left_level(world) == 4095);
 }
 
-TEST_CASE("a world without sound says nothing of it on the links") {
+TEST_CASE("a world without sound sends nothing of it on the links") {
     World world = world_with_robot();
     constexpr std::uint16_t kLevel = 60;
     for (std::uint16_t i = 0; i < 4; ++i)

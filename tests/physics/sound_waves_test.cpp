@@ -142,7 +142,7 @@ TEST_CASE("grants cut anyhow hear the same, and two speakers add", "[sound]") {
                   Approx(value_at(first.at(ear), time) + value_at(second.at(ear), time)).margin(0.2));
 }
 
-TEST_CASE("nothing is said while nothing sounds", "[sound]") {
+TEST_CASE("nothing is published while nothing sounds", "[sound]") {
     World world = hearing_world({robot_at("a", 0, 0), robot_at("b", 0.4, 0)});
     world.speakers = {{.name = "noise", .x = 1.0, .level = 100}};
     CHECK(run(world, {}, 50 * cosim::kMillisecond, cosim::kMillisecond).empty());

@@ -57,7 +57,7 @@ World world_with(std::vector<Speaker> speakers) {
 
 }  // namespace
 
-TEST_CASE("a loudspeaker sounds when its keys say, once or again", "[sound]") {
+TEST_CASE("a loudspeaker sounds when its keys ask for it, once or again", "[sound]") {
     const Speaker once{.name = "horn", .on = 1.0, .off = 1.5};
     CHECK_FALSE(into_sound(once, 0.999));
     CHECK(into_sound(once, 1.25) == 0.25);

@@ -6,7 +6,7 @@ using namespace puckloop;
 using cosim::kMillisecond;
 using pic::MotorLog;
 
-TEST_CASE("a motor's log tells starts, turns and stops, not steps") {
+TEST_CASE("a motor's log has starts, turns and stops, not steps") {
     MotorLog motor("left");
     CHECK_FALSE(motor.still(cosim::kSecond));
     auto line = motor.step(1, cosim::kSecond);

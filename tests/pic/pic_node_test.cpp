@@ -213,7 +213,7 @@ TEST_CASE("however the grants are cut, the same messages leave at the same times
     }
 }
 
-TEST_CASE("the log tells what happened, the same however the grants are cut") {
+TEST_CASE("the log has what happened, the same however the grants are cut") {
     const auto file = puckloop::tests::scratch_path("puckloop-pic-log-test.log");
     const auto messages = run_cut({40 * cosim::kMillisecond}, true, file.string());
     CHECK(messages == run_cut({40 * cosim::kMillisecond}, true));  // looking disturbs nothing
@@ -260,7 +260,7 @@ main:   mov #0x1000, w15
     CHECK(log.find("BSRAM") == log.rfind("BSRAM"));
 }
 
-TEST_CASE("errors on the line are told when they first come and when they have doubled") {
+TEST_CASE("errors on the line are logged when they first come and when they have doubled") {
     const auto file = puckloop::tests::scratch_path("puckloop-pic-log-test.log");
     pic::PicNodeOptions options = quiet();
     options.log = file.string();

@@ -8,7 +8,7 @@
 using namespace puckloop;
 using cosim::SignalDirection;
 
-TEST_CASE("the board's signal list stands where its ids say") {
+TEST_CASE("the board's signal list is in the order of its ids") {
     const auto list = pic::signals();
     REQUIRE(list.size() == pic::kSignalCount);
     CHECK(list[pic::kProximity + 7].name == "proximity7");

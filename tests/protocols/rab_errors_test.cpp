@@ -100,7 +100,7 @@ TEST_CASE("the classification of frame 1234 in figures") {
     CHECK(bits == RabErrorCount{.check = 124, .missed_swap = 55, .missed_followed = 11});
 }
 
-TEST_CASE("lost and added chips of an all-zero frame are found where the format says") {
+TEST_CASE("lost and added chips of an all-zero frame are found where the format has it") {
     // After the preamble 111111 come n times 01.
     // Lost, of the preamble (6): a 0 moves to chip 5. Lost, the 0 of a bit (n): what follows reads 10 10 ...
     // and ends one chip early. Lost, the 1 of a bit: the bit reads 00 with its successor's 0 (n - 1), or is

@@ -51,7 +51,7 @@ constexpr Expected kAfterInit[] = {
 
 }  // namespace
 
-TEST_CASE("A1: the board prints its baselines, sets the potentiometer twice and stands as the sheet says") {
+TEST_CASE("A1: the board prints its baselines, sets the potentiometer twice and stands as in the sheet") {
     const char* const image = GENERATE(rab::kRandb, rab::kErab);
     const auto file = exec::real_image(image);
     if (!file) return;
@@ -117,7 +117,7 @@ TEST_CASE("A3: the carrier has a period of 85 cycles, 42 of them high") {
     CHECK(rig.bench().get("carrier") == Approx(482'352.9));
 }
 
-TEST_CASE("A21: timers interrupt as often as the sheet says") {
+TEST_CASE("A21: timers interrupt as often as in the sheet") {
     const auto file = exec::real_image(rab::kRandb);
     if (!file) return;
     const auto [entry, rate] =

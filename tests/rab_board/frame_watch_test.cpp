@@ -43,7 +43,7 @@ struct Watched {
 
 }  // namespace
 
-TEST_CASE("frames of every size are told with payload and emitters") {
+TEST_CASE("frames of every size are reported with payload and emitters") {
     for (const int size : protocols::kRabSizes)
         for (const std::uint32_t payload : {0x00u, 0x5Au, 0xFFu}) {
             Watched w;

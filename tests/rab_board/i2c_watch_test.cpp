@@ -42,7 +42,7 @@ struct Watched {
 
 }  // namespace
 
-TEST_CASE("what the firmware ignores without a word is told by the watch") {
+TEST_CASE("what the firmware ignores without a word is reported by the watch") {
     Watched w;
     w.write(21, 7);
     REQUIRE(w.lines ==
@@ -82,7 +82,7 @@ TEST_CASE("polls that found a message are counted apart from those that did not"
     CHECK(w.watch.counters().empty_polls == 2);
 }
 
-TEST_CASE("stretched time is summed, long stretches are told at powers of two") {
+TEST_CASE("stretched time is summed, long stretches are reported at powers of two") {
     Watched w;
     for (int i = 0; i < 5; ++i)
         w.write(14, 0x34, 808 * cosim::kMicrosecond);
@@ -95,7 +95,7 @@ TEST_CASE("stretched time is summed, long stretches are told at powers of two") 
                                    "i2c: SCL held for 0.808 ms after 0x34 for register 14, 4 so far"});
 }
 
-TEST_CASE("a board that does not answer is told, a Start for another board is not its business") {
+TEST_CASE("a board that does not answer is reported, a Start for another board is not its business") {
     Watched w;
     w.exchange(I2cPhaseKind::Start, 0x40, 0);
     CHECK(w.lines == std::vector<std::string>{"i2c: address not acknowledged, 1 so far"});

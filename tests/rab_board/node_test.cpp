@@ -218,7 +218,7 @@ TEST_CASE("a board's messages are the same however the grants are cut") {
     }
 }
 
-TEST_CASE("a board's log tells what the firmware swallows, the same however the grants are cut") {
+TEST_CASE("a board's log has what the firmware swallows, the same however the grants are cut") {
     const auto file = puckloop::tests::scratch_path("puckloop-rab-log-test.log");
     run_cut({kEnd}, true, file.string());
     const std::string log = contents(file);
@@ -234,7 +234,7 @@ TEST_CASE("a board's log tells what the firmware swallows, the same however the 
     }
 }
 
-TEST_CASE("a bus that is no faster than it says gets no answer before the earliest time") {
+TEST_CASE("a bus that is no faster than announced gets no answer before the earliest time") {
     rab::RabNodeOptions options = quiet();
     options.fastest_i2c_hertz = 100e3;
     rab::RabNode node(assembled(kFirmware), options);

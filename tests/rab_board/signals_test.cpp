@@ -8,7 +8,7 @@
 using namespace puckloop;
 using cosim::SignalDirection;
 
-TEST_CASE("the range-and-bearing board's signal list stands where its ids say") {
+TEST_CASE("the range-and-bearing board's signal list is in the order of its ids") {
     const auto list = rab::signals();
     REQUIRE(list.size() == rab::kSignalCount);
     CHECK(list[rab::kDemodulator].name == "demod1");

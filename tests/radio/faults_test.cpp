@@ -74,7 +74,7 @@ Run talk(const std::vector<cosim::FaultSpec>& faults, int packets = 20, std::uin
 
 }  // namespace
 
-TEST_CASE("without faults a report says nothing of them") {
+TEST_CASE("without faults a report has none") {
     const Run run = talk({});
     CHECK(run.delivered == 20);
     CHECK(run.report["stations"]["m0"]["mac"]["retries"] == 0);

@@ -151,7 +151,7 @@ TEST_CASE("networks do not hear one another: PAN id and channel") {
     CHECK(air.data_of(1).size() == 2);
 }
 
-TEST_CASE("loss: MAC retries as often as independent losses of frame and acknowledgement say") {
+TEST_CASE("loss: MAC retries as often as by independent losses of frame and acknowledgement") {
     const double loss = 0.3;
     Air air({{0, 0, 0}, {1, 0, 0}}, 30.0, loss, 7);
     air.tell_all();
@@ -178,7 +178,7 @@ TEST_CASE("loss: MAC retries as often as independent losses of frame and acknowl
           Approx(loss).margin(0.06));
 }
 
-TEST_CASE("all lost: the status says so, after all retries, and the queue goes on") {
+TEST_CASE("all lost: the status reports it, after all retries, and the queue goes on") {
     Air air({{0, 0, 0}, {1, 0, 0}});
     air.settings[0].mac_retries = 2;
     air.tell_all();
@@ -201,7 +201,7 @@ TEST_CASE("all lost: the status says so, after all retries, and the queue goes o
     CHECK(fate_of(air, after).outcome.delivery == kDelivered);
 }
 
-TEST_CASE("two modules with one address: both get what is sent to it, and the report says so") {
+TEST_CASE("two modules with one address: both get what is sent to it, and the report has it") {
     Air air({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
     air.settings[2].address = address(1);
     air.tell_all();

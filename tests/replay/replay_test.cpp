@@ -181,7 +181,7 @@ TEST_CASE("a board replays from a state saved in the middle of the run, and show
     }
 }
 
-TEST_CASE("a record without the wanted rows says so, and the trace does not change by recording") {
+TEST_CASE("a record without the wanted rows is refused, and the trace does not change by recording") {
     const std::string out = record("rab_pair", 0.3);
     const std::vector<std::string> all = lines_of(out + "/record.csv"), some = lines_of(out + "/trace.csv");
     CHECK(all.size() > some.size());

@@ -200,7 +200,7 @@ TEST_CASE("an AVR's timer counts in the dump, its pairs of registers are one val
     }
 }
 
-TEST_CASE("what cannot be watched is said in one line") {
+TEST_CASE("what cannot be watched is refused in one line") {
     const std::string out = recorded(".org 0\nforever: bra forever\n");
     const auto fails = [&](const std::string& options, const std::string& text) {
         const Called called =

@@ -123,7 +123,7 @@ TEST_CASE("every mistake in an event is one line with its place") {
               .starts_with("line 15: event 1: 'robot0' is a robot"));
 }
 
-TEST_CASE("commands say what tables say") {
+TEST_CASE("commands do what tables do") {
     const auto move = parse_command("move can to 10 cm, -20 cm heading 90 deg over 2 s");
     CHECK(move.object == "can");
     CHECK(move.to == physics::Point{0.1, -0.2});

@@ -28,7 +28,7 @@ std::string problem_of(const std::string& text) {
 
 }  // namespace
 
-TEST_CASE("hello.toml says what the README promises") {
+TEST_CASE("hello.toml is what the README promises") {
     const Scenario hello = read_scenario(std::string(PUCKLOOP_SCENARIOS) + "/hello.toml");
     REQUIRE(hello.robots.size() == 1);
     CHECK(hello.name == "hello");
@@ -117,7 +117,7 @@ TEST_CASE("an overlay acts on lines and Linux boards of robots that have them") 
                       Catch::Contains("line 2") && Catch::Contains("answer_cut_again does nothing"));
 }
 
-TEST_CASE("what cannot be run is said with its line") {
+TEST_CASE("what cannot be run is refused with its line") {
     CHECK(problem_of("[run]\nduration = \"5 s\"\n") ==
           "line 1: [arena] is missing (expected [arena] with size = [\"1 m\", \"80 cm\"])");
     CHECK(problem_of(kArena) == "line 1: no robot (expected at least one [[robot]] or [[tam]])");

@@ -61,7 +61,7 @@ TEST_CASE("a TAM is read with its defaults, and needs no robot") {
     CHECK(scenario.world.booths[1].reflectivity == Approx(0.8));
 }
 
-TEST_CASE("what a TAM cannot be is said with its line") {
+TEST_CASE("what a TAM cannot be is refused with its line") {
     CHECK(problem_of("") == "accepted");
     CHECK(problem_of("network = 4\n") ==
           "line 7: tam0: network is out of range (expected a whole number from 0 to 3)");

@@ -177,7 +177,7 @@ TEST_CASE("section 4: a robot is noticed 360 to 412 ms after it came, wherever i
     CHECK(most - least > 25);
 }
 
-TEST_CASE("section 4: the battery is 33 times the count, low and empty are said", "[slow]") {
+TEST_CASE("section 4: the battery is 33 times the count, low and empty are reported", "[slow]") {
     NEEDS_IMAGE();
     Ready booth;
     RandomStream random(5, "battery");
@@ -388,8 +388,7 @@ TEST_CASE("section 6: an unescaped 7E costs two packets, errors and unknown fram
     }
 }
 
-TEST_CASE("section 6: a packet has at most 110 bytes of data, whatever its length's high byte says",
-          "[slow]") {
+TEST_CASE("section 6: a packet has at most 110 bytes of data, whatever its length's high byte is", "[slow]") {
     NEEDS_IMAGE();
     Ready booth;
     const auto red = [&] { return static_cast<int>(booth.reports().back().second[1]); };

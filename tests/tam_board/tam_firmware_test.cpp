@@ -41,7 +41,7 @@ TEST_CASE("without a radio module the TAM waits for ever and sends nothing", "[s
     CHECK(ms(reset[1].at - reset[0].at) == Approx(120).epsilon(0.01));
 }
 
-TEST_CASE("the TAM starts up, reports and obeys as its fact sheet says", "[slow]") {
+TEST_CASE("the TAM starts up, reports and obeys as in its fact sheet", "[slow]") {
     NEEDS_IMAGE();
     Booth booth(image_path());
     booth.run_until(11 * cosim::kSecond);

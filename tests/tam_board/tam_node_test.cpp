@@ -202,7 +202,7 @@ TEST_CASE("nothing is sent before the time that the node states") {
     }
 }
 
-TEST_CASE("a board that is off says that it will never send again") {
+TEST_CASE("a board that is off has no earliest output time") {
     TamNodeOptions empty = options();
     empty.battery = 2.5;
     TamNode node(own_image(), empty);

@@ -114,7 +114,7 @@ TEST_CASE("frames epuck encodes actuators and names the fields of records") {
            "\n");
 }
 
-TEST_CASE("frames epuck reads a sensor record and says when it cannot be one") {
+TEST_CASE("frames epuck reads a sensor record and refuses what cannot be one") {
     // Field by field: data, range, bearing 0.25, proximity, battery, acceleration, microphones, light, flags,
     // IRcom.
     const std::string front = "34120A00"

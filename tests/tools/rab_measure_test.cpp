@@ -84,7 +84,7 @@ TEST_CASE("the master waits for each answer and ends with STOP") {
     CHECK(host.due() == kNever);
 }
 
-TEST_CASE("a refused byte ends the transfer and is told") {
+TEST_CASE("a refused byte ends the transfer and is reported") {
     I2cHost host(0x20, 400e3);
     bool told = false;
     host.read(0, 5, [&told](std::optional<std::uint8_t> byte, Time) { told = !byte; });
@@ -96,7 +96,7 @@ TEST_CASE("a refused byte ends the transfer and is told") {
     CHECK(host.refused() == 1);
 }
 
-TEST_CASE("the stage tells when it will speak next") {
+TEST_CASE("the stage gives when it will send next") {
     std::vector<RabReadingRow> rows;
     StagePlan plan;
     plan.distances = {0.1};

@@ -129,7 +129,7 @@ TEST_CASE("a duration or a program, in the file or on the command line, ends a r
     CHECK(node(set_up(scene.request), "left.linux").at("programs") == 2);
 }
 
-TEST_CASE("a record says whether it repeats the run: programs by the wall clock do not") {
+TEST_CASE("a record has whether it repeats the run: programs by the wall clock do not") {
     Scene scene(kTwoRobots);
     const auto repeats = [&] { return node(set_up(scene.request), "world").at("events").at("repeats"); };
     CHECK(repeats() == true);
@@ -163,7 +163,7 @@ TEST_CASE("files beside a linked folder's target are found") {
     fs::remove_all(place);
 }
 
-TEST_CASE("a range-and-bearing board needs its firmware, and says what it does not know") {
+TEST_CASE("a range-and-bearing board needs its firmware, and unknown keys are refused") {
     const std::string text = kTwoRobots;
     const auto with = [&](const std::string& line) {
         return text.substr(0, text.rfind("firmware = \"rab.hex\"")) + line + "\n";

@@ -74,7 +74,7 @@ TEST_CASE("packets come before the run ends, and it goes on when their reader ha
     CHECK(std::filesystem::exists(out + "/report.json"));
 }
 
-TEST_CASE("what cannot be written live is said in one line, a full disk when it is full") {
+TEST_CASE("what cannot be written live is refused in one line, a full disk when it is full") {
     for (const std::string place : {"/nonexistent/x", "/tmp"}) {
         const Called called =
             puckloop::tests::puckloop(run_with("--duration 0.1 --live " + place, scratch("bad")));

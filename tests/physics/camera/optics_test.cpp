@@ -295,7 +295,7 @@ TEST_CASE("a light is seen where it is, as large as it is, and not through bodie
     CHECK(hidden == 20);
 }
 
-TEST_CASE("noise is drawn per frame and camera, as strong as said") {
+TEST_CASE("noise is drawn per frame and camera, as strong as asked") {
     World world = world_with_robot(2.0, 2.0);
     world.arena.walls = false;
     world.parameters["camera.noise"] = 0.02;
