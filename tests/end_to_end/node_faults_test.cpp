@@ -264,3 +264,13 @@ TEST_CASE("a main board whose receiver overran unnoticed stops, hears again and 
     CHECK(first < at + 1.6);
     CHECK(journey(bench.csv("o", "trajectory.csv"), 4.8).length > 0.02);
 }
+
+TEST_CASE("a fault of the range-and-bearing board's supply leaves the main board alone") {
+    const Workbench bench;
+    const Ended ended = bench.run(
+        "o", {kSource + "/scenarios/rab_pair.toml", "--duration", "0.7", "--in-process", "--fault",
+              "battery node=follower.rab profile=\"0 s 3.9 V, 100 ms 2.5 V\" begin=400ms for=200ms"});
+    REQUIRE(ended.status == 0);
+    CHECK_THAT(ended.out, Contains("reset: follower.rab, brown-out (BOR) once") &&
+                              !Contains("reset: follower.pic") && !Contains("reset: leader"));
+}

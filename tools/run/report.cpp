@@ -4,6 +4,7 @@
 #include "tools/run/fault_results.h"
 #include "tools/run/states/state_plan.h"
 #include "tools/run/stats/stats_plan.h"
+#include "tools/run/supply_resets.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -165,7 +166,8 @@ std::string summary(const RunSetup& setup, const cosim::Outcome& outcome) {
         fmt::format("{:.3f} s simulated in {:.1f} s ({:.1f}x real time)",
                     cosim::to_seconds(outcome.simulated), outcome.wall_s, real_time_factor(setup, outcome));
     if (outcome.success && !outcome.text.empty()) text += fmt::format("\nended: {}", outcome.text);
-    text += states_summary(setup, outcome) + stats_summary(outcome) + faults_summary(outcome);
+    text += states_summary(setup, outcome) + stats_summary(outcome) + faults_summary(outcome) +
+            supply_resets_summary(outcome);
     const std::vector<std::string> warnings = warnings_of(setup, outcome);
     for (std::size_t i = 0; i < warnings.size() && i < kShown; ++i)
         text += fmt::format("\nwarning: {}", warnings[i]);
