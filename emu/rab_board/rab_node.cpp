@@ -28,7 +28,8 @@ RabNode::RabNode(const image::Image& image, const RabNodeOptions& options)
       ports_{{"uart1", cosim::PortKind::Uart},
              {"uart2", cosim::PortKind::Uart},
              {"i2c", cosim::PortKind::I2c},
-             {"ir", cosim::PortKind::Signals}},
+             {"ir", cosim::PortKind::Signals},
+             {"world", cosim::PortKind::Signals}},
       board_(options.board, *this),
       log_(options.log, image) {
     can_.add(options.board.can, ports_);
@@ -146,6 +147,7 @@ cosim::Time RabNode::lookahead_when_idle() const {
 }
 
 cosim::Time RabNode::earliest_output(cosim::PortIndex port) const {
+    if (port == kWorld) return cosim::kNever;
     if (port == kI2c) {
         const cosim::Time earliest = chip_->earliest_i2c_slave_answer(kI2cUnit);
         return std::max(granted_, faults_ && earliest != cosim::kNever
@@ -156,6 +158,7 @@ cosim::Time RabNode::earliest_output(cosim::PortIndex port) const {
 }
 
 cosim::Time RabNode::lookahead(cosim::PortIndex port) const {
+    if (port == kWorld) return cosim::kNever;
     const bool idle = chip_->earliest_i2c_slave_answer(kI2cUnit) == cosim::kNever;
     return port == kI2c && idle ? lookahead_when_idle() : 0;
 }

@@ -34,8 +34,9 @@ class RabNode : public cosim::StatefulNode, private BoardListener, private chip:
   public:
     static constexpr cosim::PortIndex kUart1 = 0;
     static constexpr cosim::PortIndex kUart2 = 1;
-    static constexpr cosim::PortIndex kI2c = 2;  ///< a device port of cosim/i2c/i2c_bus.h
-    static constexpr cosim::PortIndex kIr = 3;   ///< signals
+    static constexpr cosim::PortIndex kI2c = 2;    ///< a device port of cosim/i2c/i2c_bus.h
+    static constexpr cosim::PortIndex kIr = 3;     ///< signals: light
+    static constexpr cosim::PortIndex kWorld = 4;  ///< signals: the robot's battery
 
     /// Throws InputError if the image does not fit the chip, or a fault neither.
     RabNode(const image::Image& image, const RabNodeOptions& options);

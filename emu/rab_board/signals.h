@@ -1,7 +1,7 @@
 #pragma once
 // The named signals of the range-and-bearing board. Ids are indexes into signals(); the same list serves the
-// bench's --stimulus and --list-signals, and the `ir` port of the board's node. Emitters, demodulators and
-// peak detectors carry hardware numbers 1..12; id + 0 is number 1 (index 0 in the firmware).
+// bench's --stimulus and --list-signals, and the `ir` and `world` ports of the board's node. Emitters,
+// demodulators and peak detectors carry hardware numbers 1..12; id + 0 is number 1 (index 0 in the firmware).
 
 #include "cosim/core/signal_info.h"
 

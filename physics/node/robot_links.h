@@ -1,5 +1,5 @@
 #pragma once
-// The world's ends of the two links to a robot's board and to its ground sensor.
+// The world's ends of the links to a robot's board, its ground sensor and its range-and-bearing board.
 
 #include "cosim/core/message.h"
 #include "physics/description/channels.h"
@@ -27,6 +27,7 @@ struct RobotLinks {
         std::uint16_t id = 0;
         double last = std::nan("");       ///< as published
         double unrounded = std::nan("");  ///< what it was made of
+        double quantum = 0.0;             ///< 0: the channel's own
     };
     std::vector<Output> outputs;
 
@@ -37,5 +38,10 @@ struct RobotLinks {
 
 /// `board` is the port of the link to its board; the ground sensor's is the next.
 RobotLinks links_of(const Robot& robot, cosim::PortIndex board);
+
+/// What its range-and-bearing board hears of the world by a link: the battery. In steps of 10 mV, as all that
+/// it does with it is to fail below 2.5 V, and each message keeps that board from running ahead.
+bool hears_battery(const Robot& robot);
+void add_battery(RobotLinks& links, const Robot& robot, cosim::PortIndex port);
 
 }  // namespace puckloop::physics

@@ -106,6 +106,12 @@ WorldNode::Impl::Impl(World description, EventPlan plan, std::unique_ptr<Command
             for (std::size_t k = 0; k < kShapeSignals; ++k)
                 scene[ids.shape(true, i) + k] = values_of(model.fixed(i))[k];
     }
+    for (std::size_t i = 0; i < links.size(); ++i) {
+        const Robot& robot = model.description().robots[i];
+        if (!hears_battery(robot)) continue;
+        add_battery(links[i], robot, static_cast<cosim::PortIndex>(ports.size()));
+        ports.push_back({robot.name + ".rab", cosim::PortKind::Signals});
+    }
     for (const auto& booth : model.description().booths) {
         if (booths.empty()) first_booth = static_cast<cosim::PortIndex>(ports.size());
         booths.emplace_back(booth, static_cast<cosim::PortIndex>(ports.size()));

@@ -265,6 +265,45 @@ TEST_CASE("a main board whose receiver overran unnoticed stops, hears again and 
     CHECK(journey(bench.csv("o", "trajectory.csv"), 4.8).length > 0.02);
 }
 
+TEST_CASE("a dip of a robot's battery resets both of its boards, and the summary names them") {
+    const Workbench bench;
+    // Of some 4 V: less than 1.85 V are left behind the regulators.
+    Words words{kSource + "/scenarios/rab_pair.toml",
+                "--duration",
+                "0.9",
+                "--no-cache",
+                "--fault",
+                "sag name=dip node=leader.pic volts=2.4V begin=600ms for=20ms"};
+    const Ended many = bench.run("many", words);
+    REQUIRE(many.status == 0);
+    words.emplace_back("--in-process");
+    const Ended one = bench.run("one", words);
+    REQUIRE(one.status == 0);
+    check_same_run(bench, "one", "many");
+    for (const Ended& ended : {many, one}) {
+        CHECK_THAT(ended.out, Contains("reset: leader.pic, ") && Contains("reset: leader.rab, "));
+        CHECK_THAT(ended.out, !Contains("reset: follower"));
+        CHECK_THAT(ended.out, !Contains("warning: leader.rab: crashed"));
+    }
+    const auto report = bench.report("one");
+    CHECK(fault_named(report, "dip")["fired"] == 1);
+    for (const char* board : {"leader.pic", "leader.rab"}) {
+        INFO(board);
+        const auto& resets = report["nodes"][board]["resets"];
+        REQUIRE(resets.size() == 2);
+        const double instant = resets[1]["time_s"];
+        CHECK(instant >= 0.6);
+        CHECK(instant < 0.6001);
+        const std::string cause = resets[1]["cause"];
+        CHECK((cause == "POR" || cause == "BOR"));
+        CHECK_THAT(one.out, Contains(fmt::format("({}) once, first at pc {}", cause,
+                                                 resets[1]["pc"].get<std::string>())) &&
+                                Contains(fmt::format("({:.6f} s)", instant)));
+    }
+    CHECK(report["nodes"]["follower.pic"]["resets"].size() == 1);
+    CHECK(report["nodes"]["follower.rab"]["resets"].size() == 1);
+}
+
 TEST_CASE("a fault of the range-and-bearing board's supply leaves the main board alone") {
     const Workbench bench;
     const Ended ended = bench.run(
@@ -273,4 +312,24 @@ TEST_CASE("a fault of the range-and-bearing board's supply leaves the main board
     REQUIRE(ended.status == 0);
     CHECK_THAT(ended.out, Contains("reset: follower.rab, brown-out (BOR) once") &&
                               !Contains("reset: follower.pic") && !Contains("reset: leader"));
+}
+
+TEST_CASE("an empty battery resets the range-and-bearing board, as the world has it") {
+    const Workbench bench;
+    // 3.76 V as it is charged; empty, the load leaves 2.5 V of its 3 V, 2.4 V behind the regulator.
+    const auto scenario = bench.hello("[robot.rab]\nfirmware = \"" + kSource +
+                                      "/firmware/rab/rab.hex\"\n[parameters]\n\"battery.resistance\" = 1.0\n"
+                                      "[[event]]\nat = \"500 ms\"\nset = \"robot0\"\ncharge = 0.0\n"
+                                      "[[event]]\nat = \"600 ms\"\nset = \"robot0\"\ncharge = 0.9\n");
+    Words words{scenario, "--duration", "1.3", "--no-cache"};
+    REQUIRE(bench.run("many", words).status == 0);
+    words.emplace_back("--in-process");
+    const Ended one = bench.run("one", words);
+    REQUIRE(one.status == 0);
+    check_same_run(bench, "one", "many");
+    CHECK_THAT(one.out, Contains("reset: robot0.rab, brown-out (BOR) once"));
+    const auto resets = bench.report("one")["nodes"]["robot0.rab"]["resets"];
+    REQUIRE(resets.size() == 2);
+    CHECK(resets[1]["time_s"].get<double>() ==
+          Approx(0.501).margin(0.0011));  // the world's step, and the next
 }

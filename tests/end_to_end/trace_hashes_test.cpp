@@ -29,13 +29,13 @@ struct Known {
 constexpr Known kKnown[] = {
     {"hello.toml", "5", "266c8a6dab88540b5befac0ed6b6889b7a0cf58dd9da64d41e3a8a498036f7a1"},
     {"own_binaries.toml", "43", "1c6b7558fc8e29823338fec229f0c037d6aa07db850fd5b582e79c542083f651"},
-    {"own_rab.toml", "0.5", "b9baca2751d654b335733fa3fee7136cab335dede69d2983167f575bfcc10b9a"},
-    {"rab_pair.toml", "1", "4e001cb1a1d911ef84b77bbebd375375fc71c312334d33baac269854bf2b69b1"},
-    {"swarm.toml", "0.5", "f2d8c1ef3d9c8f9006a387ecb101d7b3b1bfeb5fd0a15fcc38b14109a4c9eb55"},
+    {"own_rab.toml", "0.5", "2f6692dc4362cd58389d9c25f4cf0d2bf9b65c13f7602467f88c2979ea6c04e8"},
+    {"rab_pair.toml", "1", "1533f1a2f699bdc6a8105fdd6db95d743fe007871641cbaa99d93e5dc82e3280"},
+    {"swarm.toml", "0.5", "aedb6ef2b49a95b514811a8f52813f26cea64ecf1043282b06a4334700d4a95f"},
     {"calibrate_ground.toml", "54", "5265569d6cec09b7290a0afdcd3bfdecf9847a904ef7ac9246e4a67484d3c0a4"},
     {"calibrate_light.toml", "43", "93e1dcbb627b081003a8b0c2188cd07879cb93f7e62f49bf99473cabf89b96c0"},
     {"calibrate_proximity.toml", "54", "fa9df6c81dfd0b631c5b20ac6c235186d7692cccf48eabd99383e6d1e26cf498"},
-    {"calibrate_rab.toml", "0.5", "59c119317367c1aa47554a4529ab6d23af709af407b0f83fbe291799b3ed64a6"},
+    {"calibrate_rab.toml", "0.5", "0cd1b26981d7f50c2084f536c0dbe8c807219bcf6b9f932925e38366f4446b34"},
 };
 
 // Robots, TAMs, their modules' mesh, cameras, infra-red words and a coordinator together. The TAMs' firmware

@@ -214,3 +214,46 @@ TEST_CASE("recordings: rows at the period, readable at any time, refused directo
         CHECK_THROWS_WITH(WorldNode(world), Catch::Contains("trajectory.csv") && Catch::Contains("space"));
     }
 }
+
+TEST_CASE(
+    "a range-and-bearing board hears of the battery in steps of 10 mV, other boards of every millivolt") {
+    World world = busy_world();
+    constexpr std::uint16_t kBattery = 51;
+    world.robots[1].rab = true;
+    world.robots[1].rab_signals["battery_v"] = kBattery;
+    WorldNode node(world);
+    const auto named = [&](const std::string& name) {
+        const auto ports = node.ports();
+        const auto found = std::find_if(ports.begin(), ports.end(),
+                                        [&](const cosim::Port& port) { return port.name == name; });
+        REQUIRE(found != ports.end());
+        return static_cast<cosim::PortIndex>(found - ports.begin());
+    };
+    const cosim::PortIndex board = named("e2.board"), rab = named("e2.rab");
+    for (const cosim::Port& port : node.ports())
+        CHECK(port.name != "e1.rab");
+    std::vector<Message> sent;
+    node.advance(4 * cosim::kSecond, steps_for(4 * cosim::kSecond), sent);
+    double exact = 0.0, coarse = 0.0;
+    int changes = 0;
+    Time last = 0;
+    const auto agree = [&] {
+        if (last > 0) CHECK(coarse == Approx(std::round(exact * 100) / 100).margin(0.0101));
+    };
+    for (const Message& message : sent) {
+        const auto* signal = std::get_if<Signal>(&message.payload);
+        if (signal == nullptr) continue;
+        if (message.time != last) agree();
+        last = message.time;
+        if (message.port == board && signal->id == kBatteryVoltageChannel) exact = signal->value;
+        if (message.port != rab) continue;
+        CHECK(signal->id == kBattery);
+        CHECK(signal->value != coarse);
+        CHECK(std::abs(signal->value * 100 - std::round(signal->value * 100)) < 1e-6);
+        coarse = signal->value;
+        ++changes;
+    }
+    agree();
+    CHECK(changes >= 2);  // the first one, and the motors' load
+    CHECK(changes < 100);
+}

@@ -157,11 +157,12 @@ using tests::contents;
 
 TEST_CASE("the ports of a range-and-bearing board are those that links name") {
     rab::RabNode node(assembled(kFirmware), quiet());
-    REQUIRE(node.ports().size() == 4);
+    REQUIRE(node.ports().size() == 5);
     CHECK(node.ports()[rab::RabNode::kUart1].name == "uart1");
     CHECK(node.ports()[rab::RabNode::kUart2].name == "uart2");
     CHECK(node.ports()[rab::RabNode::kI2c].name == "i2c");
     CHECK(node.ports()[rab::RabNode::kIr].name == "ir");
+    CHECK(node.ports()[rab::RabNode::kWorld].name == "world");
     CHECK(node.name() == "robot0.rab");
 }
 

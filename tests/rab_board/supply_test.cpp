@@ -64,7 +64,8 @@ struct Supplied {
         node.advance(until, inbox, out);
     }
     static std::pair<Time, Message> set(SignalId id, double value, Time at) {
-        return {at, Message{at, RabNode::kIr, cosim::Signal{id, value}}};
+        const auto port = id == kBattery ? RabNode::kWorld : RabNode::kIr;
+        return {at, Message{at, port, cosim::Signal{id, value}}};
     }
     int rcon() { return node.chip().peek_data(0x0C00); }
     int count() { return node.chip().peek_data(0x0C02); }

@@ -43,6 +43,22 @@ ordered_json report_of_node(const cosim::Outcome::NodeReport& node) {
     return node.json.empty() ? ordered_json() : ordered_json::parse(node.json, nullptr, false);
 }
 
+/// The range-and-bearing board that a fault of its robot's battery reaches, too; empty: none. The battery is
+/// the main board's, and the fault's evidence is from there.
+std::string shared_with(const RunSetup& setup, const cosim::FaultSpec& fault) {
+    if (fault.kind != "sag" && fault.kind != "battery") return "";
+    for (const scenarios::RobotBoards& robot : setup.scenario.robots)
+        if (robot.rab && fault.node == robot.name + ".pic") return robot.name + ".rab";
+    return "";
+}
+
+bool has_evidence(const RunSetup& setup, const std::string& node, const std::string& name) {
+    const auto& faults = setup.scenario.faults;
+    return std::none_of(faults.begin(), faults.end(), [&](const cosim::FaultSpec& fault) {
+        return fault.name == name && shared_with(setup, fault) == node;
+    });
+}
+
 ordered_json to_json(const cosim::Firing& firing) {
     ordered_json json{{"time_ps", firing.time}, {"index", firing.index}};
     if (!firing.from.empty()) json["from"] = firing.from;
@@ -56,9 +72,13 @@ void hand_out_faults(RunSetup& setup) {
     auto& faults = setup.scenario.faults;
     cosim::name_faults(faults);
     std::map<std::string, ordered_json> lists;
+    const auto hand_to = [&](const std::string& node, std::size_t f) {
+        if (!node.empty()) lists[node].push_back(cosim::fault_to_json(faults[f], setup.scenario.seed, f));
+    };
     for (std::size_t f = 0; f < faults.size(); ++f)
-        if (!faults[f].node.empty())
-            lists[faults[f].node].push_back(cosim::fault_to_json(faults[f], setup.scenario.seed, f));
+        hand_to(shared_with(setup, faults[f]), f);  // first: of two profiles a board's own holds
+    for (std::size_t f = 0; f < faults.size(); ++f)
+        hand_to(faults[f].node, f);
     for (const auto& [name, list] : lists) {
         const auto node = std::find_if(setup.nodes.begin(), setup.nodes.end(),
                                        [&](const cosim::NodeSpec& one) { return one.name == name; });
@@ -76,7 +96,8 @@ void take_fault_results(const RunSetup& setup, cosim::Outcome& outcome) {
         if (!report.is_object() || !report.contains("faults")) continue;
         for (const ordered_json& result : report["faults"])
             for (cosim::FaultReport& fault : outcome.faults)
-                if (fault.name == result.value("name", "")) cosim::add_fault_result(fault, result);
+                if (fault.name == result.value("name", "") && has_evidence(setup, node.name, fault.name))
+                    cosim::add_fault_result(fault, result);
     }
     if (!outcome.success) return;
     std::size_t others = 0;

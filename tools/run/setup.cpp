@@ -119,6 +119,10 @@ void add_rab(RunSetup& setup, const RobotBoards& robot) {
     air.signal_names = names_of(rab::signals());
     air.record_from_a = air.record_from_b = setup.scenario.record_ir;
     setup.links.push_back(air);
+    cosim::LinkSpec supply{robot.name + ".supply", {rab, "world"}, {"world", rab}};
+    supply.signal_names = air.signal_names;
+    supply.record_from_b = false;
+    setup.links.push_back(supply);
     if (!robot.linux_board)
         setup.warnings.push_back(fmt::format("{}: no Linux board: nobody asks the range-and-bearing board "
                                              "anything, unless the main board's firmware does",
