@@ -56,6 +56,7 @@ void LinuxNode::start_program() {
     ++starts_;
     ++processes_;
     first_killed_.clear();
+    first_gone_at_.reset();
     last_number_ = wire::kFirstProcess;
     clients_.clear();
     auto process = launcher_->start();  // may throw: there is no client without a process

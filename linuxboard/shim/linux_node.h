@@ -171,6 +171,7 @@ class LinuxNode : public cosim::Node, public cosim::Suspendable {
     // linux_node_end.cpp: how it ends
     void program_ended(cosim::Time now);
     void first_ended(cosim::Time now);
+    void look_at_first(cosim::Time now);
     void notice_first_killed(cosim::Time now);
     std::string with_first_killed(std::string how) const;
     void ended_winding_up(cosim::Time now);
@@ -220,6 +221,9 @@ class LinuxNode : public cosim::Node, public cosim::Suspendable {
     bool crashed_ = false;
     int killed_by_ = 0;
     std::string first_killed_;  ///< while others of its processes went on, and when; empty: it was not
+    /// When it was noticed that somebody outside of simulated time had killed it.
+    std::optional<cosim::Time> first_gone_at_;
+    cosim::Time next_look_ = 0;
 };
 
 }  // namespace puckloop::linuxboard

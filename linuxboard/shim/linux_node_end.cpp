@@ -18,6 +18,8 @@ namespace {
 constexpr std::size_t kMostWarnings = 100;
 /// For what is left of a program once those of its processes that handle the end signal have ended.
 constexpr Time kRestPause = 100 * cosim::kMillisecond;
+/// So often it is looked whether the first process is still there.
+constexpr Time kLookPause = 10 * cosim::kMillisecond;
 
 std::string signal_name(int signal) {
     const char* name = sigabbrev_np(signal);
@@ -39,14 +41,27 @@ void LinuxNode::end_run(Time now, bool success, std::string reason, std::uint32_
 void LinuxNode::first_ended(Time now) {
     const bool asked = end_signal_ != 0 && killed_by_ == end_signal_;
     if (killed_by_ == 0 || asked) return;
-    first_killed_ = fmt::format("its first process {} at {:.6f} s", end_, cosim::to_seconds(now));
+    first_killed_ = first_gone_at_
+                        ? fmt::format("its first process {}, noticed at {:.6f} s", end_,
+                                      cosim::to_seconds(*first_gone_at_))
+                        : fmt::format("its first process {} at {:.6f} s", end_, cosim::to_seconds(now));
     warn(fmt::format("{}: {}, and {} more went on", spec_.program, first_killed_, clients_.size()));
 }
 
-/// One that waited for simulated time, and was killed from outside of it, has not been heard of since.
+/// One that waits for simulated time and is killed from outside of it is not heard of before it would go on.
+/// Only then is it taken out: what it may have woken by its end was not announced any earlier.
+void LinuxNode::look_at_first(Time now) {
+    if (now < next_look_) return;
+    next_look_ = now + kLookPause;
+    const Client* first = client_at(0);
+    if (!first_gone_at_ && first != nullptr && first->process->was_killed()) first_gone_at_ = now;
+}
+
 void LinuxNode::notice_first_killed(Time now) {
+    next_look_ = 0;
+    look_at_first(now);
     Client* first = client_at(0);
-    if (first != nullptr && first->process->was_killed()) client_ended(*first, now);
+    if (first != nullptr && first_gone_at_) client_ended(*first, now);
 }
 
 /// How the program ended, and that its first process had been killed before.
@@ -59,6 +74,7 @@ void LinuxNode::program_ended(Time now) {
     if (end_signal_ != 0) return ended_winding_up(now);
     const bool comes_back = next_restart_ < spec_.restarts.size() || faults_.restarts_after(now);
     std::string reason = fmt::format("{} {}", spec_.program, end_);
+    if (first_gone_at_) reason += fmt::format(", noticed at {:.6f} s", cosim::to_seconds(*first_gone_at_));
     const bool opened = kernel_.tty_was_opened() || kernel_.i2c_was_opened() || kernel_.camera_was_opened();
     if (!opened) {
         reason += spec_.tty.empty() ? " without opening its I2C bus"

@@ -27,6 +27,7 @@ bool LinuxNode::begin(Time until, std::span<const Message> inbox, std::vector<Me
     inbox_.erase(inbox_.begin(), inbox_.begin() + static_cast<std::ptrdiff_t>(inbox_next_));
     inbox_next_ = 0;
     inbox_.insert(inbox_.end(), inbox.begin(), inbox.end());
+    look_at_first(until_);
     until_ = until;
     waking_at_.reset();
     outbox_ = &outbox;
