@@ -62,3 +62,27 @@ TEST_CASE("a board of a run under a debugger, and the trace of the run without o
     CHECK_THAT(text_of(bench.folder + "/wrong"),
                Contains("'world=:0' names no board") && Contains("robot0.pic"));
 }
+
+TEST_CASE("a run that its debugger kills names the instant at which the board stood, in every placement") {
+    const Workbench bench;
+    const std::string scenario =
+        bench.file("one.toml", std::string("[arena]\nsize = [\"1 m\", \"1 m\"]\n") + robot("robot0", 20));
+    for (const char* placement : {"", "--in-process "}) {
+        tests::GdbServer server(bench.folder,
+                                "run " + scenario + " --duration 30 --no-cache " + placement + "--out " +
+                                    bench.folder + "/killed --gdb robot0.pic=unix:{}",
+                                tests::GdbServer::Whole{});
+        tests::GdbClient gdb(server.socket());
+        CHECK(gdb.ask("Z2,800800,400") == "OK");
+        CHECK_THAT(gdb.ask("c"), StartsWith("T05watch:800"));
+        std::string instant = gdb.monitor("time");
+        REQUIRE(instant.ends_with(" s\n"));
+        instant.pop_back();
+        CHECK(gdb.ask("vKill;1") == "OK");
+        CHECK(server.wait() == 1);
+        CHECK_THAT(server.err(),
+                   Contains("node robot0.pic stopped at " + instant + ": killed by its debugger\n"));
+        const auto report = nlohmann::json::parse(text_of(bench.folder + "/killed/report.json"));
+        CHECK(report.at("simulated_s") == Approx(std::stod(instant) + 0.01));  // the stop latency
+    }
+}

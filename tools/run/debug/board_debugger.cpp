@@ -138,7 +138,7 @@ bool BoardDebugger::attend() {
 
 void BoardDebugger::resume(Resume how) {
     stands_ = false;
-    if (how == Resume::Kill) killed_ = true;
+    if (how == Resume::Kill) killed_at_ = clock_->time_of(chip_->cycle());
     if (how == Resume::Kill || how == Resume::Detach) control_.clear();
     if (how == Resume::ReverseStep || how == Resume::ReverseContinue)
         run_.go_back(*this, how == Resume::ReverseStep);  // returns only where there is nothing before

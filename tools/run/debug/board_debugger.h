@@ -39,7 +39,8 @@ class BoardDebugger final : private debug::Debuggee, private chip::Instrument {
     void end_advance(cosim::Time until);
     /// The end of the board's last advance.
     cosim::Time granted() const { return granted_(); }
-    bool killed() const { return killed_; }
+    /// Where the board stood when its debugger killed the run.
+    std::optional<cosim::Time> killed_at() const { return killed_at_; }
     void over(int status) { session_.over(status); }
 
     // Of all debuggers of the run (tools/run/debug/run_debuggers.h).
@@ -107,7 +108,7 @@ class BoardDebugger final : private debug::Debuggee, private chip::Instrument {
     debug::GdbSession session_;
     bool met_ = false;  ///< a debugger was here
     bool stands_ = false, inside_ = false;
-    bool killed_ = false;
+    std::optional<cosim::Time> killed_at_;
     bool reset_ = false;          ///< pressed between two advances: the next one begins with it
     bool anew_ = false;           ///< pressed at the present instruction, which is not executed any more
     std::uint64_t begun_at_ = 0;  ///< the present instruction

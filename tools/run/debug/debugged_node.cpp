@@ -48,8 +48,6 @@ class DebuggedNode final : public cosim::StatefulNode {
     void advance(cosim::Time until, std::span<const cosim::Message> inbox,
                  std::vector<cosim::Message>& outbox) override {
         debugger_.look_at(debugger_.begin_advance(reached_, outbox));
-        if (debugger_.killed() && !stop_)
-            stop_ = cosim::Stop{until, false, std::string(name()) + ": ended by the debugger"};
         // What the debugger changed between two advances it changes there again.
         debugger_.repeat_changes(reached_);
         while (const auto at = debugger_.next_change(until)) {
@@ -64,6 +62,7 @@ class DebuggedNode final : public cosim::StatefulNode {
         board_->advance(until, inbox, outbox);
         reached_ = until;
         debugger_.end_advance(until);
+        if (const auto at = debugger_.killed_at()) stop_ = cosim::Stop{*at, false, "killed by its debugger"};
     }
 
   private:
