@@ -1,5 +1,5 @@
-// `puckloop bench bluetooth` and `bench sound` as their users meet them: what is missing is named before any
-// work, results are where they were asked for.
+// `puckloop bench`, `bench bluetooth` and `bench sound` as their users meet them: what can be measured is
+// explained, what is missing is named before any work, results are where they were asked for.
 
 #include "tests/scratch.h"
 #include "tests/tools/shell.h"
@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <regex>
+#include <sstream>
 
 using namespace puckloop::tests;
 using Catch::Matchers::Contains;
@@ -35,6 +37,29 @@ void check_refused(const std::string& arguments, const std::string& expected) {
 }
 
 }  // namespace
+
+TEST_CASE("the help of puckloop bench explains every case on a line of its own") {
+    const Result help = run_puckloop("bench --help");
+    REQUIRE(help.status == 0);
+    std::smatch list;
+    REQUIRE(std::regex_search(help.output, list, std::regex("--case TEXT:\\{([a-z0-9,]+)\\}")));
+    // "  wait      main boards whose ..."
+    const auto explained = [&](const std::string& name) {
+        std::istringstream lines(help.output);
+        for (std::string line; std::getline(lines, line);) {
+            line.erase(0, line.find_first_not_of(' '));
+            if (line.starts_with(name + "  ")) return line.find_last_not_of(' ') > name.size() + 10;
+        }
+        return false;
+    };
+    std::istringstream names(list[1]);
+    int cases = 0;
+    for (std::string name; std::getline(names, name, ','); ++cases) {
+        INFO(name);
+        CHECK(explained(name));
+    }
+    CHECK(cases >= 14);
+}
 
 TEST_CASE("benchmarks with robots ask for the program that they need", "[bluetooth]") {
     check_refused("bench bluetooth --boards", "--boards and --firmware IMAGE");

@@ -9,7 +9,6 @@
 
 #include <cstdlib>
 #include <functional>
-#include <utility>
 
 namespace puckloop::tools {
 
@@ -66,23 +65,30 @@ void tams18(Kit& kit) {
     kit.time_runs("tams18.toml, tam_firmware.elf, one process", spec);
 }
 
-using Case = std::pair<std::string, std::function<void(Kit&)>>;
+struct Case {
+    std::string name;
+    std::string what;  ///< one line of help
+    std::function<void(Kit&)> measure;
+};
 
 const std::vector<Case>& table() {
-    static const std::vector<Case> cases{{"core", [](Kit& kit) { kit.time_core(); }},
-                                         {"avr", [](Kit& kit) { kit.time_avr(); }},
-                                         {"board", [](Kit& kit) { kit.time_boards(); }},
-                                         {"scenario", hello},
-                                         {"swarm", swarm},
-                                         {"overhead", overhead},
-                                         {"wander", wander},
-                                         {"world", [](Kit& kit) { kit.time_world(); }},
-                                         {"wait", [](Kit& kit) { kit.time_waiting(); }},
-                                         {"memory", memory},
-                                         {"rab1", [](Kit& kit) { rab(kit, 1); }},
-                                         {"rab2", [](Kit& kit) { rab(kit, 2); }},
-                                         {"rab8", [](Kit& kit) { rab(kit, 8); }},
-                                         {"tams18", tams18}};
+    static const std::vector<Case> cases{
+        {"core", "a compute loop on the bare core, and --image", [](Kit& kit) { kit.time_core(); }},
+        {"avr", "the ATmega1284P beside libsimavr on the same ELFs", [](Kit& kit) { kit.time_avr(); }},
+        {"board", "one range-and-bearing board alone, and marks of both dsPIC boards",
+         [](Kit& kit) { kit.time_boards(); }},
+        {"scenario", "--scenario in one process and with a process a node", hello},
+        {"swarm", "swarm.toml in one process", swarm},
+        {"overhead", "hello.toml and swarm.toml beside their boards alone", overhead},
+        {"wander", "--robots robots that wander, in one process", wander},
+        {"world", "the physical world alone, part by part", [](Kit& kit) { kit.time_world(); }},
+        {"wait", "main boards whose firmware waits for a partner that is silent, by exec",
+         [](Kit& kit) { kit.time_waiting(); }},
+        {"memory", "resident memory of the runs of wander", memory},
+        {"rab1", "a robot with a busy range-and-bearing board", [](Kit& kit) { rab(kit, 1); }},
+        {"rab2", "two of them", [](Kit& kit) { rab(kit, 2); }},
+        {"rab8", "eight of them", [](Kit& kit) { rab(kit, 8); }},
+        {"tams18", "tams18.toml, eighteen TAMs with radio mesh and coordinator, in one process", tams18}};
     return cases;
 }
 
@@ -92,10 +98,17 @@ const std::vector<std::string>& bench_cases() {
     static const std::vector<std::string> names = [] {
         std::vector<std::string> list;
         for (const Case& one : table())
-            list.push_back(one.first);
+            list.push_back(one.name);
         return list;
     }();
     return names;
+}
+
+std::string bench_cases_help() {
+    std::string text;
+    for (const Case& one : table())
+        text += fmt::format("\n{:<8}  {}", one.name, one.what);
+    return text;
 }
 
 std::vector<Figure> measure_cases(const BenchOptions& options) {
@@ -104,7 +117,7 @@ std::vector<Figure> measure_cases(const BenchOptions& options) {
     Kit kit(options);
     for (const std::string& name : options.cases)
         for (const Case& one : table())
-            if (one.first == name) one.second(kit);
+            if (one.name == name) one.measure(kit);
     return kit.take_figures();
 }
 

@@ -25,6 +25,8 @@ struct BenchOptions {
 
 /// Names of the cases, in the order of the help.
 const std::vector<std::string>& bench_cases();
+/// A line of help for each, which begins with a line break.
+std::string bench_cases_help();
 
 /// Throws InputError and RunError, and InputError if the peer is no program.
 std::vector<Figure> measure_cases(const BenchOptions& options);

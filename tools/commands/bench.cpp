@@ -46,15 +46,9 @@ void declare_bench(Command& app, int& status) {
     command->add_option("--image", bench.image, "firmware image to run on the bare chip as well")
         ->type_name("IMAGE");
     command
-        ->add_option(
-            "--case", bench.cases,
-            "what to measure (repeatable; default core and scenario): core; avr = the ATmega1284P beside "
-            "libsimavr on the same ELFs; board = marks, one "
-            "range-and-bearing "
-            "board alone; scenario = in one process and with a process a node; swarm = swarm.toml; overhead "
-            "= hello.toml and swarm.toml beside their boards alone; wander, memory = wandering robots; world "
-            "= the physical world alone, part by part; rab1, "
-            "rab2, rab8 = so many robots with busy range-and-bearing boards (docs/bench.md)")
+        ->add_option("--case", bench.cases,
+                     "what to measure (repeatable; default core and scenario; docs/bench.md):" +
+                         bench_cases_help())
         ->allow_extra_args(false)
         ->check(one_of(bench_cases()));
     command
