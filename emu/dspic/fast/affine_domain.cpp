@@ -177,24 +177,4 @@ AffineDomain::Value AffineDomain::add(bool byte, bool sticky, Value a, Value b, 
     return result;
 }
 
-// --- flow ------------------------------------------------------------------------------------------------
-
-const Op* AffineDomain::go(std::uint32_t pc) const {
-    if (pc >> 1 >= m_.code_words) fail(Verdict::NotNow);
-    return m_.code + (pc >> 1);
-}
-
-const Op* AffineDomain::branch(const Op* op, bool conditional) {
-    if (conditional) ++plan_.cycles;
-    return go(op->target);
-}
-
-const Op* AffineDomain::skip_if(const Op* op, bool condition) {
-    decides();
-    if (!condition) return op + 1;
-    const bool two = is_two_words(op[1].word);
-    plan_.cycles += two ? 2 : 1;
-    return op + (two ? 3 : 2);
-}
-
 }  // namespace puckloop::dspic

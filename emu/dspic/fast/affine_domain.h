@@ -3,14 +3,16 @@
 // iterations of the loop, and holds for every n up to a bound that each use may lower. Memory and registers
 // are cells; a register of a module is a constant that the plan polls. What cannot be followed ends the walk.
 
-#include "emu/dspic/core/execute/shape.h"
+#include "emu/dspic/fast/followed.h"
 #include "emu/dspic/fast/idle_loops.h"
 
 #include <array>
 
 namespace puckloop::dspic {
 
-class AffineDomain {
+class AffineDomain : public Followed<AffineDomain> {
+    friend Followed<AffineDomain>;
+
   public:
     /// Unknown: an instruction that no walk will ever follow. NotNow: this state does not allow it.
     enum class Verdict : std::uint8_t { Pure, NotNow, Unknown };
@@ -59,27 +61,9 @@ class AffineDomain {
         store(at, byte, change(load(at, byte)));
     }
     static Address next_word(Address at) { return static_cast<Address>(at + 2); }
-    Address source_ea(const Op* op, bool) { return step_pointer(op->s, op->s_pre, op->s_post); }
-    Address destination_ea(const Op* op, bool) { return step_pointer(op->d, op->d_pre, op->d_post); }
     Address displaced(int reg, std::uint16_t literal, bool perhaps_stack);
-    void push(Value value) { store(step_pointer(15, 0, 2), false, value); }
-    Value pop() { return load(step_pointer(15, -2, 0), false); }
     static Value plus(Value value, std::uint16_t offset) {
         return {static_cast<std::uint16_t>(word(value) + offset), 0};
-    }
-
-    template <class Shape>
-    Value source(const Op* op, Shape shape) {
-        if (shape.source == Ea::Literal) return value(op->k & ones(shape.byte));
-        if (shape.source == Ea::Direct) return part(op->s, shape.byte);
-        return load(shape.source == Ea::Indirect ? source_ea(op, shape.byte) : indexed(op->s, op->b),
-                    shape.byte);
-    }
-    template <class Shape>
-    void destination(const Op* op, Shape shape, Value value) {
-        if (shape.destination == Ea::Direct) return put(op->d, shape.byte, value);
-        const bool plain = shape.destination == Ea::Indirect;
-        store(plain ? destination_ea(op, shape.byte) : indexed(op->d, op->b), shape.byte, value);
     }
 
     // Flags. One that the loop has not set yet is not known.
@@ -101,12 +85,7 @@ class AffineDomain {
     Value moved(bool byte, Value value);
 
     // Flow.
-    std::uint32_t pc_of(const Op* op) const { return m_.pc_of(op); }
-    const Op* go(std::uint32_t pc) const;
-    const Op* branch(const Op* op, bool conditional);
     void decides() { chose_ = true; }
-    const Op* skip_if(const Op* op, bool condition);
-    const Op* return_to(std::uint32_t pc) const { return go(pc); }
     void clear_watchdog() { plan_.clears_watchdog = true; }
 
   protected:
@@ -133,6 +112,8 @@ class AffineDomain {
     Flag c_, z_, n_, ov_, dc_;
 
   private:
+    [[noreturn]] static void leave() { fail(Verdict::NotNow); }
+    auto& cycles() { return plan_.cycles; }
     IdleLoops::Cell& cell(std::uint16_t key);
     Value read_cell(std::uint16_t key);
     void write_cell(std::uint16_t key, Value value);

@@ -11,8 +11,6 @@ namespace {
 
 constexpr int kMostInstructions = 600;
 constexpr std::size_t kMostArrivals = 8;
-/// Of stack; offsets stay far from wrapping.
-constexpr std::uint32_t kMostDepth = 0x1000;
 constexpr std::uint16_t kStackPointer = 2 * 15;  ///< W15's data address
 
 constexpr std::uint16_t even(std::uint16_t address) {
@@ -177,24 +175,6 @@ void PathDomain::put(int reg, bool byte, const Value& value) {
     set_half(w_[static_cast<std::size_t>(reg)], false, value);
 }
 
-/// The routine needs this many bytes of stack.
-void PathDomain::reach(std::uint32_t depth) {
-    if (depth > kMostDepth) throw Stop{};
-    path_.depth = std::max(path_.depth, static_cast<std::uint16_t>(depth));
-}
-
-PathDomain::Address PathDomain::step_pointer(int reg, int pre, int post) {
-    if (reg != 15 && m_.special >> reg & 1) throw Stop{};
-    const Address at = plus(whole(reg), static_cast<std::uint16_t>(pre));
-    if (pre != 0 || post != 0) set_whole(reg, plus(at, static_cast<std::uint16_t>(post)));
-    return at;
-}
-
-PathDomain::Address PathDomain::indexed(int reg, int index) {
-    if (reg != 15 && m_.special >> reg & 1) throw Stop{};
-    return plus(whole(reg), static_cast<std::uint16_t>(word(whole(index))));
-}
-
 /// A read of the register, now, is a look at the stored word.
 void PathDomain::check_readable(std::uint16_t at) {
     if (is_saved_register(at)) return;
@@ -345,11 +325,6 @@ bool PathDomain::flag_of_moved(std::uint16_t bit) {
 
 // --- flow ------------------------------------------------------------------------------------------------
 
-const Op* PathDomain::go(std::uint32_t pc) const {
-    if (pc >> 1 >= m_.code_words) throw Stop{};
-    return m_.code + (pc >> 1);
-}
-
 /// Op::may_skip may have been taken back; going back to a mark restores it, and the path stays.
 bool PathDomain::may_close_loop(const Op* op) const {
     constexpr std::uint32_t kFarthest = 128;  // as decoding has it
@@ -358,8 +333,7 @@ bool PathDomain::may_close_loop(const Op* op) const {
 }
 
 const Op* PathDomain::branch(const Op* op, bool conditional) {
-    if (conditional) ++path_.cycles;
-    const Op* const next = go(op->target);
+    const Op* const next = Followed::branch(op, conditional);
     if (may_close_loop(op)) arrive(op, next, instruction_ + (conditional ? 1 : 0));
     return next;
 }
@@ -373,13 +347,6 @@ void PathDomain::arrive(const Op* branch, const Op* head, Cycle at) {
     }
     if (arrivals.size() == kMostArrivals) throw Stop{};
     arrivals.push_back({branch, head, depth, at, at});
-}
-
-const Op* PathDomain::skip_if(const Op* op, bool condition) {
-    if (!condition) return op + 1;
-    const bool two = is_two_words(op[1].word);
-    path_.cycles += two ? 2 : 1;
-    return op + (two ? 3 : 2);
 }
 
 // --- the outcome -----------------------------------------------------------------------------------------

@@ -5,7 +5,7 @@
 // a flag that hangs on it, the path gets a condition on that word under which the outcome is the same. It
 // leaves by an exception where the routine does more than a path can hold.
 
-#include "emu/dspic/core/execute/shape.h"
+#include "emu/dspic/fast/followed.h"
 #include "emu/dspic/fast/isr_path.h"
 
 #include <array>
@@ -15,7 +15,10 @@
 
 namespace puckloop::dspic {
 
-class PathDomain {
+class PathDomain : public FollowedRoutine<PathDomain> {
+    friend Followed<PathDomain>;
+    friend FollowedRoutine<PathDomain>;
+
   public:
     struct Value {
         enum class Kind : std::uint8_t {
@@ -61,27 +64,7 @@ class PathDomain {
         if (clears_flag(at, byte, word(change(value(0))), word(change(value(ones(byte)))))) return;
         store(at, byte, change(load(at, byte)));
     }
-    static Address next_word(const Address& at) { return plus(at, 2); }
-    Address source_ea(const Op* op, bool) { return step_pointer(op->s, op->s_pre, op->s_post); }
-    Address destination_ea(const Op* op, bool) { return step_pointer(op->d, op->d_pre, op->d_post); }
-    Address displaced(int reg, std::uint16_t literal, bool) { return plus(whole(reg), literal); }
-    void push(const Value& value) { store(step_pointer(15, 0, 2), false, value); }
-    Value pop() { return load(step_pointer(15, -2, 0), false); }
     static Value plus(Value value, std::uint16_t offset);
-
-    template <class Shape>
-    Value source(const Op* op, Shape shape) {
-        if (shape.source == Ea::Literal) return value(op->k & ones(shape.byte));
-        if (shape.source == Ea::Direct) return part(op->s, shape.byte);
-        return load(shape.source == Ea::Indirect ? source_ea(op, shape.byte) : indexed(op->s, op->b),
-                    shape.byte);
-    }
-    template <class Shape>
-    void destination(const Op* op, Shape shape, const Value& value) {
-        if (shape.destination == Ea::Direct) return put(op->d, shape.byte, value);
-        const bool plain = shape.destination == Ea::Indirect;
-        store(plain ? destination_ea(op, shape.byte) : indexed(op->d, op->b), shape.byte, value);
-    }
 
     // Flags: computed when somebody asks for them, since that costs a condition. RETFIE brings back SR<7:0>.
     bool c() { return flag(c_, sr::C); }
@@ -101,12 +84,7 @@ class PathDomain {
     }
     Value moved(bool byte, const Value& value);
 
-    std::uint32_t pc_of(const Op* op) const { return m_.pc_of(op); }
-    const Op* go(std::uint32_t pc) const;
     const Op* branch(const Op* op, bool conditional);
-    void decides() {}
-    const Op* skip_if(const Op* op, bool condition);
-    const Op* return_to(std::uint32_t pc) const { return go(pc); }
     void clear_watchdog() { throw Stop{}; }
 
   private:
@@ -131,6 +109,9 @@ class PathDomain {
     };
     static Flag known(bool on) { return {Flag::From::Known, on}; }
 
+    [[noreturn]] static void leave() { throw Stop{}; }
+    auto& cycles() { return path_.cycles; }
+    auto& depth() { return path_.depth; }
     const std::uint16_t* cell(std::uint16_t address) const;
     Value found(std::uint16_t at) const;
     void hold(const Value& value, int low, int high);
@@ -144,12 +125,9 @@ class PathDomain {
     void set_half(Slot& slot, bool high, const Value& byte);
     Value joined(Slot& slot);
 
-    void reach(std::uint32_t depth);
     bool may_close_loop(const Op* op) const;
     /// At a backward branch that is taken; `at`: its start, as note_arrival() has it, from the routine's.
     void arrive(const Op* branch, const Op* head, Cycle at);
-    Address step_pointer(int reg, int pre, int post);
-    Address indexed(int reg, int index);
     void check_readable(std::uint16_t at);
     Place& known_place(bool stack, std::uint16_t at);
     Place& place(const Address& at, bool byte, bool writes);

@@ -9,8 +9,6 @@ namespace puckloop::dspic {
 namespace {
 
 constexpr int kMostInstructions = 32;
-/// Of stack; offsets stay far from wrapping.
-constexpr std::uint32_t kMostDepth = 0x1000;
 
 }  // namespace
 
@@ -76,27 +74,9 @@ void SymbolicIsr::set_whole(int reg, Value value) {
     w_[static_cast<std::size_t>(reg)] = value;
 }
 
-/// The routine needs this many bytes of stack.
-void SymbolicIsr::reach(std::uint32_t depth) {
-    if (depth > kMostDepth) throw Stop{};
-    summary_.depth = std::max(summary_.depth, static_cast<std::uint16_t>(depth));
-}
-
 SymbolicIsr::Value SymbolicIsr::plus(Value value, std::uint16_t offset) {
     if (value.kind != Word::Constant && value.kind != Word::StackOffset) throw Stop{};
     return {value.kind, static_cast<std::uint16_t>(value.value + offset)};
-}
-
-SymbolicIsr::Address SymbolicIsr::step_pointer(int reg, int pre, int post) {
-    if (reg != 15 && m_.special >> reg & 1) throw Stop{};
-    const Address at = plus(whole(reg), static_cast<std::uint16_t>(pre));
-    if (pre != 0 || post != 0) set_whole(reg, plus(at, static_cast<std::uint16_t>(post)));
-    return at;
-}
-
-SymbolicIsr::Address SymbolicIsr::indexed(int reg, int index) const {
-    if (reg != 15 && m_.special >> reg & 1) throw Stop{};
-    return plus(whole(reg), static_cast<std::uint16_t>(word(whole(index))));
 }
 
 /// Words that the routine itself put on the stack; the interrupted program's are not its own.
@@ -133,23 +113,6 @@ void SymbolicIsr::clear_flag(Address at, bool byte, std::uint32_t set, std::uint
     const auto flag = static_cast<std::uint16_t>(m_.device.ifs + irq_ / 8);
     if (!byte || at != address(flag) || set != 0 || cleared != 1u << irq_ % 8) throw Stop{};
     flag_cleared_ = true;
-}
-
-const Op* SymbolicIsr::go(std::uint32_t pc) const {
-    if (pc >> 1 >= m_.code_words) throw Stop{};
-    return m_.code + (pc >> 1);
-}
-
-const Op* SymbolicIsr::branch(const Op* op, bool conditional) {
-    if (conditional) ++summary_.cycles;
-    return go(op->target);
-}
-
-const Op* SymbolicIsr::skip_if(const Op* op, bool condition) {
-    if (!condition) return op + 1;
-    const bool two = is_two_words(op[1].word);
-    summary_.cycles += two ? 2 : 1;
-    return op + (two ? 3 : 2);
 }
 
 }  // namespace puckloop::dspic

@@ -4,7 +4,7 @@
 // interrupted stack pointer, constants. It leaves by an exception where the routine does more than a summary
 // can say.
 
-#include "emu/dspic/core/execute/shape.h"
+#include "emu/dspic/fast/followed.h"
 #include "emu/dspic/fast/isr_summary.h"
 
 #include <array>
@@ -12,7 +12,10 @@
 
 namespace puckloop::dspic {
 
-class SymbolicIsr {
+class SymbolicIsr : public FollowedRoutine<SymbolicIsr> {
+    friend Followed<SymbolicIsr>;
+    friend FollowedRoutine<SymbolicIsr>;
+
   public:
     using Word = IsrSummary::Word;
     struct Value {
@@ -51,27 +54,7 @@ class SymbolicIsr {
         const std::uint32_t cleared = ~word(change(value(ones(byte)))) & ones(byte);
         clear_flag(at, byte, set, cleared);
     }
-    static Address next_word(Address at) { return plus(at, 2); }
-    Address source_ea(const Op* op, bool) { return step_pointer(op->s, op->s_pre, op->s_post); }
-    Address destination_ea(const Op* op, bool) { return step_pointer(op->d, op->d_pre, op->d_post); }
-    Address displaced(int reg, std::uint16_t literal, bool) const { return plus(whole(reg), literal); }
-    void push(Value value) { store(step_pointer(15, 0, 2), false, value); }
-    Value pop() { return load(step_pointer(15, -2, 0), false); }
     static Value plus(Value value, std::uint16_t offset);
-
-    template <class Shape>
-    Value source(const Op* op, Shape shape) {
-        if (shape.source == Ea::Literal) return value(op->k & ones(shape.byte));
-        if (shape.source == Ea::Direct) return part(op->s, shape.byte);
-        return load(shape.source == Ea::Indirect ? source_ea(op, shape.byte) : indexed(op->s, op->b),
-                    shape.byte);
-    }
-    template <class Shape>
-    void destination(const Op* op, Shape shape, Value value) {
-        if (shape.destination == Ea::Direct) return put(op->d, shape.byte, value);
-        const bool plain = shape.destination == Ea::Indirect;
-        store(plain ? destination_ea(op, shape.byte) : indexed(op->d, op->b), shape.byte, value);
-    }
 
     // Flags are not followed: RETFIE brings back SR<7:0>, so setting them leaves nothing behind, except DC,
     // which the adder sets and which is not stacked.
@@ -89,20 +72,14 @@ class SymbolicIsr {
     Value shifted(bool byte, std::uint32_t result, bool) { return value(result & ones(byte)); }
     Value moved(bool, Value value) { return value; }
 
-    std::uint32_t pc_of(const Op* op) const { return m_.pc_of(op); }
-    const Op* go(std::uint32_t pc) const;
-    const Op* branch(const Op* op, bool conditional);
-    void decides() {}
-    const Op* skip_if(const Op* op, bool condition);
-    const Op* return_to(std::uint32_t pc) const { return go(pc); }
     void clear_watchdog() { throw Stop{}; }
 
   private:
-    Address step_pointer(int reg, int pre, int post);
-    Address indexed(int reg, int index) const;
+    [[noreturn]] static void leave() { throw Stop{}; }
+    auto& cycles() { return summary_.cycles; }
+    auto& depth() { return summary_.depth; }
     void clear_flag(Address at, bool byte, std::uint32_t set, std::uint32_t cleared);
     void refresh(std::uint16_t address, std::uint16_t value);
-    void reach(std::uint32_t depth);
     bool restored() const;
     End walk(const Op* op);
 
