@@ -1,6 +1,7 @@
 // A board of a run goes back by its debugger, and the whole run with it: the same registers at the same
 // instants, and in the end the same files as of a run that nobody disturbed.
 
+#include "tests/debug/counting_program.h"
 #include "tests/debug/gdb_client.h"
 #include "tests/end_to_end/same_run.h"
 #include "tests/end_to_end/workbench.h"
@@ -23,23 +24,9 @@ namespace {
 
 constexpr unsigned kPc = 16;
 
-unsigned draw(std::mt19937& random, unsigned least, unsigned most) {
-    return least + static_cast<unsigned>(random() % (most - least + 1));
-}
-
 /// Counts at 0x0A00 and switches an LED every `turns` x 1.1 ms; a function doubles the count.
 std::string program_source(unsigned turns) {
-    return fmt::format(R"(
-        goto    main
-        .org    0x100
-main:   mov     #0x0900, w15
-        mov     #0x27f0, w0
-        mov     w0, SPLIM
-        clr     TRISA
-        clr     w2
-loop:   inc     w2, w2
-        mov     w2, 0x0A00
-        btg     LATA, #7
+    return counting_program(fmt::format(R"(
         rcall   twice
         mov     #{}, w5
 wait:   mov     #5460, w6
@@ -52,7 +39,7 @@ twice:  add     w2, w2, w3
         inc     w4, w4
         return
 )",
-                       turns);
+                                        turns));
 }
 
 /// Two robots: one with that program, one with a Linux program that drives it about.

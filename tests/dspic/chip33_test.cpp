@@ -2,6 +2,7 @@
 // carrier, A/D handshake, SPI, DMA, self-programming, interrupts.
 
 #include "tests/dspic/chip33_bench.h"
+#include "tests/dspic33_pieces.h"
 
 #include <catch2/catch.hpp>
 
@@ -25,22 +26,8 @@ main:   mov #80, w0
         mov CLKDIV, w0
         and w0, w1, w0
         mov w0, CLKDIV
-        mov #0x743, w1
-        mov #0x78, w2
-        mov #0x9A, w3
-        mov #3, w4
-        mov.b w2, [w1]
-        mov.b w3, [w1]
-        mov.b w4, [w1]
-        mov #0x742, w1
-        mov #0x46, w2
-        mov #0x57, w3
-        mov #1, w4
-        mov.b w2, [w1]
-        mov.b w3, [w1]
-        mov.b w4, [w1]
-asked:  nop
-)";
+)" + tests::clock_switch(3) +
+                            "asked:  nop\n";
 const std::string kWaitForPll = R"(
 lock:   mov OSCCON, w0
         mov #0x7000, w1

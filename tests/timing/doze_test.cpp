@@ -1,6 +1,7 @@
 // Doze of the 33FJ, timed by programs: docs/timing_rules.md, rules D1 to D6. Timer1 and Timer2 count the
 // peripherals' clock, the program runs on the CPU's.
 
+#include "tests/dspic33_pieces.h"
 #include "tests/timing/timed_chip.h"
 
 #include "base/archive.h"
@@ -358,25 +359,11 @@ TEST_CASE("OSCCON's keys open in Doze, and a clock switch leaves the ratio as it
 main:   mov     #{:#x}, w15
         mov     #{:#x}, w0
         mov     w0, CLKDIV
-        mov     #0x743, w1
-        mov     #0x78, w2
-        mov     #0x9A, w3
-        mov     #7, w4
-        mov.b   w2, [w1]
-        mov.b   w3, [w1]
-        mov.b   w4, [w1]
-        mov     #0x742, w1
-        mov     #0x46, w2
-        mov     #0x57, w3
-        mov     #1, w4
-        mov.b   w2, [w1]
-        mov.b   w3, [w1]
-        mov.b   w4, [w1]
-lock:   btsc    OSCCON, #0
+{}lock:   btsc    OSCCON, #0
         bra     lock
 end:    bra     end
 )",
-                              device().ram_start + 0x200, dozing(5) | 0x0100),
+                              device().ram_start + 0x200, dozing(5) | 0x0100, tests::clock_switch(7)),
                   {{0xF80008, 0xFF7D}});
     run.run_to("end");
     CHECK(run.chip.peek("OSCCON") == 0x7700);
