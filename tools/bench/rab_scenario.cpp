@@ -1,11 +1,10 @@
 #include "tools/bench/rab_scenario.h"
 
-#include "base/error.h"
+#include "tools/bench/scenario_file.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 #include <numbers>
 
 namespace puckloop::tools {
@@ -26,13 +25,7 @@ std::filesystem::path write_rab_scenario(const std::filesystem::path& folder, in
             std::filesystem::absolute(main_image).string(), std::filesystem::absolute(rab_image).string(),
             i + 1, 200 + 3 * i);
     }
-    std::filesystem::create_directories(folder);
-    const std::filesystem::path file = folder / fmt::format("rab{}.toml", robots);
-    std::ofstream out(file);
-    out << text;
-    out.close();
-    if (!out) throw RunError(fmt::format("{}: cannot be written", file.string()));
-    return file;
+    return write_scenario(folder, fmt::format("rab{}", robots), text);
 }
 
 }  // namespace puckloop::tools

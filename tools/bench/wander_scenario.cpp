@@ -1,11 +1,10 @@
 #include "tools/bench/wander_scenario.h"
 
-#include "base/error.h"
+#include "tools/bench/scenario_file.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
 
 namespace puckloop::tools {
 
@@ -25,13 +24,7 @@ std::filesystem::path write_wander_scenario(const std::filesystem::path& folder,
                             "\"--behaviour\", \"wander\", \"--duration\", \"600\"]\nstart = \"{} ms\"\n",
                             first + kCell * (i % side), first + kCell * (i / side), i * kTurn % 360,
                             std::filesystem::absolute(main_image).string(), kStart + kStartStep * i);
-    std::filesystem::create_directories(folder);
-    const std::filesystem::path file = folder / fmt::format("wander{}.toml", robots);
-    std::ofstream out(file);
-    out << text;
-    out.close();
-    if (!out) throw RunError(fmt::format("{}: cannot be written", file.string()));
-    return file;
+    return write_scenario(folder, fmt::format("wander{}", robots), text);
 }
 
 }  // namespace puckloop::tools

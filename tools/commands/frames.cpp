@@ -2,10 +2,27 @@
 
 #include "tools/commands/frames.h"
 
+#include "base/error.h"
 #include "tools/cli/command.h"
 #include "tools/commands.h"
 
+#include <iostream>
+#include <utility>
+
 namespace puckloop::tools {
+
+void flush_output() {
+    std::cout.flush();
+    if (!std::cout) throw RunError("standard output: cannot write");
+}
+
+void declare_action(Command& command, bool& json, std::function<void()> act) {
+    command.add_flag("--json", json, "one JSON object a line");
+    command.callback([act = std::move(act)] {
+        act();
+        flush_output();
+    });
+}
 
 void declare_frames(Command& app, int& status) {
     Command* frames = app.add_subcommand("frames", "Encode, decode and check wire formats");

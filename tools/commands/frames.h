@@ -16,6 +16,12 @@ void declare_epuck_frames(Command& frames, int& status);
 void declare_xbee_frames(Command& frames, int& status);
 void declare_ircom_frames(Command& frames, int& status);
 
+/// What was written on standard output so far is out. Throws RunError where it cannot be written.
+void flush_output();
+
+/// Gives the subcommand --json and what it does; its output is then flushed.
+void declare_action(Command& command, bool& json, std::function<void()> act);
+
 /// Hands over each argument, or without arguments each line of standard input as it comes, white space around
 /// it removed. `origin` is empty for arguments, else "standard input, line 3". Throws InputError if there is
 /// neither argument nor line.

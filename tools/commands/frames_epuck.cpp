@@ -152,11 +152,6 @@ void encode_actuators(const ActuatorArguments& arguments) {
     std::cout << fmt::format("{:02X}\n", fmt::join(encode(record), ""));
 }
 
-void flush_output() {
-    std::cout.flush();
-    if (!std::cout) throw RunError("standard output: cannot write");
-}
-
 void declare_encode(Command& epuck, int& status) {
     auto arguments = std::make_shared<ActuatorArguments>();
     Command* command =
@@ -186,10 +181,8 @@ void declare_epuck_frames(Command& frames, int& status) {
     auto json = std::make_shared<bool>(false);
     Command* command = epuck->add_subcommand("decode", "Name the fields of a record of 12, 72 or 4 bytes");
     command->add_option("BYTES", *words, "hexadecimal; without it, one record a line on standard input");
-    command->add_flag("--json", *json, "one JSON object a line");
-    command->callback([words, json, &status] {
+    declare_action(*command, *json, [words, json, &status] {
         decode(*words, *json);
-        flush_output();
         status = 0;
     });
 }

@@ -130,12 +130,7 @@ void declare(Command& ircom, const char* name, const char* help, bool takes_edge
                         takes_edges ? "a word's edges in microseconds, the first one a rise; without it, one "
                                       "word a line on standard input"
                                     : "hexadecimal byte; without it, one a line on standard input");
-    command->add_flag("--json", arguments->json, "one JSON object a line");
-    command->callback([arguments, act] {
-        act(*arguments);
-        std::cout.flush();
-        if (!std::cout) throw RunError("standard output: cannot write");
-    });
+    declare_action(*command, arguments->json, [arguments, act] { act(*arguments); });
 }
 
 }  // namespace

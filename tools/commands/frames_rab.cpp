@@ -148,12 +148,7 @@ void declare(Command& rab, const char* name, const char* help, bool takes_chips,
     command->add_option(takes_chips ? "CHIPS" : "--payload", arguments->inputs,
                         takes_chips ? "a frame as 0 and 1; without it, one a line on standard input"
                                     : "hexadecimal; without it, one a line on standard input");
-    command->add_flag("--json", arguments->json, "one JSON object a line");
-    command->callback([arguments, act] {
-        act(*arguments);
-        std::cout.flush();
-        if (!std::cout) throw RunError("standard output: cannot write");
-    });
+    declare_action(*command, arguments->json, [arguments, act] { act(*arguments); });
 }
 
 }  // namespace

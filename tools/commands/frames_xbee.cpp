@@ -238,12 +238,7 @@ void declare(Command& xbee, const char* name, const char* help, const char* inpu
     Command* command = xbee.add_subcommand(name, help);
     command->add_option("--mode", arguments->mode, "API mode: 1 plain, 2 escaped (default 2)");
     command->add_option(input, arguments->inputs, input_help);
-    command->add_flag("--json", arguments->json, "one JSON object a line");
-    command->callback([arguments, act] {
-        act(*arguments);
-        std::cout.flush();
-        if (!std::cout) throw RunError("standard output: cannot write");
-    });
+    declare_action(*command, arguments->json, [arguments, act] { act(*arguments); });
 }
 
 }  // namespace
