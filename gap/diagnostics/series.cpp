@@ -2,6 +2,7 @@
 
 #include "gap/fit/noise.h"
 #include "gap/models/model.h"
+#include "gap/stats/series.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,10 +18,7 @@ std::vector<Series> series_of(const Model& model, const State& before, const Sta
     for (std::size_t o = 0; o < model.observables().size(); ++o) {
         const Observable& observable = model.observables()[o];
         // Rows of a run in the order they were measured.
-        std::vector<std::size_t> order(observable.y.size());
-        for (std::size_t i = 0; i < order.size(); ++i)
-            order[i] = i;
-        std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        const auto order = stats::ordered(observable.y.size(), [&](std::size_t a, std::size_t b) {
             return std::pair(observable.run[a], observable.row[a]) <
                    std::pair(observable.run[b], observable.row[b]);
         });

@@ -182,8 +182,6 @@ class Booster {
                                   .ldlt()
                                   .solve(Eigen::MatrixXd::Identity(gram_[g].rows(), gram_[g].rows()));
         }
-        view_.resize(components.size());
-        std::iota(view_.begin(), view_.end(), std::size_t{0});
     }
 
     /// One step; false when nothing is worth it.

@@ -1,11 +1,11 @@
 #include "gap/stats/bootstrap.h"
 
 #include "base/random.h"
+#include "gap/stats/exchange.h"
 #include "gap/stats/robust.h"
 
-#include <algorithm>
-#include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace puckloop::gap::stats {
 
@@ -32,14 +32,7 @@ std::vector<std::vector<std::size_t>> bootstrap_rows(const Series& series, int d
 
 Band bootstrap_band(const Series& residual, const std::vector<double>& covariate, int bins, double coverage,
                     const TestOptions& options) {
-    Series kept;
-    std::vector<double> x;
-    for (std::size_t i = 0; i < residual.size(); ++i)
-        if (std::isfinite(residual.value[i]) && std::isfinite(covariate[i])) {
-            kept.value.push_back(residual.value[i]);
-            kept.run.push_back(residual.run[i]);
-            x.push_back(covariate[i]);
-        }
+    const auto [x, y, run, blocks] = known_pairs(residual, covariate);
     if (x.empty()) return {};
     int count = 0;
     const std::vector<int> bin = bins_of(x, count, bins, 24);
@@ -53,15 +46,13 @@ Band bootstrap_band(const Series& residual, const std::vector<double>& covariate
         return sum;
     };
     std::vector<std::size_t> all(x.size());
-    for (std::size_t i = 0; i < all.size(); ++i)
-        all[i] = i;
-    Band band{means(all, x), means(all, kept.value), std::vector<double>(places),
-              std::vector<double>(places)};
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    Band band{means(all, x), means(all, y), std::vector<double>(places), std::vector<double>(places)};
     std::vector<std::vector<double>> drawn(places);
-    for (const auto& rows : bootstrap_rows(kept, kBandDraws, options, "band")) {
-        const std::vector<double> y = means(rows, kept.value);
+    for (const auto& rows : bootstrap_rows({y, run}, kBandDraws, options, "band")) {
+        const std::vector<double> one = means(rows, y);
         for (std::size_t b = 0; b < places; ++b)
-            drawn[b].push_back(y[b]);
+            drawn[b].push_back(one[b]);
     }
     for (std::size_t b = 0; b < places; ++b) {
         band.low[b] = quantile(drawn[b], (1 - coverage) / 2);

@@ -1,6 +1,7 @@
 #include "gap/stats/duplicates.h"
 
 #include "gap/stats/robust.h"
+#include "gap/stats/series.h"
 
 #include <algorithm>
 #include <cmath>
@@ -52,10 +53,7 @@ class Column {
     explicit Column(const std::vector<double>& values) {
         for (const double v : values)
             if (std::isfinite(v)) ++count_[v], total_ += 1;
-        std::vector<double> differences;  // what a value may do beyond following its neighbour
-        for (std::size_t i = 1; i < values.size(); ++i)
-            differences.push_back(values[i] - values[i - 1]);
-        const double spread = robust_scale(differences);
+        const double spread = robust_scale(steps_of(values));  // beyond following its neighbour
         bits_ = spread > 0 ? std::max(std::log2(spread / quantum_of(values)), 0.0) : 0.0;
     }
 

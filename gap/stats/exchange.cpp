@@ -107,7 +107,7 @@ double fitted_tail(const std::vector<double>& null, double observed) {
 
 }  // namespace
 
-Pairs prepared(const Series& residual, const std::vector<double>& covariate) {
+Pairs known_pairs(const Series& residual, const std::vector<double>& covariate) {
     Pairs rows;
     for (std::size_t i = 0; i < residual.size(); ++i)
         if (std::isfinite(residual.value[i]) && std::isfinite(covariate[i])) {
@@ -115,6 +115,11 @@ Pairs prepared(const Series& residual, const std::vector<double>& covariate) {
             rows.y.push_back(residual.value[i]);
             rows.group.push_back(residual.run[i]);
         }
+    return rows;
+}
+
+Pairs prepared(const Series& residual, const std::vector<double>& covariate) {
+    Pairs rows = known_pairs(residual, covariate);
     if (rows.size() == 0) return rows;
     if (const auto still = plateaus(rows); still.size() * kStandsStill <= rows.size())
         rows = means_of(rows, still);
@@ -178,13 +183,8 @@ double slope_of(const Pairs& pairs) {
 }
 
 Series without_gaps(const Series& residual) {
-    Series kept;
-    for (std::size_t i = 0; i < residual.size(); ++i)
-        if (std::isfinite(residual.value[i])) {
-            kept.value.push_back(residual.value[i]);
-            kept.run.push_back(residual.run[i]);
-        }
-    return kept;
+    Pairs known = known_pairs(residual, residual.value);
+    return {std::move(known.y), std::move(known.group)};
 }
 
 }  // namespace puckloop::gap::stats

@@ -33,6 +33,9 @@ struct Pairs {
     std::size_t size() const { return x.size(); }
 };
 
+/// The rows in which both are known, group by run.
+Pairs known_pairs(const Series& residual, const std::vector<double>& covariate);
+
 Pairs prepared(const Series& residual, const std::vector<double>& covariate);
 
 /// `statistic` of the permuted y (large = structure). Returns p of the unpermuted one.

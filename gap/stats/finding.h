@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
 
 namespace puckloop::gap::stats {
 
@@ -21,6 +22,12 @@ struct Finding {
     double units = 0.0;         ///< independent values or groups the test stands on
     std::string shape{};        ///< in words: "grows with distance, zero at zero"
 };
+
+/// The same with nothing found, for want of what `why` says.
+inline Finding not_asked(Finding finding, std::string why = "too few values") {
+    finding.shape = std::move(why);
+    return finding;
+}
 
 struct TestOptions {
     std::uint64_t seed = 1;

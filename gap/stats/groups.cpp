@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -34,11 +33,9 @@ Finding compared(const Series& residual, const std::vector<double>& label, std::
     for (std::size_t i = 0; i < pairs.size(); ++i)
         observed.add(pairs.x[i], pairs.y[i]);
     finding.units = static_cast<double>(pairs.blocks.size());
-    if (observed.count.size() < 2 || pairs.blocks.size() < observed.count.size() + 2) {
-        finding.shape = observed.count.size() < 2 ? fmt::format("one {} only", name)
-                                                  : fmt::format("too few runs or blocks for {}", name);
-        return finding;
-    }
+    if (observed.count.size() < 2) return not_asked(finding, fmt::format("one {} only", name));
+    if (pairs.blocks.size() < observed.count.size() + 2)
+        return not_asked(finding, fmt::format("too few runs or blocks for {}", name));
     const double centre = mean(pairs.y);
     const auto between = [&](const std::vector<double>& y) {
         GroupMeans means;

@@ -3,7 +3,6 @@
 
 #include "gap/stats/series.h"
 
-#include <cstdint>
 #include <vector>
 
 namespace puckloop::gap::stats {

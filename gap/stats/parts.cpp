@@ -1,6 +1,7 @@
 #include "gap/stats/parts.h"
 
 #include "base/random.h"
+#include "gap/stats/series.h"
 #include "gap/stats/shuffle.h"
 
 #include <algorithm>
@@ -17,9 +18,8 @@ constexpr std::size_t kStretches = 12;  // of a run, where runs are few
 /// Where each run stands when runs that are alike stand together; among themselves as in `order`.
 std::vector<std::size_t> dealt(const std::vector<int>& runs, const std::vector<std::size_t>& order,
                                const std::vector<int>& likeness) {
-    std::vector<std::size_t> by_kind(runs.size()), place(runs.size());
-    std::iota(by_kind.begin(), by_kind.end(), std::size_t{0});
-    std::stable_sort(by_kind.begin(), by_kind.end(), [&](std::size_t a, std::size_t b) {
+    std::vector<std::size_t> place(runs.size());
+    const auto by_kind = ordered(runs.size(), [&](std::size_t a, std::size_t b) {
         const int one = likeness[static_cast<std::size_t>(runs[a])],
                   other = likeness[static_cast<std::size_t>(runs[b])];
         return std::pair(one, order[a]) < std::pair(other, order[b]);

@@ -1,5 +1,7 @@
 #include "gap/stats/robust.h"
 
+#include "gap/stats/series.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -87,9 +89,7 @@ std::vector<double> winsorised(const std::vector<double>& values, double limit) 
 }
 
 std::vector<double> ranks(const std::vector<double>& values) {
-    std::vector<std::size_t> order(values.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return values[a] < values[b]; });
+    const auto order = ordered(values.size(), [&](auto a, auto b) { return values[a] < values[b]; });
     std::vector<double> rank(values.size());
     for (std::size_t i = 0; i < order.size();) {
         std::size_t end = i + 1;

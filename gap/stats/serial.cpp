@@ -43,10 +43,7 @@ Finding serial_test(const Series& residual, const TestOptions& options) {
     Finding finding{.test = "previous", .covariate = "previous sample"};
     finding.effect_unit = "correlation";
     finding.units = static_cast<double>(series.size());
-    if (series.size() < 10) {
-        finding.shape = "too few values";
-        return finding;
-    }
+    if (series.size() < 10) return not_asked(finding);
     series.value = winsorised(series.value);
     finding.statistic = finding.effect = autocorrelation(series, 1).front();
     const std::vector<Stretch> runs = runs_of(series.run);
@@ -84,10 +81,7 @@ Finding held_test(const Series& raw, const TestOptions& options) {
     Finding finding{.test = "held", .covariate = "previous sample"};
     finding.effect_unit = "fraction";
     finding.units = static_cast<double>(series.size());
-    if (series.size() < 10) {
-        finding.shape = "too few values";
-        return finding;
-    }
+    if (series.size() < 10) return not_asked(finding);
     // Under chance alone repeats come as often one row apart as two and more rows apart (nearby rows, so that
     // a slow drift or a coarse quantum makes both alike): compare lag 1 with lags 6 to 10.
     const auto repeats = [&](std::size_t lag) {

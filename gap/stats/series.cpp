@@ -23,7 +23,23 @@ std::vector<double> centred(const Series& series) {
     return result;
 }
 
+/// Rows of the longest run; 0 without any.
+std::size_t longest_run(const std::vector<int>& run) {
+    std::size_t longest = 0;
+    for (const Stretch& s : runs_of(run))
+        longest = std::max(longest, s.size());
+    return longest;
+}
+
 }  // namespace
+
+void Range::take(const std::vector<double>& values) {
+    for (const double value : values)
+        if (!std::isnan(value)) {
+            low = std::min(low, value);
+            high = std::max(high, value);
+        }
+}
 
 bool varies(const std::vector<double>& values) {
     double first = NAN;
@@ -33,6 +49,13 @@ bool varies(const std::vector<double>& values) {
         first = v;
     }
     return false;
+}
+
+std::vector<double> steps_of(const std::vector<double>& values) {
+    std::vector<double> steps;
+    for (std::size_t i = 1; i < values.size(); ++i)
+        if (const double step = values[i] - values[i - 1]; !std::isnan(step)) steps.push_back(step);
+    return steps;
 }
 
 std::vector<Stretch> runs_of(const std::vector<int>& run) {
@@ -63,11 +86,9 @@ std::vector<double> autocorrelation(const Series& series, std::size_t longest) {
 }
 
 double correlation_length(const Series& series) {
-    std::size_t longest_run = 0;
-    for (const Stretch& s : runs_of(series.run))
-        longest_run = std::max(longest_run, s.size());
-    if (longest_run < 4) return 1.0;
-    const std::size_t longest = std::min<std::size_t>(longest_run / 3, 400);
+    const std::size_t rows = longest_run(series.run);
+    if (rows < 4) return 1.0;
+    const std::size_t longest = std::min<std::size_t>(rows / 3, 400);
     const double noise = 2.0 / std::sqrt(static_cast<double>(series.size()));
     double sum = 0;
     for (const double r : autocorrelation(series, longest)) {
@@ -78,13 +99,10 @@ double correlation_length(const Series& series) {
 }
 
 std::size_t block_length(const Series& series) {
-    std::size_t longest_run = 1;
-    for (const Stretch& s : runs_of(series.run))
-        longest_run = std::max(longest_run, s.size());
     const double correlated = correlation_length(series);
     if (correlated < 1.2) return 1;  // white as far as its own noise tells
     const auto wanted = static_cast<std::size_t>(std::ceil(2.5 * correlated));
-    return std::clamp<std::size_t>(wanted, 1, std::max<std::size_t>(longest_run / 3, 1));
+    return std::clamp<std::size_t>(wanted, 1, std::max<std::size_t>(longest_run(series.run) / 3, 1));
 }
 
 std::vector<Stretch> blocks_of(const std::vector<int>& run, std::size_t length) {

@@ -2,7 +2,10 @@
 // Residuals as the tests take them: values in order of time inside each run, with the run each belongs to.
 // How much they depend on each other decides how many of them count.
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <vector>
 
 namespace puckloop::gap::stats {
@@ -23,8 +26,28 @@ struct Stretch {
     std::size_t size() const { return last - first; }
 };
 
-/// Do the known values differ? NaN is not known.
+/// Lowest and highest known value; the other way round where none is. NaN is not known.
+struct Range {
+    double low = INFINITY, high = -INFINITY;
+
+    void take(const std::vector<double>& values);
+    bool empty() const { return !(low <= high); }
+};
+
+/// Do the known values differ?
 bool varies(const std::vector<double>& values);
+
+/// By how much each value differs from the one before; left out where either is not known.
+std::vector<double> steps_of(const std::vector<double>& values);
+
+/// 0 .. count - 1, in the order of `less`; what is alike stays as it is.
+template <class Less>
+std::vector<std::size_t> ordered(std::size_t count, const Less& less) {
+    std::vector<std::size_t> order(count);
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), less);
+    return order;
+}
 
 std::vector<Stretch> runs_of(const std::vector<int>& run);
 

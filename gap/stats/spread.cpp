@@ -40,10 +40,7 @@ Finding outlier_test(const Series& residual, const TestOptions&) {
         wild_before = wild;
     }
     finding.units = values;
-    if (values < 20) {
-        finding.shape = "too few values";
-        return finding;
-    }
+    if (values < 20) return not_asked(finding);
     finding.effect = (high + low) / values;
     finding.statistic = clusters;
     finding.p = poisson_tail(values * std::max(kNormalWild, kAllowedShare), clusters);
@@ -59,20 +56,10 @@ Finding spread_test(const Series& residual, const std::vector<double>& level, st
                     const TestOptions& options) {
     // Distance from a local median, so that a bias against the level is not taken for scatter.
     int count = 0;
-    std::vector<double> x, y;
-    std::vector<int> run;
-    for (std::size_t i = 0; i < residual.size(); ++i)
-        if (std::isfinite(residual.value[i]) && std::isfinite(level[i])) {
-            x.push_back(level[i]);
-            y.push_back(residual.value[i]);
-            run.push_back(residual.run[i]);
-        }
+    const auto [x, y, run, blocks] = known_pairs(residual, level);
     Finding finding{.test = "spread", .covariate = std::string(name)};
     finding.effect_unit = "ratio - 1";
-    if (x.size() < 20) {
-        finding.shape = "too few values";
-        return finding;
-    }
+    if (x.size() < 20) return not_asked(finding);
     const std::vector<int> bin = bins_of(x, count);
     std::vector<double> scatter(x.size());
     for (int b = 0; b < count; ++b) {
@@ -114,10 +101,7 @@ Finding evenness_test(const Series& residual, const TestOptions& options) {
                 {run.first + k * run.size() / parts, run.first + (k + 1) * run.size() / parts, run.run});
     }
     std::erase_if(stretches, [](const Stretch& one) { return one.size() < kStretchRows; });
-    if (stretches.size() < 2) {
-        finding.shape = "too few values";
-        return finding;
-    }
+    if (stretches.size() < 2) return not_asked(finding);
     std::vector<double> values = winsorised(kept.value), distance, means;
     const auto statistic = [&](const std::vector<double>& y) {
         double between = 0, within = 0, all = 0, rows = 0;

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace puckloop::gap::stats {
 
@@ -79,9 +78,7 @@ std::vector<Finding> structure_table(const StructureInput& input, const TestOpti
 }
 
 std::vector<double> holm(const std::vector<double>& p) {
-    std::vector<std::size_t> order(p.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return p[a] < p[b]; });
+    const auto order = ordered(p.size(), [&](auto a, auto b) { return p[a] < p[b]; });
     std::vector<double> adjusted(p.size());
     double so_far = 0;
     for (std::size_t i = 0; i < order.size(); ++i) {

@@ -15,10 +15,10 @@ namespace {
 constexpr std::size_t kLeastUnits = 5;
 
 Finding too_few(std::string_view test, std::string_view name, std::size_t units) {
-    Finding finding{.test = std::string(test), .covariate = std::string(name)};
-    finding.units = static_cast<double>(units);
-    finding.shape = fmt::format("too few independent values ({})", units);
-    return finding;
+    return {.test = std::string(test),
+            .covariate = std::string(name),
+            .units = static_cast<double>(units),
+            .shape = fmt::format("too few independent values ({})", units)};
 }
 
 double relative_size(double effect, const Series& residual) {
@@ -95,9 +95,7 @@ Finding step_test(const Series& residual, const std::vector<double>& covariate, 
     if (pairs.size() < 2 * kLeastUnits) return too_few("step", name, pairs.size());
     Pairs pulled = pairs;
     pulled.y = winsorised(pairs.y);
-    std::vector<std::size_t> order(pairs.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return pairs.x[a] < pairs.x[b]; });
+    const auto order = ordered(pairs.size(), [&](auto a, auto b) { return pairs.x[a] < pairs.x[b]; });
     const double n = static_cast<double>(pairs.size());
     const auto least = static_cast<std::size_t>(std::max(2.0, n / 20));
     std::size_t best_at = 0;
