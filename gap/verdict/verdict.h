@@ -7,7 +7,6 @@
 #include "gap/predictive/predictive.h"
 
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <vector>
 
