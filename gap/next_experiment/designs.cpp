@@ -5,78 +5,77 @@
 #include "physics/description/robot_constants.h"
 
 #include <cmath>
-#include <functional>
 #include <initializer_list>
 #include <numbers>
+#include <sstream>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace puckloop::gap {
 
 namespace {
 
-using Cell = std::pair<const char*, double>;
-
-/// Fills a run row by row.
+/// Fills an experiment's only run row by row.
 class Table {
   public:
-    explicit Table(Experiment& experiment) : run_(experiment.runs.emplace_back()) {
+    /// `names`: of the columns, blanks between them; rows that follow give values in this order.
+    Table(Experiment& experiment, const char* names) : run_(experiment.runs.emplace_back()) {
         run_.name = run_.file = "design";
+        std::istringstream each(names);
+        for (std::string name; each >> name;)
+            columns_.push_back(&run_.columns[name]);
     }
-    void row(std::initializer_list<Cell> cells) {
-        for (const auto& [name, value] : cells) {
-            auto& column = run_.columns[name];
-            column.resize(run_.rows, NAN);
-            column.push_back(value);
-        }
+    void row(std::initializer_list<double> values) {
+        auto column = columns_.begin();
+        for (const double value : values)
+            (*column++)->push_back(value);
         ++run_.rows;
-        for (auto& [name, column] : run_.columns)
-            column.resize(run_.rows, NAN);
     }
 
   private:
     Run& run_;
+    std::vector<std::vector<double>*> columns_;
 };
 
-class Designs {
-  public:
-    explicit Designs(const Experiment& like) : like_(like) {}
-    void add(const char* what, const std::function<void(Table&)>& fill) {
-        Design design{what, {}};
-        design.experiment.kind = like_.kind;
-        design.experiment.nominal = like_.nominal;
-        design.experiment.instruments = like_.instruments;
-        Table table(design.experiment);
-        fill(table);
-        all_.push_back(std::move(design));
+/// What a kind of experiment can be varied in, written into an experiment's table.
+template <class Part>
+using Fill = void (*)(Experiment&, const std::vector<Part>&);
+
+/// A design of each list of parts.
+template <class Part>
+std::vector<Design> filled(const Experiment& like, Fill<Part> fill,
+                           const std::vector<std::pair<const char*, std::vector<Part>>>& looks) {
+    std::vector<Design> all;
+    for (const auto& [what, parts] : looks) {
+        Design& design = all.emplace_back(Design{what, {}});
+        design.experiment.kind = like.kind;
+        design.experiment.nominal = like.nominal;
+        design.experiment.instruments = like.instruments;
+        fill(design.experiment, parts);
     }
-    std::vector<Design> take() { return std::move(all_); }
-
-  private:
-    const Experiment& like_;
-    std::vector<Design> all_;
-};
+    return all;
+}
 
 struct Leg {
     double seconds, left, right;
 };
 
+struct Drive {
+    std::vector<Leg> legs;
+    double heading = 0.0, load = 0.0;
+};
+
 /// Rows each 0.1 s of a drive by nominal wheels.
-void drive(Table& table, const std::vector<Leg>& legs, double heading = 0.0, double load = 0.0) {
+void drive(Experiment& experiment, const std::vector<Drive>& drives) {
     constexpr double kPeriod = 0.1, kMetre = physics::kMetresPerStep, kAxle = physics::kAxleLength;
-    double t = 0, x = 0, y = 0, theta = heading, left = 0, right = 0;
-    for (const Leg& leg : legs) {
+    const Drive& whole = drives.front();
+    Table table(experiment, "t_s cmd_left cmd_right steps_left steps_right x_m y_m theta_rad load_kg order");
+    double t = 0, x = 0, y = 0, theta = whole.heading, left = 0, right = 0;
+    for (const Leg& leg : whole.legs) {
         const double vl = agenda_speed(leg.left), vr = agenda_speed(leg.right);
         for (int k = 0; k < std::lround(leg.seconds / kPeriod); ++k) {
-            table.row({{"t_s", t},
-                       {"cmd_left", leg.left},
-                       {"cmd_right", leg.right},
-                       {"steps_left", left},
-                       {"steps_right", right},
-                       {"x_m", x},
-                       {"y_m", y},
-                       {"theta_rad", theta},
-                       {"load_kg", load},
-                       {"order", 1}});
+            table.row({t, leg.left, leg.right, left, right, x, y, theta, whole.load, 1});
             const double way = (vl + vr) / 2 * kMetre * kPeriod, turn = (vr - vl) * kMetre / kAxle * kPeriod;
             x += way * std::cos(theta + turn / 2);
             y += way * std::sin(theta + turn / 2);
@@ -96,41 +95,33 @@ std::vector<Leg> repeated(int times, const std::vector<Leg>& legs, const std::ve
     return all;
 }
 
-void motion(Designs& designs) {
+std::vector<Design> motion(const Experiment& like) {
     const auto square = [](double turn) {
         return repeated(4, {{5, 400, 400}, {1.6, -turn * 200, turn * 200}, {0.5, 0, 0}});
     };
     std::vector<Leg> steps;
     for (double v = 20; v <= 200; v += 20)
         steps.push_back({3, v, v});
-    struct Drive {
-        const char* what;
-        std::vector<Leg> legs;
-        double heading = 0.0, load = 0.0;
-    };
-    const Drive drives[] = {
-        {"drive straight lines of 0.5 m and 1.5 m, slowly",
-         {{1, 0, 0}, {12, 300, 300}, {1, 0, 0}, {25, 300, 300}, {1, 0, 0}}},
-        {"drive straight at 900 steps/s", {{1, 0, 0}, {15, 900, 900}, {1, 0, 0}}},
-        {"drive straight forward and then backward the same way",
-         {{12, 400, 400}, {1, 0, 0}, {12, -400, -400}, {1, 0, 0}}},
-        {"drive squares clockwise and counter-clockwise", repeated(1, square(1), square(-1))},
-        {"turn on the spot ten times, both ways",
-         {{1, 0, 0}, {20, -300, 300}, {1, 0, 0}, {20, 300, -300}, {1, 0, 0}}},
-        {"drive wide circles both ways beside turns on the spot",
-         {{15, 300, 400}, {15, 400, 300}, {8, -300, 300}, {8, 300, -300}}},
-        {"drive 1 m in ten hops and in one go",
-         repeated(10, {{1.0, 800, 800}, {0.5, 0, 0}}, {{10, 800, 800}, {1, 0, 0}})},
-        {"reverse twenty times without a stop", repeated(10, {{1.0, 300, 300}, {1.0, -300, -300}})},
-        {"drive the same line with the start turned by 90 degrees",
-         {{15, 400, 400}, {1, 0, 0}},
-         std::numbers::pi / 2},
-        {"stand for a minute with the tracker on", {{60, 0, 0}}},
-        {"drive the line with 0.3 kg on the robot", {{15, 400, 400}, {1, 0, 0}}, 0.0, 0.3},
-        {"drive at commands from 20 to 200 steps/s in steps", steps},
-    };
-    for (const Drive& one : drives)
-        designs.add(one.what, [&](Table& t) { drive(t, one.legs, one.heading, one.load); });
+    return filled<Drive>(
+        like, drive,
+        {{"drive straight lines of 0.5 m and 1.5 m, slowly",
+          {{{{1, 0, 0}, {12, 300, 300}, {1, 0, 0}, {25, 300, 300}, {1, 0, 0}}}}},
+         {"drive straight at 900 steps/s", {{{{1, 0, 0}, {15, 900, 900}, {1, 0, 0}}}}},
+         {"drive straight forward and then backward the same way",
+          {{{{12, 400, 400}, {1, 0, 0}, {12, -400, -400}, {1, 0, 0}}}}},
+         {"drive squares clockwise and counter-clockwise", {{repeated(1, square(1), square(-1))}}},
+         {"turn on the spot ten times, both ways",
+          {{{{1, 0, 0}, {20, -300, 300}, {1, 0, 0}, {20, 300, -300}, {1, 0, 0}}}}},
+         {"drive wide circles both ways beside turns on the spot",
+          {{{{15, 300, 400}, {15, 400, 300}, {8, -300, 300}, {8, 300, -300}}}}},
+         {"drive 1 m in ten hops and in one go",
+          {{repeated(10, {{1.0, 800, 800}, {0.5, 0, 0}}, {{10, 800, 800}, {1, 0, 0}})}}},
+         {"reverse twenty times without a stop", {{repeated(10, {{1.0, 300, 300}, {1.0, -300, -300}})}}},
+         {"drive the same line with the start turned by 90 degrees",
+          {{.legs = {{15, 400, 400}, {1, 0, 0}}, .heading = std::numbers::pi / 2}}},
+         {"stand for a minute with the tracker on", {{{{60, 0, 0}}}}},
+         {"drive the line with 0.3 kg on the robot", {{.legs = {{15, 400, 400}, {1, 0, 0}}, .load = 0.3}}},
+         {"drive at commands from 20 to 200 steps/s in steps", {{steps}}}});
 }
 
 struct Wall {
@@ -139,45 +130,34 @@ struct Wall {
     int sensors = 8;
 };
 
-void wall(Table& table, const Wall& w) {
-    double t = 0;
-    for (int sensor = 0; sensor < w.sensors; ++sensor)
-        for (int k = 0; k < 20; ++k) {
-            const double distance = w.low + (w.high - w.low) * k / 19;
-            t += 0.1 + w.hours * 3600 / (20 * w.sensors);
-            table.row({{"t_s", t},
-                       {"sensor", static_cast<double>(sensor)},
-                       {"distance_m", distance},
-                       {"angle_rad", w.angle},
-                       {"reflectivity", w.reflectivity},
-                       {"ambient", w.ambient},
-                       {"motor_speed", w.motor},
-                       {"velocity", w.velocity},
-                       {"object", w.reflectivity == 1 ? 1.0 : 2.0},
-                       {"neighbours", 0},
-                       {"battery_v", 3.7},
-                       {"order", 1},
-                       {"reading", 100}});
-        }
+void walls(Experiment& experiment, const std::vector<Wall>& all) {
+    Table table(experiment,
+                "t_s sensor distance_m angle_rad reflectivity ambient motor_speed velocity object "
+                "neighbours battery_v order reading");
+    for (const Wall& w : all) {
+        double t = 0;
+        for (int sensor = 0; sensor < w.sensors; ++sensor)
+            for (int k = 0; k < 20; ++k) {
+                const double distance = w.low + (w.high - w.low) * k / 19;
+                t += 0.1 + w.hours * 3600 / (20 * w.sensors);
+                table.row({t, 1.0 * sensor, distance, w.angle, w.reflectivity, w.ambient, w.motor, w.velocity,
+                           w.reflectivity == 1 ? 1.0 : 2.0, 0, 3.7, 1, 100});
+            }
+    }
 }
 
-void proximity(Designs& designs) {
-    const std::pair<const char*, std::vector<Wall>> looks[] = {
-        {"all eight sensors before white paper, 5 to 80 mm, in the dark", {Wall{}}},
-        {"all eight sensors before a black and a white surface", {{}, {.reflectivity = 0.3}}},
-        {"nothing in reach, in the dark and in light",
-         {{.low = 0.2, .high = 0.4}, {.low = 0.2, .high = 0.4, .ambient = 1}}},
-        {"distances below 10 mm in steps of half a millimetre", {{.low = 0.0, .high = 0.01}}},
-        {"walls turned by 35 degrees to either side", {{.angle = 0.6}, {.angle = -0.6}}},
-        {"the same distances with the motors on and off", {{}, {.motor = 800}}},
-        {"approach and retreat at full speed", {{.velocity = 0.1}, {.velocity = -0.1}}},
-        {"one distance for an hour after switching on", {{.low = 0.02, .high = 0.03, .hours = 1}}},
-    };
-    for (const auto& [what, walls] : looks)
-        designs.add(what, [&](Table& t) {
-            for (const Wall& one : walls)
-                wall(t, one);
-        });
+std::vector<Design> proximity(const Experiment& like) {
+    return filled<Wall>(
+        like, walls,
+        {{"all eight sensors before white paper, 5 to 80 mm, in the dark", {Wall{}}},
+         {"all eight sensors before a black and a white surface", {{}, {.reflectivity = 0.3}}},
+         {"nothing in reach, in the dark and in light",
+          {{.low = 0.2, .high = 0.4}, {.low = 0.2, .high = 0.4, .ambient = 1}}},
+         {"distances below 10 mm in steps of half a millimetre", {{.low = 0.0, .high = 0.01}}},
+         {"walls turned by 35 degrees to either side", {{.angle = 0.6}, {.angle = -0.6}}},
+         {"the same distances with the motors on and off", {{}, {.motor = 800}}},
+         {"approach and retreat at full speed", {{.velocity = 0.1}, {.velocity = -0.1}}},
+         {"one distance for an hour after switching on", {{.low = 0.02, .high = 0.03, .hours = 1}}}});
 }
 
 struct Messages {
@@ -187,119 +167,89 @@ struct Messages {
     int receivers = 1;
 };
 
-void messages(Table& t, const Messages& m) {
-    double time = 0;
-    for (int r = 1; r <= m.receivers; ++r)
-        for (int k = 0; k < 60; ++k)
-            t.row({{"t_s", time += 0.02},
-                   {"distance_m", m.low + (m.high - m.low) * k / 59},
-                   {"strength", 1000},
-                   {"bearing_rad", 0},
-                   {"true_bearing_rad", 0},
-                   {"received", 1},
-                   {"receiver", static_cast<double>(r)},
-                   {"emitter", 1},
-                   {"senders", static_cast<double>(m.senders)},
-                   {"frame_time", 0.0092},
-                   {"send_period", 0.02},
-                   {"arrival_rate", m.rate}});
+void messages(Experiment& experiment, const std::vector<Messages>& all) {
+    Table table(experiment, "t_s distance_m strength bearing_rad true_bearing_rad received receiver emitter "
+                            "senders frame_time send_period arrival_rate");
+    for (const Messages& m : all) {
+        double time = 0;
+        for (int r = 1; r <= m.receivers; ++r)
+            for (int k = 0; k < 60; ++k)
+                table.row({time += 0.02, m.low + (m.high - m.low) * k / 59, 1000, 0, 0, 1, 1.0 * r, 1,
+                           1.0 * m.senders, 0.0092, 0.02, m.rate});
+    }
 }
 
-void rab(Designs& designs) {
-    const std::pair<const char*, std::vector<Messages>> talks[] = {
-        {"turn the receiver through all twelve sectors before one sender at 20 cm", {{.receivers = 12}}},
-        {"one sender from contact to 80 cm", {{.low = 0.0, .high = 0.8}}},
-        {"one, two and four senders at one place",
-         {{}, {.senders = 2, .rate = 100}, {.senders = 4, .rate = 200}}},
-        {"one sender at 10, 50 and 150 messages a second", {{.rate = 10}, {}, {.rate = 150}}},
-        {"six other pairs of boards at 20 cm", {{.receivers = 6}}},
-    };
-    for (const auto& [what, parts] : talks)
-        designs.add(what, [&](Table& t) {
-            for (const Messages& one : parts)
-                messages(t, one);
-        });
+std::vector<Design> rab(const Experiment& like) {
+    return filled<Messages>(
+        like, messages,
+        {{"turn the receiver through all twelve sectors before one sender at 20 cm", {{.receivers = 12}}},
+         {"one sender from contact to 80 cm", {{.low = 0.0, .high = 0.8}}},
+         {"one, two and four senders at one place",
+          {{}, {.senders = 2, .rate = 100}, {.senders = 4, .rate = 200}}},
+         {"one sender at 10, 50 and 150 messages a second", {{.rate = 10}, {}, {.rate = 150}}},
+         {"six other pairs of boards at 20 cm", {{.receivers = 6}}}});
 }
 
-void simple(Designs& designs, Kind kind) {
-    if (kind == Kind::Ground)
-        for (const double speed : {0.02, 0.1})
-            designs.add(speed < 0.05 ? "cross printed edges slowly, both ways"
-                                     : "cross printed edges fast, with starts and stops",
-                        [=](Table& t) {
-                            for (int sensor = 0; sensor < 3; ++sensor)
-                                for (int k = 0; k < 60; ++k)
-                                    t.row({{"t_s", 0.1 * k},
-                                           {"sensor", static_cast<double>(sensor)},
-                                           {"grey", 0.5 + 0.5 * std::sin(k * 0.3)},
-                                           {"grey_rate", 60 * std::cos(k * 0.3)},
-                                           {"grey_across", 0},
-                                           {"speed", k % 40 < 20 ? speed : -speed},
-                                           {"acceleration", k % 10 == 0 && speed > 0.05 ? 1.0 : 0.0},
-                                           {"reading", 500}});
-                        });
-    if (kind == Kind::Microphone)
-        for (const double window : {100.0, 25.0})
-            designs.add(window > 50 ? "each microphone on the axis and turned, 5 to 50 cm"
-                                    : "the same sound with a quarter of the window",
-                        [=](Table& t) {
-                            for (int mic = 0; mic < 3; ++mic)
-                                for (int k = 0; k < 40; ++k)
-                                    t.row({{"t_s", 0.1 * k},
-                                           {"mic", static_cast<double>(mic)},
-                                           {"distance_m", 0.05 + 0.0115 * k},
-                                           {"angle_rad", k % 2 == 0 ? 0.0 : 2.0},
-                                           {"window", window},
-                                           {"amplitude", 600},
-                                           {"motor_speed", k % 4 < 2 ? 0.0 : 600.0},
-                                           {"level", 100}});
-                        });
-    if (kind == Kind::Accelerometer)
-        designs.add("all six faces down, motors off and on, in two sessions", [](Table& t) {
-            for (int k = 0; k < 120; ++k)
-                t.row({{"t_s", 1.0 * k},
-                       {"pitch_rad", k % 3 == 0   ? 0.0
-                                     : k % 3 == 1 ? 1.5
-                                                  : -1.5},
-                       {"roll_rad", k % 5 == 0 ? 1.5 : 0.0},
-                       {"acceleration", 0},
-                       {"motor_speed", k % 2 == 0 ? 0.0 : 600.0},
-                       {"session", k < 60 ? 1.0 : 2.0},
-                       {"ax", 2048},
-                       {"ay", 2048},
-                       {"az", 2848}});
-        });
-    if (kind == Kind::Timing)
-        for (const double load : {0.0, 0.5})
-            designs.add(load > 0 ? "frames of 0x00 and 0xFF with the analogue service on"
-                                 : "ten minutes of short frames with and without I2C boards",
-                        [=](Table& t) {
-                            for (int k = 0; k < 600; ++k)
-                                t.row({{"seq", 1.0 * k},
-                                       {"t_robot_s", 0.1 * k},
-                                       {"t_host_s", 0.1 * k + 0.007},
-                                       {"bytes", 84},
-                                       {"edges", load > 0 ? 40.0 : 0.0},
-                                       {"i2c_reads", k % 2 == 0 ? 0.0 : 8.0},
-                                       {"load", load},
-                                       {"frame_ok", 1},
-                                       {"shifted", 0}});
-                        });
+void edges(Experiment& experiment, const std::vector<double>& speeds) {
+    Table table(experiment, "t_s sensor grey grey_rate grey_across speed acceleration reading");
+    for (const double speed : speeds)
+        for (int sensor = 0; sensor < 3; ++sensor)
+            for (int k = 0; k < 60; ++k)
+                table.row({0.1 * k, 1.0 * sensor, 0.5 + 0.5 * std::sin(k * 0.3), 60 * std::cos(k * 0.3), 0,
+                           k % 40 < 20 ? speed : -speed, k % 10 == 0 && speed > 0.05 ? 1.0 : 0.0, 500});
+}
+
+void sounds(Experiment& experiment, const std::vector<double>& windows) {
+    Table table(experiment, "t_s mic distance_m angle_rad window amplitude motor_speed level");
+    for (const double window : windows)
+        for (int mic = 0; mic < 3; ++mic)
+            for (int k = 0; k < 40; ++k)
+                table.row({0.1 * k, 1.0 * mic, 0.05 + 0.0115 * k, k % 2 == 0 ? 0.0 : 2.0, window, 600,
+                           k % 4 < 2 ? 0.0 : 600.0, 100});
+}
+
+void faces(Experiment& experiment, const std::vector<double>&) {
+    constexpr double kPitch[] = {0.0, 1.5, -1.5};
+    Table table(experiment, "t_s pitch_rad roll_rad acceleration motor_speed session ax ay az");
+    for (int k = 0; k < 120; ++k)
+        table.row({1.0 * k, kPitch[k % 3], k % 5 == 0 ? 1.5 : 0.0, 0, k % 2 == 0 ? 0.0 : 600.0,
+                   k < 60 ? 1.0 : 2.0, 2048, 2048, 2848});
+}
+
+void frames(Experiment& experiment, const std::vector<double>& loads) {
+    Table table(experiment, "seq t_robot_s t_host_s bytes edges i2c_reads load frame_ok shifted");
+    for (const double load : loads)
+        for (int k = 0; k < 600; ++k)
+            table.row({1.0 * k, 0.1 * k, 0.1 * k + 0.007, 84, load > 0 ? 40.0 : 0.0, k % 2 == 0 ? 0.0 : 8.0,
+                       load, 1, 0});
 }
 
 }  // namespace
 
 std::vector<Design> designs_of(const Experiment& like) {
-    Designs designs(like);
-    if (like.kind == Kind::Motion)
-        motion(designs);
-    else if (like.kind == Kind::Proximity)
-        proximity(designs);
-    else if (like.kind == Kind::Rab)
-        rab(designs);
-    else
-        simple(designs, like.kind);
-    return designs.take();
+    switch (like.kind) {
+    case Kind::Motion:
+        return motion(like);
+    case Kind::Proximity:
+        return proximity(like);
+    case Kind::Rab:
+        return rab(like);
+    case Kind::Ground:
+        return filled<double>(like, edges,
+                              {{"cross printed edges slowly, both ways", {0.02}},
+                               {"cross printed edges fast, with starts and stops", {0.1}}});
+    case Kind::Microphone:
+        return filled<double>(like, sounds,
+                              {{"each microphone on the axis and turned, 5 to 50 cm", {100.0}},
+                               {"the same sound with a quarter of the window", {25.0}}});
+    case Kind::Accelerometer:
+        return filled<double>(like, faces, {{"all six faces down, motors off and on, in two sessions", {}}});
+    case Kind::Timing:
+        return filled<double>(like, frames,
+                              {{"ten minutes of short frames with and without I2C boards", {0.0}},
+                               {"frames of 0x00 and 0xFF with the analogue service on", {0.5}}});
+    }
+    return {};
 }
 
 }  // namespace puckloop::gap
