@@ -22,17 +22,14 @@ struct Gain {
     int clearly_better = 0, clearly_worse = 0;  ///< blocks, by kClearGain
     double without_best = 0.0;                  ///< sum over all blocks but the one that gains most
 
-    /// What is rare, or shows in few runs only, is not seen in most blocks, but more than once.
-    bool here_and_there() const { return clearly_better > 1 && clearly_worse == 0; }
-    /// The same, and not one block's doing: what the others lose does not eat up what the second best gains.
-    bool in_several() const { return here_and_there() && without_best > kClearGain; }
+    /// What is rare, or shows in few runs only, is not seen in most blocks, but more than once; and it is not
+    /// one block's doing: what the others lose does not eat up what the second best gains.
+    bool in_several() const { return clearly_better > 1 && clearly_worse == 0 && without_best > kClearGain; }
 };
 Gain gain_of(const std::vector<double>& by_block);
 
-/// ln of how many sets of `taken` effects there are among `candidates`: the price of the catalogue's size.
-double log_sets(std::size_t candidates, std::size_t taken);
-
-/// nats that the best of such sets must gain.
+/// nats that the best set of `taken` effects among `candidates` must gain: ln of how many such sets there are
+/// is the price of the catalogue's size.
 double needed_gain(std::size_t candidates, std::size_t taken);
 
 /// Is the gain more than chance and more than its own standard error allows for?
