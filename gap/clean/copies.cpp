@@ -90,9 +90,9 @@ void drop_twins(Experiment& experiment, Run& run) {
         if (same) twins.insert(i);
     }
     if (twins.empty()) return;
-    experiment.cautions.push_back(fmt::format("{}: {} of {} rows repeat the row before, clock included (row "
-                                              "{}): written twice; the later one is left out",
-                                              run.file, twins.size(), run.rows, *twins.begin() + 1));
+    experiment.caution("{}: {} of {} rows repeat the row before, clock included (row "
+                       "{}): written twice; the later one is left out",
+                       run.file, twins.size(), run.rows, *twins.begin() + 1);
     take_out(run, twins);
 }
 

@@ -63,9 +63,9 @@ void blank(const Experiment& experiment, Run& run, const char* missing,
 }
 
 /// Files by what was done about the cells missing in them.
-using Told = std::map<std::string, std::vector<MissingIn>>;
+using ByRemedy = std::map<std::string, std::vector<MissingIn>>;
 
-void fill(Experiment& experiment, Run& run, const ColumnInfo& info, Told& told) {
+void fill(Experiment& experiment, Run& run, const ColumnInfo& info, ByRemedy& files) {
     static const std::set<std::string_view> slow{"t_s", "temperature_c", "battery_v", "ambient_reading"};
     auto& values = run.columns.at(info.name);
     std::vector<std::size_t> missing;
@@ -92,7 +92,7 @@ void fill(Experiment& experiment, Run& run, const ColumnInfo& info, Told& told) 
                 values[i] = usual;
         done = "which are left out";
     }
-    told[done].push_back({run.file, missing.size(), run.rows});
+    files[done].push_back({run.file, missing.size(), run.rows});
 }
 
 }  // namespace
@@ -101,10 +101,10 @@ void fill_missing(Experiment& experiment) {
     if (experiment.kind == Kind::Motion) return;
     for (const ColumnInfo& info : columns_of(experiment.kind)) {
         if (info.role == Role::Observable || info.required) continue;
-        Told told;
+        ByRemedy by_remedy;
         for (Run& run : experiment.runs)
-            if (run.has(info.name)) fill(experiment, run, info, told);
-        for (const auto& [done, files] : told)
+            if (run.has(info.name)) fill(experiment, run, info, by_remedy);
+        for (const auto& [done, files] : by_remedy)
             experiment.cautions.push_back(missing_sentence(info.name, files, done));
     }
 }

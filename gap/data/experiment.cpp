@@ -15,7 +15,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 #include <stdexcept>
 
 namespace puckloop::gap {
@@ -79,6 +78,11 @@ void read_conditions(Reader& reader, std::map<std::string, std::string>& conditi
                              fmt::format("condition {} is not a text", key), "a text or a number");
         conditions[key] = text;
     }
+}
+
+/// "; is it \"x\"?" where a name is near; else nothing.
+std::string is_it(const std::string& near, const char* quote = "") {
+    return near.empty() ? "" : fmt::format("; is it {0}{1}{0}?", quote, near);
 }
 
 const ColumnInfo& known_column(Reader& reader, Kind kind, const std::string& name) {
@@ -188,21 +192,18 @@ Run read_run(const TomlValue& table, std::size_t index, Experiment& experiment, 
     read_constants(reader, experiment.kind, table, frame, run);
     const std::vector<std::string_view> names(csv.names.begin(), csv.names.end());
     for (const ColumnInfo& info : columns_of(experiment.kind))
-        if (info.required && !run.has(info.name)) {
-            const std::string near = nearest_name(info.name, names);
+        if (info.required && !run.has(info.name))
             throw InputError(path.string(), "line 1",
                              fmt::format("has no column \"{}\" ({}){}", info.name, info.meaning,
-                                         near.empty() ? "" : fmt::format("; is it \"{}\"?", near)),
+                                         is_it(nearest_name(info.name, names), "\"")),
                              fmt::format("it, or where to find it in [columns] of {}", frame.file));
-        }
     std::vector<std::string_view> absent;
     for (const ColumnInfo& info : columns_of(experiment.kind))
         if (!run.has(info.name)) absent.emplace_back(info.name);
     for (const std::string& name : csv.names) {
         if (used.contains(name) || name.empty()) continue;
-        const std::string near = nearest_name(name, absent);
-        experiment.cautions.push_back(fmt::format("{}: column \"{}\" is not used{}", run.file, name,
-                                                  near.empty() ? "" : fmt::format("; is it {}?", near)));
+        experiment.caution("{}: column \"{}\" is not used{}", run.file, name,
+                           is_it(nearest_name(name, absent)));
     }
     reader.finish();
     return run;
@@ -244,12 +245,19 @@ std::size_t Experiment::rows() const {
 }
 
 double Experiment::nominal_or(const std::string& name, double otherwise) const {
-    const auto told = nominal.find(name);
-    return told == nominal.end() ? otherwise : told->second;
+    const auto stated = nominal.find(name);
+    return stated == nominal.end() ? otherwise : stated->second;
 }
 
 bool Experiment::has(std::string_view column) const {
     return std::any_of(runs.begin(), runs.end(), [&](const Run& run) { return run.has(column); });
+}
+
+stats::Range Experiment::range(std::string_view column) const {
+    stats::Range all;
+    for (const Run& run : runs)
+        all.take(run.column(column));
+    return all;
 }
 
 namespace {
@@ -262,9 +270,9 @@ void read_assumed(Reader& top, Experiment& experiment) {
         if (info == nullptr || info->role != Role::Truth)
             top.fail("assumed", fmt::format("{} is no truth of kind {}", name, kind_name(experiment.kind)),
                      "a truth column of docs/gap.md");
-        experiment.cautions.push_back(fmt::format(
+        experiment.caution(
             "{} was not measured but assumed: whatever is found may be an error of it, so nothing is named",
-            name));
+            name);
     }
 }
 

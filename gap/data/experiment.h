@@ -2,11 +2,16 @@
 // A measured experiment as the analysis sees it: kind, nominal numbers, runs with conditions and a table of
 // canonical columns in SI units. The format on disk is docs/gap.md; read_experiment() is its only reader.
 
+#include "gap/stats/series.h"
+
+#include <fmt/format.h>
+
 #include <cstddef>
 #include <filesystem>
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace puckloop::gap {
@@ -55,6 +60,13 @@ struct Experiment {
     double nominal_or(const std::string& name, double otherwise) const;
     /// Does at least one run have this column?
     bool has(std::string_view column) const;
+    /// Of a column's values over all runs.
+    stats::Range range(std::string_view column) const;
+    /// Adds a caution, formatted.
+    template <class... Args>
+    void caution(fmt::format_string<Args...> text, Args&&... args) {
+        cautions.push_back(fmt::format(text, std::forward<Args>(args)...));
+    }
 };
 
 /// Reads `folder`/experiment.toml and the CSV files it names, converts units, and looks for what cannot be

@@ -5,7 +5,6 @@
 #include "gap/sync/counted_path.h"
 
 #include <Eigen/Dense>
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -84,8 +83,7 @@ std::vector<double> rates(const std::vector<double>& values, const std::vector<d
 /// The time between rows, if they are evenly spaced but for missing ones: only then do beats beyond half the
 /// rate of rows look like slower ones.
 std::optional<double> even_step(const std::vector<double>& time) {
-    std::vector<double> spaces = differences(time);
-    spaces.erase(spaces.begin());
+    const std::vector<double> spaces = stats::steps_of(time);
     const double step = stats::median(spaces);
     if (!(step > 0)) return std::nullopt;
     const auto even = std::count_if(spaces.begin(), spaces.end(), [&](double space) {
@@ -316,12 +314,12 @@ bool align_frames(Experiment& experiment, const std::vector<FrameBeat>& beats) {
         for (double& time : run.counted_at)
             time -= std::copysign(period, beat.period) * sawtooth(beat.beat * time + beat.phase);
     }
-    experiment.cautions.push_back(
-        fmt::format("the tracker tells poses at frames of its own, about {:.2g} ms apart (or the counters "
-                    "are polled so): a row is later than the one before until it falls back by a frame ({} "
-                    "of {} runs beyond doubt). Counters were read at the frames' times before anything was "
-                    "fitted; half a frame of a tracker's delay is theirs",
-                    1e3 * period, clear, beats.size()));
+    experiment.caution(
+        "the tracker tells poses at frames of its own, about {:.2g} ms apart (or the counters "
+        "are polled so): a row is later than the one before until it falls back by a frame ({} "
+        "of {} runs beyond doubt). Counters were read at the frames' times before anything was "
+        "fitted; half a frame of a tracker's delay is theirs",
+        1e3 * period, clear, beats.size());
     return true;
 }
 

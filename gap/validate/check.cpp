@@ -41,9 +41,8 @@ void check_range(Experiment& experiment, Run& run, const ColumnInfo& info) {
     }
     if (outside == 0) return;
     if (static_cast<double>(outside) < kFewOutside * static_cast<double>(present)) {
-        experiment.cautions.push_back(
-            fmt::format("{}: {} = {:.6g}{} in row {} is impossible ({} of {} rows): taken as missing",
-                        run.file, info.name, values[first], unit_text(info), first + 1, outside, present));
+        experiment.caution("{}: {} = {:.6g}{} in row {} is impossible ({} of {} rows): taken as missing",
+                           run.file, info.name, values[first], unit_text(info), first + 1, outside, present);
         for (double& value : values)
             if (value < info.low || value > info.high) value = std::nan("");
         return;
@@ -105,9 +104,9 @@ void drop_empty(Experiment& experiment, const ColumnInfo& info) {
         if (runs++ == 0) first = run.file;
     }
     if (runs == 1)
-        experiment.cautions.push_back(fmt::format("{}: {} is empty in every row", first, info.name));
+        experiment.caution("{}: {} is empty in every row", first, info.name);
     else if (runs > 1)
-        experiment.cautions.push_back(fmt::format("{} is empty in every row of {} runs", info.name, runs));
+        experiment.caution("{} is empty in every row of {} runs", info.name, runs);
 }
 
 /// Readings beyond what the instrument can say tell next to nothing.
@@ -123,11 +122,11 @@ void check_clipped(Experiment& experiment, const ColumnInfo& info) {
         }
     const double share =
         static_cast<double>(clipped) / static_cast<double>(std::max<std::size_t>(present, 1));
-    const std::string told = fmt::format(
+    const std::string clipping = fmt::format(
         "{} is at or beyond [instrument]'s floor or ceiling in {} of {} rows", info.name, clipped, present);
-    if (share > kMostClipped) refuse(experiment, told, "readings between the two");
+    if (share > kMostClipped) refuse(experiment, clipping, "readings between the two");
     if (share > kManyClipped)
-        experiment.cautions.push_back(told + ": such rows only say 'at least this far'");
+        experiment.cautions.push_back(clipping + ": such rows only say 'at least this far'");
 }
 
 /// A time that stands still or goes back; one long step forward is a gap, not an error.
@@ -146,8 +145,8 @@ void check_clock(Experiment& experiment, const Run& run, const char* name) {
     if (!steps.empty() && *std::max_element(steps.begin(), steps.end()) <= 0) {
         if (experiment.kind == Kind::Motion || experiment.kind == Kind::Timing)
             refuse(experiment, run, fmt::format("the clock {} stands still", name), "a time for every row");
-        experiment.cautions.push_back(fmt::format(
-            "{}: the clock {} stands still: what depends on time cannot be seen", run.file, name));
+        experiment.caution("{}: the clock {} stands still: what depends on time cannot be seen", run.file,
+                           name);
     }
     if (!steps.empty() && *std::max_element(steps.begin(), steps.end()) > kLongestGap)
         refuse(experiment, run,
@@ -158,28 +157,21 @@ void check_clock(Experiment& experiment, const Run& run, const char* name) {
     const double usual = steps[steps.size() / 2];
     const double longest = steps.back();
     if (usual > 0 && longest > 50 * usual && longest > 1.0)
-        experiment.cautions.push_back(fmt::format("{}: the clock {} jumps by {:.3g} s (a step is {:.3g} s): "
-                                                  "rows before and after are not taken as neighbours",
-                                                  run.file, name, longest, usual));
+        experiment.caution("{}: the clock {} jumps by {:.3g} s (a step is {:.3g} s): "
+                           "rows before and after are not taken as neighbours",
+                           run.file, name, longest, usual);
 }
 
 /// Constant over the whole experiment, where something must change to learn anything.
 void check_constant(Experiment& experiment, const ColumnInfo& info) {
-    double low = INFINITY, high = -INFINITY;
-    for (const Run& run : experiment.runs)
-        for (const double value : run.column(info.name))
-            if (!std::isnan(value)) {
-                low = std::min(low, value);
-                high = std::max(high, value);
-            }
+    const auto [low, high] = experiment.range(info.name);
     if (low != high) return;
     if (info.role == Role::Observable && std::string_view(info.unit) != "1")
         refuse(experiment, fmt::format("{} is {:g} in every row of every run", info.name, low),
                "a measurement that changes");
     if (info.role != Role::Covariate)
-        experiment.cautions.push_back(
-            fmt::format("{} is {:g}{} in every row: nothing can be learnt about what depends on it",
-                        info.name, low, unit_text(info)));
+        experiment.caution("{} is {:g}{} in every row: nothing can be learnt about what depends on it",
+                           info.name, low, unit_text(info));
 }
 
 /// A measurement that never changes inside one run while it does in others: a sensor that hung.
@@ -191,30 +183,30 @@ void check_hung(Experiment& experiment, const ColumnInfo& info) {
         if (std::any_of(values.begin(), values.end(), [&](double value) { return value != values.front(); }))
             continue;
         if (values.empty() || std::isnan(values.front())) continue;
-        experiment.cautions.push_back(fmt::format("{}: {} is {:g}{} in every row of this run: did it hang?",
-                                                  run.file, info.name, values.front(), unit_text(info)));
+        experiment.caution("{}: {} is {:g}{} in every row of this run: did it hang?", run.file, info.name,
+                           values.front(), unit_text(info));
     }
 }
 
 void check_runs(Experiment& experiment) {
     if (experiment.rows() < kFewRows)
-        experiment.cautions.push_back(fmt::format(
+        experiment.caution(
             "there are only {} rows: that nothing is found in so few does not mean that there is nothing",
-            experiment.rows()));
+            experiment.rows());
     if (experiment.runs.size() == 1)
         experiment.cautions.push_back("there is one run only: nothing can be held out whole, intervals come "
                                       "from blocks of the run and say nothing about another day");
     else if (experiment.runs.size() < 4)
-        experiment.cautions.push_back(fmt::format(
-            "there are only {} runs: intervals over runs are wide and uncertain", experiment.runs.size()));
+        experiment.caution("there are only {} runs: intervals over runs are wide and uncertain",
+                           experiment.runs.size());
     std::set<double> units;
     for (const Run& run : experiment.runs)
         for (const double value : run.column("unit"))
             if (!std::isnan(value)) units.insert(value);
     if (units.size() > 1)
-        experiment.cautions.push_back(fmt::format("{} robots are mixed: what is found is common to them; a "
-                                                  "difference between robots shows as structure against unit",
-                                                  units.size()));
+        experiment.caution("{} robots are mixed: what is found is common to them; a "
+                           "difference between robots shows as structure against unit",
+                           units.size());
     std::set<std::string> files;
     for (const Run& run : experiment.runs)
         if (!files.insert(run.file).second)

@@ -84,9 +84,7 @@ struct Pace {
 };
 
 Pace pace(const std::vector<double>& times) {
-    std::vector<double> steps;
-    for (std::size_t i = 1; i < times.size(); ++i)
-        if (!std::isnan(times[i] - times[i - 1])) steps.push_back(times[i] - times[i - 1]);
+    std::vector<double> steps = stats::steps_of(times);
     if (steps.size() < kFew) return {};
     Pace pace{stats::upper_median(steps), 0.0, 0.0};
     for (double& step : steps) {

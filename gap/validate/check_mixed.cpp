@@ -13,7 +13,7 @@ namespace puckloop::gap {
 
 namespace {
 
-bool told_by_unit(const Run& run) {
+bool separated_by_unit(const Run& run) {
     const auto& units = run.column("unit");
     return std::any_of(units.begin(), units.end(), [&](double unit) { return unit != units.front(); });
 }
@@ -102,9 +102,9 @@ void check_frames(Experiment& experiment, const Run& run) {
     const double ratio =
         (end - begin) / static_cast<double>(std::max<std::size_t>(frames, 2) - 1) / period.front();
     if (frames >= kEnough && ratio > 0.4 && ratio < 0.6)
-        experiment.cautions.push_back(fmt::format("{}: frames come every {:.3g} s where nominal_period is "
-                                                  "{:.3g} s: another period, or frames of two robots mixed?",
-                                                  run.file, ratio * period.front(), period.front()));
+        experiment.caution("{}: frames come every {:.3g} s where nominal_period is "
+                           "{:.3g} s: another period, or frames of two robots mixed?",
+                           run.file, ratio * period.front(), period.front());
 }
 
 // ---- readings at placements
@@ -131,10 +131,9 @@ std::map<std::vector<long>, std::vector<std::size_t>> placements(const Experimen
     std::vector<Scale> scales;
     for (const std::string& name : placement_columns(experiment, run)) {
         const auto& values = run.column(name);
-        double low = INFINITY, high = -INFINITY;
-        for (const double value : values)
-            if (!std::isnan(value)) low = std::min(low, value), high = std::max(high, value);
-        if (high > low) scales.push_back({&values, low, (high - low) / kSteps});
+        stats::Range range;
+        range.take(values);
+        if (range.high > range.low) scales.push_back({&values, range.low, (range.high - range.low) / kSteps});
     }
     std::map<std::vector<long>, std::vector<std::size_t>> rows;
     for (std::size_t i = 0; i < run.rows; ++i) {
@@ -207,18 +206,18 @@ void check_levels(Experiment& experiment, const Run& run, const char* observable
     }
     if (split < kPlacements || static_cast<double>(split) < kLeastSplit * static_cast<double>(repeated))
         return;
-    experiment.cautions.push_back(fmt::format(
+    experiment.caution(
         "{}: {} falls into two levels, to and fro, at {} of {} placements ({:.4g} and {:.4g} where row {} "
         "is): rows of two robots mixed, or something that nobody noted was switched? Nothing that is found "
         "is to be believed before a column (unit) tells them apart",
-        run.file, observable, split, repeated, seen.low, seen.high, row + 1));
+        run.file, observable, split, repeated, seen.low, seen.high, row + 1);
 }
 
 }  // namespace
 
 void check_mixed(Experiment& experiment) {
     for (const Run& run : experiment.runs) {
-        if (told_by_unit(run)) continue;
+        if (separated_by_unit(run)) continue;
         if (experiment.kind == Kind::Motion) check_paths(experiment, run);
         if (experiment.kind == Kind::Timing) check_frames(experiment, run);
         if (experiment.kind == Kind::Proximity || experiment.kind == Kind::Ground)

@@ -75,10 +75,8 @@ void check_commands(const Experiment& experiment, const Run& run) {
                &right = run.column("steps_right"), &cmd_left = run.column("cmd_left"),
                &cmd_right = run.column("cmd_right");
     double own = 0.0, crossed = 0.0, counted = 0.0, asked = 0.0;
-    std::array<double, 2> ran{}, told{}, along{};  // a wheel each
-    std::vector<double> spans;
-    for (std::size_t i = 1; i < run.rows; ++i)
-        if (!std::isnan(time[i] - time[i - 1])) spans.push_back(time[i] - time[i - 1]);
+    std::array<double, 2> ran{}, commanded{}, along{};  // a wheel each
+    const std::vector<double> spans = stats::steps_of(time);
     if (spans.empty()) return;
     const double longest = 10 * stats::upper_median(spans);  // beyond is a gap in the record
     for (std::size_t i = 1; i < run.rows; ++i) {
@@ -88,7 +86,7 @@ void check_commands(const Experiment& experiment, const Run& run) {
         own += std::abs(l - cl) + std::abs(r - cr);
         crossed += std::abs(l - cr) + std::abs(r - cl);
         ran[0] += std::abs(l), ran[1] += std::abs(r);
-        told[0] += std::abs(cl), told[1] += std::abs(cr);
+        commanded[0] += std::abs(cl), commanded[1] += std::abs(cr);
         along[0] += std::copysign(l, l * cl), along[1] += std::copysign(r, r * cr);
         counted += std::abs(l) + std::abs(r);
         asked += std::abs(cl) + std::abs(cr);
@@ -101,13 +99,13 @@ void check_commands(const Experiment& experiment, const Run& run) {
                            counted, asked),
                "steps/s and seconds");
     for (std::size_t w = 0; w < 2; ++w)
-        if (told[w] > kEnough && ran[w] == 0)
+        if (commanded[w] > kEnough && ran[w] == 0)
             refuse(
                 experiment, run,
                 fmt::format("steps_{} stands still while its wheel is commanded", w == 0 ? "left" : "right"),
                 "a counter that counts");
     for (std::size_t w = 0; w < 2; ++w)
-        if (told[w] > kEnough && along[w] < -ran[w] / 2)
+        if (commanded[w] > kEnough && along[w] < -ran[w] / 2)
             refuse(experiment, run,
                    fmt::format("steps_{0} runs against cmd_{0}: one of them has the wrong sign",
                                w == 0 ? "left" : "right"),
@@ -203,9 +201,9 @@ void check_motion(Experiment& experiment) {
                 check_counter(experiment, run, counter, metre_per_step);
         check_commands(experiment, run);
         if (path.largest_turn > 2.5)
-            experiment.cautions.push_back(
-                fmt::format("{}: theta_rad jumps by {:.2f} rad between two rows: too sparse, or a wrong unit",
-                            run.file, path.largest_turn));
+            experiment.caution(
+                "{}: theta_rad jumps by {:.2f} rad between two rows: too sparse, or a wrong unit", run.file,
+                path.largest_turn);
         const auto &left = run.column(run.has("steps_left") ? "steps_left" : "cmd_left"),
                    &right = run.column(run.has("steps_left") ? "steps_right" : "cmd_right");
         const auto &theta = run.column("theta_rad"), &time = run.column("t_s");

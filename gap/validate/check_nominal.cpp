@@ -51,9 +51,9 @@ void check_nominal(Experiment& experiment) {
         const bool small = info->min > 0 && value * kFarOff < info->min;
         if (std::abs(value) <= most && !small) continue;
         const std::string unit = info->unit == std::string_view("1") ? "" : fmt::format(" {}", info->unit);
-        experiment.cautions.push_back(fmt::format("[nominal] {} = {:g}{} is far from {:g} to {:g}, which the "
-                                                  "simulator's robot can have: is the unit right?",
-                                                  name, value, unit, info->min, info->max));
+        experiment.caution("[nominal] {} = {:g}{} is far from {:g} to {:g}, which the "
+                           "simulator's robot can have: is the unit right?",
+                           name, value, unit, info->min, info->max);
     }
 }
 
