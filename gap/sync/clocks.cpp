@@ -3,7 +3,6 @@
 #include "gap/sync/counted_path.h"
 
 #include <Eigen/Dense>
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -21,6 +20,13 @@ constexpr double kLeastDrift = 0.02;    // s: less hides in the spacing of rows
 constexpr double kLeastDrifting = 0.3;  // share of runs whose clock must drift by itself
 constexpr double kDeviations = 4.0;
 constexpr double kAgreed = 3.0;  // times what runs differ by: a mean lateness that is theirs in common
+
+/// How the clock of a run's counters stands to its tracker's.
+struct ClockError {
+    double late = 0.0;   ///< s by which the tracker's rows come after the counters', in the middle of the run
+    double drift = 0.0;  ///< s by which `late` grows from the run's first row to its last
+    double late_sd = 0.0, drift_sd = 0.0;
+};
 
 /// One window: what the tracker saw (way, heading), what the counters say, and how that changes with lateness
 /// and its drift.
@@ -161,12 +167,6 @@ Clocks fit_clocks(const std::vector<CountedPath>& paths, bool steady) {
 
 }  // namespace
 
-std::vector<ClockError> clock_errors(const Experiment& experiment) {
-    if (experiment.kind != Kind::Motion) return {};
-    const auto paths = counted_paths(experiment);
-    return paths.empty() ? std::vector<ClockError>{} : fit_clocks(paths, false).errors;
-}
-
 void align_clocks(Experiment& experiment) {
     if (experiment.kind != Kind::Motion) return;
     const auto paths = counted_paths(experiment);
@@ -189,7 +189,7 @@ void align_clocks(Experiment& experiment) {
     for (const ClockError& clock : drifting.errors)
         squares += (clock.late - common) * (clock.late - common) / runs;
     if (std::abs(common) < kAgreed * std::sqrt(squares)) common = 0.0;
-    double earliest = INFINITY, latest = -INFINITY, slowest = INFINITY, fastest = -INFINITY;
+    stats::Range late, rates;
     for (std::size_t r = 0; r < paths.size(); ++r) {
         const ClockError& clock = drifting.errors[r];
         Run& run = experiment.runs[r];
@@ -199,16 +199,14 @@ void align_clocks(Experiment& experiment) {
             run.counted_at[i] -=
                 clock.late - common + clock.drift * (time[i] - paths[r].middle()) / paths[r].span();
         const double half = std::abs(clock.drift) / 2, rate = clock.drift / paths[r].span();
-        earliest = std::min(earliest, clock.late - half);
-        latest = std::max(latest, clock.late + half);
-        slowest = std::min(slowest, rate);
-        fastest = std::max(fastest, rate);
+        late.take({clock.late - half, clock.late + half});
+        rates.take({rate});
     }
-    experiment.cautions.push_back(fmt::format(
+    experiment.caution(
         "the clocks of tracker and counters run apart: the tracker's rows are {:.0f} to {:.0f} ms late, and "
         "the lateness changes by {:.2f} to {:.2f} % of the time inside a run ({:.0f} of {} runs beyond "
         "doubt). Counters were read at corrected times before anything was fitted",
-        1e3 * earliest, 1e3 * latest, 100 * slowest, 100 * fastest, clear, paths.size()));
+        1e3 * late.low, 1e3 * late.high, 100 * rates.low, 100 * rates.high, clear, paths.size());
 }
 
 }  // namespace puckloop::gap
