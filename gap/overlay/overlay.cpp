@@ -10,14 +10,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <map>
 
 namespace puckloop::gap {
 
 namespace {
-
-using Values = std::map<std::string, double>;
 
 /// One line, whatever the text holds: TOML knows no control characters in comments.
 std::string comment(std::string text) {
@@ -29,6 +25,11 @@ std::string comment(std::string text) {
 double get(const Values& values, const std::string& name, double neutral) {
     const auto place = values.find(name);
     return place == values.end() ? neutral : place->second;
+}
+
+bool in_simulator(const std::string& name) {
+    int index = -1;
+    return physics::find_parameter(name, index) != nullptr;
 }
 
 constexpr double kLeastSlip = 1e-3;  // of inverse_friction: no floor holds better
@@ -60,19 +61,22 @@ void wheels(const Experiment& experiment, const Values& fitted, Values& simulato
 /// The ground board's place and height over the floor.
 void ground_board(const Experiment& experiment, Values& fitted, Values& simulator) {
     const physics::GroundParameters drawn = physics::Parameters().ground;
-    const auto move = [&](const char* name, const std::string& place, double neutral) {
-        const double value = get(fitted, name, 0.0);
-        if (value != 0) simulator[place] = get(experiment.nominal, place, neutral) + value;
+    const auto move = [&](double by, const std::string& place, double neutral) {
+        if (by != 0) simulator[place] = get(experiment.nominal, place, neutral) + by;
     };
-    move("ground.forward_error", "ground.x", drawn.x);
-    move("ground.raised", "ground.height", drawn.height);
+    move(take(fitted, "ground.forward_error").value_or(0.0), "ground.x", drawn.x);
+    move(take(fitted, "ground.raised").value_or(0.0), "ground.height", drawn.height);
+    const double aside = take(fitted, "ground.left_error").value_or(0.0);
     for (std::size_t i = 0; i < physics::kGroundSensors; ++i)
-        move("ground.left_error", fmt::format("ground.y{}", i), drawn.y[i]);
-    for (const char* name : {"ground.forward_error", "ground.raised", "ground.left_error"})
-        fitted.erase(name);
+        move(aside, fmt::format("ground.y{}", i), drawn.y[i]);
 }
 
 }  // namespace
+
+std::optional<double> take(Values& fitted, const std::string& name) {
+    const auto taken = fitted.extract(name);
+    return taken.empty() ? std::nullopt : std::optional(taken.mapped());
+}
 
 std::string overlay_toml(const Experiment& experiment, const Verdict& verdict) {
     Values fitted;
@@ -89,21 +93,15 @@ std::string overlay_toml(const Experiment& experiment, const Verdict& verdict) {
     ground_board(experiment, fitted, simulator);
     sensors_overlay(experiment, fitted, simulator);
     for (const auto& [name, value] : fitted) {
-        int index = -1;
         if (name == "wheel_scale" || name == "wheel_mismatch") continue;
-        if (name == "inverse_friction") {
+        if (name == "inverse_friction")
             simulator["contact.mu"] = simulator["contact.mu_lateral"] = 1 / std::max(value, kLeastSlip);
-        } else if (physics::find_parameter(name, index) != nullptr) {
-            simulator[name] = value;
-        } else {
-            measuring[name] = value;
-        }
+        else
+            (in_simulator(name) ? simulator : measuring)[name] = value;
     }
     // What the experiment says of its robot holds for the scenario as well.
-    for (const auto& [name, value] : experiment.nominal) {
-        int index = -1;
-        if (physics::find_parameter(name, index) != nullptr) simulator.emplace(name, value);
-    }
+    for (const auto& [name, value] : experiment.nominal)
+        if (in_simulator(name)) simulator.emplace(name, value);
     text += "\n[parameters]\n";
     for (const auto& [name, value] : simulator)
         text += parameter_line(name, value);

@@ -15,8 +15,6 @@ namespace puckloop::gap {
 
 namespace {
 
-using Values = std::map<std::string, double>;
-
 /// s from a command's row to the wheels that a run has by itself: a record on the line and the firmware's
 /// loop (as gap/emulate records it). Measured latencies hold it, too; it must not be there twice.
 constexpr double kOwnCommandLatency = 0.0033;

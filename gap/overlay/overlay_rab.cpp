@@ -13,13 +13,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <optional>
+#include <utility>
 
 namespace puckloop::gap {
 
 namespace {
-
-using Values = std::map<std::string, double>;
 
 /// The register of a sender between two receivers that both lie at the rail, over the rail.
 constexpr double kTwoAtTheRail = 1.19;
@@ -42,23 +40,20 @@ class RabOverlay {
             for (std::size_t k = 0; k < defaults_.ir.receiver_angle.size(); ++k)
                 set(fmt::format("ir.receiver_angle{}", k),
                     std::remainder(defaults_.ir.receiver_angle[k] - *turned, 2 * std::numbers::pi));
-        if (const auto lobe = take("rab.emitter_lobe")) set("ir.emitter_exponent", *lobe);
-        if (const auto lobe = take("rab.receiver_lobe")) set("ir.receiver_exponent", *lobe);
-        if (const auto lost = take("rab.random_loss")) set("ir.loss", *lost);
-        if (const auto share = take("rab.beat")) set("ir.spell", *share);
-        if (const auto time = take("rab.beat_burst")) set("ir.spell_time", *time);
-        if (const auto share = take("rab.multipath")) set("ir.stray", *share);
-        if (const auto weaker = take("rab.multipath_loss")) set("ir.stray_loss", *weaker);
+        constexpr std::pair<const char*, const char*> kSame[] = {
+            {"rab.emitter_lobe", "ir.emitter_exponent"},
+            {"rab.receiver_lobe", "ir.receiver_exponent"},
+            {"rab.random_loss", "ir.loss"},
+            {"rab.beat", "ir.spell"},
+            {"rab.beat_burst", "ir.spell_time"},
+            {"rab.multipath", "ir.stray"},
+            {"rab.multipath_loss", "ir.stray_loss"}};
+        for (const auto& [own, name] : kSame)
+            if (const auto value = take(own)) set(name, *value);
     }
 
   private:
-    std::optional<double> take(const std::string& name) {
-        const auto place = fitted_.find(name);
-        if (place == fitted_.end()) return std::nullopt;
-        const double value = place->second;
-        fitted_.erase(place);
-        return value;
-    }
+    std::optional<double> take(const std::string& name) { return gap::take(fitted_, name); }
     void set(const std::string& name, double value) {
         int index = -1;
         const auto* info = physics::find_parameter(name, index);

@@ -8,13 +8,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 namespace puckloop::gap {
 
 namespace {
-
-using Values = std::map<std::string, double>;
 
 /// Mean age that comes about by itself, where [nominal] does not tell it.
 struct Own {
@@ -29,21 +26,11 @@ constexpr std::array<Own, 2> kOwn{{
 constexpr const char* kSession = "accelerometer.session_bias";
 constexpr std::size_t kAxes = 3;
 
-double take(Values& fitted, const std::string& name, double fallback) {
-    const auto place = fitted.find(name);
-    if (place == fitted.end()) return fallback;
-    const double value = place->second;
-    fitted.erase(place);
-    return value;
-}
-
 void ages(const Experiment& experiment, Values& fitted, Values& simulator) {
     for (const Own& own : kOwn) {
-        const auto stated = experiment.nominal.find(own.parameter);
-        const bool told = stated != experiment.nominal.end();
-        if (!told && !fitted.contains(own.parameter)) continue;
-        const double made = told ? stated->second : own.seconds;
-        simulator[own.parameter] = std::max(take(fitted, own.parameter, made) - made, 0.0);
+        if (!experiment.nominal.contains(own.parameter) && !fitted.contains(own.parameter)) continue;
+        const double made = experiment.nominal_or(own.parameter, own.seconds);
+        simulator[own.parameter] = std::max(take(fitted, own.parameter).value_or(made) - made, 0.0);
     }
 }
 
@@ -60,7 +47,7 @@ void sessions(const Experiment& experiment, Values& fitted, Values& simulator) {
             }
         if (sum == 0.0) continue;
         const std::string bias = fmt::format("accelerometer.bias{}", axis);
-        simulator[bias] = take(fitted, bias, experiment.nominal_or(bias, 0.0)) + sum / count;
+        simulator[bias] = take(fitted, bias).value_or(experiment.nominal_or(bias, 0.0)) + sum / count;
     }
 }
 
@@ -68,17 +55,12 @@ void sessions(const Experiment& experiment, Values& fitted, Values& simulator) {
 /// the laboratory's.
 void series(const Experiment& experiment, Values& fitted, Values& simulator) {
     if (!fitted.contains("proximity.order_zero")) return;
-    double first = INFINITY, last = -INFINITY;
-    for (const Run& run : experiment.runs)
-        for (const double order : run.column("order")) {
-            first = std::min(first, order);
-            last = std::max(last, order);
-        }
+    const auto [first, last] = experiment.range("order");
     const double half = last > first ? (last - first) / 2 : 0.0;
     const std::string scale = "proximity.scale";
     const double neutral = experiment.nominal_or(scale, physics::Parameters().proximity.scale);
     const double middle = -fitted["proximity.order_zero"] * half;
-    simulator[scale] = take(fitted, scale, neutral) * (1 + fitted["proximity.order_drift"] * middle);
+    simulator[scale] = take(fitted, scale).value_or(neutral) * (1 + fitted["proximity.order_drift"] * middle);
 }
 
 /// Which sensors the pulses reach the model sees in the data.
