@@ -4,8 +4,7 @@
 #include "gap/pipeline/analyse.h"
 
 #include "gap/diagnostics/agenda.h"
-#include "gap/diagnostics/series.h"
-#include "gap/pipeline/told.h"
+#include "gap/pipeline/describe.h"
 
 #include <fmt/format.h>
 
@@ -32,16 +31,13 @@ class Analysis {
 
     /// After first(); once. `confirms`: also by the other half of the runs.
     Judged decided(bool confirms) {
-        const auto tell = [&](const char* what, double share) {
-            if (options_.progress) options_.progress(what, share);
-        };
         Chosen chosen = chosen_of(study_, search_.rest());
-        tell("what is left", 0.88);
+        report("what is left", 0.88);
         Diagnosis diagnosis = diagnosed(study_, chosen, options_.seed);
         Judging how{options_.seed, options_.ask_all, {}};
         if (confirms)
             how.ask = [&](const Experiment& half) {
-                tell("asking the other half of the runs", 0.92);
+                report("asking the other half of the runs", 0.92);
                 return asked(half, options_, view_);
             };
         return judged(study_, std::move(chosen), std::move(diagnosis), how);
@@ -50,13 +46,17 @@ class Analysis {
     Verdict verdict() {
         Judged judged = decided(true);
         if (judged.decision == Decision::Named) search_.find_rivals(judged.chosen.selection);
-        if (options_.progress) options_.progress("intervals", 0.96);
-        return told(study_, std::move(judged), options_.seed);
+        report("intervals", 0.96);
+        return verdict_of(study_, std::move(judged), options_.seed);
     }
 
     const Effect& effect(std::size_t candidate) const { return *study_.candidates()[candidate].effect; }
 
   private:
+    void report(const char* what, double share) const {
+        if (options_.progress) options_.progress(what, share);
+    }
+
     const Options& options_;
     MotionView view_;
     Study study_;
@@ -108,16 +108,6 @@ Verdict analyse(const Experiment& experiment, const Options& options) {
     auto caution = agenda_caution(experiment, found, options.seed, options.threads);
     if (!caution.empty()) verdict.cautions.push_back(std::move(caution));
     return verdict;
-}
-
-std::vector<Series> simulate(const Experiment& experiment, const std::map<std::string, double>& changed) {
-    const auto model = make_model(experiment);
-    const State before = neutral_state(*model);
-    State after = before;
-    for (const auto& [name, value] : changed)
-        for (const int index : model->matching(name))
-            after.values[static_cast<std::size_t>(index)] = value;
-    return series_of(*model, before, after);
 }
 
 }  // namespace puckloop::gap

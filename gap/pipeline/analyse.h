@@ -5,7 +5,6 @@
 #include "gap/verdict/verdict.h"
 
 #include <functional>
-#include <map>
 #include <string>
 
 namespace puckloop::gap {
@@ -23,9 +22,5 @@ Verdict analyse(const Experiment& experiment, const Options& options = {});
 /// The overlay of a verdict's causes as TOML: [parameters] for `puckloop run --model`, [measurement] for what
 /// belongs to the measuring chain.
 std::string overlay_toml(const Experiment& experiment, const Verdict& verdict);
-
-/// Simulates the experiment with model parameters: the nominal ones with `changed` over them. Every
-/// observable row by row, in `after` (`before` = nominal).
-std::vector<Series> simulate(const Experiment& experiment, const std::map<std::string, double>& changed);
 
 }  // namespace puckloop::gap

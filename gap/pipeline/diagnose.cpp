@@ -13,7 +13,7 @@ namespace puckloop::gap {
 namespace {
 
 /// Offsets of placements say more than that rows carry over.
-void tell_placements(const Experiment& experiment, Diagnosis& found) {
+void name_placements(const Experiment& experiment, Diagnosis& found) {
     for (const Series& series : found.series) {
         const std::string shape = placement_shape(experiment, series);
         if (shape.empty()) continue;
@@ -37,7 +37,7 @@ Diagnosis diagnosed(const Study& study, const Chosen& chosen, std::uint64_t seed
     for (const Observable& observable : study.model().observables())
         quanta.push_back(observable.instrument.quantum);
     found.leftovers = leftovers_of(study.experiment(), found.series, quanta, seed, thresholds::kReported);
-    tell_placements(study.experiment(), found);
+    name_placements(study.experiment(), found);
     found.free_forms = free_forms_of(study.experiment(), study.model(), after, seed);
     found.by_runs = left_by_runs(study, after);
     // Are the forms of the chosen effects told from their neighbours'?

@@ -3,6 +3,7 @@
 
 #include "base/random.h"
 #include "gap/pipeline/analyse.h"
+#include "tests/gap/simulated.h"
 
 #include <catch2/catch.hpp>
 
@@ -24,7 +25,7 @@ struct Row {
 /// What the simulator says of each row, in order, with `wrong` on top.
 void fill(Experiment& experiment, const char* column, const std::function<double(double, const Row&)>& wrong,
           int reads) {
-    const Series told = simulate(experiment, {}).front();
+    const Series told = test::simulated(experiment).front();
     for (std::size_t i = 0; i < told.before.size(); ++i) {
         const int row = static_cast<int>(told.row[i]);
         experiment.runs[told.run[i]].columns[column][told.row[i]] =

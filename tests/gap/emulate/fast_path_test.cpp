@@ -3,6 +3,7 @@
 
 #include "gap/data/experiment.h"
 #include "gap/pipeline/analyse.h"
+#include "tests/gap/simulated.h"
 #include "tests/scratch.h"
 #include "tools/gap/emulate/record.h"
 
@@ -30,7 +31,7 @@ Errors errors_of(const std::string& kind, const std::string& observable) {
     write_folder(emulate::record(kind, options), folder);
     const Experiment experiment = read_experiment(folder);
     Errors e;
-    for (const Series& series : simulate(experiment, {})) {
+    for (const Series& series : test::simulated(experiment)) {
         if (series.observable != observable) continue;
         for (std::size_t i = 0; i < series.measured.size(); ++i) {
             const double error = series.measured[i] - series.before[i];

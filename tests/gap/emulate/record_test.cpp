@@ -4,6 +4,7 @@
 #include "gap/data/experiment.h"
 #include "gap/pipeline/analyse.h"
 #include "physics/sensors/ground.h"
+#include "tests/gap/simulated.h"
 #include "tests/scratch.h"
 #include "tools/gap/emulate/record.h"
 #include "tools/gap/emulate/secrets.h"
@@ -131,7 +132,7 @@ TEST_CASE(
     const Experiment plain = recorded("rab", options);
     REQUIRE(plain.kind == Kind::Rab);
     REQUIRE(plain.runs.size() == 4);
-    for (const Series& series : simulate(plain, {})) {
+    for (const Series& series : test::simulated(plain)) {
         if (series.observable == "received") continue;
         double mean = 0.0;
         for (std::size_t i = 0; i < series.measured.size(); ++i)

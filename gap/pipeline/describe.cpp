@@ -1,4 +1,4 @@
-#include "gap/pipeline/told.h"
+#include "gap/pipeline/describe.h"
 
 #include "gap/decide/decide.h"
 #include "gap/diagnostics/heldout.h"
@@ -72,7 +72,7 @@ std::vector<Cause> causes_of(const Study& study, const Chosen& chosen, const Pre
     return causes;
 }
 
-void tell_edges(const Study& study, const Fit& fit, Verdict& verdict) {
+void add_ends_of_range(const Study& study, const Fit& fit, Verdict& verdict) {
     for (const Freed& freed : fit.freed) {
         const double edge = end_of_range(study, fit, freed);
         if (std::isnan(edge)) continue;
@@ -97,13 +97,13 @@ void pass_over_empty(Verdict& verdict) {
     }
 }
 
-void tell_causes(const Study& study, const Judged& judged, Verdict& verdict) {
+void add_causes(const Study& study, const Judged& judged, Verdict& verdict) {
     const Selection& selection = judged.chosen.selection;
     const Fit& final = judged.chosen.final;
     const Forms& forms = judged.diagnosis.forms;
     const Precision precision = precision_of(study, final);
     verdict.causes = causes_of(study, judged.chosen, precision, forms);
-    tell_edges(study, final, verdict);
+    add_ends_of_range(study, final, verdict);
     for (std::size_t k = selection.chosen.effects.size(); k < final.effects.size(); ++k)
         for (const auto& parameter : cause_of(study, final, precision, final.effects[k], forms).parameters)
             verdict.nuisance.push_back(parameter);
@@ -120,7 +120,7 @@ void tell_causes(const Study& study, const Judged& judged, Verdict& verdict) {
     pass_over_empty(verdict);
 }
 
-void tell_tried(const Study& study, const Selection& selection, Verdict& verdict) {
+void add_tried(const Study& study, const Selection& selection, Verdict& verdict) {
     for (const Trial& trial : selection.trials) {
         const Effect& own = effect_of(study, trial.effect);
         Tried tried{own.name, own.number, trial.delta_bic, trial.held.sum, 1.0, trial.remark};
@@ -133,7 +133,7 @@ void tell_tried(const Study& study, const Selection& selection, Verdict& verdict
     }
 }
 
-void tell_held(const Study& study, const Selection& selection, std::uint64_t seed, Verdict& verdict) {
+void add_held_out(const Study& study, const Selection& selection, std::uint64_t seed, Verdict& verdict) {
     HeldFigures figures = held_figures(study, selection, seed);
     verdict.heldout = figures.all;
     verdict.heldout.gain = !verdict.causes.empty();
@@ -152,7 +152,7 @@ void add_predictive(const Study& study, const Chosen& chosen, std::uint64_t seed
 
 }  // namespace
 
-Verdict told(const Study& study, Judged judged, std::uint64_t seed) {
+Verdict verdict_of(const Study& study, Judged judged, std::uint64_t seed) {
     const Experiment& experiment = study.experiment();
     Verdict verdict;
     verdict.kind = experiment.kind;
@@ -168,12 +168,12 @@ Verdict told(const Study& study, Judged judged, std::uint64_t seed) {
     if (judged.refused)
         verdict.nearest = causes_of(study, *judged.refused, precision_of(study, judged.refused->final),
                                     judged.refused_forms);
-    tell_causes(study, judged, verdict);
+    add_causes(study, judged, verdict);
     verdict.series = std::move(judged.diagnosis.series);
     verdict.leftovers = std::move(judged.diagnosis.leftovers);
     verdict.free_forms = std::move(judged.diagnosis.free_forms);
-    tell_tried(study, judged.chosen.selection, verdict);
-    tell_held(study, judged.chosen.selection, seed, verdict);
+    add_tried(study, judged.chosen.selection, verdict);
+    add_held_out(study, judged.chosen.selection, seed, verdict);
     add_predictive(study, judged.chosen, seed, verdict);
     for (const Series& series : verdict.series)
         for (const std::string& caution : {placement_caution(experiment, series), circular_caution(series)})
