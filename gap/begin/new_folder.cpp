@@ -2,12 +2,12 @@
 
 #include "base/error.h"
 #include "gap/data/columns.h"
+#include "gap/data/written.h"
 #include "gap/effects/effect.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <map>
 #include <string_view>
 
@@ -47,13 +47,6 @@ std::string advice_lines(Kind kind) {
     for (const Effect* effect : effects_of(kind))
         text += fmt::format("#   {}: {}\n", effect->name, effect->separated_by);
     return text;
-}
-
-void write_text(const std::filesystem::path& file, const std::string& text) {
-    std::ofstream stream(file, std::ios::binary);
-    stream << text;
-    stream.close();
-    if (!stream) throw RunError(fmt::format("{}: cannot be written", file.string()));
 }
 
 std::filesystem::path run_file(std::size_t run) {

@@ -12,14 +12,14 @@
 
 namespace puckloop::gap {
 
-namespace {
-
 void write_text(const std::filesystem::path& file, const std::string& text) {
     std::ofstream stream(file, std::ios::binary);
     stream << text;
     stream.close();
     if (!stream) throw RunError(fmt::format("{}: cannot be written", file.string()));
 }
+
+namespace {
 
 std::string quoted(const std::string& text) {
     std::string out = "\"";
