@@ -49,6 +49,17 @@ std::vector<std::size_t> with(std::vector<std::size_t> set, std::size_t effect) 
     return set;
 }
 
+/// A set that was tried, and by how much its BIC is better than that of the set it is compared with.
+struct Tried {
+    double won = -INFINITY;
+    Fit fit;
+    std::size_t effect() const { return fit.effects.back(); }
+};
+
+void best_first(std::vector<Tried>& all) {
+    std::stable_sort(all.begin(), all.end(), [](const Tried& a, const Tried& b) { return a.won > b.won; });
+}
+
 }  // namespace
 
 class Search::Steps {
@@ -59,7 +70,7 @@ class Search::Steps {
     }
 
     double first() {
-        tell("fitting the simulator as it is", 0.02);
+        report("fitting the simulator as it is", 0.02);
         result_.none = study_.fit_none();
         result_.held_none = study_.hold_out(result_.none);
         result_.chosen = result_.none;
@@ -88,8 +99,55 @@ class Search::Steps {
     }
 
   private:
-    void tell(const std::string& what, double share) const {
+    void report(const std::string& what, double share) const {
         if (progress_) progress_(what, share);
+    }
+
+    /// Reports the begin of one of `count` pieces of work that threads share, `part` of the whole together.
+    void report_next(const std::string& what, double begin, double part, std::size_t count) {
+        const std::lock_guard lock(reporting_);
+        report(what, begin + part * static_cast<double>(begun_++) / static_cast<double>(count));
+    }
+
+    const Candidate& candidate(std::size_t effect) const { return study_.candidates()[effect]; }
+
+    /// Effects that can be tried beside or in the place of a set.
+    std::vector<std::size_t> others_than(const std::vector<std::size_t>& set) const {
+        std::vector<std::size_t> others;
+        for (std::size_t i = 0; i < study_.candidates().size(); ++i)
+            if (candidate(i).remark.empty() && !has(set, i)) others.push_back(i);
+        return others;
+    }
+
+    /// What `better` gains over `before` on rows that were not fitted.
+    Gain gain(const HeldOut& before, const HeldOut& better) const {
+        return gain_of(gains_by_block(study_.blocks(), before, better));
+    }
+
+    void choose(Fit fit, HeldOut held) {
+        result_.chosen = std::move(fit);
+        result_.held_chosen = std::move(held);
+    }
+
+    /// The sets that `pairs` add up to, `first` being fitted already: fitted quickly where a glance promises
+    /// something, the best first. `alone`: BIC that each has to better.
+    struct Pair {
+        const Fit* first;
+        std::size_t second;
+        double alone;
+    };
+    std::vector<Tried> together(const std::vector<Pair>& pairs) const {
+        std::vector<Tried> all(pairs.size());
+        in_parallel(pairs.size(), study_.threads(), [&](std::size_t k) {
+            const State& from = pairs[k].first->fitted.state;
+            const auto set = with(pairs[k].first->effects, pairs[k].second);
+            if (study_.glance(set, from) < kGlimpse * kPromising) return;
+            Fit fit = study_.fit_set(set, from, kQuick);
+            all[k] = {pairs[k].alone - fit.bic, std::move(fit)};
+        });
+        std::erase_if(all, [](const Tried& one) { return one.fit.effects.empty(); });
+        best_first(all);
+        return all;
     }
 
     /// `state` with an effect where it stood when it was tried alone: beside another, a fit from nothing may
@@ -97,7 +155,7 @@ class Search::Steps {
     State with_alone(std::size_t effect, State state) const {
         const auto known = alone_state_.find(effect);
         if (known == alone_state_.end()) return state;
-        for (const Freed& freed : study_.candidates()[effect].freed) {
+        for (const Freed& freed : candidate(effect).freed) {
             const auto index = static_cast<std::size_t>(freed.index);
             if (state.values[index] == study_.model().parameters()[index].neutral)
                 state.values[index] = known->second[index];
@@ -112,94 +170,64 @@ class Search::Steps {
 
     /// An effect that explains much, and makes as many runs worse as better, may have a partner that pulls
     /// the other way where they meet. `first` is tried with each other effect, and both are taken or none.
-    bool step_of_two(const std::pair<double, Fit>& first, const HeldOut& first_held, const Gain& first_gain) {
-        std::vector<std::size_t> partners;
-        for (std::size_t i = 0; i < study_.candidates().size(); ++i)
-            if (study_.candidates()[i].remark.empty() && !has(first.second.effects, i)) partners.push_back(i);
-        if (partners.empty() || first.second.effects.size() >= kMostEffects) return false;
-        std::vector<std::pair<double, Fit>> fits(partners.size(), {-INFINITY, {}});
-        in_parallel(partners.size(), study_.threads(), [&](std::size_t k) {
-            const auto set = with(first.second.effects, partners[k]);
-            if (study_.glance(set, first.second.fitted.state) < kGlimpse * kPromising) return;
-            Fit fit = study_.fit_set(set, first.second.fitted.state, kQuick);
-            fits[k] = {first.second.bic - fit.bic, std::move(fit)};
-        });
-        std::erase_if(fits, [](const auto& one) { return one.second.effects.empty(); });
-        if (fits.empty()) return false;
-        std::stable_sort(fits.begin(), fits.end(),
-                         [](const auto& x, const auto& y) { return x.first > y.first; });
-        Fit& both = fits.front().second;
+    bool step_of_two(const Tried& first, const HeldOut& first_held, const Gain& first_gain) {
+        if (first.fit.effects.size() >= kMostEffects) return false;
+        std::vector<Pair> pairs;
+        for (const std::size_t partner : others_than(first.fit.effects))
+            pairs.push_back({&first.fit, partner, first.fit.bic});
+        std::vector<Tried> tried = together(pairs);
+        if (tried.empty()) return false;
+        Fit& both = tried.front().fit;
         both = study_.refined(both);
-        const double delta = fits.front().first = first.second.bic - both.bic;
-        if (delta < kScreen) return false;
+        const double won = tried.front().won = first.fit.bic - both.bic;
+        if (won < kScreen) return false;
         HeldOut held = study_.hold_out(both);
-        if (!enough(gain_of(gains_by_block(study_.blocks(), result_.held_chosen, held)), 2)) return false;
-        const Gain second_gain = gain_of(gains_by_block(study_.blocks(), first_held, held));
-        result_.steps.push_back({first.second.effects.back(), first.first, first_gain, true, ""});
-        result_.steps.push_back({both.effects.back(), delta, second_gain, true, ""});
-        result_.chosen = both;
-        result_.held_chosen = std::move(held);
-        last_step_of_choice_ = std::move(fits);
+        if (!enough(gain(result_.held_chosen, held), 2)) return false;
+        result_.steps.push_back({first.effect(), first.won, first_gain, true, ""});
+        result_.steps.push_back({both.effects.back(), won, gain(first_held, held), true, ""});
+        choose(both, std::move(held));
+        last_step_of_choice_ = std::move(tried);
         return true;
     }
 
     /// Two effects that pull opposite ways nearly everywhere say next to nothing alone. Where no effect is
     /// enough, the best are tried two by two; both are taken or none.
     bool step_of_opposites() {
+        std::vector<Pair> pairs;
         const std::size_t count = std::min(last_step_.size(), kPaired);
-        std::vector<std::pair<std::size_t, std::size_t>> pairs;
         for (std::size_t a = 0; a < count; ++a)
             for (std::size_t b = a + 1; b < count; ++b)
-                pairs.emplace_back(a, b);
-        std::vector<std::pair<double, Fit>> fits(pairs.size(), {-INFINITY, {}});
-        in_parallel(pairs.size(), study_.threads(), [&](std::size_t k) {
-            const Fit &first = last_step_[pairs[k].first].second,
-                      &second = last_step_[pairs[k].second].second;
-            const auto set = with(first.effects, second.effects.back());
-            if (study_.glance(set, first.fitted.state) < kGlimpse * kPromising) return;
-            Fit fit = study_.fit_set(set, first.fitted.state, kQuick);
-            fits[k] = {std::min(first.bic, second.bic) - fit.bic, std::move(fit)};
-        });
-        const auto best_first = [](const auto& x, const auto& y) { return x.first > y.first; };
-        std::stable_sort(fits.begin(), fits.end(), best_first);
-        if (fits.empty() || fits.front().first < kPromising) return false;
-        std::erase_if(fits, [](const auto& one) { return one.second.effects.empty(); });
-        Fit both = study_.refined(fits.front().second);
+                pairs.push_back({&last_step_[a].fit, last_step_[b].effect(),
+                                 std::min(last_step_[a].fit.bic, last_step_[b].fit.bic)});
+        std::vector<Tried> tried = together(pairs);
+        if (tried.empty() || tried.front().won < kPromising) return false;
+        Fit both = study_.refined(tried.front().fit);
         HeldOut held = study_.hold_out(both);
-        const Gain gain = gain_of(gains_by_block(study_.blocks(), result_.held_chosen, held));
-        if (!enough(gain, 2)) return false;
+        if (!enough(gain(result_.held_chosen, held), 2)) return false;
         for (const std::size_t effect : both.effects) {
-            const auto alone = std::find_if(last_step_.begin(), last_step_.end(), [&](const auto& one) {
-                return one.second.effects.back() != effect && has(both.effects, one.second.effects.back());
+            const auto alone = std::find_if(last_step_.begin(), last_step_.end(), [&](const Tried& one) {
+                return one.effect() != effect && has(both.effects, one.effect());
             });
-            const Gain own = gain_of(gains_by_block(study_.blocks(), study_.hold_out(alone->second), held));
-            result_.steps.push_back({effect, alone->second.bic - both.bic, own, true, ""});
+            result_.steps.push_back(
+                {effect, alone->fit.bic - both.bic, gain(study_.hold_out(alone->fit), held), true, ""});
         }
-        result_.chosen = std::move(both);
-        result_.held_chosen = std::move(held);
-        last_step_of_choice_ = std::move(fits);
+        choose(std::move(both), std::move(held));
+        last_step_of_choice_ = std::move(tried);
         return true;
     }
 
     bool step() {
         const auto& chosen = result_.chosen;
-        const std::size_t count = study_.candidates().size();
         const double begin =
             0.05 + 0.2 * static_cast<double>(std::min<std::size_t>(chosen.effects.size(), 3));
-        std::vector<std::size_t> tried;
-        for (std::size_t i = 0; i < count; ++i)
-            if (study_.candidates()[i].remark.empty() && !has(chosen.effects, i)) tried.push_back(i);
+        std::vector<std::size_t> tried = others_than(chosen.effects);
         std::map<std::size_t, Fit> guesses;
         if (study_.part() != nullptr) tried = promising(tried, begin, guesses);
-        std::vector<std::pair<double, Fit>> fits(tried.size());  // delta BIC
-        std::mutex telling;
-        std::size_t begun = 0;
+        std::vector<Tried> fits(tried.size());
+        begun_ = 0;
         in_parallel(tried.size(), study_.threads(), [&](std::size_t k) {
-            {
-                const std::lock_guard lock(telling);
-                tell(fmt::format("trying {}", study_.candidates()[tried[k]].effect->name),
-                     begin + 0.15 * static_cast<double>(begun++) / static_cast<double>(tried.size()));
-            }
+            report_next(fmt::format("trying {}", candidate(tried[k]).effect->name), begin, 0.15,
+                        tried.size());
             const auto guess = guesses.find(tried[k]);
             Fit fit = guess == guesses.end()
                           ? study_.fit_set(with(chosen.effects, tried[k]),
@@ -207,20 +235,19 @@ class Search::Steps {
                           : study_.from_part(guess->second, chosen.fitted.state, kQuick);
             fits[k] = {chosen.bic - fit.bic, std::move(fit)};
         });
-        const auto best_first = [](const auto& x, const auto& y) { return x.first > y.first; };
-        std::stable_sort(fits.begin(), fits.end(), best_first);
+        best_first(fits);
         in_parallel(std::min(fits.size(), kRefined), study_.threads(), [&](std::size_t k) {
-            if (fits[k].first < -kHopeless) return;
-            fits[k].second = study_.refined(fits[k].second);
-            fits[k].first = chosen.bic - fits[k].second.bic;
+            if (fits[k].won < -kHopeless) return;
+            fits[k].fit = study_.refined(fits[k].fit);
+            fits[k].won = chosen.bic - fits[k].fit.bic;
         });
-        std::stable_sort(fits.begin(), fits.end(), best_first);
-        for (const auto& [delta, fit] : fits) {
-            Trial& trial = result_.trials[fit.effects.back()];
-            if (chosen.effects.empty() || !trial.validated) trial.delta_bic = delta;
+        best_first(fits);
+        for (const Tried& one : fits) {
+            Trial& trial = result_.trials[one.effect()];
+            if (chosen.effects.empty() || !trial.validated) trial.delta_bic = one.won;
             if (!chosen.effects.empty()) continue;
-            alone_[fit.effects.back()] = delta;
-            if (delta > 0) alone_state_[fit.effects.back()] = fit.fitted.state.values;
+            alone_[one.effect()] = one.won;
+            if (one.won > 0) alone_state_[one.effect()] = one.fit.fitted.state.values;
         }
         last_step_ = fits;
         if (fits.size() > kValidated) fits.resize(kValidated);
@@ -229,32 +256,31 @@ class Search::Steps {
         std::vector<HeldOut> helds(fits.size());
         std::vector<Gain> gains(fits.size());
         for (std::size_t k = 0; k < fits.size(); ++k) {
-            if (fits[k].first < kScreen) continue;
-            helds[k] = study_.hold_out(fits[k].second);
-            gains[k] = gain_of(gains_by_block(study_.blocks(), result_.held_chosen, helds[k]));
-            Trial& trial = result_.trials[fits[k].second.effects.back()];
+            if (fits[k].won < kScreen) continue;
+            helds[k] = study_.hold_out(fits[k].fit);
+            gains[k] = gain(result_.held_chosen, helds[k]);
+            Trial& trial = result_.trials[fits[k].effect()];
             trial.held = gains[k];
             trial.validated = true;
-            trial.delta_bic = fits[k].first;
+            trial.delta_bic = fits[k].won;
             if (!enough(gains[k])) continue;
             // BIC says how simply, the held-out score how well: the sum of both decides.
-            const double merit = gains[k].sum + fits[k].first / 2;
+            const double merit = gains[k].sum + fits[k].won / 2;
             // In a draw the sheet's order decides, which begins with what is met most often.
             const bool draw = best < fits.size() && std::abs(merit - best_gain) < kTie;
-            const bool earlier = draw && fits[k].second.effects.back() < fits[best].second.effects.back();
+            const bool earlier = draw && fits[k].effect() < fits[best].effect();
             if (draw ? earlier : merit > best_gain) {
                 best_gain = merit;
                 best = k;
             }
         }
-        if (best > 0 && fits.front().first > kPromising && !helds.front().score.empty() &&
+        if (best > 0 && fits.front().won > kPromising && !helds.front().score.empty() &&
             step_of_two(fits.front(), helds.front(), gains.front()))
             return true;
         if (best == fits.size()) return chosen.effects.empty() && step_of_opposites();
         last_step_of_choice_ = last_step_;
-        result_.steps.push_back({fits[best].second.effects.back(), fits[best].first, gains[best], true, ""});
-        result_.chosen = std::move(fits[best].second);
-        result_.held_chosen = std::move(helds[best]);
+        result_.steps.push_back({fits[best].effect(), fits[best].won, gains[best], true, ""});
+        choose(std::move(fits[best].fit), std::move(helds[best]));
         return true;
     }
 
@@ -266,16 +292,11 @@ class Search::Steps {
         const Study& part = *study_.part();
         const Fit before = study_.on_part(chosen);
         std::vector<Fit> fits(tried.size());
-        std::mutex telling;
-        std::size_t begun = 0;
+        begun_ = 0;
         in_parallel(tried.size(), study_.threads(), [&](std::size_t k) {
-            const Candidate& candidate = part.candidates()[tried[k]];
-            {
-                const std::lock_guard lock(telling);
-                tell(fmt::format("a first look at {}", candidate.effect->name),
-                     begin + 0.05 * static_cast<double>(begun++) / static_cast<double>(tried.size()));
-            }
-            if (candidate.remark.empty())
+            const Candidate& own = part.candidates()[tried[k]];
+            report_next(fmt::format("a first look at {}", own.effect->name), begin, 0.05, tried.size());
+            if (own.remark.empty())
                 fits[k] = part.fit_set(with(chosen.effects, tried[k]), before.fitted.state, kQuick);
         });
         std::vector<std::size_t> order, taken;
@@ -308,7 +329,7 @@ class Search::Steps {
     /// place.
     void improve() {
         if (result_.chosen.effects.size() < 2) return;
-        tell("looking back at earlier choices", 0.7);
+        report("looking back at earlier choices", 0.7);
         look_at_part();
         for (bool changed = true; changed;) {
             changed = false;
@@ -320,9 +341,8 @@ class Search::Steps {
                 Fit fit = study_.fit_set(set, study_.without(effect, result_.chosen.fitted.state));
                 if (fit.bic > result_.chosen.bic + kClearBic) continue;
                 HeldOut held = study_.hold_out(fit);
-                if (enough(gain_of(gains_by_block(study_.blocks(), held, result_.held_chosen)))) continue;
-                result_.chosen = std::move(fit);
-                result_.held_chosen = std::move(held);
+                if (enough(gain(held, result_.held_chosen))) continue;
+                choose(std::move(fit), std::move(held));
                 std::erase_if(result_.steps, [&](const Trial& trial) { return trial.effect == effect; });
                 look_at_part();
                 changed = true;
@@ -330,13 +350,9 @@ class Search::Steps {
         }
         for (const std::size_t effect : std::vector(result_.chosen.effects)) {
             if (effect == result_.chosen.effects.back()) continue;
-            std::vector<std::size_t> rivals;
-            for (std::size_t rival = 0; rival < study_.candidates().size(); ++rival) {
-                if (!study_.candidates()[rival].remark.empty() || has(result_.chosen.effects, rival))
-                    continue;
-                if (alone_[rival] < kNoRival * alone_[effect]) continue;
-                rivals.push_back(rival);
-            }
+            std::vector<std::size_t> rivals = others_than(result_.chosen.effects);
+            std::erase_if(rivals,
+                          [&](std::size_t rival) { return alone_[rival] < kNoRival * alone_[effect]; });
             std::vector<Fit> fits(rivals.size());
             in_parallel(rivals.size(), study_.threads(), [&](std::size_t k) {
                 fits[k] = in_its_place(effect, rivals[k], result_.chosen.bic - kDraw);
@@ -380,13 +396,11 @@ class Search::Steps {
     }
 
     void find_draws() {
-        tell("looking for rivals", 0.8);
+        report("looking for rivals", 0.8);
         look_at_part();
         std::vector<Draw> draws;
         for (const std::size_t effect : result_.chosen.effects)
-            for (std::size_t rival = 0; rival < study_.candidates().size(); ++rival) {
-                if (!study_.candidates()[rival].remark.empty() || has(result_.chosen.effects, rival))
-                    continue;
+            for (const std::size_t rival : others_than(result_.chosen.effects)) {
                 if (nested(rival, effect)) continue;
                 Draw draw{effect, rival, 0.0, {}, {}};
                 const bool last = effect == result_.chosen.effects.back() && known(rival, draw.fit);
@@ -402,8 +416,7 @@ class Search::Steps {
         for (Draw& draw : draws) {
             draw.delta_bic = draw.fit.bic - result_.chosen.bic;
             if (!(draw.delta_bic <= kDraw)) continue;
-            const HeldOut held = study_.hold_out(draw.fit);
-            draw.held = gain_of(gains_by_block(study_.blocks(), held, result_.held_chosen));
+            draw.held = gain(study_.hold_out(draw.fit), result_.held_chosen);
             result_.draws.push_back(std::move(draw));
         }
         const auto rank = [](const Draw& draw) {
@@ -415,13 +428,13 @@ class Search::Steps {
 
     /// The last step has tried `rival` in the place of the last choice.
     bool known(std::size_t rival, Fit& fit) const {
-        for (const auto& [delta, tried] : last_step_of_choice_) {
-            (void)delta;
-            auto set = tried.effects, chosen = result_.chosen.effects;
+        const auto& chosen = result_.chosen.effects;
+        for (const Tried& one : last_step_of_choice_) {
+            const auto& set = one.fit.effects;
             if (set.size() != chosen.size() || set.back() != rival ||
                 !std::equal(set.begin(), set.end() - 1, chosen.begin()))
                 continue;
-            fit = tried;
+            fit = one.fit;
             return true;
         }
         return false;
@@ -429,7 +442,7 @@ class Search::Steps {
 
     /// Does `outer` free all that `inner` does? Then it can always say the same, and says it with more words.
     bool nested(std::size_t outer, std::size_t inner) const {
-        const auto &a = study_.candidates()[outer].freed, &b = study_.candidates()[inner].freed;
+        const auto &a = candidate(outer).freed, &b = candidate(inner).freed;
         return std::all_of(b.begin(), b.end(), [&](const Freed& one) {
             return std::any_of(a.begin(), a.end(),
                                [&](const Freed& other) { return other.index == one.index; });
@@ -444,7 +457,9 @@ class Search::Steps {
     std::map<std::size_t, double> alone_;                     // delta BIC at the first step
     std::map<std::size_t, std::vector<double>> alone_state_;  // and where the parameters stood then
     double on_part_ = 0.0;                                    // BIC of the chosen set on the study's part
-    std::vector<std::pair<double, Fit>> last_step_, last_step_of_choice_;
+    std::vector<Tried> last_step_, last_step_of_choice_;
+    std::mutex reporting_;
+    std::size_t begun_ = 0;  // pieces of work
 };
 
 Search::Search(const Study& study, const Progress& progress)
