@@ -37,6 +37,11 @@ double clip_likelihood(RowRole role, double z) {
     return kLeastProbability + (1 - kLeastProbability) * stats::normal_tail(role == RowRole::Low ? -z : z);
 }
 
+/// The row's reading was cut off: all that is known is which side of an end it lies on.
+bool is_cut(RowRole role) {
+    return role == RowRole::Low || role == RowRole::High || role == RowRole::Piled;
+}
+
 double event_cost(double y, double mean) {
     return -std::log(y > 0.5 ? mean : 1 - mean);
 }
@@ -85,21 +90,13 @@ void costs_of(const Observable& o, const Predicted& p, const NoiseParameters& no
     double variance = 1.0, log_scale = 0.0;  // mostly the same as the row before's
     for (std::size_t i = 0; i < n; ++i) {
         const double z = innovations.z[i];
-        switch (innovations.role[i]) {
-        case RowRole::First:
-            cost[i] = 0.0;
+        const RowRole role = innovations.role[i];
+        if (role != RowRole::Plain) {
+            cost[i] = role == RowRole::First ? 0.0
+                      : role == RowRole::Event
+                          ? event_cost(o.y[i], z)
+                          : -std::log(clip_likelihood(role, z)) + pile_cost(p, o.y[i], role);
             continue;
-        case RowRole::Event:
-            cost[i] = event_cost(o.y[i], z);
-            continue;
-        case RowRole::Low:
-        case RowRole::High:
-        case RowRole::Piled:
-            cost[i] = -std::log(clip_likelihood(innovations.role[i], z)) +
-                      pile_cost(p, o.y[i], innovations.role[i]);
-            continue;
-        case RowRole::Plain:
-            break;
         }
         if (!innovations.mixed.empty()) {
             cost[i] = innovations.mixed[i] - constant;
@@ -183,7 +180,7 @@ void row_costs(const Observable& o, const Predicted& p, const NoiseParameters& n
         const RowRole role = innovations.role[i];
         if (role == RowRole::Event)
             z = ((o.y[i] > 0.5 ? 1.0 : 0.0) - z) / std::sqrt(z * (1 - z));
-        else if (role == RowRole::Low || role == RowRole::High || role == RowRole::Piled)
+        else if (is_cut(role))
             z = (role == RowRole::Low ? 1 : -1) * stats::normal_quantile(clip_likelihood(role, z) / 2);
     }
 }
@@ -196,29 +193,21 @@ void slopes_of(const Observable& o, const NoiseParameters& noise, const Innovati
     const double nu = std::exp(noise.log_tail), expected = (nu + 1) / (nu + 3);
     for (std::size_t i = 0; i < n; ++i) {
         const double z = innovations.z[i];
-        switch (innovations.role[i]) {
-        case RowRole::Plain:
+        const RowRole role = innovations.role[i];
+        if (role == RowRole::Plain) {
             slope[i] = (nu + 1) * z / (nu + z * z);
             curvature[i] = expected;
-            break;
-        case RowRole::First:
+        } else if (role == RowRole::First) {
             slope[i] = curvature[i] = 0.0;
-            break;
-        case RowRole::Event:
+        } else if (role == RowRole::Event) {
             slope[i] = o.y[i] > 0.5 ? -1 / z : 1 / (1 - z);
             curvature[i] = 1 / (z * (1 - z));
-            break;
-        case RowRole::Low:
-        case RowRole::High:
-        case RowRole::Piled: {
-            const double sign = innovations.role[i] == RowRole::Low ? 1 : -1;
-            const double hazard =
-                (1 - kLeastProbability) * normal_density(z) / clip_likelihood(innovations.role[i], z);
+        } else {
+            const double sign = role == RowRole::Low ? 1 : -1;
+            const double hazard = (1 - kLeastProbability) * normal_density(z) / clip_likelihood(role, z);
             const double bend = hazard * (hazard + sign * z);
             slope[i] = -sign * hazard;
             curvature[i] = bend > 0 ? bend : hazard * hazard;
-            break;
-        }
         }
     }
 }

@@ -34,23 +34,8 @@ constexpr double kSettled = 0.1;                     // nats that a round must b
 constexpr std::size_t kManyRows = 6000;  // beyond, fits are begun on a part of them
 constexpr std::size_t kPartRows = 3000;
 
-/// Smallest and largest known value; the other way round where there is none.
-struct Range {
-    double low = INFINITY, high = -INFINITY;
-
-    void take(const std::vector<double>& values) {
-        for (const double value : values)
-            if (!std::isnan(value)) {
-                low = std::min(low, value);
-                high = std::max(high, value);
-            }
-    }
-};
-
 bool varies(const Experiment& experiment, std::string_view column) {
-    Range all;
-    for (const Run& run : experiment.runs)
-        all.take(run.column(column));
+    const stats::Range all = experiment.range(column);
     return all.high > all.low;
 }
 
@@ -60,9 +45,9 @@ std::string design_of(Kind kind, const Run& run) {
     std::string design;
     for (const ColumnInfo& info : columns_of(kind)) {
         if (info.role != Role::Stimulus && info.role != Role::Truth) continue;
-        Range own;
+        stats::Range own;
         own.take(run.column(info.name));
-        const bool nothing = !(own.low <= own.high) || (own.low == 0.0 && own.high == 0.0);
+        const bool nothing = own.empty() || (own.low == 0.0 && own.high == 0.0);
         design += nothing ? '0' : own.low == own.high ? '1' : 'n';
     }
     return design;
