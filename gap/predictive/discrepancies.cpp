@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace puckloop::gap {
 
@@ -65,8 +64,7 @@ Discrepancies::Discrepancies(const Observable& observable, const std::vector<dou
 void Discrepancies::add_marginal(const std::vector<double>& measured, const std::string& residual) {
     const double low = stats::quantile(measured, kOuter), high = stats::quantile(measured, 1 - kOuter);
     const double width = (high - low) / kInnerBins;
-    PredictiveCurve curve{
-        "marginal law", residual, "rows (%)", Residual::Horizontal, {}, {}, {}, {}, {}, 1.0};
+    PredictiveCurve curve{"marginal law", residual, "rows (%)", Residual::Horizontal};
     for (std::size_t b = 0; b <= kInnerBins; ++b)
         edges_.push_back(low + width * static_cast<double>(b));
     for (std::size_t b = 0; b < kInnerBins + 2; ++b)
@@ -81,8 +79,7 @@ void Discrepancies::add_autocorrelation() {
         longest = std::max(longest, chain);
     }
     lags_ = std::min(kMostLags, longest / 3);
-    PredictiveCurve curve{
-        "autocorrelation", "rows apart", "correlation", Residual::Nowhere, {}, {}, {}, {}, {}, 1.0};
+    PredictiveCurve curve{"autocorrelation", "rows apart", "correlation", Residual::Nowhere};
     for (std::size_t lag = 1; lag <= lags_; ++lag)
         curve.x.push_back(static_cast<double>(lag));
     places_.push_back(std::move(curve));
@@ -97,16 +94,7 @@ void Discrepancies::add_covariate(const stats::Covariate& covariate, const std::
     Grouping grouping{std::vector<int>(covariate.value.size(), -1), static_cast<std::size_t>(count)};
     for (std::size_t i = 0, k = 0; i < covariate.value.size(); ++i)
         if (std::isfinite(covariate.value[i])) grouping.place[i] = bin[k++];
-    PredictiveCurve curve{covariate.name,
-                          covariate_label(covariate.name),
-                          residual,
-                          Residual::Vertical,
-                          {},
-                          {},
-                          {},
-                          {},
-                          {},
-                          1.0};
+    PredictiveCurve curve{covariate.name, covariate_label(covariate.name), residual, Residual::Vertical};
     curve.x = of_groups(covariate.value, grouping.place, grouping.count, false);
     if (covariate.kind == stats::CovariateKind::Label)
         for (std::size_t k = 0; k < grouping.count; ++k) {
@@ -123,7 +111,7 @@ void Discrepancies::add_spread() {
     Grouping grouping{{observable_.run.begin(), observable_.run.end()}, 0};
     for (const std::uint32_t run : observable_.run)
         grouping.count = std::max<std::size_t>(grouping.count, run + 1);
-    PredictiveCurve curve{"spread per run", "run", "mean size", Residual::Vertical, {}, {}, {}, {}, {}, 1.0};
+    PredictiveCurve curve{"spread per run", "run", "mean size", Residual::Vertical};
     for (std::size_t run = 0; run < grouping.count; ++run)
         curve.x.push_back(static_cast<double>(run + 1));
     places_.push_back(std::move(curve));

@@ -12,10 +12,10 @@ struct PredictiveCurve {
     std::string name;              ///< "marginal law", "autocorrelation", "distance", ..., "spread per run"
     std::string x_label, y_label;  ///< with units, but for the residual's
     enum class Residual { Nowhere, Horizontal, Vertical } residual;  ///< the axis in the check's unit
-    std::vector<double> x;                                           ///< places; of categories 0, 1, ...
-    std::vector<double> measured;                                    ///< of what was measured
-    std::vector<double> low, high;        ///< 5 % and 95 % of the replicated data, place by place
-    std::vector<std::string> categories;  ///< names of the places; empty: numbers
+    std::vector<double> x{};                                         ///< places; of categories 0, 1, ...
+    std::vector<double> measured{};                                  ///< of what was measured
+    std::vector<double> low{}, high{};      ///< 5 % and 95 % of the replicated data, place by place
+    std::vector<std::string> categories{};  ///< names of the places; empty: numbers
     /// Share of data sets, the measured one among them, whose largest distance from the replicates' mean (in
     /// their own deviations, place by place) is at least that of the measured one.
     double p = 1.0;

@@ -4,6 +4,7 @@
 #include "physics/render/svg_canvas.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -76,7 +77,7 @@ void Chart::points(const std::vector<double>& x, const std::vector<double>& y, c
     std::vector<std::size_t> whole;
     for (std::size_t i = 0; i < x.size(); ++i)
         if (std::isfinite(x[i]) && std::isfinite(y[i])) whole.push_back(i);
-    Layer layer{Layer::Kind::Points, {}, {}, {}, colour, name, false};
+    Layer layer{Layer::Kind::Points, {}, {}, {}, colour, name};
     const std::size_t stride = std::max<std::size_t>((whole.size() + kMostPoints - 1) / kMostPoints, 1);
     for (std::size_t k = 0; k < whole.size(); k += stride) {
         layer.x.push_back(x[whole[k]]);
@@ -172,6 +173,13 @@ std::string Chart::svg(double width, double height) const {
     const auto py = [&](double y) {
         return bottom - (std::clamp(y, ys.low, ys.high) - ys.low) / (ys.high - ys.low) * (bottom - kTop);
     };
+    const auto places = [&](const std::vector<double>& x, const std::vector<double>& y) {
+        std::vector<std::string> all;
+        for (std::size_t i = 0; i < x.size(); ++i)
+            if (std::isfinite(x[i]) && std::isfinite(y[i]))
+                all.push_back(fmt::format("{:.1f},{:.1f}", px(x[i]), py(y[i])));
+        return all;
+    };
     std::string out = fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:.0f} {1:.0f}\" "
                                   "width=\"{0:.0f}\" height=\"{1:.0f}\" font-family=\"DejaVu Sans, "
                                   "Helvetica, Arial, sans-serif\" font-size=\"10\" fill=\"{2}\">\n"
@@ -199,52 +207,58 @@ std::string Chart::svg(double width, double height) const {
         out += text_at(px(static_cast<double>(i)), bottom + 14, categories_[i], "middle");
     out += fmt::format("<path d=\"{}\" stroke=\"{}\"/>\n", grid, kGrid);
     for (const Layer& layer : layers_) {
-        if (layer.kind == Layer::Kind::Level)
+        // Of all points, places as `shape` writes them.
+        const auto path = [&](const auto& shape) {
+            std::string all;
+            for (std::size_t i = 0; i < layer.x.size(); ++i)
+                if (std::isfinite(layer.y[i])) all += shape(px(layer.x[i]), py(layer.y[i]), i);
+            return all;
+        };
+        switch (layer.kind) {
+        case Layer::Kind::Level:
             out += segment(kLeft, py(layer.y[0]), right, py(layer.y[0]), layer.colour,
                            "stroke-dasharray=\"4 3\"");
-        if (layer.kind == Layer::Kind::Points)
-            for (std::size_t i = 0; i < layer.x.size(); ++i)
-                out += dot(px(layer.x[i]), py(layer.y[i]), layer.colour, "1.6", " fill-opacity=\"0.55\"");
-        if (layer.kind == Layer::Kind::Dots) {
-            std::string all;
-            for (std::size_t i = 0; i < layer.x.size(); ++i)
-                if (std::isfinite(layer.y[i]))
-                    all += fmt::format("M{:.1f} {:.1f}h0", px(layer.x[i]), py(layer.y[i]));
-            out += fmt::format("<path d=\"{}\" stroke=\"{}\" stroke-width=\"4.4\" "
-                               "stroke-linecap=\"round\"/>\n",
-                               all, layer.colour);
-        }
-        if (layer.kind == Layer::Kind::Bars) {
-            std::string all;
-            for (std::size_t i = 0; i < layer.x.size(); ++i)
-                if (std::isfinite(layer.y[i]))
-                    all += fmt::format("M{:.1f} {:.1f}H{:.1f}V{:.1f}H{:.1f}z", px(layer.x[i] - layer.half),
-                                       py(layer.y[i]), px(layer.x[i] + layer.half), py(layer.high[i]),
-                                       px(layer.x[i] - layer.half));
-            out += fmt::format("<path d=\"{}\" fill=\"{}\" fill-opacity=\"0.3\"/>\n", all, layer.colour);
-        }
-        if (layer.kind == Layer::Kind::Interval) {
+            break;
+        case Layer::Kind::Points:
+            out += path([&](double x, double y, std::size_t) {
+                return dot(x, y, layer.colour, "1.6", " fill-opacity=\"0.55\"");
+            });
+            break;
+        case Layer::Kind::Dots:
+            out += fmt::format(
+                "<path d=\"{}\" stroke=\"{}\" stroke-width=\"4.4\" stroke-linecap=\"round\"/>\n",
+                path([](double x, double y, std::size_t) { return fmt::format("M{:.1f} {:.1f}h0", x, y); }),
+                layer.colour);
+            break;
+        case Layer::Kind::Bars:
+            out += fmt::format("<path d=\"{}\" fill=\"{}\" fill-opacity=\"0.3\"/>\n",
+                               path([&](double, double y, std::size_t i) {
+                                   const double from = px(layer.x[i] - layer.half);
+                                   return fmt::format("M{:.1f} {:.1f}H{:.1f}V{:.1f}H{:.1f}z", from, y,
+                                                      px(layer.x[i] + layer.half), py(layer.high[i]), from);
+                               }),
+                               layer.colour);
+            break;
+        case Layer::Kind::Interval: {
             const double x = px(layer.x[0]);
             out += segment(x, py(layer.y[0]), x, py(layer.high[0]), layer.colour, kThick);
             out += dot(x, py(layer.y[1]), layer.colour, "3.5");
+            break;
         }
-        std::string path;
-        if (layer.kind == Layer::Kind::Line || layer.kind == Layer::Kind::Band)
-            for (std::size_t i = 0; i < layer.x.size(); ++i)
-                if (std::isfinite(layer.x[i]) && std::isfinite(layer.y[i]))
-                    path += fmt::format("{}{:.1f},{:.1f}", path.empty() ? "" : " ", px(layer.x[i]),
-                                        py(layer.y[i]));
-        if (layer.kind == Layer::Kind::Band) {
-            for (std::size_t i = layer.x.size(); i-- > 0;)
-                if (std::isfinite(layer.x[i]) && std::isfinite(layer.high[i]))
-                    path += fmt::format(" {:.1f},{:.1f}", px(layer.x[i]), py(layer.high[i]));
-            out += fmt::format("<polygon points=\"{}\" fill=\"{}\" fill-opacity=\"0.22\"/>\n", path,
-                               layer.colour);
-        }
-        if (layer.kind == Layer::Kind::Line)
+        case Layer::Kind::Line:
             out +=
                 fmt::format("<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.6\"{}/>\n",
-                            path, layer.colour, layer.dashed ? " stroke-dasharray=\"5 3\"" : "");
+                            fmt::join(places(layer.x, layer.y), " "), layer.colour,
+                            layer.dashed ? " stroke-dasharray=\"5 3\"" : "");
+            break;
+        case Layer::Kind::Band: {
+            auto outline = places(layer.x, layer.y), back = places(layer.x, layer.high);
+            outline.insert(outline.end(), back.rbegin(), back.rend());
+            out += fmt::format("<polygon points=\"{}\" fill=\"{}\" fill-opacity=\"0.22\"/>\n",
+                               fmt::join(outline, " "), layer.colour);
+            break;
+        }
+        }
     }
     out += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"none\" "
                        "stroke=\"#999999\"/>\n",

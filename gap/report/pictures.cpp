@@ -93,6 +93,13 @@ Picture residuals(const Series& series, const Covariate& c, const char* title, s
                 series.observable, c.name)};
 }
 
+std::vector<double> of_run(const Series& series, const std::vector<double>& values, std::uint32_t run) {
+    std::vector<double> result;
+    for (std::size_t i = 0; i < values.size(); ++i)
+        if (series.run[i] == run) result.push_back(values[i]);
+    return result;
+}
+
 Picture by_run_picture(const Experiment& experiment, const Series& series) {
     Chart chart("Left over, run by run", "run, in order of the file",
                 with_unit(fmt::format("{}, measured − simulated", series.observable), series.unit));
@@ -104,11 +111,8 @@ Picture by_run_picture(const Experiment& experiment, const Series& series) {
     for (const auto& [simulated, colour, shift] :
          {std::tuple{&series.before, kBefore, -0.12}, std::tuple{&series.after, kAfter, 0.12}}) {
         const std::vector<double> rest = left_over(series.measured, *simulated);
-        std::vector<double> x, y;
         for (std::size_t r = 0; r < experiment.runs.size(); ++r) {
-            std::vector<double> inside;
-            for (std::size_t i = 0; i < rest.size(); ++i)
-                if (series.run[i] == r) inside.push_back(rest[i]);
+            const std::vector<double> inside = of_run(series, rest, static_cast<std::uint32_t>(r));
             const double middle = stats::median(inside);
             if (!std::isfinite(middle)) continue;
             chart.interval(static_cast<double>(r) + shift, middle, stats::quantile(inside, 0.05),
@@ -144,8 +148,8 @@ struct Track {
     std::vector<double> x, y;
 };
 
-Track reckoned(const std::vector<double>& along, const std::vector<double>& across,
-               const std::vector<double>& heading, double x, double y, double first_heading) {
+Track integrated(const std::vector<double>& along, const std::vector<double>& across,
+                 const std::vector<double>& heading, double x, double y, double first_heading) {
     Track track{{x}, {y}};
     for (std::size_t i = 1; i < along.size(); ++i) {
         const double middle = first_heading + (heading[i] + heading[i - 1]) / 2 - heading[0];
@@ -160,26 +164,10 @@ Track reckoned(const std::vector<double>& along, const std::vector<double>& acro
     return track;
 }
 
-/// Places told from where a run began.
-Track placed(std::vector<double> x, std::vector<double> y, double first_x, double first_y) {
-    for (double& one : x)
-        one += first_x;
-    for (double& one : y)
-        one += first_y;
-    return {std::move(x), std::move(y)};
-}
-
 const Series* series_named(const Verdict& verdict, std::string_view name) {
     for (const Series& s : verdict.series)
         if (s.observable == name) return &s;
     return nullptr;
-}
-
-std::vector<double> of_run(const Series& series, const std::vector<double>& values, std::uint32_t run) {
-    std::vector<double> result;
-    for (std::size_t i = 0; i < values.size(); ++i)
-        if (series.run[i] == run) result.push_back(values[i]);
-    return result;
 }
 
 }  // namespace
@@ -226,9 +214,14 @@ std::vector<Picture> path_pictures(const Experiment& experiment, const Verdict& 
              {std::tuple{&Series::before, kBefore, "before", true},
               {&Series::after, kAfter, "after", false}}) {
             const auto a = of_run(*along, along->*stage, number), b = of_run(*across, across->*stage, number);
-            const Track track = room ? placed(a, b, x.front(), y.front())
-                                     : reckoned(a, b, of_run(*heading, heading->*stage, number), x.front(),
-                                                y.front(), run.column("theta_rad")[first]);
+            Track track{a, b};  // from where the run began
+            if (room) {
+                std::for_each(track.x.begin(), track.x.end(), [&](double& one) { one += x.front(); });
+                std::for_each(track.y.begin(), track.y.end(), [&](double& one) { one += y.front(); });
+            } else {
+                track = integrated(a, b, of_run(*heading, heading->*stage, number), x.front(), y.front(),
+                                   run.column("theta_rad")[first]);
+            }
             chart.line(track.x, track.y, colour, name, dashed);
         }
         pictures.push_back({chart.svg(kWidth, kWidth),

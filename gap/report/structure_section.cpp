@@ -52,9 +52,6 @@ std::string effect_of(const Finding& f) {
 
 /// The clearest line of either stage for each test and covariate; clear ones first.
 std::string tests_of(const std::vector<Finding>& before, const std::vector<Finding>& after) {
-    std::vector<std::size_t> order;
-    for (std::size_t i = 0; i < before.size(); ++i)
-        order.push_back(i);
     const auto after_of = [&](const Finding& f) -> const Finding* {
         for (const Finding& g : after)
             if (g.test == f.test && g.covariate == f.covariate) return &g;
@@ -64,10 +61,10 @@ std::string tests_of(const std::vector<Finding>& before, const std::vector<Findi
         const Finding* later = after_of(before[i]);
         return std::min(before[i].p_adjusted, later != nullptr ? later->p_adjusted : 1.0);
     };
-    std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return clearest(a) < clearest(b); });
     Table table({"test", "against", "#size before", "#p before", "#size after", "#p after", "shape"});
     std::size_t clear = 0;
-    for (const std::size_t i : order) {
+    for (const std::size_t i :
+         stats::ordered(before.size(), [&](auto a, auto b) { return clearest(a) < clearest(b); })) {
         const Finding& f = before[i];
         const Finding* later = after_of(f);
         if (clearest(i) > kClear || clear >= kMostLines) continue;
