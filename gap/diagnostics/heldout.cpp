@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace puckloop::gap {
 
@@ -11,11 +12,12 @@ namespace {
 
 constexpr int kDraws = 1000;  // of the bootstrap over blocks
 
+double sum_of(const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
 double root_mean(const std::vector<double>& sums, double rows) {
-    double sum = 0.0;
-    for (const double one : sums)
-        sum += one;
-    return std::sqrt(sum / std::max(rows, 1.0));
+    return std::sqrt(sum_of(sums) / std::max(rows, 1.0));
 }
 
 void ratio_of(const std::vector<double>& before, const std::vector<double>& after, std::uint64_t seed,
@@ -23,11 +25,7 @@ void ratio_of(const std::vector<double>& before, const std::vector<double>& afte
     RandomStream random(seed, "gap/ratio");
     std::vector<double> ratios;
     const std::size_t n = before.size();
-    double all_before = 0, all_after = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-        all_before += before[i];
-        all_after += after[i];
-    }
+    const double all_before = sum_of(before), all_after = sum_of(after);
     ratio = all_before > 0 ? std::sqrt(all_after / all_before) : 1.0;
     for (int draw = 0; draw < kDraws; ++draw) {
         double b = 0, a = 0;
@@ -68,9 +66,7 @@ HeldFigures held_figures(const Study& study, const Selection& selection, std::ui
     }
     HeldFigures figures;
     Held& held = figures.all;
-    double rows = 0.0;
-    for (const double count : counts)
-        rows += count;
+    const double rows = sum_of(counts);
     ratio_of(before.back(), after.back(), seed, held.ratio, held.low, held.high);
     held.before = root_mean(before.back(), rows);
     held.after = root_mean(after.back(), rows);

@@ -28,9 +28,7 @@ bool is_rounding(const stats::Finding& finding, const Series& series, double qua
 
 std::vector<Leftover> leftovers_of(const Experiment& experiment, const std::vector<Series>& series,
                                    const std::vector<double>& quanta, std::uint64_t seed, double level) {
-    stats::TestOptions options;
-    options.seed = seed;
-    options.permutations = kPermutations;
+    const stats::TestOptions options{.seed = seed, .permutations = kPermutations};
     std::vector<std::vector<stats::Finding>> tables;
     for (std::size_t o = 0; o < series.size(); ++o) {
         // The firmware makes the counters: whole steps have structure of their own.
