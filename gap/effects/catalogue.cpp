@@ -2,7 +2,6 @@
 #include "gap/effects/tables.h"
 
 #include <algorithm>
-#include <string_view>
 #include <utility>
 
 namespace puckloop::gap {

@@ -6,7 +6,6 @@
 #include "gap/data/experiment.h"
 
 #include <span>
-#include <string_view>
 #include <vector>
 
 namespace puckloop::gap {

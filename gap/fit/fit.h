@@ -4,7 +4,6 @@
 #include "gap/fit/likelihood.h"
 #include "gap/models/model.h"
 
-#include <string>
 #include <vector>
 
 namespace puckloop::gap {

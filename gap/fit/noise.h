@@ -4,8 +4,6 @@
 
 #include "gap/models/model.h"
 
-#include <vector>
-
 namespace puckloop::gap {
 
 /// Free numbers of one observable's noise.
