@@ -69,11 +69,8 @@ class AccelerometerModel final : public ModelOf<physics::Parameters> {
                 if (now.warmup != 0.0) counts += now.warmup * warmed(one.time[i], now.warmup_time);
                 p.mean[i] = counts * (1 - now.motor_sag * (one.motor[i] > 0 ? 1.0 : 0.0));
             }
-            p.extra.clear();
-            if (now.vibration == 0.0) continue;
-            p.extra.resize(p.mean.size());
-            for (std::size_t i = 0; i < p.mean.size(); ++i)
-                p.extra[i] = now.vibration * one.motor[i];
+            fill_rows(p.extra, p.mean.size(), now.vibration != 0.0,
+                      [&](std::size_t i) { return now.vibration * one.motor[i]; });
         }
     }
 

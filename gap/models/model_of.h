@@ -78,6 +78,14 @@ class ModelOf : public Model {
     std::vector<std::pair<Place, std::size_t>> places_;
 };
 
+/// `values` of so many rows where they are `asked` for; else none, which is neutral.
+template <class Value>
+void fill_rows(std::vector<double>& values, std::size_t rows, bool asked, const Value& value) {
+    values.resize(asked ? rows : 0);
+    for (std::size_t i = 0; i < values.size(); ++i)
+        values[i] = value(i);
+}
+
 /// Share of its drift that something which warms up has made `time` s after power-up; `lasts`: s.
 inline double warmed(double time, double lasts) {
     return 1 - std::exp(-std::max(time, 0.0) / lasts);

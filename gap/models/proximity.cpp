@@ -312,27 +312,16 @@ class ProximityModel final : public ModelOf<Numbers> {
     void noise(const physics::ProximityParameters& now, Predicted& p) const {
         const std::size_t n = p.mean.size();
         const double share = now.proportional_noise, light = now.ambient_noise, rate = now.interference_rate;
-        p.factor.clear();
-        p.extra.clear();
-        p.lapse.clear();
-        p.lapse_scale.clear();
-        if (now.motor_noise != 0.0) {
-            p.factor.resize(n);
-            for (std::size_t i = 0; i < n; ++i)
-                p.factor[i] = 1 + now.motor_noise * motor_[i];
-        }
-        if (share != 0.0 || light != 0.0) {
-            p.extra.resize(n);
-            for (std::size_t i = 0; i < n; ++i)
-                p.extra[i] = std::sqrt(share * share * p.mean[i] * p.mean[i] + light * light * ambient_[i]);
-        }
+        fill_rows(p.factor, n, now.motor_noise != 0.0,
+                  [&](std::size_t i) { return 1 + now.motor_noise * motor_[i]; });
+        fill_rows(p.extra, n, share != 0.0 || light != 0.0, [&](std::size_t i) {
+            return std::sqrt(share * share * p.mean[i] * p.mean[i] + light * light * ambient_[i]);
+        });
+        fill_rows(p.lapse, n, rate != 0.0, [&](std::size_t i) { return std::min(rate * others_[i], 0.9); });
+        p.lapse_scale.assign(p.lapse.size(), kHitSpread * now.interference_size);
         if (rate != 0.0) {
-            p.lapse.resize(n);
-            p.lapse_scale.assign(n, kHitSpread * now.interference_size);
             p.lapse_shift = now.interference_size;
             p.lapse_both = true;
-            for (std::size_t i = 0; i < n; ++i)
-                p.lapse[i] = std::min(rate * others_[i], 0.9);
         }
         p.line_amplitude = now.flicker;
         p.line_frequency = now.flicker_frequency;
