@@ -23,6 +23,10 @@ constexpr std::size_t kKept = 40;    // components that stay in view between two
 constexpr double kLessCarry = 0.35;
 constexpr int kLookAgain = 10;  // steps
 
+double weight_of(const Component& component, std::size_t row) {
+    return component.weight.empty() ? 1.0 : component.weight[row];
+}
+
 /// Errors and cells freed of what is carried over: a row has its own cell and the one of the row before.
 class Design {
   public:
@@ -54,13 +58,16 @@ class Design {
     const std::vector<double>& target() const { return target_; }
 
     /// The row's share of cell values: own cell (p, a) and that of the row before (q, b); cell -1: none.
-    void parts(std::size_t g, std::size_t i, int& p, double& a, int& q, double& b) const {
+    struct Parts {
+        int p, q;
+        double a, b;
+    };
+    Parts parts(std::size_t g, std::size_t i) const {
         const Component& c = components_[g];
-        p = c.cell[i];
         const bool chained = follows(i);
-        a = (chained ? 1.0 : first_) * (c.weight.empty() ? 1.0 : c.weight[i]);
-        q = chained && carry_ != 0.0 ? c.cell[i - 1] : -1;
-        b = q < 0 ? 0.0 : -carry_ * (c.weight.empty() ? 1.0 : c.weight[i - 1]);
+        const int q = chained && carry_ != 0.0 ? c.cell[i - 1] : -1;
+        return {c.cell[i], q, (chained ? 1.0 : first_) * weight_of(c, i),
+                q < 0 ? 0.0 : -carry_ * weight_of(c, i - 1)};
     }
 
     /// What the rows that `learns` say of a correction in each row, in the row itself and in the next, to
@@ -103,9 +110,7 @@ Grams grams_of(const Design& design, const std::vector<Component>& components, c
         for (std::size_t i = 0; i < design.rows(); ++i) {
             if (!design.used(i)) continue;
             Eigen::MatrixXd& gram = parts[static_cast<std::size_t>(fold[i])];
-            int p = 0, q = 0;
-            double a = 0, b = 0;
-            design.parts(g, i, p, a, q, b);
+            const auto [p, q, a, b] = design.parts(g, i);
             if (p >= 0) gram(p, p) += a * a;
             if (q >= 0) gram(q, q) += b * b;
             if (p >= 0 && q >= 0) {
@@ -212,9 +217,7 @@ class Booster {
         const Eigen::VectorXd move = kPace * moves[g];
         for (std::size_t i = 0; i < rest_.size(); ++i) {
             if (!design_.used(i)) continue;
-            int p = 0, q = 0;
-            double a = 0, b = 0;
-            design_.parts(g, i, p, a, q, b);
+            const auto [p, q, a, b] = design_.parts(g, i);
             rest_[i] -= (p >= 0 ? a * move[p] : 0.0) + (q >= 0 ? b * move[q] : 0.0);
         }
         if (values_[g].size() == 0) values_[g] = Eigen::VectorXd::Zero(move.size());
@@ -240,12 +243,8 @@ class Booster {
     Eigen::VectorXd pull_of(const Component& c) {
         pulls_.assign(static_cast<std::size_t>(c.cells) + 1, 0.0);
         double* const at = pulls_.data() + 1;  // the first is of rows without a cell
-        if (c.weight.empty())
-            for (std::size_t i = 0; i < said_.size(); ++i)
-                at[c.cell[i]] += said_[i];
-        else
-            for (std::size_t i = 0; i < said_.size(); ++i)
-                at[c.cell[i]] += c.weight[i] * said_[i];
+        for (std::size_t i = 0; i < said_.size(); ++i)
+            at[c.cell[i]] += weight_of(c, i) * said_[i];
         return Eigen::Map<const Eigen::VectorXd>(at, c.cells);
     }
 
@@ -311,32 +310,26 @@ Boosted boosted(const ErrorRows& rows, const std::vector<Component>& components,
     std::vector<std::size_t> fold_of(blocks, 0);
     for (std::size_t i = 0; i < n; ++i)
         fold_of[static_cast<std::size_t>(block[i])] = static_cast<std::size_t>(fold[i]);
-    const auto best_without = [&](std::size_t fold_left, std::size_t& carry, std::size_t& steps) {
+    const auto best_without = [&](std::size_t fold_left) {  // its carry and steps
         double most = 0.0;
-        carry = steps = 0;
+        std::pair<std::size_t, std::size_t> best{0, 0};
         for (std::size_t c = 0; c < carries.size(); ++c)
             for (std::size_t m = 0; m <= kMostSteps; ++m) {
                 double sum = 0.0;
                 for (std::size_t b = 0; b < blocks; ++b)
                     if (fold_of[b] != fold_left) sum += gains[c][m][b];
-                if (sum > most) {
-                    most = sum;
-                    carry = c;
-                    steps = m;
-                }
+                if (sum > most) most = sum, best = {c, m};
             }
+        return best;
     };
-    std::vector<double> by_block(blocks, 0.0);
+    result.gains.assign(blocks, 0.0);
     for (std::size_t k = 0; k < folds; ++k) {
-        std::size_t c = 0, m = 0;
-        best_without(k, c, m);
+        const auto [c, m] = best_without(k);
         for (std::size_t b = 0; b < blocks; ++b)
-            if (fold_of[b] == k) by_block[b] = gains[c][m][b];
+            if (fold_of[b] == k) result.gains[b] = gains[c][m][b];
     }
-    result.gains = std::move(by_block);
 
-    std::size_t c = 0, steps = 0;
-    best_without(folds, c, steps);
+    const auto [c, steps] = best_without(folds);
     result.carry = carries[c];
     const Design design(rows, components, carries[c]);
     Booster booster(design, components, fold, -1, grams[c], strengths[c]);
@@ -349,7 +342,7 @@ Boosted boosted(const ErrorRows& rows, const std::vector<Component>& components,
         for (std::size_t i = 0; i < n; ++i) {
             const int cell = components[g].cell[i];
             if (cell < 0 || !std::isfinite(rows.error[i])) continue;
-            const double one = values[cell] * (components[g].weight.empty() ? 1.0 : components[g].weight[i]);
+            const double one = values[cell] * weight_of(components[g], i);
             result.correction[i] += one;
             sum += one;
             square += one * one;
