@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
+#include <utility>
 
 namespace puckloop::gap {
 
@@ -29,19 +31,12 @@ int noise_parameters(const Observable& observable) {
 }
 
 void noise_bounds(NoiseKind kind, int index, double& low, double& high) {
-    if (index == 0) {
-        low = -30;
-        high = 15;
-    } else if (index == 1) {
-        low = kind == NoiseKind::Level ? -16.0 : -0.5;
-        high = kind == NoiseKind::Level ? 6.0 : 0.97;
-    } else if (index == 2) {
-        low = std::log(2.2);
-        high = std::log(60.0);
-    } else {
-        low = 0.0;
-        high = 0.95;
-    }
+    const bool level = kind == NoiseKind::Level;
+    const std::pair<double, double> bounds[] = {{-30, 15},
+                                                level ? std::pair(-16.0, 6.0) : std::pair(-0.5, 0.97),
+                                                {std::log(2.2), std::log(60.0)},
+                                                {0, 0.95}};
+    std::tie(low, high) = bounds[index];
 }
 
 RowSize::RowSize(const Observable& o, const Predicted& p, const NoiseParameters& noise)

@@ -50,14 +50,15 @@ std::vector<std::size_t> with(std::vector<std::size_t> set, std::size_t effect) 
 }
 
 /// A set that was tried, and by how much its BIC is better than that of the set it is compared with.
-struct Tried {
+struct TriedSet {
     double won = -INFINITY;
     Fit fit;
     std::size_t effect() const { return fit.effects.back(); }
 };
 
-void best_first(std::vector<Tried>& all) {
-    std::stable_sort(all.begin(), all.end(), [](const Tried& a, const Tried& b) { return a.won > b.won; });
+void best_first(std::vector<TriedSet>& all) {
+    std::stable_sort(all.begin(), all.end(),
+                     [](const TriedSet& a, const TriedSet& b) { return a.won > b.won; });
 }
 
 }  // namespace
@@ -129,15 +130,15 @@ class Search::Steps {
         result_.held_chosen = std::move(held);
     }
 
-    /// The sets that `pairs` add up to, `first` being fitted already: fitted quickly where a glance promises
-    /// something, the best first. `alone`: BIC that each has to better.
+    /// A set that is fitted already, an effect to be put beside it, and the BIC that both have to better.
     struct Pair {
         const Fit* first;
         std::size_t second;
         double alone;
     };
-    std::vector<Tried> together(const std::vector<Pair>& pairs) const {
-        std::vector<Tried> all(pairs.size());
+    /// Both fitted quickly where a glance promises something, the best first.
+    std::vector<TriedSet> together(const std::vector<Pair>& pairs) const {
+        std::vector<TriedSet> all(pairs.size());
         in_parallel(pairs.size(), study_.threads(), [&](std::size_t k) {
             const State& from = pairs[k].first->fitted.state;
             const auto set = with(pairs[k].first->effects, pairs[k].second);
@@ -145,7 +146,7 @@ class Search::Steps {
             Fit fit = study_.fit_set(set, from, kQuick);
             all[k] = {pairs[k].alone - fit.bic, std::move(fit)};
         });
-        std::erase_if(all, [](const Tried& one) { return one.fit.effects.empty(); });
+        std::erase_if(all, [](const TriedSet& one) { return one.fit.effects.empty(); });
         best_first(all);
         return all;
     }
@@ -170,12 +171,12 @@ class Search::Steps {
 
     /// An effect that explains much, and makes as many runs worse as better, may have a partner that pulls
     /// the other way where they meet. `first` is tried with each other effect, and both are taken or none.
-    bool step_of_two(const Tried& first, const HeldOut& first_held, const Gain& first_gain) {
+    bool step_of_two(const TriedSet& first, const HeldOut& first_held, const Gain& first_gain) {
         if (first.fit.effects.size() >= kMostEffects) return false;
         std::vector<Pair> pairs;
         for (const std::size_t partner : others_than(first.fit.effects))
             pairs.push_back({&first.fit, partner, first.fit.bic});
-        std::vector<Tried> tried = together(pairs);
+        std::vector<TriedSet> tried = together(pairs);
         if (tried.empty()) return false;
         Fit& both = tried.front().fit;
         both = study_.refined(both);
@@ -199,13 +200,13 @@ class Search::Steps {
             for (std::size_t b = a + 1; b < count; ++b)
                 pairs.push_back({&last_step_[a].fit, last_step_[b].effect(),
                                  std::min(last_step_[a].fit.bic, last_step_[b].fit.bic)});
-        std::vector<Tried> tried = together(pairs);
+        std::vector<TriedSet> tried = together(pairs);
         if (tried.empty() || tried.front().won < kPromising) return false;
         Fit both = study_.refined(tried.front().fit);
         HeldOut held = study_.hold_out(both);
         if (!enough(gain(result_.held_chosen, held), 2)) return false;
         for (const std::size_t effect : both.effects) {
-            const auto alone = std::find_if(last_step_.begin(), last_step_.end(), [&](const Tried& one) {
+            const auto alone = std::find_if(last_step_.begin(), last_step_.end(), [&](const TriedSet& one) {
                 return one.effect() != effect && has(both.effects, one.effect());
             });
             result_.steps.push_back(
@@ -223,7 +224,7 @@ class Search::Steps {
         std::vector<std::size_t> tried = others_than(chosen.effects);
         std::map<std::size_t, Fit> guesses;
         if (study_.part() != nullptr) tried = promising(tried, begin, guesses);
-        std::vector<Tried> fits(tried.size());
+        std::vector<TriedSet> fits(tried.size());
         begun_ = 0;
         in_parallel(tried.size(), study_.threads(), [&](std::size_t k) {
             report_next(fmt::format("trying {}", candidate(tried[k]).effect->name), begin, 0.15,
@@ -242,7 +243,7 @@ class Search::Steps {
             fits[k].won = chosen.bic - fits[k].fit.bic;
         });
         best_first(fits);
-        for (const Tried& one : fits) {
+        for (const TriedSet& one : fits) {
             Trial& trial = result_.trials[one.effect()];
             if (chosen.effects.empty() || !trial.validated) trial.delta_bic = one.won;
             if (!chosen.effects.empty()) continue;
@@ -429,7 +430,7 @@ class Search::Steps {
     /// The last step has tried `rival` in the place of the last choice.
     bool known(std::size_t rival, Fit& fit) const {
         const auto& chosen = result_.chosen.effects;
-        for (const Tried& one : last_step_of_choice_) {
+        for (const TriedSet& one : last_step_of_choice_) {
             const auto& set = one.fit.effects;
             if (set.size() != chosen.size() || set.back() != rival ||
                 !std::equal(set.begin(), set.end() - 1, chosen.begin()))
@@ -457,7 +458,7 @@ class Search::Steps {
     std::map<std::size_t, double> alone_;                     // delta BIC at the first step
     std::map<std::size_t, std::vector<double>> alone_state_;  // and where the parameters stood then
     double on_part_ = 0.0;                                    // BIC of the chosen set on the study's part
-    std::vector<Tried> last_step_, last_step_of_choice_;
+    std::vector<TriedSet> last_step_, last_step_of_choice_;
     std::mutex reporting_;
     std::size_t begun_ = 0;  // pieces of work
 };

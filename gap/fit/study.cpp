@@ -259,9 +259,9 @@ std::vector<Freed> Study::freed_by(const std::vector<std::size_t>& effects) cons
     std::vector<Freed> all;
     for (const std::size_t e : effects)
         for (const Freed& freed : candidates_[e].freed) {
-            const bool there = std::any_of(all.begin(), all.end(),
-                                           [&](const Freed& other) { return other.index == freed.index; });
-            if (!there) all.push_back(freed);
+            if (std::none_of(all.begin(), all.end(),
+                             [&](const Freed& other) { return other.index == freed.index; }))
+                all.push_back(freed);
         }
     return all;
 }
