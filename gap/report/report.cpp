@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include <map>
+
 namespace puckloop::gap::report {
 
 namespace {
@@ -22,17 +24,15 @@ std::string figures(const std::vector<Picture>& pictures) {
 
 /// What sums along a drive are, under their heading; "" for what is a column of the data.
 std::string meaning_of(const Experiment& experiment, const std::string& observable) {
-    if (experiment.kind != Kind::Motion) return "";
-    if (observable == "along")
-        return "<p class=\"about\">Way ahead since the run began, summed row by row along the robot's own "
-               "heading.</p>\n";
-    if (observable == "across")
-        return "<p class=\"about\">Way to the left since the run began, summed row by row across the robot's "
-               "own heading.</p>\n";
-    if (observable == "heading") return "<p class=\"about\">Turn since the run began, to the left.</p>\n";
-    if (observable == "x_m" || observable == "y_m")
-        return "<p class=\"about\">Place in the room, from where the run began.</p>\n";
-    return "";
+    static const std::map<std::string, const char*> kMeaning{
+        {"along", "Way ahead since the run began, summed row by row along the robot's own heading."},
+        {"across", "Way to the left since the run began, summed row by row across the robot's own heading."},
+        {"heading", "Turn since the run began, to the left."},
+        {"x_m", "Place in the room, from where the run began."},
+        {"y_m", "Place in the room, from where the run began."}};
+    const auto meaning = kMeaning.find(observable);
+    if (experiment.kind != Kind::Motion || meaning == kMeaning.end()) return "";
+    return fmt::format("<p class=\"about\">{}</p>\n", meaning->second);
 }
 
 std::string all_pictures(const Experiment& experiment, const Verdict& verdict) {
