@@ -98,17 +98,16 @@ void check_commands(const Experiment& experiment, const Run& run) {
                            "unit of t_s or cmd_left, cmd_right",
                            counted, asked),
                "steps/s and seconds");
+    constexpr const char* kSide[] = {"left", "right"};
     for (std::size_t w = 0; w < 2; ++w)
         if (commanded[w] > kEnough && ran[w] == 0)
-            refuse(
-                experiment, run,
-                fmt::format("steps_{} stands still while its wheel is commanded", w == 0 ? "left" : "right"),
-                "a counter that counts");
+            refuse(experiment, run,
+                   fmt::format("steps_{} stands still while its wheel is commanded", kSide[w]),
+                   "a counter that counts");
     for (std::size_t w = 0; w < 2; ++w)
         if (commanded[w] > kEnough && along[w] < -ran[w] / 2)
             refuse(experiment, run,
-                   fmt::format("steps_{0} runs against cmd_{0}: one of them has the wrong sign",
-                               w == 0 ? "left" : "right"),
+                   fmt::format("steps_{0} runs against cmd_{0}: one of them has the wrong sign", kSide[w]),
                    "forward positive in both");
     if (asked > kEnough && crossed < 0.3 * own)
         refuse(experiment, run,
