@@ -1,6 +1,7 @@
 #include "tools/gap/emulate/stage.h"
 
 #include "base/error.h"
+#include "gap/data/written.h"
 #include "scenarios/world_tables.h"
 #include "tools/run/run_scenario.h"
 #include "tools/run/setup.h"
@@ -20,12 +21,6 @@ namespace {
 
 constexpr double kStart = 0.2;  // s: the firmware is ready after 14 ms
 constexpr const char* kEvery = "10 ms";
-
-void write_text(const std::filesystem::path& file, const std::string& text) {
-    std::ofstream out(file);
-    out << text;
-    if (!out.flush()) throw RunError(file.string() + ": cannot be written");
-}
 
 /// A path as a TOML text.
 std::string quoted(const std::filesystem::path& path) {
