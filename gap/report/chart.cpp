@@ -206,6 +206,7 @@ std::string Chart::svg(double width, double height) const {
     for (std::size_t i = 0; i < categories_.size(); ++i)
         out += text_at(px(static_cast<double>(i)), bottom + 14, categories_[i], "middle");
     out += fmt::format("<path d=\"{}\" stroke=\"{}\"/>\n", grid, kGrid);
+    using enum Layer::Kind;
     for (const Layer& layer : layers_) {
         // Of all points, places as `shape` writes them.
         const auto path = [&](const auto& shape) {
@@ -214,23 +215,19 @@ std::string Chart::svg(double width, double height) const {
                 if (std::isfinite(layer.y[i])) all += shape(px(layer.x[i]), py(layer.y[i]), i);
             return all;
         };
-        switch (layer.kind) {
-        case Layer::Kind::Level:
+        if (layer.kind == Level)
             out += segment(kLeft, py(layer.y[0]), right, py(layer.y[0]), layer.colour,
                            "stroke-dasharray=\"4 3\"");
-            break;
-        case Layer::Kind::Points:
+        if (layer.kind == Points)
             out += path([&](double x, double y, std::size_t) {
                 return dot(x, y, layer.colour, "1.6", " fill-opacity=\"0.55\"");
             });
-            break;
-        case Layer::Kind::Dots:
+        if (layer.kind == Dots)
             out += fmt::format(
                 "<path d=\"{}\" stroke=\"{}\" stroke-width=\"4.4\" stroke-linecap=\"round\"/>\n",
                 path([](double x, double y, std::size_t) { return fmt::format("M{:.1f} {:.1f}h0", x, y); }),
                 layer.colour);
-            break;
-        case Layer::Kind::Bars:
+        if (layer.kind == Bars)
             out += fmt::format("<path d=\"{}\" fill=\"{}\" fill-opacity=\"0.3\"/>\n",
                                path([&](double, double y, std::size_t i) {
                                    const double from = px(layer.x[i] - layer.half);
@@ -238,26 +235,21 @@ std::string Chart::svg(double width, double height) const {
                                                       px(layer.x[i] + layer.half), py(layer.high[i]), from);
                                }),
                                layer.colour);
-            break;
-        case Layer::Kind::Interval: {
+        if (layer.kind == Interval) {
             const double x = px(layer.x[0]);
             out += segment(x, py(layer.y[0]), x, py(layer.high[0]), layer.colour, kThick);
             out += dot(x, py(layer.y[1]), layer.colour, "3.5");
-            break;
         }
-        case Layer::Kind::Line:
+        if (layer.kind == Line)
             out +=
                 fmt::format("<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.6\"{}/>\n",
                             fmt::join(places(layer.x, layer.y), " "), layer.colour,
                             layer.dashed ? " stroke-dasharray=\"5 3\"" : "");
-            break;
-        case Layer::Kind::Band: {
+        if (layer.kind == Band) {
             auto outline = places(layer.x, layer.y), back = places(layer.x, layer.high);
             outline.insert(outline.end(), back.rbegin(), back.rend());
             out += fmt::format("<polygon points=\"{}\" fill=\"{}\" fill-opacity=\"0.22\"/>\n",
                                fmt::join(outline, " "), layer.colour);
-            break;
-        }
         }
     }
     out += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" fill=\"none\" "

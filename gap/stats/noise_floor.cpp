@@ -12,20 +12,6 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSecondDifference = 6.0;  // variance of y[i-1] - 2 y[i] + y[i+1] of white noise
 constexpr double kSameShare = 1e-9;        // of a covariate's range
-
-/// Standard deviation that several groups have in common; NaN where none has two values.
-struct Pooled {
-    double squares = 0.0, freedom = 0.0;
-
-    void add(const std::vector<double>& group) {
-        if (group.size() < 2) return;
-        const double own = static_cast<double>(group.size() - 1);
-        squares += own * std::pow(standard_deviation(group), 2);
-        freedom += own;
-    }
-    double deviation() const { return freedom > 0 ? std::sqrt(squares / freedom) : kNan; }
-};
-
 }  // namespace
 
 NoiseFloor noise_floor(const Series& measured, const std::vector<int>& stimulus) {
@@ -34,19 +20,25 @@ NoiseFloor noise_floor(const Series& measured, const std::vector<int>& stimulus)
         if (std::isfinite(measured.value[i]) && stimulus[i] >= 0)
             values[stimulus[i]][measured.run[i]].push_back(measured.value[i]);
     NoiseFloor floor{kNan, kNan, kNan};
-    Pooled within, between;
+    double squares = 0, freedom = 0, between_squares = 0, between_freedom = 0;
     for (const auto& [number, by_run] : values) {
         std::vector<double> means;
         for (const auto& [run, list] : by_run) {
             means.push_back(mean(list));
-            within.add(list);
-            if (list.size() > 1) floor.repeats += list.size();
+            if (list.size() < 2) continue;
+            const double f = static_cast<double>(list.size() - 1);
+            squares += f * std::pow(standard_deviation(list), 2);
+            freedom += f;
+            floor.repeats += list.size();
         }
-        between.add(means);
-        if (means.size() > 1) ++floor.stimuli_in_runs;
+        if (means.size() < 2) continue;
+        ++floor.stimuli_in_runs;
+        const double f = static_cast<double>(means.size() - 1);
+        between_squares += f * std::pow(standard_deviation(means), 2);
+        between_freedom += f;
     }
-    floor.within_run = within.deviation();
-    floor.between_runs = between.deviation();
+    if (freedom > 0) floor.within_run = std::sqrt(squares / freedom);
+    if (between_freedom > 0) floor.between_runs = std::sqrt(between_squares / between_freedom);
     std::vector<double> second;
     for (std::size_t i = 2; i < measured.size(); ++i)
         if (measured.run[i] == measured.run[i - 2])
