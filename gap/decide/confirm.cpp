@@ -12,7 +12,7 @@ namespace puckloop::gap {
 
 namespace {
 
-constexpr Effort kEffort{12, true};
+constexpr Effort kEffort{.iterations = 12};
 constexpr double kSamePrediction = 1e-6;  // of an observable's noise
 
 /// Runs of the second half: every other fold, so that repeats of one condition stand in both.

@@ -111,7 +111,7 @@ std::vector<RowCosts> costs_at(const Model& model, const State& state, Predictio
 }
 
 double log_likelihood(const Model& model, const State& state) {
-    const Layout none(model, {}, false);
+    const Layout none(model, {}, Effort{.noise = false});
     const Weights even;
     std::vector<double> x(std::max<std::size_t>(none.size(), 1));
     none.pack(state, x.data());
@@ -120,7 +120,7 @@ double log_likelihood(const Model& model, const State& state) {
 
 Fitted fit(const Model& model, const std::vector<Freed>& freed, const State& start, const Weights& weights,
            const Effort& effort) {
-    const Layout layout(model, freed, effort.noise);
+    const Layout layout(model, freed, effort);
     Fitted result;
     result.state = start;
     std::vector<double> x(std::max<std::size_t>(layout.size(), 1));

@@ -38,8 +38,10 @@ State neutral_state(const Model& model);
 struct Effort {
     int iterations = 40;  ///< of the solver
     bool noise = true;    ///< false: of the noise only its size is fitted
+    bool wander = true;   ///< false: what lets sums wander is left as it is
 };
-inline constexpr Effort kThorough{}, kQuick{6, true}, kPart{6, false}, kGlance{2, true};
+inline constexpr Effort kThorough{}, kQuick{.iterations = 6}, kPart{.iterations = 6, .noise = false},
+    kGlance{.iterations = 2};
 
 Fitted fit(const Model& model, const std::vector<Freed>& freed, const State& start, const Weights& weights,
            const Effort& effort = kThorough);

@@ -70,7 +70,7 @@ Eigen::MatrixXd left_out_by_block(const Blocks& blocks, const Eigen::MatrixXd& g
 }  // namespace
 
 Precision precision_of(const Study& study, const Fit& fit) {
-    const Layout layout(study.model(), fit.freed, true);
+    const Layout layout(study.model(), fit.freed, kThorough);
     std::vector<double> x(std::max<std::size_t>(layout.size(), 1));
     layout.pack(fit.fitted.state, x.data());
     const Weights even;

@@ -10,15 +10,17 @@ constexpr double kLongestLog = 1.5;     // of a noise parameter that is a logari
 constexpr double kLongestShare = 0.3;   // of one that is a share
 }  // namespace
 
-Layout::Layout(const Model& model, const std::vector<Freed>& freed, bool all_noise)
+Layout::Layout(const Model& model, const std::vector<Freed>& freed, const Effort& effort)
     : model_(model), freed_(freed) {
+    const auto left = [&](bool wanders) { return !effort.noise || (wanders && !effort.wander); };
     for (const Nuisance& one : model.nuisances())
-        if (all_noise)
+        if (!left(one.wanders))
             freed_.push_back({one.index, one.low, one.high, one.prior_sd,
                               model.parameters()[static_cast<std::size_t>(one.index)].neutral});
     for (std::size_t o = 0; o < model.observables().size(); ++o)
-        for (int k = 0; k < std::min(noise_parameters(model.observables()[o]), all_noise ? 4 : 1); ++k)
-            noise_.emplace_back(o, k);
+        for (int k = 0; k < noise_parameters(model.observables()[o]); ++k)
+            if (k == 0 || !left(k == 1 && model.observables()[o].noise == NoiseKind::Level))
+                noise_.emplace_back(o, k);
 }
 
 void Layout::pack(const State& state, double* x) const {

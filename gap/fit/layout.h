@@ -11,8 +11,7 @@ namespace puckloop::gap {
 /// likewise, then the noise of each observable.
 class Layout {
   public:
-    /// `all_noise` false: of the noise only its size, and no nuisance.
-    Layout(const Model& model, const std::vector<Freed>& freed, bool all_noise);
+    Layout(const Model& model, const std::vector<Freed>& freed, const Effort& effort);
 
     std::size_t size() const { return freed_.size() + noise_.size(); }
     std::size_t freed() const { return freed_.size(); }  ///< nuisances too

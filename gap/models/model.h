@@ -35,6 +35,7 @@ struct Observable {
     std::vector<double> gate;  ///< weight of the spectral line in this row; empty: 1
     std::vector<double> turn;  ///< Level: by how much the axes that are summed along turn in this row, rad
     std::vector<double> jolt;  ///< Level: variance that the sum gains for sure, observable's unit squared
+    bool steady = false;       ///< Level: nothing that the simulator knows adds errors up
     double fixed_sd = 0.0;  ///< > 0: the noise is this and is not fitted (whole steps of an emulated counter)
     double known_sd = 0.0;  ///< noise that the simulator claims; 0: it claims none
 };
@@ -75,6 +76,7 @@ struct ModelParameter {
 struct Nuisance {
     int index = -1;  ///< in Model::parameters()
     double low = 0.0, high = 0.0, prior_sd = 1.0;
+    bool wanders = false;  ///< lets sums wander, but at `high`
 };
 
 class Model {

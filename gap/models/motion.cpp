@@ -229,6 +229,9 @@ class MotionModel final : public ModelOf<Numbers> {
             one.unit = o == 2 ? "rad" : "m";
             one.instrument = {NAN, NAN, o == 2 ? quantum_of(theta) : base.instrument.quantum};
             one.y = sums[o];
+            // A place in the room and a heading are looked up anew in each row; of way along and across,
+            // which are summed along measured headings, errors add up.
+            one.steady = room() || o == 2;
             for (std::size_t i = 1; i < one.y.size(); ++i)
                 one.starts[i] = base.run[i] != base.run[i - 1] ? 1 : 0;
         }
@@ -309,8 +312,8 @@ class MotionModel final : public ModelOf<Numbers> {
                  {&Numbers::heading_doubt, "tracker.heading_doubt", "ln rad"}});
         nuisances_.push_back(
             {find("tracker.heading_doubt"), std::log(kLeastDoubt), std::log(kMostDoubt), kDoubtWidth});
-        nuisances_.push_back(
-            {find("tracker.heading_span"), std::log(kShortestSpan), std::log(kLongestSpan), kSpanWidth});
+        nuisances_.push_back({find("tracker.heading_span"), std::log(kShortestSpan), std::log(kLongestSpan),
+                              kSpanWidth, true});
     }
 
     /// What is known of a path's motors; the last two only where a dead band or pushes ask for them.

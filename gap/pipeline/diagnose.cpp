@@ -3,6 +3,7 @@
 #include "gap/decide/thresholds.h"
 #include "gap/diagnostics/leftovers.h"
 #include "gap/diagnostics/series.h"
+#include "gap/fit_test/wander.h"
 #include "gap/residual_model/free_form.h"
 #include "gap/validate/placements.h"
 
@@ -45,8 +46,11 @@ Diagnosis diagnosed(const Study& study, const Chosen& chosen, std::uint64_t seed
         found.forms.emplace_back(step.effect,
                                  form_verdict(rival_forms(study, chosen.selection.chosen, step.effect)));
     found.by_structure = most_by_structure(found.leftovers);
-    found.leftovers.insert(found.leftovers.end(), found.by_runs.structures.begin(),
-                           found.by_runs.structures.end());
+    const Selection& selection = chosen.selection;
+    for (const auto& more :
+         {found.by_runs.structures,
+          wandering(study, selection.chosen, selection.held_chosen, thresholds::kReported)})
+        found.leftovers.insert(found.leftovers.end(), more.begin(), more.end());
     std::stable_sort(found.leftovers.begin(), found.leftovers.end(),
                      [](const auto& a, const auto& b) { return a.p_value < b.p_value; });
     return found;

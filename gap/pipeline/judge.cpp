@@ -3,6 +3,7 @@
 #include "gap/decide/decide.h"
 #include "gap/decide/left_beside.h"
 #include "gap/decide/roles.h"
+#include "gap/fit_test/wander.h"
 
 #include <algorithm>
 #include <utility>
@@ -29,11 +30,13 @@ void let_go(const Study& study, const Judging& how, const OutOfRole& out, Judged
 
 void ask_each(const Study& study, const Judging& how, Judged& result) {
     const Diagnosis& found = result.diagnosis;
-    let_go(
-        study, how,
-        {outweighed(study, result.chosen.selection, found.free_forms, found.leftovers, share_allowed(study)),
-         "leaves too much of what it acts on"},
-        result);
+    // That a sum wanders as well takes nothing from what a cause makes of it.
+    std::vector<Leftover> structures = found.leftovers;
+    std::erase_if(structures, [](const Leftover& one) { return one.covariate == kWanderCovariate; });
+    let_go(study, how,
+           {outweighed(study, result.chosen.selection, found.free_forms, structures, share_allowed(study)),
+            "leaves too much of what it acts on"},
+           result);
 }
 
 void ask_roles(const Study& study, const Judging& how, Judged& result) {

@@ -22,7 +22,7 @@ double folded(double value, double low, double high) {
 
 std::vector<State> posterior_states(const Model& model, const std::vector<Freed>& freed, const State& mode,
                                     std::size_t count, RandomStream& random) {
-    const Layout layout(model, freed, true);
+    const Layout layout(model, freed, kThorough);
     const auto size = static_cast<Eigen::Index>(layout.size());
     if (size == 0) return std::vector<State>(count, mode);
     Eigen::VectorXd best(size), gradient;

@@ -24,7 +24,7 @@ constexpr double kTrim = 4.0;             // deviations
 constexpr std::size_t kKept = 60;         // columns that a pursuit looks at, the best by themselves
 constexpr std::size_t kMostTerms = 4;     // of a pursuit
 constexpr double kMostDeviations = 10.0;  // that a term may move an innovation, root mean square
-constexpr Effort kEffort{12, true};
+constexpr Effort kEffort{.iterations = 12};
 constexpr std::size_t kManyRows = 6000;
 constexpr std::size_t kFolds = 6;               // runs are held out in
 constexpr double kStill = 1e-9;                 // root mean square of increments: nothing moves

@@ -1,64 +1,19 @@
 // What sums of a drive say of pushes and of way lost in some rows, on toy drives there and back.
 
-#include "base/random.h"
 #include "gap/diagnostics/pushes.h"
 #include "gap/fit/study.h"
 #include "gap/residual_model/free_form.h"
+#include "tests/gap/decision/toy_drives.h"
 
 #include <catch2/catch.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <numbers>
 
 using namespace puckloop;
 using namespace puckloop::gap;
 
 namespace {
-
-constexpr int kRuns = 8, kLegs = 4, kLeg = 30;              // rows of a leg
-constexpr double kRow = 0.1;                                // s
-constexpr double kSpeed = 500;                              // steps/s: 20 ticks of the agenda
-constexpr double kMetre = std::numbers::pi * 0.041 / 1000;  // of a step
-
-/// A row's own change of the pose: share of the way made, push along the heading (m).
-struct Made {
-    double share = 1.0, push = 0.0;
-};
-
-/// Drives to and fro, each along a line of its own; row k of a leg, x before it.
-Experiment drives(const std::function<Made(RandomStream&, int leg, int k, double x)>& made) {
-    RandomStream random(5, "toy drives"), chance(6, "toy drives");
-    Experiment experiment;
-    experiment.kind = Kind::Motion;
-    experiment.title = "toy";
-    experiment.nominal["inverse_friction"] = 0.0;
-    for (int r = 0; r < kRuns; ++r) {
-        Run run;
-        run.name = "run" + std::to_string(r);
-        const double heading = 0.8 * r / kRuns;
-        double along = -0.15 * random.uniform();
-        for (int i = 0; i <= kLegs * kLeg; ++i) {
-            const auto command = [](int row) { return row / kLeg % 2 == 0 ? kSpeed : -kSpeed; };
-            if (i > 0) {
-                const int before = i - 1;
-                const Made one = made(chance, before / kLeg, before % kLeg, along * std::cos(heading));
-                along += command(before) * kRow * kMetre * one.share + one.push;
-            }
-            const double next = command(std::min(i, kLegs * kLeg - 1));
-            run.columns["t_s"].push_back(kRow * i);
-            run.columns["cmd_left"].push_back(next);
-            run.columns["cmd_right"].push_back(next);
-            run.columns["x_m"].push_back(along * std::cos(heading) + 1e-3 * random.normal());
-            run.columns["y_m"].push_back(along * std::sin(heading) + 1e-3 * random.normal());
-            run.columns["theta_rad"].push_back(heading + 5e-3 * random.normal());
-            ++run.rows;
-        }
-        experiment.runs.push_back(std::move(run));
-    }
-    return experiment;
-}
 
 /// Fitted without effects, but taking jumps for pushes of 6 mm.
 State pushed_state(const Study& study) {
@@ -82,8 +37,8 @@ const FreeForm& form_of(const std::vector<FreeForm>& forms, const std::string& o
 
 TEST_CASE("pushes by chance keep to nothing, those before a reversal do", "[gap][pushes]") {
     const bool by_chance = GENERATE(true, false);
-    const Experiment experiment = drives([&](RandomStream& random, int, int k, double) {
-        const bool now = by_chance ? random.uniform() < 1.0 / kLeg : k == kLeg - 1;
+    const Experiment experiment = toy_drives([&](RandomStream& random, int, int k, double) {
+        const bool now = by_chance ? random.uniform() < 1.0 / kToyLeg : k == kToyLeg - 1;
         return Made{1.0, now ? 0.01 : 0.0};
     });
     const Study study(experiment, 1);
@@ -99,7 +54,7 @@ TEST_CASE("pushes by chance keep to nothing, those before a reversal do", "[gap]
 
 TEST_CASE("way lost beyond a place adds up to a free form, nothing lost to none", "[gap][free form]") {
     const double share = GENERATE(1.0, 0.96);
-    const Experiment experiment = drives([&](RandomStream&, int, int, double x) {
+    const Experiment experiment = toy_drives([&](RandomStream&, int, int, double x) {
         return Made{x > 0.0 ? share : 1.0, 0.0};
     });
     const Study study(experiment, 1);
@@ -112,7 +67,7 @@ TEST_CASE("way lost beyond a place adds up to a free form, nothing lost to none"
 }
 
 TEST_CASE("an outlier in a run's first row is no push", "[gap][pushes]") {
-    Experiment experiment = drives([](RandomStream&, int, int, double) { return Made{}; });
+    Experiment experiment = toy_drives([](RandomStream&, int, int, double) { return Made{}; });
     for (const std::size_t r : {1U, 4U})
         experiment.runs[r].columns["x_m"][0] -= 0.012;
     const Study study(experiment, 1);

@@ -226,7 +226,7 @@ TEST_CASE("gradients are the value's own", "[gap][fit]") {
     Straight model(kind, std::move(y));
     model.only().instrument.ceiling = 2.0;
     const std::vector<Freed> freed{kSlope, kOffset, kRate};
-    const Layout layout(model, freed, true);
+    const Layout layout(model, freed, kThorough);
     State state = neutral_state(model);
     state.noise[0] = {0.1, kind == NoiseKind::Level ? -2.0 : 0.3, 1.5, kind == NoiseKind::Level ? 0.2 : 0.0};
     state.values = {0.4, 0.1, GENERATE(0.0, 0.05)};

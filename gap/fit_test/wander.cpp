@@ -1,0 +1,75 @@
+#include "gap/fit_test/wander.h"
+
+#include "gap/decide/thresholds.h"
+#include "gap/evidence/criterion.h"
+#include "gap/fit/noise.h"
+#include "gap/verdict/sentences.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace puckloop::gap {
+
+namespace {
+
+constexpr int kDrift = 1;                                   // of the noise's numbers (noise.h)
+constexpr Effort kCalm{.iterations = 40, .wander = false};  // to the end, nothing let wander
+
+/// The fit again, with nothing let wander.
+Fit calmed(const Study& study, const Fit& fit) {
+    State state = fit.fitted.state;
+    for (std::size_t o = 0; o < state.noise.size(); ++o) {
+        if (!study.model().observables()[o].steady) continue;
+        double high = 0.0;
+        noise_bounds(NoiseKind::Level, kDrift, state.noise[o].carry, high);
+    }
+    for (const Nuisance& one : study.model().nuisances())
+        if (one.wanders) state.values[static_cast<std::size_t>(one.index)] = one.high;
+    Fit calm = fit;
+    calm.fitted = gap::fit(study.model(), fit.freed, state, {}, kCalm);
+    return calm;
+}
+
+/// One odd run makes no structure; several do, though the others have nothing to gain by it.
+bool is_clear(const Gain& gain) {
+    return gain.sum > thresholds::kFormErrors * gain.sd || gain.in_several();
+}
+
+}  // namespace
+
+std::vector<Leftover> wandering(const Study& study, const Fit& fit, const HeldOut& held, double reported) {
+    const auto& observables = study.model().observables();
+    const auto steady = std::count_if(observables.begin(), observables.end(),
+                                      [](const Observable& one) { return one.steady; });
+    std::vector<Leftover> all;
+    if (steady == 0) return all;
+    const HeldOut calm = study.hold_out(calmed(study, fit));
+    for (std::size_t o = 0; o < observables.size(); ++o) {
+        if (!observables[o].steady) continue;
+        std::vector<double> gains(study.blocks().count, 0.0);
+        for (std::size_t i = 0; i < held.score[o].size(); ++i)
+            gains[study.blocks().of[o][i]] += held.score[o][i] - calm.score[o][i];
+        const Gain gain = gain_of(gains);
+        const double p = std::min(1.0, static_cast<double>(steady) * std::exp(-gain.sum));
+        if (p >= reported || !is_clear(gain)) continue;
+        const NoiseParameters& noise = fit.fitted.state.noise[o];
+        all.push_back({observables[o].name, kWanderCovariate, p,
+                       fmt::format("wanders by {} a row beside what was measured",
+                                   quantity(std::exp(noise.log_sd + noise.carry / 2), observables[o].unit))});
+    }
+    return all;
+}
+
+bool wanders_anywhere(const Study& study, const Fit& fit, const HeldOut& held, double p) {
+    if (!wandering(study, fit, held, p).empty()) return true;
+    if (study.experiment().kind != Kind::Motion || study.view() == MotionView::Room) return false;
+    const Study room(study.experiment(), study.seed(), study.threads(), MotionView::Room);
+    Fit again = room.fit_none();
+    if (!fit.effects.empty())
+        again = room.fit_set(fit.effects, {fit.fitted.state.values, again.fitted.state.noise});
+    return !wandering(room, again, room.hold_out(again), p).empty();
+}
+
+}  // namespace puckloop::gap
