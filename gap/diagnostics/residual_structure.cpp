@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -28,13 +29,22 @@ const std::set<std::string_view> kSigned{"velocity", "speed",    "motor_speed", 
 const std::set<std::string_view> kNotByThemselves{"steps_left", "steps_right", "t_host_s",
                                                   "t_robot_s",  "x_m",         "y_m"};
 /// Along and across are turned by the measured heading, whose noise is then in both residual and covariate:
-/// a sector is all that may be asked about.
+/// a sector is all that may be asked about. A robot near the edge of two stays in the one it is in, else its
+/// heading's noise would sort its rows.
 constexpr std::string_view kMeasuredHeading = "theta_rad";
-constexpr double kSector = std::numbers::pi / 6;
+constexpr double kSector = std::numbers::pi / 6, kLeavesSector = 0.75 * kSector;
 
-std::vector<double> in_sectors(std::vector<double> heading) {
-    for (double& value : heading)
-        value = kSector * std::round(std::remainder(value, 2 * std::numbers::pi) / kSector) + 0.0;
+std::vector<double> in_sectors(std::vector<double> heading, const std::vector<std::uint32_t>& run) {
+    double sector = kNan;
+    for (std::size_t i = 0; i < heading.size(); ++i) {
+        const double value = std::remainder(heading[i], 2 * std::numbers::pi);
+        if (std::isnan(value)) continue;
+        const bool stays = i > 0 && run[i] == run[i - 1] &&
+                           std::abs(std::remainder(value - sector, 2 * std::numbers::pi)) < kLeavesSector;
+        if (!stays) sector = kSector * std::round(value / kSector) + 0.0;
+        if (sector < -std::numbers::pi + kSector / 2) sector += 2 * std::numbers::pi;
+        heading[i] = sector;
+    }
     return heading;
 }
 
@@ -151,7 +161,8 @@ std::vector<Covariate> covariates_of(const Experiment& experiment, const Series&
                                    : kSigned.contains(name) ? CovariateKind::Signed
                                                             : CovariateKind::Number;
         Covariate c{plain_name(info.name), kind, of_column(experiment, series, name), {}};
-        if (experiment.kind == Kind::Motion && name == kMeasuredHeading) c.value = in_sectors(c.value);
+        if (experiment.kind == Kind::Motion && name == kMeasuredHeading)
+            c.value = in_sectors(c.value, series.run);
         if (stats::varies(c.value)) list.push_back(std::move(c));
     }
     add_conditions(experiment, series, list);

@@ -1,12 +1,15 @@
 // Sums that wander beside what was measured: seen where they do, not where errors carry over, and no ground
 // for pushes.
 
+#include "gap/diagnostics/residual_structure.h"
 #include "gap/fit_test/wander.h"
 #include "tests/gap/decision/toy_drives.h"
 
 #include <catch2/catch.hpp>
 
-#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
 
 using namespace puckloop;
 using namespace puckloop::gap;
@@ -50,4 +53,28 @@ TEST_CASE("sums along measured headings are looked at in the room", "[gap][wande
     const Study study(experiment, 1);
     const Fit none = study.fit_none();
     CHECK(wanders_anywhere(study, none, study.hold_out(none), 1e-4) == wanders);
+}
+
+TEST_CASE("a heading at the edge of two sectors is in one of them", "[gap][wander]") {
+    const double edge = GENERATE(as<double>{}, 15.0, 45.0, 180.0) * std::numbers::pi / 180;
+    RandomStream random(31, "headings");
+    Experiment experiment;
+    experiment.kind = Kind::Motion;
+    Series series;
+    for (std::uint32_t r = 0; r < 2; ++r) {
+        Run run;
+        run.rows = 40;
+        for (std::uint32_t i = 0; i < run.rows; ++i) {
+            const double noise = 5e-3 * random.normal();
+            run.columns["theta_rad"].push_back((r == 0 ? edge : 0.0) + noise);
+            series.run.push_back(r);
+            series.row.push_back(i);
+        }
+        experiment.runs.push_back(std::move(run));
+    }
+    for (const auto& covariate : covariates_of(experiment, series)) {
+        CHECK(covariate.name == "theta");
+        const std::set<double> first(covariate.value.begin(), covariate.value.begin() + 40);
+        CHECK(first.size() == 1);
+    }
 }
