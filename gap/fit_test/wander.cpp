@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace puckloop::gap {
 
@@ -52,7 +53,8 @@ std::vector<Leftover> wandering(const Study& study, const Fit& fit, const HeldOu
         for (std::size_t i = 0; i < held.score[o].size(); ++i)
             gains[study.blocks().of[o][i]] += held.score[o][i] - calm.score[o][i];
         const Gain gain = gain_of(gains);
-        const double p = std::min(1.0, static_cast<double>(steady) * std::exp(-gain.sum));
+        const double p = std::clamp(static_cast<double>(steady) * std::exp(-gain.sum),
+                                    std::numeric_limits<double>::min(), 1.0);
         if (p >= reported || !is_clear(gain)) continue;
         const NoiseParameters& noise = fit.fitted.state.noise[o];
         all.push_back({observables[o].name, kWanderCovariate, p,
