@@ -165,7 +165,8 @@ void filter_carry(const Observable& o, const Predicted& p, const NoiseParameters
             carried = false;
             line = Line{};
         }
-        const double kept = carried ? noise.carry : 0.0;
+        const bool far = carried && !o.steps.empty() && o.steps[i] > 1;  // over rows that are missing
+        const double kept = !carried ? 0.0 : far ? std::pow(noise.carry, o.steps[i]) : noise.carry;
         if (clipped(o, p, i, sd, out)) {
             carried = !has_line;
             if (has_line) continue;
@@ -175,9 +176,11 @@ void filter_carry(const Observable& o, const Predicted& p, const NoiseParameters
             continue;
         }
         const double error = (o.y[i] - p.mean[i]) / sd;
-        double innovation = error - kept * last.mean,
-               variance = carried ? rest + kept * kept * last.variance : 1.0;
-        const double deviation = last.variance == 0.0 ? root : std::sqrt(variance);
+        double innovation = error - kept * last.mean, variance = far ? 1 - kept * kept * (1 - last.variance)
+                                                                 : carried
+                                                                     ? rest + kept * kept * last.variance
+                                                                     : 1.0;
+        const double deviation = last.variance == 0.0 && !far ? root : std::sqrt(variance);
         last = {error, 0.0};
         if (!has_line) {
             out.z[i] = carried ? innovation / deviation : innovation;

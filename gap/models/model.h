@@ -31,6 +31,9 @@ struct Observable {
     std::vector<double> y;
     std::vector<std::uint32_t> run, row;
     std::vector<char> starts;  ///< 1: nothing is carried over into this row
+    /// By how many rows the one before lies back, missing ones counted (1: next to it); empty: unknown,
+    /// all 1.
+    std::vector<std::uint32_t> steps;
     std::vector<double> time;  ///< s; empty when unknown
     std::vector<double> gate;  ///< weight of the spectral line in this row; empty: 1
     std::vector<double> turn;  ///< Level: by how much the axes that are summed along turn in this row, rad

@@ -10,8 +10,11 @@
 namespace puckloop::gap {
 
 namespace {
-constexpr double kGap = 5.0;  // times the usual step between rows: beyond, nothing is carried over
-}
+constexpr double kGap = 5.0;      // times the usual step between rows: beyond, nothing is carried over
+constexpr double kOffBeat = 0.1;  // of the usual step: nearer to a whole multiple, a row keeps to the beat
+constexpr double kOnBeat =
+    0.9;  // share of a run's steps that do, at least, if missing rows are counted by time
+}  // namespace
 
 Rows::Rows(const Experiment& experiment, std::string_view chain_by,
            std::initializer_list<std::string_view> needed)
@@ -46,16 +49,22 @@ std::vector<double> Rows::column(std::string_view name, double fallback) const {
     return values;
 }
 
-std::vector<double> Rows::longest_steps(const std::vector<double>& time) const {
+std::vector<Rows::Beat> Rows::beats(const std::vector<double>& time) const {
     std::vector<std::vector<double>> steps(experiment_.runs.size());
     for (std::size_t i = 1; i < size(); ++i)
         if (starts_[i] == 0 && time[i] > time[i - 1]) steps[run_[i]].push_back(time[i] - time[i - 1]);
-    std::vector<double> longest;
+    std::vector<Beat> beats;
     for (auto& of_run : steps) {
+        Beat& beat = beats.emplace_back();
+        if (of_run.empty()) continue;
         std::sort(of_run.begin(), of_run.end());
-        longest.push_back(of_run.empty() ? 0.0 : kGap * of_run[of_run.size() / 2]);
+        beat.usual = of_run[of_run.size() / 2];
+        const auto on = std::count_if(of_run.begin(), of_run.end(), [&](double step) {
+            return std::abs(std::remainder(step, beat.usual)) < kOffBeat * beat.usual;
+        });
+        beat.kept = static_cast<double>(on) >= kOnBeat * static_cast<double>(of_run.size());
     }
-    return longest;
+    return beats;
 }
 
 Observable Rows::observable(std::string_view name, NoiseKind noise, std::vector<std::uint32_t>& used,
@@ -72,14 +81,26 @@ Observable Rows::observable(std::string_view name, NoiseKind noise, std::vector<
     const std::vector<double> y = column(name, none);
     if (!(out.instrument.quantum > 0) && noise != NoiseKind::Event) out.instrument.quantum = quantum_of(y);
     const std::vector<double> time = column("t_s", none);
-    const std::vector<double> longest = longest_steps(time);
+    const std::vector<double> number = column("seq", none);
+    const std::vector<Beat> beat = beats(time);
+    // Rows left out here are known; of those that the table lacks a sequence number says, or the beat.
+    const auto back = [&](std::size_t before, std::size_t i) {
+        double steps = static_cast<double>(i - before);
+        const double later = time[i] - time[before], further = number[i] - number[before];
+        if (further >= steps)
+            steps = further;
+        else if (beat[run_[i]].kept && later > 0)
+            steps = std::max(steps, std::round(later / beat[run_[i]].usual));
+        return static_cast<std::uint32_t>(steps);
+    };
     bool fresh = true, timed = true;
     used.clear();
     for (std::size_t i = 0; i < size(); ++i) {
         if (starts_[i] != 0) fresh = true;
         if (std::isnan(y[i]) || (!skipped.empty() && skipped[i] > 0.5)) continue;
-        const double most = longest[run_[i]];
+        const double most = kGap * beat[run_[i]].usual;
         if (!used.empty() && most > 0 && time[i] - time[used.back()] > most) fresh = true;
+        out.steps.push_back(fresh || used.empty() ? 1 : back(used.back(), i));
         used.push_back(static_cast<std::uint32_t>(i));
         out.y.push_back(y[i]);
         out.run.push_back(run_[i]);

@@ -21,9 +21,10 @@ class Rows {
     std::size_t size() const { return run_.size(); }
     /// The column in these rows; `fallback` where it is missing.
     std::vector<double> column(std::string_view name, double fallback) const;
-    /// An observable of the column, rows without it left out: fills y, run, row, starts, time. `used`
-    /// receives the places of its rows in these rows. Its quantum is the instrument's, else what the values
-    /// keep to. Rows where `skipped` is above a half are left out, too.
+    /// An observable of the column, rows without it left out: fills y, run, row, starts, steps, time. Rows
+    /// that are missing are counted by `seq`, else by time where a run keeps to a beat. `used` receives the
+    /// places of its rows in these rows. Its quantum is the instrument's, else what the values keep to. Rows
+    /// where `skipped` is above a half are left out, too.
     Observable observable(std::string_view name, NoiseKind noise, std::vector<std::uint32_t>& used,
                           const std::vector<double>& skipped = {}) const;
     /// A column, where it goes to, and what it is where it is missing.
@@ -36,9 +37,12 @@ class Rows {
     void take(const std::vector<std::uint32_t>& used, std::initializer_list<Wanted> columns) const;
 
   private:
-    /// The longest step over which something is carried over, a run each: runs have rates of their own. 0: no
-    /// times are known.
-    std::vector<double> longest_steps(const std::vector<double>& time) const;
+    /// Time between rows of a run: runs have rates of their own.
+    struct Beat {
+        double usual = 0.0;  ///< s; 0: no times are known
+        bool kept = false;   ///< nearly all steps are whole multiples of it
+    };
+    std::vector<Beat> beats(const std::vector<double>& time) const;
 
     const Experiment& experiment_;
     std::vector<std::uint32_t> run_, row_;

@@ -55,7 +55,7 @@ double lapse_of(const Predicted& p, std::size_t i, RandomStream& random) {
 /// First-order autoregression of t innovations, beside a line of unknown phase.
 void add_carried(const Observable& o, const Predicted& p, const NoiseParameters& noise, const Scale& scale,
                  RandomStream& random, std::vector<double>& y) {
-    const double nu = std::exp(noise.log_tail), root = std::sqrt(1 - noise.carry * noise.carry);
+    const double nu = std::exp(noise.log_tail);
     const double omega = 2 * std::numbers::pi * p.line_frequency;
     const bool has_line = p.line_amplitude > 0.0 && !o.time.empty();
     double error = 0.0, sine = 0.0, cosine = 0.0;
@@ -66,7 +66,8 @@ void add_carried(const Observable& o, const Predicted& p, const NoiseParameters&
             sine = random.normal() / std::numbers::sqrt2;
         }
         const double sd = scale.at(i), news = student(nu, random);
-        error = (starts ? news : noise.carry * error + root * news) + lapse_of(p, i, random) / sd;
+        const double kept = starts ? 0.0 : std::pow(noise.carry, o.steps.empty() ? 1 : o.steps[i]);
+        error = kept * error + std::sqrt(1 - kept * kept) * news + lapse_of(p, i, random) / sd;
         y[i] += sd * error;
         if (has_line)
             y[i] += p.line_amplitude * (o.gate.empty() ? 1.0 : o.gate[i]) *

@@ -313,3 +313,31 @@ TEST_CASE("the sum of costs is that of every row's") {
                       Approx(part).epsilon(1e-9));
             }
 }
+
+TEST_CASE("what is carried over fades over rows that are missing", "[gap][fit]") {
+    constexpr double kCarry = 0.8;
+    RandomStream random(Catch::rngSeed(), "missing rows");
+    std::vector<double> y;
+    std::vector<std::uint32_t> steps;
+    double error = random.normal();
+    std::uint32_t step = 1;
+    for (int i = 0; i < 20000; ++i, ++step) {
+        error = kCarry * error + std::sqrt(1 - kCarry * kCarry) * random.normal();
+        if (random.uniform() < 0.4) continue;
+        y.push_back(error);
+        steps.push_back(step);
+        step = 0;
+    }
+    Straight model(NoiseKind::Carry, y);
+    CHECK(fitted(model, {}).state.noise[0].carry < 0.76);  // taken for neighbours all
+    model.only().steps = steps;
+    const auto known = fitted(model, {});
+    CHECK(known.state.noise[0].carry == Approx(kCarry).margin(0.02));
+    CHECK(known.state.noise[0].log_sd == Approx(0.0).margin(0.06));
+    Prediction prediction;
+    const auto costs = costs_at(model, known.state, prediction);
+    double squares = 0.0;
+    for (const double z : costs[0].innovation)
+        squares += z * z;
+    CHECK(squares / static_cast<double>(y.size()) == Approx(1.0).margin(0.05));
+}
