@@ -27,7 +27,7 @@ struct Grounds {
     double left_by_run = 0.0;        ///< of a number for each run
     double left_by_jump = 0.0;       ///< of a jump inside a run
     double left_by_structure = 0.0;  ///< that the surest structure left may stand for
-    double left_of_readings = 0.0;   ///< of `left_by_shape`: what observables lack that do not add up
+    double left_of_readings = 0.0;   ///< by shape or structure, of observables that do not add up
     bool sums = false;               ///< some observable adds up
     bool structure = false;          ///< something is left for sure
     std::string not_confirmed;       ///< what the other half of the runs showed; empty: nothing, or not asked

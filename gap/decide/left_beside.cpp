@@ -1,6 +1,7 @@
 #include "gap/decide/left_beside.h"
 
 #include "gap/decide/roles.h"
+#include "gap/decide/thresholds.h"
 
 #include <algorithm>
 #include <cmath>
@@ -40,6 +41,7 @@ std::vector<std::size_t> outweighed(const Study& study, const Selection& selecti
                                     const std::vector<Leftover>& leftovers, double share) {
     std::vector<std::size_t> weakest;
     double least = INFINITY;
+    const auto& observables = study.model().observables();
     for (const Trial& step : selection.steps) {
         const auto moved = moved_by(study, selection.chosen, step.effect);
         const auto is_moved = [&](const std::string& name) {
@@ -53,8 +55,14 @@ std::vector<std::size_t> outweighed(const Study& study, const Selection& selecti
         std::copy_if(leftovers.begin(), leftovers.end(), std::back_inserter(own_leftovers),
                      [&](const Leftover& one) { return is_moved(one.observable); });
         const double left = std::max(gained_by_shape(own_forms), most_by_structure(own_leftovers));
+        bool adds_up = false;
+        for (std::size_t o = 0; o < observables.size(); ++o) {
+            if (std::find(moved.begin(), moved.end(), observables[o].name) == moved.end()) continue;
+            adds_up = adds_up || observables[o].noise == NoiseKind::Level;
+        }
         const double won = std::max(step.held.sum, 0.0);
-        if (!(left > share * (left + won)) || won >= least) continue;
+        const double most = adds_up ? share : std::min(share, thresholds::kShareLeft);
+        if (!(left > most * (left + won)) || won >= least) continue;
         least = won;
         weakest = {step.effect};
     }

@@ -9,9 +9,9 @@
 
 namespace puckloop::gap {
 
-/// The weakest of the chosen effects, if any, beside which more than `share` is left, of what they gained
-/// when they were taken and what is left together, in the observables that they move: by functions of
-/// covariates, or as the surest structure there may stand for.
+/// The weakest of the chosen effects, if any, beside which more than `share` is left (of what moves no sum a
+/// fifth at most), of what they gained when they were taken and what is left together, in the observables
+/// that they move: by functions of covariates, or as the surest structure there may stand for.
 std::vector<std::size_t> outweighed(const Study& study, const Selection& selection,
                                     const std::vector<FreeForm>& forms,
                                     const std::vector<Leftover>& leftovers, double share);

@@ -61,15 +61,19 @@ bool adds_up(const Study& study) {
                        [](const Observable& observable) { return observable.noise == NoiseKind::Level; });
 }
 
-/// nats that functions of covariates gain of what does not add up.
-double left_of_readings(const Study& study, const std::vector<FreeForm>& forms) {
-    double sum = 0.0;
-    for (const Observable& observable : study.model().observables())
-        for (const FreeForm& form : forms)
-            if (form.observable == observable.name && observable.noise != NoiseKind::Level && form.clear &&
-                !form.wild)
-                sum += form.gain;
-    return sum;
+/// What functions of covariates gain of what does not add up, or the surest structure there may stand for.
+double left_of_readings(const Study& study, const Diagnosis& diagnosis) {
+    const auto& all = study.model().observables();
+    const auto adds = [&](const std::string& name) {
+        return std::none_of(all.begin(), all.end(), [&](const Observable& one) {
+            return one.name == name && one.noise != NoiseKind::Level;
+        });
+    };
+    auto forms = diagnosis.free_forms;
+    auto structures = diagnosis.leftovers;
+    std::erase_if(forms, [&](const FreeForm& one) { return adds(one.observable); });
+    std::erase_if(structures, [&](const Leftover& one) { return adds(one.observable); });
+    return std::max(gained_by_shape(forms), most_by_structure(structures));
 }
 
 bool any_is_sure(const Diagnosis& diagnosis) {
@@ -109,7 +113,7 @@ Grounds grounds_of(const Study& study, const Chosen& chosen, const Diagnosis& di
     g.left_by_jump = diagnosis.by_runs.by_jump;
     g.left_by_structure = diagnosis.by_structure;
     g.sums = adds_up(study);
-    g.left_of_readings = left_of_readings(study, diagnosis.free_forms);
+    g.left_of_readings = left_of_readings(study, diagnosis);
     g.structure = any_is_sure(diagnosis);
     return g;
 }

@@ -70,6 +70,7 @@ TEST_CASE("a strong cause of one observable does not carry a weak one of another
     CHECK(outweighed(study, selection, {form}, {}, 0.2).empty());
     form.gain = 101;
     CHECK(outweighed(study, selection, {form}, {}, 0.2) == std::vector{strong});
+    CHECK(outweighed(study, selection, {form}, {}, 0.5) == std::vector{strong});  // strengths do not add up
     form.clear = false;
     CHECK(outweighed(study, selection, {form}, {}, 0.2).empty());
     // A structure of p 1e-9 may stand for 17 nats.
