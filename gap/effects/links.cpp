@@ -103,7 +103,7 @@ std::vector<Effect> timing_effects() {
          "the overlay's [clock] pic_error", "a longer run", {"t_robot_s"}},
         // Radio and operating system deliver at their own ticks. t_host = ceil(t / B) B
         {"batching", 63, "the host hands frames over in batches",
-         {{"timing.batch", 0.002, 1.0, 0.001, "ticks of 5..50 ms; intervals bimodal", {0.02}, nullptr, 1e-6}},
+         {{"timing.batch", 0.001, 1.0, 0.001, "ticks of 5..50 ms, USB polled every 1 ms; intervals bimodal", {0.02}, nullptr, 1e-6}},
          "the overlay's [linux] tty_batch", "log the robot's own clock"},
     };
 }

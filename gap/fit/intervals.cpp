@@ -36,6 +36,26 @@ double fall_off(const Study& study, const Fit& fit, std::size_t index, double qu
     return reach;
 }
 
+/// Where else a fit of this parameter was begun, if what it ends at there is as likely as the fit itself, as
+/// far as the interval goes: rows that cannot part two values (a period and its multiples) leave both.
+std::vector<double> as_likely(const Study& study, const Fit& fit, std::size_t j, double lost, double reach) {
+    const auto index = static_cast<std::size_t>(fit.freed[j].index);
+    const double value = fit.fitted.state.values[index], here = fit.fitted.log_likelihood;
+    std::vector<double> others;
+    for (const std::size_t effect : fit.effects) {
+        const Candidate& candidate = study.candidates()[effect];
+        if (candidate.freed.size() != 1 || candidate.freed[0].index != fit.freed[j].index) continue;
+        for (const auto& start : candidate.starts) {
+            State state = fit.fitted.state;
+            state.values[index] = start[0];
+            if (std::abs(start[0] - value) <= reach) continue;
+            const Fitted there = puckloop::gap::fit(study.model(), fit.freed, state, {}, kQuick);
+            if (there.log_likelihood > here - lost) others.push_back(there.state.values[index]);
+        }
+    }
+    return others;
+}
+
 /// Covariance of a fit as the blocks say it: each block's pull on a fit that it had no part in (the
 /// jackknife, CR3: Cameron and Miller, J. Hum. Resour. 50, 2015), since a block that weighs much draws the
 /// fit to itself. `g`: gradient of each row's cost; a block's information is taken from its rows' gradients.
@@ -111,7 +131,21 @@ Interval interval_of(const Study& study, const Fit& fit, const Precision& precis
             value - fall_off(study, fit, index, precision.quantile, std::min(most, value - freed.low), -1),
             value + fall_off(study, fit, index, precision.quantile, std::min(most, freed.high - value), 1)};
     }
-    return {std::max(value - reach + shift, freed.low), std::min(value + reach + shift, freed.high)};
+    Interval interval{std::max(value - reach + shift, freed.low),
+                      std::min(value + reach + shift, freed.high)};
+    const double lost = precision.quantile * precision.quantile / 2;
+    // All of a share is an end of what there is, where slopes say nothing of what lies beyond: it belongs to
+    // the interval unless the likelihood falls off before it.
+    if (freed.low == 0.0 && freed.high == 1.0 && interval.high < 1.0) {
+        State all = fit.fitted.state;
+        all.values[index] = 1.0;
+        if (log_likelihood(study.model(), all) > fit.fitted.log_likelihood - lost) interval.high = 1.0;
+    }
+    for (const double other : as_likely(study, fit, j, lost, reach)) {
+        interval.low = std::max(std::min(interval.low, other - reach), freed.low);
+        interval.high = std::min(std::max(interval.high, other + reach), freed.high);
+    }
+    return interval;
 }
 
 }  // namespace puckloop::gap

@@ -5,6 +5,7 @@
 // zero is free in each run.
 
 #include "gap/clean/quantum.h"
+#include "gap/models/batches.h"
 #include "gap/models/model_of.h"
 #include "gap/models/rows.h"
 #include "gap/stats/robust.h"
@@ -24,9 +25,6 @@ constexpr double kCoarse = 0.2;  // of the usual time between frames: no clock i
 constexpr double kBaud = 115200;
 constexpr double kBits = 10;              // a byte on the line
 constexpr double kTolerance = 0.02;       // error of the rate that a receiver stands
-constexpr double kEdge = 0.02;            // of a batch: rounding of clocks
-constexpr double kClockDoubt = 3e-4;      // s: when in its loop the robot reads its clock
-constexpr std::size_t kShareEarly = 30;   // one frame in so many is taken to have waited least
 constexpr double kLongestBatch = 0.5;     // s, looked for
 constexpr double kAsGood = 0.9;           // share of the coherence that noise would leave
 constexpr double kNeighbour = 1.01;       // nearer is the same peak
@@ -34,6 +32,7 @@ constexpr std::size_t kTried = 3;         // peaks
 constexpr double kShortestBatch = 0.001;  // s
 constexpr double kRoundings = 2.0;        // of the clocks: a shorter batch is their rounding
 constexpr double kWhole = 0.999;
+constexpr double kLeastFading = 1e-9;  // of what is known of a frame, to the next
 
 struct Numbers {
     double extra_period = 0.0, period_jitter = 0.0, clock_drift = 0.0, i2c_stretch = 0.0, batch = 0.0,
@@ -73,7 +72,13 @@ class TimingModel final : public ModelOf<Numbers> {
         // Against a rounded clock an arrival is as good as both clocks are.
         double& quantum = observables_.back().instrument.quantum;
         if (quantum > kCoarse * usual_step(host.y)) quantum = 0.0;
-        if (clocks_) quantum = std::hypot(quantum, rounding_of(robot_));
+        if (clocks_) {
+            // Arrivals in batches keep to a step of their own: what is rounding, the robot's clock shows.
+            const double rounding = rounding_of(robot_);
+            shortest_ =
+                std::max(kShortestBatch, kRoundings * std::hypot(std::min(quantum, rounding), rounding));
+            quantum = std::hypot(quantum, rounding);
+        }
         gather_events(experiment);
         declare_all();
         apply_nominal(experiment);
@@ -101,7 +106,7 @@ class TimingModel final : public ModelOf<Numbers> {
                 expected.push_back(robot_[i] + wire_[i] - robot_[i - 1] - wire_[i - 1]);
             }
         std::vector<std::pair<double, double>> peaks;  // score, batch
-        for (double batch = kLongestBatch; batch > kShortestBatch; batch /= 1.003) {
+        for (double batch = kLongestBatch; batch > shortest_; batch /= 1.003) {
             const double score = keep_to(seen, batch) - std::max(keep_to(expected, batch), 0.0);
             if (!peaks.empty() && peaks.back().second < kNeighbour * batch) {
                 if (score > peaks.back().first) peaks.back() = {score, batch};
@@ -111,9 +116,18 @@ class TimingModel final : public ModelOf<Numbers> {
         }
         std::sort(peaks.rbegin(), peaks.rend());
         peaks.resize(std::min(peaks.size(), kTried));
-        std::vector<double> found;
-        for (const auto& [score, batch] : peaks)
+        // Frames that are ready at even times keep to a batch's parts as well as to it: the finest, too.
+        std::vector<double> found, finest;
+        for (const auto& [score, batch] : peaks) {
             found.push_back(refined(whole(seen, batch)));
+            finest.push_back(batch);
+        }
+        if (!finest.empty()) found.push_back(refined(*std::min_element(finest.begin(), finest.end())));
+        std::vector<double> ready;
+        for (std::size_t i = 0; i < robot_.size(); ++i)
+            ready.push_back(robot_[i] + wire_[i]);
+        const auto fine = beats_of_waits(o, ready, shortest_, std::max(usual_step(robot_), kPeriod / 10));
+        found.insert(found.end(), fine.begin(), fine.end());
         return found;
     }
 
@@ -279,19 +293,20 @@ class TimingModel final : public ModelOf<Numbers> {
         const double drift = now.clock_drift, stretch = now.i2c_stretch, batch = now.batch,
                      longer = clocks_ ? 0.0 : now.extra_period;
         const double slower = 1 / (1 + now.baud_error);
-        const auto arrival = [&](std::size_t i) {
-            return robot_[i] * (1 + drift) + longer * count_[i] + wire_[i] * slower + stretch * reads_[i];
-        };
+        std::vector<double> arrival(o.y.size());
+        for (std::size_t i = 0; i < arrival.size(); ++i)
+            arrival[i] =
+                robot_[i] * (1 + drift) + longer * count_[i] + wire_[i] * slower + stretch * reads_[i];
         p.mean.resize(o.y.size());
-        p.extra.clear();
+        p.extra.assign(batch >= shortest_ && is_fine_batch(batch) ? o.y.size() : 0, 0.0);
         for (std::size_t i = 0, end = 0; i < o.y.size(); i = end) {
             while (end < o.y.size() && o.run[end] == o.run[i])
                 ++end;
-            if (batch <= 0) {
+            if (batch < shortest_) {
                 // The run's own zero: the middle half of what is left, so that no single row decides.
                 std::vector<double> left;
                 for (std::size_t k = i; k < end; ++k)
-                    left.push_back(o.y[k] - arrival(k));
+                    left.push_back(o.y[k] - arrival[k]);
                 std::sort(left.begin(), left.end());
                 const std::size_t cut = left.size() / 4;
                 double sum = 0.0;
@@ -299,35 +314,10 @@ class TimingModel final : public ModelOf<Numbers> {
                     sum += left[k];
                 const double zero = sum / static_cast<double>(left.size() - 2 * cut);
                 for (std::size_t k = i; k < end; ++k)
-                    p.mean[k] = arrival(k) + zero;
+                    p.mean[k] = arrival[k] + zero;
                 continue;
             }
-            std::complex<double> beat;
-            for (std::size_t k = i; k < end; ++k)
-                beat += std::polar(1.0, 2 * std::numbers::pi * o.y[k] / batch);
-            const double phase = std::arg(beat) / (2 * std::numbers::pi) * batch;
-            deliver(o, i, end, batch, phase, arrival, p.mean);
-        }
-    }
-
-    /// Delivered at whole multiples of the batch: each frame waits for the next one. A frame that is ready
-    /// just as a batch leaves may catch it or not: there the arrival itself says which.
-    template <class Arrival>
-    static void deliver(const Observable& o, std::size_t from, std::size_t to, double batch, double phase,
-                        Arrival arrival, std::vector<double>& mean) {
-        const auto nearest = [&](double time) { return phase + batch * std::round((time - phase) / batch); };
-        std::vector<double> waits;
-        for (std::size_t k = from; k < to; ++k)
-            waits.push_back(nearest(o.y[k]) - arrival(k));
-        const auto least = waits.begin() + static_cast<std::ptrdiff_t>(waits.size() / kShareEarly);
-        std::nth_element(waits.begin(), least, waits.end());
-        const double shortest = *least - batch / static_cast<double>(kShareEarly);  // waits are even
-        const double doubt = std::max(kEdge * batch, kClockDoubt);
-        for (std::size_t k = from; k < to; ++k) {
-            const double ready = arrival(k) + shortest;
-            const double first = phase + batch * std::ceil((ready - doubt - phase) / batch);
-            const double last = phase + batch * std::ceil((ready + doubt - phase) / batch);
-            mean[k] = std::clamp(nearest(o.y[k]), first, last);
+            place_batches(o, i, end, batch, arrival, p.mean, p.extra);
         }
     }
 
@@ -336,11 +326,16 @@ class TimingModel final : public ModelOf<Numbers> {
         const double error = std::max(now.edge_errors, 0.0), overrun = now.overrun, cut = now.truncation,
                      stays = now.truncation_burst;
         p.mean.resize(o.y.size());
+        // A frame after a broken one: more likely broken too (bursts), or less. Over frames that are missing
+        // the chain goes on unseen: what is known of the last one fades towards the share in the long run.
+        const double again = stays > 0 ? cut + (1 - cut) * stays : cut * (1 + stays);
+        const double kept = again - cut, usual = cut / std::max(1 - kept, kLeastFading);
         for (std::size_t i = 0; i < p.mean.size(); ++i) {
             double broken = cut;
-            // A frame after a broken one: more likely broken too (bursts), or less.
-            if (o.starts[i] == 0 && o.y[i - 1] < 0.5)
-                broken = stays > 0 ? cut + (1 - cut) * stays : cut * (1 + stays);
+            if (o.starts[i] == 0) {
+                const double last = o.y[i - 1] < 0.5 ? 1.0 : 0.0;
+                broken = std::clamp(usual + std::pow(kept, o.steps[i]) * (last - usual), 0.0, 1.0);
+            }
             p.mean[i] = kWhole * std::pow(1 - std::min(error, 0.99), edges_[i]) *
                         (1 - std::min(overrun * ok_load_[i], 0.99)) * (1 - broken);
         }
@@ -354,6 +349,7 @@ class TimingModel final : public ModelOf<Numbers> {
     }
 
     bool clocks_ = false;
+    double shortest_ = kShortestBatch;  // s: what is shorter is no batch but the clocks' rounding
     int ok_ = -1, shift_ = -1;
     std::vector<double> periods_, count_, wire_, reads_, robot_, edges_, ok_load_, load_;
 };

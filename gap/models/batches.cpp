@@ -1,0 +1,220 @@
+#include "gap/models/batches.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <utility>
+
+namespace puckloop::gap {
+
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+constexpr double kEdge = 0.02;           // of a batch: rounding of clocks
+constexpr double kClockDoubt = 3e-4;     // s: when in its loop the robot reads its clock
+constexpr std::size_t kShareEarly = 30;  // one frame in so many is taken to have waited least
+constexpr double kClockSd = 1e-4;        // s: of that doubt
+constexpr double kFineBatch = 10.0;      // clock doubts: in a shorter batch the arrival has no say
+constexpr double kLongestFine = 0.02;    // s: longer ones show in the arrivals themselves
+constexpr std::size_t kStretch = 20;     // rows
+constexpr double kSteps = 3.0;           // of frequency, for each that a stretch parts
+constexpr double kBand = 5.0;            // Hz: half of what frames at even times part
+constexpr std::size_t kBandsTried = 24;
+constexpr double kClearBeat = 6.0;  // deviations: the best of some thousand frequencies is some 4
+constexpr std::size_t kTried = 3;   // of the bands' batches, by what they leave
+
+/// A phase that goes on by even steps.
+struct Turning {
+    std::complex<double> now, by;
+    void turn() {  // std::complex's own product also sees to infinities
+        now = {now.real() * by.real() - now.imag() * by.imag(),
+               now.real() * by.imag() + now.imag() * by.real()};
+    }
+};
+
+double nearest(double time, double batch, double phase) {
+    return phase + batch * std::round((time - phase) / batch);
+}
+
+/// What frames wait at least, beyond the time that they were ready by.
+double early(const Observable& o, std::size_t from, std::size_t to, double batch, double phase,
+             const std::vector<double>& arrival) {
+    std::vector<double> waits;
+    for (std::size_t k = from; k < to; ++k)
+        waits.push_back(nearest(o.y[k], batch, phase) - arrival[k]);
+    const auto least = waits.begin() + static_cast<std::ptrdiff_t>(waits.size() / kShareEarly);
+    std::nth_element(waits.begin(), least, waits.end());
+    return *least - batch / static_cast<double>(kShareEarly);  // waits are even
+}
+
+/// Delivered at whole multiples of the batch: each frame waits for the next one. A frame that is ready
+/// just as a batch leaves may catch it or not: there the arrival itself says which, unless batches are so
+/// short that it would say so of most. Of these the mean of both is expected, and how far they lie apart
+/// (`extra`, where asked for). Returns the sum of the distances.
+double deliver(const Observable& o, std::size_t from, std::size_t to, double batch, double phase,
+               double shortest, const std::vector<double>& arrival, std::vector<double>& mean,
+               std::vector<double>& extra) {
+    const bool fine = is_fine_batch(batch);
+    const double doubt = std::max(kEdge * batch, kClockDoubt);
+    double off = 0.0;
+    for (std::size_t k = from; k < to; ++k) {
+        const double ready = (arrival[k] + shortest - phase) / batch;
+        if (fine) {
+            const double slot = std::ceil(ready), since = ready - (slot - 1);
+            const double edge = std::min(since, 1 - since) * batch;
+            const double other = 0.5 * std::erfc(edge / (kClockSd * std::numbers::sqrt2));
+            mean[k] = phase + batch * (since < 0.5 ? slot - other : slot + other);
+            extra[k] = batch * std::sqrt(other * (1 - other));
+        } else {
+            const double first = phase + batch * std::ceil(ready - doubt / batch);
+            const double last = phase + batch * std::ceil(ready + doubt / batch);
+            mean[k] = std::clamp(nearest(o.y[k], batch, phase), first, last);
+            if (!extra.empty()) extra[k] = 0.0;
+        }
+        off += std::abs(o.y[k] - mean[k]);
+    }
+    return off;
+}
+
+/// Each half of a run is placed by the other: a saw fine enough follows any slow error of the rows that
+/// it was placed by, and only a batch goes on so in rows that had no part in it.
+double place_by_waits(const Observable& o, std::size_t from, std::size_t to, double batch,
+                      const std::vector<double>& arrival, std::vector<double>& mean,
+                      std::vector<double>& extra) {
+    const std::size_t half = from + (to - from) / 2;
+    const auto jump_in = [&](std::size_t first, std::size_t last) {
+        double usual = 0.0;
+        for (std::size_t k = first; k < last; ++k)
+            usual += (o.y[k] - arrival[k]) / static_cast<double>(last - first);
+        std::complex<double> saw;
+        for (std::size_t k = first; k < last; ++k)
+            saw += (o.y[k] - arrival[k] - usual) * std::polar(1.0, kTurn * arrival[k] / batch);
+        // Waits fall by one for each one later that a frame is ready, and jump where a batch leaves.
+        return (std::arg(saw) - std::numbers::pi / 2) / kTurn * batch;
+    };
+    const double early_jump = jump_in(half, to), late_jump = jump_in(from, half);
+    std::vector<double> rest;
+    for (std::size_t k = from; k < to; ++k) {
+        const double before = (k < half ? early_jump : late_jump) - arrival[k];
+        rest.push_back(o.y[k] - arrival[k] - (before - batch * std::floor(before / batch)));
+    }
+    const auto middle = rest.begin() + static_cast<std::ptrdiff_t>(rest.size() / 2);
+    std::nth_element(rest.begin(), middle, rest.end());
+    return deliver(o, from, half, batch, early_jump + *middle, *middle, arrival, mean, extra) +
+           deliver(o, half, to, batch, late_jump + *middle, *middle, arrival, mean, extra);
+}
+
+double refined_by_waits(const Observable& o, const std::vector<double>& ready,
+                        const std::vector<double>& waited, double batch, double reach) {
+    for (const double fine : {1e-5, 1e-6}) {
+        const double middle = batch, far = fine > 5e-6 ? reach : 1e-5;
+        double most = 0.0;
+        for (double off = -far; off <= far; off += fine) {
+            double power = 0.0;
+            std::complex<double> sum;
+            for (std::size_t i = 0; i < ready.size(); ++i) {
+                if (o.starts[i] != 0) power += std::norm(std::exchange(sum, {}));
+                sum += waited[i] * std::polar(1.0, 2 * std::numbers::pi * ready[i] / (middle * (1 + off)));
+            }
+            power += std::norm(sum);
+            if (power <= most) continue;
+            most = power;
+            batch = middle * (1 + off);
+        }
+    }
+    return batch;
+}
+
+}  // namespace
+
+bool is_fine_batch(double batch) {
+    return batch < kFineBatch * kClockDoubt;
+}
+
+double place_batches(const Observable& o, std::size_t from, std::size_t to, double batch,
+                     const std::vector<double>& arrival, std::vector<double>& mean,
+                     std::vector<double>& extra) {
+    if (is_fine_batch(batch)) return place_by_waits(o, from, to, batch, arrival, mean, extra);
+    std::complex<double> beat;
+    for (std::size_t k = from; k < to; ++k)
+        beat += std::polar(1.0, kTurn * o.y[k] / batch);
+    const double phase = std::arg(beat) / kTurn * batch;
+    return deliver(o, from, to, batch, phase, early(o, from, to, batch, phase, arrival), arrival, mean,
+                   extra);
+}
+
+std::vector<double> beats_of_waits(const Observable& o, const std::vector<double>& ready, double shortest,
+                                   double between) {
+    const std::size_t n = o.y.size();
+    const double highest = 1 / shortest, lowest = 1 / kLongestFine;
+    if (n < 2 * kStretch || !(highest > lowest)) return {};
+    std::vector<double> waited;
+    std::vector<std::size_t> ends;
+    for (std::size_t i = 0; i < n; i = ends.back()) {
+        std::size_t end = i + 1;
+        while (end < n && end - i < kStretch && o.run[end] == o.run[i])
+            ++end;
+        ends.push_back(end);
+        double mean = 0.0, squares = 0.0;
+        for (std::size_t k = i; k < end; ++k)
+            mean += (o.y[k] - ready[k]) / static_cast<double>(end - i);
+        for (std::size_t k = i; k < end; ++k)
+            squares += std::pow(o.y[k] - ready[k] - mean, 2);
+        for (std::size_t k = i; k < end; ++k)
+            waited.push_back(squares > 0 ? (o.y[k] - ready[k] - mean) / std::sqrt(squares) : 0.0);
+    }
+    // Each stretch's power is about exponential, of mean one, where nothing beats.
+    const double usual = static_cast<double>(ends.size());
+    const double step = 1 / (kSteps * kStretch * between);
+    std::vector<Turning> turning;
+    for (const double at : ready)
+        turning.push_back({std::polar(1.0, 2 * std::numbers::pi * lowest * at),
+                           std::polar(1.0, 2 * std::numbers::pi * step * at)});
+    // Frames come at nearly even times, which many frequencies beat with alike: the best of each band is
+    // looked at as a batch.
+    const double clear = usual + kClearBeat * std::sqrt(usual);
+    std::vector<std::pair<double, double>> bands;  // power, batch
+    double beyond = 0.0;
+    for (double frequency = lowest; frequency < highest; frequency += step) {
+        double power = 0.0;
+        std::size_t i = 0;
+        for (const std::size_t end : ends) {
+            double re = 0.0, im = 0.0;
+            for (; i < end; ++i) {
+                re += waited[i] * turning[i].now.real();
+                im += waited[i] * turning[i].now.imag();
+                turning[i].turn();
+            }
+            power += re * re + im * im;
+        }
+        if (power <= clear) continue;
+        if (bands.empty() || frequency > beyond) {
+            bands.emplace_back(power, 1 / frequency);
+            beyond = frequency + kBand;
+        } else if (power > bands.back().first) {
+            bands.back() = {power, 1 / frequency};
+        }
+    }
+    std::sort(bands.rbegin(), bands.rend());
+    bands.resize(std::min(bands.size(), kBandsTried));
+    std::vector<double> mean(n), extra(n);
+    std::vector<std::pair<double, double>> tried;  // what is left, batch
+    for (const auto& [power, coarse] : bands) {
+        const double batch = refined_by_waits(o, ready, waited, coarse, 2 * step * coarse);
+        double off = 0.0;
+        for (std::size_t i = 0, end = 0; i < n; i = end) {
+            while (end < n && o.run[end] == o.run[i])
+                ++end;
+            off += place_batches(o, i, end, batch, ready, mean, extra);
+        }
+        tried.emplace_back(off, batch);
+    }
+    std::sort(tried.begin(), tried.end());
+    std::vector<double> found;
+    for (std::size_t k = 0; k < std::min(kTried, tried.size()); ++k)
+        found.push_back(tried[k].second);
+    return found;
+}
+
+}  // namespace puckloop::gap

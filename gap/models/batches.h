@@ -1,0 +1,30 @@
+#pragma once
+// Arrivals that a host hands over in batches, at whole multiples of a time: where a run's grid lies, when
+// each frame then comes, and which short batches its waits look like.
+
+#include "gap/models/model.h"
+
+#include <cstddef>
+#include <vector>
+
+namespace puckloop::gap {
+
+/// Shorter than ten times the doubt of when a frame was ready (3 ms): an arrival cannot say which batch it is
+/// of, but how long frames waited, as a function of when they were ready, is a saw of the batch.
+bool is_fine_batch(double batch);
+
+/// Rows [from, to) of `arrivals`, one run. `ready`: when each would come by itself, up to a zero of the run's
+/// own. Sets their `mean` and, of a fine batch, `extra`: the sd of those that may catch either of two batches
+/// (s, as all times here). The run's grid is placed where arrivals themselves lie; of a fine batch each half
+/// of the run is placed by the other, for a saw so fine follows any slow error of the rows that it was placed
+/// by. Returns the sum of the distances from `mean`.
+double place_batches(const Observable& arrivals, std::size_t from, std::size_t to, double batch,
+                     const std::vector<double>& ready, std::vector<double>& mean, std::vector<double>& extra);
+
+/// Batches from `shortest` to 20 ms that waits beat with, the likeliest few; `between`: usual time between
+/// frames. They are looked for in stretches of a few rows, over which few frequencies differ, then in whole
+/// runs; frames at even times beat alike with many, which are then tried one by one.
+std::vector<double> beats_of_waits(const Observable& arrivals, const std::vector<double>& ready,
+                                   double shortest, double between);
+
+}  // namespace puckloop::gap
