@@ -43,7 +43,7 @@ std::vector<std::string> objections(const Grounds& g) {
     const double most = g.sums ? thresholds::kShareLeftOfSums : thresholds::kShareLeft;
     against(g.unexplained() > most || share_of(g.left_of_readings, g.gain.sum) > thresholds::kShareLeft,
             "leaves too much to be the cause");
-    against(g.stopped_at_end && g.structure,
+    against(g.stopped_at_end && g.structure && !g.only_wanders,
             "stopped at the end of its plausible range and leaves something");
     // 4. Role. A cause gains by what it is said to do: means by means, scatter by what is scatter.
     against(!g.out_of_role.empty(), g.out_of_role);

@@ -30,6 +30,7 @@ struct Grounds {
     double left_of_readings = 0.0;   ///< by shape or structure, of observables that do not add up
     bool sums = false;               ///< some observable adds up
     bool structure = false;          ///< something is left for sure
+    bool only_wanders = false;       ///< that sums wander, and nothing else
     std::string not_confirmed;       ///< what the other half of the runs showed; empty: nothing, or not asked
 
     double left() const;         ///< nats, together

@@ -55,13 +55,11 @@ std::vector<std::size_t> outweighed(const Study& study, const Selection& selecti
         std::copy_if(leftovers.begin(), leftovers.end(), std::back_inserter(own_leftovers),
                      [&](const Leftover& one) { return is_moved(one.observable); });
         const double left = std::max(gained_by_shape(own_forms), most_by_structure(own_leftovers));
-        bool adds_up = false;
-        for (std::size_t o = 0; o < observables.size(); ++o) {
-            if (std::find(moved.begin(), moved.end(), observables[o].name) == moved.end()) continue;
-            adds_up = adds_up || observables[o].noise == NoiseKind::Level;
-        }
+        const bool any_sum = std::any_of(observables.begin(), observables.end(), [&](const Observable& one) {
+            return adds_up(one) && std::find(moved.begin(), moved.end(), one.name) != moved.end();
+        });
         const double won = std::max(step.held.sum, 0.0);
-        const double most = adds_up ? share : std::min(share, thresholds::kShareLeft);
+        const double most = any_sum ? share : std::min(share, thresholds::kShareLeft);
         if (!(left > most * (left + won)) || won >= least) continue;
         least = won;
         weakest = {step.effect};

@@ -99,19 +99,21 @@ std::vector<std::size_t> no_more_than_large_errors(const Study& study, const Fit
                : outliers;
 }
 
-/// The effects that take single rows for lapses, if sums wander beside them: whatever wanders has rows that
-/// look like lapses.
-std::vector<std::size_t> of_sums_that_wander(const Study& study, const Fit& fit, const HeldOut& held) {
+/// The effects that take single rows of sums for lapses, if sums wander beside them: whatever wanders has
+/// rows that look like lapses.
+std::vector<std::size_t> of_sums_that_wander(const Study& study, const Fit& fit) {
     if (!lapses(study, fit)) return {};
-    const auto scatter = scatter_effects(study, fit);
-    const auto touched = scattered_by(study, fit, scatter);
     const auto& all = study.model().observables();
-    const bool of_sums = std::any_of(all.begin(), all.end(), [&](const Observable& one) {
-        return one.noise == NoiseKind::Level && one.fixed_sd <= 0 &&
-               std::find(touched.begin(), touched.end(), one.name) != touched.end();
+    auto effects = scatter_effects(study, fit);
+    std::erase_if(effects, [&](std::size_t effect) {
+        const auto touched = scattered_by(study, fit, {effect});
+        return std::none_of(all.begin(), all.end(), [&](const Observable& one) {
+            return adds_up(one) && one.fixed_sd <= 0 &&
+                   std::find(touched.begin(), touched.end(), one.name) != touched.end();
+        });
     });
-    return of_sums && wanders_anywhere(study, fit, held, thresholds::kSure) ? scatter
-                                                                            : std::vector<std::size_t>{};
+    return !effects.empty() && wanders_anywhere(study, fit, thresholds::kSure) ? effects
+                                                                               : std::vector<std::size_t>{};
 }
 
 }  // namespace
@@ -183,7 +185,7 @@ OutOfRole out_of_role(const Study& study, const Fit& fit, const HeldOut& held,
             result.why = "keeps to a place, a command or a run, and chance does not";
             return result;
         }
-    result.effects = of_sums_that_wander(study, fit, held);
+    result.effects = of_sums_that_wander(study, fit);
     if (!result.effects.empty()) {
         result.why = "makes single errors larger where sums wander";
         return result;

@@ -37,10 +37,10 @@ constexpr double kSector = std::numbers::pi / 6, kLeavesSector = 0.75 * kSector;
 std::vector<double> in_sectors(std::vector<double> heading, const std::vector<std::uint32_t>& run) {
     double sector = kNan;
     for (std::size_t i = 0; i < heading.size(); ++i) {
+        if (i == 0 || run[i] != run[i - 1]) sector = kNan;
         const double value = std::remainder(heading[i], 2 * std::numbers::pi);
         if (std::isnan(value)) continue;
-        const bool stays = i > 0 && run[i] == run[i - 1] &&
-                           std::abs(std::remainder(value - sector, 2 * std::numbers::pi)) < kLeavesSector;
+        const bool stays = std::abs(std::remainder(value - sector, 2 * std::numbers::pi)) < kLeavesSector;
         if (!stays) sector = kSector * std::round(value / kSector) + 0.0;
         if (sector < -std::numbers::pi + kSector / 2) sector += 2 * std::numbers::pi;
         heading[i] = sector;

@@ -50,7 +50,9 @@ std::vector<double> as_likely(const Study& study, const Fit& fit, std::size_t j,
             state.values[index] = start[0];
             if (std::abs(start[0] - value) <= reach) continue;
             const Fitted there = puckloop::gap::fit(study.model(), fit.freed, state, {}, kQuick);
-            if (there.log_likelihood > here - lost) others.push_back(there.state.values[index]);
+            const double other = there.state.values[index];
+            if (there.log_likelihood > here - lost && std::abs(other - value) > reach)
+                others.push_back(other);
         }
     }
     return others;

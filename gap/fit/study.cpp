@@ -415,7 +415,7 @@ double Study::bic_of(const Fitted& fitted, std::size_t parameters) const {
            static_cast<double>(parameters) * std::log(static_cast<double>(std::max<std::size_t>(rows_, 2)));
 }
 
-HeldOut Study::hold_out(const Fit& whole) const {
+HeldOut Study::hold_out(const Fit& whole, const Effort& effort) const {
     HeldOut held;
     const auto& observables = model_->observables();
     for (const Observable& observable : observables) {
@@ -429,7 +429,7 @@ HeldOut Study::hold_out(const Fit& whole) const {
             for (const int f : fold)
                 weights.back().push_back(f == static_cast<int>(k) ? 0.0 : 1.0);
         }
-        const Fitted part = fit(*model_, whole.freed, whole.fitted.state, weights, kPart);
+        const Fitted part = fit(*model_, whole.freed, whole.fitted.state, weights, effort);
         Prediction prediction;
         const auto costs = costs_at(*model_, part.state, prediction);
         // What the noise loses for being off the simulator's claim is lost by every row alike.

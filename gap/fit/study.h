@@ -78,8 +78,9 @@ class Study {
     /// The same set again, from where `quick` ended.
     Fit refined(const Fit& quick) const;
     Fit fit_none() const;
-    /// Cross-validation of a set that was fitted to all rows.
-    HeldOut hold_out(const Fit& fit) const;
+    /// Cross-validation of a set that was fitted to all rows, each part fitted again with `effort` from
+    /// there.
+    HeldOut hold_out(const Fit& fit, const Effort& effort = kPart) const;
 
   private:
     /// The part of `whole`.

@@ -15,10 +15,10 @@ namespace puckloop::gap {
 inline constexpr const char* kWanderCovariate = "course of a run";
 
 /// Of each steady observable that wanders beside the fit: a structure, p corrected for how many there are.
-/// `held`: of the fit. Those with a p of `reported` or more are left out.
-std::vector<Leftover> wandering(const Study& study, const Fit& fit, const HeldOut& held, double reported);
+/// Those with a p of `reported` or more are left out.
+std::vector<Leftover> wandering(const Study& study, const Fit& fit, double reported);
 
 /// Does anything wander beside a fit of the same effects that looks at every observable where it is steady?
-bool wanders_anywhere(const Study& study, const Fit& fit, const HeldOut& held, double p);
+bool wanders_anywhere(const Study& study, const Fit& fit, double p);
 
 }  // namespace puckloop::gap

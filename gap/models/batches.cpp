@@ -18,6 +18,7 @@ constexpr double kClockSd = 1e-4;        // s: of that doubt
 constexpr double kFineBatch = 10.0;      // clock doubts: in a shorter batch the arrival has no say
 constexpr double kLongestFine = 0.02;    // s: longer ones show in the arrivals themselves
 constexpr std::size_t kStretch = 20;     // rows
+constexpr std::size_t kCoherent = 500;   // rows that are added up in phase, before whole runs are
 constexpr double kSteps = 3.0;           // of frequency, for each that a stretch parts
 constexpr double kBand = 5.0;            // Hz: half of what frames at even times part
 constexpr std::size_t kBandsTried = 24;
@@ -105,25 +106,49 @@ double place_by_waits(const Observable& o, std::size_t from, std::size_t to, dou
            deliver(o, half, to, batch, late_jump + *middle, *middle, arrival, mean, extra);
 }
 
+/// Rows of one run, at most `longest` together, as [from, to).
+std::vector<std::pair<std::size_t, std::size_t>> stretches_of(const Observable& o, std::size_t longest) {
+    std::vector<std::pair<std::size_t, std::size_t>> all;
+    for (std::size_t from = 0, to = 0; from < o.y.size(); from = to) {
+        while (to < o.y.size() && to - from < longest && o.run[to] == o.run[from])
+            ++to;
+        all.emplace_back(from, to);
+    }
+    return all;
+}
+
+/// The batch near by that the waits of stretches of `rows` beat with most, looked for in steps by which their
+/// longest turns by one of `parts` of a turn. `reach` and `step` are shares of the batch.
+double best_near(const Observable& o, std::size_t rows, const std::vector<double>& ready,
+                 const std::vector<double>& waited, double batch, double reach, double parts, double& step) {
+    const auto stretches = stretches_of(o, rows);
+    double longest = 0.0;
+    for (const auto& [from, to] : stretches)
+        longest = std::max(longest, ready[to - 1] - ready[from]);
+    step = std::min(batch / (parts * std::max(longest, batch)), reach);
+    double most = 0.0, best = batch;
+    for (double off = -reach; off <= reach; off += step) {
+        double power = 0.0;
+        for (const auto& [from, to] : stretches) {
+            std::complex<double> sum;
+            for (std::size_t i = from; i < to; ++i)
+                sum += waited[i] * std::polar(1.0, kTurn * ready[i] / (batch * (1 + off)));
+            power += std::norm(sum);
+        }
+        if (power <= most) continue;
+        most = power;
+        best = batch * (1 + off);
+    }
+    return best;
+}
+
+/// In stretches first, which fewer steps are enough for, then in whole runs.
 double refined_by_waits(const Observable& o, const std::vector<double>& ready,
                         const std::vector<double>& waited, double batch, double reach) {
-    for (const double fine : {1e-5, 1e-6}) {
-        const double middle = batch, far = fine > 5e-6 ? reach : 1e-5;
-        double most = 0.0;
-        for (double off = -far; off <= far; off += fine) {
-            double power = 0.0;
-            std::complex<double> sum;
-            for (std::size_t i = 0; i < ready.size(); ++i) {
-                if (o.starts[i] != 0) power += std::norm(std::exchange(sum, {}));
-                sum += waited[i] * std::polar(1.0, 2 * std::numbers::pi * ready[i] / (middle * (1 + off)));
-            }
-            power += std::norm(sum);
-            if (power <= most) continue;
-            most = power;
-            batch = middle * (1 + off);
-        }
-    }
-    return batch;
+    double step = 0.0;
+    batch = best_near(o, kCoherent, ready, waited, batch, reach, 4, step);
+    batch = best_near(o, o.y.size(), ready, waited, batch, 1.5 * step, 4, step);
+    return best_near(o, o.y.size(), ready, waited, batch, step, 40, step);
 }
 
 }  // namespace
@@ -151,10 +176,7 @@ std::vector<double> beats_of_waits(const Observable& o, const std::vector<double
     if (n < 2 * kStretch || !(highest > lowest)) return {};
     std::vector<double> waited;
     std::vector<std::size_t> ends;
-    for (std::size_t i = 0; i < n; i = ends.back()) {
-        std::size_t end = i + 1;
-        while (end < n && end - i < kStretch && o.run[end] == o.run[i])
-            ++end;
+    for (const auto& [i, end] : stretches_of(o, kStretch)) {
         ends.push_back(end);
         double mean = 0.0, squares = 0.0;
         for (std::size_t k = i; k < end; ++k)
@@ -169,8 +191,7 @@ std::vector<double> beats_of_waits(const Observable& o, const std::vector<double
     const double step = 1 / (kSteps * kStretch * between);
     std::vector<Turning> turning;
     for (const double at : ready)
-        turning.push_back({std::polar(1.0, 2 * std::numbers::pi * lowest * at),
-                           std::polar(1.0, 2 * std::numbers::pi * step * at)});
+        turning.push_back({std::polar(1.0, kTurn * lowest * at), std::polar(1.0, kTurn * step * at)});
     // Frames come at nearly even times, which many frequencies beat with alike: the best of each band is
     // looked at as a batch.
     const double clear = usual + kClearBeat * std::sqrt(usual);
@@ -203,11 +224,8 @@ std::vector<double> beats_of_waits(const Observable& o, const std::vector<double
     for (const auto& [power, coarse] : bands) {
         const double batch = refined_by_waits(o, ready, waited, coarse, 2 * step * coarse);
         double off = 0.0;
-        for (std::size_t i = 0, end = 0; i < n; i = end) {
-            while (end < n && o.run[end] == o.run[i])
-                ++end;
-            off += place_batches(o, i, end, batch, ready, mean, extra);
-        }
+        for (const auto& [from, to] : stretches_of(o, n))
+            off += place_batches(o, from, to, batch, ready, mean, extra);
         tried.emplace_back(off, batch);
     }
     std::sort(tried.begin(), tried.end());

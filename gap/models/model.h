@@ -43,6 +43,11 @@ struct Observable {
     double known_sd = 0.0;  ///< noise that the simulator claims; 0: it claims none
 };
 
+/// A sum, in which what one row lacks goes on in all rows after it.
+inline bool adds_up(const Observable& observable) {
+    return observable.noise == NoiseKind::Level;
+}
+
 /// What the model says of one observable. Empty vectors stand for the neutral value.
 struct Predicted {
     std::vector<double> mean;         ///< of an Event: its probability

@@ -6,14 +6,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 namespace puckloop::gap {
 
 namespace {
 constexpr double kGap = 5.0;      // times the usual step between rows: beyond, nothing is carried over
 constexpr double kOffBeat = 0.1;  // of the usual step: nearer to a whole multiple, a row keeps to the beat
-constexpr double kOnBeat =
-    0.9;  // share of a run's steps that do, at least, if missing rows are counted by time
+// Share of a run's steps that do, at least, if missing rows are counted by time.
+constexpr double kOnBeat = 0.9;
+constexpr double kMostSteps = 1e6;  // that one row lies behind another: beyond, nothing is carried anyway
 }  // namespace
 
 Rows::Rows(const Experiment& experiment, std::string_view chain_by,
@@ -22,19 +24,23 @@ Rows::Rows(const Experiment& experiment, std::string_view chain_by,
     for (std::size_t r = 0; r < experiment.runs.size(); ++r) {
         const Run& run = experiment.runs[r];
         std::vector<std::uint32_t> rows;
+        const auto& key = run.column(chain_by);
+        std::vector<std::uint32_t> place(run.rows);
+        std::map<double, std::uint32_t> seen;
         for (std::uint32_t i = 0; i < run.rows; ++i) {
+            place[i] = seen[key.empty() || std::isnan(key[i]) ? 0.0 : key[i]]++;
             const bool whole = std::all_of(needed.begin(), needed.end(), [&](std::string_view name) {
                 const auto& values = run.column(name);
                 return !values.empty() && !std::isnan(values[i]);
             });
             if (whole) rows.push_back(i);
         }
-        const auto& key = run.column(chain_by);
         if (!key.empty())
             std::stable_sort(rows.begin(), rows.end(), [&](auto a, auto b) { return key[a] < key[b]; });
         for (std::size_t i = 0; i < rows.size(); ++i) {
             run_.push_back(static_cast<std::uint32_t>(r));
             row_.push_back(rows[i]);
+            place_.push_back(place[rows[i]]);
             starts_.push_back(i == 0 || (!key.empty() && key[rows[i]] != key[rows[i - 1]]) ? 1 : 0);
         }
     }
@@ -83,32 +89,33 @@ Observable Rows::observable(std::string_view name, NoiseKind noise, std::vector<
     const std::vector<double> time = column("t_s", none);
     const std::vector<double> number = column("seq", none);
     const std::vector<Beat> beat = beats(time);
-    // Rows left out here are known; of those that the table lacks a sequence number says, or the beat.
+    // Rows of the table that were left out are counted; those that the table lacks by a sequence number, or
+    // by the beat.
     const auto back = [&](std::size_t before, std::size_t i) {
-        double steps = static_cast<double>(i - before);
+        double steps = static_cast<double>(place_[i] - place_[before]);
         const double later = time[i] - time[before], further = number[i] - number[before];
         if (further >= steps)
             steps = further;
         else if (beat[run_[i]].kept && later > 0)
             steps = std::max(steps, std::round(later / beat[run_[i]].usual));
-        return static_cast<std::uint32_t>(steps);
+        return static_cast<std::uint32_t>(std::min(steps, kMostSteps));
     };
-    bool fresh = true, timed = true;
+    bool begins = true, timed = true;
     used.clear();
     for (std::size_t i = 0; i < size(); ++i) {
-        if (starts_[i] != 0) fresh = true;
+        if (starts_[i] != 0) begins = true;
         if (std::isnan(y[i]) || (!skipped.empty() && skipped[i] > 0.5)) continue;
         const double most = kGap * beat[run_[i]].usual;
-        if (!used.empty() && most > 0 && time[i] - time[used.back()] > most) fresh = true;
-        out.steps.push_back(fresh || used.empty() ? 1 : back(used.back(), i));
+        const bool gap = !used.empty() && most > 0 && time[i] - time[used.back()] > most;
+        out.steps.push_back(begins || used.empty() ? 1 : back(used.back(), i));
         used.push_back(static_cast<std::uint32_t>(i));
         out.y.push_back(y[i]);
         out.run.push_back(run_[i]);
         out.row.push_back(row_[i]);
-        out.starts.push_back(fresh ? 1 : 0);
+        out.starts.push_back(begins || gap ? 1 : 0);
         out.time.push_back(time[i]);
         timed = timed && !std::isnan(time[i]);
-        fresh = false;
+        begins = false;
     }
     if (!timed) out.time.clear();
     return out;

@@ -46,6 +46,7 @@ class Rows {
 
     const Experiment& experiment_;
     std::vector<std::uint32_t> run_, row_;
+    std::vector<std::uint32_t> place_;  ///< in its chain, rows left out counted
     std::vector<char> starts_;
 };
 

@@ -46,10 +46,10 @@ Diagnosis diagnosed(const Study& study, const Chosen& chosen, std::uint64_t seed
         found.forms.emplace_back(step.effect,
                                  form_verdict(rival_forms(study, chosen.selection.chosen, step.effect)));
     found.by_structure = most_by_structure(found.leftovers);
+    found.structures = found.leftovers;
     const Selection& selection = chosen.selection;
     for (const auto& more :
-         {found.by_runs.structures,
-          wandering(study, selection.chosen, selection.held_chosen, thresholds::kReported)})
+         {found.by_runs.structures, wandering(study, selection.chosen, thresholds::kReported)})
         found.leftovers.insert(found.leftovers.end(), more.begin(), more.end());
     std::stable_sort(found.leftovers.begin(), found.leftovers.end(),
                      [](const auto& a, const auto& b) { return a.p_value < b.p_value; });

@@ -14,7 +14,9 @@ namespace puckloop::gap {
 
 struct Diagnosis {
     std::vector<Series> series;                              ///< every observable, before and after
-    std::vector<Leftover> leftovers;                         ///< structures, the surest first
+    std::vector<Leftover> structures;                        ///< functions of columns, evenness
+    std::vector<Leftover> leftovers;                         ///< these and what differs by runs, jumps and
+                                                             ///< wanders; the surest first
     std::vector<FreeForm> free_forms;                        ///< corrections without a mechanism
     LeftByRuns by_runs;                                      ///< numbers of runs, jumps inside runs
     double by_structure = 0.0;                               ///< nats; of all structures but those of runs

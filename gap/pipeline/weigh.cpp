@@ -4,6 +4,7 @@
 #include "gap/decide/thresholds.h"
 #include "gap/diagnostics/heldout.h"
 #include "gap/evidence/criterion.h"
+#include "gap/fit_test/wander.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -55,32 +56,36 @@ bool few_runs_disagree(const Study& study, const Selection& selection, std::uint
            held_figures(study, selection, seed).all.high >= 1.0;
 }
 
-bool adds_up(const Study& study) {
+bool any_adds_up(const Study& study) {
     const auto& all = study.model().observables();
-    return std::any_of(all.begin(), all.end(),
-                       [](const Observable& observable) { return observable.noise == NoiseKind::Level; });
+    return std::any_of(all.begin(), all.end(), adds_up);
 }
 
 /// What functions of covariates gain of what does not add up, or the surest structure there may stand for.
 double left_of_readings(const Study& study, const Diagnosis& diagnosis) {
     const auto& all = study.model().observables();
-    const auto adds = [&](const std::string& name) {
-        return std::none_of(all.begin(), all.end(), [&](const Observable& one) {
-            return one.name == name && one.noise != NoiseKind::Level;
+    const auto is_other = [&](const auto& one) {
+        return std::none_of(all.begin(), all.end(), [&](const Observable& observable) {
+            return observable.name == one.observable && !adds_up(observable);
         });
     };
     auto forms = diagnosis.free_forms;
-    auto structures = diagnosis.leftovers;
-    std::erase_if(forms, [&](const FreeForm& one) { return adds(one.observable); });
-    std::erase_if(structures, [&](const Leftover& one) { return adds(one.observable); });
+    auto structures = diagnosis.structures;
+    std::erase_if(forms, is_other);
+    std::erase_if(structures, is_other);
     return std::max(gained_by_shape(forms), most_by_structure(structures));
 }
 
-bool any_is_sure(const Diagnosis& diagnosis) {
+/// Notes what is left for sure.
+void take_structure(const Diagnosis& diagnosis, Grounds& g) {
     const auto clear = [](const FreeForm& form) { return form.clear; };
     const auto sure = [](const Leftover& one) { return one.p_value < thresholds::kSure; };
-    return std::any_of(diagnosis.free_forms.begin(), diagnosis.free_forms.end(), clear) ||
-           std::any_of(diagnosis.leftovers.begin(), diagnosis.leftovers.end(), sure);
+    const auto other = [&](const Leftover& one) { return sure(one) && one.covariate != kWanderCovariate; };
+    const auto& left = diagnosis.leftovers;
+    const bool shaped = std::any_of(diagnosis.free_forms.begin(), diagnosis.free_forms.end(), clear) ||
+                        std::any_of(left.begin(), left.end(), other);
+    g.structure = shaped || std::any_of(left.begin(), left.end(), sure);
+    g.only_wanders = g.structure && !shaped;
 }
 
 }  // namespace
@@ -92,7 +97,7 @@ double end_of_range(const Study& study, const Fit& fit, const Freed& freed) {
 }
 
 double share_allowed(const Study& study) {
-    return adds_up(study) ? thresholds::kShareLeftOfSums : thresholds::kShareLeft;
+    return any_adds_up(study) ? thresholds::kShareLeftOfSums : thresholds::kShareLeft;
 }
 
 Grounds grounds_of(const Study& study, const Chosen& chosen, const Diagnosis& diagnosis, std::uint64_t seed) {
@@ -112,9 +117,9 @@ Grounds grounds_of(const Study& study, const Chosen& chosen, const Diagnosis& di
     g.left_by_run = diagnosis.by_runs.by_run;
     g.left_by_jump = diagnosis.by_runs.by_jump;
     g.left_by_structure = diagnosis.by_structure;
-    g.sums = adds_up(study);
+    g.sums = any_adds_up(study);
     g.left_of_readings = left_of_readings(study, diagnosis);
-    g.structure = any_is_sure(diagnosis);
+    take_structure(diagnosis, g);
     return g;
 }
 

@@ -64,7 +64,9 @@ Errors errors_of(const Observable& observable, const Predicted& predicted, const
                                : whitened ? costs.innovation[i]
                                : clipped  ? kNan
                                           : (observable.y[i] - predicted.mean[i]) / sd);
-        e.rows.follows.push_back(observable.starts[i] == 0 ? 1 : 0);
+        // Over missing rows less is carried over than from row to row: nothing is taken to be.
+        const bool next = observable.steps.empty() || observable.steps[i] == 1;
+        e.rows.follows.push_back(observable.starts[i] == 0 && next ? 1 : 0);
         e.rows.run.push_back(static_cast<int>(observable.run[i]));
         e.starts.push_back(observable.starts[i]);
         e.scale.push_back(sd);

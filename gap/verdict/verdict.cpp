@@ -136,6 +136,7 @@ Json grounds_json(const Grounds& g) {
             {"left_of_readings", g.left_of_readings},
             {"sums", g.sums},
             {"structure", g.structure},
+            {"only_wanders", g.only_wanders},
             {"assumed", g.assumed},
             {"law_alone", g.law_alone},
             {"out_of_role", g.out_of_role},

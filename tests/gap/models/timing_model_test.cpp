@@ -60,6 +60,19 @@ TEST_CASE("batches are found by the grid that arrivals keep to") {
     CHECK(exact({}, "timing_no_batch").model().starts("proximity.gain").empty());
 }
 
+TEST_CASE("each row knows how many its chain lacks before it") {
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    const auto steps_of = [](const tests::Table& columns) {
+        const auto experiment = tests::experiment_of(Kind::Timing, columns);
+        return make_model(experiment)->observables().front().steps;
+    };
+    using Steps = std::vector<std::uint32_t>;
+    CHECK(steps_of({{"t_host_s", {0.0, 0.1, 0.2, 0.3}}, {"seq", {0, 1, 4, 1e12}}}) ==
+          Steps{1, 1, 3, 1'000'000});
+    // In the table, and without a time.
+    CHECK(steps_of({{"t_host_s", {0.0, kNone, 0.2, 0.3}}}) == Steps{1, 2, 1});
+}
+
 TEST_CASE("a frame after a broken one is broken more often, or less") {
     const auto experiment =
         tests::experiment_of(Kind::Timing, {{"t_host_s", {0.0, 0.1, 0.2, 0.3}}, {"frame_ok", {1, 0, 0, 1}}});
