@@ -53,7 +53,7 @@ std::vector<Effect> rab_effects() {
          "emerges from the poll period of the Linux program",
          "the same senders with a faster and a slower poll", {"arrival_rate|senders"}},
         // Two crystals beat: while the edges meet, frames are lost. lost while the phase lies in a window
-        {"beat_loss", 55, "losses come in spells",
+        {"beat_loss", 55, "losses come in bursts",
          {{"rab.beat", 0.0, 1.0, 0.1, "1-5 % of frames", {0.05}},
           {"rab.beat_burst", 0.01, 20.0, 1.0, "beat 10-60 s", {0.3}}},
          "ir.spell, ir.spell_time, beside what emerges from the crystals", "long records at two temperatures",

@@ -37,7 +37,7 @@ State neutral_state(const Model& model);
 /// How thorough a fit is.
 struct Effort {
     int iterations = 40;  ///< of the solver
-    bool noise = true;    ///< false: of the noise only its size is fitted
+    bool noise = true;    ///< false: of the noise only its size is fitted, and no nuisance of the model
     bool wander = true;   ///< false: what lets sums wander is left as it is
 };
 inline constexpr Effort kThorough{}, kQuick{.iterations = 6}, kPart{.iterations = 6, .noise = false},
