@@ -191,7 +191,7 @@ class Search::Steps {
         return true;
     }
 
-    /// Two effects that pull opposite ways nearly everywhere say next to nothing alone. Where no effect is
+    /// Two effects that pull opposite ways nearly everywhere gain next to nothing alone. Where no effect is
     /// enough, the best are tried two by two; both are taken or none.
     bool step_of_opposites() {
         std::vector<Pair> pairs;
@@ -265,7 +265,7 @@ class Search::Steps {
             trial.validated = true;
             trial.delta_bic = fits[k].won;
             if (!enough(gains[k])) continue;
-            // BIC says how simply, the held-out score how well: the sum of both decides.
+            // BIC is for how simply, the held-out score for how well: the sum of both decides.
             const double merit = gains[k].sum + fits[k].won / 2;
             // In a draw the sheet's order decides, which begins with what is met most often.
             const bool draw = best < fits.size() && std::abs(merit - best_gain) < kTie;
@@ -286,7 +286,7 @@ class Search::Steps {
     }
 
     /// Of many rows: the effects that a part of them speaks for most, with their fits to the part. What the
-    /// part says of the others is taken for what all rows would.
+    /// part gives for the others is taken for what all rows would.
     std::vector<std::size_t> promising(const std::vector<std::size_t>& tried, double begin,
                                        std::map<std::size_t, Fit>& guesses) {
         const auto& chosen = result_.chosen;
@@ -374,15 +374,15 @@ class Search::Steps {
         if (study_.part() != nullptr) on_part_ = study_.on_part(result_.chosen).bic;
     }
 
-    /// Of many rows: does already a part say clearly that the rest of the set is not enough?
+    /// Of many rows: does already a part show clearly that the rest of the set is not enough?
     bool needed_on_part(const std::vector<std::size_t>& rest, std::size_t effect) const {
         if (study_.part() == nullptr || !study_.part()->candidates()[effect].remark.empty()) return false;
         const State from = study_.in_part(study_.without(effect, result_.chosen.fitted.state));
         return study_.part()->fit_set(rest, from).bic > on_part_ + kClearBic + kHopelessOnPart;
     }
 
-    /// The chosen set with `rival` in the place of `effect`. Of many rows a part may say clearly that its BIC
-    /// will not be as good as `good_enough`: then its BIC is infinite and nothing is fitted.
+    /// The chosen set with `rival` in the place of `effect`. Of many rows a part may show clearly that its
+    /// BIC will not be as good as `good_enough`: then its BIC is infinite and nothing is fitted.
     Fit in_its_place(std::size_t effect, std::size_t rival, double good_enough) const {
         const auto set = replaced(result_.chosen.effects, effect, rival);
         const State from = study_.without(effect, result_.chosen.fitted.state);
@@ -441,7 +441,7 @@ class Search::Steps {
         return false;
     }
 
-    /// Does `outer` free all that `inner` does? Then it can always say the same, and says it with more words.
+    /// Does `outer` fit all parameters that `inner` fits? Then it can predict the same, with more parameters.
     bool nested(std::size_t outer, std::size_t inner) const {
         const auto &a = candidate(outer).freed, &b = candidate(inner).freed;
         return std::all_of(b.begin(), b.end(), [&](const Freed& one) {

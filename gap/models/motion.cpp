@@ -33,17 +33,17 @@ constexpr double kGravity = 9.81;
 constexpr double kSlip = 4;         // steps that a motor loses at a time: its coils' pattern repeats
 constexpr double kLateStep = 0.25;  // a step is counted when it is over
 constexpr double kOpenSteps = 0.6;  // of a wheel, each time its speed changes: the timer's phase
-constexpr double kOpenSlip = 0.2;   // share of the way lost to sliding that no formula tells
+constexpr double kOpenSlip = 0.2;   // share of the way lost to sliding that no formula gives
 constexpr double kSameTime = 1e-6;  // s
 constexpr double kCounterSd = 3.0;  // steps: whole steps, and when a row was taken
-constexpr double kSpan = 100.0;     // s: wheels that tell the heading of a whole run
-constexpr double kShortestSpan = 0.02, kLongestSpan = 1000.0;  // s: they tell nothing, everything
+constexpr double kSpan = 100.0;     // s: wheels that show the heading of a whole run
+constexpr double kShortestSpan = 0.02, kLongestSpan = 1000.0;  // s: they show nothing, everything
 constexpr double kSpanWidth = 3.0;                             // ln s
 constexpr double kSmallAngle = 1e-2;  // rad: below, two terms of a series do for sine and cosine
 constexpr double kDoubt = 2e-3;       // rad: of a run's heading as a whole
 constexpr double kLeastDoubt = 1e-5, kMostDoubt = 0.2, kDoubtWidth = 3.0;
 
-/// Beside the simulator's: how the robot is told what to do, and what looks at it.
+/// Beside the simulator's: how the robot gets its commands, and what looks at it.
 struct Numbers : physics::Parameters {
     double agenda = 1.0;  ///< 0: the project's own firmware; read before the fit, as start_loss
     double start_loss = 0.0, scale = 0.0, mismatch = 0.0, friction = 1 / contact.mu, latency = 0.0,
@@ -120,8 +120,8 @@ class MotionModel final : public ModelOf<Numbers> {
     std::vector<double> starts(std::string_view parameter) const override {
         if (parameter != "robot.deadband") return {};
         std::map<double, std::array<double, 2>> moves;  // speed -> metres asked for, metres seen
-        const Numbers told = nominal();
-        const double metre = told.metre(), arm = told.robot.axle_length / 2;
+        const Numbers values = nominal();
+        const double metre = values.metre(), arm = values.robot.axle_length / 2;
         std::size_t row = 0;
         for (const Path& path : paths_) {
             std::array<CurveReader, 2> pacer{CurveReader(pace_of(path, 0)), CurveReader(pace_of(path, 1))};
@@ -136,7 +136,7 @@ class MotionModel final : public ModelOf<Numbers> {
                     const double speed =
                         std::abs(asked) / std::max(path.time[i] - path.time[i - 1], kSameTime);
                     const bool starts =
-                        !counted_ && told.start_loss > 0 && settled[i] == 0;  // not at one speed
+                        !counted_ && values.start_loss > 0 && settled[i] == 0;  // not at one speed
                     if (speed < 1 || starts) continue;
                     auto& sums = moves[std::round(speed * 10) / 10];
                     sums[0] += std::abs(asked) * metre;
@@ -240,15 +240,15 @@ class MotionModel final : public ModelOf<Numbers> {
 
     /// By how much a robot turns in each row, by its wheels: the tracker's noise turns nothing.
     std::vector<double> turns() const {
-        const Numbers told = nominal();
-        const double metre = told.metre();
+        const Numbers values = nominal();
+        const double metre = values.metre();
         std::vector<double> turned;
         for (const Path& path : paths_) {
             CurveReader left(path.wheel[0]), right(path.wheel[1]);
             double last = 0.0;
             for (std::size_t i = 0; i < path.time.size(); ++i) {
                 const double apart = right.at(path.time[i]) - left.at(path.time[i]);
-                turned.push_back(i == 0 ? 0.0 : (apart - last) * metre / told.robot.axle_length);
+                turned.push_back(i == 0 ? 0.0 : (apart - last) * metre / values.robot.axle_length);
                 last = apart;
             }
         }
@@ -257,8 +257,8 @@ class MotionModel final : public ModelOf<Numbers> {
 
     /// What a change of command leaves open: where in a step it came, and how exactly the tyres slid.
     std::vector<double> jolts(std::size_t observable) const {
-        const Numbers told = nominal();
-        const double metre = told.metre(), lever = observable == 2 ? 1 / told.robot.axle_length : 0.5;
+        const Numbers values = nominal();
+        const double metre = values.metre(), lever = observable == 2 ? 1 / values.robot.axle_length : 0.5;
         std::vector<double> variance;
         for (const Path& path : paths_)
             for (std::size_t i = 0; i < path.time.size(); ++i) {
@@ -267,7 +267,7 @@ class MotionModel final : public ModelOf<Numbers> {
                     for (const SpeedJump& jump : path.wheel[w].jumps)
                         if (jump.time >= path.time[i - 1] && jump.time < path.time[i]) {
                             const double slid =
-                                std::pow(jump.change * metre, 2) * told.friction / (2 * kGravity);
+                                std::pow(jump.change * metre, 2) * values.friction / (2 * kGravity);
                             sum += std::pow(kOpenSteps * metre, 2) + std::pow(kOpenSlip * slid, 2);
                         }
                 variance.push_back(sum * lever * lever * share_along(path, i, observable));
@@ -323,14 +323,14 @@ class MotionModel final : public ModelOf<Numbers> {
         const std::vector<char>* settled;
     };
 
-    void drive(const Numbers& told, const Path& path, const Ways& ways, double late, std::size_t first,
+    void drive(const Numbers& values, const Path& path, const Ways& ways, double late, std::size_t first,
                Prediction& out) const {
-        const physics::BodyParameters& robot = told.robot;
+        const physics::BodyParameters& robot = values.robot;
         const double turn = 2 * std::numbers::pi / robot.steps_per_turn;
         const std::array<double, 2> metre{
-            turn * robot.wheel_radius_left * (1 + told.scale) * (1 - told.mismatch),
-            turn * robot.wheel_radius_right * (1 + told.scale) * (1 + told.mismatch)};
-        const double drop = counted_ ? 0.0 : told.drop;
+            turn * robot.wheel_radius_left * (1 + values.scale) * (1 - values.mismatch),
+            turn * robot.wheel_radius_right * (1 + values.scale) * (1 + values.mismatch)};
+        const double drop = counted_ ? 0.0 : values.drop;
         std::array<double, 2> driven{}, geared{}, last_geared{};
         double heading = 0;
         std::vector<Step> steps(path.time.size());
@@ -364,7 +364,7 @@ class MotionModel final : public ModelOf<Numbers> {
                     moved[w] -=
                         slipped(std::span(path.wheel[w].jumps)
                                     .subspan(wheel.first_jump[i], wheel.last_jump[i] - wheel.first_jump[i]),
-                                metre[w], told.friction, 2 * play, before, now);
+                                metre[w], values.friction, 2 * play, before, now);
                 moved[w] *= 1 - robot.load_creep * path.load[i] - robot.slope_creep * path.incline[i];
             }
             double way = (moved[0] + moved[1]) / 2;
@@ -384,28 +384,28 @@ class MotionModel final : public ModelOf<Numbers> {
                     aside += (-robot.drift_x * s + robot.drift_y * c) * span;
                 }
             }
-            way -= lever * told.marker_y;
-            aside += lever * told.marker_x;
-            heading += turned + told.heading_drift * span;
+            way -= lever * values.marker_y;
+            aside += lever * values.marker_x;
+            heading += turned + values.heading_drift * span;
             out[2].mean[first + i] = heading;
             steps[i] = {way, aside,
-                        told.marker_angle +
-                            told.heading_drift * (path.time[i] - path.time.front() - span / 2)};
+                        values.marker_angle +
+                            values.heading_drift * (path.time[i] - path.time.front() - span / 2)};
             if (robot.step_loss_speed > 0) {
                 for (std::size_t o = 0; o < 2; ++o)
                     if (!out[o].jolt.empty()) out[o].jolt[first + i] = slips / 4 * share_along(path, i, o);
                 out[2].jolt[first + i] = slips / (robot.axle_length * robot.axle_length);
             }
-            if (told.push.rate > 0 && (*ways.settled)[i] != 0) {
+            if (values.push.rate > 0 && (*ways.settled)[i] != 0) {
                 for (std::size_t o = 0; o < 3; ++o) {
-                    out[o].lapse[first + i] = std::min(told.push.rate * span, 0.5);
-                    out[o].lapse_scale[first + i] = o == 2 ? told.push.turn : told.push.size;
+                    out[o].lapse[first + i] = std::min(values.push.rate * span, 0.5);
+                    out[o].lapse_scale[first + i] = o == 2 ? values.push.turn : values.push.size;
                 }
             }
             if (drop > 0)
                 lapses_of_loss(drop, metre, robot.axle_length, path, i, before, now, first + i, out);
         }
-        tell_place(std::exp(told.heading_span), path, steps, first, out);
+        predict_place(std::exp(values.heading_span), path, steps, first, out);
     }
 
     /// What a robot does between two rows, and the angle by which the tracker's heading is off, noise apart.
@@ -413,10 +413,10 @@ class MotionModel final : public ModelOf<Numbers> {
         double way = 0.0, aside = 0.0, skew = 0.0;
     };
 
-    /// Where steps lead to, told along the tracker's heading: what turns that turns the way. In the room it
+    /// Where steps lead to, along the tracker's heading: what turns that turns the way. In the room it
     /// is the robot's own heading that leads, as far as it is known.
-    void tell_place(double span, const Path& path, const std::vector<Step>& steps, std::size_t first,
-                    Prediction& out) const {
+    void predict_place(double span, const Path& path, const std::vector<Step>& steps, std::size_t first,
+                       Prediction& out) const {
         const std::size_t n = steps.size();
         thread_local std::vector<double> above, errors;
         above.resize(n);
@@ -456,13 +456,13 @@ class MotionModel final : public ModelOf<Numbers> {
 
     void predict_counters(const Numbers& now, Prediction& out) const {
         const double latency = now.latency, drop = now.drop;
-        const auto told = counts_.get({latency}, [&] {
-            return std::array{told_to(0, latency), told_to(1, latency)};
+        const auto commanded = counts_.get({latency}, [&] {
+            return std::array{commanded_steps(0, latency), commanded_steps(1, latency)};
         });
         for (std::size_t w = 0; w < 2; ++w) {
             const Observable& o = observables_[3 + w];
             Predicted& p = out[3 + w];
-            p.mean = (*told)[w];
+            p.mean = (*commanded)[w];
             p.lapse.assign(drop > 0 ? o.y.size() : 0, 0.0);
             p.lapse_scale.assign(drop > 0 ? o.y.size() : 0, 0.0);
             if (drop <= 0) continue;
@@ -478,7 +478,7 @@ class MotionModel final : public ModelOf<Numbers> {
     }
 
     /// What a counter would have counted of the commands; where a run has no pose, what it did count.
-    std::vector<double> told_to(std::size_t wheel, double latency) const {
+    std::vector<double> commanded_steps(std::size_t wheel, double latency) const {
         const Observable& o = observables_[3 + wheel];
         std::vector<double> counts = o.y;
         for_each_path(o, [&](const Path& path, std::size_t first, std::size_t end) {

@@ -215,7 +215,7 @@ class TimingModel final : public ModelOf<Numbers> {
         }
     }
 
-    /// A clock that was reckoned from the periods themselves has no noise that could be fitted.
+    /// A clock that was computed from the periods themselves has no noise that could be fitted.
     bool keeps_to_periods(const Observable& clock) const {
         double zero = 0.0;
         for (std::size_t i = 0; i < clock.y.size(); ++i) {
@@ -225,7 +225,7 @@ class TimingModel final : public ModelOf<Numbers> {
         return true;
     }
 
-    /// Its rounding says nothing.
+    /// Its rounding measures nothing.
     void take_periods(Observable& clock) const {
         clock.fixed_sd = clock.instrument.quantum;
         double zero = 0.0;
@@ -241,7 +241,7 @@ class TimingModel final : public ModelOf<Numbers> {
         std::vector<std::uint32_t> used;
         if (experiment.has("frame_ok")) {
             ok_ = static_cast<int>(observables_.size());
-            // A frame that is broken because bytes shifted tells nothing that `shifted` does not.
+            // A frame that is broken because bytes shifted shows nothing that `shifted` does not.
             const auto shifted = rows.column("shifted", 0);
             observables_.push_back(rows.observable("frame_ok", NoiseKind::Event, used, shifted));
             observables_.back().time.clear();

@@ -4,10 +4,13 @@
 #include "gap/models/wheel_curve.h"
 #include "physics/description/robot_constants.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <initializer_list>
 #include <numbers>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,7 +29,11 @@ class Table {
         for (std::string name; each >> name;)
             columns_.push_back(&run_.columns[name]);
     }
+    /// As many values as columns.
     void row(std::initializer_list<double> values) {
+        if (values.size() != columns_.size())
+            throw std::logic_error(
+                fmt::format("a design's row has {} values for {} columns", values.size(), columns_.size()));
         auto column = columns_.begin();
         for (const double value : values)
             (*column++)->push_back(value);

@@ -16,14 +16,14 @@ struct Finding {
     double statistic = 0.0;
     double p = 1.0;             ///< of this test alone
     double p_adjusted = 1.0;    ///< after correction for all tests of the table
-    double effect = 0.0;        ///< size, in the residual's unit unless `effect_unit` says otherwise
+    double effect = 0.0;        ///< size, in the residual's unit unless `effect_unit` is another
     std::string effect_unit{};  ///< empty: the residual's own; else "", "fraction", "correlation", ...
     double relative = 0.0;      ///< |effect| over the residual's robust scale (0 where that has no meaning)
     double units = 0.0;         ///< independent values or groups the test stands on
     std::string shape{};        ///< in words: "grows with distance, zero at zero"
 };
 
-/// The same with nothing found, for want of what `why` says.
+/// The same with nothing found, for want of what `why` names.
 inline Finding not_asked(Finding finding, std::string why = "too few values") {
     finding.shape = std::move(why);
     return finding;

@@ -315,7 +315,7 @@ bool align_frames(Experiment& experiment, const std::vector<FrameBeat>& beats) {
             time -= std::copysign(period, beat.period) * sawtooth(beat.beat * time + beat.phase);
     }
     experiment.caution(
-        "the tracker tells poses at frames of its own, about {:.2g} ms apart (or the counters "
+        "the tracker gives poses at frames of its own, about {:.2g} ms apart (or the counters "
         "are polled so): a row is later than the one before until it falls back by a frame ({} "
         "of {} runs beyond doubt). Counters were read at the frames' times before anything was "
         "fitted; half a frame of a tracker's delay is theirs",

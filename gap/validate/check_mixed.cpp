@@ -87,7 +87,7 @@ void check_frames(Experiment& experiment, const Run& run) {
     if (back > kFew && static_cast<double>(back) > kMostBack * static_cast<double>(seq.size()))
         refuse(experiment, run,
                fmt::format("seq does not count on ({:g} after {:g}; so in {} of {} rows): frames of two "
-                           "robots are mixed, or told twice",
+                           "robots are mixed, or given twice",
                            seq[first], seq[first - 1], back, seq.size()),
                "one robot a file, each frame once", static_cast<long>(first));
     const auto &host = run.column("t_host_s"), &period = run.column("nominal_period");
@@ -109,7 +109,7 @@ void check_frames(Experiment& experiment, const Run& run) {
 
 // ---- readings at placements
 
-/// What holds a placement: everything told of a row but when it was and what else was read.
+/// What holds a placement: everything given of a row but when it was and what else was read.
 std::vector<std::string> placement_columns(const Experiment& experiment, const Run& run) {
     static const std::set<std::string_view> passing{
         "t_s", "order", "temperature_c", "battery_v", "pair_reading", "neighbour_reading", "ambient_reading"};
@@ -209,7 +209,7 @@ void check_levels(Experiment& experiment, const Run& run, const char* observable
     experiment.caution(
         "{}: {} falls into two levels, to and fro, at {} of {} placements ({:.4g} and {:.4g} where row {} "
         "is): rows of two robots mixed, or something that nobody noted was switched? Nothing that is found "
-        "is to be believed before a column (unit) tells them apart",
+        "is to be believed before a column (unit) parts them",
         run.file, observable, split, repeated, seen.low, seen.high, row + 1);
 }
 

@@ -1,5 +1,5 @@
 // Effects that only scatter, on toy experiments: they are named for scatter, and not for a mean that the
-// model lacks or for spells.
+// model lacks or for bursts.
 
 #include "base/random.h"
 #include "gap/pipeline/analyse.h"
@@ -22,14 +22,14 @@ struct Row {
     int run, place, read, row;
 };
 
-/// What the simulator says of each row, in order, with `wrong` on top.
+/// What the simulator gives for each row, in order, with `wrong` on top.
 void fill(Experiment& experiment, const char* column, const std::function<double(double, const Row&)>& wrong,
           int reads) {
-    const Series told = test::simulated(experiment).front();
-    for (std::size_t i = 0; i < told.before.size(); ++i) {
-        const int row = static_cast<int>(told.row[i]);
-        experiment.runs[told.run[i]].columns[column][told.row[i]] =
-            wrong(told.before[i], {static_cast<int>(told.run[i]), row / reads, row % reads, row});
+    const Series simulated = test::simulated(experiment).front();
+    for (std::size_t i = 0; i < simulated.before.size(); ++i) {
+        const int row = static_cast<int>(simulated.row[i]);
+        experiment.runs[simulated.run[i]].columns[column][simulated.row[i]] =
+            wrong(simulated.before[i], {static_cast<int>(simulated.run[i]), row / reads, row % reads, row});
     }
 }
 
@@ -97,7 +97,7 @@ TEST_CASE("strengths that scatter more, message by message, are named so") {
     CHECK(verdict.causes.front().name == "range_noise");
 }
 
-TEST_CASE("spells in which nothing is heard do not make scatter of what is heard a mean") {
+TEST_CASE("bursts in which nothing is heard do not make scatter of what is heard a mean") {
     RandomStream random(15, "scatter test");
     Experiment experiment =
         strengths([&](double level, const Row&) { return level + 0.4 * random.normal(); });
@@ -126,7 +126,7 @@ TEST_CASE("strengths that differ from place to place and repeat at each are not 
     CHECK(verdict.causes.empty());
 }
 
-TEST_CASE("pulses that hit single readings are named, spells of bad contact are not") {
+TEST_CASE("pulses that hit single readings are named, bursts of bad contact are not") {
     RandomStream random(14, "scatter test");
     const auto noisy = [&](double level) {
         return std::clamp(std::round(level + 3 * random.normal()), 0.0, 4095.0);
@@ -137,19 +137,19 @@ TEST_CASE("pulses that hit single readings are named, spells of bad contact are 
     }));
     REQUIRE_FALSE(pulses.causes.empty());
     CHECK(pulses.causes.front().name == "pulsed_interference");
-    const Verdict spells = verdict_on(readings([&](double level, const Row& row) {
+    const Verdict bursts = verdict_on(readings([&](double level, const Row& row) {
         // Six rows in forty, of a contact that lets pass what it likes.
         const bool loose = (row.row + 7 * row.run) % 40 < 6;
         return noisy(loose ? level + 150 * (row.row % 2 == 0 ? 1 : -1) : level);
     }));
-    CHECK(spells.decision == Decision::Unexplained);
-    CHECK(spells.causes.empty());
+    CHECK(bursts.decision == Decision::Unexplained);
+    CHECK(bursts.causes.empty());
 }
 
 TEST_CASE("noise in proportion errs anew at each reading, what is there again at the next one is none") {
     RandomStream random(15, "scatter test");
     double share = 0.0;
-    const auto told = [&](bool anew) {
+    const auto verdict_of = [&](bool anew) {
         return verdict_on(readings(
             [&](double level, const Row& row) {
                 if (anew || row.read == 0) share = 0.01 * random.normal();
@@ -157,10 +157,10 @@ TEST_CASE("noise in proportion errs anew at each reading, what is there again at
             },
             2, 0.08));
     };
-    const Verdict scatter = told(true);
+    const Verdict scatter = verdict_of(true);
     REQUIRE(scatter.causes.size() == 1);
     CHECK(scatter.causes.front().name == "proportional_noise");
-    const Verdict offsets = told(false);
+    const Verdict offsets = verdict_of(false);
     CHECK(offsets.decision == Decision::Unexplained);
     CHECK(offsets.causes.empty());
 }
@@ -177,6 +177,6 @@ TEST_CASE("a cause stays where only scatter beside it is doubted") {
     REQUIRE(verdict.causes.size() == 1);
     CHECK(verdict.causes.front().name == "sensor_offset");
     CHECK(std::any_of(verdict.cautions.begin(), verdict.cautions.end(), [](const std::string& caution) {
-        return caution.find("pulsed_interference") == 0 && caution.find("spells") != std::string::npos;
+        return caution.find("pulsed_interference") == 0 && caution.find("bursts") != std::string::npos;
     }));
 }

@@ -55,7 +55,10 @@ TEST_CASE("batches are found by the grid that arrivals keep to") {
         CHECK(std::any_of(starts.begin(), starts.end(),
                           [&](double start) { return std::abs(start - batch) < 1e-5 * batch; }));
         CHECK(table.misfit("arrival", {}) > 0.2 * batch);
-        CHECK(table.misfit("arrival", {{"timing.batch", batch}}) < (batch < 0.003 ? 0.15 : 0.1) * batch);
+        // Below 3 ms the mean of both deliveries is expected of a frame that is ready near one, by a clock
+        // good to s = 0.1 ms: over even waits that alone leaves sqrt(0.234 s / batch) = 0.12 of the batch.
+        const double left = batch < 0.003 ? 0.15 : 0.1;
+        CHECK(table.misfit("arrival", {{"timing.batch", batch}}) < left * batch);
     }
     CHECK(exact({}, "timing_no_batch").model().starts("proximity.gain").empty());
 }
