@@ -4,6 +4,7 @@
 #include "base/random.h"
 #include "gap/data/experiment.h"
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -22,9 +23,10 @@ struct Made {
     double share = 1.0, push = 0.0;
 };
 
-/// Drives to and fro, each along a line of its own; row k of a leg, x before it.
+/// Drives to and fro, each along a line of its own; row k of a leg, x before it. The tracker errs by 1 mm, of
+/// which a share `carry` is kept from row to row, and by 5 mrad.
 inline Experiment toy_drives(const std::function<Made(RandomStream&, int leg, int k, double x)>& made,
-                             std::uint64_t seed = 5) {
+                             std::uint64_t seed = 5, double carry = 0.0) {
     RandomStream random(seed, "toy drives"), chance(seed + 1, "toy drives");
     Experiment experiment;
     experiment.kind = Kind::Motion;
@@ -35,6 +37,7 @@ inline Experiment toy_drives(const std::function<Made(RandomStream&, int leg, in
         run.name = "run" + std::to_string(r);
         const double heading = 0.8 * r / kToyRuns;
         double along = -0.15 * random.uniform();
+        std::array<double, 2> error{};
         for (int i = 0; i <= kToyLegs * kToyLeg; ++i) {
             const auto command = [](int row) { return row / kToyLeg % 2 == 0 ? kToySpeed : -kToySpeed; };
             if (i > 0) {
@@ -43,11 +46,14 @@ inline Experiment toy_drives(const std::function<Made(RandomStream&, int leg, in
                 along += command(before) * kToyRow * kToyMetre * one.share + one.push;
             }
             const double next = command(std::min(i, kToyLegs * kToyLeg - 1));
+            for (double& one : error)
+                one = (i > 0 ? carry * one : 0.0) +
+                      (i > 0 ? std::sqrt(1 - carry * carry) : 1.0) * random.normal();
             run.columns["t_s"].push_back(kToyRow * i);
             run.columns["cmd_left"].push_back(next);
             run.columns["cmd_right"].push_back(next);
-            run.columns["x_m"].push_back(along * std::cos(heading) + 1e-3 * random.normal());
-            run.columns["y_m"].push_back(along * std::sin(heading) + 1e-3 * random.normal());
+            run.columns["x_m"].push_back(along * std::cos(heading) + 1e-3 * error[0]);
+            run.columns["y_m"].push_back(along * std::sin(heading) + 1e-3 * error[1]);
             run.columns["theta_rad"].push_back(heading + 5e-3 * random.normal());
             ++run.rows;
         }
