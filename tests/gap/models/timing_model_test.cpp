@@ -70,7 +70,7 @@ TEST_CASE("each row knows how many its chain lacks before it") {
         return make_model(experiment)->observables().front().steps;
     };
     using Steps = std::vector<std::uint32_t>;
-    CHECK(steps_of({{"t_host_s", {0.0, 0.1, 0.2, 0.3}}, {"seq", {0, 1, 4, 1e12}}}) ==
+    CHECK(steps_of({{"t_host_s", {0.0, 0.1, 0.2, 0.3}}, {"seq", {0, 1, 4, 5e6}}}) ==
           Steps{1, 1, 3, 1'000'000});
     // In the table, and without a time.
     CHECK(steps_of({{"t_host_s", {0.0, kNone, 0.2, 0.3}}}) == Steps{1, 2, 1});
