@@ -54,6 +54,20 @@ TEST_CASE("wrong units are refused") {
     CHECK_THAT(refusal(scaled(clean("microphone"), "distance_m", 100)), Contains("unit"));
 }
 
+TEST_CASE("a host that hands frames over in batches is no robot's clock") {
+    constexpr double kBatch = 0.0125;  // s: an eighth of the period, so that most intervals are alike
+    Made made = clean("timing");
+    puckloop::RandomStream random(3, "batches");
+    double robot = 0.0;
+    for (auto& row : made.rows) {
+        robot += 0.1 + 3e-4 * random.normal();
+        row[place_of(made, "t_robot_s")] = fmt::format("{:.7f}", robot);
+        row[place_of(made, "t_host_s")] = fmt::format("{:.7f}", kBatch * std::ceil(robot / kBatch));
+    }
+    CHECK(refusal(made) == "");
+    CHECK_THAT(refusal(swapped(made, "t_robot_s", "t_host_s")), Contains("swapped"));
+}
+
 TEST_CASE("swapped columns are refused, or said where both are plausible") {
     const auto said = [](const char* kind, const char* a, const char* b) {
         return refusal(swapped(clean(kind), a, b));
