@@ -7,7 +7,6 @@
 #include "gap/diagnostics/scatter.h"
 #include "gap/evidence/criterion.h"
 #include "gap/fit_test/run_differences.h"
-#include "gap/fit_test/wander.h"
 #include "gap/residual_model/free_form.h"
 #include "gap/stats/tails.h"
 #include "gap/validate/placements.h"
@@ -99,23 +98,6 @@ std::vector<std::size_t> no_more_than_large_errors(const Study& study, const Fit
                : outliers;
 }
 
-/// The effects that take single rows of sums for lapses, if sums wander beside them: whatever wanders has
-/// rows that look like lapses.
-std::vector<std::size_t> of_sums_that_wander(const Study& study, const Fit& fit) {
-    if (!lapses(study, fit)) return {};
-    const auto& all = study.model().observables();
-    auto effects = scatter_effects(study, fit);
-    std::erase_if(effects, [&](std::size_t effect) {
-        const auto touched = scattered_by(study, fit, {effect});
-        return std::none_of(all.begin(), all.end(), [&](const Observable& one) {
-            return adds_up(one) && one.fixed_sd <= 0 &&
-                   std::find(touched.begin(), touched.end(), one.name) != touched.end();
-        });
-    });
-    return !effects.empty() && wanders_anywhere(study, fit, thresholds::kSure) ? effects
-                                                                               : std::vector<std::size_t>{};
-}
-
 }  // namespace
 
 double mean_share(const Study& study, const Fit& fit, std::size_t effect) {
@@ -185,11 +167,6 @@ OutOfRole out_of_role(const Study& study, const Fit& fit, const HeldOut& held,
             result.why = "keeps to a place, a command or a run, and chance does not";
             return result;
         }
-    result.effects = of_sums_that_wander(study, fit);
-    if (!result.effects.empty()) {
-        result.why = "makes single errors larger where sums wander";
-        return result;
-    }
     result.effects = no_more_than_large_errors(study, fit, held);
     if (!result.effects.empty()) {
         result.why = "explains no more than errors of which a few are larger do";

@@ -73,11 +73,7 @@ Freed freed_at(const Model& model, const EffectParameter& parameter, int index) 
 }  // namespace
 
 Study::Study(const Experiment& experiment, std::uint64_t seed, unsigned threads, MotionView view)
-    : experiment_(experiment),
-      view_(view),
-      model_(make_model(experiment, view)),
-      threads_(threads),
-      seed_(seed) {
+    : experiment_(experiment), view_(view), model_(make_model(experiment, view)), threads_(threads) {
     for (const Observable& observable : model_->observables())
         rows_ += observable.y.size();
     make_candidates();

@@ -53,7 +53,6 @@ class Study {
     std::size_t folds() const { return folds_; }
     const Blocks& blocks() const { return blocks_; }
     unsigned threads() const { return threads_; }
-    std::uint64_t seed() const { return seed_; }
     /// Which part a row is held out with: an observable each.
     const std::vector<std::vector<int>>& fold_of() const { return fold_; }
 
@@ -107,7 +106,6 @@ class Study {
     Blocks blocks_;
     std::size_t rows_ = 0, folds_ = 0;
     unsigned threads_ = 1;
-    std::uint64_t seed_ = 1;
 };
 
 /// Sum over rows of `after` - `before`, block by block.

@@ -66,14 +66,4 @@ std::vector<Leftover> wandering(const Study& study, const Fit& fit, double repor
     return all;
 }
 
-bool wanders_anywhere(const Study& study, const Fit& fit, double p) {
-    if (!wandering(study, fit, p / 2).empty()) return true;  // two looks
-    if (study.experiment().kind != Kind::Motion || study.view() == MotionView::Room) return false;
-    const Study room(study.experiment(), study.seed(), study.threads(), MotionView::Room);
-    Fit again = room.fit_none();
-    if (!fit.effects.empty())
-        again = room.fit_set(fit.effects, {fit.fitted.state.values, again.fitted.state.noise});
-    return !wandering(room, again, p / 2).empty();
-}
-
 }  // namespace puckloop::gap

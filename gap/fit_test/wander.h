@@ -18,7 +18,4 @@ inline constexpr const char* kWanderCovariate = "course of a run";
 /// Those with a p of `reported` or more are left out.
 std::vector<Leftover> wandering(const Study& study, const Fit& fit, double reported);
 
-/// Does anything wander beside a fit of the same effects that looks at every observable where it is steady?
-bool wanders_anywhere(const Study& study, const Fit& fit, double p);
-
 }  // namespace puckloop::gap

@@ -1,19 +1,15 @@
-// Sums that wander beside what was measured: seen where they do, not where errors carry over, and no ground
-// for pushes. And a measured heading, whose noise is in the residual, too.
+// Sums that wander beside what was measured: seen where they do, not where errors carry over. And a measured
+// heading, whose noise is in the residual, too.
 
-#include "gap/decide/roles.h"
 #include "gap/diagnostics/residual_structure.h"
 #include "gap/fit_test/wander.h"
 #include "tests/gap/decision/toy_drives.h"
 
 #include <catch2/catch.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <set>
-#include <string>
-#include <string_view>
 
 using namespace puckloop;
 using namespace puckloop::gap;
@@ -21,28 +17,14 @@ using namespace puckloop::gap;
 namespace {
 
 constexpr double kStep = 4e-4;  // m that a row goes astray, where it does
-constexpr double kPush = 0.012, kPushed = 0.03;
 
-/// Each row goes astray by `step` m, and one in so many is pushed.
-Experiment drives(double step, std::uint64_t seed, double carry = 0.0, double pushes = 0.0) {
+/// Each row goes astray by `step` m.
+Experiment drives(double step, std::uint64_t seed, double carry = 0.0) {
     return toy_drives(
         [&](RandomStream& random, int, int, double) {
-            const double astray = step * random.normal();
-            return Made{1.0, astray + (random.uniform() < pushes ? kPush : 0.0)};
+            return Made{1.0, step * random.normal()};
         },
         seed, carry);
-}
-
-/// Why pushes, fitted to a drive, are none; empty: they may be.
-std::string doubt_of_pushes(const Experiment& experiment) {
-    const Study study(experiment, 1);
-    const auto& all = study.candidates();
-    const auto pushes = std::find_if(all.begin(), all.end(), [](const Candidate& one) {
-        return one.effect->name == std::string_view("collision_push");
-    });
-    const Fit fit =
-        study.fit_set({static_cast<std::size_t>(pushes - all.begin())}, study.fit_none().fitted.state);
-    return out_of_role(study, fit, study.hold_out(fit), {}, 1).why;
 }
 
 std::vector<Leftover> seen(const Experiment& experiment, MotionView view) {
@@ -63,21 +45,6 @@ TEST_CASE("a way that wanders is a structure, errors of the tracker are none", "
         CHECK_THAT(found.front().shape, Catch::Contains("wanders by"));
     }
     CHECK(alarms <= 1);  // of six at one in a hundred each: two come once in some 700 seeds
-}
-
-TEST_CASE("beside what wanders pushes are none", "[gap][wander]") {
-    const bool wanders = GENERATE(true, false);
-    const std::string doubt = doubt_of_pushes(drives(wanders ? kStep : 0.0, 21, 0.0, kPushed));
-    CHECK((doubt.find("wander") != std::string::npos) == wanders);
-}
-
-TEST_CASE("sums along measured headings are looked at in the room", "[gap][wander]") {
-    const bool wanders = GENERATE(true, false);
-    const Experiment experiment = drives(wanders ? kStep : 0.0, 21);
-    CHECK(seen(experiment, MotionView::Robot).empty());  // the heading keeps to its wheels
-    const Study study(experiment, 1);
-    const Fit none = study.fit_none();
-    CHECK(wanders_anywhere(study, none, 1e-4) == wanders);
 }
 
 TEST_CASE("a heading at the edge of two sectors is in one of them", "[gap][wander]") {
