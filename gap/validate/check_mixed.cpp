@@ -77,9 +77,49 @@ void check_paths(const Experiment& experiment, const Run& run) {
 
 // ---- timing
 
-void check_frames(Experiment& experiment, const Run& run) {
+/// A number that lies beyond both its neighbours', which count on without it, is a damaged one: by far, for a
+/// frame given twice is none. Where many do, something else is wrong.
+void drop_damaged_numbers(Experiment& experiment, Run& run, std::vector<double>& seq) {
+    constexpr double kBeyond = 2.0, kFewDamaged = 0.02;  // numbers; share of the rows
+    std::vector<std::size_t> damaged;
+    for (std::size_t i = 1; i + 1 < seq.size(); ++i) {
+        const double before = seq[i - 1], after = seq[i + 1];
+        if (before < after && (seq[i] > after + kBeyond || seq[i] < before - kBeyond)) damaged.push_back(i);
+    }
+    if (static_cast<double>(damaged.size()) > std::max(1.0, kFewDamaged * static_cast<double>(seq.size())))
+        return;
+    for (const std::size_t i : damaged) {
+        experiment.caution("{}: seq = {:.6g} in row {} lies beyond both its neighbours: taken as missing",
+                           run.file, seq[i], i + 1);
+        seq[i] = std::nan("");
+    }
+}
+
+/// Puts numbers of a counter of 8 or 16 bits together over its wraps.
+void put_together(Experiment& experiment, Run& run, std::vector<double>& seq) {
+    constexpr double kNear = 8.0;  // frames that may be missing at the wrap
+    double added = 0.0, wrap = 0.0;
+    for (std::size_t i = 1; i < seq.size(); ++i) {
+        seq[i] += added;
+        const double short_of = seq[i - 1] + 1 - seq[i], own = seq[i] - added;
+        for (const double numbers : {256.0, 65536.0}) {
+            if (!(own < kNear && short_of <= numbers && short_of > numbers - kNear)) continue;
+            seq[i] += numbers;
+            added += wrap = numbers;
+        }
+    }
+    if (wrap > 0)
+        experiment.caution("{}: seq is a counter that wraps at {:g}: put together over wraps", run.file,
+                           wrap);
+}
+
+void check_frames(Experiment& experiment, Run& run) {
     constexpr double kMostBack = 0.05;
     constexpr std::size_t kFew = 3, kEnough = 20;
+    if (const auto numbers = run.columns.find("seq"); numbers != run.columns.end()) {
+        put_together(experiment, run, numbers->second);
+        drop_damaged_numbers(experiment, run, numbers->second);
+    }
     const auto& seq = run.column("seq");
     std::size_t back = 0, first = 0;
     for (std::size_t i = 1; i < seq.size(); ++i)
@@ -216,7 +256,7 @@ void check_levels(Experiment& experiment, const Run& run, const char* observable
 }  // namespace
 
 void check_mixed(Experiment& experiment) {
-    for (const Run& run : experiment.runs) {
+    for (Run& run : experiment.runs) {
         if (separated_by_unit(run)) continue;
         if (experiment.kind == Kind::Motion) check_paths(experiment, run);
         if (experiment.kind == Kind::Timing) check_frames(experiment, run);

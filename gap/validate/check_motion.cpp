@@ -170,6 +170,64 @@ void check_pose(const Experiment& experiment, const Run& run, double metre_per_s
                "x, y and a counter-clockwise heading from the x axis");
 }
 
+/// Without counters nothing is known of commands in a hole of the record.
+void check_holes(Experiment& experiment, const Run& run) {
+    constexpr double kHole = 10.0;  // usual steps
+    if (run.has("steps_left")) return;
+    const auto& time = run.column("t_s");
+    const std::vector<double> spans = stats::steps_of(time);
+    if (spans.empty()) return;
+    const double longest = kHole * stats::upper_median(spans);
+    for (std::size_t i = 1; i < run.rows; ++i)
+        if (time[i] - time[i - 1] > longest)
+            experiment.caution(
+                "{}: no rows for {:.3g} s before row {}: the commands given meanwhile are not known, and "
+                "the last one is taken to have stood (commands that get lost look the same)",
+                run.file, time[i] - time[i - 1], i + 1);
+}
+
+/// How many times as far as its wheels ask for a heading turns, in each row in which they turn beyond noise.
+void take_turns(const Run& run, double metre_per_step, double axle, std::vector<double>& turns) {
+    constexpr double kLeastTurn = 0.02;  // rad
+    const bool counted = run.has("steps_left");
+    const auto &left = run.column(counted ? "steps_left" : "cmd_left"),
+               &right = run.column(counted ? "steps_right" : "cmd_right"), &theta = run.column("theta_rad"),
+               &time = run.column("t_s");
+    for (std::size_t i = 1; i < run.rows; ++i) {
+        const double steps = counted ? (right[i] - right[i - 1]) - (left[i] - left[i - 1])
+                                     : (right[i - 1] - left[i - 1]) * (time[i] - time[i - 1]);
+        const double asked = std::abs(steps) * metre_per_step / axle,
+                     turn = std::abs(theta[i] - theta[i - 1]);
+        if (asked > kLeastTurn && std::isfinite(turn)) turns.push_back(turn / asked);
+    }
+}
+
+void check_degrees(const Experiment& experiment, double metre_per_step, double axle) {
+    constexpr std::size_t kEnough = 8;
+    constexpr double kDegrees = 10.0;  // a degree for a radian is 57
+    std::vector<double> turns;
+    for (const Run& run : experiment.runs)
+        take_turns(run, metre_per_step, axle, turns);
+    if (turns.size() < kEnough) return;
+    const double middle = stats::upper_median(turns);
+    if (middle > kDegrees)
+        refuse(experiment, experiment.runs.front(),
+               fmt::format("theta_rad turns {:.3g} times as far as the wheels do: degrees?", middle),
+               "radians, or theta_rad = \"deg\" in [columns]");
+}
+
+/// m that the commands ask for, the mean of both wheels.
+double way_asked(const Run& run, double metre_per_step) {
+    double way = 0.0;
+    if (!run.has("cmd_left")) return way;
+    const auto &left = run.column("cmd_left"), &right = run.column("cmd_right"), &time = run.column("t_s");
+    for (std::size_t i = 1; i < run.rows; ++i) {
+        const double one = (std::abs(left[i - 1]) + std::abs(right[i - 1])) / 2 * (time[i] - time[i - 1]);
+        if (std::isfinite(one)) way += one * metre_per_step;
+    }
+    return way;
+}
+
 }  // namespace
 
 double metres_per_step(const Experiment& experiment) {
@@ -181,7 +239,7 @@ double metres_per_step(const Experiment& experiment) {
 /// far.
 void check_motion(Experiment& experiment) {
     double agree = 0.0, turned = 0.0;
-    double driven = 0.0, tracked = 0.0, duration = 0.0;
+    double driven = 0.0, tracked = 0.0, duration = 0.0, asked_way = 0.0;
     bool steps = false, heading_fixed = true;
     const double axle = experiment.nominal_or("robot.axle_length", physics::kAxleLength);
     const double metre_per_step = metres_per_step(experiment);
@@ -199,6 +257,8 @@ void check_motion(Experiment& experiment) {
             for (const char* counter : {"steps_left", "steps_right"})
                 check_counter(experiment, run, counter, metre_per_step);
         check_commands(experiment, run);
+        check_holes(experiment, run);
+        asked_way += way_asked(run, metre_per_step);
         if (path.largest_turn > 2.5)
             experiment.caution(
                 "{}: theta_rad jumps by {:.2f} rad between two rows: too sparse, or a wrong unit", run.file,
@@ -222,6 +282,7 @@ void check_motion(Experiment& experiment) {
     if (tracked == 0.0 && heading_fixed)
         refuse(experiment, first, "the pose is the same in every row",
                "what the tracker saw of a robot that moves");
+    check_degrees(experiment, metre_per_step, axle);
     if (turned > 0 && agree < -0.5 * turned)
         refuse(experiment, first,
                "the robot turns the other way than its wheels: left and right are swapped, or theta_rad runs "
@@ -235,6 +296,15 @@ void check_motion(Experiment& experiment) {
                                tracked, driven),
                    "the same within a factor of five");
     }
+    // Wheels that slow commands do not move make less way, but not in all runs together.
+    if (!steps && asked_way > 0.1 && tracked < asked_way / 20 && tracked > 1e-9)
+        refuse(
+            experiment, first,
+            fmt::format(
+                "the tracker saw {:.3g} m while the commands over t_s ask for {:.3g} m: wrong unit of t_s, "
+                "of x_m and y_m or of cmd_left, cmd_right",
+                tracked, asked_way),
+            "seconds, metres and steps/s");
     if (duration > 0 && tracked / duration > 3.0)
         refuse(experiment, first,
                fmt::format("the robot moves {:.3g} m/s on average: wrong unit of x_m, y_m or t_s",

@@ -7,6 +7,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <functional>
+
 using namespace puckloop::gap;
 using namespace puckloop::gap::tests;
 using Catch::Matchers::Contains;
@@ -52,6 +54,36 @@ TEST_CASE("wrong units are refused") {
     CHECK_THAT(refusal(scaled(clean("rab"), "distance_m", 100)), Contains("unit"));
     CHECK_THAT(refusal(changed(clean("rab"), "bearing_rad", degrees)), Contains("unit"));
     CHECK_THAT(refusal(scaled(clean("microphone"), "distance_m", 100)), Contains("unit"));
+}
+
+TEST_CASE("one damaged frame number is missing, a counter that wraps goes on") {
+    const auto numbers = [](const std::function<double(std::size_t)>& number) {
+        return changed(clean("timing"), "seq",
+                       [&](std::size_t i, double) { return fmt::format("{:.0f}", number(i)); });
+    };
+    for (const double damaged : {5e9, 0.0})
+        CHECK_THAT(cautions_of(numbers(
+                       [&](std::size_t i) { return i == 20 ? damaged : 100.0 + static_cast<double>(i); })),
+                   Contains("in row 21 lies beyond both its neighbours"));
+    CHECK_THAT(cautions_of(numbers([](std::size_t i) { return static_cast<double>(i < 20 ? i : i + 50); })),
+               !Contains("neighbours"));  // frames that are missing
+    CHECK_THAT(cautions_of(numbers([](std::size_t i) { return static_cast<double>((i + 240) % 256); })),
+               Contains("wraps at 256"));
+}
+
+TEST_CASE("a drive without counters: seconds, radians and holes of the record") {
+    Made driven = clean("motion");
+    for (const char* counter : {"steps_left", "steps_right"}) {
+        const auto at = static_cast<std::ptrdiff_t>(place_of(driven, counter));
+        driven.names.erase(driven.names.begin() + at);
+        for (auto& row : driven.rows)
+            row.erase(row.begin() + at);
+    }
+    CHECK_THAT(cautions_of(driven), !Contains("no rows for"));
+    CHECK_THAT(refusal(scaled(driven, "t_s", 1000)), Contains("unit of t_s"));
+    CHECK_THAT(refusal(changed(driven, "theta_rad", degrees)), Contains("degrees?"));
+    driven.rows.erase(driven.rows.begin() + 20, driven.rows.begin() + 45);
+    CHECK_THAT(cautions_of(driven), Contains("no rows for 2.6 s before row 21"));
 }
 
 TEST_CASE("a host that hands frames over in batches is no robot's clock") {
