@@ -143,6 +143,10 @@ void Objective::gather(std::size_t o, Eigen::VectorXd& gradient, Eigen::MatrixXd
         weights[as_index(i)] = weight(o, i);
         bend[as_index(i)] = std::sqrt(weight(o, i) * base.curvature[i]);
     }
+    if (of_rows_ && !base.innovations.mixed.empty()) {
+        gather_mixed(o, weights, gradient, curvature);
+        return;
+    }
     const ScaleInformation information = scale_information(state_.noise[o]);
     Eigen::MatrixXd shifts(n, width), scales = Eigen::MatrixXd::Zero(n, width), others;
     bool any_other = false, any_scale = false;
@@ -183,9 +187,28 @@ void Objective::gather(std::size_t o, Eigen::VectorXd& gradient, Eigen::MatrixXd
     }
 }
 
+/// Of a sum that may have been pushed the innovation is a mean over histories: what moves it and what moves
+/// their weights pull against each other, and squares of both would count a push many times. There each row's
+/// own gradient is its information (the outer product: Berndt, Hall, Hall and Hausman 1974).
+void Objective::gather_mixed(std::size_t o, const Eigen::VectorXd& weights, Eigen::VectorXd& gradient,
+                             Eigen::MatrixXd& curvature) const {
+    const std::size_t count = used_[o];
+    for (std::size_t a = 0; a < count; ++a) {
+        const Column& one = columns_[o][a];
+        gradient[as_index(one.number)] += one.gradient.dot(weights);
+        for (std::size_t b = 0; b <= a; ++b) {
+            const Column& other = columns_[o][b];
+            const double both = one.gradient.cwiseProduct(weights).dot(other.gradient);
+            curvature(as_index(one.number), as_index(other.number)) += both;
+            if (a != b) curvature(as_index(other.number), as_index(one.number)) += both;
+        }
+    }
+}
+
 double Objective::slopes(const double* x, Eigen::VectorXd& gradient, Eigen::MatrixXd& curvature,
                          Eigen::MatrixXd* rows) {
     double sum = value(x);
+    of_rows_ = rows != nullptr;
     base_noise_ = state_.noise;
     const std::size_t width = layout_.size();
     gradient = Eigen::VectorXd::Zero(as_index(width));

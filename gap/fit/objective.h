@@ -54,6 +54,8 @@ class Objective {
     void take_differences(std::size_t o, const std::vector<Moved>& moved);
     void difference(std::size_t o, const Moved& moved, const Innovations& other);
     void gather(std::size_t o, Eigen::VectorXd& gradient, Eigen::MatrixXd& curvature) const;
+    void gather_mixed(std::size_t o, const Eigen::VectorXd& weights, Eigen::VectorXd& gradient,
+                      Eigen::MatrixXd& curvature) const;
 
     const Model& model_;
     const Layout& layout_;
@@ -61,6 +63,7 @@ class Objective {
     const Weights& weights_;
     std::vector<double> last_x_;  ///< where value() was asked last
     double last_value_ = 0.0;
+    bool of_rows_ = false;  ///< every row's gradient was asked for: information, not a solver's step
     Prediction prediction_;
     std::array<Prediction, kLanes> moved_;
     std::vector<Base> bases_;

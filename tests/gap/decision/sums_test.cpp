@@ -1,6 +1,7 @@
 // What sums of a drive say of pushes and of way lost in some rows, on toy drives there and back.
 
 #include "gap/diagnostics/pushes.h"
+#include "gap/fit/intervals.h"
 #include "gap/fit/study.h"
 #include "gap/residual_model/free_form.h"
 #include "tests/gap/decision/toy_drives.h"
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 using namespace puckloop;
 using namespace puckloop::gap;
@@ -50,6 +52,35 @@ TEST_CASE("pushes by chance keep to nothing, those before a reversal do", "[gap]
     REQUIRE(pattern.has_value());
     CHECK(pattern->pushes > 0.4 * pattern->all);  // reversals of one sense
     CHECK(pattern->expected < 0.3 * pattern->pushes);
+}
+
+TEST_CASE("how often a robot is pushed is known as well as so few pushes can say", "[gap][pushes]") {
+    const double rate = 0.03;  // a row
+    double pushes = 0.0;
+    const Experiment experiment = toy_drives([&](RandomStream& random, int, int, double) {
+        const bool now = random.uniform() < rate;
+        pushes += now ? 1 : 0;
+        return Made{1.0, now ? 0.012 : 0.0};
+    });
+    const Study study(experiment, 1);
+    const auto& all = study.candidates();
+    const auto effect = std::find_if(all.begin(), all.end(), [](const Candidate& one) {
+        return one.effect->name == std::string_view("collision_push");
+    });
+    const Fit fit =
+        study.fit_set({static_cast<std::size_t>(effect - all.begin())}, study.fit_none().fitted.state);
+    const Precision precision = precision_of(study, fit);
+    const int index = study.model().find("push.rate");
+    for (std::size_t j = 0; j < fit.freed.size(); ++j) {
+        if (fit.freed[j].index != index) continue;
+        const Interval interval = interval_of(study, fit, precision, j);
+        const double value = fit.fitted.state.values[static_cast<std::size_t>(index)];
+        INFO(pushes << " pushes, " << value << " a second, " << interval.low << " to " << interval.high);
+        // Of N events the number is known to its root, 90 % to 1.645 of these.
+        const double known = (interval.high - interval.low) / 2 / value * std::sqrt(pushes) / 1.645;
+        CHECK(known > 0.6);
+        CHECK(known < 2.0);
+    }
 }
 
 TEST_CASE("way lost beyond a place adds up to a free form, nothing lost to none", "[gap][free form]") {
