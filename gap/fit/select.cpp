@@ -403,6 +403,7 @@ class Search::Steps {
         for (const std::size_t effect : result_.chosen.effects)
             for (const std::size_t rival : others_than(result_.chosen.effects)) {
                 if (nested(rival, effect)) continue;
+                if (!result_.trials[rival].remark.empty()) continue;  // it was heard, and let go
                 Draw draw{effect, rival, 0.0, {}, {}};
                 const bool last = effect == result_.chosen.effects.back() && known(rival, draw.fit);
                 // An effect that alone said next to nothing of what the chosen one said is no rival of it.

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string_view>
 #include <vector>
 
 namespace puckloop::gap::report {
@@ -40,12 +41,21 @@ void tell_apart(const Verdict& verdict, std::vector<std::string>& steps) {
         }
 }
 
+/// Runs, and what goes on within them, are no column that could be set.
+bool can_be_varied(std::string_view covariate) {
+    return covariate != "run" && !covariate.ends_with(" a run") && covariate != "time" &&
+           covariate != "order" && covariate != "previous sample";
+}
+
 void look_at_what_is_left(const Verdict& verdict, std::vector<std::string>& steps) {
     if (!verdict.leftovers.empty()) {
         const Leftover& left = verdict.leftovers.front();
-        steps.push_back(
-            fmt::format("Look at {} against {}: {}. Vary {} alone, everything else held, in both directions.",
-                        left.observable, left.covariate, left.shape, left.covariate));
+        steps.push_back(fmt::format(
+            "Look at {} against {}: {}. {}", left.observable, left.covariate, left.shape,
+            can_be_varied(left.covariate)
+                ? fmt::format("Vary {} alone, everything else held, in both directions.", left.covariate)
+                : "No recorded column goes with it: repeat one run several times, and note what else changes "
+                  "between and within runs (floor, battery, light, hands, other robots)."));
     } else if (!verdict.free_forms.empty() && verdict.free_forms.front().clear) {
         const FreeForm& form = verdict.free_forms.front();
         steps.push_back(fmt::format("Look at {}: {}.", form.observable, form.shape));

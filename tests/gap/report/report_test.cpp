@@ -176,6 +176,12 @@ TEST_CASE("every decision opens the page with what to do next") {
     CHECK_THAT(steps(Decision::Named), Contains("--model overlay.toml") && Contains("no effect"));
     CHECK_THAT(steps(Decision::NoEffect), !Contains("overlay.toml"));
     CHECK_THAT(steps(Decision::Unexplained), Contains("Use no overlay"));
+    verdict.leftovers = {{"reading", "distance", 1e-6, "rises with distance"}};
+    CHECK_THAT(steps(Decision::Unexplained), Contains("Vary distance alone"));
+    for (const char* within : {"run", "course of a run", "stretch of a run", "place in a run"}) {
+        verdict.leftovers.front().covariate = within;
+        CHECK_THAT(steps(Decision::Unexplained), !Contains("alone") && Contains("repeat one run"));
+    }
     verdict.rivals = {{verdict.causes.front(), "", 2.0, "another <surface>"}};
     CHECK_THAT(steps(Decision::CannotTell), Contains("another &lt;surface&gt;"));
     verdict.suggestions = {{"ten more runs", 0.4, {}}};
