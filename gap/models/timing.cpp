@@ -117,12 +117,13 @@ class TimingModel final : public ModelOf<Numbers> {
         std::sort(peaks.rbegin(), peaks.rend());
         peaks.resize(std::min(peaks.size(), kTried));
         // Frames that are ready at even times keep to a batch's parts as well as to it: the finest, too.
-        std::vector<double> found, finest;
+        std::vector<double> found;
+        double finest = kLongestBatch;
         for (const auto& [score, batch] : peaks) {
             found.push_back(refined(whole(seen, batch)));
-            finest.push_back(batch);
+            finest = std::min(finest, batch);
         }
-        if (!finest.empty()) found.push_back(refined(*std::min_element(finest.begin(), finest.end())));
+        if (!peaks.empty()) found.push_back(refined(finest));
         std::vector<double> ready;
         for (std::size_t i = 0; i < robot_.size(); ++i)
             ready.push_back(robot_[i] + wire_[i]);

@@ -45,7 +45,6 @@ Diagnosis diagnosed(const Study& study, const Chosen& chosen, std::uint64_t seed
     for (const Trial& step : chosen.selection.steps)
         found.forms.emplace_back(step.effect,
                                  form_verdict(rival_forms(study, chosen.selection.chosen, step.effect)));
-    found.by_structure = most_by_structure(found.leftovers);
     found.structures = found.leftovers;
     const Selection& selection = chosen.selection;
     for (const auto& more :

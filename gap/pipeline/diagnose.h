@@ -19,7 +19,6 @@ struct Diagnosis {
                                                              ///< wanders; the surest first
     std::vector<FreeForm> free_forms;                        ///< corrections without a mechanism
     LeftByRuns by_runs;                                      ///< numbers of runs, jumps inside runs
-    double by_structure = 0.0;                               ///< nats; of all structures but those of runs
     std::vector<std::pair<std::size_t, FormVerdict>> forms;  ///< of the chosen effects (candidates)
 };
 

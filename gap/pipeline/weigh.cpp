@@ -116,7 +116,7 @@ Grounds grounds_of(const Study& study, const Chosen& chosen, const Diagnosis& di
         g.left_by_form = std::max(g.left_by_form, form.left);
     g.left_by_run = diagnosis.by_runs.by_run;
     g.left_by_jump = diagnosis.by_runs.by_jump;
-    g.left_by_structure = diagnosis.by_structure;
+    g.left_by_structure = most_by_structure(diagnosis.structures);
     g.sums = any_adds_up(study);
     g.left_of_readings = left_of_readings(study, diagnosis);
     take_structure(diagnosis, g);

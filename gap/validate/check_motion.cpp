@@ -186,17 +186,22 @@ void check_holes(Experiment& experiment, const Run& run) {
                 run.file, time[i] - time[i - 1], i + 1);
 }
 
+/// Steps by which the right wheel goes further than the left one from the row before to this, by counters or,
+/// without them, as commanded.
+double steps_apart(const Run& run, std::size_t row) {
+    const bool counted = run.has("steps_left");
+    const auto &left = run.column(counted ? "steps_left" : "cmd_left"),
+               &right = run.column(counted ? "steps_right" : "cmd_right"), &time = run.column("t_s");
+    return counted ? (right[row] - right[row - 1]) - (left[row] - left[row - 1])
+                   : (right[row - 1] - left[row - 1]) * (time[row] - time[row - 1]);
+}
+
 /// How many times as far as its wheels ask for a heading turns, in each row in which they turn beyond noise.
 void take_turns(const Run& run, double metre_per_step, double axle, std::vector<double>& turns) {
     constexpr double kLeastTurn = 0.02;  // rad
-    const bool counted = run.has("steps_left");
-    const auto &left = run.column(counted ? "steps_left" : "cmd_left"),
-               &right = run.column(counted ? "steps_right" : "cmd_right"), &theta = run.column("theta_rad"),
-               &time = run.column("t_s");
+    const auto& theta = run.column("theta_rad");
     for (std::size_t i = 1; i < run.rows; ++i) {
-        const double steps = counted ? (right[i] - right[i - 1]) - (left[i] - left[i - 1])
-                                     : (right[i - 1] - left[i - 1]) * (time[i] - time[i - 1]);
-        const double asked = std::abs(steps) * metre_per_step / axle,
+        const double asked = std::abs(steps_apart(run, i)) * metre_per_step / axle,
                      turn = std::abs(theta[i] - theta[i - 1]);
         if (asked > kLeastTurn && std::isfinite(turn)) turns.push_back(turn / asked);
     }
@@ -263,16 +268,12 @@ void check_motion(Experiment& experiment) {
             experiment.caution(
                 "{}: theta_rad jumps by {:.2f} rad between two rows: too sparse, or a wrong unit", run.file,
                 path.largest_turn);
-        const auto &left = run.column(run.has("steps_left") ? "steps_left" : "cmd_left"),
-                   &right = run.column(run.has("steps_left") ? "steps_right" : "cmd_right");
-        const auto &theta = run.column("theta_rad"), &time = run.column("t_s");
+        const auto& theta = run.column("theta_rad");
         steps = steps || run.has("steps_left");
         driven += (path.left + path.right) / 2 * metre_per_step;
         for (std::size_t i = 1; i < run.rows; ++i) {
             const double turn = std::remainder(theta[i] - theta[i - 1], 2 * std::numbers::pi);
-            const double asked = run.has("steps_left")
-                                     ? (right[i] - right[i - 1]) - (left[i] - left[i - 1])
-                                     : (right[i - 1] - left[i - 1]) * (time[i] - time[i - 1]);
+            const double asked = steps_apart(run, i);
             if (std::isnan(turn) || std::isnan(asked)) continue;
             agree += turn * asked;
             turned += std::abs(turn * asked);

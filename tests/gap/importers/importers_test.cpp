@@ -205,7 +205,7 @@ TEST_CASE("a box's turn gives each sensor distance and incidence") {
 }
 
 TEST_CASE(
-    "a published table of log-normal fits becomes a row a distance, a copied line is told and left out") {
+    "a published table of log-normal fits becomes a row a distance, a copied line is reported and left out") {
     const Folder f;
     put(f.in / "rab_lognormal_iridia.csv", "distance_cm,mu,sigma\n2,7.59652,0.319231\n30,6.91745,0."
                                            "121653\n60,6.82855,0.141843\n80,6.82855,0.141843\n");
