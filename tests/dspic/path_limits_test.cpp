@@ -31,6 +31,17 @@ std::string counting(const std::string& name, const std::string& flag, const std
            "        bclr    " + flag + "\n        pop     w1\n        pop     w0\n        retfie\n";
 }
 
+/// The polled register is there, and every other time that so many cycles are over its module is not.
+void takes_away_polled(PathBench& bench, Cycle every) {
+    bench.both([](Rig& rig) {
+        rig.sfr.claim(kPolled);
+        rig.sfr.raw(kPolled) = 5;
+    });
+    bench.raises(kT1, "isr", 501, 703);
+    bench.every(30'000, every,
+                [every](Rig& rig, Cycle due) { rig.sfr.set_off(kPolled, due / every % 2 != 0); });
+}
+
 }  // namespace
 
 TEST_CASE("what a routine writes to RCOUNT and PSVPAG has their widths when it reads it back") {
@@ -83,12 +94,7 @@ wait:   mov     0x0d8, w0
         inc     0x0C20
         bra     wait
 )" + counting("isr", "0x84, #3"));
-    bench.both([](Rig& rig) {
-        rig.sfr.claim(kPolled);
-        rig.sfr.raw(kPolled) = 5;
-    });
-    bench.raises(kT1, "isr", 501, 703);
-    bench.every(30'000, 20'011, [](Rig& rig, Cycle due) { rig.sfr.set_off(kPolled, due / 20'011 % 2 != 0); });
+    takes_away_polled(bench, 20'011);
     for (Cycle at = 1000; at < 400'000; at += 9973)
         bench.compare(at);
 }
@@ -173,12 +179,7 @@ i:      dec     w0, w0
 TEST_CASE("a routine reads a register whose module is taken away") {
     PathBench bench(kWaits +
                     counting("isr", "0x84, #3", "        mov     0x0d8, w0\n        mov     w0, 0x0C16\n"));
-    bench.both([](Rig& rig) {
-        rig.sfr.claim(kPolled);
-        rig.sfr.raw(kPolled) = 5;
-    });
-    bench.raises(kT1, "isr", 501, 703);
-    bench.every(30'000, 90'011, [](Rig& rig, Cycle due) { rig.sfr.set_off(kPolled, due / 90'011 % 2 != 0); });
+    takes_away_polled(bench, 90'011);
     for (Cycle at = 1000; at < 900'000; at += 9973)
         bench.compare(at);
 }
