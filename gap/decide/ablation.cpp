@@ -26,8 +26,13 @@ std::span<const Rule> rules() {
     return kRules;
 }
 
+namespace {
+bool named(const Grounds& g) {
+    return decision_of(g, doubt_of(g)) == Decision::Named;
+}
+}  // namespace
+
 std::vector<std::string> alone_against(const Grounds& grounds) {
-    const auto named = [](const Grounds& g) { return decision_of(g, doubt_of(g)) == Decision::Named; };
     std::vector<std::string> alone;
     if (grounds.causes == 0 || named(grounds)) return alone;
     for (const Rule& rule : rules()) {
@@ -36,6 +41,18 @@ std::vector<std::string> alone_against(const Grounds& grounds) {
         if (named(without)) alone.emplace_back(rule.name);
     }
     return alone;
+}
+
+std::vector<std::string> enough_against(const Grounds& grounds) {
+    std::vector<std::string> enough;
+    if (grounds.causes == 0) return enough;
+    for (const Rule& rule : rules()) {
+        Grounds only = grounds;
+        for (const Rule& other : rules())
+            if (&other != &rule) other.leave_out(only);
+        if (!named(only)) enough.emplace_back(rule.name);
+    }
+    return enough;
 }
 
 }  // namespace puckloop::gap

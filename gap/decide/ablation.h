@@ -20,4 +20,8 @@ std::span<const Rule> rules();
 /// after a rule that spoke was not asked: it might have spoken too.
 std::vector<std::string> alone_against(const Grounds& grounds);
 
+/// Names of the rules each of which would refuse the causes by itself, without all others. Rules may go
+/// together as long as each refused cause keeps one of these.
+std::vector<std::string> enough_against(const Grounds& grounds);
+
 }  // namespace puckloop::gap

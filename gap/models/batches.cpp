@@ -23,7 +23,7 @@ constexpr double kSteps = 3.0;           // of frequency, for each that a stretc
 constexpr double kBand = 5.0;            // Hz: half of what frames at even times part
 constexpr std::size_t kBandsTried = 24;
 constexpr double kClearBeat = 6.0;  // deviations: the best of some thousand frequencies is some 4
-constexpr std::size_t kTried = 3;   // of the bands' batches, by what they leave
+constexpr std::size_t kTried = 6;   // of the bands' batches, by what they leave
 
 /// A phase that goes on by even steps.
 struct Turning {
@@ -221,12 +221,27 @@ std::vector<double> beats_of_waits(const Observable& o, const std::vector<double
     bands.resize(std::min(bands.size(), kBandsTried));
     std::vector<double> mean(n), extra(n);
     std::vector<std::pair<double, double>> tried;  // what is left, batch
-    for (const auto& [power, coarse] : bands) {
+    const auto look_at = [&](double coarse) {
         const double batch = refined_by_waits(o, ready, waited, coarse, 2 * step * coarse);
         double off = 0.0;
         for (const auto& [from, to] : stretches_of(o, n))
             off += place_batches(o, from, to, batch, ready, mean, extra);
         tried.emplace_back(off, batch);
+    };
+    for (const auto& [power, coarse] : bands)
+        look_at(coarse);
+    // What leaves least is looked for on both sides of the best, a beat with the frames' own rate at a time.
+    for (std::size_t looked = 0; !tried.empty() && looked < kBandsTried; ++looked) {
+        std::sort(tried.begin(), tried.end());
+        const double best = tried[0].second;
+        for (const double side : {-1.0, 1.0}) {
+            const double beside = 1 / (1 / best + side / between);
+            const bool known = std::any_of(tried.begin(), tried.end(), [&](const auto& one) {
+                return std::abs(1 / one.second - 1 / beside) < 2 * step;
+            });
+            if (!known && beside > shortest) look_at(beside);
+        }
+        if (std::min_element(tried.begin(), tried.end())->second == best) break;
     }
     std::sort(tried.begin(), tried.end());
     std::vector<double> found;

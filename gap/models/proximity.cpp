@@ -12,6 +12,7 @@
 #include "gap/models/model_of.h"
 #include "gap/models/rows.h"
 #include "gap/models/spectrum.h"
+#include "gap/stats/robust.h"
 #include "physics/description/robot_constants.h"
 
 #include <fmt/format.h>
@@ -121,10 +122,12 @@ class ProximityModel final : public ModelOf<Numbers> {
             double seen = p.mean[i];
             if (!object_.empty())
                 seen *= v[static_cast<std::size_t>(object_parameter_[static_cast<std::size_t>(object_[i])])];
-            if (now.pair_crosstalk != 0.0) seen += now.pair_crosstalk * (pair_[i] - idle(s + kOpposite));
-            if (now.neighbour_crosstalk != 0.0)
-                seen += now.neighbour_crosstalk *
-                        (neighbour_[i] - idle(s + 1) - idle(s + physics::kProximitySensors - 1));
+            // What the others read has its share of this one's light in it, which does not come back again.
+            const double own = seen, pair = now.pair_crosstalk, beside = now.neighbour_crosstalk;
+            if (pair != 0.0) seen += pair * (pair_[i] - idle(s + kOpposite) - pair * own);
+            if (beside != 0.0)
+                seen += beside * (neighbour_[i] - idle(s + 1) - idle(s + physics::kProximitySensors - 1) -
+                                  2 * beside * own);
             double gain = now.scale * now.gain[s] * (1 - now.ambient_gain * ambient_[i]);
             if (now.warmup_gain != 0.0) gain *= 1 + now.warmup_gain * warmed(time_[i], now.warmup_time);
             if (!battery_.empty()) gain *= 1 + now.battery_gain * battery_[i];
@@ -283,6 +286,8 @@ class ProximityModel final : public ModelOf<Numbers> {
         simulated("proximity.", {"curve", "amplitude", "origin", "exponent", "saturation", "reach"});
         simulated("proximity.", {"compression", "extra_exponent", "distance_shift", "scale"});
         simulated("proximity.", {"incidence_exponent", "pair_crosstalk", "neighbour_crosstalk"});
+        if (!lit(pair_)) hide("proximity.pair_crosstalk");
+        if (!lit(neighbour_)) hide("proximity.neighbour_crosstalk");
         simulated("proximity.", {"warmup_gain", "warmup_time", "motor_sag", "age"});
         simulated("proximity.", {"ambient_offset", "ambient_gain", "ambient_noise", "battery_gain"});
         declare({{&Numbers::order_drift, "proximity.order_drift", "1"},
@@ -309,6 +314,23 @@ class ProximityModel final : public ModelOf<Numbers> {
                 static_cast<int>(std::lower_bound(kinds.begin(), kinds.end(), object) - kinds.begin()));
     }
 
+    /// Do others see light of their own that could reach a sensor: more than noise and what it casts on them?
+    bool lit(const std::vector<double>& others) const {
+        const std::vector<double>& own = observables_[0].y;
+        const double noise = kLit * nominal().proximity.still_noise;
+        std::size_t count = 0;
+        for (const auto& rows : rows_of_) {
+            std::vector<double> readings;
+            for (const std::size_t i : rows)
+                readings.push_back(others[i]);
+            const double idle = stats::quantile(readings, 0.05);
+            count += static_cast<std::size_t>(std::count_if(rows.begin(), rows.end(), [&](std::size_t i) {
+                return others[i] > idle + kMostCast * own[i] + noise;
+            }));
+        }
+        return static_cast<double>(count) > kLitRows * static_cast<double>(own.size());
+    }
+
     void noise(const physics::ProximityParameters& now, Predicted& p) const {
         const std::size_t n = p.mean.size();
         const double share = now.proportional_noise, light = now.ambient_noise, rate = now.interference_rate;
@@ -327,6 +349,8 @@ class ProximityModel final : public ModelOf<Numbers> {
         p.line_frequency = now.flicker_frequency;
     }
 
+    static constexpr double kLit = 4.0, kMostCast = 0.2;  // of a reading's noise, of its own light
+    static constexpr double kLitRows = 0.05;              // share of the rows that are enough to tell by
     static constexpr std::size_t kOpposite = 4;  // places on the ring to the sensor lit by the same pulse
     double line_frequency_found_ = 0.0;
     double half_order_ = 0.0;  // half the range of the runs' `order`: the unit of the drift's zero

@@ -32,6 +32,20 @@ double rank_correlation(const std::vector<double>& a, const std::vector<double>&
     return correlation(stats::ranks(x), stats::ranks(y));
 }
 
+/// Do some runs correlate clearly in this direction, and none the other way? In one run among others that is
+/// a finding, in all of them an exchange of columns or signs.
+template <class Correlation>
+bool contrary(const std::vector<Run>& runs, const Correlation& of) {
+    constexpr double kClear = 0.65, kNone = -0.3;
+    bool some = false;
+    for (const Run& run : runs) {
+        const double correlation = of(run);
+        if (correlation < kNone) return false;
+        some = some || correlation > kClear;
+    }
+    return some;
+}
+
 /// A reflective sensor sees more when the wall is nearer; the other way round the columns are exchanged or
 /// the reading has the wrong sign.
 void check_proximity(Experiment& experiment) {
@@ -160,15 +174,19 @@ void check_accelerometer(Experiment& experiment) {
                                sum / count),
                    "about 1 g; say accelerometer.zero and accelerometer.gain in [nominal]");
         constexpr double kClear = 0.7, kNone = 0.3;
-        const auto rear = felt(run, "pitch_rad", "acceleration", -1.0),
-                   right = felt(run, "roll_rad", "lateral", -1.0);
+        const auto rear = felt(run, "pitch_rad", "acceleration", -1.0);
         const double own = correlation(run.column("ay"), rear), other = correlation(run.column("ax"), rear);
         if (std::abs(other) > kClear && std::abs(own) < kNone)
             refuse(experiment, run, "ax follows pitch and forward acceleration, ay does not: axes swapped",
                    "ax to the right, ay to the rear");
-        if (own < -kClear || correlation(run.column("ax"), right) < -kClear)
-            refuse(experiment, run, "an axis has the wrong sign", "ax to the right, ay to the rear, az up");
     }
+    const auto against = [](const char* axis, const char* tilt, const char* push) {
+        return [=](const Run& run) { return correlation(run.column(axis), felt(run, tilt, push, 1.0)); };
+    };
+    if (contrary(experiment.runs, against("ay", "pitch_rad", "acceleration")) ||
+        contrary(experiment.runs, against("ax", "roll_rad", "lateral")))
+        refuse(experiment, experiment.runs.front(), "an axis has the wrong sign",
+               "ax to the right, ay to the rear, az up");
 }
 
 /// How well one bearing follows the other, or the other's mirror image: mean vectors of their difference, so
@@ -197,10 +215,20 @@ void check_rab(Experiment& experiment) {
             refuse(experiment, run,
                    "bearing_rad is the mirror image of true_bearing_rad: one of them runs clockwise",
                    "counter-clockwise bearings in the receiver's frame");
-        if (rank_correlation(run.column("distance_m"), run.column("strength")) > 0.6)
-            refuse(experiment, run, "strength grows with distance_m: swapped columns",
-                   "strengths that fall with distance");
     }
+    const auto& runs = experiment.runs;
+    if (contrary(runs, [](const Run& run) {
+            return rank_correlation(run.column("distance_m"), run.column("strength"));
+        }))
+        refuse(experiment, runs.front(), "strength grows with distance_m: swapped columns",
+               "strengths that fall with distance");
+    const auto none = [](const Run& run) {
+        const auto& received = run.column("received");
+        return std::none_of(received.begin(), received.end(), [](double one) { return one > 0; });
+    };
+    if (experiment.has("received") && std::all_of(runs.begin(), runs.end(), none))
+        refuse(experiment, runs.front(), "received is 0 in every row of every run: nothing shows why",
+               "some messages that arrive; is the receiver on, and in reach?");
 }
 
 }  // namespace

@@ -124,6 +124,15 @@ TEST_CASE("swapped columns are refused, or said where both are plausible") {
     CHECK_THAT(cautions_of(swapped(made, "distance_m", "angle_rad")), Contains("swapped"));
 }
 
+TEST_CASE("an experiment in which no message arrives is refused") {
+    const auto received = [](const char* even) {
+        return refusal(changed(clean("rab"), "received",
+                               [=](std::size_t i, double) { return std::string(i % 2 == 0 ? even : "0"); }));
+    };
+    CHECK_THAT(received("0"), Contains("received is 0 in every row"));
+    CHECK(received("1").empty());
+}
+
 TEST_CASE("bearings told the other way round are refused, offsets are not") {
     Made made = clean("rab");
     made = changed(made, "true_bearing_rad", [](std::size_t i, double) {

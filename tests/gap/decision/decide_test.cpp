@@ -82,8 +82,11 @@ TEST_CASE("a name stands on every ground, and never beside no gain") {
     Grounds doubted = sound();
     doubted.left_by_run = 40;
     CHECK(alone_against(doubted) == std::vector<std::string>{"share left: numbers of runs"});
+    CHECK(enough_against(doubted) == std::vector<std::string>{"share left: numbers of runs"});
     doubted.not_confirmed = "leaves something";
     CHECK(alone_against(doubted).empty());
+    CHECK(enough_against(doubted) == std::vector<std::string>{"share left: numbers of runs", "confirmation"});
+    CHECK(enough_against(sound()).empty());
     Grounds rounded = sound();
     rounded.in_rounding = true;
     CHECK(decision_of(rounded, doubt_of(rounded)) == Decision::NoEffect);

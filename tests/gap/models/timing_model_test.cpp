@@ -45,7 +45,7 @@ TEST_CASE("each effect of timing moves the model as it moves the frames") {
 }
 
 TEST_CASE("batches are found by the grid that arrivals keep to") {
-    for (const double batch : {0.0016, 0.0031, 0.017}) {
+    for (const double batch : {0.0016, 0.0017578125, 0.0031, 0.017}) {
         INFO(batch);
         TimingKnobs knobs;
         knobs.batch = batch;

@@ -83,14 +83,15 @@ const Rig<K>& timing_rig() {
 }
 
 std::unique_ptr<Bench> timing_bench() {
+    constexpr double kMostLost = 0.9;  // of the frames: where none is whole there is no experiment
     // clang-format off
     return std::make_unique<BenchOf<K>>(timing_rig(), std::vector<HiddenEffect<K>>{
         {57, "stretched I2C", 0.002, false, turned(&K::i2c_stretch, "timing.i2c_stretch")},
         {58, "baud mismatch", 0.1, false, [](K& k, double a, RandomStream) { k.baud_error = a; return Truths{{"timing.edge_errors", 4 * (a - 0.02)}}; },
             std::array{0.0205, 0.021, 0.025}},
-        {59, "FIFO overrun", 1.0, false, turned(&K::overrun, "timing.overrun"),
+        {59, "FIFO overrun", kMostLost, false, turned(&K::overrun, "timing.overrun"),
             std::array{0.03, 0.1, 0.4}},
-        {60, "cut frames", 1.0, false, turned(&K::truncated, "timing.truncation"),
+        {60, "cut frames", kMostLost, false, turned(&K::truncated, "timing.truncation"),
             std::array{0.005, 0.01, 0.05}},
         {61, "longer period", 0.02, false, [](K& k, double a, RandomStream) { k.longer = a; k.jitter = a / 4; return Truths{{"timing.extra_period", a * (1 + 0.25 * 0.79788)}}; }},
         {62, "clock drift", 0.02, true, turned(&K::drift, "timing.clock_drift")},

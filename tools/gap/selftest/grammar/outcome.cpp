@@ -33,13 +33,15 @@ Outcome outcome_of(const DrawnCase& drawn, const Verdict& verdict) {
     out.redrawn = drawn.redrawn;
     out.said = std::string(decision_name(verdict.decision));
     out.alone_against = alone_against(verdict.grounds);
+    out.enough_against = enough_against(verdict.grounds);
     for (const Cause& cause : verdict.causes)
         out.names.push_back(cause.name);
     const bool named = verdict.decision == Decision::Named && !out.names.empty();
     if (drawn.of == Class::Known) {
         const Judged judged = judge(drawn.hidden, verdict);
         out.right = judged.first_right;
-        for (const Estimate& e : judged.estimates) {
+        out.estimates = judged.estimates;
+        for (const Estimate& e : out.estimates) {
             out.ranks.push_back(rank_in(e.truth, e.value, e.low, e.high));
             out.covered += e.covered() ? 1 : 0;
         }

@@ -3,6 +3,7 @@
 
 #include "gap/verdict/verdict.h"
 #include "tools/gap/selftest/grammar/drawn_case.h"
+#include "tools/gap/selftest/score.h"
 
 #include <array>
 #include <cstdint>
@@ -30,7 +31,9 @@ struct Outcome {
     bool wrong_family = false;       ///< and no effect of that family could do more than half of it
     std::vector<double> ranks;       ///< of true parameters in what is said of them: 0..1, uniform if honest
     int covered = 0;                 ///< of them within the 90 % interval
-    std::vector<std::string> alone_against;  ///< rules without each of which the causes would be named
+    std::vector<Estimate> estimates;          ///< what these rest on
+    std::vector<std::string> alone_against;   ///< rules without each of which the causes would be named
+    std::vector<std::string> enough_against;  ///< rules each of which would refuse them by itself
     double wall_s = 0.0;
 };
 

@@ -11,6 +11,18 @@
 #include <algorithm>
 #include <map>
 
+namespace puckloop::gap::selftest {
+template <class Json>
+void to_json(Json& json, const Estimate& e) {
+    json = Json{
+        {"parameter", e.parameter}, {"truth", e.truth}, {"value", e.value}, {"low", e.low}, {"high", e.high}};
+}
+template <class Json>
+void from_json(const Json& json, Estimate& e) {
+    e = {json.at("parameter"), json.at("truth"), json.at("value"), json.at("low"), json.at("high")};
+}
+}  // namespace puckloop::gap::selftest
+
 namespace puckloop::gap::selftest::grammar {
 
 namespace {
@@ -36,7 +48,30 @@ std::string by_kind(const std::vector<Outcome>& cases) {
     return text;
 }
 
-/// What the targets hold against the analysis; weaker effects may be passed over.
+/// Rules that could go together, in the order of the decision, so that of what is refused only known effects
+/// would be named besides.
+std::string could_go(const std::vector<Outcome>& cases) {
+    std::vector<std::string> gone;
+    const auto is_gone = [&](const std::string& rule) {
+        return std::find(gone.begin(), gone.end(), rule) != gone.end();
+    };
+    const auto named = [&](const Outcome& one) {
+        const auto& enough = one.enough_against;
+        return one.of != Class::Known &&
+               (std::any_of(one.alone_against.begin(), one.alone_against.end(), is_gone) ||
+                (!enough.empty() && std::all_of(enough.begin(), enough.end(), is_gone)));
+    };
+    std::string text = "\nrules without which, all together, no case but known ones would be named besides\n";
+    for (const Rule& rule : rules()) {
+        gone.emplace_back(rule.name);
+        if (std::any_of(cases.begin(), cases.end(), named))
+            gone.pop_back();
+        else
+            text += fmt::format("  {}\n", rule.name);
+    }
+    return text;
+}
+
 /// What would be named besides, were a rule of the decision left out.
 std::string ablation(const std::vector<Outcome>& cases) {
     std::string text = "\nwould be named without one rule (at most, unless --ablation: what is asked after "
@@ -73,11 +108,14 @@ void for_each_field(One& one, const Field& field) {
     field("other_family", one.other_family);
     field("ranks", one.ranks);
     field("covered", one.covered);
+    field("estimates", one.estimates);
     field("alone_against", one.alone_against);
+    field("enough_against", one.enough_against);
     field("wall_s", one.wall_s);
     field("error", one.error);
 }
 
+/// What the targets hold against the analysis; weaker effects may be passed over.
 bool missed(const Outcome& one) {
     if (one.of == Class::NearMiss) return one.wrong_family || said_of(one) == Said::Failed;
     return !rightly(one) && (one.of == Class::Null || one.ratio >= 1);
@@ -120,7 +158,7 @@ std::string rates_text(const std::vector<Outcome>& cases, const std::string& see
         fmt::format("drawn again, because one effect of the catalogue could do more than half of it or the "
                     "strength could not be had: {}\n",
                     redrawn);
-    text += ablation(cases) + "\nmissed\n";
+    text += ablation(cases) + could_go(cases) + "\nmissed\n";
     for (const Outcome& one : cases)
         if (missed(one)) text += outcome_line(one) + "\n";
     return text;
@@ -153,10 +191,7 @@ std::vector<Outcome> outcomes_from_json(const std::string& text, const std::stri
         out.number = one.at("number");
         for (const Class of : {Class::Null, Class::Known, Class::NearMiss, Class::Unknown})
             if (one.at("class") == class_name(of)) out.of = of;
-        for_each_field(out, [&](const char* name, auto& value) {
-            const bool old = name == std::string_view("alone_against") && !one.contains(name);
-            if (!old) one.at(name).get_to(value);
-        });
+        for_each_field(out, [&](const char* name, auto& value) { one.at(name).get_to(value); });
         cases.push_back(std::move(out));
     }
     return cases;
