@@ -1,12 +1,15 @@
 #include "gap/decide/large_errors.h"
 
 #include "gap/fit/filter.h"
+#include "gap/fit/likelihood.h"
 
 #include <boost/math/distributions/students_t.hpp>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
+#include <numeric>
 
 namespace puckloop::gap {
 
@@ -31,64 +34,90 @@ struct Law {
 };
 
 struct Row {
-    double z, log_before;  ///< standardised innovation; its log density by Student's t
+    double z;               ///< standardised innovation
+    double lapse, outside;  ///< chance that the fit's causes make it an error of theirs, and its density then
+    double log_before;      ///< log density of both together, errors by Student's t
     std::uint32_t block;
+
+    double density(double inside) const { return (1 - lapse) * inside + lapse * outside; }
 };
 
 Law fitted_without(const std::vector<Row>& rows, std::uint32_t block) {
     Law law;
     for (int step = 0; step < kSteps; ++step) {
-        double large = 0.0, large_squares = 0.0, squares = 0.0, n = 0.0;
+        double large = 0.0, large_squares = 0.0, squares = 0.0, usual = 0.0;
         for (const Row& row : rows) {
             if (row.block == block) continue;
+            const double inside = law.density(row.z), all = row.density(inside);
+            const double mine = all > 0 ? (1 - row.lapse) * inside / all : 1.0;
             const double wide = law.share * normal_density(row.z, law.sd * law.factor);
-            const double all = law.density(row.z);
-            const double chance = all > 0 ? wide / all : 1.0;
-            large += chance;
-            large_squares += chance * row.z * row.z;
-            squares += (1 - chance) * row.z * row.z;
-            n += 1;
+            const double chance = inside > 0 ? wide / inside : 1.0;
+            large += mine * chance;
+            large_squares += mine * chance * row.z * row.z;
+            squares += mine * (1 - chance) * row.z * row.z;
+            usual += mine * (1 - chance);
         }
-        if (!(n > large) || !(large > 0)) break;
-        law.share = std::clamp(large / n, kFewest, kMost);
-        law.sd = std::sqrt(squares / (n - large));
+        if (!(usual > 0) || !(large > 0)) break;
+        law.share = std::clamp(large / (large + usual), kFewest, kMost);
+        law.sd = std::sqrt(squares / usual);
         law.factor = std::max(std::sqrt(large_squares / large) / law.sd, kLeastFactor);
     }
     return law;
 }
 
-std::vector<Row> rows_of(const Observable& o, const Predicted& predicted, const NoiseParameters& noise,
-                         const std::vector<std::uint32_t>& blocks) {
-    Innovations innovations;
-    filter(o, predicted, noise, innovations);
+/// Rows of errors that may follow the law; none where what a cause does is carried on from row to row.
+std::vector<Row> rows_of(const Predicted& predicted, const NoiseParameters& noise,
+                         const Innovations& innovations, const std::vector<std::uint32_t>& blocks) {
     std::vector<Row> rows;
     if (!innovations.mixed.empty()) return rows;
     const boost::math::students_t t(std::exp(noise.log_tail));
-    for (std::size_t i = 0; i < innovations.z.size(); ++i)
-        if (innovations.role[i] == RowRole::Plain)
-            rows.push_back({innovations.z[i], std::log(boost::math::pdf(t, innovations.z[i])), blocks[i]});
+    for (std::size_t i = 0; i < innovations.z.size(); ++i) {
+        if (innovations.role[i] != RowRole::Plain) continue;
+        const double z = innovations.z[i];
+        Row row{z, 0.0, 0.0, 0.0, blocks[i]};
+        if (!predicted.lapse.empty() && predicted.lapse[i] > 0.0) {
+            const double scale = std::sqrt(innovations.variance[i]), shift = predicted.lapse_shift / scale,
+                         width = std::hypot(predicted.lapse_scale[i] / scale, 1.0),
+                         up = normal_density(z - shift, width);
+            row.lapse = predicted.lapse[i];
+            row.outside = predicted.lapse_both ? (up + normal_density(z + shift, width)) / 2 : up;
+        }
+        row.log_before = std::log(row.density(boost::math::pdf(t, z)));
+        rows.push_back(row);
+    }
     return rows;
 }
 
 }  // namespace
 
-std::vector<double> gains_of_large_errors(const Study& study, const Fit& fit,
-                                          const std::vector<std::string>& touched) {
-    std::vector<double> gains(study.blocks().count, 0.0);
+std::vector<double> scores_with_large_errors(const Study& study, const Fit& fit,
+                                             const std::vector<std::string>& touched) {
+    std::vector<double> scores(study.blocks().count, 0.0);
     const State& state = fit.fitted.state;
     Prediction prediction;
     study.model().predict(state.values, prediction);
     for (std::size_t o = 0; o < prediction.size(); ++o) {
         const Observable& observable = study.model().observables()[o];
         if (std::find(touched.begin(), touched.end(), observable.name) == touched.end()) continue;
-        const auto rows = rows_of(observable, prediction[o], state.noise[o], study.blocks().of[o]);
-        for (std::uint32_t block = 0; block < gains.size(); ++block) {
+        const auto& blocks = study.blocks().of[o];
+        Innovations innovations;
+        filter(observable, prediction[o], state.noise[o], innovations);
+        std::vector<double> cost;
+        costs_of(observable, prediction[o], state.noise[o], innovations, cost);
+        for (std::size_t i = 0; i < cost.size(); ++i)
+            scores[blocks[i]] -= cost[i];
+        const auto rows = rows_of(prediction[o], state.noise[o], innovations, blocks);
+        std::vector<double> won(scores.size(), 0.0);
+        for (std::uint32_t block = 0; block < won.size(); ++block) {
             const Law law = fitted_without(rows, block);
             for (const Row& row : rows)
-                if (row.block == block) gains[block] += std::log(law.density(row.z)) - row.log_before;
+                if (row.block == block)
+                    won[block] += std::log(row.density(law.density(row.z))) - row.log_before;
         }
+        if (std::accumulate(won.begin(), won.end(), 0.0) > 0)
+            std::transform(scores.begin(), scores.end(), won.begin(), scores.begin(), std::plus<>());
     }
-    return gains;
+    return scores;
 }
 
 }  // namespace puckloop::gap

@@ -10,9 +10,9 @@
 
 namespace puckloop::gap {
 
-/// nats that held-out rows of the observables `touched` gain, block by block, when the errors of `fit` follow
-/// such a law, fitted to the other blocks, in place of the Student t of its noise.
-std::vector<double> gains_of_large_errors(const Study& study, const Fit& fit,
-                                          const std::vector<std::string>& touched);
+/// Log score of each block by the observables `touched`. Errors of `fit`, but for those that its causes make,
+/// follow such a law, fitted to the other blocks, wherever that gains over the Student t of its noise.
+std::vector<double> scores_with_large_errors(const Study& study, const Fit& fit,
+                                             const std::vector<std::string>& touched);
 
 }  // namespace puckloop::gap

@@ -81,18 +81,20 @@ std::string mean_behind(const Study& study, const Fit& fit, const HeldOut& held,
 }
 
 /// The effects that make single errors large, if a law of errors without a mechanism does as well.
-std::vector<std::size_t> no_more_than_large_errors(const Study& study, const Fit& fit, const HeldOut& held) {
+std::vector<std::size_t> no_more_than_large_errors(const Study& study, const Fit& fit) {
     std::vector<std::size_t> outliers;
     for (const std::size_t effect : fit.effects)
         if (study.candidates()[effect].effect->role == EffectRole::Outlier) outliers.push_back(effect);
     const auto touched = scattered_by(study, fit, outliers);
     if (outliers.empty() || touched.empty()) return {};
     const Fit calm = without_effects(study, fit, outliers);
-    auto gains = gains_by_block(study.blocks(), study.hold_out(calm), held);
-    const auto by_law = gains_of_large_errors(study, calm, touched);
-    if (gain_of(by_law).sum > 0)
-        for (std::size_t block = 0; block < gains.size(); ++block)
-            gains[block] -= by_law[block];
+    // Other errors may follow that law with the cause and without it, so that they speak for neither. Both
+    // fits saw these rows: a nat is taken off for each number that is fitted (Akaike 1974).
+    auto gains = scores_with_large_errors(study, fit, touched);
+    const auto by_law = scores_with_large_errors(study, calm, touched);
+    const auto fitted = static_cast<double>(fit.freed.size() - calm.freed.size());
+    for (std::size_t block = 0; block < gains.size(); ++block)
+        gains[block] -= by_law[block] + fitted / static_cast<double>(gains.size());
     return gains_enough(gain_of(gains), study.candidates().size(), outliers.size())
                ? std::vector<std::size_t>{}
                : outliers;
@@ -167,7 +169,7 @@ OutOfRole out_of_role(const Study& study, const Fit& fit, const HeldOut& held,
             result.why = "keeps to a place, a command or a run, and chance does not";
             return result;
         }
-    result.effects = no_more_than_large_errors(study, fit, held);
+    result.effects = no_more_than_large_errors(study, fit);
     if (!result.effects.empty()) {
         result.why = "explains no more than errors of which a few are larger do";
         result.law_alone = result.effects.size() == fit.effects.size();

@@ -213,6 +213,8 @@ TEST_CASE("results are read back as they were written, and nothing else is read"
     cases[0].ranks = {0.2, 0.97};
     cases[0].covered = 1;
     cases[0].runs = 7;
+    cases[0].estimates = {{"robot.axle_length", 0.053, 0.0531, 0.0528, 0.0534}};
+    cases[1].alone_against = cases[1].enough_against = {"role"};
     cases[3].names = {"axle_length"};
     const std::string text = rates_json(cases, 5);
     const auto again = outcomes_from_json(text, "cases.json");
@@ -231,6 +233,23 @@ TEST_CASE("results are read back as they were written, and nothing else is read"
         }
     }
     CHECK_THROWS_AS(outcomes_from_json("{}", "cases.json"), InputError);
+}
+
+TEST_CASE("rules could go together as long as each refused case but known ones keeps one") {
+    std::vector<Outcome> cases{made(Class::Unknown, "unexplained", 2),
+                               made(Class::NearMiss, "unexplained", 2), made(Class::Known, "unexplained", 2)};
+    cases[0].enough_against = {"role", "confirmation"};
+    cases[1].enough_against = {"confirmation", "no rival"};
+    cases[2].enough_against = cases[2].alone_against = {"nothing merely assumed"};
+    const auto could_go = [&] {
+        const std::string text = rates_text(cases, "1");
+        return text.substr(text.find("rules without which"));
+    };
+    for (const char* gone : {"nothing merely assumed", "role"})
+        CHECK(could_go().find(gone) < could_go().find("missed"));
+    CHECK(could_go().find("  confirmation\n") > could_go().find("missed"));  // since role went before
+    cases[0].alone_against = {"role"};  // a sum of which role's part alone is too much
+    CHECK(could_go().find("  role\n") > could_go().find("missed"));
 }
 
 TEST_CASE("curves count every case in its band, by what was said of it") {
