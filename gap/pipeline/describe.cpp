@@ -140,13 +140,14 @@ void add_held_out(const Study& study, const Selection& selection, std::uint64_t 
     verdict.observables = std::move(figures.observables);
 }
 
-void add_predictive(const Study& study, const Chosen& chosen, std::uint64_t seed, Verdict& verdict) {
-    auto as_it_is = predictive_checks(study, chosen.selection.none, false, seed);
-    std::vector<PredictiveCheck> with_causes;
-    if (!chosen.final.effects.empty()) with_causes = predictive_checks(study, chosen.final, true, seed);
+/// Each observable by the simulator as it is, then with the causes.
+void add_predictive(const Study& study, Judged& judged, std::uint64_t seed, Verdict& verdict) {
+    const bool causes = !judged.chosen.final.effects.empty();
+    auto as_it_is = causes ? predictive_checks(study, judged.chosen.selection.none, false, seed)
+                           : std::move(judged.diagnosis.predictive);
     for (std::size_t o = 0; o < as_it_is.size(); ++o) {
         verdict.predictive.push_back(std::move(as_it_is[o]));
-        if (o < with_causes.size()) verdict.predictive.push_back(std::move(with_causes[o]));
+        if (causes) verdict.predictive.push_back(std::move(judged.diagnosis.predictive[o]));
     }
 }
 
@@ -174,7 +175,7 @@ Verdict verdict_of(const Study& study, Judged judged, std::uint64_t seed) {
     verdict.free_forms = std::move(judged.diagnosis.free_forms);
     add_tried(study, judged.chosen.selection, verdict);
     add_held_out(study, judged.chosen.selection, seed, verdict);
-    add_predictive(study, judged.chosen, seed, verdict);
+    add_predictive(study, judged, seed, verdict);
     for (const Series& series : verdict.series)
         for (const std::string& caution : {placement_caution(experiment, series), circular_caution(series)})
             if (!caution.empty()) verdict.cautions.push_back(caution);

@@ -13,12 +13,13 @@
 namespace puckloop::gap {
 
 struct Diagnosis {
-    std::vector<Series> series;                              ///< every observable, before and after
-    std::vector<Leftover> structures;                        ///< functions of columns, evenness
-    std::vector<Leftover> leftovers;                         ///< these and what differs by runs, jumps and
-                                                             ///< wanders; the surest first
-    std::vector<FreeForm> free_forms;                        ///< corrections without a mechanism
-    LeftByRuns by_runs;                                      ///< numbers of runs, jumps inside runs
+    std::vector<Series> series;               ///< every observable, before and after
+    std::vector<Leftover> structures;         ///< functions of columns, evenness, what no replicate shows
+    std::vector<Leftover> leftovers;          ///< these and what differs by runs, jumps and
+                                              ///< wanders; the surest first
+    std::vector<FreeForm> free_forms;         ///< corrections without a mechanism
+    std::vector<PredictiveCheck> predictive;  ///< of the fit that is diagnosed
+    LeftByRuns by_runs;                       ///< numbers of runs, jumps inside runs
     std::vector<std::pair<std::size_t, FormVerdict>> forms;  ///< of the chosen effects (candidates)
 };
 

@@ -1,6 +1,7 @@
 #include "gap/predictive/discrepancies.h"
 
 #include "gap/predictive/main_covariates.h"
+#include "gap/stats/exchange.h"
 #include "gap/stats/profile.h"
 #include "gap/stats/robust.h"
 
@@ -19,6 +20,7 @@ constexpr std::size_t kInnerBins = 18;  // of the marginal law; one more at each
 constexpr double kOuter = 0.005;        // of the residuals lie beyond the inner bins, on each side
 constexpr std::size_t kMostLags = 12;
 constexpr int kBins = 12, kLevels = 16;  // of a covariate; up to so many different values stand by themselves
+constexpr double kLeastP = 1e-12;
 constexpr double kLow = 0.05, kHigh = 0.95;  // of the envelope
 constexpr double kLeastVaries = 1e-12;       // of a place's size: replicates that do not differ there
 
@@ -167,10 +169,12 @@ Discrepancies::curves(const std::vector<double>& measured,
             curve.high.push_back(stats::quantile(here, kHigh));
         }
         const double most = farthest(curve.measured, centre, deviation);
-        std::size_t as_far = 1;
+        std::vector<double> far;
         for (const auto& one : replicated)
-            as_far += farthest(one[c], centre, deviation) >= most ? 1 : 0;
-        curve.p = static_cast<double>(as_far) / static_cast<double>(replicated.size() + 1);
+            far.push_back(farthest(one[c], centre, deviation));
+        const auto as_far = std::count_if(far.begin(), far.end(), [&](double one) { return one >= most; });
+        curve.p = static_cast<double>(as_far + 1) / static_cast<double>(replicated.size() + 1);
+        if (as_far == 0) curve.p = std::min(curve.p, std::max(stats::fitted_tail(far, most), kLeastP));
     }
     return all;
 }

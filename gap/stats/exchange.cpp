@@ -91,20 +91,6 @@ void shuffle_blocks(const Pairs& pairs, RandomStream& random, std::vector<double
     }
 }
 
-/// Upper tail of a gamma distribution (Pearson III) with the sample's mean, spread and skewness.
-double fitted_tail(const std::vector<double>& null, double observed) {
-    const double centre = mean(null), spread = standard_deviation(null);
-    if (!(spread > 0)) return 0.0;
-    double third = 0;
-    for (const double v : null)
-        third += std::pow((v - centre) / spread, 3);
-    const double skewness = third / static_cast<double>(null.size());
-    const double z = (observed - centre) / spread;
-    if (skewness < 0.05) return normal_tail(z);
-    const double shape = 4 / (skewness * skewness);
-    return gamma_tail(shape, shape + z * std::sqrt(shape));
-}
-
 }  // namespace
 
 Pairs known_pairs(const Series& residual, const std::vector<double>& covariate) {
@@ -152,6 +138,19 @@ double permutation_p(const Pairs& pairs, const std::function<double(const std::v
         return statistic(y);
     };
     return null_p(statistic(pairs.y), static_cast<double>(pairs.blocks.size()), draw, options, stream);
+}
+
+double fitted_tail(const std::vector<double>& null, double observed) {
+    const double centre = mean(null), spread = standard_deviation(null);
+    if (!(spread > 0)) return 0.0;
+    double third = 0;
+    for (const double v : null)
+        third += std::pow((v - centre) / spread, 3);
+    const double skewness = third / static_cast<double>(null.size());
+    const double z = (observed - centre) / spread;
+    if (skewness < 0.05) return normal_tail(z);
+    const double shape = 4 / (skewness * skewness);
+    return gamma_tail(shape, shape + z * std::sqrt(shape));
 }
 
 double null_p(double observed, double units, const std::function<double(RandomStream&)>& draw,
