@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <limits>
@@ -16,6 +17,7 @@ namespace puckloop::gap {
 namespace {
 
 constexpr std::size_t kMostRows = 5'000'000;
+constexpr const char* kHeader = "header";
 
 /// The text with what is not UTF-8 as '?': files of another encoding are common, their numbers are fine.
 std::string readable(std::string_view text) {
@@ -45,87 +47,138 @@ std::string readable(std::string_view text) {
     return out;
 }
 
-/// False for text that is no number.
-bool parse(std::string_view cell, double& value) {
+/// How a file writes its fractions: with one or the other throughout.
+enum class Decimal { Unknown, Point, Comma };
+
+/// False for text that is no number. A comma inside a cell can only be a decimal comma where something else
+/// separates cells.
+bool parse(std::string_view cell, bool comma_separates, Decimal& decimal, double& value) {
     value = std::numeric_limits<double>::quiet_NaN();
     if (cell.empty() || cell == "nan" || cell == "NaN" || cell == "NA" || cell == "null") return true;
-    return csv_number(cell, value);
+    const auto comma = comma_separates ? std::string_view::npos : cell.find(',');
+    const Decimal own = comma != std::string_view::npos            ? Decimal::Comma
+                        : cell.find('.') != std::string_view::npos ? Decimal::Point
+                                                                   : Decimal::Unknown;
+    std::string text(cell);
+    if (own == Decimal::Comma) text[comma] = '.';
+    if (!csv_number(text, value) || std::isinf(value)) return false;
+    if (own == Decimal::Unknown) return true;
+    if (decimal == Decimal::Unknown) decimal = own;
+    return decimal == own;
+}
+
+constexpr const char* kWanted = "a CSV file: a header line, then rows of numbers";
+
+/// Pipes and devices may never end.
+std::ifstream opened(const std::filesystem::path& file) {
+    std::error_code failed;
+    const auto type = std::filesystem::status(file, failed).type();
+    using enum std::filesystem::file_type;
+    if (type == not_found) throw InputError(file.string(), "", "is not there", kWanted);
+    if (type == directory) throw InputError(file.string(), "", "is a folder", kWanted);
+    if (type != regular) throw InputError(file.string(), "", "is not a file", kWanted);
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream.is_open()) throw InputError(file.string(), "", "cannot be opened", kWanted);
+    return stream;
+}
+
+/// What programs write that is not CSV, by its first bytes and by what no text holds.
+void refuse_binary(const std::filesystem::path& file, const std::string& place, std::string_view line) {
+    if (place == kHeader && (line.starts_with("\xFF\xFE") || line.starts_with("\xFE\xFF")))
+        throw InputError(file.string(), "", "is UTF-16 text", "UTF-8 or plain ASCII");
+    if (place == kHeader && line.starts_with("PK\x03\x04"))
+        throw InputError(file.string(), "", "is a spreadsheet or an archive, not text",
+                         "the sheet saved as CSV");
+    if (is_binary(line)) throw InputError(file.string(), place, "is binary, not text", kWanted);
+    if (const auto inner = line.find('\r'); inner != std::string_view::npos && inner + 1 < line.size())
+        throw InputError(file.string(), place, "ends its lines with carriage returns only",
+                         "line feeds, with or without them");
+}
+
+char separator_of(std::string_view header) {
+    for (const char separator : {',', ';', '\t'})
+        if (header.find(separator) != std::string_view::npos) return separator;
+    return ',';
+}
+
+void read_header(const std::filesystem::path& file, std::string_view line, char separator, CsvTable& table) {
+    for (const auto cell : csv_cells(line, separator)) {
+        double ignored = 0.0;
+        Decimal decimal = Decimal::Unknown;
+        if (!cell.empty() && parse(cell, separator == ',', decimal, ignored))
+            throw InputError(file.string(), kHeader,
+                             fmt::format("has the number {} as a column's name", readable(cell)),
+                             "a header line with names");
+        const std::string own = readable(cell);
+        if (std::find(table.names.begin(), table.names.end(), own) != table.names.end())
+            throw InputError(file.string(), kHeader, fmt::format("names the column \"{}\" twice", own),
+                             "each column once");
+        table.names.push_back(own);
+    }
+    table.columns.resize(table.names.size());
+}
+
+/// What to do about a cell that is no number.
+const char* remedy(std::string_view cell) {
+    const bool figures = cell.find_first_not_of("+-0123456789.,' ") == std::string_view::npos &&
+                         cell.find_first_of(".,'") != std::string_view::npos;
+    return figures
+               ? "one decimal point throughout, or with ; or tab between cells one decimal comma; nothing "
+                 "between thousands"
+               : "a number, or nothing where it is missing";
 }
 
 }  // namespace
 
+bool is_binary(std::string_view text) {
+    return std::any_of(text.begin(), text.end(), [](char c) { return c >= 0 && c < '\t'; });
+}
+
 CsvTable read_csv(const std::filesystem::path& file, Problems* problems) {
-    // Pipes and devices may never end.
-    std::error_code failed;
-    const auto type = std::filesystem::status(file, failed).type();
-    std::ifstream stream;
-    if (type == std::filesystem::file_type::regular) stream.open(file, std::ios::binary);
-    if (!stream.is_open())
-        throw InputError(file.string(), "",
-                         type == std::filesystem::file_type::regular ||
-                                 type == std::filesystem::file_type::not_found
-                             ? "cannot be opened"
-                             : "is not a file",
-                         "a CSV file with a header line");
+    std::ifstream stream = opened(file);
     CsvTable table;
     char separator = ',';
-    std::string line;
-    for (int number = 1; std::getline(stream, line); ++number) {
-        if (number == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
-        if (number == 1 && (line.starts_with("\xFF\xFE") || line.starts_with("\xFE\xFF")))
-            throw InputError(file.string(), "", "is UTF-16 text", "UTF-8 or plain ASCII");
-        if (const auto inner = line.find('\r'); inner != std::string::npos && inner + 1 < line.size())
-            throw InputError(file.string(), fmt::format("line {}", number),
-                             "ends its lines with carriage returns only", "line feeds, with or without them");
+    Decimal decimal = Decimal::Unknown;
+    for (std::string line; std::getline(stream, line);) {
+        const bool first = table.names.empty();
+        if (first && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
+        const std::string place = first ? kHeader : fmt::format("row {}", table.rows() + 1);
+        refuse_binary(file, place, line);
         const std::string_view text = csv_trimmed(line);
         if (text.empty() || text.front() == '#') continue;
-        const std::string place = fmt::format("line {}", number);
-        if (table.names.empty()) {
-            if (line.find(',') == std::string::npos)
-                separator = line.find(';') != std::string::npos    ? ';'
-                            : line.find('\t') != std::string::npos ? '\t'
-                                                                   : ',';
-            for (const auto cell : csv_cells(line, separator)) {
-                double ignored = 0.0;
-                if (!cell.empty() && parse(cell, ignored))
-                    throw InputError(file.string(), place,
-                                     fmt::format("has the number {} as a column's name", readable(cell)),
-                                     "a header line with names");
-                const std::string own = readable(cell);
-                for (const auto& name : table.names)
-                    if (name == own)
-                        throw InputError(file.string(), place,
-                                         fmt::format("names the column \"{}\" twice", own));
-                table.names.push_back(own);
-            }
-            table.columns.resize(table.names.size());
+        if (first) {
+            separator = separator_of(line);
+            read_header(file, line, separator, table);
             continue;
         }
-        const auto cells = csv_cells(line, separator);
+        auto cells = csv_cells(line, separator);
         const bool whole = attempt(problems, [&] {
             if (cells.size() != table.names.size())
                 throw InputError(file.string(), place, fmt::format("has {} cells", cells.size()),
-                                 fmt::format("{}, as the header", table.names.size()));
+                                 fmt::format("{}, as the header{}", table.names.size(),
+                                             separator == ',' && cells.size() > table.names.size()
+                                                 ? "; with decimal commas, semicolons between cells"
+                                                 : ""));
         });
-        if (!whole) continue;
+        if (!whole) cells.assign(table.names.size(), {});  // the rows behind it keep their numbers
         for (std::size_t i = 0; i < cells.size(); ++i) {
             double value = 0.0;
             const bool sound = attempt(problems, [&] {
-                if (!parse(cells[i], value) || std::isinf(value))
+                if (!parse(cells[i], separator == ',', decimal, value))
                     throw InputError(file.string(), place,
                                      fmt::format("\"{}\" in column \"{}\" is not a finite number",
                                                  readable(cells[i]), table.names[i]),
-                                     cells[i].find(',') != std::string_view::npos
-                                         ? "a decimal point, not a comma"
-                                         : "a number, or nothing where it is missing");
+                                     remedy(cells[i]));
             });
             table.columns[i].push_back(sound ? value : std::numeric_limits<double>::quiet_NaN());
         }
         if (table.rows() > kMostRows)
             throw InputError(file.string(), place, "is too long", fmt::format("at most {} rows", kMostRows));
     }
-    if (table.names.empty()) throw InputError(file.string(), "", "is empty", "a header line and rows");
-    if (table.rows() == 0) throw InputError(file.string(), "", "has no rows", "at least one");
+    if (table.names.empty()) throw InputError(file.string(), "", "is empty", kWanted);
+    if (table.rows() == 0)
+        throw InputError(file.string(), "", "has no rows", "at least one below the header");
+    table.decimal_commas = decimal == Decimal::Comma;
     return table;
 }
 

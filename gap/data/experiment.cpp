@@ -13,7 +13,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <stdexcept>
 
@@ -38,6 +40,7 @@ struct Frame {
     std::map<std::string, Origin, std::less<>> origins;
     std::map<std::string, std::string> conditions;
     std::map<std::string, double> codes[2];  // of session and unit names, in order of appearance
+    int with_decimal_commas = 0;             // files
 };
 
 double as_number(const Reader& reader, const std::string& key, const TomlValue& value) {
@@ -166,6 +169,7 @@ Run read_run(const TomlValue& table, std::size_t index, Experiment& experiment, 
     const std::filesystem::path path = experiment.folder / run.file;
     CsvTable csv = read_csv(path, problems);
     run.rows = csv.rows();
+    frame.with_decimal_commas += csv.decimal_commas ? 1 : 0;
     std::map<std::string, std::string> used;  // CSV name: canonical name
     for (const ColumnInfo& info : columns_of(experiment.kind)) {
         const auto origin = frame.origins.find(info.name);
@@ -187,13 +191,13 @@ Run read_run(const TomlValue& table, std::size_t index, Experiment& experiment, 
     for (const auto& [name, origin] : frame.origins)
         if (!run.has(name) && std::find(csv.names.begin(), csv.names.end(), origin.from) == csv.names.end() &&
             find_column(experiment.kind, name)->required)
-            throw InputError(path.string(), "line 1", fmt::format("has no column \"{}\"", origin.from),
+            throw InputError(path.string(), "header", fmt::format("has no column \"{}\"", origin.from),
                              fmt::format("it, as {} says", frame.file));
     read_constants(reader, experiment.kind, table, frame, run);
     const std::vector<std::string_view> names(csv.names.begin(), csv.names.end());
     for (const ColumnInfo& info : columns_of(experiment.kind))
         if (info.required && !run.has(info.name))
-            throw InputError(path.string(), "line 1",
+            throw InputError(path.string(), "header",
                              fmt::format("has no column \"{}\" ({}){}", info.name, info.meaning,
                                          is_it(nearest_name(info.name, names), "\"")),
                              fmt::format("it, or where to find it in [columns] of {}", frame.file));
@@ -276,15 +280,32 @@ void read_assumed(Reader& top, Experiment& experiment) {
     }
 }
 
+/// What is no TOML at all, with what makes one.
+TomlValue read_description(const std::string& file) {
+    constexpr const char* kRemedy = "the description that `puckloop gap new KIND DIR` begins, docs/gap.md";
+    std::error_code ignored;
+    using enum std::filesystem::file_type;
+    const auto type = std::filesystem::status(file, ignored).type();
+    if (type == not_found) throw InputError(file, "", "is not there", kRemedy);
+    if (type == directory) throw InputError(file, "", "is a folder, not a file", kRemedy);
+    if (type != regular) throw InputError(file, "", "is a pipe or device, which may never end", kRemedy);
+    std::array<char, 4096> start{};
+    const auto read = std::ifstream(file, std::ios::binary).read(start.data(), start.size()).gcount();
+    if (is_binary({start.data(), static_cast<std::size_t>(read)}))
+        throw InputError(file, "", "is binary, not text", kRemedy);
+    return read_toml(file);
+}
+
 Experiment read_folder(const std::filesystem::path& folder, Problems* problems) {
     std::error_code ignored;
-    if (!std::filesystem::is_directory(folder, ignored))
-        throw InputError(folder.string(), "", "is not a folder", "a folder with experiment.toml");
+    const auto type = std::filesystem::status(folder, ignored).type();
+    if (type == std::filesystem::file_type::not_found)
+        throw InputError(folder.string(), "", "is not there", "a folder with experiment.toml");
+    if (type != std::filesystem::file_type::directory)
+        throw InputError(folder.string(), "", "is not a folder", "the folder that holds experiment.toml");
     Frame frame;
     frame.file = (folder / "experiment.toml").string();
-    if (std::filesystem::is_fifo(frame.file, ignored))
-        throw InputError(frame.file, "", "is a pipe, which may never end", "a TOML file");
-    const TomlValue root = read_toml(frame.file);
+    const TomlValue root = read_description(frame.file);
     Reader top(frame.file, "", root);
     Experiment experiment;
     experiment.folder = folder;
@@ -321,6 +342,9 @@ Experiment read_folder(const std::filesystem::path& folder, Problems* problems) 
                     "a column of the CSV files");
         });
     tidy(experiment.cautions);
+    if (frame.with_decimal_commas > 0)
+        experiment.caution("commas inside cells are read as decimal commas (0,5 is 0.5) in {} of {} files",
+                           frame.with_decimal_commas, runs.size());
     return experiment;
 }
 

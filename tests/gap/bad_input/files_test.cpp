@@ -64,33 +64,75 @@ TEST_CASE("line ends, separators, byte order marks and comments of all sorts are
 TEST_CASE("files that cannot be used are refused with a line") {
     CHECK_THAT(of_csv(""), Contains("empty"));
     CHECK_THAT(of_csv("t_s,sensor,grey,reading\n"), Contains("no rows"));
-    CHECK_THAT(of_csv(table() + "6.0,1,0.5\n"), Contains("line 62") && Contains("3 cells"));
-    CHECK_THAT(of_csv(table() + "6.0,1,0.5,300,7\n"), Contains("line 62") && Contains("5 cells"));
+    CHECK_THAT(of_csv(table() + "6.0,1,0.5\n"), Contains("row 61") && Contains("3 cells"));
+    CHECK_THAT(of_csv(table() + "6.0,1,0.5,300,7\n"), Contains("row 61") && Contains("5 cells"));
     CHECK_THAT(of_csv(replaced(table(), "sensor", "reading")), Contains("twice"));
     CHECK_THAT(of_csv(table().substr(table().find('\n') + 1)), Contains("header"));
-    CHECK_THAT(of_csv(replaced(replaced(table(), ",", ";"), ".", ",")), Contains("decimal point"));
+    CHECK_THAT(of_csv(replaced(table(), "0.25,", "0,25,")),
+               Contains("row 2") && Contains("5 cells") && Contains("semicolons"));
     CHECK_THAT(of_csv(replaced(table(), "\n", "\r")), Contains("carriage returns"));
     CHECK_THAT(of_csv("\xFF\xFE" + table()), Contains("UTF-16"));
     CHECK_THAT(of_csv(replaced(table(), "reading", "Reading")), Contains("\"Reading\"?"));
-    CHECK_THAT(of_csv(table() + "6.0,1,0.5,n/a\n"), Contains("line 62") && Contains("n/a"));
-    CHECK_THAT(of_csv(std::string("\0\1\2\n\3", 5)), Contains("a.csv"));
+    CHECK_THAT(of_csv(table() + "6.0,1,0.5,n/a\n"), Contains("row 61") && Contains("n/a"));
+    CHECK_THAT(of_csv(std::string("\0\1\2\n\3", 5)), Contains("a.csv: header: is binary, not text"));
+    CHECK_THAT(of_csv(table() + std::string("\0\1,2,3,4\n", 9)), Contains("row 61: is binary"));
+    CHECK_THAT(of_csv("PK\x03\x04" + table()), Contains("a spreadsheet") && Contains("saved as CSV"));
     const Folder folder;
-    CHECK_THAT(refusal(folder.path()), Contains("experiment.toml"));
-    CHECK_THAT(refusal(folder.path() / "none"), Contains("not a folder"));
+    CHECK_THAT(refusal(folder.path() / "none"), Contains("none: is not there"));
     write_file(folder.path() / "experiment.toml", kToml);
-    CHECK_THAT(refusal(folder.path()), Contains("a.csv") && Contains("cannot be opened"));
+    CHECK_THAT(refusal(folder.path()), Contains("a.csv: is not there"));
+    std::filesystem::create_directory(folder.path() / "a.csv");
+    CHECK_THAT(refusal(folder.path()), Contains("a.csv: is a folder"));
+    CHECK_THAT(refusal(folder.path() / "experiment.toml"), Contains("not a folder"));
+}
+
+TEST_CASE("an experiment.toml that is none gives one line with what to do") {
+    const Folder folder;
+    const auto file = folder.path() / "experiment.toml";
+    const auto one_line = [&](const char* problem) {
+        CHECK_THAT(refusal(folder.path()),
+                   Contains(std::string("experiment.toml: ") + problem) && Contains("gap new KIND DIR"));
+    };
+    one_line("is not there");
+    write_file(file, std::string("\x7F"
+                                 "ELF\2\1\1\0\0",
+                                 9) +
+                         kToml);
+    one_line("is binary, not text");
+    std::filesystem::remove(file);
+    std::filesystem::create_directory(file);
+    one_line("is a folder, not a file");
+}
+
+TEST_CASE("decimal commas between semicolons or tabs are read, where all numbers have them") {
+    const Folder points, commas;
+    std::string cautions;
+    const std::string german = replaced(replaced(table(), ",", ";"), ".", ",");
+    for (const char* separator : {";", "\t"}) {
+        for (const auto* folder : {&points, &commas})
+            write_file(folder->path() / "experiment.toml", kToml);
+        write_file(points.path() / "a.csv", table());
+        write_file(commas.path() / "a.csv", replaced(german, ";", separator));
+        CHECK(read_experiment(commas.path()).runs.front().columns ==
+              read_experiment(points.path()).runs.front().columns);
+        CHECK(refusal(commas.path(), &cautions) == "");
+        CHECK_THAT(cautions, Contains("0,5 is 0.5") && Contains("1 of 1 files"));
+    }
+    CHECK_THAT(of_csv(german + "6.0;1;0,5;300\n"),
+               Contains("row 61") && Contains("column \"t_s\"") && Contains("one decimal point throughout"));
+    CHECK_THAT(of_csv(german + "6,0;1;0,5;1.300,0\n"), Contains("row 61") && Contains("thousands"));
 }
 
 TEST_CASE("pipes and devices, which may never end, are not waited for") {
     const Folder folder;
     write_file(folder.path() / "experiment.toml", "kind = \"ground\"\n[[run]]\nfile = \"/dev/zero\"\n");
-    CHECK_THAT(refusal(folder.path()), Contains("/dev/zero") && Contains("is not a file"));
+    CHECK_THAT(refusal(folder.path()), Contains("/dev/zero: is not a file"));
     write_file(folder.path() / "experiment.toml", kToml);
     REQUIRE(::mkfifo((folder.path() / "a.csv").c_str(), 0600) == 0);
     CHECK_THAT(refusal(folder.path()), Contains("a.csv") && Contains("is not a file"));
     std::filesystem::remove(folder.path() / "experiment.toml");
     REQUIRE(::mkfifo((folder.path() / "experiment.toml").c_str(), 0600) == 0);
-    CHECK_THAT(refusal(folder.path()), Contains("experiment.toml") && Contains("pipe"));
+    CHECK_THAT(refusal(folder.path()), Contains("experiment.toml: is a pipe"));
     const auto loop = folder.path() / "loop";
     std::filesystem::create_symlink("loop", loop);
     CHECK_THAT(refusal(loop), Contains("not a folder"));

@@ -72,13 +72,13 @@ TEST_CASE("all problems of all files are listed, not only the first") {
     const Readiness ready = readiness_of(folder.path(), 1);
     INFO(readiness_text(ready));
     CHECK(ready.problems.size() == 4);
-    CHECK(any_holds(ready.problems, {"run0.csv", "line 5", "\"lots\"", "column \"reading\"", "a number"}));
-    CHECK(any_holds(ready.problems, {"run0.csv", "line 9", "has 4 cells", "expected 5"}));
+    CHECK(any_holds(ready.problems, {"run0.csv", "row 4", "\"lots\"", "column \"reading\"", "a number"}));
+    CHECK(any_holds(ready.problems, {"run0.csv", "row 8", "has 4 cells", "expected 5"}));
     CHECK(any_holds(ready.problems, {"run1.csv", "row 1", "distance_m", "wrong unit", "expected"}));
     CHECK(any_holds(ready.problems, {"run2.csv", "no column \"reading\"", "is it \"raeding\""}));
     CHECK_THAT(readiness_text(ready), Contains("not ready: 4 things"));
     // An analysis stops at the first of them.
-    CHECK_THAT(refusal(folder.path()), Contains("run0.csv: line 5"));
+    CHECK_THAT(refusal(folder.path()), Contains("run0.csv: row 4"));
 }
 
 TEST_CASE("the same fault in every row does not bury the others") {
