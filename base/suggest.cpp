@@ -8,9 +8,18 @@ namespace puckloop {
 namespace {
 
 constexpr std::size_t kLongestName = 64;
+constexpr std::size_t kMostNames = 3;
 
 char lower(char c) {
     return c >= 'A' && c <= 'Z' ? static_cast<char>(c + ('a' - 'A')) : c;
+}
+
+/// Does `name` begin or end with `words`, set off by a point or underscore?
+bool has_words(std::string_view name, std::string_view words) {
+    const auto sets_off = [](char c) { return c == '.' || c == '_'; };
+    if (name.size() <= words.size()) return false;
+    return (name.starts_with(words) && sets_off(name[words.size()])) ||
+           (name.ends_with(words) && sets_off(name[name.size() - words.size() - 1]));
 }
 
 }  // namespace
@@ -48,6 +57,30 @@ std::string nearest_name(std::string_view name, const std::vector<std::string_vi
         best = candidate;
     }
     return best;
+}
+
+std::vector<std::string> near_names(std::string_view name, const std::vector<std::string_view>& known) {
+    if (name.empty() || name.size() > kLongestName) return {};
+    const std::size_t farthest = name.size() <= 3 ? 1 : name.size() <= 10 ? 2 : 3;
+    std::size_t best = farthest + 1;  // the distance of whole words
+    std::vector<std::string> names;
+    for (const std::string_view candidate : known) {
+        const std::size_t edits = edit_distance(name, candidate);
+        const std::size_t distance = edits > farthest && has_words(candidate, name) ? farthest + 1 : edits;
+        if (distance < best) names.clear();
+        best = std::min(best, distance);
+        const bool fresh = std::find(names.begin(), names.end(), candidate) == names.end();
+        if (distance == best && fresh && names.size() < kMostNames) names.emplace_back(candidate);
+    }
+    return names;
+}
+
+std::string did_you_mean(std::string_view name, const std::vector<std::string_view>& known) {
+    std::string text;
+    const std::vector<std::string> names = near_names(name, known);
+    for (std::size_t i = 0; i < names.size(); ++i)
+        text += (i == 0 ? "; did you mean \"" : i + 1 == names.size() ? "\" or \"" : "\", \"") + names[i];
+    return text.empty() ? text : text + "\"?";
 }
 
 }  // namespace puckloop

@@ -186,9 +186,8 @@ std::string_view kind_name(Kind kind) {
 Kind kind_named(std::string_view name) {
     for (std::size_t i = 0; i < kNames.size(); ++i)
         if (kNames[i] == name) return static_cast<Kind>(i);
-    const std::string near = nearest_name(std::string(name), {kNames.begin(), kNames.end()});
-    throw std::invalid_argument(fmt::format("unknown kind \"{}\"{}", name,
-                                            near.empty() ? "" : fmt::format("; did you mean \"{}\"?", near)));
+    throw std::invalid_argument(
+        fmt::format("unknown kind \"{}\"{}", name, did_you_mean(name, {kNames.begin(), kNames.end()})));
 }
 
 }  // namespace puckloop::gap

@@ -83,19 +83,14 @@ void read_conditions(Reader& reader, std::map<std::string, std::string>& conditi
     }
 }
 
-/// "; is it \"x\"?" where a name is near; else nothing.
-std::string is_it(const std::string& near, const char* quote = "") {
-    return near.empty() ? "" : fmt::format("; is it {0}{1}{0}?", quote, near);
-}
-
 const ColumnInfo& known_column(Reader& reader, Kind kind, const std::string& name) {
     if (const ColumnInfo* info = find_column(kind, name)) return *info;
     std::vector<std::string_view> names;
     for (const ColumnInfo& column : columns_of(kind))
         names.emplace_back(column.name);
-    const std::string near = nearest_name(name, names);
-    reader.fail(name, fmt::format("kind {} has no column '{}'", kind_name(kind), name),
-                near.empty() ? "a column of docs/gap.md" : fmt::format("'{}'?", near));
+    reader.fail(
+        name, fmt::format("kind {} has no column \"{}\"{}", kind_name(kind), name, did_you_mean(name, names)),
+        "a column of docs/gap.md");
 }
 
 void read_columns(const TomlValue& table, Kind kind, Frame& frame) {
@@ -199,15 +194,14 @@ Run read_run(const TomlValue& table, std::size_t index, Experiment& experiment, 
         if (info.required && !run.has(info.name))
             throw InputError(path.string(), "header",
                              fmt::format("has no column \"{}\" ({}){}", info.name, info.meaning,
-                                         is_it(nearest_name(info.name, names), "\"")),
+                                         did_you_mean(info.name, names)),
                              fmt::format("it, or where to find it in [columns] of {}", frame.file));
     std::vector<std::string_view> absent;
     for (const ColumnInfo& info : columns_of(experiment.kind))
         if (!run.has(info.name)) absent.emplace_back(info.name);
     for (const std::string& name : csv.names) {
         if (used.contains(name) || name.empty()) continue;
-        experiment.caution("{}: column \"{}\" is not used{}", run.file, name,
-                           is_it(nearest_name(name, absent)));
+        experiment.caution("{}: column \"{}\" is not used{}", run.file, name, did_you_mean(name, absent));
     }
     reader.finish();
     return run;

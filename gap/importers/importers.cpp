@@ -24,12 +24,9 @@ const Importer& importer_for(const std::filesystem::path& folder, const std::str
         if (!set.empty() && importer.name == set) return importer;
         names.push_back(importer.name);
     }
-    if (!set.empty()) {
-        const std::string near = nearest_name(set, names);
-        throw InputError("", "", fmt::format("unknown data set \"{}\"", set),
-                         near.empty() ? fmt::format("one of {}", fmt::join(names, ", "))
-                                      : fmt::format("did you mean \"{}\"?", near));
-    }
+    if (!set.empty())
+        throw InputError("", "", fmt::format("unknown data set \"{}\"{}", set, did_you_mean(set, names)),
+                         fmt::format("one of {}", fmt::join(names, ", ")));
     std::error_code ignored;
     if (!std::filesystem::is_directory(folder, ignored))
         throw InputError(folder.string(), "", "is not a folder", "a folder with a published data set");

@@ -74,11 +74,12 @@ void Model::apply_nominal(const Experiment& experiment) {
         std::vector<std::string_view> names;
         for (const auto& parameter : parameters_)
             names.emplace_back(parameter.name);
-        const std::string near = nearest_name(name, names);
-        throw InputError(
-            file, "",
-            fmt::format("[nominal] names no parameter of kind {}: {}", kind_name(experiment.kind), name),
-            near.empty() ? "one of docs/gap.md" : near + "?");
+        for (const auto& parameter : physics::parameter_table())
+            names.emplace_back(parameter.name);
+        throw InputError(file, "",
+                         fmt::format("[nominal] names no parameter of kind {}: {}{}",
+                                     kind_name(experiment.kind), name, did_you_mean(name, names)),
+                         "one of docs/gap.md or of `puckloop run --list-parameters`");
     }
 }
 

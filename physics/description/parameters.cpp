@@ -2,6 +2,8 @@
 
 #include "physics/description/parameters.h"
 
+#include "base/suggest.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,40 +16,15 @@ namespace puckloop::physics {
 
 namespace {
 
-/// Levenshtein distance.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-    std::vector<std::size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), std::size_t{0});
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        std::size_t diagonal = row[0];
-        row[0] = i + 1;
-        for (std::size_t j = 0; j < b.size(); ++j) {
-            const std::size_t above = row[j + 1];
-            row[j + 1] = std::min({above + 1, row[j] + 1, diagonal + (a[i] == b[j] ? 0U : 1U)});
-            diagonal = above;
-        }
-    }
-    return row.back();
-}
-
-std::string_view nearest_name(std::string_view name) {
-    std::string_view best;
-    std::size_t best_distance = 0;
-    for (const auto& info : parameter_table()) {
-        const auto distance = edit_distance(name, info.name);
-        if (best.empty() || distance < best_distance) {
-            best = info.name;
-            best_distance = distance;
-        }
-    }
-    return best;
-}
-
 const ParameterInfo& require(std::string_view name, int& index) {
     const auto* info = find_parameter(name, index);
-    if (info == nullptr)
+    if (info == nullptr) {
+        std::vector<std::string_view> names;
+        for (const auto& one : parameter_table())
+            names.emplace_back(one.name);
         throw std::invalid_argument(
-            fmt::format("unknown parameter \"{}\"; did you mean \"{}\"?", name, nearest_name(name)));
+            fmt::format("unknown parameter \"{}\"{}", name, did_you_mean(name, names)));
+    }
     return *info;
 }
 

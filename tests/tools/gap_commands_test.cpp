@@ -76,10 +76,15 @@ TEST_CASE("gap: options and folders that cannot be used end in one line and stat
     check_refused(floor + " --rerun --no-rerun --out " + desk.at("out"), "--no-rerun");
     check_refused(floor + " --firmware x.hex --out " + desk.at("out"), "x.hex: no such file");
     check_refused(floor + " --firmware x.hex", "--out");
+    check_refused("gap chek " + desk.at("floor"), "perhaps gap check");
+    check_refused("gap new grund " + desk.at("out"), "did you mean \"ground\"?");
+    check_refused("gap record motion --sett robot.axle_length=0.05 --out " + desk.at("out"), "perhaps --set");
     check_refused("gap selftest --workers 99999999", "--workers");
     check_refused("gap selftest --cases -1", "--cases");
     check_refused("gap selftest --quick --kind ground --scratch /dev/full", "/dev/full");
     check_refused("gap record motion --set host.period=0 --out " + desk.at("out"), "host.period");
+    check_refused("gap record timing --brief --set uart.loss=0.02 --out " + desk.at("loss"),
+                  "--set uart.loss=0.02: recording on the emulator: the main board answered");
     check_refused("gap record rab --set host.rab_poll=-1 --out " + desk.at("out"), "host.rab_poll");
     check_refused("gap record ground --rab-firmware x.hex --out " + desk.at("out"), "--rab-firmware");
     CHECK(!fs::exists(desk.path / "out"));

@@ -44,6 +44,15 @@ std::string nearest_option(const CLI::App& command, const std::string& word) {
     return option && !meant.empty() ? "--" + meant : meant;
 }
 
+/// A part that is near to a word taken as the command's own argument: `gap chek DIR`.
+std::string misspelt_part(const CLI::App& command) {
+    for (const CLI::Option* option : command.get_options())
+        for (const std::string& word :
+             option->get_positional() ? option->results() : std::vector<std::string>{})
+            if (const std::string meant = nearest_option(command, word); !meant.empty()) return meant;
+    return {};
+}
+
 /// "decode, export and rab": what can stand in a command's first place.
 std::string parts_of(const CLI::App& command) {
     std::vector<std::string> names;
@@ -76,7 +85,9 @@ std::string usage_error(const CLI::App& app, const CLI::ParseError& error) {
         const char* kind = word.starts_with("-") ? "option" : in_command ? "argument" : "command";
         problem = fmt::format("unknown {} '{}'", kind, word);
         const std::string parts = in_command ? parts_of(command) : std::string();
-        if (!word.starts_with("-") && !parts.empty())
+        if (const std::string part = misspelt_part(command); !word.starts_with("-") && !part.empty())
+            help = fmt::format("perhaps {} {}; {}", name, part, help);
+        else if (!word.starts_with("-") && !parts.empty())
             help = fmt::format("its parts are {}; {}", parts, help);
         else if (const std::string meant = nearest_option(command, word); !meant.empty())
             help = fmt::format("perhaps {}; {}", meant, help);

@@ -58,7 +58,7 @@ TEST_CASE("line ends, separators, byte order marks and comments of all sorts are
           "");
     CHECK_THAT(cautions, Contains("temp?rature"));
     CHECK(of_csv(replaced(table(), "sensor", "Sensor"), &cautions) == "");
-    CHECK_THAT(cautions, Contains("column \"Sensor\" is not used; is it sensor?"));
+    CHECK_THAT(cautions, Contains("column \"Sensor\" is not used; did you mean \"sensor\"?"));
 }
 
 TEST_CASE("files that cannot be used are refused with a line") {

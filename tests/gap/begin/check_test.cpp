@@ -75,7 +75,7 @@ TEST_CASE("all problems of all files are listed, not only the first") {
     CHECK(any_holds(ready.problems, {"run0.csv", "row 4", "\"lots\"", "column \"reading\"", "a number"}));
     CHECK(any_holds(ready.problems, {"run0.csv", "row 8", "has 4 cells", "expected 5"}));
     CHECK(any_holds(ready.problems, {"run1.csv", "row 1", "distance_m", "wrong unit", "expected"}));
-    CHECK(any_holds(ready.problems, {"run2.csv", "no column \"reading\"", "is it \"raeding\""}));
+    CHECK(any_holds(ready.problems, {"run2.csv", "no column \"reading\"", "did you mean \"raeding\"?"}));
     CHECK_THAT(readiness_text(ready), Contains("not ready: 4 things"));
     // An analysis stops at the first of them.
     CHECK_THAT(refusal(folder.path()), Contains("run0.csv: row 4"));
