@@ -13,7 +13,7 @@ namespace puckloop::gap {
 
 /// Most of the pushes lie where few should.
 struct PushPattern {
-    std::string where;      ///< "place x 0.4", "cmd_left -400, cmd_left a row before 400"
+    std::string where;      ///< "position x 0.4", "cmd left -400, cmd left in the previous row 400"
     double pushes = 0.0;    ///< there, each by its probability
     double all = 0.0;       ///< pushes found anywhere
     double expected = 0.0;  ///< there, if they came by chance

@@ -1,6 +1,7 @@
 #include "gap/pipeline/describe.h"
 
 #include "gap/decide/decide.h"
+#include "gap/decide/thresholds.h"
 #include "gap/diagnostics/heldout.h"
 #include "gap/fit/intervals.h"
 #include "gap/next_experiment/suggest.h"
@@ -126,6 +127,10 @@ void add_tried(const Study& study, const Selection& selection, Verdict& verdict)
         Tried tried{own.name, own.number, trial.delta_bic, trial.held.sum, 1.0, trial.remark};
         if (trial.validated && trial.held.sd > 0)
             tried.p_value = stats::normal_tail(trial.held.sum / trial.held.sd);
+        if (fit_failed(trial.delta_bic, study.candidates()[trial.effect].freed.size(), study.rows())) {
+            tried.delta_bic = NAN;
+            tried.remark = "the fit failed: it ended below the model without this effect";
+        }
         for (std::size_t k = 0; k < selection.steps.size(); ++k)
             if (selection.steps[k].effect == trial.effect)
                 tried.remark = fmt::format("chosen, step {}", k + 1);
@@ -152,6 +157,11 @@ void add_predictive(const Study& study, Judged& judged, std::uint64_t seed, Verd
 }
 
 }  // namespace
+
+bool fit_failed(double delta_bic, std::size_t parameters, std::size_t rows) {
+    return delta_bic <
+           -thresholds::kClearBic - static_cast<double>(parameters) * std::log(static_cast<double>(rows));
+}
 
 Verdict verdict_of(const Study& study, Judged judged, std::uint64_t seed) {
     const Experiment& experiment = study.experiment();

@@ -15,14 +15,14 @@ std::string free_form_section(const Verdict& verdict) {
             table.row({cause.name, std::to_string(cause.number), cell(cause.evidence), cell(cause.score_gain),
                        cause.sentence});
         out += "<h2>What came nearest</h2>\n<p>These effects gain something, but not as a cause would, or "
-               "less than a correction without any mechanism: they are not told as causes, and the figures "
+               "less than a correction without any mechanism: they are not named as causes, and the figures "
                "below are those of the simulator without them.</p>\n" +
                table.html();
     }
-    Table table({"observable", "#held-out score (nats)", "over", "#share", "shape"});
+    Table table({"observable", "#held-out score (nats)", "against", "#share", "shape"});
     for (const FreeForm& form : verdict.free_forms) {
         if (!form.clear) continue;
-        std::string observable = form.observable, gain = cell(form.gain);
+        std::string observable = plain_observable(form.observable), gain = cell(form.gain);
         if (form.terms.empty()) table.row({observable, gain, "", "", form.shape});
         for (const FreeFormTerm& term : form.terms) {
             table.row({observable, gain, term.over, cell(term.share), term.shape});

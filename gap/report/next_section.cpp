@@ -51,14 +51,14 @@ void look_at_what_is_left(const Verdict& verdict, std::vector<std::string>& step
     if (!verdict.leftovers.empty()) {
         const Leftover& left = verdict.leftovers.front();
         steps.push_back(fmt::format(
-            "Look at {} against {}: {}. {}", left.observable, left.covariate, left.shape,
+            "Look at {} against {}: {}. {}", plain_observable(left.observable), left.covariate, left.shape,
             can_be_varied(left.covariate)
                 ? fmt::format("Vary {} alone, everything else held, in both directions.", left.covariate)
                 : "No recorded column goes with it: repeat one run several times, and note what else changes "
                   "between and within runs (floor, battery, light, hands, other robots)."));
     } else if (!verdict.free_forms.empty() && verdict.free_forms.front().clear) {
         const FreeForm& form = verdict.free_forms.front();
-        steps.push_back(fmt::format("Look at {}: {}.", form.observable, form.shape));
+        steps.push_back(fmt::format("Look at {}: {}.", plain_observable(form.observable), form.shape));
     }
     steps.emplace_back("Use no overlay: no parameter of the simulator stands for what was found.");
 }

@@ -40,7 +40,7 @@ std::string all_pictures(const Experiment& experiment, const Verdict& verdict) {
     if (const auto paths = path_pictures(experiment, verdict); !paths.empty()) out += figures(paths);
     for (const Series& series : verdict.series) {
         if (verdict.series.size() > 1)
-            out += fmt::format("<h3>{}</h3>\n{}", escaped(series.observable),
+            out += fmt::format("<h3>{}</h3>\n{}", escaped(plain_observable(series.observable)),
                                meaning_of(experiment, series.observable));
         out += figures(pictures_of(experiment, series, verdict.seed));
     }

@@ -71,14 +71,18 @@ std::string gain_section(const Verdict& verdict) {
                range_cell(held.low, held.high)},
               "strong");
     for (const HeldObservable& o : verdict.observables)
-        table.row({o.name, o.unit, cell(o.before), cell(o.after), cell(o.ratio), range_cell(o.low, o.high)});
+        table.row({plain_observable(o.name), o.unit, cell(o.before), cell(o.after), cell(o.ratio),
+                   range_cell(o.low, o.high)});
     out += table.html();
     out += paragraph(
         fmt::format("{} of {} held-out runs are better. Log score a row {} before, {} after (gain {} nats a "
                     "row, 90 % {}). {}",
                     held.runs_better, held.runs, cell(held.score_before), cell(held.score_after),
                     cell(held.score_after - held.score_before), range_cell(held.score_low, held.score_high),
-                    held.gain ? "The data shows a gain." : "The data shows no gain; none is claimed."));
+                    !held.gain ? "The data shows no gain; none is claimed."
+                    : held.low <= 1 && held.high >= 1
+                        ? "The data shows a gain, of the scatter: errors are as large as before."
+                        : "The data shows a gain."));
     if (!verdict.observables.empty()) {
         const Picture picture = gain_picture(verdict);
         out += fmt::format("<div class=\"pictures\"><figure>{}<figcaption>{}</figcaption></figure></div>\n",
@@ -143,9 +147,9 @@ std::string evidence_section(const Verdict& verdict) {
         const bool chosen = t.remark.starts_with("chosen");
         table.row({t.name, t.number > 0 ? std::to_string(t.number) : "", cell(t.delta_bic),
                    cell(t.score_gain), p_cell(t.p_value), t.remark},
-                  chosen             ? "strong"
-                  : t.delta_bic <= 0 ? "faint"
-                                     : "");
+                  chosen               ? "strong"
+                  : !(t.delta_bic > 0) ? "faint"
+                                       : "");
     }
     return table.empty() ? std::string() : "<h2>Every effect that was tried</h2>\n" + table.html();
 }

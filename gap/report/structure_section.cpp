@@ -39,9 +39,9 @@ void add_floor(const Experiment& experiment, const Series& series, Table& table)
     const stats::NoiseFloor floor =
         stimuli.empty() || sums ? stats::noise_floor(measured, std::vector<int>(series.measured.size(), -1))
                                 : stats::noise_floor(measured, stats::stimulus_numbers(stimuli));
-    table.row({series.observable, series.unit, cell(floor.within_run), cell(floor.between_runs),
-               cell(floor.differences), cell(rms_of(series.measured, series.before)),
-               cell(rms_of(series.measured, series.after))});
+    table.row({plain_observable(series.observable), series.unit, cell(floor.within_run),
+               cell(floor.between_runs), cell(floor.differences),
+               cell(rms_of(series.measured, series.before)), cell(rms_of(series.measured, series.after))});
 }
 
 std::string effect_of(const Finding& f) {
@@ -101,8 +101,9 @@ std::string structure_section(const Experiment& experiment, const Verdict& verdi
     stats::adjust_together(before);
     stats::adjust_together(after);
     for (std::size_t i = 0; i < verdict.series.size(); ++i)
-        tests += fmt::format("<h3>{}</h3>\n{}", physics::escaped(verdict.series[i].observable),
-                             tests_of(*before[i], *after[i]));
+        tests +=
+            fmt::format("<h3>{}</h3>\n{}", physics::escaped(plain_observable(verdict.series[i].observable)),
+                        tests_of(*before[i], *after[i]));
     return "<h2>Noise floor</h2>\n<p>Standard deviations: of repeats of one stimulus inside a run, of their "
            "means from run to run, and from differences of successive rows; no model can do better than the "
            "first two.</p>\n" +

@@ -105,10 +105,10 @@ std::vector<stats::Component> turned_with_robot(const Experiment& experiment, co
     for (const auto& component : components) {
         if (component.pair) continue;  // twice as many, on twice the rows
         all.push_back(component);
-        all.back().name = component.name + ", along";
+        all.back().qualifier += " (along the heading)";
         all.back().weight = along;
         all.push_back(component);
-        all.back().name = component.name + ", across";
+        all.back().qualifier += " (across the heading)";
         all.back().weight = across;
     }
     return all;
@@ -128,7 +128,7 @@ void add_proportional(const Errors& errors, std::vector<stats::Component>& compo
     for (std::size_t g = 0; g < count; ++g) {
         if (components[g].pair) continue;
         components.push_back(components[g]);
-        components.back().name += ", in proportion";
+        components.back().qualifier += " (in proportion to the prediction)";
         components.back().weight = weight;
     }
 }
@@ -137,7 +137,7 @@ void add_proportional(const Errors& errors, std::vector<stats::Component>& compo
 FreeFormTerm term_of(const stats::Component& component, const std::vector<double>& correction,
                      const std::vector<double>& scale, double share, const std::string& unit) {
     FreeFormTerm term;
-    term.over = component.name;
+    term.over = component.name + component.qualifier;
     term.share = share;
     std::vector<double> sums(static_cast<std::size_t>(component.cells), 0.0), weights = sums;
     for (std::size_t i = 0; i < correction.size(); ++i) {
@@ -265,7 +265,7 @@ bool in_spells(const stats::ErrorRows& rows) {
 /// show: -1, 0 or 1 for each row in place of its error.
 FreeForm wild_form(Errors errors, const std::vector<stats::Component>& components, std::uint64_t seed) {
     FreeForm form;
-    form.observable = "wild values of " + errors.observable;
+    form.observable = "outliers of " + errors.observable;
     form.gain = -INFINITY;
     std::vector<double> known;
     for (const double error : errors.rows.error)

@@ -4,6 +4,8 @@
 #include "gap/stats/profile.h"
 #include "gap/stats/series.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -49,9 +51,15 @@ Component cells_of(const std::string& name, const std::vector<double>& values, i
     for (std::size_t k = 0; k < sums.size(); ++k) {
         c.at.push_back(sums[k] / std::max(counts[k], 1.0));
         const auto code = static_cast<std::size_t>(std::max(c.at.back(), 0.0));
-        c.where.push_back(name + " " +
-                          (label && code < labels.size() ? labels[code] : stats::plain(c.at.back())));
+        c.where.push_back(label
+                              ? name + " " + (code < labels.size() ? labels[code] : stats::plain(c.at.back()))
+                              : name + " = " + stats::plain(c.at.back()));
     }
+    return c;
+}
+
+Component finer(Component c) {
+    c.qualifier = fmt::format(" ({} bins)", c.cells);
     return c;
 }
 
@@ -115,9 +123,9 @@ double whole(double value, double grain) {
 /// Tracked place and wheel phase of a drive: what no single column of the commands says.
 void add_places(const Experiment& experiment, const Series& rows, std::vector<Covariate>& list) {
     if (experiment.kind != Kind::Motion) return;
-    Covariate x{"place x", CovariateKind::Number, {}, {}}, y{"place y", CovariateKind::Number, {}, {}},
-        out{"distance from the middle", CovariateKind::Number, {}, {}},
-        outward{"heading off outward", CovariateKind::Number, {}, {}},
+    Covariate x{"position x", CovariateKind::Number, {}, {}}, y{"position y", CovariateKind::Number, {}, {}},
+        out{"distance from the origin", CovariateKind::Number, {}, {}},
+        outward{"heading relative to the direction away from the origin", CovariateKind::Number, {}, {}},
         left{"phase of the left wheel", CovariateKind::Number, {}, {}},
         right{"phase of the right wheel", CovariateKind::Number, {}, {}};
     for (std::size_t i = 0; i < rows.run.size(); ++i) {
@@ -150,8 +158,7 @@ std::vector<Component> free_form_cells(const Experiment& experiment, const Serie
     for (const Covariate& c : covariates) {
         const bool label = c.kind == CovariateKind::Label;
         all.push_back(cells_of(c.name, c.value, kFine, label, c.labels));
-        if (!label && !few_values(c.value))
-            all.push_back(cells_of(c.name + ", finely", c.value, kFinest, false));
+        if (!label && !few_values(c.value)) all.push_back(finer(cells_of(c.name, c.value, kFinest, false)));
         if (c.name != "order" && c.name != "time")
             coarse.push_back(cells_of(c.name, c.value, kCoarse, label, c.labels));
     }
@@ -159,8 +166,8 @@ std::vector<Component> free_form_cells(const Experiment& experiment, const Serie
     for (std::size_t i = 0; i < rows.run.size(); ++i)
         place.push_back(static_cast<double>(rows.row[i]) /
                         static_cast<double>(experiment.runs[rows.run[i]].rows));
-    all.push_back(cells_of("place in the run", place, kPlaces, false));
-    coarse.push_back(cells_of("place in the run", place, kMiddle, false));
+    all.push_back(cells_of("position in the run", place, kPlaces, false));
+    coarse.push_back(cells_of("position in the run", place, kMiddle, false));
     const std::size_t single = coarse.size();
     for (std::size_t a = 0; a < single; ++a)
         for (std::size_t b = a + 1; b < single; ++b)
@@ -175,9 +182,10 @@ std::vector<Component> free_form_cells(const Experiment& experiment, const Serie
             all.push_back(cells_of(name, values, kFine, false));
             all.push_back(crossed(now, cells_of(name, values, kMiddle, false)));
         };
-        add(c.name + " a row before", past.before);
-        add("lowest " + c.name + " lately", past.lowest);
-        add("highest " + c.name + " lately", past.highest);
+        const std::string recent = fmt::format(" of the last {} rows", kLately);
+        add(c.name + " in the previous row", past.before);
+        add("lowest " + c.name + recent, past.lowest);
+        add("highest " + c.name + recent, past.highest);
         if (c.kind == CovariateKind::Signed) add("time since " + c.name + " changed", past.since);
     }
     std::erase_if(all, [](const Component& c) { return c.cells < 2; });

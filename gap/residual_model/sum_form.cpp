@@ -6,6 +6,7 @@
 #include "gap/fit/sum_response.h"
 #include "gap/stats/parts.h"
 #include "gap/stats/robust.h"
+#include "gap/verdict/verdict.h"
 
 #include <fmt/format.h>
 
@@ -290,15 +291,16 @@ FreeFormTerm term_of(const Column& column, double move, const std::vector<stats:
     const stats::Component& component = cells[column.component];
     const Amount& amount = amounts[column.amount];
     FreeFormTerm term;
-    term.over = component.name;
+    term.over = component.name + component.qualifier;
     term.where = {component.where[static_cast<std::size_t>(column.cell)]};
     term.values = {move};
     const std::string where =
         (column.above ? "from " : "at ") + term.where.front() + (column.above ? " on" : "");
     term.shape = amount.of.empty() ? fmt::format("{:+.3g} {} a row {}", move, unit, where)
                  : amount.unit == unit
-                     ? fmt::format("{:+.3g} % of {} {}", 100 * move, amount.of, where)
-                     : fmt::format("{:+.3g} {}/{} of {} {}", move, unit, amount.unit, amount.of, where);
+                     ? fmt::format("{:+.3g} % of {} {}", 100 * move, plain_observable(amount.of), where)
+                     : fmt::format("{:+.3g} {}/{} of {} {}", move, unit, amount.unit,
+                                   plain_observable(amount.of), where);
     return term;
 }
 

@@ -14,13 +14,14 @@ namespace puckloop::gap::stats {
 /// Every row lies in one cell of a component.
 struct Component {
     std::string name;                ///< "grey" or "sensor and grey"
-    std::vector<std::string> where;  ///< a cell each, in words; "grey 0.31"; may be empty
+    std::vector<std::string> where;  ///< a cell each, in words; "grey = 0.31"; may be empty
     std::vector<double> at;          ///< mean of the covariate in each cell, of an ordered component
     std::vector<int> cell;           ///< 0..cells-1; -1: unknown, no correction
     std::vector<double> weight;      ///< of the correction in a row; empty: 1
     int cells = 0;
-    bool ordered = false;  ///< neighbouring cells are alike
-    bool pair = false;     ///< cells of two covariates crossed
+    bool ordered = false;     ///< neighbouring cells are alike
+    bool pair = false;        ///< cells of two covariates crossed
+    std::string qualifier{};  ///< " (40 bins)", " (across the heading)": not part of a cell's words
 };
 
 struct ErrorRows {

@@ -69,13 +69,18 @@ std::string form_words(const FormVerdict& form) {
 
 std::string gain_sentence(const Held& held) {
     if (held.runs == 0) return "Nothing was held out.";
-    const std::string figures =
-        fmt::format("held-out error {:.0f} % of what it was (90 % interval {:.0f} to {:.0f} %), log score "
-                    "{:+.3g} a row, better in {} of {} blocks",
-                    100 * held.ratio, 100 * held.low, 100 * held.high, held.score_after - held.score_before,
-                    held.runs_better, held.runs);
-    if (!held.gain) return "No gain is claimed: " + figures + ".";
-    return "Gain on data that was not fitted: " + figures + ".";
+    const std::string error =
+        fmt::format("held-out error {:.0f} % of what it was (90 % interval {:.0f} to {:.0f} %)",
+                    100 * held.ratio, 100 * held.low, 100 * held.high);
+    const std::string score = fmt::format("log score {:+.3g} a row, better in {} of {} blocks",
+                                          held.score_after - held.score_before, held.runs_better, held.runs);
+    if (!held.gain) return fmt::format("No gain is claimed: {}, {}.", error, score);
+    if (held.low <= 1 && held.high >= 1)
+        return fmt::format("Gain on data that was not fitted: how far and when readings scatter is predicted "
+                           "better, {} (90 % interval {:+.3g} to {:+.3g}); no cause of scatter makes errors "
+                           "smaller: {}.",
+                           score, held.score_low, held.score_high, error);
+    return fmt::format("Gain on data that was not fitted: {}, {}.", error, score);
 }
 
 std::string summary_of(const Verdict& verdict) {
@@ -120,9 +125,10 @@ std::string summary_of(const Verdict& verdict) {
     if (const auto form = std::find_if(verdict.free_forms.begin(), verdict.free_forms.end(),
                                        [](const FreeForm& one) { return one.clear; });
         form != verdict.free_forms.end())
-        text += fmt::format(": {}: {}", form->observable, form->shape);
+        text += fmt::format(": {}: {}", plain_observable(form->observable), form->shape);
     else if (!verdict.leftovers.empty())
-        text += fmt::format(": {} {}", verdict.leftovers.front().observable, verdict.leftovers.front().shape);
+        text += fmt::format(": {} {}", plain_observable(verdict.leftovers.front().observable),
+                            verdict.leftovers.front().shape);
     text += ".";
     titles.clear();
     for (const Cause& cause : verdict.nearest)

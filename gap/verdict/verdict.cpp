@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 
 namespace puckloop::gap {
 
@@ -160,6 +161,19 @@ Json rerun_json(const Rerun& rerun) {
 std::string_view decision_name(Decision decision) {
     constexpr std::string_view kNames[] = {"named", "cannot_tell", "no_effect", "unexplained"};
     return kNames[static_cast<std::size_t>(decision)];
+}
+
+std::string plain_observable(const std::string& name) {
+    constexpr std::string_view kOutliers = "outliers of ";
+    static const std::map<std::string, const char*> kPlain{{"along", "distance along the heading"},
+                                                           {"across", "distance across the heading"},
+                                                           {"x_m", "position x"},
+                                                           {"y_m", "position y"},
+                                                           {"place", "position"}};
+    if (name.starts_with(kOutliers))
+        return std::string(kOutliers) + plain_observable(name.substr(kOutliers.size()));
+    const auto known = kPlain.find(name);
+    return known == kPlain.end() ? name : known->second;
 }
 
 std::string to_json(const Verdict& verdict) {

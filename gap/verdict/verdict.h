@@ -15,6 +15,9 @@ namespace puckloop::gap {
 enum class Decision { Named, CannotTell, NoEffect, Unexplained };
 std::string_view decision_name(Decision decision);  ///< "named", "cannot_tell", "no_effect", "unexplained"
 
+/// What a person calls an observable: "distance along the heading" for "along"; columns by their own names.
+std::string plain_observable(const std::string& name);
+
 struct FittedParameter {
     std::string name, unit;
     double value = 0.0, low = 0.0, high = 0.0;  ///< 90 % interval
@@ -87,7 +90,7 @@ struct Leftover {
 struct FreeFormTerm {
     std::string over;                ///< "grey", "course and sensor"
     double share = 0.0;              ///< of the correction's variance
-    std::vector<std::string> where;  ///< a cell each: "grey 0.31"
+    std::vector<std::string> where;  ///< a cell each: "grey = 0.31"
     std::vector<double> values;      ///< mean correction in each cell, observable's unit
     std::string shape;               ///< in words
 };

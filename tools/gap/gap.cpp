@@ -85,7 +85,8 @@ void tell_verdict(const gap::Experiment& experiment, const gap::Verdict& verdict
     constexpr std::size_t kLines = 6;  // the clearest come first; all are in gap.json and the report
     std::vector<std::string> printed;
     for (const auto& left : verdict.leftovers) {
-        auto line = fmt::format("{} against {}: {}", left.observable, left.covariate, left.shape);
+        auto line = fmt::format("{} against {}: {}", gap::plain_observable(left.observable), left.covariate,
+                                left.shape);
         if (std::find(printed.begin(), printed.end(), line) != printed.end()) continue;
         if (printed.size() < kLines) fmt::print("  left: {} (p {:.2g})\n", line, left.p_value);
         printed.push_back(std::move(line));

@@ -137,7 +137,7 @@ TEST_CASE("errors of a tracker about a place choose no cell") {
     experiment.runs.push_back(std::move(run));
     for (const auto& component : puckloop::gap::free_form_cells(experiment, rows, starts)) {
         INFO(component.name);
-        CHECK(component.name.find("outward") == std::string::npos);
-        CHECK(component.name.find("place x") == std::string::npos);
+        CHECK(component.name.find("origin") == std::string::npos);
+        CHECK(component.name.find("position x") == std::string::npos);
     }
 }

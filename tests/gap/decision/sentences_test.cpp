@@ -1,8 +1,11 @@
 // The verdict in words.
 
+#include "gap/pipeline/describe.h"
 #include "gap/verdict/sentences.h"
 
 #include <catch2/catch.hpp>
+
+#include <cmath>
 
 using namespace puckloop::gap;
 using Catch::Matchers::Contains;
@@ -20,4 +23,30 @@ TEST_CASE("a narrow interval is told with digits enough to see its ends") {
     CHECK_THAT(cause_sentence(cause), Contains("= 54 mm (53.1 mm to 54.9 mm)."));
     CHECK(quantity(0.0123456, "m") == "12.35 mm");
     CHECK(quantity(0.0123456, "m", 1) == "12.346 mm");
+}
+
+TEST_CASE("a cause of scatter claims what it gains, not an error that stays") {
+    Held held{1, 1, 1.0, 0.99, 1.01, -1.2, -0.9, 0.25, 0.35, 10, 9, true, ""};
+    CHECK(
+        gain_sentence(held) ==
+        "Gain on data that was not fitted: how far and when readings scatter is predicted better, log score "
+        "+0.3 a row, better in 9 of 10 blocks (90 % interval +0.25 to +0.35); no cause of scatter makes "
+        "errors smaller: held-out error 100 % of what it was (90 % interval 99 to 101 %).");
+    held.ratio = 0.5, held.low = 0.4, held.high = 0.6;
+    CHECK(gain_sentence(held) == "Gain on data that was not fitted: held-out error 50 % of what it was (90 % "
+                                 "interval 40 to 60 %), log "
+                                 "score +0.3 a row, better in 9 of 10 blocks.");
+}
+
+TEST_CASE("sums and frames of a drive have plain names") {
+    CHECK(plain_observable("along") == "distance along the heading");
+    CHECK(plain_observable("outliers of x_m") == "outliers of position x");
+    CHECK(plain_observable("reading") == "reading");
+}
+
+TEST_CASE("a set that ends further below the one it holds than its parameters cost was not fitted") {
+    CHECK_FALSE(fit_failed(100, 2, 10000));
+    CHECK_FALSE(fit_failed(-18.4, 2, 10000));
+    CHECK(fit_failed(-2000, 2, 10000));
+    CHECK(fit_failed(-INFINITY, 2, 10000));
 }

@@ -93,7 +93,8 @@ TEST_CASE("way lost beyond a place adds up to a free form, nothing lost to none"
     const FreeForm& along = form_of(forms, "along");
     CHECK(along.clear == (share < 1.0));
     if (share < 1.0)
-        CHECK_THAT(along.shape, Catch::Contains("% of along from") && Catch::Contains("place x"));
+        CHECK_THAT(along.shape,
+                   Catch::Contains("% of distance along the heading from") && Catch::Contains("position x"));
     CHECK_FALSE(form_of(forms, "heading").clear);
 }
 
