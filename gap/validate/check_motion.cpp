@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace puckloop::gap {
 
@@ -115,47 +116,78 @@ void check_commands(const Experiment& experiment, const Run& run) {
                "a wheel's counter beside its command");
 }
 
-/// Where the tracker saw the robot go while its wheels went straight, and how much its heading turns for a
-/// turn of the wheels.
-void check_pose(const Experiment& experiment, const Run& run, double metre_per_step, double axle) {
-    if (!run.has("steps_left")) return;
-    const auto &x = run.column("x_m"), &y = run.column("y_m"), &theta = run.column("theta_rad"),
-               &left = run.column("steps_left"), &right = run.column("steps_right");
-    constexpr double kLeastTurned = 0.25;                   // a turn for a radian is 0.16
-    constexpr double kLeastWay = 0.002, kLeastTurn = 0.02;  // m, rad: beyond a tracker's noise
-    double along = 0.0, all = 0.0;
-    std::vector<double> turns;
-    std::size_t last = 0;
+/// Steps of either wheel from the row before to this, by counters or, without them, as commanded.
+std::array<double, 2> steps_made(const Run& run, std::size_t row) {
+    const bool counted = run.has("steps_left");
+    const auto &left = run.column(counted ? "steps_left" : "cmd_left"),
+               &right = run.column(counted ? "steps_right" : "cmd_right"), &time = run.column("t_s");
+    if (counted) return {left[row] - left[row - 1], right[row] - right[row - 1]};
+    const double span = time[row] - time[row - 1];
+    return {left[row - 1] * span, right[row - 1] * span};
+}
+
+constexpr double kLeastWay = 0.002, kLeastTurn = 0.02;  // m, rad: beyond a tracker's noise
+
+/// Rows over which the wheels went or turned so far: m and rad by them.
+struct Stretch {
+    std::size_t first, last;
+    double way, turned;
+};
+
+std::vector<Stretch> stretches_of(const Run& run, double metre_per_step, double axle) {
+    const auto &x = run.column("x_m"), &y = run.column("y_m"), &theta = run.column("theta_rad");
+    std::vector<Stretch> all;
+    Stretch one{0, 0, 0.0, 0.0};
     for (std::size_t i = 1; i < run.rows; ++i) {
-        const double l = (left[i] - left[last]) * metre_per_step,
-                     r = (right[i] - right[last]) * metre_per_step;
-        const double dx = x[i] - x[last], dy = y[i] - y[last], turn = theta[i] - theta[last];
-        if (std::isnan(l + r + dx + dy + turn)) {
-            last = i;
-            continue;
-        }
-        const double way = (l + r) / 2, turned = (r - l) / axle, step = std::hypot(dx, dy);
-        if (std::abs(way) < kLeastWay && std::abs(turned) < kLeastTurn) continue;
-        if (std::abs(way) >= kLeastWay && step > std::abs(way) / 2 && step < 2 * std::abs(way)) {
-            const double middle = theta[last] + std::remainder(turn, 2 * std::numbers::pi) / 2;
-            along += std::copysign(1.0, way) * (dx * std::cos(middle) + dy * std::sin(middle));
-            all += step;
-        }
-        if (std::abs(turned) >= kLeastTurn) turns.push_back(std::abs(turn) / std::abs(turned));
-        last = i;
+        const auto [left, right] = steps_made(run, i);
+        one.last = i;
+        one.way += (left + right) / 2 * metre_per_step;
+        one.turned += (right - left) * metre_per_step / axle;
+        const bool known =
+            std::isfinite(one.way + x[i] + y[i] + theta[i] + x[one.first] + y[one.first] + theta[one.first]);
+        if (known && std::abs(one.way) < kLeastWay && std::abs(one.turned) < kLeastTurn) continue;
+        if (known) all.push_back(one);
+        one = {i, i, 0.0, 0.0};
     }
-    if (turns.size() >= 8) {
-        const double middle = stats::upper_median(turns);
-        if (middle > 10)
-            refuse(experiment, run,
-                   fmt::format("theta_rad turns {:.3g} times as far as the wheels do: degrees?", middle),
-                   "radians, or theta_rad = \"deg\" in [columns]");
-        if (middle < kLeastTurned)
-            refuse(experiment, run,
-                   fmt::format(
-                       "theta_rad turns {:.3g} times as far as the wheels do: wrong unit, or not the heading",
-                       middle),
-                   "radians; \"turn\" and \"deg\" are known in [columns]");
+    return all;
+}
+
+/// How many times as far as its wheels a heading turns.
+std::vector<double> turns_of(const Run& run, const std::vector<Stretch>& stretches) {
+    const auto& theta = run.column("theta_rad");
+    std::vector<double> turns;
+    for (const Stretch& one : stretches)
+        if (std::abs(one.turned) >= kLeastTurn)
+            turns.push_back(std::abs((theta[one.last] - theta[one.first]) / one.turned));
+    return turns;
+}
+
+void check_heading(const Experiment& experiment, const Run& run, const std::vector<double>& turns,
+                   bool counted) {
+    constexpr std::size_t kEnough = 8;
+    constexpr double kDegrees = 10.0, kLeastTurned = 0.25;  // a degree for a radian is 57, a turn 0.16
+    if (turns.size() < kEnough) return;
+    const double middle = stats::upper_median(turns);
+    const std::string ratio = fmt::format("theta_rad turns {:.3g} times as far as the wheels do", middle);
+    if (middle > kDegrees)
+        refuse(experiment, run, ratio + ": degrees?", "radians, or theta_rad = \"deg\" in [columns]");
+    if (counted && middle < kLeastTurned)  // commands may move nothing
+        refuse(experiment, run, ratio + ": wrong unit, or not the heading",
+               "radians; \"turn\" and \"deg\" are known in [columns]");
+}
+
+/// Where the tracker saw the robot go while its wheels went straight.
+void check_direction(const Experiment& experiment, const Run& run, const std::vector<Stretch>& stretches) {
+    const auto &x = run.column("x_m"), &y = run.column("y_m"), &theta = run.column("theta_rad");
+    double along = 0.0, all = 0.0;
+    for (const Stretch& one : stretches) {
+        const double dx = x[one.last] - x[one.first], dy = y[one.last] - y[one.first],
+                     turn = theta[one.last] - theta[one.first], step = std::hypot(dx, dy),
+                     way = std::abs(one.way);
+        if (way < kLeastWay || step <= way / 2 || step >= 2 * way) continue;
+        const double middle = theta[one.first] + std::remainder(turn, 2 * std::numbers::pi) / 2;
+        along += std::copysign(1.0, one.way) * (dx * std::cos(middle) + dy * std::sin(middle));
+        all += step;
     }
     constexpr double kEnough = 0.1;  // m
     if (all > kEnough && along < -kSideways * all)
@@ -186,41 +218,6 @@ void check_holes(Experiment& experiment, const Run& run) {
                 run.file, time[i] - time[i - 1], i + 1);
 }
 
-/// Steps by which the right wheel goes further than the left one from the row before to this, by counters or,
-/// without them, as commanded.
-double steps_apart(const Run& run, std::size_t row) {
-    const bool counted = run.has("steps_left");
-    const auto &left = run.column(counted ? "steps_left" : "cmd_left"),
-               &right = run.column(counted ? "steps_right" : "cmd_right"), &time = run.column("t_s");
-    return counted ? (right[row] - right[row - 1]) - (left[row] - left[row - 1])
-                   : (right[row - 1] - left[row - 1]) * (time[row] - time[row - 1]);
-}
-
-/// How many times as far as its wheels ask for a heading turns, in each row in which they turn beyond noise.
-void take_turns(const Run& run, double metre_per_step, double axle, std::vector<double>& turns) {
-    constexpr double kLeastTurn = 0.02;  // rad
-    const auto& theta = run.column("theta_rad");
-    for (std::size_t i = 1; i < run.rows; ++i) {
-        const double asked = std::abs(steps_apart(run, i)) * metre_per_step / axle,
-                     turn = std::abs(theta[i] - theta[i - 1]);
-        if (asked > kLeastTurn && std::isfinite(turn)) turns.push_back(turn / asked);
-    }
-}
-
-void check_degrees(const Experiment& experiment, double metre_per_step, double axle) {
-    constexpr std::size_t kEnough = 8;
-    constexpr double kDegrees = 10.0;  // a degree for a radian is 57
-    std::vector<double> turns;
-    for (const Run& run : experiment.runs)
-        take_turns(run, metre_per_step, axle, turns);
-    if (turns.size() < kEnough) return;
-    const double middle = stats::upper_median(turns);
-    if (middle > kDegrees)
-        refuse(experiment, experiment.runs.front(),
-               fmt::format("theta_rad turns {:.3g} times as far as the wheels do: degrees?", middle),
-               "radians, or theta_rad = \"deg\" in [columns]");
-}
-
 /// m that the commands ask for, the mean of both wheels.
 double way_asked(const Run& run, double metre_per_step) {
     double way = 0.0;
@@ -248,6 +245,7 @@ void check_motion(Experiment& experiment) {
     bool steps = false, heading_fixed = true;
     const double axle = experiment.nominal_or("robot.axle_length", physics::kAxleLength);
     const double metre_per_step = metres_per_step(experiment);
+    std::vector<std::pair<const Run*, std::vector<Stretch>>> driven_by_run;
     for (const Run& run : experiment.runs) {
         const Path path = measure(run);
         tracked += path.length;
@@ -261,6 +259,7 @@ void check_motion(Experiment& experiment) {
         if (run.has("steps_left"))
             for (const char* counter : {"steps_left", "steps_right"})
                 check_counter(experiment, run, counter, metre_per_step);
+        driven_by_run.emplace_back(&run, stretches_of(run, metre_per_step, axle));
         check_commands(experiment, run);
         check_holes(experiment, run);
         asked_way += way_asked(run, metre_per_step);
@@ -273,7 +272,8 @@ void check_motion(Experiment& experiment) {
         driven += (path.left + path.right) / 2 * metre_per_step;
         for (std::size_t i = 1; i < run.rows; ++i) {
             const double turn = std::remainder(theta[i] - theta[i - 1], 2 * std::numbers::pi);
-            const double asked = steps_apart(run, i);
+            const auto [left, right] = steps_made(run, i);
+            const double asked = right - left;
             if (std::isnan(turn) || std::isnan(asked)) continue;
             agree += turn * asked;
             turned += std::abs(turn * asked);
@@ -283,7 +283,11 @@ void check_motion(Experiment& experiment) {
     if (tracked == 0.0 && heading_fixed)
         refuse(experiment, first, "the pose is the same in every row",
                "what the tracker saw of a robot that moves");
-    check_degrees(experiment, metre_per_step, axle);
+    std::vector<double> turns;
+    for (const auto& [run, stretches] : driven_by_run)
+        for (const double turn : turns_of(*run, stretches))
+            turns.push_back(turn);
+    check_heading(experiment, first, turns, false);
     if (turned > 0 && agree < -0.5 * turned)
         refuse(experiment, first,
                "the robot turns the other way than its wheels: left and right are swapped, or theta_rad runs "
@@ -311,8 +315,11 @@ void check_motion(Experiment& experiment) {
                fmt::format("the robot moves {:.3g} m/s on average: wrong unit of x_m, y_m or t_s",
                            tracked / duration),
                "at most 3 m/s");
-    for (const Run& run : experiment.runs)
-        check_pose(experiment, run, metre_per_step, axle);
+    for (const auto& [run, stretches] : driven_by_run)
+        if (run->has("steps_left")) {
+            check_heading(experiment, *run, turns_of(*run, stretches), true);
+            check_direction(experiment, *run, stretches);
+        }
 }
 
 }  // namespace puckloop::gap
