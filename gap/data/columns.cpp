@@ -61,7 +61,7 @@ const std::vector<ColumnInfo> kMotion{
 const std::vector<ColumnInfo> kRab{
     {"distance_m", "m", Truth, true, 0, 20, "between the two boards' edges, as a ruler measures it"},
     {"strength", "counts", Observable, false, 0, 20000, "received signal strength; missing when nothing was received"},
-    {"bearing_rad", "rad", Observable, false, -7, 7, "bearing told by the receiver"},
+    {"bearing_rad", "rad", Observable, false, -7, 7, "bearing that the receiver gives"},
     {"received", "1", Observable, false, 0, 1, "1: this message arrived, 0: it did not"},
     {"valid", "1", Observable, false, 0, 1, "1: its payload was what had been sent, 0: wrong data; missing when not received"},
     {"true_bearing_rad", "rad", Truth, false, -7, 7, "true bearing of the sender in the receiver's frame"},

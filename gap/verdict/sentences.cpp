@@ -64,7 +64,7 @@ std::string form_words(const FormVerdict& form) {
         return fmt::format("this family, another form: {} fits better by {:.3g} nats", form.better,
                            form.left);
     if (form.open.empty()) return "";
-    return fmt::format("this family, form not told apart from: {}", fmt::join(form.open, ", "));
+    return fmt::format("this family, form not distinguished from: {}", fmt::join(form.open, ", "));
 }
 
 std::string gain_sentence(const Held& held) {
