@@ -82,8 +82,8 @@ std::string new_experiment_toml(Kind kind, std::size_t runs) {
         "\n# [nominal]: where this robot is known to differ from the simulator (docs/gap.md).\n[nominal]\n\n";
     text += "# Conditions that hold for all runs, in words.\n[conditions]\n# light = \"dark\"\n\n";
     text += fmt::format("# Only runs are independent of each other: record at least four, in random order, "
-                        "better ten. What tells\n"
-                        "# the causes apart:\n{}\n",
+                        "better ten. What separates\n"
+                        "# the causes:\n{}\n",
                         advice_lines(kind));
     for (std::size_t run = 0; run < runs; ++run)
         text +=

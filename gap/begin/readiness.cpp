@@ -35,12 +35,18 @@ Readiness readiness_of(const std::filesystem::path& folder, unsigned threads) {
     return ready;
 }
 
+/// "needs a or b" for "needs a|b".
+static std::string in_words(std::string why) {
+    for (std::size_t at = 0; (at = why.find('|', at)) != std::string::npos;)
+        why.replace(at, 1, " or ");
+    return why;
+}
+
 std::string readiness_text(const Readiness& ready) {
     std::string text;
     if (!ready.kind.empty())
         text +=
-            fmt::format("{}: kind {}, {} runs, {} rows\n", ready.title.empty() ? "(no title)" : ready.title,
-                        ready.kind, ready.runs, ready.rows);
+            fmt::format("{}: kind {}, {} runs, {} rows\n", ready.title, ready.kind, ready.runs, ready.rows);
     for (const auto& problem : ready.problems)
         text += fmt::format("wrong: {}\n", problem);
     for (const auto& caution : ready.cautions)
@@ -50,7 +56,7 @@ std::string readiness_text(const Readiness& ready) {
                                   ready.problems.size(), ready.problems.size() == 1 ? "" : "s");
     std::map<std::string, std::vector<std::string>> by_reason;
     for (const auto& blind : ready.blind)
-        by_reason[blind.why].push_back(blind.name);
+        by_reason[in_words(blind.why)].push_back(blind.name);
     for (const auto& [why, names] : by_reason)
         text += fmt::format("cannot be found: {} ({})\n", fmt::join(names, ", "), why);
     text += fmt::format("can be found: {}\n", fmt::join(ready.looked_for, ", "));

@@ -309,7 +309,13 @@ Experiment read_folder(const std::filesystem::path& folder, Problems* problems) 
     } catch (const std::invalid_argument& error) {
         top.fail("kind", error.what(), "proximity, motion, rab, microphone, ground, accelerometer or timing");
     }
-    experiment.title = top.text("title", folder.filename().string());
+    experiment.title = top.text("title", "");
+    if (experiment.title.empty())  // "DIR/" has no file name of its own
+        experiment.title = std::filesystem::absolute(folder / "experiment.toml")
+                               .lexically_normal()
+                               .parent_path()
+                               .filename()
+                               .string();
     experiment.robot = top.text("robot", "");
     experiment.description = top.text("description", "");
     experiment.source = top.text("source", "");

@@ -48,9 +48,10 @@ std::vector<Leftover> leftovers_of(const Experiment& experiment, const std::vect
         for (const stats::Finding& finding : tables[o]) {
             // Tails and held samples are the noise's business; what is carried over is in its model.
             if (finding.p_adjusted > level || finding.test == "outliers" || finding.test == "held") continue;
-            left.push_back({series[o].observable,
-                            finding.covariate.empty() ? finding.test : finding.covariate, finding.p_adjusted,
-                            finding.shape});
+            const std::string against = finding.covariate.empty()      ? finding.test
+                                        : finding.covariate == "level" ? "predicted level"
+                                                                       : finding.covariate;
+            left.push_back({series[o].observable, against, finding.p_adjusted, finding.shape});
         }
     std::stable_sort(left.begin(), left.end(),
                      [](const auto& a, const auto& b) { return a.p_value < b.p_value; });

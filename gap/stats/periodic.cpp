@@ -182,7 +182,7 @@ Finding periodic_test(const Series& residual, const std::vector<double>& time, c
     finding.effect = amplitude_at(residual, time, frequency);
     const double scale = robust_scale(residual.value);
     finding.relative = scale > 0 ? finding.effect / scale : 0.0;
-    finding.shape = fmt::format("a line at {} Hz ({} rows a period)", plain(frequency),
+    finding.shape = fmt::format("oscillates at {} Hz (period of {} rows)", plain(frequency),
                                 plain(1 / (frequency * spectrum.step())));
     return finding;
 }

@@ -55,7 +55,7 @@ std::string course(const Profile& p, std::string_view covariate, bool rising) {
         words += fmt::format(", mostly below {}", plain(p.x[middle]));
     else if (early < early_x - 0.3)
         words += fmt::format(", mostly beyond {}", plain(p.x[middle]));
-    if (zero_at_zero(p)) words += ", zero at zero";
+    if (zero_at_zero(p)) words += fmt::format(", zero at {} = 0", covariate);
     return words;
 }
 

@@ -48,7 +48,7 @@ Finding outlier_test(const Series& residual, const TestOptions&) {
                                   : low > 3 * high + 2 ? "low side only"
                                                        : "both sides";
     finding.shape =
-        fmt::format("{:.3g} % wild values, {} ({} high, {} low)", 100 * finding.effect, side, high, low);
+        fmt::format("{:.3g} % outliers, {} ({} high, {} low)", 100 * finding.effect, side, high, low);
     return finding;
 }
 
@@ -83,7 +83,8 @@ Finding spread_test(const Series& residual, const std::vector<double>& level, st
     const double below = mean(lowest), above = mean(highest);
     finding.effect = below > 0 ? above / below - 1 : 0.0;
     finding.shape =
-        fmt::format("scatter {} with {} (mean distance {} low, {} high)",
+        fmt::format("scatter {} with the predicted {} (mean size {} where it is low, {} where it is high, in "
+                    "units of the noise)",
                     finding.statistic > 0 ? "grows" : "shrinks", name, plain(below), plain(above));
     return finding;
 }
@@ -127,8 +128,8 @@ Finding evenness_test(const Series& residual, const TestOptions& options) {
     finding.statistic = statistic(values);
     const auto [low, high] = std::minmax_element(means.begin(), means.end());
     finding.effect = *low > 0 ? *high / *low - 1 : 0.0;
-    finding.shape =
-        fmt::format("scatters unevenly: from {} to {} from stretch to stretch", plain(*low), plain(*high));
+    finding.shape = fmt::format("scatter differs between stretches of runs: {} to {} times the noise",
+                                plain(*low), plain(*high));
     std::vector<double> y = values;
     const auto draw = [&](RandomStream& random) {
         shuffle(std::span(y), random);

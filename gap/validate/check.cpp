@@ -7,9 +7,11 @@
 #include "gap/validate/checks.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 namespace puckloop::gap {
@@ -90,23 +92,25 @@ void check_missing(Experiment& experiment, const ColumnInfo& info) {
         experiment.cautions.push_back(missing_sentence(info.name, files, "which are left out or filled in"));
 }
 
-/// A column without a single value says nothing; it goes.
-void drop_empty(Experiment& experiment, const ColumnInfo& info) {
-    if (info.required) return;
-    std::size_t runs = 0;
-    std::string first;
-    for (Run& run : experiment.runs) {
-        const auto& values = run.column(info.name);
-        if (values.empty() ||
-            !std::all_of(values.begin(), values.end(), [](double value) { return std::isnan(value); }))
-            continue;
-        run.columns.erase(run.columns.find(info.name));
-        if (runs++ == 0) first = run.file;
+/// A column without a single value holds nothing; it goes. One caution for all of them.
+void drop_empty(Experiment& experiment) {
+    std::map<std::string, std::vector<std::string>> columns;  // by where
+    for (const ColumnInfo& info : columns_of(experiment.kind)) {
+        std::size_t runs = 0;
+        std::string where;
+        for (Run& run : experiment.runs) {
+            const auto& values = run.column(info.name);
+            if (info.required || values.empty() ||
+                !std::all_of(values.begin(), values.end(), [](double value) { return std::isnan(value); }))
+                continue;
+            run.columns.erase(run.columns.find(info.name));
+            where = ++runs == 1 ? run.file : fmt::format("{} runs", runs);
+        }
+        if (runs > 0) columns[where].emplace_back(info.name);
     }
-    if (runs == 1)
-        experiment.caution("{}: {} is empty in every row", first, info.name);
-    else if (runs > 1)
-        experiment.caution("{} is empty in every row of {} runs", info.name, runs);
+    for (const auto& [where, names] : columns)
+        experiment.caution("empty in every row of {}, taken as not recorded: {}", where,
+                           fmt::join(names, ", "));
 }
 
 /// Readings beyond what the instrument can say tell next to nothing.
@@ -218,9 +222,9 @@ void check_runs(Experiment& experiment) {
 void check(Experiment& experiment, Problems* problems) {
     const auto step = [&](const auto& what) { return attempt(problems, what); };
     step([&] { check_nominal(experiment); });
+    drop_empty(experiment);
     for (const ColumnInfo& info : columns_of(experiment.kind)) {
         if (!experiment.has(info.name)) continue;
-        drop_empty(experiment, info);
         for (Run& run : experiment.runs)
             if (run.has(info.name)) {
                 step([&] { check_range(experiment, run, info); });

@@ -116,16 +116,6 @@ void check_commands(const Experiment& experiment, const Run& run) {
                "a wheel's counter beside its command");
 }
 
-/// Steps of either wheel from the row before to this, by counters or, without them, as commanded.
-std::array<double, 2> steps_made(const Run& run, std::size_t row) {
-    const bool counted = run.has("steps_left");
-    const auto &left = run.column(counted ? "steps_left" : "cmd_left"),
-               &right = run.column(counted ? "steps_right" : "cmd_right"), &time = run.column("t_s");
-    if (counted) return {left[row] - left[row - 1], right[row] - right[row - 1]};
-    const double span = time[row] - time[row - 1];
-    return {left[row - 1] * span, right[row - 1] * span};
-}
-
 constexpr double kLeastWay = 0.002, kLeastTurn = 0.02;  // m, rad: beyond a tracker's noise
 
 /// Rows over which the wheels went or turned so far: m and rad by them.
@@ -235,6 +225,15 @@ double way_asked(const Run& run, double metre_per_step) {
 double metres_per_step(const Experiment& experiment) {
     return 2 * std::numbers::pi * experiment.nominal_or("robot.wheel_radius_left", physics::kWheelRadius) /
            experiment.nominal_or("robot.steps_per_turn", physics::kStepsPerTurn);
+}
+
+std::array<double, 2> steps_made(const Run& run, std::size_t row) {
+    const bool counted = run.has("steps_left");
+    const auto &left = run.column(counted ? "steps_left" : "cmd_left"),
+               &right = run.column(counted ? "steps_right" : "cmd_right"), &time = run.column("t_s");
+    if (counted) return {left[row] - left[row - 1], right[row] - right[row - 1]};
+    const double span = time[row] - time[row - 1];
+    return {left[row - 1] * span, right[row - 1] * span};
 }
 
 /// Left and right wheel exchanged turn the other way; millimetres taken for metres go a thousand times too

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <cstddef>
 #include <string>
 
 namespace puckloop::gap {
@@ -32,6 +34,10 @@ void check_kind(Experiment& experiment);
 void check_motion(Experiment& experiment);
 /// m of way for a step of the left wheel, by the nominal numbers.
 double metres_per_step(const Experiment& experiment);
+
+/// Steps of the left and right wheel from the row before to this (row >= 1) of a motion run, by counters or,
+/// without them, as commanded; NaN where either is missing.
+std::array<double, 2> steps_made(const Run& run, std::size_t row);
 
 /// Rows of two robots in one file, where no column `unit` says so. Motion: InputError if a run's pose jumps
 /// to and fro between two paths. Timing: InputError if `seq` does not count on; a caution where frames come

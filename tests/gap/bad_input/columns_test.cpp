@@ -244,7 +244,7 @@ TEST_CASE("missing, impossible and few values") {
     CHECK_THAT(cautions_of(changed(clean("ground"), "grey", gone(5))),
                Contains("grey is missing in 36 of 180 rows (3 runs), which are left out"));
     CHECK_THAT(cautions_of(changed(clean("ground"), "sensor", gone(1))),
-               Contains("sensor is empty in every row of 3 runs"));
+               Contains("empty in every row of 3 runs, taken as not recorded: sensor"));
     CHECK_THAT(cautions_of(changed(clean("ground"), "sensor", gone(7))),
                Contains("sensor is missing in 27 of 180 rows (3 runs)"));
     CHECK_THAT(

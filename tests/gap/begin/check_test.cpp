@@ -111,3 +111,33 @@ TEST_CASE("the time left begins at the estimate and ends at nothing") {
     CHECK(rough_time(0.2) == "about a second");
     CHECK(rough_time(200) == "about 3 min");
 }
+
+TEST_CASE("a drive that is pushed often takes several times as long, and check says so") {
+    const Made calm = clean("motion");
+    Made pushed = calm;
+    for (const std::size_t row : {20U, 41U, 62U})  // in each of three runs
+        for (const char* name : {"x_m", "y_m"})
+            for (std::size_t i = row; i < pushed.rows.size(); ++i) {
+                std::string& cell = pushed.rows[i][place_of(pushed, name)];
+                cell = fmt::format("{:.7g}", std::stod(cell) + 0.02);
+            }
+    const Readiness quick = readiness_of(Folder(calm).path(), 1),
+                    slow = readiness_of(Folder(pushed).path(), 1);
+    INFO(readiness_text(slow));
+    REQUIRE(slow.problems.empty());
+    CHECK(slow.seconds > 5 * quick.seconds);
+}
+
+TEST_CASE("a folder without a title is called by its name, and empty columns make one line") {
+    Made made = clean("ground");
+    made.names.insert(made.names.end(), {"pitch_rad", "acceleration"});
+    for (auto& cells : made.rows)
+        cells.insert(cells.end() - 1, {"", ""});
+    std::swap(made.names[3], made.names[5]);  // the last column has the noise of each run
+    made.toml = "title = \"\"\n";
+    const Folder folder(made);
+    const Readiness ready = readiness_of(folder.path() / "", 1);
+    INFO(readiness_text(ready));
+    CHECK(ready.title == folder.path().filename().string());
+    CHECK(any_holds(ready.cautions, {"empty in every row of 3 runs", "pitch_rad, acceleration"}));
+}

@@ -116,7 +116,7 @@ TEST_CASE("profiles in words") {
     const auto words = [](const std::vector<double>& x, const std::vector<double>& y) {
         return shape_words({x, y, std::vector<double>(x.size(), 0.001)}, "distance");
     };
-    CHECK(words({0, 1, 2, 3}, {0, 1, 2, 3}) == "grows with distance, zero at zero");
+    CHECK(words({0, 1, 2, 3}, {0, 1, 2, 3}) == "grows with distance, zero at distance = 0");
     CHECK(words({1, 2, 3, 4}, {8, 6, 4, 2}) == "falls with distance");
     CHECK(words({1, 2, 3, 4, 5}, {0, 0, 0, 5, 5}) == "steps up near distance 3.5");
     CHECK(words({1, 2, 3, 4, 5}, {0, 3, 5, 3, 0}) == "highest near distance 3, lower on both sides");

@@ -45,7 +45,7 @@ TEST_CASE("a distance in 9 steps of one run is enough for a strong trend, not fo
     CHECK(f.units == 9);
     CHECK(f.p <= 0.002);
     CHECK(f.p >= 1.0 / 1000);
-    CHECK_THAT(f.shape, Contains("grows with distance, zero at zero"));
+    CHECK_THAT(f.shape, Contains("grows with distance, zero at distance = 0"));
 }
 
 TEST_CASE("what happens in one half of some runs shows in the scatter, whatever it follows") {
@@ -122,7 +122,7 @@ TEST_CASE("a line in the spectrum survives coloured noise and uneven time") {
     const Finding f = periodic_test(y, time, kOptions);
     CHECK(f.p < 1e-3);
     CHECK(f.effect == Approx(0.7).margin(0.15));
-    CHECK_THAT(f.shape, Contains("a line at 2.1"));
+    CHECK_THAT(f.shape, Contains("oscillates at 2.1"));
 }
 
 TEST_CASE("sessions, run order, previous sample, wild values, scatter and held samples") {
@@ -158,7 +158,7 @@ TEST_CASE("sessions, run order, previous sample, wild values, scatter and held s
     const Finding sp = spread_test(spread, level, "level", kOptions);
     CHECK(sp.p < 1e-3);
     CHECK(sp.effect > 0.8);
-    CHECK_THAT(sp.shape, Contains("grows with level"));
+    CHECK_THAT(sp.shape, Contains("grows with the predicted level"));
 
     Series held = made_noise(3, 100, 0.0, random);
     for (std::size_t i = 1; i < held.size(); ++i)
