@@ -120,7 +120,7 @@ TomlValue read_toml(const std::filesystem::path& file) {
                        file.string());
     } catch (const toml::exception& error) {
         throw InputError(file.string(), fmt::format("line {}", error.location().line()), reason_of(error),
-                         "valid TOML");
+                         "valid TOML: key = value, texts in quotes, numbers with a decimal point");
     } catch (const InputError&) {
         throw;
     } catch (const std::exception& error) {

@@ -24,13 +24,16 @@ Readiness readiness_of(const std::filesystem::path& folder, unsigned threads) {
     ready.runs = experiment.runs.size();
     ready.rows = experiment.rows();
     if (!ready.problems.empty()) return ready;
-    const Study study(experiment, 1, threads);
-    for (const Candidate& candidate : study.candidates()) {
-        if (candidate.remark.empty())
-            ready.looked_for.emplace_back(candidate.effect->name);
-        else
-            ready.blind.push_back({candidate.effect->name, candidate.effect->title, candidate.remark});
-    }
+    attempt(&problems, [&] {  // [nominal] is the model's to check
+        const Study study(experiment, 1, threads);
+        for (const Candidate& candidate : study.candidates()) {
+            if (candidate.remark.empty())
+                ready.looked_for.emplace_back(candidate.effect->name);
+            else
+                ready.blind.push_back({candidate.effect->name, candidate.effect->title, candidate.remark});
+        }
+    });
+    ready.problems = problems.lines();
     ready.seconds = expected_seconds(experiment, threads);
     return ready;
 }

@@ -3,6 +3,7 @@
 #include "base/suggest.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <array>
 #include <cmath>
@@ -177,6 +178,13 @@ bool unit_to_si(std::string_view unit, std::string_view si, double& factor, doub
             return true;
         }
     return false;
+}
+
+std::string units_of(std::string_view si) {
+    std::vector<std::string_view> names;
+    for (const UnitInfo& unit : kUnits.at(si))
+        if (*unit.name != '\0') names.emplace_back(unit.name);
+    return fmt::format("{}", fmt::join(names, ", "));
 }
 
 std::string_view kind_name(Kind kind) {

@@ -4,6 +4,8 @@
 #include "gap/data/experiment.h"
 
 #include <span>
+#include <string>
+#include <string_view>
 
 namespace puckloop::gap {
 
@@ -31,5 +33,8 @@ const ColumnInfo* find_column(Kind kind, std::string_view name);
 /// Factor and offset from `unit` to the SI unit `si`: value_si = value * factor + offset. Returns false if
 /// the units do not measure the same thing or one is unknown.
 bool unit_to_si(std::string_view unit, std::string_view si, double& factor, double& offset);
+
+/// The names of all units that are turned into `si`: "m, cm, mm, um, in, km".
+std::string units_of(std::string_view si);
 
 }  // namespace puckloop::gap

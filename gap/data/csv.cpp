@@ -148,6 +148,9 @@ CsvTable read_csv(const std::filesystem::path& file, Problems* problems) {
         if (text.empty() || text.front() == '#') continue;
         if (first) {
             separator = separator_of(line);
+            if (text.find(separator) == std::string_view::npos && text.find(' ') != std::string_view::npos)
+                throw InputError(file.string(), kHeader, "has only blanks between names",
+                                 "a comma, semicolon or tab");
             read_header(file, line, separator, table);
             continue;
         }

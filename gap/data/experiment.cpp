@@ -110,7 +110,7 @@ void read_columns(const TomlValue& table, Kind kind, Frame& frame) {
         if (!unit_to_si(origin.unit, info.unit, factor, offset))
             throw InputError(frame.file, fmt::format("line {}", value.line),
                              fmt::format("column {} cannot be in \"{}\"", name, origin.unit),
-                             fmt::format("a unit of the kind \"{}\"", info.unit));
+                             units_of(info.unit));
         frame.origins[name] = origin;
     }
 }
@@ -133,10 +133,10 @@ void read_instruments(const TomlValue& table, Experiment& experiment, const std:
 
 /// A number given for the whole run becomes a column; names of sessions and units become numbers 1, 2, ...
 void read_constants(Reader& reader, Kind kind, const TomlValue& table, Frame& frame, Run& run) {
+    for (const ColumnInfo& info : columns_of(kind))
+        (void)reader.has(info.name);  // known, for what is suggested in the place of an unknown key
     for (const auto& [key, value] : std::get<TomlTable>(table.data)) {
-        const ColumnInfo* info = find_column(kind, key);
-        if (info == nullptr) continue;
-        (void)reader.line_of(key);
+        if (find_column(kind, key) == nullptr) continue;
         double number = 0.0;
         if ((key == "session" || key == "unit") && value.is_string()) {
             auto& codes = frame.codes[key == "session" ? 0 : 1];

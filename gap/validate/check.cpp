@@ -211,6 +211,9 @@ void check_runs(Experiment& experiment) {
         experiment.caution("{} robots are mixed: what is found is common to them; a "
                            "difference between robots shows as structure against unit",
                            units.size());
+}
+
+void check_files(const Experiment& experiment) {
     std::set<std::string> files;
     for (const Run& run : experiment.runs)
         if (!files.insert(run.file).second)
@@ -221,6 +224,7 @@ void check_runs(Experiment& experiment) {
 
 void check(Experiment& experiment, Problems* problems) {
     const auto step = [&](const auto& what) { return attempt(problems, what); };
+    step([&] { check_files(experiment); });
     step([&] { check_nominal(experiment); });
     drop_empty(experiment);
     for (const ColumnInfo& info : columns_of(experiment.kind)) {

@@ -71,6 +71,7 @@ TEST_CASE("files that cannot be used are refused with a line") {
     CHECK_THAT(of_csv(replaced(table(), "0.25,", "0,25,")),
                Contains("row 2") && Contains("5 cells") && Contains("semicolons"));
     CHECK_THAT(of_csv(replaced(table(), "\n", "\r")), Contains("carriage returns"));
+    CHECK_THAT(of_csv(replaced(table(), ",", " ")), Contains("header: has only blanks between names"));
     CHECK_THAT(of_csv("\xFF\xFE" + table()), Contains("UTF-16"));
     CHECK_THAT(of_csv(replaced(table(), "reading", "Reading")), Contains("\"Reading\"?"));
     CHECK_THAT(of_csv(table() + "6.0,1,0.5,n/a\n"), Contains("row 61") && Contains("n/a"));
@@ -150,7 +151,11 @@ TEST_CASE("descriptions that cannot be used are refused with a line") {
     CHECK_THAT(of_toml("kind = \"ground\"\nkind = \"motion\"\n" + run), Contains("line 2"));
     CHECK_THAT(of_toml("kind = \"ground\"\ntitel = \"x\"\n" + run), Contains("title"));
     CHECK_THAT(of_toml("kind = \"ground\"\ntitle = \"caf\xE9\"\n" + run), Contains("line 2"));
-    CHECK_THAT(of_toml("kind = \"ground\"\n[columns]\nt_s = \"kg\"\n" + run), Contains("kg"));
+    CHECK_THAT(of_toml("kind = \"ground\"\n[columns]\nt_s = \"kg\"\n" + run),
+               Contains("\"kg\" (expected s, ms, us, ns, min, h)"));
+    CHECK_THAT(of_toml("kind = ground\n" + run), Contains("line 1") && Contains("texts in quotes"));
+    CHECK_THAT(of_toml("kind = \"ground\"\n" + run + "sesion = \"x\"\n"), Contains("perhaps 'session'"));
+    CHECK_THAT(of_toml("kind = \"ground\"\n" + run + run), Contains("a.csv is named by two runs"));
     CHECK_THAT(of_toml("kind = \"ground\"\n[columns]\ngray = \"1\"\n" + run), Contains("grey"));
     CHECK_THAT(of_toml("kind = \"ground\"\n[columns]\ngrey = { from = \"shade\" }\n" + run),
                Contains("shade"));

@@ -81,6 +81,15 @@ TEST_CASE("all problems of all files are listed, not only the first") {
     CHECK_THAT(refusal(folder.path()), Contains("run0.csv: row 4"));
 }
 
+TEST_CASE("a nominal number of no parameter is a problem like others") {
+    Made made = clean("ground");
+    made.toml = "[nominal]\n\"ground.gian\" = 1\n";
+    const Readiness ready = readiness_of(Folder(made).path(), 1);
+    INFO(readiness_text(ready));
+    CHECK(any_holds(ready.problems, {"ground.gian", "did you mean \"ground.gain\"?"}));
+    CHECK_THAT(readiness_text(ready), Contains("not ready: 1 thing"));
+}
+
 TEST_CASE("the same fault in every row does not bury the others") {
     Made made = clean("ground");
     for (auto& cells : made.rows)
