@@ -3,6 +3,7 @@
 #include "gap/begin/expected_time.h"
 #include "gap/data/problems.h"
 #include "gap/fit/study.h"
+#include "gap/verdict/sentences.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -38,13 +39,6 @@ Readiness readiness_of(const std::filesystem::path& folder, unsigned threads) {
     return ready;
 }
 
-/// "needs a or b" for "needs a|b".
-static std::string in_words(std::string why) {
-    for (std::size_t at = 0; (at = why.find('|', at)) != std::string::npos;)
-        why.replace(at, 1, " or ");
-    return why;
-}
-
 std::string readiness_text(const Readiness& ready) {
     std::string text;
     if (!ready.kind.empty())
@@ -59,7 +53,7 @@ std::string readiness_text(const Readiness& ready) {
                                   ready.problems.size(), ready.problems.size() == 1 ? "" : "s");
     std::map<std::string, std::vector<std::string>> by_reason;
     for (const auto& blind : ready.blind)
-        by_reason[in_words(blind.why)].push_back(blind.name);
+        by_reason[plain_remark(blind.why)].push_back(blind.name);
     for (const auto& [why, names] : by_reason)
         text += fmt::format("cannot be found: {} ({})\n", fmt::join(names, ", "), why);
     text += fmt::format("can be found: {}\n", fmt::join(ready.looked_for, ", "));

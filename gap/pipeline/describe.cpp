@@ -124,7 +124,9 @@ void add_causes(const Study& study, const Judged& judged, Verdict& verdict) {
 void add_tried(const Study& study, const Selection& selection, Verdict& verdict) {
     for (const Trial& trial : selection.trials) {
         const Effect& own = effect_of(study, trial.effect);
-        Tried tried{own.name, own.number, trial.delta_bic, trial.held.sum, 1.0, trial.remark};
+        Tried tried{own.name, own.number, trial.delta_bic, trial.held.sum, 1.0, plain_remark(trial.remark)};
+        if (!study.candidates()[trial.effect].remark.empty())
+            tried.delta_bic = tried.score_gain = tried.p_value = NAN;  // not tried
         if (trial.validated && trial.held.sd > 0)
             tried.p_value = stats::normal_tail(trial.held.sum / trial.held.sd);
         if (fit_failed(trial.delta_bic, study.candidates()[trial.effect].freed.size(), study.rows())) {

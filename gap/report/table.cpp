@@ -48,6 +48,7 @@ std::string cell(double value, int digits) {
 }
 
 std::string p_cell(double p) {
+    if (!std::isfinite(p)) return "–";
     return p < 0.001 ? "< 0.001" : fmt::format("{:.3f}", p);
 }
 

@@ -67,6 +67,12 @@ std::string form_words(const FormVerdict& form) {
     return fmt::format("this family, form not distinguished from: {}", fmt::join(form.open, ", "));
 }
 
+std::string plain_remark(std::string remark) {
+    for (std::size_t at = 0; (at = remark.find('|', at)) != std::string::npos;)
+        remark.replace(at, 1, " or ");
+    return remark;
+}
+
 std::string gain_sentence(const Held& held) {
     if (held.runs == 0) return "Nothing was held out.";
     const std::string error =
@@ -74,6 +80,8 @@ std::string gain_sentence(const Held& held) {
                     100 * held.ratio, 100 * held.low, 100 * held.high);
     const std::string score = fmt::format("log score {:+.3g} a row, better in {} of {} blocks",
                                           held.score_after - held.score_before, held.runs_better, held.runs);
+    if (!held.gain && held.score_after == held.score_before)
+        return "No gain is claimed: nothing was added to the simulator.";
     if (!held.gain) return fmt::format("No gain is claimed: {}, {}.", error, score);
     if (held.low <= 1 && held.high >= 1)
         return fmt::format("Gain on data that was not fitted: how far and when readings scatter is predicted "

@@ -15,6 +15,8 @@ std::string quantity(double value, const std::string& unit, int more_digits = 0)
 std::string cause_sentence(const Cause& cause);
 /// Whether an effect's form is told from its neighbours'; empty where it is.
 std::string form_words(const FormVerdict& form);
+/// Why an effect was not tried: "needs a or b to be recorded" for a candidate's "needs a|b to be recorded".
+std::string plain_remark(std::string remark);
 std::string gain_sentence(const Held& held);
 /// One or two sentences at the top of the report.
 std::string summary_of(const Verdict& verdict);

@@ -66,7 +66,8 @@ struct Tried {
     std::string name;
     int number = 0;
     double delta_bic = 0.0, score_gain = 0.0, p_value = 1.0;
-    std::string remark;  ///< "chosen first", "needs column motor_speed", "equals wheel_scale", ...
+    std::string remark;  ///< why figures are NaN, or "chosen, step 1", "needs column motor_speed", "equals
+                         ///< wheel_scale", ...
 };
 
 /// One observable row by row; `run` and `row` index Experiment::runs and its tables.

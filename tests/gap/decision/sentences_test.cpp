@@ -38,6 +38,14 @@ TEST_CASE("a cause of scatter claims what it gains, not an error that stays") {
                                  "score +0.3 a row, better in 9 of 10 blocks.");
 }
 
+TEST_CASE("where nothing was added no figures of no change are given") {
+    CHECK(gain_sentence({1, 1, 1, 1, 1, -2, -2, 0, 0, 6, 0, false, ""}) ==
+          "No gain is claimed: nothing was added to the simulator.");
+    CHECK_THAT(gain_sentence({1, 1, 1.01, 0.9, 1.1, -2, -2.1, 0, 0, 6, 2, false, ""}),
+               Contains("No gain is claimed: held-out error 101 %"));
+    CHECK(plain_remark("needs a|b|c to vary") == "needs a or b or c to vary");
+}
+
 TEST_CASE("sums and frames of a drive have plain names") {
     CHECK(plain_observable("along") == "distance along the heading");
     CHECK(plain_observable("outliers of x_m") == "outliers of position x");
