@@ -8,9 +8,16 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <cmath>
 #include <map>
 
 namespace puckloop::gap {
+
+namespace {
+
+constexpr double kWithin = 3.0;  // factor: what is left and how many causes there are is not known before
+
+}  // namespace
 
 Readiness readiness_of(const std::filesystem::path& folder, unsigned threads) {
     Readiness ready;
@@ -57,7 +64,8 @@ std::string readiness_text(const Readiness& ready) {
     for (const auto& [why, names] : by_reason)
         text += fmt::format("cannot be found: {} ({})\n", fmt::join(names, ", "), why);
     text += fmt::format("can be found: {}\n", fmt::join(ready.looked_for, ", "));
-    return text + fmt::format("ready: a verdict takes {}\n", rough_time(ready.seconds));
+    return text + fmt::format("ready: a verdict takes {} ({:.0f} to {:.0f} s)\n", rough_time(ready.seconds),
+                              std::floor(ready.seconds / kWithin), std::ceil(ready.seconds * kWithin));
 }
 
 }  // namespace puckloop::gap
