@@ -122,7 +122,7 @@ TEST_CASE("the time left begins at the estimate and ends at nothing") {
     CHECK(rough_time(200) == "about 3 min");
 }
 
-TEST_CASE("a drive that is pushed often takes several times as long, and check says so") {
+TEST_CASE("a drive that is pushed often is expected to take several times as long") {
     const Made calm = clean("motion");
     Made pushed = calm;
     for (const std::size_t row : {20U, 41U, 62U})  // in each of three runs

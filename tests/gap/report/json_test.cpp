@@ -1,4 +1,4 @@
-// gap.json is what docs/gap.md says it is.
+// gap.json holds what docs/gap.md lists.
 
 #include "tests/gap/report/made_verdict.h"
 
