@@ -31,7 +31,8 @@ namespace {
 constexpr double kStill = 1e-6;  // steps: less than this between rows is standing
 constexpr double kGravity = 9.81;
 constexpr double kSlip = 4;         // steps that a motor loses at a time: its coils' pattern repeats
-constexpr double kLateStep = 0.25;  // a step is counted when it is over
+constexpr double kLateStep = 0.25;  // a step is counted when it is half done or over: 0 to kMostLateStep
+constexpr double kMostLateStep = 0.5;
 constexpr double kOpenSteps = 0.6;  // of a wheel, each time its speed changes: the timer's phase
 constexpr double kOpenSlip = 0.2;   // share of the way lost to sliding that no formula gives
 constexpr double kSameTime = 1e-6;  // s
@@ -48,7 +49,7 @@ struct Numbers : physics::Parameters {
     double agenda = 1.0;  ///< 0: the project's own firmware; read before the fit, as start_loss
     double start_loss = 0.0, scale = 0.0, mismatch = 0.0, friction = 1 / contact.mu, latency = 0.0,
            drop = 0.0, marker_x = 0.0, marker_y = 0.0, marker_angle = 0.0, delay = 0.0, heading_drift = 0.0,
-           heading_span = std::log(kSpan), heading_doubt = std::log(kDoubt);
+           heading_span = std::log(kSpan), heading_doubt = std::log(kDoubt), late_step = kLateStep;
 
     /// m of way for a step of the left wheel.
     double metre() const { return 2 * std::numbers::pi * robot.wheel_radius_left / robot.steps_per_turn; }
@@ -309,7 +310,9 @@ class MotionModel final : public ModelOf<Numbers> {
                  {&Numbers::delay, "tracker.delay", "s"},
                  {&Numbers::heading_drift, "tracker.heading_drift", "rad/s"},
                  {&Numbers::heading_span, "tracker.heading_span", "ln s"},
-                 {&Numbers::heading_doubt, "tracker.heading_doubt", "ln rad"}});
+                 {&Numbers::heading_doubt, "tracker.heading_doubt", "ln rad"},
+                 {&Numbers::late_step, "counter.late_step", "1"}});
+        if (counted_) nuisances_.push_back({find("counter.late_step"), 0.0, kMostLateStep, kLateStep});
         nuisances_.push_back(
             {find("tracker.heading_doubt"), std::log(kLeastDoubt), std::log(kMostDoubt), kDoubtWidth});
         nuisances_.push_back({find("tracker.heading_span"), std::log(kShortestSpan), std::log(kLongestSpan),
@@ -455,9 +458,9 @@ class MotionModel final : public ModelOf<Numbers> {
     }
 
     void predict_counters(const Numbers& now, Prediction& out) const {
-        const double latency = now.latency, drop = now.drop;
-        const auto commanded = counts_.get({latency}, [&] {
-            return std::array{commanded_steps(0, latency), commanded_steps(1, latency)};
+        const double drop = now.drop;
+        const auto commanded = counts_.get({now.latency, now.late_step}, [&] {
+            return std::array{commanded_steps(0, now), commanded_steps(1, now)};
         });
         for (std::size_t w = 0; w < 2; ++w) {
             const Observable& o = observables_[3 + w];
@@ -478,19 +481,17 @@ class MotionModel final : public ModelOf<Numbers> {
     }
 
     /// What a counter would have counted of the commands; where a run has no pose, what it did count.
-    std::vector<double> commanded_steps(std::size_t wheel, double latency) const {
+    std::vector<double> commanded_steps(std::size_t wheel, const Numbers& now) const {
         const Observable& o = observables_[3 + wheel];
         std::vector<double> counts = o.y;
         for_each_path(o, [&](const Path& path, std::size_t first, std::size_t end) {
             const double start = CurveReader(path.asked[wheel]).at(o.time[first]), origin = o.y[first];
             CurveReader reader(path.asked[wheel]);
-            double last = start,
-                   half = 0.0;  // a step is counted when it is over: half a step late on average
+            double count = 0.0;  // behind what was asked for by the part of a step that is not counted yet
             for (std::size_t i = first; i < end; ++i) {
-                const double asked = reader.at(o.time[i] - latency);
-                if (std::abs(asked - last) > 0.5) half = std::copysign(kLateStep, asked - last);
-                last = asked;
-                counts[i] = origin + asked - start - half;
+                const double asked = reader.at(o.time[i] - now.latency) - start;
+                count = std::clamp(count, asked - now.late_step, asked + now.late_step);
+                counts[i] = origin + count;
             }
         });
         return counts;
@@ -515,7 +516,7 @@ class MotionModel final : public ModelOf<Numbers> {
     KeyedCache<std::vector<Driven>> driven_;                 // by lateness
     KeyedCache<std::vector<std::array<Paced, 2>>> paced_;    // by lateness
     KeyedCache<std::vector<std::vector<char>>> settled_;     // by lateness
-    KeyedCache<std::array<std::vector<double>, 2>> counts_;  // by latency
+    KeyedCache<std::array<std::vector<double>, 2>> counts_;  // by latency and late step
     bool counted_ = false;
     bool exact_ = false;  ///< wheels keep to their commands: no agenda makes a staircase of them
 };

@@ -6,6 +6,9 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
+#include <cmath>
+
 using namespace puckloop::gap;
 using selftest::MotionKnobs;
 using Values = std::map<std::string, double>;
@@ -83,6 +86,39 @@ TEST_CASE("each effect of motion leads to the same places in the room") {
         CHECK(table.misfit("x_m", one.truth) < kPlace);
         CHECK(table.misfit("y_m", one.truth) < kPlace);
         CHECK(table.misfit("heading", one.truth) < kTurn);
+    }
+}
+
+TEST_CASE("the latency that fits counters best is the one that was performed") {
+    for (const double latency : {0.0064453125, 0.01100006, 0.038671875}) {
+        MotionKnobs knobs;
+        knobs.latency = latency;
+        const Exact<MotionKnobs> table(selftest::motion_rig(), knobs, "latency");
+        double best = 0.0, least = INFINITY;
+        for (double off = -1e-3; off < 1e-3; off += 5e-5) {
+            // The plain robot counts a step when it is half done.
+            const double misfit =
+                table.misfit("steps_left", {{"command.latency", latency + off}, {"counter.late_step", 0.0}});
+            if (misfit >= least) continue;
+            least = misfit;
+            best = off;
+        }
+        INFO(latency);
+        CHECK(std::abs(best) < 3e-4);  // s: a sixth of a step, what whole steps leave at a few speeds
+    }
+}
+
+TEST_CASE("counters follow the latency without a jump") {
+    constexpr double kStep = 5e-5, kFastest = 1000;  // s, steps/s
+    const Exact<MotionKnobs> table(selftest::motion_rig(), {}, "smooth");
+    Prediction last = tests::predicted(table.model());
+    for (double latency = kStep; latency < 0.02; latency += kStep) {
+        const Prediction next = tests::predicted(table.model(), {{"command.latency", latency}});
+        double most = 0.0;
+        for (std::size_t i = 0; i < next[3].mean.size(); ++i)
+            most = std::max(most, std::abs(next[3].mean[i] - last[3].mean[i]));
+        CHECK(most < kFastest * kStep + 1e-9);
+        last = next;
     }
 }
 

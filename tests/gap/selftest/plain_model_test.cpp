@@ -57,6 +57,21 @@ TEST_CASE("a start on a slippery floor loses v^2 / 2 mu g") {
     CHECK(without.x - with.x == Approx(loss).margin(1e-4));
 }
 
+TEST_CASE("a command takes effect at its own moment, not at the next millisecond") {
+    MotionScript script;
+    script.seconds = 1;
+    script.commands = {{0, 500, 500}};
+    const auto way = [&](double latency) {
+        MotionKnobs late;
+        late.latency = latency;
+        return drive(late, script, 0.1, puckloop::RandomStream(1, "x")).back().x;
+    };
+    const double v = 500 * 2 * std::numbers::pi * 0.0205 / 1000;
+    // The slide at the start ends within a tick.
+    CHECK(way(0.0060) - way(0.0064) == Approx(0.0004 * v).epsilon(0.05));
+    CHECK(way(0.0064) - way(0.0070) == Approx(0.0006 * v).epsilon(0.05));
+}
+
 TEST_CASE("a sensor before a white wall reads the table and its offset") {
     puckloop::RandomStream chance(1, "x");
     Scene scene{};

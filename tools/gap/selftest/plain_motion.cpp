@@ -11,7 +11,8 @@ namespace puckloop::gap::selftest {
 
 namespace {
 
-constexpr double kTick = 1e-3;  // s
+constexpr double kTick = 1e-3;      // s
+constexpr double kSameTime = 1e-9;  // s
 constexpr double kRadius = physics::kWheelRadius, kAxle = physics::kAxleLength;
 using physics::kStepsPerTurn;
 constexpr double kGravity = 9.81;    // m/s2
@@ -42,7 +43,9 @@ struct Wheel {
     double steps = 0.0;    // commanded so far
     double counted = 0.0;  // what the firmware counts
 
-    double advance(const MotionKnobs& k, double radius, double steps_per_second, RandomStream& chance) {
+    /// By a tick, in the last `share_of_tick` of which the newest command is in force.
+    double advance(const MotionKnobs& k, double radius, double steps_per_second, double share_of_tick,
+                   RandomStream& chance) {
         const double wanted = steps_per_second * kTick;
         steps += wanted;
         // The rotor jumps to the next step as it is counted: counter and wheel part by half a step at most,
@@ -62,7 +65,7 @@ struct Wheel {
         const double before = geared;
         geared = std::clamp(geared, motor - k.backlash / 2, motor + k.backlash / 2);
         const double rim = (geared - before) / kTick;
-        const double most = k.friction * kGravity * kTick;
+        const double most = k.friction * kGravity * kTick * share_of_tick;
         ground += std::clamp(rim - ground, -most, most);
         return ground - skipped * 2 * std::numbers::pi * radius / kStepsPerTurn / kTick;
     }
@@ -86,7 +89,7 @@ std::vector<MotionRow> drive(const MotionKnobs& k, const MotionScript& script, d
     Wheel left, right;
     double x = 0.0, y = 0.0, heading = script.heading, kick = 0.0;
     std::size_t next = 0;
-    double command_left = 0.0, command_right = 0.0, old_left = 0.0, old_right = 0.0;
+    double speed_left = 0.0, speed_right = 0.0, old_left = 0.0, old_right = 0.0;
     struct Pose {
         double x, y, heading;
     };
@@ -97,14 +100,20 @@ std::vector<MotionRow> drive(const MotionKnobs& k, const MotionScript& script, d
     const auto delay = static_cast<std::size_t>(std::lround(k.tracker_delay / kTick));
     for (long tick = 0; tick <= ticks; ++tick) {
         const double t = static_cast<double>(tick) * kTick;
-        while (next < list.size() && list[next].at <= t + 1e-9) {
-            command_left = list[next].left;
-            command_right = list[next].right;
-            ++next;
-            if ((command_left + command_right) * (old_left + old_right) < 0.0) kick += k.thrust;
-            if (command_left + command_right != 0.0) {
-                old_left = command_left;
-                old_right = command_right;
+        double mean_left = speed_left, mean_right = speed_right, share = 1.0;  // over this tick
+        for (; next < list.size() && list[next].at < t + kTick - kSameTime; ++next) {
+            const Arrival& command = list[next];
+            const double left_now = agenda_speed(command.left), right_now = agenda_speed(command.right);
+            if (left_now == speed_left && right_now == speed_right) continue;
+            share = command.at < t + kSameTime ? 1.0 : 1.0 - (command.at - t) / kTick;
+            mean_left += share * (left_now - speed_left);
+            mean_right += share * (right_now - speed_right);
+            speed_left = left_now;
+            speed_right = right_now;
+            if ((command.left + command.right) * (old_left + old_right) < 0.0) kick += k.thrust;
+            if (command.left + command.right != 0.0) {
+                old_left = command.left;
+                old_right = command.right;
             }
         }
         past.push_back({x, y, heading + kick});
@@ -119,8 +128,8 @@ std::vector<MotionRow> drive(const MotionKnobs& k, const MotionScript& script, d
             rows.push_back({t, cl, cr, left.counted, right.counted, mx * stretch, my * stretch,
                             p.heading + k.heading_drift * t});
         }
-        double vl = kept * left.advance(k, radius_left, agenda_speed(command_left), chance);
-        double vr = kept * right.advance(k, radius_right, agenda_speed(command_right), chance);
+        double vl = kept * left.advance(k, radius_left, mean_left, share, chance);
+        double vr = kept * right.advance(k, radius_right, mean_right, share, chance);
         if (x > kPatchEdge) {
             vl *= 1.0 - k.patch;
             vr *= 1.0 - k.patch;
