@@ -17,7 +17,6 @@ std::span<const Rule> rules() {
         {"share left: structures", [](Grounds& g) { g.left_by_structure = 0.0; }},
         {"share left: bent forms", [](Grounds& g) { g.left_by_form = 0.0; }},
         {"share left: numbers of runs", [](Grounds& g) { g.left_by_run = 0.0; }},
-        {"share left: jumps", [](Grounds& g) { g.left_by_jump = 0.0; }},
         {"stopped at the end of its range", [](Grounds& g) { g.stopped_at_end = false; }},
         {"role", [](Grounds& g) { g.out_of_role.clear(); }},
         {"confirmation", [](Grounds& g) { g.not_confirmed.clear(); }},

@@ -16,8 +16,7 @@ double share_of(double left, double won) {
 }  // namespace
 
 double Grounds::left() const {
-    return std::max({left_by_shape, left_by_form, left_by_structure, 0.0}) +
-           std::max({left_by_run, left_by_jump, 0.0});
+    return std::max({left_by_shape, left_by_form, left_by_structure, 0.0}) + std::max(left_by_run, 0.0);
 }
 
 double Grounds::unexplained() const {

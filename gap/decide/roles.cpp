@@ -213,11 +213,9 @@ LeftByRuns left_by_runs(const Study& study, const State& state) {
     }
     for (const auto& [observable, gain] : by_run)
         left.by_run += gain;
-    for (const ChangePoint& one : jumps) {
-        if (one.p_value < thresholds::kSure) left.by_jump += std::max(one.gain, 0.0);
+    for (const ChangePoint& one : jumps)
         if (one.p_value < thresholds::kReported)
             left.structures.push_back({one.observable, "place in a run", one.p_value, one.shape});
-    }
     return left;
 }
 

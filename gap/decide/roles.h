@@ -30,8 +30,7 @@ bool within_rounding(const Study& study, const Fit& fit, std::size_t effect);
 OutOfRole out_of_role(const Study& study, const Fit& fit, const HeldOut& held,
                       const std::vector<Leftover>& leftovers, std::uint64_t seed);
 
-/// nats that corrections without a mechanism gain: functions of covariates (clear ones), and numbers of runs
-/// or jumps that are sure.
+/// nats that corrections by functions of covariates gain, the clear ones.
 double gained_by_shape(const std::vector<FreeForm>& forms);
 
 /// nats that the surest of structures may stand for: of a p value at most -ln(-e p ln p) (Sellke, Bayarri and
@@ -39,8 +38,8 @@ double gained_by_shape(const std::vector<FreeForm>& forms);
 double most_by_structure(const std::vector<Leftover>& leftovers);
 
 struct LeftByRuns {
-    double by_run = 0.0, by_jump = 0.0;  ///< nats
-    std::vector<Leftover> structures;    ///< worth reporting, p corrected
+    double by_run = 0.0;               ///< nats
+    std::vector<Leftover> structures;  ///< worth reporting, p corrected
 };
 LeftByRuns left_by_runs(const Study& study, const State& state);
 

@@ -115,7 +115,6 @@ Grounds grounds_of(const Study& study, const Chosen& chosen, const Diagnosis& di
     for (const auto& [effect, form] : diagnosis.forms)
         g.left_by_form = std::max(g.left_by_form, form.left);
     g.left_by_run = diagnosis.by_runs.by_run;
-    g.left_by_jump = diagnosis.by_runs.by_jump;
     g.left_by_structure = most_by_structure(diagnosis.structures);
     g.sums = any_adds_up(study);
     g.left_of_readings = left_of_readings(study, diagnosis);

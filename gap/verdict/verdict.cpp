@@ -133,7 +133,6 @@ Json grounds_json(const Grounds& g) {
             {"left_by_shape", g.left_by_shape},
             {"left_by_form", g.left_by_form},
             {"left_by_run", g.left_by_run},
-            {"left_by_jump", g.left_by_jump},
             {"left_of_readings", g.left_of_readings},
             {"sums", g.sums},
             {"structure", g.structure},
