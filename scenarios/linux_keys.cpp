@@ -66,14 +66,15 @@ void read_program(Reader& reader, LinuxBoard& board) {
 
 void read_lateness(Reader& reader, LinuxLateness& late) {
     constexpr double kLongest = 1.0;  // s
-    const auto read = [&](const char* key, double& value) {
+    const auto read = [&](const char* key, double& value, double least = 0.0) {
         value = reader.quantity(key, Dimension::Time, value);
-        if (!(value >= 0 && value <= kLongest))
-            reader.fail(key, fmt::format("{} is out of range", key), "0 to 1 s, such as \"4 ms\"");
+        if (!(value >= least && value <= kLongest))
+            reader.fail(key, fmt::format("{} is out of range", key),
+                        fmt::format("{:g} to 1 s, such as \"4 ms\"", least));
     };
     read("tty_batch", late.tty_batch);
     read("i2c_hold", late.i2c_hold);
-    read("oversleep", late.oversleep);
+    read("oversleep", late.oversleep, -kLongest);
     read("oversleep_jitter", late.oversleep_jitter);
 }
 

@@ -60,12 +60,12 @@ struct RabBoard {
     std::filesystem::path nvm{};  ///< as of the main board
 };
 
-/// What a Linux board is late with, s. All zero: nothing.
+/// What a Linux board is late with, s. All zero: nothing. Only `oversleep` may be below 0.
 struct LinuxLateness {
     double tty_batch = 0.0;         ///< received bytes are handed on at whole multiples of this
     double i2c_hold = 0.0;          ///< each transfer waits so long for the bus
-    double oversleep = 0.0;         ///< a sleep ends so much later than asked
-    double oversleep_jitter = 0.0;  ///< standard deviation; no sleep ends early
+    double oversleep = 0.0;         ///< a sleep ends so much later than asked; below 0: earlier
+    double oversleep_jitter = 0.0;  ///< standard deviation; by it no sleep ends early
 };
 
 /// A signal that a program gets.

@@ -1,6 +1,6 @@
-// Deviations: 1. a longer or unsteady period is that of sleeps which end late; a program that sleeps until a
-// time, not for a time, keeps its period. 2. Commands are lost byte by byte, each with the share that makes
-// the found share of records.
+// Deviations: 1. a longer, shorter or unsteady period is that of sleeps which end late or early; a program
+// that sleeps until a time, not for a time, keeps its period. 2. Commands are lost byte by byte, each with
+// the share that makes the found share of records.
 
 #include "gap/overlay/overlay_parts.h"
 
@@ -66,8 +66,11 @@ class LinksOverlay {
         if (place == fitted_.end()) return 0.0;
         const auto known = nominal_.find(name);
         const double value = place->second - (known == nominal_.end() ? own : known->second);
-        if (value > 0 || name == "timing.clock_drift") fitted_.erase(place);
+        if (value > 0 || either_sign(name)) fitted_.erase(place);
         return value;
+    }
+    static bool either_sign(std::string_view name) {
+        return name == "timing.clock_drift" || name == "timing.extra_period";
     }
     void table(const char* name) { header_ = fmt::format("\n[{}]\n", name); }
     void line(const char* key, const std::string& value) {
@@ -78,7 +81,8 @@ class LinksOverlay {
         constexpr double kLongest = 1.0;  // what a run takes
         const double value = more(name, own);
         const bool command = key == std::string_view("command_delay");
-        if (value > 0) line(key, fmt::format("\"{:.9g} s\"", command ? value : std::min(value, kLongest)));
+        if (value > 0 || (value < 0 && either_sign(name)))
+            line(key, fmt::format("\"{:.9g} s\"", command ? value : std::clamp(value, -kLongest, kLongest)));
     }
     bool share(const char* name, const char* key) {
         const double value = more(name);

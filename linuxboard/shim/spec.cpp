@@ -142,7 +142,9 @@ LinuxSpec parse_linux_spec(std::string_view text) {
     object.read("clock_ppm", spec.clock_ppm);
     object.read_seconds("tty_batch_s", spec.tty_batch);
     object.read_seconds("i2c_hold_s", spec.i2c_hold);
-    object.read_seconds("oversleep_s", spec.oversleep.mean);
+    double oversleep = cosim::to_seconds(spec.oversleep.mean);  // of either sign
+    object.read("oversleep_s", oversleep);
+    spec.oversleep.mean = cosim::from_seconds(oversleep);
     object.read_seconds("oversleep_jitter_s", spec.oversleep.jitter);
     object.read("real_time", spec.real_time);
     if (const json* charges = object.find("charges_us"))

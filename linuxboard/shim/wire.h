@@ -123,8 +123,8 @@ struct DeviceName {
 
 /// How much later than asked a sleep ends: timer slack and whatever else runs on the board. Picoseconds.
 struct Oversleep {
-    std::int64_t mean = 0;
-    std::int64_t jitter = 0;  ///< standard deviation; no sleep ends early
+    std::int64_t mean = 0;    ///< below 0: sleeps end earlier than asked
+    std::int64_t jitter = 0;  ///< standard deviation; no sleep ends earlier than asked by it
 };
 
 /// The serial port as it is after a reply. With it the library answers by itself, until `valid_until` and

@@ -52,12 +52,17 @@ TEST_CASE("clocks and sleeps follow simulated time") {
     CHECK(to_seconds(bench.node().stop()->time) == Approx(0.3).margin(0.001));
 }
 
-TEST_CASE("sleeps end late on a board that oversleeps, waits for a device do not") {
+TEST_CASE("sleeps end late, or early, on a board that oversleeps, waits for a device do not") {
     auto spec = spec_for("clocks");
     spec.oversleep.mean = 4 * kMillisecond;
     Bench late(std::move(spec));
     late.run(2 * kSecond);
     CHECK(late.log().find("14001 24001 30001 0\n") != std::string::npos);  // usleep, nanosleep, select
+    spec = spec_for("clocks");
+    spec.oversleep.mean = -4 * kMillisecond;
+    Bench early(std::move(spec));
+    early.run(2 * kSecond);
+    CHECK(early.log().find("6001 16001 30001 0\n") != std::string::npos);
     spec = spec_for("clocks");
     spec.oversleep.jitter = kMillisecond;
     const std::string plain = "10001 20001 30001 0\n";

@@ -43,5 +43,5 @@ TEST_CASE("what cannot be meant is refused with its key") {
     refuse(R"({"program": "a", "i2c_nack_error": "EPERM"})", "linux.i2c_nack_error");
     refuse(R"({"program": "a", "fifo_trigger": 0})", "linux.fifo_trigger");
     refuse(R"({"program": "a", "tty_batch_s": -1})", "linux.tty_batch_s");
-    refuse(R"({"program": "a", "oversleep_s": -1})", "linux.oversleep_s");
+    refuse(R"({"program": "a", "oversleep_jitter_s": -1})", "linux.oversleep_jitter_s");
 }

@@ -108,8 +108,11 @@ TEST_CASE("an overlay acts on lines and Linux boards of robots that have them") 
     CHECK(late.tty_batch == 0.02);
     CHECK(late.i2c_hold == 0.002);
     CHECK(late.oversleep == 0.001);  // the scenario's own stays
-    CHECK_THROWS_WITH(with("[linux]\noversleep = \"-1 ms\"\n"),
+    CHECK(with("[linux]\noversleep = \"-3 ms\"\n").robots[0].linux_board->late.oversleep == -0.003);
+    CHECK_THROWS_WITH(with("[linux]\noversleep = \"-2 s\"\n"),
                       Catch::Contains("line 2") && Catch::Contains("oversleep is out of range"));
+    CHECK_THROWS_WITH(with("[linux]\ntty_batch = \"-1 ms\"\n"),
+                      Catch::Contains("line 2") && Catch::Contains("tty_batch is out of range"));
     CHECK_THROWS_WITH(with("[linux]\nslow = 1\n"), Catch::Contains("unknown key 'slow'"));
     CHECK_THROWS_WITH(with("[uart]\nanswer_cut = 2\n"),
                       Catch::Contains("answer_cut") && Catch::Contains("0 to 1"));

@@ -38,7 +38,7 @@ void set_parameter(Robot& robot, const std::string& assignment) {
                                    {"uart.edge_loss", &robot.uart_edge_loss, 0.0, 1.0},
                                    {"linux.tty_batch", &robot.lateness.tty_batch, 0.0, 1.0},
                                    {"linux.i2c_hold", &robot.lateness.i2c_hold, 0.0, 1.0},
-                                   {"linux.oversleep", &robot.lateness.oversleep, 0.0, 1.0},
+                                   {"linux.oversleep", &robot.lateness.oversleep, -1.0, 1.0},
                                    {"linux.oversleep_jitter", &robot.lateness.oversleep_jitter, 0.0, 1.0}}};
     std::string names;
     for (const Own& known : own)

@@ -60,7 +60,7 @@ std::string scenario_text(const Robot& robot, const Act& act, const Tools& tools
     if (act.relative) text += ", \"--relative\"";
     text += fmt::format("]\nstart = \"{} s\"\n", kStart);
     const auto late = [&](const char* key, double seconds) {
-        if (seconds > 0) text += fmt::format("{} = \"{} s\"\n", key, seconds);
+        if (seconds != 0) text += fmt::format("{} = \"{} s\"\n", key, seconds);
     };
     late("tty_batch", robot.lateness.tty_batch);
     late("i2c_hold", robot.lateness.i2c_hold);

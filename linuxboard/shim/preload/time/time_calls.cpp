@@ -81,7 +81,8 @@ static Time woken(Time deadline) {
         static RandomStream stream(page().seed, "oversleep");
         more += static_cast<Time>(static_cast<double>(late.jitter) * stream.normal());
     }
-    return more <= 0 || deadline > kNever - more ? deadline : deadline + more;
+    more = std::max(more, std::min<Time>(late.mean, 0));  // early only as far as asked
+    return more > 0 && deadline > kNever - more ? deadline : deadline + more;
 }
 
 /// Sleeps; true if a signal cut it short. Even a sleep of nothing gives way once.
