@@ -27,11 +27,14 @@ constexpr double kSameShape = 0.999;   // correlation of two modes that are one
 /// What one run, or one batch of it, says of a number: score and information.
 struct Score {
     double g = 0.0, h = 0.0;
+    double known = 0.0;  ///< variance of g by what the simulator draws once a run
     void add(double answer, double pull, double curvature) {
         g += answer * pull;
         h += answer * answer * curvature;
     }
     double estimate() const { return g / h; }
+    /// Of the estimate, where runs differ by nothing but what the simulator draws.
+    double variance(double spread) const { return spread / h + known / (h * h); }
 };
 
 struct Mode {
@@ -69,7 +72,25 @@ struct ByRun {
     double spread = 1.0, freedom = 0.0;
 };
 
-ByRun by_run(const Observable& o, const Scores& scores, const std::vector<double>& answers) {
+/// What the simulator draws once a run does to each run's score: variance.
+std::map<std::uint32_t, double> known_variance(const Observable& o, const Scores& scores,
+                                               const std::vector<double>& answers,
+                                               const std::vector<std::vector<double>>& drawn) {
+    std::map<std::uint32_t, double> variance;
+    for (const auto& one : drawn) {
+        std::map<std::uint32_t, double> g;
+        for (std::size_t i = 0; i < o.y.size(); ++i)
+            g[o.run[i]] += answers[i] * one[i] * scores.curvature();
+        for (const auto& [run, score] : g)
+            variance[run] += score * score / static_cast<double>(drawn.size());
+    }
+    return variance;
+}
+
+/// `drawn`: how the scores answer to what the simulator draws once a run.
+ByRun by_run(const Observable& o, const Scores& scores, const std::vector<double>& answers,
+             const std::vector<std::vector<double>>& drawn) {
+    auto known = known_variance(o, scores, answers, drawn);
     std::map<std::uint32_t, std::size_t> rows, seen;
     for (const auto run : o.run)
         ++rows[run];
@@ -94,6 +115,7 @@ ByRun by_run(const Observable& o, const Scores& scores, const std::vector<double
             informed += 1;
         }
         if (!(sum.h > 0)) continue;
+        sum.known = known[run];
         result.run.push_back(sum);
         within += squares - sum.g * sum.g / sum.h;
         result.freedom += informed - 1;
@@ -114,7 +136,7 @@ Common common_of(const std::vector<Score>& runs, double spread, double tau, std:
     double weights = 0.0, sum = 0.0;
     for (std::size_t r = 0; r < runs.size(); ++r) {
         if (r == left_out) continue;
-        const double weight = 1 / (tau * tau + spread / runs[r].h);
+        const double weight = 1 / (tau * tau + runs[r].variance(spread));
         weights += weight;
         sum += weight * runs[r].estimate();
     }
@@ -122,14 +144,14 @@ Common common_of(const std::vector<Score>& runs, double spread, double tau, std:
     for (std::size_t r = 0; r < runs.size(); ++r)
         if (r != left_out)
             result.log_likelihood +=
-                log_normal(runs[r].estimate() - result.mean, tau * tau + spread / runs[r].h);
+                log_normal(runs[r].estimate() - result.mean, tau * tau + runs[r].variance(spread));
     return result;
 }
 
 double best_tau(const std::vector<Score>& runs, double spread, std::size_t left_out) {
     std::vector<double> doubts;
     for (const Score& run : runs)
-        doubts.push_back(std::sqrt(spread / run.h));
+        doubts.push_back(std::sqrt(run.variance(spread)));
     const double unit = stats::median(doubts);
     double best = 0.0, most = common_of(runs, spread, 0.0, left_out).log_likelihood;
     for (int k = 0; k < kGrid; ++k) {
@@ -149,7 +171,7 @@ RunDifference difference_of(const Observable& o, const Mode& mode, const ByRun& 
     result.what = mode.what;
     std::vector<double> gains;
     for (std::size_t r = 0; r < n; ++r) {
-        const double tau = best_tau(runs, scores.spread, r), own = scores.spread / runs[r].h;
+        const double tau = best_tau(runs, scores.spread, r), own = runs[r].variance(scores.spread);
         const double random = runs[r].estimate() - common_of(runs, scores.spread, tau, r).mean,
                      fixed = runs[r].estimate() - common_of(runs, scores.spread, 0.0, r).mean;
         gains.push_back(log_normal(random, tau * tau + own) - log_normal(fixed, own));
@@ -164,7 +186,7 @@ RunDifference difference_of(const Observable& o, const Mode& mode, const ByRun& 
     const double middle = common_of(runs, scores.spread, 0.0, n).mean;
     double between = 0.0, low = INFINITY, high = -INFINITY;
     for (const Score& run : runs) {
-        between += std::pow(run.estimate() - middle, 2) * run.h / scores.spread;
+        between += std::pow(run.estimate() - middle, 2) / run.variance(scores.spread);
         low = std::min(low, run.estimate());
         high = std::max(high, run.estimate());
     }
@@ -192,14 +214,16 @@ std::vector<RunDifference> run_differences(const Model& model, const State& stat
         const Observable& o = model.observables()[k];
         if (!is_asked(o, state.noise[k])) continue;
         const Scores scores(o, prediction[k], state.noise[k]);
-        std::vector<std::vector<double>> seen;
+        std::vector<std::vector<double>> drawn, seen;
+        for (const auto& one : o.run_draws)
+            drawn.push_back(scores.answers(one));
         for (const Mode& mode : modes_of(o, prediction[k])) {
             auto answers = scores.answers(mode.shift);
             if (std::any_of(seen.begin(), seen.end(), [&](const auto& other) {
                     return std::abs(stats::correlation(other, answers)) > kSameShape;
                 }))
                 continue;
-            const ByRun sums = by_run(o, scores, answers);
+            const ByRun sums = by_run(o, scores, answers, drawn);
             if (sums.run.size() >= kLeastRuns) all.push_back(difference_of(o, mode, sums));
             seen.push_back(std::move(answers));
         }

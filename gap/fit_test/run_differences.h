@@ -1,8 +1,8 @@
 #pragma once
 // Do runs differ though nothing that was noted does? Beside a fitted model each run gets a number of its own,
 // anew drawn from N(0, tau^2): an offset, a share of the prediction, a drift (random effects: Laird and Ware,
-// Biometrics 38, 1982). And within a run: does the level jump once and stay (change points: Page, Biometrika
-// 41, 1954; Hinkley 1970)?
+// Biometrics 38, 1982), beside what the simulator itself draws once a run (Observable::run_draws). And within
+// a run: does the level jump once and stay (change points: Page, Biometrika 41, 1954; Hinkley 1970)?
 //
 // Both follow from score statistics of the innovations: g, their sum weighted with how each answers to the
 // number, and h, its information. How far g scatters is taken from blocks inside the runs (batch means), so

@@ -41,6 +41,9 @@ struct Observable {
     bool steady = false;       ///< Level: nothing that the simulator knows adds errors up
     double fixed_sd = 0.0;  ///< > 0: the noise is this and is not fitted (whole steps of an emulated counter)
     double known_sd = 0.0;  ///< noise that the simulator claims; 0: it claims none
+    /// Errors of all rows that what the simulator draws once a run may make: some draws; empty: it draws
+    /// none.
+    std::vector<std::vector<double>> run_draws{};
 };
 
 /// A sum, in which what one row lacks goes on in all rows after it.

@@ -109,6 +109,18 @@ class RabModel final : public ModelOf<Numbers> {
         ring_.emplace(std::move(looks), parameters.ir, experiment.nominal_or("rab.carrier", 0.0));
     }
 
+    /// What drawn boards say of the rows `used`, beside their mean.
+    std::vector<std::vector<double>> of_boards(double RabTold::*what,
+                                               const std::vector<std::uint32_t>& used) const {
+        std::vector<std::vector<double>> all;
+        for (const auto& board : ring_->drawn_boards()) {
+            all.emplace_back();
+            for (const std::uint32_t row : used)
+                all.back().push_back(board[row].*what);
+        }
+        return all;
+    }
+
     void gather_strength(const Rows& rows, const Experiment& experiment) {
         std::vector<std::uint32_t> used;
         Observable one = rows.observable("strength", NoiseKind::Carry, used);
@@ -123,7 +135,10 @@ class RabModel final : public ModelOf<Numbers> {
             log_median_.push_back(between(&RabMeasured::log_median, distance));
             spread_.push_back(between(&RabMeasured::spread, distance));
         }
-        if (ring_) spread_ = taken(ring_->strength_sd(), used);
+        if (ring_) {
+            spread_ = taken(ring_->strength_sd(), used);
+            one.run_draws = of_boards(&RabTold::log_strength, used);
+        }
         // What is not told cannot differ: one common gain would be the strength's scale by another name.
         if (experiment.has("receiver")) receiver_ = whole(taken(rows.column("receiver", 0), used));
         if (experiment.has("emitter")) emitter_ = whole(taken(rows.column("emitter", 0), used));
@@ -146,6 +161,7 @@ class RabModel final : public ModelOf<Numbers> {
             const double usual = *std::min_element(bearing_factor_.begin(), bearing_factor_.end());
             for (double& factor : bearing_factor_)
                 factor /= usual;
+            one.run_draws = of_boards(&RabTold::bearing, used);
         }
         const physics::Parameters defaults;
         for (const double bearing : truth_)

@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kHalfTurn = std::numbers::pi;
 constexpr std::size_t kDraws = 24;     // a message; each with its mirror image, so that odd parts cancel
+constexpr std::size_t kBoards = 48;    // pairs, drawn for what a run's own do
 constexpr std::size_t kHeadings = 24;  // of a sender that nobody looked at
 constexpr double kMillimetre = 1e-3;
 constexpr double kLeastCosine = 1e-3;
@@ -217,6 +218,32 @@ std::shared_ptr<const std::vector<RabTold>> RabRing::told(const RabParts& parts)
         }
         return all;
     });
+}
+
+std::vector<std::vector<RabTold>> RabRing::drawn_boards() const {
+    RandomStream random(1, "gap/rab boards");
+    std::vector<std::vector<RabTold>> all;
+    for (std::size_t board = 0; board < kBoards; ++board) {
+        RabParts parts = neutral();
+        for (std::size_t k = 0; k < kRabParts; ++k) {
+            parts.emitter[k] = std::exp(parameters_.emitter_spread * random.normal());
+            parts.receiver[k] = std::exp(parameters_.receiver_spread * random.normal());
+        }
+        all.push_back(*told(parts));
+    }
+    for (std::size_t i = 0; i < looks_.size(); ++i) {
+        RabTold mean;
+        for (auto& board : all) {
+            board[i].bearing = std::remainder(board[i].bearing - looks_[i].bearing, 2 * kHalfTurn);
+            mean.log_strength += board[i].log_strength / kBoards;
+            mean.bearing += board[i].bearing / kBoards;
+        }
+        for (auto& board : all) {
+            board[i].log_strength -= mean.log_strength;
+            board[i].bearing -= mean.bearing;
+        }
+    }
+    return all;
 }
 
 /// As IrMedium::draw_noise and IrBoard draw it; parts anew for every message.

@@ -4,8 +4,8 @@
 // firmware (protocols/rab_reading, here without its rounding).
 //
 // Deviations: 1. boards stand alone; nothing shades or mirrors. 2. Spreads of parts count as noise of single
-// messages. 3. A receiver at the edge of its reach counts by its probability. 4. The sender's power is the
-// curve's reference.
+// messages; what boards that a run has for itself do to all its messages is drawn beside it. 3. A receiver at
+// the edge of its reach counts by its probability. 4. The sender's power is the curve's reference.
 
 #include "gap/models/keyed_cache.h"
 #include "physics/ir/ir_coupling.h"
@@ -50,6 +50,9 @@ class RabRing {
     /// What chance and spread of parts add to each look: sd of ln strength and of the bearing (rad).
     const std::vector<double>& strength_sd() const { return strength_sd_; }
     const std::vector<double>& bearing_sd() const { return bearing_sd_; }
+    /// What boards with parts drawn by the simulator's spreads tell beside the mean of such boards: some of
+    /// them, each of all looks.
+    std::vector<std::vector<RabTold>> drawn_boards() const;
 
   private:
     struct Light {

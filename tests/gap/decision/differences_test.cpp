@@ -5,11 +5,14 @@
 #include "gap/decide/range_end.h"
 #include "gap/fit/study.h"
 #include "gap/fit_test/run_differences.h"
+#include "gap/models/rab_ring.h"
+#include "physics/description/parameters.h"
 
 #include <catch2/catch.hpp>
 
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 using namespace puckloop;
 using namespace puckloop::gap;
@@ -37,6 +40,47 @@ Experiment floors(std::uint64_t seed, double carry,
             run.columns["t_s"].push_back(0.1 * k);
             run.columns["grey"].push_back(grey);
             run.columns["reading"].push_back(std::round(wrong(329 + (953 - 329) * grey, r, k) + kSd * error));
+        }
+        experiment.runs.push_back(std::move(run));
+    }
+    return experiment;
+}
+
+/// Messages between boards of which each run has a pair of its own, with parts as the simulator draws them;
+/// `other`: sd of an offset of each run beside it, ln counts.
+Experiment pairs_of_boards(std::uint64_t seed, double other) {
+    constexpr int kPairs = 24, kMessages = 60;
+    const physics::IrParameters parameters = physics::Parameters().ir;
+    RandomStream random(seed, "differences test/boards");
+    Experiment experiment;
+    experiment.kind = Kind::Rab;
+    experiment.nominal["rab.ring"] = 1;
+    for (int r = 0; r < kPairs; ++r) {
+        Run run;
+        run.name = "run" + std::to_string(r);
+        run.rows = kMessages;
+        std::vector<RabLook> looks;
+        for (int k = 0; k < kMessages; ++k) {
+            const auto way = [&] { return std::numbers::pi * (2 * random.uniform() - 1); };
+            const double bearing = way(), facing = way();
+            looks.push_back({0.15, bearing, facing});
+        }
+        const RabRing ring(looks, parameters, 0.0);
+        RabParts parts = ring.neutral();
+        for (std::size_t k = 0; k < kRabParts; ++k) {
+            parts.emitter[k] = std::exp(parameters.emitter_spread * random.normal());
+            parts.receiver[k] = std::exp(parameters.receiver_spread * random.normal());
+        }
+        const double offset = other * random.normal();
+        for (int k = 0; k < kMessages; ++k) {
+            const RabTold told = (*ring.told(parts))[static_cast<std::size_t>(k)];
+            const RabLook& look = looks[static_cast<std::size_t>(k)];
+            run.columns["t_s"].push_back(0.1 * k);
+            run.columns["distance_m"].push_back(look.distance);
+            run.columns["true_bearing_rad"].push_back(look.bearing);
+            run.columns["sender_bearing_rad"].push_back(look.facing);
+            run.columns["strength"].push_back(std::exp(told.log_strength + offset + 0.05 * random.normal()));
+            run.columns["bearing_rad"].push_back(told.bearing + 0.02 * random.normal());
         }
         experiment.runs.push_back(std::move(run));
     }
@@ -88,6 +132,20 @@ TEST_CASE("runs that differ are told from noise that carries over") {
         CHECK(boards.difference.p_value < 1e-4);
         CHECK(boards.difference.gain > 5);
     }
+}
+
+TEST_CASE("boards that differ as the simulator's do are no difference between runs, others are") {
+    int alarms = 0;
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+        const Study study(pairs_of_boards(Catch::rngSeed() + seed, 0.0), 1);
+        for (const auto& one : run_differences(study.model(), study.fit_none().fitted.state))
+            alarms += one.p_value < 1e-3 ? 1 : 0;
+    }
+    CHECK(alarms <= 1);  // of 18 or more
+    const auto seen = looked_at(pairs_of_boards(Catch::rngSeed(), 0.3)).difference;
+    CHECK(seen.observable == "strength");
+    CHECK(seen.p_value < 1e-4);
+    CHECK(seen.gain > 5);
 }
 
 TEST_CASE("a jump inside one run that stays is found where it is") {
