@@ -29,8 +29,10 @@ constexpr double kReception = 0.999;
 constexpr double kFullScale = 4095;
 constexpr std::size_t kReceivers = 12;
 constexpr double kLeastGain = 0.01;
-constexpr std::size_t kLeastReceivers = 3;  // with a gain: fewer tell nothing of a bearing
-constexpr std::size_t kLeastPiled = 5;      // equal highest strengths that look like a rail
+constexpr std::size_t kLeastReceivers = 3;           // with a gain: fewer tell nothing of a bearing
+constexpr double kTurn = 0.6;                        // rad: what a reflection turns a bearing by
+constexpr double kTurned = 0.66, kWholeTurn = 0.76;  // share beyond half a receiver's 30 degrees; its rms
+constexpr std::size_t kLeastPiled = 5;               // equal highest strengths that look like a rail
 
 double between(double RabMeasured::*what, double distance) {
     if (distance <= kRabTable[0].distance) return kRabTable[0].*what;
@@ -287,8 +289,9 @@ class RabModel final : public ModelOf<Numbers> {
         const std::size_t n = observables_[static_cast<std::size_t>(bearing_)].y.size();
         const double other = now.multipath;
         p.mean.assign(n, now.bearing_offset);
-        p.lapse.assign(other > 0 ? n : 0, other);
-        p.lapse_scale.assign(other > 0 ? n : 0, 0.6);
+        // The simulator's reflections turn by whole receivers, a third of them by none (physics/ir/ir_fate).
+        p.lapse.assign(other > 0 ? n : 0, ring_ ? kTurned * other : other);
+        p.lapse_scale.assign(other > 0 ? n : 0, ring_ ? kWholeTurn : kTurn);
         if (ring_) {
             p.factor = bearing_factor_;
             const auto all = told(now);

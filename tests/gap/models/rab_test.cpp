@@ -3,6 +3,7 @@
 
 #include "base/random.h"
 #include "gap/models/rab_table.h"
+#include "physics/ir/ir_fate.h"
 #include "protocols/rab_reading.h"
 #include "tests/gap/models/made_table.h"
 #include "tests/physics/ir_worlds.h"
@@ -295,4 +296,24 @@ TEST_CASE("with the ring, the noise claimed is what spread parts and the medium'
     // 400 pairs: 5 % of an sd for the mean, 3.5 % for the sd itself.
     CHECK(said[kStrength].mean[0] == Approx(mean).margin(0.2 * sd));
     CHECK(said[kStrength].factor[0] == Approx(sd).epsilon(0.12));
+}
+
+TEST_CASE("with the ring, reflections turn bearings as the medium's do") {
+    constexpr double kShare = 0.5;
+    constexpr int kDraws = 20000;
+    physics::IrParameters parameters = physics::Parameters().ir;
+    parameters.stray = kShare;
+    physics::IrFate fate(parameters, Catch::rngSeed(), "a>b");
+    double turned = 0.0, squares = 0.0;
+    for (int k = 0; k < kDraws; ++k) {
+        const auto parts = static_cast<double>(fate.next().turn);
+        const double turn = std::remainder(parts * 2 * std::numbers::pi / 12, 2 * std::numbers::pi);
+        turned += turn != 0.0 ? 1 : 0;
+        squares += turn * turn;
+    }
+    const auto model = make_model(ring_experiment(random_looks(4)));
+    const Prediction said = predicted(*model, {{"rab.multipath", kShare}});
+    CHECK(said[kStrength].lapse[0] == kShare);
+    CHECK(said[kBearing].lapse[0] == Approx(turned / kDraws).epsilon(0.05));  // 1.2 % by chance
+    CHECK(said[kBearing].lapse_scale[0] == Approx(std::sqrt(squares / turned)).epsilon(0.05));
 }
