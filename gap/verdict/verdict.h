@@ -118,8 +118,10 @@ struct Suggestion {
 /// The experiment performed again on the emulator, without and with the overlay: measured against emulated.
 struct RerunObservable {
     std::string name, unit;
-    double before = 0.0, after = 0.0;  ///< rms error; of what happens or not: difference of the shares
-    double floor = 0.0;  ///< with the true robot, where it is known (self test); not in gap.json
+    double before = 0.0, after = 0.0;  ///< rms error, or how far apart two distributions are
+    /// Where the true robot is known (self test): with it, mean of several performances, and what one more of
+    /// them may have; not in gap.json.
+    double floor = 0.0, floor_limit = 0.0;
 };
 struct Rerun {
     bool asked = false;

@@ -59,7 +59,7 @@ TEST_CASE("a wheel's size from an overlay drives the emulated robot as far as th
     const Rerun result =
         again("motion", {"robot.wheel_radius_left=0.02112", "robot.wheel_radius_right=0.02112"},
               named("wheel_scale", "wheel_scale", 0.0302, 0.0), true);
-    REQUIRE(result.observables.size() == 2);
+    REQUIRE(result.observables.size() == 4);
     // The robot that was recorded is off by its tracker's noise, and no less than with the overlay.
     for (const RerunObservable& observable : result.observables) {
         INFO(observable.name);
@@ -109,10 +109,11 @@ TEST_CASE("a microphone's gain and an accelerometer's zero from an overlay are t
     CHECK(sound.observables[0].before > 2 * sound.observables[0].after);
     const Rerun tilt = again("accelerometer", {"accelerometer.bias0=40"},
                              named("accelerometer_bias", "accelerometer.bias0", 40, 0.0));
-    REQUIRE(tilt.observables.size() == 3);
+    REQUIRE(tilt.observables.size() == 6);
     CHECK(tilt.observables[0].before == Approx(40).margin(2));
     for (const auto& axis : tilt.observables)
-        CHECK(axis.after < 3.5);  // the converter's noise
+        CHECK(axis.after < 3.5);                                // the converter's noise
+    CHECK(tilt.observables[3].before == Approx(40).margin(2));  // a distribution moves as its mean does
 }
 
 TEST_CASE("a longer period is that of sleeps which end late") {
@@ -120,6 +121,48 @@ TEST_CASE("a longer period is that of sleeps which end late") {
         again("timing", {"host.period=0.104"}, named("long_period", "timing.extra_period", 0.004, 0.0));
     CHECK(result.observables[0].before > 0.01);
     CHECK(result.observables[0].after < 0.0004);  // the host's time stamps, 0.2 ms
+}
+
+TEST_CASE("a shorter period is that of sleeps which end early") {
+    const Rerun result =
+        again("timing", {"host.period=0.0963"}, named("long_period", "timing.extra_period", -0.0037, 0.0));
+    CHECK(result.left_out.empty());
+    CHECK(result.observables[0].before > 0.01);
+    CHECK(result.observables[0].after < 0.0004);                         // the host's time stamps, 0.2 ms
+    CHECK(result.observables[1].before == Approx(0.0037).margin(2e-4));  // of each interval
+    CHECK(result.observables[1].after < 0.0004);
+}
+
+TEST_CASE("bytes on the line come as fast as the overlay's crystal") {
+    const Rerun result = again("serial", {"board.crystal_ppm=-160"},
+                               named("clock_drift", "timing.clock_drift", 0.00016, 0.0), true);
+    REQUIRE(result.observables.size() == 1);
+    // 160 ppm of 83 bytes are 1.15 us from end to end; the analyser's noise is 0.1 us.
+    CHECK(result.observables[0].before > 2.5e-7);
+    CHECK(result.observables[0].after < 1.25 * result.observables[0].floor);
+    CHECK(result.observables[0].floor == Approx(1e-7).epsilon(0.1));
+}
+
+TEST_CASE("frames that chance breaks are compared by their share") {
+    const Rerun result =
+        again("timing", {"uart.cut=0.2"}, named("truncation", "timing.truncation", 0.2, 0.0), true);
+    REQUIRE(result.observables.size() == 3);
+    const RerunObservable& share = result.observables[2];
+    CAPTURE(share.before, share.after, share.floor, share.floor_limit);
+    CHECK(share.before > 0.1);
+    CHECK(share.after < share.before / 2);
+    CHECK(share.floor > 0);  // chance differs from one performance to the next
+    CHECK(share.floor_limit > share.floor);
+}
+
+TEST_CASE("a host that polls seldom is performed again with the time between its polls") {
+    const Rerun result =
+        again("rab", {"host.rab_poll=0.08"}, named("poll_loss", "rab.fetch_time", 0.08, 0.0));
+    const RerunObservable& received = result.observables.back();
+    REQUIRE(received.name == "received");
+    CHECK(received.before > 0.1);
+    CHECK(received.after < received.before / 5);
+    CHECK(result.left_out.empty());
 }
 
 TEST_CASE("a receiver's gain and reflections from an overlay are those of the emulated boards") {

@@ -1,6 +1,7 @@
 #include "tools/gap/emulate/reacts.h"
 
 #include "physics/description/parameters.h"
+#include "protocols/epuck_serial.h"
 #include "tools/gap/emulate/plans.h"
 #include "tools/gap/emulate/reacts_sensors.h"
 #include "tools/gap/emulate/surroundings.h"
@@ -9,7 +10,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <numbers>
 #include <tuple>
@@ -19,8 +19,6 @@ namespace puckloop::gap::emulate {
 namespace {
 
 constexpr double kStanding = 1.0;        // s of an act without a motion of its own, at least
-constexpr double kAround = 0.5;          // s: readings as near as this to a row's time are its mean
-constexpr double kSettled = 0.45;        // s after which readings count
 constexpr double kSmallestArena = 6.0;   // m
 constexpr double kMargin = 1.0;          // m between the measured path and a wall
 constexpr std::size_t kPlacements = 24;  // of a proximity experiment
@@ -105,9 +103,28 @@ int reads_every(const Run& run) {
     return reads.empty() ? 0 : static_cast<int>(second);
 }
 
+/// Rows are the bytes of an answer, a run each, as a logic analyser times them.
+bool is_line(const Run& run) {
+    constexpr double kNear = 0.01;
+    return run.rows >= 3 && run.rows <= protocols::kEpuckSensorBytes &&
+           std::abs(value_of(run, "nominal_period", 0, 0.1) / kSerialByte - 1) < kNear;
+}
+
+/// One standing robot answers as often as there are runs.
+std::vector<React> line(const Experiment& experiment) {
+    constexpr double kStart = 1.5, kAnswer = 0.1;  // s
+    React react;
+    react.line = true;
+    for (std::size_t r = 0; r < experiment.runs.size(); ++r)
+        if (is_line(experiment.runs[r])) react.rows.push_back(r);
+    react.act.arena = open_floor(0);
+    react.act.commands = {{0, 0, 0}, {kStart + kAnswer * static_cast<double>(react.rows.size()), 0, 0}};
+    return react.rows.empty() ? std::vector<React>{} : std::vector<React>{react};
+}
+
 std::vector<React> timing(const Experiment& experiment, std::string& why) {
     constexpr double kLeastPeriod = 0.01;  // s: an exchange takes 8 ms on the line
-    std::vector<React> reacts;
+    std::vector<React> reacts = line(experiment);
     for (std::size_t r = 0; r < experiment.runs.size(); ++r) {
         const Run& run = experiment.runs[r];
         const double period = value_of(run, "nominal_period", 0, 0.1);
@@ -128,7 +145,8 @@ std::vector<React> timing(const Experiment& experiment, std::string& why) {
         reacts.push_back(std::move(react));
     }
     // The recording's own exchange is 84 bytes long and as fast as its firmware answers.
-    if (reacts.empty()) why = "no run with three frames, 10 ms or more apart";
+    if (reacts.empty())
+        why = "no run with three frames, 10 ms or more apart, or with an answer's bytes at 115200 baud";
     return reacts;
 }
 
@@ -226,64 +244,6 @@ std::vector<React> proximity(const Experiment& experiment, double longest, std::
     return spread_of(all, kPlacements);
 }
 
-void motion_errors(const Run& run, const React& react, const std::vector<Row>& emulated,
-                   std::vector<ErrorSum>& errors) {
-    std::size_t place = 0;
-    const auto& t = run.column("t_s");
-    for (const std::size_t row : react.rows) {
-        const double now = t[row] - t[0];
-        while (place + 2 < emulated.size() && emulated[place + 1].t < now)
-            ++place;
-        const Row &a = emulated[place], &b = emulated[std::min(place + 1, emulated.size() - 1)];
-        const double f = b.t > a.t ? std::clamp((now - a.t) / (b.t - a.t), 0.0, 1.0) : 0.0;
-        const double dx = run.column("x_m")[row] - react.x - (a.x + f * (b.x - a.x)),
-                     dy = run.column("y_m")[row] - react.y - (a.y + f * (b.y - a.y));
-        add(errors[0], std::hypot(dx, dy));
-        const double heading = a.theta + f * std::remainder(b.theta - a.theta, 2 * std::numbers::pi);
-        add(errors[1], std::remainder(run.column("theta_rad")[row] - heading, 2 * std::numbers::pi));
-    }
-}
-
-/// Arrivals about their mean; the clocks' zeros are not known.
-void timing_errors(const Run& run, const React& react, const std::vector<Row>& emulated,
-                   std::vector<ErrorSum>& errors) {
-    std::vector<double> left;
-    double mean = 0.0, broken_measured = 0.0, broken = 0.0, judged = 0.0;
-    for (const std::size_t row : react.rows) {
-        const auto seq = static_cast<std::size_t>(value_of(run, "seq", row, static_cast<double>(row)));
-        if (seq >= emulated.size()) continue;
-        const double ok = value_of(run, "frame_ok", row, NAN);
-        if (!std::isnan(ok)) {
-            broken_measured += ok < 0.5 ? 1 : 0;
-            broken += emulated[seq].ok ? 0 : 1;
-            ++judged;
-        }
-        if (ok < 0.5 || !emulated[seq].ok) continue;
-        left.push_back(run.column("t_host_s")[row] - emulated[seq].answered);
-        if (std::isnan(left.back()))
-            left.pop_back();
-        else
-            mean += left.back();
-    }
-    for (const double one : left)
-        add(errors[0], one - mean / static_cast<double>(left.size()));
-    if (judged > 0) add(errors[1], (broken_measured - broken) / judged);
-}
-
-/// Mean about the time `t`, or the nearest to it at which the robot stood.
-double standing_mean(const std::vector<Row>& emulated, double t,
-                     const std::function<double(const Row&)>& value) {
-    const double about = std::clamp(std::isnan(t) ? 0.0 : t, kSettled, emulated.back().t);
-    double sum = 0.0, count = 0.0;
-    for (const Row& row : emulated) {
-        const double one = value(row);
-        if (row.t < kSettled || std::abs(row.t - about) > kAround || !row.ok || std::isnan(one)) continue;
-        sum += one;
-        ++count;
-    }
-    return sum / count;
-}
-
 }  // namespace
 
 std::vector<React> spread_of(const std::vector<React>& all, std::size_t most) {
@@ -297,12 +257,6 @@ std::vector<React> spread_of(const std::vector<React>& all, std::size_t most) {
 double value_of(const Run& run, std::string_view name, std::size_t row, double fallback) {
     const auto& column = run.column(name);
     return column.empty() ? fallback : column[row];
-}
-
-void add(ErrorSum& sum, double error) {
-    if (std::isnan(error)) return;
-    sum.squares += error * error;
-    ++sum.rows;
 }
 
 std::vector<React> reacts_of(const Experiment& experiment, double longest, std::string& why) {
@@ -322,42 +276,6 @@ std::vector<React> reacts_of(const Experiment& experiment, double longest, std::
     default:
         why = fmt::format("experiments of kind {} are not performed again", kind_name(experiment.kind));
         return {};
-    }
-}
-
-std::vector<std::pair<const char*, const char*>> compared(Kind kind) {
-    switch (kind) {
-    case Kind::Motion:
-        return {{"position", "m"}, {"heading", "rad"}};
-    case Kind::Timing:
-        return {{"arrival", "s"}, {"broken frames", "1"}};
-    case Kind::Microphone:
-        return {{"level", "counts"}};
-    case Kind::Accelerometer:
-        return {{"ax", "counts"}, {"ay", "counts"}, {"az", "counts"}};
-    default:
-        return {{"reading", "counts"}};
-    }
-}
-
-void add_errors(const Experiment& experiment, const React& react, const std::vector<Row>& emulated,
-                std::vector<ErrorSum>& errors) {
-    if (experiment.kind == Kind::Motion)
-        return motion_errors(experiment.runs[react.run], react, emulated, errors);
-    if (experiment.kind == Kind::Timing)
-        return timing_errors(experiment.runs[react.run], react, emulated, errors);
-    if (experiment.kind == Kind::Microphone) return microphone_errors(experiment, react, emulated, errors);
-    if (experiment.kind == Kind::Accelerometer)
-        return accelerometer_errors(experiment, react, emulated, errors);
-    for (std::size_t k = 0; k + 1 < react.rows.size(); k += 2) {
-        const Run& run = experiment.runs[react.rows[k]];
-        const std::size_t row = react.rows[k + 1];
-        const bool floor = experiment.kind == Kind::Ground;
-        const auto sensor = floor ? static_cast<std::size_t>(value_of(run, "sensor", row, 0)) : react.sensor;
-        const double told = standing_mean(emulated, value_of(run, "t_s", row, 0.0), [&](const Row& r) {
-            return floor ? r.gs[sensor % 3] : r.ps[sensor % 8];
-        });
-        add(errors[0], run.column("reading")[row] - told);
     }
 }
 

@@ -2,6 +2,8 @@
 // What has to be done on the emulator to perform a measured experiment again, and what is compared then.
 
 #include "gap/data/experiment.h"
+#include "tools/gap/emulate/comparison.h"
+#include "tools/gap/emulate/record_serial.h"
 #include "tools/gap/emulate/stage.h"
 
 #include <string>
@@ -10,12 +12,6 @@
 
 namespace puckloop::gap::emulate {
 
-/// Squared errors of one observable.
-struct ErrorSum {
-    double squares = 0.0;
-    std::size_t rows = 0;
-};
-
 /// One run of the emulator with the measured rows that it stands for.
 struct React {
     Act act;
@@ -23,6 +19,7 @@ struct React {
     std::size_t run = 0;               ///< of the experiment
     std::vector<std::size_t> rows{};   ///< of the run; of placements: run and row in turn
     std::size_t sensor = 0;            ///< proximity, microphone: which sensor it is about
+    bool line = false;                 ///< timing: about the bytes on the main board's line
     double x = 0, y = 0, heading = 0;  ///< motion: measured pose that the act's start stands for
 };
 
@@ -33,11 +30,19 @@ std::vector<React> reacts_of(const Experiment& experiment, double longest, std::
 /// `most` of them at even spaces, all if there are no more.
 std::vector<React> spread_of(const std::vector<React>& all, std::size_t most);
 
-/// Names and units of what is compared, in the order of ErrorSums.
+/// What one performance gave.
+struct Performed {
+    std::vector<Row> rows;
+    std::vector<SerialAnswer> answers;  ///< of a React about the line
+};
+
+/// Names and units of what is compared, in the order of Comparisons: what is compared row by row, then the
+/// distributions of what chance puts elsewhere each time.
 std::vector<std::pair<const char*, const char*>> compared(Kind kind);
 
-/// Adds the errors of `emulated` against the rows measured.
-void add_errors(const Experiment& experiment, const React& react, const std::vector<Row>& emulated,
-                std::vector<ErrorSum>& errors);
+/// Adds what was measured and what was performed. `plain`: the simulator as it is, which distributions are
+/// taken about.
+void compare(const Experiment& experiment, const React& react, const Performed& performed,
+             const Performed& plain, std::vector<Comparison>& comparisons);
 
 }  // namespace puckloop::gap::emulate

@@ -39,16 +39,13 @@ void add_row(Places& places, const Place& place, const React& react, std::size_t
     known.rows.push_back(row);
 }
 
-/// Mean of what a standing robot's rows say once they have settled.
-double mean_of(const std::vector<Row>& emulated, const std::function<double(const Row&)>& value) {
-    double sum = 0.0, count = 0.0;
-    for (const Row& row : emulated) {
-        const double one = value(row);
-        if (row.t < kSettled || !row.ok || std::isnan(one)) continue;
-        sum += one;
-        ++count;
-    }
-    return sum / count;
+/// What a standing robot's rows say once they have settled.
+std::vector<double> settled(const std::vector<Row>& emulated,
+                            const std::function<double(const Row&)>& value) {
+    std::vector<double> values;
+    for (const Row& row : emulated)
+        if (row.t >= kSettled && row.ok && !std::isnan(value(row))) values.push_back(value(row));
+    return values;
 }
 
 }  // namespace
@@ -108,20 +105,24 @@ std::vector<React> accelerometer_reacts(const Experiment& experiment, std::strin
     return chosen;
 }
 
-void microphone_errors(const Experiment& experiment, const React& react, const std::vector<Row>& emulated,
-                       std::vector<ErrorSum>& errors) {
-    const double told = mean_of(emulated, [&](const Row& r) { return r.mic[react.sensor]; });
+void compare_microphone(const Experiment& experiment, const React& react, const Performed& performed,
+                        const Performed& plain, std::vector<Comparison>& comparisons) {
+    const auto value = [&](const Row& r) { return r.mic[react.sensor]; };
+    const auto is = settled(performed.rows, value), expected = settled(plain.rows, value);
     for (std::size_t k = 0; k + 1 < react.rows.size(); k += 2)
-        add(errors[0], experiment.runs[react.rows[k]].column("level")[react.rows[k + 1]] - told);
+        compare_reading(experiment.runs[react.rows[k]].column("level")[react.rows[k + 1]], is, expected,
+                        comparisons[0], comparisons[1]);
 }
 
-void accelerometer_errors(const Experiment& experiment, const React& react, const std::vector<Row>& emulated,
-                          std::vector<ErrorSum>& errors) {
+void compare_accelerometer(const Experiment& experiment, const React& react, const Performed& performed,
+                           const Performed& plain, std::vector<Comparison>& comparisons) {
     const char* const axes[] = {"ax", "ay", "az"};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double told = mean_of(emulated, [&](const Row& r) { return r.acc[axis]; });
+        const auto value = [&](const Row& r) { return r.acc[axis]; };
+        const auto is = settled(performed.rows, value), expected = settled(plain.rows, value);
         for (std::size_t k = 0; k + 1 < react.rows.size(); k += 2)
-            add(errors[axis], experiment.runs[react.rows[k]].column(axes[axis])[react.rows[k + 1]] - told);
+            compare_reading(experiment.runs[react.rows[k]].column(axes[axis])[react.rows[k + 1]], is,
+                            expected, comparisons[axis], comparisons[3 + axis]);
     }
 }
 

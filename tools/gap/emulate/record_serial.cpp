@@ -12,7 +12,6 @@ namespace puckloop::gap::emulate {
 
 namespace {
 
-constexpr double kByte = 10.0 / 115200;  // s, by the board's clock
 constexpr double kAnalyserNoise = 1e-7;  // s
 constexpr double kApart = 1.5;           // bytes: more is the next answer
 constexpr std::size_t kAnswers = 24, kBriefAnswers = 8;
@@ -36,33 +35,41 @@ std::vector<double> start_bits(const std::filesystem::path& trace) {
 
 }  // namespace
 
+std::vector<SerialAnswer> serial_answers(const std::filesystem::path& trace) {
+    const auto times = start_bits(trace);
+    std::vector<SerialAnswer> answers;
+    for (std::size_t i = 0; i < times.size();) {
+        SerialAnswer answer{0.0};
+        const double first = times[i];
+        for (++i; i < times.size() && times[i] - times[i - 1] < kApart * kSerialByte; ++i)
+            answer.push_back(times[i] - first);
+        if (answer.size() == protocols::kEpuckSensorBytes) answers.push_back(std::move(answer));
+    }
+    return answers;
+}
+
 WrittenExperiment record_serial(const RecordOptions& options) {
     Act act;
     act.arena = "[arena]\nsize = [\"2 m\", \"2 m\"]\n";
     act.commands = {{0, 0, 0}, {options.brief ? kBriefSeconds : kSeconds, 0, 0}};
     (void)perform(options.robot, act, options.tools, options.seed, options.scratch);
-    const auto times = start_bits(options.scratch / "out" / "trace.csv");
+    const auto answers = serial_answers(options.scratch / "out" / "trace.csv");
     const std::size_t wanted = options.brief ? kBriefAnswers : kAnswers;
+    if (answers.size() < wanted) throw RunError("too few whole answers on the serial line");
     RandomStream noise(options.seed, "logic analyser");
     WrittenExperiment experiment;
     experiment.kind = "timing";
-    for (std::size_t i = 0; i < times.size() && experiment.runs.size() < wanted;) {
-        std::size_t end = i + 1;
-        while (end < times.size() && times[end] - times[end - 1] < kApart * kByte)
-            ++end;
+    for (std::size_t r = 0; r < wanted; ++r) {
         WrittenRun run;
-        for (std::size_t k = i; end - i == protocols::kEpuckSensorBytes && k < end; ++k) {
-            const auto number = static_cast<double>(k - i);
+        for (std::size_t k = 0; k < answers[r].size(); ++k) {
+            const auto number = static_cast<double>(k);
             run.column("seq").values.push_back(number);
-            run.column("t_robot_s", "s").values.push_back(number * kByte);
-            run.column("t_host_s", "s")
-                .values.push_back(times[k] - times[i] + kAnalyserNoise * noise.normal());
-            run.column("nominal_period", "s").values.push_back(kByte);
+            run.column("t_robot_s", "s").values.push_back(number * kSerialByte);
+            run.column("t_host_s", "s").values.push_back(answers[r][k] + kAnalyserNoise * noise.normal());
+            run.column("nominal_period", "s").values.push_back(kSerialByte);
         }
-        if (run.rows() > 0) experiment.runs.push_back(std::move(run));
-        i = end;
+        experiment.runs.push_back(std::move(run));
     }
-    if (experiment.runs.size() < wanted) throw RunError("too few whole answers on the serial line");
     return experiment;
 }
 

@@ -4,7 +4,17 @@
 
 #include "tools/gap/emulate/record.h"
 
+#include <filesystem>
+#include <vector>
+
 namespace puckloop::gap::emulate {
+
+/// A whole answer of the main board: when each byte's start bit came, s since the first one's.
+using SerialAnswer = std::vector<double>;
+/// Those in a run's trace.csv.
+std::vector<SerialAnswer> serial_answers(const std::filesystem::path& trace);
+/// s from one byte of an answer to the next, by the board's clock.
+inline constexpr double kSerialByte = 10.0 / 115200;
 
 WrittenExperiment record_serial(const RecordOptions& options);
 

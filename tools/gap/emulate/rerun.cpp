@@ -3,12 +3,11 @@
 #include "base/error.h"
 #include "gap/overlay/overlay_parts.h"
 #include "physics/description/parameters.h"
+#include "tools/gap/emulate/comparison.h"
 #include "tools/gap/emulate/reacts.h"
 #include "tools/gap/emulate/rerun_rab.h"
 
 #include <fmt/format.h>
-
-#include <cmath>
 
 namespace puckloop::gap::emulate {
 
@@ -44,7 +43,7 @@ std::vector<std::string> left_out(const Experiment& experiment, const Verdict& v
     for (std::size_t from = text.find('"', measuring); from != std::string::npos;) {
         const std::size_t to = text.find('"', from + 1);
         const std::string name = text.substr(from + 1, to - from - 1);
-        names.push_back(name);
+        if (name != kFetchTime) names.push_back(name);  // it is the host's, and performed
         from = text.find('"', to + 1);
     }
     return names;
@@ -73,6 +72,24 @@ std::vector<React> chosen(const std::vector<React>& all, double longest) {
 
 }  // namespace
 
+std::vector<std::uint64_t> seeds_of(const RerunOptions& options) {
+    constexpr std::uint64_t kApart = 1'000'000;  // further than an experiment has runs
+    std::vector<std::uint64_t> seeds(kTrueSide, options.seed);
+    for (std::size_t k = 0; options.truth && k < kTruePerformances; ++k)
+        seeds.push_back(options.seed + k * kApart);
+    return seeds;
+}
+
+RerunObservable observable_of(const std::string& name, const std::string& unit,
+                              const std::vector<double>& errors) {
+    RerunObservable one{name, unit, errors[0], errors[kOverlaySide]};
+    if (errors.size() <= kTrueSide) return one;
+    const Floor floor = floor_of({errors.begin() + static_cast<std::ptrdiff_t>(kTrueSide), errors.end()});
+    one.floor = floor.mean;
+    one.floor_limit = floor.limit;
+    return one;
+}
+
 Rerun rerun(const Experiment& experiment, const Verdict& verdict, const RerunOptions& options) try {
     Rerun result;
     result.asked = true;
@@ -86,7 +103,7 @@ Rerun rerun(const Experiment& experiment, const Verdict& verdict, const RerunOpt
         return result;
     }
     if (experiment.kind == Kind::Rab) {
-        result = rerun_rab(experiment, options);
+        result = rerun_rab(experiment, verdict, options);
         result.left_out = left_out(experiment, verdict);
         return result;
     }
@@ -94,30 +111,33 @@ Rerun rerun(const Experiment& experiment, const Verdict& verdict, const RerunOpt
     if (!result.not_done.empty()) return result;
     const auto reacts = chosen(all, options.longest);
     const auto names = compared(experiment.kind);
-    std::vector<Robot> sides(2, nominal_robot(experiment, options));
-    sides[1].overlay = options.overlay;
-    if (options.truth) sides.push_back(*options.truth);
-    std::vector errors(sides.size(), std::vector<ErrorSum>(names.size()));
+    const auto seeds = seeds_of(options);
+    std::vector<std::vector<Comparison>> comparisons(seeds.size(), std::vector<Comparison>(names.size()));
     std::size_t done = 0;
-    for (std::size_t k = 0; k < reacts.size(); ++k)
-        for (std::size_t side = 0; side < sides.size(); ++side) {
-            Robot robot = sides[side];
+    for (std::size_t k = 0; k < reacts.size(); ++k) {
+        Performed plain;
+        for (std::size_t side = 0; side < seeds.size(); ++side) {
+            Robot robot = side < kTrueSide ? nominal_robot(experiment, options) : *options.truth;
+            if (side == kOverlaySide) robot.overlay = options.overlay;
             if (robot.period == Robot().period) robot.period = reacts[k].period;
-            const auto rows = perform(robot, reacts[k].act, options.tools, options.seed + k, options.scratch);
-            add_errors(experiment, reacts[k], rows, errors[side]);
+            Performed performed;
+            performed.rows = perform(robot, reacts[k].act, options.tools, seeds[side] + k, options.scratch);
+            if (reacts[k].line) performed.answers = serial_answers(options.scratch / "out" / "trace.csv");
+            if (side == 0) plain = performed;
+            compare(experiment, reacts[k], performed, plain, comparisons[side]);
             std::filesystem::remove_all(options.scratch);
-            if (options.done) options.done(++done, sides.size() * reacts.size());
+            if (options.done) options.done(++done, seeds.size() * reacts.size());
         }
+    }
     result.runs = reacts.size();
     result.of_runs = all.size();
-    result.rows = errors[0][0].rows;
+    result.rows = comparisons[0][0].rows();
     for (std::size_t o = 0; o < names.size(); ++o) {
-        if (errors[0][o].rows == 0) continue;
-        const auto rms = [](const ErrorSum& sum) {
-            return std::sqrt(sum.squares / static_cast<double>(sum.rows));
-        };
-        result.observables.push_back({names[o].first, names[o].second, rms(errors[0][o]), rms(errors[1][o]),
-                                      options.truth ? rms(errors[2][o]) : 0.0});
+        std::vector<double> errors;
+        for (const auto& side : comparisons)
+            if (const auto error = side[o].off_by()) errors.push_back(*error);
+        if (errors.size() == seeds.size())
+            result.observables.push_back(observable_of(names[o].first, names[o].second, errors));
     }
     result.left_out = left_out(experiment, verdict);
     return result;
