@@ -31,8 +31,7 @@ std::vector<Leftover> leftovers_of(const Experiment& experiment, const std::vect
     const stats::TestOptions options{.seed = seed, .permutations = kPermutations};
     std::vector<std::vector<stats::Finding>> tables;
     for (std::size_t o = 0; o < series.size(); ++o) {
-        // The firmware makes the counters: whole steps have structure of their own.
-        auto table = series[o].observable.starts_with("steps_")
+        auto table = is_counter(series[o].observable)
                          ? std::vector<stats::Finding>{}
                          : residual_structure(experiment, series[o], Stage::After, options);
         std::erase_if(table,

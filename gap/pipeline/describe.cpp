@@ -148,13 +148,15 @@ void add_held_out(const Study& study, const Selection& selection, std::uint64_t 
 }
 
 /// Each observable by the simulator as it is, then with the causes.
-void add_predictive(const Study& study, Judged& judged, std::uint64_t seed, Verdict& verdict) {
+void add_predictive(const Study& study, const Judged& judged, std::uint64_t seed, Verdict& verdict) {
     const bool causes = !judged.chosen.final.effects.empty();
-    auto as_it_is = causes ? predictive_checks(study, judged.chosen.selection.none, false, seed)
-                           : std::move(judged.diagnosis.predictive);
+    auto stands = judged.diagnosis.predictive;
+    if (stands.empty()) stands = predictive_checks(study, judged.chosen.final, causes, seed);
+    const auto as_it_is =
+        causes ? predictive_checks(study, judged.chosen.selection.none, false, seed) : stands;
     for (std::size_t o = 0; o < as_it_is.size(); ++o) {
-        verdict.predictive.push_back(std::move(as_it_is[o]));
-        if (causes) verdict.predictive.push_back(std::move(judged.diagnosis.predictive[o]));
+        verdict.predictive.push_back(as_it_is[o]);
+        if (causes) verdict.predictive.push_back(std::move(stands[o]));
     }
 }
 

@@ -50,8 +50,12 @@ std::string farthest_place(const PredictiveCurve& curve, const std::string& unit
                        sized ? " " + unit : "", curve.x_label, where, curve.low[place], curve.high[place]);
 }
 
-/// Curves of residuals that the fitted model does not make (posterior-predictive), p by Bonferroni. Sums have
-/// tests of their own: where their errors are next to none replicates differ by rounding alone. How large
+/// Sums have tests of their own: where their errors are next to none replicates differ by rounding alone.
+bool is_replicated(const Observable& observable) {
+    return observable.noise != NoiseKind::Level && !is_counter(observable.name);
+}
+
+/// Curves of residuals that the fitted model does not make (posterior-predictive), p by Bonferroni. How large
 /// errors are and how they carry over is the noise's business.
 std::vector<Leftover> not_replicated(const Study& study, const std::vector<PredictiveCheck>& checks) {
     const auto looked_at = [](const PredictiveCurve& curve) {
@@ -60,7 +64,7 @@ std::vector<Leftover> not_replicated(const Study& study, const std::vector<Predi
     std::vector<Leftover> all;
     double looks = 0.0;
     for (std::size_t o = 0; o < checks.size(); ++o) {
-        if (study.model().observables()[o].noise == NoiseKind::Level) continue;
+        if (!is_replicated(study.model().observables()[o])) continue;
         for (const PredictiveCurve& curve : checks[o].curves) {
             if (!looked_at(curve)) continue;
             looks += 1;
@@ -90,9 +94,12 @@ Diagnosis diagnosed(const Study& study, const Chosen& chosen, std::uint64_t seed
     for (const Trial& step : chosen.selection.steps)
         found.forms.emplace_back(step.effect,
                                  form_verdict(rival_forms(study, chosen.selection.chosen, step.effect)));
-    found.predictive = predictive_checks(study, chosen.final, !chosen.final.effects.empty(), seed);
-    const auto unlike = not_replicated(study, found.predictive);
-    found.leftovers.insert(found.leftovers.end(), unlike.begin(), unlike.end());
+    const auto& observables = study.model().observables();
+    if (std::any_of(observables.begin(), observables.end(), is_replicated)) {
+        found.predictive = predictive_checks(study, chosen.final, !chosen.final.effects.empty(), seed);
+        const auto unlike = not_replicated(study, found.predictive);
+        found.leftovers.insert(found.leftovers.end(), unlike.begin(), unlike.end());
+    }
     found.structures = found.leftovers;
     const Selection& selection = chosen.selection;
     for (const auto& more :

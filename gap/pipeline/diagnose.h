@@ -18,7 +18,7 @@ struct Diagnosis {
     std::vector<Leftover> leftovers;          ///< these and what differs by runs, jumps and
                                               ///< wanders; the surest first
     std::vector<FreeForm> free_forms;         ///< corrections without a mechanism
-    std::vector<PredictiveCheck> predictive;  ///< of the fit that is diagnosed
+    std::vector<PredictiveCheck> predictive;  ///< of this fit; none where all adds up
     LeftByRuns by_runs;                       ///< numbers of runs, jumps inside runs
     std::vector<std::pair<std::size_t, FormVerdict>> forms;  ///< of the chosen effects (candidates)
 };
