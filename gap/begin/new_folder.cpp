@@ -79,7 +79,13 @@ std::string new_experiment_toml(Kind kind, std::size_t runs) {
     if (const auto usual = kUsualInstrument.find(kind); usual != kUsualInstrument.end())
         text += fmt::format("# {}\n", usual->second);
     text +=
-        "\n# [nominal]: where this robot is known to differ from the simulator (docs/gap.md).\n[nominal]\n\n";
+        "\n# [nominal]: where this robot is known to differ from the simulator (docs/gap.md).\n[nominal]\n";
+    if (kind == Kind::Motion)
+        text += "# \"firmware.agenda\" = 0              # wheels keep to their commands (no staircase of "
+                "speeds)\n"
+                "# \"inverse_friction\" = 0             # no slip at starts; else 1 / friction of tyre and "
+                "floor\n";
+    text += "\n";
     text += "# Conditions that hold for all runs, in words.\n[conditions]\n# light = \"dark\"\n\n";
     text += fmt::format("# Only runs are independent of each other: record at least four, in random order, "
                         "better ten. What separates\n"

@@ -64,8 +64,12 @@ std::string readiness_text(const Readiness& ready) {
     for (const auto& [why, names] : by_reason)
         text += fmt::format("cannot be found: {} ({})\n", fmt::join(names, ", "), why);
     text += fmt::format("can be found: {}\n", fmt::join(ready.looked_for, ", "));
-    return text + fmt::format("ready: a verdict takes {} ({:.0f} to {:.0f} s)\n", rough_time(ready.seconds),
-                              std::floor(ready.seconds / kWithin), std::ceil(ready.seconds * kWithin));
+    return text +
+           fmt::format(
+               "ready: a verdict takes {} ({:.0f} to {:.0f} s); what is named is then performed again, which "
+               "takes longer (--no-rerun: not)\n",
+               rough_time(ready.seconds), std::floor(ready.seconds / kWithin),
+               std::ceil(ready.seconds * kWithin));
 }
 
 }  // namespace puckloop::gap

@@ -18,15 +18,15 @@ using stats::MeasuredRun;
 
 constexpr double kWholeRun = 0.9;  // share of the later run's rows, for time series
 
-bool in_every_run(const Experiment& experiment, std::string_view column) {
-    return std::all_of(experiment.runs.begin(), experiment.runs.end(),
+bool in_some_run(const Experiment& experiment, std::string_view column) {
+    return std::any_of(experiment.runs.begin(), experiment.runs.end(),
                        [column](const Run& run) { return run.has(column); });
 }
 
 std::vector<std::string> measured_columns(const Experiment& experiment) {
     std::vector<std::string> observables, truths;
     for (const ColumnInfo& info : columns_of(experiment.kind)) {
-        if (!in_every_run(experiment, info.name)) continue;
+        if (!in_some_run(experiment, info.name)) continue;
         if (info.role == Role::Observable && info.high - info.low > 1) observables.emplace_back(info.name);
         if (info.role == Role::Truth) truths.emplace_back(info.name);
     }
@@ -38,8 +38,9 @@ std::vector<MeasuredRun> measured_runs(const Experiment& experiment,
     std::vector<MeasuredRun> runs;
     for (const Run& run : experiment.runs) {
         MeasuredRun m{run.name, {}, {}};
+        // A run without a column that others have has nothing that could be a copy.
         for (const auto& name : measured)
-            m.measured.push_back(run.column(name));
+            m.measured.push_back(run.has(name) ? run.column(name) : std::vector<double>(run.rows, NAN));
         for (const ColumnInfo& info : columns_of(experiment.kind))
             if (run.has(info.name) && (info.role == Role::Stimulus || info.role == Role::Truth))
                 m.keys.push_back(run.column(info.name));

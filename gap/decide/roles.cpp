@@ -57,10 +57,11 @@ std::string mean_behind(const Study& study, const Fit& fit, const HeldOut& held,
     const auto is_touched = [&](const std::string& name) {
         return std::find(touched.begin(), touched.end(), name) != touched.end();
     };
+    // Larger errors cover any mean that the model lacks: with one that is left for sure, who knows how much.
     for (const Leftover& left : leftovers)
-        if (left.covariate == kPlacementCovariate && left.p_value < thresholds::kSure &&
-            is_touched(left.observable))
-            return "explains scatter that repeats at each placement";
+        if (left.p_value < thresholds::kSure && is_touched(left.observable))
+            return left.covariate == kPlacementCovariate ? "explains scatter that repeats at each placement"
+                                                         : "explains scatter beside a structure that is left";
     if (stats::normal_tail(repeats_at_once(study, fit, scatter)) < thresholds::kSure)
         return "explains scatter that is there again at the next reading";
     const Fit calm = without_effects(study, fit, scatter);

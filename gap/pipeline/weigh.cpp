@@ -79,7 +79,9 @@ double left_of_readings(const Study& study, const Diagnosis& diagnosis) {
 /// Notes what is left for sure.
 void take_structure(const Diagnosis& diagnosis, Grounds& g) {
     const auto clear = [](const FreeForm& form) { return form.clear; };
-    const auto sure = [](const Leftover& one) { return one.p_value < thresholds::kSure; };
+    const auto sure = [](const Leftover& one) {
+        return one.p_value < (one.covariate == kWanderCovariate ? thresholds::kSureWalk : thresholds::kSure);
+    };
     const auto other = [&](const Leftover& one) { return sure(one) && one.covariate != kWanderCovariate; };
     const auto& left = diagnosis.leftovers;
     const bool shaped = std::any_of(diagnosis.free_forms.begin(), diagnosis.free_forms.end(), clear) ||

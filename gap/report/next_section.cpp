@@ -44,7 +44,8 @@ void tell_apart(const Verdict& verdict, std::vector<std::string>& steps) {
 /// Runs, and what goes on within them, are no column that could be set.
 bool can_be_varied(std::string_view covariate) {
     return covariate != "run" && !covariate.ends_with(" a run") && covariate != "time" &&
-           covariate != "order" && covariate != "previous sample" && covariate != "predicted level";
+           covariate != "order" && covariate != "previous sample" && covariate != "predicted level" &&
+           covariate != "spread per run";
 }
 
 void look_at_what_is_left(const Verdict& verdict, std::vector<std::string>& steps) {

@@ -143,8 +143,11 @@ std::string predictive_section(const Verdict& verdict) {
            "approximate posterior, errors by the fitted law, rounding and clipping. p: share of data sets "
            "that lie as far from the replicates' mean as the measured one does, at the place where each is "
            "farthest. A small p: the model does not make such data. Data that a model was fitted to look a "
-           "little better than new data would. The verdict does not rest on these p values: a cause can be "
-           "named for what it gains on runs that were not fitted while something else is left.</p>\n" +
+           "little better than new data would. Means against covariates and the spread per run, of "
+           "what does not add up, count among the structures that are left, with p corrected for their "
+           "number; "
+           "the other curves are drawn only. A cause can be named for what it gains on runs that were not "
+           "fitted while something small is left.</p>\n" +
            figures + table.html();
 }
 

@@ -144,6 +144,20 @@ TEST_CASE("a laboratory rounds and leaves out, and never sends a clock back") {
     }
 }
 
+TEST_CASE("one pass leaves out repeats, not a session") {
+    for (const auto& bench : benches()) {
+        gap::WrittenExperiment experiment = bench->exact(7);
+        const bool sessions = experiment.runs.front().find("session") != nullptr;
+        const std::size_t runs = experiment.runs.size();
+        Laboratory laboratory;
+        laboratory.one_pass = true;
+        laboratory.plan(experiment);
+        INFO(bench->kind());
+        CHECK(experiment.runs.size() == (sessions ? runs : (runs + 1) / 2));
+        CHECK(laboratory.one_pass == !sessions);
+    }
+}
+
 TEST_CASE("a coarse instrument reads no higher and no lower than a fine one") {
     gap::WrittenExperiment experiment;
     experiment.runs.resize(1);

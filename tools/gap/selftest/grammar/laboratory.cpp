@@ -31,8 +31,17 @@ Laboratory Laboratory::draw(RandomStream& random) {
     return lab;
 }
 
-void Laboratory::plan(WrittenExperiment& experiment) const {
+namespace {
+/// Where the second half of the runs is another session, each session has one pass already.
+bool two_sessions(const std::vector<WrittenRun>& runs) {
+    const WrittenColumn *first = runs.front().find("session"), *last = runs.back().find("session");
+    return first != nullptr && last != nullptr && first->values.front() != last->values.front();
+}
+}  // namespace
+
+void Laboratory::plan(WrittenExperiment& experiment) {
     auto& runs = experiment.runs;
+    one_pass = one_pass && !two_sessions(runs);
     if (one_pass) runs.resize((runs.size() + 1) / 2);
     constexpr double kFewest = 2;
     if (!fewer || static_cast<double>(runs.size()) <= kFewest) return;

@@ -19,8 +19,8 @@ struct Laboratory {
 
     static Laboratory draw(RandomStream& random);
     /// Leaves out the runs that it does not do; before anything is hidden, or what is hidden might be in
-    /// these.
-    void plan(WrittenExperiment& experiment) const;
+    /// these. One pass of a session is one: what differs between two is not left out.
+    void plan(WrittenExperiment& experiment);
     /// Rounds what was measured.
     void keep(WrittenExperiment& experiment) const;
     std::string text() const;
