@@ -105,16 +105,19 @@ class RabModel final : public ModelOf<Numbers> {
             if (name.starts_with("ir.")) parameters.set(name, value);
         const auto distance = rows.column("distance_m", 0), bearing = rows.column("true_bearing_rad", 0),
                    facing = rows.column("sender_bearing_rad", NAN), emitter = rows.column("emitter", 0);
+        const auto unit = rows.column("unit", NAN);
+        one_unit_ = std::all_of(unit.begin(), unit.end(), [&](double one) { return one == unit.front(); });
         std::vector<RabLook> looks;
         for (std::size_t i = 0; i < rows.size(); ++i)
             looks.push_back({distance[i], bearing[i], facing[i], static_cast<int>(std::lround(emitter[i]))});
         ring_.emplace(std::move(looks), parameters.ir, experiment.nominal_or("rab.carrier", 0.0));
     }
 
-    /// What drawn boards say of the rows `used`, beside their mean.
+    /// What drawn boards say of the rows `used`, beside their mean; nothing where all runs state one unit.
     std::vector<std::vector<double>> of_boards(double RabTold::*what,
                                                const std::vector<std::uint32_t>& used) const {
         std::vector<std::vector<double>> all;
+        if (one_unit_) return all;
         for (const auto& board : ring_->drawn_boards()) {
             all.emplace_back();
             for (const std::uint32_t row : used)
@@ -352,6 +355,7 @@ class RabModel final : public ModelOf<Numbers> {
     };
 
     std::optional<RabRing> ring_;  // of all rows
+    bool one_unit_ = false;        // the same pair of boards in all runs
     std::vector<std::uint32_t> strength_row_, bearing_row_;
     std::vector<double> truth_, bearing_factor_;
     double rail_ = 0.0;                     // counts

@@ -50,9 +50,10 @@ std::string farthest_place(const PredictiveCurve& curve, const std::string& unit
                        sized ? " " + unit : "", curve.x_label, where, curve.low[place], curve.high[place]);
 }
 
-/// Sums have tests of their own: where their errors are next to none replicates differ by rounding alone.
+/// Sums have tests of their own: where their errors are next to none replicates differ by rounding alone. Of
+/// what happens or not a rare one more is farther than any replicate goes, by chance.
 bool is_replicated(const Observable& observable) {
-    return observable.noise != NoiseKind::Level && !is_counter(observable.name);
+    return observable.noise == NoiseKind::Carry && !is_counter(observable.name);
 }
 
 /// Curves of residuals that the fitted model does not make (posterior-predictive), p by Bonferroni. How large
@@ -68,7 +69,8 @@ std::vector<Leftover> not_replicated(const Study& study, const std::vector<Predi
         for (const PredictiveCurve& curve : checks[o].curves) {
             if (!looked_at(curve)) continue;
             looks += 1;
-            all.push_back({checks[o].observable, curve.name, curve.p, farthest_place(curve, checks[o].unit)});
+            all.push_back(
+                {checks[o].observable, curve.name, curve.tail, farthest_place(curve, checks[o].unit)});
         }
     }
     for (Leftover& one : all)

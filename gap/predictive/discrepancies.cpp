@@ -174,7 +174,8 @@ Discrepancies::curves(const std::vector<double>& measured,
             far.push_back(farthest(one[c], centre, deviation));
         const auto as_far = std::count_if(far.begin(), far.end(), [&](double one) { return one >= most; });
         curve.p = static_cast<double>(as_far + 1) / static_cast<double>(replicated.size() + 1);
-        if (as_far == 0) curve.p = std::min(curve.p, std::max(stats::fitted_tail(far, most), kLeastP));
+        curve.tail =
+            as_far == 0 ? std::min(curve.p, std::max(stats::fitted_tail(far, most), kLeastP)) : curve.p;
     }
     return all;
 }

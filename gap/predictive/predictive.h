@@ -19,6 +19,8 @@ struct PredictiveCurve {
     /// Share of data sets, the measured one among them, whose largest distance from the replicates' mean (in
     /// their own deviations, place by place) is at least that of the measured one.
     double p = 1.0;
+    double tail =
+        1.0;  ///< the same, where none is as far carried on by a gamma distribution (stats/exchange.h)
 };
 
 /// One observable, by the simulator as it is (its errors fitted) or with the chosen causes.

@@ -84,9 +84,9 @@ std::string gain_sentence(const Held& held) {
         return "No gain is claimed: nothing was added to the simulator.";
     if (!held.gain) return fmt::format("No gain is claimed: {}, {}.", error, score);
     if (held.low <= 1 && held.high >= 1)
-        return fmt::format("Gain on data that was not fitted: how far and when readings scatter is predicted "
-                           "better, {} (90 % interval {:+.3g} to {:+.3g}); no cause of scatter makes errors "
-                           "smaller: {}.",
+        return fmt::format("Gain on data that was not fitted: what readings are likely is predicted "
+                           "better, {} (90 % interval {:+.3g} to {:+.3g}); errors are not "
+                           "smaller for sure: {}.",
                            score, held.score_low, held.score_high, error);
     return fmt::format("Gain on data that was not fitted: {}, {}.", error, score);
 }
