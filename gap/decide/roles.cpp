@@ -57,11 +57,12 @@ std::string mean_behind(const Study& study, const Fit& fit, const HeldOut& held,
     const auto is_touched = [&](const std::string& name) {
         return std::find(touched.begin(), touched.end(), name) != touched.end();
     };
-    // Larger errors cover any mean that the model lacks: with one that is left for sure, who knows how much.
+    const auto sure = [&](const Leftover& left) {
+        return left.p_value < thresholds::kSure && is_touched(left.observable);
+    };
     for (const Leftover& left : leftovers)
-        if (left.p_value < thresholds::kSure && is_touched(left.observable))
-            return left.covariate == kPlacementCovariate ? "explains scatter that repeats at each placement"
-                                                         : "explains scatter beside a structure that is left";
+        if (left.covariate == kPlacementCovariate && sure(left))
+            return "explains scatter that repeats at each placement";
     if (stats::normal_tail(repeats_at_once(study, fit, scatter)) < thresholds::kSure)
         return "explains scatter that is there again at the next reading";
     const Fit calm = without_effects(study, fit, scatter);
@@ -78,7 +79,10 @@ std::string mean_behind(const Study& study, const Fit& fit, const HeldOut& held,
     if (bursts && lapses(study, fit)) return "explains scatter that comes in bursts";
     const double shaped = gained_by_shape(forms);
     if (shaped > 0 && too_much(shaped)) return "explains scatter that has a shape";
-    return "";
+    // Larger errors cover any mean that the model lacks: with one that is left for sure, who knows how much.
+    return std::any_of(leftovers.begin(), leftovers.end(), sure)
+               ? "explains scatter beside a structure that is left"
+               : "";
 }
 
 /// The effects that make single errors large, if a law of errors without a mechanism does as well.

@@ -23,6 +23,7 @@ namespace {
 using Forms = std::vector<std::pair<std::size_t, FormVerdict>>;
 
 constexpr double kInterval = 1.645;  // standard errors of a 90 % interval
+constexpr double kNothing = 1e-6;    // of the interval
 
 const Effect& effect_of(const Study& study, std::size_t candidate) {
     return *study.candidates()[candidate].effect;
@@ -32,9 +33,12 @@ FittedParameter parameter_of(const Study& study, const Fit& fit, const Precision
     const auto index = static_cast<std::size_t>(fit.freed[j].index);
     const ModelParameter& parameter = study.model().parameters()[index];
     const Interval interval = interval_of(study, fit, precision, j);
+    // A value that the solver left beside nothing, far below what the data could show, is nothing.
+    const double value = fit.fitted.state.values[index], off = std::abs(value - parameter.neutral);
+    const bool nothing = off < kNothing * (interval.high - interval.low);
     return {parameter.name,
             parameter.unit,
-            fit.fitted.state.values[index],
+            nothing ? parameter.neutral : value,
             interval.low,
             interval.high,
             parameter.neutral,

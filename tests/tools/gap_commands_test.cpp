@@ -119,6 +119,25 @@ TEST_CASE("gap: what cannot be written leaves the old verdict whole") {
     check_refused("gap " + desk.at("floor") + " --out " + out.string(), "is a folder");
 }
 
+TEST_CASE("gap: what a killed analysis left half written is cleared away, other files are not") {
+    const Desk desk;
+    constexpr int kGone = 999999999, kLives = 1;  // no process has the one, the first of all has the other
+    const fs::path out = desk.path / "out";
+    const auto rest = [&](const char* name, int process) {
+        return out / fmt::format("{}.{}.part", name, process);
+    };
+    write(rest("gap.json", kGone), "{");
+    write(rest("gap.json", kLives), "{");
+    write(out / fmt::format("rerun.{}/run1/report.json", kGone), "{}");
+    write(out / "notes.part", "mine");
+    CHECK(run_puckloop("gap " + desk.at("floor") + " --no-rerun --out " + out.string()).status == 0);
+    CHECK_FALSE(fs::exists(rest("gap.json", kGone)));
+    CHECK_FALSE(fs::exists(out / fmt::format("rerun.{}", kGone)));
+    CHECK(fs::exists(rest("gap.json", kLives)));
+    CHECK(fs::exists(out / "notes.part"));
+    CHECK(fs::exists(out / "gap.json"));
+}
+
 TEST_CASE("gap: nothing of a laboratory's is written over or removed") {
     const Desk desk;
     const std::string before = text_of(desk.path / "floor/experiment.toml");

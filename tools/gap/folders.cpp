@@ -4,16 +4,39 @@
 
 #include <fmt/format.h>
 
+#include <signal.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <regex>
 #include <system_error>
+#include <vector>
 
 namespace puckloop::tools {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+/// What an analysis that was killed left half written: its files and runs carry its process's number.
+void remove_rests(const fs::path& folder) {
+    static const std::regex kRest(R"((?:[a-z]+\.[a-z]+|puckloop)\.([0-9]{1,9})\.part|rerun\.([0-9]{1,9}))");
+    std::error_code failed;
+    std::vector<fs::path> rests;
+    for (fs::directory_iterator at(folder, failed), end; !failed && at != end; at.increment(failed)) {
+        std::smatch found;
+        const std::string name = at->path().filename().string();
+        if (!std::regex_match(name, found, kRest)) continue;
+        const pid_t process = std::stoi(found[1].matched ? found[1] : found[2]);
+        if (::kill(process, 0) != 0 && errno == ESRCH) rests.push_back(at->path());
+    }
+    for (const fs::path& rest : rests)
+        fs::remove_all(rest, failed);
+}
+
+}  // namespace
 
 void prepare_folder(const fs::path& folder) {
     std::error_code failed;
@@ -22,6 +45,7 @@ void prepare_folder(const fs::path& folder) {
     if (failed)
         throw InputError(folder.string(), "", "cannot be made: " + failed.message(),
                          "a folder that can be written");
+    remove_rests(folder);
     const fs::path trial = folder / fmt::format("puckloop.{}.part", ::getpid());
     errno = 0;
     const bool written = static_cast<bool>(std::ofstream(trial) << "trial" << std::flush);

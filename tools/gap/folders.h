@@ -6,7 +6,7 @@
 
 namespace puckloop::tools {
 
-/// Makes the folder and tries to write in it. InputError says why not.
+/// Makes the folder, clears it of what killed analyses left half written, and tries to write in it. InputError says why not.
 void prepare_folder(const std::filesystem::path& folder);
 
 /// InputError where the folder holds an experiment already: measured data is not written over.
