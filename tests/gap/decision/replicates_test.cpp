@@ -19,12 +19,12 @@ namespace {
 
 /// Eight runs of a ground sensor over changing grey, errors carried over by 0.6; in run 5 a slow wave of so
 /// many counts, of its own phase and speed.
-Verdict with_wave(std::uint64_t seed, double counts) {
+Verdict with_wave(std::uint64_t seed, double counts, double ceiling = 1023) {
     RandomStream random(seed, "replicates test");
     Experiment experiment;
     experiment.kind = Kind::Ground;
     experiment.title = "toy";
-    experiment.instruments["reading"] = {0, 1023, 1};
+    experiment.instruments["reading"] = {0, ceiling, 1};
     const double phase = 6.3 * random.uniform(), period = 60 + 90 * random.uniform();  // rows
     for (int r = 0; r < 8; ++r) {
         Run run;
@@ -66,5 +66,15 @@ TEST_CASE("a run that strays farther than the fitted errors do is left") {
                    one.shape.find("at run 6") != std::string::npos;
         }));
         CHECK(with_wave(seed, 0).decision == Decision::NoEffect);
+    }
+}
+
+TEST_CASE("readings beyond a stated ceiling are as at it, measured and replicated") {
+    // White reads some 830 here: the stated end is below.
+    for (const std::uint64_t seed : {1, 2, 3}) {
+        const Verdict verdict = with_wave(seed, 0, 780);
+        CHECK(std::none_of(verdict.leftovers.begin(), verdict.leftovers.end(), [](const Leftover& one) {
+            return one.shape.find("where the fit makes") != std::string::npos;
+        }));
     }
 }

@@ -8,8 +8,10 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 using namespace puckloop;
 using namespace puckloop::gap;
@@ -163,6 +165,22 @@ TEST_CASE("noise in proportion errs anew at each reading, what is there again at
     const Verdict offsets = verdict_of(false);
     CHECK(offsets.decision == Decision::Unexplained);
     CHECK(offsets.causes.empty());
+}
+
+TEST_CASE("a gain that drifts otherwise in each run is no noise that grows with the reading") {
+    for (const std::uint64_t seed : {1, 2, 3}) {
+        RandomStream random(seed, "scatter test/drifting gain");
+        std::array<double, kRuns> phase{};
+        for (double& one : phase)
+            one = 2 * std::numbers::pi * random.uniform();
+        const Verdict verdict = verdict_on(readings([&](double level, const Row& row) {
+            const double gain =
+                1 + 0.05 * std::sin(0.17 * row.row + phase[static_cast<std::size_t>(row.run)]);
+            return std::clamp(std::round(level * gain + 3 * random.normal()), 0.0, 4095.0);
+        }));
+        CHECK(verdict.decision == Decision::Unexplained);
+        CHECK(verdict.causes.empty());
+    }
 }
 
 TEST_CASE("a cause stays where only scatter beside it is doubted") {
