@@ -183,6 +183,12 @@ std::vector<stats::Finding> residual_structure(const Experiment& experiment, con
     input.residual.run.assign(series.run.begin(), series.run.end());
     input.time = times_of(experiment, series);
     input.level = stage == Stage::Before ? series.before : series.after;
+    // Of a reading at an end of the instrument only the middle of what it may be is known: it scatters less.
+    if (const auto ends = experiment.instruments.find(series.observable);
+        ends != experiment.instruments.end())
+        for (std::size_t i = 0; i < input.level.size(); ++i)
+            if (series.measured[i] <= ends->second.floor || series.measured[i] >= ends->second.ceiling)
+                input.level[i] = NAN;
     input.raw = series.measured;
     input.covariates = covariates_of(experiment, series);
     return stats::structure_table(input, options);

@@ -144,6 +144,23 @@ void add_tried(const Study& study, const Selection& selection, Verdict& verdict)
     }
 }
 
+/// What fits best where few runs show it, and so gains nothing on runs that were not fitted.
+void add_few_runs_caution(const Study& study, const Selection& selection, Verdict& verdict) {
+    if (verdict.decision != Decision::Unexplained || !verdict.nearest.empty()) return;
+    const auto best =
+        std::max_element(selection.trials.begin(), selection.trials.end(),
+                         [](const Trial& a, const Trial& b) { return a.delta_bic < b.delta_bic; });
+    if (best == selection.trials.end() || !(best->delta_bic > thresholds::kPromising)) return;
+    std::vector<std::string> names;
+    for (const Trial& one : selection.trials)
+        if (one.delta_bic > best->delta_bic - thresholds::kDraw)
+            names.emplace_back(effect_of(study, one.effect).name);
+    verdict.cautions.push_back(fmt::format(
+        "{} fits what was measured (BIC better by {:.0f}), but gains nothing for sure on runs that were not "
+        "fitted: if few runs show it, record more of these",
+        fmt::join(names, " or "), best->delta_bic));
+}
+
 void add_held_out(const Study& study, const Selection& selection, std::uint64_t seed, Verdict& verdict) {
     HeldFigures figures = held_figures(study, selection, seed);
     verdict.heldout = figures.all;
@@ -192,6 +209,7 @@ Verdict verdict_of(const Study& study, Judged judged, std::uint64_t seed) {
     verdict.leftovers = std::move(judged.diagnosis.leftovers);
     verdict.free_forms = std::move(judged.diagnosis.free_forms);
     add_tried(study, judged.chosen.selection, verdict);
+    add_few_runs_caution(study, judged.chosen.selection, verdict);
     add_held_out(study, judged.chosen.selection, seed, verdict);
     add_predictive(study, judged, seed, verdict);
     for (const Series& series : verdict.series)

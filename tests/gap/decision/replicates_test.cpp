@@ -73,8 +73,41 @@ TEST_CASE("readings beyond a stated ceiling are as at it, measured and replicate
     // White reads some 830 here: the stated end is below.
     for (const std::uint64_t seed : {1, 2, 3}) {
         const Verdict verdict = with_wave(seed, 0, 780);
+        CHECK(verdict.decision == Decision::NoEffect);
         CHECK(std::none_of(verdict.leftovers.begin(), verdict.leftovers.end(), [](const Leftover& one) {
             return one.shape.find("where the fit makes") != std::string::npos;
         }));
     }
+}
+
+TEST_CASE("what one run alone shows is no cause, but the run is asked for again") {
+    RandomStream random(5, "replicates test/one run");
+    Experiment experiment;
+    experiment.kind = Kind::Ground;
+    experiment.title = "toy";
+    experiment.instruments["reading"] = {0, 1023, 1};
+    for (int r = 0; r < 6; ++r) {
+        Run run;
+        run.name = "run" + std::to_string(r);
+        run.rows = 120;
+        for (int k = 0; k < 120; ++k) {
+            run.columns["t_s"].push_back(0.1 * k);
+            run.columns["sensor"].push_back(r == 0 ? k % 2 : 0);
+            run.columns["grey"].push_back(0.5 + 0.3 * std::sin(0.7 * k + r));
+            run.columns["reading"].push_back(500);
+        }
+        experiment.runs.push_back(std::move(run));
+    }
+    const Series simulated = test::simulated(experiment).front();
+    for (std::size_t i = 0; i < simulated.before.size(); ++i) {
+        auto& columns = experiment.runs[simulated.run[i]].columns;
+        const double gain = columns["sensor"][simulated.row[i]] > 0 ? 1.08 : 1.0;
+        columns["reading"][simulated.row[i]] = std::round(gain * simulated.before[i] + 3 * random.normal());
+    }
+    const Verdict verdict = analyse(experiment, {});
+    CHECK(verdict.decision == Decision::Unexplained);
+    CHECK(std::any_of(verdict.cautions.begin(), verdict.cautions.end(), [](const std::string& caution) {
+        return caution.find("ground_gain") != std::string::npos &&
+               caution.find("record more of these") != std::string::npos;
+    }));
 }
