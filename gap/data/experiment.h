@@ -42,7 +42,9 @@ struct Run {
 /// What the instrument can say of a column: clip levels and step; NaN / 0 = not known.
 struct Instrument {
     double floor, ceiling;  ///< values at or beyond are "at least this far"; NaN: none
-    double quantum = 0.0;   ///< step between two values
+    bool at_end(double value) const { return value <= floor || value >= ceiling; }
+    double clipped(double value) const { return value < floor ? floor : value > ceiling ? ceiling : value; }
+    double quantum = 0.0;  ///< step between two values
 };
 
 struct Experiment {

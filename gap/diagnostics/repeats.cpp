@@ -35,7 +35,7 @@ bool again(const Experiment& experiment, const Observable& o, std::size_t i) {
 }
 
 bool inside(const Observable& o, std::size_t i) {
-    return !(o.y[i] <= o.instrument.floor) && !(o.y[i] >= o.instrument.ceiling);
+    return !o.instrument.at_end(o.y[i]);
 }
 
 }  // namespace

@@ -187,8 +187,7 @@ std::vector<stats::Finding> residual_structure(const Experiment& experiment, con
     if (const auto ends = experiment.instruments.find(series.observable);
         ends != experiment.instruments.end())
         for (std::size_t i = 0; i < input.level.size(); ++i)
-            if (series.measured[i] <= ends->second.floor || series.measured[i] >= ends->second.ceiling)
-                input.level[i] = NAN;
+            if (ends->second.at_end(series.measured[i])) input.level[i] = NAN;
     input.raw = series.measured;
     input.covariates = covariates_of(experiment, series);
     return stats::structure_table(input, options);

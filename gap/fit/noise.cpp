@@ -67,7 +67,7 @@ NoiseParameters first_guess(const Observable& o, const Predicted& p) {
     double last = 0.0, product = 0.0, square = 0.0;
     for (std::size_t i = 0; i < o.y.size(); ++i) {
         const double error = o.y[i] - p.mean[i];
-        const bool clipped = o.y[i] <= o.instrument.floor || o.y[i] >= o.instrument.ceiling;
+        const bool clipped = o.instrument.at_end(o.y[i]);
         if (o.starts[i] == 0) {
             product += error * last;
             square += error * error;

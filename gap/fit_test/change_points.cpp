@@ -14,7 +14,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <span>
 
@@ -211,11 +210,10 @@ std::vector<ChangePoint> change_points(const Model& model, const State& state) {
         all.push_back(std::move(best));
     }
     // One look at each observable.
-    for (ChangePoint& point : all) {
+    for (ChangePoint& point : all)
         point.p_value = std::min(1.0, point.p_value * static_cast<double>(all.size()));
-        point.gain = -std::log(std::max(point.p_value, std::numeric_limits<double>::min()));
-    }
-    std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.gain > b.gain; });
+    std::stable_sort(all.begin(), all.end(),
+                     [](const auto& a, const auto& b) { return a.p_value < b.p_value; });
     return all;
 }
 

@@ -37,7 +37,6 @@ struct ChangePoint {
     std::string observable, unit;
     std::uint32_t run = 0, row = 0;
     double jump = 0.0;     ///< observable's unit
-    double gain = 0.0;     ///< nats by which chance is excluded: -ln of `p_value`
     double p_value = 1.0;  ///< that the highest of so many chains and observables is so high
     std::string shape;
 };

@@ -50,7 +50,7 @@ class RabRing {
     /// What chance and spread of parts add to each look: sd of ln strength and of the bearing (rad).
     const std::vector<double>& strength_sd() const { return strength_sd_; }
     const std::vector<double>& bearing_sd() const { return bearing_sd_; }
-    /// What boards with parts drawn by the simulator's spreads tell beside the mean of such boards: some of
+    /// What boards with parts drawn by the simulator's spreads read beside the mean of such boards: some of
     /// them, each of all looks.
     std::vector<std::vector<RabTold>> drawn_boards() const;
 

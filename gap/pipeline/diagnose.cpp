@@ -45,9 +45,9 @@ std::string farthest_place(const PredictiveCurve& curve, const std::string& unit
     }
     const std::string where =
         curve.categories.empty() ? fmt::format("{:.3g}", curve.x[place]) : curve.categories[place];
-    const bool sized = curve.residual == PredictiveCurve::Residual::Vertical && unit != "1";
     return fmt::format("{:.3g}{} at {} {}, where the fit makes {:.3g} to {:.3g}", curve.measured[place],
-                       sized ? " " + unit : "", curve.x_label, where, curve.low[place], curve.high[place]);
+                       unit == "1" ? "" : " " + unit, curve.x_label, where, curve.low[place],
+                       curve.high[place]);
 }
 
 /// Sums have tests of their own: where their errors are next to none replicates differ by rounding alone. Of
@@ -57,17 +57,14 @@ bool is_replicated(const Observable& observable) {
 }
 
 /// Curves of residuals that the fitted model does not make (posterior-predictive), p by Bonferroni. How large
-/// errors are and how they carry over is the noise's business.
+/// errors are (the marginal law) and how they carry over is the noise's business.
 std::vector<Leftover> not_replicated(const Study& study, const std::vector<PredictiveCheck>& checks) {
-    const auto looked_at = [](const PredictiveCurve& curve) {
-        return curve.name != "marginal law" && curve.name != "autocorrelation";
-    };
     std::vector<Leftover> all;
     double looks = 0.0;
     for (std::size_t o = 0; o < checks.size(); ++o) {
         if (!is_replicated(study.model().observables()[o])) continue;
         for (const PredictiveCurve& curve : checks[o].curves) {
-            if (!looked_at(curve)) continue;
+            if (curve.residual != PredictiveCurve::Residual::Vertical) continue;
             looks += 1;
             all.push_back(
                 {checks[o].observable, curve.name, curve.tail, farthest_place(curve, checks[o].unit)});

@@ -16,12 +16,6 @@ namespace puckloop::gap {
 
 namespace {
 
-/// Beyond the ends that it states an instrument reads anything.
-double within(const Instrument& instrument, double value) {
-    if (value < instrument.floor) return instrument.floor;
-    return value > instrument.ceiling ? instrument.ceiling : value;
-}
-
 constexpr std::size_t kReplicates = 199, kFewer = 99;  // of many rows: each costs a prediction and a filter
 constexpr std::size_t kManyRows = 20000;
 
@@ -38,7 +32,7 @@ std::vector<double> residuals_of(const Observable& o, const Predicted& at_fit, c
                                : NAN;
     } else {
         for (std::size_t i = 0; i < residuals.size(); ++i)
-            residuals[i] = within(o.instrument, o.y[i]) - within(o.instrument, shown(at_fit, i));
+            residuals[i] = o.instrument.clipped(o.y[i]) - o.instrument.clipped(shown(at_fit, i));
     }
     return residuals;
 }

@@ -20,7 +20,6 @@ constexpr std::size_t kInnerBins = 18;  // of the marginal law; one more at each
 constexpr double kOuter = 0.005;        // of the residuals lie beyond the inner bins, on each side
 constexpr std::size_t kMostLags = 12;
 constexpr int kBins = 12, kLevels = 16;  // of a covariate; up to so many different values stand by themselves
-constexpr double kLeastP = 1e-12;
 constexpr double kLow = 0.05, kHigh = 0.95;  // of the envelope
 constexpr double kLeastVaries = 1e-12;       // of a place's size: replicates that do not differ there
 
@@ -174,8 +173,7 @@ Discrepancies::curves(const std::vector<double>& measured,
             far.push_back(farthest(one[c], centre, deviation));
         const auto as_far = std::count_if(far.begin(), far.end(), [&](double one) { return one >= most; });
         curve.p = static_cast<double>(as_far + 1) / static_cast<double>(replicated.size() + 1);
-        curve.tail =
-            as_far == 0 ? std::min(curve.p, std::max(stats::fitted_tail(far, most), kLeastP)) : curve.p;
+        curve.tail = as_far == 0 ? std::min(curve.p, stats::fitted_tail(far, most)) : curve.p;
     }
     return all;
 }

@@ -109,12 +109,11 @@ void add_summed(const Observable& o, const Predicted& p, const NoiseParameters& 
 
 /// As the instrument shows it.
 double shown_as(const Observable& o, const Predicted& p, double value, bool rounds, RandomStream& random) {
-    const double floor = o.instrument.floor, ceiling = o.instrument.ceiling, step = o.instrument.quantum;
+    const double floor = o.instrument.floor, step = o.instrument.quantum;
     if (p.ceiling > 0.0 && value > p.ceiling) value = p.ceiling + p.pile * random.normal();
     if (rounds) value = o.y.front() + step * std::nearbyint((value - o.y.front()) / step);
     if (p.floor > 0.0 && value < p.floor) return std::isnan(floor) ? 0.0 : floor;
-    if (value < floor) return floor;
-    return value > ceiling ? ceiling : value;
+    return o.instrument.clipped(value);
 }
 
 }  // namespace

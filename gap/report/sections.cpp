@@ -79,10 +79,9 @@ std::string gain_section(const Verdict& verdict) {
                     "row, 90 % {}). {}",
                     held.runs_better, held.runs, cell(held.score_before), cell(held.score_after),
                     cell(held.score_after - held.score_before), range_cell(held.score_low, held.score_high),
-                    !held.gain ? "The data shows no gain; none is claimed."
-                    : held.low <= 1 && held.high >= 1
-                        ? "The data shows a gain, of the scatter: errors are as large as before."
-                        : "The data shows a gain."));
+                    !held.gain              ? "The data shows no gain; none is claimed."
+                    : held.error_may_stay() ? "The data shows a gain; errors are not smaller for sure."
+                                            : "The data shows a gain."));
     if (!verdict.observables.empty()) {
         const Picture picture = gain_picture(verdict);
         out += fmt::format("<div class=\"pictures\"><figure>{}<figcaption>{}</figcaption></figure></div>\n",

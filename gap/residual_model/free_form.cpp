@@ -54,8 +54,7 @@ Errors errors_of(const Observable& observable, const Predicted& predicted, const
     e.rows.carry = whitened ? 0.0 : noise.carry;
     e.rows.trimmed = observable.noise != NoiseKind::Event;
     for (std::size_t i = 0; i < observable.y.size(); ++i) {
-        const bool clipped = observable.y[i] <= observable.instrument.floor ||
-                             observable.y[i] >= observable.instrument.ceiling;
+        const bool clipped = observable.instrument.at_end(observable.y[i]);
         const double sd = observable.noise == NoiseKind::Event
                               ? std::sqrt(std::max(predicted.mean[i] * (1 - predicted.mean[i]), 1e-6))
                               : row_sd(observable, predicted, noise, i);

@@ -11,7 +11,8 @@ namespace puckloop::gap::stats {
 
 namespace {
 
-constexpr std::size_t kStandsStill = 4;          // rows a plateau on average
+constexpr std::size_t kStandsStill = 4;  // rows a plateau on average
+constexpr double kLeastTail = 1e-12;
 constexpr std::size_t kFreeBlocksForWithin = 5;  // blocks beyond one a run, to exchange inside runs
 constexpr std::size_t kMostUnits = 3000;         // beyond, neighbours are averaged: time, not knowledge
 constexpr int kHitsToStop = 20;                  // then p is known well enough
@@ -142,15 +143,15 @@ double permutation_p(const Pairs& pairs, const std::function<double(const std::v
 
 double fitted_tail(const std::vector<double>& null, double observed) {
     const double centre = mean(null), spread = standard_deviation(null);
-    if (!(spread > 0)) return 0.0;
+    if (!(spread > 0)) return kLeastTail;
     double third = 0;
     for (const double v : null)
         third += std::pow((v - centre) / spread, 3);
     const double skewness = third / static_cast<double>(null.size());
     const double z = (observed - centre) / spread;
-    if (skewness < 0.05) return normal_tail(z);
+    if (skewness < 0.05) return std::max(normal_tail(z), kLeastTail);
     const double shape = 4 / (skewness * skewness);
-    return gamma_tail(shape, shape + z * std::sqrt(shape));
+    return std::max(gamma_tail(shape, shape + z * std::sqrt(shape)), kLeastTail);
 }
 
 double null_p(double observed, double units, const std::function<double(RandomStream&)>& draw,
@@ -168,7 +169,7 @@ double null_p(double observed, double units, const std::function<double(RandomSt
     if (hits >= kHitsToStop) return hits / drawn;
     const double counted = (hits + 1) / (drawn + 1);
     if (hits >= kHitsForCount || units < kUnitsForTail) return counted;
-    return std::min(counted, std::max(fitted_tail(null, observed), 1e-12));
+    return std::min(counted, fitted_tail(null, observed));
 }
 
 double slope_of(const Pairs& pairs) {

@@ -42,7 +42,8 @@ Pairs prepared(const Series& residual, const std::vector<double>& covariate);
 double permutation_p(const Pairs& pairs, const std::function<double(const std::vector<double>& y)>& statistic,
                      const TestOptions& options, std::string_view stream);
 
-/// P(X > observed) of a gamma distribution (Pearson III) with the mean, spread and skewness of `null`.
+/// P(X > observed) of a gamma distribution (Pearson III) with the mean, spread and skewness of `null`;
+/// at least 1e-12.
 double fitted_tail(const std::vector<double>& null, double observed);
 
 /// The same for any way to draw a null value of the statistic.

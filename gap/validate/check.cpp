@@ -122,7 +122,7 @@ void check_clipped(Experiment& experiment, const ColumnInfo& info) {
         for (const double value : run.column(info.name)) {
             if (std::isnan(value)) continue;
             ++present;
-            if (value <= instrument->second.floor || value >= instrument->second.ceiling) ++clipped;
+            if (instrument->second.at_end(value)) ++clipped;
         }
     const double share =
         static_cast<double>(clipped) / static_cast<double>(std::max<std::size_t>(present, 1));

@@ -208,18 +208,6 @@ void check_holes(Experiment& experiment, const Run& run) {
                 run.file, time[i] - time[i - 1], i + 1);
 }
 
-/// m that the commands ask for, the mean of both wheels.
-double way_asked(const Run& run, double metre_per_step) {
-    double way = 0.0;
-    if (!run.has("cmd_left")) return way;
-    const auto &left = run.column("cmd_left"), &right = run.column("cmd_right"), &time = run.column("t_s");
-    for (std::size_t i = 1; i < run.rows; ++i) {
-        const double one = (std::abs(left[i - 1]) + std::abs(right[i - 1])) / 2 * (time[i] - time[i - 1]);
-        if (std::isfinite(one)) way += one * metre_per_step;
-    }
-    return way;
-}
-
 }  // namespace
 
 double metres_per_step(const Experiment& experiment) {
@@ -261,7 +249,6 @@ void check_motion(Experiment& experiment) {
         driven_by_run.emplace_back(&run, stretches_of(run, metre_per_step, axle));
         check_commands(experiment, run);
         check_holes(experiment, run);
-        asked_way += way_asked(run, metre_per_step);
         if (path.largest_turn > 2.5)
             experiment.caution(
                 "{}: theta_rad jumps by {:.2f} rad between two rows: too sparse, or a wrong unit", run.file,
@@ -272,7 +259,8 @@ void check_motion(Experiment& experiment) {
         for (std::size_t i = 1; i < run.rows; ++i) {
             const double turn = std::remainder(theta[i] - theta[i - 1], 2 * std::numbers::pi);
             const auto [left, right] = steps_made(run, i);
-            const double asked = right - left;
+            const double asked = right - left, way = (std::abs(left) + std::abs(right)) / 2 * metre_per_step;
+            if (std::isfinite(way)) asked_way += way;
             if (std::isnan(turn) || std::isnan(asked)) continue;
             agree += turn * asked;
             turned += std::abs(turn * asked);

@@ -83,7 +83,7 @@ std::string gain_sentence(const Held& held) {
     if (!held.gain && held.score_after == held.score_before)
         return "No gain is claimed: nothing was added to the simulator.";
     if (!held.gain) return fmt::format("No gain is claimed: {}, {}.", error, score);
-    if (held.low <= 1 && held.high >= 1)
+    if (held.error_may_stay())
         return fmt::format("Gain on data that was not fitted: what readings are likely is predicted "
                            "better, {} (90 % interval {:+.3g} to {:+.3g}); errors are not "
                            "smaller for sure: {}.",

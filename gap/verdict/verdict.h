@@ -54,6 +54,9 @@ struct Held {
     int runs = 0, runs_better = 0;
     bool gain = false;  ///< the data shows an improvement
     std::string sentence;
+
+    /// Is no change of the error within its interval? A gain is then one of what readings are likely.
+    bool error_may_stay() const { return low <= 1 && high >= 1; }
 };
 
 struct HeldObservable {

@@ -16,4 +16,13 @@ inline std::vector<Series> simulated(const Experiment& experiment) {
     return series_of(*model, nominal, nominal);
 }
 
+/// Fills a column by what the simulator gives for each row, in order: `measured(simulated, run, row)`.
+template <class Measured>
+void fill(Experiment& experiment, const char* column, const Measured& measured) {
+    const Series series = simulated(experiment).front();
+    for (std::size_t i = 0; i < series.before.size(); ++i)
+        experiment.runs[series.run[i]].columns[column][series.row[i]] =
+            measured(series.before[i], series.run[i], series.row[i]);
+}
+
 }  // namespace puckloop::gap::test

@@ -6,7 +6,8 @@
 
 namespace puckloop::tools {
 
-/// Makes the folder, clears it of what killed analyses left half written, and tries to write in it. InputError says why not.
+/// Makes the folder, clears it of what killed analyses left half written, and tries to write in it.
+/// InputError gives the reason where that fails.
 void prepare_folder(const std::filesystem::path& folder);
 
 /// InputError where the folder holds an experiment already: measured data is not written over.

@@ -42,12 +42,9 @@ Verdict with_wave(std::uint64_t seed, double counts, double ceiling = 1023) {
         }
         experiment.runs.push_back(std::move(run));
     }
-    const Series simulated = test::simulated(experiment).front();
-    for (std::size_t i = 0; i < simulated.before.size(); ++i) {
-        auto& columns = experiment.runs[simulated.run[i]].columns;
-        columns["reading"][simulated.row[i]] =
-            std::round(simulated.before[i] + columns["wrong"][simulated.row[i]]);
-    }
+    test::fill(experiment, "reading", [&](double simulated, std::uint32_t run, std::uint32_t row) {
+        return std::round(simulated + experiment.runs[run].columns["wrong"][row]);
+    });
     for (Run& run : experiment.runs)
         run.columns.erase("wrong");
     Options options;
@@ -98,12 +95,10 @@ TEST_CASE("what one run alone shows is no cause, but the run is asked for again"
         }
         experiment.runs.push_back(std::move(run));
     }
-    const Series simulated = test::simulated(experiment).front();
-    for (std::size_t i = 0; i < simulated.before.size(); ++i) {
-        auto& columns = experiment.runs[simulated.run[i]].columns;
-        const double gain = columns["sensor"][simulated.row[i]] > 0 ? 1.08 : 1.0;
-        columns["reading"][simulated.row[i]] = std::round(gain * simulated.before[i] + 3 * random.normal());
-    }
+    test::fill(experiment, "reading", [&](double simulated, std::uint32_t run, std::uint32_t row) {
+        const double gain = experiment.runs[run].columns["sensor"][row] > 0 ? 1.08 : 1.0;
+        return std::round(gain * simulated + 3 * random.normal());
+    });
     const Verdict verdict = analyse(experiment, {});
     CHECK(verdict.decision == Decision::Unexplained);
     CHECK(std::any_of(verdict.cautions.begin(), verdict.cautions.end(), [](const std::string& caution) {

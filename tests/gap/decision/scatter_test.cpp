@@ -27,12 +27,10 @@ struct Row {
 /// What the simulator gives for each row, in order, with `wrong` on top.
 void fill(Experiment& experiment, const char* column, const std::function<double(double, const Row&)>& wrong,
           int reads) {
-    const Series simulated = test::simulated(experiment).front();
-    for (std::size_t i = 0; i < simulated.before.size(); ++i) {
-        const int row = static_cast<int>(simulated.row[i]);
-        experiment.runs[simulated.run[i]].columns[column][simulated.row[i]] =
-            wrong(simulated.before[i], {static_cast<int>(simulated.run[i]), row / reads, row % reads, row});
-    }
+    test::fill(experiment, column, [&](double simulated, std::uint32_t run, std::uint32_t at) {
+        const int row = static_cast<int>(at);
+        return wrong(simulated, {static_cast<int>(run), row / reads, row % reads, row});
+    });
 }
 
 /// Runs whose rows `add` fills; what is measured is the simulator's own, with `wrong` on top.
