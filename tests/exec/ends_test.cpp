@@ -90,6 +90,30 @@ TEST_CASE("a TCP end carries bytes both ways, takes one client, and survives its
     CHECK(take_from(*end, 5) == "again");
 }
 
+TEST_CASE("a TCP client that has sent all it has still gets what the board answers, and makes room") {
+    using boost::asio::ip::tcp;
+    const auto end = exec::make_tcp_end(0);
+    boost::asio::io_context io;
+    const tcp::endpoint there(boost::asio::ip::address_v4::loopback(), port_of(*end));
+    tcp::socket client(io);
+    client.connect(there);
+    boost::asio::write(client, boost::asio::buffer("V\r", 2));
+    client.shutdown(tcp::socket::shutdown_send);  // as `printf 'V\r' | nc 127.0.0.1 PORT`
+    CHECK(take_from(*end, 2) == "V\r");
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));  // its end is noticed
+    for (const char c : std::string("v,1"))
+        end->receive(static_cast<std::uint8_t>(c), true, 0);
+    end->poll(0, cosim::kNever);
+    char got[3];
+    boost::system::error_code error;
+    CHECK(boost::asio::read(client, boost::asio::buffer(got), error) == 3);
+    CHECK(std::string(got, 3) == "v,1");
+    tcp::socket next(io);
+    next.connect(there);
+    boost::asio::write(next, boost::asio::buffer("again", 5));
+    CHECK(take_from(*end, 5) == "again");
+}
+
 TEST_CASE("a TCP port that is taken is an input error of one line") {
     const auto first = exec::make_tcp_end(0);
     try {

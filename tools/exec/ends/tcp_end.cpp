@@ -49,7 +49,10 @@ class TcpClient final : public HostStream {
         if (!client_.is_open()) return 0;
         error_code error;
         const std::size_t got = client_.read_some(boost::asio::buffer(block.data(), block.size()), error);
-        if (error && error != boost::asio::error::would_block) drop();
+        if (error == boost::asio::error::eof)
+            sends_no_more_ = true;  // it may still read, as behind `printf 'V\r' | nc`
+        else if (error && error != boost::asio::error::would_block)
+            drop();
         return got;
     }
     std::size_t write(std::span<const std::uint8_t> bytes) override {
@@ -78,13 +81,16 @@ class TcpClient final : public HostStream {
         });
     }
     void await() {
-        if (!then_ || !client_.is_open()) return;
+        if (!then_ || !client_.is_open() || sends_no_more_) return;
         client_.async_wait(tcp::socket::wait_read, [this](const error_code& error) {
             if (!error && then_) std::exchange(then_, {})();
         });
     }
-    /// A client that has left makes room for the next, even if nobody has read so far that it has.
+    /// A client that has left makes room for the next, even if nobody has read so far that it has. One that
+    /// only sends no more cannot be known from one that has left until something is written to it.
     bool somebody_there() {
+        if (!client_.is_open()) return false;
+        if (sends_no_more_) drop();
         if (!client_.is_open()) return false;
         char byte;
         error_code error;
@@ -94,6 +100,7 @@ class TcpClient final : public HostStream {
     }
     void drop() {
         there_ = false;
+        sends_no_more_ = false;
         error_code ignored;
         client_.shutdown(tcp::socket::shutdown_both, ignored);
         client_.close(ignored);
@@ -104,6 +111,7 @@ class TcpClient final : public HostStream {
     std::uint16_t port_ = 0;
     std::function<void()> then_;
     std::atomic<bool> there_{false};
+    bool sends_no_more_ = false;
 };
 
 }  // namespace
