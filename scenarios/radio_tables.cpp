@@ -80,7 +80,7 @@ void read_computer(Reader& reader, CoordinatorPlace& place, int line) {
                     "either 'program' or 'uart'");
     LinuxBoard& board = place.program.emplace();
     board.hostname = board.folder = "coordinator";
-    board.grace = 10.0;  // the time in which LEDs go off
+    board.grace = 12.0;  // the program gives LEDs 10 s to go off, and then writes its files
     board.place_line = line;
     read_program(reader, board);
     place.tty = reader.text("tty", place.tty);

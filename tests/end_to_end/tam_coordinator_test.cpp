@@ -121,6 +121,19 @@ TEST_CASE("a coordinator's parameters may come from a file beside the scenario")
     CHECK(bench.report("mine")["simulated_s"] < 15.0);
 }
 
+TEST_CASE("a coordinator whose TAM has died gives up on its LEDs and ends by itself") {
+    const Workbench bench;
+    const std::string scenario = PUCKLOOP_SOURCE "/scenarios/tam.toml";
+    const Ended ended = bench.run("dead", {scenario, "--in-process", "--duration", "5", "--fault",
+                                           "sag node=tam0.avr volts=1V begin=3s"});
+    INFO(ended.out);
+    CHECK(ended.status == 0);
+    const auto report = bench.report("dead");
+    CHECK(report["nodes"]["coordinator.linux"]["end"] ==
+          "exited with status 0 after SIGTERM at the end of the run");
+    CHECK(report["simulated_s"] > 14.9);  // it waited 10 s for the LEDs
+}
+
 TEST_CASE("a coordinator's program that fails ends with its own words") {
     const Workbench bench;
     const auto file = bench.file(
