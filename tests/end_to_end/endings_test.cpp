@@ -169,6 +169,18 @@ TEST_CASE("a full disk ends the run with what fits, and a report") {
     CHECK(::umount(disk.c_str()) == 0);
 }
 
+TEST_CASE("a snapshot that finds no room is not reported") {
+    const Workbench bench;
+    if (!mount_small_disk(bench, "size=64k")) return;
+    const auto file = bench.folder() / "disk" / "run.snap";
+    const Ended ended = bench.run(
+        "o", {kHello, "--duration", "1", "--in-process", "--save-at", "0.5", "--save", file.string()});
+    check_one_line(ended, 1, {"run.snap: cannot be written: No space left on device"});
+    CHECK_THAT(ended.out, !Contains("snapshot of"));
+    CHECK_FALSE(std::filesystem::exists(file));
+    CHECK(::umount((bench.folder() / "disk").c_str()) == 0);
+}
+
 TEST_CASE("an export that cannot be written hides nothing of the run") {
     const Workbench bench;
     std::filesystem::create_directories(bench.out("o") / "trace.vcd");

@@ -142,8 +142,10 @@ std::string snapshots_summary(const RunRequest& request, const cosim::Outcome& o
         text +=
             fmt::format("\nwent on from {:g} s ({}), after {:.2f} s",
                         cosim::to_seconds(request.snapshot->time), request.from.string(), outcome.restored_s);
+    // A run whose snapshot could not be written has failed at that instant.
     for (const double at : request.snapshot_at)
-        if (outcome.simulated >= cosim::from_seconds(at))
+        if (outcome.simulated > cosim::from_seconds(at) ||
+            (outcome.success && outcome.simulated == cosim::from_seconds(at)))
             text += fmt::format("\nsnapshot of {:g} s in {}", at, snapshot_file(request, at).string());
     return text;
 }
