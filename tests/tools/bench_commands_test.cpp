@@ -38,6 +38,12 @@ void check_refused(const std::string& arguments, const std::string& expected) {
 
 }  // namespace
 
+TEST_CASE("help on a command that there is not is refused") {
+    check_refused("snapshott --help", "unknown command 'snapshott'");
+    CHECK(run_puckloop("--help").status == 0);
+    CHECK(run_puckloop("run --help").status == 0);
+}
+
 TEST_CASE("the help of puckloop bench explains every case on a line of its own") {
     const Result help = run_puckloop("bench --help");
     REQUIRE(help.status == 0);

@@ -49,6 +49,12 @@ int run_program(std::span<const DeclareCommand> commands, std::vector<std::strin
         if (std::fflush(stdout) != 0 || std::ferror(stdout))
             throw RunError("standard output: cannot be written");
         return status;
+    } catch (const CLI::CallForHelp& error) {
+        if (!app.get_subcommands().empty() || app.remaining().empty()) return app.exit(error);
+        // `puckloop snapshott --help`: help on what there is not
+        const CLI::ExtrasError unknown("puckloop", app.remaining());
+        std::fprintf(stderr, "puckloop: %s\n", usage_error(app, unknown).c_str());
+        return 2;
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
         std::fprintf(stderr, "puckloop: %s\n", usage_error(app, error).c_str());
