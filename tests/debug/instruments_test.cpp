@@ -168,7 +168,9 @@ TEST_CASE("traces, watches and statistics of a dsPIC without symbols") {
         CHECK(refused.status == 2);
         CHECK(exec::one_line(refused.err));
     }
-    CHECK(bench.run(what + "--cycles 100 --trace /nowhere/trace").status == 1);
+    const auto nowhere = bench.run(what + "--cycles 100 --trace /nowhere/trace");
+    CHECK(nowhere.status == 2);
+    CHECK_THAT(nowhere.err, Catch::Contains("/nowhere/trace: cannot be written: No such file or directory"));
 }
 
 TEST_CASE("profile and coverage of a C program with interrupts") {

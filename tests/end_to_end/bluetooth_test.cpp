@@ -176,6 +176,10 @@ TEST_CASE("what is wrong in a scenario or an upload is refused with its place", 
     CHECK(rab.status == 2);
     const Ended port = bench.puckloop(
         {"upload", PUCKLOOP_SOURCE "/firmware/bluetooth/talk.hex", "/dev/null", "--wait", "1"});
-    CHECK(port.status == 1);
-    CHECK(port.err.find("no serial port") != std::string::npos);
+    CHECK(port.status == 2);
+    CHECK(port.err.find("/dev/null: no serial port") != std::string::npos);
+    const Ended absent =
+        bench.puckloop({"upload", PUCKLOOP_SOURCE "/firmware/bluetooth/talk.hex", "/nowhere/pts"});
+    CHECK(absent.status == 2);
+    CHECK(absent.err.find("/nowhere/pts: cannot be opened: No such file") != std::string::npos);
 }

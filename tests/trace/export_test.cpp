@@ -155,7 +155,8 @@ TEST_CASE("what cannot be exported is reported in one line") {
     fails(trace + " --link w -o " + trace + ".sr", 2, "no line to draw");
     fails(trace + " --from 2 --to 1 -o " + trace + ".sr", 2, "not after --from");
     fails(trace + " --format vcd -o /dev/full", 1, "cannot write");
-    fails(trace + " -o /nonexistent/x.sr", 1, "cannot write");
+    fails(trace + " -o /nonexistent/x.sr", 2, "/nonexistent/x.sr: cannot write: No such file or directory");
+    fails(trace + " -o /nonexistent/x.vcd", 2, "/nonexistent/x.vcd: cannot write: No such file or directory");
     fails("/nonexistent -o x.sr", 2, "no such file");
     fails("/dev/zero -o x.sr", 2, "no regular file");
     const std::string far = write_trace("far.csv", {uart_row("w", "l", {8'000'000 * kSecond, 1'000'000, 1})});

@@ -10,6 +10,7 @@
 #include "tools/run/node_factory.h"
 #include "tools/run/run_scenario.h"
 #include "tools/run/setup.h"
+#include "tools/trace/recorded_trace.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -87,6 +88,7 @@ void check_output(const std::string& vcd, const std::filesystem::path& record) {
     std::error_code error;
     if (vcd != "-" && std::filesystem::equivalent(record, vcd, error))
         throw InputError(vcd, "--vcd", "is the record itself", "another file");
+    if (!vcd.empty()) check_writable(vcd);
 }
 
 int run(Options& options) {

@@ -42,6 +42,7 @@ void run(const Options& options) {
     std::error_code error;
     if (options.output != "-" && std::filesystem::equivalent(trace.file(), options.output, error))
         throw InputError(options.output, "--output", "is the trace itself", "another file");
+    check_writable(options.output);
     if (format == "sr") return export_sr(trace, options.output, static_cast<std::uint64_t>(options.rate));
     const auto write = format == "csv" ? export_csv : format == "vcd" ? export_vcd : export_pcapng;
     // What cannot be read is reported before a file is made of it.
@@ -55,7 +56,7 @@ void add_selection(Command& command, TraceSelection& selection) {
     command.add_option("--link", selection.links, "only these links (repeatable)")->allow_extra_args(false);
     command.add_option("--from-node", selection.nodes, "only what these nodes sent (repeatable)")
         ->allow_extra_args(false);
-    command.add_option("--kind", selection.kinds, "only uart, i2c, signal or radio (repeatable)")
+    command.add_option("--kind", selection.kinds, "only these kinds (repeatable)")
         ->allow_extra_args(false)
         ->check(one_of({"uart", "i2c", "signal", "radio", "can"}));
     command.add_option("--from", selection.from_s, "first time, s")->check(number_between(0.0, kLongest));

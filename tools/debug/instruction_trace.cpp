@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <utility>
 
 namespace puckloop::debug {
@@ -19,7 +21,9 @@ InstructionTrace::InstructionTrace(const std::string& file, const DebugChip& chi
       seconds_of_(std::move(seconds_of)),
       before_(chip.registers().size()),
       after_(chip.registers().size()) {
-    if (!out_) throw RunError(file + ": cannot be written");
+    if (!out_)
+        throw InputError(file, "", fmt::format("cannot be written: {}", std::strerror(errno)),
+                         "a place in a folder that exists and may be written");
     put("cycle\tpc\tplace\tline\tinstruction\tchanges\n");
 }
 

@@ -3,11 +3,13 @@
 #include "base/error.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <iostream>
 #include <set>
 
@@ -106,6 +108,15 @@ void RecordedTrace::for_each_checked(const std::function<void(const cosim::Trace
     check_known("--from-node", selection_.nodes, nodes);
     if (!cursor.whole())
         std::fprintf(stderr, "puckloop: %s: the last line is incomplete and left out\n", file_.c_str());
+}
+
+void check_writable(const std::string& path) {
+    if (path == "-") return;
+    const std::filesystem::path folder = std::filesystem::path(path).parent_path();
+    const bool there = ::access(path.c_str(), F_OK) == 0;
+    if (::access(there ? path.c_str() : folder.empty() ? "." : folder.c_str(), W_OK) != 0)
+        throw InputError(path, "", fmt::format("cannot write: {}", std::strerror(errno)),
+                         "a place in a folder that exists and may be written");
 }
 
 void write_output(const std::string& path, const std::function<void(std::ostream&)>& write) {

@@ -68,6 +68,9 @@ class RecordedTrace {
     TraceSelection selection_;
 };
 
+/// Throws InputError if no file can be written at `path` ("-" always can): known before the work is done.
+void check_writable(const std::string& path);
+
 /// Calls `write` with the open file, "-" being the standard output. Throws RunError when it cannot be
 /// written.
 void write_output(const std::string& path, const std::function<void(std::ostream&)>& write);

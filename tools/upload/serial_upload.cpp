@@ -31,10 +31,12 @@ class Port {
   public:
     explicit Port(const std::string& name)
         : name_(name), file_(::open(name.c_str(), O_RDWR | O_NOCTTY | O_CLOEXEC)) {
-        if (file_ < 0) throw RunError(fmt::format("{}: {}", name, std::strerror(errno)));
+        if (file_ < 0)
+            throw InputError(name, "", fmt::format("cannot be opened: {}", std::strerror(errno)),
+                             "a serial port, such as a run's pty");
         if (!exec::set_raw_terminal(file_, kBaud)) {
             ::close(file_);
-            throw RunError(fmt::format("{}: no serial port", name));
+            throw InputError(name, "", "no serial port", "such as a run's pty");
         }
     }
     ~Port() { ::close(file_); }
