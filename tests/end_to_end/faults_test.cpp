@@ -5,6 +5,8 @@
 
 #include <catch2/catch.hpp>
 
+#include <utility>
+
 using namespace puckloop::tests;
 using Catch::Contains;
 
@@ -83,6 +85,17 @@ TEST_CASE("a run whose fault never fired has failed, unless that is allowed") {
     CHECK_THAT(parity.err, Contains("frames without a parity bit are no candidates"));
     CHECK(bench.report("o")["success"] == false);
     CHECK(bench.report("o")["faults"][0]["fired"] == 0);
+    const std::pair<const char*, const char*> plain[] = {
+        {"kill node=robot0.linux at=1ms", "its program was not running then"},
+        {"sda link=robot0.i2c at=1ms time=1ms", "no byte that it is for was on the bus"},
+    };
+    for (const auto& [text, why] : plain) {
+        INFO(text);
+        const Ended held =
+            bench.run("o", {bench.hello(), "--duration", "1.2", "--in-process", "--fault", text});
+        CHECK(held.status == 1);
+        CHECK_THAT(held.err, Contains(why));
+    }
     const std::string allowed = bench.hello(fault("begin = \"1 h\"\nmay_not_fire = true\nname = \"late\"\n"));
     REQUIRE(bench.run("p", {allowed, "--duration", "1", "--in-process"}).status == 0);
     CHECK(bench.report("p")["faults"][0]["name"] == "late");

@@ -31,6 +31,12 @@ std::string why_it_did_not(const RunSetup& setup, const cosim::FaultReport& repo
     if (fault->begin >= end)
         return fmt::format("; its window begins at {:.3f} s and the run ended at {:.3f} s",
                            cosim::to_seconds(fault->begin), cosim::to_seconds(end));
+    if (fault->node.ends_with(".linux") &&
+        (fault->kind == "pause" || fault->kind == "kill" || fault->kind == "restart"))
+        return "; its program was not running then";
+    if (fault->kind == "sda" || fault->kind == "scl")
+        return "; no byte that it is for was on the bus while it held the line (without address, register, "
+               "phase or position it holds it once, from its begin on)";
     if (fault->kind == "parity") return "; frames without a parity bit are no candidates";
     const bool chosen = !fault->match.empty() || !fault->bytes.empty() || fault->position || fault->skip > 0;
     if (!fault->link.empty() && chosen)
